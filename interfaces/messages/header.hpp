@@ -1,0 +1,80 @@
+// What every message starts with: layout version, order, origin, time of measurement and the stamps of the stages
+// it passed, so that loss and latency can be measured in production without a second channel.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace boresight {
+
+/// Stages a radar scan passes on its way; the index into `MessageHeader::stages`.
+enum class Stage : std::uint8_t {
+  kIngest = 0,
+  kCorrector = 1,
+  kGhostFilter = 2,
+  kTracker = 3,
+};
+inline constexpr std::size_t kNumberOfStages = 4;
+
+/// When a stage took the message from its input and when it published its output, CLOCK_MONOTONIC, ns.
+/// Zero in a stage that the data has not reached yet.
+struct StageStamp {
+  std::int64_t begin_ns;
+  std::int64_t end_ns;
+};
+
+/// Where `measurement_time_ns` comes from; arrival time is never taken silently for the time of measurement.
+enum class TimeSource : std::uint8_t {
+  kUnknown = 0,
+  kSensorSynchronised = 1,  ///< stamp of the sensor, whose clock says it is synchronised and is plausible
+  kSensorFreeRunning = 2,   ///< stamp of the sensor, mapped to this ECU's clock by an estimated offset
+  kLinkArrival = 3,         ///< kernel's (or the recording's) receive stamp of the frame that completed the data
+  kUserArrival = 4,         ///< clock read by the gateway after receiving; the weakest
+};
+
+/// First member of every message. `sequence` counts the messages of one writer on one topic and `source_sequence`
+/// those of one source (radar id, or service index); both start at 1, so that a reader sees a loss as a gap.
+struct MessageHeader {
+  std::uint32_t version;    ///< the message type's `kVersion`
+  std::uint32_t source_id;  ///< radar id (1…16) for data of one radar, 0 for the vehicle, service index otherwise
+  std::uint64_t sequence;
+  std::uint64_t source_sequence;
+  std::int64_t measurement_time_ns;  ///< CLOCK_MONOTONIC of this ECU
+  TimeSource time_source;
+  std::array<std::uint8_t, 7> reserved;
+  std::array<StageStamp, kNumberOfStages> stages;
+
+  [[nodiscard]] StageStamp& stage(Stage s) { return stages[static_cast<std::size_t>(s)]; }
+  [[nodiscard]] const StageStamp& stage(Stage s) const { return stages[static_cast<std::size_t>(s)]; }
+};
+
+static_assert(sizeof(MessageHeader) == 104);
+static_assert(alignof(MessageHeader) == 8);
+
+/// Most radars one vehicle can have; radar ids are 1…kMaxRadars.
+inline constexpr std::size_t kMaxRadars = 16;
+/// Most detections a scan can carry; further ones are counted in `dropped_detections`, not lost silently.
+inline constexpr std::size_t kMaxDetections = 1024;
+
+/// One measured quantity of all detections of a scan, contiguous and cache-line aligned, so that
+/// `Eigen::Map<const Eigen::ArrayXf, Eigen::Aligned64>` reads it in place in shared memory.
+template <typename T>
+struct alignas(64) DetectionColumn {
+  std::array<T, kMaxDetections> values;
+
+  [[nodiscard]] T& operator[](std::size_t i) { return values[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return values[i]; }
+  [[nodiscard]] T* data() { return values.data(); }
+  [[nodiscard]] const T* data() const { return values.data(); }
+};
+
+/// True for types that may cross a process boundary as raw memory.
+template <typename T>
+inline constexpr bool kIsPlainMessage =
+    std::is_trivially_copyable_v<T>&& std::is_standard_layout_v<T>&& std::is_trivially_default_constructible_v<T>;
+
+static_assert(kIsPlainMessage<MessageHeader>);
+
+}  // namespace boresight

@@ -1,0 +1,99 @@
+// The health service's verdict on every sensor and every service.
+#pragma once
+
+#include "interfaces/messages/header.hpp"
+
+namespace boresight {
+
+/// OSI pair: the effect on whoever uses the data …
+enum class DataQualifier : std::uint8_t { kAvailable = 0, kAvailableReduced = 1, kNotAvailable = 2 };
+/// … and the reason.
+enum class ExtendedQualifier : std::uint8_t {
+  kNormal = 0,
+  kMisaligned = 1,
+  kNoData = 2,       ///< nothing within the deadline
+  kRateReduced = 3,  ///< data arrive, but too rarely
+  kInvalidData = 4,  ///< the share of rejected input is too high
+  kBlocked = 5,
+  kBeginningBlockage = 6,
+  kExternalDisturbance = 7,
+  kInitialising = 8,  ///< not yet long enough up to be judged
+};
+
+/// Misalignment of one axis against its tolerance.
+struct AxisHealth {
+  float error_rad;  ///< actual − nominal mounting
+  float std_rad;
+  float tolerance_rad;
+  std::uint8_t observable;        ///< 1 if the estimator could see this axis
+  std::uint8_t beyond_tolerance;  ///< 1 after debouncing, by confidence
+  std::array<std::uint8_t, 2> reserved;
+};
+static_assert(sizeof(AxisHealth) == 16);
+
+struct SensorHealth {
+  std::uint32_t radar_id;  ///< 0: unused entry
+  DataQualifier data_qualifier;
+  ExtendedQualifier extended_qualifier;
+  std::array<std::uint8_t, 2> reserved;
+  float rate_hz;
+  float expected_rate_hz;
+  float last_seen_s;  ///< since the last scan; negative if there was none
+  float detections_per_scan;
+  AxisHealth yaw;
+  AxisHealth pitch;
+  AxisHealth roll;
+  float speed_scale;
+  float speed_scale_std;
+  /// What the misalignment does (Report A §6): lateral displacement of a detection at the reference range.
+  float lateral_displacement_m;
+  float reference_range_m;
+  std::uint64_t scans;
+  std::uint64_t lost_scans;
+};
+static_assert(sizeof(SensorHealth) == 104);
+
+enum class ServiceCondition : std::uint8_t {
+  kUnknown = 0,  ///< never heard
+  kAlive = 1,
+  kDegraded = 2,   ///< alive, but misses deadlines, loses input or says so itself
+  kSilent = 3,     ///< heartbeat deadline missed
+  kRestarted = 4,  ///< alive again, with a new incarnation, within the last supervision window
+};
+
+struct ServiceHealth {
+  std::uint32_t service;  ///< index in the catalogue
+  ServiceCondition condition;
+  std::uint8_t deadline_missed;  ///< 1 if its output topic is late although its input is not
+  std::array<std::uint8_t, 2> reserved;
+  float last_heartbeat_s;  ///< negative if there was none
+  float output_rate_hz;
+  float processing_max_us;
+  std::uint32_t restarts;
+  std::uint64_t lost_inputs;
+  std::uint64_t rejected_inputs;
+  std::uint64_t heap_allocations;
+};
+static_assert(sizeof(ServiceHealth) == 48);
+
+inline constexpr std::size_t kMaxServices = 16;
+
+struct HealthReport {
+  static constexpr std::uint32_t kVersion = 1;
+
+  MessageHeader header;
+  DataQualifier overall;
+  std::array<std::uint8_t, 3> reserved;
+  std::uint32_t number_of_sensors;
+  std::uint32_t number_of_services;
+  float latency_p50_ms;  ///< reception to track list, over the last supervision window
+  float latency_max_ms;
+  std::uint32_t reserved2;
+  std::array<SensorHealth, kMaxRadars> sensors;
+  std::array<ServiceHealth, kMaxServices> services;
+};
+
+static_assert(kIsPlainMessage<HealthReport>);
+static_assert(sizeof(HealthReport) == 104 + 24 + kMaxRadars * 104 + kMaxServices * 48);
+
+}  // namespace boresight

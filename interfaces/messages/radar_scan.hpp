@@ -1,0 +1,59 @@
+// One measurement cycle of one radar, in the sensor's own frame, exactly as the sensor said it.
+#pragma once
+
+#include "interfaces/messages/header.hpp"
+
+namespace boresight {
+
+/// Bits of `RadarScan::fields`: the quantities this sensor measures. A column whose bit is clear holds zeros that
+/// mean nothing.
+namespace scan_field {
+inline constexpr std::uint32_t kElevation = 1u << 0;
+inline constexpr std::uint32_t kRcs = 1u << 1;
+inline constexpr std::uint32_t kSnr = 1u << 2;
+inline constexpr std::uint32_t kStds = 1u << 3;       ///< the sensor states stds; else they are the configured ones
+inline constexpr std::uint32_t kExistence = 1u << 4;  ///< else existence is 1
+inline constexpr std::uint32_t kAmbiguity = 1u << 5;  ///< range_rate_min/max_mps bound the unambiguous interval
+}  // namespace scan_field
+
+/// Bits of `RadarScan::detection_flags`, per detection.
+namespace detection_flag {
+inline constexpr std::uint16_t kInvalid = 1u << 0;    ///< the sensor itself marked a needed quantity invalid
+inline constexpr std::uint16_t kAmbiguous = 1u << 1;  ///< the range rate lies outside the unambiguous interval
+}  // namespace detection_flag
+
+/// Detections of one radar cycle in the sensor frame (x along boresight, y left, z up). The first
+/// `number_of_valid_detections` entries of each column count; what follows is undefined.
+struct RadarScan {
+  static constexpr std::uint32_t kVersion = 1;
+
+  MessageHeader header;
+  std::uint32_t cycle_counter;  ///< the sensor's own counter where it has one, else the gateway's
+  std::uint32_t number_of_valid_detections;
+  std::uint32_t dropped_detections;  ///< detections beyond kMaxDetections
+  std::uint32_t fields;              ///< scan_field bits
+  float range_rate_min_mps;          ///< unambiguous interval; both 0 if unknown
+  float range_rate_max_mps;
+
+  DetectionColumn<float> range_m;
+  DetectionColumn<float> azimuth_rad;     ///< + left
+  DetectionColumn<float> elevation_rad;   ///< + up; 0 if the sensor measures none
+  DetectionColumn<float> range_rate_mps;  ///< d(range)/dt, + receding
+  DetectionColumn<float> rcs_dbsm;
+  DetectionColumn<float> snr_db;
+  DetectionColumn<float> range_std_m;
+  DetectionColumn<float> azimuth_std_rad;
+  DetectionColumn<float> elevation_std_rad;
+  DetectionColumn<float> range_rate_std_mps;
+  DetectionColumn<float> existence_probability;  ///< 0…1
+  DetectionColumn<std::uint16_t> detection_flags;
+
+  [[nodiscard]] bool has(std::uint32_t field_bits) const { return (fields & field_bits) == field_bits; }
+};
+
+static_assert(kIsPlainMessage<RadarScan>);
+static_assert(alignof(RadarScan) == 64);
+static_assert(offsetof(RadarScan, range_m) == 128);
+static_assert(sizeof(RadarScan) == 128 + 11 * 4096 + 2048);
+
+}  // namespace boresight

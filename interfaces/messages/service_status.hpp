@@ -1,0 +1,59 @@
+// Heartbeat of one service: that it lives, what it has done, what it had to reject.
+#pragma once
+
+#include "interfaces/messages/header.hpp"
+
+namespace boresight {
+
+enum class ServiceState : std::uint8_t { kStarting = 0, kRunning = 1, kDegraded = 2, kStopping = 3 };
+
+/// What a service may have to reject or miss; each has its counter in `ServiceStatus::faults`.
+enum class Fault : std::uint8_t {
+  kInputLost = 0,         ///< sequence gaps: the service was too slow, or a writer was
+  kLoanFailed = 1,        ///< the memory pool was exhausted: an output was not sent
+  kWireLength = 2,        ///< frame or datagram of a wrong length
+  kWireValue = 3,         ///< field out of its range, bad checksum
+  kWireUnknown = 4,       ///< unknown message on a configured link
+  kRecordingSyntax = 5,   ///< unreadable line or block of a recording
+  kSideInputMissing = 6,  ///< a scan was processed without one of its side inputs
+  kTimeJump = 7,          ///< a clock went back, or jumped
+  kVersionMismatch = 8,   ///< a message of another layout version
+  kCapacity = 9,          ///< detections, clusters or tracks beyond capacity
+  kLink = 10,             ///< socket error, interface down, kernel drops
+};
+inline constexpr std::size_t kNumberOfFaults = 11;
+
+/// Statistics of one radar as the writer of this status saw it; only the gateway fills them.
+struct SourceStatistics {
+  std::uint32_t source_id;  ///< 0: unused entry
+  std::uint32_t reserved;
+  std::uint64_t messages;
+  std::uint64_t rejected;
+  std::int64_t last_measurement_time_ns;
+};
+static_assert(sizeof(SourceStatistics) == 32);
+
+/// Published by every service each heartbeat period. Counters never go back while a process lives; `incarnation`
+/// (its start time) tells a restart.
+struct ServiceStatus {
+  static constexpr std::uint32_t kVersion = 1;
+
+  MessageHeader header;  ///< source_id is the service's index in the catalogue
+  std::int64_t incarnation_ns;
+  std::int32_t pid;
+  ServiceState state;
+  std::array<std::uint8_t, 3> reserved;
+  std::uint64_t inputs;
+  std::uint64_t outputs;
+  std::uint64_t heap_allocations;  ///< on the main thread's data path since warm-up; stays 0 in a sound service
+  float processing_mean_us;        ///< of one input, since the last heartbeat
+  float processing_max_us;
+  std::array<std::uint64_t, kNumberOfFaults> faults;
+  std::array<SourceStatistics, kMaxRadars> sources;
+  std::array<char, 128> last_fault;  ///< what the latest rejected input was, zero-terminated; empty if none
+};
+
+static_assert(kIsPlainMessage<ServiceStatus>);
+static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + kNumberOfFaults * 8 + kMaxRadars * 32 + 128);
+
+}  // namespace boresight

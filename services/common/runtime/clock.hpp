@@ -1,0 +1,13 @@
+// The one clock of the ECU's data path. Cores never include this: they get time as an argument.
+#pragma once
+
+#include <cstdint>
+
+namespace boresight::runtime {
+
+/// CLOCK_MONOTONIC in nanoseconds, the base of all stamps in messages.
+[[nodiscard]] std::int64_t monotonic_now_ns();
+/// CLOCK_REALTIME in nanoseconds since the epoch, for readers off the ECU and for sensor stamps.
+[[nodiscard]] std::int64_t realtime_now_ns();
+
+}  // namespace boresight::runtime

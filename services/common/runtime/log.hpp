@@ -1,0 +1,34 @@
+// Logging by spdlog behind a narrow door: to the terminal, or to the journal (with priorities) under systemd.
+// Never called per scan; faults are counted on the data path and logged by the heartbeat.
+#pragma once
+
+#include <string_view>
+
+#include <fmt/core.h>
+
+namespace boresight::runtime::log {
+
+enum class Level { kDebug, kInfo, kWarning, kError };
+
+/// Sets the name that every line starts with. Level from $BORESIGHT_LOG_LEVEL (debug, info, warning, error).
+void initialise(std::string_view process_name);
+void write(Level level, std::string_view text);
+
+template <typename... Args>
+void debug(fmt::format_string<Args...> format, Args&&... args) {
+  write(Level::kDebug, fmt::format(format, std::forward<Args>(args)...));
+}
+template <typename... Args>
+void info(fmt::format_string<Args...> format, Args&&... args) {
+  write(Level::kInfo, fmt::format(format, std::forward<Args>(args)...));
+}
+template <typename... Args>
+void warning(fmt::format_string<Args...> format, Args&&... args) {
+  write(Level::kWarning, fmt::format(format, std::forward<Args>(args)...));
+}
+template <typename... Args>
+void error(fmt::format_string<Args...> format, Args&&... args) {
+  write(Level::kError, fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace boresight::runtime::log

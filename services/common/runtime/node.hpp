@@ -1,0 +1,67 @@
+// One process on the bus: its connection to RouDi, its event loop, its heartbeat. Everything runs on the main thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include "interfaces/catalogue/catalogue.hpp"
+#include "interfaces/messages/service_status.hpp"
+#include "services/common/runtime/ports.hpp"
+
+namespace boresight::runtime {
+
+/// The event loop of a service. Construct it once, declare inputs and timers, then call spin().
+class Node {
+ public:
+  /// Connects to RouDi, waiting for it as long as no stop is requested. Throws std::runtime_error if stopped first.
+  /// `name_suffix` tells several monitors apart.
+  explicit Node(catalogue::Service self, std::string_view name_suffix = {});
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  [[nodiscard]] catalogue::Service self() const;
+
+  /// Calls `handler(const T&)` for every message of T, in the order of arrival. All waiting messages of inputs
+  /// declared earlier are handled before those declared later, so declare side inputs first. The message is read in
+  /// place; it is valid during the call. Messages of another layout version are counted and skipped; sequence gaps are
+  /// counted as Fault::kInputLost.
+  template <typename T, typename Handler>
+  void on(Handler handler) {
+    add_input(catalogue::topic(catalogue::kTopicOf<T>), T::kVersion,
+              [handler = std::move(handler)](const void* payload) { handler(*static_cast<const T*>(payload)); });
+  }
+
+  /// Calls `callback()` every `period_ns`.
+  void every(std::int64_t period_ns, std::function<void()> callback);
+
+  /// Calls `callback()` when the descriptor is readable. A node with descriptors waits for them by poll() and looks
+  /// at its inputs, if any, at least every 10 ms: meant for the gateway, which has no inputs on the bus.
+  void on_readable(int descriptor, std::function<void()> callback);
+  void remove_descriptor(int descriptor);
+
+  /// Runs until SIGTERM, SIGINT or stop(); returns the process's exit code.
+  int spin();
+  void stop(int exit_code = 0);
+  [[nodiscard]] bool stop_requested() const;
+
+  /// Counts a fault; the heartbeat reports and logs it. Allocation-free; `what` is cut to 127 characters.
+  void fault(Fault fault, std::string_view what, std::uint64_t count = 1);
+  /// For inputs that do not come through on(): counts one input and its processing time.
+  void count_input(std::int64_t processing_ns);
+  /// The gateway's per-radar statistics; the entry is created on first use.
+  [[nodiscard]] SourceStatistics& source_statistics(std::uint32_t source_id);
+  /// Starting → running is automatic with the first output; degraded is the service's own word.
+  void set_degraded(bool degraded);
+
+  struct Impl;
+  [[nodiscard]] Impl& impl() { return *impl_; }
+
+ private:
+  void add_input(const catalogue::Topic& topic, std::uint32_t version, std::function<void(const void*)> handler);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace boresight::runtime
