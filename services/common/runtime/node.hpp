@@ -53,7 +53,7 @@ class Node {
   void count_input(std::int64_t processing_ns);
   /// The gateway's per-radar statistics; the entry is created on first use.
   [[nodiscard]] SourceStatistics& source_statistics(std::uint32_t source_id);
-  /// Starting → running is automatic with the first output; degraded is the service's own word.
+  /// A service is starting until spin() and then running; degraded is its own word, said and taken back here.
   void set_degraded(bool degraded);
 
   struct Impl;

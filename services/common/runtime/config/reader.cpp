@@ -1,0 +1,285 @@
+#include "services/common/runtime/config/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+namespace boresight::config {
+
+namespace {
+
+std::string format_number(double value) {
+  return fmt::format("{:g}", value);
+}
+
+std::string describe(const Range& allowed) {
+  const bool has_min = std::isfinite(allowed.min);
+  const bool has_max = std::isfinite(allowed.max);
+  if (has_min && has_max) return fmt::format("{} … {}", format_number(allowed.min), format_number(allowed.max));
+  if (has_min) return fmt::format("at least {}", format_number(allowed.min));
+  if (has_max) return fmt::format("at most {}", format_number(allowed.max));
+  return "any number";
+}
+
+std::string_view type_name(toml::node_type type) {
+  switch (type) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "a boolean";
+    default:
+      return "a date or time";
+  }
+}
+
+}  // namespace
+
+// The document outlives all readers into it, since each holds its root through `document`.
+struct Reader::Node {
+  struct Document {
+    std::string file;
+    toml::table root;
+    std::vector<std::pair<std::uint32_t, std::string>> errors;  // line, message
+    std::vector<std::shared_ptr<Node>> visited;
+  };
+
+  std::shared_ptr<Document> document;
+  const toml::table* table = nullptr;  // nullptr: an absent table, where every key is absent
+  std::string path;                    // "radar[1].source", empty at the root
+  std::uint32_t line = 1;
+  std::set<std::string, std::less<>> known;
+
+  [[nodiscard]] std::string key_path(std::string_view key) const {
+    if (path.empty()) return std::string(key);
+    return key.empty() ? path : fmt::format("{}.{}", path, key);
+  }
+  void note(std::uint32_t at_line, std::string_view key, std::string_view problem) const {
+    document->errors.emplace_back(at_line,
+                                  fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem));
+  }
+  [[nodiscard]] const toml::node* find(std::string_view key) {
+    known.emplace(key);
+    return table == nullptr ? nullptr : table->get(key);
+  }
+  void expect(const toml::node& node, std::string_view key, std::string_view wanted) const {
+    note(node.source().begin.line, key, fmt::format("must be {}, but is {}", wanted, type_name(node.type())));
+  }
+};
+
+namespace {
+
+[[noreturn]] void throw_parse_error(const toml::parse_error& error, std::string_view file) {
+  throw Error(fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, error.description()));
+}
+
+}  // namespace
+
+Reader Reader::parse(std::string_view text, std::string_view name) {
+  auto node = std::make_shared<Node>();
+  node->document = std::make_shared<Node::Document>();
+  node->document->file = std::string(name);
+  try {
+    node->document->root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    throw_parse_error(error, name);
+  }
+  node->table = &node->document->root;
+  return Reader(std::move(node));
+}
+
+Reader Reader::open(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::error_code ignored;
+  if (!stream || std::filesystem::is_directory(file, ignored)) {
+    throw Error(fmt::format("{}: cannot be read", file.string()));
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse(text.str(), file.string());
+}
+
+double Reader::number(std::string_view key, Range allowed, double fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return fallback;
+  if (!node->is_number()) {
+    node_->expect(*node, key, fmt::format("a number ({})", describe(allowed)));
+    return fallback;
+  }
+  const double value = node->value<double>().value_or(fallback);
+  if (!(value >= allowed.min && value <= allowed.max)) {
+    reject(key, fmt::format("{} is out of range; allowed: {}", format_number(value), describe(allowed)));
+    return fallback;
+  }
+  return value;
+}
+
+std::int64_t Reader::integer(std::string_view key, Range allowed, std::int64_t fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return fallback;
+  if (!node->is_integer()) {
+    node_->expect(*node, key, fmt::format("an integer ({})", describe(allowed)));
+    return fallback;
+  }
+  const std::int64_t value = node->value<std::int64_t>().value_or(fallback);
+  if (static_cast<double>(value) < allowed.min || static_cast<double>(value) > allowed.max) {
+    reject(key, fmt::format("{} is out of range; allowed: {}", value, describe(allowed)));
+    return fallback;
+  }
+  return value;
+}
+
+bool Reader::boolean(std::string_view key, bool fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return fallback;
+  if (!node->is_boolean()) {
+    node_->expect(*node, key, "true or false");
+    return fallback;
+  }
+  return node->value<bool>().value_or(fallback);
+}
+
+std::string Reader::text(std::string_view key, std::string_view fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return std::string(fallback);
+  if (!node->is_string()) {
+    node_->expect(*node, key, "a string");
+    return std::string(fallback);
+  }
+  return node->value<std::string>().value_or(std::string(fallback));
+}
+
+std::vector<double> Reader::numbers(std::string_view key, std::size_t count, Range allowed,
+                                    std::vector<double> fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return fallback;
+  const std::string wanted = fmt::format("an array of {} numbers ({})", count, describe(allowed));
+  const toml::array* array = node->as_array();
+  if (array == nullptr) {
+    node_->expect(*node, key, wanted);
+    return fallback;
+  }
+  std::vector<double> values;
+  for (const toml::node& element : *array) {
+    const double value = element.is_number() ? element.value<double>().value_or(NAN) : NAN;
+    if (!(value >= allowed.min && value <= allowed.max)) {
+      reject(key, fmt::format("element {} is not a number in range; must be {}", values.size() + 1, wanted));
+      return fallback;
+    }
+    values.push_back(value);
+  }
+  if (values.size() != count) {
+    reject(key, fmt::format("has {} elements; must be {}", values.size(), wanted));
+    return fallback;
+  }
+  return values;
+}
+
+int Reader::choice_index(std::string_view key, const std::vector<std::string_view>& words) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return -1;
+  const std::string wanted = fmt::format("one of \"{}\"", fmt::join(words, "\", \""));
+  if (!node->is_string()) {
+    node_->expect(*node, key, wanted);
+    return -1;
+  }
+  const std::string word = node->value<std::string>().value_or("");
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found == words.end()) {
+    reject(key, fmt::format("\"{}\" is unknown; must be {}", word, wanted));
+    return -1;
+  }
+  return static_cast<int>(found - words.begin());
+}
+
+double Reader::angle_deg(std::string_view key, Range allowed_deg, double fallback_rad) {
+  constexpr double kRadiansPerDegree = M_PI / 180.0;
+  return number(key, allowed_deg, fallback_rad / kRadiansPerDegree) * kRadiansPerDegree;
+}
+
+bool Reader::has(std::string_view key) const {
+  return node_->table != nullptr && node_->table->contains(key);
+}
+
+void Reader::require(std::string_view key) {
+  node_->known.emplace(key);
+  if (!has(key)) node_->note(node_->line, key, "is missing");
+}
+
+Reader Reader::table(std::string_view key) {
+  const toml::node* found = node_->find(key);
+  auto child = std::make_shared<Node>();
+  child->document = node_->document;
+  child->path = node_->key_path(key);
+  child->line = node_->line;
+  if (found != nullptr) {
+    child->line = found->source().begin.line;
+    child->table = found->as_table();
+    if (child->table == nullptr) node_->expect(*found, key, "a table");
+  }
+  node_->document->visited.push_back(child);
+  return Reader(std::move(child));
+}
+
+std::vector<Reader> Reader::tables(std::string_view key) {
+  std::vector<Reader> readers;
+  const toml::node* found = node_->find(key);
+  if (found == nullptr) return readers;
+  const toml::array* array = found->as_array();
+  if (array == nullptr) {
+    node_->expect(*found, key, fmt::format("an array of tables ([[{}]])", key));
+    return readers;
+  }
+  for (const toml::node& element : *array) {
+    auto child = std::make_shared<Node>();
+    child->document = node_->document;
+    child->path = fmt::format("{}[{}]", node_->key_path(key), readers.size());
+    child->line = element.source().begin.line;
+    child->table = element.as_table();
+    if (child->table == nullptr) child->note(child->line, "", "must be a table");
+    node_->document->visited.push_back(child);
+    readers.push_back(Reader(std::move(child)));
+  }
+  return readers;
+}
+
+void Reader::reject(std::string_view key, std::string_view problem) {
+  std::uint32_t line = node_->line;
+  if (node_->table != nullptr && !key.empty()) {
+    if (const toml::node* found = node_->table->get(key)) line = found->source().begin.line;
+  }
+  node_->note(line, key, problem);
+}
+
+void Reader::finish() {
+  std::vector<std::shared_ptr<Node>> all = node_->document->visited;
+  all.push_back(node_);
+  for (const auto& node : all) {
+    if (node->table == nullptr) continue;
+    for (const auto& [key, value] : *node->table) {
+      if (node->known.contains(key.str())) continue;
+      node->note(key.source().begin.line, key.str(),
+                 fmt::format("unknown key; known here: {}", fmt::join(node->known, ", ")));
+    }
+  }
+  auto& errors = node_->document->errors;
+  if (errors.empty()) return;
+  std::stable_sort(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string message;
+  for (const auto& [line, text] : errors) message += (message.empty() ? "" : "\n") + text;
+  throw Error(message);
+}
+
+}  // namespace boresight::config

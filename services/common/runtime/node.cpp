@@ -1,0 +1,323 @@
+#include "services/common/runtime/node.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+#include <iceoryx_hoofs/error_handling/error_handling.hpp>
+#include <iceoryx_hoofs/log/logmanager.hpp>
+#include <iceoryx_posh/runtime/posh_runtime.hpp>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "services/common/runtime/allocation_counter.hpp"
+#include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/log.hpp"
+#include "services/common/runtime/node_impl.hpp"
+#include "services/common/runtime/stop_signal.hpp"
+#include "services/common/runtime/systemd.hpp"
+
+namespace boresight::runtime {
+
+namespace {
+
+// Inputs of one kind that may allocate before the data path counts as warm: lazily made buffers, first-use caches.
+constexpr std::uint64_t kWarmUpInputs = 20;
+// A longer sleep would delay the answer to SIGTERM where the middleware swallows the interruption.
+constexpr std::int64_t kLongestWait_ns = 50'000'000;
+constexpr std::int64_t kInputPollPeriod_ns = 10'000'000;
+
+constexpr std::array<std::string_view, kNumberOfFaults> kFaultNames = {"input lost",
+                                                                       "memory pool exhausted",
+                                                                       "wrong length",
+                                                                       "wrong value",
+                                                                       "unknown message",
+                                                                       "recording syntax",
+                                                                       "side input missing",
+                                                                       "time jump",
+                                                                       "wrong version",
+                                                                       "over capacity",
+                                                                       "link"};
+
+/// Debian's iceoryx aborts on severe errors. What can be gone on with is counted by the callers (a failed loan); what
+/// cannot ends the process with a clear line and code, and the supervisor starts it anew.
+void install_error_handler() {
+  static auto handler =
+      iox::HandlerFunction([](const iox::Error error, const std::function<void()>&, const iox::ErrorLevel level) {
+        const char* const name = iox::ErrorHandler::toString(error);
+        if (level == iox::ErrorLevel::MODERATE) {
+          log::debug("middleware: {}", name);
+          return;
+        }
+        log::error("middleware failed beyond repair: {}", name);
+        std::_Exit(70);
+      });
+  static auto guard = iox::ErrorHandler::setTemporaryErrorHandler(handler);
+}
+
+/// RouDi accepts datagrams at its socket as soon as it can register applications.
+bool roudi_is_reachable() {
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return false;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = std::string(iox::platform::IOX_UDS_SOCKET_PATH_PREFIX) + iox::roudi::IPC_CHANNEL_ROUDI_NAME;
+  std::strncpy(address.sun_path, path.c_str(), sizeof(address.sun_path) - 1);
+  const bool reachable = connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  close(descriptor);
+  return reachable;
+}
+
+/// iceoryx itself aborts after a minute without RouDi; a service that is started first just waits.
+void wait_for_roudi() {
+  bool said = false;
+  while (!roudi_is_reachable()) {
+    if (stop_signalled()) throw std::runtime_error("stopped while waiting for RouDi");
+    if (!said) log::info("waiting for RouDi");
+    said = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+}  // namespace
+
+Node::Node(catalogue::Service self, std::string_view name_suffix) : impl_(std::make_unique<Impl>(self)) {
+  install_stop_signals();
+  install_error_handler();
+  iox::log::LogManager::GetLogManager().SetDefaultLogLevel(iox::log::LogLevel::kError,
+                                                           iox::log::LogLevelOutput::kHideLogLevel);
+  wait_for_roudi();
+  const std::string name = "boresight-" + std::string(catalogue::name_of(self)) + std::string(name_suffix);
+  iox::runtime::PoshRuntime::initRuntime(iox::RuntimeName_t(iox::cxx::TruncateToCapacity, name.c_str(), name.size()));
+  impl_->waitset.emplace();
+  impl_->status.incarnation_ns = monotonic_now_ns();
+  impl_->status.pid = getpid();
+  impl_->status.state = ServiceState::kStarting;
+  const catalogue::Topic& status_topic = catalogue::topic(catalogue::TopicId::kServiceStatus);
+  if (status_topic.writers.contains(self)) {
+    impl_->status_port.emplace(*this);
+    every(status_topic.period_ns, [this] { impl_->heartbeat(); });
+    impl_->heartbeat();
+  }
+}
+
+Node::~Node() = default;
+
+catalogue::Service Node::self() const {
+  return impl_->self;
+}
+
+void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, std::function<void(const void*)> handler) {
+  if (!topic.readers.contains(impl_->self)) {
+    throw std::logic_error(std::string(catalogue::name_of(impl_->self)) + " is not a reader of " +
+                           std::string(topic.name) + " in the catalogue");
+  }
+  iox::popo::SubscriberOptions options;
+  options.queueCapacity = catalogue::queue_capacity(topic);
+  options.historyRequest = topic.history;
+  options.queueFullPolicy = iox::popo::QueueFullPolicy::DISCARD_OLDEST_DATA;
+  impl_->inputs.push_back(std::make_unique<Input>(detail::service_description(topic), options, version,
+                                                  topic.writers.size() > 1, std::move(handler)));
+  impl_->waitset->attachState(impl_->inputs.back()->port, iox::popo::SubscriberState::HAS_DATA).or_else([](auto) {
+    throw std::logic_error("too many inputs for one node");
+  });
+}
+
+void Node::every(std::int64_t period_ns, std::function<void()> callback) {
+  impl_->timers.push_back({period_ns, monotonic_now_ns() + period_ns, std::move(callback)});
+}
+
+void Node::on_readable(int descriptor, std::function<void()> callback) {
+  impl_->descriptors.push_back({descriptor, std::move(callback)});
+}
+
+void Node::remove_descriptor(int descriptor) {
+  // Only marked here: the callback that is running may be the one to be removed.
+  for (Descriptor& entry : impl_->descriptors) {
+    if (entry.descriptor == descriptor) entry.descriptor = -1;
+  }
+}
+
+int Node::spin() {
+  if (impl_->status.state == ServiceState::kStarting) impl_->status.state = ServiceState::kRunning;
+  impl_->heartbeat();
+  systemd::notify_ready();
+  while (!stop_requested()) {
+    std::int64_t next_ns = monotonic_now_ns() + kLongestWait_ns;
+    for (const Timer& timer : impl_->timers) next_ns = std::min(next_ns, timer.next_ns);
+    impl_->wait(std::max<std::int64_t>(0, next_ns - monotonic_now_ns()));
+    impl_->take_all();
+    impl_->run_timers();
+  }
+  systemd::notify_stopping();
+  impl_->status.state = ServiceState::kStopping;
+  impl_->heartbeat();
+  return impl_->exit_code;
+}
+
+void Node::stop(int exit_code) {
+  impl_->stopping = true;
+  impl_->exit_code = exit_code;
+}
+
+bool Node::stop_requested() const {
+  return impl_->stopping || stop_signalled();
+}
+
+void Node::fault(Fault fault, std::string_view what, std::uint64_t count) {
+  impl_->status.faults[static_cast<std::size_t>(fault)] += count;
+  auto& text = impl_->status.last_fault;
+  const std::size_t length = std::min(what.size(), text.size() - 1);
+  std::copy_n(what.data(), length, text.data());
+  std::fill(text.begin() + static_cast<std::ptrdiff_t>(length), text.end(), '\0');
+}
+
+void Node::count_input(std::int64_t processing_ns) {
+  impl_->count(processing_ns);
+}
+
+SourceStatistics& Node::source_statistics(std::uint32_t source_id) {
+  auto& sources = impl_->status.sources;
+  const auto found = std::find_if(sources.begin(), sources.end(), [source_id](const SourceStatistics& s) {
+    return s.source_id == source_id || s.source_id == 0;
+  });
+  SourceStatistics& entry = found == sources.end() ? sources.back() : *found;
+  entry.source_id = source_id;
+  return entry;
+}
+
+void Node::set_degraded(bool degraded) {
+  impl_->degraded = degraded;
+}
+
+bool Node::Impl::take_one(Input& input) {
+  auto result = input.port.take();
+  if (result.has_error()) return false;
+  const void* const payload = result.value();
+  const auto& header = *static_cast<const MessageHeader*>(payload);
+  event_begin_ns = monotonic_now_ns();
+  Node::Impl& node = *this;
+  if (header.version != input.version) {
+    ++node.status.faults[static_cast<std::size_t>(Fault::kVersionMismatch)];
+  } else {
+    const std::uint64_t lost = input.gaps.observe(header);
+    node.status.faults[static_cast<std::size_t>(Fault::kInputLost)] += lost;
+    {
+      const CountAllocations counting(input.handled >= kWarmUpInputs);
+      input.handler(payload);
+    }
+    ++input.handled;
+    count(monotonic_now_ns() - event_begin_ns);
+  }
+  input.port.release(payload);
+  return true;
+}
+
+void Node::Impl::take_all() {
+  // After every message the search starts at the first input again, so that a side input that came meanwhile is seen
+  // before the next scan; timers are served in between, so that a flood cannot stop the heartbeat.
+  for (bool found = true; found && !stopping && !stop_signalled();) {
+    found = false;
+    for (auto& input : inputs) {
+      if (take_one(*input)) {
+        found = true;
+        break;
+      }
+    }
+    if (found) run_timers();
+  }
+}
+
+void Node::Impl::run_timers() {
+  const std::int64_t now_ns = monotonic_now_ns();
+  for (Timer& timer : timers) {
+    if (now_ns < timer.next_ns) continue;
+    // A late timer is not made up for: the next period starts on the grid after now.
+    timer.next_ns += ((now_ns - timer.next_ns) / timer.period_ns + 1) * timer.period_ns;
+    timer.callback();
+  }
+}
+
+void Node::Impl::wait(std::int64_t timeout_ns) {
+  if (!descriptors.empty()) {
+    wait_for_descriptors(timeout_ns);
+    return;
+  }
+  const auto timeout = iox::units::Duration::fromNanoseconds(timeout_ns);
+  static_cast<void>(waitset->timedWait(timeout));
+}
+
+void Node::Impl::wait_for_descriptors(std::int64_t timeout_ns) {
+  if (!inputs.empty()) timeout_ns = std::min(timeout_ns, kInputPollPeriod_ns);
+  std::erase_if(descriptors, [](const Descriptor& entry) { return entry.descriptor < 0; });
+  constexpr std::size_t kMaxDescriptors = 64;
+  std::array<pollfd, kMaxDescriptors> polled{};
+  const std::size_t count_of_descriptors = std::min(descriptors.size(), kMaxDescriptors);
+  for (std::size_t i = 0; i < count_of_descriptors; ++i) {
+    polled[i] = {.fd = descriptors[i].descriptor, .events = POLLIN, .revents = 0};
+  }
+  const timespec timeout{.tv_sec = timeout_ns / 1'000'000'000, .tv_nsec = timeout_ns % 1'000'000'000};
+  if (ppoll(polled.data(), count_of_descriptors, &timeout, nullptr) <= 0) return;
+  for (std::size_t i = 0; i < count_of_descriptors; ++i) {
+    // By index and descriptor: a callback may add or remove entries.
+    if (polled[i].revents == 0 || descriptors[i].descriptor != polled[i].fd) continue;
+    event_begin_ns = monotonic_now_ns();
+    const std::function<void()>& callback = descriptors[i].callback;
+    const CountAllocations counting(descriptors[i].handled++ >= kWarmUpInputs);
+    callback();
+  }
+}
+
+void Node::Impl::count(std::int64_t processing_ns) {
+  ++status.inputs;
+  processing_sum_ns += static_cast<double>(processing_ns);
+  ++processing_count;
+  processing_max_ns = std::max(processing_max_ns, processing_ns);
+}
+
+void Node::Impl::heartbeat() {
+  systemd::stroke_watchdog();
+  log_new_faults();
+  if (!status_port) return;
+  if (status.state == ServiceState::kRunning && degraded) status.state = ServiceState::kDegraded;
+  if (status.state == ServiceState::kDegraded && !degraded) status.state = ServiceState::kRunning;
+  status.heap_allocations = counted_allocations();
+  status.processing_mean_us =
+      processing_count == 0 ? 0.0F
+                            : static_cast<float>(processing_sum_ns * 1e-3 / static_cast<double>(processing_count));
+  status.processing_max_us = static_cast<float>(static_cast<double>(processing_max_ns) * 1e-3);
+  processing_sum_ns = 0.0;
+  processing_count = 0;
+  processing_max_ns = 0;
+  const Origin origin{.source_id = static_cast<std::uint32_t>(self),
+                      .measurement_time_ns = monotonic_now_ns(),
+                      .time_source = TimeSource::kUserArrival,
+                      .stage = std::nullopt,
+                      .begin_ns = 0};
+  status_port->publish(origin, [this](ServiceStatus& message) {
+    const MessageHeader header = message.header;
+    message = status;
+    message.header = header;
+  });
+}
+
+void Node::Impl::log_new_faults() {
+  // At most one line a heartbeat and kind, with the sum since the last one; then each kind rests for a growing number
+  // of events (1, 2, 4, …), so that a permanent fault does not fill the journal.
+  for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
+    const std::uint64_t total = status.faults[i];
+    if (total == 0 || (logged_faults[i] != 0 && total < 2 * logged_faults[i])) continue;
+    logged_faults[i] = total;
+    log::warning("{}: {} so far; latest: {}", kFaultNames[i], total, status.last_fault.data());
+  }
+  const std::uint64_t allocations = counted_allocations();
+  if (allocations > 2 * logged_allocations) {
+    log::warning("{} heap allocations on the data path", allocations);
+    logged_allocations = allocations;
+  }
+}
+
+}  // namespace boresight::runtime

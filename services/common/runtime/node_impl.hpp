@@ -1,0 +1,115 @@
+// Inside of Node; for ports.cpp and node.cpp only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <iceoryx_posh/popo/untyped_publisher.hpp>
+#include <iceoryx_posh/popo/untyped_subscriber.hpp>
+#include <iceoryx_posh/popo/wait_set.hpp>
+
+#include "services/common/runtime/node.hpp"
+#include "services/common/runtime/ports.hpp"
+
+namespace boresight::runtime {
+
+/// Sees losses as gaps in the sequence numbers of each writer of a topic.
+class GapDetector {
+ public:
+  explicit GapDetector(bool several_writers) : several_writers_(several_writers) {}
+
+  /// Messages lost before this one. A number that does not grow is a restarted writer and no loss.
+  [[nodiscard]] std::uint64_t observe(const MessageHeader& header) {
+    const std::size_t slot = several_writers_ ? header.source_id % last_.size() : 0;
+    const std::uint64_t number = several_writers_ ? header.source_sequence : header.sequence;
+    const std::uint64_t previous = std::exchange(last_[slot], number);
+    return previous == 0 || number <= previous ? 0 : number - previous - 1;
+  }
+
+ private:
+  bool several_writers_;
+  std::array<std::uint64_t, kMaxServices> last_{};
+};
+
+struct Input {
+  Input(const iox::capro::ServiceDescription& description, const iox::popo::SubscriberOptions& options,
+        std::uint32_t message_version, bool several_writers, std::function<void(const void*)> on_message)
+      : port(description, options), version(message_version), gaps(several_writers), handler(std::move(on_message)) {}
+
+  iox::popo::UntypedSubscriber port;
+  std::uint32_t version;
+  GapDetector gaps;
+  std::function<void(const void*)> handler;
+  std::uint64_t handled = 0;
+};
+
+struct Timer {
+  std::int64_t period_ns;
+  std::int64_t next_ns;
+  std::function<void()> callback;
+};
+
+struct Descriptor {
+  int descriptor;
+  std::function<void()> callback;
+  std::uint64_t handled = 0;
+};
+
+struct Node::Impl {
+  explicit Impl(catalogue::Service service) : self(service) {}
+
+  void take_all();
+  bool take_one(Input& input);
+  void run_timers();
+  void wait(std::int64_t timeout_ns);
+  void wait_for_descriptors(std::int64_t timeout_ns);
+  void count(std::int64_t processing_ns);
+  void heartbeat();
+  void log_new_faults();
+
+  catalogue::Service self;
+  std::optional<iox::popo::WaitSet<>> waitset;  // made after the connection to RouDi
+  std::vector<std::unique_ptr<Input>> inputs;   // in order of priority
+  std::vector<Timer> timers;
+  std::deque<Descriptor> descriptors;  // a callback may add one while it runs
+  std::optional<Publisher<ServiceStatus>> status_port;
+
+  std::int64_t event_begin_ns = 0;
+  bool stopping = false;
+  int exit_code = 0;
+
+  ServiceStatus status{};
+  bool degraded = false;
+  double processing_sum_ns = 0.0;
+  std::uint64_t processing_count = 0;
+  std::int64_t processing_max_ns = 0;
+  std::array<std::uint64_t, kNumberOfFaults> logged_faults{};
+  std::uint64_t logged_allocations = 0;
+};
+
+namespace detail {
+
+struct PublisherPort {
+  PublisherPort(Node& owner, const catalogue::Topic& published_topic, const iox::capro::ServiceDescription& description,
+                const iox::popo::PublisherOptions& options)
+      : node(owner), topic(published_topic), port(description, options) {}
+
+  Node& node;
+  const catalogue::Topic& topic;
+  iox::popo::UntypedPublisher port;
+  std::uint64_t sequence = 0;
+  std::array<std::uint64_t, kMaxRadars + 1> source_sequence{};
+};
+
+/// iceoryx's name of a topic: (service, instance, event) = ("boresight", topic, type).
+[[nodiscard]] iox::capro::ServiceDescription service_description(const catalogue::Topic& topic);
+
+}  // namespace detail
+
+}  // namespace boresight::runtime

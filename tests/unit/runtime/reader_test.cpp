@@ -1,0 +1,105 @@
+#include "services/common/runtime/config/reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace boresight::config {
+namespace {
+
+using testing::HasSubstr;
+
+std::string error_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Reader, ReadsEveryType) {
+  Reader root =
+      Reader::parse("a = 1.5\nb = 3\nc = true\nd = \"word\"\ne = [1, 2.5]\nf_deg = 180.0\nm = \"two\"\n", "x.toml");
+  EXPECT_EQ(root.number("a", {0, 2}, 0), 1.5);
+  EXPECT_EQ(root.number("b", {0, 5}, 0), 3.0) << "an integer serves as a number";
+  EXPECT_EQ(root.integer("b", {0, 5}, 0), 3);
+  EXPECT_TRUE(root.boolean("c", false));
+  EXPECT_EQ(root.text("d", ""), "word");
+  EXPECT_EQ(root.numbers("e", 2, {}, {0, 0}), (std::vector<double>{1, 2.5}));
+  EXPECT_DOUBLE_EQ(root.angle_deg("f_deg", {-180, 180}, 0), M_PI);
+  EXPECT_EQ(root.choice<int>("m", {{"one", 1}, {"two", 2}}, 0), 2);
+  EXPECT_NO_THROW(root.finish());
+}
+
+TEST(Reader, AbsentKeysKeepTheirDefault) {
+  Reader root = Reader::parse("", "x.toml");
+  EXPECT_EQ(root.number("a", {0, 1}, 0.5), 0.5);
+  EXPECT_EQ(root.table("t").integer("n", {0, 9}, 7), 7);
+  EXPECT_TRUE(root.tables("list").empty());
+  EXPECT_NO_THROW(root.finish());
+}
+
+TEST(Reader, OutOfRangeNamesFileLineKeyAndRange) {
+  Reader root = Reader::parse("# comment\nlimit = 9\n", "dir/x.toml");
+  EXPECT_EQ(root.number("limit", {0, 5}, 1), 1);
+  const std::string text = error_of([&] { root.finish(); });
+  EXPECT_EQ(text, "dir/x.toml:2: limit: 9 is out of range; allowed: 0 … 5");
+}
+
+TEST(Reader, NotANumberIsOutOfRange) {
+  Reader root = Reader::parse("limit = nan\n", "x.toml");
+  EXPECT_EQ(root.number("limit", {0, 5}, 1), 1);
+  EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("x.toml:1: limit: nan is out of range"));
+}
+
+TEST(Reader, WrongTypeSaysWhatIsWanted) {
+  Reader root = Reader::parse("limit = \"5\"\n", "x.toml");
+  EXPECT_EQ(root.integer("limit", {0, 5}, 1), 1);
+  EXPECT_THAT(error_of([&] { root.finish(); }),
+              HasSubstr("x.toml:1: limit: must be an integer (0 … 5), but is a string"));
+}
+
+TEST(Reader, UnknownKeyIsAnErrorWithTheKnownOnes) {
+  Reader root = Reader::parse("[t]\nlimitt = 5\n", "x.toml");
+  static_cast<void>(root.table("t").number("limit", {}, 1));
+  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:2: t.limitt: unknown key; known here: limit");
+}
+
+TEST(Reader, UnknownTableIsAnError) {
+  Reader root = Reader::parse("[tt]\nlimit = 5\n", "x.toml");
+  EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("tt: unknown key"));
+}
+
+TEST(Reader, ReportsAllErrorsInTheOrderOfLines) {
+  Reader root = Reader::parse("b = 9\na = 9\n", "x.toml");
+  static_cast<void>(root.number("a", {0, 1}, 0));
+  static_cast<void>(root.number("b", {0, 1}, 0));
+  const std::string text = error_of([&] { root.finish(); });
+  EXPECT_LT(text.find("x.toml:1: b"), text.find("x.toml:2: a"));
+}
+
+TEST(Reader, MissingRequiredKeyNamesTheTablesLine) {
+  Reader root = Reader::parse("\n\n[t]\n", "x.toml");
+  root.table("t").require("id");
+  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:3: t.id: is missing");
+}
+
+TEST(Reader, ElementsOfATableListAreNumbered) {
+  Reader root = Reader::parse("[[r]]\nn = 1\n[[r]]\nn = 99\n", "x.toml");
+  for (Reader& r : root.tables("r")) static_cast<void>(r.integer("n", {0, 9}, 0));
+  EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("x.toml:4: r[1].n: 99 is out of range"));
+}
+
+TEST(Reader, BrokenTomlNamesTheLine) {
+  EXPECT_THAT(error_of([] { static_cast<void>(Reader::parse("a = 1\nb = = 2\n", "x.toml")); }),
+              HasSubstr("x.toml:2: not valid TOML"));
+}
+
+TEST(Reader, UnreadableFileIsNamed) {
+  EXPECT_THAT(error_of([] { static_cast<void>(Reader::open("/nowhere/x.toml")); }),
+              HasSubstr("/nowhere/x.toml: cannot"));
+  EXPECT_THAT(error_of([] { static_cast<void>(Reader::open("/")); }), HasSubstr("cannot be read"));
+}
+
+}  // namespace
+}  // namespace boresight::config

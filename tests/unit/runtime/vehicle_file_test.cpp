@@ -1,0 +1,83 @@
+#include "services/common/runtime/config/vehicle_file.hpp"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace boresight::config {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::string_view kEgo = "name = \"car\"\n[ego]\nsource = {link = \"can\", interface = \"can0\"}\n";
+constexpr std::string_view kRadar =
+    "[[radar]]\nid = 2\nname = \"front\"\nprofile = \"ars548\"\n"
+    "source = {link = \"udp\", address = \"224.0.2.2\", port = 42102, sender = \"10.13.1.113\"}\n"
+    "mounting_pose = {position_m = [3.5, 0.5, 0.6], yaw_deg = 45.0, pitch_deg = 1.0, roll_deg = 180.0}\n";
+
+VehicleConfig read(const std::string& text) {
+  return read_vehicle(Reader::parse(text, "car.toml"));
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    static_cast<void>(read(text));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(VehicleFile, ReadsARadar) {
+  const VehicleConfig vehicle = read(std::string(kEgo) + std::string(kRadar));
+  ASSERT_EQ(vehicle.radars.size(), 1u);
+  const RadarConfig* radar = vehicle.radar(2);
+  ASSERT_NE(radar, nullptr);
+  EXPECT_EQ(radar->name, "front");
+  EXPECT_EQ(radar->source.sender, "10.13.1.113");
+  EXPECT_EQ(radar->source.port, 42102);
+  EXPECT_DOUBLE_EQ(radar->mounting_pose.yaw_rad, M_PI / 4);
+  EXPECT_DOUBLE_EQ(radar->mounting_pose.roll_rad, M_PI);
+  EXPECT_EQ(vehicle.radar(1), nullptr);
+  EXPECT_EQ(vehicle.ego.source.interface, "can0");
+}
+
+TEST(VehicleFile, SortsRadarsById) {
+  std::string second(kRadar);
+  second.replace(second.find("id = 2"), 6, "id = 1");
+  second.replace(second.find("front"), 5, "rear_");
+  second.replace(second.find("10.13.1.113"), 11, "10.13.1.114");
+  const VehicleConfig vehicle = read(std::string(kEgo) + std::string(kRadar) + second);
+  ASSERT_EQ(vehicle.radars.size(), 2u);
+  EXPECT_EQ(vehicle.radars[0].id, 1u);
+}
+
+TEST(VehicleFile, RefusesTwoRadarsOfOneIdNameOrSource) {
+  const std::string text = error_of(std::string(kEgo) + std::string(kRadar) + std::string(kRadar));
+  EXPECT_THAT(text, HasSubstr("radar[1].id: 2 is already used by front"));
+  EXPECT_THAT(text, HasSubstr("radar[1].name"));
+  EXPECT_THAT(text, HasSubstr("radar[1].source: is the source of front too"));
+}
+
+TEST(VehicleFile, RefusesWrongAddressesLinksAndMissingKeys) {
+  std::string bad(kRadar);
+  bad.replace(bad.find("224.0.2.2"), 9, "radar.lan");
+  EXPECT_THAT(error_of(std::string(kEgo) + bad), HasSubstr("\"radar.lan\" is not an IPv4 address"));
+  bad = kRadar;
+  bad.replace(bad.find("ars548"), 6, "toyota");
+  EXPECT_THAT(error_of(std::string(kEgo) + bad), HasSubstr("this profile needs link = \"can\""));
+  EXPECT_THAT(error_of(std::string(kEgo) + "[[radar]]\n"), HasSubstr("radar[0].mounting_pose: is missing"));
+  EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("ego: is missing"));
+}
+
+TEST(VehicleFile, ShippedVehiclesAreValid) {
+  const std::filesystem::path folder = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config" / "vehicle";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_NO_THROW(static_cast<void>(read_vehicle_file(entry.path()))) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace boresight::config
