@@ -1,0 +1,117 @@
+#include "deploy/supervisor/guardian.hpp"
+
+#include <cerrno>
+#include <csignal>
+#include <set>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace boresight::supervisor {
+
+namespace {
+
+constexpr int kPatience_ms = 2000;
+constexpr int kLook_ms = 20;
+
+struct Charge {
+  std::set<pid_t> processes;
+  std::set<std::string> files;
+  bool dismissed = false;
+};
+
+/// One line from the supervisor: '+' and '-' a process, 'f' a file, '.' the end.
+void note(Charge& charge, const std::string& line) {
+  if (line.empty()) return;
+  const std::string text = line.substr(1);
+  if (line[0] == '+') charge.processes.insert(std::stoi(text));
+  if (line[0] == '-') charge.processes.erase(std::stoi(text));
+  if (line[0] == 'f') charge.files.insert(text);
+  if (line[0] == '.') charge.dismissed = true;
+}
+
+void end_processes(const Charge& charge) {
+  for (const pid_t pid : charge.processes) kill(-pid, SIGTERM);
+  for (int waited_ms = 0; waited_ms < kPatience_ms; waited_ms += kLook_ms) {
+    bool any = false;
+    for (const pid_t pid : charge.processes) any = any || kill(-pid, 0) == 0;
+    if (!any) return;
+    usleep(kLook_ms * 1000);
+  }
+  for (const pid_t pid : charge.processes) kill(-pid, SIGKILL);
+}
+
+[[noreturn]] void guard(int input) {
+  setsid();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(number, SIG_IGN);
+  // Whoever waits for the supervisor's output to end must not wait for the guardian too.
+  const int null = open("/dev/null", O_RDWR);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, descriptor);
+  input = dup2(input, STDERR_FILENO + 1);
+  closefrom(input + 1);
+  Charge charge;
+  std::string line;
+  char c = 0;
+  for (ssize_t got = 0; (got = read(input, &c, 1)) != 0;) {
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) break;
+    if (c != '\n') {
+      line.push_back(c);
+      continue;
+    }
+    note(charge, line);
+    line.clear();
+  }
+  if (!charge.dismissed) {
+    end_processes(charge);
+    for (const std::string& file : charge.files) unlink(file.c_str());
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+Guardian::Guardian() {
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    throw std::system_error(errno, std::generic_category(), "socketpair");
+  }
+  pid_ = fork();
+  if (pid_ < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (pid_ == 0) {
+    close(ends[1]);
+    guard(ends[0]);
+  }
+  close(ends[0]);
+  line_ = ends[1];
+}
+
+Guardian::~Guardian() {
+  tell('.', "");
+  close(line_);
+  waitpid(pid_, nullptr, 0);
+}
+
+void Guardian::watch_process(pid_t pid) {
+  tell('+', std::to_string(pid));
+}
+
+void Guardian::forget_process(pid_t pid) {
+  tell('-', std::to_string(pid));
+}
+
+void Guardian::watch_file(const std::filesystem::path& file) {
+  tell('f', file.string());
+}
+
+void Guardian::tell(char what, const std::string& text) {
+  const std::string line = what + text + "\n";
+  // If the guardian was killed there is nobody to tell, and that is no reason to stop.
+  static_cast<void>(send(line_, line.data(), line.size(), MSG_NOSIGNAL));
+}
+
+}  // namespace boresight::supervisor

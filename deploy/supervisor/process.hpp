@@ -1,0 +1,28 @@
+// Starting one child process so that it can never outlive its parent unnoticed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace boresight::supervisor {
+
+/// What to execute. The environment is added to the supervisor's own.
+struct Command {
+  std::vector<std::string> arguments;  ///< arguments[0] is the program, searched in $PATH if it has no slash
+  std::vector<std::pair<std::string, std::string>> environment;
+};
+
+/// Starts `command` in a session of its own (so that the terminal's Ctrl-C reaches only the supervisor), with default
+/// signal handling and SIGTERM as the signal it gets when the calling thread dies. Standard input is /dev/null; output
+/// and errors are appended to `log_file`, or shared with the caller if that is empty. Returns the process id, which is
+/// also its process group's. Throws std::system_error if the program cannot be executed.
+[[nodiscard]] pid_t spawn(const Command& command, const std::filesystem::path& log_file);
+
+/// "exit code 3", "signal 9 (Killed)": the wait status in words.
+[[nodiscard]] std::string describe_exit(int wait_status);
+
+}  // namespace boresight::supervisor

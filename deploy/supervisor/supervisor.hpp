@@ -1,0 +1,144 @@
+// Keeps one domain running: RouDi first, then every service as a process of its own, and after a failure exactly what
+// the middleware needs: a new service rejoins a living RouDi, but nobody rejoins a new RouDi.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "deploy/supervisor/guardian.hpp"
+#include "deploy/supervisor/leftovers.hpp"
+#include "deploy/supervisor/process.hpp"
+
+namespace boresight::supervisor {
+
+/// What to do with a process when it or the domain ends.
+enum class Role : std::uint8_t {
+  kService,      ///< member of the domain: started anew when it exits, and with every new RouDi
+  kSpectator,    ///< as a service, but optional: its readiness is not waited for (a monitor)
+  kIndependent,  ///< not on the bus: started by `start_independent`, outlives a domain restart, never started anew
+};
+
+struct ProcessSpec {
+  std::string name;  ///< "tracker": in events, and <run directory>/logs/<name>.log
+  Command command;
+  std::string runtime_name = {};  ///< on the bus, for cleaning up after it; empty if it is not on it
+  Role role = Role::kService;
+  bool shares_terminal = false;  ///< writes to the supervisor's own standard output instead of a log file
+};
+
+struct DomainConfig {
+  Command roudi;
+  std::vector<ProcessSpec> services;
+  std::filesystem::path run_directory;  ///< holds logs/ and the notification socket; created
+  Places places;
+  std::int64_t roudi_ready_timeout_ns = 10'000'000'000;
+  /// A service that was started anew and has not said READY after this time makes the domain restart: a process killed
+  /// inside publish() leaves a mutex locked, on which registration hangs for ever.
+  std::int64_t service_ready_timeout_ns = 3'000'000'000;
+  std::int64_t first_start_timeout_ns = 20'000'000'000;  ///< the same for the first start, which reads cold files
+  std::int64_t stop_timeout_ns = 2'000'000'000;          ///< from SIGTERM to SIGKILL
+  std::int64_t stable_after_ns = 10'000'000'000;         ///< a process up for longer is restarted at once again
+};
+
+enum class EventKind : std::uint8_t {
+  kSpawned,
+  kReady,
+  kExited,
+  kStartFailed,
+  kDomainRestart,
+  kDomainReady,
+  kStopped,
+};
+[[nodiscard]] std::string_view name_of(EventKind kind);
+
+struct Event {
+  std::int64_t time_ns;  ///< CLOCK_MONOTONIC
+  EventKind kind;
+  std::string process;  ///< "roudi", or the service's name; empty for the domain
+  pid_t pid;            ///< 0 for the domain
+  std::string detail;   ///< why, in words
+};
+
+/// How long to wait before starting a process again that failed `failures` times in a row: nothing the first time,
+/// then 0.25 s, doubling up to 5 s.
+[[nodiscard]] std::int64_t restart_delay_ns(std::uint32_t failures);
+
+/// One thread; call poll() in a loop. Whatever happens to the object or its process, the domain's processes end.
+class Supervisor {
+ public:
+  explicit Supervisor(DomainConfig config);
+  /// Stops the domain if it still runs.
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  /// Starts RouDi, waits until it is ready, and starts the services, without waiting for them. Throws
+  /// std::runtime_error if another RouDi runs, if ours does not become ready, or if `cancelled()` turns true meanwhile.
+  void start(const std::function<bool()>& cancelled = {});
+  /// Handles what happened and waits up to `timeout_ns` for more. A domain restart happens inside this call.
+  void poll(std::int64_t timeout_ns);
+  /// SIGTERM to the services, then to RouDi, SIGKILL to who does not listen; then removes every leftover.
+  void stop();
+
+  /// True when every service (spectators apart) has said that it is ready.
+  [[nodiscard]] bool all_ready() const;
+  /// Starts a process of role kIndependent; its end is an event. Throws std::system_error if it cannot be executed.
+  void start_independent(const ProcessSpec& spec);
+  /// The wait status of an independent process that has ended.
+  [[nodiscard]] std::optional<int> independent_result(std::string_view name) const;
+
+  [[nodiscard]] const std::vector<Event>& events() const;
+  [[nodiscard]] std::uint32_t domain_restarts() const;
+  /// 0 if it does not run at the moment.
+  [[nodiscard]] pid_t pid_of(std::string_view name) const;
+  [[nodiscard]] pid_t roudi_pid() const;
+
+ private:
+  struct Child {
+    ProcessSpec spec;
+    pid_t pid = 0;
+    bool ready = false;
+    std::int64_t started_ns = 0;
+    std::int64_t start_at_ns = 0;  ///< when to start it again, while it does not run
+    std::uint32_t failures = 0;
+    std::optional<int> wait_status = std::nullopt;
+  };
+
+  void start_domain(const std::function<bool()>& cancelled);
+  void start_roudi(const std::function<bool()>& cancelled);
+  void start_child(Child& child);
+  void stop_domain(bool including_independent);
+  void restart_domain(const std::string& reason);
+  void wait_for_something(std::int64_t timeout_ns);
+  void read_notifications();
+  void reap();
+  void on_exit(Child& child, int wait_status);
+  void respawn();
+  [[nodiscard]] std::optional<std::string> reason_to_restart() const;
+  void terminate(const std::vector<Child*>& children);
+  void remove_leftovers();
+  void note(EventKind kind, std::string_view process, pid_t pid, std::string detail);
+  [[nodiscard]] std::filesystem::path log_of(const std::string& name) const;
+
+  DomainConfig config_;
+  std::unique_ptr<Guardian> guardian_;
+  Child roudi_;
+  std::vector<Child> services_;
+  std::vector<Child> independents_;
+  std::vector<std::string> segments_;
+  std::vector<Event> events_;
+  ino_t management_inode_ = 0;
+  int notifications_ = -1;  ///< datagram socket that the services know as $NOTIFY_SOCKET
+  bool running_ = false;
+  bool domain_ready_ = false;
+  std::uint32_t domain_restarts_ = 0;
+  std::int64_t domain_started_ns_ = 0;
+};
+
+}  // namespace boresight::supervisor
