@@ -1,5 +1,6 @@
 #include "deploy/roudi/pools.hpp"
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -14,7 +15,7 @@ namespace {
 
 std::string file(const std::string& name) {
   std::ostringstream text;
-  text << std::ifstream(std::string(BORESIGHT_SOURCE_DIR) + "/deploy/" + name).rdbuf();
+  text << std::ifstream(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "deploy" / "roudi" / name).rdbuf();
   return text.str();
 }
 
@@ -26,8 +27,8 @@ const Pool* pool_for(const Segment& segment, std::size_t payload_bytes) {
 }
 
 TEST(RoudiPools, CommittedFilesAreWhatTheCatalogueAsksFor) {
-  EXPECT_EQ(file("roudi/roudi.toml"), to_toml(single_segment())) << "build/bin/boresight catalogue --roudi";
-  EXPECT_EQ(file("roudi/roudi-deployed.toml"), to_toml(segment_per_writer())) << "… --roudi --deployed";
+  EXPECT_EQ(file("roudi.toml"), to_toml(single_segment())) << "build/bin/boresight catalogue --roudi";
+  EXPECT_EQ(file("roudi-deployed.toml"), to_toml(segment_per_writer())) << "… --roudi --deployed";
 }
 
 TEST(RoudiPools, ChunksHoldEveryMessageAlignedToACacheLine) {
@@ -76,7 +77,7 @@ TEST(RoudiPools, EveryWriterHasItsOwnSegmentWithRoomForItsTopics) {
     EXPECT_EQ(segment.reader_group, "boresight");
     for (const auto& topic : catalogue::kTopics) {
       for (std::size_t i = 0; i < catalogue::kNumberOfServices; ++i) {
-        if (segment.writer_group != "boresight-" + std::string(catalogue::kServiceNames[i])) continue;
+        if (!segment.writer_group.ends_with(catalogue::kServiceNames[i])) continue;
         if (!topic.writers.contains(static_cast<catalogue::Service>(i))) continue;
         EXPECT_NE(pool_for(segment, topic.payload_bytes), nullptr) << topic.name;
       }
@@ -88,9 +89,12 @@ TEST(CatalogueText, NamesEveryTopicOnceAPicture) {
   const std::string table = catalogue::to_table();
   const std::string markdown = catalogue::to_markdown();
   for (const auto& topic : catalogue::kTopics) {
-    EXPECT_THAT(table, ::testing::HasSubstr("\n" + std::string(topic.name) + " "));
-    EXPECT_THAT(markdown,
-                ::testing::HasSubstr("| " + std::string(topic.name) + " | " + std::string(topic.type) + " |"));
+    std::ostringstream row;
+    row << "| " << topic.name << " | " << topic.type << " |";
+    EXPECT_THAT(markdown, ::testing::HasSubstr(row.str()));
+    std::ostringstream start;
+    start << '\n' << topic.name << ' ';
+    EXPECT_THAT(table, ::testing::HasSubstr(start.str()));
   }
   EXPECT_THAT(markdown, ::testing::HasSubstr("  tracker -- track_list --> ghost_filter\n"));
   EXPECT_THAT(table, ::testing::HasSubstr("every service"));
