@@ -1,0 +1,40 @@
+#include "services/detection_corrector/config.hpp"
+
+#include <algorithm>
+
+namespace boresight::corrector {
+
+namespace {
+
+void read_corner(config::Reader& reader, std::string_view key, std::array<double, 3>& corner) {
+  const auto values = reader.numbers(key, 3, {-1000.0, 1000.0}, {corner.begin(), corner.end()});
+  std::copy(values.begin(), values.end(), corner.begin());
+}
+
+}  // namespace
+
+Config read_config(config::Reader root) {
+  Config c;
+  config::Reader region = root.table("region_of_interest");
+  read_corner(region, "min_m", c.region_min_m);
+  read_corner(region, "max_m", c.region_max_m);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (c.region_min_m[i] >= c.region_max_m[i]) region.reject("min_m", "must be below max_m in every element");
+  }
+  config::Reader rcs = root.table("rcs_threshold");
+  c.rcs_near_dbsm = rcs.number("near_dbsm", {-100.0, 100.0}, c.rcs_near_dbsm);
+  c.rcs_slope_db_per_decade = rcs.number("slope_db_per_decade", {-100.0, 100.0}, c.rcs_slope_db_per_decade);
+  config::Reader moving = root.table("moving");
+  c.moving_base_mps = moving.number("base_mps", {0.0, 10.0}, c.moving_base_mps);
+  c.moving_per_speed = moving.number("per_speed", {0.0, 1.0}, c.moving_per_speed);
+  c.moving_sigma = moving.number("sigma", {0.0, 20.0}, c.moving_sigma);
+  config::Reader side = root.table("side_inputs");
+  c.max_angle_std_to_apply_rad = side.angle_deg("max_angle_std_deg", {0.001, 10.0}, c.max_angle_std_to_apply_rad);
+  c.max_speed_scale_std_to_apply = side.number("max_speed_scale_std", {1e-5, 1.0}, c.max_speed_scale_std_to_apply);
+  c.alignment_max_age_s = side.number("alignment_max_age_s", {0.1, 3600.0}, c.alignment_max_age_s);
+  c.ego_max_age_s = side.number("ego_max_age_s", {0.01, 10.0}, c.ego_max_age_s);
+  root.finish();
+  return c;
+}
+
+}  // namespace boresight::corrector

@@ -1,0 +1,157 @@
+#include "services/detection_corrector/core/corrector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "services/common/geometry/frames.hpp"
+
+namespace boresight::corrector {
+
+namespace {
+
+void write_geometry(const RadarConfig& radar, const Mounting& mounting, const EgoSample& ego, ScanGeometry& out) {
+  const Eigen::Vector3d velocity = geometry::sensor_velocity(mounting.speed_scale, ego.speed_mps, ego.yaw_rate_radps,
+                                                             radar.mounting_pose.position_m);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.sensor_position_vehicle_m[k] = static_cast<float>(radar.mounting_pose.position_m[k]);
+    out.sensor_velocity_vehicle_mps[k] = static_cast<float>(velocity(i));
+  }
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(out.sensor_to_vehicle.data()) =
+      mounting.sensor_to_vehicle.cast<float>();
+  out.speed_scale = static_cast<float>(mounting.speed_scale);
+  out.ego_speed_mps = static_cast<float>(mounting.speed_scale * ego.speed_mps);
+  out.ego_speed_std_mps = static_cast<float>(ego.speed_std_mps);
+  out.ego_yaw_rate_radps = static_cast<float>(ego.yaw_rate_radps);
+  out.ego_yaw_rate_std_radps = static_cast<float>(ego.yaw_rate_std_radps);
+}
+
+bool is_inside(const Eigen::Vector3d& position, const Config& config) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (position(i) < config.region_min_m[k] || position(i) > config.region_max_m[k]) return false;
+  }
+  return true;
+}
+
+float known_or(bool stated, float value, double fallback) {
+  return stated && std::isfinite(value) && value > 0.0F ? value : static_cast<float>(fallback);
+}
+
+}  // namespace
+
+Corrector::Corrector(const VehicleConfig& vehicle, const Config& config)
+    : vehicle_(vehicle), config_(config), ego_(static_cast<std::int64_t>(config.ego_max_age_s * 1e9)) {}
+
+bool Corrector::add_alignment(const AlignmentEstimate& estimate) {
+  const std::uint32_t id = estimate.header.source_id;
+  if (!knows(id)) return false;
+  alignment_[id].present = true;
+  alignment_[id].estimate = estimate;
+  return true;
+}
+
+void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
+  const std::uint32_t id = scan.header.source_id;
+  const RadarConfig* const radar = vehicle_.radar(id);
+  const std::size_t count =
+      radar == nullptr ? 0 : std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
+  out.number_of_valid_detections = static_cast<std::uint32_t>(count);
+  out.fields = scan.fields;
+  out.flags = 0;
+  out.cycle_counter = scan.cycle_counter;
+  out.reserved = 0;
+  out.alignment_sequence = 0;
+  out.geometry = {};
+  if (radar == nullptr) return;
+
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
+  const Latest& latest = alignment_[id];
+  const Mounting mounting = mounting_of(*radar, latest.present ? &latest.estimate : nullptr, config_);
+  out.alignment_sequence = mounting.alignment_sequence;
+  if (mounting.alignment_sequence == 0) out.flags |= pipeline_flag::kNoAlignment;
+  const double alignment_age_s = static_cast<double>(time_ns - latest.estimate.header.measurement_time_ns) * 1e-9;
+  if (latest.present && std::abs(alignment_age_s) > config_.alignment_max_age_s) {
+    out.flags |= pipeline_flag::kAlignmentStale;
+  }
+
+  const EgoSample ego = ego_.at(time_ns);
+  const bool compensates = ego.valid && !ego.stale;
+  if (!ego.valid) out.flags |= pipeline_flag::kNoEgoMotion;
+  if (ego.valid && ego.stale) out.flags |= pipeline_flag::kEgoMotionStale;
+  if (!scan.has(scan_field::kElevation)) out.flags |= pipeline_flag::kNoElevation;
+  write_geometry(*radar, mounting, compensates ? ego : EgoSample{}, out.geometry);
+
+  const bool has_elevation = scan.has(scan_field::kElevation);
+  const bool has_stds = scan.has(scan_field::kStds);
+  const bool has_rcs = scan.has(scan_field::kRcs);
+  const Eigen::Matrix3d& rotation = mounting.sensor_to_vehicle;
+  const Eigen::Vector3d origin(radar->mounting_pose.position_m.data());
+  const Eigen::Vector3d velocity = compensates
+                                       ? geometry::sensor_velocity(mounting.speed_scale, ego.speed_mps,
+                                                                   ego.yaw_rate_radps, radar->mounting_pose.position_m)
+                                       : Eigen::Vector3d::Zero();
+  const double threshold_mps =
+      config_.moving_base_mps + config_.moving_per_speed * std::abs(mounting.speed_scale * ego.speed_mps);
+
+  for (std::size_t i = 0; i < count; ++i) {
+    const float elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
+    const bool finite = std::isfinite(scan.range_m[i]) && std::isfinite(scan.azimuth_rad[i]) &&
+                        std::isfinite(elevation) && std::isfinite(scan.range_rate_mps[i]) && scan.range_m[i] >= 0.0F;
+    std::uint16_t flags = 0;
+    if (!finite || (scan.detection_flags[i] & detection_flag::kInvalid) != 0) flags |= corrected_flag::kInvalid;
+    if ((scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) flags |= corrected_flag::kAmbiguous;
+    const double range = finite ? scan.range_m[i] : 0.0;
+    const double azimuth = finite ? scan.azimuth_rad[i] : 0.0;
+    const double range_rate = finite ? scan.range_rate_mps[i] : 0.0;
+
+    const double ca = std::cos(azimuth), sa = std::sin(azimuth);
+    const double ce = std::cos(finite ? elevation : 0.0F), se = std::sin(finite ? elevation : 0.0F);
+    const Eigen::Vector3d direction = rotation * Eigen::Vector3d(ce * ca, ce * sa, se);
+    const Eigen::Vector3d position = origin + range * direction;
+    const double over_ground = range_rate - geometry::stationary_range_rate(direction, velocity);
+
+    out.x_vehicle_m[i] = static_cast<float>(position.x());
+    out.y_vehicle_m[i] = static_cast<float>(position.y());
+    out.z_vehicle_m[i] = static_cast<float>(position.z());
+    out.range_m[i] = static_cast<float>(range);
+    out.azimuth_vehicle_rad[i] = static_cast<float>(std::atan2(direction.y(), direction.x()));
+    out.elevation_vehicle_rad[i] = static_cast<float>(std::asin(std::clamp(direction.z(), -1.0, 1.0)));
+    out.range_rate_mps[i] = static_cast<float>(range_rate);
+    out.range_rate_over_ground_mps[i] = static_cast<float>(over_ground);
+    out.rcs_dbsm[i] = scan.rcs_dbsm[i];
+    out.snr_db[i] = scan.snr_db[i];
+    const float azimuth_std = known_or(has_stds, scan.azimuth_std_rad[i], radar->noise.azimuth_std_rad);
+    const float elevation_std =
+        known_or(has_stds && has_elevation, scan.elevation_std_rad[i], radar->noise.elevation_std_rad);
+    const float range_rate_std = known_or(has_stds, scan.range_rate_std_mps[i], radar->noise.range_rate_std_mps);
+    out.range_std_m[i] = known_or(has_stds, scan.range_std_m[i], radar->noise.range_std_m);
+    out.azimuth_std_rad[i] = azimuth_std;
+    out.elevation_std_rad[i] = elevation_std;
+    out.range_rate_std_mps[i] = range_rate_std;
+    out.existence_probability[i] = scan.has(scan_field::kExistence) ? scan.existence_probability[i] : 1.0F;
+
+    if (!is_inside(position, config_)) flags |= corrected_flag::kOutsideRegion;
+    if (has_rcs && range > 0.0) {
+      const double limit = config_.rcs_near_dbsm + config_.rcs_slope_db_per_decade * std::log10(range / 10.0);
+      if (!(scan.rcs_dbsm[i] >= limit)) flags |= corrected_flag::kWeak;
+    }
+    // An aliased range rate is never believed: it says neither moving nor stationary.
+    if (compensates && (flags & (corrected_flag::kInvalid | corrected_flag::kAmbiguous)) == 0) {
+      // How wrong the prediction may be because of the noise of angles and range rate.
+      const double by_azimuth =
+          velocity.dot(rotation * Eigen::Vector3d(-ce * sa, ce * ca, 0.0)) * static_cast<double>(azimuth_std);
+      const double by_elevation =
+          velocity.dot(rotation * Eigen::Vector3d(-se * ca, -se * sa, ce)) * static_cast<double>(elevation_std);
+      const double std_mps = std::sqrt(by_azimuth * by_azimuth + by_elevation * by_elevation +
+                                       static_cast<double>(range_rate_std * range_rate_std));
+      const bool moving = std::abs(over_ground) > threshold_mps + config_.moving_sigma * std_mps;
+      flags |= moving ? corrected_flag::kMoving : corrected_flag::kStationary;
+    }
+    out.detection_flags[i] = flags;
+  }
+}
+
+}  // namespace boresight::corrector

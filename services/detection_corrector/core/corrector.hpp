@@ -1,0 +1,45 @@
+// Sensor frame → vehicle frame, with the mounting error undone and the ego motion taken out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/corrected_scan.hpp"
+#include "interfaces/messages/ego_motion.hpp"
+#include "interfaces/messages/radar_scan.hpp"
+#include "services/common/estimation/ego_history.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+#include "services/detection_corrector/core/config.hpp"
+#include "services/detection_corrector/core/mounting.hpp"
+
+namespace boresight::corrector {
+
+/// Keeps the latest side inputs and corrects scans with them. No allocation after construction.
+class Corrector {
+ public:
+  Corrector(const VehicleConfig& vehicle, const Config& config);
+
+  /// Ignores estimates of unknown radars (returns false).
+  bool add_alignment(const AlignmentEstimate& estimate);
+  void add_ego_motion(const EgoMotion& motion) { ego_.add(motion); }
+
+  /// Whether the vehicle file knows the radar; correct() needs that.
+  [[nodiscard]] bool knows(std::uint32_t radar_id) const { return vehicle_.radar(radar_id) != nullptr; }
+
+  /// Writes everything of `out` but the header. Missing side inputs are in `out.flags`. A scan of an unknown radar
+  /// gives an empty output.
+  void correct(const RadarScan& scan, CorrectedScan& out) const;
+
+ private:
+  struct Latest {
+    bool present = false;
+    AlignmentEstimate estimate;
+  };
+  VehicleConfig vehicle_;
+  Config config_;
+  EgoHistory ego_;
+  std::array<Latest, kMaxRadars + 1> alignment_{};
+};
+
+}  // namespace boresight::corrector
