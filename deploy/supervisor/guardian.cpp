@@ -21,16 +21,18 @@ constexpr int kLook_ms = 20;
 struct Charge {
   std::set<pid_t> processes;
   std::set<std::string> files;
+  std::set<std::string> directories;
   bool dismissed = false;
 };
 
-/// One line from the supervisor: '+' and '-' a process, 'f' a file, '.' the end.
+/// One line from the supervisor: '+' and '-' a process, 'f' a file, 'd' a directory, '.' the end.
 void note(Charge& charge, const std::string& line) {
   if (line.empty()) return;
   const std::string text = line.substr(1);
   if (line[0] == '+') charge.processes.insert(std::stoi(text));
   if (line[0] == '-') charge.processes.erase(std::stoi(text));
   if (line[0] == 'f') charge.files.insert(text);
+  if (line[0] == 'd') charge.directories.insert(text);
   if (line[0] == '.') charge.dismissed = true;
 }
 
@@ -69,6 +71,8 @@ void end_processes(const Charge& charge) {
   if (!charge.dismissed) {
     end_processes(charge);
     for (const std::string& file : charge.files) unlink(file.c_str());
+    std::error_code ignored;
+    for (const std::string& directory : charge.directories) std::filesystem::remove_all(directory, ignored);
   }
   _exit(0);
 }
@@ -106,6 +110,10 @@ void Guardian::forget_process(pid_t pid) {
 
 void Guardian::watch_file(const std::filesystem::path& file) {
   tell('f', file.string());
+}
+
+void Guardian::watch_directory(const std::filesystem::path& directory) {
+  tell('d', directory.string());
 }
 
 void Guardian::tell(char what, const std::string& text) {

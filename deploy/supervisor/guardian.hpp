@@ -20,6 +20,8 @@ class Guardian {
   void watch_process(pid_t pid);
   void forget_process(pid_t pid);
   void watch_file(const std::filesystem::path& file);
+  /// With everything in it.
+  void watch_directory(const std::filesystem::path& directory);
 
  private:
   void tell(char what, const std::string& text);

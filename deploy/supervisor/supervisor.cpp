@@ -104,8 +104,10 @@ Supervisor::~Supervisor() {
 void Supervisor::start(const std::function<bool()>& cancelled) {
   if (running_) return;
   if (const auto reason = running_roudi(config_.places)) throw std::runtime_error(*reason);
-  std::filesystem::create_directories(config_.run_directory / "logs");
+  std::filesystem::create_directories(config_.log_directory);
+  made_run_directory_ = std::filesystem::create_directories(config_.run_directory);
   guardian_ = std::make_unique<Guardian>();
+  if (made_run_directory_) guardian_->watch_directory(config_.run_directory);
   const std::filesystem::path socket = config_.run_directory / "notify";
   if (notifications_ < 0) notifications_ = bind_notifications(socket);
   if (notifications_ < 0) throw std::system_error(errno, std::generic_category(), socket.string());
@@ -294,6 +296,9 @@ void Supervisor::stop() {
   stop_domain(true);
   std::error_code ignored;
   std::filesystem::remove(config_.run_directory / "notify", ignored);
+  if (made_run_directory_) std::filesystem::remove_all(config_.run_directory, ignored);
+  close(notifications_);
+  notifications_ = -1;
   guardian_.reset();
   running_ = false;
   note(EventKind::kStopped, "", 0, "");
@@ -385,7 +390,7 @@ void Supervisor::note(EventKind kind, std::string_view process, pid_t pid, std::
 }
 
 std::filesystem::path Supervisor::log_of(const std::string& name) const {
-  return config_.run_directory / "logs" / (name + ".log");
+  return config_.log_directory / (name + ".log");
 }
 
 }  // namespace boresight::supervisor

@@ -25,7 +25,7 @@ enum class Role : std::uint8_t {
 };
 
 struct ProcessSpec {
-  std::string name;  ///< "tracker": in events, and <run directory>/logs/<name>.log
+  std::string name;  ///< "tracker": in events, and <log directory>/<name>.log
   Command command;
   std::string runtime_name = {};  ///< on the bus, for cleaning up after it; empty if it is not on it
   Role role = Role::kService;
@@ -35,7 +35,9 @@ struct ProcessSpec {
 struct DomainConfig {
   Command roudi;
   std::vector<ProcessSpec> services;
-  std::filesystem::path run_directory;  ///< holds logs/ and the notification socket; created
+  /// Holds the notification socket, whose path may not be long. Removed at the end if it did not exist before.
+  std::filesystem::path run_directory;
+  std::filesystem::path log_directory;  ///< <name>.log of every process; created, and kept
   Places places;
   std::int64_t roudi_ready_timeout_ns = 10'000'000'000;
   /// A service that was started anew and has not said READY after this time makes the domain restart: a process killed
@@ -136,6 +138,7 @@ class Supervisor {
   ino_t management_inode_ = 0;
   int notifications_ = -1;  ///< datagram socket that the services know as $NOTIFY_SOCKET
   bool running_ = false;
+  bool made_run_directory_ = false;
   bool domain_ready_ = false;
   std::uint32_t domain_restarts_ = 0;
   std::int64_t domain_started_ns_ = 0;

@@ -47,6 +47,7 @@ class SupervisorTest : public ::testing::Test {
     config.roudi = {.arguments = {FAKE_PROCESS, "roudi", bus().string(), roudi_option}, .environment = {}};
     config.services = std::move(services);
     config.run_directory = directory_ / "run";
+    config.log_directory = directory_ / "logs";
     config.places = {.shared_memory = bus(), .sockets = bus()};
     config.stop_timeout_ns = 300'000'000;
     return config;
@@ -95,7 +96,8 @@ TEST_F(SupervisorTest, StartsRoudiFirstAndStopLeavesNothing) {
   for (const pid_t pid : pids) EXPECT_TRUE(is_gone(pid));
   EXPECT_THAT(files_on_bus(), ::testing::ElementsAre("foreign"));
   EXPECT_EQ(supervisor.domain_restarts(), 0U);
-  EXPECT_FALSE(std::filesystem::exists(directory_ / "run" / "notify"));
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "run"));
+  EXPECT_TRUE(std::filesystem::exists(directory_ / "logs" / "a.log"));
 }
 
 TEST_F(SupervisorTest, RoudiStopsLast) {
@@ -286,6 +288,8 @@ TEST_F(SupervisorTest, KilledSupervisorLeavesNoProcessAndNoFile) {
   while (!all_gone() && milliseconds_now() < deadline_ms) usleep(20'000);
   for (const pid_t pid : pids) EXPECT_TRUE(is_gone(pid));
   EXPECT_THAT(files_on_bus(), ::testing::IsEmpty());
+  while (std::filesystem::exists(directory_ / "run") && milliseconds_now() < deadline_ms) usleep(20'000);
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "run"));
   close(report[0]);
   close(report[1]);
 }
@@ -297,7 +301,7 @@ TEST_F(SupervisorTest, OutputOfAServiceGoesToItsLog) {
   supervisor.start();
   const auto log = [&] {
     std::ostringstream text;
-    text << std::ifstream(directory_ / "run" / "logs" / "talker.log").rdbuf();
+    text << std::ifstream(directory_ / "logs" / "talker.log").rdbuf();
     return text.str();
   };
   EXPECT_TRUE(poll_until(supervisor, [&] { return log() == "to-out\nto-err\n"; })) << log();

@@ -1,0 +1,42 @@
+#include "deploy/supervisor/domain.hpp"
+
+#include <unistd.h>
+
+#include "interfaces/catalogue/catalogue.hpp"
+
+namespace boresight::supervisor {
+
+std::filesystem::path binaries_folder() {
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const std::string probe = "boresight-" + std::string(catalogue::name_of(catalogue::Service::kTracker));
+  if (std::filesystem::exists(own / probe)) return own;
+  return own.parent_path() / "lib" / "boresight";
+}
+
+DomainConfig domain_of_catalogue(const DomainOptions& options, const std::filesystem::path& pools_file) {
+  DomainConfig config;
+  config.roudi.arguments = {"iox-roudi", "-m", "off", "-k", "1", "-c", pools_file.string()};
+  config.run_directory = options.run_directory;
+  config.log_directory = options.log_directory;
+  for (std::size_t i = 0; i < catalogue::kNumberOfSupervisedServices; ++i) {
+    const std::string name(catalogue::kServiceNames[i]);
+    ProcessSpec spec;
+    spec.name = name;
+    spec.runtime_name = "boresight-" + name;
+    spec.command.arguments = {(options.binaries / spec.runtime_name).string(), "--config",
+                              options.config_directory.string()};
+    if (!options.vehicle.empty()) {
+      spec.command.arguments.insert(spec.command.arguments.end(), {"--vehicle", options.vehicle});
+    }
+    spec.command.environment = options.environment;
+    spec.command.environment.emplace_back("BORESIGHT_RUNTIME_DIR", options.run_directory.string());
+    config.services.push_back(std::move(spec));
+  }
+  return config;
+}
+
+std::filesystem::path unused_run_directory() {
+  return "/tmp/boresight-" + std::to_string(getuid()) + "-" + std::to_string(getpid());
+}
+
+}  // namespace boresight::supervisor

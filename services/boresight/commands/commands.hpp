@@ -1,0 +1,12 @@
+// The subcommands of `boresight`; each registers itself and sets the process's exit code when it has run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace boresight {
+
+void add_catalogue_command(CLI::App& app, int& exit_code);
+void add_monitor_command(CLI::App& app, int& exit_code);
+void add_supervise_command(CLI::App& app, int& exit_code);
+
+}  // namespace boresight

@@ -1,0 +1,43 @@
+// Messages in, snapshots out: what `boresight monitor` keeps in mind between two pictures.
+#pragma once
+
+#include <deque>
+
+#include "interfaces/messages/classified_scan.hpp"
+#include "interfaces/messages/ego_motion.hpp"
+#include "interfaces/messages/radar_scan.hpp"
+#include "services/boresight/monitor/snapshot.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::monitor {
+
+/// Pure but for its own memory; `now_ns` is CLOCK_MONOTONIC. Radars that the vehicle file does not know get a row under
+/// the name "radar <id>".
+class Accumulator {
+ public:
+  explicit Accumulator(const VehicleConfig& vehicle);
+
+  void observe(const RadarScan& scan, std::int64_t now_ns);
+  void observe(const EgoMotion& ego);
+  void observe(const AlignmentEstimate& estimate);
+  void observe(const ClassifiedScan& scan);
+  void observe(const TrackList& tracks);
+  void observe(const HealthReport& report);
+  void observe(const ServiceStatus& status);
+
+  [[nodiscard]] Snapshot snapshot(std::int64_t now_ns) const;
+
+ private:
+  struct RadarMemory {
+    RadarSnapshot seen;
+    std::uint64_t last_sequence = 0;
+    std::deque<std::int64_t> arrivals_ns;
+  };
+  [[nodiscard]] RadarMemory& radar(std::uint32_t id);
+  [[nodiscard]] ServiceSnapshot& service(std::uint32_t index);
+
+  std::vector<RadarMemory> radars_;
+  Snapshot current_;
+};
+
+}  // namespace boresight::monitor

@@ -1,0 +1,273 @@
+#include "services/boresight/monitor/snapshot.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <istream>
+#include <ostream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace boresight::monitor {
+
+namespace {
+
+template <typename Enum, std::size_t N>
+std::string_view name_in(const std::array<std::string_view, N>& names, Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < N ? names[index] : "?";
+}
+
+/// The words of one line; a missing word reads as 0.
+class Words {
+ public:
+  explicit Words(const std::string& line) : input_(line) {}
+  std::string text() {
+    std::string word;
+    input_ >> word;
+    return word;
+  }
+  double number() { return std::strtod(text().c_str(), nullptr); }  // also "nan"
+  std::uint64_t count() { return std::strtoull(text().c_str(), nullptr, 10); }
+  template <typename Enum>
+  Enum value() {
+    return static_cast<Enum>(count());
+  }
+  AngleEstimate angle() {
+    AngleEstimate result;
+    result.value_rad = number();
+    result.std_rad = number();
+    result.observable = count() != 0;
+    return result;
+  }
+  [[nodiscard]] bool more() { return static_cast<bool>(input_ >> std::ws) && input_.peek() != EOF; }
+
+ private:
+  std::istringstream input_;
+};
+
+void write_angle(std::ostream& output, const AngleEstimate& angle) {
+  output << ' ' << angle.value_rad << ' ' << angle.std_rad << ' ' << (angle.observable ? 1 : 0);
+}
+
+RadarSnapshot read_radar(Words& words) {
+  RadarSnapshot r;
+  r.id = static_cast<std::uint32_t>(words.count());
+  r.name = words.text();
+  r.scans = words.count();
+  r.lost = words.count();
+  r.rate_hz = words.number();
+  r.detections = static_cast<std::uint32_t>(words.count());
+  r.moving = static_cast<std::uint32_t>(words.count());
+  r.ghosts = static_cast<std::uint32_t>(words.count());
+  r.state = words.value<AlignmentState>();
+  r.yaw = words.angle();
+  r.pitch = words.angle();
+  r.roll = words.angle();
+  r.speed_scale = words.number();
+  r.speed_scale_std = words.number();
+  r.data_qualifier = words.value<DataQualifier>();
+  r.extended_qualifier = words.value<ExtendedQualifier>();
+  r.yaw_tolerance_rad = words.number();
+  return r;
+}
+
+TrackSnapshot read_track(Words& words) {
+  TrackSnapshot t;
+  t.id = static_cast<std::uint32_t>(words.count());
+  t.confirmed = words.count() != 0;
+  t.movement = words.value<MovementState>();
+  t.x_m = words.number();
+  t.y_m = words.number();
+  t.vx_mps = words.number();
+  t.vy_mps = words.number();
+  t.age_s = words.number();
+  return t;
+}
+
+ServiceSnapshot read_service(Words& words) {
+  ServiceSnapshot s;
+  s.service = words.value<catalogue::Service>();
+  s.condition = words.value<ServiceCondition>();
+  s.restarts = static_cast<std::uint32_t>(words.count());
+  s.inputs = words.count();
+  s.outputs = words.count();
+  s.heap_allocations = words.count();
+  s.processing_max_us = words.number();
+  for (std::uint64_t& fault : s.faults) fault = words.count();
+  return s;
+}
+
+void read_latency(Words& words, Snapshot& snapshot) {
+  const std::uint64_t index = words.count();
+  if (index >= kNumberOfLatencies) return;
+  LatencyHistogram& histogram = snapshot.latencies[index];
+  histogram.restore_max(words.number());
+  while (words.more()) {
+    const std::uint64_t bucket = words.count();
+    histogram.restore(bucket, words.count());
+  }
+}
+
+std::string json_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
+}
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+}  // namespace
+
+std::string_view name_of(AlignmentState state) {
+  static constexpr std::array<std::string_view, 4> kNames = {"no data", "waiting", "converging", "converged"};
+  return name_in(kNames, state);
+}
+std::string_view name_of(DataQualifier qualifier) {
+  static constexpr std::array<std::string_view, 3> kNames = {"AVAILABLE", "AVAILABLE_REDUCED", "NOT_AVAILABLE"};
+  return name_in(kNames, qualifier);
+}
+std::string_view name_of(ExtendedQualifier qualifier) {
+  static constexpr std::array<std::string_view, 9> kNames = {"NORMAL",
+                                                             "MISALIGNED",
+                                                             "NO_DATA",
+                                                             "RATE_REDUCED",
+                                                             "INVALID_DATA",
+                                                             "BLOCKED",
+                                                             "BEGINNING_BLOCKAGE",
+                                                             "EXTERNAL_DISTURBANCE",
+                                                             "INITIALISING"};
+  return name_in(kNames, qualifier);
+}
+std::string_view name_of(ServiceCondition condition) {
+  static constexpr std::array<std::string_view, 5> kNames = {"unknown", "alive", "degraded", "silent", "restarted"};
+  return name_in(kNames, condition);
+}
+std::string_view name_of(MovementState movement) {
+  static constexpr std::array<std::string_view, 4> kNames = {"unknown", "moving", "stationary", "stopped"};
+  return name_in(kNames, movement);
+}
+std::string_view name_of(Fault fault) {
+  static constexpr std::array<std::string_view, kNumberOfFaults> kNames = {"input lost",
+                                                                           "memory pool exhausted",
+                                                                           "wrong length",
+                                                                           "wrong value",
+                                                                           "unknown message",
+                                                                           "recording syntax",
+                                                                           "side input missing",
+                                                                           "time jump",
+                                                                           "wrong version",
+                                                                           "over capacity",
+                                                                           "link"};
+  return name_in(kNames, fault);
+}
+
+void write_record(std::ostream& output, const Snapshot& snapshot) {
+  output.precision(9);
+  output << "snapshot " << snapshot.time_ns << ' ' << snapshot.ego_speed_mps << ' ' << snapshot.ego_yaw_rate_radps
+         << ' ' << snapshot.track_lists << '\n';
+  for (const RadarSnapshot& r : snapshot.radars) {
+    output << "radar " << r.id << ' ' << r.name << ' ' << r.scans << ' ' << r.lost << ' ' << r.rate_hz << ' '
+           << r.detections << ' ' << r.moving << ' ' << r.ghosts << ' ' << static_cast<int>(r.state);
+    for (const AngleEstimate& angle : {r.yaw, r.pitch, r.roll}) write_angle(output, angle);
+    output << ' ' << r.speed_scale << ' ' << r.speed_scale_std << ' ' << static_cast<int>(r.data_qualifier) << ' '
+           << static_cast<int>(r.extended_qualifier) << ' ' << r.yaw_tolerance_rad << '\n';
+  }
+  for (const TrackSnapshot& t : snapshot.tracks) {
+    output << "track " << t.id << ' ' << (t.confirmed ? 1 : 0) << ' ' << static_cast<int>(t.movement) << ' ' << t.x_m
+           << ' ' << t.y_m << ' ' << t.vx_mps << ' ' << t.vy_mps << ' ' << t.age_s << '\n';
+  }
+  for (const ServiceSnapshot& s : snapshot.services) {
+    output << "service " << static_cast<int>(s.service) << ' ' << static_cast<int>(s.condition) << ' ' << s.restarts
+           << ' ' << s.inputs << ' ' << s.outputs << ' ' << s.heap_allocations << ' ' << s.processing_max_us;
+    for (const std::uint64_t fault : s.faults) output << ' ' << fault;
+    output << '\n';
+  }
+  for (std::size_t i = 0; i < kNumberOfLatencies; ++i) {
+    const LatencyHistogram& histogram = snapshot.latencies[i];
+    output << "latency " << i << ' ' << histogram.max_us();
+    for (std::size_t bucket = 0; bucket < LatencyHistogram::kBuckets; ++bucket) {
+      if (histogram.counts()[bucket] != 0) output << ' ' << bucket << ' ' << histogram.counts()[bucket];
+    }
+    output << '\n';
+  }
+  output << "end\n";
+}
+
+std::vector<Snapshot> read_record(std::istream& input) {
+  std::vector<Snapshot> snapshots;
+  Snapshot current;
+  bool open = false;
+  for (std::string line; std::getline(input, line);) {
+    Words words(line);
+    const std::string tag = words.text();
+    if (tag == "snapshot") {
+      current = Snapshot();
+      open = true;
+      current.time_ns = static_cast<std::int64_t>(words.count());
+      current.ego_speed_mps = words.number();
+      current.ego_yaw_rate_radps = words.number();
+      current.track_lists = words.count();
+    }
+    if (!open) continue;
+    if (tag == "radar") current.radars.push_back(read_radar(words));
+    if (tag == "track") current.tracks.push_back(read_track(words));
+    if (tag == "service") current.services.push_back(read_service(words));
+    if (tag == "latency") read_latency(words, current);
+    if (tag == "end") {
+      snapshots.push_back(current);
+      open = false;
+    }
+  }
+  return snapshots;
+}
+
+std::string to_json(const Snapshot& snapshot) {
+  std::string text = fmt::format(R"({{"time_ns":{},"ego_speed_mps":{},"track_lists":{},"radars":[)", snapshot.time_ns,
+                                 json_number(snapshot.ego_speed_mps), snapshot.track_lists);
+  const char* separator = "";
+  for (const RadarSnapshot& r : snapshot.radars) {
+    text += fmt::format(
+        R"({}{{"id":{},"name":"{}","scans":{},"lost":{},"rate_hz":{},"detections":{},"moving":{},"ghosts":{},)"
+        R"("state":"{}","yaw_deg":{},"yaw_std_deg":{},"pitch_deg":{},"pitch_std_deg":{},"speed_scale":{},)"
+        R"("speed_scale_std":{},"data_qualifier":"{}","extended_qualifier":"{}"}})",
+        separator, r.id, r.name, r.scans, r.lost, json_number(r.rate_hz), r.detections, r.moving, r.ghosts,
+        name_of(r.state), json_number(r.yaw.value_rad * kDegrees), json_number(r.yaw.std_rad * kDegrees),
+        json_number(r.pitch.value_rad * kDegrees), json_number(r.pitch.std_rad * kDegrees), json_number(r.speed_scale),
+        json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier));
+    separator = ",";
+  }
+  text += R"(],"tracks":[)";
+  separator = "";
+  for (const TrackSnapshot& t : snapshot.tracks) {
+    text += fmt::format(R"({}{{"id":{},"confirmed":{},"movement":"{}","x_m":{},"y_m":{},"vx_mps":{},"vy_mps":{}}})",
+                        separator, t.id, t.confirmed, name_of(t.movement), json_number(t.x_m), json_number(t.y_m),
+                        json_number(t.vx_mps), json_number(t.vy_mps));
+    separator = ",";
+  }
+  text += R"(],"services":[)";
+  separator = "";
+  for (const ServiceSnapshot& s : snapshot.services) {
+    text += fmt::format(
+        R"({}{{"name":"{}","condition":"{}","restarts":{},"inputs":{},"outputs":{},"heap_allocations":{},"faults":{{)",
+        separator, catalogue::name_of(s.service), name_of(s.condition), s.restarts, s.inputs, s.outputs,
+        s.heap_allocations);
+    const char* comma = "";
+    for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
+      if (s.faults[i] == 0) continue;
+      text += fmt::format(R"({}"{}":{})", comma, name_of(static_cast<Fault>(i)), s.faults[i]);
+      comma = ",";
+    }
+    text += "}}";
+    separator = ",";
+  }
+  text += R"(],"latency_us":{)";
+  separator = "";
+  for (std::size_t i = 0; i < kNumberOfLatencies; ++i) {
+    const LatencyHistogram& h = snapshot.latencies[i];
+    text += fmt::format(R"({}"{}":{{"p50":{:.0f},"p99":{:.0f},"max":{:.0f}}})", separator, kLatencyNames[i],
+                        h.percentile_us(0.5), h.percentile_us(0.99), h.max_us());
+    separator = ",";
+  }
+  return text + "}}";
+}
+
+}  // namespace boresight::monitor

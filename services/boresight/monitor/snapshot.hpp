@@ -1,0 +1,101 @@
+// What an onlooker knows about the running system at one moment: shown on the terminal, recorded, reported.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interfaces/catalogue/catalogue.hpp"
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/health_report.hpp"
+#include "interfaces/messages/service_status.hpp"
+#include "interfaces/messages/track_list.hpp"
+#include "services/boresight/monitor/latency_histogram.hpp"
+
+namespace boresight::monitor {
+
+struct AngleEstimate {
+  double value_rad = 0.0;
+  double std_rad = 0.0;
+  bool observable = false;
+};
+
+struct RadarSnapshot {
+  std::uint32_t id = 0;
+  std::string name;
+  std::uint64_t scans = 0;       ///< received by the onlooker
+  std::uint64_t lost = 0;        ///< gaps in the order of what it received
+  double rate_hz = 0.0;          ///< over the last two seconds
+  std::uint32_t detections = 0;  ///< of the latest scan, as are the next two
+  std::uint32_t moving = 0;
+  std::uint32_t ghosts = 0;
+  AlignmentState state = AlignmentState::kNoData;
+  AngleEstimate yaw;
+  AngleEstimate pitch;
+  AngleEstimate roll;
+  double speed_scale = 1.0;
+  double speed_scale_std = 0.0;
+  DataQualifier data_qualifier = DataQualifier::kNotAvailable;
+  ExtendedQualifier extended_qualifier = ExtendedQualifier::kInitialising;
+  double yaw_tolerance_rad = 0.0;
+};
+
+struct TrackSnapshot {
+  std::uint32_t id = 0;
+  bool confirmed = false;
+  MovementState movement = MovementState::kUnknown;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double vx_mps = 0.0;
+  double vy_mps = 0.0;
+  double age_s = 0.0;
+};
+
+struct ServiceSnapshot {
+  catalogue::Service service = catalogue::Service::kMonitor;
+  ServiceCondition condition = ServiceCondition::kUnknown;  ///< the health service's word
+  std::uint32_t restarts = 0;
+  std::uint64_t inputs = 0;
+  std::uint64_t outputs = 0;
+  std::uint64_t heap_allocations = 0;
+  double processing_max_us = 0.0;
+  std::array<std::uint64_t, kNumberOfFaults> faults{};
+};
+
+/// Time spent in each stage (its input to its output), and last the whole way: reception to track list.
+inline constexpr std::size_t kNumberOfLatencies = kNumberOfStages + 1;
+inline constexpr std::array<std::string_view, kNumberOfLatencies> kLatencyNames = {"ingest", "corrector",
+                                                                                   "ghost filter", "tracker", "total"};
+
+struct Snapshot {
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC
+  double ego_speed_mps = 0.0;
+  double ego_yaw_rate_radps = 0.0;
+  std::uint64_t track_lists = 0;
+  std::vector<RadarSnapshot> radars;      ///< in the order of the vehicle file
+  std::vector<TrackSnapshot> tracks;      ///< nearest first
+  std::vector<ServiceSnapshot> services;  ///< in the order of the catalogue
+  std::array<LatencyHistogram, kNumberOfLatencies> latencies;
+};
+
+[[nodiscard]] std::string_view name_of(AlignmentState state);
+[[nodiscard]] std::string_view name_of(DataQualifier qualifier);
+[[nodiscard]] std::string_view name_of(ExtendedQualifier qualifier);
+[[nodiscard]] std::string_view name_of(ServiceCondition condition);
+[[nodiscard]] std::string_view name_of(MovementState movement);
+[[nodiscard]] std::string_view name_of(Fault fault);
+
+/// Appends one snapshot to a record: lines of words, closed by a line "end", so that a record that was cut off in the
+/// middle of a snapshot is still readable.
+void write_record(std::ostream& output, const Snapshot& snapshot);
+/// Reads complete snapshots; stops silently at an incomplete one, skips what it does not understand.
+[[nodiscard]] std::vector<Snapshot> read_record(std::istream& input);
+
+/// One line of JSON.
+[[nodiscard]] std::string to_json(const Snapshot& snapshot);
+
+}  // namespace boresight::monitor

@@ -1,0 +1,177 @@
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "services/boresight/monitor/accumulator.hpp"
+#include "services/boresight/monitor/render.hpp"
+
+namespace boresight::monitor {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+VehicleConfig vehicle() {
+  VehicleConfig config;
+  RadarConfig left;
+  left.id = 1;
+  left.name = "front_left";
+  RadarConfig right = left;
+  right.id = 2;
+  right.name = "front_right";
+  config.radars = {left, right};
+  return config;
+}
+
+void see_scan(Accumulator& accumulator, std::uint32_t radar, std::uint64_t sequence, std::int64_t now_ns) {
+  const auto scan = std::make_unique<RadarScan>();
+  scan->header.source_id = radar;
+  scan->header.source_sequence = sequence;
+  scan->number_of_valid_detections = 150;
+  accumulator.observe(*scan, now_ns);
+}
+
+void see_crooked_radar(Accumulator& accumulator) {
+  AlignmentEstimate estimate{};
+  estimate.header.source_id = 2;
+  estimate.state = AlignmentState::kConverged;
+  estimate.observable = alignment_axis::kYaw | alignment_axis::kSpeedScale;
+  estimate.alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate.speed_scale = 1.03F;
+  estimate.covariance[5] = static_cast<float>(std::pow(0.04 * kDegree, 2));
+  accumulator.observe(estimate);
+  HealthReport report{};
+  report.number_of_sensors = 2;
+  report.sensors[0].radar_id = 1;
+  report.sensors[1].radar_id = 2;
+  report.sensors[1].data_qualifier = DataQualifier::kAvailableReduced;
+  report.sensors[1].extended_qualifier = ExtendedQualifier::kMisaligned;
+  report.number_of_services = 1;
+  report.services[0].service = 4;
+  report.services[0].condition = ServiceCondition::kRestarted;
+  report.services[0].restarts = 1;
+  accumulator.observe(report);
+}
+
+void see_tracks(Accumulator& accumulator) {
+  const auto list = std::make_unique<TrackList>();
+  list->number_of_tracks = 2;
+  list->tracks[0].tracking_id = 7;
+  list->tracks[0].position_vehicle_m = {40.0F, 3.0F, 0.0F};
+  list->tracks[1].tracking_id = 8;
+  list->tracks[1].status = TrackStatus::kConfirmed;
+  list->tracks[1].position_vehicle_m = {-10.0F, -2.0F, 0.0F};
+  list->tracks[1].velocity_over_ground_mps = {13.0F, 0.0F};
+  for (std::size_t i = 0; i < kNumberOfStages; ++i) {
+    const auto begin_ns = static_cast<std::int64_t>(1'000'000 + i * 300'000);
+    list->header.stages[i] = {begin_ns, begin_ns + 100'000};
+  }
+  accumulator.observe(*list);
+}
+
+TEST(Accumulator, CountsScansRateAndGapsPerRadar) {
+  Accumulator accumulator(vehicle());
+  std::uint64_t sequence = 0;
+  for (std::int64_t t_ns = 0; t_ns < 4'000'000'000; t_ns += 50'000'000) {
+    ++sequence;
+    if (sequence == 20) sequence += 3;  // three scans lost
+    see_scan(accumulator, 1, sequence, t_ns);
+  }
+  const Snapshot snapshot = accumulator.snapshot(4'000'000'000);
+  EXPECT_EQ(snapshot.radars[0].scans, 80U);
+  EXPECT_EQ(snapshot.radars[0].lost, 3U);
+  EXPECT_NEAR(snapshot.radars[0].rate_hz, 20.0, 0.6);
+  EXPECT_EQ(snapshot.radars[1].scans, 0U);
+  EXPECT_DOUBLE_EQ(accumulator.snapshot(7'000'000'000).radars[0].rate_hz, 0.0) << "a silent radar has no rate";
+}
+
+TEST(Accumulator, RestartedWriterIsNoLoss) {
+  Accumulator accumulator(vehicle());
+  see_scan(accumulator, 1, 1000, 0);
+  see_scan(accumulator, 1, 1, 1);
+  see_scan(accumulator, 1, 2, 2);
+  EXPECT_EQ(accumulator.snapshot(3).radars[0].lost, 0U);
+}
+
+TEST(Accumulator, UnknownRadarGetsARow) {
+  Accumulator accumulator(vehicle());
+  see_scan(accumulator, 9, 1, 0);
+  EXPECT_EQ(accumulator.snapshot(1).radars.at(2).name, "radar_9");
+}
+
+TEST(Accumulator, MeasuresStagesAndTheWholeWayFromTheStamps) {
+  Accumulator accumulator(vehicle());
+  see_tracks(accumulator);
+  const Snapshot snapshot = accumulator.snapshot(0);
+  EXPECT_DOUBLE_EQ(snapshot.latencies[1].max_us(), 100.0);
+  EXPECT_DOUBLE_EQ(snapshot.latencies[4].max_us(), 1000.0);
+  EXPECT_EQ(snapshot.tracks[0].id, 8U) << "nearest first";
+}
+
+TEST(LatencyHistogram, PercentilesAreWithinABucketOfTheTruth) {
+  LatencyHistogram histogram;
+  for (int us = 1; us <= 1000; ++us) histogram.add(us * 1000);
+  EXPECT_NEAR(histogram.percentile_us(0.5), 500.0, 30.0);
+  EXPECT_NEAR(histogram.percentile_us(0.99), 990.0, 60.0);
+  EXPECT_DOUBLE_EQ(histogram.max_us(), 1000.0);
+  EXPECT_DOUBLE_EQ(histogram.percentile_us(1.0), 1000.0);
+  histogram.add(5'000'000'000);
+  EXPECT_DOUBLE_EQ(histogram.max_us(), 5e6) << "beyond the last bucket";
+  EXPECT_DOUBLE_EQ(LatencyHistogram().percentile_us(0.5), 0.0);
+}
+
+TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
+  Accumulator accumulator(vehicle());
+  see_scan(accumulator, 2, 1, 0);
+  see_crooked_radar(accumulator);
+  see_tracks(accumulator);
+  ServiceStatus status{};
+  status.header.source_id = 4;
+  status.inputs = 12;
+  status.faults[static_cast<std::size_t>(Fault::kCapacity)] = 3;
+  accumulator.observe(status);
+  const Snapshot written = accumulator.snapshot(123'456'789'012'345);
+  std::stringstream record;
+  write_record(record, written);
+  write_record(record, written);
+  const std::string whole = record.str();
+  std::istringstream cut(whole.substr(0, whole.size() - 20));
+  EXPECT_EQ(read_record(cut).size(), 1U);
+  const auto snapshots = read_record(record);
+  ASSERT_EQ(snapshots.size(), 2U);
+  EXPECT_EQ(to_json(snapshots[1]), to_json(written));
+  EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
+  EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
+  EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
+}
+
+TEST(Render, SaysWhichRadarIsCrookedAndHowSure) {
+  Accumulator accumulator(vehicle());
+  see_crooked_radar(accumulator);
+  see_tracks(accumulator);
+  RenderOptions options;
+  options.width = 150;
+  const std::string screen = render_screen(accumulator.snapshot(0), options);
+  EXPECT_THAT(screen, ::testing::HasSubstr("+2.50° ± 0.04°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("AVAILABLE_REDUCED (MISALIGNED)"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("1 confirmed, 1 tentative"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("10.0 m behind"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restarts)"));
+  EXPECT_THAT(screen, ::testing::Not(::testing::HasSubstr("\x1b"))) << "no colour unless asked for";
+  EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0), ::testing::HasSubstr("front_right 0/s yaw +2.50° ± 0.04°"));
+}
+
+TEST(Render, CutsLinesByCharactersNotBytes) {
+  Accumulator accumulator(vehicle());
+  see_crooked_radar(accumulator);
+  RenderOptions options;
+  options.width = 60;
+  std::istringstream screen(render_screen(accumulator.snapshot(0), options));
+  for (std::string line; std::getline(screen, line);) {
+    const auto characters = std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
+    EXPECT_LE(characters, 60) << line;
+    ASSERT_TRUE(line.empty() || (line.back() & 0xC0) != 0xC0) << "no character cut in half: " << line;
+  }
+}
+
+}  // namespace
+}  // namespace boresight::monitor
