@@ -128,7 +128,6 @@ void Supervisor::start(const std::function<bool()>& cancelled) {
 
 void Supervisor::start_domain(const std::function<bool()>& cancelled) {
   domain_ready_ = false;
-  domain_started_ns_ = now_ns();
   start_roudi(cancelled);
   for (Child& child : services_) {
     child.failures = 0;
@@ -279,9 +278,8 @@ std::optional<std::string> Supervisor::reason_to_restart() const {
 void Supervisor::restart_domain(const std::string& reason) {
   note(EventKind::kDomainRestart, "", 0, reason);
   ++domain_restarts_;
-  const bool failed_soon = now_ns() - domain_started_ns_ < config_.stable_after_ns;
-  roudi_.failures = failed_soon ? roudi_.failures + 1 : 1;
   stop_domain(false);
+  // RouDi's exits count, whoever caused them: at once the first time, at most a second later after that.
   sleep_ns(restart_delay_ns(std::min(roudi_.failures, 4U)));
   try {
     start_domain({});

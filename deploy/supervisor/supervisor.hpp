@@ -141,7 +141,6 @@ class Supervisor {
   bool made_run_directory_ = false;
   bool domain_ready_ = false;
   std::uint32_t domain_restarts_ = 0;
-  std::int64_t domain_started_ns_ = 0;
 };
 
 }  // namespace boresight::supervisor

@@ -1,0 +1,24 @@
+// A run as one self-contained HTML page: verdict, estimates against truth, health over time, tracks, latencies.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/boresight/monitor/snapshot.hpp"
+#include "services/boresight/report/summary.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::report {
+
+struct ReportInput {
+  std::string title;                         ///< what was played
+  std::vector<monitor::Snapshot> snapshots;  ///< in the order of time
+  Truth truth;
+  VehicleConfig vehicle;            ///< for mounting positions and fields of view in the top view
+  std::vector<std::string> events;  ///< what the supervisor has to tell
+};
+
+/// Needs nothing from outside the page: no script, font or image; follows the reader's light or dark theme.
+[[nodiscard]] std::string render_html(const ReportInput& input);
+
+}  // namespace boresight::report

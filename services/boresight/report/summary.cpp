@@ -1,0 +1,248 @@
+#include "services/boresight/report/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace boresight::report {
+
+namespace {
+
+using monitor::RadarSnapshot;
+using monitor::Snapshot;
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+/// Sum of a counter that may have started anew.
+class Counter {
+ public:
+  void see(std::uint64_t value) {
+    if (value < last_) finished_ += last_;
+    last_ = value;
+  }
+  [[nodiscard]] std::uint64_t total() const { return finished_ + last_; }
+
+ private:
+  std::uint64_t finished_ = 0;
+  std::uint64_t last_ = 0;
+};
+
+struct RadarCounters {
+  Counter scans;
+  Counter lost;
+};
+
+std::uint64_t number_of_scans(const Snapshot& snapshot) {
+  std::uint64_t scans = 0;
+  for (const RadarSnapshot& radar : snapshot.radars) scans += radar.scans;
+  return scans;
+}
+
+/// Latencies of the whole run: the last histogram of every incarnation of the onlooker.
+void add_latencies(const std::vector<Snapshot>& snapshots, Summary& summary) {
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    const bool last = i + 1 == snapshots.size();
+    for (std::size_t k = 0; k < monitor::kNumberOfLatencies; ++k) {
+      const bool starts_anew = !last && snapshots[i + 1].latencies[k].total() < snapshots[i].latencies[k].total();
+      if (last || starts_anew) summary.latencies[k].merge(snapshots[i].latencies[k]);
+    }
+  }
+}
+
+void add_services(const std::vector<Snapshot>& snapshots, Summary& summary) {
+  for (std::size_t k = 0; k < snapshots.back().services.size(); ++k) {
+    monitor::ServiceSnapshot sum = snapshots.back().services[k];
+    std::array<Counter, kNumberOfFaults> faults;
+    for (const Snapshot& snapshot : snapshots) {
+      if (k >= snapshot.services.size()) continue;
+      const monitor::ServiceSnapshot& seen = snapshot.services[k];
+      for (std::size_t f = 0; f < kNumberOfFaults; ++f) faults[f].see(seen.faults[f]);
+      sum.processing_max_us = std::max(sum.processing_max_us, seen.processing_max_us);
+      sum.heap_allocations = std::max(sum.heap_allocations, seen.heap_allocations);
+      sum.restarts = std::max(sum.restarts, seen.restarts);
+    }
+    for (std::size_t f = 0; f < kNumberOfFaults; ++f) sum.faults[f] = faults[f].total();
+    summary.services.push_back(sum);
+  }
+}
+
+void add_tracks(const std::vector<Snapshot>& snapshots, Summary& summary) {
+  std::set<std::uint32_t> ids;
+  for (const Snapshot& snapshot : snapshots) {
+    std::size_t confirmed = 0;
+    for (const auto& track : snapshot.tracks) {
+      if (!track.confirmed) continue;
+      ++confirmed;
+      ids.insert(track.id);
+    }
+    summary.most_confirmed_tracks = std::max(summary.most_confirmed_tracks, confirmed);
+  }
+  summary.distinct_confirmed_tracks = ids.size();
+}
+
+void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summary& summary) {
+  const auto first = std::find_if(snapshots.begin(), snapshots.end(), number_of_scans);
+  const std::int64_t begin_ns = first == snapshots.end() ? snapshots.back().time_ns : first->time_ns;
+  std::map<std::uint32_t, RadarCounters> counters;
+  std::map<std::uint32_t, RadarSummary> radars;
+  std::uint64_t scans_before = 0;
+  for (const Snapshot& snapshot : snapshots) {
+    const double t_s = static_cast<double>(snapshot.time_ns - begin_ns) * 1e-9;
+    for (const RadarSnapshot& seen : snapshot.radars) {
+      RadarSummary& radar = radars[seen.id];
+      counters[seen.id].scans.see(seen.scans);
+      counters[seen.id].lost.see(seen.lost);
+      const bool misaligned = seen.extended_qualifier == ExtendedQualifier::kMisaligned;
+      if (misaligned && radar.first_misaligned_s < 0) radar.first_misaligned_s = t_s;
+      // What is said after the drive has ended (NO_DATA) is no verdict on the drive.
+      const bool sending = seen.rate_hz > 0.0;
+      if (sending || radar.last.scans == 0) {
+        radar.last = seen;
+        radar.misaligned = misaligned;
+      }
+    }
+    if (number_of_scans(snapshot) != scans_before) summary.duration_s = t_s;
+    scans_before = number_of_scans(snapshot);
+  }
+  for (auto& [id, radar] : radars) {
+    radar.last.scans = counters[id].scans.total();
+    radar.last.lost = counters[id].lost.total();
+    if (const auto found = truth.yaw_rad.find(id); found != truth.yaw_rad.end()) {
+      radar.true_yaw_rad = found->second;
+      radar.expected_to_be_misaligned = std::abs(found->second) > radar.last.yaw_tolerance_rad;
+    }
+    summary.radars.push_back(radar);
+  }
+}
+
+void add_checks(const Truth& truth, Summary& summary) {
+  std::uint64_t lost = 0;
+  bool all_heard = !summary.radars.empty();
+  for (const RadarSummary& radar : summary.radars) {
+    lost += radar.last.lost;
+    all_heard = all_heard && radar.last.scans > 0;
+  }
+  std::uint64_t lost_inputs = 0;
+  std::uint64_t restarts = 0;
+  for (const auto& service : summary.services) {
+    lost_inputs += service.faults[static_cast<std::size_t>(Fault::kInputLost)];
+    restarts += service.restarts;
+  }
+  const auto check = [&summary](std::string what, bool passed) { summary.checks.push_back({std::move(what), passed}); };
+  check("every radar delivered scans", all_heard);
+  check(fmt::format("no scan was lost ({} to the monitor, {} inputs to services)", lost, lost_inputs),
+        lost + lost_inputs == 0);
+  check(fmt::format("objects were tracked ({} in all, up to {} at once)", summary.distinct_confirmed_tracks,
+                    summary.most_confirmed_tracks),
+        summary.distinct_confirmed_tracks > 0);
+  check(fmt::format("no service had to be restarted ({} restarts)", restarts), restarts == 0);
+  if (!truth.known()) return;
+  for (const RadarSummary& radar : summary.radars) {
+    if (radar.expected_to_be_misaligned) {
+      check(radar.last.name + " is crooked and was reported as MISALIGNED", radar.misaligned);
+    } else {
+      check(radar.last.name + " is within tolerance and was never reported as MISALIGNED",
+            radar.first_misaligned_s < 0);
+    }
+  }
+}
+
+bool has_estimate(const RadarSnapshot& radar) {
+  return radar.yaw.observable &&
+         (radar.state == AlignmentState::kConverged || radar.state == AlignmentState::kConverging);
+}
+
+std::string off_by(const RadarSummary& radar) {
+  if (!has_estimate(radar.last) || !radar.true_yaw_rad) return "-";
+  const double error_rad = radar.last.yaw.value_rad - *radar.true_yaw_rad;
+  const double sigmas = radar.last.yaw.std_rad > 0 ? std::abs(error_rad) / radar.last.yaw.std_rad : 0.0;
+  return fmt::format("{:+.2f}° ({:.1f} σ)", error_rad * kDegrees, sigmas);
+}
+
+std::string render_radars(const Summary& summary) {
+  std::string text = fmt::format("  {:<14}{:>7}{:>6}   {:<18}{:<9}{:<18}{}\n", "radar", "scans", "lost", "yaw ± σ",
+                                 "truth", "off by", "speed scale ± σ");
+  for (const RadarSummary& radar : summary.radars) {
+    const RadarSnapshot& last = radar.last;
+    text +=
+        fmt::format("  {:<14}{:>7}{:>6}   {:<18}{:<9}{:<18}{}\n", last.name, last.scans, last.lost, yaw_text(last),
+                    radar.true_yaw_rad ? fmt::format("{:+.2f}°", *radar.true_yaw_rad * kDegrees) : "-", off_by(radar),
+                    has_estimate(last) ? fmt::format("{:.4f} ± {:.4f}", last.speed_scale, last.speed_scale_std) : "-");
+  }
+  return text;
+}
+
+std::string render_faults(const Summary& summary) {
+  std::string text;
+  for (const auto& service : summary.services) {
+    for (std::size_t f = 0; f < kNumberOfFaults; ++f) {
+      if (service.faults[f] == 0) continue;
+      text += fmt::format("    {}: {} × {}\n", catalogue::name_of(service.service), service.faults[f],
+                          monitor::name_of(static_cast<Fault>(f)));
+    }
+  }
+  return text.empty() ? "  faults: none\n" : "  faults:\n" + text;
+}
+
+}  // namespace
+
+bool Summary::all_passed() const {
+  return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed; });
+}
+
+Summary summarise(const std::vector<Snapshot>& snapshots, const Truth& truth) {
+  Summary summary;
+  if (snapshots.empty()) {
+    summary.checks.push_back({"the system was seen running", false});
+    return summary;
+  }
+  add_radars(snapshots, truth, summary);
+  add_tracks(snapshots, summary);
+  add_latencies(snapshots, summary);
+  add_services(snapshots, summary);
+  add_checks(truth, summary);
+  return summary;
+}
+
+std::string yaw_text(const RadarSnapshot& radar) {
+  if (!has_estimate(radar)) return "-";
+  return fmt::format("{:+.2f}° ± {:.2f}°", radar.yaw.value_rad * kDegrees, radar.yaw.std_rad * kDegrees);
+}
+
+std::string verdict_line(const RadarSummary& radar) {
+  const RadarSnapshot& last = radar.last;
+  const std::string_view qualifier = monitor::name_of(last.data_qualifier);
+  const double tolerance_deg = last.yaw_tolerance_rad * kDegrees;
+  if (radar.misaligned) {
+    return fmt::format("{}: MISALIGNED, yaw {}, beyond the tolerance of {:.1f}°", last.name, yaw_text(last),
+                       tolerance_deg);
+  }
+  if (last.extended_qualifier != ExtendedQualifier::kNormal) {
+    return fmt::format("{}: {} ({})", last.name, qualifier, monitor::name_of(last.extended_qualifier));
+  }
+  if (!has_estimate(last)) return fmt::format("{}: {}, no alignment estimate", last.name, qualifier);
+  const bool within = std::abs(last.yaw.value_rad) <= last.yaw_tolerance_rad;
+  return fmt::format("{}: {}, yaw {}, {} the tolerance of {:.1f}°", last.name, qualifier, yaw_text(last),
+                     within ? "within" : "not surely beyond", tolerance_deg);
+}
+
+std::string render_summary(const Summary& summary) {
+  std::string text = fmt::format("\nSummary of {:.0f} s of driving\n\n", summary.duration_s);
+  text += render_radars(summary) + "\n";
+  for (const RadarSummary& radar : summary.radars) text += "  " + verdict_line(radar) + "\n";
+  text += fmt::format("\n  {:<14}{:>10}{:>10}{:>10}\n", "latency, µs", "p50", "p99", "max");
+  for (std::size_t i = 0; i < monitor::kNumberOfLatencies; ++i) {
+    const auto& h = summary.latencies[i];
+    text += fmt::format("  {:<14}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
+                        h.percentile_us(0.99), h.max_us());
+  }
+  text += "\n" + render_faults(summary) + "\n";
+  for (const Check& check : summary.checks) {
+    text += fmt::format("  [{}] {}\n", check.passed ? "ok" : "FAILED", check.what);
+  }
+  return text;
+}
+
+}  // namespace boresight::report

@@ -1,0 +1,55 @@
+// What a run has shown, judged: per radar against the truth where it is known, and whether everything worked.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/boresight/monitor/snapshot.hpp"
+
+namespace boresight::report {
+
+/// What a simulated drive knows about itself; empty for recordings.
+struct Truth {
+  std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
+  std::optional<double> speed_scale;
+  [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
+};
+
+struct RadarSummary {
+  monitor::RadarSnapshot last;  ///< while it was still sending; its counters are sums over the whole run
+  std::optional<double> true_yaw_rad;
+  bool misaligned = false;  ///< health's verdict while it was still sending
+  bool expected_to_be_misaligned = false;
+  double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
+};
+
+/// One thing that had to be true.
+struct Check {
+  std::string what;
+  bool passed;
+};
+
+struct Summary {
+  double duration_s = 0.0;  ///< from the first to the last scan seen
+  std::vector<RadarSummary> radars;
+  std::size_t most_confirmed_tracks = 0;
+  std::size_t distinct_confirmed_tracks = 0;
+  std::vector<monitor::ServiceSnapshot> services;
+  std::array<monitor::LatencyHistogram, monitor::kNumberOfLatencies> latencies;
+  std::vector<Check> checks;
+  [[nodiscard]] bool all_passed() const;
+};
+
+/// `snapshots` in the order of time; counters may start anew where the onlooker was restarted.
+[[nodiscard]] Summary summarise(const std::vector<monitor::Snapshot>& snapshots, const Truth& truth);
+
+/// "front_right: MISALIGNED, yaw +2.51° ± 0.03°, beyond the tolerance of 1.5°".
+[[nodiscard]] std::string verdict_line(const RadarSummary& radar);
+/// "+2.51° ± 0.03°", or "-" without an estimate.
+[[nodiscard]] std::string yaw_text(const monitor::RadarSnapshot& radar);
+/// For the terminal, several lines.
+[[nodiscard]] std::string render_summary(const Summary& summary);
+
+}  // namespace boresight::report

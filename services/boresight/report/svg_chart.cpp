@@ -1,0 +1,170 @@
+#include "services/boresight/report/svg_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace boresight::report {
+
+namespace {
+
+constexpr double kLeft = 52.0;
+constexpr double kRight = 12.0;
+constexpr double kTop = 10.0;
+constexpr double kBottom = 36.0;
+
+bool is_finite(const Point& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
+std::string tick_text(double value) {
+  if (value != 0.0 && std::abs(value) < 1e-9) value = 0.0;
+  return fmt::format("{:.4g}", value);
+}
+
+}  // namespace
+
+std::string escape(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+SvgChart::SvgChart(double width, double height, Axis x, Axis y)
+    : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {
+  if (!(x_.max > x_.min)) x_.max = x_.min + 1.0;
+  if (!(y_.max > y_.min)) y_.max = y_.min + 1.0;
+}
+
+double SvgChart::px(double x) const {
+  const double share =
+      x_.logarithmic ? std::log(x / x_.min) / std::log(x_.max / x_.min) : (x - x_.min) / (x_.max - x_.min);
+  return kLeft + std::clamp(share, -1.0, 2.0) * (width_ - kLeft - kRight);
+}
+
+double SvgChart::py(double y) const {
+  const double share = (y - y_.min) / (y_.max - y_.min);
+  return height_ - kBottom - std::clamp(share, -1.0, 2.0) * (height_ - kTop - kBottom);
+}
+
+void SvgChart::band(const std::vector<Point>& lower, const std::vector<Point>& upper, const std::string& css_class) {
+  std::string path;
+  for (const Point& p : upper) {
+    if (is_finite(p)) path += fmt::format("{}{:.1f},{:.1f}", path.empty() ? "M" : "L", px(p.x), py(p.y));
+  }
+  for (auto p = lower.rbegin(); p != lower.rend(); ++p) {
+    if (is_finite(*p) && !path.empty()) path += fmt::format("L{:.1f},{:.1f}", px(p->x), py(p->y));
+  }
+  if (!path.empty()) body_ += fmt::format("<path class=\"{}\" d=\"{}Z\"/>\n", css_class, path);
+}
+
+void SvgChart::line(const std::vector<Point>& points, const std::string& css_class) {
+  std::string path;
+  for (const Point& p : points) {
+    if (is_finite(p)) path += fmt::format("{}{:.1f},{:.1f}", path.empty() ? "M" : "L", px(p.x), py(p.y));
+  }
+  if (!path.empty()) body_ += fmt::format("<path class=\"{}\" fill=\"none\" d=\"{}\"/>\n", css_class, path);
+}
+
+void SvgChart::horizontal(double y, const std::string& css_class) {
+  line({{x_.min, y}, {x_.max, y}}, css_class);
+}
+
+void SvgChart::vertical(double x, const std::string& css_class, const std::string& label) {
+  line({{x, y_.min}, {x, y_.max}}, css_class);
+  body_ += fmt::format("<text class=\"note\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", px(x) + 4.0, kTop + 11.0,
+                       escape(label));
+}
+
+void SvgChart::rectangle(Point from, Point to, const std::string& css_class, const std::string& tooltip) {
+  const double left = std::min(px(from.x), px(to.x));
+  const double top = std::min(py(from.y), py(to.y));
+  body_ += fmt::format(
+      "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"><title>{}</title></rect>\n",
+      css_class, left, top, std::abs(px(to.x) - px(from.x)), std::abs(py(to.y) - py(from.y)), escape(tooltip));
+}
+
+void SvgChart::dot(Point at, double radius_px, const std::string& css_class, const std::string& tooltip) {
+  if (!is_finite(at)) return;
+  body_ += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"><title>{}</title></circle>\n",
+                       css_class, px(at.x), py(at.y), radius_px, escape(tooltip));
+}
+
+void SvgChart::text(Point at, const std::string& text, const std::string& css_class) {
+  body_ += fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", css_class, px(at.x), py(at.y),
+                       escape(text));
+}
+
+std::vector<double> SvgChart::ticks(double min, double max, int count) {
+  std::vector<double> result;
+  const double raw = (max - min) / std::max(1, count);
+  if (!(raw > 0.0) || !std::isfinite(raw)) return result;
+  const double decade = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = decade;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+    step = decade * factor;
+    if (step >= raw) break;
+  }
+  for (double value = std::ceil(min / step) * step; value <= max + step * 1e-6; value += step) {
+    result.push_back(std::abs(value) < step * 1e-6 ? 0.0 : value);
+  }
+  return result;
+}
+
+std::string SvgChart::axes() const {
+  std::string text;
+  const double bottom = height_ - kBottom;
+  std::vector<double> x_ticks = ticks(x_.min, x_.max, 8);
+  if (x_.logarithmic) {
+    x_ticks.clear();
+    for (double value = std::pow(10.0, std::ceil(std::log10(x_.min) - 1e-9)); value <= x_.max * 1.001; value *= 10.0) {
+      x_ticks.push_back(value);
+    }
+  }
+  for (const double value : x_ticks) {
+    text += fmt::format("<path class=\"grid\" d=\"M{0:.1f},{1:.1f}V{2:.1f}\"/>", px(value), kTop, bottom);
+    text += fmt::format("<text class=\"tick\" text-anchor=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", px(value),
+                        bottom + 14.0, tick_text(value));
+  }
+  const int rows = std::max(2, static_cast<int>((height_ - kTop - kBottom) / 32.0));
+  for (const double value : y_.label.empty() ? std::vector<double>{} : ticks(y_.min, y_.max, rows)) {
+    text += fmt::format("<path class=\"grid\" d=\"M{:.1f},{:.1f}H{:.1f}\"/>", kLeft, py(value), width_ - kRight);
+    text += fmt::format("<text class=\"tick\" text-anchor=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft - 6.0,
+                        py(value) + 3.5, tick_text(value));
+  }
+  text += fmt::format("<text class=\"label\" text-anchor=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                      width_ - kRight, height_ - 6.0, escape(x_.label));
+  text += fmt::format(
+      "<text class=\"label\" text-anchor=\"middle\" transform=\"translate(13,{:.1f}) rotate(-90)\">{}</text>\n",
+      (kTop + bottom) / 2.0, escape(y_.label));
+  return text;
+}
+
+std::string SvgChart::finish() const {
+  // Clip paths need names that are unique in the page; the nested <svg> clips without one.
+  return fmt::format(
+      "<svg class=\"chart\" viewBox=\"0 0 {0:.0f} {1:.0f}\" role=\"img\">\n{2}"
+      "<svg x=\"{3}\" y=\"{4}\" width=\"{5:.1f}\" height=\"{6:.1f}\" viewBox=\"{3} {4} {5:.1f} {6:.1f}\">\n{7}</svg>\n"
+      "<rect class=\"frame\" x=\"{3}\" y=\"{4}\" width=\"{5:.1f}\" height=\"{6:.1f}\"/>\n</svg>\n",
+      width_, height_, axes(), kLeft, kTop, width_ - kLeft - kRight, height_ - kTop - kBottom, body_);
+}
+
+}  // namespace boresight::report

@@ -1,0 +1,56 @@
+// Just enough of a plotting library for the report: axes, lines, bands, bars, as SVG text that follows the page's
+// theme.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace boresight::report {
+
+struct Point {
+  double x;
+  double y;
+};
+
+struct Axis {
+  double min = 0.0;
+  double max = 1.0;
+  std::string label;
+  bool logarithmic = false;  ///< decimal; min > 0
+};
+
+/// One chart. Everything drawn is clipped to the plot area; points that are not finite are left out. `css_class`
+/// refers to the classes of the report's style sheet.
+class SvgChart {
+ public:
+  SvgChart(double width, double height, Axis x, Axis y);
+
+  void band(const std::vector<Point>& lower, const std::vector<Point>& upper, const std::string& css_class);
+  void line(const std::vector<Point>& points, const std::string& css_class);
+  void horizontal(double y, const std::string& css_class);
+  void vertical(double x, const std::string& css_class, const std::string& label);
+  void rectangle(Point from, Point to, const std::string& css_class, const std::string& tooltip = {});
+  void dot(Point at, double radius_px, const std::string& css_class, const std::string& tooltip = {});
+  void text(Point at, const std::string& text, const std::string& css_class);
+  [[nodiscard]] std::string finish() const;
+
+  /// Round numbers that divide [min, max] in about `count` steps.
+  [[nodiscard]] static std::vector<double> ticks(double min, double max, int count);
+
+ private:
+  [[nodiscard]] double px(double x) const;
+  [[nodiscard]] double py(double y) const;
+  [[nodiscard]] std::string axes() const;
+
+  double width_;
+  double height_;
+  Axis x_;
+  Axis y_;
+  std::string body_;
+};
+
+/// Text made safe for HTML and attributes.
+[[nodiscard]] std::string escape(const std::string& text);
+
+}  // namespace boresight::report

@@ -1,0 +1,130 @@
+#include "services/boresight/report/html_report.hpp"
+#include "services/boresight/report/svg_chart.hpp"
+#include "tests/unit/deploy/synthetic_drive.hpp"
+
+namespace boresight::report {
+namespace {
+
+bool passed(const Summary& summary, const std::string& part) {
+  for (const Check& check : summary.checks) {
+    if (check.what.find(part) != std::string::npos) return check.passed;
+  }
+  ADD_FAILURE() << "no check about " << part;
+  return false;
+}
+
+TEST(Summary, GoodDrivePassesAndNamesTheCrookedRadar) {
+  const Summary summary = summarise(synthetic_drive(), synthetic_truth());
+  EXPECT_TRUE(summary.all_passed()) << render_summary(summary);
+  ASSERT_EQ(summary.radars.size(), 4U);
+  EXPECT_TRUE(summary.radars[1].expected_to_be_misaligned);
+  EXPECT_NEAR(summary.radars[1].first_misaligned_s, 12.5, 0.01);
+  EXPECT_THAT(verdict_line(summary.radars[1]), ::testing::StartsWith("front_right: MISALIGNED, yaw +2."));
+  EXPECT_THAT(verdict_line(summary.radars[1]), ::testing::EndsWith("beyond the tolerance of 1.5°"));
+  EXPECT_THAT(verdict_line(summary.radars[0]), ::testing::HasSubstr("AVAILABLE, yaw"));
+  EXPECT_NEAR(summary.duration_s, 59.5, 0.01);
+  EXPECT_EQ(summary.distinct_confirmed_tracks, 6U);
+}
+
+TEST(Summary, MissedMisalignmentFails) {
+  auto snapshots = synthetic_drive();
+  for (auto& s : snapshots) s.radars[1].extended_qualifier = ExtendedQualifier::kNormal;
+  const Summary summary = summarise(snapshots, synthetic_truth());
+  EXPECT_FALSE(passed(summary, "front_right is crooked"));
+  EXPECT_FALSE(summary.all_passed());
+}
+
+TEST(Summary, FalseAlarmFailsEvenIfItWasTakenBack) {
+  auto snapshots = synthetic_drive();
+  snapshots[30].radars[2].extended_qualifier = ExtendedQualifier::kMisaligned;
+  EXPECT_FALSE(passed(summarise(snapshots, synthetic_truth()), "rear_left is within tolerance"));
+}
+
+TEST(Summary, LossRestartSilenceAndNoTracksFail) {
+  auto lost = synthetic_drive();
+  lost.back().radars[3].lost = 1;
+  EXPECT_FALSE(passed(summarise(lost, {}), "no scan was lost"));
+  auto service_lost = synthetic_drive();
+  service_lost.back().services[4].faults[static_cast<std::size_t>(Fault::kInputLost)] = 2;
+  EXPECT_FALSE(passed(summarise(service_lost, {}), "no scan was lost"));
+  EXPECT_THAT(render_summary(summarise(service_lost, {})), ::testing::HasSubstr("tracker: 2 × input lost"));
+  auto restarted = synthetic_drive();
+  restarted[50].services[2].restarts = 1;
+  EXPECT_FALSE(passed(summarise(restarted, {}), "restarted"));
+  auto silent = synthetic_drive();
+  for (auto& s : silent) s.radars[0].scans = 0;
+  EXPECT_FALSE(passed(summarise(silent, {}), "every radar"));
+  auto no_tracks = synthetic_drive();
+  for (auto& s : no_tracks) s.tracks.clear();
+  EXPECT_FALSE(passed(summarise(no_tracks, {}), "objects were tracked"));
+  EXPECT_FALSE(summarise({}, {}).all_passed());
+}
+
+TEST(Summary, VerdictIsThatOfTheDriveNotOfTheSilenceAfterIt) {
+  auto snapshots = synthetic_drive();
+  for (int i = 0; i < 4; ++i) {
+    snapshots.push_back(snapshots.back());
+    snapshots.back().time_ns += 500'000'000;
+    for (auto& radar : snapshots.back().radars) {
+      radar.rate_hz = 0.0;
+      radar.data_qualifier = DataQualifier::kNotAvailable;
+      radar.extended_qualifier = ExtendedQualifier::kNoData;
+    }
+  }
+  const Summary summary = summarise(snapshots, synthetic_truth());
+  EXPECT_TRUE(summary.all_passed()) << render_summary(summary);
+  EXPECT_NEAR(summary.duration_s, 59.5, 0.01);
+}
+
+TEST(Summary, CountersThatStartAnewAreAddedUp) {
+  auto snapshots = synthetic_drive();
+  for (std::size_t i = 60; i < snapshots.size(); ++i) {
+    for (auto& radar : snapshots[i].radars) radar.scans -= 600;
+    snapshots[i].latencies = snapshots[i - 60].latencies;
+  }
+  const Summary summary = summarise(snapshots, {});
+  EXPECT_EQ(summary.radars[0].last.scans, 1200U);
+  EXPECT_EQ(summary.latencies[0].total(), 4800U);
+}
+
+TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
+  const std::string page = render_html({.title = "a <drive>",
+                                        .snapshots = synthetic_drive(),
+                                        .truth = synthetic_truth(),
+                                        .vehicle = {},
+                                        .events = {"0.1 spawned roudi"}});
+  EXPECT_THAT(page, ::testing::HasSubstr("a &lt;drive&gt;"));
+  for (const char* name : {"front_left", "front_right", "rear_left", "rear_right"}) {
+    EXPECT_THAT(page, ::testing::HasSubstr("<h3>" + std::string(name) + "</h3>"));
+  }
+  EXPECT_THAT(page, ::testing::HasSubstr("Everything worked."));
+  EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("http")));
+  EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("nan")));
+  EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("inf")));
+}
+
+TEST(HtmlReport, SurvivesARunWithoutAnyData) {
+  EXPECT_THAT(render_html({}), ::testing::HasSubstr("Not everything worked."));
+  EXPECT_THAT(render_html({.title = "", .snapshots = {monitor::Snapshot()}, .truth = {}, .vehicle = {}, .events = {}}),
+              ::testing::HasSubstr("No scan reached the tracker."));
+}
+
+TEST(SvgChart, TicksAreRoundAndCoverTheRange) {
+  EXPECT_THAT(SvgChart::ticks(0.0, 60.0, 6), ::testing::ElementsAre(0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0));
+  const auto ticks = SvgChart::ticks(-1.3, 1.3, 5);
+  ASSERT_EQ(ticks.size(), 3U);
+  EXPECT_DOUBLE_EQ(ticks[0], -1.0);
+  EXPECT_DOUBLE_EQ(ticks[1], 0.0);
+  EXPECT_THAT(SvgChart::ticks(1.0, 1.0, 5), ::testing::IsEmpty());
+}
+
+TEST(SvgChart, LeavesOutWhatIsNotANumber) {
+  SvgChart chart(100, 100, {.label = "x"}, {.label = "y"});
+  chart.line({{0.0, 0.0}, {0.5, NAN}, {1.0, 1.0}}, "estimate");
+  chart.dot({INFINITY, 0.0}, 2.0, "head");
+  EXPECT_THAT(chart.finish(), ::testing::Not(::testing::HasSubstr("nan")));
+  EXPECT_THAT(chart.finish(), ::testing::Not(::testing::HasSubstr("<circle")));
+}
+
+}  // namespace
+}  // namespace boresight::report
