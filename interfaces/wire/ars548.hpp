@@ -1,0 +1,67 @@
+// Continental ARS548 (4D radar): layout of the detection list and of the frames that come with it. Big endian, one UDP
+// datagram a message, framed like SOME/IP but without service discovery, transport protocol or checked E2E header.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace boresight::wire::ars548 {
+
+inline constexpr std::uint16_t kServiceId = 0;
+inline constexpr std::uint16_t kMethodDetectionList = 336;
+inline constexpr std::uint16_t kMethodObjectList = 329;
+inline constexpr std::uint16_t kMethodStatus = 380;
+inline constexpr std::uint16_t kMethodFilterStatus = 396;
+
+/// SOME/IP: service u16, method u16, length u32 (of what follows it), then 8 more bytes of header.
+inline constexpr std::size_t kShortHeaderBytes = 8;
+
+// --- detection list --------------------------------------------------------------------------------------------------
+inline constexpr std::size_t kDetectionListBytes = 35336;
+inline constexpr std::size_t kNanoseconds = 36;  // u32
+inline constexpr std::size_t kSeconds = 40;      // u32
+inline constexpr std::size_t kSyncStatus = 44;   // u8
+inline constexpr std::uint8_t kSyncOk = 1;
+inline constexpr std::uint8_t kSyncNever = 2;
+inline constexpr std::uint8_t kSyncLost = 3;
+inline constexpr std::size_t kDetections = 101;
+inline constexpr std::size_t kMaxDetectionRecords = 800;
+inline constexpr std::size_t kDetectionBytes = 44;
+inline constexpr std::size_t kRangeRateMin_mps = 35301;    // f32
+inline constexpr std::size_t kRangeRateMax_mps = 35305;    // f32
+inline constexpr std::size_t kNumberOfDetections = 35309;  // u32
+
+/// Offsets within a detection record.
+namespace record {
+inline constexpr std::size_t kAzimuth_rad = 0;                       // f32
+inline constexpr std::size_t kAzimuthStd_rad = 4;                    // f32
+inline constexpr std::size_t kInvalidFlags = 8;                      // u8
+inline constexpr std::size_t kElevation_rad = 9;                     // f32
+inline constexpr std::size_t kElevationStd_rad = 13;                 // f32
+inline constexpr std::size_t kRange_m = 17;                          // f32
+inline constexpr std::size_t kRangeStd_m = 21;                       // f32
+inline constexpr std::size_t kRangeRate_mps = 25;                    // f32, + receding
+inline constexpr std::size_t kRangeRateStd_mps = 29;                 // f32
+inline constexpr std::size_t kRcs_dbsm = 33;                         // i8
+inline constexpr std::size_t kMeasurementId = 34;                    // u16
+inline constexpr std::size_t kPositivePredictiveValue_percent = 36;  // u8
+inline constexpr std::size_t kClassification = 37;                   // u8
+inline constexpr std::size_t kMultiTargetProbability_percent = 38;   // u8
+inline constexpr std::size_t kObjectId = 39;                         // u16
+inline constexpr std::size_t kAmbiguityFlag = 41;                    // u8
+inline constexpr std::size_t kSortIndex = 42;                        // u16
+}  // namespace record
+
+/// Bits of the invalid flags.
+namespace invalid {
+inline constexpr std::uint8_t kRange = 1u << 0;
+inline constexpr std::uint8_t kRangeStd = 1u << 1;
+inline constexpr std::uint8_t kAzimuth = 1u << 2;
+inline constexpr std::uint8_t kAzimuthStd = 1u << 3;
+inline constexpr std::uint8_t kElevation = 1u << 4;
+inline constexpr std::uint8_t kElevationStd = 1u << 5;
+inline constexpr std::uint8_t kRangeRate = 1u << 6;
+inline constexpr std::uint8_t kRangeRateStd = 1u << 7;
+}  // namespace invalid
+
+}  // namespace boresight::wire::ars548

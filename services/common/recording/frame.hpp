@@ -1,0 +1,39 @@
+// One frame as a bus or a network carried it: what links deliver, recordings hold and the replay tunnel transports.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace boresight::recording {
+
+enum class FrameKind : std::uint8_t { kCan = 1, kCanFd = 2, kUdp = 3 };
+
+/// A view: `payload` points into the reader's or the link's buffer and is valid until its next frame.
+struct Frame {
+  FrameKind kind = FrameKind::kCan;
+  std::int64_t stamp_ns = 0;          ///< on the clock of the recording or link
+  std::array<char, 16> interface {};  ///< CAN interface, zero-terminated; empty for UDP
+  std::uint32_t can_id = 0;           ///< without flag bits
+  bool can_extended = false;
+  bool can_remote = false;
+  std::uint32_t source_ipv4 = 0;  ///< host byte order
+  std::uint32_t destination_ipv4 = 0;
+  std::uint16_t source_port = 0;
+  std::uint16_t destination_port = 0;
+  std::span<const std::uint8_t> payload;
+
+  [[nodiscard]] std::string_view interface_name() const {
+    return {interface.data(),
+            static_cast<std::size_t>(std::find(interface.begin(), interface.end(), '\0') - interface.begin())};
+  }
+  /// Cuts to 15 characters, the kernel's limit.
+  void set_interface(std::string_view name) {
+    interface.fill('\0');
+    std::copy_n(name.data(), std::min(name.size(), interface.size() - 1), interface.data());
+  }
+};
+
+}  // namespace boresight::recording

@@ -1,0 +1,160 @@
+#include "services/common/recording/ipv4.hpp"
+
+#include <bitset>
+#include <cstring>
+
+namespace boresight::recording {
+
+namespace {
+
+constexpr std::size_t kMaxDatagram = 65536;
+constexpr std::size_t kMaxAssemblies = 16;
+constexpr std::size_t kBlock = 8;  // fragment offsets count in blocks of eight bytes
+constexpr std::uint8_t kUdpProtocol = 17;
+
+std::uint16_t read_u16(const std::uint8_t* p) {
+  return static_cast<std::uint16_t>(p[0] << 8 | p[1]);
+}
+std::uint32_t read_u32(const std::uint8_t* p) {
+  return static_cast<std::uint32_t>(read_u16(p)) << 16 | static_cast<std::uint32_t>(read_u16(p + 2));
+}
+
+/// Strips Ethernet and up to two VLAN tags; false if truncated.
+bool strip_ethernet(std::span<const std::uint8_t>& bytes, std::uint16_t& type) {
+  constexpr std::uint16_t kVlan = 0x8100, kServiceVlan = 0x88A8;
+  if (bytes.size() < 14) return false;
+  type = read_u16(bytes.data() + 12);
+  bytes = bytes.subspan(14);
+  for (int tags = 0; tags < 2 && (type == kVlan || type == kServiceVlan); ++tags) {
+    if (bytes.size() < 4) return false;
+    type = read_u16(bytes.data() + 2);
+    bytes = bytes.subspan(4);
+  }
+  return true;
+}
+
+}  // namespace
+
+struct UdpDecoder::Assembly {
+  bool active = false;
+  std::uint64_t order = 0;
+  std::uint32_t source = 0, destination = 0;
+  std::uint16_t identification = 0;
+  std::size_t received = 0;
+  std::size_t total = 0;  // 0 until the last fragment has come
+  std::bitset<kMaxDatagram / kBlock> blocks;
+  std::array<std::uint8_t, kMaxDatagram> bytes;
+};
+
+struct UdpDecoder::State {
+  std::array<Assembly, kMaxAssemblies> assemblies;
+  std::uint64_t order = 0;
+};
+
+UdpDecoder::UdpDecoder() : state_(std::make_unique<State>()) {}
+UdpDecoder::~UdpDecoder() = default;
+UdpDecoder::UdpDecoder(UdpDecoder&&) noexcept = default;
+UdpDecoder& UdpDecoder::operator=(UdpDecoder&&) noexcept = default;
+
+std::string_view describe(PacketResult result) {
+  switch (result) {
+    case PacketResult::kFrame:
+      return "datagram";
+    case PacketResult::kIncomplete:
+      return "fragment";
+    case PacketResult::kIgnored:
+      return "not IPv4/UDP";
+    case PacketResult::kTruncated:
+      return "packet ends before its headers say";
+    case PacketResult::kBadHeader:
+      return "header contradicts itself";
+    case PacketResult::kFragmentLost:
+      return "fragments of a datagram are missing or overlap";
+  }
+  return "unknown";
+}
+
+namespace {
+
+PacketResult take_udp(std::span<const std::uint8_t> datagram, Frame& frame) {
+  if (datagram.size() < 8) return PacketResult::kTruncated;
+  const std::size_t length = read_u16(datagram.data() + 4);
+  if (length < 8) return PacketResult::kBadHeader;
+  if (length > datagram.size()) return PacketResult::kTruncated;
+  frame.kind = FrameKind::kUdp;
+  frame.source_port = read_u16(datagram.data());
+  frame.destination_port = read_u16(datagram.data() + 2);
+  frame.payload = datagram.subspan(8, length - 8);
+  return PacketResult::kFrame;
+}
+
+}  // namespace
+
+PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer link, Frame& frame) {
+  std::span<const std::uint8_t> ip = packet;
+  if (link == LinkLayer::kEthernet) {
+    std::uint16_t type = 0;
+    if (!strip_ethernet(ip, type)) return PacketResult::kTruncated;
+    if (type != 0x0800) return PacketResult::kIgnored;
+  }
+  if (ip.empty()) return PacketResult::kTruncated;
+  if (ip[0] >> 4 != 4) return link == LinkLayer::kRawIp ? PacketResult::kIgnored : PacketResult::kBadHeader;
+  if (ip.size() < 20) return PacketResult::kTruncated;
+  const std::size_t header = static_cast<std::size_t>(ip[0] & 0x0F) * 4;
+  const std::size_t total = read_u16(ip.data() + 2);
+  if (header < 20 || total < header) return PacketResult::kBadHeader;
+  if (total > ip.size()) return PacketResult::kTruncated;
+  if (ip[9] != kUdpProtocol) return PacketResult::kIgnored;
+  frame.source_ipv4 = read_u32(ip.data() + 12);
+  frame.destination_ipv4 = read_u32(ip.data() + 16);
+  const std::uint16_t fragment = read_u16(ip.data() + 6);
+  const std::size_t offset = static_cast<std::size_t>(fragment & 0x1FFF) * kBlock;
+  const bool more = (fragment & 0x2000) != 0;
+  const std::span<const std::uint8_t> data = ip.subspan(header, total - header);
+  if (offset == 0 && !more) return take_udp(data, frame);
+
+  const std::uint16_t identification = read_u16(ip.data() + 4);
+  if (data.empty() || offset + data.size() > kMaxDatagram || (more && data.size() % kBlock != 0)) {
+    return PacketResult::kBadHeader;
+  }
+  Assembly* assembly = nullptr;
+  Assembly* oldest = &state_->assemblies.front();
+  for (Assembly& a : state_->assemblies) {
+    if (a.active && a.source == frame.source_ipv4 && a.destination == frame.destination_ipv4 &&
+        a.identification == identification) {
+      assembly = &a;
+    }
+    if (!a.active ? oldest->active : (oldest->active && a.order < oldest->order)) oldest = &a;
+  }
+  PacketResult unfinished = PacketResult::kIncomplete;
+  if (assembly == nullptr) {
+    if (oldest->active) unfinished = PacketResult::kFragmentLost;
+    assembly = oldest;
+    assembly->active = true;
+    assembly->source = frame.source_ipv4;
+    assembly->destination = frame.destination_ipv4;
+    assembly->identification = identification;
+    assembly->received = 0;
+    assembly->total = 0;
+    assembly->blocks.reset();
+    assembly->order = ++state_->order;
+  }
+  const std::size_t first = offset / kBlock;
+  const std::size_t last = (offset + data.size() - 1) / kBlock;
+  for (std::size_t block = first; block <= last; ++block) {
+    if (assembly->blocks[block]) {
+      assembly->active = false;
+      return PacketResult::kFragmentLost;
+    }
+    assembly->blocks[block] = true;
+  }
+  std::memcpy(assembly->bytes.data() + offset, data.data(), data.size());
+  assembly->received += data.size();
+  if (!more) assembly->total = offset + data.size();
+  if (assembly->total == 0 || assembly->received < assembly->total) return unfinished;
+  assembly->active = false;
+  if (assembly->received != assembly->total) return PacketResult::kFragmentLost;
+  return take_udp({assembly->bytes.data(), assembly->total}, frame);
+}
+
+}  // namespace boresight::recording

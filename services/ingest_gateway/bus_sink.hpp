@@ -1,0 +1,31 @@
+// The gateway's products into shared memory.
+#pragma once
+
+#include "services/common/runtime/node.hpp"
+#include "services/ingest_gateway/core/gateway.hpp"
+
+namespace boresight::ingest {
+
+class BusSink : public Sink {
+ public:
+  explicit BusSink(runtime::Node& node);
+
+  RadarScan* begin_scan() override;
+  void publish_scan(std::uint32_t radar_id, const MeasurementTime& time) override;
+  EgoMotion* begin_ego() override;
+  void publish_ego(const MeasurementTime& time) override;
+  void fault(Fault fault, std::string_view what, std::uint32_t radar_id) override;
+
+  /// To be called when a frame is taken from its link: the stage of ingest begins.
+  void frame_begins(std::int64_t now_ns) { begin_ns_ = now_ns; }
+
+ private:
+  runtime::Node& node_;
+  runtime::Publisher<RadarScan> scans_;
+  runtime::Publisher<EgoMotion> egos_;
+  runtime::Loan<RadarScan> scan_;
+  runtime::Loan<EgoMotion> ego_;
+  std::int64_t begin_ns_ = 0;
+};
+
+}  // namespace boresight::ingest

@@ -1,0 +1,85 @@
+#include "services/ingest_gateway/codecs/toyota_radar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::ingest {
+
+namespace layout = wire::toyota;
+
+namespace {
+
+constexpr std::uint32_t kAllTracks = (1u << layout::kNumberOfTracks) - 1;
+
+}  // namespace
+
+DecodeResult ToyotaRadar::take(std::uint32_t id, std::span<const std::uint8_t> payload, std::int64_t stamp_ns,
+                               std::string_view& problem) {
+  const bool is_a = id >= layout::kTrackA && id < layout::kTrackA + layout::kNumberOfTracks;
+  const bool is_b = id >= layout::kTrackB && id < layout::kTrackB + layout::kNumberOfTracks;
+  if (!is_a && !is_b) return DecodeResult::kIgnored;
+  if (payload.size() < (is_a ? layout::kTrackABytes : layout::kTrackBMinBytes) || payload.size() > 8) {
+    problem = is_a ? "Toyota TRACK_A: frame is not 8 bytes long" : "Toyota TRACK_B: frame is not 6 … 8 bytes long";
+    return DecodeResult::kBadLength;
+  }
+  if (layout::checksum(id, payload) != payload.back()) {
+    problem = is_a ? "Toyota TRACK_A: checksum does not match" : "Toyota TRACK_B: checksum does not match";
+    return DecodeResult::kBadValue;
+  }
+  const std::uint32_t slot = id - (is_a ? layout::kTrackA : layout::kTrackB);
+  const std::uint32_t bit = 1u << slot;
+  // A frame that comes again belongs to the next cycle: the present one will not be completed any more.
+  if (((is_a ? seen_a_ : seen_b_) & bit) != 0 || (is_a && seen_b_ != 0)) {
+    return DecodeResult::kComplete;
+  }
+  if (frames_++ == 0) {
+    stamp_ns_ = stamp_ns;
+    counter_ = static_cast<std::uint32_t>(wire::extract_raw(layout::kCounter, payload));
+  }
+  Slot& track = slots_[slot];
+  if (is_a) {
+    seen_a_ |= bit;
+    track.valid = wire::extract_raw(layout::kValid, payload) != 0;
+    track.longitudinal_m = wire::extract(layout::kLongitudinalDistance_m, payload);
+    track.lateral_m = -wire::extract(layout::kLateralDistance_m, payload);
+    track.relative_speed_mps = wire::extract(layout::kRelativeSpeed_mps, payload);
+  } else {
+    seen_b_ |= bit;
+    track.has_score = true;
+    track.score_percent = wire::extract(layout::kScore_percent, payload);
+  }
+  const bool complete = seen_a_ == kAllTracks && seen_b_ == kAllTracks;
+  return complete ? DecodeResult::kComplete : DecodeResult::kAccepted;
+}
+
+void ToyotaRadar::write_scan(RadarScan& scan) {
+  std::uint32_t count = 0;
+  for (const Slot& track : slots_) {
+    if (!track.valid) continue;
+    scan.range_m[count] = static_cast<float>(std::hypot(track.longitudinal_m, track.lateral_m));
+    scan.azimuth_rad[count] = static_cast<float>(std::atan2(track.lateral_m, track.longitudinal_m));
+    scan.elevation_rad[count] = 0.0F;
+    scan.range_rate_mps[count] = static_cast<float>(track.relative_speed_mps);
+    scan.rcs_dbsm[count] = scan.snr_db[count] = 0.0F;
+    scan.range_std_m[count] = scan.azimuth_std_rad[count] = 0.0F;
+    scan.elevation_std_rad[count] = scan.range_rate_std_mps[count] = 0.0F;
+    scan.existence_probability[count] =
+        track.has_score ? static_cast<float>(std::clamp(track.score_percent * 0.01, 0.0, 1.0)) : 0.0F;
+    scan.detection_flags[count] = 0;
+    ++count;
+  }
+  scan.cycle_counter = counter_;
+  scan.number_of_valid_detections = count;
+  scan.dropped_detections = 0;
+  scan.fields = scan_field::kExistence;
+  scan.range_rate_min_mps = scan.range_rate_max_mps = 0.0F;
+  discard();
+}
+
+void ToyotaRadar::discard() {
+  missing_ = 2 * layout::kNumberOfTracks - frames_;
+  slots_ = {};
+  frames_ = seen_a_ = seen_b_ = 0;
+}
+
+}  // namespace boresight::ingest

@@ -1,0 +1,36 @@
+// Where frames come from: one interface for CAN buses, UDP sockets and the replay tunnel.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "interfaces/messages/service_status.hpp"
+#include "services/common/recording/frame.hpp"
+#include "services/ingest_gateway/core/frame_stamp.hpp"
+
+namespace boresight::ingest {
+
+/// Receivers of what a link has to tell.
+struct LinkEvents {
+  std::function<void(const recording::Frame&, const FrameStamp&)> on_frame;
+  std::function<void(Fault, std::string_view)> on_fault;
+};
+
+/// A source of frames with a file descriptor to wait for.
+class Link {
+ public:
+  virtual ~Link() = default;
+  Link() = default;
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  /// Opens or re-opens; false, with a fault, if that is not possible now. Called again each second until it succeeds.
+  virtual bool open() = 0;
+  /// Descriptor to wait for, −1 while closed.
+  [[nodiscard]] virtual int descriptor() const = 0;
+  /// Takes what has arrived, some dozens of frames at most, so that the other links get their turn.
+  virtual void read() = 0;
+  [[nodiscard]] virtual const std::string& name() const = 0;
+};
+
+}  // namespace boresight::ingest
