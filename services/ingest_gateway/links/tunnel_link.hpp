@@ -10,7 +10,7 @@
 
 namespace boresight::ingest {
 
-/// Listens on a Unix socket; serves one replay at a time, a new one takes the place of the old.
+/// Listens on a Unix socket; serves one replay at a time, the next one waits until it has ended.
 class TunnelLink : public Link {
  public:
   TunnelLink(std::string path, LinkEvents events);

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <arpa/inet.h>
+#include <linux/can.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "services/replay/senders/sender.hpp"
+
+namespace boresight::replay {
+
+namespace {
+
+std::uint32_t parse(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1) throw std::runtime_error(text + " is not an IPv4 address");
+  return ntohl(address.s_addr);
+}
+
+class WireSender : public Sender {
+ public:
+  explicit WireSender(const std::map<std::string, std::string>& routes) {
+    for (const auto& [recorded, local] : routes) routes_[parse(recorded)] = parse(local);
+  }
+  ~WireSender() override {
+    for (const auto& [key, descriptor] : udp_) ::close(descriptor);
+    for (const auto& [key, descriptor] : can_) ::close(descriptor);
+  }
+  WireSender(const WireSender&) = delete;
+  WireSender& operator=(const WireSender&) = delete;
+
+  bool send(const recording::Frame& frame) override {
+    return frame.kind == recording::FrameKind::kUdp ? send_udp(frame) : send_can(frame);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t route(std::uint32_t recorded) const {
+    const auto found = routes_.find(recorded);
+    return found == routes_.end() ? recorded : found->second;
+  }
+
+  int udp_socket(std::uint32_t source) {
+    const auto found = udp_.find(source);
+    if (found != udp_.end()) return found->second;
+    const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (descriptor < 0) throw std::runtime_error(std::string("cannot make a UDP socket: ") + std::strerror(errno));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(source);
+    // A sender's address that is not this machine's cannot be taken on; the gateway then needs no `sender` or a route.
+    static_cast<void>(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)));
+    return udp_[source] = descriptor;
+  }
+
+  bool send_udp(const recording::Frame& frame) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(route(frame.destination_ipv4));
+    to.sin_port = htons(frame.destination_port);
+    const int descriptor = udp_socket(route(frame.source_ipv4));
+    return sendto(descriptor, frame.payload.data(), frame.payload.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                  sizeof(to)) >= 0;
+  }
+
+  int can_socket(const std::string& interface) {
+    const auto found = can_.find(interface);
+    if (found != can_.end()) return found->second;
+    const auto fail = [&](const std::string& what) { throw std::runtime_error(interface + ": " + what); };
+    const int descriptor = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);
+    if (descriptor < 0) fail(errno == EAFNOSUPPORT ? "this kernel has no CAN" : std::strerror(errno));
+    const int on = 1;
+    setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof(on));
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
+    if (address.can_ifindex == 0) fail("no such interface");
+    if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) fail(std::strerror(errno));
+    return can_[interface] = descriptor;
+  }
+
+  bool send_can(const recording::Frame& frame) {
+    canfd_frame raw{};
+    raw.can_id = frame.can_id | (frame.can_extended ? CAN_EFF_FLAG : 0u) | (frame.can_remote ? CAN_RTR_FLAG : 0u);
+    raw.len = static_cast<std::uint8_t>(std::min<std::size_t>(frame.payload.size(), sizeof(raw.data)));
+    std::copy_n(frame.payload.data(), raw.len, raw.data);
+    const std::size_t size = frame.kind == recording::FrameKind::kCanFd ? CANFD_MTU : CAN_MTU;
+    return write(can_socket(std::string(frame.interface_name())), &raw, size) == static_cast<ssize_t>(size);
+  }
+
+  std::map<std::uint32_t, std::uint32_t> routes_;
+  std::map<std::uint32_t, int> udp_;
+  std::map<std::string, int> can_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sender> make_wire_sender(const std::map<std::string, std::string>& routes) {
+  return std::make_unique<WireSender>(routes);
+}
+
+}  // namespace boresight::replay
