@@ -75,6 +75,16 @@ std::vector<Segment> segment_per_writer() {
   return segments;
 }
 
+std::size_t total_bytes(const std::vector<Segment>& segments) {
+  // Measured for iceoryx 2.0.3 with the limits of Debian's build, and a tenth more for headers and lists.
+  constexpr std::size_t kManagement = 66'000'000;
+  std::size_t chunks = 0;
+  for (const Segment& segment : segments) {
+    for (const Pool& pool : segment.pools) chunks += pool.chunk_bytes * pool.count;
+  }
+  return kManagement + chunks + chunks / 10;
+}
+
 std::string to_toml(const std::vector<Segment>& segments) {
   std::string text =
       "# Generated from interfaces/catalogue by `boresight catalogue --roudi`; a test proves that it is up to date.\n"

@@ -35,6 +35,9 @@ inline constexpr std::string_view kDeployedReaderGroup = "boresight";
 /// One segment per writing service, which only that service can write to: group `boresight-<service>`.
 [[nodiscard]] std::vector<Segment> segment_per_writer();
 
+/// Shared memory of all segments and of RouDi's own management data.
+[[nodiscard]] std::size_t total_bytes(const std::vector<Segment>& segments);
+
 /// The file that `iox-roudi -c` takes.
 [[nodiscard]] std::string to_toml(const std::vector<Segment>& segments);
 

@@ -35,6 +35,17 @@ DomainConfig domain_of_catalogue(const DomainOptions& options, const std::filesy
   return config;
 }
 
+std::optional<std::string> shared_memory_shortage(std::size_t needed_bytes,
+                                                  const std::filesystem::path& shared_memory) {
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space(shared_memory, error);
+  if (error) return shared_memory.string() + ": " + error.message();
+  if (space.available >= needed_bytes) return std::nullopt;
+  constexpr std::size_t kMebibyte = 1024 * 1024;
+  return shared_memory.string() + " has " + std::to_string(space.available / kMebibyte) + " MiB free, " +
+         std::to_string(needed_bytes / kMebibyte + 1) + " MiB are needed (in a container, see --shm-size)";
+}
+
 std::filesystem::path unused_run_directory() {
   return "/tmp/boresight-" + std::to_string(getuid()) + "-" + std::to_string(getpid());
 }

@@ -1,7 +1,9 @@
 // The domain of the catalogue: which processes, with which command lines, on which memory.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,11 @@ struct DomainOptions {
 
 /// RouDi with `pools_file` (written from the catalogue, one segment) and every supervised service. Creates nothing.
 [[nodiscard]] DomainConfig domain_of_catalogue(const DomainOptions& options, const std::filesystem::path& pools_file);
+
+/// Why a domain that needs so many bytes of shared memory cannot be started, or nothing. Without room, the first
+/// process to touch a missing page would die of SIGBUS: containers often have 64 MiB only.
+[[nodiscard]] std::optional<std::string> shared_memory_shortage(std::size_t needed_bytes,
+                                                                const std::filesystem::path& shared_memory);
 
 /// A short path for a run directory of this process alone; not created.
 [[nodiscard]] std::filesystem::path unused_run_directory();

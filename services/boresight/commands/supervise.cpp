@@ -32,6 +32,10 @@ int run(SuperviseOptions options) {
   if (options.replay) options.domain.environment.emplace_back("BORESIGHT_INPUT", "replay");
   std::filesystem::create_directories(options.domain.log_directory);
   const std::filesystem::path pools = options.domain.log_directory / "roudi.toml";
+  if (const auto shortage =
+          supervisor::shared_memory_shortage(roudi::total_bytes(roudi::single_segment()), "/dev/shm")) {
+    throw std::runtime_error(*shortage);
+  }
   std::ofstream(pools) << roudi::to_toml(roudi::single_segment());
 
   supervisor::Supervisor domain(supervisor::domain_of_catalogue(options.domain, pools));

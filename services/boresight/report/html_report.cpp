@@ -247,7 +247,9 @@ std::string render_tracks(const ReportInput& input) {
       aside_m = std::max(aside_m, std::min(40.0, std::abs(track.y_m) + 3.0));
     }
   }
-  SvgChart chart(1080, 460, {.min = -ahead_m, .max = ahead_m, .label = "ahead, m"},
+  // The same scale along both axes; the margins of the chart are 64 px across and 46 px down.
+  const double px_per_m = (1080.0 - 64.0) / (2.0 * ahead_m);
+  SvgChart chart(1080, 46.0 + 2.0 * aside_m * px_per_m, {.min = -ahead_m, .max = ahead_m, .label = "ahead, m"},
                  {.min = -aside_m, .max = aside_m, .label = "left, m"});
   for (const RadarConfig& radar : input.vehicle.radars) {
     std::vector<Point> sector = {{radar.mounting_pose.position_m[0], radar.mounting_pose.position_m[1]}};
@@ -318,7 +320,8 @@ std::string render_latencies(const Summary& summary) {
 }  // namespace
 
 std::string render_html(const ReportInput& input) {
-  const Summary summary = summarise(input.snapshots, input.truth);
+  Summary summary = summarise(input.snapshots, input.truth);
+  summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
   const TimeBase time(input.snapshots);
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Boresight report</title>\n"

@@ -15,6 +15,7 @@ struct ReportInput {
   std::vector<monitor::Snapshot> snapshots;  ///< in the order of time
   Truth truth;
   VehicleConfig vehicle;            ///< for mounting positions and fields of view in the top view
+  std::vector<Check> more_checks;   ///< besides those of summarise()
   std::vector<std::string> events;  ///< what the supervisor has to tell
 };
 

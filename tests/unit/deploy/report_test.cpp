@@ -92,6 +92,7 @@ TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
                                         .snapshots = synthetic_drive(),
                                         .truth = synthetic_truth(),
                                         .vehicle = {},
+                                        .more_checks = {},
                                         .events = {"0.1 spawned roudi"}});
   EXPECT_THAT(page, ::testing::HasSubstr("a &lt;drive&gt;"));
   for (const char* name : {"front_left", "front_right", "rear_left", "rear_right"}) {
@@ -105,7 +106,12 @@ TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
 
 TEST(HtmlReport, SurvivesARunWithoutAnyData) {
   EXPECT_THAT(render_html({}), ::testing::HasSubstr("Not everything worked."));
-  EXPECT_THAT(render_html({.title = "", .snapshots = {monitor::Snapshot()}, .truth = {}, .vehicle = {}, .events = {}}),
+  EXPECT_THAT(render_html({.title = "",
+                           .snapshots = {monitor::Snapshot()},
+                           .truth = {},
+                           .vehicle = {},
+                           .more_checks = {},
+                           .events = {}}),
               ::testing::HasSubstr("No scan reached the tracker."));
 }
 

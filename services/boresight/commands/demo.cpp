@@ -1,0 +1,281 @@
+// `boresight demo`: a drive through the whole pipeline, process by process, watched, judged and cleaned up after.
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "deploy/roudi/pools.hpp"
+#include "deploy/supervisor/domain.hpp"
+#include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/truth_file.hpp"
+#include "services/boresight/report/html_report.hpp"
+#include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/options.hpp"
+#include "services/common/runtime/stop_signal.hpp"
+
+namespace boresight {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kExitInterrupted = 130;
+constexpr std::int64_t kReadyTimeout_ns = 30'000'000'000;
+// From the last frame to the last snapshot with what came of it: two periods of the monitor's record.
+constexpr std::int64_t kLinger_ns = 1'000'000'000;
+constexpr const char* kSimulatedVehicle = "simulated";
+
+struct DemoOptions {
+  runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
+  std::vector<std::string> recordings;
+  double duration_s = 0.0;
+  fs::path output = "demo_output";
+};
+
+/// Ctrl-C, as opposed to something that went wrong.
+struct Interrupted {};
+
+void stop_if_interrupted() {
+  if (runtime::stop_signalled()) throw Interrupted{};
+}
+
+fs::path own_program() {
+  return fs::read_symlink("/proc/self/exe");
+}
+
+/// Runs another program of ours to its end; its output goes to `log`.
+void run_to_end(const supervisor::Command& command, const fs::path& log, const std::string& what) {
+  const pid_t pid = supervisor::spawn(command, log);
+  int status = 0;
+  while (waitpid(pid, &status, WNOHANG) == 0) {
+    usleep(20'000);
+    if (runtime::stop_signalled()) kill(-pid, SIGTERM);
+  }
+  stop_if_interrupted();
+  if (status != 0) {
+    throw std::runtime_error(what + " failed with " + supervisor::describe_exit(status) + "; see " + log.string());
+  }
+}
+
+/// What is played, and what is known about it.
+struct Drive {
+  std::string title;
+  std::vector<std::string> recordings;
+  report::Truth truth;
+};
+
+Drive simulate(const DemoOptions& options, const fs::path& logs) {
+  const fs::path directory = options.output / "drive";
+  fs::remove_all(directory);
+  supervisor::Command command;
+  command.arguments = {own_program().string(),
+                       "simulate",
+                       "--config",
+                       options.configuration.directory.string(),
+                       "--vehicle",
+                       options.configuration.vehicle_name,
+                       "--out",
+                       directory.string()};
+  if (options.duration_s > 0.0) {
+    command.arguments.insert(command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
+  }
+  std::cout << "simulating a drive" << std::endl;
+  run_to_end(command, logs / "simulate.log", "the simulation");
+  Drive drive{.title = "simulated drive", .recordings = {}, .truth = read_truth(directory / "truth.toml")};
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".log" || extension == ".pcap") drive.recordings.push_back(entry.path().string());
+  }
+  std::sort(drive.recordings.begin(), drive.recordings.end());
+  return drive;
+}
+
+Drive recorded(const DemoOptions& options) {
+  Drive drive;
+  for (const std::string& file : options.recordings) {
+    if (!fs::exists(file)) throw std::runtime_error("no such recording: " + file);
+    drive.recordings.push_back(fs::absolute(file).string());
+    drive.title += (drive.title.empty() ? "" : ", ") + fs::path(file).filename().string();
+  }
+  return drive;
+}
+
+supervisor::ProcessSpec monitor_of(const DemoOptions& options, const fs::path& record) {
+  supervisor::ProcessSpec spec;
+  spec.name = "monitor";
+  spec.command.arguments = {own_program().string(),
+                            "monitor",
+                            "--config",
+                            options.configuration.directory.string(),
+                            "--vehicle",
+                            options.configuration.vehicle_name,
+                            "--record",
+                            record.string()};
+  spec.role = supervisor::Role::kSpectator;
+  spec.shares_terminal = true;
+  return spec;
+}
+
+supervisor::ProcessSpec replay_of(const DemoOptions& options, const Drive& drive, const fs::path& binaries,
+                                  const fs::path& run_directory) {
+  supervisor::ProcessSpec spec;
+  spec.name = "replay";
+  spec.command.arguments = {(binaries / "boresight-replay").string()};
+  if (options.duration_s > 0.0) {
+    spec.command.arguments.insert(spec.command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
+  }
+  spec.command.arguments.insert(spec.command.arguments.end(), drive.recordings.begin(), drive.recordings.end());
+  spec.command.environment = {{"BORESIGHT_RUNTIME_DIR", run_directory.string()}};
+  spec.role = supervisor::Role::kIndependent;
+  return spec;
+}
+
+/// A service that refuses its configuration will refuse it again; waiting for it would be in vain.
+void throw_if_refused(const supervisor::Supervisor& domain, const fs::path& logs) {
+  for (const supervisor::Event& event : domain.events()) {
+    const bool refused = event.kind == supervisor::EventKind::kExited && event.detail == "exit code 2";
+    if (refused || event.kind == supervisor::EventKind::kStartFailed) {
+      throw std::runtime_error(event.process + " cannot run: " + event.detail + "; see " +
+                               (logs / (event.process + ".log")).string());
+    }
+  }
+}
+
+/// Plays the drive through a fresh domain; returns the supervisor's events. Whatever happens, the domain is gone after.
+std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& drive, const fs::path& logs,
+                                    const fs::path& record) {
+  const auto segments = roudi::single_segment();
+  if (const auto shortage = supervisor::shared_memory_shortage(roudi::total_bytes(segments), "/dev/shm")) {
+    throw std::runtime_error(*shortage);
+  }
+  const fs::path pools = logs / "roudi.toml";
+  std::ofstream(pools) << roudi::to_toml(segments);
+  supervisor::DomainOptions domain_options{.binaries = supervisor::binaries_folder(),
+                                           .config_directory = options.configuration.directory,
+                                           .vehicle = options.configuration.vehicle_name,
+                                           .run_directory = supervisor::unused_run_directory(),
+                                           .log_directory = logs,
+                                           .environment = {{"BORESIGHT_INPUT", "replay"}}};
+  supervisor::DomainConfig config = supervisor::domain_of_catalogue(domain_options, pools);
+  config.services.push_back(monitor_of(options, record));
+
+  std::cout << "starting RouDi and " << catalogue::kNumberOfSupervisedServices << " services; their output is in "
+            << logs.string() << std::endl;
+  supervisor::Supervisor domain(config);
+  domain.start([] { return runtime::stop_signalled(); });
+  const std::int64_t deadline_ns = runtime::monotonic_now_ns() + kReadyTimeout_ns;
+  while (!domain.all_ready()) {
+    domain.poll(20'000'000);
+    stop_if_interrupted();
+    throw_if_refused(domain, logs);
+    if (runtime::monotonic_now_ns() > deadline_ns) {
+      throw std::runtime_error("not every service became ready; see " + logs.string());
+    }
+  }
+  domain.start_independent(replay_of(options, drive, domain_options.binaries, domain_options.run_directory));
+  while (!domain.independent_result("replay")) {
+    domain.poll(50'000'000);
+    stop_if_interrupted();
+  }
+  const std::int64_t end_ns = runtime::monotonic_now_ns() + kLinger_ns;
+  while (runtime::monotonic_now_ns() < end_ns) {
+    domain.poll(50'000'000);
+    stop_if_interrupted();
+  }
+  const int status = *domain.independent_result("replay");
+  std::vector<supervisor::Event> events = domain.events();
+  domain.stop();
+  if (status != 0) {
+    throw std::runtime_error("the replay failed with " + supervisor::describe_exit(status) + "; see " +
+                             (logs / "replay.log").string());
+  }
+  return events;
+}
+
+/// What the health service cannot see: processes that ended while the drive was played.
+report::Check check_of(const std::vector<supervisor::Event>& events) {
+  const auto count = std::count_if(events.begin(), events.end(), [](const supervisor::Event& event) {
+    return event.kind == supervisor::EventKind::kExited && event.process != "replay";
+  });
+  return {fmt::format("no process ended by itself ({} did)", count), count == 0};
+}
+
+std::vector<std::string> event_lines(const std::vector<supervisor::Event>& events) {
+  std::vector<std::string> lines;
+  for (const supervisor::Event& event : events) {
+    lines.push_back(
+        fmt::format("{:9.3f} s  {:<15}{:<22}{}", static_cast<double>(event.time_ns - events.front().time_ns) * 1e-9,
+                    supervisor::name_of(event.kind), event.process.empty() ? "domain" : event.process, event.detail));
+  }
+  return lines;
+}
+
+int run(DemoOptions options) {
+  runtime::install_stop_signals();
+  const bool simulated = options.recordings.empty();
+  if (simulated && options.configuration.vehicle_name.empty()) options.configuration.vehicle_name = kSimulatedVehicle;
+  report::ReportInput input;
+  input.vehicle = options.configuration.vehicle();  // before anything else, because the user can mend it
+  options.configuration.vehicle_name = options.configuration.vehicle_file().stem().string();
+  options.configuration.directory = fs::absolute(options.configuration.directory);
+  options.output = fs::absolute(options.output);
+  const fs::path logs = options.output / "logs";
+  const fs::path record = options.output / "record.txt";
+  fs::remove_all(logs);
+  fs::remove(record);
+  fs::create_directories(logs);
+
+  const Drive drive = simulated ? simulate(options, logs) : recorded(options);
+  const std::vector<supervisor::Event> events = play(options, drive, logs, record);
+
+  std::ifstream recorded_snapshots(record);
+  input.title = drive.title + ", vehicle " + input.vehicle.name;
+  input.snapshots = monitor::read_record(recorded_snapshots);
+  input.truth = drive.truth;
+  input.events = event_lines(events);
+  input.more_checks = {check_of(events)};
+  report::Summary summary = report::summarise(input.snapshots, input.truth);
+  summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
+  const fs::path page = options.output / "report.html";
+  std::ofstream(page) << report::render_html(input);
+  std::cout << report::render_summary(summary) << "\n  report: " << page.string() << std::endl;
+  return summary.all_passed() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "demo", "play a drive through every process of the pipeline, watch it, and judge what came of it");
+  auto options = std::make_shared<DemoOptions>();
+  command->add_option("--recording", options->recordings,
+                      "candump logs or pcap captures of one drive; a simulated drive if not given");
+  command->add_option("--config", options->configuration.directory, "folder with vehicle/ and services/")
+      ->capture_default_str();
+  command->add_option("--vehicle", options->configuration.vehicle_name, "vehicle file to use, without .toml")
+      ->envname("BORESIGHT_VEHICLE");
+  command->add_option("--duration", options->duration_s, "seconds of the drive to play; 0 is all of it")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--out", options->output, "folder for report, logs and the simulated drive")
+      ->capture_default_str();
+  command->callback([options, &exit_code] {
+    try {
+      exit_code = run(*options);
+    } catch (const Interrupted&) {
+      std::cout << "\nstopped" << std::endl;
+      exit_code = kExitInterrupted;
+    } catch (const std::exception& error) {
+      std::cerr << "boresight demo: " << error.what() << '\n';
+      exit_code = runtime::stop_signalled() ? kExitInterrupted : 1;
+    }
+  });
+}
+
+}  // namespace boresight
