@@ -1,5 +1,6 @@
 // `boresight monitor`: the running system on the terminal.
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -55,6 +56,8 @@ void draw(const monitor::Snapshot& snapshot, double elapsed_s) {
 }
 
 int run(const MonitorOptions& options) {
+  // Log lines would tear the picture, and an onlooker may allocate as it likes.
+  setenv("BORESIGHT_LOG_LEVEL", "error", 0);
   runtime::log::initialise("boresight-monitor");
   const VehicleConfig vehicle = options.configuration.vehicle();
   monitor::Accumulator accumulator(vehicle);
