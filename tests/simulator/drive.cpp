@@ -1,0 +1,81 @@
+#include "tests/simulator/drive.hpp"
+
+#include <cmath>
+
+#include "tests/simulator/random.hpp"
+
+namespace boresight::simulator {
+
+namespace {
+
+constexpr double kWheelbase_m = 2.8;
+constexpr double kSteeringRatio = 15.0;
+
+}  // namespace
+
+Drive::Drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64_t seed, double duration_s)
+    : scenario_(scenario),
+      seed_(seed),
+      duration_s_(duration_s),
+      world_(scenario, seed, duration_s),
+      scan_(std::make_unique<RadarScan>()) {
+  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+    const RadarConfig& radar = vehicle.radars[i];
+    // Unsynchronised: each radar starts its cycle at another phase.
+    const double phase = radar.cycle_time_s * static_cast<double>(i) / static_cast<double>(vehicle.radars.size());
+    radars_.push_back({radar, RadarModel(radar, scenario, seed), 0.02 + phase, 0});
+  }
+}
+
+double Drive::time_of(const Radar& radar) const {
+  return radar.phase_s + static_cast<double>(radar.cycle) * radar.config.cycle_time_s;
+}
+
+const Event* Drive::next() {
+  const double ego_t = static_cast<double>(ego_index_) * kEgoPeriod_s;
+  Radar* due = nullptr;
+  for (Radar& radar : radars_) {
+    if (time_of(radar) < ego_t && (due == nullptr || time_of(radar) < time_of(*due))) due = &radar;
+  }
+  event_ = Event{};
+  event_.t_s = due != nullptr ? time_of(*due) : ego_t;
+  if (event_.t_s > duration_s_) return nullptr;
+  event_.time_ns = kStart_ns + std::llround(event_.t_s * 1e9);
+  if (due == nullptr) {
+    const EgoState state = ego(ego_t);
+    Stream noise(seed_, "ego", ego_index_++);
+    const double on = scenario_.noise ? 1.0 : 0.0;
+    event_.ego.speed_mps = state.speed_mps / scenario_.speed_scale + on * 0.02 * noise.gaussian();
+    event_.ego.yaw_rate_radps = state.yaw_rate_radps + on * 0.001 * noise.gaussian();
+    event_.ego.steering_angle_rad =
+        kSteeringRatio * std::atan(kWheelbase_m * state.yaw_rate_radps / std::max(1.0, state.speed_mps));
+    return &event_;
+  }
+  due->model.measure(world_, event_.t_s, due->cycle, *scan_, truth_);
+  scan_->header = {};
+  scan_->header.version = RadarScan::kVersion;
+  scan_->header.source_id = due->config.id;
+  scan_->header.sequence = ++sequence_;
+  scan_->header.source_sequence = ++due->cycle;
+  scan_->header.measurement_time_ns = event_.time_ns;
+  scan_->header.time_source = TimeSource::kSensorSynchronised;
+  event_.scan = scan_.get();
+  event_.truth = &truth_;
+  return &event_;
+}
+
+EgoMotion to_message(const Event& event, const EgoConfig& config) {
+  EgoMotion m{};
+  m.header.version = EgoMotion::kVersion;
+  m.header.measurement_time_ns = event.time_ns;
+  m.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kSteeringAngle;
+  m.speed_mps = static_cast<float>(event.ego.speed_mps);
+  m.speed_std_mps = static_cast<float>(config.speed_std_mps);
+  m.yaw_rate_radps = static_cast<float>(event.ego.yaw_rate_radps);
+  m.yaw_rate_std_radps = static_cast<float>(config.yaw_rate_std_radps);
+  m.steering_angle_rad = static_cast<float>(event.ego.steering_angle_rad);
+  m.steering_angle_std_rad = static_cast<float>(config.steering_angle_std_rad);
+  return m;
+}
+
+}  // namespace boresight::simulator

@@ -1,0 +1,18 @@
+// Scans as the ARS548 would send them. Written from the radar's description, independently of the gateway's decoder, so
+// that one checks the other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "interfaces/messages/radar_scan.hpp"
+
+namespace boresight::simulator::wire {
+
+inline constexpr std::size_t kArs548ListBytes = 35336;
+using Ars548List = std::array<std::uint8_t, kArs548ListBytes>;
+
+/// Encodes at most 800 detections; the sensor's clock reads `epoch_ns` and is synchronised.
+void encode_ars548(const RadarScan& scan, std::int64_t epoch_ns, Ars548List& bytes);
+
+}  // namespace boresight::simulator::wire
