@@ -1,0 +1,72 @@
+// `boresight simulate`: a drive with truth, as recordings.
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <memory>
+
+#include <unistd.h>
+
+#include "services/boresight/commands/commands.hpp"
+#include "services/common/runtime/config/vehicle_file.hpp"
+#include "tests/simulator/drive_writer.hpp"
+
+namespace boresight {
+
+namespace {
+
+struct Options {
+  std::string scenario = "demo_drive";
+  std::string vehicle;
+  std::string out;
+  std::uint64_t seed = 1;
+  double duration_s = 45.0;
+};
+
+void show_progress(double share) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  constexpr int kWidth = 40;
+  const int done = static_cast<int>(share * kWidth);
+  std::fprintf(stderr, "\rsimulating [%.*s%.*s] %3.0f %%%s", done, "########################################",
+               kWidth - done, "                                        ", 100.0 * share, share >= 1.0 ? "\n" : "");
+}
+
+int simulate(const Options& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const VehicleConfig vehicle = config::read_vehicle_file(options.vehicle);
+  const simulator::DriveFiles files = simulator::write_drive(
+      simulator::scenario(options.scenario), vehicle, options.seed, options.duration_s, options.out, show_progress);
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::printf("simulated %.1f s in %.1f s (%.0f times real time): %llu scans, %llu detections\n", options.duration_s,
+              took_s, options.duration_s / took_s, static_cast<unsigned long long>(files.scans),
+              static_cast<unsigned long long>(files.number_of_detections));
+  for (const auto& file : {files.radars, files.ego, files.truth, files.detections, files.objects}) {
+    std::printf("  %s\n", file.c_str());
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand("simulate", "simulate a drive and write it as recordings with truth");
+  command->add_option("--scenario", options->scenario, "what to drive")
+      ->check(CLI::IsMember(simulator::scenario_names()))
+      ->capture_default_str();
+  command->add_option("--vehicle", options->vehicle, "vehicle file (TOML)")->required();
+  command->add_option("--out", options->out, "folder for the recordings and the truth")->required();
+  command->add_option("--seed", options->seed, "another seed is another drive")->capture_default_str();
+  command->add_option("--duration", options->duration_s, "seconds")
+      ->check(CLI::Range(0.1, 36000.0))
+      ->capture_default_str();
+  command->callback([options, &exit_code] {
+    try {
+      exit_code = simulate(*options);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "boresight simulate: %s\n", error.what());
+      exit_code = dynamic_cast<const config::Error*>(&error) != nullptr ? 2 : EXIT_FAILURE;
+    }
+  });
+}
+
+}  // namespace boresight
