@@ -1,0 +1,134 @@
+#include "services/ghost_filter/core/ghost_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "services/common/geometry/ego_step.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr float kGhost = 0.95F;
+constexpr float kReal = 0.05F;
+
+void copy_columns(const CorrectedScan& scan, std::size_t count, ClassifiedScan& out) {
+  const auto copy = [count](const DetectionColumn<float>& from, DetectionColumn<float>& to) {
+    std::memcpy(to.data(), from.data(), count * sizeof(float));
+  };
+  copy(scan.x_vehicle_m, out.x_vehicle_m);
+  copy(scan.y_vehicle_m, out.y_vehicle_m);
+  copy(scan.z_vehicle_m, out.z_vehicle_m);
+  copy(scan.range_m, out.range_m);
+  copy(scan.azimuth_vehicle_rad, out.azimuth_vehicle_rad);
+  copy(scan.range_rate_over_ground_mps, out.range_rate_over_ground_mps);
+  copy(scan.rcs_dbsm, out.rcs_dbsm);
+  copy(scan.range_std_m, out.range_std_m);
+  copy(scan.azimuth_std_rad, out.azimuth_std_rad);
+  copy(scan.range_rate_std_mps, out.range_rate_std_mps);
+  std::memcpy(out.detection_flags.data(), scan.detection_flags.data(), count * sizeof(std::uint16_t));
+}
+
+Eigen::Vector2d point(const std::array<float, 2>& p) {
+  return {p[0], p[1]};
+}
+
+}  // namespace
+
+GhostFilter::GhostFilter(const Config& config)
+    : config_(config), finder_(config), tracks_(std::make_unique<TrackList>()) {}
+
+void GhostFilter::add_tracks(const TrackList& tracks) {
+  // Only what is used: the whole capacity would be copied for a handful of tracks.
+  tracks_->header = tracks.header;
+  tracks_->number_of_tracks = std::min<std::uint32_t>(tracks.number_of_tracks, kMaxTracks);
+  std::copy_n(tracks.tracks.begin(), tracks_->number_of_tracks, tracks_->tracks.begin());
+  has_tracks_ = true;
+}
+
+void GhostFilter::predict_tracks(const CorrectedScan& scan) {
+  number_of_ellipses_ = 0;
+  const double elapsed_s =
+      static_cast<double>(scan.header.measurement_time_ns - tracks_->header.measurement_time_ns) * 1e-9;
+  if (!has_tracks_ || std::abs(elapsed_s) > config_.tracks_max_age_s) return;
+  const geometry::EgoStep step =
+      geometry::ego_step(scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, elapsed_s);
+  const double turn = static_cast<double>(scan.geometry.ego_yaw_rate_radps) * elapsed_s;
+  for (std::size_t i = 0; i < tracks_->number_of_tracks; ++i) {
+    const Track& track = tracks_->tracks[i];
+    if (track.status != TrackStatus::kConfirmed) continue;
+    const Eigen::Vector2d position(track.position_vehicle_m[0], track.position_vehicle_m[1]);
+    const Eigen::Vector2d moved = position + elapsed_s * point(track.velocity_over_ground_mps);
+    ellipses_[number_of_ellipses_++] = {step.move_point(moved), track.heading_rad - turn,
+                                        0.5 * static_cast<double>(track.length_m) + config_.ellipse_margin_m,
+                                        0.5 * static_cast<double>(track.width_m) + config_.ellipse_margin_m};
+  }
+}
+
+GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position,
+                                               std::span<const ReflectorSegment> segments) const {
+  const Eigen::Vector2d sight = position - sensor;
+  const double range = sight.norm();
+  if (range < 1e-3) return {Provenance::kMoving, kReal};
+  // A detection of an object that is tracked already is that object.
+  for (std::size_t i = 0; i < number_of_ellipses_; ++i) {
+    if (geometry::contains(ellipses_[i], position)) return {Provenance::kMoving, kReal};
+  }
+  for (const ReflectorSegment& segment : segments) {
+    const auto share =
+        geometry::crossing(sensor, position, point(segment.start_vehicle_m), point(segment.end_vehicle_m));
+    if (share && (1.0 - *share) * range > config_.type2_margin_m) return {Provenance::kGhostType2, kGhost};
+  }
+  for (std::size_t i = 0; i < number_of_ellipses_; ++i) {
+    const auto stretch = geometry::stretch_within(ellipses_[i], sensor, sight / range);
+    if (stretch && range > stretch->leave_m + config_.type1_margin_m) return {Provenance::kGhostType1, kGhost};
+  }
+  return {Provenance::kMoving, kReal};
+}
+
+void GhostFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+  const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
+  out.number_of_valid_detections = static_cast<std::uint32_t>(count);
+  out.fields = scan.fields;
+  out.flags = scan.flags;
+  out.geometry = scan.geometry;
+  out.reserved = {};
+  copy_columns(scan, count, out);
+
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
+  map_.advance(time_ns, scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, config_.memory_s);
+  const auto is = [&](std::size_t i, std::uint16_t flag) { return (scan.detection_flags[i] & flag) != 0; };
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is(i, corrected_flag::kStationary) && !is(i, corrected_flag::kRejected)) {
+      map_.add({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
+    }
+  }
+  const std::span<const ReflectorSegment> segments = finder_.find(map_.points());
+  std::copy(segments.begin(), segments.end(), out.reflector_segments.begin());
+  out.number_of_reflector_segments = static_cast<std::uint32_t>(segments.size());
+
+  predict_tracks(scan);
+  if (!has_tracks_) {
+    out.flags |= pipeline_flag::kNoTracks;
+  } else if (std::abs(static_cast<double>(time_ns - tracks_->header.measurement_time_ns)) * 1e-9 >
+             config_.tracks_max_age_s) {
+    out.flags |= pipeline_flag::kTracksStale;
+  }
+
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
+  for (std::size_t i = 0; i < count; ++i) {
+    Verdict verdict{Provenance::kUnknown, 0.0F};
+    if (!is(i, corrected_flag::kRejected)) {
+      if (is(i, corrected_flag::kMoving)) {
+        verdict = judge_moving(sensor, {scan.x_vehicle_m[i], scan.y_vehicle_m[i]}, segments);
+      } else if (is(i, corrected_flag::kStationary)) {
+        verdict = {Provenance::kStationary, 0.0F};
+      }
+    }
+    out.provenance[i] = verdict.provenance;
+    out.ghost_probability[i] = verdict.ghost_probability;
+  }
+}
+
+}  // namespace boresight::ghosts

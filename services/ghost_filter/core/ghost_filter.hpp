@@ -1,0 +1,43 @@
+// Which detections are real: the published two tests (Report B §2) on reflector segments and predicted tracks.
+#pragma once
+
+#include <memory>
+
+#include "interfaces/messages/classified_scan.hpp"
+#include "interfaces/messages/corrected_scan.hpp"
+#include "interfaces/messages/track_list.hpp"
+#include "services/common/geometry/segment.hpp"
+#include "services/ghost_filter/core/config.hpp"
+#include "services/ghost_filter/core/reflectors.hpp"
+#include "services/ghost_filter/core/stationary_map.hpp"
+
+namespace boresight::ghosts {
+
+class GhostFilter {
+ public:
+  explicit GhostFilter(const Config& config);
+
+  /// The tracks of the previous step.
+  void add_tracks(const TrackList& tracks);
+
+  /// Writes everything of `out` but the header.
+  void classify(const CorrectedScan& scan, ClassifiedScan& out);
+
+ private:
+  struct Verdict {
+    Provenance provenance;
+    float ghost_probability;
+  };
+  void predict_tracks(const CorrectedScan& scan);
+  [[nodiscard]] Verdict judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position,
+                                     std::span<const ReflectorSegment> segments) const;
+  Config config_;
+  StationaryMap map_;
+  ReflectorFinder finder_;
+  std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
+  bool has_tracks_ = false;
+  std::array<geometry::Ellipse, kMaxTracks> ellipses_;
+  std::size_t number_of_ellipses_ = 0;
+};
+
+}  // namespace boresight::ghosts

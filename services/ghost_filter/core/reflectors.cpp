@@ -1,0 +1,111 @@
+#include "services/ghost_filter/core/reflectors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/ghost_filter/core/stationary_map.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr int kMaxDepth = 6;
+
+/// Total least squares: the line through the centroid along the principal axis.
+struct Line {
+  Eigen::Vector2d centre;
+  Eigen::Vector2d direction;
+  double residual_m;  // rms distance of the points
+};
+
+Line fit_line(std::span<const Eigen::Vector2d> points) {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) centre += p;
+  centre /= static_cast<double>(points.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Vector2d d = p - centre;
+    xx += d.x() * d.x();
+    xy += d.x() * d.y();
+    yy += d.y() * d.y();
+  }
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+  const double across = xx * direction.y() * direction.y() - 2.0 * xy * direction.x() * direction.y() +
+                        yy * direction.x() * direction.x();
+  return {centre, direction, std::sqrt(std::max(0.0, across) / static_cast<double>(points.size()))};
+}
+
+double length_of(const ReflectorSegment& s) {
+  return std::hypot(s.end_vehicle_m[0] - s.start_vehicle_m[0], s.end_vehicle_m[1] - s.start_vehicle_m[1]);
+}
+
+}  // namespace
+
+ReflectorFinder::ReflectorFinder(const Config& config) : config_(config), dbscan_(StationaryMap::kCapacity) {
+  sorted_.reserve(StationaryMap::kCapacity);
+  cluster_begin_.reserve(StationaryMap::kCapacity + 2);
+}
+
+std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::Vector2d> points) {
+  number_of_segments_ = 0;
+  const std::size_t clusters = dbscan_.cluster(points, config_.cluster_radius_m, config_.cluster_min_points);
+  const auto labels = dbscan_.labels();
+  // Counting sort by cluster: two passes, no comparison, no allocation.
+  cluster_begin_.assign(clusters + 1, 0);
+  for (const std::int32_t label : labels) {
+    if (label >= 0) ++cluster_begin_[static_cast<std::size_t>(label) + 1];
+  }
+  for (std::size_t c = 1; c <= clusters; ++c) cluster_begin_[c] += cluster_begin_[c - 1];
+  sorted_.resize(cluster_begin_[clusters]);
+  for (std::size_t i = labels.size(); i-- > 0;) {
+    if (labels[i] >= 0) sorted_[--cluster_begin_[static_cast<std::size_t>(labels[i]) + 1]] = points[i];
+  }
+  // Each cluster's begin has moved into the next one's slot.
+  for (std::size_t c = 0; c < clusters; ++c) {
+    const std::size_t begin = cluster_begin_[c + 1];
+    const std::size_t end = c + 2 <= clusters ? cluster_begin_[c + 2] : sorted_.size();
+    fit(begin, end, 0);
+  }
+  return {segments_.data(), number_of_segments_};
+}
+
+void ReflectorFinder::fit(std::size_t begin, std::size_t end, int depth) {
+  if (end - begin < config_.min_segment_points) return;
+  const std::span<Eigen::Vector2d> points(sorted_.data() + begin, end - begin);
+  const Line line = fit_line(points);
+  const auto along = [&](const Eigen::Vector2d& p) { return line.direction.dot(p - line.centre); };
+  if (line.residual_m > config_.max_segment_residual_m) {
+    if (depth == kMaxDepth) return;
+    const auto middle = std::partition(points.begin(), points.end(), [&](const auto& p) { return along(p) < 0.0; });
+    const std::size_t split = begin + static_cast<std::size_t>(middle - points.begin());
+    if (split == begin || split == end) return;
+    fit(begin, split, depth + 1);
+    fit(split, end, depth + 1);
+    return;
+  }
+  double first = along(points.front()), last = first;
+  for (const Eigen::Vector2d& p : points) {
+    first = std::min(first, along(p));
+    last = std::max(last, along(p));
+  }
+  if (last - first < config_.min_segment_length_m) return;
+  const Eigen::Vector2f start = (line.centre + first * line.direction).cast<float>();
+  const Eigen::Vector2f stop = (line.centre + last * line.direction).cast<float>();
+  add({{start.x(), start.y()},
+       {stop.x(), stop.y()},
+       static_cast<float>(line.residual_m),
+       static_cast<std::uint32_t>(points.size())});
+}
+
+void ReflectorFinder::add(const ReflectorSegment& segment) {
+  if (number_of_segments_ < segments_.size()) {
+    segments_[number_of_segments_++] = segment;
+    return;
+  }
+  const auto shortest = std::min_element(segments_.begin(), segments_.end(),
+                                         [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
+  if (length_of(*shortest) < length_of(segment)) *shortest = segment;
+}
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,33 @@
+// boresight-ghost_filter: corrected scans and the previous step's tracks in, classified scans out.
+#include "services/common/runtime/service_main.hpp"
+#include "services/ghost_filter/config.hpp"
+#include "services/ghost_filter/core/ghost_filter.hpp"
+
+using namespace boresight;
+
+namespace {
+
+int run(runtime::Node& node, const ghosts::Config& config) {
+  ghosts::GhostFilter filter(config);
+  runtime::Publisher<ClassifiedScan> classified(node);
+  node.on<TrackList>([&](const TrackList& tracks) { filter.add_tracks(tracks); });
+  node.on<CorrectedScan>([&](const CorrectedScan& scan) {
+    classified.publish_from(scan.header, Stage::kGhostFilter, [&](ClassifiedScan& out) {
+      filter.classify(scan, out);
+      if ((out.flags & (pipeline_flag::kNoTracks | pipeline_flag::kTracksStale)) != 0) {
+        node.fault(Fault::kSideInputMissing, "scan without tracks of the previous step: no type-1 test");
+      }
+    });
+  });
+  return node.spin();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runtime::service_main(
+      catalogue::Service::kGhostFilter, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
+        const ghosts::Config config = ghosts::read_config(config::Reader::open(files.service_file("ghost_filter")));
+        return [config](runtime::Node& node) { return run(node, config); };
+      });
+}
