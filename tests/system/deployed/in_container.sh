@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# Runs as the only task of the booted container; what it finds is described in README.md.
+set -u
+failed=0
+check() { # check WHAT COMMAND…
+  local what=$1
+  shift
+  if "$@"; then echo "ok      $what"; else echo "FAILED  $what"; failed=1; fi
+}
+# within SECONDS COMMAND…: as soon as it succeeds.
+within() {
+  local end=$((SECONDS + $1))
+  shift
+  until "$@"; do
+    [ "$SECONDS" -ge "$end" ] && return 1
+    sleep 0.1
+  done
+}
+
+services=(ingest_gateway alignment_estimator detection_corrector ghost_filter tracker health)
+pid_of() { systemctl show -P MainPID "boresight-$1.service"; }
+all_active() {
+  local service
+  for service in roudi "${services[@]}"; do systemctl is-active -q "boresight-$service.service" || return 1; done
+}
+# is_new SERVICE OLD_PID: it runs as another process now.
+is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" != "$2" ]; }
+# monitor SECONDS: what a member of the group sees of the topics, as JSON.
+monitor() {
+  nsenter -m -t "$(pid_of roudi)" runuser -u boresight-monitor -- boresight monitor --config /etc/boresight \
+    --vehicle simulated --json --duration "$1" 2>/dev/null
+}
+heartbeats_flow() { monitor 2 | tail -n 1 | grep -q '"name":"tracker","condition":"\(alive\|degraded\|restarted\)"'; }
+nothing_left() { [ -z "$(ls /dev/shm)" ] && ! pgrep -f '^/usr/lib/boresight/|iox-roudi' >/dev/null; }
+
+ip link set lo up multicast on
+ip route add 224.0.0.0/4 dev lo
+
+systemctl start boresight.target
+check "every unit becomes active" within 15 all_active
+for service in roudi "${services[@]}"; do
+  check "boresight-$service runs as a user of its own" \
+    [ "$(ps -o user:40= -p "$(pid_of "$service")")" = "boresight-$service" ]
+done
+
+boresight diagnostics > /out/diagnostics.txt 2>&1 &
+diagnostics=$!
+systemctl start boresight-replay.service
+monitor 24 > /out/monitor.txt
+check "the replay played to its end" within 15 sh -c '! systemctl is-active -q boresight-replay.service'
+check "the replay ended well" [ "$(systemctl show -P Result boresight-replay.service)" = success ]
+kill -INT $diagnostics
+wait $diagnostics
+check "a DDS subscriber sees the crooked radar degraded" grep -q 'front_right.*MISALIGNED' /out/diagnostics.txt
+check "and no other" sh -c '! grep MISALIGNED /out/diagnostics.txt | grep -qE "front_left|rear_left|rear_right"'
+check "the monitor sees tracks" grep -q '"confirmed":true' /out/monitor.txt
+check "no scan is lost" sh -c '! grep -qE "\"lost\":[1-9]|\"input lost\"" /out/monitor.txt'
+
+# mapped SERVICE SEGMENT ACCESS: how the service has mapped a segment of shared memory ("rw-s", "r--s").
+mapped() { grep " /dev/shm/boresight-$2\$" "/proc/$(pid_of "$1")/maps" | awk '{print $2}' | sort -u | grep -qx -- "$3"; }
+check "a service maps its own segment for writing" mapped tracker tracker rw-s
+check "and the others' read-only" mapped tracker ghost_filter r--s
+
+tracker=$(pid_of tracker)
+gateway=$(pid_of ingest_gateway)
+kill -KILL "$tracker"
+check "a killed service comes back" within 5 is_new tracker "$tracker"
+check "alone" [ "$(pid_of ingest_gateway)" = "$gateway" ]
+check "and is heard again" within 5 heartbeats_flow
+
+tracker=$(pid_of tracker)
+kill -STOP "$tracker"
+check "a frozen service is ended by its watchdog and comes back" within 15 is_new tracker "$tracker"
+
+roudi=$(pid_of roudi)
+declare -A before
+for service in "${services[@]}"; do before[$service]=$(pid_of "$service"); done
+kill -KILL "$roudi"
+check "a killed RouDi comes back" within 5 is_new roudi "$roudi"
+for service in "${services[@]}"; do
+  check "boresight-$service is started anew with it" within 10 is_new "$service" "${before[$service]}"
+done
+check "and the new domain works" within 10 heartbeats_flow
+
+systemctl stop boresight.target
+check "stopping the target leaves no process and no shared memory" within 10 nothing_left
+
+echo $failed > /out/verdict
+exit $failed
