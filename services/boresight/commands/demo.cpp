@@ -14,8 +14,8 @@
 #include "deploy/roudi/pools.hpp"
 #include "deploy/supervisor/domain.hpp"
 #include "services/boresight/commands/commands.hpp"
-#include "services/boresight/commands/truth_file.hpp"
 #include "services/boresight/report/html_report.hpp"
+#include "services/boresight/report/truth_table.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/options.hpp"
 #include "services/common/runtime/stop_signal.hpp"
@@ -30,7 +30,7 @@ constexpr int kExitInterrupted = 130;
 constexpr std::int64_t kReadyTimeout_ns = 30'000'000'000;
 // From the last frame to the last snapshot with what came of it: two periods of the monitor's record.
 constexpr std::int64_t kLinger_ns = 1'000'000'000;
-constexpr const char* kSimulatedVehicle = "simulated";
+constexpr const char* kSimulatedVehicle = "demo";
 
 struct DemoOptions {
   runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
@@ -75,20 +75,17 @@ Drive simulate(const DemoOptions& options, const fs::path& logs) {
   const fs::path directory = options.output / "drive";
   fs::remove_all(directory);
   supervisor::Command command;
-  command.arguments = {own_program().string(),
-                       "simulate",
-                       "--config",
-                       options.configuration.directory.string(),
-                       "--vehicle",
-                       options.configuration.vehicle_name,
-                       "--out",
-                       directory.string()};
+  command.arguments = {
+      own_program().string(), "simulate", "--vehicle", options.configuration.vehicle_file().string(), "--out",
+      directory.string()};
   if (options.duration_s > 0.0) {
     command.arguments.insert(command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
   }
   std::cout << "simulating a drive" << std::endl;
   run_to_end(command, logs / "simulate.log", "the simulation");
-  Drive drive{.title = "simulated drive", .recordings = {}, .truth = read_truth(directory / "truth.toml")};
+  std::ifstream truth(directory / "truth.csv");
+  Drive drive{.title = "simulated drive", .recordings = {}, .truth = report::read_truth(truth)};
+  if (!drive.truth.known()) throw std::runtime_error("the simulation left no truth in " + directory.string());
   for (const auto& entry : fs::directory_iterator(directory)) {
     const std::string extension = entry.path().extension().string();
     if (extension == ".log" || extension == ".pcap") drive.recordings.push_back(entry.path().string());

@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 
 #include "services/boresight/commands/commands.hpp"
-#include "services/boresight/commands/truth_file.hpp"
 #include "services/boresight/report/html_report.hpp"
+#include "services/boresight/report/truth_table.hpp"
 #include "services/common/runtime/options.hpp"
 
 namespace boresight {
@@ -28,7 +28,11 @@ int run(const ReportOptions& options) {
   report::ReportInput input;
   input.title = options.record;
   input.snapshots = monitor::read_record(record);
-  if (!options.truth.empty()) input.truth = read_truth(options.truth);
+  if (!options.truth.empty()) {
+    std::ifstream truth(options.truth);
+    input.truth = report::read_truth(truth);
+    if (!input.truth.known()) throw std::runtime_error("no truth in " + options.truth);
+  }
   input.vehicle = options.configuration.vehicle();
   std::ofstream output(options.output);
   output << report::render_html(input);
@@ -49,7 +53,7 @@ void add_report_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--vehicle", options->configuration.vehicle_name, "vehicle file to use, without .toml")
       ->envname("BORESIGHT_VEHICLE");
-  command->add_option("--truth", options->truth, "truth.toml of a simulated drive");
+  command->add_option("--truth", options->truth, "truth.csv of a simulated drive");
   command->add_option("--out", options->output, "page to write")->capture_default_str();
   command->callback([options, &exit_code] {
     try {

@@ -28,7 +28,7 @@ is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" !
 # monitor SECONDS: what a member of the group sees of the topics, as JSON.
 monitor() {
   nsenter -m -t "$(pid_of roudi)" runuser -u boresight-monitor -- boresight monitor --config /etc/boresight \
-    --vehicle simulated --json --duration "$1" 2>/dev/null
+    --vehicle demo --json --duration "$1" 2>/dev/null
 }
 heartbeats_flow() { monitor 2 | tail -n 1 | grep -q '"name":"tracker","condition":"\(alive\|degraded\|restarted\)"'; }
 nothing_left() { [ -z "$(ls /dev/shm)" ] && ! pgrep -f '^/usr/lib/boresight/|iox-roudi' >/dev/null; }

@@ -33,11 +33,11 @@ nspawn=(systemd-nspawn --quiet --directory="$root" --machine="boresight-$$" --re
 echo uninitialized > "$root/etc/machine-id"
 rm -rf "$root"/etc/systemd/system/*.wants
 DESTDIR=$root cmake --install "$build" --prefix /usr > "$work/out/install.txt"
-"$build/bin/boresight" simulate --config "$source_dir/config" --vehicle simulated --duration 25 \
+"$build/bin/boresight" simulate --vehicle "$source_dir/config/vehicle/demo.toml" --duration 25 \
   --out "$root/var/lib/boresight-drive" > "$work/out/simulate.txt"
 recordings=$(find "$root/var/lib/boresight-drive" \( -name '*.log' -o -name '*.pcap' \) -printf '/var/lib/boresight-drive/%f ')
 cat > "$root/etc/default/boresight" <<EOF
-BORESIGHT_VEHICLE=simulated
+BORESIGHT_VEHICLE=demo
 BORESIGHT_INPUT=replay
 BORESIGHT_REPLAY_ARGS=$recordings
 EOF

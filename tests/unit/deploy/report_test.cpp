@@ -1,5 +1,8 @@
+#include <sstream>
+
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/svg_chart.hpp"
+#include "services/boresight/report/truth_table.hpp"
 #include "tests/unit/deploy/synthetic_drive.hpp"
 
 namespace boresight::report {
@@ -85,6 +88,18 @@ TEST(Summary, CountersThatStartAnewAreAddedUp) {
   const Summary summary = summarise(snapshots, {});
   EXPECT_EQ(summary.radars[0].last.scans, 1200U);
   EXPECT_EQ(summary.latencies[0].total(), 4800U);
+}
+
+TEST(TruthTable, TakesYawAndSpeedScaleAndNothingThatIsNoNumber) {
+  std::istringstream table(
+      "quantity,radar,value,unit\nspeed_scale,,1.012,1\nalignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\n"
+      "alignment_yaw,3,nan,deg\nalignment_yaw,4,,deg\nalignment_yaw,1\n");
+  const Truth truth = read_truth(table);
+  EXPECT_DOUBLE_EQ(truth.speed_scale.value(), 1.012);
+  ASSERT_EQ(truth.yaw_rad.size(), 1U);
+  EXPECT_NEAR(truth.yaw_rad.at(2), kCrooked_rad, 1e-12);
+  std::istringstream nothing("");
+  EXPECT_FALSE(read_truth(nothing).known());
 }
 
 TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
