@@ -1,6 +1,6 @@
 # Sourced by deploy/demo and tests/run: installs what is missing of deploy/packages.txt.
 
-say() { printf '\033[1m==>\033[0m %s\n' "$*"; }
+if [ -t 1 ]; then say() { printf '\033[1m==>\033[0m %s\n' "$*"; }; else say() { printf '==> %s\n' "$*"; }; fi
 
 # install_packages GROUP…: does nothing where everything is there, so that it needs no root then.
 install_packages() {
