@@ -1,0 +1,91 @@
+#include "tests/system/harness/domain.hpp"
+
+#include <fstream>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "deploy/roudi/pools.hpp"
+#include "deploy/supervisor/domain.hpp"
+#include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/config/vehicle_file.hpp"
+#include "tests/simulator/drive_writer.hpp"
+
+namespace boresight::harness {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = "/tmp/domain";
+const fs::path kBinaries = BORESIGHT_BINARY_DIR;
+const fs::path kConfig = fs::path(BORESIGHT_SOURCE_DIR) / "config";
+
+supervisor::DomainConfig configuration(const std::string& vehicle) {
+  fs::create_directories(kFolder / "logs");
+  const fs::path pools = kFolder / "logs" / "roudi.toml";
+  std::ofstream(pools) << roudi::to_toml(roudi::single_segment());
+  supervisor::DomainConfig config = supervisor::domain_of_catalogue({.binaries = kBinaries,
+                                                                     .config_directory = kConfig,
+                                                                     .vehicle = vehicle,
+                                                                     .run_directory = kFolder / "run",
+                                                                     .log_directory = kFolder / "logs",
+                                                                     .environment = {{"BORESIGHT_INPUT", "replay"}}},
+                                                                    pools);
+  std::erase_if(config.services, [](const supervisor::ProcessSpec& spec) { return !is_built(spec.name); });
+  return config;
+}
+
+}  // namespace
+
+bool is_built(std::string_view service) {
+  return fs::exists(kBinaries / ("boresight-" + std::string(service)));
+}
+
+Domain::Domain(const std::string& vehicle) : supervisor_(configuration(vehicle)) {}
+
+void Domain::start() {
+  supervisor_.start();
+  if (!until(20.0, [this] { return supervisor_.all_ready(); })) throw std::runtime_error("a service did not start");
+}
+
+void Domain::replay(const std::vector<fs::path>& recordings, std::vector<std::string> options) {
+  supervisor::ProcessSpec spec;
+  spec.name = "replay";
+  spec.role = supervisor::Role::kIndependent;
+  spec.command.arguments = {(kBinaries / "boresight-replay").string()};
+  for (const std::string& option : options) spec.command.arguments.push_back(option);
+  for (const fs::path& recording : recordings) spec.command.arguments.push_back(recording.string());
+  spec.command.environment = {{"BORESIGHT_RUNTIME_DIR", (kFolder / "run").string()}};
+  supervisor_.start_independent(spec);
+}
+
+bool Domain::until(double seconds, const std::function<bool()>& condition) {
+  const std::int64_t deadline_ns = runtime::monotonic_now_ns() + static_cast<std::int64_t>(seconds * 1e9);
+  while (!condition()) {
+    if (runtime::monotonic_now_ns() > deadline_ns) return false;
+    supervisor_.poll(5'000'000);
+  }
+  return true;
+}
+
+void Domain::run_for(double seconds) {
+  static_cast<void>(until(seconds, [] { return false; }));
+}
+
+bool Domain::replay_has_ended() {
+  const auto result = supervisor_.independent_result("replay");
+  if (result) {
+    EXPECT_EQ(*result, 0) << "boresight-replay: " << supervisor::describe_exit(*result);
+  }
+  return result.has_value();
+}
+
+std::vector<fs::path> simulated_drive(double duration_s) {
+  const VehicleConfig vehicle = config::read_vehicle_file(kConfig / "vehicle" / "demo.toml");
+  const simulator::DriveFiles files =
+      simulator::write_drive(simulator::scenario("demo_drive"), vehicle, 1, duration_s, "/tmp/drive", [](double) {});
+  return {files.radars, files.ego};
+}
+
+}  // namespace boresight::harness
