@@ -73,7 +73,6 @@ struct Drive {
 
 Drive simulate(const DemoOptions& options, const fs::path& logs) {
   const fs::path directory = options.output / "drive";
-  fs::remove_all(directory);
   supervisor::Command command;
   command.arguments = {
       own_program().string(), "simulate", "--vehicle", options.configuration.vehicle_file().string(), "--out",
@@ -86,11 +85,7 @@ Drive simulate(const DemoOptions& options, const fs::path& logs) {
   std::ifstream truth(directory / "truth.csv");
   Drive drive{.title = "simulated drive", .recordings = {}, .truth = report::read_truth(truth)};
   if (!drive.truth.known()) throw std::runtime_error("the simulation left no truth in " + directory.string());
-  for (const auto& entry : fs::directory_iterator(directory)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".log" || extension == ".pcap") drive.recordings.push_back(entry.path().string());
-  }
-  std::sort(drive.recordings.begin(), drive.recordings.end());
+  for (const char* file : {"radars.pcap", "ego.candump.log"}) drive.recordings.push_back((directory / file).string());
   return drive;
 }
 
@@ -214,6 +209,13 @@ std::vector<std::string> event_lines(const std::vector<supervisor::Event>& event
   return lines;
 }
 
+/// Processes append to their logs; only what an earlier demo wrote is removed, because the folder is the user's.
+void remove_earlier_logs(const fs::path& logs) {
+  std::vector<std::string> names = {"roudi", "monitor", "replay", "simulate"};
+  names.insert(names.end(), catalogue::kServiceNames.begin(), catalogue::kServiceNames.end());
+  for (const std::string& name : names) fs::remove(logs / (name + ".log"));
+}
+
 int run(DemoOptions options) {
   runtime::install_stop_signals();
   const bool simulated = options.recordings.empty();
@@ -225,9 +227,9 @@ int run(DemoOptions options) {
   options.output = fs::absolute(options.output);
   const fs::path logs = options.output / "logs";
   const fs::path record = options.output / "record.txt";
-  fs::remove_all(logs);
-  fs::remove(record);
   fs::create_directories(logs);
+  remove_earlier_logs(logs);
+  fs::remove(record);
 
   const Drive drive = simulated ? simulate(options, logs) : recorded(options);
   const std::vector<supervisor::Event> events = play(options, drive, logs, record);

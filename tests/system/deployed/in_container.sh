@@ -49,7 +49,7 @@ systemctl start boresight-replay.service
 monitor 24 > /out/monitor.txt
 check "the replay played to its end" within 15 sh -c '! systemctl is-active -q boresight-replay.service'
 check "the replay ended well" [ "$(systemctl show -P Result boresight-replay.service)" = success ]
-kill -INT $diagnostics
+kill -TERM $diagnostics
 wait $diagnostics
 check "a DDS subscriber sees the crooked radar degraded" grep -q 'front_right.*MISALIGNED' /out/diagnostics.txt
 check "and no other" sh -c '! grep MISALIGNED /out/diagnostics.txt | grep -qE "front_left|rear_left|rear_right"'
