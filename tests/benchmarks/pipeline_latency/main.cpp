@@ -1,0 +1,125 @@
+// boresight-bench-pipeline_latency [SECONDS = 20]: run it by tests/system/isolated, or where no other RouDi runs.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+
+#include "services/common/runtime/config/vehicle_file.hpp"
+#include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
+#include "tests/simulator/wire/ars548_encoder.hpp"
+#include "tests/simulator/wire/pcap_writer.hpp"
+#include "tests/system/harness/domain.hpp"
+#include "tests/system/harness/observer.hpp"
+
+using namespace boresight;
+
+namespace {
+
+constexpr std::uint32_t kRadars = 4;
+constexpr std::uint32_t kDetections = 300;
+constexpr std::int64_t kCycle_ns = 50'000'000;
+constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;  // of the simulated ego recording
+
+std::uint32_t ipv4(const std::string& text) {
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  std::sscanf(text.c_str(), "%u.%u.%u.%u", &a, &b, &c, &d);
+  return a << 24 | b << 16 | c << 8 | d;
+}
+
+/// Four radars of 300 detections at 20 Hz, their cycles evenly apart.
+std::filesystem::path write_load(double seconds) {
+  const VehicleConfig vehicle =
+      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
+  const std::filesystem::path file = "/tmp/load.pcap";
+  simulator::wire::PcapWriter pcap(file);
+  const auto scan = std::make_unique<RadarScan>();
+  const auto bytes = std::make_unique<simulator::wire::Ars548List>();
+  const auto cycles = static_cast<std::uint32_t>(seconds * 1e9 / static_cast<double>(kCycle_ns));
+  for (std::uint32_t i = 0; i < cycles * kRadars; ++i) {
+    const auto& radar = vehicle.radars[i % kRadars];
+    scan->cycle_counter = i / kRadars;
+    scan->number_of_valid_detections = kDetections;
+    for (std::uint32_t k = 0; k < kDetections; ++k) {
+      const float along = static_cast<float>(k) / static_cast<float>(kDetections);
+      scan->range_m[k] = 5.0F + 80.0F * std::fmod(along * 37.0F, 1.0F);
+      scan->azimuth_rad[k] = -1.1F + 2.2F * along;
+      scan->range_rate_mps[k] = -15.0F * std::cos(scan->azimuth_rad[k]);
+      scan->existence_probability[k] = 0.9F;
+    }
+    const std::int64_t time_ns = kEpoch_ns + i * (kCycle_ns / kRadars);
+    simulator::wire::encode_ars548(*scan, time_ns, *bytes);
+    pcap.write(time_ns, {ipv4(radar.source.sender), radar.source.port}, {ipv4(radar.source.address), radar.source.port},
+               *bytes);
+  }
+  return file;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void print(const char* what, const std::vector<double>& ns) {
+  std::printf("%-34s %9.0f %9.0f %9.0f\n", what, quantile(ns, 0.5) * 1e-3, quantile(ns, 0.99) * 1e-3,
+              quantile(ns, 1.0) * 1e-3);
+}
+
+int run(double seconds) {
+  const auto ego = harness::simulated_drive(seconds).back();
+  const auto load = write_load(seconds);
+  const bool tracker = harness::is_built("tracker");
+  const std::size_t stages = tracker ? 4 : 3;
+  std::vector<std::size_t> chunks = {sizeof(RadarScan), sizeof(CorrectedScan)};
+  if (tracker) chunks.push_back(sizeof(ClassifiedScan));
+
+  std::vector<double> total, ipc;
+  std::array<std::vector<double>, kNumberOfStages> processing;
+  {
+    harness::Observer observer("-bench");
+    harness::Domain domain("demo");
+    domain.start();
+    domain.replay({load, ego});
+    if (!domain.until(seconds + 20.0, [&] { return domain.replay_has_ended(); })) return 1;
+    domain.run_for(0.3);
+    const auto lists = observer.of(tracker ? catalogue::TopicId::kTrackList : catalogue::TopicId::kClassifiedScan);
+    for (const harness::Sample* sample : lists) {
+      const auto& stamps = sample->header.stages;
+      double between_ns = 0.0;
+      for (std::size_t i = 0; i < stages; ++i) {
+        processing[i].push_back(static_cast<double>(stamps[i].end_ns - stamps[i].begin_ns));
+        if (i > 0) between_ns += static_cast<double>(stamps[i].begin_ns - stamps[i - 1].end_ns);
+      }
+      ipc.push_back(between_ns);
+      total.push_back(static_cast<double>(stamps[stages - 1].end_ns - stamps[0].begin_ns));
+    }
+    static_cast<void>(observer.process().stop());
+  }
+  if (total.empty()) return 1;
+  const auto bare = bench::bare_chain(chunks, kCycle_ns / kRadars, static_cast<std::size_t>(seconds * 80.0));
+  if (bare.empty()) return 1;
+
+  std::printf("%u radars x %u detections x 20 Hz, %zu scans, first datagram to %s\n", kRadars, kDetections,
+              total.size(), tracker ? "track list" : "classified scan (boresight-tracker is not built)");
+  std::printf("%-34s %9s %9s %9s\n", "us", "p50", "p99", "max");
+  const char* const names[] = {"ingest gateway", "detection corrector", "ghost filter", "tracker"};
+  for (std::size_t i = 0; i < stages; ++i) print(names[i], processing[i]);
+  print("between the processes (IPC)", ipc);
+  print("total", total);
+  print("bare iceoryx chain, same hops", bare);
+  std::printf("IPC share / bare chain at p50: %.2f (at most 1.3)\n", quantile(ipc, 0.5) / quantile(bare, 0.5));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc > 1 ? std::atof(argv[1]) : 20.0);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

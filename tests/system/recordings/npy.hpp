@@ -1,0 +1,34 @@
+// Reads the arrays of doubles that lie beside the recording.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace boresight::harness {
+
+/// All numbers of a version 1 .npy file of little-endian doubles as they lie in it; throws if it is another one.
+inline std::vector<double> read_npy(const std::filesystem::path& path, const std::string& order = "False") {
+  std::ifstream file(path, std::ios::binary);
+  unsigned char start[10] = {};
+  file.read(reinterpret_cast<char*>(start), sizeof(start));
+  if (!file || start[0] != 0x93 || start[1] != 'N' || start[6] != 1) throw std::runtime_error(path.string());
+  std::string header(static_cast<std::size_t>(start[8] | start[9] << 8), ' ');
+  file.read(header.data(), static_cast<std::streamsize>(header.size()));
+  if (header.find("'<f8'") == std::string::npos || header.find("'fortran_order': " + order) == std::string::npos) {
+    throw std::runtime_error(path.string() + ": " + header);
+  }
+  std::vector<double> values;
+  for (double value = 0.0; file.read(reinterpret_cast<char*>(&value), sizeof(value));) values.push_back(value);
+  return values;
+}
+
+/// The same of a file that holds one column after the other.
+inline std::vector<double> read_npy_columns(const std::filesystem::path& path) {
+  return read_npy(path, "True");
+}
+
+}  // namespace boresight::harness

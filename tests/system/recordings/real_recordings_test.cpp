@@ -1,0 +1,129 @@
+// Recordings of real radars through the real processes in real time.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/system/harness/domain.hpp"
+#include "tests/system/harness/observer.hpp"
+#include "tests/system/recordings/npy.hpp"
+
+namespace boresight {
+namespace {
+
+namespace fs = std::filesystem;
+using catalogue::Service;
+using catalogue::TopicId;
+using harness::Observer;
+using harness::Sample;
+
+const fs::path kData = BORESIGHT_SHARED_DATA;
+
+std::string name(Service service) {
+  return std::string(catalogue::name_of(service));
+}
+
+/// Linear interpolation in (times, values), which must bracket `time`.
+double at(const std::vector<double>& times, const std::vector<double>& values, double time) {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (after == times.begin()) return values.front();
+  if (after == times.end()) return values.back();
+  const auto i = static_cast<std::size_t>(after - times.begin());
+  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
+  return values[i - 1] + share * (values[i] - values[i - 1]);
+}
+
+/// Plays the recording through the whole chain and returns what was seen; the domain is gone afterwards.
+std::unique_ptr<Observer> play(const std::string& vehicle, const fs::path& recording, double limit_s) {
+  auto observer = std::make_unique<Observer>("-recordings");
+  harness::Domain domain(vehicle);
+  domain.start();
+  EXPECT_TRUE(domain.until(5.0, [&] { return observer->is_attached(); }));
+  domain.replay({recording});
+  EXPECT_TRUE(domain.until(limit_s, [&] { return domain.replay_has_ended(); }));
+  domain.run_for(0.5);
+  EXPECT_EQ(observer->process().stop(), 0);
+  domain.supervisor().stop();
+  return observer;
+}
+
+class Comma2k19 : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (!fs::exists(kRecording)) return;
+    observer_ = play("comma2k19", kRecording, 75.0);
+  }
+  static void TearDownTestSuite() { observer_.reset(); }
+  void SetUp() override {
+    if (!observer_) GTEST_SKIP() << "skipped: no shared data";
+  }
+
+  /// The recording's clock at a message's measurement time: the first ego frame is the recording's first frame.
+  static double recording_time_s(const Sample& sample) {
+    const auto& first = *observer_->of(TopicId::kEgoMotion).front();
+    return kFirstFrame_s +
+           static_cast<double>(sample.header.measurement_time_ns - first.header.measurement_time_ns) * 1e-9;
+  }
+
+  static inline const fs::path kFolder = kData / "comma2k19_seg40";
+  static inline const fs::path kRecording = kFolder / "radar_ego.candump.log";
+  static constexpr double kFirstFrame_s = 46408.585;
+  static inline std::unique_ptr<Observer> observer_;
+};
+
+TEST_F(Comma2k19, EveryValidRowOfTheRecordingArrives) {
+  std::uint64_t rows = 0;
+  std::uint64_t last = 0;
+  for (const Sample* scan : observer_->of(TopicId::kRadarScan)) {
+    rows += scan->count;
+    EXPECT_EQ(scan->header.sequence, last + 1);
+    last = scan->header.sequence;
+  }
+  EXPECT_EQ(rows, 10'100u);
+}
+
+TEST_F(Comma2k19, EgoMotionIsThatOfTheReferenceDecodings) {
+  const auto speed_times = harness::read_npy(kFolder / "processed_log/CAN/speed/t");
+  const auto speeds = harness::read_npy(kFolder / "processed_log/CAN/speed/value");
+  const auto gyro_times = harness::read_npy(kFolder / "processed_log/IMU/gyro/t");
+  // Columns one after the other: forward, right, down.
+  auto gyro = harness::read_npy_columns(kFolder / "processed_log/IMU/gyro/value");
+  const std::vector<double> down(gyro.end() - static_cast<std::ptrdiff_t>(gyro_times.size()), gyro.end());
+  double speed_square = 0.0;
+  double yaw_rate_square = 0.0;
+  const auto egos = observer_->of(TopicId::kEgoMotion);
+  ASSERT_GT(egos.size(), 2000u);
+  for (const Sample* ego : egos) {
+    const double time_s = recording_time_s(*ego);
+    speed_square += std::pow(static_cast<double>(ego->values[0]) - at(speed_times, speeds, time_s), 2);
+    yaw_rate_square += std::pow(static_cast<double>(ego->values[1]) + at(gyro_times, down, time_s), 2);
+  }
+  const auto count = static_cast<double>(egos.size());
+  RecordProperty("speed_rms_mps", std::to_string(std::sqrt(speed_square / count)));
+  RecordProperty("yaw_rate_rms_radps", std::to_string(std::sqrt(yaw_rate_square / count)));
+  EXPECT_LT(std::sqrt(speed_square / count), 0.15);
+  EXPECT_LT(std::sqrt(yaw_rate_square / count), 0.015) << "against a phone's gyro";
+}
+
+TEST_F(Comma2k19, TracksAppear) {
+  if (!harness::is_built(name(Service::kTracker))) GTEST_SKIP() << "boresight-tracker is not built";
+  const auto lists = observer_->of(TopicId::kTrackList);
+  EXPECT_EQ(lists.size(), observer_->of(TopicId::kRadarScan).size());
+  EXPECT_TRUE(std::any_of(lists.begin(), lists.end(), [](const Sample* s) { return s->confirmed_tracks > 0; }));
+}
+
+TEST(Ars548, RealScanArrivesInSharedMemory) {
+  const fs::path recording = kData / "nebula_ars548_srr520/ars548_real_2msgs_ipfrag.pcap";
+  if (!fs::exists(recording)) GTEST_SKIP() << "skipped: no shared data";
+  const auto observer = play("ars548_single", recording, 20.0);
+  const auto scans = observer->of(TopicId::kRadarScan);
+  ASSERT_EQ(scans.size(), 1u);
+  EXPECT_EQ(scans.front()->count, 308u);
+  EXPECT_TRUE(scans.front()->in_shared_memory);
+  EXPECT_EQ(observer->of(TopicId::kClassifiedScan).size(), 1u) << "and passes the chain without ego motion";
+}
+
+}  // namespace
+}  // namespace boresight
