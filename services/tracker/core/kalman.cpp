@@ -1,0 +1,76 @@
+#include "services/tracker/core/kalman.hpp"
+
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace boresight::tracking {
+
+namespace {
+
+using Matrix36d = Eigen::Matrix<double, 3, 6>;
+
+/// x, y, and the velocity's share along the line of sight.
+Matrix36d measurement_matrix(const PositionRate& m) {
+  Matrix36d h = Matrix36d::Zero();
+  h(0, 0) = 1.0;
+  h(1, 1) = 1.0;
+  h(2, 2) = m.line_of_sight.x();
+  h(2, 3) = m.line_of_sight.y();
+  return h;
+}
+
+void symmetrise(Matrix6d& m) {
+  m = 0.5 * (m + m.transpose()).eval();
+}
+
+}  // namespace
+
+void predict(KinematicState& state, double dt, double jerk_std_mps3, const geometry::EgoStep& ego) {
+  Matrix6d f = Matrix6d::Identity();
+  Matrix6d q = Matrix6d::Zero();
+  const double s = jerk_std_mps3 * jerk_std_mps3;
+  const double d2 = dt * dt, d3 = d2 * dt, d4 = d3 * dt, d5 = d4 * dt;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    f(k, k + 2) = dt;
+    f(k, k + 4) = 0.5 * d2;
+    f(k + 2, k + 4) = dt;
+    q(k, k) = s * d5 / 20.0;
+    q(k, k + 2) = q(k + 2, k) = s * d4 / 8.0;
+    q(k, k + 4) = q(k + 4, k) = s * d3 / 6.0;
+    q(k + 2, k + 2) = s * d3 / 3.0;
+    q(k + 2, k + 4) = q(k + 4, k + 2) = s * d2 / 2.0;
+    q(k + 4, k + 4) = s * dt;
+  }
+  Matrix6d turn = Matrix6d::Zero();
+  for (Eigen::Index k = 0; k < 6; k += 2) turn.block<2, 2>(k, k) = ego.to_new;
+  state.mean = f * state.mean;
+  state.mean.head<2>() -= ego.translation_m;
+  state.mean = turn * state.mean;
+  const Matrix6d whole = turn * f;
+  state.covariance = whole * state.covariance * whole.transpose() + turn * q * turn.transpose();
+  symmetrise(state.covariance);
+}
+
+Distance distance(const KinematicState& state, const PositionRate& m) {
+  const Matrix36d h = measurement_matrix(m);
+  const Eigen::Vector3d innovation = m.value - h * state.mean;
+  const Eigen::Matrix3d s = h * state.covariance * h.transpose() + m.covariance;
+  const double determinant = s.determinant();
+  if (!(determinant > 0.0)) return {1e12, 0.0};
+  return {innovation.dot(s.inverse() * innovation), std::log(determinant)};
+}
+
+bool update(KinematicState& state, const PositionRate& m) {
+  const Matrix36d h = measurement_matrix(m);
+  const Eigen::Matrix3d s = h * state.covariance * h.transpose() + m.covariance;
+  if (!(s.determinant() > 0.0)) return false;
+  const Eigen::Matrix<double, 6, 3> gain = state.covariance * h.transpose() * s.inverse();
+  state.mean += gain * (m.value - h * state.mean);
+  const Matrix6d rest = Matrix6d::Identity() - gain * h;
+  state.covariance = rest * state.covariance * rest.transpose() + gain * m.covariance * gain.transpose();
+  symmetrise(state.covariance);
+  return true;
+}
+
+}  // namespace boresight::tracking

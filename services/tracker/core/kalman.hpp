@@ -1,0 +1,41 @@
+// Constant-acceleration Kalman filter in the plane: state (x, y, v_x, v_y, a_x, a_y), position in the vehicle frame,
+// velocity and acceleration over ground in vehicle axes (Report D; algorithms.md §3.3).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "services/common/geometry/ego_step.hpp"
+
+namespace boresight::tracking {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct KinematicState {
+  Vector6d mean = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Identity();
+};
+
+/// Position (m) and range rate over ground (m/s) along a line of sight, and their covariance: rows x, y, ṙ.
+struct PositionRate {
+  Eigen::Vector3d value;
+  Eigen::Matrix3d covariance;
+  Eigen::Vector2d line_of_sight;  ///< unit vector from the sensor
+};
+
+/// Predicts over `elapsed_s` ≥ 0 with white jerk of spectral density jerk_std², then moves the state to the new
+/// vehicle frame.
+void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego);
+
+/// Squared Mahalanobis distance of a measurement from the prediction, and the logarithm of the determinant of the
+/// innovation's covariance.
+struct Distance {
+  double squared;
+  double log_determinant;
+};
+[[nodiscard]] Distance distance(const KinematicState& state, const PositionRate& measurement);
+
+/// Update in Joseph form, symmetrised. A singular innovation covariance leaves the state alone and returns false.
+bool update(KinematicState& state, const PositionRate& measurement);
+
+}  // namespace boresight::tracking

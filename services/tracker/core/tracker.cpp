@@ -1,0 +1,230 @@
+#include "services/tracker/core/tracker.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "services/common/geometry/ego_step.hpp"
+#include "services/common/geometry/frames.hpp"
+
+namespace boresight::tracking {
+
+namespace {
+
+PositionRate measurement_of(const Cluster& cluster) {
+  PositionRate m;
+  m.value << cluster.position_m, cluster.range_rate_over_ground_mps;
+  m.covariance.setZero();
+  m.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2;
+  m.covariance(2, 2) = cluster.range_rate_variance;
+  m.line_of_sight = cluster.line_of_sight;
+  return m;
+}
+
+std::uint32_t window_mask(std::size_t scans) {
+  return scans >= 32 ? ~0u : (1u << scans) - 1u;
+}
+
+}  // namespace
+
+Tracker::Tracker(const VehicleConfig& vehicle, const Config& config)
+    : vehicle_(vehicle), config_(config), clusterer_(config) {
+  tracks_.reserve(kMaxTracks);
+}
+
+StepResult Tracker::step(const ClassifiedScan& scan) {
+  StepResult result;
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
+  double elapsed_s = static_cast<double>(time_ns - time_ns_) * 1e-9;
+  if (std::abs(elapsed_s) > 2.0) {
+    result.restarted = time_ns_ != 0;
+    tracks_.clear();
+    elapsed_s = 0.0;
+  } else if (elapsed_s < 0.0) {
+    result.out_of_order = true;
+    elapsed_s = 0.0;
+  }
+  if (!result.out_of_order) time_ns_ = time_ns;
+  flags_ = scan.flags;
+  dropped_tracks_ = 0;
+
+  predict_all(elapsed_s, scan.geometry);
+  const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
+  const std::span<const Cluster> clusters = clusterer_.find(scan);
+  result.dropped_clusters = clusterer_.dropped();
+  assign(clusters, has_elevation);
+  judge(scan);
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    if (!cluster_used_[c]) start_track(clusters[c], has_elevation);
+  }
+  remove_duplicates();
+  return result;
+}
+
+void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
+  const geometry::EgoStep ego = geometry::ego_step(geometry.ego_speed_mps, geometry.ego_yaw_rate_radps, elapsed_s);
+  const double turn = static_cast<double>(geometry.ego_yaw_rate_radps) * elapsed_s;
+  for (Entry& track : tracks_) {
+    predict(track.state, elapsed_s, config_.jerk_std_mps3, ego);
+    track.extent.heading_rad = geometry::wrap_angle(track.extent.heading_rad - turn);
+    track.age_s += elapsed_s;
+    track.since_update_s += elapsed_s;
+    track.detections = 0;
+  }
+}
+
+void Tracker::assign(std::span<const Cluster> clusters, bool has_elevation) {
+  cluster_used_.fill(false);
+  assignment_.reset(tracks_.size(), clusters.size(), config_.gate_chi2);
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      const Distance d = distance(tracks_[t].state, measurement_of(clusters[c]));
+      if (d.squared >= config_.gate_chi2) continue;
+      // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
+      const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
+      assignment_.set(t, c, d.squared + preference);
+    }
+  }
+  assignment_.solve();
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const std::int32_t column = assignment_.column_of(t);
+    if (column < 0) continue;
+    const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
+    Entry& track = tracks_[t];
+    if (!update(track.state, measurement_of(cluster))) continue;
+    cluster_used_[static_cast<std::size_t>(column)] = true;
+    track.extent.update(cluster, track.state.mean.segment<2>(2), has_elevation);
+    track.since_update_s = 0.0;
+    track.detections = cluster.number_of_detections;
+  }
+  // What lies within a confirmed track's box is another part of that object and no object of its own.
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    for (const Entry& track : tracks_) {
+      if (cluster_used_[c] || !track.confirmed) continue;
+      const Eigen::Vector2d along(std::cos(track.extent.heading_rad), std::sin(track.extent.heading_rad));
+      const Eigen::Vector2d d = clusters[c].position_m - track.state.mean.head<2>();
+      const double across = -along.y() * d.x() + along.x() * d.y();
+      cluster_used_[c] = std::abs(along.dot(d)) < 0.5 * track.extent.length_m + 2.0 &&
+                         std::abs(across) < 0.5 * track.extent.width_m + 1.0;
+    }
+  }
+}
+
+void Tracker::start_track(const Cluster& cluster, bool has_elevation) {
+  if (tracks_.size() == tracks_.capacity()) {
+    ++dropped_tracks_;
+    return;
+  }
+  Entry track;
+  track.id = next_id_++;
+  track.state.mean.head<2>() = cluster.position_m;
+  track.state.mean.segment<2>(2) = cluster.range_rate_over_ground_mps * cluster.line_of_sight;
+  track.state.covariance.setZero();
+  track.state.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2;
+  // The range rate says the speed along the line of sight; across it nothing is known.
+  const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
+  const double across = config_.start_speed_std_mps * config_.start_speed_std_mps;
+  track.state.covariance.block<2, 2>(2, 2) =
+      cluster.range_rate_variance * u * u.transpose() + across * v * v.transpose();
+  const double acceleration = config_.start_acceleration_std_mps2 * config_.start_acceleration_std_mps2;
+  track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
+  track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
+  track.extent.update(cluster, track.state.mean.segment<2>(2), has_elevation);
+  track.history = 1;
+  track.seen_scans = 1;
+  track.detections = cluster.number_of_detections;
+  tracks_.push_back(track);
+}
+
+bool Tracker::can_see(const ScanGeometry& geometry, std::uint32_t radar_id, const Entry& track) const {
+  const RadarConfig* const radar = vehicle_.radar(radar_id);
+  if (radar == nullptr) return false;
+  const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> rotation(geometry.sensor_to_vehicle.data());
+  const Eigen::Vector3d sight(track.state.mean(0) - static_cast<double>(geometry.sensor_position_vehicle_m[0]),
+                              track.state.mean(1) - static_cast<double>(geometry.sensor_position_vehicle_m[1]), 0.0);
+  const Eigen::Vector3d in_sensor = rotation.cast<double>().transpose() * sight;
+  const double azimuth = std::atan2(in_sensor.y(), in_sensor.x());
+  const FieldOfView& view = radar->field_of_view;
+  return azimuth > view.azimuth_min_rad && azimuth < view.azimuth_max_rad && sight.norm() < view.range_max_m;
+}
+
+bool Tracker::is_dead(const Entry& track) const {
+  if (track.since_update_s > config_.coast_s || !track.state.mean.allFinite()) return true;
+  const std::uint32_t seen = window_mask(track.seen_scans);
+  const std::uint32_t misses = ~track.history & seen & window_mask(config_.delete_window);
+  if (std::popcount(misses) >= static_cast<int>(config_.delete_misses)) return true;
+  // A tentative track that can no longer be confirmed in its window gives up its place.
+  const std::uint32_t window = seen & window_mask(config_.confirm_window);
+  const std::size_t early_misses = static_cast<std::size_t>(std::popcount(~track.history & window));
+  return !track.confirmed && early_misses > config_.confirm_window - config_.confirm_hits;
+}
+
+void Tracker::judge(const ClassifiedScan& scan) {
+  constexpr double kDetection = 0.8, kHitGain = 0.5;
+  for (Entry& track : tracks_) {
+    const bool hit = track.detections > 0;
+    if (!hit && !can_see(scan.geometry, scan.header.source_id, track)) continue;
+    track.history = track.history << 1 | (hit ? 1u : 0u);
+    track.seen_scans = std::min<std::uint32_t>(track.seen_scans + 1, 32);
+    track.existence = hit ? track.existence + kHitGain * (0.999 - track.existence)
+                          : track.existence * (1.0 - kDetection) / (1.0 - kDetection * track.existence);
+    const std::uint32_t recent = track.history & window_mask(config_.confirm_window);
+    if (std::popcount(recent) >= static_cast<int>(config_.confirm_hits)) track.confirmed = true;
+  }
+  std::erase_if(tracks_, [this](const Entry& track) { return is_dead(track); });
+}
+
+void Tracker::remove_duplicates() {
+  // Two tracks on one object have the same place and velocity; the older one, or the confirmed one, stays.
+  constexpr double kPlace_m = 2.0, kVelocity_mps = 2.5;
+  for (std::size_t a = 0; a < tracks_.size(); ++a) {
+    for (std::size_t b = a + 1; b < tracks_.size();) {
+      const Vector6d d = tracks_[a].state.mean - tracks_[b].state.mean;
+      if (d.head<2>().norm() > kPlace_m || d.segment<2>(2).norm() > kVelocity_mps) {
+        ++b;
+        continue;
+      }
+      if (tracks_[b].confirmed && !tracks_[a].confirmed) std::swap(tracks_[a], tracks_[b]);
+      tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(b));
+    }
+  }
+}
+
+void Tracker::write(TrackList& out) const {
+  out.number_of_tracks = 0;
+  out.number_of_confirmed_tracks = 0;
+  out.flags = flags_;
+  out.dropped_tracks = dropped_tracks_;
+  out.reserved = 0;
+  for (const bool confirmed : {true, false}) {
+    for (const Entry& track : tracks_) {
+      if (track.confirmed != confirmed) continue;
+      Track& t = out.tracks[out.number_of_tracks++];
+      out.number_of_confirmed_tracks += confirmed ? 1 : 0;
+      const Vector6d& m = track.state.mean;
+      t.tracking_id = track.id;
+      t.status = confirmed ? TrackStatus::kConfirmed : TrackStatus::kTentative;
+      t.update = track.detections > 0 ? TrackUpdate::kMeasured : TrackUpdate::kPredicted;
+      const double speed = m.segment<2>(2).norm();
+      t.movement = speed < config_.stopped_speed_mps ? MovementState::kStopped : MovementState::kMoving;
+      t.object_class = track.extent.object_class();
+      t.age_s = static_cast<float>(track.age_s);
+      t.time_since_update_s = static_cast<float>(track.since_update_s);
+      t.existence_probability = static_cast<float>(track.existence);
+      t.heading_rad = static_cast<float>(track.extent.heading_rad);
+      t.length_m = static_cast<float>(track.extent.length_m);
+      t.width_m = static_cast<float>(track.extent.width_m);
+      t.height_m = static_cast<float>(track.extent.height_m);
+      t.position_vehicle_m = {static_cast<float>(m(0)), static_cast<float>(m(1)),
+                              static_cast<float>(0.5 * track.extent.height_m)};
+      t.velocity_over_ground_mps = {static_cast<float>(m(2)), static_cast<float>(m(3))};
+      t.acceleration_over_ground_mps2 = {static_cast<float>(m(4)), static_cast<float>(m(5))};
+      t.number_of_detections = track.detections;
+      t.reserved = 0;
+      Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>>(t.covariance.data()) =
+          track.state.covariance.cast<float>();
+    }
+  }
+}
+
+}  // namespace boresight::tracking

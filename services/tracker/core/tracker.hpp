@@ -1,0 +1,69 @@
+// Tracks of moving objects from classified scans: predict, assign, update, confirm, delete.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "interfaces/messages/classified_scan.hpp"
+#include "interfaces/messages/track_list.hpp"
+#include "services/common/geometry/assignment.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+#include "services/tracker/core/clusters.hpp"
+#include "services/tracker/core/config.hpp"
+#include "services/tracker/core/extent.hpp"
+#include "services/tracker/core/kalman.hpp"
+
+namespace boresight::tracking {
+
+/// What a scan made the tracker do besides tracking.
+struct StepResult {
+  bool out_of_order = false;  ///< older than the tracks: taken as if of their time
+  bool restarted = false;     ///< the clock jumped: all tracks were dropped
+  std::uint32_t dropped_clusters = 0;
+};
+
+class Tracker {
+ public:
+  Tracker(const VehicleConfig& vehicle, const Config& config);
+
+  /// Takes one scan, of any radar, at its own measurement time.
+  StepResult step(const ClassifiedScan& scan);
+
+  /// Writes everything but the header; confirmed tracks first, by id.
+  void write(TrackList& out) const;
+
+ private:
+  struct Entry {
+    std::uint32_t id = 0;
+    bool confirmed = false;
+    KinematicState state;
+    Extent extent;
+    std::uint32_t history = 0;  // one bit for each scan that could see the object, the latest lowest; 1: detected
+    std::uint32_t seen_scans = 0;
+    double existence = 0.5;
+    double age_s = 0.0;
+    double since_update_s = 0.0;
+    std::uint32_t detections = 0;  // in the last scan
+  };
+  void predict_all(double elapsed_s, const ScanGeometry& geometry);
+  void assign(std::span<const Cluster> clusters, bool has_elevation);
+  void start_track(const Cluster& cluster, bool has_elevation);
+  void judge(const ClassifiedScan& scan);
+  void remove_duplicates();
+  [[nodiscard]] bool can_see(const ScanGeometry& geometry, std::uint32_t radar_id, const Entry& track) const;
+  [[nodiscard]] bool is_dead(const Entry& track) const;
+
+  VehicleConfig vehicle_;
+  Config config_;
+  Clusterer clusterer_;
+  geometry::Assignment assignment_;
+  std::vector<Entry> tracks_;
+  std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
+  std::uint32_t next_id_ = 1;
+  std::int64_t time_ns_ = 0;
+  std::uint32_t flags_ = 0;
+  std::uint32_t dropped_tracks_ = 0;
+};
+
+}  // namespace boresight::tracking
