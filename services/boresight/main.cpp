@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   int exit_code = EXIT_SUCCESS;
   boresight::add_catalogue_command(app, exit_code);
   boresight::add_demo_command(app, exit_code);
+  boresight::add_diagnostics_command(app, exit_code);
   boresight::add_monitor_command(app, exit_code);
   boresight::add_report_command(app, exit_code);
   boresight::add_simulate_command(app, exit_code);

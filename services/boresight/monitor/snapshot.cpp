@@ -12,12 +12,6 @@ namespace boresight::monitor {
 
 namespace {
 
-template <typename Enum, std::size_t N>
-std::string_view name_in(const std::array<std::string_view, N>& names, Enum value) {
-  const auto index = static_cast<std::size_t>(value);
-  return index < N ? names[index] : "?";
-}
-
 /// The words of one line; a missing word reads as 0.
 class Words {
  public:
@@ -116,49 +110,6 @@ std::string json_number(double value) {
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 }  // namespace
-
-std::string_view name_of(AlignmentState state) {
-  static constexpr std::array<std::string_view, 4> kNames = {"no data", "waiting", "converging", "converged"};
-  return name_in(kNames, state);
-}
-std::string_view name_of(DataQualifier qualifier) {
-  static constexpr std::array<std::string_view, 3> kNames = {"AVAILABLE", "AVAILABLE_REDUCED", "NOT_AVAILABLE"};
-  return name_in(kNames, qualifier);
-}
-std::string_view name_of(ExtendedQualifier qualifier) {
-  static constexpr std::array<std::string_view, 9> kNames = {"NORMAL",
-                                                             "MISALIGNED",
-                                                             "NO_DATA",
-                                                             "RATE_REDUCED",
-                                                             "INVALID_DATA",
-                                                             "BLOCKED",
-                                                             "BEGINNING_BLOCKAGE",
-                                                             "EXTERNAL_DISTURBANCE",
-                                                             "INITIALISING"};
-  return name_in(kNames, qualifier);
-}
-std::string_view name_of(ServiceCondition condition) {
-  static constexpr std::array<std::string_view, 5> kNames = {"unknown", "alive", "degraded", "silent", "restarted"};
-  return name_in(kNames, condition);
-}
-std::string_view name_of(MovementState movement) {
-  static constexpr std::array<std::string_view, 4> kNames = {"unknown", "moving", "stationary", "stopped"};
-  return name_in(kNames, movement);
-}
-std::string_view name_of(Fault fault) {
-  static constexpr std::array<std::string_view, kNumberOfFaults> kNames = {"input lost",
-                                                                           "memory pool exhausted",
-                                                                           "wrong length",
-                                                                           "wrong value",
-                                                                           "unknown message",
-                                                                           "recording syntax",
-                                                                           "side input missing",
-                                                                           "time jump",
-                                                                           "wrong version",
-                                                                           "over capacity",
-                                                                           "link"};
-  return name_in(kNames, fault);
-}
 
 void write_record(std::ostream& output, const Snapshot& snapshot) {
   output.precision(9);

@@ -12,9 +12,10 @@
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/alignment_estimate.hpp"
 #include "interfaces/messages/health_report.hpp"
+#include "interfaces/messages/names.hpp"
 #include "interfaces/messages/service_status.hpp"
 #include "interfaces/messages/track_list.hpp"
-#include "services/boresight/monitor/latency_histogram.hpp"
+#include "services/common/estimation/latency_histogram.hpp"
 
 namespace boresight::monitor {
 
@@ -81,13 +82,6 @@ struct Snapshot {
   std::vector<ServiceSnapshot> services;  ///< in the order of the catalogue
   std::array<LatencyHistogram, kNumberOfLatencies> latencies;
 };
-
-[[nodiscard]] std::string_view name_of(AlignmentState state);
-[[nodiscard]] std::string_view name_of(DataQualifier qualifier);
-[[nodiscard]] std::string_view name_of(ExtendedQualifier qualifier);
-[[nodiscard]] std::string_view name_of(ServiceCondition condition);
-[[nodiscard]] std::string_view name_of(MovementState movement);
-[[nodiscard]] std::string_view name_of(Fault fault);
 
 /// Appends one snapshot to a record: lines of words, closed by a line "end", so that a record that was cut off in the
 /// middle of a snapshot is still readable.

@@ -13,7 +13,6 @@ namespace boresight::report {
 
 namespace {
 
-using monitor::LatencyHistogram;
 using monitor::RadarSnapshot;
 using monitor::Snapshot;
 
@@ -220,7 +219,7 @@ std::string render_health(const ReportInput& input, const TimeBase& time, const 
     }
     for (std::size_t i = 0; i < std::min(summary.services.size(), snapshot.services.size()); ++i) {
       const ServiceCondition condition = snapshot.services[i].condition;
-      extend(summary.radars.size() + i, snapshot, css_of(condition), std::string(monitor::name_of(condition)));
+      extend(summary.radars.size() + i, snapshot, css_of(condition), std::string(name_of(condition)));
     }
   }
   const auto count = static_cast<double>(rows.size());

@@ -180,7 +180,7 @@ std::string render_faults(const Summary& summary) {
     for (std::size_t f = 0; f < kNumberOfFaults; ++f) {
       if (service.faults[f] == 0) continue;
       text += fmt::format("    {}: {} × {}\n", catalogue::name_of(service.service), service.faults[f],
-                          monitor::name_of(static_cast<Fault>(f)));
+                          name_of(static_cast<Fault>(f)));
     }
   }
   return text.empty() ? "  faults: none\n" : "  faults:\n" + text;
@@ -213,14 +213,14 @@ std::string yaw_text(const RadarSnapshot& radar) {
 
 std::string verdict_line(const RadarSummary& radar) {
   const RadarSnapshot& last = radar.last;
-  const std::string_view qualifier = monitor::name_of(last.data_qualifier);
+  const std::string_view qualifier = name_of(last.data_qualifier);
   const double tolerance_deg = last.yaw_tolerance_rad * kDegrees;
   if (radar.misaligned) {
     return fmt::format("{}: MISALIGNED, yaw {}, beyond the tolerance of {:.1f}°", last.name, yaw_text(last),
                        tolerance_deg);
   }
   if (last.extended_qualifier != ExtendedQualifier::kNormal) {
-    return fmt::format("{}: {} ({})", last.name, qualifier, monitor::name_of(last.extended_qualifier));
+    return fmt::format("{}: {} ({})", last.name, qualifier, name_of(last.extended_qualifier));
   }
   if (!has_estimate(last)) return fmt::format("{}: {}, no alignment estimate", last.name, qualifier);
   const bool within = std::abs(last.yaw.value_rad) <= last.yaw_tolerance_rad;

@@ -37,7 +37,7 @@ struct Summary {
   std::size_t most_confirmed_tracks = 0;
   std::size_t distinct_confirmed_tracks = 0;
   std::vector<monitor::ServiceSnapshot> services;
-  std::array<monitor::LatencyHistogram, monitor::kNumberOfLatencies> latencies;
+  std::array<LatencyHistogram, monitor::kNumberOfLatencies> latencies;
   std::vector<Check> checks;
   [[nodiscard]] bool all_passed() const;
 };

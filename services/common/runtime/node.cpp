@@ -13,6 +13,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "interfaces/messages/names.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
@@ -29,18 +30,6 @@ constexpr std::uint64_t kWarmUpInputs = 20;
 // A longer sleep would delay the answer to SIGTERM where the middleware swallows the interruption.
 constexpr std::int64_t kLongestWait_ns = 50'000'000;
 constexpr std::int64_t kInputPollPeriod_ns = 10'000'000;
-
-constexpr std::array<std::string_view, kNumberOfFaults> kFaultNames = {"input lost",
-                                                                       "memory pool exhausted",
-                                                                       "wrong length",
-                                                                       "wrong value",
-                                                                       "unknown message",
-                                                                       "recording syntax",
-                                                                       "side input missing",
-                                                                       "time jump",
-                                                                       "wrong version",
-                                                                       "over capacity",
-                                                                       "link"};
 
 /// Debian's iceoryx aborts on severe errors. What can be gone on with is counted by the callers (a failed loan); what
 /// cannot ends the process with a clear line and code, and the supervisor starts it anew.
@@ -311,7 +300,7 @@ void Node::Impl::log_new_faults() {
     const std::uint64_t total = status.faults[i];
     if (total == 0 || (logged_faults[i] != 0 && total < 2 * logged_faults[i])) continue;
     logged_faults[i] = total;
-    log::warning("{}: {} so far; latest: {}", kFaultNames[i], total, status.last_fault.data());
+    log::warning("{}: {} so far; latest: {}", name_of(static_cast<Fault>(i)), total, status.last_fault.data());
   }
   const std::uint64_t allocations = counted_allocations();
   if (allocations > 2 * logged_allocations) {

@@ -187,6 +187,19 @@ std::vector<double> Reader::numbers(std::string_view key, std::size_t count, Ran
   return values;
 }
 
+std::vector<std::string> Reader::texts(std::string_view key, std::vector<std::string> fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return fallback;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || !(array->empty() || array->is_homogeneous<std::string>())) {
+    node_->expect(*node, key, "an array of strings");
+    return fallback;
+  }
+  std::vector<std::string> values;
+  for (const toml::node& element : *array) values.push_back(element.value<std::string>().value_or(""));
+  return values;
+}
+
 int Reader::choice_index(std::string_view key, const std::vector<std::string_view>& words) {
   const toml::node* node = node_->find(key);
   if (node == nullptr) return -1;

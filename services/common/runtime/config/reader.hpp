@@ -43,6 +43,8 @@ class Reader {
   /// Fixed-length list of numbers, each in `allowed`.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, Range allowed,
                                             std::vector<double> fallback);
+  /// List of strings, of any length.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key, std::vector<std::string> fallback);
   /// One of the given words; `choices` pairs the word with its value.
   template <typename T>
   [[nodiscard]] T choice(std::string_view key, const std::vector<std::pair<std::string_view, T>>& choices, T fallback) {

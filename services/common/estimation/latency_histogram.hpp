@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace boresight::monitor {
+namespace boresight {
 
 class LatencyHistogram {
  public:
@@ -62,4 +62,4 @@ class LatencyHistogram {
   double max_us_ = 0.0;
 };
 
-}  // namespace boresight::monitor
+}  // namespace boresight

@@ -1,0 +1,65 @@
+// Words for the values of the messages' enumerations: the same in pictures, logs, records and diagnostics.
+#pragma once
+
+#include <string_view>
+
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/health_report.hpp"
+#include "interfaces/messages/service_status.hpp"
+#include "interfaces/messages/track_list.hpp"
+
+namespace boresight {
+
+namespace detail {
+/// The word of a value; "?" for one that is not among them, as after an update of one process only.
+template <typename Enum, std::size_t N>
+[[nodiscard]] constexpr std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < N ? words[index] : "?";
+}
+}  // namespace detail
+
+[[nodiscard]] constexpr std::string_view name_of(AlignmentState state) {
+  constexpr std::array<std::string_view, 4> kNames = {"no data", "waiting", "converging", "converged"};
+  return detail::word_of(kNames, state);
+}
+[[nodiscard]] constexpr std::string_view name_of(DataQualifier qualifier) {
+  constexpr std::array<std::string_view, 3> kNames = {"AVAILABLE", "AVAILABLE_REDUCED", "NOT_AVAILABLE"};
+  return detail::word_of(kNames, qualifier);
+}
+[[nodiscard]] constexpr std::string_view name_of(ExtendedQualifier qualifier) {
+  constexpr std::array<std::string_view, 9> kNames = {"NORMAL",
+                                                      "MISALIGNED",
+                                                      "NO_DATA",
+                                                      "RATE_REDUCED",
+                                                      "INVALID_DATA",
+                                                      "BLOCKED",
+                                                      "BEGINNING_BLOCKAGE",
+                                                      "EXTERNAL_DISTURBANCE",
+                                                      "INITIALISING"};
+  return detail::word_of(kNames, qualifier);
+}
+[[nodiscard]] constexpr std::string_view name_of(ServiceCondition condition) {
+  constexpr std::array<std::string_view, 5> kNames = {"unknown", "alive", "degraded", "silent", "restarted"};
+  return detail::word_of(kNames, condition);
+}
+[[nodiscard]] constexpr std::string_view name_of(MovementState movement) {
+  constexpr std::array<std::string_view, 4> kNames = {"unknown", "moving", "stationary", "stopped"};
+  return detail::word_of(kNames, movement);
+}
+[[nodiscard]] constexpr std::string_view name_of(Fault fault) {
+  constexpr std::array<std::string_view, kNumberOfFaults> kNames = {"input lost",
+                                                                    "memory pool exhausted",
+                                                                    "wrong length",
+                                                                    "wrong value",
+                                                                    "unknown message",
+                                                                    "recording syntax",
+                                                                    "side input missing",
+                                                                    "time jump",
+                                                                    "wrong version",
+                                                                    "over capacity",
+                                                                    "link"};
+  return detail::word_of(kNames, fault);
+}
+
+}  // namespace boresight

@@ -1,0 +1,18 @@
+// What came by DDS, as lines for people or for programs.
+#pragma once
+
+#include <string>
+
+#include "generated/diagnostic_array.h"
+#include "generated/sensor_health.h"
+
+namespace boresight::diagnostics_text {
+
+/// "12:34:56.7 front_right  AVAILABLE_REDUCED MISALIGNED  yaw +2.49° ± 0.02° (tolerance 1.50°, beyond)  …"
+[[nodiscard]] std::string to_line(const diagnostics::SensorHealth& sensor);
+[[nodiscard]] std::string to_json(const diagnostics::SensorHealth& sensor);
+/// One line for each status that is not OK, or one saying that all are.
+[[nodiscard]] std::string to_lines(const diagnostic_msgs::msg::dds_::DiagnosticArray_& array);
+[[nodiscard]] std::string to_json(const diagnostic_msgs::msg::dds_::DiagnosticArray_& array);
+
+}  // namespace boresight::diagnostics_text

@@ -1,0 +1,50 @@
+#include "services/health/config.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <string_view>
+
+namespace boresight::health {
+
+namespace {
+constexpr std::uint32_t kHighestDomain = 232;  // beyond it the ports of UDP run out
+}
+
+std::uint32_t domain_from_environment(std::uint32_t fallback) {
+  const char* const text = std::getenv("BORESIGHT_DDS_DOMAIN");
+  if (text == nullptr || *text == '\0') return fallback;
+  const std::string_view word(text);
+  std::uint32_t domain = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), domain);
+  if (error != std::errc{} || end != word.data() + word.size() || domain > kHighestDomain) {
+    throw config::Error("BORESIGHT_DDS_DOMAIN: \"" + std::string(word) + "\" is not a number from 0 to 232");
+  }
+  return domain;
+}
+
+FileConfig read_config(config::Reader root) {
+  FileConfig c;
+  Config& s = c.supervision;
+  config::Reader supervision = root.table("supervision");
+  s.window_s = supervision.number("window_s", {0.2, 60.0}, s.window_s);
+  s.min_rate_ratio = supervision.number("min_rate_ratio", {0.0, 1.0}, s.min_rate_ratio);
+  s.max_rejected_ratio = supervision.number("max_rejected_ratio", {0.0, 1.0}, s.max_rejected_ratio);
+  s.restart_memory_s = supervision.number("restart_memory_s", {0.0, 60.0}, s.restart_memory_s);
+  config::Reader misalignment = root.table("misalignment");
+  s.confidence_sigma = misalignment.number("confidence_sigma", {0.0, 10.0}, s.confidence_sigma);
+  s.set_s = misalignment.number("set_s", {0.0, 600.0}, s.set_s);
+  s.clear_s = misalignment.number("clear_s", {0.0, 600.0}, s.clear_s);
+  s.clear_ratio = misalignment.number("clear_ratio", {0.1, 1.0}, s.clear_ratio);
+  s.inhibit_rad = misalignment.angle_deg("inhibit_deg", {0.1, 90.0}, s.inhibit_rad);
+  s.reference_range_m = misalignment.number("reference_range_m", {1.0, 500.0}, s.reference_range_m);
+  config::Reader dds = root.table("dds");
+  c.dds.enabled = dds.boolean("enabled", c.dds.enabled);
+  c.dds.domain = static_cast<std::uint32_t>(dds.integer("domain", {0.0, kHighestDomain}, c.dds.domain));
+  c.dds.interfaces = dds.texts("interfaces", c.dds.interfaces);
+  c.dds.period_s = dds.number("period_s", {0.1, 60.0}, c.dds.period_s);
+  root.finish();
+  c.dds.domain = domain_from_environment(c.dds.domain);
+  return c;
+}
+
+}  // namespace boresight::health

@@ -1,0 +1,70 @@
+// How often something happened in the last seconds, in fixed memory.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace boresight::health {
+
+/// Sums of counted events over a sliding window, in slots of a tenth of it.
+class RateWindow {
+ public:
+  explicit RateWindow(double window_s = 2.0)
+      : slot_ns_(std::max<std::int64_t>(1, static_cast<std::int64_t>(window_s * 1e9) / kSlots)) {}
+
+  void add(std::int64_t now_ns, std::uint64_t count = 1) {
+    advance(now_ns);
+    if (first_slot_ < 0) first_slot_ = slot_;
+    counts_[static_cast<std::size_t>(slot_ % kLength)] += count;
+  }
+
+  /// Events in the complete slots of the window that ends now.
+  [[nodiscard]] std::uint64_t sum(std::int64_t now_ns) {
+    advance(now_ns);
+    std::uint64_t total = 0;
+    for (std::int64_t slot = std::max<std::int64_t>(0, slot_ - kSlots); slot < slot_; ++slot) {
+      total += counts_[static_cast<std::size_t>(slot % kLength)];
+    }
+    return total;
+  }
+  /// Per second, over the part of the window since the first event; 0 before a whole slot has passed.
+  [[nodiscard]] double rate_hz(std::int64_t now_ns) {
+    const std::uint64_t total = sum(now_ns);
+    if (first_slot_ < 0) return 0.0;
+    // The first slot began before the first event; it is counted by the share that followed, on average a half.
+    const bool young = slot_ - first_slot_ < kSlots;
+    const double slots = young ? static_cast<double>(slot_ - first_slot_) - 0.5 : static_cast<double>(kSlots);
+    return slots > 0.0 ? static_cast<double>(total) / (slots * static_cast<double>(slot_ns_) * 1e-9) : 0.0;
+  }
+  /// True when a whole window has passed since the first event.
+  [[nodiscard]] bool is_full(std::int64_t now_ns) {
+    advance(now_ns);
+    return first_slot_ >= 0 && slot_ - first_slot_ > kSlots;
+  }
+  /// Forgets everything, for a source that begins anew.
+  void clear() {
+    counts_ = {};
+    first_slot_ = -1;
+  }
+
+ private:
+  static constexpr std::int64_t kSlots = 10;
+  static constexpr std::int64_t kLength = kSlots + 1;  // the present, incomplete slot is one more
+
+  void advance(std::int64_t now_ns) {
+    const std::int64_t slot = std::max<std::int64_t>(0, now_ns / slot_ns_);
+    for (std::int64_t s = std::max(slot_ + 1, slot - kLength + 1); s <= slot; ++s) {
+      counts_[static_cast<std::size_t>(s % kLength)] = 0;
+    }
+    slot_ = std::max(slot_, slot);
+  }
+
+  std::int64_t slot_ns_;
+  std::int64_t slot_ = 0;
+  std::int64_t first_slot_ = -1;
+  std::array<std::uint64_t, kLength> counts_{};
+};
+
+}  // namespace boresight::health

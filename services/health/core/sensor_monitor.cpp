@@ -1,0 +1,110 @@
+#include "services/health/core/sensor_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::health {
+
+namespace {
+
+double std_of(const AlignmentEstimate& estimate, AlignmentParameter parameter) {
+  const auto i = static_cast<std::size_t>(parameter);
+  return std::sqrt(static_cast<double>(estimate.covariance[i * kNumberOfAlignmentParameters + i]));
+}
+
+}  // namespace
+
+SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std::int64_t start_ns)
+    : radar_id_(radar.id),
+      expected_rate_hz_(1.0 / radar.cycle_time_s),
+      deadline_ns_(static_cast<std::int64_t>(radar.deadline_s * 1e9)),
+      config_(config),
+      start_ns_(start_ns),
+      rate_(std::max(config.window_s, 10.0 * radar.cycle_time_s)),
+      messages_(config.window_s),
+      rejected_(config.window_s),
+      yaw_(config, radar.tolerance.yaw_rad),
+      pitch_(config, radar.tolerance.pitch_rad),
+      roll_(config, radar.tolerance.roll_rad) {}
+
+void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
+  // After a silence the rate is judged by what comes now, or it would stay low for a window without reason.
+  if (!delivers(now_ns)) rate_.clear();
+  const std::uint64_t sequence = scan.header.source_sequence;
+  // A gateway that was restarted counts from 1 again: that is no loss.
+  if (last_sequence_ != 0 && sequence > last_sequence_ + 1) lost_scans_ += sequence - last_sequence_ - 1;
+  last_sequence_ = sequence;
+  ++scans_;
+  last_ns_ = now_ns;
+  rate_.add(now_ns);
+  constexpr double kSmoothing = 0.1;
+  const double count = scan.number_of_valid_detections;
+  detections_per_scan_ = scans_ == 1 ? count : detections_per_scan_ + kSmoothing * (count - detections_per_scan_);
+}
+
+void SensorMonitor::observe(const AlignmentEstimate& estimate) {
+  const bool estimating = estimate.state == AlignmentState::kConverging || estimate.state == AlignmentState::kConverged;
+  const std::int64_t time_ns = estimate.header.measurement_time_ns;
+  const auto judge = [&](AxisJudge& axis, float error_rad, AlignmentParameter parameter, std::uint32_t bit) {
+    axis.update(error_rad, std_of(estimate, parameter), estimating && estimate.is_observable(bit), time_ns);
+  };
+  judge(yaw_, estimate.alignment_yaw_rad, AlignmentParameter::kYaw, alignment_axis::kYaw);
+  judge(pitch_, estimate.alignment_pitch_rad, AlignmentParameter::kPitch, alignment_axis::kPitch);
+  judge(roll_, estimate.alignment_roll_rad, AlignmentParameter::kRoll, alignment_axis::kRoll);
+  const double scale_std = std_of(estimate, AlignmentParameter::kSpeedScale);
+  if (!std::isfinite(estimate.speed_scale) || !std::isfinite(scale_std)) return;
+  speed_scale_ = estimate.speed_scale;
+  speed_scale_std_ = scale_std;
+}
+
+void SensorMonitor::observe(const SourceStatistics& statistics, std::int64_t now_ns) {
+  // Counters that went back are those of a new process and count from zero.
+  const auto grown = [](std::uint64_t now, std::uint64_t before) { return now >= before ? now - before : now; };
+  messages_.add(now_ns, grown(statistics.messages, last_statistics_.messages));
+  rejected_.add(now_ns, grown(statistics.rejected, last_statistics_.rejected));
+  last_statistics_ = statistics;
+}
+
+SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
+  SensorHealth health{};
+  health.radar_id = radar_id_;
+  health.rate_hz = static_cast<float>(delivers(now_ns) ? rate_.rate_hz(now_ns) : 0.0);
+  health.expected_rate_hz = static_cast<float>(expected_rate_hz_);
+  health.last_seen_s = scans_ == 0 ? -1.0F : static_cast<float>(static_cast<double>(now_ns - last_ns_) * 1e-9);
+  health.detections_per_scan = static_cast<float>(detections_per_scan_);
+  health.yaw = yaw_.health();
+  health.pitch = pitch_.health();
+  health.roll = roll_.health();
+  health.speed_scale = static_cast<float>(speed_scale_);
+  health.speed_scale_std = static_cast<float>(speed_scale_std_);
+  health.lateral_displacement_m = static_cast<float>(config_.reference_range_m * std::sin(health.yaw.error_rad));
+  health.reference_range_m = static_cast<float>(config_.reference_range_m);
+  health.scans = scans_;
+  health.lost_scans = lost_scans_;
+
+  const bool misaligned = yaw_.is_beyond() || pitch_.is_beyond() || roll_.is_beyond();
+  const bool inhibited = yaw_.is_inhibited() || pitch_.is_inhibited() || roll_.is_inhibited();
+  const double rejected = static_cast<double>(rejected_.sum(now_ns));
+  const double received = static_cast<double>(messages_.sum(now_ns)) + rejected;
+  const bool invalid = received > 0.0 && rejected > config_.max_rejected_ratio * received;
+  const auto say = [&health](DataQualifier effect, ExtendedQualifier reason) {
+    health.data_qualifier = effect;
+    health.extended_qualifier = reason;
+    return health;
+  };
+  // The worst effect first; of two reasons for the same effect the one that a workshop has to act on.
+  if (!delivers(now_ns)) {
+    if (invalid) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
+    const bool young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
+    return say(DataQualifier::kNotAvailable, young ? ExtendedQualifier::kInitialising : ExtendedQualifier::kNoData);
+  }
+  if (inhibited) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kMisaligned);
+  if (misaligned) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kMisaligned);
+  if (invalid) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kInvalidData);
+  if (rate_.is_full(now_ns) && health.rate_hz < config_.min_rate_ratio * expected_rate_hz_) {
+    return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kRateReduced);
+  }
+  return say(DataQualifier::kAvailable, ExtendedQualifier::kNormal);
+}
+
+}  // namespace boresight::health

@@ -1,0 +1,54 @@
+// One radar: does it deliver, at its rate, sound data, and is it straight?
+#pragma once
+
+#include <cstdint>
+
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/health_report.hpp"
+#include "interfaces/messages/radar_scan.hpp"
+#include "interfaces/messages/service_status.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+#include "services/health/core/axis_judge.hpp"
+#include "services/health/core/rate_window.hpp"
+
+namespace boresight::health {
+
+/// Judged from data only: never from the middleware's opinion on who is connected. Times are CLOCK_MONOTONIC, ns.
+class SensorMonitor {
+ public:
+  /// `start_ns`: when supervision began; until the radar's deadline has passed once, a silent radar is initialising.
+  SensorMonitor(const RadarConfig& radar, const Config& config, std::int64_t start_ns);
+
+  void observe(const RadarScan& scan, std::int64_t now_ns);
+  void observe(const AlignmentEstimate& estimate);
+  /// The gateway's counts for this radar.
+  void observe(const SourceStatistics& statistics, std::int64_t now_ns);
+  [[nodiscard]] SensorHealth judge(std::int64_t now_ns);
+
+  [[nodiscard]] std::uint32_t radar_id() const { return radar_id_; }
+  /// True if a scan arrived within the radar's deadline.
+  [[nodiscard]] bool delivers(std::int64_t now_ns) const { return scans_ > 0 && now_ns - last_ns_ <= deadline_ns_; }
+
+ private:
+  std::uint32_t radar_id_;
+  double expected_rate_hz_;
+  std::int64_t deadline_ns_;
+  Config config_;
+  std::int64_t start_ns_;
+  std::int64_t last_ns_ = 0;
+  std::uint64_t scans_ = 0;
+  std::uint64_t lost_scans_ = 0;
+  std::uint64_t last_sequence_ = 0;
+  double detections_per_scan_ = 0.0;
+  RateWindow rate_;
+  RateWindow messages_;
+  RateWindow rejected_;
+  SourceStatistics last_statistics_{};
+  AxisJudge yaw_;
+  AxisJudge pitch_;
+  AxisJudge roll_;
+  double speed_scale_ = 1.0;
+  double speed_scale_std_ = 0.0;
+};
+
+}  // namespace boresight::health

@@ -1,0 +1,138 @@
+#include "services/health/core/supervision.hpp"
+
+#include <algorithm>
+
+#include "interfaces/catalogue/catalogue.hpp"
+
+namespace boresight::health {
+
+namespace {
+
+using catalogue::Service;
+using catalogue::TopicId;
+
+std::int64_t output_deadline_ns(Service service) {
+  switch (service) {
+    case Service::kAlignmentEstimator:
+      return catalogue::topic(TopicId::kAlignmentEstimate).deadline_ns;
+    case Service::kDetectionCorrector:
+      return catalogue::topic(TopicId::kCorrectedScan).deadline_ns;
+    case Service::kGhostFilter:
+      return catalogue::topic(TopicId::kClassifiedScan).deadline_ns;
+    case Service::kTracker:
+      return catalogue::topic(TopicId::kTrackList).deadline_ns;
+    default:
+      return 0;  // the gateway's input is the wire, which the radars' own deadlines watch; health is this one
+  }
+}
+
+DataQualifier overall_of(const HealthReport& report) {
+  const auto sensors_end = report.sensors.begin() + report.number_of_sensors;
+  const auto services_end = report.services.begin() + report.number_of_services;
+  const auto is = [](DataQualifier wanted) {
+    return [wanted](const SensorHealth& sensor) { return sensor.data_qualifier == wanted; };
+  };
+  // Without the estimator the corrector goes on with what it has; without one of the others no track comes out.
+  const bool chain_is_broken = std::any_of(report.services.begin(), services_end, [](const ServiceHealth& s) {
+    const bool carries_data = s.service != static_cast<std::uint32_t>(Service::kAlignmentEstimator) &&
+                              s.service != static_cast<std::uint32_t>(Service::kHealth);
+    return carries_data && (s.condition == ServiceCondition::kSilent || s.condition == ServiceCondition::kUnknown);
+  });
+  if (chain_is_broken || std::all_of(report.sensors.begin(), sensors_end, is(DataQualifier::kNotAvailable))) {
+    return DataQualifier::kNotAvailable;
+  }
+  const bool all_well = std::all_of(report.sensors.begin(), sensors_end, is(DataQualifier::kAvailable)) &&
+                        std::all_of(report.services.begin(), services_end,
+                                    [](const ServiceHealth& s) { return s.condition == ServiceCondition::kAlive; });
+  return all_well ? DataQualifier::kAvailable : DataQualifier::kAvailableReduced;
+}
+
+}  // namespace
+
+Supervision::Supervision(const VehicleConfig& vehicle, const Config& config, std::int64_t start_ns)
+    : config_(config), window_begin_ns_(start_ns) {
+  for (const RadarConfig& radar : vehicle.radars) {
+    if (sensors_.size() < kMaxRadars) sensors_.emplace_back(radar, config, start_ns);
+  }
+  const std::int64_t heartbeat_deadline_ns = catalogue::topic(TopicId::kServiceStatus).deadline_ns;
+  for (std::uint32_t i = 0; i < catalogue::kNumberOfSupervisedServices; ++i) {
+    services_.emplace_back(i, heartbeat_deadline_ns, output_deadline_ns(static_cast<Service>(i)), config);
+  }
+}
+
+SensorMonitor* Supervision::sensor(std::uint32_t radar_id) {
+  const auto found = std::find_if(sensors_.begin(), sensors_.end(),
+                                  [radar_id](const SensorMonitor& s) { return s.radar_id() == radar_id; });
+  return found == sensors_.end() ? nullptr : &*found;
+}
+
+void Supervision::observe(const RadarScan& scan, std::int64_t now_ns) {
+  if (SensorMonitor* const s = sensor(scan.header.source_id)) s->observe(scan, now_ns);
+}
+
+void Supervision::observe(const AlignmentEstimate& estimate) {
+  if (SensorMonitor* const s = sensor(estimate.header.source_id)) s->observe(estimate);
+}
+
+void Supervision::observe(const TrackList& tracks, std::int64_t now_ns) {
+  if (static_cast<double>(now_ns - window_begin_ns_) * 1e-9 > config_.window_s) {
+    complete_latencies_ = latencies_;
+    latencies_ = {};
+    window_begin_ns_ = now_ns;
+  }
+  const std::int64_t begin_ns = tracks.header.stage(Stage::kIngest).begin_ns;
+  const std::int64_t end_ns = tracks.header.stage(Stage::kTracker).end_ns;
+  if (begin_ns > 0 && end_ns >= begin_ns) latencies_.add(end_ns - begin_ns);
+}
+
+void Supervision::observe(const ServiceStatus& status, std::int64_t now_ns) {
+  const std::uint32_t index = status.header.source_id;
+  if (index >= services_.size()) return;
+  services_[index].observe(status, now_ns);
+  if (static_cast<Service>(index) != Service::kIngestGateway) return;
+  for (const SourceStatistics& source : status.sources) {
+    if (SensorMonitor* const s = sensor(source.source_id)) s->observe(source, now_ns);
+  }
+}
+
+void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
+  out.reserved = {};
+  out.reserved2 = 0;
+  out.sensors = {};
+  out.services = {};
+  out.number_of_sensors = static_cast<std::uint32_t>(sensors_.size());
+  out.number_of_services = static_cast<std::uint32_t>(services_.size());
+  bool scans_flow = false;
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    out.sensors[i] = sensors_[i].judge(now_ns);
+    scans_flow = scans_flow || sensors_[i].delivers(now_ns);
+  }
+  // A stage is late only if the one before it is not: of a broken chain, the first link is named.
+  const auto delivers = [&](Service s) { return services_[static_cast<std::size_t>(s)].delivers(now_ns); };
+  for (std::size_t i = 0; i < services_.size(); ++i) {
+    const auto service = static_cast<Service>(i);
+    bool input_flows = scans_flow;
+    if (service == Service::kGhostFilter) input_flows = delivers(Service::kDetectionCorrector);
+    if (service == Service::kTracker) input_flows = delivers(Service::kGhostFilter);
+    out.services[i] = services_[i].judge(input_flows, now_ns);
+  }
+  const LatencyHistogram& latencies = complete_latencies_.total() > 0 ? complete_latencies_ : latencies_;
+  out.latency_p50_ms = static_cast<float>(latencies.percentile_us(0.5) * 1e-3);
+  out.latency_max_ms = static_cast<float>(latencies.max_us() * 1e-3);
+  out.overall = overall_of(out);
+}
+
+bool verdicts_differ(const HealthReport& a, const HealthReport& b) {
+  if (a.overall != b.overall || a.number_of_sensors != b.number_of_sensors) return true;
+  for (std::size_t i = 0; i < a.number_of_sensors; ++i) {
+    const SensorHealth &x = a.sensors[i], &y = b.sensors[i];
+    if (x.data_qualifier != y.data_qualifier || x.extended_qualifier != y.extended_qualifier) return true;
+  }
+  for (std::size_t i = 0; i < a.number_of_services && i < kMaxServices; ++i) {
+    const ServiceHealth &x = a.services[i], &y = b.services[i];
+    if (x.condition != y.condition || x.deadline_missed != y.deadline_missed) return true;
+  }
+  return false;
+}
+
+}  // namespace boresight::health

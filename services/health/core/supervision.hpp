@@ -1,0 +1,48 @@
+// The whole system's health: every radar, every service, and how long data take on their way.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/health_report.hpp"
+#include "interfaces/messages/radar_scan.hpp"
+#include "interfaces/messages/service_status.hpp"
+#include "interfaces/messages/track_list.hpp"
+#include "services/common/estimation/latency_histogram.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+#include "services/health/core/config.hpp"
+#include "services/health/core/sensor_monitor.hpp"
+#include "services/health/core/service_monitor.hpp"
+
+namespace boresight::health {
+
+/// Messages in, a report out. `now_ns` is CLOCK_MONOTONIC and does not go back. Data of radars that the vehicle file
+/// does not know are not judged.
+class Supervision {
+ public:
+  Supervision(const VehicleConfig& vehicle, const Config& config, std::int64_t start_ns);
+
+  void observe(const RadarScan& scan, std::int64_t now_ns);
+  void observe(const AlignmentEstimate& estimate);
+  void observe(const TrackList& tracks, std::int64_t now_ns);
+  void observe(const ServiceStatus& status, std::int64_t now_ns);
+
+  /// Writes everything but the header.
+  void judge(HealthReport& out, std::int64_t now_ns);
+
+ private:
+  [[nodiscard]] SensorMonitor* sensor(std::uint32_t radar_id);
+
+  Config config_;
+  std::vector<SensorMonitor> sensors_;
+  std::vector<ServiceMonitor> services_;
+  LatencyHistogram latencies_;           // of the window that runs
+  LatencyHistogram complete_latencies_;  // of the one before
+  std::int64_t window_begin_ns_;
+};
+
+/// True if the two reports differ in a verdict, not only in a number.
+[[nodiscard]] bool verdicts_differ(const HealthReport& a, const HealthReport& b);
+
+}  // namespace boresight::health

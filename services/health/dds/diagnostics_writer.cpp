@@ -1,0 +1,38 @@
+#include "services/health/dds/diagnostics_writer.hpp"
+
+#include <algorithm>
+
+#include "generated/diagnostic_arrayPubSubTypes.h"
+#include "generated/sensor_healthPubSubTypes.h"
+#include "services/health/dds/to_dds.hpp"
+
+namespace boresight::dds {
+
+namespace {
+constexpr int kLatestOfEachRadar = 1;
+constexpr int kArrays = 1;
+}  // namespace
+
+DiagnosticsWriter::DiagnosticsWriter(const Config& config, const VehicleConfig& vehicle)
+    : vehicle_(vehicle),
+      participant_(config, "boresight-health"),
+      sensor_health_(participant_.writer(kSensorHealthTopic,
+                                         eprosima::fastdds::dds::TypeSupport(new diagnostics::SensorHealthPubSubType()),
+                                         kLatestOfEachRadar)),
+      diagnostics_(participant_.writer(
+          kDiagnosticsTopic,
+          eprosima::fastdds::dds::TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()), kArrays)) {
+}
+
+bool DiagnosticsWriter::write(const HealthReport& report, std::int64_t time_ns) {
+  bool taken = true;
+  const std::size_t sensors = std::min<std::size_t>(report.number_of_sensors, kMaxRadars);
+  for (std::size_t i = 0; i < sensors; ++i) {
+    diagnostics::SensorHealth sample = to_sensor_health(report.sensors[i], vehicle_, time_ns);
+    taken = sensor_health_.write(&sample) && taken;
+  }
+  auto array = to_diagnostic_array(report, vehicle_, time_ns);
+  return diagnostics_.write(&array) && taken;
+}
+
+}  // namespace boresight::dds

@@ -1,0 +1,158 @@
+#include "services/health/dds/to_dds.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "interfaces/catalogue/catalogue.hpp"
+#include "interfaces/messages/names.hpp"
+
+namespace boresight::dds {
+
+namespace {
+
+using diagnostic_msgs::msg::dds_::DiagnosticStatus_;
+using diagnostic_msgs::msg::dds_::KeyValue_;
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
+
+std::string radar_name(const VehicleConfig& vehicle, std::uint32_t id) {
+  const RadarConfig* const radar = vehicle.radar(id);
+  return radar != nullptr ? radar->name : fmt::format("radar {}", id);
+}
+
+diagnostics::AxisHealth to_axis(const AxisHealth& axis) {
+  diagnostics::AxisHealth out;
+  out.error_rad(axis.error_rad);
+  out.std_rad(axis.std_rad);
+  out.tolerance_rad(axis.tolerance_rad);
+  out.observable(axis.observable != 0);
+  out.beyond_tolerance(axis.beyond_tolerance != 0);
+  return out;
+}
+
+Level level_of(DataQualifier qualifier) {
+  if (qualifier == DataQualifier::kAvailable) return kOk;
+  return qualifier == DataQualifier::kAvailableReduced ? kWarn : kError;
+}
+
+Level level_of(ServiceCondition condition) {
+  if (condition == ServiceCondition::kAlive) return kOk;
+  return condition == ServiceCondition::kDegraded || condition == ServiceCondition::kRestarted ? kWarn : kError;
+}
+
+void add_value(DiagnosticStatus_& status, std::string_view key, std::string value) {
+  KeyValue_ pair;
+  pair.key_(std::string(key));
+  pair.value_(std::move(value));
+  status.values_().push_back(std::move(pair));
+}
+
+void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth& axis) {
+  if (axis.observable == 0) {
+    add_value(status, name, "not observable");
+    return;
+  }
+  add_value(status, name,
+            fmt::format("{:+.2f} deg, std {:.3f} deg, tolerance {:.2f} deg{}", axis.error_rad * kDegrees,
+                        axis.std_rad * kDegrees, axis.tolerance_rad * kDegrees,
+                        axis.beyond_tolerance != 0 ? ", beyond" : ""));
+}
+
+DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& vehicle) {
+  DiagnosticStatus_ status;
+  const std::string name = radar_name(vehicle, sensor.radar_id);
+  status.level_(level_of(sensor.data_qualifier));
+  status.name_("boresight/radar/" + name);
+  status.hardware_id_(vehicle.name + "/" + name);
+  status.message_(fmt::format("{} {}", name_of(sensor.data_qualifier), name_of(sensor.extended_qualifier)));
+  add_value(status, "data_qualifier", std::string(name_of(sensor.data_qualifier)));
+  add_value(status, "extended_qualifier", std::string(name_of(sensor.extended_qualifier)));
+  add_value(status, "rate_hz", fmt::format("{:.1f} of {:.1f}", sensor.rate_hz, sensor.expected_rate_hz));
+  add_axis(status, "yaw error", sensor.yaw);
+  add_axis(status, "pitch error", sensor.pitch);
+  add_axis(status, "roll error", sensor.roll);
+  add_value(status, "lateral displacement",
+            fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
+  add_value(status, "speed scale", fmt::format("{:.4f}, std {:.4f}", sensor.speed_scale, sensor.speed_scale_std));
+  add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
+  return status;
+}
+
+DiagnosticStatus_ status_of(const ServiceHealth& service, const VehicleConfig& vehicle) {
+  DiagnosticStatus_ status;
+  const std::string_view name =
+      service.service < catalogue::kNumberOfServices ? catalogue::kServiceNames[service.service] : "?";
+  status.level_(level_of(service.condition));
+  status.name_(fmt::format("boresight/service/{}", name));
+  status.hardware_id_(vehicle.name);
+  status.message_(std::string(name_of(service.condition)));
+  add_value(status, "output deadline", service.deadline_missed != 0 ? "missed" : "kept");
+  add_value(status, "last heartbeat", fmt::format("{:.2f} s ago", service.last_heartbeat_s));
+  add_value(status, "output rate", fmt::format("{:.1f} Hz", service.output_rate_hz));
+  add_value(status, "longest processing", fmt::format("{:.0f} us", service.processing_max_us));
+  add_value(status, "restarts", fmt::format("{}", service.restarts));
+  add_value(status, "lost inputs", fmt::format("{}", service.lost_inputs));
+  add_value(status, "rejected inputs", fmt::format("{}", service.rejected_inputs));
+  add_value(status, "heap allocations", fmt::format("{}", service.heap_allocations));
+  return status;
+}
+
+DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleConfig& vehicle) {
+  DiagnosticStatus_ status;
+  status.level_(level_of(report.overall));
+  status.name_("boresight");
+  status.hardware_id_(vehicle.name);
+  status.message_(std::string(name_of(report.overall)));
+  add_value(status, "latency p50", fmt::format("{:.3f} ms", report.latency_p50_ms));
+  add_value(status, "latency max", fmt::format("{:.3f} ms", report.latency_max_ms));
+  return status;
+}
+
+}  // namespace
+
+diagnostics::SensorHealth to_sensor_health(const SensorHealth& sensor, const VehicleConfig& vehicle,
+                                           std::int64_t time_ns) {
+  // The enumerations have the same order in the message and in the IDL; a value beyond them is sent as the last one.
+  static_assert(static_cast<int>(DataQualifier::kNotAvailable) == diagnostics::NOT_AVAILABLE);
+  static_assert(static_cast<int>(ExtendedQualifier::kInitialising) == diagnostics::INITIALISING);
+  diagnostics::SensorHealth out;
+  out.radar_id(sensor.radar_id);
+  out.radar_name(radar_name(vehicle, sensor.radar_id));
+  out.vehicle_name(vehicle.name);
+  out.time_ns(time_ns);
+  out.data_qualifier(static_cast<diagnostics::DataQualifier>(sensor.data_qualifier));
+  out.extended_qualifier(static_cast<diagnostics::ExtendedQualifier>(sensor.extended_qualifier));
+  out.rate_hz(sensor.rate_hz);
+  out.expected_rate_hz(sensor.expected_rate_hz);
+  out.last_seen_s(sensor.last_seen_s);
+  out.yaw(to_axis(sensor.yaw));
+  out.pitch(to_axis(sensor.pitch));
+  out.roll(to_axis(sensor.roll));
+  out.speed_scale(sensor.speed_scale);
+  out.speed_scale_std(sensor.speed_scale_std);
+  out.lateral_displacement_m(sensor.lateral_displacement_m);
+  out.reference_range_m(sensor.reference_range_m);
+  out.scans(sensor.scans);
+  out.lost_scans(sensor.lost_scans);
+  return out;
+}
+
+diagnostic_msgs::msg::dds_::DiagnosticArray_ to_diagnostic_array(const HealthReport& report,
+                                                                 const VehicleConfig& vehicle, std::int64_t time_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
+  array.header_().stamp_().sec_(static_cast<std::int32_t>(time_ns / kSecond_ns));
+  array.header_().stamp_().nanosec_(static_cast<std::uint32_t>(time_ns % kSecond_ns));
+  array.header_().frame_id_(vehicle.name);
+  array.status_().push_back(status_of_pipeline(report, vehicle));
+  const std::size_t sensors = std::min<std::size_t>(report.number_of_sensors, kMaxRadars);
+  for (std::size_t i = 0; i < sensors; ++i) array.status_().push_back(status_of(report.sensors[i], vehicle));
+  const std::size_t services = std::min<std::size_t>(report.number_of_services, kMaxServices);
+  for (std::size_t i = 0; i < services; ++i) array.status_().push_back(status_of(report.services[i], vehicle));
+  return array;
+}
+
+}  // namespace boresight::dds

@@ -1,0 +1,58 @@
+// boresight-health: what every process says and what every radar delivers in, a verdict out: on its topic and by DDS.
+#include <memory>
+
+#include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/service_main.hpp"
+#include "services/health/config.hpp"
+#include "services/health/core/supervision.hpp"
+#include "services/health/outlet.hpp"
+
+using namespace boresight;
+
+namespace {
+
+constexpr std::int64_t kJudgePeriod_ns = 20'000'000;
+
+int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileConfig& config) {
+  health::Supervision supervision(vehicle, config.supervision, runtime::monotonic_now_ns());
+  health::Outlet outlet(node, vehicle, config.dds);
+  runtime::Publisher<HealthReport> reports(node);
+  node.on<ServiceStatus>([&](const ServiceStatus& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { supervision.observe(m); });
+  node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+  node.on<TrackList>([&](const TrackList& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
+
+  const auto said = std::make_unique<HealthReport>();
+  const auto seen = std::make_unique<HealthReport>();
+  const std::int64_t period_ns = catalogue::topic(catalogue::TopicId::kHealthReport).period_ns;
+  std::int64_t next_ns = 0;
+  // A changed verdict goes out at once, so that a silent radar is said to be so within its deadline and not a period
+  // of the report later.
+  node.every(kJudgePeriod_ns, [&] {
+    const std::int64_t now_ns = runtime::monotonic_now_ns();
+    supervision.judge(*seen, now_ns);
+    const bool changed = health::verdicts_differ(*seen, *said);
+    if (!changed && now_ns < next_ns) return;
+    next_ns = now_ns + period_ns - kJudgePeriod_ns / 2;
+    *said = *seen;
+    const runtime::Origin origin{.source_id = static_cast<std::uint32_t>(node.self()),
+                                 .measurement_time_ns = now_ns,
+                                 .time_source = TimeSource::kUserArrival,
+                                 .stage = std::nullopt,
+                                 .begin_ns = 0};
+    reports.publish(origin, [&](HealthReport& out) { out = *said; });
+    outlet.write(*said, changed, now_ns);
+  });
+  return node.spin();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runtime::service_main(
+      catalogue::Service::kHealth, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
+        const VehicleConfig vehicle = files.vehicle();
+        const health::FileConfig config = health::read_config(config::Reader::open(files.service_file("health")));
+        return [vehicle, config](runtime::Node& node) { return run(node, vehicle, config); };
+      });
+}
