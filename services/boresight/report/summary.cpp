@@ -88,7 +88,10 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
   std::map<std::uint32_t, RadarCounters> counters;
   std::map<std::uint32_t, RadarSummary> radars;
   std::uint64_t scans_before = 0;
-  for (const Snapshot& snapshot : snapshots) {
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    const Snapshot& snapshot = snapshots[i];
+    // What is said after the last scan of the drive (NO_DATA) is no verdict on the drive.
+    const bool goes_on = i + 1 < snapshots.size() && number_of_scans(snapshots[i + 1]) != number_of_scans(snapshot);
     const double t_s = static_cast<double>(snapshot.time_ns - begin_ns) * 1e-9;
     for (const RadarSnapshot& seen : snapshot.radars) {
       RadarSummary& radar = radars[seen.id];
@@ -96,9 +99,7 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
       counters[seen.id].lost.see(seen.lost);
       const bool misaligned = seen.extended_qualifier == ExtendedQualifier::kMisaligned;
       if (misaligned && radar.first_misaligned_s < 0) radar.first_misaligned_s = t_s;
-      // What is said after the drive has ended (NO_DATA) is no verdict on the drive.
-      const bool sending = seen.rate_hz > 0.0;
-      if (sending || radar.last.scans == 0) {
+      if (goes_on || radar.last.scans == 0) {
         radar.last = seen;
         radar.misaligned = misaligned;
       }

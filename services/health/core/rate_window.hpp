@@ -16,7 +16,12 @@ class RateWindow {
 
   void add(std::int64_t now_ns, std::uint64_t count = 1) {
     advance(now_ns);
-    if (first_slot_ < 0) first_slot_ = slot_;
+    if (first_slot_ < 0) {
+      first_slot_ = slot_;
+      first_ns_ = now_ns;
+    }
+    last_ns_ = now_ns;
+    since_first_ += count;
     counts_[static_cast<std::size_t>(slot_ % kLength)] += count;
   }
 
@@ -29,14 +34,12 @@ class RateWindow {
     }
     return total;
   }
-  /// Per second, over the part of the window since the first event; 0 before a whole slot has passed.
+  /// Per second, over the window, or over the intervals since the first event while that is not a window ago; 0 before
+  /// the second event.
   [[nodiscard]] double rate_hz(std::int64_t now_ns) {
-    const std::uint64_t total = sum(now_ns);
-    if (first_slot_ < 0) return 0.0;
-    // The first slot began before the first event; it is counted by the share that followed, on average a half.
-    const bool young = slot_ - first_slot_ < kSlots;
-    const double slots = young ? static_cast<double>(slot_ - first_slot_) - 0.5 : static_cast<double>(kSlots);
-    return slots > 0.0 ? static_cast<double>(total) / (slots * static_cast<double>(slot_ns_) * 1e-9) : 0.0;
+    if (is_full(now_ns)) return static_cast<double>(sum(now_ns)) / (kSlots * static_cast<double>(slot_ns_) * 1e-9);
+    if (since_first_ < 2 || last_ns_ <= first_ns_) return 0.0;
+    return static_cast<double>(since_first_ - 1) / (static_cast<double>(last_ns_ - first_ns_) * 1e-9);
   }
   /// True when a whole window has passed since the first event.
   [[nodiscard]] bool is_full(std::int64_t now_ns) {
@@ -47,6 +50,7 @@ class RateWindow {
   void clear() {
     counts_ = {};
     first_slot_ = -1;
+    since_first_ = 0;
   }
 
  private:
@@ -64,6 +68,9 @@ class RateWindow {
   std::int64_t slot_ns_;
   std::int64_t slot_ = 0;
   std::int64_t first_slot_ = -1;
+  std::int64_t first_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  std::uint64_t since_first_ = 0;
   std::array<std::uint64_t, kLength> counts_{};
 };
 

@@ -1,0 +1,335 @@
+#include "services/health/core/supervision.hpp"
+
+#include <array>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "interfaces/catalogue/catalogue.hpp"
+#include "services/common/runtime/allocation_counter.hpp"
+
+namespace boresight::health {
+namespace {
+
+using catalogue::Service;
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kStart = 1'000'000 * kMillisecond;
+
+VehicleConfig two_radars() {
+  VehicleConfig vehicle;
+  vehicle.name = "test";
+  for (std::uint32_t id : {1u, 2u}) {
+    RadarConfig radar;
+    radar.id = id;
+    radar.name = id == 1 ? "left" : "right";
+    radar.tolerance = {.yaw_rad = 1.5 * kDegree, .pitch_rad = 1.5 * kDegree, .roll_rad = 3.0 * kDegree};
+    radar.cycle_time_s = 0.05;
+    radar.deadline_s = 0.25;
+    vehicle.radars.push_back(radar);
+  }
+  return vehicle;
+}
+
+/// A sound system of two radars and six services, of which a test takes parts away.
+class SupervisionTest : public testing::Test {
+ protected:
+  SupervisionTest() {
+    for (std::size_t i = 0; i < catalogue::kNumberOfSupervisedServices; ++i) {
+      status_[i].header.source_id = static_cast<std::uint32_t>(i);
+      status_[i].incarnation_ns = kStart - 100 * kMillisecond;
+      status_[i].state = ServiceState::kRunning;
+    }
+    status_[0].sources[0].source_id = 1;
+    status_[0].sources[1].source_id = 2;
+    for (auto& estimate : estimate_) {
+      estimate.state = AlignmentState::kConverged;
+      estimate.observable = alignment_axis::kSpeedScale | alignment_axis::kYaw;
+      estimate.speed_scale = 1.0F;
+      estimate.covariance = {};
+      estimate.covariance[5] = static_cast<float>(0.02 * kDegree * 0.02 * kDegree);
+    }
+    estimate_[0].header.source_id = 1;
+    estimate_[1].header.source_id = 2;
+  }
+
+  ServiceStatus& status(Service service) { return status_[static_cast<std::size_t>(service)]; }
+  const ServiceHealth& service(Service s) const { return report_->services[static_cast<std::size_t>(s)]; }
+  const SensorHealth& radar(std::uint32_t id) const { return report_->sensors[id - 1]; }
+
+  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, whatever is not muted.
+  void run(double seconds) {
+    const std::int64_t end_ns = now_ + static_cast<std::int64_t>(seconds * 1e9);
+    for (; now_ < end_ns; now_ += 10 * kMillisecond, ++step_) {
+      const bool scan_is_due = step_ % static_cast<std::uint64_t>(scan_every_) == 0;
+      for (std::uint32_t id : {1u, 2u}) {
+        if (!scan_is_due || silent_radar_ == id) continue;
+        scan_->header.source_id = id;
+        scan_->header.source_sequence = ++sequence_[id];
+        scan_->number_of_valid_detections = 40;
+        supervision_.observe(*scan_, now_);
+        ++status_[0].sources[id - 1].messages;
+        for (std::size_t s = 0; s < 5; ++s) {
+          if (!idle_[s]) ++status_[s].outputs;
+        }
+      }
+      if (step_ % 20 == 0) {
+        for (auto& estimate : estimate_) {
+          estimate.header.measurement_time_ns = now_;
+          supervision_.observe(estimate);
+        }
+      }
+      if (step_ % 10 == 0) {
+        for (std::size_t s = 0; s < status_.size(); ++s) {
+          if (!mute_[s]) supervision_.observe(status_[s], now_);
+        }
+      }
+    }
+    supervision_.judge(*report_, now_);
+  }
+
+  Supervision supervision_{two_radars(), Config{}, kStart};
+  std::array<ServiceStatus, catalogue::kNumberOfSupervisedServices> status_{};
+  std::array<AlignmentEstimate, 2> estimate_{};
+  std::array<bool, 6> mute_{};
+  std::array<bool, 6> idle_{};
+  std::array<std::uint64_t, 3> sequence_{};
+  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  std::unique_ptr<HealthReport> report_ = std::make_unique<HealthReport>();
+  std::uint32_t silent_radar_ = 0;
+  int scan_every_ = 5;
+  std::int64_t now_ = kStart;
+  std::uint64_t step_ = 0;
+};
+
+TEST_F(SupervisionTest, ASoundSystemIsAvailable) {
+  run(5.0);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailable);
+  EXPECT_EQ(report_->number_of_sensors, 2u);
+  EXPECT_EQ(report_->number_of_services, 6u);
+  for (std::uint32_t id : {1u, 2u}) {
+    EXPECT_EQ(radar(id).data_qualifier, DataQualifier::kAvailable);
+    EXPECT_EQ(radar(id).extended_qualifier, ExtendedQualifier::kNormal);
+    EXPECT_NEAR(radar(id).rate_hz, 20.0, 0.6);
+    EXPECT_EQ(radar(id).lost_scans, 0u);
+    EXPECT_NEAR(radar(id).detections_per_scan, 40.0, 1e-3);
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(report_->services[i].condition, ServiceCondition::kAlive) << i;
+    EXPECT_EQ(report_->services[i].deadline_missed, 0) << i;
+  }
+}
+
+TEST_F(SupervisionTest, NothingHeardYetIsInitialisingAndThenNoData) {
+  supervision_.judge(*report_, kStart + 100 * kMillisecond);
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInitialising);
+  EXPECT_LT(radar(1).last_seen_s, 0.0F);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kUnknown);
+  EXPECT_LT(service(Service::kTracker).last_heartbeat_s, 0.0F);
+  EXPECT_EQ(report_->overall, DataQualifier::kNotAvailable);
+  supervision_.judge(*report_, kStart + 300 * kMillisecond);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
+}
+
+TEST_F(SupervisionTest, ASilentRadarIsNotAvailableAtItsDeadlineAndBackWithItsFirstScan) {
+  run(5.0);
+  silent_radar_ = 2;
+  run(0.2);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailable);
+  run(0.1);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNoData);
+  EXPECT_EQ(radar(2).rate_hz, 0.0F);
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailable);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced) << "the other radar goes on";
+  run(10.0);
+  silent_radar_ = 0;
+  run(0.1);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailable);
+  EXPECT_NEAR(radar(2).rate_hz, 20.0, 1.0);
+}
+
+TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
+  scan_every_ = 10;
+  run(1.0);
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailable) << "not judged before a window has passed";
+  run(4.0);
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kRateReduced);
+  scan_every_ = 5;
+  run(4.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
+}
+
+TEST_F(SupervisionTest, ACrookedRadarIsReducedAndFarBeyondNotAvailable) {
+  run(3.0);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  run(3.0);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
+  EXPECT_EQ(radar(2).yaw.beyond_tolerance, 1);
+  EXPECT_NEAR(radar(2).lateral_displacement_m, 100.0 * std::sin(2.5 * kDegree), 1e-3);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(-8.0 * kDegree);
+  run(1.0);
+  EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
+}
+
+TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyWhatIsObservableCounts) {
+  estimate_[0].alignment_pitch_rad = static_cast<float>(2.0 * kDegree);
+  estimate_[1].alignment_roll_rad = static_cast<float>(2.0 * kDegree);
+  run(5.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "pitch is not observable";
+  estimate_[0].observable |= alignment_axis::kPitch;
+  estimate_[1].observable |= alignment_axis::kRoll;
+  run(5.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal) << "2° of roll are within 3°";
+}
+
+TEST_F(SupervisionTest, AnEstimatorThatWaitsIsNotBelieved) {
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate_[1].state = AlignmentState::kWaiting;
+  run(10.0);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+}
+
+TEST_F(SupervisionTest, RejectedFramesAreInvalidData) {
+  run(3.0);
+  for (int i = 0; i < 30; ++i) {
+    status_[0].sources[0].rejected += 2;  // 20 a second beside 20 good ones
+    run(0.1);
+  }
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInvalidData);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+  run(5.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
+}
+
+TEST_F(SupervisionTest, GapsAreCountedAndARestartIsNoGap) {
+  run(1.0);
+  sequence_[1] += 3;
+  run(1.0);
+  EXPECT_EQ(radar(1).lost_scans, 3u);
+  sequence_[1] = 0;
+  run(1.0);
+  EXPECT_EQ(radar(1).lost_scans, 3u);
+}
+
+TEST_F(SupervisionTest, AServiceWithoutHeartbeatIsSilentAndBreaksTheChain) {
+  run(3.0);
+  mute_[static_cast<std::size_t>(Service::kGhostFilter)] = true;
+  run(0.4);
+  EXPECT_NE(service(Service::kGhostFilter).condition, ServiceCondition::kSilent);
+  run(0.2);
+  EXPECT_EQ(service(Service::kGhostFilter).condition, ServiceCondition::kSilent);
+  EXPECT_EQ(report_->overall, DataQualifier::kNotAvailable);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
+}
+
+TEST_F(SupervisionTest, WithoutTheEstimatorDataGoOn) {
+  run(3.0);
+  mute_[static_cast<std::size_t>(Service::kAlignmentEstimator)] = true;
+  run(1.0);
+  EXPECT_EQ(service(Service::kAlignmentEstimator).condition, ServiceCondition::kSilent);
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced);
+}
+
+TEST_F(SupervisionTest, ANewIncarnationIsARestartForAWhile) {
+  run(3.0);
+  status(Service::kTracker).incarnation_ns = now_;
+  status(Service::kTracker).outputs = 0;
+  run(1.0);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kRestarted);
+  EXPECT_EQ(service(Service::kTracker).restarts, 1u);
+  // A heartbeat of the dead process that was still in the queue is not a second restart.
+  ServiceStatus late = status(Service::kTracker);
+  late.incarnation_ns = kStart - 100 * kMillisecond;
+  supervision_.observe(late, now_);
+  run(4.0);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
+  EXPECT_EQ(service(Service::kTracker).restarts, 1u);
+}
+
+TEST_F(SupervisionTest, TheFirstStageThatDoesNotDeliverIsNamed) {
+  run(3.0);
+  for (const Service s : {Service::kDetectionCorrector, Service::kGhostFilter, Service::kTracker}) {
+    idle_[static_cast<std::size_t>(s)] = true;  // alive, but nothing comes out
+  }
+  run(2.0);
+  EXPECT_EQ(service(Service::kDetectionCorrector).deadline_missed, 1);
+  EXPECT_EQ(service(Service::kDetectionCorrector).condition, ServiceCondition::kDegraded);
+  EXPECT_EQ(service(Service::kGhostFilter).deadline_missed, 0);
+  EXPECT_EQ(service(Service::kTracker).deadline_missed, 0);
+}
+
+TEST_F(SupervisionTest, NoStageIsLateWhenNoRadarDelivers) {
+  run(3.0);
+  idle_.fill(true);
+  scan_every_ = 1'000'000;
+  run(5.0);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(report_->services[i].deadline_missed, 0) << i;
+  EXPECT_EQ(report_->overall, DataQualifier::kNotAvailable) << "both radars are silent";
+}
+
+TEST_F(SupervisionTest, LostInputDegradesForTheWindow) {
+  run(3.0);
+  status(Service::kTracker).faults[static_cast<std::size_t>(Fault::kInputLost)] = 2;
+  run(0.5);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kDegraded);
+  EXPECT_EQ(service(Service::kTracker).lost_inputs, 2u);
+  run(4.0);
+  EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
+}
+
+TEST_F(SupervisionTest, LatencyIsFromReceptionToTrackList) {
+  auto tracks = std::make_unique<TrackList>();
+  for (int i = 0; i < 100; ++i) {
+    tracks->header.stage(Stage::kIngest) = {now_, now_ + 1000};
+    tracks->header.stage(Stage::kTracker).end_ns = now_ + (i == 50 ? 4 : 1) * kMillisecond;
+    supervision_.observe(*tracks, now_);
+  }
+  run(0.1);
+  EXPECT_NEAR(report_->latency_p50_ms, 1.0, 0.07);
+  EXPECT_NEAR(report_->latency_max_ms, 4.0, 1e-3);
+}
+
+TEST_F(SupervisionTest, RadarsAndServicesItDoesNotKnowAreLeftAlone) {
+  scan_->header.source_id = 9;
+  supervision_.observe(*scan_, now_);
+  estimate_[0].header.source_id = 16;
+  supervision_.observe(estimate_[0]);
+  ServiceStatus unknown{};
+  unknown.header.source_id = 77;
+  supervision_.observe(unknown, now_);
+  supervision_.judge(*report_, now_);
+  EXPECT_EQ(report_->number_of_sensors, 2u);
+}
+
+TEST_F(SupervisionTest, OnlyAVerdictMakesReportsDiffer) {
+  run(3.0);
+  const auto before = std::make_unique<HealthReport>(*report_);
+  run(1.0);
+  EXPECT_FALSE(verdicts_differ(*before, *report_));
+  silent_radar_ = 1;
+  run(1.0);
+  EXPECT_TRUE(verdicts_differ(*before, *report_));
+}
+
+TEST_F(SupervisionTest, AllocatesNothing) {
+  run(3.0);
+  const std::uint64_t before = runtime::counted_allocations();
+  {
+    const runtime::CountAllocations counting(true);
+    run(10.0);
+  }
+  EXPECT_EQ(runtime::counted_allocations(), before);
+}
+
+}  // namespace
+}  // namespace boresight::health
