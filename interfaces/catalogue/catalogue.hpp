@@ -41,6 +41,12 @@ inline constexpr std::array<std::string_view, kNumberOfServices> kServiceNames =
   return kServiceNames[static_cast<std::size_t>(service)];
 }
 
+/// Whether a scan waits for this service on its way to the tracks. The others give way where processor time is short.
+[[nodiscard]] constexpr bool is_on_data_path(Service service) {
+  return service == Service::kIngestGateway || service == Service::kDetectionCorrector ||
+         service == Service::kGhostFilter || service == Service::kTracker;
+}
+
 /// A set of services, as a bit mask.
 class ServiceSet {
  public:

@@ -6,6 +6,8 @@ Config read_config(config::Reader root) {
   Config c;
   config::Reader reflectors = root.table("reflectors");
   c.memory_s = reflectors.number("memory_s", {0.05, 5.0}, c.memory_s);
+  c.update_period_s = reflectors.number("update_period_s", {0.0, 1.0}, c.update_period_s);
+  c.cell_m = reflectors.number("cell_m", {0.05, 10.0}, c.cell_m);
   c.cluster_radius_m = reflectors.number("cluster_radius_m", {0.1, 20.0}, c.cluster_radius_m);
   const auto count = [&](std::string_view key, std::size_t fallback) {
     return static_cast<std::size_t>(reflectors.integer(key, {1, 1000}, static_cast<std::int64_t>(fallback)));

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "services/common/geometry/cell_table.hpp"
+
 namespace boresight::geometry {
 
 /// Finds clusters without allocation after construction.
@@ -25,18 +27,17 @@ class Dbscan {
   [[nodiscard]] std::span<const std::int32_t> labels() const { return {labels_.data(), count_}; }
 
  private:
-  struct Cell {
-    std::int64_t key;
-    std::uint32_t point;
-  };
-  template <typename Visit>
-  void for_neighbours(std::size_t point, Visit&& visit) const;
+  void fill_grid();
+  /// Points within the radius of a point, itself included; valid until the next call.
+  [[nodiscard]] std::span<const std::uint32_t> neighbours_of(std::size_t point);
 
   std::span<const Eigen::Vector2d> points_;
   double radius_m_ = 1.0;
   std::size_t count_ = 0;
-  std::vector<Cell> cells_;  // sorted by key
+  CellTable first_in_cell_;  // cells of the radius' size; the other points of a cell hang on the first
+  std::vector<std::uint32_t> next_in_cell_;
   std::vector<std::int32_t> labels_;
+  std::vector<std::uint32_t> neighbours_;
   std::vector<std::uint32_t> stack_;
 };
 

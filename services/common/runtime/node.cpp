@@ -9,6 +9,7 @@
 #include <iceoryx_hoofs/log/logmanager.hpp>
 #include <iceoryx_posh/runtime/posh_runtime.hpp>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -71,11 +72,20 @@ void wait_for_roudi() {
   }
 }
 
+/// A scan wakes the corrector and every onlooker at the same time. Whoever is not on the data path steps back, or with
+/// few cores the scan would wait until they have looked at it. Needs no privilege; where it is forbidden (a unit's
+/// system call filter), the unit itself says `Nice=`.
+void give_way_to_data_path(catalogue::Service self) {
+  constexpr int kNice = 5;
+  if (!catalogue::is_on_data_path(self)) static_cast<void>(setpriority(PRIO_PROCESS, 0, kNice));
+}
+
 }  // namespace
 
 Node::Node(catalogue::Service self, std::string_view name_suffix) : impl_(std::make_unique<Impl>(self)) {
   install_stop_signals();
   install_error_handler();
+  give_way_to_data_path(self);
   iox::log::LogManager::GetLogManager().SetDefaultLogLevel(iox::log::LogLevel::kError,
                                                            iox::log::LogLevelOutput::kHideLogLevel);
   wait_for_roudi();
@@ -110,6 +120,9 @@ void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, std::
   options.queueFullPolicy = iox::popo::QueueFullPolicy::DISCARD_OLDEST_DATA;
   impl_->inputs.push_back(std::make_unique<Input>(detail::service_description(topic), options, version,
                                                   topic.writers.size() > 1, std::move(handler)));
+  // Who is not on the data path looks at its queues by itself: to be woken would cost every writer a system call a
+  // message, and the scan would compete with its onlookers for a core.
+  if (!catalogue::is_on_data_path(impl_->self)) return;
   impl_->waitset->attachState(impl_->inputs.back()->port, iox::popo::SubscriberState::HAS_DATA).or_else([](auto) {
     throw std::logic_error("too many inputs for one node");
   });
@@ -235,6 +248,7 @@ void Node::Impl::wait(std::int64_t timeout_ns) {
     wait_for_descriptors(timeout_ns);
     return;
   }
+  if (!catalogue::is_on_data_path(self)) timeout_ns = std::min(timeout_ns, kInputPollPeriod_ns);
   const auto timeout = iox::units::Duration::fromNanoseconds(timeout_ns);
   static_cast<void>(waitset->timedWait(timeout));
 }

@@ -12,7 +12,8 @@
 
 namespace boresight::runtime {
 
-/// The event loop of a service. Construct it once, declare inputs and timers, then call spin().
+/// The event loop of a service: woken by its inputs if the service is on the data path, else looking at them every 10
+/// ms. Construct it once, declare inputs and timers, then call spin().
 class Node {
  public:
   /// Connects to RouDi, waiting for it as long as no stop is requested. Throws std::runtime_error if stopped first.

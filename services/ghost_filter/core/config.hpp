@@ -6,9 +6,11 @@
 namespace boresight::ghosts {
 
 struct Config {
-  double memory_s = 0.4;  ///< stationary detections of this time make the reflectors
+  double memory_s = 0.4;          ///< stationary detections of this time make the reflectors
+  double update_period_s = 0.05;  ///< they are found anew this often, and moved with the ego motion in between
+  double cell_m = 1.0;            ///< and of each cell of such a grid only the mean
   double cluster_radius_m = 3.0;
-  std::size_t cluster_min_points = 3;
+  std::size_t cluster_min_points = 3;  ///< cells
   double min_segment_length_m = 4.0;
   std::size_t min_segment_points = 5;
   double max_segment_residual_m = 0.4;  ///< rms distance from the line; longer curves are split until they fit

@@ -66,8 +66,7 @@ void GhostFilter::predict_tracks(const CorrectedScan& scan) {
   }
 }
 
-GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position,
-                                               std::span<const ReflectorSegment> segments) const {
+GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const {
   const Eigen::Vector2d sight = position - sensor;
   const double range = sight.norm();
   if (range < 1e-3) return {Provenance::kMoving, kReal};
@@ -75,7 +74,8 @@ GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, co
   for (std::size_t i = 0; i < number_of_ellipses_; ++i) {
     if (geometry::contains(ellipses_[i], position)) return {Provenance::kMoving, kReal};
   }
-  for (const ReflectorSegment& segment : segments) {
+  for (std::size_t i = 0; i < number_of_segments_; ++i) {
+    const ReflectorSegment& segment = segments_[i];
     const auto share =
         geometry::crossing(sensor, position, point(segment.start_vehicle_m), point(segment.end_vehicle_m));
     if (share && (1.0 - *share) * range > config_.type2_margin_m) return {Provenance::kGhostType2, kGhost};
@@ -87,6 +87,37 @@ GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, co
   return {Provenance::kMoving, kReal};
 }
 
+void GhostFilter::update_segments(const CorrectedScan& scan, std::size_t count) {
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
+  map_.advance(time_ns, scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, config_.memory_s);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t flags = scan.detection_flags[i];
+    if ((flags & corrected_flag::kStationary) == 0 || (flags & corrected_flag::kRejected) != 0) continue;
+    map_.add({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
+  }
+  const std::int64_t age_ns = time_ns - found_ns_;
+  if (age_ns < 0 || static_cast<double>(age_ns) * 1e-9 >= config_.update_period_s) {
+    const std::span<const ReflectorSegment> found = finder_.find(map_.points());
+    std::copy(found.begin(), found.end(), segments_.begin());
+    number_of_segments_ = found.size();
+    found_ns_ = time_ns;
+  } else {
+    // A scan of another radar a few milliseconds later: the reflectors are the same, seen from farther on.
+    const double elapsed_s = static_cast<double>(time_ns - segments_time_ns_) * 1e-9;
+    const geometry::EgoStep step =
+        geometry::ego_step(scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, elapsed_s);
+    const auto moved = [&step](const std::array<float, 2>& p) -> std::array<float, 2> {
+      const Eigen::Vector2f to = step.move_point(point(p)).cast<float>();
+      return {to.x(), to.y()};
+    };
+    for (std::size_t i = 0; i < number_of_segments_; ++i) {
+      segments_[i].start_vehicle_m = moved(segments_[i].start_vehicle_m);
+      segments_[i].end_vehicle_m = moved(segments_[i].end_vehicle_m);
+    }
+  }
+  segments_time_ns_ = time_ns;
+}
+
 void GhostFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
   out.number_of_valid_detections = static_cast<std::uint32_t>(count);
@@ -96,18 +127,11 @@ void GhostFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   out.reserved = {};
   copy_columns(scan, count, out);
 
-  const std::int64_t time_ns = scan.header.measurement_time_ns;
-  map_.advance(time_ns, scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, config_.memory_s);
-  const auto is = [&](std::size_t i, std::uint16_t flag) { return (scan.detection_flags[i] & flag) != 0; };
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is(i, corrected_flag::kStationary) && !is(i, corrected_flag::kRejected)) {
-      map_.add({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
-    }
-  }
-  const std::span<const ReflectorSegment> segments = finder_.find(map_.points());
-  std::copy(segments.begin(), segments.end(), out.reflector_segments.begin());
-  out.number_of_reflector_segments = static_cast<std::uint32_t>(segments.size());
+  update_segments(scan, count);
+  std::copy_n(segments_.begin(), number_of_segments_, out.reflector_segments.begin());
+  out.number_of_reflector_segments = static_cast<std::uint32_t>(number_of_segments_);
 
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
   predict_tracks(scan);
   if (!has_tracks_) {
     out.flags |= pipeline_flag::kNoTracks;
@@ -117,11 +141,12 @@ void GhostFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
 
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
+  const auto is = [&](std::size_t i, std::uint16_t flag) { return (scan.detection_flags[i] & flag) != 0; };
   for (std::size_t i = 0; i < count; ++i) {
     Verdict verdict{Provenance::kUnknown, 0.0F};
     if (!is(i, corrected_flag::kRejected)) {
       if (is(i, corrected_flag::kMoving)) {
-        verdict = judge_moving(sensor, {scan.x_vehicle_m[i], scan.y_vehicle_m[i]}, segments);
+        verdict = judge_moving(sensor, {scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
       } else if (is(i, corrected_flag::kStationary)) {
         verdict = {Provenance::kStationary, 0.0F};
       }

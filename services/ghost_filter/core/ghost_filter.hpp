@@ -28,12 +28,17 @@ class GhostFilter {
     Provenance provenance;
     float ghost_probability;
   };
+  /// The segments in the vehicle frame of this scan: found anew when they are due, moved otherwise.
+  void update_segments(const CorrectedScan& scan, std::size_t count);
   void predict_tracks(const CorrectedScan& scan);
-  [[nodiscard]] Verdict judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position,
-                                     std::span<const ReflectorSegment> segments) const;
+  [[nodiscard]] Verdict judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const;
   Config config_;
   StationaryMap map_;
   ReflectorFinder finder_;
+  std::array<ReflectorSegment, kMaxReflectorSegments> segments_;
+  std::size_t number_of_segments_ = 0;
+  std::int64_t segments_time_ns_ = 0;  // of the scan in whose frame they are
+  std::int64_t found_ns_ = 0;
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   bool has_tracks_ = false;
   std::array<geometry::Ellipse, kMaxTracks> ellipses_;

@@ -11,29 +11,33 @@ namespace {
 
 constexpr int kMaxDepth = 6;
 
-/// Total least squares: the line through the centroid along the principal axis.
+/// Total least squares: the line through the centroid along the principal axis, each cell by the number of its points.
 struct Line {
   Eigen::Vector2d centre;
   Eigen::Vector2d direction;
   double residual_m;  // rms distance of the points
 };
 
-Line fit_line(std::span<const Eigen::Vector2d> points) {
+Line fit_line(std::span<const CellMean> points) {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& p : points) centre += p;
-  centre /= static_cast<double>(points.size());
+  double total = 0.0;
+  for (const CellMean& p : points) {
+    centre += p.number_of_points * p.position_m;
+    total += p.number_of_points;
+  }
+  centre /= total;
   double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const Eigen::Vector2d& p : points) {
-    const Eigen::Vector2d d = p - centre;
-    xx += d.x() * d.x();
-    xy += d.x() * d.y();
-    yy += d.y() * d.y();
+  for (const CellMean& p : points) {
+    const Eigen::Vector2d d = p.position_m - centre;
+    xx += p.number_of_points * d.x() * d.x();
+    xy += p.number_of_points * d.x() * d.y();
+    yy += p.number_of_points * d.y() * d.y();
   }
   const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
   const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
   const double across = xx * direction.y() * direction.y() - 2.0 * xy * direction.x() * direction.y() +
                         yy * direction.x() * direction.x();
-  return {centre, direction, std::sqrt(std::max(0.0, across) / static_cast<double>(points.size()))};
+  return {centre, direction, std::sqrt(std::max(0.0, across) / total)};
 }
 
 double length_of(const ReflectorSegment& s) {
@@ -42,14 +46,19 @@ double length_of(const ReflectorSegment& s) {
 
 }  // namespace
 
-ReflectorFinder::ReflectorFinder(const Config& config) : config_(config), dbscan_(StationaryMap::kCapacity) {
+ReflectorFinder::ReflectorFinder(const Config& config)
+    : config_(config), cell_means_(StationaryMap::kCapacity), dbscan_(StationaryMap::kCapacity) {
+  positions_.reserve(StationaryMap::kCapacity);
   sorted_.reserve(StationaryMap::kCapacity);
   cluster_begin_.reserve(StationaryMap::kCapacity + 2);
 }
 
 std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::Vector2d> points) {
   number_of_segments_ = 0;
-  const std::size_t clusters = dbscan_.cluster(points, config_.cluster_radius_m, config_.cluster_min_points);
+  const std::span<const CellMean> means = cell_means_.find(points, config_.cell_m);
+  positions_.clear();
+  for (const CellMean& mean : means) positions_.push_back(mean.position_m);
+  const std::size_t clusters = dbscan_.cluster(positions_, config_.cluster_radius_m, config_.cluster_min_points);
   const auto labels = dbscan_.labels();
   // Counting sort by cluster: two passes, no comparison, no allocation.
   cluster_begin_.assign(clusters + 1, 0);
@@ -59,7 +68,7 @@ std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::V
   for (std::size_t c = 1; c <= clusters; ++c) cluster_begin_[c] += cluster_begin_[c - 1];
   sorted_.resize(cluster_begin_[clusters]);
   for (std::size_t i = labels.size(); i-- > 0;) {
-    if (labels[i] >= 0) sorted_[--cluster_begin_[static_cast<std::size_t>(labels[i]) + 1]] = points[i];
+    if (labels[i] >= 0) sorted_[--cluster_begin_[static_cast<std::size_t>(labels[i]) + 1]] = means[i];
   }
   // Each cluster's begin has moved into the next one's slot.
   for (std::size_t c = 0; c < clusters; ++c) {
@@ -72,9 +81,9 @@ std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::V
 
 void ReflectorFinder::fit(std::size_t begin, std::size_t end, int depth) {
   if (end - begin < config_.min_segment_points) return;
-  const std::span<Eigen::Vector2d> points(sorted_.data() + begin, end - begin);
+  const std::span<CellMean> points(sorted_.data() + begin, end - begin);
   const Line line = fit_line(points);
-  const auto along = [&](const Eigen::Vector2d& p) { return line.direction.dot(p - line.centre); };
+  const auto along = [&](const CellMean& p) { return line.direction.dot(p.position_m - line.centre); };
   if (line.residual_m > config_.max_segment_residual_m) {
     if (depth == kMaxDepth) return;
     const auto middle = std::partition(points.begin(), points.end(), [&](const auto& p) { return along(p) < 0.0; });
@@ -85,17 +94,16 @@ void ReflectorFinder::fit(std::size_t begin, std::size_t end, int depth) {
     return;
   }
   double first = along(points.front()), last = first;
-  for (const Eigen::Vector2d& p : points) {
+  std::uint32_t detections = 0;
+  for (const CellMean& p : points) {
     first = std::min(first, along(p));
     last = std::max(last, along(p));
+    detections += p.number_of_points;
   }
   if (last - first < config_.min_segment_length_m) return;
   const Eigen::Vector2f start = (line.centre + first * line.direction).cast<float>();
   const Eigen::Vector2f stop = (line.centre + last * line.direction).cast<float>();
-  add({{start.x(), start.y()},
-       {stop.x(), stop.y()},
-       static_cast<float>(line.residual_m),
-       static_cast<std::uint32_t>(points.size())});
+  add({{start.x(), start.y()}, {stop.x(), stop.y()}, static_cast<float>(line.residual_m), detections});
 }
 
 void ReflectorFinder::add(const ReflectorSegment& segment) {

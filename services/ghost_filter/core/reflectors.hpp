@@ -10,6 +10,7 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/common/geometry/dbscan.hpp"
+#include "services/ghost_filter/core/cell_means.hpp"
 #include "services/ghost_filter/core/config.hpp"
 
 namespace boresight::ghosts {
@@ -18,17 +19,19 @@ class ReflectorFinder {
  public:
   explicit ReflectorFinder(const Config& config);
 
-  /// Finds the segments in `points` (vehicle frame): DBSCAN, then a total-least-squares line for each cluster, which is
-  /// halved where its points scatter more than allowed, so that a curved rail becomes a polygon. The longest come first
-  /// if there are more than kMaxReflectorSegments.
+  /// Finds the segments in `points` (vehicle frame): one mean for each cell of a grid, DBSCAN of the means, then a
+  /// total-least-squares line for each cluster, which is halved where its points scatter more than allowed, so that a
+  /// curved rail becomes a polygon. The longest come first if there are more than kMaxReflectorSegments.
   [[nodiscard]] std::span<const ReflectorSegment> find(std::span<const Eigen::Vector2d> points);
 
  private:
   void fit(std::size_t begin, std::size_t end, int depth);
   void add(const ReflectorSegment& segment);
   Config config_;
+  CellMeans cell_means_;
   geometry::Dbscan dbscan_;
-  std::vector<Eigen::Vector2d> sorted_;  // points ordered by cluster
+  std::vector<Eigen::Vector2d> positions_;  // of the cells' means
+  std::vector<CellMean> sorted_;            // ordered by cluster
   std::vector<std::uint32_t> cluster_begin_;
   std::array<ReflectorSegment, kMaxReflectorSegments> segments_;
   std::size_t number_of_segments_ = 0;

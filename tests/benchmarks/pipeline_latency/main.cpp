@@ -8,6 +8,7 @@
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
+#include "tests/simulator/scenario.hpp"
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/simulator/wire/pcap_writer.hpp"
 #include "tests/system/harness/domain.hpp"
@@ -28,8 +29,9 @@ std::uint32_t ipv4(const std::string& text) {
   return a << 24 | b << 16 | c << 8 | d;
 }
 
-/// Four radars of 300 detections at 20 Hz, their cycles evenly apart.
-std::filesystem::path write_load(double seconds) {
+/// Four radars of 300 detections at 20 Hz, their cycles evenly apart: a stationary world with a few vehicles, seen from
+/// the constant speed of the scenario.
+std::filesystem::path write_load(double seconds, double speed_mps) {
   const VehicleConfig vehicle =
       config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
   const std::filesystem::path file = "/tmp/load.pcap";
@@ -45,7 +47,10 @@ std::filesystem::path write_load(double seconds) {
       const float along = static_cast<float>(k) / static_cast<float>(kDetections);
       scan->range_m[k] = 5.0F + 80.0F * std::fmod(along * 37.0F, 1.0F);
       scan->azimuth_rad[k] = -1.1F + 2.2F * along;
-      scan->range_rate_mps[k] = -15.0F * std::cos(scan->azimuth_rad[k]);
+      // Every tenth detection is one of a few objects that move.
+      const double direction_rad = scan->azimuth_rad[k] + radar.mounting_pose.yaw_rad;
+      const double own_mps = k % 10 == 0 ? 6.0 : 0.0;
+      scan->range_rate_mps[k] = static_cast<float>(own_mps - speed_mps * std::cos(direction_rad));
       scan->existence_probability[k] = 0.9F;
     }
     const std::int64_t time_ns = kEpoch_ns + i * (kCycle_ns / kRadars);
@@ -68,12 +73,10 @@ void print(const char* what, const std::vector<double>& ns) {
 }
 
 int run(double seconds) {
-  const auto ego = harness::simulated_drive(seconds).back();
-  const auto load = write_load(seconds);
-  const bool tracker = harness::is_built("tracker");
-  const std::size_t stages = tracker ? 4 : 3;
-  std::vector<std::size_t> chunks = {sizeof(RadarScan), sizeof(CorrectedScan)};
-  if (tracker) chunks.push_back(sizeof(ClassifiedScan));
+  const simulator::Scenario scenario = simulator::scenario("straight_rail");
+  const auto ego = harness::simulated_drive(seconds, scenario.name).back();
+  const auto load = write_load(seconds, scenario.mean_speed_mps);
+  const std::vector<std::size_t> chunks = {sizeof(RadarScan), sizeof(CorrectedScan), sizeof(ClassifiedScan)};
 
   std::vector<double> total, ipc;
   std::array<std::vector<double>, kNumberOfStages> processing;
@@ -81,19 +84,20 @@ int run(double seconds) {
     harness::Observer observer("-bench");
     harness::Domain domain("demo");
     domain.start();
+    if (!domain.until(5.0, [&] { return observer.is_attached(); })) return 1;
     domain.replay({load, ego});
     if (!domain.until(seconds + 20.0, [&] { return domain.replay_has_ended(); })) return 1;
     domain.run_for(0.3);
-    const auto lists = observer.of(tracker ? catalogue::TopicId::kTrackList : catalogue::TopicId::kClassifiedScan);
+    const auto lists = observer.of(catalogue::TopicId::kTrackList);
     for (const harness::Sample* sample : lists) {
       const auto& stamps = sample->header.stages;
       double between_ns = 0.0;
-      for (std::size_t i = 0; i < stages; ++i) {
+      for (std::size_t i = 0; i < kNumberOfStages; ++i) {
         processing[i].push_back(static_cast<double>(stamps[i].end_ns - stamps[i].begin_ns));
         if (i > 0) between_ns += static_cast<double>(stamps[i].begin_ns - stamps[i - 1].end_ns);
       }
       ipc.push_back(between_ns);
-      total.push_back(static_cast<double>(stamps[stages - 1].end_ns - stamps[0].begin_ns));
+      total.push_back(static_cast<double>(stamps[kNumberOfStages - 1].end_ns - stamps[0].begin_ns));
     }
     static_cast<void>(observer.process().stop());
   }
@@ -101,11 +105,11 @@ int run(double seconds) {
   const auto bare = bench::bare_chain(chunks, kCycle_ns / kRadars, static_cast<std::size_t>(seconds * 80.0));
   if (bare.empty()) return 1;
 
-  std::printf("%u radars x %u detections x 20 Hz, %zu scans, first datagram to %s\n", kRadars, kDetections,
-              total.size(), tracker ? "track list" : "classified scan (boresight-tracker is not built)");
+  std::printf("%u radars x %u detections x 20 Hz, %zu scans, first datagram to track list\n", kRadars, kDetections,
+              total.size());
   std::printf("%-34s %9s %9s %9s\n", "us", "p50", "p99", "max");
   const char* const names[] = {"ingest gateway", "detection corrector", "ghost filter", "tracker"};
-  for (std::size_t i = 0; i < stages; ++i) print(names[i], processing[i]);
+  for (std::size_t i = 0; i < kNumberOfStages; ++i) print(names[i], processing[i]);
   print("between the processes (IPC)", ipc);
   print("total", total);
   print("bare iceoryx chain, same hops", bare);

@@ -1,9 +1,11 @@
 #include "tests/system/harness/domain.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "deploy/roudi/pools.hpp"
 #include "deploy/supervisor/domain.hpp"
@@ -21,7 +23,7 @@ const fs::path kFolder = "/tmp/domain";
 const fs::path kBinaries = BORESIGHT_BINARY_DIR;
 const fs::path kConfig = fs::path(BORESIGHT_SOURCE_DIR) / "config";
 
-supervisor::DomainConfig configuration(const std::string& vehicle) {
+supervisor::DomainConfig configuration(const std::string& vehicle, const std::vector<std::string>& without) {
   fs::create_directories(kFolder / "logs");
   const fs::path pools = kFolder / "logs" / "roudi.toml";
   std::ofstream(pools) << roudi::to_toml(roudi::single_segment());
@@ -32,17 +34,16 @@ supervisor::DomainConfig configuration(const std::string& vehicle) {
                                                                      .log_directory = kFolder / "logs",
                                                                      .environment = {{"BORESIGHT_INPUT", "replay"}}},
                                                                     pools);
-  std::erase_if(config.services, [](const supervisor::ProcessSpec& spec) { return !is_built(spec.name); });
+  std::erase_if(config.services, [&](const supervisor::ProcessSpec& spec) {
+    return std::find(without.begin(), without.end(), spec.name) != without.end();
+  });
   return config;
 }
 
 }  // namespace
 
-bool is_built(std::string_view service) {
-  return fs::exists(kBinaries / ("boresight-" + std::string(service)));
-}
-
-Domain::Domain(const std::string& vehicle) : supervisor_(configuration(vehicle)) {}
+Domain::Domain(const std::string& vehicle, const std::vector<std::string>& without)
+    : supervisor_(configuration(vehicle, without)) {}
 
 void Domain::start() {
   supervisor_.start();
@@ -81,10 +82,23 @@ bool Domain::replay_has_ended() {
   return result.has_value();
 }
 
-std::vector<fs::path> simulated_drive(double duration_s) {
+std::unique_ptr<Child> start_alone(const std::string& service) {
+  fs::create_directories(kFolder / "logs");
+  return std::make_unique<Child>([service] {
+    const std::string binary = (kBinaries / ("boresight-" + service)).string();
+    const std::string log = (kFolder / "logs" / (service + "-alone.log")).string();
+    setenv("BORESIGHT_INPUT", "replay", 1);
+    setenv("BORESIGHT_RUNTIME_DIR", (kFolder / "run").c_str(), 1);
+    if (std::freopen(log.c_str(), "w", stderr) == nullptr) return 1;
+    execl(binary.c_str(), binary.c_str(), "--config", kConfig.c_str(), "--vehicle", "demo", nullptr);
+    return 1;
+  });
+}
+
+std::vector<fs::path> simulated_drive(double duration_s, const std::string& scenario) {
   const VehicleConfig vehicle = config::read_vehicle_file(kConfig / "vehicle" / "demo.toml");
   const simulator::DriveFiles files =
-      simulator::write_drive(simulator::scenario("demo_drive"), vehicle, 1, duration_s, "/tmp/drive", [](double) {});
+      simulator::write_drive(simulator::scenario(scenario), vehicle, 1, duration_s, "/tmp/drive", [](double) {});
   return {files.radars, files.ego};
 }
 

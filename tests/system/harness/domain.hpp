@@ -3,21 +3,21 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "deploy/supervisor/supervisor.hpp"
+#include "tests/system/harness/child.hpp"
 
 namespace boresight::harness {
 
-/// Whether the service's binary exists; a build of a part of the product runs a part of the chain.
-[[nodiscard]] bool is_built(std::string_view service);
-
-/// RouDi and every service that is built, listening to boresight-replay. Logs and sockets lie under /tmp/domain.
+/// RouDi and every service, listening to boresight-replay. Logs and sockets lie under /tmp/domain.
 class Domain {
  public:
-  explicit Domain(const std::string& vehicle);
+  /// Services in `without` are not started.
+  explicit Domain(const std::string& vehicle, const std::vector<std::string>& without = {});
 
   /// Starts it and waits until every service is ready; throws if that takes longer than 20 s.
   void start();
@@ -35,7 +35,11 @@ class Domain {
   supervisor::Supervisor supervisor_;
 };
 
-/// Simulates the demo vehicle's drive into /tmp/drive; returns its recordings.
-[[nodiscard]] std::vector<std::filesystem::path> simulated_drive(double duration_s);
+/// Starts a service of the demo vehicle outside of any supervision.
+[[nodiscard]] std::unique_ptr<Child> start_alone(const std::string& service);
+
+/// Simulates a drive of the demo vehicle into /tmp/drive; returns its recordings, the ego signals last.
+[[nodiscard]] std::vector<std::filesystem::path> simulated_drive(double duration_s,
+                                                                 const std::string& scenario = "demo_drive");
 
 }  // namespace boresight::harness

@@ -21,9 +21,6 @@ using harness::Sample;
 
 const fs::path kData = BORESIGHT_SHARED_DATA;
 
-std::string name(Service service) {
-  return std::string(catalogue::name_of(service));
-}
 
 /// Linear interpolation in (times, values), which must bracket `time`.
 double at(const std::vector<double>& times, const std::vector<double>& values, double time) {
@@ -108,7 +105,6 @@ TEST_F(Comma2k19, EgoMotionIsThatOfTheReferenceDecodings) {
 }
 
 TEST_F(Comma2k19, TracksAppear) {
-  if (!harness::is_built(name(Service::kTracker))) GTEST_SKIP() << "boresight-tracker is not built";
   const auto lists = observer_->of(TopicId::kTrackList);
   EXPECT_EQ(lists.size(), observer_->of(TopicId::kRadarScan).size());
   EXPECT_TRUE(std::any_of(lists.begin(), lists.end(), [](const Sample* s) { return s->confirmed_tracks > 0; }));

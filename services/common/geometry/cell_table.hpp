@@ -1,0 +1,71 @@
+// A number for each cell of a plane's grid: hashing without allocation, emptied in constant time.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace boresight::geometry {
+
+struct GridCell {
+  std::int32_t column;
+  std::int32_t row;
+  [[nodiscard]] bool operator==(const GridCell&) const = default;
+};
+
+/// The cell of a position in a grid of `size_m`; positions beyond 1000 km are taken to be there.
+[[nodiscard]] inline GridCell grid_cell(double x_m, double y_m, double size_m) {
+  static constexpr double kFarthest_m = 1e6;
+  const auto index = [size_m](double v) {
+    return static_cast<std::int32_t>(std::floor(std::clamp(v, -kFarthest_m, kFarthest_m) / size_m));
+  };
+  return {index(x_m), index(y_m)};
+}
+
+class CellTable {
+ public:
+  /// Room for `capacity` cells, which is not checked again.
+  explicit CellTable(std::size_t capacity) : slots_(std::bit_ceil(2 * std::max<std::size_t>(capacity, 1))) {}
+
+  void clear() {
+    if (++round_ != 0) return;
+    std::fill(slots_.begin(), slots_.end(), Slot{});
+    round_ = 1;
+  }
+
+  /// The cell's number; `fresh` becomes that of a cell that had none.
+  [[nodiscard]] std::uint32_t& at(GridCell cell, std::uint32_t fresh) {
+    Slot& slot = slots_[find_slot(cell)];
+    if (slot.round != round_) slot = {round_, fresh, cell};
+    return slot.value;
+  }
+  /// Nullptr for a cell without a number.
+  [[nodiscard]] const std::uint32_t* find(GridCell cell) const {
+    const Slot& slot = slots_[find_slot(cell)];
+    return slot.round == round_ ? &slot.value : nullptr;
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t round = 0;  // slots of earlier rounds count as empty
+    std::uint32_t value = 0;
+    GridCell cell{};
+  };
+  [[nodiscard]] std::size_t find_slot(GridCell cell) const {
+    // Fibonacci hashing of both halves: neighbouring cells land far apart.
+    const std::uint64_t key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(cell.column)) << 32 |
+                              static_cast<std::uint32_t>(cell.row);
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32) & mask;
+    while (slots_[at].round == round_ && slots_[at].cell != cell) at = (at + 1) & mask;
+    return at;
+  }
+
+  std::vector<Slot> slots_;  // open addressing, at most half full
+  std::uint32_t round_ = 1;
+};
+
+}  // namespace boresight::geometry
