@@ -9,6 +9,8 @@ namespace layout = wire::toyota;
 
 namespace {
 
+// A cycle's frames come within some 10 ms of its 50 ms.
+constexpr std::int64_t kPauseBetweenCycles_ns = 20'000'000;
 constexpr std::uint32_t kAllTracks = (1u << layout::kNumberOfTracks) - 1;
 
 }  // namespace
@@ -28,10 +30,13 @@ DecodeResult ToyotaRadar::take(std::uint32_t id, std::span<const std::uint8_t> p
   }
   const std::uint32_t slot = id - (is_a ? layout::kTrackA : layout::kTrackB);
   const std::uint32_t bit = 1u << slot;
-  // A frame that comes again belongs to the next cycle: the present one will not be completed any more.
-  if (((is_a ? seen_a_ : seen_b_) & bit) != 0 || (is_a && seen_b_ != 0)) {
+  // A frame that comes again, or after a pause, belongs to the next cycle: the present one will not be completed any
+  // more. The order of the frames within a cycle says nothing: A and B frames of recorded cycles mix in any order.
+  const bool came_before = ((is_a ? seen_a_ : seen_b_) & bit) != 0;
+  if (came_before || (frames_ > 0 && stamp_ns - last_stamp_ns_ > kPauseBetweenCycles_ns)) {
     return DecodeResult::kComplete;
   }
+  last_stamp_ns_ = stamp_ns;
   if (frames_++ == 0) {
     stamp_ns_ = stamp_ns;
     counter_ = static_cast<std::uint32_t>(wire::extract_raw(layout::kCounter, payload));

@@ -12,8 +12,8 @@
 
 namespace boresight::ingest {
 
-/// Collects the frames of one cycle. A cycle is complete with its last TRACK_B frame, or, if frames are missing, when
-/// the next cycle begins; the caller then writes it out by write_scan(). The radar reports tracks of its own: range
+/// Collects the frames of one cycle. A cycle is complete with the last of its 32 frames, in whatever order they come,
+/// or, if frames are missing, when the next cycle begins; the caller then writes it out by write_scan(). The radar reports tracks of its own: range
 /// and azimuth are computed from its Cartesian position; it measures no elevation and no RCS.
 class ToyotaRadar {
  public:
@@ -46,6 +46,7 @@ class ToyotaRadar {
   std::uint32_t counter_ = 0;
   std::uint32_t missing_ = 0;
   std::int64_t stamp_ns_ = 0;
+  std::int64_t last_stamp_ns_ = 0;
 };
 
 }  // namespace boresight::ingest

@@ -21,7 +21,6 @@ using harness::Sample;
 
 const fs::path kData = BORESIGHT_SHARED_DATA;
 
-
 /// Linear interpolation in (times, values), which must bracket `time`.
 double at(const std::vector<double>& times, const std::vector<double>& values, double time) {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
