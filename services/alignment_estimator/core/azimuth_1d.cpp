@@ -27,6 +27,21 @@ double tukey_weight(double residual, double gate) {
   return v * v;
 }
 
+/// Mean and variance of the cosine of an elevation that the sensor does not measure, anywhere in its field of view.
+/// What stands above or below the beam's axis closes in more slowly than its azimuth says.
+struct UnknownElevation {
+  double mean_cosine;
+  double variance;
+};
+UnknownElevation unknown_elevation(const FieldOfView& view) {
+  const double low = view.elevation_min_rad, high = view.elevation_max_rad;
+  const double width = high - low;
+  if (!(width > 1e-6)) return {std::cos(low), 0.0};
+  const double mean = (std::sin(high) - std::sin(low)) / width;
+  const double square = 0.5 + 0.25 * (std::sin(2.0 * high) - std::sin(2.0 * low)) / width;
+  return {mean, std::max(0.0, square - mean * mean)};
+}
+
 bool all_finite(double a, double b, double c, double d) {
   return std::isfinite(a) && std::isfinite(b) && std::isfinite(c) && std::isfinite(d);
 }
@@ -69,6 +84,7 @@ void Azimuth1d::collect(const RadarScan& scan, const EgoSample& ego) {
   number_of_candidates_ = 0;
   const bool has_elevation = scan.has(scan_field::kElevation);
   const bool has_stds = scan.has(scan_field::kStds);
+  const UnknownElevation unknown = unknown_elevation(radar_.field_of_view);
   const Eigen::Vector3d velocity =
       geometry::sensor_velocity(x_(0), ego.speed_mps, ego.yaw_rate_radps, radar_.mounting_pose.position_m);
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
@@ -86,12 +102,14 @@ void Azimuth1d::collect(const RadarScan& scan, const EgoSample& ego) {
     if (!(range_rate_std > 0.0)) range_rate_std = radar_.noise.range_rate_std_mps;
     if (!all_finite(azimuth_std, elevation_std, range_rate_std, 0.0)) continue;
     const double ca = std::cos(azimuth), sa = std::sin(azimuth);
-    const double ce = std::cos(elevation), se = std::sin(elevation);
+    const double ce = has_elevation ? std::cos(elevation) : unknown.mean_cosine, se = std::sin(elevation);
     Candidate& candidate = candidates_[number_of_candidates_++];
     candidate.direction = nominal_ * Eigen::Vector3d(ce * ca, ce * sa, se);
     candidate.range_rate_mps = range_rate;
     const double by_azimuth = velocity.dot(nominal_ * Eigen::Vector3d(-ce * sa, ce * ca, 0.0)) * azimuth_std;
-    const double by_elevation = velocity.dot(nominal_ * Eigen::Vector3d(-se * ca, -se * sa, ce)) * elevation_std;
+    double by_elevation = velocity.dot(nominal_ * Eigen::Vector3d(-se * ca, -se * sa, ce)) * elevation_std;
+    if (!has_elevation)
+      by_elevation = velocity.dot(nominal_ * Eigen::Vector3d(ca, sa, 0.0)) * std::sqrt(unknown.variance);
     candidate.variance = range_rate_std * range_rate_std + by_azimuth * by_azimuth + by_elevation * by_elevation;
   }
 }

@@ -70,6 +70,8 @@ struct RadarConfig {
   SensorNoise noise;
   AlignmentTolerance tolerance;
   double cycle_time_s = 0.05;
+  /// From measurement to reception, for a radar that does not stamp its data with a synchronised clock.
+  double latency_s = 0.0;
   double deadline_s = 0.25;  ///< silent for longer: NOT_AVAILABLE
 };
 

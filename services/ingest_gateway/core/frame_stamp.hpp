@@ -42,19 +42,19 @@ class RecordingClock {
 };
 
 /// Time of measurement by a sensor's own stamp, if its clock is synchronised and the stamp lies 5 ms after … 1 s before
-/// reception; else the time of reception, marked as such.
+/// reception; else the time of reception less the usual latency, marked as such.
 struct MeasurementTime {
   std::int64_t time_ns;
   TimeSource source;
 };
 [[nodiscard]] inline MeasurementTime measurement_time(std::int64_t sensor_epoch_ns, bool synchronised,
-                                                      const FrameStamp& stamp) {
+                                                      const FrameStamp& stamp, std::int64_t latency_ns) {
   const std::int64_t sensor_ns = sensor_epoch_ns - stamp.epoch_offset_ns;
   const std::int64_t delay_ns = stamp.received_ns - sensor_ns;
   if (synchronised && delay_ns >= -5'000'000 && delay_ns <= 1'000'000'000) {
     return {sensor_ns, TimeSource::kSensorSynchronised};
   }
-  return {stamp.received_ns, stamp.source};
+  return {stamp.received_ns - latency_ns, stamp.source};
 }
 
 }  // namespace boresight::ingest

@@ -29,11 +29,12 @@ std::uint32_t parse_ipv4(std::string_view text) {
 Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink)
     : sink_(sink), ego_interface_(vehicle.ego.source.interface), ego_(vehicle.ego) {
   for (const RadarConfig& radar : vehicle.radars) {
+    const auto latency_ns = static_cast<std::int64_t>(radar.latency_s * 1e9);
     if (radar.profile == RadarProfile::kToyota) {
-      can_radars_.push_back({radar.id, radar.source.interface, {}});
+      can_radars_.push_back({radar.id, radar.source.interface, latency_ns, {}});
     } else {
       udp_radars_.push_back(
-          {radar.id, parse_ipv4(radar.source.address), parse_ipv4(radar.source.sender), radar.source.port});
+          {radar.id, parse_ipv4(radar.source.address), parse_ipv4(radar.source.sender), radar.source.port, latency_ns});
     }
   }
 }
@@ -83,7 +84,7 @@ void Gateway::take_radar_frame(CanRadar& radar, const recording::Frame& frame, c
 }
 
 void Gateway::finish_cycle(CanRadar& radar) {
-  const MeasurementTime time{radar.codec.stamp_ns(), TimeSource::kLinkArrival};
+  const MeasurementTime time{radar.codec.stamp_ns() - radar.latency_ns, TimeSource::kLinkArrival};
   RadarScan* const scan = sink_.begin_scan();
   if (scan == nullptr) {
     radar.codec.discard();
@@ -114,7 +115,7 @@ void Gateway::take_udp(const recording::Frame& frame, const FrameStamp& stamp) {
   RadarScan* const scan = sink_.begin_scan();
   if (scan == nullptr) return;  // counted where the memory was refused
   const ars548::SensorTime time = ars548::decode(frame.payload, *scan);
-  sink_.publish_scan(match->id, measurement_time(time.epoch_ns, time.synchronised, stamp));
+  sink_.publish_scan(match->id, measurement_time(time.epoch_ns, time.synchronised, stamp, match->latency_ns));
 }
 
 void Gateway::reject(DecodeResult result, std::string_view problem, std::uint32_t radar_id) {

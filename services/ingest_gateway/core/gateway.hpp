@@ -44,6 +44,7 @@ class Gateway {
   struct CanRadar {
     std::uint32_t id;
     std::string interface;
+    std::int64_t latency_ns;
     ToyotaRadar codec;
   };
   struct UdpRadar {
@@ -51,6 +52,7 @@ class Gateway {
     std::uint32_t destination_ipv4;
     std::uint32_t sender_ipv4;  // 0: any
     std::uint16_t port;
+    std::int64_t latency_ns;
   };
   void take_can(const recording::Frame& frame, const FrameStamp& stamp);
   void take_udp(const recording::Frame& frame, const FrameStamp& stamp);

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/golden/support/npy.hpp"
 #include "tests/system/harness/domain.hpp"
 #include "tests/system/harness/observer.hpp"
-#include "tests/system/recordings/npy.hpp"
 
 namespace boresight {
 namespace {
@@ -81,11 +81,11 @@ TEST_F(Comma2k19, EveryValidRowOfTheRecordingArrives) {
 }
 
 TEST_F(Comma2k19, EgoMotionIsThatOfTheReferenceDecodings) {
-  const auto speed_times = harness::read_npy(kFolder / "processed_log/CAN/speed/t");
-  const auto speeds = harness::read_npy(kFolder / "processed_log/CAN/speed/value");
-  const auto gyro_times = harness::read_npy(kFolder / "processed_log/IMU/gyro/t");
+  const auto speed_times = golden::read_npy(kFolder / "processed_log/CAN/speed/t");
+  const auto speeds = golden::read_npy(kFolder / "processed_log/CAN/speed/value");
+  const auto gyro_times = golden::read_npy(kFolder / "processed_log/IMU/gyro/t");
   // Columns one after the other: forward, right, down.
-  auto gyro = harness::read_npy_columns(kFolder / "processed_log/IMU/gyro/value");
+  auto gyro = golden::read_npy_columns(kFolder / "processed_log/IMU/gyro/value");
   const std::vector<double> down(gyro.end() - static_cast<std::ptrdiff_t>(gyro_times.size()), gyro.end());
   double speed_square = 0.0;
   double yaw_rate_square = 0.0;

@@ -118,6 +118,7 @@ RadarConfig read_radar(Reader reader) {
   radar.noise = read_noise(reader.table("noise"));
   radar.tolerance = read_tolerance(reader.table("tolerance"));
   radar.cycle_time_s = reader.number("cycle_time_s", {0.005, 2.0}, radar.cycle_time_s);
+  radar.latency_s = reader.number("latency_s", {0.0, 1.0}, radar.latency_s);
   radar.deadline_s = reader.number("deadline_s", {0.02, 10.0}, radar.deadline_s);
   if (radar.deadline_s <= radar.cycle_time_s) reader.reject("deadline_s", "must be longer than cycle_time_s");
   return radar;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace boresight::harness {
+namespace boresight::golden {
 
 /// All numbers of a version 1 .npy file of little-endian doubles as they lie in it; throws if it is another one.
 inline std::vector<double> read_npy(const std::filesystem::path& path, const std::string& order = "False") {
@@ -31,4 +31,4 @@ inline std::vector<double> read_npy_columns(const std::filesystem::path& path) {
   return read_npy(path, "True");
 }
 
-}  // namespace boresight::harness
+}  // namespace boresight::golden
