@@ -13,8 +13,9 @@
 namespace boresight::ingest {
 
 /// Collects the frames of one cycle. A cycle is complete with the last of its 32 frames, in whatever order they come,
-/// or, if frames are missing, when the next cycle begins; the caller then writes it out by write_scan(). The radar reports tracks of its own: range
-/// and azimuth are computed from its Cartesian position; it measures no elevation and no RCS.
+/// or, if frames are missing, when the next cycle begins; the caller then writes it out by write_scan(). The radar
+/// reports tracks of its own: range and azimuth are computed from its Cartesian position; it measures no elevation and
+/// no RCS.
 class ToyotaRadar {
  public:
   /// Takes one frame. kComplete: the collected cycle is ready. If the frame began a new cycle while the old one was

@@ -103,6 +103,37 @@ TEST_F(Comma2k19, EgoMotionIsThatOfTheReferenceDecodings) {
   EXPECT_LT(std::sqrt(yaw_rate_square / count), 0.015) << "against a phone's gyro";
 }
 
+TEST_F(Comma2k19, GatewayRejectsNothing) {
+  const ServiceStatus* gateway = nullptr;
+  for (const Sample* sample : observer_->of(TopicId::kServiceStatus)) {
+    if (sample->header.source_id == static_cast<std::uint32_t>(Service::kIngestGateway)) gateway = &sample->status;
+  }
+  ASSERT_NE(gateway, nullptr);
+  for (const Fault fault : {Fault::kWireLength, Fault::kWireValue, Fault::kLink, Fault::kLoanFailed}) {
+    EXPECT_EQ(gateway->faults[static_cast<std::size_t>(fault)], 0u) << gateway->last_fault.data();
+  }
+}
+
+TEST_F(Comma2k19, SpeedScaleAgreesWithTheInertialReference) {
+  const auto times = golden::read_npy(kFolder / "global_pose/frame_times");
+  const auto velocities = golden::read_npy(kFolder / "global_pose/frame_velocities");
+  ASSERT_EQ(velocities.size(), 3 * times.size());
+  std::vector<double> speeds;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    speeds.push_back(std::hypot(velocities[3 * i], velocities[3 * i + 1], velocities[3 * i + 2]));
+  }
+  double reference = 0.0;
+  double signalled = 0.0;
+  for (const Sample* ego : observer_->of(TopicId::kEgoMotion)) {
+    reference += at(times, speeds, recording_time_s(*ego));
+    signalled += static_cast<double>(ego->values[0]);
+  }
+  const auto estimates = observer_->of(TopicId::kAlignmentEstimate);
+  ASSERT_FALSE(estimates.empty());
+  const double found = static_cast<double>(estimates.back()->values[0]);
+  EXPECT_NEAR(found / (reference / signalled), 1.0, 0.005);
+}
+
 TEST_F(Comma2k19, TracksAppear) {
   const auto lists = observer_->of(TopicId::kTrackList);
   EXPECT_EQ(lists.size(), observer_->of(TopicId::kRadarScan).size());

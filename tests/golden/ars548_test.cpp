@@ -1,0 +1,119 @@
+// One real scan of an ARS548: field by field as the open-source driver nebula decodes it, and the motion of the sensor
+// that its stationary detections tell.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "tests/golden/support/decoded.hpp"
+
+namespace boresight::golden {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
+const fs::path kRecording = kFolder / "ars548_real_2msgs_ipfrag.pcap";
+const fs::path kExpected = kFolder / "ars548/1708578204_202447652_detection.yaml";
+
+/// The `key: number` lines of a list of detections; true and false are 1 and 0.
+std::vector<std::map<std::string, double>> read_detections(const fs::path& file, std::map<std::string, double>& head) {
+  std::vector<std::map<std::string, double>> detections;
+  std::ifstream input(file);
+  for (std::string line; std::getline(input, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    if (line.find("- ") != std::string::npos) detections.emplace_back();
+    const std::size_t begin = line.find_first_not_of(" -");
+    const std::string text = line.substr(colon + 1);
+    const double value = text.find("true") != std::string::npos ? 1.0 : std::atof(text.c_str());
+    (detections.empty() ? head : detections.back())[line.substr(begin, colon - begin)] = value;
+  }
+  return detections;
+}
+
+class Ars548 : public testing::Test {
+ protected:
+  void SetUp() override {
+    REQUIRE_RECORDING(kRecording);
+    decoding_ = decode(vehicle("ars548_single"), kRecording);
+    for (const Decoded& message : decoding_.messages) {
+      if (message.scan) scan_ = message.scan.get();
+    }
+    ASSERT_NE(scan_, nullptr);
+  }
+  Decoding decoding_;
+  const RadarScan* scan_ = nullptr;
+};
+
+TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
+  EXPECT_TRUE(decoding_.faults.empty()) << decoding_.faults.front();
+  std::map<std::string, double> head;
+  const auto expected = read_detections(kExpected, head);
+  ASSERT_EQ(expected.size(), 308u);
+  ASSERT_EQ(scan_->number_of_valid_detections, 308u);
+  EXPECT_EQ(scan_->dropped_detections, 0u);
+  EXPECT_TRUE(scan_->has(scan_field::kElevation | scan_field::kRcs | scan_field::kStds | scan_field::kAmbiguity));
+  // Six significant digits are what the file has.
+  const auto close = [](double ours, double theirs) {
+    return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 1e-9;
+  };
+  EXPECT_TRUE(close(scan_->range_rate_min_mps, head.at("ambiguity_free_velocity_min")));
+  EXPECT_TRUE(close(scan_->range_rate_max_mps, head.at("ambiguity_free_velocity_max")));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const auto& row = expected[i];
+    EXPECT_TRUE(close(scan_->azimuth_rad[i], row.at("azimuth_angle"))) << i;
+    EXPECT_TRUE(close(scan_->azimuth_std_rad[i], row.at("azimuth_angle_std"))) << i;
+    EXPECT_TRUE(close(scan_->elevation_rad[i], row.at("elevation_angle"))) << i;
+    EXPECT_TRUE(close(scan_->elevation_std_rad[i], row.at("elevation_angle_std"))) << i;
+    EXPECT_TRUE(close(scan_->range_m[i], row.at("range"))) << i;
+    EXPECT_TRUE(close(scan_->range_std_m[i], row.at("range_std"))) << i;
+    EXPECT_TRUE(close(scan_->range_rate_mps[i], row.at("range_rate"))) << i;
+    EXPECT_TRUE(close(scan_->range_rate_std_mps[i], row.at("range_rate_std"))) << i;
+    EXPECT_TRUE(close(scan_->rcs_dbsm[i], row.at("rcs"))) << i;
+    EXPECT_TRUE(close(scan_->existence_probability[i], 0.01 * row.at("raw_positive_predictive_value"))) << i;
+    const double invalid = row.at("invalid_distance") + row.at("invalid_azimuth") + row.at("invalid_elevation") +
+                           row.at("invalid_range_rate");
+    EXPECT_EQ((scan_->detection_flags[i] & detection_flag::kInvalid) != 0, invalid > 0.0) << i;
+    const bool outside = row.at("range_rate") < head.at("ambiguity_free_velocity_min") ||
+                         row.at("range_rate") > head.at("ambiguity_free_velocity_max");
+    EXPECT_EQ((scan_->detection_flags[i] & detection_flag::kAmbiguous) != 0, outside) << i;
+  }
+}
+
+TEST_F(Ars548, StationaryDetectionsTellHowItIsMountedAndHowFastItGoes) {
+  // ṙ = −u·v for what stands still: v by iteratively trimmed least squares over all directions u.
+  const std::size_t count = scan_->number_of_valid_detections;
+  Eigen::Vector3d velocity(6.0, 0.0, 0.0);
+  std::size_t inliers = 0;
+  for (double gate = 2.0; gate > 0.29; gate *= 0.8) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    inliers = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (scan_->detection_flags[i] != 0) continue;
+      const double a = scan_->azimuth_rad[i], e = scan_->elevation_rad[i];
+      const Eigen::Vector3d u(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      const double residual = scan_->range_rate_mps[i] + u.dot(velocity);
+      if (std::abs(residual) > gate) continue;
+      normal += u * u.transpose();
+      right -= scan_->range_rate_mps[i] * u;
+      ++inliers;
+    }
+    velocity = normal.ldlt().solve(right);
+  }
+  constexpr double kDegrees = 180.0 / M_PI;
+  const double yaw_deg = std::atan2(velocity.y(), velocity.x()) * kDegrees;
+  const double pitch_deg = std::atan2(velocity.z(), velocity.x()) * kDegrees;
+  std::printf("%zu of %zu inliers, speed %.3f m/s, yaw %+.2f deg, pitch %+.2f deg\n", inliers, count, velocity.norm(),
+              yaw_deg, pitch_deg);
+  EXPECT_NEAR(velocity.norm(), 6.18, 0.02);
+  EXPECT_NEAR(yaw_deg, 0.64, 0.1);
+  EXPECT_NEAR(pitch_deg, -1.8, 0.3);
+}
+
+}  // namespace
+}  // namespace boresight::golden

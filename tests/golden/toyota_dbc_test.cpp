@@ -1,0 +1,67 @@
+// The signals that the project wrote down for itself, against the public DBC file.
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "interfaces/wire/toyota.hpp"
+#include "tests/golden/support/decoded.hpp"
+
+namespace boresight::golden {
+namespace {
+
+struct Signal {
+  int start = 0, length = 0;
+  bool motorola = false, is_signed = false;
+  double factor = 0.0, offset = 0.0;
+};
+
+/// Every signal of a DBC file by (message id, name).
+std::map<std::pair<std::uint32_t, std::string>, Signal> read_dbc(const std::filesystem::path& file) {
+  static const std::regex message(R"(^BO_ (\d+) .*)");
+  static const std::regex signal(R"(^ SG_ (\w+) : (\d+)\|(\d+)@([01])([+-]) \(([-0-9.eE]+),([-0-9.eE]+)\).*)");
+  std::map<std::pair<std::uint32_t, std::string>, Signal> signals;
+  std::uint32_t id = 0;
+  std::ifstream input(file);
+  for (std::string line; std::getline(input, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, message)) id = static_cast<std::uint32_t>(std::stoul(match[1]));
+    if (!std::regex_match(line, match, signal)) continue;
+    signals[{id, match[1]}] = {std::stoi(match[2]), std::stoi(match[3]), match[4] == "0",
+                               match[5] == "-",     std::stod(match[6]), std::stod(match[7])};
+  }
+  return signals;
+}
+
+void expect_same(const Signal& reference, const wire::CanSignal& ours, std::uint32_t id) {
+  EXPECT_EQ(ours.start_bit, reference.start) << ours.name << " of " << id;
+  EXPECT_EQ(ours.length, reference.length) << ours.name << " of " << id;
+  EXPECT_EQ(ours.order == wire::ByteOrder::kMotorola, reference.motorola) << ours.name << " of " << id;
+  EXPECT_EQ(ours.is_signed, reference.is_signed) << ours.name << " of " << id;
+  EXPECT_DOUBLE_EQ(ours.factor, reference.factor) << ours.name << " of " << id;
+  EXPECT_DOUBLE_EQ(ours.offset, reference.offset) << ours.name << " of " << id;
+}
+
+TEST(ToyotaDbc, RadarSignalsAreThoseOfTheFile) {
+  const auto file = shared_data() / "opendbc_radar/toyota_adas.dbc";
+  REQUIRE_RECORDING(file);
+  const auto reference = read_dbc(file);
+  namespace layout = wire::toyota;
+  for (std::uint32_t slot = 0; slot < layout::kNumberOfTracks; ++slot) {
+    const std::uint32_t a = layout::kTrackA + slot, b = layout::kTrackB + slot;
+    for (const wire::CanSignal& ours : {layout::kCounter, layout::kLongitudinalDistance_m, layout::kLateralDistance_m,
+                                        layout::kNewTrack, layout::kRelativeSpeed_mps, layout::kValid}) {
+      const auto found = reference.find({a, std::string(ours.name)});
+      ASSERT_NE(found, reference.end()) << ours.name << " of " << a;
+      expect_same(found->second, ours, a);
+    }
+    const auto score = reference.find({b, std::string(layout::kScore_percent.name)});
+    ASSERT_NE(score, reference.end()) << b;
+    expect_same(score->second, layout::kScore_percent, b);
+  }
+}
+
+}  // namespace
+}  // namespace boresight::golden
