@@ -1,0 +1,258 @@
+#include "services/detection_corrector/core/corrector.hpp"
+
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "services/common/geometry/frames.hpp"
+#include "services/common/runtime/allocation_counter.hpp"
+
+namespace boresight::corrector {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr std::int64_t kTime = 1'000'000'000'000;
+
+VehicleConfig one_radar(double yaw_deg = 0.0, double pitch_deg = 0.0, double roll_deg = 0.0) {
+  VehicleConfig vehicle;
+  RadarConfig radar;
+  radar.id = 2;
+  radar.mounting_pose = {{3.6, -0.7, 0.5}, yaw_deg * kDegree, pitch_deg * kDegree, roll_deg * kDegree};
+  radar.noise = {.range_std_m = 0.1,
+                 .azimuth_std_rad = 0.2 * kDegree,
+                 .elevation_std_rad = 0.3 * kDegree,
+                 .range_rate_std_mps = 0.03};
+  vehicle.radars.push_back(radar);
+  return vehicle;
+}
+
+EgoMotion ego(float speed, float yaw_rate, std::int64_t time_ns = kTime) {
+  EgoMotion m{};
+  m.header.measurement_time_ns = time_ns;
+  m.fields = ego_field::kSpeed | ego_field::kYawRate;
+  m.speed_mps = speed;
+  m.speed_std_mps = 0.03F;
+  m.yaw_rate_radps = yaw_rate;
+  m.yaw_rate_std_radps = 0.002F;
+  return m;
+}
+
+AlignmentEstimate estimate(double yaw_rad, double scale) {
+  AlignmentEstimate e{};
+  e.header.source_id = 2;
+  e.header.sequence = 77;
+  e.header.measurement_time_ns = kTime;
+  e.state = AlignmentState::kConverged;
+  e.observable = alignment_axis::kYaw | alignment_axis::kSpeedScale;
+  e.alignment_yaw_rad = static_cast<float>(yaw_rad);
+  e.alignment_pitch_rad = 0.5F;  // not observable: must not be applied
+  e.speed_scale = static_cast<float>(scale);
+  e.covariance[0] = 1e-6F;
+  e.covariance[5] = 1e-7F;
+  e.covariance[10] = e.covariance[15] = 0.005F;
+  return e;
+}
+
+class CorrectorTest : public testing::Test {
+ protected:
+  CorrectorTest() {
+    std::memset(static_cast<void*>(out_.get()), 0xCD, sizeof(CorrectedScan));  // a chunk holds stale data
+    scan_->header = {};
+    scan_->header.source_id = 2;
+    scan_->header.measurement_time_ns = kTime;
+    scan_->fields = scan_field::kElevation | scan_field::kRcs;
+    scan_->number_of_valid_detections = 0;
+  }
+  void add(double range, double azimuth, double elevation, double range_rate, double rcs = 10.0) {
+    const std::uint32_t i = scan_->number_of_valid_detections++;
+    scan_->range_m[i] = static_cast<float>(range);
+    scan_->azimuth_rad[i] = static_cast<float>(azimuth);
+    scan_->elevation_rad[i] = static_cast<float>(elevation);
+    scan_->range_rate_mps[i] = static_cast<float>(range_rate);
+    scan_->rcs_dbsm[i] = static_cast<float>(rcs);
+    scan_->snr_db[i] = 20.0F;
+    scan_->detection_flags[i] = 0;
+  }
+  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  std::unique_ptr<CorrectedScan> out_ = std::make_unique<CorrectedScan>();
+};
+
+TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
+  // A point of the vehicle frame, as a sensor with all three angles would see it.
+  Corrector corrector(one_radar(-45.0, 3.0, -2.0), Config{});
+  const Eigen::Vector3d point(20.0, -9.0, 1.2), mount(3.6, -0.7, 0.5);
+  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(-45.0 * kDegree, Eigen::Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(-3.0 * kDegree, Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(-2.0 * kDegree, Eigen::Vector3d::UnitX()))
+                                       .toRotationMatrix();
+  const Eigen::Vector3d seen = rotation.transpose() * (point - mount);
+  add(seen.norm(), std::atan2(seen.y(), seen.x()), std::asin(seen.z() / seen.norm()), 0.0);
+  corrector.correct(*scan_, *out_);
+  EXPECT_NEAR(out_->x_vehicle_m[0], point.x(), 1e-4);
+  EXPECT_NEAR(out_->y_vehicle_m[0], point.y(), 1e-4);
+  EXPECT_NEAR(out_->z_vehicle_m[0], point.z(), 1e-4);
+  const Eigen::Vector3d sight = (point - mount).normalized();
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], std::atan2(sight.y(), sight.x()), 1e-6);
+  EXPECT_NEAR(out_->elevation_vehicle_rad[0], std::asin(sight.z()), 1e-6);
+  EXPECT_NEAR(out_->geometry.sensor_position_vehicle_m[1], -0.7, 1e-6);
+}
+
+TEST_F(CorrectorTest, EstimateIsAppliedWhereItIsSure) {
+  Corrector corrector(one_radar(), Config{});
+  ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kDegree, 1.01)));
+  corrector.add_ego_motion(ego(20.0F, 0.0F));
+  add(50.0, 0.0, 0.0, -20.2 * std::cos(2.0 * kDegree));
+  corrector.correct(*scan_, *out_);
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 2.0 * kDegree, 1e-6);
+  EXPECT_NEAR(out_->elevation_vehicle_rad[0], 0.0, 1e-6) << "pitch is not observable";
+  EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-5);
+  EXPECT_EQ(out_->alignment_sequence, 77u);
+  EXPECT_EQ(out_->flags, 0u);
+  EXPECT_NEAR(out_->geometry.ego_speed_mps, 20.2, 1e-5);
+
+  AlignmentEstimate unsure = estimate(3.0 * kDegree, 1.01);
+  unsure.covariance[5] = 1e-3F;  // 1.8°
+  unsure.observable = alignment_axis::kYaw;
+  Corrector other(one_radar(), Config{});
+  ASSERT_TRUE(other.add_alignment(unsure));
+  other.correct(*scan_, *out_);
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 0.0, 1e-6);
+  EXPECT_TRUE(out_->flags & pipeline_flag::kNoAlignment);
+}
+
+TEST_F(CorrectorTest, WhatStandsStillHasNoRangeRateOverGround) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> azimuth(-1.2, 1.2), elevation(-0.2, 0.2), angle(-3.0, 3.0);
+  const double yaw = 1.7 * kDegree, scale = 1.012;
+  Corrector corrector(one_radar(135.0, 2.0, 1.0), Config{});
+  ASSERT_TRUE(corrector.add_alignment(estimate(yaw, scale)));
+  corrector.add_ego_motion(ego(14.0F, 0.4F));
+  const Eigen::Matrix3d rotation = geometry::sensor_to_vehicle(135.0 * kDegree + yaw, 2.0 * kDegree, 1.0 * kDegree);
+  const Eigen::Vector3d velocity(scale * 14.0 + 0.4 * 0.7, 0.4 * 3.6, 0.0);
+  for (int i = 0; i < 500; ++i) {
+    const double a = azimuth(random), e = elevation(random);
+    add(30.0, a, e, -(rotation * geometry::direction(a, e)).dot(velocity));
+  }
+  corrector.correct(*scan_, *out_);
+  for (std::size_t i = 0; i < 500; ++i) {
+    ASSERT_NEAR(out_->range_rate_over_ground_mps[i], 0.0, 1e-4);
+    ASSERT_TRUE(out_->detection_flags[i] & corrected_flag::kStationary);
+    ASSERT_FALSE(out_->detection_flags[i] & corrected_flag::kMoving);
+  }
+}
+
+TEST_F(CorrectorTest, MovingThresholdGrowsWithSpeedAndNoise) {
+  const Config config;
+  const double threshold_10 = config.moving_base_mps + config.moving_per_speed * 10.0 + config.moving_sigma * 0.03;
+  Corrector corrector(one_radar(), config);
+  corrector.add_ego_motion(ego(10.0F, 0.0F));
+  add(50.0, 0.0, 0.0, -10.0 + threshold_10 - 0.02);
+  add(50.0, 0.0, 0.0, -10.0 + threshold_10 + 0.02);
+  add(50.0, 0.0, 0.0, -10.0 - threshold_10 - 0.02);
+  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold_10 + 0.02);  // here the azimuth's noise counts as well
+  corrector.correct(*scan_, *out_);
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
+  EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kMoving);
+  EXPECT_TRUE(out_->detection_flags[2] & corrected_flag::kMoving);
+  EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kStationary);
+  Corrector faster(one_radar(), config);
+  faster.add_ego_motion(ego(30.0F, 0.0F));
+  scan_->number_of_valid_detections = 0;
+  add(50.0, 0.0, 0.0, -30.0 + threshold_10 + 0.02);
+  faster.correct(*scan_, *out_);
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
+}
+
+TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
+  Config config;
+  config.rcs_near_dbsm = -5.0;
+  config.rcs_slope_db_per_decade = -10.0;  // near detections must be stronger
+  Corrector corrector(one_radar(), config);
+  corrector.add_ego_motion(ego(10.0F, 0.0F));
+  add(50.0, 0.0, 0.0, -10.0);
+  add(250.0, 0.0, 0.0, -10.0);           // beyond the box
+  add(30.0, 0.0, 20.0 * kDegree, -9.4);  // above it
+  add(10.0, 0.0, 0.0, -10.0, -6.0);      // limit −5 at 10 m
+  add(40.0, 0.0, 0.0, -10.0, -10.0);     // limit −11 at 40 m
+  add(50.0, 0.0, 0.0, -10.0);
+  scan_->detection_flags[5] = detection_flag::kInvalid;
+  add(50.0, 0.0, 0.0, -10.0);
+  scan_->detection_flags[6] = detection_flag::kAmbiguous;
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->detection_flags[0], corrected_flag::kStationary);
+  EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kOutsideRegion);
+  EXPECT_TRUE(out_->detection_flags[2] & corrected_flag::kOutsideRegion);
+  EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kWeak);
+  EXPECT_FALSE(out_->detection_flags[4] & corrected_flag::kWeak);
+  EXPECT_EQ(out_->detection_flags[5], corrected_flag::kInvalid);
+  EXPECT_EQ(out_->detection_flags[6], corrected_flag::kAmbiguous) << "an aliased range rate says nothing of motion";
+}
+
+TEST_F(CorrectorTest, MissingSideInputsAreSaid) {
+  Corrector corrector(one_radar(), Config{});
+  add(50.0, 0.0, 0.0, -10.0);
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->flags, pipeline_flag::kNoAlignment | pipeline_flag::kNoEgoMotion);
+  EXPECT_EQ(out_->detection_flags[0], 0) << "neither moving nor stationary";
+  EXPECT_EQ(out_->range_rate_over_ground_mps[0], -10.0F) << "not compensated";
+  corrector.add_ego_motion(ego(10.0F, 0.0F, kTime - 300'000'000));
+  AlignmentEstimate old = estimate(0.0, 1.0);
+  old.header.measurement_time_ns = kTime - 3'000'000'000;
+  ASSERT_TRUE(corrector.add_alignment(old));
+  scan_->fields = 0;
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->flags, pipeline_flag::kAlignmentStale | pipeline_flag::kEgoMotionStale | pipeline_flag::kNoElevation);
+  EXPECT_EQ(out_->geometry.ego_speed_mps, 0.0F);
+}
+
+TEST_F(CorrectorTest, NumbersThatAreNoneAreInvalidAndHarmNobodyElse) {
+  Corrector corrector(one_radar(), Config{});
+  corrector.add_ego_motion(ego(10.0F, 0.0F));
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  add(nan, 0.0, 0.0, -10.0);
+  add(50.0, infinity, 0.0, -10.0);
+  add(50.0, 0.0, nan, -10.0);
+  add(50.0, 0.0, 0.0, nan);
+  add(-1.0, 0.0, 0.0, -10.0);
+  add(50.0, 0.0, 0.0, -10.0);
+  corrector.correct(*scan_, *out_);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_TRUE(out_->detection_flags[i] & corrected_flag::kInvalid) << i;
+    EXPECT_TRUE(std::isfinite(out_->x_vehicle_m[i]) && std::isfinite(out_->range_rate_over_ground_mps[i])) << i;
+  }
+  EXPECT_EQ(out_->detection_flags[5], corrected_flag::kStationary);
+}
+
+TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
+  Corrector corrector(one_radar(), Config{});
+  AlignmentEstimate unknown = estimate(0.0, 1.0);
+  unknown.header.source_id = 9;
+  EXPECT_FALSE(corrector.add_alignment(unknown));
+  for (std::uint32_t i = 0; i < kMaxDetections; ++i) add(20.0, 0.0, 0.0, -10.0);
+  scan_->number_of_valid_detections = 5000;  // a scan that lies about its length
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->number_of_valid_detections, kMaxDetections);
+  scan_->header.source_id = 9;
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->number_of_valid_detections, 0u);
+}
+
+TEST_F(CorrectorTest, AllocatesNothing) {
+  Corrector corrector(one_radar(), Config{});
+  for (std::uint32_t i = 0; i < kMaxDetections; ++i) add(20.0, 0.0, 0.0, -10.0);
+  const std::uint64_t before = runtime::counted_allocations();
+  {
+    const runtime::CountAllocations counting;
+    corrector.add_ego_motion(ego(10.0F, 0.0F));
+    static_cast<void>(corrector.add_alignment(estimate(0.01, 1.0)));
+    corrector.correct(*scan_, *out_);
+  }
+  EXPECT_EQ(runtime::counted_allocations(), before);
+}
+
+}  // namespace
+}  // namespace boresight::corrector
