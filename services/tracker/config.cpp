@@ -22,15 +22,21 @@ Config read_config(config::Reader root) {
   c.jerk_std_mps3 = filter.number("jerk_std_mps3", {0.01, 100.0}, c.jerk_std_mps3);
   c.centre_std_m = filter.number("centre_std_m", {0.01, 10.0}, c.centre_std_m);
   c.range_rate_std_mps = filter.number("range_rate_std_mps", {0.01, 10.0}, c.range_rate_std_mps);
+  c.start_position_std_m = filter.number("start_position_std_m", {0.0, 20.0}, c.start_position_std_m);
   c.start_speed_std_mps = filter.number("start_speed_std_mps", {0.1, 100.0}, c.start_speed_std_mps);
   c.start_acceleration_std_mps2 =
       filter.number("start_acceleration_std_mps2", {0.1, 50.0}, c.start_acceleration_std_mps2);
+  config::Reader parts = root.table("parts");
+  c.part_margin_m = parts.number("part_margin_m", {0.0, 20.0}, c.part_margin_m);
+  c.duplicate_margin_m = parts.number("duplicate_margin_m", {0.0, 20.0}, c.duplicate_margin_m);
+  c.duplicate_speed_mps = parts.number("duplicate_speed_mps", {0.0, 50.0}, c.duplicate_speed_mps);
   config::Reader life = root.table("life");
   c.confirm_hits = count(life, "confirm_hits", c.confirm_hits);
   c.confirm_window = count(life, "confirm_window", c.confirm_window);
   c.delete_misses = count(life, "delete_misses", c.delete_misses);
   c.delete_window = count(life, "delete_window", c.delete_window);
   c.coast_s = life.number("coast_s", {0.05, 10.0}, c.coast_s);
+  c.blind_range_rate_mps = life.number("blind_range_rate_mps", {0.0, 10.0}, c.blind_range_rate_mps);
   c.stopped_speed_mps = life.number("stopped_speed_mps", {0.0, 5.0}, c.stopped_speed_mps);
   if (c.confirm_hits > c.confirm_window) life.reject("confirm_hits", "must not exceed confirm_window");
   if (c.delete_misses > c.delete_window) life.reject("delete_misses", "must not exceed delete_window");

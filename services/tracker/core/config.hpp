@@ -6,20 +6,25 @@
 namespace boresight::tracking {
 
 struct Config {
-  double cluster_radius_m = 2.5;
+  double cluster_radius_m = 3.5;
   std::size_t cluster_min_points = 1;
   double cluster_max_range_rate_spread_mps = 4.0;  ///< a detection that moves otherwise than its cluster is left out
-  double gate_chi2 = 16.0;          ///< Mahalanobis distance² of position and range rate (3 degrees of freedom)
-  double jerk_std_mps3 = 3.0;       ///< process noise: how fast the acceleration changes
-  double centre_std_m = 0.6;        ///< how far the mean of the visible detections is from the object's reference point
-  double range_rate_std_mps = 0.4;  ///< micro-motion and rotation, added to the sensor's std
+  double gate_chi2 = 16.0;            ///< Mahalanobis distance² of position and range rate (3 degrees of freedom)
+  double jerk_std_mps3 = 3.0;         ///< process noise: how fast the acceleration changes
+  double centre_std_m = 1.0;          ///< how far the mean of the visible detections is from where the box says it is
+  double range_rate_std_mps = 0.4;    ///< micro-motion and rotation, added to the sensor's std
+  double start_position_std_m = 1.0;  ///< of the centre of a new object, of which only a part is seen
   double start_speed_std_mps = 12.0;
   double start_acceleration_std_mps2 = 2.0;
-  std::size_t confirm_hits = 4;    ///< m …
-  std::size_t confirm_window = 6;  ///< … of n scans that could see the object
-  std::size_t delete_misses = 8;   ///< k …
-  std::size_t delete_window = 10;  ///< … of t scans
-  double coast_s = 1.0;            ///< longest prediction without a detection
+  double part_margin_m = 2.0;       ///< a cluster that close to a confirmed track's box is another part of that object
+  double duplicate_margin_m = 1.0;  ///< of two tracks with one velocity, that close to the other's box, one is too many
+  double duplicate_speed_mps = 5.0;
+  std::size_t confirm_hits = 4;       ///< m …
+  std::size_t confirm_window = 6;     ///< … of n scans that could see the object
+  std::size_t delete_misses = 8;      ///< k …
+  std::size_t delete_window = 10;     ///< … of t scans
+  double coast_s = 1.0;               ///< longest prediction without a detection
+  double blind_range_rate_mps = 1.5;  ///< below it over ground, a scan may take the object for stationary
   double stopped_speed_mps = 0.5;
 };
 

@@ -11,9 +11,10 @@ namespace boresight::tracking {
 
 namespace {
 
-PositionRate measurement_of(const Cluster& cluster) {
+/// The cluster as a measurement of the centre of the box that it would be the visible part of.
+PositionRate measurement_of(const Cluster& cluster, const Eigen::Vector2d& visible_mean_m) {
   PositionRate m;
-  m.value << cluster.position_m, cluster.range_rate_over_ground_mps;
+  m.value << cluster.position_m - visible_mean_m, cluster.range_rate_over_ground_mps;
   m.covariance.setZero();
   m.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2;
   m.covariance(2, 2) = cluster.range_rate_variance;
@@ -52,10 +53,11 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
   const std::span<const Cluster> clusters = clusterer_.find(scan);
   result.dropped_clusters = clusterer_.dropped();
-  assign(clusters, has_elevation);
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
+  assign(clusters, sensor, has_elevation);
   judge(scan);
   for (std::size_t c = 0; c < clusters.size(); ++c) {
-    if (!cluster_used_[c]) start_track(clusters[c], has_elevation);
+    if (!cluster_used_[c]) start_track(clusters[c], sensor, has_elevation);
   }
   remove_duplicates();
   return result;
@@ -73,12 +75,13 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   }
 }
 
-void Tracker::assign(std::span<const Cluster> clusters, bool has_elevation) {
+void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation) {
   cluster_used_.fill(false);
   assignment_.reset(tracks_.size(), clusters.size(), config_.gate_chi2);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    visible_mean_[t] = tracks_[t].extent.visible_mean(tracks_[t].state.mean.head<2>(), sensor);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      const Distance d = distance(tracks_[t].state, measurement_of(clusters[c]));
+      const Distance d = distance(tracks_[t].state, measurement_of(clusters[c], visible_mean_[t]));
       if (d.squared >= config_.gate_chi2) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
@@ -91,9 +94,9 @@ void Tracker::assign(std::span<const Cluster> clusters, bool has_elevation) {
     if (column < 0) continue;
     const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
     Entry& track = tracks_[t];
-    if (!update(track.state, measurement_of(cluster))) continue;
+    if (!update(track.state, measurement_of(cluster, visible_mean_[t]))) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
-    track.extent.update(cluster, track.state.mean.segment<2>(2), has_elevation);
+    track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
     track.since_update_s = 0.0;
     track.detections = cluster.number_of_detections;
   }
@@ -101,26 +104,23 @@ void Tracker::assign(std::span<const Cluster> clusters, bool has_elevation) {
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     for (const Entry& track : tracks_) {
       if (cluster_used_[c] || !track.confirmed) continue;
-      const Eigen::Vector2d along(std::cos(track.extent.heading_rad), std::sin(track.extent.heading_rad));
-      const Eigen::Vector2d d = clusters[c].position_m - track.state.mean.head<2>();
-      const double across = -along.y() * d.x() + along.x() * d.y();
-      cluster_used_[c] = std::abs(along.dot(d)) < 0.5 * track.extent.length_m + 2.0 &&
-                         std::abs(across) < 0.5 * track.extent.width_m + 1.0;
+      cluster_used_[c] =
+          track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, config_.part_margin_m);
     }
   }
 }
 
-void Tracker::start_track(const Cluster& cluster, bool has_elevation) {
+void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation) {
   if (tracks_.size() == tracks_.capacity()) {
     ++dropped_tracks_;
     return;
   }
   Entry track;
   track.id = next_id_++;
-  track.state.mean.head<2>() = cluster.position_m;
   track.state.mean.segment<2>(2) = cluster.range_rate_over_ground_mps * cluster.line_of_sight;
   track.state.covariance.setZero();
-  track.state.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2;
+  const double centre = config_.start_position_std_m * config_.start_position_std_m;
+  track.state.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2 + centre * Eigen::Matrix2d::Identity();
   // The range rate says the speed along the line of sight; across it nothing is known.
   const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
   const double across = config_.start_speed_std_mps * config_.start_speed_std_mps;
@@ -129,7 +129,8 @@ void Tracker::start_track(const Cluster& cluster, bool has_elevation) {
   const double acceleration = config_.start_acceleration_std_mps2 * config_.start_acceleration_std_mps2;
   track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
   track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
-  track.extent.update(cluster, track.state.mean.segment<2>(2), has_elevation);
+  track.state.mean.head<2>() = cluster.position_m - track.extent.visible_mean(cluster.position_m, sensor);
+  track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
   track.history = 1;
   track.seen_scans = 1;
   track.detections = cluster.number_of_detections;
@@ -142,6 +143,9 @@ bool Tracker::can_see(const ScanGeometry& geometry, std::uint32_t radar_id, cons
   const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> rotation(geometry.sensor_to_vehicle.data());
   const Eigen::Vector3d sight(track.state.mean(0) - static_cast<double>(geometry.sensor_position_vehicle_m[0]),
                               track.state.mean(1) - static_cast<double>(geometry.sensor_position_vehicle_m[1]), 0.0);
+  // Who moves across the line of sight has no range rate over ground and looks stationary.
+  const double range_rate = sight.head<2>().normalized().dot(track.state.mean.segment<2>(2));
+  if (std::abs(range_rate) < config_.blind_range_rate_mps) return false;
   const Eigen::Vector3d in_sensor = rotation.cast<double>().transpose() * sight;
   const double azimuth = std::atan2(in_sensor.y(), in_sensor.x());
   const FieldOfView& view = radar->field_of_view;
@@ -176,11 +180,13 @@ void Tracker::judge(const ClassifiedScan& scan) {
 
 void Tracker::remove_duplicates() {
   // Two tracks on one object have the same place and velocity; the older one, or the confirmed one, stays.
-  constexpr double kPlace_m = 2.0, kVelocity_mps = 2.5;
+  const double margin_m = config_.duplicate_margin_m;
   for (std::size_t a = 0; a < tracks_.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks_.size();) {
-      const Vector6d d = tracks_[a].state.mean - tracks_[b].state.mean;
-      if (d.head<2>().norm() > kPlace_m || d.segment<2>(2).norm() > kVelocity_mps) {
+      const Entry &first = tracks_[a], &second = tracks_[b];
+      const Eigen::Vector2d p = first.state.mean.head<2>(), q = second.state.mean.head<2>();
+      const bool one_place = first.extent.contains(p, q, margin_m) || second.extent.contains(q, p, margin_m);
+      if (!one_place || (first.state.mean - second.state.mean).segment<2>(2).norm() > config_.duplicate_speed_mps) {
         ++b;
         continue;
       }

@@ -47,8 +47,8 @@ class Tracker {
     std::uint32_t detections = 0;  // in the last scan
   };
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
-  void assign(std::span<const Cluster> clusters, bool has_elevation);
-  void start_track(const Cluster& cluster, bool has_elevation);
+  void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
+  void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
   void judge(const ClassifiedScan& scan);
   void remove_duplicates();
   [[nodiscard]] bool can_see(const ScanGeometry& geometry, std::uint32_t radar_id, const Entry& track) const;
@@ -60,6 +60,7 @@ class Tracker {
   geometry::Assignment assignment_;
   std::vector<Entry> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
+  std::array<Eigen::Vector2d, kMaxTracks> visible_mean_;
   std::uint32_t next_id_ = 1;
   std::int64_t time_ns_ = 0;
   std::uint32_t flags_ = 0;
