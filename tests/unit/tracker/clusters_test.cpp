@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include "services/tracker/core/extent.hpp"
+#include "tests/unit/tracker/scene.hpp"
+
+namespace boresight::tracking {
+namespace {
+
+TEST(Clusterer, GroupsWhatIsNearAndMovesAlike) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  for (const double x : {20.0, 21.5, 23.0}) scene.add({x, 0.0}, {10.0, 0.0});
+  scene.add({21.0, 0.5}, {25.0, 0.0});  // in the same place, but moves otherwise: a ghost, or a wheel
+  scene.add({60.0, 10.0}, {-8.0, 0.0});
+  scene.add({30.0, 5.0}, {0.0, 0.0}, Provenance::kStationary);
+  scene.add({31.0, 5.0}, {9.0, 0.0}, Provenance::kGhostType2);
+  Clusterer clusterer(Config{});
+  const auto clusters = clusterer.find(*scene.scan);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].number_of_detections, 3u);
+  EXPECT_NEAR(clusters[0].position_m.x(), 21.5, 1e-5);
+  EXPECT_NEAR(clusters[0].range_rate_over_ground_mps, 10.0, 1e-4);
+  EXPECT_EQ(clusters[1].number_of_detections, 1u);
+}
+
+TEST(Clusterer, UncertaintyIsLargestAcrossTheLineOfSight) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  scene.add({63.6, 60.0}, {10.0, 0.0});
+  scene.scan->azimuth_std_rad[0] = 0.03F;
+  Config config;
+  config.centre_std_m = 0.1;
+  Clusterer clusterer(config);
+  const auto clusters = clusterer.find(*scene.scan);
+  ASSERT_EQ(clusters.size(), 1u);
+  const Eigen::Vector2d u = clusters[0].line_of_sight, v(-u.y(), u.x());
+  EXPECT_NEAR(u.x(), std::sqrt(0.5), 1e-5);
+  const double range = 60.0 * std::sqrt(2.0);
+  EXPECT_NEAR(u.dot(clusters[0].covariance_m2 * u), 0.15 * 0.15 + 0.01, 1e-5);
+  EXPECT_NEAR(v.dot(clusters[0].covariance_m2 * v), std::pow(0.03 * range, 2) + 0.01, 1e-3);
+  EXPECT_NEAR(u.dot(clusters[0].covariance_m2 * v), 0.0, 1e-6);
+}
+
+TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  scene.add({20.0, 0.0}, {10.0, 0.0});
+  scene.add({20.5, 0.0}, {10.0, 0.0});
+  scene.add({21.0, 0.0}, {10.0, 0.0});
+  scene.scan->x_vehicle_m[1] = std::numeric_limits<float>::quiet_NaN();
+  scene.scan->range_rate_over_ground_mps[2] = std::numeric_limits<float>::infinity();
+  Clusterer clusterer(Config{});
+  const auto clusters = clusterer.find(*scene.scan);
+  ASSERT_EQ(clusters.size(), 1u);
+  EXPECT_EQ(clusters[0].number_of_detections, 1u);
+}
+
+TEST(Clusterer, MoreClustersThanRoomAreCounted) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  for (int i = 0; i < 200; ++i) scene.add({10.0 + 10.0 * (i % 20), -50.0 + 10.0 * (i / 20.0)}, {10.0, 0.0});
+  Config config;
+  config.cluster_radius_m = 0.1;
+  Clusterer clusterer(config);
+  EXPECT_EQ(clusterer.find(*scene.scan).size(), geometry::Assignment::kCapacity);
+  EXPECT_EQ(clusterer.dropped(), 200u - geometry::Assignment::kCapacity);
+}
+
+TEST(Extent, KnowsWhichFacesAreSeen) {
+  const Extent car{.heading_rad = 0.0, .length_m = 4.0, .width_m = 2.0};
+  const Eigen::Vector2d centre(30.0, 0.0);
+  const VisibleFaces from_behind = car.visible_faces(centre, {0.0, 0.0});
+  EXPECT_EQ(from_behind.end, -1.0);
+  EXPECT_EQ(from_behind.side, 0.0);
+  EXPECT_LT((car.visible_mean(centre, {0.0, 0.0}) - Eigen::Vector2d(-2.0, 0.0)).norm(), 1e-12);
+  // From the left and behind: the rear (2 m long) and the left side (4 m long).
+  const Eigen::Vector2d mean = car.visible_mean(centre, {0.0, 20.0});
+  EXPECT_NEAR(mean.x(), -2.0 * 2.0 / 6.0, 1e-12);
+  EXPECT_NEAR(mean.y(), 1.0 * 4.0 / 6.0, 1e-12);
+  EXPECT_EQ(car.visible_mean(centre, centre), Eigen::Vector2d(0.0, 0.0)) << "from inside";
+}
+
+TEST(Extent, TurnsWithTheObject) {
+  const Eigen::Vector2d centre(10.0, 5.0), sensor(-7.0, 20.0);
+  const Extent straight{.heading_rad = 0.0, .length_m = 6.0, .width_m = 2.0};
+  for (const double angle : {0.3, 1.7, -2.5}) {
+    const Eigen::Rotation2Dd turn(angle);
+    const Extent turned{.heading_rad = angle, .length_m = 6.0, .width_m = 2.0};
+    EXPECT_LT((turned.visible_mean(turn * centre, turn * sensor) - turn * straight.visible_mean(centre, sensor)).norm(),
+              1e-12);
+  }
+}
+
+TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
+  Extent extent;
+  Cluster cluster{};
+  cluster.number_of_detections = 2;
+  cluster.outline[0] = {20.0, -0.9};
+  cluster.outline[1] = {20.0, 0.9};
+  for (int i = 0; i < 300; ++i) extent.update(cluster, {22.0, 0.0}, {10.0, 0.0}, {0.0, 0.0}, true);
+  EXPECT_NEAR(extent.length_m, 4.5, 1e-9) << "from behind the length is not seen";
+  EXPECT_NEAR(extent.width_m, 1.8, 0.01);
+  cluster.outline[1] = {28.0, -0.9};
+  for (int i = 0; i < 20; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
+  EXPECT_NEAR(extent.length_m, 8.0, 0.05);
+  EXPECT_EQ(extent.object_class(), ObjectClass::kTruck);
+}
+
+}  // namespace
+}  // namespace boresight::tracking

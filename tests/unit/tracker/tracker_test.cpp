@@ -1,0 +1,218 @@
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/tracker/scene.hpp"
+
+namespace boresight::tracking {
+namespace {
+
+class TrackerTest : public testing::Test {
+ protected:
+  TrackerTest() { std::memset(static_cast<void*>(list_.get()), 0xCD, sizeof(TrackList)); }
+  const TrackList& list() {
+    tracker_.write(*list_);
+    return *list_;
+  }
+  /// One scan of radar 1 with an object at p, or without.
+  void step(const Eigen::Vector2d& p, const Eigen::Vector2d& v, bool seen = true) {
+    scene_.begin(now_);
+    if (seen) scene_.add(p, v);
+    tracker_.step(*scene_.scan);
+    now_ += 50 * kMillisecond;
+  }
+  Tracker tracker_{two_radars(), Config{}};
+  Scene scene_;
+  std::unique_ptr<TrackList> list_ = std::make_unique<TrackList>();
+  std::int64_t now_ = 1'000'000 * kMillisecond;
+};
+
+TEST_F(TrackerTest, ConfirmsFourOfSix) {
+  const Eigen::Vector2d v(0.0, 0.0);
+  int scans = 0;
+  for (const bool seen : {true, false, true, false, true}) {
+    step({30.0 + 0.4 * scans++, 0.0}, {8.0, 0.0}, seen);
+    EXPECT_EQ(list().number_of_confirmed_tracks, 0u) << "after " << scans;
+    EXPECT_EQ(list().number_of_tracks, 1u);
+  }
+  step({30.0 + 0.4 * scans++, 0.0}, {8.0, 0.0});
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  EXPECT_EQ(list().tracks[0].status, TrackStatus::kConfirmed);
+  EXPECT_EQ(list().tracks[0].update, TrackUpdate::kMeasured);
+  EXPECT_GT(list().tracks[0].tracking_id, 0u);
+}
+
+TEST_F(TrackerTest, WhatCannotBeConfirmedAnyMoreIsGivenUp) {
+  step({30.0, 0.0}, {8.0, 0.0});
+  for (int i = 0; i < 3; ++i) step({}, {}, false);
+  EXPECT_EQ(list().number_of_tracks, 0u);
+}
+
+TEST_F(TrackerTest, EstimatesPlaceVelocityAndBox) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  // A car of 4.5 m by 1.8 m passes in front, seen at its rear and its right side.
+  Eigen::Vector2d centre(25.0, 8.0);
+  const Eigen::Vector2d velocity(9.0, -2.0);
+  for (int i = 0; i < 60; ++i) {
+    scene_.begin(now_);
+    const Eigen::Vector2d along = velocity.normalized(), right(along.y(), -along.x());
+    for (const double a : {-2.25, 0.0, 2.25}) {
+      scene_.add(centre + a * along + 0.9 * right + 0.1 * Eigen::Vector2d(normal(random), normal(random)), velocity);
+    }
+    for (const double b : {-0.9, 0.0}) {
+      scene_.add(centre - 2.25 * along + b * right + 0.1 * Eigen::Vector2d(normal(random), normal(random)), velocity);
+    }
+    tracker_.step(*scene_.scan);
+    now_ += 50 * kMillisecond;
+    centre += 0.05 * velocity;
+  }
+  centre -= 0.05 * velocity;
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  ASSERT_EQ(list().number_of_tracks, 1u);
+  const Track& track = list().tracks[0];
+  EXPECT_NEAR(track.position_vehicle_m[0], centre.x(), 0.8);
+  EXPECT_NEAR(track.position_vehicle_m[1], centre.y(), 0.8);
+  EXPECT_NEAR(track.velocity_over_ground_mps[0], velocity.x(), 0.5);
+  EXPECT_NEAR(track.velocity_over_ground_mps[1], velocity.y(), 1.0);
+  EXPECT_NEAR(track.heading_rad, std::atan2(velocity.y(), velocity.x()), 0.15);
+  EXPECT_NEAR(track.length_m, 4.5, 0.6);
+  EXPECT_EQ(track.movement, MovementState::kMoving);
+  EXPECT_EQ(track.object_class, ObjectClass::kCar);
+  EXPECT_NEAR(track.age_s, 59 * 0.05, 1e-3);
+  EXPECT_GT(track.existence_probability, 0.95F);
+}
+
+TEST_F(TrackerTest, OutputHasNothingOfTheStaleChunk) {
+  for (int i = 0; i < 6; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
+  const Track& t = list().tracks[0];
+  EXPECT_EQ(list().dropped_tracks, 0u);
+  EXPECT_EQ(list().flags, 0u);
+  EXPECT_EQ(list().reserved, 0u);
+  EXPECT_EQ(t.reserved, 0u);
+  EXPECT_TRUE(std::isfinite(t.time_since_update_s) && std::isfinite(t.acceleration_over_ground_mps2[0]) &&
+              std::isfinite(t.position_vehicle_m[2]));
+  const Eigen::Map<const Eigen::Matrix<float, 6, 6>> covariance(t.covariance.data());
+  EXPECT_TRUE(covariance.allFinite());
+  EXPECT_GT(covariance.diagonal().minCoeff(), 0.0F);
+}
+
+TEST_F(TrackerTest, IsDeletedAfterEightMissesOfTenOrASecond) {
+  for (int i = 0; i < 20; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  for (int i = 0; i < 7; ++i) step({}, {}, false);
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  EXPECT_EQ(list().tracks[0].update, TrackUpdate::kPredicted);
+  EXPECT_NEAR(list().tracks[0].time_since_update_s, 0.35, 1e-3);
+  step({}, {}, false);
+  EXPECT_EQ(list().number_of_tracks, 0u);
+}
+
+TEST_F(TrackerTest, ScansThatCannotSeeItDoNotCount) {
+  for (int i = 0; i < 20; ++i) step({30.0 + 0.4 * i, -10.0}, {8.0, 0.0});
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  // Radar 2 looks to the left: it says nothing about what is ahead on the right. Only the second of coasting ends it.
+  for (int i = 0; i < 60; ++i) {
+    scene_.begin(now_, 2);
+    tracker_.step(*scene_.scan);
+    now_ += 10 * kMillisecond;
+  }
+  EXPECT_EQ(list().number_of_confirmed_tracks, 1u);
+  for (int i = 0; i < 60; ++i) {
+    scene_.begin(now_, 2);
+    tracker_.step(*scene_.scan);
+    now_ += 10 * kMillisecond;
+  }
+  EXPECT_EQ(list().number_of_tracks, 0u);
+}
+
+TEST_F(TrackerTest, RadarsOutOfStepShareOneTrack) {
+  // Ahead on the left both see it; their scans are 17 ms apart and the second ones come late by 5 ms of order.
+  const Eigen::Vector2d start(15.0, 9.0), velocity(5.0, 4.0);
+  for (int i = 0; i < 40; ++i) {
+    for (const auto& [radar, offset_ms] : {std::pair{1u, 17}, std::pair{2u, 12}}) {
+      const double t = 0.05 * i + 1e-3 * offset_ms;
+      scene_.begin(now_ + i * 50 * kMillisecond + offset_ms * kMillisecond, radar);
+      scene_.add(start + t * velocity, velocity);
+      const StepResult result = tracker_.step(*scene_.scan);
+      EXPECT_EQ(result.out_of_order, radar == 2u);
+      EXPECT_FALSE(result.restarted);
+    }
+  }
+  ASSERT_EQ(list().number_of_tracks, 1u);
+  EXPECT_NEAR(list().tracks[0].velocity_over_ground_mps[0], 5.0, 0.7);
+  EXPECT_NEAR(list().tracks[0].velocity_over_ground_mps[1], 4.0, 0.7);
+}
+
+TEST_F(TrackerTest, CrossingObjectsKeepTheirNames) {
+  std::uint32_t a = 0, b = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.05 * i;
+    scene_.begin(now_);
+    scene_.add({20.0 + 8.0 * t, 12.0 - 5.0 * t}, {8.0, -5.0});
+    scene_.add({60.0 - 9.0 * t, -3.0}, {-9.0, 0.0});
+    tracker_.step(*scene_.scan);
+    now_ += 50 * kMillisecond;
+    if (i < 20) continue;
+    ASSERT_EQ(list().number_of_confirmed_tracks, 2u) << i;
+    for (const Track& track : {list_->tracks[0], list_->tracks[1]}) {
+      std::uint32_t& name = track.velocity_over_ground_mps[0] > 0.0F ? a : b;
+      if (name == 0) name = track.tracking_id;
+      EXPECT_EQ(track.tracking_id, name) << i;
+    }
+  }
+  EXPECT_NE(a, b);
+}
+
+TEST_F(TrackerTest, AJumpOfTheClockDropsEverything) {
+  for (int i = 0; i < 10; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
+  const std::uint32_t name = list().tracks[0].tracking_id;
+  now_ -= 60'000 * kMillisecond;
+  scene_.begin(now_);
+  EXPECT_TRUE(tracker_.step(*scene_.scan).restarted);
+  EXPECT_EQ(list().number_of_tracks, 0u);
+  for (int i = 0; i < 10; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
+  EXPECT_GT(list().tracks[0].tracking_id, name) << "a name is never used again";
+}
+
+TEST_F(TrackerTest, MoreObjectsThanRoomAreCounted) {
+  for (int round = 0; round < 8; ++round) {
+    scene_.begin(now_);
+    // Far apart, and more each time than a scan's clusters.
+    for (int i = 0; i < 100; ++i) {
+      scene_.add({8.0 + 8.0 * (i % 12), -60.0 + 13.0 * (i / 12) + (round % 2 == 0 ? 0.0 : 6.5)},
+                 {round % 2 == 0 ? 20.0 : -20.0, 0.0});
+    }
+    tracker_.step(*scene_.scan);
+    EXPECT_LE(list().number_of_tracks, kMaxTracks);
+    if (list().dropped_tracks > 0) return;
+    now_ += 5 * kMillisecond;
+  }
+  ADD_FAILURE() << "never full";
+}
+
+TEST_F(TrackerTest, TheFlagsOfTheScanGoOn) {
+  scene_.begin(now_);
+  scene_.scan->flags = pipeline_flag::kNoTracks | pipeline_flag::kNoAlignment;
+  tracker_.step(*scene_.scan);
+  EXPECT_EQ(list().flags, pipeline_flag::kNoTracks | pipeline_flag::kNoAlignment);
+}
+
+TEST_F(TrackerTest, AllocatesNothing) {
+  const std::uint64_t before = runtime::counted_allocations();
+  {
+    const runtime::CountAllocations counting;
+    for (int i = 0; i < 50; ++i) {
+      scene_.begin(now_, 1u + static_cast<unsigned>(i) % 2u);
+      for (int k = 0; k < 120; ++k) scene_.add({10.0 + k * 0.7, -30.0 + (k * 37) % 60}, {10.0, 1.0});
+      tracker_.step(*scene_.scan);
+      tracker_.write(*list_);
+      now_ += 25 * kMillisecond;
+    }
+  }
+  EXPECT_EQ(runtime::counted_allocations(), before);
+}
+
+}  // namespace
+}  // namespace boresight::tracking
