@@ -1,0 +1,45 @@
+// What the gateway would publish, kept in memory.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/ingest_gateway/core/gateway.hpp"
+
+namespace boresight::ingest {
+
+class MemorySink : public Sink {
+ public:
+  RadarScan* begin_scan() override { return refuse_memory ? nullptr : scan.get(); }
+  void publish_scan(std::uint32_t radar_id, const MeasurementTime& time) override {
+    ++scans;
+    last_radar = radar_id;
+    last_time = time;
+  }
+  EgoMotion* begin_ego() override { return &ego; }
+  void publish_ego(const MeasurementTime& time) override {
+    ++egos;
+    last_time = time;
+  }
+  void fault(Fault kind, std::string_view, std::uint32_t radar_id) override {
+    ++faults[static_cast<std::size_t>(kind)];
+    last_fault_radar = radar_id;
+  }
+  [[nodiscard]] std::size_t count(Fault kind) const { return faults[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] std::size_t all_faults() const {
+    std::size_t sum = 0;
+    for (const std::size_t n : faults) sum += n;
+    return sum;
+  }
+
+  std::unique_ptr<RadarScan> scan = std::make_unique<RadarScan>();
+  EgoMotion ego{};
+  bool refuse_memory = false;
+  std::size_t scans = 0, egos = 0;
+  std::uint32_t last_radar = 0, last_fault_radar = 99;
+  MeasurementTime last_time{};
+  std::array<std::size_t, kNumberOfFaults> faults{};
+};
+
+}  // namespace boresight::ingest

@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "services/ingest_gateway/codecs/toyota_ego.hpp"
+#include "services/ingest_gateway/codecs/toyota_radar.hpp"
+#include "tests/simulator/wire/toyota_encoder.hpp"
+
+namespace boresight::ingest {
+namespace {
+
+namespace layout = wire::toyota;
+using Bytes = std::array<std::uint8_t, 8>;
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+struct CanFrame {
+  std::uint32_t id;
+  Bytes bytes;
+};
+
+/// Puts a raw value into a Motorola signal, bit by bit: the inverse of what the decoder does, written differently.
+void put(Bytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
+  unsigned byte = start_bit / 8, bit = start_bit % 8;
+  for (unsigned i = 0; i < length; ++i) {
+    const bool one = (static_cast<std::uint64_t>(raw) >> (length - 1 - i) & 1u) != 0;
+    bytes[byte] = static_cast<std::uint8_t>(one ? bytes[byte] | 1u << bit : bytes[byte] & ~(1u << bit));
+    if (bit == 0) {
+      ++byte;
+      bit = 7;
+    } else {
+      --bit;
+    }
+  }
+}
+
+void seal(std::uint32_t id, Bytes& bytes) {
+  unsigned sum = (id & 0xFF) + (id >> 8) + 8;
+  for (std::size_t i = 0; i < 7; ++i) sum += bytes[i];
+  bytes[7] = static_cast<std::uint8_t>(sum);
+}
+
+CanFrame track_a(std::uint32_t slot, unsigned counter, bool valid, double x = 0.0, double y_left = 0.0,
+                 double rate = 0.0) {
+  CanFrame f{layout::kTrackA + slot, {}};
+  put(f.bytes, 7, 8, counter);
+  put(f.bytes, 15, 15, std::lround(x / 0.01));
+  put(f.bytes, 31, 11, std::lround(-y_left / 0.04));
+  put(f.bytes, 47, 12, std::lround(rate / 0.025));
+  put(f.bytes, 48, 1, valid ? 1 : 0);
+  seal(f.id, f.bytes);
+  return f;
+}
+
+CanFrame track_b(std::uint32_t slot, unsigned counter, unsigned score) {
+  CanFrame f{layout::kTrackB + slot, {}};
+  put(f.bytes, 7, 8, counter);
+  put(f.bytes, 23, 8, score);
+  seal(f.id, f.bytes);
+  return f;
+}
+
+/// All 32 frames; slot 3 is a track 40 m ahead and 2 m to the left that comes closer.
+std::vector<CanFrame> cycle(unsigned counter) {
+  std::vector<CanFrame> frames;
+  for (std::uint32_t slot = 0; slot < 16; ++slot) {
+    frames.push_back(slot == 3 ? track_a(slot, counter, true, 40.0, 2.0, -5.5) : track_a(slot, counter, false, 300.0));
+    frames.push_back(track_b(slot, counter, slot == 3 ? 80 : 0));
+  }
+  return frames;
+}
+
+DecodeResult take(ToyotaRadar& radar, const CanFrame& frame, std::int64_t stamp_ns) {
+  std::string_view problem;
+  return radar.take(frame.id, frame.bytes, stamp_ns, problem);
+}
+
+TEST(ToyotaRadar, DecodesATrackAndItsSigns) {
+  ToyotaRadar radar;
+  RadarScan scan{};
+  std::int64_t t = 0;
+  DecodeResult result = DecodeResult::kIgnored;
+  for (const CanFrame& f : cycle(7)) result = take(radar, f, t += kMillisecond / 4);
+  ASSERT_EQ(result, DecodeResult::kComplete);
+  EXPECT_EQ(radar.stamp_ns(), kMillisecond / 4);
+  radar.write_scan(scan);
+  EXPECT_EQ(radar.missing_frames(), 0u);
+  ASSERT_EQ(scan.number_of_valid_detections, 1u);
+  EXPECT_NEAR(scan.range_m[0], std::hypot(40.0, 2.0), 1e-4);
+  EXPECT_NEAR(scan.azimuth_rad[0], std::atan2(2.0, 40.0), 1e-6);
+  EXPECT_NEAR(scan.range_rate_mps[0], -5.5, 1e-6);
+  EXPECT_NEAR(scan.existence_probability[0], 0.8, 1e-6);
+  EXPECT_EQ(scan.cycle_counter, 7u);
+  EXPECT_EQ(scan.fields, scan_field::kExistence);
+}
+
+TEST(ToyotaRadar, TheOrderOfFramesWithinACycleIsFree) {
+  std::mt19937 random(1);
+  ToyotaRadar radar;
+  RadarScan scan{};
+  for (unsigned round = 0; round < 500; ++round) {
+    auto frames = cycle(round & 0xFFu);
+    std::shuffle(frames.begin(), frames.end(), random);
+    const std::int64_t begin = round * 50 * kMillisecond;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const DecodeResult result = take(radar, frames[i], begin + static_cast<std::int64_t>(i) * kMillisecond / 3);
+      ASSERT_EQ(result, i + 1 < frames.size() ? DecodeResult::kAccepted : DecodeResult::kComplete) << round;
+    }
+    radar.write_scan(scan);
+    ASSERT_EQ(radar.missing_frames(), 0u);
+    ASSERT_EQ(scan.number_of_valid_detections, 1u);
+  }
+}
+
+TEST(ToyotaRadar, AMissingFrameEndsWithTheNextCycle) {
+  ToyotaRadar radar;
+  RadarScan scan{};
+  auto frames = cycle(1);
+  frames.erase(frames.begin() + 10);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ASSERT_EQ(take(radar, frames[i], static_cast<std::int64_t>(i)), DecodeResult::kAccepted);
+  }
+  // The next cycle begins with another frame than the one that is missing …
+  EXPECT_EQ(take(radar, cycle(2)[0], 50 * kMillisecond), DecodeResult::kComplete);
+  radar.write_scan(scan);
+  EXPECT_EQ(radar.missing_frames(), 1u);
+  EXPECT_EQ(scan.number_of_valid_detections, 1u);
+  // … or with just that one, which after the pause is not taken for the missing one.
+  for (const CanFrame& f : frames) ASSERT_EQ(take(radar, f, 100 * kMillisecond), DecodeResult::kAccepted);
+  EXPECT_EQ(take(radar, cycle(2)[10], 150 * kMillisecond), DecodeResult::kComplete);
+  radar.write_scan(scan);
+  EXPECT_EQ(radar.missing_frames(), 1u);
+}
+
+TEST(ToyotaRadar, WrongFramesAreRefusedWithAReason) {
+  ToyotaRadar radar;
+  std::string_view problem;
+  CanFrame frame = track_a(0, 1, true, 20.0);
+  EXPECT_EQ(radar.take(0x123, frame.bytes, 0, problem), DecodeResult::kIgnored);
+  EXPECT_EQ(radar.take(frame.id, std::span(frame.bytes).first(7), 0, problem), DecodeResult::kBadLength);
+  EXPECT_NE(problem.find("8 bytes"), std::string_view::npos);
+  frame.bytes[2] = static_cast<std::uint8_t>(frame.bytes[2] ^ 1);
+  EXPECT_EQ(radar.take(frame.id, frame.bytes, 0, problem), DecodeResult::kBadValue);
+  EXPECT_NE(problem.find("checksum"), std::string_view::npos);
+}
+
+TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
+  const simulator::EgoSignals truth{.speed_mps = 13.37, .yaw_rate_radps = 0.21, .steering_angle_rad = -0.7};
+  ToyotaEgo ego(EgoConfig{});
+  std::string_view problem;
+  DecodeResult result = DecodeResult::kIgnored;
+  for (const auto& frame : simulator::wire::encode_ego(truth)) {
+    result = ego.take(frame.id, frame.bytes, 5 * kMillisecond, problem);
+  }
+  ASSERT_EQ(result, DecodeResult::kComplete);
+  EgoMotion out{};
+  ego.write(out);
+  EXPECT_TRUE(out.has(ego_field::kSpeed | ego_field::kYawRate | ego_field::kSteeringAngle));
+  EXPECT_NEAR(out.speed_mps, truth.speed_mps, 0.5 * 0.01 / 3.6 + 1e-6);
+  EXPECT_NEAR(out.yaw_rate_radps, truth.yaw_rate_radps, 0.5 * 0.244 * M_PI / 180.0 + 1e-6);
+  EXPECT_NEAR(out.steering_angle_rad, truth.steering_angle_rad, 0.06 * M_PI / 180.0);
+}
+
+TEST(ToyotaEgo, OldSignalsAreLeftOut) {
+  ToyotaEgo ego(EgoConfig{});
+  std::string_view problem;
+  const auto frames =
+      simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
+  for (const auto& f : frames) static_cast<void>(ego.take(f.id, f.bytes, 0, problem));
+  EXPECT_EQ(ego.take(frames[2].id, frames[2].bytes, 300 * kMillisecond, problem), DecodeResult::kComplete);
+  EgoMotion out{};
+  ego.write(out);
+  EXPECT_EQ(out.fields, ego_field::kSpeed);
+}
+
+TEST(ToyotaEgo, AccelerationIsTheSlopeOfTheSpeed) {
+  ToyotaEgo ego(EgoConfig{});
+  std::string_view problem;
+  for (int i = 0; i < 200; ++i) {
+    const auto frames = simulator::wire::encode_ego(
+        {.speed_mps = 10.0 + 1.5 * 0.0125 * i, .yaw_rate_radps = 0.0, .steering_angle_rad = 0.0});
+    ASSERT_EQ(ego.take(frames[2].id, frames[2].bytes, i * 12'500'000LL, problem), DecodeResult::kComplete);
+  }
+  EgoMotion out{};
+  ego.write(out);
+  EXPECT_NEAR(out.longitudinal_acceleration_mps2, 1.5, 0.15);
+}
+
+TEST(ToyotaEgo, WrongFramesAreRefused) {
+  ToyotaEgo ego(EgoConfig{});
+  std::string_view problem;
+  auto frames = simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
+  EXPECT_EQ(ego.take(0x0B4, frames[0].bytes, 0, problem), DecodeResult::kIgnored);
+  EXPECT_EQ(ego.take(frames[2].id, std::span(frames[2].bytes).first(6), 0, problem), DecodeResult::kBadLength);
+  frames[0].bytes[1] = static_cast<std::uint8_t>(frames[0].bytes[1] ^ 4);
+  EXPECT_EQ(ego.take(frames[0].id, frames[0].bytes, 0, problem), DecodeResult::kBadValue);
+  Bytes fast{};
+  fast.fill(0xFF);
+  EXPECT_EQ(ego.take(layout::kWheelSpeedsId, fast, 0, problem), DecodeResult::kBadValue);
+}
+
+}  // namespace
+}  // namespace boresight::ingest
