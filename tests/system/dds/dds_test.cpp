@@ -1,0 +1,181 @@
+// What the health service says by DDS arrives, in our own reader and in another implementation's.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include <gtest/gtest.h>
+
+#include "services/boresight/diagnostics/diagnostics_text.hpp"
+#include "services/health/dds/diagnostics_reader.hpp"
+#include "services/health/dds/diagnostics_writer.hpp"
+#include "services/health/dds/to_dds.hpp"
+#include "tests/system/harness/child.hpp"
+
+namespace boresight::dds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kTime_ns = 1'700'000'000'250'000'000;
+const Config kConfig{.enabled = true, .domain = 77, .interfaces = {}, .period_s = 1.0};
+
+VehicleConfig vehicle() {
+  VehicleConfig v;
+  v.name = "test car";
+  for (const auto& [id, name] : {std::pair{1u, "front_left"}, std::pair{2u, "front_right"}}) {
+    RadarConfig radar;
+    radar.id = id;
+    radar.name = name;
+    v.radars.push_back(radar);
+  }
+  return v;
+}
+
+HealthReport report() {
+  HealthReport r{};
+  r.overall = DataQualifier::kAvailableReduced;
+  r.number_of_sensors = 2;
+  r.number_of_services = 6;
+  r.latency_p50_ms = 0.5F;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    r.services[i].service = i;
+    r.services[i].condition = ServiceCondition::kAlive;
+  }
+  r.services[4].condition = ServiceCondition::kSilent;
+  r.sensors[0].radar_id = 1;
+  SensorHealth& crooked = r.sensors[1];
+  crooked.radar_id = 2;
+  crooked.data_qualifier = DataQualifier::kAvailableReduced;
+  crooked.extended_qualifier = ExtendedQualifier::kMisaligned;
+  crooked.rate_hz = 20.0F;
+  crooked.yaw.error_rad = 0.0436F;
+  crooked.yaw.std_rad = 0.0004F;
+  crooked.yaw.tolerance_rad = 0.0262F;
+  crooked.yaw.observable = crooked.yaw.beyond_tolerance = 1;
+  crooked.speed_scale = 1.012F;
+  crooked.lateral_displacement_m = 4.36F;
+  crooked.reference_range_m = 100.0F;
+  crooked.scans = 12'345'678'901ULL;
+  return r;
+}
+
+/// What came, by radar, and the latest array.
+struct Received {
+  std::mutex mutex;
+  std::map<std::uint32_t, diagnostics::SensorHealth> sensors;
+  std::size_t samples = 0;
+  diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
+
+  DiagnosticsReader::OnSensorHealth on_sensor = [this](const diagnostics::SensorHealth& s) {
+    const std::lock_guard lock(mutex);
+    sensors[s.radar_id()] = s;
+    ++samples;
+  };
+  DiagnosticsReader::OnDiagnosticArray on_array = [this](const diagnostic_msgs::msg::dds_::DiagnosticArray_& a) {
+    const std::lock_guard lock(mutex);
+    array = a;
+  };
+  bool is_complete() {
+    const std::lock_guard lock(mutex);
+    return sensors.size() == 2 && !array.status_().empty();
+  }
+};
+
+TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
+  DiagnosticsWriter writer(kConfig, vehicle());
+  HealthReport old = report();
+  old.sensors[1].extended_qualifier = ExtendedQualifier::kNoData;
+  ASSERT_TRUE(writer.write(old, kTime_ns - 1'000'000'000));
+  ASSERT_TRUE(writer.write(report(), kTime_ns));
+  // Nobody was there when it was written.
+  Received received;
+  const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array);
+  ASSERT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); })) << "nothing came";
+  const std::lock_guard lock(received.mutex);
+  EXPECT_EQ(received.samples, 2u) << "one instance a radar, the latest only";
+  const diagnostics::SensorHealth& s = received.sensors.at(2);
+  EXPECT_EQ(s.radar_name(), "front_right");
+  EXPECT_EQ(s.vehicle_name(), "test car");
+  EXPECT_EQ(s.time_ns(), kTime_ns);
+  EXPECT_EQ(s.data_qualifier(), diagnostics::AVAILABLE_REDUCED);
+  EXPECT_EQ(s.extended_qualifier(), diagnostics::MISALIGNED);
+  EXPECT_EQ(s.yaw().error_rad(), 0.0436F);
+  EXPECT_TRUE(s.yaw().observable());
+  EXPECT_TRUE(s.yaw().beyond_tolerance());
+  EXPECT_FALSE(s.pitch().observable());
+  EXPECT_EQ(s.scans(), 12'345'678'901ULL);
+  EXPECT_EQ(s.lateral_displacement_m(), 4.36F);
+  ASSERT_EQ(received.array.status_().size(), 1u + 2u + 6u);
+  const auto& statuses = received.array.status_();
+  EXPECT_EQ(received.array.header_().stamp_().sec_(), 1'700'000'000);
+  EXPECT_EQ(received.array.header_().stamp_().nanosec_(), 250'000'000u);
+  EXPECT_EQ(statuses[0].name_(), "boresight");
+  EXPECT_EQ(statuses[0].level_(), 1);
+  EXPECT_EQ(statuses[1].level_(), 0);
+  EXPECT_EQ(statuses[2].name_(), "boresight/radar/front_right");
+  EXPECT_EQ(statuses[2].message_(), "AVAILABLE_REDUCED MISALIGNED");
+  EXPECT_EQ(statuses[2].level_(), 1);
+  EXPECT_EQ(statuses[7].name_(), "boresight/service/tracker");
+  EXPECT_EQ(statuses[7].level_(), 2) << "silent";
+}
+
+TEST(Dds, LeavesNothingInSharedMemory) {
+  {
+    DiagnosticsWriter writer(kConfig, vehicle());
+    Received received;
+    const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array);
+    ASSERT_TRUE(writer.write(report(), kTime_ns));
+    EXPECT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); }));
+    EXPECT_TRUE(fs::is_empty("/dev/shm")) << "UDP only";
+  }
+  EXPECT_TRUE(fs::is_empty("/dev/shm"));
+}
+
+TEST(Dds, OtherDomainsHearNothing) {
+  DiagnosticsWriter writer(kConfig, vehicle());
+  Received received;
+  Config other = kConfig;
+  other.domain = 78;
+  const DiagnosticsReader reader(other, received.on_sensor, received.on_array);
+  ASSERT_TRUE(writer.write(report(), kTime_ns));
+  EXPECT_FALSE(harness::eventually(1.0, [&] { return received.is_complete(); }));
+}
+
+TEST(Dds, AnotherImplementationReadsBothTopics) {
+  if (!fs::exists(BORESIGHT_PEER)) GTEST_SKIP() << "skipped: Cyclone DDS is not installed";
+  DiagnosticsWriter writer(kConfig, vehicle());
+  ASSERT_TRUE(writer.write(report(), kTime_ns));
+  FILE* const pipe = popen(BORESIGHT_PEER " 77 15", "r");
+  ASSERT_NE(pipe, nullptr);
+  std::string output;
+  std::array<char, 256> buffer;
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
+  EXPECT_EQ(pclose(pipe), 0) << output;
+  EXPECT_NE(output.find("status 1 boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos)
+      << output;
+  EXPECT_NE(output.find("status 2 boresight/service/tracker: silent"), std::string::npos) << output;
+  EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436"), std::string::npos) << output;
+}
+
+TEST(DiagnosticsText, SaysWhatAWorkshopNeeds) {
+  const diagnostics::SensorHealth s = to_sensor_health(report().sensors[1], vehicle(), kTime_ns);
+  const std::string line = diagnostics_text::to_line(s);
+  for (const char* part : {"front_right", "AVAILABLE_REDUCED MISALIGNED",
+                           "yaw +2.50° ± 0.02° (tolerance 1.50°, beyond)", "+4.36 m sideways at 100 m", "20.0 Hz"}) {
+    EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
+  }
+  EXPECT_EQ(line.find("pitch"), std::string::npos) << "not observable";
+  const std::string json = diagnostics_text::to_json(s);
+  EXPECT_NE(json.find(R"("radar":"front_right")"), std::string::npos) << json;
+  EXPECT_NE(json.find(R"("extended_qualifier":"MISALIGNED")"), std::string::npos) << json;
+  const auto array = to_diagnostic_array(report(), vehicle(), kTime_ns);
+  const std::string lines = diagnostics_text::to_lines(array);
+  EXPECT_NE(lines.find("WARN  boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("ERROR boresight/service/tracker: silent"), std::string::npos) << lines;
+  EXPECT_EQ(lines.find("front_left"), std::string::npos) << "what is well is not listed";
+}
+
+}  // namespace
+}  // namespace boresight::dds

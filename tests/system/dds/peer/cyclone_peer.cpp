@@ -1,0 +1,70 @@
+// A diagnosis tool built on Cyclone DDS: cyclone_peer DOMAIN SECONDS prints every status and every sensor that it
+// receives, one line each, and ends after a diagnostic array and a sensor have come, with 0, or after the time, with 1.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include <dds/dds.h>
+
+#include "diagnostic_array.h"
+#include "sensor_health.h"
+
+namespace {
+
+dds_entity_t reader_of(dds_entity_t participant, const dds_topic_descriptor_t& type, const char* name) {
+  const dds_entity_t topic = dds_create_topic(participant, &type, name, nullptr, nullptr);
+  dds_qos_t* const qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+  const dds_entity_t reader = dds_create_reader(participant, topic, qos, nullptr);
+  dds_delete_qos(qos);
+  return reader;
+}
+
+template <typename Sample, typename Print>
+bool take(dds_entity_t reader, Print print) {
+  constexpr std::size_t kMost = 16;
+  void* samples[kMost] = {};
+  dds_sample_info_t infos[kMost];
+  const dds_return_t count = dds_take(reader, samples, infos, kMost, kMost);
+  bool any = false;
+  for (dds_return_t i = 0; i < count; ++i) {
+    if (!infos[i].valid_data) continue;
+    print(*static_cast<const Sample*>(samples[i]));
+    any = true;
+  }
+  if (count > 0) dds_return_loan(reader, samples, count);
+  return any;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const dds_entity_t participant =
+      dds_create_participant(static_cast<dds_domainid_t>(std::atoi(argv[1])), nullptr, nullptr);
+  if (participant < 0) return 2;
+  const dds_entity_t arrays = reader_of(participant, diagnostic_msgs_msg_dds__DiagnosticArray__desc, "rt/diagnostics");
+  const dds_entity_t sensors =
+      reader_of(participant, boresight_diagnostics_SensorHealth_desc, "boresight/sensor_health");
+  bool array_came = false, sensor_came = false;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(std::atoi(argv[2]));
+  while (std::chrono::steady_clock::now() < end && !(array_came && sensor_came)) {
+    array_came |= take<diagnostic_msgs_msg_dds__DiagnosticArray_>(arrays, [](const auto& array) {
+      for (std::uint32_t i = 0; i < array.status_._length; ++i) {
+        const auto& status = array.status_._buffer[i];
+        std::printf("status %u %s: %s (%u values)\n", status.level_, status.name_, status.message_,
+                    status.values_._length);
+      }
+    });
+    sensor_came |= take<boresight_diagnostics_SensorHealth>(sensors, [](const auto& s) {
+      std::printf("sensor %u %s %d %d yaw %.4f\n", s.radar_id, s.radar_name, static_cast<int>(s.data_qualifier),
+                  static_cast<int>(s.extended_qualifier), static_cast<double>(s.yaw.error_rad));
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  dds_delete(participant);
+  return array_came && sensor_came ? 0 : 1;
+}
