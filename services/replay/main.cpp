@@ -1,5 +1,6 @@
 // boresight-replay: plays recordings at link level, as if the sensors and buses were there.
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <map>
 #include <string>
@@ -31,7 +32,9 @@ int main(int argc, char** argv) {
   app.add_option("recordings", options.files, "recordings of one drive, merged by time stamp");
   app.add_option("--config", config_directory, "folder with services/replay.toml");
   app.add_flag("--check", check, "validate configuration and recordings' readability, and exit");
-  app.add_option("--speed", speed, "factor to real time, or max")->capture_default_str();
+  app.add_option("--speed", speed, "factor to real time, or max")
+      ->check(CLI::PositiveNumber | CLI::IsMember({"max"}))
+      ->capture_default_str();
   app.add_option("--start", options.start_s, "seconds to skip")->check(CLI::Range(0.0, 1e9));
   app.add_option("--duration", options.duration_s, "seconds to play")->check(CLI::Range(0.0, 1e9));
   app.add_option("--step", options.step_s, "wait for Enter after each so many seconds of the recording")
@@ -42,7 +45,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--route", routes, "RECORDED=LOCAL: IPv4 address to use instead of a recorded one (wire)");
   app.add_option("--wait", wait_s, "seconds to wait for the gateway")->check(CLI::Range(0.0, 3600.0));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    constexpr int kExitUsage = 2;
+    return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
+  }
 
   runtime::log::initialise("boresight-replay");
   runtime::install_stop_signals();

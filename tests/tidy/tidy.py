@@ -101,7 +101,7 @@ def check_rooms(root, files):
     services = sorted({f.parts[1] for f in files if f.parts[0] == "services" and f.suffix in SOURCES} - {"common"})
     for service in services:
         room = f"services/{service}"
-        for needed in ("main.cpp", "CMakeLists.txt"):
+        for needed in ("main.cpp", "CMakeLists.txt", "README.md"):
             if f"{room}/{needed}" not in names:
                 yield f"{room}: has no {needed}"
         # The command-line tool has no core of its own: what it computes is in monitor/ and report/.

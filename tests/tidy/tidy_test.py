@@ -59,7 +59,12 @@ class Tidy(unittest.TestCase):
         self.assert_found({"services/s/x.sh": "\n" * 501}, "501 lines")
 
     def test_room_without_core(self):
-        self.assert_found({"services/t/main.cpp": "int main() {}\n", "services/t/CMakeLists.txt": "\n"}, "no core/")
+        self.assert_found({"services/t/main.cpp": "int main() {}\n", "services/t/CMakeLists.txt": "\n",
+                           "services/t/README.md": "t\n"}, "no core/")
+
+    def test_room_without_readme(self):
+        self.assert_found({"services/t/main.cpp": "int main() {}\n", "services/t/CMakeLists.txt": "\n",
+                           "services/t/core/t.hpp": "\n"}, "no README.md")
 
 
 if __name__ == "__main__":
