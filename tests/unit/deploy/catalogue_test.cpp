@@ -1,3 +1,5 @@
+#include "interfaces/catalogue/catalogue.hpp"
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -5,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "deploy/catalogue/catalogue_text.hpp"
-#include "interfaces/catalogue/catalogue.hpp"
 
 namespace boresight::catalogue {
 namespace {
