@@ -35,10 +35,20 @@ std::vector<std::string> open_files(pid_t pid) {
   return targets;
 }
 
+std::set<std::string> leftovers() {
+  std::set<std::string> found;
+  for (const char* folder : {"/dev/shm", "/tmp"}) {
+    for (const auto& entry : fs::directory_iterator(folder)) found.insert(entry.path().string());
+  }
+  return found;
+}
+
 /// One run of the drive for all cases.
 class WholeChain : public testing::Test {
  protected:
   static void SetUpTestSuite() {
+    // A checkout under /tmp is there before.
+    const std::set<std::string> before = leftovers();
     const auto recordings = harness::simulated_drive(kDrive_s);
     observer_ = std::make_unique<Observer>("-pipeline");
     harness::Domain domain("demo");
@@ -55,8 +65,8 @@ class WholeChain : public testing::Test {
     EXPECT_EQ(observer_->process().stop(), 0);
     domain.supervisor().stop();
     events_ = domain.supervisor().events();
-    for (const char* folder : {"/dev/shm", "/tmp"}) {
-      for (const auto& entry : fs::directory_iterator(folder)) left_.insert(entry.path().string());
+    for (const std::string& entry : leftovers()) {
+      if (!before.contains(entry)) left_.insert(entry);
     }
   }
   static void TearDownTestSuite() { observer_.reset(); }
