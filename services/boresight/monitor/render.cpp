@@ -100,20 +100,21 @@ std::size_t number_of_confirmed(const Snapshot& snapshot) {
 }
 
 void put_radars(Page& page, const Snapshot& snapshot) {
-  page.put(fmt::format("{:<14}{:>8}{:>6}{:>7}{:>7}   {:<18}{:<18}{:<18}{:<12}{}", "RADAR", "SCANS/S", "DET", "MOVING",
-                       "GHOST", "YAW ± σ", "PITCH ± σ", "SPEED SCALE ± σ", "ALIGNMENT", "HEALTH"),
+  // What matters most comes first: a narrow terminal cuts the end.
+  page.put(fmt::format("{:<13}{:<32}{:<18}{:<17}{:>8}{:>5}{:>7}{:>6}  {:<12}{}", "RADAR", "HEALTH", "YAW ± σ",
+                       "SPEED SCALE ± σ", "SCANS/S", "DET", "MOVING", "GHOST", "ALIGNMENT", "PITCH ± σ"),
            Ink::kDim);
   page.line();
   for (const RadarSnapshot& r : snapshot.radars) {
     const bool known = has_estimate(r);
-    page.put(fmt::format("{:<14}", r.name), Ink::kBold);
-    page.put(fmt::format("{:>8.1f}{:>6}{:>7}{:>7}   ", r.rate_hz, r.detections, r.moving, r.ghosts));
+    page.put(fmt::format("{:<13}", r.name), Ink::kBold);
+    page.put(fmt::format("{:<32}", verdict(r)), ink_of(r));
     const bool beyond = r.extended_qualifier == ExtendedQualifier::kMisaligned;
     page.put(fmt::format("{:<18}", angle_text(r.yaw, known)), beyond ? Ink::kBad : Ink::kPlain);
-    page.put(fmt::format("{:<18}", angle_text(r.pitch, known)));
-    page.put(fmt::format("{:<18}", known ? fmt::format("{:.4f} ± {:.4f}", r.speed_scale, r.speed_scale_std) : "-"));
+    page.put(fmt::format("{:<17}", known ? fmt::format("{:.4f} ± {:.4f}", r.speed_scale, r.speed_scale_std) : "-"));
+    page.put(fmt::format("{:>8.1f}{:>5}{:>7}{:>6}  ", r.rate_hz, r.detections, r.moving, r.ghosts));
     page.put(fmt::format("{:<12}", name_of(r.state)));
-    page.put(verdict(r), ink_of(r));
+    page.put(angle_text(r.pitch, known));
     page.line();
   }
 }
@@ -137,19 +138,26 @@ void put_tracks(Page& page, const Snapshot& snapshot, std::size_t limit) {
 
 void put_latencies(Page& page, const Snapshot& snapshot) {
   page.put("LATENCY  ", Ink::kDim);
-  for (std::size_t i = 0; i < kNumberOfLatencies; ++i) {
+  page.put("p50/max  ", Ink::kDim);
+  for (std::size_t n = 0; n < kNumberOfLatencies; ++n) {
+    const std::size_t i = (n + kNumberOfLatencies - 1) % kNumberOfLatencies;  // the total first
     const LatencyHistogram& h = snapshot.latencies[i];
     page.put(fmt::format("{} ", kLatencyNames[i]));
     page.put(duration_text(h.percentile_us(0.5)), Ink::kBold);
     page.put(fmt::format("/{}   ", duration_text(h.max_us())));
   }
-  page.put("(p50/max)", Ink::kDim);
   page.line();
 }
 
 void put_services(Page& page, const Snapshot& snapshot) {
   page.put("SERVICES ", Ink::kDim);
+  constexpr std::size_t kInALine = 3;
+  std::size_t put = 0;
   for (const ServiceSnapshot& s : snapshot.services) {
+    if (put++ == kInALine) {
+      page.line();
+      page.put("         ");
+    }
     page.put(fmt::format("{} ", catalogue::name_of(s.service)));
     page.put(std::string(name_of(s.condition)), ink_of(s.condition));
     if (s.restarts > 0) page.put(fmt::format(" ({} restarts)", s.restarts), Ink::kWarning);
