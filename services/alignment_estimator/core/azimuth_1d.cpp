@@ -85,6 +85,7 @@ void Azimuth1d::collect(const RadarScan& scan, const EgoSample& ego) {
   const bool has_elevation = scan.has(scan_field::kElevation);
   const bool has_stds = scan.has(scan_field::kStds);
   const UnknownElevation unknown = unknown_elevation(radar_.field_of_view);
+  unknown_cosine_variance_ = has_elevation ? 0.0 : unknown.variance / (unknown.mean_cosine * unknown.mean_cosine);
   const Eigen::Vector3d velocity =
       geometry::sensor_velocity(x_(0), ego.speed_mps, ego.yaw_rate_radps, radar_.mounting_pose.position_m);
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
@@ -179,6 +180,9 @@ void Azimuth1d::count_residuals(const EgoSample& ego) {
 Eigen::Matrix2d Azimuth1d::covariance() const {
   Eigen::Matrix2d published = covariance_;
   published(0, 0) += config_.systematic_speed_scale_std * config_.systematic_speed_scale_std;
+  // What stands beside a road stands at like heights: the error of the assumed mean is common to all detections, it
+  // does not average out over a drive, and it is a factor of the range rates just as k_v is.
+  published(0, 0) += x_(0) * x_(0) * unknown_cosine_variance_;
   published(1, 1) += config_.systematic_yaw_std_rad * config_.systematic_yaw_std_rad;
   return published;
 }

@@ -31,7 +31,8 @@ class Azimuth1d {
   [[nodiscard]] AlignmentState state() const { return state_; }
   [[nodiscard]] double speed_scale() const { return x_(0); }
   [[nodiscard]] double yaw_rad() const { return x_(1); }
-  /// Over (k_v, yaw), with the systematic part.
+  /// Over (k_v, yaw), with the systematic part: the configured one, and what an elevation that is not measured leaves
+  /// open of k_v.
   [[nodiscard]] Eigen::Matrix2d covariance() const;
 
  private:
@@ -50,6 +51,8 @@ class Azimuth1d {
   Eigen::Matrix3d nominal_;
   Eigen::Vector2d x_{1.0, 0.0};
   Eigen::Matrix2d covariance_;
+  /// Of the factor by which a common elevation, not measured, shortens all range rates; 0 where it is measured.
+  double unknown_cosine_variance_ = 0.0;
   AlignmentState state_ = AlignmentState::kNoData;
   std::int64_t last_time_ns_ = 0;
   double seconds_of_drive_ = 0.0;

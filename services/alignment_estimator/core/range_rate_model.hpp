@@ -1,6 +1,8 @@
 // Range rate of a stationary reflector as a function of k_v and the yaw correction, with its gradient.
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 namespace boresight::alignment {

@@ -52,7 +52,9 @@ namespace boresight::geometry {
 
 /// Angle wrapped into (−π, π].
 [[nodiscard]] inline double wrap_angle(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * M_PI);
+  // remainder() rounds a tie to even, which is −π for some odd multiples of π.
+  const double wrapped = std::remainder(angle_rad, 2.0 * M_PI);
+  return wrapped <= -M_PI ? M_PI : wrapped;
 }
 
 }  // namespace boresight::geometry

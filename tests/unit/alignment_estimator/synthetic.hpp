@@ -19,29 +19,37 @@ struct SyntheticDrive {
   double speed_scale = 1.01;
   double outliers = 0.2;
   std::uint32_t detections = 60;
-  double azimuth_limit_rad = 1.1;
+  double azimuth_centre_rad = 0.0;
+  double azimuth_limit_rad = 1.1;  ///< to both sides of the centre
+  double elevation_limit_rad = 0.0;
+  bool measures_elevation = true;
+  double turning_radps = 0.08;  ///< amplitude of the yaw rate
+  double mount_yaw_rad = 45.0 * kDegree;
+  double mount_pitch_rad = 0.0;
+  double mount_roll_rad = 0.0;
   double azimuth_std_rad = 0.2 * kDegree;
   double range_rate_std_mps = 0.05;
   double speed_std_mps = 0.0;  ///< of each scan's speed signal
   double yaw_rate_std_radps = 0.0;
   bool mirrored = false;
 
-  /// Mounted at 45° to the left, or mirrored.
   [[nodiscard]] RadarConfig radar() const {
     RadarConfig r;
     r.id = 1;
     const double side = mirrored ? -1.0 : 1.0;
-    r.mounting_pose = {{3.6, side * 0.7, 0.5}, side * 45.0 * kDegree, 0.0, 0.0};
+    r.mounting_pose = {{3.6, side * 0.7, 0.5}, side * mount_yaw_rad, mount_pitch_rad, side * mount_roll_rad};
     r.noise = {.range_std_m = 0.1,
                .azimuth_std_rad = azimuth_std_rad,
                .elevation_std_rad = 0.2 * kDegree,
                .range_rate_std_mps = range_rate_std_mps};
     r.cycle_time_s = 0.05;
+    r.field_of_view.elevation_min_rad = -elevation_limit_rad;
+    r.field_of_view.elevation_max_rad = elevation_limit_rad;
     return r;
   }
   [[nodiscard]] double speed_mps(int scan) const { return 15.0 + 5.0 * std::sin(0.02 * scan); }
   [[nodiscard]] double yaw_rate_radps(int scan) const {
-    return (mirrored ? -1.0 : 1.0) * 0.08 * std::sin(0.031 * scan);
+    return (mirrored ? -1.0 : 1.0) * turning_radps * std::sin(0.031 * scan);
   }
 };
 
@@ -52,7 +60,9 @@ class Synthesizer {
 
   void next() {
     std::uniform_real_distribution<double> share(0.0, 1.0),
-        azimuth(-drive_.azimuth_limit_rad, drive_.azimuth_limit_rad), stray(-8.0, 8.0);
+        azimuth(drive_.azimuth_centre_rad - drive_.azimuth_limit_rad,
+                drive_.azimuth_centre_rad + drive_.azimuth_limit_rad),
+        stray(-8.0, 8.0);
     std::normal_distribution<double> normal(0.0, 1.0);
     const RadarConfig radar = drive_.radar();
     const double side = drive_.mirrored ? -1.0 : 1.0;
@@ -63,15 +73,17 @@ class Synthesizer {
     scan->header = {};
     scan->header.source_id = 1;
     scan->header.measurement_time_ns = 1'000'000'000 + index_ * 50'000'000LL;
-    scan->fields = scan_field::kElevation;
+    scan->fields = drive_.measures_elevation ? scan_field::kElevation : 0;
     scan->number_of_valid_detections = drive_.detections;
     for (std::uint32_t i = 0; i < drive_.detections; ++i) {
       const double a = azimuth(random_);
-      double range_rate = -(rotation * geometry::direction(side * a, 0.0)).dot(velocity);
+      const double e =
+          drive_.elevation_limit_rad > 0.0 ? drive_.elevation_limit_rad * (2.0 * share(random_) - 1.0) : 0.0;
+      double range_rate = -(rotation * geometry::direction(side * a, e)).dot(velocity);
       if (share(random_) < drive_.outliers) range_rate += stray(random_);
       scan->range_m[i] = static_cast<float>(10.0 + 50.0 * share(random_));
       scan->azimuth_rad[i] = static_cast<float>(side * (a + drive_.azimuth_std_rad * normal(random_)));
-      scan->elevation_rad[i] = 0.0F;
+      scan->elevation_rad[i] = static_cast<float>(e);
       scan->range_rate_mps[i] = static_cast<float>(range_rate + drive_.range_rate_std_mps * normal(random_));
       scan->detection_flags[i] = 0;
     }

@@ -61,6 +61,8 @@ TEST(Frames, AnglesWrap) {
   EXPECT_NEAR(wrap_angle(3.5 * M_PI), -0.5 * M_PI, 1e-12);
   EXPECT_NEAR(wrap_angle(-181.0 * kDegree), 179.0 * kDegree, 1e-12);
   EXPECT_NEAR(wrap_angle(0.3), 0.3, 1e-15);
+  EXPECT_EQ(wrap_angle(-M_PI), M_PI) << "the interval is open at −π";
+  EXPECT_EQ(wrap_angle(M_PI), M_PI);
 }
 
 TEST(EgoStep, IsTheIntegralOfTheMotion) {
