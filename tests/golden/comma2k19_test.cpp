@@ -21,16 +21,6 @@ constexpr double kReferenceOffset_m = 2.7;
 /// It knew the upper 13 of the 15 bits of the longitudinal distance; the DBC of today knows all.
 constexpr double kReferenceStep_m = 0.04;
 
-/// Linear interpolation in (times, values); constant beyond the ends.
-double at(const std::vector<double>& times, const std::vector<double>& values, double time) {
-  const auto after = std::upper_bound(times.begin(), times.end(), time);
-  if (after == times.begin()) return values.front();
-  if (after == times.end()) return values.back();
-  const auto i = static_cast<std::size_t>(after - times.begin());
-  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
-  return values[i - 1] + share * (values[i] - values[i - 1]);
-}
-
 class Comma2k19 : public testing::Test {
  protected:
   static void SetUpTestSuite() {

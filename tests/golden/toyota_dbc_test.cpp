@@ -1,7 +1,8 @@
 // The signals that the project wrote down for itself, against the public DBC file.
+#include <array>
+#include <cstdio>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -20,17 +21,21 @@ struct Signal {
 
 /// Every signal of a DBC file by (message id, name).
 std::map<std::pair<std::uint32_t, std::string>, Signal> read_dbc(const std::filesystem::path& file) {
-  static const std::regex message(R"(^BO_ (\d+) .*)");
-  static const std::regex signal(R"(^ SG_ (\w+) : (\d+)\|(\d+)@([01])([+-]) \(([-0-9.eE]+),([-0-9.eE]+)\).*)");
   std::map<std::pair<std::uint32_t, std::string>, Signal> signals;
   std::uint32_t id = 0;
   std::ifstream input(file);
   for (std::string line; std::getline(input, line);) {
-    std::smatch match;
-    if (std::regex_match(line, match, message)) id = static_cast<std::uint32_t>(std::stoul(match[1]));
-    if (!std::regex_match(line, match, signal)) continue;
-    signals[{id, match[1]}] = {std::stoi(match[2]), std::stoi(match[3]), match[4] == "0",
-                               match[5] == "-",     std::stod(match[6]), std::stod(match[7])};
+    std::array<char, 64> name{};
+    Signal s;
+    int order = 0;
+    char sign = '+';
+    static_cast<void>(std::sscanf(line.c_str(), "BO_ %u", &id));
+    const int read = std::sscanf(line.c_str(), " SG_ %63s : %d|%d@%d%c (%lf,%lf)", name.data(), &s.start, &s.length,
+                                 &order, &sign, &s.factor, &s.offset);
+    if (read != 7) continue;
+    s.motorola = order == 0;
+    s.is_signed = sign == '-';
+    signals[{id, name.data()}] = s;
   }
   return signals;
 }

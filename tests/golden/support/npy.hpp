@@ -1,6 +1,7 @@
 // Reads the arrays of doubles that lie beside the recording.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -29,6 +30,16 @@ inline std::vector<double> read_npy(const std::filesystem::path& path, const std
 /// The same of a file that holds one column after the other.
 inline std::vector<double> read_npy_columns(const std::filesystem::path& path) {
   return read_npy(path, "True");
+}
+
+/// Linear interpolation in (times, values); constant beyond the ends.
+inline double at(const std::vector<double>& times, const std::vector<double>& values, double time) {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (after == times.begin()) return values.front();
+  if (after == times.end()) return values.back();
+  const auto i = static_cast<std::size_t>(after - times.begin());
+  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
+  return values[i - 1] + share * (values[i] - values[i - 1]);
 }
 
 }  // namespace boresight::golden

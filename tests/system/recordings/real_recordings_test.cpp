@@ -21,16 +21,6 @@ using harness::Sample;
 
 const fs::path kData = BORESIGHT_SHARED_DATA;
 
-/// Linear interpolation in (times, values), which must bracket `time`.
-double at(const std::vector<double>& times, const std::vector<double>& values, double time) {
-  const auto after = std::upper_bound(times.begin(), times.end(), time);
-  if (after == times.begin()) return values.front();
-  if (after == times.end()) return values.back();
-  const auto i = static_cast<std::size_t>(after - times.begin());
-  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
-  return values[i - 1] + share * (values[i] - values[i - 1]);
-}
-
 /// Plays the recording through the whole chain and returns what was seen; the domain is gone afterwards.
 std::unique_ptr<Observer> play(const std::string& vehicle, const fs::path& recording, double limit_s) {
   auto observer = std::make_unique<Observer>("-recordings");
@@ -93,8 +83,8 @@ TEST_F(Comma2k19, EgoMotionIsThatOfTheReferenceDecodings) {
   ASSERT_GT(egos.size(), 2000u);
   for (const Sample* ego : egos) {
     const double time_s = recording_time_s(*ego);
-    speed_square += std::pow(static_cast<double>(ego->values[0]) - at(speed_times, speeds, time_s), 2);
-    yaw_rate_square += std::pow(static_cast<double>(ego->values[1]) + at(gyro_times, down, time_s), 2);
+    speed_square += std::pow(static_cast<double>(ego->values[0]) - golden::at(speed_times, speeds, time_s), 2);
+    yaw_rate_square += std::pow(static_cast<double>(ego->values[1]) + golden::at(gyro_times, down, time_s), 2);
   }
   const auto count = static_cast<double>(egos.size());
   RecordProperty("speed_rms_mps", std::to_string(std::sqrt(speed_square / count)));
@@ -125,7 +115,7 @@ TEST_F(Comma2k19, SpeedScaleAgreesWithTheInertialReference) {
   double reference = 0.0;
   double signalled = 0.0;
   for (const Sample* ego : observer_->of(TopicId::kEgoMotion)) {
-    reference += at(times, speeds, recording_time_s(*ego));
+    reference += golden::at(times, speeds, recording_time_s(*ego));
     signalled += static_cast<double>(ego->values[0]);
   }
   const auto estimates = observer_->of(TopicId::kAlignmentEstimate);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -47,16 +48,14 @@ std::string_view type_name(toml::node_type type) {
 
 }  // namespace
 
-// The document outlives all readers into it, since each holds its root through `document`.
+// One table of a document. The document owns its nodes; every reader shares in the document's ownership, so that it
+// outlives all readers into it.
 struct Reader::Node {
-  struct Document {
-    std::string file;
-    toml::table root;
-    std::vector<std::pair<std::uint32_t, std::string>> errors;  // line, message
-    std::vector<std::shared_ptr<Node>> visited;
-  };
+  struct Document;
 
-  std::shared_ptr<Document> document;
+  explicit Node(Document& owner) : document(&owner) {}
+
+  Document* document;
   const toml::table* table = nullptr;  // nullptr: an absent table, where every key is absent
   std::string path;                    // "radar[1].source", empty at the root
   std::uint32_t line = 1;
@@ -66,10 +65,7 @@ struct Reader::Node {
     if (path.empty()) return std::string(key);
     return key.empty() ? path : fmt::format("{}.{}", path, key);
   }
-  void note(std::uint32_t at_line, std::string_view key, std::string_view problem) const {
-    document->errors.emplace_back(at_line,
-                                  fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem));
-  }
+  void note(std::uint32_t at_line, std::string_view key, std::string_view problem) const;
   [[nodiscard]] const toml::node* find(std::string_view key) {
     known.emplace(key);
     return table == nullptr ? nullptr : table->get(key);
@@ -77,7 +73,27 @@ struct Reader::Node {
   void expect(const toml::node& node, std::string_view key, std::string_view wanted) const {
     note(node.source().begin.line, key, fmt::format("must be {}, but is {}", wanted, type_name(node.type())));
   }
+  /// A node for a table below this one.
+  [[nodiscard]] Node& add_child(std::string child_path, std::uint32_t child_line) const;
 };
+
+struct Reader::Node::Document {
+  std::string file;
+  toml::table root;
+  std::vector<std::pair<std::uint32_t, std::string>> errors;  // line, message
+  std::deque<Node> nodes;                                     // the root first; addresses stay
+};
+
+void Reader::Node::note(std::uint32_t at_line, std::string_view key, std::string_view problem) const {
+  document->errors.emplace_back(at_line, fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem));
+}
+
+Reader::Node& Reader::Node::add_child(std::string child_path, std::uint32_t child_line) const {
+  Node& child = document->nodes.emplace_back(*document);
+  child.path = std::move(child_path);
+  child.line = child_line;
+  return child;
+}
 
 namespace {
 
@@ -88,16 +104,16 @@ namespace {
 }  // namespace
 
 Reader Reader::parse(std::string_view text, std::string_view name) {
-  auto node = std::make_shared<Node>();
-  node->document = std::make_shared<Node::Document>();
-  node->document->file = std::string(name);
+  const auto document = std::make_shared<Node::Document>();
+  document->file = std::string(name);
   try {
-    node->document->root = toml::parse(text, name);
+    document->root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw_parse_error(error, name);
   }
-  node->table = &node->document->root;
-  return Reader(std::move(node));
+  Node& root = document->nodes.emplace_back(*document);
+  root.table = &document->root;
+  return Reader(std::shared_ptr<Node>(document, &root));
 }
 
 Reader Reader::open(const std::filesystem::path& file) {
@@ -233,17 +249,13 @@ void Reader::require(std::string_view key) {
 
 Reader Reader::table(std::string_view key) {
   const toml::node* found = node_->find(key);
-  auto child = std::make_shared<Node>();
-  child->document = node_->document;
-  child->path = node_->key_path(key);
-  child->line = node_->line;
+  Node& child = node_->add_child(node_->key_path(key), node_->line);
   if (found != nullptr) {
-    child->line = found->source().begin.line;
-    child->table = found->as_table();
-    if (child->table == nullptr) node_->expect(*found, key, "a table");
+    child.line = found->source().begin.line;
+    child.table = found->as_table();
+    if (child.table == nullptr) node_->expect(*found, key, "a table");
   }
-  node_->document->visited.push_back(child);
-  return Reader(std::move(child));
+  return Reader(std::shared_ptr<Node>(node_, &child));
 }
 
 std::vector<Reader> Reader::tables(std::string_view key) {
@@ -256,14 +268,11 @@ std::vector<Reader> Reader::tables(std::string_view key) {
     return readers;
   }
   for (const toml::node& element : *array) {
-    auto child = std::make_shared<Node>();
-    child->document = node_->document;
-    child->path = fmt::format("{}[{}]", node_->key_path(key), readers.size());
-    child->line = element.source().begin.line;
-    child->table = element.as_table();
-    if (child->table == nullptr) child->note(child->line, "", "must be a table");
-    node_->document->visited.push_back(child);
-    readers.push_back(Reader(std::move(child)));
+    Node& child =
+        node_->add_child(fmt::format("{}[{}]", node_->key_path(key), readers.size()), element.source().begin.line);
+    child.table = element.as_table();
+    if (child.table == nullptr) child.note(child.line, "", "must be a table");
+    readers.push_back(Reader(std::shared_ptr<Node>(node_, &child)));
   }
   return readers;
 }
@@ -277,14 +286,12 @@ void Reader::reject(std::string_view key, std::string_view problem) {
 }
 
 void Reader::finish() {
-  std::vector<std::shared_ptr<Node>> all = node_->document->visited;
-  all.push_back(node_);
-  for (const auto& node : all) {
-    if (node->table == nullptr) continue;
-    for (const auto& [key, value] : *node->table) {
-      if (node->known.contains(key.str())) continue;
-      node->note(key.source().begin.line, key.str(),
-                 fmt::format("unknown key; known here: {}", fmt::join(node->known, ", ")));
+  for (const Node& node : node_->document->nodes) {
+    if (node.table == nullptr) continue;
+    for (const auto& [key, value] : *node.table) {
+      if (node.known.contains(key.str())) continue;
+      node.note(key.source().begin.line, key.str(),
+                fmt::format("unknown key; known here: {}", fmt::join(node.known, ", ")));
     }
   }
   auto& errors = node_->document->errors;
