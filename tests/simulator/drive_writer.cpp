@@ -1,5 +1,6 @@
 #include "tests/simulator/drive_writer.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -58,7 +59,10 @@ wire::Endpoint endpoint(const std::string& address, std::uint16_t port) {
   return {ntohl(ip.s_addr), port};
 }
 
-void write_truth(const std::filesystem::path& file, const Scenario& scenario, const VehicleConfig& vehicle) {
+using ScanCounts = std::array<std::size_t, kMaxRadars + 1>;  // by radar id
+
+void write_truth(const std::filesystem::path& file, const Scenario& scenario, const VehicleConfig& vehicle,
+                 const ScanCounts& scans) {
   constexpr double kDegrees = 180.0 / M_PI;
   const TextFile out(file);
   std::fprintf(out.get(), "quantity,radar,value,unit\nspeed_scale,,%.6f,1\n", scenario.speed_scale);
@@ -66,6 +70,7 @@ void write_truth(const std::filesystem::path& file, const Scenario& scenario, co
     const Misalignment& m = scenario.misalignment[radar.id];
     std::fprintf(out.get(), "alignment_yaw,%u,%.6f,deg\nalignment_pitch,%u,%.6f,deg\nalignment_roll,%u,%.6f,deg\n",
                  radar.id, m.yaw_rad * kDegrees, radar.id, m.pitch_rad * kDegrees, radar.id, m.roll_rad * kDegrees);
+    std::fprintf(out.get(), "scans,%u,%zu,1\n", radar.id, scans[radar.id]);
   }
 }
 
@@ -102,7 +107,6 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
                    folder / "truth_objects.csv",
                    0,
                    0};
-  write_truth(files.truth, scenario, vehicle);
   wire::PcapWriter pcap(files.radars);
   const TextFile ego_log(files.ego), detections(files.detections), objects(files.objects);
   std::fputs("t_s,radar,scan,index,provenance,object\n", detections.get());
@@ -111,6 +115,7 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
   Drive drive(scenario, vehicle, seed, duration_s);
   const auto list = std::make_unique<wire::Ars548List>();
   double next_objects_s = 0.0;
+  ScanCounts scans{};
   while (const Event* event = drive.next()) {
     if (event->scan == nullptr) {
       if (event->t_s >= next_objects_s) {
@@ -138,8 +143,10 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
                    truth.object_id);
     }
     ++files.scans;
+    ++scans[radar.id];
     files.number_of_detections += event->truth->size();
   }
+  write_truth(files.truth, scenario, vehicle, scans);
   progress(1.0);
   return files;
 }

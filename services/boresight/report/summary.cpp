@@ -139,6 +139,12 @@ void add_checks(const Truth& truth, Summary& summary) {
                     summary.most_confirmed_tracks),
         summary.distinct_confirmed_tracks > 0);
   check(fmt::format("no service had to be restarted ({} restarts)", restarts), restarts == 0);
+  for (const RadarSummary& radar : summary.radars) {
+    const auto sent = truth.scans.find(radar.last.id);
+    if (sent == truth.scans.end()) continue;
+    check(fmt::format("{}: {} of the {} scans that it sent arrived", radar.last.name, radar.last.scans, sent->second),
+          radar.last.scans == sent->second);
+  }
   if (!truth.known()) return;
   for (const RadarSummary& radar : summary.radars) {
     if (radar.expected_to_be_misaligned) {

@@ -14,6 +14,7 @@ namespace boresight::report {
 struct Truth {
   std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
   std::optional<double> speed_scale;
+  std::map<std::uint32_t, std::uint64_t> scans;  ///< by radar id: how many the radar sent
   [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
 };
 

@@ -20,9 +20,9 @@ Truth read_truth(std::istream& input) {
     const double value = std::strtod(cells[2].c_str(), &end);
     if (end == cells[2].c_str() || !std::isfinite(value)) continue;
     if (cells[0] == "speed_scale") truth.speed_scale = value;
-    if (cells[0] == "alignment_yaw") {
-      truth.yaw_rad[static_cast<std::uint32_t>(std::strtoul(cells[1].c_str(), nullptr, 10))] = value * kRadians;
-    }
+    const auto radar = static_cast<std::uint32_t>(std::strtoul(cells[1].c_str(), nullptr, 10));
+    if (cells[0] == "alignment_yaw") truth.yaw_rad[radar] = value * kRadians;
+    if (cells[0] == "scans" && value >= 0.0) truth.scans[radar] = static_cast<std::uint64_t>(value);
   }
   return truth;
 }

@@ -43,6 +43,15 @@ TEST(Summary, FalseAlarmFailsEvenIfItWasTakenBack) {
   EXPECT_FALSE(passed(summarise(snapshots, synthetic_truth()), "rear_left is within tolerance"));
 }
 
+TEST(Summary, ScansThatNeverArrivedAreMissedThoughNoSequenceHasAGap) {
+  const auto snapshots = synthetic_drive();
+  Truth truth = synthetic_truth();
+  truth.scans[1] = snapshots.back().radars[0].scans;
+  EXPECT_TRUE(summarise(snapshots, truth).all_passed()) << render_summary(summarise(snapshots, truth));
+  truth.scans[2] = snapshots.back().radars[1].scans + 1;
+  EXPECT_FALSE(passed(summarise(snapshots, truth), "front_right: "));
+}
+
 TEST(Summary, LossRestartSilenceAndNoTracksFail) {
   auto lost = synthetic_drive();
   lost.back().radars[3].lost = 1;
@@ -92,10 +101,12 @@ TEST(Summary, CountersThatStartAnewAreAddedUp) {
 
 TEST(TruthTable, TakesYawAndSpeedScaleAndNothingThatIsNoNumber) {
   std::istringstream table(
-      "quantity,radar,value,unit\nspeed_scale,,1.012,1\nalignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\n"
+      "quantity,radar,value,unit\nspeed_scale,,1.012,1\nalignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\nscans,2,"
+      "899,1\n"
       "alignment_yaw,3,nan,deg\nalignment_yaw,4,,deg\nalignment_yaw,1\n");
   const Truth truth = read_truth(table);
   EXPECT_DOUBLE_EQ(truth.speed_scale.value(), 1.012);
+  EXPECT_EQ(truth.scans.at(2), 899u);
   ASSERT_EQ(truth.yaw_rad.size(), 1U);
   EXPECT_NEAR(truth.yaw_rad.at(2), kCrooked_rad, 1e-12);
   std::istringstream nothing("");
