@@ -16,8 +16,12 @@
 
 namespace boresight::alignment {
 
-/// Recursive robust information filter over (k_v, yaw) of one radar. Errors of the ego signals, which all detections
-/// of a scan share, are unknowns of the scan and eliminated, so that the covariance stays honest.
+/// Recursive robust information filter over k_v and yaw of one radar, by way of p = k_v·(cos yaw, sin yaw), in which
+/// the range rate is linear but for the turning: what cannot be told apart stays so, whatever the estimate is
+/// meanwhile. Three things keep the covariance honest: errors of the ego signals, which all detections of a scan share,
+/// are unknowns of the scan and eliminated; gradients are taken at the line of sight that fits best, since the noise of
+/// the angles is in both sides of the equation (errors in variables, Report A §1.4), and the information that this
+/// noise feigns is taken off; nothing is claimed before a stationary world stands out of the background.
 class Azimuth1d {
  public:
   Azimuth1d(const RadarConfig& radar, const Config& config);
@@ -29,8 +33,9 @@ class Azimuth1d {
   void write(AlignmentEstimate& out) const;
 
   [[nodiscard]] AlignmentState state() const { return state_; }
-  [[nodiscard]] double speed_scale() const { return x_(0); }
-  [[nodiscard]] double yaw_rad() const { return x_(1); }
+  /// 1 and 0 while no stationary world was seen.
+  [[nodiscard]] double speed_scale() const { return supported().p.norm(); }
+  [[nodiscard]] double yaw_rad() const;
   /// Over (k_v, yaw), with the systematic part: the configured one, and what an elevation that is not measured leaves
   /// open of k_v.
   [[nodiscard]] Eigen::Matrix2d covariance() const;
@@ -38,19 +43,34 @@ class Azimuth1d {
  private:
   struct Candidate {
     Eigen::Vector3d direction;  // vehicle axes, nominal mounting
+    Eigen::Vector3d across;     // derivative of the direction to the azimuth
     double range_rate_mps;
-    double variance;  // of the range rate, with the angles' share
+    double azimuth_variance;
+    double other_variance;  // of the range rate, with the elevation's share
   };
+  /// What the data support of p; along what they do not, it is the prior.
+  struct Supported {
+    Eigen::Vector2d p;
+    Eigen::Matrix2d covariance;
+  };
+  [[nodiscard]] Supported supported() const;
   void collect(const RadarScan& scan, const EgoSample& ego);
-  void update(const EgoSample& ego, double elapsed_s);
+  void drift(double elapsed_s);
+  void update(const EgoSample& ego);
   void count_residuals(const EgoSample& ego);
+  void judge_scene();
+  void restart();
   [[nodiscard]] double start_std_mps() const;
 
   RadarConfig radar_;
   Config config_;
   Eigen::Matrix3d nominal_;
-  Eigen::Vector2d x_{1.0, 0.0};
-  Eigen::Matrix2d covariance_;
+  Eigen::Matrix2d prior_information_;
+  Eigen::Vector2d p_{1.0, 0.0};
+  Eigen::Matrix2d covariance_;                         // of p, with feigned information
+  Eigen::Matrix2d feigned_ = Eigen::Matrix2d::Zero();  // information that the noise of azimuths feigns
+  bool stationary_seen_ = false;
+  double since_start_s_ = 0.0;
   /// Of the factor by which a common elevation, not measured, shortens all range rates; 0 where it is measured.
   double unknown_cosine_variance_ = 0.0;
   AlignmentState state_ = AlignmentState::kNoData;

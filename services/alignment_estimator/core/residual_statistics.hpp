@@ -13,7 +13,7 @@ class ResidualStatistics {
   /// Fades what is known by the time that passed; `window_s` is the time constant.
   void fade(double elapsed_s, double window_s) {
     const double keep = std::exp(-elapsed_s / window_s);
-    for (double* sum : {&inliers_, &all_, &r1_, &r2_, &r3_, &r4_, &u2_}) *sum *= keep;
+    for (double* sum : {&inliers_, &near_, &all_, &r1_, &r2_, &r3_, &r4_, &u2_}) *sum *= keep;
   }
   /// One inlier's residual with and without correction, m/s.
   void add_inlier(double residual, double uncorrected) {
@@ -26,7 +26,20 @@ class ResidualStatistics {
     r4_ += square * square;
     u2_ += uncorrected * uncorrected;
   }
-  void add_outlier() { all_ += 1.0; }
+  /// `is_near`: beyond the gate, but within three times of it.
+  void add_outlier(bool is_near) {
+    all_ += 1.0;
+    if (is_near) near_ += 1.0;
+  }
+
+  /// In the gate and near it.
+  [[nodiscard]] double counted() const { return inliers_ + near_; }
+  /// Whether the gate holds clearly more (five stds of the counts, and most of what it holds) than the neighbourhood,
+  /// twice as wide, lets expect of a background.
+  [[nodiscard]] bool stands_out() const {
+    const double excess = inliers_ - 0.5 * near_;
+    return excess > 0.5 * inliers_ && excess * excess > 25.0 * (inliers_ + 0.25 * near_);
+  }
 
   /// Fills the statistical fields; leaves seconds and counts alone.
   void write(AlignmentKpis& kpis) const {
@@ -45,7 +58,7 @@ class ResidualStatistics {
   }
 
  private:
-  double inliers_ = 0.0, all_ = 0.0;
+  double inliers_ = 0.0, near_ = 0.0, all_ = 0.0;
   double r1_ = 0.0, r2_ = 0.0, r3_ = 0.0, r4_ = 0.0, u2_ = 0.0;
 };
 
