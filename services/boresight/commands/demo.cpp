@@ -120,7 +120,9 @@ supervisor::ProcessSpec replay_of(const DemoOptions& options, const Drive& drive
   supervisor::ProcessSpec spec;
   spec.name = "replay";
   spec.command.arguments = {(binaries / "boresight-replay").string()};
-  if (options.duration_s > 0.0) {
+  // A simulated drive is as long as wanted; to cut it once more would lose the datagrams that arrive just after its
+  // end.
+  if (options.duration_s > 0.0 && !options.recordings.empty()) {
     spec.command.arguments.insert(spec.command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
   }
   spec.command.arguments.insert(spec.command.arguments.end(), drive.recordings.begin(), drive.recordings.end());
