@@ -241,6 +241,151 @@ TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
   EXPECT_EQ(out_->number_of_valid_detections, 0u);
 }
 
+TEST_F(CorrectorTest, QuarterTurnsByHand) {
+  // Mounted to the left at (3.6, −0.7, 0.5): what it sees ahead of itself is at the vehicle's left, what it sees to its
+  // left is behind, and what it sees above is above.
+  Corrector corrector(one_radar(90.0), Config{});
+  add(10.0, 0.0, 0.0, -1.0);
+  add(10.0, 90.0 * kDegree, 0.0, -1.0);
+  add(2.0, 0.0, 90.0 * kDegree, -1.0);
+  corrector.correct(*scan_, *out_);
+  const double expected[3][3] = {{3.6, 9.3, 0.5}, {-6.4, -0.7, 0.5}, {3.6, -0.7, 2.5}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(out_->x_vehicle_m[i], expected[i][0], 1e-5) << i;
+    EXPECT_NEAR(out_->y_vehicle_m[i], expected[i][1], 1e-5) << i;
+    EXPECT_NEAR(out_->z_vehicle_m[i], expected[i][2], 1e-5) << i;
+  }
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 90.0 * kDegree, 1e-6);
+  EXPECT_NEAR(std::abs(out_->azimuth_vehicle_rad[1]), M_PI, 1e-6);
+}
+
+TEST_F(CorrectorTest, LeverArmByHand) {
+  // Turning left at 0.5 rad/s on the spot, 3.6 m ahead of and 0.7 m to the right of the axle: the sensor moves at
+  // 0.5 · 0.7 forward and 0.5 · 3.6 to the left.
+  Corrector corrector(one_radar(), Config{});
+  corrector.add_ego_motion(ego(0.0F, 0.5F));
+  add(20.0, 0.0, 0.0, -0.35);
+  add(20.0, 90.0 * kDegree, 0.0, -1.8);
+  add(20.0, -90.0 * kDegree, 0.0, 1.8);
+  corrector.correct(*scan_, *out_);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(out_->range_rate_over_ground_mps[i], 0.0, 1e-5) << i;
+  EXPECT_NEAR(out_->geometry.sensor_velocity_vehicle_mps[0], 0.35, 1e-6);
+  EXPECT_NEAR(out_->geometry.sensor_velocity_vehicle_mps[1], 1.8, 1e-6);
+}
+
+TEST_F(CorrectorTest, ThereAndBackIsWhatWasMeasured) {
+  // From the output alone, with the geometry that it states, back to what the sensor said.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> azimuth(-1.3, 1.3), elevation(-0.3, 0.3), range(1.0, 90.0), rate(-30.0, 30.0);
+  Corrector corrector(one_radar(-135.0, -2.0, 4.0), Config{});
+  ASSERT_TRUE(corrector.add_alignment(estimate(-1.1 * kDegree, 0.99)));
+  corrector.add_ego_motion(ego(25.0F, -0.2F));
+  for (int i = 0; i < 300; ++i) add(range(random), azimuth(random), elevation(random), rate(random));
+  corrector.correct(*scan_, *out_);
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d position, velocity;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    position(row) = out_->geometry.sensor_position_vehicle_m[static_cast<std::size_t>(row)];
+    velocity(row) = out_->geometry.sensor_velocity_vehicle_mps[static_cast<std::size_t>(row)];
+    for (Eigen::Index column = 0; column < 3; ++column) {
+      rotation(row, column) = out_->geometry.sensor_to_vehicle[static_cast<std::size_t>(3 * row + column)];
+    }
+  }
+  EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-6);
+  EXPECT_NEAR(rotation.determinant(), 1.0, 1e-6);
+  for (std::size_t i = 0; i < 300; ++i) {
+    const Eigen::Vector3d place(out_->x_vehicle_m[i], out_->y_vehicle_m[i], out_->z_vehicle_m[i]);
+    const Eigen::Vector3d seen = rotation.transpose() * (place - position);
+    EXPECT_NEAR(seen.norm(), scan_->range_m[i], 2e-5 * scan_->range_m[i] + 1e-5);
+    EXPECT_NEAR(std::atan2(seen.y(), seen.x()), scan_->azimuth_rad[i], 2e-5);
+    EXPECT_NEAR(std::asin(seen.z() / seen.norm()), scan_->elevation_rad[i], 2e-5);
+    const double measured =
+        out_->range_rate_over_ground_mps[i] - seen.normalized().dot(rotation.transpose() * velocity);
+    EXPECT_NEAR(measured, scan_->range_rate_mps[i], 1e-3);
+  }
+}
+
+TEST_F(CorrectorTest, SideInputsThatAreNoNumbersAreNotApplied) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  add(50.0, 10.0 * kDegree, 0.0, -10.0 * std::cos(10.0 * kDegree));
+  for (int what = 0; what < 4; ++what) {
+    Corrector corrector(one_radar(), Config{});
+    AlignmentEstimate bad = estimate(2.0 * kDegree, 1.01);
+    if (what == 0) bad.alignment_yaw_rad = bad.speed_scale = nan;
+    if (what == 1) bad.covariance[0] = bad.covariance[5] = nan;
+    if (what == 2) bad.covariance[0] = bad.covariance[5] = -1.0F;
+    if (what == 3) bad.observable = 0;
+    ASSERT_TRUE(corrector.add_alignment(bad));
+    corrector.add_ego_motion(ego(10.0F, 0.0F));
+    corrector.add_ego_motion(ego(nan, 0.0F, kTime + 10'000'000));
+    corrector.correct(*scan_, *out_);
+    EXPECT_EQ(out_->flags, pipeline_flag::kNoAlignment) << what;
+    EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 10.0 * kDegree, 1e-6) << what;
+    EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-5) << what;
+    EXPECT_EQ(out_->detection_flags[0], corrected_flag::kStationary) << what;
+  }
+}
+
+TEST_F(CorrectorTest, StatedStdsAreUsedWhereTheyAreNumbers) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Corrector corrector(one_radar(), Config{});
+  corrector.add_ego_motion(ego(10.0F, 0.0F));
+  for (int i = 0; i < 3; ++i) add(50.0, 0.0, 0.0, -11.5);
+  scan_->fields |= scan_field::kStds;
+  const float stds[] = {0.7F, nan, 0.0F};
+  for (std::size_t i = 0; i < 3; ++i) {
+    scan_->range_std_m[i] = scan_->azimuth_std_rad[i] = scan_->elevation_std_rad[i] = scan_->range_rate_std_mps[i] =
+        stds[i];
+  }
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->range_rate_std_mps[0], 0.7F);
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary) << "1.5 m/s is within three of its stds";
+  for (std::size_t i = 1; i < 3; ++i) {
+    EXPECT_EQ(out_->range_rate_std_mps[i], 0.03F) << "that of the vehicle file";
+    EXPECT_EQ(out_->range_std_m[i], 0.1F);
+    EXPECT_TRUE(out_->detection_flags[i] & corrected_flag::kMoving);
+  }
+}
+
+TEST_F(CorrectorTest, EachFaceOfTheBoxIsALimit) {
+  Config config;
+  config.region_min_m = {-10.0, -5.0, -1.0};
+  config.region_max_m = {30.0, 6.0, 3.0};
+  const Corrector corrector(one_radar(), config);
+  const Eigen::Vector3d mount(3.6, -0.7, 0.5);
+  std::vector<bool> inside;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const double beyond : {-0.01, 0.01}) {
+      for (const bool upper : {false, true}) {
+        Eigen::Vector3d point(10.0, 1.0, 1.0);
+        const auto k = static_cast<std::size_t>(axis);
+        point(axis) = (upper ? config.region_max_m[k] : config.region_min_m[k]) + beyond;
+        inside.push_back(upper == (beyond < 0.0));
+        const Eigen::Vector3d seen = point - mount;
+        add(seen.norm(), std::atan2(seen.y(), seen.x()), std::asin(seen.z() / seen.norm()), 0.0);
+      }
+    }
+  }
+  corrector.correct(*scan_, *out_);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    EXPECT_EQ((out_->detection_flags[i] & corrected_flag::kOutsideRegion) == 0, inside[i]) << i;
+  }
+}
+
+TEST_F(CorrectorTest, RcsIsComparedOnlyWhereItIsKnown) {
+  const Corrector corrector(one_radar(), Config{});
+  add(50.0, 0.0, 0.0, 0.0, std::numeric_limits<double>::quiet_NaN());
+  add(50.0, 0.0, 0.0, 0.0, -25.1);
+  add(50.0, 0.0, 0.0, 0.0, -24.9);
+  corrector.correct(*scan_, *out_);
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kWeak) << "no number is no evidence";
+  EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kWeak);
+  EXPECT_FALSE(out_->detection_flags[2] & corrected_flag::kWeak);
+  scan_->fields = scan_field::kElevation;
+  corrector.correct(*scan_, *out_);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(out_->detection_flags[i] & corrected_flag::kWeak) << i;
+}
+
 TEST_F(CorrectorTest, AllocatesNothing) {
   Corrector corrector(one_radar(), Config{});
   for (std::uint32_t i = 0; i < kMaxDetections; ++i) add(20.0, 0.0, 0.0, -10.0);

@@ -62,6 +62,32 @@ TEST(Assignment, IsTheBestOfAllOnRandomProblems) {
   }
 }
 
+TEST(Assignment, WhatIsNoNumberIsNoPair) {
+  Assignment assignment;
+  assignment.reset(2, 2, 10.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  assignment.set(0, 0, nan);
+  assignment.set(0, 1, 4.0);
+  assignment.set(1, 0, nan);
+  assignment.set(1, 1, 3.0);
+  assignment.solve();
+  EXPECT_EQ(assignment.column_of(0), Assignment::kNone);
+  EXPECT_EQ(assignment.column_of(1), 1);
+  EXPECT_EQ(assignment.total_cost(), 13.0);
+}
+
+TEST(Assignment, RemembersNothingOfTheProblemBefore) {
+  Assignment assignment;
+  assignment.reset(3, 3, 10.0);
+  for (std::size_t i = 0; i < 3; ++i) assignment.set(i, i, 1.0);
+  assignment.solve();
+  assignment.reset(2, 3, 10.0);
+  assignment.solve();
+  EXPECT_EQ(assignment.column_of(0), Assignment::kNone);
+  EXPECT_EQ(assignment.column_of(1), Assignment::kNone);
+  EXPECT_EQ(assignment.total_cost(), 20.0);
+}
+
 TEST(Assignment, FullSizeIsSolvedAndAllocatesNothing) {
   Assignment assignment;
   std::mt19937 random(2);

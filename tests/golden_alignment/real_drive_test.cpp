@@ -1,0 +1,110 @@
+// The comma2k19 drive: k_v is drawn from the range rates of what stands still, and from nothing else.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "services/alignment_estimator/core/estimator.hpp"
+#include "services/common/estimation/ego_history.hpp"
+#include "tests/golden/support/decoded.hpp"
+
+namespace boresight::golden {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kRecording = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
+
+struct Result {
+  double speed_scale;
+  double speed_scale_std;
+  double yaw_rad;
+};
+
+/// The estimate at the end of the drive, whose speed signal is multiplied by `factor`.
+Result estimate(const Decoding& drive, const VehicleConfig& car, const alignment::Config& config, double factor = 1.0) {
+  alignment::Estimator estimator(car, config);
+  for (const Decoded& message : drive.messages) {
+    if (message.ego) {
+      EgoMotion motion = *message.ego;
+      motion.speed_mps *= static_cast<float>(factor);
+      estimator.add_ego_motion(motion);
+    } else {
+      static_cast<void>(estimator.add_scan(*message.scan));
+    }
+  }
+  const alignment::Azimuth1d& radar = *estimator.radar(1);
+  return {radar.speed_scale(), std::sqrt(radar.covariance()(0, 0)), radar.yaw_rad()};
+}
+
+class RealDrive : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (!fs::exists(kRecording)) return;
+    car_ = vehicle("comma2k19");
+    drive_ = decode(car_, kRecording);
+  }
+  static void TearDownTestSuite() { drive_ = {}; }
+  void SetUp() override { REQUIRE_RECORDING(kRecording); }
+  static inline VehicleConfig car_;
+  static inline Decoding drive_;
+};
+
+TEST_F(RealDrive, AWrongSpeedSignalIsFoundWhateverItsError) {
+  // True speed is k_v times the signal: a signal scaled by a factor must give k_v divided by it. A gate that pulls k_v
+  // to its start at 1 would show here.
+  const Result as_it_is = estimate(drive_, car_, {});
+  for (const double factor : {0.96, 0.98, 1.02, 1.04}) {
+    const Result scaled = estimate(drive_, car_, {}, factor);
+    EXPECT_NEAR(scaled.speed_scale * factor, as_it_is.speed_scale, 3e-4) << factor;
+    EXPECT_NEAR(scaled.yaw_rad, as_it_is.yaw_rad, 0.002) << factor;
+  }
+}
+
+TEST_F(RealDrive, NeitherPriorNorStartDecide) {
+  const Result as_it_is = estimate(drive_, car_, {});
+  const auto changed = [&](const std::function<void(alignment::Config&)>& change) {
+    alignment::Config config;
+    change(config);
+    return estimate(drive_, car_, config).speed_scale;
+  };
+  EXPECT_NEAR(changed([](auto& c) { c.prior_speed_scale_std = 0.01; }), as_it_is.speed_scale, 3e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.prior_speed_scale_std = 0.1; }), as_it_is.speed_scale, 3e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.start_gate_mps = 0.0; }), as_it_is.speed_scale, 3e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.start_gate_mps = 1.0; }), as_it_is.speed_scale, 3e-4);
+  // The gate does matter, since what passes it is not Gaussian: by less than σ from half to double.
+  EXPECT_NEAR(changed([](auto& c) { c.outlier_gate_sigma = 2.0; }), as_it_is.speed_scale, as_it_is.speed_scale_std);
+  EXPECT_NEAR(changed([](auto& c) { c.outlier_gate_sigma = 8.0; }), as_it_is.speed_scale, as_it_is.speed_scale_std);
+}
+
+TEST_F(RealDrive, IsTheMedianOfWhatStandsStill) {
+  // Without filter, noise model or weights: the median of range rate over signalled speed, of all within 5 %.
+  EgoHistory history;
+  std::vector<double> ratios;
+  const double yaw_rad = estimate(drive_, car_, {}).yaw_rad;
+  for (const Decoded& message : drive_.messages) {
+    if (message.ego) {
+      history.add(*message.ego);
+      continue;
+    }
+    const RadarScan& scan = *message.scan;
+    const EgoSample ego = history.at(scan.header.measurement_time_ns);
+    if (!ego.valid || ego.stale || ego.speed_mps < 5.0) continue;
+    for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+      const double ratio =
+          -static_cast<double>(scan.range_rate_mps[i]) / (ego.speed_mps * std::cos(scan.azimuth_rad[i] + yaw_rad));
+      if (std::abs(ratio - 1.0) < 0.05) ratios.push_back(ratio);
+    }
+  }
+  ASSERT_GT(ratios.size(), 1000u);
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  const Result found = estimate(drive_, car_, {});
+  // The estimator adds what it assumes of elevations, which is in its σ.
+  std::printf("median %.4f of %zu, estimator %.4f ± %.4f\n", *middle, ratios.size(), found.speed_scale,
+              found.speed_scale_std);
+  EXPECT_NEAR(found.speed_scale, *middle, 2.0 * found.speed_scale_std);
+}
+
+}  // namespace
+}  // namespace boresight::golden

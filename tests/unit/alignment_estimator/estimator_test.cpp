@@ -1,0 +1,136 @@
+#include "services/alignment_estimator/core/estimator.hpp"
+
+#include <limits>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/alignment_estimator/synthetic.hpp"
+
+namespace boresight::alignment {
+namespace {
+
+EgoMotion motion(std::int64_t time_ns, const EgoSample& ego) {
+  EgoMotion m{};
+  m.header.measurement_time_ns = time_ns;
+  m.fields = ego_field::kSpeed | ego_field::kYawRate;
+  m.speed_mps = static_cast<float>(ego.speed_mps);
+  m.speed_std_mps = static_cast<float>(ego.speed_std_mps);
+  m.yaw_rate_radps = static_cast<float>(ego.yaw_rate_radps);
+  m.yaw_rate_std_radps = static_cast<float>(ego.yaw_rate_std_radps);
+  return m;
+}
+
+VehicleConfig car(const SyntheticDrive& left, const SyntheticDrive& right) {
+  VehicleConfig vehicle;
+  vehicle.radars.push_back(left.radar());
+  vehicle.radars.push_back(right.radar());
+  vehicle.radars.back().id = 2;
+  return vehicle;
+}
+
+TEST(Estimator, EachRadarHasItsOwnEstimate) {
+  SyntheticDrive left, right;
+  left.yaw_rad = 2.0 * kDegree;
+  right.yaw_rad = -1.0 * kDegree;
+  right.mount_yaw_rad = -135.0 * kDegree;
+  Estimator estimator(car(left, right), Config{});
+  Synthesizer a(left, 1), b(right, 2);
+  for (int i = 0; i < 300; ++i) {
+    a.next();
+    b.next();
+    estimator.add_ego_motion(motion(a.scan->header.measurement_time_ns, a.ego));
+    b.scan->header.source_id = 2;
+    static_cast<void>(estimator.add_scan(*a.scan));
+    static_cast<void>(estimator.add_scan(*b.scan));
+  }
+  EXPECT_NEAR(estimator.radar(1)->yaw_rad(), left.yaw_rad, 0.03 * kDegree);
+  EXPECT_NEAR(estimator.radar(2)->yaw_rad(), right.yaw_rad, 0.03 * kDegree);
+  EXPECT_EQ(estimator.radar(3), nullptr);
+}
+
+TEST(Estimator, PublishesByTheMeasurementClock) {
+  const SyntheticDrive drive;
+  Estimator estimator(car(drive, drive), Config{});
+  Synthesizer synthesizer(drive, 3);
+  std::vector<int> published;
+  for (int i = 0; i < 41; ++i) {
+    synthesizer.next();
+    estimator.add_ego_motion(motion(synthesizer.scan->header.measurement_time_ns, synthesizer.ego));
+    if (estimator.add_scan(*synthesizer.scan) == ScanResult::kPublish) published.push_back(i);
+  }
+  EXPECT_EQ(published, (std::vector<int>{0, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40})) << "every 0.2 s of 0.05 s";
+  // A recording that starts again.
+  synthesizer.scan->header.measurement_time_ns = 1'000'000'000;
+  EXPECT_EQ(estimator.add_scan(*synthesizer.scan), ScanResult::kPublish);
+}
+
+TEST(Estimator, SaysWhatItCannotUse) {
+  const SyntheticDrive drive;
+  Estimator estimator(car(drive, drive), Config{});
+  Synthesizer synthesizer(drive, 4);
+  synthesizer.next();
+  RadarScan& scan = *synthesizer.scan;
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kPublish) << "even without ego motion: that it waits";
+  scan.header.measurement_time_ns += 50'000'000;
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kNoEgoMotion);
+  EXPECT_EQ(estimator.radar(1)->state(), AlignmentState::kWaiting);
+  EgoMotion bad = motion(scan.header.measurement_time_ns, synthesizer.ego);
+  bad.speed_mps = std::numeric_limits<float>::quiet_NaN();
+  estimator.add_ego_motion(bad);
+  scan.header.measurement_time_ns += 50'000'000;
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kNoEgoMotion) << "a speed that is no number";
+  estimator.add_ego_motion(motion(scan.header.measurement_time_ns, synthesizer.ego));
+  scan.header.measurement_time_ns += 30'000'000;
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kUsed);
+  scan.header.source_id = 77;
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kUnknownRadar);
+}
+
+TEST(Estimator, LyingLengthsAndWildNumbersDoNotSpoilIt) {
+  const SyntheticDrive drive;
+  Estimator estimator(car(drive, drive), Config{});
+  Synthesizer synthesizer(drive, 5);
+  const float huge = std::numeric_limits<float>::max();
+  for (int i = 0; i < 300; ++i) {
+    synthesizer.next();
+    RadarScan& scan = *synthesizer.scan;
+    EgoSample ego = synthesizer.ego;
+    if (i % 10 == 3) ego.speed_mps = 1e6;
+    if (i % 10 == 5) ego.speed_std_mps = std::numeric_limits<double>::quiet_NaN();
+    if (i % 10 == 6) ego.yaw_rate_radps = 1e9;
+    estimator.add_ego_motion(motion(scan.header.measurement_time_ns, ego));
+    scan.range_rate_mps[0] = huge;
+    scan.range_rate_mps[1] = -huge;
+    scan.azimuth_rad[2] = huge;
+    // Beyond what is valid there are stale rows; a count beyond the capacity must not be believed.
+    if (i % 10 == 7) scan.number_of_valid_detections = 0xFFFFFFFF;
+    static_cast<void>(estimator.add_scan(scan));
+    const Azimuth1d& radar = *estimator.radar(1);
+    ASSERT_TRUE(std::isfinite(radar.yaw_rad()) && std::isfinite(radar.speed_scale())) << i;
+    ASSERT_TRUE(radar.covariance().allFinite()) << i;
+  }
+  EXPECT_NEAR(estimator.radar(1)->yaw_rad(), drive.yaw_rad, 0.1 * kDegree);
+  EXPECT_NEAR(estimator.radar(1)->speed_scale(), drive.speed_scale, 2e-3);
+}
+
+TEST(Estimator, AllocatesNothing) {
+  const SyntheticDrive drive;
+  Estimator estimator(car(drive, drive), Config{});
+  Synthesizer synthesizer(drive, 6);
+  for (int i = 0; i < 100; ++i) {
+    synthesizer.next();
+    const EgoMotion ego = motion(synthesizer.scan->header.measurement_time_ns, synthesizer.ego);
+    const std::uint64_t before = runtime::counted_allocations();
+    {
+      const runtime::CountAllocations counting;
+      estimator.add_ego_motion(ego);
+      static_cast<void>(estimator.add_scan(*synthesizer.scan));
+    }
+    ASSERT_EQ(runtime::counted_allocations(), before);
+  }
+}
+
+}  // namespace
+}  // namespace boresight::alignment

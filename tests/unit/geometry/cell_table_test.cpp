@@ -1,0 +1,46 @@
+#include "services/common/geometry/cell_table.hpp"
+
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace boresight::geometry {
+namespace {
+
+TEST(GridCell, BordersBelongToTheCellAbove) {
+  EXPECT_EQ(grid_cell(0.0, 0.0, 2.0), (GridCell{0, 0}));
+  EXPECT_EQ(grid_cell(-1e-9, 1.999, 2.0), (GridCell{-1, 0}));
+  EXPECT_EQ(grid_cell(2.0, -2.0, 2.0), (GridCell{1, -1}));
+  EXPECT_EQ(grid_cell(1e30, -1e30, 1.0), (GridCell{1'000'000, -1'000'000}))
+      << "what is far is somewhere, not undefined";
+}
+
+TEST(CellTable, IsAMapThatForgetsAtOnce) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::int32_t> place(-40, 40);
+  constexpr std::size_t kCapacity = 500;
+  CellTable table(kCapacity);
+  for (int round = 0; round < 200; ++round) {
+    table.clear();
+    std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> reference;
+    for (std::uint32_t i = 0; i < kCapacity; ++i) {
+      const GridCell cell{place(random), place(random)};
+      const auto expected = reference.try_emplace({cell.column, cell.row}, i).first->second;
+      ASSERT_EQ(table.at(cell, i), expected) << "round " << round;
+    }
+    for (std::int32_t column = -40; column <= 40; ++column) {
+      for (std::int32_t row = -40; row <= 40; ++row) {
+        const auto known = reference.find({column, row});
+        const std::uint32_t* const found = table.find({column, row});
+        ASSERT_EQ(found != nullptr, known != reference.end()) << column << ", " << row;
+        if (found != nullptr) {
+          ASSERT_EQ(*found, known->second);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace boresight::geometry
