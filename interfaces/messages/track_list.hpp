@@ -33,7 +33,7 @@ struct Track {
   std::array<float, 2> velocity_over_ground_mps;
   std::array<float, 2> acceleration_over_ground_mps2;
   std::uint32_t number_of_detections;  ///< associated in this scan
-  std::uint32_t reserved;
+  std::array<std::uint32_t, 3> reserved;
   /// Row-major 6 × 6 over (x, y, v_x, v_y, a_x, a_y).
   alignas(16) std::array<float, kTrackStateSize * kTrackStateSize> covariance;
 };

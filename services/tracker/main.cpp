@@ -13,9 +13,12 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Confi
   node.on<ClassifiedScan>([&](const ClassifiedScan& scan) {
     const tracking::StepResult result = tracker.step(scan);
     if (result.out_of_order) node.fault(Fault::kTimeJump, "scan older than the tracks");
-    if (result.restarted) node.fault(Fault::kTimeJump, "measurement time jumped by over 2 s: tracks dropped");
+    if (result.restarted) node.fault(Fault::kTimeJump, "measurement time jumped: tracks dropped");
     if (result.dropped_clusters > 0) {
       node.fault(Fault::kCapacity, "more than 128 clusters in a scan", result.dropped_clusters);
+    }
+    if (result.dropped_tracks > 0) {
+      node.fault(Fault::kCapacity, "more objects than tracks have room", result.dropped_tracks);
     }
     tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) { tracker.write(out); });
   });

@@ -68,5 +68,24 @@ TEST(ToyotaDbc, RadarSignalsAreThoseOfTheFile) {
   }
 }
 
+TEST(ToyotaDbc, EgoSignalsAreThoseOfTheFile) {
+  const auto file = shared_data() / "opendbc_radar/toyota_2017_ref_pt.dbc";
+  REQUIRE_RECORDING(file);
+  const auto reference = read_dbc(file);
+  namespace layout = wire::toyota;
+  const auto compare = [&](std::uint32_t id, const wire::CanSignal& ours) {
+    const auto found = reference.find({id, std::string(ours.name)});
+    ASSERT_NE(found, reference.end()) << ours.name << " of " << id;
+    expect_same(found->second, ours, id);
+  };
+  compare(layout::kYawRateId, layout::kYawRate_degps);
+  compare(layout::kSteeringId, layout::kSteeringAngle_deg);
+  compare(layout::kSteeringId, layout::kSteeringFraction_deg);
+  for (const wire::CanSignal& wheel : {layout::kWheelFrontRight_kmph, layout::kWheelFrontLeft_kmph,
+                                       layout::kWheelRearRight_kmph, layout::kWheelRearLeft_kmph}) {
+    compare(layout::kWheelSpeedsId, wheel);
+  }
+}
+
 }  // namespace
 }  // namespace boresight::golden

@@ -20,7 +20,10 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan) {
   for (std::size_t i = 0; i < count; ++i) {
     if (scan.provenance[i] != Provenance::kMoving) continue;
     const Eigen::Vector2d p(scan.x_vehicle_m[i], scan.y_vehicle_m[i]);
-    if (!p.allFinite() || !std::isfinite(scan.range_rate_over_ground_mps[i])) continue;
+    const bool finite = std::isfinite(scan.range_rate_over_ground_mps[i]) && std::isfinite(scan.range_m[i]) &&
+                        std::isfinite(scan.range_std_m[i]) && std::isfinite(scan.azimuth_std_rad[i]) &&
+                        std::isfinite(scan.range_rate_std_mps[i]) && std::isfinite(scan.z_vehicle_m[i]);
+    if (!p.allFinite() || !finite) continue;
     points_.push_back(p);
     index_.push_back(static_cast<std::uint32_t>(i));
   }

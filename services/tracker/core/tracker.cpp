@@ -37,7 +37,10 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   StepResult result;
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   double elapsed_s = static_cast<double>(time_ns - time_ns_) * 1e-9;
-  if (std::abs(elapsed_s) > 2.0) {
+  // A little back is a scan of another radar that came late; more is a clock that was set, or a recording that began
+  // again.
+  constexpr double kLongestPause_s = 2.0, kLatest_s = 0.3;
+  if (elapsed_s > kLongestPause_s || elapsed_s < -kLatest_s) {
     result.restarted = time_ns_ != 0;
     tracks_.clear();
     elapsed_s = 0.0;
@@ -60,6 +63,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
     if (!cluster_used_[c]) start_track(clusters[c], sensor, has_elevation);
   }
   remove_duplicates();
+  result.dropped_tracks = dropped_tracks_;
   return result;
 }
 
@@ -153,7 +157,9 @@ bool Tracker::can_see(const ScanGeometry& geometry, std::uint32_t radar_id, cons
 }
 
 bool Tracker::is_dead(const Entry& track) const {
-  if (track.since_update_s > config_.coast_s || !track.state.mean.allFinite()) return true;
+  if (track.since_update_s > config_.coast_s || !track.state.mean.allFinite() || !track.state.covariance.allFinite()) {
+    return true;
+  }
   const std::uint32_t seen = window_mask(track.seen_scans);
   const std::uint32_t misses = ~track.history & seen & window_mask(config_.delete_window);
   if (std::popcount(misses) >= static_cast<int>(config_.delete_misses)) return true;
@@ -226,7 +232,7 @@ void Tracker::write(TrackList& out) const {
       t.velocity_over_ground_mps = {static_cast<float>(m(2)), static_cast<float>(m(3))};
       t.acceleration_over_ground_mps2 = {static_cast<float>(m(4)), static_cast<float>(m(5))};
       t.number_of_detections = track.detections;
-      t.reserved = 0;
+      t.reserved = {};
       Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>>(t.covariance.data()) =
           track.state.covariance.cast<float>();
     }

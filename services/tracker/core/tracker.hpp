@@ -21,6 +21,7 @@ struct StepResult {
   bool out_of_order = false;  ///< older than the tracks: taken as if of their time
   bool restarted = false;     ///< the clock jumped: all tracks were dropped
   std::uint32_t dropped_clusters = 0;
+  std::uint32_t dropped_tracks = 0;  ///< objects that found no room
 };
 
 class Tracker {

@@ -149,6 +149,40 @@ TEST_F(GatewayTest, WithoutMemoryTheScanIsDroppedAndTheNextOneComes) {
   EXPECT_EQ(sink_.scans, 1u);
 }
 
+TEST_F(GatewayTest, ARemoteFrameCarriesNothing) {
+  const auto frames =
+      simulator::wire::encode_ego({.speed_mps = 12.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
+  recording::Frame frame;
+  frame.kind = recording::FrameKind::kCan;
+  frame.set_interface("can0");
+  frame.can_id = frames[2].id;
+  frame.can_remote = true;
+  frame.payload = frames[2].bytes;
+  gateway_.take(frame, {1, 0, TimeSource::kLinkArrival});
+  EXPECT_EQ(sink_.egos, 0u);
+  EXPECT_EQ(sink_.all_faults(), 0u);
+}
+
+TEST_F(GatewayTest, ACycleThatFoundNoMemoryIsGone) {
+  const auto send_cycle = [&](std::int64_t begin_ns) {
+    for (std::uint32_t base : {0x210u, 0x220u}) {
+      for (std::uint32_t slot = 0; slot < 16; ++slot) {
+        std::array<std::uint8_t, 8> bytes{};
+        bytes[7] = static_cast<std::uint8_t>(((base + slot) & 0xFF) + ((base + slot) >> 8) + 8);
+        send_can("can1", base + slot, bytes, begin_ns + slot);
+      }
+    }
+  };
+  sink_.refuse_memory = true;
+  send_cycle(1000 * kMillisecond);
+  EXPECT_EQ(sink_.scans, 0u);
+  sink_.refuse_memory = false;
+  send_cycle(1050 * kMillisecond);
+  EXPECT_EQ(sink_.scans, 1u);
+  EXPECT_EQ(sink_.last_time.time_ns, 980 * kMillisecond) << "of the second cycle, not of the first";
+  EXPECT_EQ(sink_.all_faults(), 0u);
+}
+
 TEST_F(GatewayTest, AllocatesNothing) {
   const auto frames =
       simulator::wire::encode_ego({.speed_mps = 12.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});

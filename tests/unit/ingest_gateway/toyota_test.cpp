@@ -132,6 +132,20 @@ TEST(ToyotaRadar, AMissingFrameEndsWithTheNextCycle) {
   EXPECT_EQ(radar.missing_frames(), 1u);
 }
 
+TEST(ToyotaRadar, AFrameThatComesAgainBeginsTheNextCycle) {
+  ToyotaRadar radar;
+  RadarScan scan{};
+  const auto frames = cycle(1);
+  for (std::size_t i = 0; i < 20; ++i) {
+    ASSERT_EQ(take(radar, frames[i], static_cast<std::int64_t>(i)), DecodeResult::kAccepted);
+  }
+  // Without a pause, as on a bus that is late.
+  EXPECT_EQ(take(radar, frames[6], 21), DecodeResult::kComplete);
+  radar.write_scan(scan);
+  EXPECT_EQ(radar.missing_frames(), 12u);
+  EXPECT_EQ(take(radar, frames[6], 21), DecodeResult::kAccepted) << "the first of its own cycle";
+}
+
 TEST(ToyotaRadar, WrongFramesAreRefusedWithAReason) {
   ToyotaRadar radar;
   std::string_view problem;

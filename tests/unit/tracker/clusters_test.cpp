@@ -49,6 +49,9 @@ TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
   scene.add({21.0, 0.0}, {10.0, 0.0});
   scene.scan->x_vehicle_m[1] = std::numeric_limits<float>::quiet_NaN();
   scene.scan->range_rate_over_ground_mps[2] = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < 3; ++i) scene.add({21.0, 0.5}, {10.0, 0.0});
+  scene.scan->range_std_m[3] = scene.scan->azimuth_std_rad[4] = scene.scan->range_rate_std_mps[5] =
+      std::numeric_limits<float>::quiet_NaN();
   Clusterer clusterer(Config{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);

@@ -90,7 +90,7 @@ TEST_F(TrackerTest, OutputHasNothingOfTheStaleChunk) {
   EXPECT_EQ(list().dropped_tracks, 0u);
   EXPECT_EQ(list().flags, 0u);
   EXPECT_EQ(list().reserved, 0u);
-  EXPECT_EQ(t.reserved, 0u);
+  EXPECT_EQ(t.reserved, (std::array<std::uint32_t, 3>{}));
   EXPECT_TRUE(std::isfinite(t.time_since_update_s) && std::isfinite(t.acceleration_over_ground_mps2[0]) &&
               std::isfinite(t.position_vehicle_m[2]));
   const Eigen::Map<const Eigen::Matrix<float, 6, 6>> covariance(t.covariance.data());
@@ -176,6 +176,16 @@ TEST_F(TrackerTest, AJumpOfTheClockDropsEverything) {
   EXPECT_GT(list().tracks[0].tracking_id, name) << "a name is never used again";
 }
 
+TEST_F(TrackerTest, AClockThatIsSetBackALittleDoesNotFreezeIt) {
+  for (int i = 0; i < 10; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
+  now_ -= 1900 * kMillisecond;
+  scene_.begin(now_);
+  EXPECT_TRUE(tracker_.step(*scene_.scan).restarted);
+  for (int i = 10; i < 20; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  EXPECT_NEAR(list().tracks[0].velocity_over_ground_mps[0], 8.0, 0.5);
+}
+
 TEST_F(TrackerTest, MoreObjectsThanRoomAreCounted) {
   for (int round = 0; round < 8; ++round) {
     scene_.begin(now_);
@@ -184,8 +194,9 @@ TEST_F(TrackerTest, MoreObjectsThanRoomAreCounted) {
       scene_.add({8.0 + 8.0 * (i % 12), -60.0 + 13.0 * (i / 12) + (round % 2 == 0 ? 0.0 : 6.5)},
                  {round % 2 == 0 ? 20.0 : -20.0, 0.0});
     }
-    tracker_.step(*scene_.scan);
+    const StepResult result = tracker_.step(*scene_.scan);
     EXPECT_LE(list().number_of_tracks, kMaxTracks);
+    EXPECT_EQ(result.dropped_tracks, list().dropped_tracks);
     if (list().dropped_tracks > 0) return;
     now_ += 5 * kMillisecond;
   }
