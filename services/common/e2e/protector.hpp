@@ -1,0 +1,29 @@
+// The sender's side of E2E protection.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "services/common/e2e/profile.hpp"
+
+namespace boresight::e2e {
+
+/// Protects the messages of one sender.
+class Protector {
+ public:
+  explicit Protector(const Config& config);
+
+  /// Writes the header fields and the CRC into the data at offset_bytes, and advances the counter. False, with nothing
+  /// written and the counter as it was, if the header does not fit into the data, or the length of the data not into
+  /// the length field (P04 and P06: 65,535 bytes).
+  bool protect(std::span<std::uint8_t> data);
+
+  /// The counter that the next protected message will carry.
+  [[nodiscard]] std::uint32_t counter() const { return counter_; }
+
+ private:
+  Config config_;
+  std::uint32_t counter_;
+};
+
+}  // namespace boresight::e2e
