@@ -22,15 +22,29 @@ inline constexpr std::uint16_t kInvalid = 1u << 0;    ///< the sensor itself mar
 inline constexpr std::uint16_t kAmbiguous = 1u << 1;  ///< the range rate lies outside the unambiguous interval
 }  // namespace detection_flag
 
+/// Bits of `RadarScan::integrity`: what the gateway found wrong with the scan as a whole. Zero: nothing.
+namespace scan_integrity {
+inline constexpr std::uint16_t kCounterGap = 1u << 0;      ///< scans are missing before this one
+inline constexpr std::uint16_t kRepeated = 1u << 1;        ///< the sensor's counter did not advance
+inline constexpr std::uint16_t kFrozen = 1u << 2;          ///< the same detections as before, to the last bit
+inline constexpr std::uint16_t kStale = 1u << 3;           ///< measured too long before it came, or stamps stand still
+inline constexpr std::uint16_t kImplausible = 1u << 4;     ///< too many detections outside what the sensor can see
+inline constexpr std::uint16_t kContradictsEgo = 1u << 5;  ///< range rates fit no motion near that of the vehicle
+inline constexpr std::uint16_t kIncomplete = 1u << 6;      ///< frames of the cycle are missing
+inline constexpr std::uint16_t kImpossibleCopies = 1u << 7;  ///< many detections of the scan are copies of one another
+inline constexpr std::size_t kNumberOfBits = 8;
+}  // namespace scan_integrity
+
 /// Detections of one radar cycle in the sensor frame (x along boresight, y left, z up). The first
 /// `number_of_valid_detections` entries of each column count; what follows is undefined.
 struct RadarScan {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;
   std::uint32_t cycle_counter;  ///< the sensor's own counter where it has one, else the gateway's
   std::uint32_t number_of_valid_detections;
-  std::uint32_t dropped_detections;  ///< detections beyond kMaxDetections
+  std::uint16_t dropped_detections;  ///< detections beyond kMaxDetections
+  std::uint16_t integrity;           ///< scan_integrity bits
   std::uint32_t fields;              ///< scan_field bits
   float range_rate_min_mps;          ///< unambiguous interval; both 0 if unknown
   float range_rate_max_mps;

@@ -23,20 +23,33 @@ enum class Fault : std::uint8_t {
 };
 inline constexpr std::size_t kNumberOfFaults = 11;
 
+/// What a sensor says of itself in its status messages.
+namespace source_condition {
+inline constexpr std::uint32_t kBlocked = 1u << 0;           ///< blind, or nearly so
+inline constexpr std::uint32_t kPartlyBlocked = 1u << 1;     ///< reduced by dirt or the like
+inline constexpr std::uint32_t kDefective = 1u << 2;         ///< failed its self-test, or not in operation
+inline constexpr std::uint32_t kSupply = 1u << 3;            ///< voltage out of range
+inline constexpr std::uint32_t kTemperature = 1u << 4;       ///< temperature out of range
+inline constexpr std::uint32_t kUnsynchronised = 1u << 5;    ///< its clock follows nobody's
+inline constexpr std::uint32_t kWithoutEgoMotion = 1u << 6;  ///< it misses the vehicle's motion as input
+}  // namespace source_condition
+
 /// Statistics of one radar as the writer of this status saw it; only the gateway fills them.
 struct SourceStatistics {
-  std::uint32_t source_id;  ///< 0: unused entry
-  std::uint32_t reserved;
-  std::uint64_t messages;
-  std::uint64_t rejected;
+  std::uint32_t source_id;   ///< 0: unused entry
+  std::uint32_t conditions;  ///< source_condition bits, as the sensor itself said last
+  std::uint64_t messages;    ///< scans published
+  std::uint64_t rejected;    ///< frames, lists and cycles refused
+  std::uint64_t lost;        ///< scans that the sensor's counter says were sent and never came
+  std::uint64_t suspect;     ///< scans published with an integrity verdict against them, counter gaps aside
   std::int64_t last_measurement_time_ns;
 };
-static_assert(sizeof(SourceStatistics) == 32);
+static_assert(sizeof(SourceStatistics) == 48);
 
 /// Published by every service each heartbeat period. Counters never go back while a process lives; `incarnation`
 /// (its start time) tells a restart.
 struct ServiceStatus {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;  ///< source_id is the service's index in the catalogue
   std::int64_t incarnation_ns;
@@ -54,6 +67,6 @@ struct ServiceStatus {
 };
 
 static_assert(kIsPlainMessage<ServiceStatus>);
-static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + kNumberOfFaults * 8 + kMaxRadars * 32 + 128);
+static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + kNumberOfFaults * 8 + kMaxRadars * 48 + 128);
 
 }  // namespace boresight

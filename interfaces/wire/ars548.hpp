@@ -18,9 +18,10 @@ inline constexpr std::size_t kShortHeaderBytes = 8;
 
 // --- detection list --------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kDetectionListBytes = 35336;
-inline constexpr std::size_t kNanoseconds = 36;  // u32
-inline constexpr std::size_t kSeconds = 40;      // u32
-inline constexpr std::size_t kSyncStatus = 44;   // u8
+inline constexpr std::size_t kSequenceCounter = 28;  // u32, in the E2E header
+inline constexpr std::size_t kNanoseconds = 36;      // u32
+inline constexpr std::size_t kSeconds = 40;          // u32
+inline constexpr std::size_t kSyncStatus = 44;       // u8
 inline constexpr std::uint8_t kSyncOk = 1;
 inline constexpr std::uint8_t kSyncNever = 2;
 inline constexpr std::uint8_t kSyncLost = 3;
@@ -30,6 +31,39 @@ inline constexpr std::size_t kDetectionBytes = 44;
 inline constexpr std::size_t kRangeRateMin_mps = 35301;    // f32
 inline constexpr std::size_t kRangeRateMax_mps = 35305;    // f32
 inline constexpr std::size_t kNumberOfDetections = 35309;  // u32
+
+// --- sensor status; the header is the 8 bytes of service, method and length only
+// ---------------------------------------
+inline constexpr std::size_t kStatusBytes = 84;
+namespace status {
+inline constexpr std::size_t kSyncStatus = 16;      // u8, as in the detection list
+inline constexpr std::size_t kVelocityStatus = 73;  // u8, 0: input is received
+inline constexpr std::size_t kYawRateStatus = 76;   // u8, likewise
+inline constexpr std::size_t kRadarState = 80;      // u8: 0 starting, 1 in operation, 2 invalid
+inline constexpr std::uint8_t kStateInvalid = 2;
+inline constexpr std::size_t kVoltage = 81;      // u8 bits, 0: in range
+inline constexpr std::size_t kTemperature = 82;  // u8 bits, 0: in range
+inline constexpr std::size_t kBlockage = 83;     // u8: low half 0 blind … 4 none; high half self-test
+inline constexpr std::uint8_t kBlockageHigh = 1;
+inline constexpr std::uint8_t kBlockageMid = 2;
+inline constexpr std::uint8_t kBlockageLow = 3;
+inline constexpr std::uint8_t kSelfTestFailed = 0;
+}  // namespace status
+
+// --- motion of the vehicle, which the sensor needs: same short header, floats at the given offset
+// ----------------------
+inline constexpr std::uint16_t kSensorPort = 42101;
+/// A message into the sensor: method, bytes in all, offset of its value.
+struct MotionInput {
+  std::uint16_t method;
+  std::size_t bytes;
+  std::size_t value;
+};
+inline constexpr MotionInput kLongitudinalAcceleration_mps2{322, 40, 14};  // f32
+inline constexpr MotionInput kSpeed_kmph{323, 36, 11};                     // f32
+inline constexpr MotionInput kDrivingDirection{325, 30, 9};                // u8: 0 standing, 1 forward, 2 backward
+inline constexpr MotionInput kYawRate_degps{326, 40, 14};                  // f32, ±163.83
+inline constexpr MotionInput kSteeringAngle_deg{327, 40, 14};              // f32, front axle, ±90
 
 /// Offsets within a detection record.
 namespace record {

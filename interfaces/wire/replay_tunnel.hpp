@@ -8,7 +8,7 @@
 
 namespace boresight::wire::replay_tunnel {
 
-inline constexpr std::uint32_t kMagic = 0x31525342;  // "BSR1"
+inline constexpr std::uint32_t kMagic = 0x32525342;  // "BSR2"
 inline constexpr std::size_t kMaxPayload = 65536;
 
 /// Precedes the payload in each message. Both ends run on one machine, so the struct is sent as it is.
@@ -21,13 +21,13 @@ struct RecordHeader {
   std::int64_t stamp_ns;  ///< as recorded
   char interface[16];     ///< CAN: zero-terminated name
   std::uint32_t can_id;
-  std::uint32_t source_ipv4;  ///< UDP, host byte order
-  std::uint32_t destination_ipv4;
+  std::uint8_t source[16];  ///< UDP, IPv6 or mapped IPv4
+  std::uint8_t destination[16];
   std::uint16_t source_port;
   std::uint16_t destination_port;
   std::uint32_t payload_bytes;
   std::uint32_t reserved2;
 };
-static_assert(sizeof(RecordHeader) == 56 && std::is_trivially_copyable_v<RecordHeader>);
+static_assert(sizeof(RecordHeader) == 80 && std::is_trivially_copyable_v<RecordHeader>);
 
 }  // namespace boresight::wire::replay_tunnel

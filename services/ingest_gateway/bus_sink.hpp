@@ -2,7 +2,7 @@
 #pragma once
 
 #include "services/common/runtime/node.hpp"
-#include "services/ingest_gateway/core/gateway.hpp"
+#include "services/ingest_gateway/core/sink.hpp"
 
 namespace boresight::ingest {
 
@@ -12,9 +12,12 @@ class BusSink : public Sink {
 
   RadarScan* begin_scan() override;
   void publish_scan(std::uint32_t radar_id, const MeasurementTime& time) override;
+  void discard_scan() override { scan_ = {}; }
   EgoMotion* begin_ego() override;
   void publish_ego(const MeasurementTime& time) override;
   void fault(Fault fault, std::string_view what, std::uint32_t radar_id) override;
+
+  SourceStatistics& statistics(std::uint32_t radar_id) override { return node_.source_statistics(radar_id); }
 
   /// To be called when a frame is taken from its link: the stage of ingest begins.
   void frame_begins(std::int64_t now_ns) { begin_ns_ = now_ns; }

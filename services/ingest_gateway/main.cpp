@@ -7,6 +7,7 @@
 #include "services/common/runtime/service_main.hpp"
 #include "services/ingest_gateway/bus_sink.hpp"
 #include "services/ingest_gateway/config.hpp"
+#include "services/ingest_gateway/core/gateway.hpp"
 #include "services/ingest_gateway/links/tunnel_link.hpp"
 #include "services/ingest_gateway/live_links.hpp"
 
@@ -59,7 +60,8 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Config&
                                         sink.frame_begins(runtime::monotonic_now_ns());
                                         gateway.take(frame, stamp);
                                       },
-                                  .on_fault = [&](Fault fault, std::string_view what) { node.fault(fault, what); }};
+                                  .on_fault = [&](Fault fault, std::string_view what) { node.fault(fault, what); },
+                                  .on_end = [&] { gateway.finish(); }};
   std::vector<std::unique_ptr<ingest::Link>> links;
   if (config.input == ingest::Input::kReplay) {
     links.push_back(std::make_unique<ingest::TunnelLink>(config.tunnel_path, events));
@@ -68,6 +70,9 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Config&
   }
   LinkKeeper keeper(node, std::move(links));
   node.every(1'000'000'000, [&] { keeper.open_closed(); });
+  if (config.input == ingest::Input::kLive) {
+    node.every(5'000'000, [&] { gateway.tick(runtime::monotonic_now_ns()); });
+  }
   return node.spin();
 }
 

@@ -21,6 +21,8 @@ class Memory : public ingest::Sink {
     scan_->header.time_source = time.source;
     decoding_.messages.push_back({std::move(scan_), nullptr});
   }
+  void discard_scan() override { scan_.reset(); }
+  SourceStatistics& statistics(std::uint32_t) override { return statistics_; }
   EgoMotion* begin_ego() override {
     ego_ = std::make_unique<EgoMotion>();
     return ego_.get();
@@ -34,6 +36,7 @@ class Memory : public ingest::Sink {
  private:
   Decoding& decoding_;
   std::unique_ptr<RadarScan> scan_;
+  SourceStatistics statistics_{};
   std::unique_ptr<EgoMotion> ego_;
 };
 
@@ -51,6 +54,7 @@ Decoding decode(const VehicleConfig& vehicle, const std::filesystem::path& recor
       recording::open_recording(recording, [&](const std::string& problem) { decoding.faults.push_back(problem); });
   recording::Frame frame;
   while (reader->next(frame)) gateway.take(frame, {frame.stamp_ns, 0, TimeSource::kLinkArrival});
+  gateway.finish();
   return decoding;
 }
 

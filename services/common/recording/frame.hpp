@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "services/common/recording/ip_address.hpp"
+
 namespace boresight::recording {
 
 enum class FrameKind : std::uint8_t { kCan = 1, kCanFd = 2, kUdp = 3 };
@@ -19,10 +21,8 @@ struct Frame {
   std::uint32_t can_id = 0;           ///< without flag bits
   bool can_extended = false;
   bool can_remote = false;
-  std::uint32_t source_ipv4 = 0;  ///< host byte order
-  std::uint32_t destination_ipv4 = 0;
-  std::uint16_t source_port = 0;
-  std::uint16_t destination_port = 0;
+  Endpoint source;  ///< UDP
+  Endpoint destination;
   std::span<const std::uint8_t> payload;
 
   [[nodiscard]] std::string_view interface_name() const {

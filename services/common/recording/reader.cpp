@@ -8,7 +8,7 @@
 #include <pcap/pcap.h>
 
 #include "services/common/recording/candump.hpp"
-#include "services/common/recording/ipv4.hpp"
+#include "services/common/recording/ip.hpp"
 
 namespace boresight::recording {
 

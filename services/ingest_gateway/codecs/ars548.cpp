@@ -76,9 +76,13 @@ DecodeResult check(std::span<const std::uint8_t> datagram, std::string_view& pro
   const std::uint8_t* const bytes = datagram.data();
   const std::uint16_t service = read_u16(bytes);
   const std::uint16_t method = read_u16(bytes + 2);
-  if (service == layout::kServiceId && (method == layout::kMethodObjectList || method == layout::kMethodStatus ||
-                                        method == layout::kMethodFilterStatus)) {
+  if (service == layout::kServiceId && (method == layout::kMethodObjectList || method == layout::kMethodFilterStatus)) {
     return DecodeResult::kIgnored;
+  }
+  if (service == layout::kServiceId && method == layout::kMethodStatus) {
+    if (datagram.size() == layout::kStatusBytes) return DecodeResult::kAccepted;
+    problem = "ARS548: status is not 84 bytes long";
+    return DecodeResult::kBadLength;
   }
   if (service != layout::kServiceId || method != layout::kMethodDetectionList) {
     problem = "ARS548: unknown service or method; known: service 0, methods 329, 336, 380, 396";
@@ -103,13 +107,14 @@ DecodeResult check(std::span<const std::uint8_t> datagram, std::string_view& pro
   return DecodeResult::kComplete;
 }
 
-SensorTime decode(std::span<const std::uint8_t> datagram, RadarScan& scan) {
+SensorStamp decode(std::span<const std::uint8_t> datagram, RadarScan& scan) {
   const std::uint8_t* const bytes = datagram.data();
   const std::uint32_t count = read_u32(bytes + layout::kNumberOfDetections);
   const float rate_min = read_f32(bytes + layout::kRangeRateMin_mps);
   const float rate_max = read_f32(bytes + layout::kRangeRateMax_mps);
   const bool has_interval = std::isfinite(rate_min) && std::isfinite(rate_max) && rate_min < rate_max;
-  scan.cycle_counter = 0;
+  scan.cycle_counter = read_u32(bytes + layout::kSequenceCounter);
+  scan.integrity = 0;
   scan.number_of_valid_detections = count;
   scan.dropped_detections = 0;
   scan.fields = scan_field::kElevation | scan_field::kRcs | scan_field::kStds | scan_field::kExistence |
@@ -120,11 +125,42 @@ SensorTime decode(std::span<const std::uint8_t> datagram, RadarScan& scan) {
     write_detection(bytes + layout::kDetections + i * layout::kDetectionBytes, i, scan.range_rate_min_mps,
                     scan.range_rate_max_mps, scan);
   }
-  SensorTime time;
-  time.epoch_ns = static_cast<std::int64_t>(read_u32(bytes + layout::kSeconds)) * 1'000'000'000 +
-                  read_u32(bytes + layout::kNanoseconds);
+  SensorStamp time;
+  time.time_ns = static_cast<std::int64_t>(read_u32(bytes + layout::kSeconds)) * 1'000'000'000 +
+                 read_u32(bytes + layout::kNanoseconds);
   time.synchronised = bytes[layout::kSyncStatus] == layout::kSyncOk;
   return time;
+}
+
+std::uint32_t conditions(std::span<const std::uint8_t> status) {
+  namespace st = layout::status;
+  const std::uint8_t* const bytes = status.data();
+  std::uint32_t bits = 0;
+  const std::uint8_t blockage = bytes[st::kBlockage] & 0x0F;
+  const std::uint8_t self_test = bytes[st::kBlockage] >> 4;
+  if (blockage <= st::kBlockageHigh) bits |= source_condition::kBlocked;
+  if (blockage == st::kBlockageMid || blockage == st::kBlockageLow) bits |= source_condition::kPartlyBlocked;
+  if (self_test == st::kSelfTestFailed || bytes[st::kRadarState] == st::kStateInvalid) {
+    bits |= source_condition::kDefective;
+  }
+  if (bytes[st::kVoltage] != 0) bits |= source_condition::kSupply;
+  if (bytes[st::kTemperature] != 0) bits |= source_condition::kTemperature;
+  if (bytes[st::kSyncStatus] != layout::kSyncOk) bits |= source_condition::kUnsynchronised;
+  if (bytes[st::kVelocityStatus] != 0 || bytes[st::kYawRateStatus] != 0) bits |= source_condition::kWithoutEgoMotion;
+  return bits;
+}
+
+void Ars548::take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) {
+  std::string_view problem;
+  const DecodeResult result = check(frame.payload, problem);
+  if (result == DecodeResult::kAccepted) output.report_conditions(conditions(frame.payload));
+  if (const auto fault = fault_of(result)) output.fault(*fault, problem);
+  if (result != DecodeResult::kComplete) return;
+  RadarScan* const scan = output.begin_scan();
+  if (scan == nullptr) return;
+  const SensorStamp time = decode(frame.payload, *scan);
+  // Firmware that does not fill the E2E header leaves zero there, for good.
+  output.publish_scan(stamp, time, scan->cycle_counter == 0 ? 0 : 32);
 }
 
 }  // namespace boresight::ingest::ars548

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
+#include <optional>
+
+#include "interfaces/messages/service_status.hpp"
 
 namespace boresight::ingest {
 
@@ -14,5 +16,22 @@ enum class DecodeResult : std::uint8_t {
   kBadValue,   ///< a field outside its range, or a checksum that does not match
   kUnknownMessage,
 };
+
+/// The fault that a result is; nullopt if it is none.
+[[nodiscard]] constexpr std::optional<Fault> fault_of(DecodeResult result) {
+  switch (result) {
+    case DecodeResult::kBadLength:
+      return Fault::kWireLength;
+    case DecodeResult::kBadValue:
+      return Fault::kWireValue;
+    case DecodeResult::kUnknownMessage:
+      return Fault::kWireUnknown;
+    case DecodeResult::kAccepted:
+    case DecodeResult::kComplete:
+    case DecodeResult::kIgnored:
+      break;
+  }
+  return std::nullopt;
+}
 
 }  // namespace boresight::ingest

@@ -15,30 +15,31 @@ constexpr std::uint32_t kAllTracks = (1u << layout::kNumberOfTracks) - 1;
 
 }  // namespace
 
-DecodeResult ToyotaRadar::take(std::uint32_t id, std::span<const std::uint8_t> payload, std::int64_t stamp_ns,
-                               std::string_view& problem) {
+void ToyotaRadar::take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) {
+  const std::uint32_t id = frame.can_id;
+  const std::span<const std::uint8_t> payload = frame.payload;
   const bool is_a = id >= layout::kTrackA && id < layout::kTrackA + layout::kNumberOfTracks;
   const bool is_b = id >= layout::kTrackB && id < layout::kTrackB + layout::kNumberOfTracks;
-  if (!is_a && !is_b) return DecodeResult::kIgnored;
+  if ((!is_a && !is_b) || frame.can_extended) return;
   if (payload.size() < (is_a ? layout::kTrackABytes : layout::kTrackBMinBytes) || payload.size() > 8) {
-    problem = is_a ? "Toyota TRACK_A: frame is not 8 bytes long" : "Toyota TRACK_B: frame is not 6 … 8 bytes long";
-    return DecodeResult::kBadLength;
+    output.fault(Fault::kWireLength,
+                 is_a ? "Toyota TRACK_A: frame is not 8 bytes long" : "Toyota TRACK_B: frame is not 6 … 8 bytes long");
+    return;
   }
   if (layout::checksum(id, payload) != payload.back()) {
-    problem = is_a ? "Toyota TRACK_A: checksum does not match" : "Toyota TRACK_B: checksum does not match";
-    return DecodeResult::kBadValue;
+    output.fault(Fault::kWireValue,
+                 is_a ? "Toyota TRACK_A: checksum does not match" : "Toyota TRACK_B: checksum does not match");
+    return;
   }
   const std::uint32_t slot = id - (is_a ? layout::kTrackA : layout::kTrackB);
   const std::uint32_t bit = 1u << slot;
   // A frame that comes again, or after a pause, belongs to the next cycle: the present one will not be completed any
   // more. The order of the frames within a cycle says nothing: A and B frames of recorded cycles mix in any order.
   const bool came_before = ((is_a ? seen_a_ : seen_b_) & bit) != 0;
-  if (came_before || (frames_ > 0 && stamp_ns - last_stamp_ns_ > kPauseBetweenCycles_ns)) {
-    return DecodeResult::kComplete;
-  }
-  last_stamp_ns_ = stamp_ns;
+  if (came_before || (frames_ > 0 && stamp.received_ns - last_ns_ > kPauseBetweenCycles_ns)) finish(output);
+  last_ns_ = stamp.received_ns;
   if (frames_++ == 0) {
-    stamp_ns_ = stamp_ns;
+    first_ = stamp;
     counter_ = static_cast<std::uint32_t>(wire::extract_raw(layout::kCounter, payload));
   }
   Slot& track = slots_[slot];
@@ -53,11 +54,26 @@ DecodeResult ToyotaRadar::take(std::uint32_t id, std::span<const std::uint8_t> p
     track.has_score = true;
     track.score_percent = wire::extract(layout::kScore_percent, payload);
   }
-  const bool complete = seen_a_ == kAllTracks && seen_b_ == kAllTracks;
-  return complete ? DecodeResult::kComplete : DecodeResult::kAccepted;
+  if (seen_a_ == kAllTracks && seen_b_ == kAllTracks) finish(output);
 }
 
-void ToyotaRadar::write_scan(RadarScan& scan) {
+void ToyotaRadar::tick(std::int64_t now_ns, DecoderOutput& output) {
+  if (frames_ > 0 && now_ns - last_ns_ > kPauseBetweenCycles_ns) finish(output);
+}
+
+void ToyotaRadar::finish(DecoderOutput& output) {
+  const bool complete = frames_ == 2 * layout::kNumberOfTracks;
+  if (!complete) output.fault(Fault::kWireLength, "Toyota radar: frames of a cycle are missing");
+  if (RadarScan* const scan = output.begin_scan()) {
+    write_scan(*scan);
+    scan->integrity = complete ? 0 : scan_integrity::kIncomplete;
+    output.publish_scan(first_, std::nullopt, 8);
+  }
+  slots_ = {};
+  frames_ = seen_a_ = seen_b_ = 0;
+}
+
+void ToyotaRadar::write_scan(RadarScan& scan) const {
   std::uint32_t count = 0;
   for (const Slot& track : slots_) {
     if (!track.valid) continue;
@@ -78,13 +94,6 @@ void ToyotaRadar::write_scan(RadarScan& scan) {
   scan.dropped_detections = 0;
   scan.fields = scan_field::kExistence;
   scan.range_rate_min_mps = scan.range_rate_max_mps = 0.0F;
-  discard();
-}
-
-void ToyotaRadar::discard() {
-  missing_ = 2 * layout::kNumberOfTracks - frames_;
-  slots_ = {};
-  frames_ = seen_a_ = seen_b_ = 0;
 }
 
 }  // namespace boresight::ingest

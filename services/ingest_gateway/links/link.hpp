@@ -6,7 +6,7 @@
 
 #include "interfaces/messages/service_status.hpp"
 #include "services/common/recording/frame.hpp"
-#include "services/ingest_gateway/core/frame_stamp.hpp"
+#include "services/ingest_gateway/codecs/frame_stamp.hpp"
 
 namespace boresight::ingest {
 
@@ -14,6 +14,7 @@ namespace boresight::ingest {
 struct LinkEvents {
   std::function<void(const recording::Frame&, const FrameStamp&)> on_frame;
   std::function<void(Fault, std::string_view)> on_fault;
+  std::function<void()> on_end;  ///< a recording has been played to its end, or its replay has died
 };
 
 /// A source of frames with a file descriptor to wait for.

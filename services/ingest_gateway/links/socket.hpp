@@ -7,7 +7,7 @@
 
 #include <sys/socket.h>
 
-#include "services/ingest_gateway/core/frame_stamp.hpp"
+#include "services/ingest_gateway/codecs/frame_stamp.hpp"
 
 namespace boresight::ingest {
 

@@ -36,10 +36,8 @@ bool parse_record(std::span<const std::uint8_t> record, recording::Frame& frame)
   frame.can_id = header.can_id;
   frame.can_extended = header.extended != 0;
   frame.can_remote = header.remote != 0;
-  frame.source_ipv4 = header.source_ipv4;
-  frame.destination_ipv4 = header.destination_ipv4;
-  frame.source_port = header.source_port;
-  frame.destination_port = header.destination_port;
+  frame.source = {recording::IpAddress::v6(header.source), header.source_port};
+  frame.destination = {recording::IpAddress::v6(header.destination), header.destination_port};
   frame.payload = payload;
   return true;
 }
@@ -100,7 +98,8 @@ void TunnelLink::read_records() {
     const ssize_t length = recv(replay_.get(), buffer_.data(), buffer_.size(), 0);
     if (length < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (length <= 0) {
-      replay_.reset();  // the end of the replay, or its death
+      replay_.reset();
+      events_.on_end();
       return;
     }
     recording::Frame frame;

@@ -95,10 +95,8 @@ void UdpLink::read() {
     recording::Frame frame;
     frame.kind = recording::FrameKind::kUdp;
     frame.stamp_ns = stamp.received_ns;
-    frame.source_ipv4 = ntohl(sender.sin_addr.s_addr);
-    frame.source_port = ntohs(sender.sin_port);
-    frame.destination_ipv4 = address_host_;
-    frame.destination_port = port_;
+    frame.source = {recording::IpAddress::v4(ntohl(sender.sin_addr.s_addr)), ntohs(sender.sin_port)};
+    frame.destination = {recording::IpAddress::v4(address_host_), port_};
     frame.payload = {buffer_.data(), static_cast<std::size_t>(length)};
     events_.on_frame(frame, stamp);
   }

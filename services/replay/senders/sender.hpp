@@ -23,7 +23,7 @@ class Sender {
 [[nodiscard]] std::unique_ptr<Sender> make_tunnel_sender(const std::string& path, double wait_s);
 
 /// To UDP sockets and SocketCAN interfaces. `routes` replaces recorded IPv4 addresses (sender or destination) by local
-/// ones, dotted. Throws std::runtime_error at the first frame whose interface cannot be opened.
+/// ones, textual. Throws std::runtime_error at the first frame whose interface cannot be opened.
 [[nodiscard]] std::unique_ptr<Sender> make_wire_sender(const std::map<std::string, std::string>& routes);
 
 }  // namespace boresight::replay

@@ -44,10 +44,10 @@ class TunnelSender : public Sender {
     header.stamp_ns = frame.stamp_ns;
     std::memcpy(header.interface, frame.interface.data(), sizeof(header.interface));
     header.can_id = frame.can_id;
-    header.source_ipv4 = frame.source_ipv4;
-    header.destination_ipv4 = frame.destination_ipv4;
-    header.source_port = frame.source_port;
-    header.destination_port = frame.destination_port;
+    std::memcpy(header.source, frame.source.address.bytes.data(), sizeof(header.source));
+    std::memcpy(header.destination, frame.destination.address.bytes.data(), sizeof(header.destination));
+    header.source_port = frame.source.port;
+    header.destination_port = frame.destination.port;
     header.payload_bytes = static_cast<std::uint32_t>(frame.payload.size());
     iovec parts[2] = {{&header, sizeof(header)},
                       {const_cast<std::uint8_t*>(frame.payload.data()), frame.payload.size()}};

@@ -3,24 +3,23 @@
 #include <cstring>
 #include <stdexcept>
 
-#include <arpa/inet.h>
 #include <linux/can.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "services/common/runtime/socket_address.hpp"
 #include "services/replay/senders/sender.hpp"
 
 namespace boresight::replay {
 
 namespace {
 
-std::uint32_t parse(const std::string& text) {
-  in_addr address{};
-  if (inet_pton(AF_INET, text.c_str(), &address) != 1) throw std::runtime_error(text + " is not an IPv4 address");
-  return ntohl(address.s_addr);
+recording::IpAddress parse(const std::string& text) {
+  const auto address = recording::parse_ip(text);
+  if (!address) throw std::runtime_error(text + " is not an IP address");
+  return *address;
 }
 
 class WireSender : public Sender {
@@ -40,32 +39,29 @@ class WireSender : public Sender {
   }
 
  private:
-  [[nodiscard]] std::uint32_t route(std::uint32_t recorded) const {
+  [[nodiscard]] recording::IpAddress route(const recording::IpAddress& recorded) const {
     const auto found = routes_.find(recorded);
     return found == routes_.end() ? recorded : found->second;
   }
 
-  int udp_socket(std::uint32_t source) {
+  int udp_socket(const recording::IpAddress& source, sa_family_t family) {
     const auto found = udp_.find(source);
     if (found != udp_.end()) return found->second;
-    const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const int descriptor = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (descriptor < 0) throw std::runtime_error(std::string("cannot make a UDP socket: ") + std::strerror(errno));
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(source);
+    sockaddr_storage address{};
+    const socklen_t length = runtime::to_sockaddr({source, 0}, address);
     // A sender's address that is not this machine's cannot be taken on; the gateway then needs no `sender` or a route.
-    static_cast<void>(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)));
+    static_cast<void>(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), length));
     return udp_[source] = descriptor;
   }
 
   bool send_udp(const recording::Frame& frame) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(route(frame.destination_ipv4));
-    to.sin_port = htons(frame.destination_port);
-    const int descriptor = udp_socket(route(frame.source_ipv4));
+    sockaddr_storage to{};
+    const socklen_t length = runtime::to_sockaddr({route(frame.destination.address), frame.destination.port}, to);
+    const int descriptor = udp_socket(route(frame.source.address), to.ss_family);
     return sendto(descriptor, frame.payload.data(), frame.payload.size(), 0, reinterpret_cast<const sockaddr*>(&to),
-                  sizeof(to)) >= 0;
+                  length) >= 0;
   }
 
   int can_socket(const std::string& interface) {
@@ -93,8 +89,8 @@ class WireSender : public Sender {
     return write(can_socket(std::string(frame.interface_name())), &raw, size) == static_cast<ssize_t>(size);
   }
 
-  std::map<std::uint32_t, std::uint32_t> routes_;
-  std::map<std::uint32_t, int> udp_;
+  std::map<recording::IpAddress, recording::IpAddress> routes_;
+  std::map<recording::IpAddress, int> udp_;
   std::map<std::string, int> can_;
 };
 

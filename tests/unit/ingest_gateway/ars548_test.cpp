@@ -9,6 +9,7 @@
 
 #include "services/ingest_gateway/codecs/ars548.hpp"
 #include "tests/simulator/wire/ars548_encoder.hpp"
+#include "tests/unit/ingest_gateway/memory_output.hpp"
 
 namespace boresight::ingest::ars548 {
 namespace {
@@ -54,8 +55,8 @@ class Ars548Test : public testing::Test {
 
 TEST_F(Ars548Test, DecodesWhatTheIndependentEncoderWrote) {
   ASSERT_EQ(check_bytes(), DecodeResult::kComplete);
-  const SensorTime time = decode(*bytes_, *scan_);
-  EXPECT_EQ(time.epoch_ns, 1'700'000'000'123'456'789);
+  const SensorStamp time = decode(*bytes_, *scan_);
+  EXPECT_EQ(time.time_ns, 1'700'000'000'123'456'789);
   EXPECT_TRUE(time.synchronised);
   ASSERT_EQ(scan_->number_of_valid_detections, 300u);
   for (std::size_t i = 0; i < 300; ++i) {
@@ -88,12 +89,48 @@ TEST_F(Ars548Test, WrongLengthsAndHeadersAreRefusedWithAReason) {
   put_u32(*bytes_, layout::kNanoseconds, 1'000'000'000);
   EXPECT_EQ(check_bytes(), DecodeResult::kBadValue);
   // The radar's other messages on the same port are no faults.
-  for (const auto method : {layout::kMethodObjectList, layout::kMethodStatus, layout::kMethodFilterStatus}) {
+  for (const auto method : {layout::kMethodObjectList, layout::kMethodFilterStatus}) {
     *bytes_ = original;
     (*bytes_)[2] = static_cast<std::uint8_t>(method >> 8);
     (*bytes_)[3] = static_cast<std::uint8_t>(method & 0xFF);
     EXPECT_EQ(check_bytes(), DecodeResult::kIgnored);
   }
+}
+
+TEST(Ars548, ItsStatusIsPassedOn) {
+  std::array<std::uint8_t, layout::kStatusBytes> status{};
+  status[2] = layout::kMethodStatus >> 8;
+  status[3] = layout::kMethodStatus & 0xFF;
+  status[layout::status::kSyncStatus] = layout::kSyncOk;
+  status[layout::status::kRadarState] = 1;
+  status[layout::status::kBlockage] = 0x14;  // self-test passed, no blockage
+  Ars548 radar;
+  MemoryOutput out;
+  recording::Frame frame;
+  frame.kind = recording::FrameKind::kUdp;
+  frame.payload = status;
+  const auto conditions_after = [&](std::size_t at, std::uint8_t value) {
+    auto changed = status;
+    changed[at] = value;
+    frame.payload = changed;
+    radar.take(frame, {}, out);
+    return *out.conditions;
+  };
+  radar.take(frame, {}, out);
+  EXPECT_EQ(out.conditions, 0u);
+  EXPECT_EQ(conditions_after(layout::status::kBlockage, 0x10), source_condition::kBlocked);
+  EXPECT_EQ(conditions_after(layout::status::kBlockage, 0x13), source_condition::kPartlyBlocked);
+  EXPECT_EQ(conditions_after(layout::status::kBlockage, 0x04), source_condition::kDefective);
+  EXPECT_EQ(conditions_after(layout::status::kRadarState, 2), source_condition::kDefective);
+  EXPECT_EQ(conditions_after(layout::status::kVoltage, 1), source_condition::kSupply);
+  EXPECT_EQ(conditions_after(layout::status::kTemperature, 2), source_condition::kTemperature);
+  EXPECT_EQ(conditions_after(layout::status::kSyncStatus, layout::kSyncLost), source_condition::kUnsynchronised);
+  EXPECT_EQ(conditions_after(layout::status::kYawRateStatus, 1), source_condition::kWithoutEgoMotion);
+  EXPECT_EQ(out.scans, 0u);
+  EXPECT_EQ(out.all_faults(), 0u);
+  frame.payload = std::span(status).first(80);
+  radar.take(frame, {}, out);
+  EXPECT_EQ(out.count(Fault::kWireLength), 1u);
 }
 
 TEST_F(Ars548Test, AnImplausibleDetectionIsFlaggedAndTheOthersStay) {

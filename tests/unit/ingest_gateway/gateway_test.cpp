@@ -1,3 +1,5 @@
+#include "services/ingest_gateway/core/gateway.hpp"
+
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/allocation_counter.hpp"
@@ -41,9 +43,8 @@ class GatewayTest : public testing::Test {
   void send_list(std::uint32_t sender, std::int64_t received_epoch_ns = kEpoch + 20 * kMillisecond) {
     recording::Frame frame;
     frame.kind = recording::FrameKind::kUdp;
-    frame.source_ipv4 = sender;
-    frame.destination_ipv4 = kGroup;
-    frame.destination_port = 42102;
+    frame.source.address = recording::IpAddress::v4(sender);
+    frame.destination = {recording::IpAddress::v4(kGroup), 42102};
     frame.payload = *bytes_;
     // The epoch clock is far ahead of the monotonic one.
     gateway_.take(frame, {received_epoch_ns - offset_, offset_, TimeSource::kLinkArrival});

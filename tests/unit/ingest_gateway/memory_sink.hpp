@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/ingest_gateway/core/gateway.hpp"
+#include "services/ingest_gateway/core/sink.hpp"
 
 namespace boresight::ingest {
 
@@ -17,6 +17,7 @@ class MemorySink : public Sink {
     last_radar = radar_id;
     last_time = time;
   }
+  void discard_scan() override { ++discarded; }
   EgoMotion* begin_ego() override { return &ego; }
   void publish_ego(const MeasurementTime& time) override {
     ++egos;
@@ -26,6 +27,7 @@ class MemorySink : public Sink {
     ++faults[static_cast<std::size_t>(kind)];
     last_fault_radar = radar_id;
   }
+  SourceStatistics& statistics(std::uint32_t radar_id) override { return source_statistics[radar_id]; }
   [[nodiscard]] std::size_t count(Fault kind) const { return faults[static_cast<std::size_t>(kind)]; }
   [[nodiscard]] std::size_t all_faults() const {
     std::size_t sum = 0;
@@ -36,7 +38,8 @@ class MemorySink : public Sink {
   std::unique_ptr<RadarScan> scan = std::make_unique<RadarScan>();
   EgoMotion ego{};
   bool refuse_memory = false;
-  std::size_t scans = 0, egos = 0;
+  std::size_t scans = 0, egos = 0, discarded = 0;
+  std::array<SourceStatistics, kMaxRadars + 1> source_statistics{};
   std::uint32_t last_radar = 0, last_fault_radar = 99;
   MeasurementTime last_time{};
   std::array<std::size_t, kNumberOfFaults> faults{};

@@ -6,6 +6,7 @@
 #include "services/ingest_gateway/codecs/toyota_ego.hpp"
 #include "services/ingest_gateway/codecs/toyota_radar.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
+#include "tests/unit/ingest_gateway/memory_output.hpp"
 
 namespace boresight::ingest {
 namespace {
@@ -70,92 +71,124 @@ std::vector<CanFrame> cycle(unsigned counter) {
   return frames;
 }
 
-DecodeResult take(ToyotaRadar& radar, const CanFrame& frame, std::int64_t stamp_ns) {
-  std::string_view problem;
-  return radar.take(frame.id, frame.bytes, stamp_ns, problem);
-}
+class ToyotaRadarTest : public testing::Test {
+ protected:
+  void take(const CanFrame& frame, std::int64_t stamp_ns) {
+    radar_.take(can_frame(frame.id, frame.bytes), {stamp_ns, 0, TimeSource::kLinkArrival}, out_);
+  }
+  ToyotaRadar radar_;
+  MemoryOutput out_;
+};
 
-TEST(ToyotaRadar, DecodesATrackAndItsSigns) {
-  ToyotaRadar radar;
-  RadarScan scan{};
+TEST_F(ToyotaRadarTest, DecodesATrackAndItsSigns) {
   std::int64_t t = 0;
-  DecodeResult result = DecodeResult::kIgnored;
-  for (const CanFrame& f : cycle(7)) result = take(radar, f, t += kMillisecond / 4);
-  ASSERT_EQ(result, DecodeResult::kComplete);
-  EXPECT_EQ(radar.stamp_ns(), kMillisecond / 4);
-  radar.write_scan(scan);
-  EXPECT_EQ(radar.missing_frames(), 0u);
+  for (const CanFrame& f : cycle(7)) take(f, t += kMillisecond / 4);
+  ASSERT_EQ(out_.scans, 1u);
+  EXPECT_EQ(out_.last_reception.received_ns, kMillisecond / 4) << "the first frame's";
+  EXPECT_EQ(out_.all_faults(), 0u);
+  const RadarScan& scan = *out_.scan;
+  EXPECT_EQ(scan.integrity, 0u);
   ASSERT_EQ(scan.number_of_valid_detections, 1u);
   EXPECT_NEAR(scan.range_m[0], std::hypot(40.0, 2.0), 1e-4);
   EXPECT_NEAR(scan.azimuth_rad[0], std::atan2(2.0, 40.0), 1e-6);
   EXPECT_NEAR(scan.range_rate_mps[0], -5.5, 1e-6);
   EXPECT_NEAR(scan.existence_probability[0], 0.8, 1e-6);
   EXPECT_EQ(scan.cycle_counter, 7u);
+  EXPECT_EQ(out_.last_counter_bits, 8u);
   EXPECT_EQ(scan.fields, scan_field::kExistence);
 }
 
-TEST(ToyotaRadar, TheOrderOfFramesWithinACycleIsFree) {
+TEST_F(ToyotaRadarTest, TheOrderOfFramesWithinACycleIsFree) {
   std::mt19937 random(1);
-  ToyotaRadar radar;
-  RadarScan scan{};
   for (unsigned round = 0; round < 500; ++round) {
     auto frames = cycle(round & 0xFFu);
     std::shuffle(frames.begin(), frames.end(), random);
     const std::int64_t begin = round * 50 * kMillisecond;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      const DecodeResult result = take(radar, frames[i], begin + static_cast<std::int64_t>(i) * kMillisecond / 3);
-      ASSERT_EQ(result, i + 1 < frames.size() ? DecodeResult::kAccepted : DecodeResult::kComplete) << round;
+      take(frames[i], begin + static_cast<std::int64_t>(i) * kMillisecond / 3);
+      ASSERT_EQ(out_.scans, round + (i + 1 < frames.size() ? 0 : 1));
     }
-    radar.write_scan(scan);
-    ASSERT_EQ(radar.missing_frames(), 0u);
-    ASSERT_EQ(scan.number_of_valid_detections, 1u);
+    ASSERT_EQ(out_.scan->number_of_valid_detections, 1u);
   }
+  EXPECT_EQ(out_.all_faults(), 0u);
 }
 
-TEST(ToyotaRadar, AMissingFrameEndsWithTheNextCycle) {
-  ToyotaRadar radar;
-  RadarScan scan{};
+TEST_F(ToyotaRadarTest, AMissingFrameEndsWithTheNextCycle) {
   auto frames = cycle(1);
   frames.erase(frames.begin() + 10);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    ASSERT_EQ(take(radar, frames[i], static_cast<std::int64_t>(i)), DecodeResult::kAccepted);
-  }
+  for (std::size_t i = 0; i < frames.size(); ++i) take(frames[i], static_cast<std::int64_t>(i));
+  EXPECT_EQ(out_.scans, 0u);
   // The next cycle begins with another frame than the one that is missing …
-  EXPECT_EQ(take(radar, cycle(2)[0], 50 * kMillisecond), DecodeResult::kComplete);
-  radar.write_scan(scan);
-  EXPECT_EQ(radar.missing_frames(), 1u);
-  EXPECT_EQ(scan.number_of_valid_detections, 1u);
+  take(cycle(2)[0], 50 * kMillisecond);
+  ASSERT_EQ(out_.scans, 1u);
+  EXPECT_EQ(out_.scan->integrity, scan_integrity::kIncomplete);
+  EXPECT_EQ(out_.scan->number_of_valid_detections, 1u);
+  EXPECT_EQ(out_.count(Fault::kWireLength), 1u);
   // … or with just that one, which after the pause is not taken for the missing one.
-  for (const CanFrame& f : frames) ASSERT_EQ(take(radar, f, 100 * kMillisecond), DecodeResult::kAccepted);
-  EXPECT_EQ(take(radar, cycle(2)[10], 150 * kMillisecond), DecodeResult::kComplete);
-  radar.write_scan(scan);
-  EXPECT_EQ(radar.missing_frames(), 1u);
+  for (const CanFrame& f : frames) take(f, 100 * kMillisecond);
+  ASSERT_EQ(out_.scans, 2u) << "the cycle of one frame";
+  take(cycle(2)[10], 150 * kMillisecond);
+  EXPECT_EQ(out_.scans, 3u);
+  EXPECT_EQ(out_.count(Fault::kWireLength), 3u);
 }
 
-TEST(ToyotaRadar, AFrameThatComesAgainBeginsTheNextCycle) {
-  ToyotaRadar radar;
-  RadarScan scan{};
+TEST_F(ToyotaRadarTest, AnIncompleteCycleDoesNotWaitForTheNext) {
+  auto frames = cycle(1);
+  frames.erase(frames.begin() + 10);
+  for (const CanFrame& f : frames) take(f, 100 * kMillisecond);
+  radar_.tick(115 * kMillisecond, out_);
+  EXPECT_EQ(out_.scans, 0u) << "its frame may still come";
+  radar_.tick(125 * kMillisecond, out_);
+  ASSERT_EQ(out_.scans, 1u);
+  EXPECT_EQ(out_.scan->integrity, scan_integrity::kIncomplete);
+  EXPECT_EQ(out_.last_reception.received_ns, 100 * kMillisecond);
+  radar_.tick(200 * kMillisecond, out_);
+  EXPECT_EQ(out_.scans, 1u) << "once";
+}
+
+TEST_F(ToyotaRadarTest, AFrameThatComesAgainBeginsTheNextCycle) {
   const auto frames = cycle(1);
-  for (std::size_t i = 0; i < 20; ++i) {
-    ASSERT_EQ(take(radar, frames[i], static_cast<std::int64_t>(i)), DecodeResult::kAccepted);
-  }
+  for (std::size_t i = 0; i < 20; ++i) take(frames[i], static_cast<std::int64_t>(i));
+  EXPECT_EQ(out_.scans, 0u);
   // Without a pause, as on a bus that is late.
-  EXPECT_EQ(take(radar, frames[6], 21), DecodeResult::kComplete);
-  radar.write_scan(scan);
-  EXPECT_EQ(radar.missing_frames(), 12u);
-  EXPECT_EQ(take(radar, frames[6], 21), DecodeResult::kAccepted) << "the first of its own cycle";
+  for (std::size_t i = 6; i < 26; ++i) take(frames[i], 21);
+  EXPECT_EQ(out_.scans, 1u);
+  for (std::size_t i = 0; i < 6; ++i) take(frames[i], 22);
+  for (std::size_t i = 26; i < 32; ++i) take(frames[i], 22);
+  EXPECT_EQ(out_.scans, 2u) << "the frame that came again was the first of its own cycle";
+  EXPECT_EQ(out_.scan->integrity, 0u);
+  EXPECT_EQ(out_.last_reception.received_ns, 21);
 }
 
-TEST(ToyotaRadar, WrongFramesAreRefusedWithAReason) {
-  ToyotaRadar radar;
-  std::string_view problem;
+TEST_F(ToyotaRadarTest, WrongFramesAreRefusedWithAReason) {
   CanFrame frame = track_a(0, 1, true, 20.0);
-  EXPECT_EQ(radar.take(0x123, frame.bytes, 0, problem), DecodeResult::kIgnored);
-  EXPECT_EQ(radar.take(frame.id, std::span(frame.bytes).first(7), 0, problem), DecodeResult::kBadLength);
-  EXPECT_NE(problem.find("8 bytes"), std::string_view::npos);
+  const FrameStamp stamp{0, 0, TimeSource::kLinkArrival};
+  radar_.take(can_frame(0x123, frame.bytes), stamp, out_);
+  EXPECT_EQ(out_.all_faults(), 0u);
+  radar_.take(can_frame(frame.id, std::span(frame.bytes).first(7)), stamp, out_);
+  EXPECT_EQ(out_.count(Fault::kWireLength), 1u);
+  EXPECT_NE(out_.last_fault.find("8 bytes"), std::string::npos);
   frame.bytes[2] = static_cast<std::uint8_t>(frame.bytes[2] ^ 1);
-  EXPECT_EQ(radar.take(frame.id, frame.bytes, 0, problem), DecodeResult::kBadValue);
-  EXPECT_NE(problem.find("checksum"), std::string_view::npos);
+  take(frame, 0);
+  EXPECT_EQ(out_.count(Fault::kWireValue), 1u);
+  EXPECT_NE(out_.last_fault.find("checksum"), std::string::npos);
+}
+
+/// Any payload of any length under the radar's ids: counted, never worse.
+TEST_F(ToyotaRadarTest, SurvivesMutations) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 200'000; ++i) {
+    CanFrame frame = cycle(static_cast<unsigned>(i))[random() % 32];
+    for (unsigned flips = random() % 4; flips > 0; --flips)
+      frame.bytes[random() % 8] ^= static_cast<std::uint8_t>(random());
+    if (random() % 2 == 0) seal(frame.id, frame.bytes);
+    radar_.take(can_frame(frame.id, std::span(frame.bytes).first(random() % 9)),
+                {static_cast<std::int64_t>(random() % 1'000'000'000), 0, TimeSource::kLinkArrival}, out_);
+    ASSERT_LE(out_.scan->number_of_valid_detections, 16u);
+  }
+  EXPECT_GT(out_.count(Fault::kWireLength), 100u);
+  EXPECT_GT(out_.count(Fault::kWireValue), 100u);
+  EXPECT_GT(out_.scans, 100u);
 }
 
 TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "services/common/recording/ipv4.hpp"
+#include "services/common/recording/ip.hpp"
 #include "services/common/recording/reader.hpp"
 #include "tests/simulator/wire/pcap_writer.hpp"
 
@@ -73,9 +73,9 @@ TEST(UdpDecoder, AWholeDatagramAndOneInFragmentsInAnyOrder) {
   Frame frame;
   const auto payload = payload_of(5000);
   ASSERT_EQ(feed(decoder, fragments(payload_of(100), 1, 1480), frame), PacketResult::kFrame);
-  EXPECT_EQ(frame.source_port, 0x1234);
-  EXPECT_EQ(frame.destination_port, 42102);
-  EXPECT_EQ(frame.source_ipv4, 0x0A000001u);
+  EXPECT_EQ(frame.source.port, 0x1234);
+  EXPECT_EQ(frame.destination.port, 42102);
+  EXPECT_EQ(frame.source.address.to_v4(), 0x0A000001u);
   std::mt19937 random(3);
   for (int round = 0; round < 50; ++round) {
     auto packets = fragments(payload, static_cast<std::uint16_t>(100 + round), 8 * (10 + round));
@@ -137,7 +137,7 @@ TEST(UdpDecoder, DamagedHeadersAreNamed) {
     return decoder.decode(p, LinkLayer::kRawIp, frame);
   };
   EXPECT_EQ(with(0, 0x41), PacketResult::kBadHeader) << "header of 4 bytes";
-  EXPECT_EQ(with(0, 0x65), PacketResult::kIgnored) << "IPv6";
+  EXPECT_EQ(with(0, 0x55), PacketResult::kIgnored) << "IP version 5";
   EXPECT_EQ(with(3, 0xFF), PacketResult::kTruncated) << "longer than captured";
   EXPECT_EQ(with(9, 6), PacketResult::kIgnored) << "TCP";
   EXPECT_EQ(with(25, 0xFF), PacketResult::kTruncated) << "UDP length";

@@ -127,7 +127,7 @@ TEST(Simulator, TheWireFormatHoldsEveryScan) {
     wire::encode_ars548(*event->scan, event->time_ns, *bytes);
     std::string_view problem;
     ASSERT_EQ(ingest::ars548::check(*bytes, problem), ingest::DecodeResult::kComplete) << problem;
-    EXPECT_EQ(ingest::ars548::decode(*bytes, *decoded).epoch_ns, event->time_ns);
+    EXPECT_EQ(ingest::ars548::decode(*bytes, *decoded).time_ns, event->time_ns);
     const std::size_t count = event->scan->number_of_valid_detections;
     ASSERT_EQ(decoded->number_of_valid_detections, count);
     EXPECT_EQ(std::memcmp(decoded->range_m.data(), event->scan->range_m.data(), count * sizeof(float)), 0);

@@ -1,4 +1,4 @@
-// Ethernet → IPv4 → UDP, with reassembly of fragments: radars send one large datagram in two dozen fragments.
+// Ethernet → IPv4 or IPv6 → UDP, with reassembly of fragments: radars send one large datagram in two dozen fragments.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace boresight::recording {
 enum class PacketResult : std::uint8_t {
   kFrame,        ///< a whole UDP datagram is in the frame
   kIncomplete,   ///< a fragment; more are to come
-  kIgnored,      ///< well-formed, but not IPv4/UDP
+  kIgnored,      ///< well-formed, but not UDP over IP
   kTruncated,    ///< a header or length reaches beyond the captured bytes
   kBadHeader,    ///< a header contradicts itself
   kFragmentLost  ///< the packet was taken, but an older datagram was given up incomplete

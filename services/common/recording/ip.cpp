@@ -1,4 +1,4 @@
-#include "services/common/recording/ipv4.hpp"
+#include "services/common/recording/ip.hpp"
 
 #include <bitset>
 #include <cstring>
@@ -11,6 +11,7 @@ constexpr std::size_t kMaxDatagram = 65536;
 constexpr std::size_t kMaxAssemblies = 16;
 constexpr std::size_t kBlock = 8;  // fragment offsets count in blocks of eight bytes
 constexpr std::uint8_t kUdpProtocol = 17;
+constexpr std::uint16_t kEtherIpv4 = 0x0800, kEtherIpv6 = 0x86DD;
 
 std::uint16_t read_u16(const std::uint8_t* p) {
   return static_cast<std::uint16_t>(p[0] << 8 | p[1]);
@@ -38,8 +39,8 @@ bool strip_ethernet(std::span<const std::uint8_t>& bytes, std::uint16_t& type) {
 struct UdpDecoder::Assembly {
   bool active = false;
   std::uint64_t order = 0;
-  std::uint32_t source = 0, destination = 0;
-  std::uint16_t identification = 0;
+  IpAddress source, destination;
+  std::uint32_t identification = 0;
   std::size_t received = 0;
   std::size_t total = 0;  // 0 until the last fragment has come
   std::bitset<kMaxDatagram / kBlock> blocks;
@@ -63,7 +64,7 @@ std::string_view describe(PacketResult result) {
     case PacketResult::kIncomplete:
       return "fragment";
     case PacketResult::kIgnored:
-      return "not IPv4/UDP";
+      return "not UDP over IP";
     case PacketResult::kTruncated:
       return "packet ends before its headers say";
     case PacketResult::kBadHeader:
@@ -76,14 +77,72 @@ std::string_view describe(PacketResult result) {
 
 namespace {
 
+/// What a packet's IP headers say; `data` is what follows them.
+struct IpHeader {
+  IpAddress source, destination;
+  std::uint8_t protocol = 0;
+  std::size_t offset = 0;  // of the fragment
+  bool more = false;
+  std::uint32_t identification = 0;
+  std::span<const std::uint8_t> data;
+};
+
+PacketResult parse_ipv4(std::span<const std::uint8_t> ip, IpHeader& out) {
+  if (ip.size() < 20) return PacketResult::kTruncated;
+  const std::size_t header = static_cast<std::size_t>(ip[0] & 0x0F) * 4;
+  const std::size_t total = read_u16(ip.data() + 2);
+  if (header < 20 || total < header) return PacketResult::kBadHeader;
+  if (total > ip.size()) return PacketResult::kTruncated;
+  const std::uint16_t fragment = read_u16(ip.data() + 6);
+  out = {.source = IpAddress::v4(read_u32(ip.data() + 12)),
+         .destination = IpAddress::v4(read_u32(ip.data() + 16)),
+         .protocol = ip[9],
+         .offset = static_cast<std::size_t>(fragment & 0x1FFF) * kBlock,
+         .more = (fragment & 0x2000) != 0,
+         .identification = read_u16(ip.data() + 4),
+         .data = ip.subspan(header, total - header)};
+  return PacketResult::kFrame;
+}
+
+PacketResult parse_ipv6(std::span<const std::uint8_t> ip, IpHeader& out) {
+  constexpr std::uint8_t kHopByHop = 0, kRouting = 43, kFragment = 44, kDestinationOptions = 60;
+  constexpr std::size_t kHeader = 40;
+  if (ip.size() < kHeader) return PacketResult::kTruncated;
+  const std::size_t length = read_u16(ip.data() + 4);
+  if (kHeader + length > ip.size()) return PacketResult::kTruncated;
+  out = {.source = IpAddress::v6(ip.subspan<8, 16>()),
+         .destination = IpAddress::v6(ip.subspan<24, 16>()),
+         .protocol = ip[6],
+         .data = ip.subspan(kHeader, length)};
+  // Each extension header takes eight bytes or more of what is left, so this ends.
+  while (out.protocol == kHopByHop || out.protocol == kRouting || out.protocol == kFragment ||
+         out.protocol == kDestinationOptions) {
+    if (out.data.size() < kBlock) return PacketResult::kTruncated;
+    const std::uint8_t* const extension = out.data.data();
+    std::size_t size = kBlock;
+    if (out.protocol == kFragment) {
+      const std::uint16_t fragment = read_u16(extension + 2);
+      out.offset = static_cast<std::size_t>(fragment >> 3) * kBlock;
+      out.more = (fragment & 1) != 0;
+      out.identification = read_u32(extension + 4);
+    } else {
+      size += static_cast<std::size_t>(extension[1]) * kBlock;
+    }
+    if (size > out.data.size()) return PacketResult::kTruncated;
+    out.protocol = extension[0];
+    out.data = out.data.subspan(size);
+  }
+  return PacketResult::kFrame;
+}
+
 PacketResult take_udp(std::span<const std::uint8_t> datagram, Frame& frame) {
   if (datagram.size() < 8) return PacketResult::kTruncated;
   const std::size_t length = read_u16(datagram.data() + 4);
   if (length < 8) return PacketResult::kBadHeader;
   if (length > datagram.size()) return PacketResult::kTruncated;
   frame.kind = FrameKind::kUdp;
-  frame.source_port = read_u16(datagram.data());
-  frame.destination_port = read_u16(datagram.data() + 2);
+  frame.source.port = read_u16(datagram.data());
+  frame.destination.port = read_u16(datagram.data() + 2);
   frame.payload = datagram.subspan(8, length - 8);
   return PacketResult::kFrame;
 }
@@ -95,33 +154,31 @@ PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer 
   if (link == LinkLayer::kEthernet) {
     std::uint16_t type = 0;
     if (!strip_ethernet(ip, type)) return PacketResult::kTruncated;
-    if (type != 0x0800) return PacketResult::kIgnored;
+    if (type != kEtherIpv4 && type != kEtherIpv6) return PacketResult::kIgnored;
+    if (!ip.empty() && ip[0] >> 4 != (type == kEtherIpv4 ? 4 : 6)) return PacketResult::kBadHeader;
   }
   if (ip.empty()) return PacketResult::kTruncated;
-  if (ip[0] >> 4 != 4) return link == LinkLayer::kRawIp ? PacketResult::kIgnored : PacketResult::kBadHeader;
-  if (ip.size() < 20) return PacketResult::kTruncated;
-  const std::size_t header = static_cast<std::size_t>(ip[0] & 0x0F) * 4;
-  const std::size_t total = read_u16(ip.data() + 2);
-  if (header < 20 || total < header) return PacketResult::kBadHeader;
-  if (total > ip.size()) return PacketResult::kTruncated;
-  if (ip[9] != kUdpProtocol) return PacketResult::kIgnored;
-  frame.source_ipv4 = read_u32(ip.data() + 12);
-  frame.destination_ipv4 = read_u32(ip.data() + 16);
-  const std::uint16_t fragment = read_u16(ip.data() + 6);
-  const std::size_t offset = static_cast<std::size_t>(fragment & 0x1FFF) * kBlock;
-  const bool more = (fragment & 0x2000) != 0;
-  const std::span<const std::uint8_t> data = ip.subspan(header, total - header);
+  IpHeader header;
+  PacketResult parsed = PacketResult::kIgnored;
+  if (ip[0] >> 4 == 4) parsed = parse_ipv4(ip, header);
+  if (ip[0] >> 4 == 6) parsed = parse_ipv6(ip, header);
+  if (parsed != PacketResult::kFrame) return parsed;
+  if (header.protocol != kUdpProtocol) return PacketResult::kIgnored;
+  frame.source.address = header.source;
+  frame.destination.address = header.destination;
+  const std::span<const std::uint8_t> data = header.data;
+  const std::size_t offset = header.offset;
+  const bool more = header.more;
   if (offset == 0 && !more) return take_udp(data, frame);
 
-  const std::uint16_t identification = read_u16(ip.data() + 4);
   if (data.empty() || offset + data.size() > kMaxDatagram || (more && data.size() % kBlock != 0)) {
     return PacketResult::kBadHeader;
   }
   Assembly* assembly = nullptr;
   Assembly* oldest = &state_->assemblies.front();
   for (Assembly& a : state_->assemblies) {
-    if (a.active && a.source == frame.source_ipv4 && a.destination == frame.destination_ipv4 &&
-        a.identification == identification) {
+    if (a.active && a.source == header.source && a.destination == header.destination &&
+        a.identification == header.identification) {
       assembly = &a;
     }
     if (!a.active ? oldest->active : (oldest->active && a.order < oldest->order)) oldest = &a;
@@ -131,9 +188,9 @@ PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer 
     if (oldest->active) unfinished = PacketResult::kFragmentLost;
     assembly = oldest;
     assembly->active = true;
-    assembly->source = frame.source_ipv4;
-    assembly->destination = frame.destination_ipv4;
-    assembly->identification = identification;
+    assembly->source = header.source;
+    assembly->destination = header.destination;
+    assembly->identification = header.identification;
     assembly->received = 0;
     assembly->total = 0;
     assembly->blocks.reset();

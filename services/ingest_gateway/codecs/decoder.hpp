@@ -1,0 +1,67 @@
+// What every codec of a source looks like to the gateway: frames in, scans and ego readings out.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "interfaces/messages/ego_motion.hpp"
+#include "interfaces/messages/radar_scan.hpp"
+#include "interfaces/messages/service_status.hpp"
+#include "services/common/recording/frame.hpp"
+#include "services/ingest_gateway/codecs/frame_stamp.hpp"
+
+namespace boresight::ingest {
+
+/// The sensor's own stamp of a scan.
+struct SensorStamp {
+  std::int64_t time_ns = 0;   ///< on the sensor's clock: since the epoch if synchronised, else since whenever it likes
+  bool synchronised = false;  ///< the sensor says that its clock follows the vehicle's (gPTP or alike)
+};
+
+/// Signals of the vehicle's motion that one frame carries; what it does not carry is absent.
+struct EgoReading {
+  std::optional<double> speed_mps;  ///< of the rear axle's centre, as signalled; + forward if the signal has a sign
+  bool speed_is_signed = false;     ///< the sign of the speed tells the direction of travel
+  std::optional<double> yaw_rate_radps;      ///< + left
+  std::optional<double> steering_angle_rad;  ///< at the steering wheel, + left
+  std::optional<bool> reverse;               ///< gear
+};
+
+/// Where a decoder puts its products. A scan is written straight into the memory that goes to the other processes.
+class DecoderOutput {
+ public:
+  virtual ~DecoderOutput() = default;
+  /// Memory for a scan, or nullptr if none can be had (which is counted): the scan is lost then. It holds stale data:
+  /// every field but `header` must be written, `integrity` with what the decoder knows (kIncomplete) or 0. Followed by
+  /// publish_scan() or discard_scan().
+  [[nodiscard]] virtual RadarScan* begin_scan() = 0;
+  /// `reception` is the stamp of the frame to which the time of measurement is tied: the FIRST frame of a cycle.
+  /// `cycle_counter_bits`: width of the sensor's own counter in scan.cycle_counter, 0 if the sensor has none (the
+  /// gateway counts then), so that gaps are found across its wrap.
+  virtual void publish_scan(const FrameStamp& reception, const std::optional<SensorStamp>& sensor,
+                            unsigned cycle_counter_bits) = 0;
+  virtual void discard_scan() = 0;
+  /// The sensor's own word on itself: source_condition bits, all of them each time.
+  virtual void report_conditions(std::uint32_t conditions) = 0;
+  virtual void take_ego(const EgoReading& reading, const FrameStamp& reception) = 0;
+  /// Something was rejected; `what` names the field and what is allowed. Not kept: may be a temporary.
+  virtual void fault(Fault fault, std::string_view what) = 0;
+};
+
+/// One source: a radar, or a set of ego signals. Nothing allocates after construction.
+class Decoder {
+ public:
+  virtual ~Decoder() = default;
+  Decoder() = default;
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+
+  /// Takes a frame of the source's own link. Frames of other ids on a shared bus are ignored silently.
+  virtual void take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) = 0;
+  /// Time passes without a frame of this source: called every 5 ms or so with the time of the frames' clock, so that an
+  /// incomplete cycle ends without waiting for the next one.
+  virtual void tick(std::int64_t /*now_ns*/, DecoderOutput& /*output*/) {}
+};
+
+}  // namespace boresight::ingest
