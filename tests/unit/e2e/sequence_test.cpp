@@ -144,6 +144,36 @@ TEST(Sequence, OneLateMessageDoesNotRejectTheNextGoodOne) {
   }
 }
 
+TEST(Sequence, StrayCountersAreForgottenWhenTheSequenceGoesOn) {
+  for (const Named& named : all_configs()) {
+    Checker checker(named.config);
+    EXPECT_EQ(checker.check(message(named.config, 5)), Status::kInitial);
+    EXPECT_EQ(checker.check(message(named.config, 9)), Status::kWrongSequence);
+    EXPECT_EQ(checker.check(message(named.config, 6)), Status::kOk);
+    EXPECT_EQ(checker.check(message(named.config, 10)), Status::kWrongSequence) << named.name << ": follows the stray";
+  }
+}
+
+TEST(Sequence, AfterTwoStrayCountersTheOldSequenceIsGivenUp) {
+  for (const Named& named : all_configs()) {
+    Checker checker(named.config);
+    EXPECT_EQ(checker.check(message(named.config, 1)), Status::kInitial);
+    EXPECT_EQ(checker.check(message(named.config, 5)), Status::kWrongSequence);
+    EXPECT_EQ(checker.check(message(named.config, 10)), Status::kWrongSequence);
+    EXPECT_EQ(checker.check(message(named.config, 2)), Status::kWrongSequence) << named.name;
+    EXPECT_EQ(checker.check(message(named.config, 3)), Status::kOk) << named.name;
+  }
+}
+
+TEST(Sequence, AStepOfOneIsNeverWrong) {
+  for (const Named& named : all_configs()) {
+    const Config config = with_delta(named.config, 0);  // not valid, but it must not lock the sender out
+    Checker checker(config);
+    EXPECT_EQ(checker.check(message(config, 1)), Status::kInitial);
+    EXPECT_EQ(checker.check(message(config, 2)), Status::kOk) << named.name;
+  }
+}
+
 TEST(Sequence, ASenderThatJumpsAboutIsRejectedUntilItSettles) {
   for (const Named& named : all_configs()) {
     Checker checker(named.config);
@@ -192,8 +222,9 @@ TEST(Sequence, ResetForgetsTheCounterAndKeepsTheStatistics) {
     EXPECT_EQ(checker.check(message(named.config, 2)), Status::kInitial);
     EXPECT_EQ(checker.check(message(named.config, 9)), Status::kWrongSequence);
     checker.reset();
-    EXPECT_EQ(checker.check(message(named.config, 9)), Status::kInitial);
-    EXPECT_EQ(checker.check(message(named.config, 10)), Status::kOk);
+    EXPECT_EQ(checker.check(message(named.config, 4)), Status::kInitial);
+    EXPECT_EQ(checker.check(message(named.config, 10)), Status::kWrongSequence)
+        << named.name << ": follows the old stray";
     EXPECT_EQ(checker.statistics().received, 4u);
     EXPECT_EQ(checker.config().profile, named.config.profile);
   }
