@@ -1,0 +1,32 @@
+// Any bytes as a datagram of SOME/IP messages: every message lies within it, and the reader comes to an end.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "services/ingest_gateway/codecs/someip/message.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace boresight::ingest::someip;
+  MessageReader reader({data, size});
+  Message message;
+  std::size_t read = 0;
+  std::size_t faults_that_end = 0;
+  for (ReadResult result; (result = reader.next(message)) != ReadResult::kEnd; ++read) {
+    if (describe(result).empty() != (result == ReadResult::kMessage)) std::abort();
+    if (faults_that_end > 0 || read > size / kHeaderBytes) std::abort();
+    switch (result) {
+      case ReadResult::kMessage: {
+        if (message.protected_data.data() < data || message.protected_data.size() < kLengthCountsBytes) std::abort();
+        if (message.protected_data.data() + message.protected_data.size() > data + size) std::abort();
+        if (message.payload.size() + kLengthCountsBytes != message.protected_data.size()) std::abort();
+        break;
+      }
+      case ReadResult::kProtocolVersion:
+      case ReadResult::kMessageType:
+        break;
+      default:
+        ++faults_that_end;
+    }
+  }
+  return 0;
+}
