@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "services/ingest_gateway/codecs/ars548.hpp"
+#include "services/ingest_gateway/codecs/toyota_ego.hpp"
 #include "services/ingest_gateway/codecs/toyota_radar.hpp"
 
 namespace boresight::ingest {
@@ -29,7 +30,10 @@ recording::IpAddress address_of(const std::string& text) {
 }  // namespace
 
 Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink)
-    : sink_(sink), ego_interface_(vehicle.ego.source.interface), ego_(vehicle.ego) {
+    : sink_(sink),
+      ego_interface_(vehicle.ego.source.interface),
+      ego_(vehicle.ego),
+      ego_source_(nullptr, std::make_unique<ToyotaEgo>(), static_cast<EgoReceiver&>(*this), sink) {
   for (const RadarConfig& radar : vehicle.radars) {
     sources_.push_back(std::make_unique<Source>(&radar, make_decoder(radar), static_cast<EgoReceiver&>(*this), sink_));
     Source* const source = sources_.back().get();
@@ -66,18 +70,7 @@ void Gateway::tick(std::int64_t now_ns) {
 
 void Gateway::take_can(const recording::Frame& frame, const FrameStamp& stamp) {
   const std::string_view interface = frame.interface_name();
-  if (interface == ego_interface_) {
-    std::string_view problem;
-    const DecodeResult result = ego_.take(frame.can_id, frame.payload, stamp.received_ns, problem);
-    if (result == DecodeResult::kComplete) {
-      if (EgoMotion* const out = sink_.begin_ego()) {
-        ego_.write(*out);
-        sink_.publish_ego({ego_.stamp_ns(), stamp.source});
-      }
-    } else if (const auto fault = fault_of(result)) {
-      sink_.fault(*fault, problem, 0);
-    }
-  }
+  if (interface == ego_interface_) ego_source_.take(frame, stamp);
   for (const CanRoute& route : can_) {
     if (route.interface.empty() || route.interface == interface) route.source->take(frame, stamp);
   }
@@ -96,7 +89,17 @@ void Gateway::take_udp(const recording::Frame& frame, const FrameStamp& stamp) {
   if (known_port) sink_.fault(Fault::kWireUnknown, "datagram to a radar's port from an unknown sender", 0);
 }
 
-void Gateway::take_ego(std::uint32_t, const EgoReading&, const FrameStamp&) {}
+void Gateway::take_ego(std::uint32_t source_id, const EgoReading& reading, const FrameStamp& reception) {
+  if (source_id != ego_source_.id()) return;
+  const EgoAssembler::Result result = ego_.take(reading, reception);
+  if (result.time_jumped) sink_.fault(Fault::kTimeJump, "ego signals: the clock of their frames went back", source_id);
+  if (!result.rejected.empty()) sink_.fault(Fault::kWireValue, result.rejected, source_id);
+  if (!result.complete) return;
+  EgoMotion* const out = sink_.begin_ego();
+  if (out == nullptr) return;  // counted where the memory was refused
+  ego_.write(*out);
+  sink_.publish_ego(ego_.time());
+}
 
 const EgoMotion* Gateway::latest_ego(std::int64_t) const {
   return nullptr;

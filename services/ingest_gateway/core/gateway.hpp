@@ -9,7 +9,7 @@
 #include "services/common/recording/frame.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/ingest_gateway/codecs/frame_stamp.hpp"
-#include "services/ingest_gateway/codecs/toyota_ego.hpp"
+#include "services/ingest_gateway/core/ego_assembler.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
 #include "services/ingest_gateway/core/source.hpp"
 
@@ -47,7 +47,8 @@ class Gateway : private EgoReceiver {
   Sink& sink_;
   std::int64_t last_tick_ns_ = 0;
   std::string ego_interface_;
-  ToyotaEgo ego_;
+  EgoAssembler ego_;
+  Source ego_source_;
   std::vector<std::unique_ptr<Source>> sources_;
   std::vector<CanRoute> can_;
   std::vector<UdpRoute> udp_;

@@ -193,57 +193,48 @@ TEST_F(ToyotaRadarTest, SurvivesMutations) {
 
 TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
   const simulator::EgoSignals truth{.speed_mps = 13.37, .yaw_rate_radps = 0.21, .steering_angle_rad = -0.7};
-  ToyotaEgo ego(EgoConfig{});
-  std::string_view problem;
-  DecodeResult result = DecodeResult::kIgnored;
+  ToyotaEgo ego;
+  MemoryOutput output;
+  EgoReading all;
   for (const auto& frame : simulator::wire::encode_ego(truth)) {
-    result = ego.take(frame.id, frame.bytes, 5 * kMillisecond, problem);
+    ego.take(can_frame(frame.id, frame.bytes), {5 * kMillisecond, 0, TimeSource::kLinkArrival}, output);
+    EXPECT_EQ(output.last_reception.received_ns, 5 * kMillisecond);
+    const EgoReading& one = output.last_ego;
+    EXPECT_EQ(one.speed_mps.has_value() + one.yaw_rate_radps.has_value() + one.steering_angle_rad.has_value(), 1);
+    EXPECT_FALSE(one.reverse.has_value());
+    EXPECT_FALSE(one.speed_is_signed) << "these wheels do not tell the direction";
+    if (one.speed_mps) all.speed_mps = one.speed_mps;
+    if (one.yaw_rate_radps) all.yaw_rate_radps = one.yaw_rate_radps;
+    if (one.steering_angle_rad) all.steering_angle_rad = one.steering_angle_rad;
   }
-  ASSERT_EQ(result, DecodeResult::kComplete);
-  EgoMotion out{};
-  ego.write(out);
-  EXPECT_TRUE(out.has(ego_field::kSpeed | ego_field::kYawRate | ego_field::kSteeringAngle));
-  EXPECT_NEAR(out.speed_mps, truth.speed_mps, 0.5 * 0.01 / 3.6 + 1e-6);
-  EXPECT_NEAR(out.yaw_rate_radps, truth.yaw_rate_radps, 0.5 * 0.244 * M_PI / 180.0 + 1e-6);
-  EXPECT_NEAR(out.steering_angle_rad, truth.steering_angle_rad, 0.06 * M_PI / 180.0);
+  EXPECT_EQ(output.ego_readings, 3u);
+  EXPECT_EQ(output.all_faults(), 0u);
+  EXPECT_NEAR(all.speed_mps.value(), truth.speed_mps, 0.5 * 0.01 / 3.6 + 1e-6);
+  EXPECT_NEAR(all.yaw_rate_radps.value(), truth.yaw_rate_radps, 0.5 * 0.244 * M_PI / 180.0 + 1e-6);
+  EXPECT_NEAR(all.steering_angle_rad.value(), truth.steering_angle_rad, 0.06 * M_PI / 180.0);
 }
 
-TEST(ToyotaEgo, OldSignalsAreLeftOut) {
-  ToyotaEgo ego(EgoConfig{});
-  std::string_view problem;
-  const auto frames =
-      simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
-  for (const auto& f : frames) static_cast<void>(ego.take(f.id, f.bytes, 0, problem));
-  EXPECT_EQ(ego.take(frames[2].id, frames[2].bytes, 300 * kMillisecond, problem), DecodeResult::kComplete);
-  EgoMotion out{};
-  ego.write(out);
-  EXPECT_EQ(out.fields, ego_field::kSpeed);
-}
-
-TEST(ToyotaEgo, AccelerationIsTheSlopeOfTheSpeed) {
-  ToyotaEgo ego(EgoConfig{});
-  std::string_view problem;
-  for (int i = 0; i < 200; ++i) {
-    const auto frames = simulator::wire::encode_ego(
-        {.speed_mps = 10.0 + 1.5 * 0.0125 * i, .yaw_rate_radps = 0.0, .steering_angle_rad = 0.0});
-    ASSERT_EQ(ego.take(frames[2].id, frames[2].bytes, i * 12'500'000LL, problem), DecodeResult::kComplete);
-  }
-  EgoMotion out{};
-  ego.write(out);
-  EXPECT_NEAR(out.longitudinal_acceleration_mps2, 1.5, 0.15);
-}
-
-TEST(ToyotaEgo, WrongFramesAreRefused) {
-  ToyotaEgo ego(EgoConfig{});
-  std::string_view problem;
+TEST(ToyotaEgo, WrongFramesAreRefusedWithAReason) {
+  ToyotaEgo ego;
+  MemoryOutput output;
   auto frames = simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
-  EXPECT_EQ(ego.take(0x0B4, frames[0].bytes, 0, problem), DecodeResult::kIgnored);
-  EXPECT_EQ(ego.take(frames[2].id, std::span(frames[2].bytes).first(6), 0, problem), DecodeResult::kBadLength);
+  ego.take(can_frame(0x0B4, frames[0].bytes), {}, output);
+  EXPECT_EQ(output.all_faults(), 0u) << "frames of others are no faults";
+  for (const auto& frame : frames) {
+    ego.take(can_frame(frame.id, std::span(frame.bytes).first(6)), {}, output);
+    ego.take(can_frame(frame.id, {}), {}, output);
+  }
+  EXPECT_EQ(output.count(Fault::kWireLength), 6u);
+  EXPECT_NE(output.last_fault.find("8 bytes"), std::string::npos);
   frames[0].bytes[1] = static_cast<std::uint8_t>(frames[0].bytes[1] ^ 4);
-  EXPECT_EQ(ego.take(frames[0].id, frames[0].bytes, 0, problem), DecodeResult::kBadValue);
+  ego.take(can_frame(frames[0].id, frames[0].bytes), {}, output);
+  EXPECT_NE(output.last_fault.find("checksum"), std::string::npos);
   Bytes fast{};
   fast.fill(0xFF);
-  EXPECT_EQ(ego.take(layout::kWheelSpeedsId, fast, 0, problem), DecodeResult::kBadValue);
+  ego.take(can_frame(layout::kWheelSpeedsId, fast), {}, output);
+  EXPECT_NE(output.last_fault.find("252"), std::string::npos);
+  EXPECT_EQ(output.count(Fault::kWireValue), 2u);
+  EXPECT_EQ(output.ego_readings, 0u);
 }
 
 }  // namespace
