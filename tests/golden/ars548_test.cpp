@@ -1,14 +1,12 @@
 // One real scan of an ARS548: field by field as the open-source driver nebula decodes it, and the motion of the sensor
 // that its stationary detections tell.
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <map>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "tests/golden/support/decoded.hpp"
+#include "tests/golden/support/yaml.hpp"
 
 namespace boresight::golden {
 namespace {
@@ -18,22 +16,6 @@ namespace fs = std::filesystem;
 const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
 const fs::path kRecording = kFolder / "ars548_real_2msgs_ipfrag.pcap";
 const fs::path kExpected = kFolder / "ars548/1708578204_202447652_detection.yaml";
-
-/// The `key: number` lines of a list of detections; true and false are 1 and 0.
-std::vector<std::map<std::string, double>> read_detections(const fs::path& file, std::map<std::string, double>& head) {
-  std::vector<std::map<std::string, double>> detections;
-  std::ifstream input(file);
-  for (std::string line; std::getline(input, line);) {
-    const std::size_t colon = line.find(':');
-    if (colon == std::string::npos) continue;
-    if (line.find("- ") != std::string::npos) detections.emplace_back();
-    const std::size_t begin = line.find_first_not_of(" -");
-    const std::string text = line.substr(colon + 1);
-    const double value = text.find("true") != std::string::npos ? 1.0 : std::atof(text.c_str());
-    (detections.empty() ? head : detections.back())[line.substr(begin, colon - begin)] = value;
-  }
-  return detections;
-}
 
 class Ars548 : public testing::Test {
  protected:
@@ -51,8 +33,8 @@ class Ars548 : public testing::Test {
 
 TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
   EXPECT_TRUE(decoding_.faults.empty()) << decoding_.faults.front();
-  std::map<std::string, double> head;
-  const auto expected = read_detections(kExpected, head);
+  Record head;
+  const auto expected = read_yaml_list(kExpected, head);
   ASSERT_EQ(expected.size(), 308u);
   ASSERT_EQ(scan_->number_of_valid_detections, 308u);
   EXPECT_EQ(scan_->dropped_detections, 0u);

@@ -1,0 +1,187 @@
+// One real cycle of an SRR520 on CAN FD: field by field as the open-source driver nebula decodes it, and the speed that
+// its stationary detections tell.
+#include "services/ingest_gateway/codecs/srr520.hpp"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "services/common/recording/reader.hpp"
+#include "tests/golden/support/decoded.hpp"
+#include "tests/golden/support/yaml.hpp"
+#include "tests/unit/ingest_gateway/memory_output.hpp"
+
+namespace boresight::golden {
+namespace {
+
+namespace fs = std::filesystem;
+namespace layout = wire::srr520;
+
+const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
+const fs::path kRecording = kFolder / "srr520_real_canfd.log";
+
+struct StoredFrame {
+  std::uint32_t id;
+  std::vector<std::uint8_t> bytes;
+};
+
+struct StoredScan {
+  RadarScan scan;
+  ingest::SensorStamp sensor;
+};
+
+/// Keeps every scan.
+class Output : public ingest::MemoryOutput {
+ public:
+  void publish_scan(const ingest::FrameStamp& reception, const std::optional<ingest::SensorStamp>& sensor,
+                    unsigned bits) override {
+    MemoryOutput::publish_scan(reception, sensor, bits);
+    stored.push_back({*scan, sensor.value()});
+  }
+  std::vector<StoredScan> stored;
+};
+
+/// Six significant digits are what the files have.
+bool close(double ours, double theirs) {
+  return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 2e-6;
+}
+
+class Srr520 : public testing::Test {
+ protected:
+  void SetUp() override {
+    REQUIRE_RECORDING(kRecording);
+    const auto reader =
+        recording::open_recording(kRecording, [](const std::string& problem) { ADD_FAILURE() << problem; });
+    for (recording::Frame frame; reader->next(frame);) {
+      frames_.push_back({frame.can_id, {frame.payload.begin(), frame.payload.end()}});
+    }
+    ASSERT_EQ(frames_.size(), 97u);
+  }
+  void decode() {
+    ingest::Srr520 decoder;
+    for (const StoredFrame& stored : frames_) {
+      recording::Frame frame = ingest::can_frame(stored.id, stored.bytes);
+      frame.kind = recording::FrameKind::kCanFd;
+      decoder.take(frame, {1'000'000'000, 0, TimeSource::kLinkArrival}, output_);
+    }
+  }
+  void expect_like(const StoredScan& stored, const char* file) {
+    Record head;
+    const auto expected = read_yaml_list(kFolder / "srr520" / file, head);
+    const RadarScan& scan = stored.scan;
+    ASSERT_EQ(scan.number_of_valid_detections, expected.size());
+    EXPECT_EQ(stored.sensor.time_ns, static_cast<std::int64_t>(head.at("sec")) * 1'000'000'000 +
+                                         static_cast<std::int64_t>(head.at("nanosec")));
+    EXPECT_EQ(stored.sensor.synchronised, head.at("global_time_stamp_sync_status") == 1.0);
+    EXPECT_EQ(scan.cycle_counter, head.at("cycle_counter"));
+    EXPECT_TRUE(close(2.0 * scan.range_rate_max_mps, head.at("v_ambiguous")));
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const Record& row = expected[i];
+      EXPECT_TRUE(close(scan.range_m[i], row.at("range"))) << i;
+      EXPECT_TRUE(close(scan.azimuth_rad[i], row.at("azimuth_angle"))) << i;
+      EXPECT_TRUE(close(scan.range_rate_mps[i], row.at("range_rate"))) << i;
+      EXPECT_TRUE(close(scan.rcs_dbsm[i], row.at("rcs"))) << i;
+      EXPECT_TRUE(close(scan.snr_db[i], row.at("snr"))) << i;
+      EXPECT_EQ(scan.detection_flags[i], 0u) << i;
+    }
+  }
+  /// What the scan does not carry: header fields and hypotheses, read from the frames of that list.
+  void expect_rest_like(std::uint32_t header_id, const char* file) {
+    Record head;
+    const auto expected = read_yaml_list(kFolder / "srr520" / file, head);
+    std::size_t at = 0;
+    while (frames_[at].id != header_id) ++at;
+    const auto& header = frames_[at].bytes;
+    const auto number = [&](std::size_t offset, std::size_t size) {
+      double value = 0.0;
+      for (std::size_t i = 0; i < size; ++i) value = value * 256.0 + header[offset + i];
+      return value;
+    };
+    EXPECT_EQ(number(layout::header::kSensorClock_us, 4), head.at("internal_time_stamp_usec"));
+    EXPECT_EQ(number(layout::header::kSignalStatus, 1), head.at("signal_status"));
+    EXPECT_EQ(number(layout::header::kSequenceCounter, 1), head.at("sequence_counter"));
+    EXPECT_TRUE(close(0.1 * number(layout::header::kMaxRange, 2), head.at("max_range")));
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const auto& record = frames_[at + 1 + i / 10].bytes;
+      const auto detection = ingest::decode_srr520_detection(
+          std::span(record).subspan(i % 10 * layout::kDetectionBytes).first<layout::kDetectionBytes>());
+      for (unsigned k = 0; k < 5; ++k) {
+        EXPECT_EQ(100.0 * (detection.hypotheses >> k & 1u), expected[i].at("pdh0" + std::to_string(k))) << i;
+      }
+    }
+  }
+
+  std::vector<StoredFrame> frames_;
+  Output output_;
+};
+
+TEST_F(Srr520, IsDecodedAsByNebulaFieldByField) {
+  decode();
+  EXPECT_EQ(output_.all_faults(), 0u) << output_.last_fault;
+  ASSERT_EQ(output_.stored.size(), 2u);
+  expect_like(output_.stored[0], "1708578209_45566935_near_detection.yaml");
+  expect_like(output_.stored[1], "1708578209_76111685_hrr_detection.yaml");
+  expect_rest_like(layout::kNearHeaderId, "1708578209_45566935_near_detection.yaml");
+  expect_rest_like(layout::kHrrHeaderId, "1708578209_76111685_hrr_detection.yaml");
+  EXPECT_EQ(output_.conditions, 0u) << "the status frame's CRC is right, too, and it has nothing to complain of";
+}
+
+TEST_F(Srr520, TellsTheEgoMotion) {
+  decode();
+  Record head;
+  read_yaml_list(kFolder / "srr520/1708578208_992410284_object.yaml", head);
+  ASSERT_EQ(output_.ego_readings, 1u);
+  EXPECT_TRUE(close(output_.last_ego.speed_mps.value(), head.at("ego_vx")));
+  EXPECT_TRUE(close(output_.last_ego.yaw_rate_radps.value(), head.at("ego_yaw_rate")));
+}
+
+TEST_F(Srr520, EachListIsCheckedByItsOwnCrc) {
+  std::vector<std::vector<std::uint8_t>> closings;
+  for (const StoredFrame& frame : frames_) {
+    if (frame.id == layout::kClosingId) closings.push_back(frame.bytes);
+  }
+  const std::vector<std::vector<std::uint8_t>> expected{{0, 0xBD, 0xCD, 0}, {2, 0x26, 0xDC, 0}, {1, 0x30, 0x59, 0}};
+  ASSERT_EQ(closings, expected);
+  for (StoredFrame& frame : frames_) {
+    const bool record = frame.bytes.size() == layout::kRecordFrameBytes && frame.id != layout::kStatusId;
+    if (record && frame.bytes[layout::kFrameNumber] == 4) frame.bytes[5] ^= 0x10;
+  }
+  decode();
+  EXPECT_EQ(output_.scans, 0u);
+  EXPECT_EQ(output_.ego_readings, 0u);
+  EXPECT_EQ(output_.count(Fault::kWireValue), 3u);
+}
+
+TEST_F(Srr520, StationaryDetectionsTellTheSpeed) {
+  decode();
+  ASSERT_EQ(output_.stored.size(), 2u);
+  for (const StoredScan& stored : output_.stored) {
+    // ṙ = −u·v for what stands still: v by iteratively trimmed least squares over all directions u.
+    const RadarScan& scan = stored.scan;
+    Eigen::Vector2d velocity(6.0, 0.0);
+    std::size_t inliers = 0;
+    for (double gate = 4.0; gate > 0.29; gate *= 0.8) {
+      Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+      Eigen::Vector2d right = Eigen::Vector2d::Zero();
+      inliers = 0;
+      for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+        const Eigen::Vector2d u(std::cos(scan.azimuth_rad[i]), std::sin(scan.azimuth_rad[i]));
+        if (std::abs(scan.range_rate_mps[i] + u.dot(velocity)) > gate) continue;
+        normal += u * u.transpose();
+        right -= scan.range_rate_mps[i] * u;
+        ++inliers;
+      }
+      velocity = normal.ldlt().solve(right);
+    }
+    std::printf("%zu of %u inliers, speed %.3f m/s, signalled %.3f m/s\n", inliers, scan.number_of_valid_detections,
+                velocity.norm(), output_.last_ego.speed_mps.value());
+    EXPECT_GT(inliers, scan.number_of_valid_detections * 3 / 4);
+    EXPECT_NEAR(velocity.norm(), output_.last_ego.speed_mps.value(), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace boresight::golden

@@ -1,0 +1,31 @@
+// The little of YAML that the expected decodings are written in.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace boresight::golden {
+
+using Record = std::map<std::string, double>;
+
+/// The `key: number` lines of a list; what precedes the first `- ` goes to `head`; true and false are 1 and 0.
+inline std::vector<Record> read_yaml_list(const std::filesystem::path& file, Record& head) {
+  std::vector<Record> records;
+  std::ifstream input(file);
+  for (std::string line; std::getline(input, line);) {
+    const std::size_t colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    if (line.find("- ") != std::string::npos) records.emplace_back();
+    const std::size_t begin = line.find_first_not_of(" -");
+    const std::string text = line.substr(colon + 1);
+    const double value = text.find("true") != std::string::npos ? 1.0 : std::atof(text.c_str());
+    (records.empty() ? head : records.back())[line.substr(begin, colon - begin)] = value;
+  }
+  return records;
+}
+
+}  // namespace boresight::golden
