@@ -1,0 +1,68 @@
+#include "services/ingest_gateway/codecs/ars548_motion.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "interfaces/wire/ars548.hpp"
+
+namespace boresight::ingest::ars548 {
+
+namespace layout = wire::ars548;
+
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+// What the sensor accepts, as the open-source driver nebula has it.
+constexpr double kMaxAcceleration_mps2 = 65.0;
+constexpr double kMaxSpeed_kmph = 350.0;
+constexpr double kMaxYawRate_degps = 163.83;
+constexpr double kMaxSteeringAngle_deg = 90.0;
+
+void put_u16(std::uint8_t* p, std::uint16_t value) {
+  p[0] = static_cast<std::uint8_t>(value >> 8);
+  p[1] = static_cast<std::uint8_t>(value & 0xFF);
+}
+void put_u32(std::uint8_t* p, std::uint32_t value) {
+  put_u16(p, static_cast<std::uint16_t>(value >> 16));
+  put_u16(p + 2, static_cast<std::uint16_t>(value & 0xFFFF));
+}
+
+/// Header of the message, zeros elsewhere.
+std::uint8_t* begin(const layout::MotionInput& input, MotionDatagram& out) {
+  out.bytes.fill(0);
+  out.size = input.bytes;
+  put_u16(out.bytes.data(), layout::kServiceId);
+  put_u16(out.bytes.data() + 2, input.method);
+  put_u32(out.bytes.data() + 4, static_cast<std::uint32_t>(input.bytes - layout::kShortHeaderBytes));
+  return out.bytes.data() + input.value;
+}
+
+}  // namespace
+
+std::span<const MotionDatagram> MotionFeed::encode(const EgoMotion& ego, std::int64_t now_ns) {
+  if (last_ns_ != kNever && now_ns >= last_ns_ && now_ns - last_ns_ < config_.period_ns) return {};
+  std::size_t count = 0;
+  const auto put = [&](const layout::MotionInput& input, double value, double limit) {
+    if (!std::isfinite(value)) return;
+    const auto wire = static_cast<float>(std::clamp(value, -limit, limit));
+    put_u32(begin(input, datagrams_[count++]), std::bit_cast<std::uint32_t>(wire));
+  };
+  if (ego.has(ego_field::kSpeed) && std::isfinite(ego.speed_mps)) {
+    const double speed_mps = std::abs(static_cast<double>(ego.speed_mps));
+    moving_ = speed_mps > (moving_ ? config_.standing_below_mps : config_.moving_above_mps);
+    const bool backward = ego.has(ego_field::kReverse) && ego.speed_mps < 0.0F;
+    put(layout::kSpeed_kmph, 3.6 * speed_mps, kMaxSpeed_kmph);
+    *begin(layout::kDrivingDirection, datagrams_[count++]) = static_cast<std::uint8_t>(!moving_ ? 0 : backward ? 2 : 1);
+    put(layout::kLongitudinalAcceleration_mps2, ego.longitudinal_acceleration_mps2, kMaxAcceleration_mps2);
+  }
+  if (ego.has(ego_field::kYawRate)) put(layout::kYawRate_degps, ego.yaw_rate_radps * kDegrees, kMaxYawRate_degps);
+  if (ego.has(ego_field::kSteeringAngle) && config_.steering_ratio > 0.0) {
+    put(layout::kSteeringAngle_deg, ego.steering_angle_rad * kDegrees / config_.steering_ratio, kMaxSteeringAngle_deg);
+  }
+  if (count > 0) last_ns_ = now_ns;
+  return std::span(datagrams_).first(count);
+}
+
+}  // namespace boresight::ingest::ars548
