@@ -1,0 +1,28 @@
+// Session ids of SOME/IP, of events and of service discovery alike.
+#pragma once
+
+#include <cstdint>
+
+namespace boresight::replay {
+
+/// SOME/IP session ids: 1, 2, … 0xFFFF, 1, …
+class SessionCounter {
+ public:
+  /// The id to send next.
+  std::uint16_t take() {
+    const std::uint16_t session = next_;
+    next_ = next_ == 0xFFFF ? std::uint16_t{1} : static_cast<std::uint16_t>(next_ + 1);
+    wrapped_ = wrapped_ || (started_ && session == 1);
+    started_ = true;
+    return session;
+  }
+  /// Whether the id taken last is of the second round or a later one: service discovery's reboot flag is then clear.
+  [[nodiscard]] bool wrapped() const { return wrapped_; }
+
+ private:
+  std::uint16_t next_ = 1;
+  bool started_ = false;
+  bool wrapped_ = false;
+};
+
+}  // namespace boresight::replay
