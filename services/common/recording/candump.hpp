@@ -1,4 +1,4 @@
-// Lines of candump logs (can-utils): `(seconds.micro) interface ID#HEX`.
+// Lines that candump (can-utils) writes, as log files and on the console.
 #pragma once
 
 #include <array>
@@ -12,19 +12,44 @@ namespace boresight::recording {
 /// Result of parsing one line.
 enum class CandumpResult : std::uint8_t {
   kFrame,
-  kEmpty,        ///< blank line
-  kBadStamp,     ///< no `(seconds.fraction)`
-  kBadName,      ///< no interface name, or longer than 15 characters
-  kBadId,        ///< CAN id not 3 or 8 hexadecimal digits, or out of range
-  kBadData,      ///< odd digits, no hexadecimal, or more bytes than the kind of frame carries
-  kTrailingText  ///< something other than a direction (R, T) after the data
+  kEmpty,         ///< blank line, or the indented explanation that `candump -e` writes below an error frame
+  kErrorFrame,    ///< a well-formed error frame: news of the bus, not data
+  kDropCount,     ///< `candump -d` says that the kernel dropped frames here
+  kCanXl,         ///< a CAN XL frame, which nothing here decodes
+  kNoStamp,       ///< a console line without a time stamp
+  kBadStamp,      ///< a stamp that is neither `(seconds.fraction)` nor `(date time.fraction)`
+  kBadName,       ///< no interface name, or longer than 15 characters
+  kBadId,         ///< CAN id not 3 or 8 hexadecimal digits, or out of range
+  kBadData,       ///< odd digits, no hexadecimal, or another number of bytes than the kind of frame carries
+  kTrailingText,  ///< something other than a direction (R, T) or the console's ASCII column after the data
+  kTooLong        ///< longer than any line of candump
 };
 
 [[nodiscard]] std::string_view describe(CandumpResult result);
+/// Whether the line is to be reported: what was in it is lost.
+[[nodiscard]] bool is_problem(CandumpResult result);
 
-/// Parses classic (`ID#HEX`), extended (8 digits), FD (`ID##<flags>HEX`) and remote (`ID#R`) frames; tolerates a
-/// trailing direction and CR. `bytes` receives the data that `frame.payload` views.
-[[nodiscard]] CandumpResult parse_candump_line(std::string_view line, Frame& frame,
-                                               std::array<std::uint8_t, 64>& bytes);
+/// What a stamp counts from.
+enum class CandumpStamp : std::uint8_t {
+  kAbsolute,  ///< since the epoch, or whatever a log file says
+  kRelative   ///< console of `-tz` (since the first frame) or `-td` (since the frame before): the line cannot tell
+};
+
+/// No line of candump is longer: 2048 bytes of CAN XL on the console.
+constexpr std::size_t kMaxCandumpLine = 16384;
+
+struct CandumpLine {
+  Frame frame;  ///< its payload views `bytes`
+  CandumpStamp stamp = CandumpStamp::kAbsolute;
+  std::array<std::uint8_t, 64> bytes{};
+};
+
+/// Parses
+///   log      `(1.5) can0 123#0102`, `12345678#…`, FD `123##<flags>…`, remote `123#R8`, raw DLC `…_9`, a direction
+///   behind console  `(1.5)  can0  [RX B -]  123   [2]  01 02   '..'`, FD `[24]`, `remote request`, `ERRORFRAME`, `-i`,
+///   `-S`,
+///            `-c` (colours), `-tA` (a date in an unsaid time zone, read as UTC)
+/// with either kind of line ending. Any bytes are allowed in `line`; time is bounded by its length.
+[[nodiscard]] CandumpResult parse_candump_line(std::string_view line, CandumpLine& out);
 
 }  // namespace boresight::recording

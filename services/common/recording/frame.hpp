@@ -21,7 +21,8 @@ struct Frame {
   std::uint32_t can_id = 0;           ///< without flag bits
   bool can_extended = false;
   bool can_remote = false;
-  Endpoint source;  ///< UDP
+  std::uint8_t can_fd_flags = 0;  ///< CAN FD: bit 0 bit rate switch, bit 1 error state indicator
+  Endpoint source;                ///< UDP
   Endpoint destination;
   std::span<const std::uint8_t> payload;
 

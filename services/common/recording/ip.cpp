@@ -1,6 +1,8 @@
 #include "services/common/recording/ip.hpp"
 
+#include <algorithm>
 #include <bitset>
+#include <cstdlib>
 #include <cstring>
 
 namespace boresight::recording {
@@ -22,17 +24,27 @@ std::uint32_t read_u32(const std::uint8_t* p) {
 
 /// Strips Ethernet and up to two VLAN tags; false if truncated.
 bool strip_ethernet(std::span<const std::uint8_t>& bytes, std::uint16_t& type) {
-  constexpr std::uint16_t kVlan = 0x8100, kServiceVlan = 0x88A8;
+  constexpr std::uint16_t kVlan = 0x8100, kServiceVlan = 0x88A8, kOldServiceVlan = 0x9100;
   if (bytes.size() < 14) return false;
   type = read_u16(bytes.data() + 12);
   bytes = bytes.subspan(14);
-  for (int tags = 0; tags < 2 && (type == kVlan || type == kServiceVlan); ++tags) {
+  for (int tags = 0; tags < 2 && (type == kVlan || type == kServiceVlan || type == kOldServiceVlan); ++tags) {
     if (bytes.size() < 4) return false;
     type = read_u16(bytes.data() + 2);
     bytes = bytes.subspan(4);
   }
   return true;
 }
+
+/// What a packet's IP headers say; `data` is what follows them.
+struct IpHeader {
+  IpAddress source, destination;
+  std::uint8_t protocol = 0;
+  std::size_t offset = 0;  // of the fragment
+  bool more = false;
+  std::uint32_t identification = 0;
+  std::span<const std::uint8_t> data;
+};
 
 }  // namespace
 
@@ -41,15 +53,54 @@ struct UdpDecoder::Assembly {
   std::uint64_t order = 0;
   IpAddress source, destination;
   std::uint32_t identification = 0;
+  std::int64_t stamp_ns = 0;  // of the newest fragment
   std::size_t received = 0;
+  std::size_t end = 0;    // of the fragment that reaches farthest
   std::size_t total = 0;  // 0 until the last fragment has come
   std::bitset<kMaxDatagram / kBlock> blocks;
   std::array<std::uint8_t, kMaxDatagram> bytes;
+
+  void begin(const IpHeader& header, std::uint64_t new_order) {
+    active = true;
+    order = new_order;
+    source = header.source;
+    destination = header.destination;
+    identification = header.identification;
+    received = end = total = 0;
+    blocks.reset();
+  }
+  [[nodiscard]] bool is_of(const IpHeader& header) const {
+    return active && source == header.source && destination == header.destination &&
+           identification == header.identification;
+  }
+  enum class Fit : std::uint8_t { kNew, kRepeated, kContradicting };
+  [[nodiscard]] Fit fit(const IpHeader& header) const {
+    const std::size_t fragment_end = header.offset + header.data.size();
+    const std::size_t last = (fragment_end - 1) / kBlock;
+    std::size_t present = 0;
+    for (std::size_t block = header.offset / kBlock; block <= last; ++block) present += blocks[block] ? 1 : 0;
+    if (present == 0) {
+      const bool beyond = (total != 0 && fragment_end > total) || (!header.more && end > fragment_end);
+      return beyond ? Fit::kContradicting : Fit::kNew;
+    }
+    const bool same_bytes = present == last - header.offset / kBlock + 1 && fragment_end <= end &&
+                            std::memcmp(bytes.data() + header.offset, header.data.data(), header.data.size()) == 0;
+    return same_bytes && (header.more || total == fragment_end) ? Fit::kRepeated : Fit::kContradicting;
+  }
+  void add(const IpHeader& header) {
+    const std::size_t fragment_end = header.offset + header.data.size();
+    for (std::size_t block = header.offset / kBlock; block <= (fragment_end - 1) / kBlock; ++block) blocks.set(block);
+    std::memcpy(bytes.data() + header.offset, header.data.data(), header.data.size());
+    received += header.data.size();
+    end = std::max(end, fragment_end);
+    if (!header.more) total = fragment_end;
+  }
 };
 
 struct UdpDecoder::State {
   std::array<Assembly, kMaxAssemblies> assemblies;
   std::uint64_t order = 0;
+  std::uint64_t given_up = 0;
 };
 
 UdpDecoder::UdpDecoder() : state_(std::make_unique<State>()) {}
@@ -70,22 +121,21 @@ std::string_view describe(PacketResult result) {
     case PacketResult::kBadHeader:
       return "header contradicts itself";
     case PacketResult::kFragmentLost:
-      return "fragments of a datagram are missing or overlap";
+      return "a datagram was given up: fragments are missing or contradict each other";
+    case PacketResult::kErrorFrame:
+      return "CAN error frame";
+    case PacketResult::kUnsupported:
+      return "CAN XL is not supported";
   }
   return "unknown";
 }
 
-namespace {
+bool is_problem(PacketResult result) {
+  return result == PacketResult::kTruncated || result == PacketResult::kBadHeader ||
+         result == PacketResult::kUnsupported;
+}
 
-/// What a packet's IP headers say; `data` is what follows them.
-struct IpHeader {
-  IpAddress source, destination;
-  std::uint8_t protocol = 0;
-  std::size_t offset = 0;  // of the fragment
-  bool more = false;
-  std::uint32_t identification = 0;
-  std::span<const std::uint8_t> data;
-};
+namespace {
 
 PacketResult parse_ipv4(std::span<const std::uint8_t> ip, IpHeader& out) {
   if (ip.size() < 20) return PacketResult::kTruncated;
@@ -129,8 +179,11 @@ PacketResult parse_ipv6(std::span<const std::uint8_t> ip, IpHeader& out) {
       size += static_cast<std::size_t>(extension[1]) * kBlock;
     }
     if (size > out.data.size()) return PacketResult::kTruncated;
+    const bool is_later_fragment = out.protocol == kFragment && out.offset > 0;
     out.protocol = extension[0];
     out.data = out.data.subspan(size);
+    // Further headers are in the first fragment only; here comes data, whose protocol is told after reassembly.
+    if (is_later_fragment) break;
   }
   return PacketResult::kFrame;
 }
@@ -174,44 +227,44 @@ PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer 
   if (data.empty() || offset + data.size() > kMaxDatagram || (more && data.size() % kBlock != 0)) {
     return PacketResult::kBadHeader;
   }
+  constexpr std::int64_t kTimeout_ns = 30'000'000'000;  // as Linux has it; identifications come again
+  const std::uint64_t given_up_before = state_->given_up;
   Assembly* assembly = nullptr;
   Assembly* oldest = &state_->assemblies.front();
   for (Assembly& a : state_->assemblies) {
-    if (a.active && a.source == header.source && a.destination == header.destination &&
-        a.identification == header.identification) {
-      assembly = &a;
+    if (a.active && std::abs(frame.stamp_ns - a.stamp_ns) > kTimeout_ns) {
+      a.active = false;
+      ++state_->given_up;
     }
+    if (a.is_of(header)) assembly = &a;
     if (!a.active ? oldest->active : (oldest->active && a.order < oldest->order)) oldest = &a;
   }
-  PacketResult unfinished = PacketResult::kIncomplete;
   if (assembly == nullptr) {
-    if (oldest->active) unfinished = PacketResult::kFragmentLost;
+    state_->given_up += oldest->active ? 1 : 0;
     assembly = oldest;
-    assembly->active = true;
-    assembly->source = header.source;
-    assembly->destination = header.destination;
-    assembly->identification = header.identification;
-    assembly->received = 0;
-    assembly->total = 0;
-    assembly->blocks.reset();
-    assembly->order = ++state_->order;
+    assembly->begin(header, ++state_->order);
   }
-  const std::size_t first = offset / kBlock;
-  const std::size_t last = (offset + data.size() - 1) / kBlock;
-  for (std::size_t block = first; block <= last; ++block) {
-    if (assembly->blocks[block]) {
-      assembly->active = false;
-      return PacketResult::kFragmentLost;
-    }
-    assembly->blocks[block] = true;
+  assembly->stamp_ns = frame.stamp_ns;
+  const Assembly::Fit fit = assembly->fit(header);
+  if (fit == Assembly::Fit::kContradicting) {
+    ++state_->given_up;
+    assembly->begin(header, ++state_->order);
   }
-  std::memcpy(assembly->bytes.data() + offset, data.data(), data.size());
-  assembly->received += data.size();
-  if (!more) assembly->total = offset + data.size();
-  if (assembly->total == 0 || assembly->received < assembly->total) return unfinished;
+  if (fit != Assembly::Fit::kRepeated) assembly->add(header);
+  if (assembly->total == 0 || assembly->received < assembly->total) {
+    return state_->given_up > given_up_before ? PacketResult::kFragmentLost : PacketResult::kIncomplete;
+  }
   assembly->active = false;
-  if (assembly->received != assembly->total) return PacketResult::kFragmentLost;
   return take_udp({assembly->bytes.data(), assembly->total}, frame);
+}
+
+std::size_t UdpDecoder::unfinished() const {
+  return static_cast<std::size_t>(std::count_if(state_->assemblies.begin(), state_->assemblies.end(),
+                                                [](const Assembly& assembly) { return assembly.active; }));
+}
+
+std::uint64_t UdpDecoder::given_up() const {
+  return state_->given_up;
 }
 
 }  // namespace boresight::recording

@@ -22,20 +22,43 @@ class OpenError : public std::runtime_error {
 /// Called for each line or packet that cannot be understood: "file:line: problem". The rest is read on.
 using OnProblem = std::function<void(const std::string&)>;
 
+struct ReadOptions {
+  /// The interface of CAN frames in captures that do not name it: classic pcap never does.
+  std::string can_interface = "can0";
+};
+
+/// How far reading has come, for a progress bar.
+struct Progress {
+  std::uint64_t position_bytes = 0;
+  std::uint64_t total_bytes = 0;  ///< 0: not known, as the recording is a pipe
+};
+
+struct Counts {
+  std::uint64_t frames = 0;        ///< delivered
+  std::uint64_t problems = 0;      ///< lines or packets that could not be understood, each told to OnProblem
+  std::uint64_t error_frames = 0;  ///< of CAN: news of the bus, not delivered
+  std::uint64_t ignored = 0;       ///< packets that are well-formed, but neither CAN nor UDP
+  std::uint64_t backwards = 0;     ///< frames stamped earlier than the one before
+};
+
 class Reader {
  public:
   virtual ~Reader() = default;
   /// The next frame; false at the end. The payload is valid until the next call.
   [[nodiscard]] virtual bool next(Frame& frame) = 0;
-  [[nodiscard]] virtual std::uint64_t problems() const = 0;
+  [[nodiscard]] virtual Counts counts() const = 0;
+  [[nodiscard]] virtual Progress progress() const = 0;
+  [[nodiscard]] std::uint64_t problems() const { return counts().problems; }
 };
 
-/// Opens a recording by its content (pcap, pcapng, else candump). Throws OpenError.
-[[nodiscard]] std::unique_ptr<Reader> open_recording(const std::filesystem::path& file, OnProblem on_problem);
+/// Opens a recording by its content (pcap, pcapng, else candump); "-" is standard input. Memory does not grow with the
+/// recording. Throws OpenError.
+[[nodiscard]] std::unique_ptr<Reader> open_recording(const std::filesystem::path& file, OnProblem on_problem,
+                                                     const ReadOptions& options = {});
 
 /// Several recordings as one, ordered by stamp (equal stamps: by position in `files`). Recordings of one drive must
 /// share a clock. Throws OpenError, also for an empty list.
 [[nodiscard]] std::unique_ptr<Reader> open_recordings(const std::vector<std::filesystem::path>& files,
-                                                      const OnProblem& on_problem);
+                                                      const OnProblem& on_problem, const ReadOptions& options = {});
 
 }  // namespace boresight::recording

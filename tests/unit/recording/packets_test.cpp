@@ -9,6 +9,7 @@
 #include "services/common/recording/ip.hpp"
 #include "services/common/recording/reader.hpp"
 #include "tests/simulator/wire/pcap_writer.hpp"
+#include "tests/unit/recording/files.hpp"
 
 namespace boresight::recording {
 namespace {
@@ -119,12 +120,87 @@ TEST(UdpDecoder, AMissingFragmentIsGivenUpAndTheNextDatagramIsWhole) {
   EXPECT_GE(lost, 4) << "what is given up is said";
 }
 
-TEST(UdpDecoder, OverlapsAndDuplicatesAreNotBelieved) {
+TEST(UdpDecoder, ARepeatedFragmentIsIgnored) {
   UdpDecoder decoder;
   Frame frame;
-  const auto packets = fragments(payload_of(3000), 5, 1000);
-  EXPECT_EQ(decoder.decode(packets[0], LinkLayer::kRawIp, frame), PacketResult::kIncomplete);
-  EXPECT_EQ(decoder.decode(packets[0], LinkLayer::kRawIp, frame), PacketResult::kFragmentLost);
+  const auto payload = payload_of(3003);
+  const auto packets = fragments(payload, 5, 1000);
+  for (std::size_t i = 0; i + 1 < packets.size(); ++i) {
+    EXPECT_EQ(decoder.decode(packets[i], LinkLayer::kRawIp, frame), PacketResult::kIncomplete);
+    EXPECT_EQ(decoder.decode(packets[i], LinkLayer::kRawIp, frame), PacketResult::kIncomplete);
+  }
+  ASSERT_EQ(decoder.decode(packets.back(), LinkLayer::kRawIp, frame), PacketResult::kFrame);
+  EXPECT_TRUE(std::equal(payload.begin(), payload.end(), frame.payload.begin(), frame.payload.end()));
+  EXPECT_EQ(decoder.unfinished(), 0u);
+  EXPECT_EQ(decoder.given_up(), 0u);
+}
+
+TEST(UdpDecoder, FragmentsThatOverlapInPartAreNotBelieved) {
+  const auto payload = payload_of(3000);
+  const auto good = fragments(payload, 5, 1000);
+  // The same data cut elsewhere: the middle fragment begins eight bytes too early, or too late by as much.
+  for (const int shift : {-8, 8}) {
+    UdpDecoder decoder;
+    Frame frame;
+    auto packets = good;
+    Packet& middle = packets[1];
+    const auto field = static_cast<std::uint16_t>((middle[6] << 8 | middle[7]) + shift / 8);
+    middle[6] = static_cast<std::uint8_t>(field >> 8);
+    middle[7] = static_cast<std::uint8_t>(field & 0xFF);
+    bool lost = false;
+    for (const Packet& p : packets) {
+      const PacketResult result = decoder.decode(p, LinkLayer::kRawIp, frame);
+      ASSERT_NE(result, PacketResult::kFrame) << shift;
+      lost = lost || result == PacketResult::kFragmentLost;
+    }
+    EXPECT_TRUE(lost) << shift;
+    EXPECT_EQ(feed(decoder, fragments(payload, 6, 1000), frame), PacketResult::kFrame) << "the next is whole";
+  }
+}
+
+TEST(UdpDecoder, OtherBytesAtTheSamePlaceAndDataBeyondTheLastFragmentAreNotBelieved) {
+  Frame frame;
+  {
+    UdpDecoder decoder;
+    auto packets = fragments(payload_of(3000), 5, 1000);
+    Packet forged = packets[1];
+    forged.back() ^= 1;
+    EXPECT_EQ(feed(decoder, {packets[0], packets[1]}, frame), PacketResult::kIncomplete);
+    EXPECT_EQ(decoder.decode(forged, LinkLayer::kRawIp, frame), PacketResult::kFragmentLost);
+    EXPECT_EQ(feed(decoder, {packets[2], packets[3]}, frame), PacketResult::kIncomplete);
+    EXPECT_EQ(decoder.given_up(), 1u);
+  }
+  {
+    UdpDecoder decoder;
+    const auto longer = fragments(payload_of(5000), 5, 1000);
+    const auto shorter = fragments(payload_of(2500), 5, 1000);
+    EXPECT_EQ(feed(decoder, {longer[4]}, frame), PacketResult::kIncomplete);
+    EXPECT_EQ(feed(decoder, {shorter[2]}, frame), PacketResult::kFragmentLost) << "its end lies before data";
+    EXPECT_EQ(feed(decoder, {longer[4]}, frame), PacketResult::kFragmentLost) << "data beyond the end";
+  }
+}
+
+TEST(UdpDecoder, ASenderThatNeverChangesTheIdentificationIsUnderstoodAfterALoss) {
+  UdpDecoder decoder;
+  Frame frame;
+  auto cut = fragments(payload_of(3000, 1), 0, 1000);
+  cut.erase(cut.begin() + 1);
+  const auto payload = payload_of(3000, 2);
+  EXPECT_EQ(feed(decoder, cut, frame), PacketResult::kIncomplete);
+  ASSERT_EQ(feed(decoder, fragments(payload, 0, 1000), frame), PacketResult::kFrame);
+  EXPECT_TRUE(std::equal(payload.begin(), payload.end(), frame.payload.begin(), frame.payload.end()));
+  EXPECT_EQ(decoder.given_up(), 1u);
+}
+
+TEST(UdpDecoder, FragmentsHalfAMinuteApartAreNotOfOneDatagram) {
+  UdpDecoder decoder;
+  Frame frame;
+  const auto packets = fragments(payload_of(1500), 9, 1000);
+  frame.stamp_ns = 1'000'000'000;
+  EXPECT_EQ(feed(decoder, {packets[0]}, frame), PacketResult::kIncomplete);
+  frame.stamp_ns = 32'000'000'000;
+  EXPECT_EQ(feed(decoder, {packets[1]}, frame), PacketResult::kFragmentLost);
+  EXPECT_EQ(decoder.unfinished(), 1u);
 }
 
 TEST(UdpDecoder, DamagedHeadersAreNamed) {
@@ -164,21 +240,6 @@ TEST(UdpDecoder, MutationsNeitherCrashNorInventMemory) {
     }
   }
 }
-
-class Files : public testing::Test {
- protected:
-  Files() : folder_(std::filesystem::temp_directory_path() / ("boresight_recording_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Files() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
-  }
-  std::filesystem::path folder_;
-  std::vector<std::string> problems_;
-  OnProblem note_ = [this](const std::string& text) { problems_.push_back(text); };
-};
 
 TEST_F(Files, ABadLineIsNamedWithFileAndLineAndTheRestIsRead) {
   const auto file = write("drive.log", "(1.0) can0 123#01\n(1.1) can0 xyz#01\n\n(1.2) can0 123#02\nnonsense\n");

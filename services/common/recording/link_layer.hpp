@@ -1,0 +1,22 @@
+// What a capture's link layer wraps around CAN frames and IP packets.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "services/common/recording/ip.hpp"
+
+namespace boresight::recording {
+
+/// Whether captures of that link type (libpcap's DLT_…) can be decoded.
+[[nodiscard]] bool is_supported_link(int link_type);
+/// For messages: "Ethernet, raw IP, …".
+[[nodiscard]] std::string_view supported_links();
+
+/// Decodes one packet: a CAN frame or a UDP datagram, the latter perhaps by reassembly in `udp`. `frame` gets all but
+/// stamp and interface.
+[[nodiscard]] PacketResult decode_packet(std::span<const std::uint8_t> packet, int link_type, UdpDecoder& udp,
+                                         Frame& frame);
+
+}  // namespace boresight::recording
