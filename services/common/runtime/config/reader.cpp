@@ -203,6 +203,35 @@ std::vector<double> Reader::numbers(std::string_view key, std::size_t count, Ran
   return values;
 }
 
+std::vector<std::int64_t> Reader::integers(std::string_view key, Range count, Range allowed,
+                                           std::vector<std::int64_t> fallback) {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return fallback;
+  const toml::array* array = node->as_array();
+  const std::string wanted = fmt::format("an array of integers ({}), their number {}", describe(allowed),
+                                         count.min == count.max ? format_number(count.min) : describe(count));
+  if (array == nullptr) {
+    node_->expect(*node, key, wanted);
+    return fallback;
+  }
+  const auto size = static_cast<double>(array->size());
+  if (size < count.min || size > count.max) {
+    reject(key, fmt::format("has {} elements; must be {}", array->size(), wanted));
+    return fallback;
+  }
+  std::vector<std::int64_t> values;
+  for (const toml::node& element : *array) {
+    const std::int64_t value = element.value_exact<std::int64_t>().value_or(0);
+    const auto number = static_cast<double>(value);
+    if (!element.is_integer() || number < allowed.min || number > allowed.max) {
+      reject(key, fmt::format("element {} is not an integer in range; must be {}", values.size() + 1, wanted));
+      return fallback;
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
 std::vector<std::string> Reader::texts(std::string_view key, std::vector<std::string> fallback) {
   const toml::node* node = node_->find(key);
   if (node == nullptr) return fallback;

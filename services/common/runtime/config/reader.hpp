@@ -43,6 +43,9 @@ class Reader {
   /// Fixed-length list of numbers, each in `allowed`.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, Range allowed,
                                             std::vector<double> fallback);
+  /// List of integers, each in `allowed`, as many as `count` allows.
+  [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key, Range count, Range allowed,
+                                                   std::vector<std::int64_t> fallback);
   /// List of strings, of any length.
   [[nodiscard]] std::vector<std::string> texts(std::string_view key, std::vector<std::string> fallback);
   /// One of the given words; `choices` pairs the word with its value.
