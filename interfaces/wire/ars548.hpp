@@ -25,12 +25,61 @@ inline constexpr std::size_t kSyncStatus = 44;       // u8
 inline constexpr std::uint8_t kSyncOk = 1;
 inline constexpr std::uint8_t kSyncNever = 2;
 inline constexpr std::uint8_t kSyncLost = 3;
+inline constexpr std::size_t kOrigin = 52;  // f32: x, y, z, roll, pitch, yaw of the sensor, each with its std after it
 inline constexpr std::size_t kDetections = 101;
 inline constexpr std::size_t kMaxDetectionRecords = 800;
 inline constexpr std::size_t kDetectionBytes = 44;
-inline constexpr std::size_t kRangeRateMin_mps = 35301;    // f32
-inline constexpr std::size_t kRangeRateMax_mps = 35305;    // f32
-inline constexpr std::size_t kNumberOfDetections = 35309;  // u32
+inline constexpr std::size_t kRangeRateMin_mps = 35301;         // f32
+inline constexpr std::size_t kRangeRateMax_mps = 35305;         // f32
+inline constexpr std::size_t kNumberOfDetections = 35309;       // u32
+inline constexpr std::size_t kAzimuthCorrection_rad = 35313;    // f32
+inline constexpr std::size_t kElevationCorrection_rad = 35317;  // f32
+inline constexpr std::size_t kAlignmentStatus = 35321;          // u8
+
+// --- object list -----------------------------------------------------------------------------------------------------
+// The same headers and stamp as the detection list; sequence counter, time and sync status are at its offsets.
+inline constexpr std::size_t kObjectListBytes = 9401;
+inline constexpr std::size_t kShortListRecords = 50;
+/// Newer firmware. Of its one byte more than 200 records need, no public source tells the place; it is taken to be the
+/// last.
+inline constexpr std::size_t kLongObjectListBytes = 37452;
+inline constexpr std::size_t kLongListRecords = 200;
+inline constexpr std::size_t kNumberOfObjects = 50;  // u8
+inline constexpr std::size_t kObjects = 51;
+inline constexpr std::size_t kObjectBytes = 187;
+
+/// Offsets within an object record. Vehicle's frame: x ahead, y left.
+namespace object {
+inline constexpr std::size_t kId = 2;                  // u32
+inline constexpr std::size_t kAge = 6;                 // u16
+inline constexpr std::size_t kMeasurementStatus = 8;   // u8: 0 measured, 1 predicted, 2 new, 255 invalid
+inline constexpr std::size_t kMovementStatus = 9;      // u8: 0 moving, 1 stationary, 255 invalid
+inline constexpr std::size_t kPositionInvalid = 10;    // u16 bits
+inline constexpr std::size_t kPositionReference = 12;  // u8: which point of the box, 0 … 7, 255 invalid
+inline constexpr std::size_t kX_m = 13;                // f32, as is all below unless said otherwise
+inline constexpr std::size_t kXStd_m = 17;
+inline constexpr std::size_t kY_m = 21;
+inline constexpr std::size_t kYStd_m = 25;
+inline constexpr std::size_t kZ_m = 29;
+inline constexpr std::size_t kZStd_m = 33;
+inline constexpr std::size_t kCovarianceXy_m2 = 37;
+inline constexpr std::size_t kOrientation_rad = 41;
+inline constexpr std::size_t kOrientationStd_rad = 45;
+inline constexpr std::size_t kExistenceInvalid = 49;  // u8 bits
+inline constexpr std::size_t kExistence_percent = 50;
+inline constexpr std::size_t kClasses_percent = 58;       // 8 × u8, in the order of ObjectClass
+inline constexpr std::size_t kAbsoluteVelocity_mps = 68;  // u8 invalid bits, x, std of x, y, std of y, covariance
+inline constexpr std::size_t kRelativeVelocity_mps = 89;  // likewise
+inline constexpr std::size_t kAbsoluteAcceleration_mps2 = 110;
+inline constexpr std::size_t kRelativeAcceleration_mps2 = 131;
+inline constexpr std::size_t kOrientationRateInvalid = 152;  // u8 bits
+inline constexpr std::size_t kOrientationRate_radps = 153;
+inline constexpr std::size_t kOrientationRateStd_radps = 157;
+inline constexpr std::size_t kLengthInvalid = 165;  // u8 bits
+inline constexpr std::size_t kLength_m = 166;
+inline constexpr std::size_t kWidthInvalid = 178;  // u8 bits
+inline constexpr std::size_t kWidth_m = 179;
+}  // namespace object
 
 // --- sensor status; the header is the 8 bytes of service, method and length only
 // ---------------------------------------

@@ -1,10 +1,15 @@
 // One real scan of an ARS548: field by field as the open-source driver nebula decodes it, and the motion of the sensor
 // that its stationary detections tell.
+#include "interfaces/wire/ars548.hpp"
+
 #include <cmath>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/recording/reader.hpp"
+#include "services/ingest_gateway/codecs/ars548.hpp"
+#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
 #include "tests/golden/support/decoded.hpp"
 #include "tests/golden/support/yaml.hpp"
 
@@ -16,6 +21,11 @@ namespace fs = std::filesystem;
 const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
 const fs::path kRecording = kFolder / "ars548_real_2msgs_ipfrag.pcap";
 const fs::path kExpected = kFolder / "ars548/1708578204_202447652_detection.yaml";
+
+/// Six significant digits are what the file has.
+bool close(double ours, double theirs) {
+  return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 1e-9;
+}
 
 class Ars548 : public testing::Test {
  protected:
@@ -39,10 +49,6 @@ TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
   ASSERT_EQ(scan_->number_of_valid_detections, 308u);
   EXPECT_EQ(scan_->dropped_detections, 0u);
   EXPECT_TRUE(scan_->has(scan_field::kElevation | scan_field::kRcs | scan_field::kStds | scan_field::kAmbiguity));
-  // Six significant digits are what the file has.
-  const auto close = [](double ours, double theirs) {
-    return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 1e-9;
-  };
   EXPECT_TRUE(close(scan_->range_rate_min_mps, head.at("ambiguity_free_velocity_min")));
   EXPECT_TRUE(close(scan_->range_rate_max_mps, head.at("ambiguity_free_velocity_max")));
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -63,6 +69,48 @@ TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
     const bool outside = row.at("range_rate") < head.at("ambiguity_free_velocity_min") ||
                          row.at("range_rate") > head.at("ambiguity_free_velocity_max");
     EXPECT_EQ((scan_->detection_flags[i] & detection_flag::kAmbiguous) != 0, outside) << i;
+  }
+}
+
+TEST_F(Ars548, WhatAScanDoesNotCarryLiesWhereItIsSaidToLie) {
+  namespace layout = wire::ars548;
+  using ingest::someip::read_f32, ingest::someip::read_u16;
+  Record head;
+  const auto expected = read_yaml_list(kExpected, head);
+  const auto reader = recording::open_recording(kRecording, [](const std::string& what) { ADD_FAILURE() << what; });
+  recording::Frame frame;
+  while (reader->next(frame) && frame.payload.size() != layout::kDetectionListBytes) {
+  }
+  ASSERT_EQ(frame.payload.size(), layout::kDetectionListBytes);
+  const std::uint8_t* const list = frame.payload.data();
+  const auto scan = std::make_unique<RadarScan>();
+  const ingest::SensorStamp time = ingest::ars548::decode(frame.payload, *scan);
+  // Bytes 38f7bd80 65d6d59b; the file has the time of reception, a quarter of a second later.
+  EXPECT_EQ(time.time_ns, 1'708'578'203'955'760'000);
+  EXPECT_EQ(list[layout::kSyncStatus], head.at("stamp_sync_status"));
+  EXPECT_TRUE(time.synchronised);
+  const auto origin = [list](std::size_t i) { return read_f32(list + layout::kOrigin + 4 * i); };
+  EXPECT_TRUE(close(origin(0), head.at("x")) && close(origin(2), head.at("y")) && close(origin(4), head.at("z")));
+  EXPECT_TRUE(close(origin(8), head.at("origin_pitch")) && close(origin(9), head.at("origin_pitch_std")));
+  EXPECT_TRUE(close(origin(10), head.at("origin_yaw")) && close(origin(11), head.at("origin_yaw_std")));
+  EXPECT_TRUE(close(read_f32(list + layout::kAzimuthCorrection_rad), head.at("alignment_azimuth_correction")));
+  EXPECT_TRUE(close(read_f32(list + layout::kElevationCorrection_rad), head.at("alignment_elevation_correction")));
+  EXPECT_EQ(list[layout::kAlignmentStatus], head.at("alignment_status"));
+  constexpr std::pair<std::uint8_t, const char*> kInvalid[] = {
+      {layout::invalid::kRange, "invalid_distance"},       {layout::invalid::kRangeStd, "invalid_distance_std"},
+      {layout::invalid::kAzimuth, "invalid_azimuth"},      {layout::invalid::kAzimuthStd, "invalid_azimuth_std"},
+      {layout::invalid::kElevation, "invalid_elevation"},  {layout::invalid::kElevationStd, "invalid_elevation_std"},
+      {layout::invalid::kRangeRate, "invalid_range_rate"}, {layout::invalid::kRangeRateStd, "invalid_range_rate_std"}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    namespace r = layout::record;
+    const Record& row = expected[i];
+    const std::uint8_t* const record = list + layout::kDetections + i * layout::kDetectionBytes;
+    EXPECT_EQ(read_u16(record + r::kMeasurementId), row.at("measurement_id")) << i;
+    EXPECT_EQ(record[r::kClassification], row.at("classification")) << i;
+    EXPECT_EQ(record[r::kMultiTargetProbability_percent], row.at("raw_multi_target_probability")) << i;
+    EXPECT_EQ(read_u16(record + r::kObjectId), row.at("object_id")) << i;
+    EXPECT_EQ(record[r::kAmbiguityFlag], row.at("raw_ambiguity_flag")) << i;
+    for (const auto& [bit, name] : kInvalid) EXPECT_EQ((record[r::kInvalidFlags] & bit) != 0, row.at(name) == 1.0) << i;
   }
 }
 

@@ -1,27 +1,17 @@
 #include "services/ingest_gateway/codecs/ars548.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "interfaces/wire/ars548.hpp"
+#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
 
 namespace layout = wire::ars548;
+using someip::read_f32, someip::read_u16, someip::read_u32;
 
 namespace {
-
-std::uint16_t read_u16(const std::uint8_t* p) {
-  return static_cast<std::uint16_t>(p[0] << 8 | p[1]);
-}
-std::uint32_t read_u32(const std::uint8_t* p) {
-  return static_cast<std::uint32_t>(p[0]) << 24 | static_cast<std::uint32_t>(p[1]) << 16 |
-         static_cast<std::uint32_t>(p[2]) << 8 | p[3];
-}
-float read_f32(const std::uint8_t* p) {
-  return std::bit_cast<float>(read_u32(p));
-}
 
 std::uint16_t flags_of(const std::uint8_t* record, std::uint8_t invalid, float rate_min, float rate_max) {
   constexpr std::uint8_t kNeeded =

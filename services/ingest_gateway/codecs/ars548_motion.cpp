@@ -1,10 +1,10 @@
 #include "services/ingest_gateway/codecs/ars548_motion.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "interfaces/wire/ars548.hpp"
+#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
 
@@ -20,22 +20,13 @@ constexpr double kMaxSpeed_kmph = 350.0;
 constexpr double kMaxYawRate_degps = 163.83;
 constexpr double kMaxSteeringAngle_deg = 90.0;
 
-void put_u16(std::uint8_t* p, std::uint16_t value) {
-  p[0] = static_cast<std::uint8_t>(value >> 8);
-  p[1] = static_cast<std::uint8_t>(value & 0xFF);
-}
-void put_u32(std::uint8_t* p, std::uint32_t value) {
-  put_u16(p, static_cast<std::uint16_t>(value >> 16));
-  put_u16(p + 2, static_cast<std::uint16_t>(value & 0xFFFF));
-}
-
 /// Header of the message, zeros elsewhere.
 std::uint8_t* begin(const layout::MotionInput& input, MotionDatagram& out) {
   out.bytes.fill(0);
   out.size = input.bytes;
-  put_u16(out.bytes.data(), layout::kServiceId);
-  put_u16(out.bytes.data() + 2, input.method);
-  put_u32(out.bytes.data() + 4, static_cast<std::uint32_t>(input.bytes - layout::kShortHeaderBytes));
+  someip::write_u16(out.bytes.data(), layout::kServiceId);
+  someip::write_u16(out.bytes.data() + 2, input.method);
+  someip::write_u32(out.bytes.data() + 4, static_cast<std::uint32_t>(input.bytes - layout::kShortHeaderBytes));
   return out.bytes.data() + input.value;
 }
 
@@ -46,8 +37,7 @@ std::span<const MotionDatagram> MotionFeed::encode(const EgoMotion& ego, std::in
   std::size_t count = 0;
   const auto put = [&](const layout::MotionInput& input, double value, double limit) {
     if (!std::isfinite(value)) return;
-    const auto wire = static_cast<float>(std::clamp(value, -limit, limit));
-    put_u32(begin(input, datagrams_[count++]), std::bit_cast<std::uint32_t>(wire));
+    someip::write_f32(begin(input, datagrams_[count++]), static_cast<float>(std::clamp(value, -limit, limit)));
   };
   if (ego.has(ego_field::kSpeed) && std::isfinite(ego.speed_mps)) {
     const double speed_mps = std::abs(static_cast<double>(ego.speed_mps));
