@@ -296,6 +296,16 @@ TEST_F(Ars408Test, WhetherQualityIsSentIsLearnt) {
   EXPECT_EQ(output_.all_faults(), 1u);
 }
 
+TEST_F(Ars408Test, ALostQualityFrameIsNotTakenForQualitySwitchedOff) {
+  const std::vector<Target> one(1);
+  take(cluster_cycle(one, true));
+  take(cluster_cycle(one, false));
+  take(cluster_cycle(one, true));
+  EXPECT_EQ(output_.scans, 3u);
+  EXPECT_EQ(output_.count(Fault::kWireLength), 1u);
+  EXPECT_TRUE(output_.scan->has(scan_field::kStds));
+}
+
 TEST_F(Ars408Test, AnIncompleteCycleIsPublishedAsSuchAndSaysWhatIsMissing) {
   std::vector<Target> targets(5);
   targets[3].x_m = 77.0;
