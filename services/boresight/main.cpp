@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   boresight::add_demo_command(app, exit_code);
   boresight::add_diagnostics_command(app, exit_code);
   boresight::add_monitor_command(app, exit_code);
+  boresight::add_record_command(app, exit_code);
   boresight::add_report_command(app, exit_code);
   boresight::add_simulate_command(app, exit_code);
   boresight::add_supervise_command(app, exit_code);

@@ -4,9 +4,8 @@
 #include <exception>
 #include <memory>
 
-#include <unistd.h>
-
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/terminal/progress_bar.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/simulator/drive_writer.hpp"
 
@@ -22,19 +21,16 @@ struct Options {
   double duration_s = 45.0;
 };
 
-void show_progress(double share) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  constexpr int kWidth = 40;
-  const int done = static_cast<int>(share * kWidth);
-  std::fprintf(stderr, "\rsimulating [%.*s%.*s] %3.0f %%%s", done, "########################################",
-               kWidth - done, "                                        ", 100.0 * share, share >= 1.0 ? "\n" : "");
-}
-
 int simulate(const Options& options) {
   const auto begin = std::chrono::steady_clock::now();
+  terminal::ProgressBar bar("simulating");
   const VehicleConfig vehicle = config::read_vehicle_file(options.vehicle);
-  const simulator::DriveFiles files = simulator::write_drive(
-      simulator::scenario(options.scenario), vehicle, options.seed, options.duration_s, options.out, show_progress);
+  const simulator::DriveFiles files =
+      simulator::write_drive(simulator::scenario(options.scenario), vehicle, options.seed, options.duration_s,
+                             options.out, [&bar](double share) {
+                               if (bar.is_due()) bar.show(share);
+                             });
+  bar.wipe();
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::printf("simulated %.1f s in %.1f s (%.0f times real time): %llu scans, %llu detections\n", options.duration_s,
               took_s, options.duration_s / took_s, static_cast<unsigned long long>(files.scans),

@@ -1,0 +1,14 @@
+// An interface that cannot be recorded.
+#pragma once
+
+#include <stdexcept>
+
+namespace boresight::record {
+
+/// what() names the interface, the cause and, where there is one, the remedy.
+class CaptureError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace boresight::record
