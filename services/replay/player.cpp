@@ -1,7 +1,6 @@
 #include "services/replay/player.hpp"
 
 #include <cstdio>
-#include <ctime>
 #include <iostream>
 #include <string>
 
@@ -14,13 +13,6 @@
 namespace boresight::replay {
 
 namespace {
-
-/// Sleeps until the monotonic time, or until a stop signal.
-void sleep_until(std::int64_t due_ns) {
-  const timespec due{.tv_sec = due_ns / 1'000'000'000, .tv_nsec = due_ns % 1'000'000'000};
-  while (!runtime::stop_signalled() && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) != 0) {
-  }
-}
 
 /// A damaged recording can have a problem a line: the first ones are shown, all are counted.
 class ProblemLog {
@@ -66,14 +58,14 @@ PlayResult play(const PlayOptions& options, Sender& sender) {
         }
       } else {
         const std::int64_t now_ns = runtime::monotonic_now_ns();
-        const std::int64_t due_ns = pacing.due_ns(frame.stamp_ns, now_ns);
-        if (due_ns > now_ns) sleep_until(due_ns);
+        sender.wait_until(pacing.due_ns(frame.stamp_ns, now_ns));
       }
       result.stopped = result.stopped || runtime::stop_signalled();
       if (result.stopped) break;
       ++(sender.send(frame) ? result.sent : result.lost);
       played_s = at_s - options.start_s;
     }
+    sender.end_recording();
     result.recorded_s += played_s;
     result.malformed += reader->problems();
   }

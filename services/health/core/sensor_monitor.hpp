@@ -43,7 +43,6 @@ class SensorMonitor {
   RateWindow rate_;
   RateWindow messages_;
   RateWindow rejected_;
-  RateWindow suspect_;
   SourceStatistics last_statistics_{};
   AxisJudge yaw_;
   AxisJudge pitch_;

@@ -16,6 +16,10 @@ class Sender {
   virtual ~Sender() = default;
   /// Sends, waiting as long as the receiver is slow. False: the frame was lost because nobody receives at present.
   [[nodiscard]] virtual bool send(const recording::Frame& frame) = 0;
+  /// Returns at the monotonic time when the next frame is due, or at a stop signal; by default it sleeps.
+  virtual void wait_until(std::int64_t due_ns);
+  /// No frame of the recording will follow.
+  virtual void end_recording() {}
 };
 
 /// Into the gateway's replay tunnel. Waits up to `wait_s` for the gateway at first (throws std::runtime_error then);

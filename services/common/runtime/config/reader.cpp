@@ -8,9 +8,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
-
-#include "services/common/runtime/config/toml.hpp"
-#include "services/common/runtime/config/toml_text.hpp"
+#include <toml++/toml.h>
 
 namespace boresight::config {
 
@@ -46,11 +44,6 @@ std::string_view type_name(toml::node_type type) {
     default:
       return "a date or time";
   }
-}
-
-/// What a string of the document says; empty if it is none.
-std::string string_of(const toml::node& node) {
-  return decode_ascii(node.value<std::string>().value_or(""));
 }
 
 }  // namespace
@@ -105,8 +98,7 @@ Reader::Node& Reader::Node::add_child(std::string child_path, std::uint32_t chil
 namespace {
 
 [[noreturn]] void throw_parse_error(const toml::parse_error& error, std::string_view file) {
-  throw Error(
-      fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, decode_ascii(error.description())));
+  throw Error(fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, error.description()));
 }
 
 }  // namespace
@@ -115,11 +107,9 @@ Reader Reader::parse(std::string_view text, std::string_view name) {
   const auto document = std::make_shared<Node::Document>();
   document->file = std::string(name);
   try {
-    document->root = toml::parse(encode_ascii(text), name);
+    document->root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw_parse_error(error, name);
-  } catch (const TomlAssertion&) {
-    throw Error(fmt::format("{}: not valid TOML", name));
   }
   Node& root = document->nodes.emplace_back(*document);
   root.table = &document->root;
@@ -184,7 +174,7 @@ std::string Reader::text(std::string_view key, std::string_view fallback) {
     node_->expect(*node, key, "a string");
     return std::string(fallback);
   }
-  return string_of(*node);
+  return node->value<std::string>().value_or(std::string(fallback));
 }
 
 std::vector<double> Reader::numbers(std::string_view key, std::size_t count, Range allowed,
@@ -251,7 +241,7 @@ std::vector<std::string> Reader::texts(std::string_view key, std::vector<std::st
     return fallback;
   }
   std::vector<std::string> values;
-  for (const toml::node& element : *array) values.push_back(string_of(element));
+  for (const toml::node& element : *array) values.push_back(element.value<std::string>().value_or(""));
   return values;
 }
 
@@ -263,7 +253,7 @@ int Reader::choice_index(std::string_view key, const std::vector<std::string_vie
     node_->expect(*node, key, wanted);
     return -1;
   }
-  const std::string word = string_of(*node);
+  const std::string word = node->value<std::string>().value_or("");
   const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end()) {
     reject(key, fmt::format("\"{}\" is unknown; must be {}", word, wanted));
@@ -329,7 +319,7 @@ void Reader::finish() {
     if (node.table == nullptr) continue;
     for (const auto& [key, value] : *node.table) {
       if (node.known.contains(key.str())) continue;
-      node.note(key.source().begin.line, decode_ascii(key.str()),
+      node.note(key.source().begin.line, key.str(),
                 fmt::format("unknown key; known here: {}", fmt::join(node.known, ", ")));
     }
   }

@@ -1,0 +1,206 @@
+#include "services/replay/server/someip_server.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <poll.h>
+
+#include "interfaces/wire/boresight_service.hpp"
+#include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/log.hpp"
+#include "services/common/runtime/stop_signal.hpp"
+
+namespace boresight::replay {
+
+namespace service = wire::boresight_service;
+
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+SdServerConfig discovery_config(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances) {
+  SdServerConfig config;
+  for (const std::uint16_t number : instances) {
+    config.instances.push_back({number, {options.address, static_cast<std::uint16_t>(options.first_port + number)}});
+  }
+  config.event_group = options.event_group;
+  config.cycle_ns = static_cast<std::int64_t>(options.offer_cycle_s * 1e9);
+  config.offer_ttl_s =
+      std::max(service::discovery::kOfferTtl_s, static_cast<std::uint32_t>(std::ceil(3.0 * options.offer_cycle_s)));
+  // So that ECUs that are switched on together do not offer together.
+  std::random_device random;
+  config.initial_wait_ns = std::uniform_int_distribution<std::int64_t>(10'000'000, 100'000'000)(random);
+  return config;
+}
+
+DataIds data_ids(std::uint32_t base, std::uint16_t instance) {
+  const std::uint32_t offset = base - (std::uint32_t{service::kServiceId} << 16);
+  return {service::data_id(instance, service::kEventDetectionList) + offset,
+          service::data_id(instance, service::kEventEgoMotion) + offset};
+}
+
+}  // namespace
+
+SomeIpServer::SomeIpServer(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances)
+    : options_(options),
+      discovery_(discovery_config(options, instances)),
+      discovery_unicast_(UdpSocket::bound_to({options.address, options.discovery_group.port}, options.interface,
+                                             options.multicast_hops)),
+      discovery_multicast_(UdpSocket::member_of(options.discovery_group, options.interface)),
+      flush_ns_(kNever),
+      buffer_(65536) {
+  for (const std::uint16_t number : instances) {
+    const recording::Endpoint local{options.address, static_cast<std::uint16_t>(options.first_port + number)};
+    instances_.push_back({number,
+                          UdpSocket::bound_to(local, options.interface, options.multicast_hops),
+                          EventEncoder(data_ids(options.data_id_base, number)),
+                          {}});
+  }
+  discovery_.start(runtime::monotonic_now_ns());
+}
+
+SomeIpServer::~SomeIpServer() {
+  stop();
+}
+
+void SomeIpServer::serve_until(std::int64_t due_ns) {
+  std::array<pollfd, 2> watched{
+      {{discovery_unicast_.descriptor(), POLLIN, 0}, {discovery_multicast_.descriptor(), POLLIN, 0}}};
+  while (true) {
+    std::int64_t now_ns = runtime::monotonic_now_ns();
+    discovery_.tick(now_ns, outgoing_);
+    send_discovery();
+    if (now_ns >= flush_ns_) flush();
+    // A stop signal between its check and the call is seen this much later at the latest.
+    constexpr std::int64_t kLongest_ns = 100'000'000;
+    const std::int64_t next_ns = std::min({due_ns, discovery_.next_due_ns(), flush_ns_, now_ns + kLongest_ns});
+    const std::int64_t wait_ns = std::max<std::int64_t>(next_ns - now_ns, 0);
+    const timespec wait{.tv_sec = wait_ns / kSecond_ns, .tv_nsec = wait_ns % kSecond_ns};
+    if (ppoll(watched.data(), watched.size(), &wait, nullptr) > 0) {
+      receive(discovery_unicast_, false);
+      receive(discovery_multicast_, true);
+    }
+    now_ns = runtime::monotonic_now_ns();
+    if (now_ns >= due_ns || runtime::stop_signalled()) return;
+  }
+}
+
+void SomeIpServer::receive(const UdpSocket& socket, bool by_multicast) {
+  // Bounded, so that a storm of discovery does not hold the events up.
+  constexpr int kDatagramsPerTurn = 32;
+  for (int i = 0; i < kDatagramsPerTurn; ++i) {
+    recording::Endpoint from;
+    const auto datagram = socket.receive(buffer_, from);
+    if (!datagram) return;
+    const bool own = from.address == options_.address && from.port == options_.discovery_group.port;
+    if (own && by_multicast) continue;
+    const auto problem = discovery_.receive(runtime::monotonic_now_ns(), *datagram, from, by_multicast, outgoing_);
+    if (problem && discovery_.statistics().malformed == 1) {
+      runtime::log::warning("{}: {}; further ones are only counted", recording::to_text(from.address), *problem);
+    }
+    send_discovery();
+  }
+}
+
+void SomeIpServer::send_discovery() {
+  for (const SdOutgoing& message : outgoing_) {
+    // A link that is down loses it; the next offer repeats what matters.
+    static_cast<void>(discovery_unicast_.send(message.to.value_or(options_.discovery_group), message.message));
+  }
+  outgoing_.clear();
+}
+
+bool SomeIpServer::send(std::uint16_t number, const RadarScan& scan, const SensorTime& time) {
+  bool heard = false;
+  for (Instance& instance : instances_) {
+    if (instance.number != number) continue;
+    const auto to = destinations(instance, service::kEventgroupDetections);
+    // Nothing is counted up for nobody: a subscriber would take it for a loss.
+    if (to.empty()) continue;
+    deliver(instance, to, instance.encoder.detection_list(scan, time));
+    heard = true;
+  }
+  ++(heard ? counts_.detection_lists : counts_.unheard);
+  return heard;
+}
+
+bool SomeIpServer::send(const EgoMotion& ego, const SensorTime& time) {
+  bool heard = false;
+  for (Instance& instance : instances_) {
+    const auto to = destinations(instance, service::kEventgroupEgoMotion);
+    if (to.empty()) continue;
+    deliver(instance, to, instance.encoder.ego_motion(ego, time));
+    heard = true;
+  }
+  ++(heard ? counts_.ego_motions : counts_.unheard);
+  return heard;
+}
+
+std::span<const recording::Endpoint> SomeIpServer::destinations(const Instance& instance, std::uint16_t eventgroup) {
+  return discovery_.destinations(instance.number, eventgroup, runtime::monotonic_now_ns());
+}
+
+void SomeIpServer::deliver(Instance& instance, std::span<const recording::Endpoint> destinations,
+                           std::span<const std::uint8_t> message) {
+  for (const recording::Endpoint& to : destinations) {
+    if (options_.share_s > 0.0 && fits_one_datagram(message)) {
+      share(instance, to, message);
+      continue;
+    }
+    // What was sent first stays first.
+    if (const auto waiting = instance.waiting.find(to); waiting != instance.waiting.end()) {
+      if (!waiting->second.empty()) send_datagram(instance, to, waiting->second.content());
+      waiting->second.clear();
+    }
+    for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) { send_datagram(instance, to, datagram); });
+  }
+}
+
+void SomeIpServer::share(Instance& instance, const recording::Endpoint& to, std::span<const std::uint8_t> message) {
+  SharedDatagram& shared = instance.waiting[to];
+  if (!shared.add(message)) {
+    send_datagram(instance, to, shared.content());
+    shared.clear();
+    static_cast<void>(shared.add(message));
+  }
+  flush_ns_ = std::min(flush_ns_, runtime::monotonic_now_ns() + static_cast<std::int64_t>(options_.share_s * 1e9));
+}
+
+void SomeIpServer::send_datagram(const Instance& instance, const recording::Endpoint& to,
+                                 std::span<const std::uint8_t> datagram) {
+  if (!instance.socket.send(to, datagram)) {
+    ++counts_.refused;
+    return;
+  }
+  ++counts_.datagrams;
+  counts_.bytes += datagram.size();
+}
+
+void SomeIpServer::flush() {
+  for (Instance& instance : instances_) {
+    for (auto& [to, shared] : instance.waiting) {
+      if (!shared.empty()) send_datagram(instance, to, shared.content());
+    }
+    // Subscribers that have gone are not remembered.
+    instance.waiting.clear();
+  }
+  flush_ns_ = kNever;
+}
+
+void SomeIpServer::stop() {
+  flush();
+  discovery_.stop(outgoing_);
+  send_discovery();
+}
+
+bool SomeIpServer::has_subscriber() {
+  return std::any_of(instances_.begin(), instances_.end(), [this](const Instance& instance) {
+    return !destinations(instance, service::kEventgroupDetections).empty();
+  });
+}
+
+}  // namespace boresight::replay

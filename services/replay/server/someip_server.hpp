@@ -1,0 +1,90 @@
+// Serves the Boresight service (interfaces/wire/boresight_service.md) on the network: discovery and events of several
+// instances, in one thread that runs while its caller waits.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/replay/core/datagrams.hpp"
+#include "services/replay/core/event_encoder.hpp"
+#include "services/replay/core/sd_server.hpp"
+#include "services/replay/server/udp_socket.hpp"
+
+namespace boresight::replay {
+
+struct SomeIpOptions {
+  std::string interface;             ///< "eth0"
+  recording::IpAddress address;      ///< of this machine on that interface
+  std::uint16_t first_port = 30600;  ///< instance n sends from first_port + n
+  std::optional<recording::Endpoint> event_group;
+  recording::Endpoint discovery_group;
+  double offer_cycle_s = 1.0;
+  double share_s = 0.0;  ///< > 0: short messages wait so long for others to share a datagram with
+  int multicast_hops = 1;
+  std::uint32_t data_id_base = 0x4253'0000;
+};
+
+struct ServerCounts {
+  std::uint64_t detection_lists = 0, ego_motions = 0;  ///< sent to one subscriber or group at least
+  std::uint64_t unheard = 0;                           ///< events that nobody had subscribed
+  std::uint64_t datagrams = 0, bytes = 0;              ///< of events
+  std::uint64_t refused = 0;                           ///< datagrams that the kernel did not take
+};
+
+class SomeIpServer {
+ public:
+  /// Opens the sockets (throws std::runtime_error) and begins the initial wait of the discovery.
+  SomeIpServer(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances);
+
+  /// As stop().
+  ~SomeIpServer();
+  SomeIpServer(const SomeIpServer&) = delete;
+  SomeIpServer& operator=(const SomeIpServer&) = delete;
+
+  /// Answers and offers until the monotonic time, or until a stop signal; at least one turn.
+  void serve_until(std::int64_t due_ns);
+  /// Sends to those who have subscribed; false if nobody has.
+  bool send(std::uint16_t number, const RadarScan& scan, const SensorTime& time);
+  /// As event of every instance, since each may have been asked for it.
+  bool send(const EgoMotion& ego, const SensorTime& time);
+  /// Sends what waits for company, and takes the offers back; events are not sent any more.
+  void stop();
+
+  /// True if somebody has subscribed the detections of one instance at least.
+  [[nodiscard]] bool has_subscriber();
+  [[nodiscard]] const ServerCounts& counts() const { return counts_; }
+  [[nodiscard]] const SdStatistics& discovery() const { return discovery_.statistics(); }
+
+ private:
+  struct Instance {
+    std::uint16_t number;
+    UdpSocket socket;
+    EventEncoder encoder;
+    std::map<recording::Endpoint, SharedDatagram> waiting;
+  };
+  void receive(const UdpSocket& socket, bool by_multicast);
+  void send_discovery();
+  [[nodiscard]] std::span<const recording::Endpoint> destinations(const Instance& instance, std::uint16_t eventgroup);
+  void deliver(Instance& instance, std::span<const recording::Endpoint> destinations,
+               std::span<const std::uint8_t> message);
+  /// Keeps a short message for a while, until its datagram is full.
+  void share(Instance& instance, const recording::Endpoint& to, std::span<const std::uint8_t> message);
+  void send_datagram(const Instance& instance, const recording::Endpoint& to, std::span<const std::uint8_t> datagram);
+  void flush();
+
+  SomeIpOptions options_;
+  SdServer discovery_;
+  UdpSocket discovery_unicast_;
+  UdpSocket discovery_multicast_;
+  std::vector<Instance> instances_;
+  std::int64_t flush_ns_;
+  std::vector<std::uint8_t> buffer_;
+  std::vector<SdOutgoing> outgoing_;
+  ServerCounts counts_;
+};
+
+}  // namespace boresight::replay
