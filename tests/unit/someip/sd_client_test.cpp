@@ -269,6 +269,35 @@ TEST_F(SdClientLife, ARefusalIsAFaultAndWaitsLongerEachTime) {
   EXPECT_THAT(sent(), ElementsAre("Subscribe"));
 }
 
+TEST_F(SdClientLife, AServerThatRefusedAndStartedAgainIsAskedAtOnce) {
+  start();
+  multicast(server_.offer(kForever_s), server_);
+  for (int i = 0; i < 4; ++i) {
+    unicast(server_.ack(0), server_);
+    pass(kSecond * (1 << i));
+  }
+  unicast(server_.ack(0), server_);
+  pass(2 * kSecond);
+  actions_.sent.clear();
+  server_.restart();
+  offer();
+  EXPECT_THAT(sent(), ElementsAre("Stop", "Subscribe"));
+}
+
+TEST_F(SdClientLife, EventsOfBeforeTheRebootDoNotCountAsAnAck) {
+  become_subscribed();
+  pass(20 * kMillisecond);
+  server_.restart();
+  server_.multicast_session = 1;
+  // Within 100 ms of the last Subscribe: the next has to wait, and what arrives is still from before.
+  offer();
+  client_->event_received(0, now_ns_);
+  EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 reboot"));
+  pass(100 * kMillisecond);
+  client_->event_received(0, now_ns_);
+  EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
+}
+
 TEST_F(SdClientLife, JoinsTheGroupOfTheAckAndLeavesItWithTheSubscription) {
   start();
   offer();

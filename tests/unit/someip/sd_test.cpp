@@ -165,6 +165,7 @@ TEST_F(SdTest, LengthsThatContradictAreNamed) {
   };
   EXPECT_EQ(with_options({0, 1, 0x01}), SdFault::kOptionLength);
   EXPECT_EQ(with_options({0, 0, 0x01, 0}), SdFault::kOptionLength);
+  EXPECT_EQ(with_options({0, 0, 0x33, 0, 1, 0x33, 0}), SdFault::kOptionLength);
   EXPECT_EQ(with_options({0, 9, 0x04, 0, 1}), SdFault::kOptionLength);
   EXPECT_EQ(with_options({0xFF, 0xFF, 0x04, 0, 1}), SdFault::kOptionLength);
   EXPECT_EQ(with_options({0, 1, 0x77}), SdFault::kOptionLength);
