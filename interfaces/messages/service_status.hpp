@@ -36,15 +36,18 @@ inline constexpr std::uint32_t kWithoutEgoMotion = 1u << 6;  ///< it misses the 
 
 /// Statistics of one radar as the writer of this status saw it; only the gateway fills them.
 struct SourceStatistics {
-  std::uint32_t source_id;   ///< 0: unused entry
-  std::uint32_t conditions;  ///< source_condition bits, as the sensor itself said last
-  std::uint64_t messages;    ///< scans published
-  std::uint64_t rejected;    ///< frames, lists and cycles refused
-  std::uint64_t lost;        ///< scans that the sensor's counter says were sent and never came
-  std::uint64_t suspect;     ///< scans published with an integrity verdict against them, counter gaps aside
+  std::uint32_t source_id;     ///< 0: unused entry
+  std::uint32_t conditions;    ///< source_condition bits, as the sensor itself said last
+  std::uint64_t messages;      ///< scans published
+  std::uint64_t rejected;      ///< frames, lists and cycles refused
+  std::uint64_t lost;          ///< scans that the sensor's counter says were sent and never came
+  std::uint64_t suspect;       ///< scans published with an integrity verdict against them, counter gaps aside
+  std::uint64_t e2e_lost;      ///< messages that the end-to-end counter stepped over
+  std::uint64_t e2e_repeated;  ///< messages with the same end-to-end counter as the one before
+  std::uint64_t e2e_wrong;     ///< messages whose end-to-end CRC, length, Data ID or sequence is wrong
   std::int64_t last_measurement_time_ns;
 };
-static_assert(sizeof(SourceStatistics) == 48);
+static_assert(sizeof(SourceStatistics) == 72);
 
 /// Published by every service each heartbeat period. Counters never go back while a process lives; `incarnation`
 /// (its start time) tells a restart.
@@ -67,6 +70,6 @@ struct ServiceStatus {
 };
 
 static_assert(kIsPlainMessage<ServiceStatus>);
-static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + kNumberOfFaults * 8 + kMaxRadars * 48 + 128);
+static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + kNumberOfFaults * 8 + kMaxRadars * 72 + 128);
 
 }  // namespace boresight

@@ -40,7 +40,8 @@ void BusSink::publish_ego(const MeasurementTime& time) {
 
 void BusSink::fault(Fault fault, std::string_view what, std::uint32_t radar_id) {
   node_.fault(fault, what);
-  if (radar_id != 0) ++node_.source_statistics(radar_id).rejected;
+  const bool rejected = fault == Fault::kWireLength || fault == Fault::kWireValue || fault == Fault::kWireUnknown;
+  if (radar_id != 0 && rejected) ++node_.source_statistics(radar_id).rejected;
 }
 
 }  // namespace boresight::ingest

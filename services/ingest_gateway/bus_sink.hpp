@@ -3,6 +3,7 @@
 
 #include "services/common/runtime/node.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
+#include "services/ingest_gateway/live_links.hpp"
 
 namespace boresight::ingest {
 
@@ -19,6 +20,18 @@ class BusSink : public Sink {
 
   SourceStatistics& statistics(std::uint32_t radar_id) override { return node_.source_statistics(radar_id); }
 
+  void send(const recording::Frame& frame) override {
+    if (links_ != nullptr) links_->send(frame);
+  }
+  void join(const recording::Endpoint& group, std::string_view interface) override {
+    if (links_ != nullptr) links_->join(group, interface);
+  }
+  void leave(const recording::Endpoint& group, std::string_view interface) override {
+    if (links_ != nullptr) links_->leave(group, interface);
+  }
+
+  /// Live links, by which frames go out; without them, as with recordings, nobody hears.
+  void use(Links& links) { links_ = &links; }
   /// To be called when a frame is taken from its link: the stage of ingest begins.
   void frame_begins(std::int64_t now_ns) { begin_ns_ = now_ns; }
 
@@ -29,6 +42,7 @@ class BusSink : public Sink {
   runtime::Loan<RadarScan> scan_;
   runtime::Loan<EgoMotion> ego_;
   std::int64_t begin_ns_ = 0;
+  Links* links_ = nullptr;
 };
 
 }  // namespace boresight::ingest

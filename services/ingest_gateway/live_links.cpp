@@ -1,28 +1,125 @@
 #include "services/ingest_gateway/live_links.hpp"
 
-#include <set>
+#include <algorithm>
 #include <string>
-#include <tuple>
 
-#include "services/ingest_gateway/links/can_link.hpp"
-#include "services/ingest_gateway/links/udp_link.hpp"
+#include "services/common/runtime/allocation_counter.hpp"
+#include "services/common/runtime/socket_address.hpp"
 
 namespace boresight::ingest {
 
-std::vector<std::unique_ptr<Link>> make_live_links(const VehicleConfig& vehicle, const LinkEvents& events) {
+namespace {
+
+/// The vehicle file has been checked before.
+recording::IpAddress address_of(const std::string& text) {
+  return recording::parse_ip(text).value_or(recording::IpAddress{});
+}
+
+}  // namespace
+
+void Links::add(std::unique_ptr<Link> link) {
+  entries_.push_back(std::make_unique<Entry>(Entry{std::move(link)}));
+  static_cast<void>(entries_.back()->link->open());
+  watch(*entries_.back());
+}
+
+void Links::add_live(const VehicleConfig& vehicle) {
   std::vector<SourceAddress> sources{vehicle.ego.source};
   for (const RadarConfig& radar : vehicle.radars) sources.push_back(radar.source);
-  std::set<std::string> can;
-  std::set<std::tuple<std::string, std::uint16_t, std::string>> udp;
-  std::vector<std::unique_ptr<Link>> links;
   for (const SourceAddress& source : sources) {
     if (source.link == LinkKind::kCan) {
-      if (can.insert(source.interface).second) links.push_back(std::make_unique<CanLink>(source.interface, events));
-    } else if (udp.emplace(source.address, source.port, source.interface).second) {
-      links.push_back(std::make_unique<UdpLink>(source.address, source.port, source.interface, events));
+      const auto same = [&](const CanLink* link) { return link->interface() == source.interface; };
+      if (std::any_of(can_.begin(), can_.end(), same)) continue;
+      auto link = std::make_unique<CanLink>(source.interface, events_);
+      can_.push_back(link.get());
+      add(std::move(link));
+      continue;
+    }
+    const recording::IpAddress address = address_of(source.address);
+    add_udp({address, source.port}, source.interface, Sharing::kOrdinary);
+    if (source.link == LinkKind::kSomeIp) {
+      add_udp({address, source.discovery_port}, source.interface, Sharing::kPolite);
+      add_udp({address_of(source.discovery_address), source.discovery_port}, source.interface, Sharing::kOrdinary);
     }
   }
-  return links;
+}
+
+void Links::add_udp(const recording::Endpoint& local, const std::string& interface, Sharing sharing) {
+  for (Udp& udp : udp_) {
+    if (udp.local == local && udp.interface == interface) {
+      ++udp.users;
+      return;
+    }
+  }
+  auto link = std::make_unique<UdpLink>(local, interface, events_, sharing);
+  UdpLink* const added = link.get();
+  udp_.push_back({local, interface, added, 1});
+  add(std::move(link));
+}
+
+void Links::keep_open() {
+  for (const auto& entry : entries_) {
+    entry->link->check();
+    if (entry->link->descriptor() < 0) static_cast<void>(entry->link->open());
+    watch(*entry);
+  }
+}
+
+void Links::watch(Entry& entry) {
+  const int descriptor = entry.link->descriptor();
+  if (descriptor == entry.watched) return;
+  const runtime::AllowAllocations not_the_data_path;
+  if (entry.watched >= 0) node_.remove_descriptor(entry.watched);
+  entry.watched = descriptor;
+  if (descriptor < 0) return;
+  node_.on_readable(descriptor, [this, &entry] {
+    entry.link->read();
+    watch(entry);
+  });
+}
+
+void Links::send(const recording::Frame& frame) {
+  if (frame.kind != recording::FrameKind::kUdp) {
+    for (CanLink* const link : can_) {
+      if (link->interface() == frame.interface_name()) link->send(frame);
+    }
+    return;
+  }
+  for (const Udp& udp : udp_) {
+    if (udp.local == frame.source) {
+      udp.link->send(frame.destination, frame.payload);
+      return;
+    }
+  }
+  if (!frame.source.address.is_unspecified()) return;
+  const bool is_v4 = frame.destination.address.is_v4();
+  Socket& sender = is_v4 ? sender_v4_ : sender_v6_;
+  if (!sender.is_open())
+    sender = Socket(socket(is_v4 ? AF_INET : AF_INET6, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  sockaddr_storage to{};
+  const socklen_t length = runtime::to_sockaddr(frame.destination, to);
+  const bool sent = sendto(sender.get(), frame.payload.data(), frame.payload.size(), 0,
+                           reinterpret_cast<const sockaddr*>(&to), length) >= 0;
+  if (!sent && !sending_fails_) events_.on_fault(Fault::kLink, "cannot send to a sensor: " + last_error());
+  sending_fails_ = !sent;
+}
+
+void Links::join(const recording::Endpoint& group, std::string_view interface) {
+  const runtime::AllowAllocations not_the_data_path;
+  add_udp(group, std::string(interface), Sharing::kOrdinary);
+}
+
+void Links::leave(const recording::Endpoint& group, std::string_view interface) {
+  const runtime::AllowAllocations not_the_data_path;
+  const auto found = std::find_if(udp_.begin(), udp_.end(),
+                                  [&](const Udp& udp) { return udp.local == group && udp.interface == interface; });
+  if (found == udp_.end() || --found->users > 0) return;
+  std::erase_if(entries_, [&](const std::unique_ptr<Entry>& entry) {
+    if (entry->link.get() != found->link) return false;
+    if (entry->watched >= 0) node_.remove_descriptor(entry->watched);
+    return true;
+  });
+  udp_.erase(found);
 }
 
 }  // namespace boresight::ingest

@@ -1,15 +1,57 @@
-// The links that a vehicle needs: one a CAN interface and one a UDP port, however many radars share it.
+// The links that a vehicle needs, opened and kept open: one a CAN interface and one a UDP address, however many sources
+// share it, and those of service discovery.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "services/common/runtime/node.hpp"
 #include "services/common/vehicle/vehicle.hpp"
-#include "services/ingest_gateway/links/link.hpp"
+#include "services/ingest_gateway/links/can_link.hpp"
+#include "services/ingest_gateway/links/udp_link.hpp"
 
 namespace boresight::ingest {
 
-[[nodiscard]] std::vector<std::unique_ptr<Link>> make_live_links(const VehicleConfig& vehicle,
-                                                                 const LinkEvents& events);
+/// Owns the links and keeps the node waiting for the descriptors that they have at the moment.
+class Links {
+ public:
+  Links(runtime::Node& node, LinkEvents events) : node_(node), events_(std::move(events)) {}
+
+  [[nodiscard]] const LinkEvents& events() const { return events_; }
+  void add(std::unique_ptr<Link> link);
+  /// All links of the vehicle file.
+  void add_live(const VehicleConfig& vehicle);
+  /// To be called each second: what is down is tried again.
+  void keep_open();
+
+  /// To the CAN interface or from the local UDP endpoint that the frame names; UDP without a source leaves by a socket
+  /// of its own. What has no link is dropped: the link has reported why it is not there.
+  void send(const recording::Frame& frame);
+  /// A group that a peer announced; joined groups are counted, so that each join needs its leave.
+  void join(const recording::Endpoint& group, std::string_view interface);
+  void leave(const recording::Endpoint& group, std::string_view interface);
+
+ private:
+  struct Entry {
+    std::unique_ptr<Link> link;
+    int watched = -1;
+  };
+  struct Udp {
+    recording::Endpoint local;
+    std::string interface;
+    UdpLink* link;
+    unsigned users;
+  };
+  void add_udp(const recording::Endpoint& local, const std::string& interface, Sharing sharing);
+  void watch(Entry& entry);
+  runtime::Node& node_;
+  LinkEvents events_;
+  std::vector<std::unique_ptr<Entry>> entries_;
+  std::vector<CanLink*> can_;
+  std::vector<Udp> udp_;
+  Socket sender_v4_;
+  Socket sender_v6_;
+  bool sending_fails_ = false;
+};
 
 }  // namespace boresight::ingest

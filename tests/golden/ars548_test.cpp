@@ -42,7 +42,8 @@ class Ars548 : public testing::Test {
 };
 
 TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
-  EXPECT_TRUE(decoding_.faults.empty()) << decoding_.faults.front();
+  // The capture was made anew years after the sensor's stamps, which claim to be synchronised.
+  EXPECT_THAT(decoding_.faults, testing::ElementsAre(testing::HasSubstr("synchronised")));
   Record head;
   const auto expected = read_yaml_list(kExpected, head);
   ASSERT_EQ(expected.size(), 308u);

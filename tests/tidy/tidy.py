@@ -16,8 +16,11 @@ TEXTS = SOURCES | {".md", ".toml", ".txt", ".sh", ".py", ".cmake", ".service", "
 IMPURE = re.compile(r"^(iceoryx|fastdds|fastrtps|spdlog|fmt/|CLI/|toml\+\+|pcap|sys/|netinet/|arpa/|linux/|net/|poll\.h|"
                     r"unistd\.h|fcntl\.h|time\.h|signal\.h|pthread|chrono|ctime|thread|mutex|condition_variable|future|"
                     r"filesystem|fstream|iostream|cstdio|stdio\.h|services/common/runtime/)")
-PURE_ROOMS = ("interfaces", "services/common/geometry", "services/common/estimation", "services/common/vehicle")
+PURE_ROOMS = ("interfaces", "services/common/geometry", "services/common/estimation", "services/common/vehicle", "services/common/e2e",
+              "services/ingest_gateway/dbc")
 PURE_FOLDERS = {"core", "codecs"}
+# Printing into a buffer is no input or output, but <format> is not in this compiler yet.
+PURE_EXCEPTIONS = {("services/ingest_gateway/codecs/report.cpp", "cstdio")}
 
 # Units that a float of a message may carry, and names that stand for a pure number.
 UNIT = re.compile(r"_(m|s|ms|us|ns|hz|rad|radps|mps|mps2|db|dbsm|m2)$")
@@ -69,7 +72,7 @@ def check_purity(root, files):
         if path.suffix not in SOURCES or not is_pure(path):
             continue
         for includer, name in reachable_includes(root, path, {path}):
-            if IMPURE.match(name):
+            if IMPURE.match(name) and (path.as_posix(), name) not in PURE_EXCEPTIONS:
                 yield f"{path}: pure, but {includer} includes {name}"
 
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "services/common/e2e/profile.hpp"
+
 namespace boresight {
 
 /// Nominal mounting in the vehicle frame (ISO 8855); rotation R_z(yaw)·R_y(−pitch)·R_x(roll), pitch positive looks up.
@@ -41,30 +43,52 @@ struct AlignmentTolerance {
 };
 
 enum class LinkKind : std::uint8_t {
-  kCan,  ///< a CAN bus: SocketCAN interface or recorded bus name
-  kUdp,  ///< UDP datagrams
+  kCan,     ///< a CAN bus: SocketCAN interface or recorded bus name
+  kUdp,     ///< UDP datagrams to a fixed address
+  kSomeIp,  ///< an instance of the Boresight service, found by SOME/IP service discovery
 };
 
-/// Names the radar protocols that the gateway speaks.
-enum class RadarProfile : std::uint8_t { kToyota, kArs548 };
+/// Names the radar protocols that the gateway speaks. kMapping: CAN signals of a DBC file, assigned by a mapping file.
+enum class RadarProfile : std::uint8_t { kToyota, kArs548, kSrr520, kArs408, kMapping, kBoresight };
 /// Names the ego signal sets that the gateway speaks.
-enum class EgoProfile : std::uint8_t { kToyota };
+enum class EgoProfile : std::uint8_t { kToyota, kSrr520, kMapping, kBoresight };
 
-/// Where frames come from. For kCan: `interface` ("can1"). For kUdp: the local address to listen on or the multicast
-/// group to join, its port, and the sender whose datagrams are this sensor's ("" accepts any sender).
+/// Where frames come from. For kCan: `interface` ("can1"; "" takes any, for tools). For kUdp: the local address to
+/// listen on or the multicast group to join, its port, and the sender whose datagrams are this sensor's ("" accepts any
+/// sender). For kSomeIp: the local address that takes part in service discovery and its port for events, the instance,
+/// and the group and port of discovery; with a `sender` its offer is not waited for.
 struct SourceAddress {
   LinkKind link = LinkKind::kCan;
   std::string interface;
   std::string address;
   std::uint16_t port = 0;
   std::string sender;
+  std::uint16_t sender_port = 0;  ///< kSomeIp with `sender`
+  std::uint16_t instance = 0;
+  std::string discovery_address = "224.244.224.245";
+  std::uint16_t discovery_port = 30490;
 };
+
+/// End-to-end protection of a source's messages.
+struct E2eConfig {
+  bool required = false;
+  e2e::Config protection;
+};
+
+/// What an ARS408 is asked to send at start.
+enum class Ars408Output : std::uint8_t { kAsItIs, kClusters, kObjects };
 
 struct RadarConfig {
   std::uint32_t id = 0;  ///< 1…16
   std::string name;      ///< "front_left"
   RadarProfile profile = RadarProfile::kArs548;
   SourceAddress source;
+  E2eConfig e2e;
+  std::string mapping;          ///< kMapping: path of the mapping file
+  std::uint32_t sensor_id = 0;  ///< kArs408: 0…7, several share a bus
+  Ars408Output output = Ars408Output::kAsItIs;
+  bool ego_feed = false;         ///< kArs548, kArs408: the vehicle's motion is sent to the sensor
+  double steering_ratio = 15.0;  ///< steering wheel to front axle, for that
   MountingPose mounting_pose;
   FieldOfView field_of_view;
   SensorNoise noise;
@@ -78,6 +102,8 @@ struct RadarConfig {
 struct EgoConfig {
   EgoProfile profile = EgoProfile::kToyota;
   SourceAddress source;
+  E2eConfig e2e;
+  std::string mapping;  ///< kMapping: path of the mapping file
   double speed_std_mps = 0.05;
   double yaw_rate_std_radps = 0.005;
   double steering_angle_std_rad = 0.02;

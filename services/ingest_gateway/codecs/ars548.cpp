@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "interfaces/wire/ars548.hpp"
-#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
+#include "services/ingest_gateway/codecs/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
 
 namespace layout = wire::ars548;
-using someip::read_f32, someip::read_u16, someip::read_u32;
 
 namespace {
 

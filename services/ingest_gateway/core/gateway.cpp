@@ -1,8 +1,17 @@
 #include "services/ingest_gateway/core/gateway.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <stdexcept>
+#include <string>
 
+#include "interfaces/wire/boresight_service.hpp"
+#include "services/ingest_gateway/codecs/ars408.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
+#include "services/ingest_gateway/codecs/boresight_service.hpp"
+#include "services/ingest_gateway/codecs/srr520.hpp"
+#include "services/ingest_gateway/codecs/table_ego.hpp"
+#include "services/ingest_gateway/codecs/table_radar.hpp"
 #include "services/ingest_gateway/codecs/toyota_ego.hpp"
 #include "services/ingest_gateway/codecs/toyota_radar.hpp"
 
@@ -12,14 +21,40 @@ namespace {
 
 constexpr std::int64_t kTick_ns = 5'000'000;
 
-std::unique_ptr<Decoder> make_decoder(const RadarConfig& radar) {
+std::unique_ptr<Decoder> make_decoder(const RadarConfig& radar, const Mappings& mappings) {
   switch (radar.profile) {
     case RadarProfile::kToyota:
       return std::make_unique<ToyotaRadar>();
     case RadarProfile::kArs548:
+      return std::make_unique<ars548::Ars548>();
+    case RadarProfile::kSrr520:
+      return std::make_unique<Srr520>();
+    case RadarProfile::kArs408:
+      return std::make_unique<Ars408>(radar.sensor_id);
+    case RadarProfile::kMapping: {
+      const auto found = mappings.radars.find(radar.id);
+      if (found == mappings.radars.end()) throw std::invalid_argument("no mapping for radar " + radar.name);
+      return std::make_unique<TableRadar>(found->second);
+    }
+    case RadarProfile::kBoresight:
       break;
   }
-  return std::make_unique<ars548::Ars548>();
+  return std::make_unique<service::DetectionList>();
+}
+
+std::unique_ptr<Decoder> make_ego_decoder(const EgoConfig& ego, const Mappings& mappings) {
+  switch (ego.profile) {
+    case EgoProfile::kToyota:
+      return std::make_unique<ToyotaEgo>();
+    case EgoProfile::kSrr520:
+      return std::make_unique<Srr520>();
+    case EgoProfile::kMapping:
+      if (!mappings.ego) throw std::invalid_argument("no mapping for the ego signals");
+      return std::make_unique<TableEgo>(*mappings.ego);
+    case EgoProfile::kBoresight:
+      break;
+  }
+  return std::make_unique<service::EgoEvent>();
 }
 
 /// The vehicle file has been checked before.
@@ -29,26 +64,60 @@ recording::IpAddress address_of(const std::string& text) {
 
 }  // namespace
 
-Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink)
+Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings)
     : sink_(sink),
-      ego_interface_(vehicle.ego.source.interface),
       ego_(vehicle.ego),
-      ego_source_(nullptr, std::make_unique<ToyotaEgo>(), static_cast<EgoReceiver&>(*this), sink) {
-  for (const RadarConfig& radar : vehicle.radars) {
-    sources_.push_back(std::make_unique<Source>(&radar, make_decoder(radar), static_cast<EgoReceiver&>(*this), sink_));
-    Source* const source = sources_.back().get();
-    const SourceAddress& address = radar.source;
-    if (address.link == LinkKind::kCan) {
-      can_.push_back({address.interface, source});
-    } else {
-      udp_.push_back({{address_of(address.address), address.port}, address_of(address.sender), source});
-    }
+      ego_source_(nullptr, make_ego_decoder(vehicle.ego, mappings), static_cast<EgoReceiver&>(*this), sink),
+      someip_(sink) {
+  if (vehicle.ego.source.link == LinkKind::kSomeIp) {
+    add_someip(ego_source_, vehicle.ego.source, wire::boresight_service::kEventEgoMotion,
+               wire::boresight_service::kEventgroupEgoMotion, vehicle.ego.e2e);
+  } else {
+    can_.push_back({vehicle.ego.source.interface, &ego_source_});
   }
+  for (const RadarConfig& radar : vehicle.radars) add_radar(radar, mappings);
+  someip_.prepare();
+  for (const auto& discovery : discoveries_) discovery->prepare();
+}
+
+void Gateway::add_radar(const RadarConfig& radar, const Mappings& mappings) {
+  sources_.push_back(
+      std::make_unique<Source>(&radar, make_decoder(radar, mappings), static_cast<EgoReceiver&>(*this), sink_));
+  Source& source = *sources_.back();
+  const SourceAddress& address = radar.source;
+  switch (address.link) {
+    case LinkKind::kCan:
+      can_.push_back({address.interface, &source});
+      break;
+    case LinkKind::kUdp:
+      udp_.push_back({{address_of(address.address), address.port}, address_of(address.sender), &source});
+      break;
+    case LinkKind::kSomeIp:
+      add_someip(source, address, wire::boresight_service::kEventDetectionList,
+                 wire::boresight_service::kEventgroupDetections, radar.e2e);
+      break;
+  }
+}
+
+void Gateway::add_someip(Source& source, const SourceAddress& address, std::uint16_t event, std::uint16_t eventgroup,
+                         const E2eConfig& e2e) {
+  const std::size_t index = someip_.add(source, event, e2e);
+  someip_ports_.push_back(address.port);
+  if (!address.sender.empty()) {
+    someip_.set_server(index, recording::Endpoint{address_of(address.sender), address.sender_port});
+    return;
+  }
+  auto found = std::find_if(discoveries_.begin(), discoveries_.end(), [&](const auto& d) { return d->is_on(address); });
+  if (found == discoveries_.end()) {
+    found = discoveries_.insert(found, std::make_unique<Discovery>(address, someip_, sink_));
+  }
+  (*found)->add(index, address, eventgroup);
 }
 
 Gateway::~Gateway() = default;
 
 void Gateway::take(const recording::Frame& frame, const FrameStamp& stamp) {
+  if (!started_) start(stamp.received_ns);
   // A clock that went back ticks at once, so that nothing waits for the old time to come again.
   if (std::abs(stamp.received_ns - last_tick_ns_) >= kTick_ns) tick(stamp.received_ns);
   if (frame.kind == recording::FrameKind::kUdp) {
@@ -65,28 +134,59 @@ void Gateway::finish() {
 
 void Gateway::tick(std::int64_t now_ns) {
   last_tick_ns_ = now_ns;
+  ego_source_.tick(now_ns);
   for (const auto& source : sources_) source->tick(now_ns);
+  someip_.tick(now_ns);
+  for (const auto& discovery : discoveries_) discovery->tick(now_ns);
+}
+
+void Gateway::start(std::int64_t now_ns) {
+  started_ = true;
+  last_tick_ns_ = now_ns;
+  for (const auto& discovery : discoveries_) discovery->start(now_ns);
+}
+
+void Gateway::stop() {
+  for (const auto& discovery : discoveries_) discovery->stop(last_tick_ns_);
 }
 
 void Gateway::take_can(const recording::Frame& frame, const FrameStamp& stamp) {
   const std::string_view interface = frame.interface_name();
-  if (interface == ego_interface_) ego_source_.take(frame, stamp);
   for (const CanRoute& route : can_) {
     if (route.interface.empty() || route.interface == interface) route.source->take(frame, stamp);
   }
 }
 
+bool Gateway::is_for_someip(const recording::Frame& frame) const {
+  const auto is_event_port = [&](std::uint16_t port) { return port == frame.destination.port; };
+  return someip_.knows(frame.source) || std::any_of(someip_ports_.begin(), someip_ports_.end(), is_event_port);
+}
+
 void Gateway::take_udp(const recording::Frame& frame, const FrameStamp& stamp) {
   bool known_port = false;
   for (const UdpRoute& route : udp_) {
-    if (!route.destination.address.is_unspecified() && route.destination != frame.destination) continue;
+    if (route.destination.port != 0 && route.destination.port != frame.destination.port) continue;
+    if (!route.destination.address.is_unspecified() && route.destination.address != frame.destination.address) continue;
     known_port = true;
     if (route.sender.is_unspecified() || route.sender == frame.source.address) {
       route.source->take(frame, stamp);
       return;
     }
   }
-  if (known_port) sink_.fault(Fault::kWireUnknown, "datagram to a radar's port from an unknown sender", 0);
+  bool is_discovery = false;
+  for (const auto& discovery : discoveries_) {
+    if (!discovery->is_for(frame)) continue;
+    discovery->take(frame, stamp.received_ns);
+    is_discovery = true;
+  }
+  if (is_discovery) return;
+  if (is_for_someip(frame)) {
+    someip_.take(frame, stamp, [&](std::size_t index) {
+      for (const auto& discovery : discoveries_) discovery->event_received(index, stamp.received_ns);
+    });
+  } else if (known_port) {
+    sink_.fault(Fault::kWireUnknown, "datagram to a radar's port from an unknown sender", 0);
+  }
 }
 
 void Gateway::take_ego(std::uint32_t source_id, const EgoReading& reading, const FrameStamp& reception) {

@@ -9,15 +9,19 @@
 #include "services/common/recording/frame.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/ingest_gateway/codecs/frame_stamp.hpp"
+#include "services/ingest_gateway/core/discovery.hpp"
 #include "services/ingest_gateway/core/ego_assembler.hpp"
+#include "services/ingest_gateway/core/mappings.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
+#include "services/ingest_gateway/core/someip_receiver.hpp"
 #include "services/ingest_gateway/core/source.hpp"
 
 namespace boresight::ingest {
 
 class Gateway : private EgoReceiver {
  public:
-  Gateway(const VehicleConfig& vehicle, Sink& sink);
+  /// Throws std::invalid_argument if the vehicle names a mapping that `mappings` lacks.
+  Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings = {});
   ~Gateway() override;
 
   /// Frames of unknown ids on a known CAN bus are ignored, as buses carry much else; datagrams from unknown senders
@@ -26,6 +30,11 @@ class Gateway : private EgoReceiver {
   /// Time passes: to be called every 5 ms or so of silence with live input, so that incomplete cycles end. take() does
   /// so by the stamps of the frames, which is all that a recording needs: the result does not depend on its speed.
   void tick(std::int64_t now_ns);
+  /// Looks for the services of the vehicle file and tells sensors what they have to send. With a recording, take() does
+  /// so by itself, and nobody hears.
+  void start(std::int64_t now_ns);
+  /// Ends subscriptions.
+  void stop();
   /// No frame will come any more: ends what is incomplete.
   void finish();
 
@@ -41,17 +50,24 @@ class Gateway : private EgoReceiver {
   };
   void take_can(const recording::Frame& frame, const FrameStamp& stamp);
   void take_udp(const recording::Frame& frame, const FrameStamp& stamp);
+  [[nodiscard]] bool is_for_someip(const recording::Frame& frame) const;
+  void add_radar(const RadarConfig& radar, const Mappings& mappings);
+  void add_someip(Source& source, const SourceAddress& address, std::uint16_t event, std::uint16_t eventgroup,
+                  const E2eConfig& e2e);
   void take_ego(std::uint32_t source_id, const EgoReading& reading, const FrameStamp& reception) override;
   [[nodiscard]] const EgoMotion* latest_ego(std::int64_t time_ns) const override;
 
   Sink& sink_;
   std::int64_t last_tick_ns_ = 0;
-  std::string ego_interface_;
   EgoAssembler ego_;
   Source ego_source_;
   std::vector<std::unique_ptr<Source>> sources_;
   std::vector<CanRoute> can_;
   std::vector<UdpRoute> udp_;
+  SomeIpReceiver someip_;
+  std::vector<std::unique_ptr<Discovery>> discoveries_;
+  std::vector<std::uint16_t> someip_ports_;  // at which events arrive
+  bool started_ = false;
 };
 
 }  // namespace boresight::ingest

@@ -6,12 +6,14 @@ namespace boresight::ingest {
 
 Source::Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoReceiver& ego, Sink& sink)
     : id_(radar == nullptr ? 0 : radar->id),
-      latency_ns_(radar == nullptr ? 0 : static_cast<std::int64_t>(radar->latency_s * 1e9)),
+      clock_(radar == nullptr ? RadarConfig{} : *radar),
       decoder_(std::move(decoder)),
       ego_(ego),
       sink_(sink) {}
 
 RadarScan* Source::begin_scan() {
+  // A radar whose lists carry ego signals may be named as the source of those, once more and without its scans.
+  if (id_ == 0) return nullptr;
   scan_ = sink_.begin_scan();
   return scan_;
 }
@@ -20,9 +22,18 @@ void Source::publish_scan(const FrameStamp& reception, const std::optional<Senso
                           unsigned cycle_counter_bits) {
   RadarScan& scan = *std::exchange(scan_, nullptr);
   if (cycle_counter_bits == 0) scan.cycle_counter = ++counted_cycles_;
-  const MeasurementTime time = sensor ? measurement_time(sensor->time_ns, sensor->synchronised, reception, latency_ns_)
-                                      : MeasurementTime{reception.received_ns - latency_ns_, reception.source};
-  sink_.publish_scan(id_, time);
+  const SensorClock::Result time = clock_.map(sensor, reception);
+  report(time);
+  sink_.publish_scan(id_, time.time);
+}
+
+void Source::report(const SensorClock::Result& time) {
+  if (time.sensor_reset) {
+    fault(Fault::kTimeJump, "the sensor's clock began anew: it was reset");
+  } else if (time.clock_jumped) {
+    fault(Fault::kTimeJump, "the sensor's clock, or that of its frames, jumped");
+  }
+  if (time.sync_lost) fault(Fault::kTimeJump, "the sensor's stamps are not, or no longer, synchronised");
 }
 
 void Source::discard_scan() {

@@ -6,6 +6,7 @@
 
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/ingest_gateway/codecs/decoder.hpp"
+#include "services/ingest_gateway/core/sensor_clock.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
 
 namespace boresight::ingest {
@@ -27,6 +28,7 @@ class Source : public DecoderOutput {
 
   [[nodiscard]] std::uint32_t id() const { return id_; }
   [[nodiscard]] Decoder& decoder() { return *decoder_; }
+  [[nodiscard]] SourceStatistics& statistics() { return sink_.statistics(id_); }
   void take(const recording::Frame& frame, const FrameStamp& stamp) {
     now_ns_ = stamp.received_ns;
     decoder_->take(frame, stamp, *this);
@@ -45,8 +47,9 @@ class Source : public DecoderOutput {
   void fault(Fault fault, std::string_view what) override;
 
  private:
+  void report(const SensorClock::Result& time);
   std::uint32_t id_;
-  std::int64_t latency_ns_;
+  SensorClock clock_;
   std::unique_ptr<Decoder> decoder_;
   EgoReceiver& ego_;
   Sink& sink_;

@@ -1,11 +1,13 @@
 #include "services/ingest_gateway/links/can_link.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 
 #include <linux/can.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
+#include <unistd.h>
 
 namespace boresight::ingest {
 
@@ -64,12 +66,7 @@ void CanLink::read() {
       if (errno != EAGAIN && errno != EINTR) fail("receiving failed: " + last_error());
       return;
     }
-    std::uint32_t drops = kernel_drops_;
-    const FrameStamp stamp = read_control(message, drops);
-    if (drops != kernel_drops_) {
-      kernel_drops_ = drops;
-      events_.on_fault(Fault::kLink, "the kernel dropped CAN frames: its receive buffer was full");
-    }
+    const FrameStamp stamp = stamp_and_drops(message, kernel_drops_, "CAN frames", events_);
     const bool is_fd = length == static_cast<ssize_t>(CANFD_MTU);
     if ((!is_fd && length != static_cast<ssize_t>(CAN_MTU)) || raw.len > (is_fd ? 64 : 8)) {
       events_.on_fault(Fault::kWireLength, "CAN frame of a wrong length");
@@ -86,6 +83,17 @@ void CanLink::read() {
     frame.payload = {raw.data, raw.len};
     events_.on_frame(frame, stamp);
   }
+}
+
+void CanLink::send(const recording::Frame& frame) {
+  canfd_frame raw{};
+  raw.can_id = frame.can_id | (frame.can_extended ? CAN_EFF_FLAG : 0u);
+  raw.len = static_cast<std::uint8_t>(std::min<std::size_t>(frame.payload.size(), sizeof(raw.data)));
+  std::copy_n(frame.payload.data(), raw.len, raw.data);
+  const std::size_t size = frame.kind == recording::FrameKind::kCanFd ? CANFD_MTU : CAN_MTU;
+  const bool sent = socket_.is_open() && ::write(socket_.get(), &raw, size) == static_cast<ssize_t>(size);
+  if (!sent && !sending_fails_) events_.on_fault(Fault::kLink, name_ + ": cannot send: " + last_error());
+  sending_fails_ = !sent;
 }
 
 }  // namespace boresight::ingest

@@ -15,6 +15,9 @@ class CanLink : public Link {
   bool open() override;
   [[nodiscard]] int descriptor() const override { return socket_.get(); }
   void read() override;
+  [[nodiscard]] const std::string& interface() const { return interface_; }
+  /// What cannot be sent is a fault, once until it can.
+  void send(const recording::Frame& frame);
   [[nodiscard]] const std::string& name() const override { return name_; }
 
  private:
@@ -24,6 +27,7 @@ class CanLink : public Link {
   LinkEvents events_;
   Socket socket_;
   std::uint32_t kernel_drops_ = 0;
+  bool sending_fails_ = false;
 };
 
 }  // namespace boresight::ingest

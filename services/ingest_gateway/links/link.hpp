@@ -31,6 +31,8 @@ class Link {
   [[nodiscard]] virtual int descriptor() const = 0;
   /// Takes what has arrived, some dozens of frames at most, so that the other links get their turn.
   virtual void read() = 0;
+  /// Called each second: closes the link if what it is built on was replaced.
+  virtual void check() {}
   [[nodiscard]] virtual const std::string& name() const = 0;
 };
 

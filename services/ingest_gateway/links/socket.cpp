@@ -1,6 +1,8 @@
 #include "services/ingest_gateway/links/socket.hpp"
 
+#include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
 
@@ -50,6 +52,19 @@ FrameStamp read_control(const msghdr& message, std::uint32_t& drops) {
       stamp.received_ns = kernel_ns - offset_ns;
       stamp.source = TimeSource::kLinkArrival;
     }
+  }
+  return stamp;
+}
+
+FrameStamp stamp_and_drops(const msghdr& message, std::uint32_t& drops, std::string_view of_what,
+                           const LinkEvents& events) {
+  const std::uint32_t drops_before = drops;
+  const FrameStamp stamp = read_control(message, drops);
+  if (drops != drops_before) {
+    std::array<char, 128> text{};
+    std::snprintf(text.data(), text.size(), "the kernel dropped %u %.*s: its receive buffer was full",
+                  drops - drops_before, static_cast<int>(of_what.size()), of_what.data());
+    events.on_fault(Fault::kLink, text.data());
   }
   return stamp;
 }

@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 
 #include "services/ingest_gateway/codecs/frame_stamp.hpp"
+#include "services/ingest_gateway/links/link.hpp"
 
 namespace boresight::ingest {
 
@@ -42,6 +43,10 @@ void request_stamps_and_drops(int descriptor);
 /// Reads stamp and drop counter from the control messages of a received message. Without a kernel stamp the stamp is
 /// the time of the call and says so. `drops` keeps its value if the kernel said nothing.
 [[nodiscard]] FrameStamp read_control(const msghdr& message, std::uint32_t& drops);
+
+/// The same for a link: a drop counter beyond `drops`, which follows it, is reported as a fault.
+[[nodiscard]] FrameStamp stamp_and_drops(const msghdr& message, std::uint32_t& drops, std::string_view of_what,
+                                         const LinkEvents& events);
 
 [[nodiscard]] std::string last_error();
 

@@ -1,11 +1,13 @@
 #include "services/ingest_gateway/links/udp_link.hpp"
 
 #include <cerrno>
+#include <cstring>
 #include <string>
 
-#include <arpa/inet.h>
 #include <net/if.h>
 #include <netinet/in.h>
+
+#include "services/common/runtime/socket_address.hpp"
 
 namespace boresight::ingest {
 
@@ -15,13 +17,18 @@ namespace {
 constexpr int kReceiveBuffer = 2 * 1024 * 1024;
 constexpr int kFramesPerTurn = 32;
 
+std::string name_of(const recording::Endpoint& local) {
+  const std::string address = recording::to_text(local.address);
+  return "udp " + (local.address.is_v4() ? address : "[" + address + "]") + ":" + std::to_string(local.port);
+}
+
 }  // namespace
 
-UdpLink::UdpLink(std::string address, std::uint16_t port, std::string interface, LinkEvents events)
-    : address_(std::move(address)),
-      port_(port),
+UdpLink::UdpLink(const recording::Endpoint& local, std::string interface, LinkEvents events, Sharing sharing)
+    : local_(local),
       interface_(std::move(interface)),
-      name_("udp " + address_ + ":" + std::to_string(port)),
+      sharing_(sharing),
+      name_(name_of(local)),
       events_(std::move(events)),
       buffer_(65536) {}
 
@@ -32,13 +39,11 @@ bool UdpLink::fail(const std::string& what) {
 }
 
 bool UdpLink::open() {
-  in_addr local{};
-  if (inet_pton(AF_INET, address_.c_str(), &local) != 1) return fail("address is not IPv4");
-  address_host_ = ntohl(local.s_addr);
-  socket_ = Socket(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const bool is_v4 = !is_v6();
+  socket_ = Socket(socket(is_v4 ? AF_INET : AF_INET6, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket_.is_open()) return fail("cannot make a socket: " + last_error());
-  const int on = 1;
-  setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  interface_index_ = interface_.empty() ? 0 : if_nametoindex(interface_.c_str());
+  if (!interface_.empty() && interface_index_ == 0) return fail("no interface named " + interface_);
   request_stamps_and_drops(socket_.get());
   const int given = request_receive_buffer(socket_.get(), kReceiveBuffer);
   if (given < kReceiveBuffer && !buffer_reported_) {
@@ -46,32 +51,88 @@ bool UdpLink::open() {
     events_.on_fault(Fault::kLink, name_ + ": receive buffer is " + std::to_string(given) +
                                        " of 2097152 bytes wanted; raise net.core.rmem_max");
   }
-  sockaddr_in bound{};
-  bound.sin_family = AF_INET;
-  bound.sin_port = htons(port_);
-  // Bound to the group itself, a socket does not receive what is sent to other groups or hosts on the same port.
-  bound.sin_addr = local;
-  if (bind(socket_.get(), reinterpret_cast<const sockaddr*>(&bound), sizeof(bound)) != 0) {
-    return fail("cannot bind: " + last_error());
-  }
-  if (IN_MULTICAST(address_host_)) {
-    ip_mreqn request{};
-    request.imr_multiaddr = local;
-    if (!interface_.empty()) {
-      request.imr_ifindex = static_cast<int>(if_nametoindex(interface_.c_str()));
-      if (request.imr_ifindex == 0) return fail("no interface named " + interface_);
-    }
-    if (setsockopt(socket_.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof(request)) != 0) {
-      return fail("cannot join the group: " + last_error());
-    }
+  if (!bind_local()) return fail("cannot bind: " + last_error());
+  choose_outgoing_interface(interface_index_);
+  if (local_.address.is_multicast() && !join_group(interface_index_)) {
+    return fail("cannot join the group: " + last_error());
   }
   kernel_drops_ = 0;
   return true;
 }
 
+bool UdpLink::is_taken_by_another() const {
+  const Socket probe(socket(is_v6() ? AF_INET6 : AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_storage address{};
+  const socklen_t length = runtime::to_sockaddr(local_, address);
+  return bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0 && errno == EADDRINUSE;
+}
+
+bool UdpLink::bind_local() {
+  recording::Endpoint bound = local_;
+  if (sharing_ == Sharing::kPolite && is_taken_by_another()) {
+    bound.port = 0;
+    if (!sharing_reported_) {
+      sharing_reported_ = true;
+      events_.on_fault(Fault::kLink, name_ +
+                                         ": another stack has this port; discovery is by multicast and from a port "
+                                         "of its own");
+    }
+  }
+  const int on = 1;
+  setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  sockaddr_storage address{};
+  // Bound to the group itself, a socket does not receive what is sent to other groups or hosts on the same port.
+  const socklen_t length = runtime::to_sockaddr(bound, address);
+  if (address.ss_family == AF_INET6) {
+    sockaddr_in6 v6{};
+    std::memcpy(&v6, &address, sizeof(v6));
+    v6.sin6_scope_id = interface_index_;  // without it link-local addresses have no meaning
+    std::memcpy(&address, &v6, sizeof(v6));
+  }
+  return bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0;
+}
+
+bool UdpLink::join_group(unsigned interface_index) {
+  group_req request{};
+  request.gr_interface = interface_index;
+  const socklen_t length = runtime::to_sockaddr({local_.address, 0}, request.gr_group);
+  const int level = is_v6() ? IPPROTO_IPV6 : IPPROTO_IP;
+  return length != 0 && setsockopt(socket_.get(), level, MCAST_JOIN_GROUP, &request, sizeof(request)) == 0;
+}
+
+void UdpLink::choose_outgoing_interface(unsigned interface_index) {
+  if (!is_v6()) {
+    ip_mreqn request{};
+    request.imr_ifindex = static_cast<int>(interface_index);
+    if (!local_.address.is_multicast()) request.imr_address.s_addr = htonl(local_.address.to_v4());
+    setsockopt(socket_.get(), IPPROTO_IP, IP_MULTICAST_IF, &request, sizeof(request));
+  } else {
+    setsockopt(socket_.get(), IPPROTO_IPV6, IPV6_MULTICAST_IF, &interface_index, sizeof(interface_index));
+  }
+}
+
+void UdpLink::check() {
+  // An interface that was removed and made anew has another index, and the kernel has forgotten the membership.
+  if (!socket_.is_open() || interface_.empty()) return;
+  if (if_nametoindex(interface_.c_str()) != interface_index_) fail("interface " + interface_ + " was replaced");
+}
+
+bool UdpLink::send(const recording::Endpoint& to, std::span<const std::uint8_t> payload) {
+  if (!socket_.is_open()) return false;
+  sockaddr_storage address{};
+  const socklen_t length = runtime::to_sockaddr(to, address);
+  const bool sent = sendto(socket_.get(), payload.data(), payload.size(), 0,
+                           reinterpret_cast<const sockaddr*>(&address), length) >= 0;
+  if (!sent && !sending_fails_) {
+    events_.on_fault(Fault::kLink, name_ + ": cannot send to " + name_of(to) + ": " + last_error());
+  }
+  sending_fails_ = !sent;
+  return sent;
+}
+
 void UdpLink::read() {
-  for (int i = 0; i < kFramesPerTurn; ++i) {
-    sockaddr_in sender{};
+  for (int i = 0; i < kFramesPerTurn && socket_.is_open(); ++i) {
+    sockaddr_storage sender{};
     iovec data{buffer_.data(), buffer_.size()};
     alignas(cmsghdr) std::array<char, 256> control{};
     msghdr message{};
@@ -83,20 +144,18 @@ void UdpLink::read() {
     message.msg_controllen = control.size();
     const ssize_t length = recvmsg(socket_.get(), &message, 0);
     if (length < 0) {
-      if (errno != EAGAIN && errno != EINTR) fail("receiving failed: " + last_error());
+      // ECONNREFUSED tells that a peer refused what was sent before; ENETDOWN passes when the interface is back.
+      if (errno != EAGAIN && errno != EINTR && errno != ECONNREFUSED && errno != ENETDOWN) {
+        fail("receiving failed: " + last_error());
+      }
       return;
-    }
-    std::uint32_t drops = kernel_drops_;
-    const FrameStamp stamp = read_control(message, drops);
-    if (drops != kernel_drops_) {
-      kernel_drops_ = drops;
-      events_.on_fault(Fault::kLink, "the kernel dropped datagrams: its receive buffer was full");
     }
     recording::Frame frame;
     frame.kind = recording::FrameKind::kUdp;
+    const FrameStamp stamp = stamp_and_drops(message, kernel_drops_, "datagrams", events_);
     frame.stamp_ns = stamp.received_ns;
-    frame.source = {recording::IpAddress::v4(ntohl(sender.sin_addr.s_addr)), ntohs(sender.sin_port)};
-    frame.destination = {recording::IpAddress::v4(address_host_), port_};
+    frame.source = runtime::from_sockaddr(sender);
+    frame.destination = local_;
     frame.payload = {buffer_.data(), static_cast<std::size_t>(length)};
     events_.on_frame(frame, stamp);
   }

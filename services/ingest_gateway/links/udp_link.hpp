@@ -1,4 +1,4 @@
-// One UDP port, unicast or multicast, for the radars that send to it.
+// One UDP socket: what is sent to a local address or a multicast group, and what goes out from there.
 #pragma once
 
 #include <array>
@@ -11,28 +11,49 @@
 
 namespace boresight::ingest {
 
+/// How a socket shares its address with those of other processes.
+enum class Sharing : std::uint8_t {
+  kOrdinary,
+  /// The unicast port of service discovery: if another stack of this host has it already, that one keeps it, as the
+  /// kernel hands unicast to one socket only, and this link sends from a port of its own.
+  kPolite,
+};
+
 class UdpLink : public Link {
  public:
-  /// `address`: local address to bind, or multicast group to join (on the interface of that name, or the kernel's
-  /// choice if empty).
-  UdpLink(std::string address, std::uint16_t port, std::string interface, LinkEvents events);
+  /// `local`: address to bind, or multicast group to join (on the interface of that name, or the kernel's choice if
+  /// empty).
+  UdpLink(const recording::Endpoint& local, std::string interface, LinkEvents events,
+          Sharing sharing = Sharing::kOrdinary);
 
   bool open() override;
   [[nodiscard]] int descriptor() const override { return socket_.get(); }
   void read() override;
+  void check() override;
   [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const recording::Endpoint& local() const { return local_; }
+
+  /// Sends one datagram; multicast leaves by the link's interface. What cannot be sent is a fault, once until it can.
+  bool send(const recording::Endpoint& to, std::span<const std::uint8_t> payload);
 
  private:
   bool fail(const std::string& what);
-  std::string address_;
-  std::uint16_t port_;
+  [[nodiscard]] bool is_v6() const { return !local_.address.is_v4() && !local_.address.is_unspecified(); }
+  [[nodiscard]] bool bind_local();
+  [[nodiscard]] bool join_group(unsigned interface_index);
+  void choose_outgoing_interface(unsigned interface_index);
+  [[nodiscard]] bool is_taken_by_another() const;
+  recording::Endpoint local_;
   std::string interface_;
+  Sharing sharing_;
   std::string name_;
   LinkEvents events_;
   Socket socket_;
-  std::uint32_t address_host_ = 0;
+  unsigned interface_index_ = 0;
   std::uint32_t kernel_drops_ = 0;
   bool buffer_reported_ = false;
+  bool sharing_reported_ = false;
+  bool sending_fails_ = false;
   std::vector<std::uint8_t> buffer_;
 };
 

@@ -8,89 +8,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/ingest_gateway/codecs/ars408_commands.hpp"
+#include "tests/unit/ingest_gateway/ars408_frames.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/put_signal.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-namespace layout = wire::ars408;
 using testing::HasSubstr;
-using Bytes = std::vector<std::uint8_t>;
+using namespace ars408_frames;
 constexpr std::int64_t kMillisecond = 1'000'000;
-
-struct CanFrame {
-  std::uint32_t id;
-  Bytes bytes;
-};
-using Frames = std::vector<CanFrame>;
-
-/// What one cluster or object says.
-struct Target {
-  double x_m = 30.0, y_m = 4.1, vx_mps = -10.0, vy_mps = 2.0, rcs_dbsm = 7.5;
-  unsigned rms_x = 10, rms_y = 12, rms_vx = 8, rms_vy = 14;
-  unsigned probability = 1, state = 0, ambiguity = 3;  // clusters: of a false alarm
-};
-
-CanFrame cluster_status(unsigned near, unsigned far, unsigned counter = 17) {
-  CanFrame frame{layout::kClusterStatusId, Bytes(5)};
-  put_raw(frame.bytes, layout::cluster_status::kNear, near);
-  put_raw(frame.bytes, layout::cluster_status::kFar, far);
-  put_raw(frame.bytes, layout::cluster_status::kMeasurementCounter, counter);
-  put_raw(frame.bytes, layout::cluster_status::kInterfaceVersion, 1);
-  return frame;
-}
-
-CanFrame object_status(unsigned count, unsigned counter = 17) {
-  CanFrame frame{layout::kObjectStatusId, Bytes(4)};
-  put_raw(frame.bytes, layout::object_status::kCount, count);
-  put_raw(frame.bytes, layout::object_status::kMeasurementCounter, counter);
-  return frame;
-}
-
-CanFrame general(std::uint32_t frame_id, unsigned id, const Target& target) {
-  CanFrame frame{frame_id, Bytes(8)};
-  const bool cluster = frame_id == layout::kClusterGeneralId;
-  put_raw(frame.bytes, layout::kEntryId, id);
-  put(frame.bytes, layout::general::kLongitudinal_m, target.x_m);
-  put(frame.bytes, cluster ? layout::general::kClusterLateral_m : layout::general::kObjectLateral_m, target.y_m);
-  put(frame.bytes, layout::general::kLongitudinalVelocity_mps, target.vx_mps);
-  put(frame.bytes, layout::general::kLateralVelocity_mps, target.vy_mps);
-  put(frame.bytes, layout::general::kRcs_dbsm, target.rcs_dbsm);
-  return frame;
-}
-
-CanFrame quality(std::uint32_t frame_id, unsigned id, const Target& target) {
-  const bool cluster = frame_id == layout::kClusterQualityId;
-  CanFrame frame{frame_id, Bytes(cluster ? 5 : 7)};
-  put_raw(frame.bytes, layout::kEntryId, id);
-  put_raw(frame.bytes, layout::quality::kLongitudinal, target.rms_x);
-  put_raw(frame.bytes, layout::quality::kLateral, target.rms_y);
-  put_raw(frame.bytes, layout::quality::kLongitudinalVelocity, target.rms_vx);
-  put_raw(frame.bytes, layout::quality::kLateralVelocity, target.rms_vy);
-  if (cluster) {
-    put_raw(frame.bytes, layout::cluster_quality::kFalseAlarm, target.probability);
-    put_raw(frame.bytes, layout::cluster_quality::kInvalidState, target.state);
-    put_raw(frame.bytes, layout::cluster_quality::kAmbiguityState, target.ambiguity);
-  } else {
-    put_raw(frame.bytes, layout::object_quality::kExistence, target.probability);
-    put_raw(frame.bytes, layout::object_quality::kMeasurementState, target.state);
-  }
-  return frame;
-}
-
-/// A whole cycle of clusters with ids from 0 on, in the sensor's order.
-Frames cluster_cycle(const std::vector<Target>& targets, bool with_quality, unsigned counter = 17) {
-  Frames frames{cluster_status(static_cast<unsigned>(targets.size()), 0, counter)};
-  for (unsigned i = 0; i < targets.size(); ++i) {
-    frames.push_back(general(layout::kClusterGeneralId, i, targets[i]));
-  }
-  for (unsigned i = 0; with_quality && i < targets.size(); ++i) {
-    frames.push_back(quality(layout::kClusterQualityId, i, targets[i]));
-  }
-  return frames;
-}
 
 class Ars408Test : public testing::Test {
  protected:
@@ -485,13 +412,12 @@ TEST_F(Ars408Test, RandomFramesNeitherCrashNorLeadToNonsense) {
     if (random() % 100 == 0) pass(31 * kMillisecond);
     if (output_.scans == checked) continue;
     checked = output_.scans;
-    ASSERT_LE(output_.scan->number_of_valid_detections, 256u);
-    for (std::uint32_t k = 0; k < output_.scan->number_of_valid_detections; ++k) {
-      ASSERT_TRUE(output_.scan->range_m[k] >= 0.0F && output_.scan->range_m[k] < 1200.0F);
-      ASSERT_LE(std::abs(output_.scan->range_rate_mps[k]), 145.0F);
-      ASSERT_TRUE(output_.scan->existence_probability[k] >= 0.0F && output_.scan->existence_probability[k] <= 1.0F);
-      ASSERT_TRUE(std::isfinite(output_.scan->azimuth_std_rad[k]) &&
-                  std::isfinite(output_.scan->range_rate_std_mps[k]));
+    const RadarScan& scan = *output_.scan;
+    ASSERT_LE(scan.number_of_valid_detections, 256u);
+    for (std::uint32_t k = 0; k < scan.number_of_valid_detections; ++k) {
+      ASSERT_TRUE(scan.range_m[k] >= 0.0F && scan.range_m[k] < 1200.0F && std::abs(scan.range_rate_mps[k]) <= 145.0F);
+      ASSERT_TRUE(scan.existence_probability[k] >= 0.0F && scan.existence_probability[k] <= 1.0F);
+      ASSERT_TRUE(std::isfinite(scan.azimuth_std_rad[k]) && std::isfinite(scan.range_rate_std_mps[k]));
     }
   }
   EXPECT_GT(checked, 1000u);
@@ -502,64 +428,6 @@ TEST_F(Ars408Test, RandomFramesNeitherCrashNorLeadToNonsense) {
   EXPECT_EQ(output_.all_faults(), faults) << output_.last_fault;
   EXPECT_EQ(output_.scan->number_of_valid_detections, 9u);
   EXPECT_EQ(output_.scan->integrity, 0u);
-}
-
-// --- commands
-// ---------------------------------------------------------------------------------------------------------
-
-std::string hex(const std::optional<ars408::CommandFrame>& frame) {
-  if (!frame) return "none";
-  std::string text;
-  for (const std::uint8_t byte : frame->payload()) {
-    std::array<char, 3> digits{};
-    std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
-    text += digits.data();
-  }
-  return text;
-}
-
-EgoMotion ego(float speed_mps, float yaw_rate_radps) {
-  EgoMotion motion{};
-  motion.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
-  motion.speed_mps = speed_mps;
-  motion.yaw_rate_radps = yaw_rate_radps;
-  return motion;
-}
-
-TEST(Ars408Commands, ConfigureTheOutputOfTheSensorAddressed) {
-  EXPECT_EQ(hex(ars408::configuration(ars408::Output::kClusters, 0)), "F8000000109C0000");
-  EXPECT_EQ(hex(ars408::configuration(ars408::Output::kObjects, 0)), "F8000000089C0000");
-  EXPECT_EQ(ars408::configuration(ars408::Output::kClusters, 0).can_id, 0x200u);
-  EXPECT_EQ(ars408::configuration(ars408::Output::kClusters, 5).can_id, 0x250u);
-}
-
-TEST(Ars408Commands, TellTheSpeedWithItsDirection) {
-  EXPECT_EQ(hex(ars408::ego_speed(ego(10.0F, 0.0F), 0)), "41F4");   // forward, 500
-  EXPECT_EQ(hex(ars408::ego_speed(ego(-10.0F, 0.0F), 0)), "81F4");  // backward, 500
-  EXPECT_EQ(hex(ars408::ego_speed(ego(0.0F, 0.0F), 0)), "0000");
-  EXPECT_EQ(hex(ars408::ego_speed(ego(0.009F, 0.0F), 0)), "0000") << "standstill as far as the signal can tell";
-  EXPECT_EQ(hex(ars408::ego_speed(ego(0.02F, 0.0F), 0)), "4001");
-  EXPECT_EQ(hex(ars408::ego_speed(ego(500.0F, 0.0F), 0)), "5FFF") << "confined to what the signal can carry";
-  EXPECT_EQ(ars408::ego_speed(ego(10.0F, 0.0F), 2)->can_id, 0x320u);
-  EgoMotion motion = ego(-10.0F, 0.0F);
-  motion.fields = ego_field::kSpeed;
-  EXPECT_EQ(hex(ars408::ego_speed(motion, 0)), "41F4") << "no direction known";
-  motion.fields = ego_field::kYawRate;
-  EXPECT_EQ(hex(ars408::ego_speed(motion, 0)), "none");
-  EXPECT_EQ(hex(ars408::ego_speed(ego(NAN, 0.0F), 0)), "none");
-  EXPECT_EQ(hex(ars408::ego_speed(ego(INFINITY, 0.0F), 0)), "none");
-}
-
-TEST(Ars408Commands, TellTheYawRate) {
-  EXPECT_EQ(hex(ars408::ego_yaw_rate(ego(0.0F, 0.0F), 0)), "8000");
-  EXPECT_EQ(hex(ars408::ego_yaw_rate(ego(0.0F, static_cast<float>(M_PI / 18.0)), 0)), "83E8");  // +10 °/s
-  EXPECT_EQ(hex(ars408::ego_yaw_rate(ego(0.0F, 100.0F), 0)), "FFFF");
-  EXPECT_EQ(hex(ars408::ego_yaw_rate(ego(0.0F, -100.0F), 0)), "0000");
-  EXPECT_EQ(ars408::ego_yaw_rate(ego(0.0F, 0.0F), 7)->can_id, 0x371u);
-  EXPECT_EQ(hex(ars408::ego_yaw_rate(ego(0.0F, NAN), 0)), "none");
-  EgoMotion motion = ego(0.0F, 0.1F);
-  motion.fields = ego_field::kSpeed;
-  EXPECT_EQ(hex(ars408::ego_yaw_rate(motion, 0)), "none");
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST(VehicleFile, RefusesTwoRadarsOfOneIdNameOrSource) {
 TEST(VehicleFile, RefusesWrongAddressesLinksAndMissingKeys) {
   std::string bad(kRadar);
   bad.replace(bad.find("224.0.2.2"), 9, "radar.lan");
-  EXPECT_THAT(error_of(std::string(kEgo) + bad), HasSubstr("\"radar.lan\" is not an IPv4 address"));
+  EXPECT_THAT(error_of(std::string(kEgo) + bad), HasSubstr("\"radar.lan\" is neither an IPv4 nor an IPv6 address"));
   bad = kRadar;
   bad.replace(bad.find("ars548"), 6, "toyota");
   EXPECT_THAT(error_of(std::string(kEgo) + bad), HasSubstr("this profile needs link = \"can\""));

@@ -1,46 +1,105 @@
 #include "services/common/runtime/config/vehicle_file.hpp"
 
 #include <algorithm>
+#include <array>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include "interfaces/messages/header.hpp"
+#include "interfaces/wire/boresight_service.hpp"
+#include "services/common/recording/ip_address.hpp"
 
 namespace boresight::config {
 
 namespace {
 
-bool is_ipv4(const std::string& text) {
-  in_addr address{};
-  return inet_pton(AF_INET, text.c_str(), &address) == 1;
+void check_address(Reader& reader, std::string_view key, const std::string& text) {
+  if (!text.empty() && !recording::parse_ip(text)) {
+    reader.reject(key, fmt::format("\"{}\" is neither an IPv4 nor an IPv6 address", text));
+  }
+}
+
+SourceAddress read_can(Reader& reader, SourceAddress source) {
+  reader.require("interface");
+  source.interface = reader.text("interface", "");
+  if (reader.has("interface") && (source.interface.empty() || source.interface.size() > 15)) {
+    reader.reject("interface", "must be an interface's name of 1 … 15 characters");
+  }
+  return source;
+}
+
+SourceAddress read_ip(Reader& reader, SourceAddress source) {
+  const bool someip = source.link == LinkKind::kSomeIp;
+  constexpr std::int64_t kEventPort = 30600;
+  reader.require("address");
+  reader.require(someip ? "instance" : "port");
+  source.address = reader.text("address", "");
+  source.port = static_cast<std::uint16_t>(reader.integer("port", {1, 65535}, someip ? kEventPort : 0));
+  source.sender = reader.text("sender", "");
+  source.interface = reader.text("interface", "");
+  if (someip) {
+    source.instance = static_cast<std::uint16_t>(reader.integer("instance", {1, 65534}, 1));
+    source.sender_port = static_cast<std::uint16_t>(reader.integer("sender_port", {1, 65535}, 0));
+    source.discovery_address = reader.text("discovery_address", source.discovery_address);
+    source.discovery_port =
+        static_cast<std::uint16_t>(reader.integer("discovery_port", {1, 65535}, source.discovery_port));
+    check_address(reader, "discovery_address", source.discovery_address);
+    if (source.sender.empty() != (source.sender_port == 0)) {
+      reader.reject("sender", "sender and sender_port are given together or not at all");
+    }
+    if (source.port == source.discovery_port) reader.reject("port", "is the port of service discovery");
+  }
+  check_address(reader, "address", source.address);
+  check_address(reader, "sender", source.sender);
+  return source;
 }
 
 SourceAddress read_source(Reader reader) {
   SourceAddress source;
   reader.require("link");
-  source.link = reader.choice<LinkKind>("link", {{"can", LinkKind::kCan}, {"udp", LinkKind::kUdp}}, source.link);
-  if (source.link == LinkKind::kCan) {
-    reader.require("interface");
-    source.interface = reader.text("interface", "");
-    if (reader.has("interface") && (source.interface.empty() || source.interface.size() > 15)) {
-      reader.reject("interface", "must be an interface's name of 1 … 15 characters");
-    }
-    return source;
-  }
-  reader.require("address");
-  reader.require("port");
-  source.address = reader.text("address", "");
-  source.port = static_cast<std::uint16_t>(reader.integer("port", {1, 65535}, 0));
-  source.sender = reader.text("sender", "");
-  source.interface = reader.text("interface", "");
-  if (reader.has("address") && !is_ipv4(source.address)) {
-    reader.reject("address", fmt::format("\"{}\" is not an IPv4 address", source.address));
-  }
-  if (!source.sender.empty() && !is_ipv4(source.sender)) {
-    reader.reject("sender", fmt::format("\"{}\" is not an IPv4 address", source.sender));
-  }
-  return source;
+  source.link = reader.choice<LinkKind>(
+      "link", {{"can", LinkKind::kCan}, {"udp", LinkKind::kUdp}, {"someip", LinkKind::kSomeIp}}, source.link);
+  return source.link == LinkKind::kCan ? read_can(reader, source) : read_ip(reader, source);
+}
+
+/// `fallback` is what the profile's definition says.
+E2eConfig read_e2e(Reader reader, E2eConfig e2e) {
+  using e2e::Profile;
+  e2e.required = reader.choice<bool>("mode", {{"off", false}, {"required", true}}, e2e.required);
+  e2e.protection.profile = reader.choice<Profile>(
+      "profile", {{"p04", Profile::kP04}, {"p06", Profile::kP06}, {"p07", Profile::kP07}}, e2e.protection.profile);
+  e2e.protection.data_id =
+      static_cast<std::uint32_t>(reader.integer("data_id", {0, 0xFFFFFFFF}, e2e.protection.data_id));
+  e2e.protection.offset_bytes = static_cast<std::uint32_t>(
+      reader.integer("offset_bytes", {8, e2e::kMaxOffsetBytes}, e2e.protection.offset_bytes));
+  e2e.protection.max_delta_counter = static_cast<std::uint32_t>(
+      reader.integer("max_delta_counter", {1, 0x7FFFFFFF}, e2e.protection.max_delta_counter));
+  if (const auto problem = e2e::validate(e2e.protection)) reader.reject("", *problem);
+  return e2e;
+}
+
+/// A message follows its SOME/IP header by the E2E header; the gap that lost messages leave is bridged for a second.
+E2eConfig default_e2e(bool required, std::uint32_t data_id) {
+  E2eConfig e2e;
+  e2e.required = required;
+  e2e.protection = {.profile = e2e::Profile::kP07,
+                    .data_id = data_id,
+                    .offset_bytes = wire::boresight_service::kE2eOffsetBytes,
+                    .max_delta_counter = 50};
+  return e2e;
+}
+
+std::string read_mapping(Reader& reader, bool needed) {
+  if (needed) reader.require("mapping");
+  std::string mapping = reader.text("mapping", "");
+  if (!needed && !mapping.empty()) reader.reject("mapping", "is for profile = \"mapping\" only");
+  return mapping;
+}
+
+void check_link(Reader& reader, LinkKind link, LinkKind needed) {
+  if (!reader.has("profile") || !reader.has("source") || link == needed) return;
+  constexpr std::array<std::string_view, 3> kNames = {"can", "udp", "someip"};
+  reader.reject("source", fmt::format("this profile needs link = \"{}\"", kNames.at(static_cast<std::size_t>(needed))));
 }
 
 MountingPose read_pose(Reader reader) {
@@ -90,8 +149,19 @@ AlignmentTolerance read_tolerance(Reader reader) {
 EgoConfig read_ego(Reader reader) {
   EgoConfig ego;
   reader.require("source");
-  ego.profile = reader.choice<EgoProfile>("profile", {{"toyota", EgoProfile::kToyota}}, ego.profile);
+  ego.profile = reader.choice<EgoProfile>("profile",
+                                          {{"toyota", EgoProfile::kToyota},
+                                           {"srr520", EgoProfile::kSrr520},
+                                           {"mapping", EgoProfile::kMapping},
+                                           {"boresight", EgoProfile::kBoresight}},
+                                          ego.profile);
   ego.source = read_source(reader.table("source"));
+  const bool is_someip = ego.profile == EgoProfile::kBoresight;
+  check_link(reader, ego.source.link, is_someip ? LinkKind::kSomeIp : LinkKind::kCan);
+  namespace service = wire::boresight_service;
+  ego.e2e = default_e2e(is_someip, service::data_id(ego.source.instance, service::kEventEgoMotion));
+  if (is_someip) ego.e2e = read_e2e(reader.table("e2e"), ego.e2e);
+  ego.mapping = read_mapping(reader, ego.profile == EgoProfile::kMapping);
   ego.speed_std_mps = reader.number("speed_std_mps", {1e-4, 10.0}, ego.speed_std_mps);
   ego.yaw_rate_std_radps = reader.number("yaw_rate_std_radps", {1e-6, 1.0}, ego.yaw_rate_std_radps);
   ego.steering_angle_std_rad = reader.number("steering_angle_std_rad", {1e-6, 1.0}, ego.steering_angle_std_rad);
@@ -106,12 +176,36 @@ RadarConfig read_radar(Reader reader) {
   if (reader.has("name") && (radar.name.empty() || radar.name.size() > 31)) {
     reader.reject("name", "must have 1 … 31 characters");
   }
-  radar.profile = reader.choice<RadarProfile>(
-      "profile", {{"toyota", RadarProfile::kToyota}, {"ars548", RadarProfile::kArs548}}, radar.profile);
+  radar.profile = reader.choice<RadarProfile>("profile",
+                                              {{"toyota", RadarProfile::kToyota},
+                                               {"ars548", RadarProfile::kArs548},
+                                               {"srr520", RadarProfile::kSrr520},
+                                               {"ars408", RadarProfile::kArs408},
+                                               {"mapping", RadarProfile::kMapping},
+                                               {"boresight", RadarProfile::kBoresight}},
+                                              radar.profile);
   radar.source = read_source(reader.table("source"));
-  const LinkKind needed = radar.profile == RadarProfile::kToyota ? LinkKind::kCan : LinkKind::kUdp;
-  if (reader.has("profile") && reader.has("source") && radar.source.link != needed) {
-    reader.reject("source", fmt::format("this profile needs link = \"{}\"", needed == LinkKind::kCan ? "can" : "udp"));
+  const bool is_ars548 = radar.profile == RadarProfile::kArs548;
+  const bool is_ars408 = radar.profile == RadarProfile::kArs408;
+  const bool is_someip = radar.profile == RadarProfile::kBoresight;
+  check_link(reader, radar.source.link, is_ars548 ? LinkKind::kUdp : is_someip ? LinkKind::kSomeIp : LinkKind::kCan);
+  namespace service = wire::boresight_service;
+  radar.e2e =
+      default_e2e(is_someip, is_someip ? service::data_id(radar.source.instance, service::kEventDetectionList) : 0);
+  if (is_ars548 || is_someip) radar.e2e = read_e2e(reader.table("e2e"), radar.e2e);
+  radar.mapping = read_mapping(reader, radar.profile == RadarProfile::kMapping);
+  if (is_ars408) {
+    radar.sensor_id = static_cast<std::uint32_t>(reader.integer("sensor_id", {0, 7}, 0));
+    radar.output = reader.choice<Ars408Output>("output",
+                                               {{"as_it_is", Ars408Output::kAsItIs},
+                                                {"clusters", Ars408Output::kClusters},
+                                                {"objects", Ars408Output::kObjects}},
+                                               radar.output);
+  }
+  if (is_ars408 || is_ars548) radar.ego_feed = reader.boolean("ego_feed", false);
+  if (is_ars548) radar.steering_ratio = reader.number("steering_ratio", {1.0, 50.0}, radar.steering_ratio);
+  if (is_ars548 && radar.ego_feed && radar.source.sender.empty()) {
+    reader.reject("ego_feed", "needs the sensor's address as source.sender");
   }
   radar.mounting_pose = read_pose(reader.table("mounting_pose"));
   radar.field_of_view = read_field_of_view(reader.table("field_of_view"));
@@ -128,7 +222,10 @@ bool same_source(const RadarConfig& a, const RadarConfig& b) {
   const SourceAddress& s = a.source;
   const SourceAddress& t = b.source;
   if (s.link != t.link) return false;
-  if (s.link == LinkKind::kCan) return a.profile == b.profile && s.interface == t.interface;
+  if (s.link == LinkKind::kCan) {
+    return a.profile == b.profile && s.interface == t.interface && a.sensor_id == b.sensor_id && a.mapping == b.mapping;
+  }
+  if (s.link == LinkKind::kSomeIp) return s.instance == t.instance;
   return s.address == t.address && s.port == t.port && (s.sender == t.sender || s.sender.empty() || t.sender.empty());
 }
 
@@ -157,7 +254,13 @@ VehicleConfig read_vehicle(Reader root) {
 }
 
 VehicleConfig read_vehicle_file(const std::filesystem::path& file) {
-  return read_vehicle(Reader::open(file));
+  VehicleConfig vehicle = read_vehicle(Reader::open(file));
+  const auto resolve = [&file](std::string& mapping) {
+    if (!mapping.empty()) mapping = (file.parent_path() / mapping).lexically_normal().string();
+  };
+  resolve(vehicle.ego.mapping);
+  for (RadarConfig& radar : vehicle.radars) resolve(radar.mapping);
+  return vehicle;
 }
 
 }  // namespace boresight::config

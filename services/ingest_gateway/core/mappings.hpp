@@ -1,0 +1,17 @@
+// The mapping files of a vehicle, read and looked up.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "services/ingest_gateway/dbc/mapping.hpp"
+
+namespace boresight::ingest {
+
+struct Mappings {
+  std::map<std::uint32_t, dbc::RadarMapping> radars;  ///< by radar id
+  std::optional<dbc::EgoMapping> ego;
+};
+
+}  // namespace boresight::ingest

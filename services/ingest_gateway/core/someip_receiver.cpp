@@ -1,0 +1,116 @@
+#include "services/ingest_gateway/core/someip_receiver.hpp"
+
+#include <algorithm>
+
+#include "interfaces/wire/boresight_service.hpp"
+
+namespace boresight::ingest {
+
+namespace service = wire::boresight_service;
+
+namespace {
+
+// Segments of one message are sent within 5 ms; a message is given up long before the next cycle but one.
+constexpr std::int64_t kReassemblyTimeout_ns = 100'000'000;
+
+}  // namespace
+
+std::size_t SomeIpReceiver::add(Source& source, std::uint16_t event, const E2eConfig& e2e) {
+  // Without protection required the header still is there, as the service has it.
+  const std::size_t body_offset = e2e.protection.offset_bytes + e2e::header_bytes(e2e.protection.profile) -
+                                  (someip::kHeaderBytes - service::kProtectedFrom);
+  subscriptions_.push_back({&source, event, e2e.required, body_offset, e2e::Checker(e2e.protection), std::nullopt});
+  return subscriptions_.size() - 1;
+}
+
+void SomeIpReceiver::set_server(std::size_t index, const std::optional<recording::Endpoint>& server) {
+  Subscription& subscription = subscriptions_[index];
+  // A server that comes back counts anew; its first message is compared with nothing.
+  if (subscription.server != server) subscription.checker.reset();
+  subscription.server = server;
+}
+
+bool SomeIpReceiver::knows(const recording::Endpoint& server) const {
+  return std::any_of(subscriptions_.begin(), subscriptions_.end(),
+                     [&](const Subscription& s) { return s.server == server; });
+}
+
+void SomeIpReceiver::prepare() {
+  // Two messages of each source, so that a late segment does not cost the next message, and some for strangers.
+  if (!subscriptions_.empty()) {
+    reassembler_.emplace(2 * subscriptions_.size() + 4, service::kMaxMessageBytes, kReassemblyTimeout_ns);
+  }
+}
+
+void SomeIpReceiver::tick(std::int64_t now_ns) {
+  if (!reassembler_) return;
+  reassembler_->expire(now_ns);
+  const std::uint64_t incomplete = reassembler_->statistics().dropped_incomplete;
+  for (; incomplete_reported_ < incomplete; ++incomplete_reported_) {
+    sink_.fault(Fault::kWireLength, "SOME/IP-TP: a message was given up because segments are missing", 0);
+  }
+}
+
+void SomeIpReceiver::take_datagram(const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken) {
+  someip::MessageReader reader(datagram.payload);
+  someip::Message message;
+  for (auto result = reader.next(message); result != someip::ReadResult::kEnd; result = reader.next(message)) {
+    if (result != someip::ReadResult::kMessage) {
+      sink_.fault(Fault::kWireLength, someip::describe(result), 0);
+      continue;
+    }
+    if (message.service != service::kServiceId) continue;  // other services of the same socket
+    if (!message.tp) {
+      take_message(message, datagram, stamp, taken);
+      continue;
+    }
+    someip::Message whole;
+    const someip::TpResult part = reassembler_->take(message, datagram.source, stamp.received_ns, whole);
+    if (part == someip::TpResult::kComplete) {
+      take_message(whole, datagram, stamp, taken);
+    } else if (someip::is_fault(part)) {
+      sink_.fault(Fault::kWireValue, someip::describe(part), 0);
+    }
+  }
+}
+
+void SomeIpReceiver::take_message(const someip::Message& message, const recording::Frame& datagram,
+                                  const FrameStamp& stamp, std::uint32_t& taken) {
+  const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(), [&](const Subscription& s) {
+    return s.event == message.method && s.server == datagram.source;
+  });
+  if (found == subscriptions_.end()) {
+    sink_.fault(Fault::kWireUnknown, "SOME/IP: event of the Boresight service from a sender that nobody waits for", 0);
+    return;
+  }
+  Source& source = *found->source;
+  if (message.interface_version != service::kMajorVersion || message.type != someip::MessageType::kNotification ||
+      message.return_code != 0) {
+    source.fault(Fault::kWireValue, "SOME/IP: interface version, message type or return code is not 1, 0x02, 0");
+    return;
+  }
+  if (!passes_e2e(*found, message)) return;
+  if (message.payload.size() < found->body_offset) {
+    source.fault(Fault::kWireLength, "SOME/IP: message is shorter than its E2E header");
+    return;
+  }
+  taken |= 1u << static_cast<unsigned>(found - subscriptions_.begin());
+  recording::Frame body = datagram;
+  body.payload = message.payload.subspan(found->body_offset);
+  source.take(body, stamp);
+}
+
+bool SomeIpReceiver::passes_e2e(Subscription& subscription, const someip::Message& message) {
+  if (!subscription.e2e_required) return true;
+  const e2e::Status status = subscription.checker.check(message.protected_data);
+  SourceStatistics& statistics = subscription.source->statistics();
+  const e2e::Statistics& counts = subscription.checker.statistics();
+  statistics.e2e_lost = counts.lost;
+  statistics.e2e_repeated = counts.repeated;
+  statistics.e2e_wrong = counts.wrong_crc + counts.wrong_length + counts.wrong_data_id + counts.wrong_sequence;
+  if (e2e::is_acceptable(status)) return true;
+  subscription.source->fault(Fault::kWireValue, e2e::describe(status));
+  return false;
+}
+
+}  // namespace boresight::ingest
