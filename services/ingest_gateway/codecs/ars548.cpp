@@ -5,6 +5,7 @@
 
 #include "interfaces/wire/ars548.hpp"
 #include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/ingest_gateway/codecs/protection.hpp"
 
 namespace boresight::ingest::ars548 {
 
@@ -145,6 +146,14 @@ void Ars548::take(const recording::Frame& frame, const FrameStamp& stamp, Decode
   if (result == DecodeResult::kAccepted) output.report_conditions(conditions(frame.payload));
   if (const auto fault = fault_of(result)) output.fault(*fault, problem);
   if (result != DecodeResult::kComplete) return;
+  if (e2e_required_) {
+    constexpr std::size_t kRequestId = 8;  // what is protected begins there
+    const e2e::Status status = check_protection(checker_, frame.payload.subspan(kRequestId), output);
+    if (!e2e::is_acceptable(status)) {
+      output.fault(Fault::kWireValue, e2e::describe(status));
+      return;
+    }
+  }
   RadarScan* const scan = output.begin_scan();
   if (scan == nullptr) return;
   const SensorStamp time = decode(frame.payload, *scan);

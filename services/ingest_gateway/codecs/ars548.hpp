@@ -5,6 +5,8 @@
 #include <span>
 
 #include "interfaces/messages/radar_scan.hpp"
+#include "services/common/e2e/checker.hpp"
+#include "services/common/vehicle/vehicle.hpp"
 #include "services/ingest_gateway/codecs/decoder.hpp"
 #include "services/ingest_gateway/codecs/result.hpp"
 
@@ -25,7 +27,14 @@ namespace boresight::ingest::ars548 {
 /// One sensor: each detection list is one datagram and one scan.
 class Ars548 : public Decoder {
  public:
+  /// With `e2e` required, detection lists that fail their check are dropped; real firmware may leave the header zero.
+  explicit Ars548(const E2eConfig& e2e = {}) : e2e_required_(e2e.required), checker_(e2e.protection) {}
+
   void take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) override;
+
+ private:
+  bool e2e_required_;
+  e2e::Checker checker_;
 };
 
 }  // namespace boresight::ingest::ars548

@@ -28,6 +28,13 @@ struct EgoReading {
   std::optional<bool> reverse;               ///< gear
 };
 
+/// What end-to-end checks found, since the report before.
+struct E2eCounts {
+  std::uint64_t lost = 0;      ///< messages that the counter stepped over
+  std::uint64_t repeated = 0;  ///< messages with the counter of the one before
+  std::uint64_t wrong = 0;     ///< messages of a wrong CRC, length, Data ID or sequence
+};
+
 /// Where a decoder puts its products. A scan is written straight into the memory that goes to the other processes.
 class DecoderOutput {
  public:
@@ -44,6 +51,8 @@ class DecoderOutput {
   virtual void discard_scan() = 0;
   /// The sensor's own word on itself: source_condition bits, all of them each time.
   virtual void report_conditions(std::uint32_t conditions) = 0;
+  /// Adds to the statistics of the source's end-to-end protection.
+  virtual void count_e2e(const E2eCounts& /*counts*/) {}
   virtual void take_ego(const EgoReading& reading, const FrameStamp& reception) = 0;
   /// Something was rejected; `what` names the field and what is allowed. Not kept: may be a temporary.
   virtual void fault(Fault fault, std::string_view what) = 0;

@@ -1,6 +1,7 @@
 #include "services/ingest_gateway/codecs/frame_guard.hpp"
 
 #include "interfaces/wire/toyota.hpp"
+#include "services/ingest_gateway/codecs/protection.hpp"
 
 namespace boresight::ingest {
 
@@ -26,7 +27,7 @@ std::span<const std::uint8_t> FrameGuard::usable(const recording::Frame& frame, 
     return {};
   }
   if (e2e_.config().profile != e2e::Profile::kNone) {
-    const e2e::Status status = e2e_.check(payload);
+    const e2e::Status status = check_protection(e2e_, payload, output);
     if (!e2e::is_acceptable(status)) {
       output.fault(Fault::kWireValue, bad_protection_[static_cast<std::size_t>(status)]);
       return {};

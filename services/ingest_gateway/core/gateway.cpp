@@ -26,7 +26,7 @@ std::unique_ptr<Decoder> make_decoder(const RadarConfig& radar, const Mappings& 
     case RadarProfile::kToyota:
       return std::make_unique<ToyotaRadar>();
     case RadarProfile::kArs548:
-      return std::make_unique<ars548::Ars548>();
+      return std::make_unique<ars548::Ars548>(radar.e2e);
     case RadarProfile::kSrr520:
       return std::make_unique<Srr520>();
     case RadarProfile::kArs408:
@@ -68,7 +68,8 @@ Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappi
     : sink_(sink),
       ego_(vehicle.ego),
       ego_source_(nullptr, make_ego_decoder(vehicle.ego, mappings), static_cast<EgoReceiver&>(*this), sink),
-      someip_(sink) {
+      someip_(sink),
+      feed_(vehicle) {
   if (vehicle.ego.source.link == LinkKind::kSomeIp) {
     add_someip(ego_source_, vehicle.ego.source, wire::boresight_service::kEventEgoMotion,
                wire::boresight_service::kEventgroupEgoMotion, vehicle.ego.e2e);
@@ -143,6 +144,7 @@ void Gateway::tick(std::int64_t now_ns) {
 void Gateway::start(std::int64_t now_ns) {
   started_ = true;
   last_tick_ns_ = now_ns;
+  feed_.start(sink_);
   for (const auto& discovery : discoveries_) discovery->start(now_ns);
 }
 
@@ -198,11 +200,17 @@ void Gateway::take_ego(std::uint32_t source_id, const EgoReading& reading, const
   EgoMotion* const out = sink_.begin_ego();
   if (out == nullptr) return;  // counted where the memory was refused
   ego_.write(*out);
+  feed_.send(*out, reception.received_ns, sink_);
+  latest_ego_ = *out;
+  latest_ego_.header.measurement_time_ns = ego_.time().time_ns;
+  has_ego_ = true;
   sink_.publish_ego(ego_.time());
 }
 
-const EgoMotion* Gateway::latest_ego(std::int64_t) const {
-  return nullptr;
+const EgoMotion* Gateway::latest_ego(std::int64_t time_ns) const {
+  constexpr std::int64_t kMaxAge_ns = 300'000'000;
+  const bool is_fresh = has_ego_ && std::abs(time_ns - latest_ego_.header.measurement_time_ns) <= kMaxAge_ns;
+  return is_fresh ? &latest_ego_ : nullptr;
 }
 
 }  // namespace boresight::ingest

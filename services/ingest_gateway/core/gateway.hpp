@@ -12,6 +12,7 @@
 #include "services/ingest_gateway/core/discovery.hpp"
 #include "services/ingest_gateway/core/ego_assembler.hpp"
 #include "services/ingest_gateway/core/mappings.hpp"
+#include "services/ingest_gateway/core/sensor_feed.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
 #include "services/ingest_gateway/core/someip_receiver.hpp"
 #include "services/ingest_gateway/core/source.hpp"
@@ -68,6 +69,9 @@ class Gateway : private EgoReceiver {
   std::vector<std::unique_ptr<Discovery>> discoveries_;
   std::vector<std::uint16_t> someip_ports_;  // at which events arrive
   bool started_ = false;
+  SensorFeed feed_;
+  EgoMotion latest_ego_{};
+  bool has_ego_ = false;
 };
 
 }  // namespace boresight::ingest

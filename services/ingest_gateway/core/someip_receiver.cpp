@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "interfaces/wire/boresight_service.hpp"
+#include "services/ingest_gateway/codecs/protection.hpp"
 
 namespace boresight::ingest {
 
@@ -102,12 +103,7 @@ void SomeIpReceiver::take_message(const someip::Message& message, const recordin
 
 bool SomeIpReceiver::passes_e2e(Subscription& subscription, const someip::Message& message) {
   if (!subscription.e2e_required) return true;
-  const e2e::Status status = subscription.checker.check(message.protected_data);
-  SourceStatistics& statistics = subscription.source->statistics();
-  const e2e::Statistics& counts = subscription.checker.statistics();
-  statistics.e2e_lost = counts.lost;
-  statistics.e2e_repeated = counts.repeated;
-  statistics.e2e_wrong = counts.wrong_crc + counts.wrong_length + counts.wrong_data_id + counts.wrong_sequence;
+  const e2e::Status status = check_protection(subscription.checker, message.protected_data, *subscription.source);
   if (e2e::is_acceptable(status)) return true;
   subscription.source->fault(Fault::kWireValue, e2e::describe(status));
   return false;

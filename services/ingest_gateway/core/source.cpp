@@ -42,7 +42,15 @@ void Source::discard_scan() {
 }
 
 void Source::report_conditions(std::uint32_t conditions) {
-  sink_.statistics(id_).conditions = conditions;
+  if (id_ != 0) sink_.statistics(id_).conditions = conditions;
+}
+
+void Source::count_e2e(const E2eCounts& counts) {
+  if (id_ == 0) return;
+  SourceStatistics& statistics = sink_.statistics(id_);
+  statistics.e2e_lost += counts.lost;
+  statistics.e2e_repeated += counts.repeated;
+  statistics.e2e_wrong += counts.wrong;
 }
 
 void Source::take_ego(const EgoReading& reading, const FrameStamp& reception) {

@@ -28,7 +28,6 @@ class Source : public DecoderOutput {
 
   [[nodiscard]] std::uint32_t id() const { return id_; }
   [[nodiscard]] Decoder& decoder() { return *decoder_; }
-  [[nodiscard]] SourceStatistics& statistics() { return sink_.statistics(id_); }
   void take(const recording::Frame& frame, const FrameStamp& stamp) {
     now_ns_ = stamp.received_ns;
     decoder_->take(frame, stamp, *this);
@@ -43,6 +42,7 @@ class Source : public DecoderOutput {
                     unsigned cycle_counter_bits) override;
   void discard_scan() override;
   void report_conditions(std::uint32_t conditions) override;
+  void count_e2e(const E2eCounts& counts) override;
   void take_ego(const EgoReading& reading, const FrameStamp& reception) override;
   void fault(Fault fault, std::string_view what) override;
 
