@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/e2e/protector.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
@@ -95,6 +96,30 @@ TEST_F(Ars548Test, WrongLengthsAndHeadersAreRefusedWithAReason) {
     (*bytes_)[3] = static_cast<std::uint8_t>(method & 0xFF);
     EXPECT_EQ(check_bytes(), DecodeResult::kIgnored);
   }
+}
+
+TEST_F(Ars548Test, WithProtectionRequiredTheListIsCheckedAndItsCounterFollowed) {
+  const e2e::Config protection{
+      .profile = e2e::Profile::kP07, .data_id = 0x150, .offset_bytes = 8, .max_delta_counter = 3};
+  Ars548 radar(E2eConfig{.required = true, .protection = protection});
+  MemoryOutput out;
+  recording::Frame frame;
+  frame.kind = recording::FrameKind::kUdp;
+  frame.payload = *bytes_;
+  radar.take(frame, {}, out);
+  EXPECT_EQ(out.scans, 0u) << "real firmware leaves the header zero: not good enough here";
+  EXPECT_EQ(out.count(Fault::kWireValue), 1u);
+  e2e::Protector protector(protection);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    ASSERT_TRUE(protector.protect(std::span(*bytes_).subspan(8)));
+    radar.take(frame, {}, out);
+    EXPECT_EQ(out.scans, i + 1);
+    EXPECT_EQ(out.scan->cycle_counter, i);
+  }
+  EXPECT_EQ(out.last_counter_bits, 32u);
+  (*bytes_)[4000] ^= 1;
+  radar.take(frame, {}, out);
+  EXPECT_EQ(out.scans, 5u);
 }
 
 TEST(Ars548, ItsStatusIsPassedOn) {

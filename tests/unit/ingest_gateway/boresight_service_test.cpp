@@ -1,0 +1,446 @@
+// The Boresight service through the gateway, in memory: the replay's encoder and discovery server on the other side.
+#include "services/ingest_gateway/codecs/boresight_service.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/common/runtime/allocation_counter.hpp"
+#include "services/ingest_gateway/core/gateway.hpp"
+#include "services/replay/core/datagrams.hpp"
+#include "services/replay/core/event_encoder.hpp"
+#include "services/replay/core/sd_server.hpp"
+#include "tests/unit/ingest_gateway/memory_output.hpp"
+#include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/replay/document.hpp"
+
+namespace boresight::ingest {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kEpoch = 1'767'225'600'000'000'000;
+using Bytes = std::vector<std::uint8_t>;
+
+// --- bodies ----------------------------------------------------------------------------------------------------------
+
+class ServiceBody : public testing::Test {
+ protected:
+  /// The body of the document's example.
+  static Bytes example(const std::string& name) {
+    const Bytes message = replay::document_example(name);
+    return {message.begin() + 36, message.end()};
+  }
+  static void put_f32(Bytes& body, std::size_t at, float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (std::size_t i = 0; i < 4; ++i) body[at + i] = static_cast<std::uint8_t>(bits >> (24 - 8 * i));
+  }
+  void take(const Bytes& body) {
+    recording::Frame frame;
+    frame.payload = body;
+    list_.take(frame, {}, out_);
+  }
+  static constexpr std::size_t kFirst = 36, kSecond = 36 + 48;
+  service::DetectionList list_;
+  MemoryOutput out_;
+};
+
+TEST_F(ServiceBody, TheDocumentsExampleIsUnderstood) {
+  take(example("detection list"));
+  ASSERT_EQ(out_.scans, 1u) << out_.last_fault;
+  const RadarScan& scan = *out_.scan;
+  ASSERT_EQ(scan.number_of_valid_detections, 2u);
+  EXPECT_EQ(scan.cycle_counter, 1234u);
+  EXPECT_EQ(out_.last_counter_bits, 32u);
+  EXPECT_EQ(out_.last_sensor->time_ns, 1'767'225'600'250'000'000);
+  EXPECT_TRUE(out_.last_sensor->synchronised);
+  EXPECT_EQ(scan.fields, 0x3Fu);
+  EXPECT_EQ(scan.range_rate_min_mps, -60.0F);
+  EXPECT_EQ(scan.range_rate_max_mps, 20.0F);
+  EXPECT_EQ(scan.range_m[0], 25.5F);
+  EXPECT_EQ(scan.azimuth_rad[0], 0.25F);
+  EXPECT_EQ(scan.elevation_rad[0], 0.0625F);
+  EXPECT_EQ(scan.range_rate_mps[0], -13.25F);
+  EXPECT_EQ(scan.range_std_m[0], 0.25F);
+  EXPECT_EQ(scan.azimuth_std_rad[0], 0.0078125F);
+  EXPECT_EQ(scan.elevation_std_rad[0], 0.015625F);
+  EXPECT_EQ(scan.range_rate_std_mps[0], 0.0625F);
+  EXPECT_EQ(scan.rcs_dbsm[0], 12.5F);
+  EXPECT_EQ(scan.snr_db[0], 24.0F);
+  EXPECT_EQ(scan.existence_probability[0], 0.75F);
+  EXPECT_EQ(scan.detection_flags[0], 0u);
+  EXPECT_EQ(scan.range_m[1], 120.0F);
+  EXPECT_EQ(scan.range_rate_mps[1], -61.5F);
+  EXPECT_EQ(scan.detection_flags[1], detection_flag::kAmbiguous);
+  EgoReading ego;
+  SensorStamp time;
+  std::string_view problem;
+  ASSERT_EQ(service::decode_ego(example("ego motion"), ego, time, problem), DecodeResult::kComplete) << problem;
+  EXPECT_EQ(ego.speed_mps, 13.5);
+  EXPECT_TRUE(ego.speed_is_signed);
+  EXPECT_EQ(ego.yaw_rate_radps, 0.125);
+  EXPECT_EQ(ego.steering_angle_rad, -0.5);
+  EXPECT_EQ(time.time_ns, 1'767'225'600'260'000'000);
+}
+
+TEST_F(ServiceBody, AValueThatIsNotAllowedConcernsItsDetectionOnly) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  struct Case {
+    std::size_t at;
+    float value;
+  };
+  for (const Case c : {Case{0, nan},
+                       {0, -0.5F},
+                       {0, 1501.0F},
+                       {4, 3.2F},
+                       {4, nan},
+                       {8, 1.6F},
+                       {8, infinity},
+                       {12, 151.0F},
+                       {12, nan},
+                       {32, 101.0F},
+                       {36, -51.0F},
+                       {40, 1.5F},
+                       {40, nan}}) {
+    Bytes body = example("detection list");
+    put_f32(body, kFirst + c.at, c.value);
+    take(body);
+    ASSERT_EQ(out_.scan->number_of_valid_detections, 2u);
+    EXPECT_EQ(out_.scan->detection_flags[0], detection_flag::kInvalid | (c.at == 12 ? detection_flag::kAmbiguous : 0))
+        << c.at;
+    EXPECT_EQ(out_.scan->detection_flags[1], detection_flag::kAmbiguous);
+  }
+  for (const std::size_t std_at : {16u, 20u, 24u, 28u}) {
+    for (const float value : {nan, -1.0F, 101.0F}) {
+      Bytes body = example("detection list");
+      put_f32(body, kFirst + std_at, value);
+      take(body);
+      EXPECT_EQ(out_.scan->detection_flags[0], 0u) << "a std that cannot be is not stated";
+    }
+  }
+  EXPECT_EQ(out_.all_faults(), 0u);
+}
+
+TEST_F(ServiceBody, QuantitiesThatAreNotStatedAreNotLookedAt) {
+  Bytes body = example("detection list");
+  body[23] = 0;  // fields
+  put_f32(body, kFirst + 8, std::numeric_limits<float>::quiet_NaN());
+  put_f32(body, kFirst + 40, 77.0F);
+  take(body);
+  EXPECT_EQ(out_.scan->fields, 0u);
+  EXPECT_EQ(out_.scan->detection_flags[0], 0u);
+  EXPECT_EQ(out_.scan->elevation_rad[0], 0.0F);
+  EXPECT_EQ(out_.scan->existence_probability[0], 1.0F);
+  EXPECT_EQ(out_.scan->range_std_m[0], 0.0F);
+  EXPECT_EQ(out_.scan->range_rate_max_mps, 0.0F);
+}
+
+TEST_F(ServiceBody, ALaterMinorVersionMayAppendToHeaderAndRecords) {
+  const Bytes old = example("detection list");
+  Bytes body(old.begin(), old.begin() + 36);
+  body[3] = 44;   // header bytes
+  body[35] = 56;  // record bytes
+  body.insert(body.end(), 8, 0xEE);
+  for (const std::size_t record : {kFirst, kSecond}) {
+    body.insert(body.end(), old.begin() + static_cast<std::ptrdiff_t>(record),
+                old.begin() + static_cast<std::ptrdiff_t>(record) + 48);
+    body.insert(body.end(), 8, 0xDD);
+  }
+  take(body);
+  ASSERT_EQ(out_.scans, 1u) << out_.last_fault;
+  EXPECT_EQ(out_.scan->range_m[0], 25.5F);
+  EXPECT_EQ(out_.scan->range_m[1], 120.0F);
+}
+
+TEST_F(ServiceBody, ABodyThatContradictsItselfIsRejectedWithAReason) {
+  const auto rejected = [&](std::size_t at, std::uint8_t value, const char* why) {
+    Bytes body = example("detection list");
+    body[at] = value;
+    const std::size_t scans = out_.scans, faults = out_.all_faults();
+    take(body);
+    EXPECT_EQ(out_.scans, scans) << why;
+    EXPECT_EQ(out_.all_faults(), faults + 1);
+    EXPECT_THAT(out_.last_fault, testing::HasSubstr(why));
+  };
+  rejected(1, 2, "layout version");
+  rejected(3, 32, "header bytes");
+  rejected(3, 38, "header bytes");
+  rejected(35, 44, "record bytes");
+  rejected(35, 50, "record bytes");
+  rejected(33, 3, "long");
+  rejected(32, 4, "1024");
+  rejected(8, 0x7F, "nanoseconds");
+  Bytes body = example("detection list");
+  body.push_back(0);
+  take(body);
+  EXPECT_THAT(out_.last_fault, testing::HasSubstr("long"));
+  take(Bytes(20));
+  EXPECT_THAT(out_.last_fault, testing::HasSubstr("36"));
+}
+
+// --- the whole way ---------------------------------------------------------------------------------------------------
+
+/// Two radars and the vehicle's motion by SOME/IP on one network.
+VehicleConfig vehicle() {
+  VehicleConfig v;
+  const auto source = [](std::uint16_t instance) {
+    SourceAddress s;
+    s.link = LinkKind::kSomeIp;
+    s.interface = "eth0";
+    s.address = "192.168.10.2";
+    s.port = 41000;
+    s.instance = instance;
+    return s;
+  };
+  const auto protection = [](std::uint32_t data_id) {
+    E2eConfig e2e;
+    e2e.required = true;
+    e2e.protection = {.profile = e2e::Profile::kP07, .data_id = data_id, .offset_bytes = 8, .max_delta_counter = 50};
+    return e2e;
+  };
+  v.ego.profile = EgoProfile::kBoresight;
+  v.ego.source = source(9);
+  v.ego.e2e = protection(0x42530902);
+  for (std::uint32_t id = 1; id <= 2; ++id) {
+    RadarConfig radar;
+    radar.id = id;
+    radar.name = "radar" + std::to_string(id);
+    radar.profile = RadarProfile::kBoresight;
+    radar.source = source(static_cast<std::uint16_t>(id));
+    radar.e2e = protection(0x42530001 | id << 8);
+    v.radars.push_back(radar);
+  }
+  return v;
+}
+
+class SomeIpGateway : public testing::Test, protected MemorySink {
+ protected:
+  static constexpr std::uint32_t kServer = 0xC0A80A0D;  // 192.168.10.13
+  static recording::Endpoint at(std::uint16_t port) { return {recording::IpAddress::v4(kServer), port}; }
+  static recording::Endpoint endpoint_of(std::uint16_t instance) {
+    return at(static_cast<std::uint16_t>(30600 + instance));
+  }
+
+  SomeIpGateway() {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+    given_->fields = scan_field::kElevation | scan_field::kRcs | scan_field::kStds;
+    given_->number_of_valid_detections = 800;
+    for (std::size_t i = 0; i < 1024; ++i) {
+      given_->range_m[i] = 200.0F * uniform(random);
+      given_->azimuth_rad[i] = uniform(random) - 0.5F;
+      given_->elevation_rad[i] = 0.2F * uniform(random);
+      given_->range_rate_mps[i] = -20.0F * uniform(random);
+      given_->range_std_m[i] = given_->azimuth_std_rad[i] = given_->elevation_std_rad[i] = 0.1F;
+      given_->range_rate_std_mps[i] = given_->existence_probability[i] = 0.1F;
+    }
+    server_.start(0);
+    gateway_.start(0);
+  }
+
+  /// What the gateway sends reaches the server, whose answers are kept for the next step().
+  void send(const recording::Frame& frame) override {
+    ++datagrams_sent;
+    server_.receive(now_ns_, frame.payload, {frame.source.address, 30490}, frame.destination.address.is_multicast(),
+                    answers_);
+  }
+  void join(const recording::Endpoint& group, std::string_view interface) override {
+    joined.emplace_back(group, interface);
+  }
+
+  void deliver(std::span<const std::uint8_t> payload, const recording::Endpoint& from, const recording::Endpoint& to) {
+    recording::Frame frame;
+    frame.kind = recording::FrameKind::kUdp;
+    frame.source = from;
+    frame.destination = to;
+    frame.payload = payload;
+    gateway_.take(frame, {now_ns_, kEpoch, TimeSource::kLinkArrival});
+  }
+  /// Time passes in steps of 10 ms, with discovery going on.
+  void pass(std::int64_t duration_ns) {
+    for (const std::int64_t end = now_ns_ + duration_ns; now_ns_ < end;) {
+      now_ns_ += 10 * kMillisecond;
+      if (server_runs_) server_.tick(now_ns_, answers_);
+      std::vector<replay::SdOutgoing> batch;
+      std::swap(batch, answers_);
+      for (const replay::SdOutgoing& out : batch) {
+        deliver(out.message, at(30490), out.to.value_or(recording::Endpoint{kGroup, 30490}));
+      }
+      gateway_.tick(now_ns_);
+    }
+  }
+  /// One event of an instance to where it is subscribed.
+  template <typename Message>
+  void publish(std::uint16_t instance, std::uint16_t eventgroup, const Message& message) {
+    for (const recording::Endpoint& to : server_.destinations(instance, eventgroup, now_ns_)) {
+      replay::for_each_datagram(
+          message, [&](std::span<const std::uint8_t> datagram) { deliver(datagram, endpoint_of(instance), to); });
+    }
+  }
+  void publish_list(std::uint16_t instance) {
+    given_->cycle_counter += 1;
+    publish(instance, 1, encoders_[instance].detection_list(*given_, {kEpoch + now_ns_ - 5 * kMillisecond, 1}));
+  }
+
+  static inline const recording::IpAddress kGroup = recording::IpAddress::v4(0xE0F4E0F5);
+  std::int64_t now_ns_ = 0;
+  std::unique_ptr<RadarScan> given_ = std::make_unique<RadarScan>();
+  replay::SdServer server_{
+      {.instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}}, .event_group = {}}};
+  std::array<replay::EventEncoder, 10> encoders_ = make_encoders();
+  std::vector<replay::SdOutgoing> answers_;
+  bool server_runs_ = true;
+  std::size_t datagrams_sent = 0;
+  std::vector<std::pair<recording::Endpoint, std::string>> joined;
+  Gateway gateway_{vehicle(), *this};
+
+ private:
+  static replay::DataIds ids(unsigned instance) { return {0x42530001u | instance << 8, 0x42530002u | instance << 8}; }
+  static std::array<replay::EventEncoder, 10> make_encoders() {
+    return {replay::EventEncoder(ids(0)), replay::EventEncoder(ids(1)), replay::EventEncoder(ids(2)),
+            replay::EventEncoder(ids(3)), replay::EventEncoder(ids(4)), replay::EventEncoder(ids(5)),
+            replay::EventEncoder(ids(6)), replay::EventEncoder(ids(7)), replay::EventEncoder(ids(8)),
+            replay::EventEncoder(ids(9))};
+  }
+};
+
+TEST_F(SomeIpGateway, ListsInSegmentsArriveBitForBitWithTheSensorsTime) {
+  pass(1000 * kMillisecond);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    publish_list(1 + i % 2);
+    pass(20 * kMillisecond);
+    ASSERT_EQ(scans, i + 1);
+    EXPECT_EQ(last_radar, 1 + i % 2);
+    EXPECT_EQ(last_time.source, TimeSource::kSensorSynchronised);
+    EXPECT_EQ(last_time.time_ns, now_ns_ - 25 * kMillisecond);
+    ASSERT_EQ(scan->number_of_valid_detections, 800u);
+    for (std::size_t k = 0; k < 800; ++k) {
+      ASSERT_EQ(scan->range_m[k], given_->range_m[k]);
+      ASSERT_EQ(scan->azimuth_rad[k], given_->azimuth_rad[k]);
+      ASSERT_EQ(scan->range_rate_mps[k], given_->range_rate_mps[k]);
+    }
+    EXPECT_EQ(scan->cycle_counter, i + 1);
+  }
+  EXPECT_EQ(all_faults(), 0u);
+  EXPECT_EQ(source_statistics[1].e2e_lost + source_statistics[1].e2e_wrong, 0u);
+}
+
+TEST_F(SomeIpGateway, EgoMotionArrives) {
+  pass(1000 * kMillisecond);
+  EgoMotion given{};
+  given.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
+  given.speed_mps = -3.5F;
+  given.yaw_rate_radps = 0.25F;
+  publish(9, 2, encoders_[9].ego_motion(given, {kEpoch + now_ns_ - kMillisecond, 1}));
+  ASSERT_EQ(egos, 1u);
+  EXPECT_EQ(ego.speed_mps, -3.5F);
+  EXPECT_EQ(ego.yaw_rate_radps, 0.25F);
+  EXPECT_TRUE(ego.has(ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse));
+  EXPECT_FALSE(ego.has(ego_field::kSteeringAngle));
+  EXPECT_EQ(last_time.time_ns, now_ns_ - kMillisecond);
+}
+
+TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
+  pass(1000 * kMillisecond);
+  publish_list(1);
+  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  Bytes damaged(message.begin(), message.end());
+  damaged[500] ^= 4;
+  publish(1, 1, damaged);
+  EXPECT_EQ(scans, 1u);
+  EXPECT_EQ(count(Fault::kWireValue), 1u);
+  EXPECT_EQ(last_fault_radar, 1u);
+  EXPECT_EQ(source_statistics[1].e2e_wrong, 1u);
+  publish_list(1);
+  EXPECT_EQ(scans, 2u) << "the next one is sound";
+  EXPECT_EQ(source_statistics[1].e2e_lost, 1u) << "the damaged one never came";
+  given_->number_of_valid_detections = 10;  // in one datagram, as segments that come again are known as such before
+  const auto again = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const Bytes repeated(again.begin(), again.end());
+  publish(1, 1, repeated);
+  publish(1, 1, repeated);
+  EXPECT_EQ(scans, 3u);
+  EXPECT_EQ(source_statistics[1].e2e_repeated, 1u);
+  EXPECT_EQ(source_statistics[2].e2e_wrong, 0u);
+}
+
+TEST_F(SomeIpGateway, ALostSegmentCostsItsMessageOnly) {
+  pass(1000 * kMillisecond);
+  std::size_t n = 0;
+  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
+    if (n++ != 7) deliver(datagram, endpoint_of(1), {recording::IpAddress::v4(0xC0A80A02), 41000});
+  });
+  EXPECT_EQ(scans, 0u);
+  publish_list(1);
+  publish_list(2);
+  EXPECT_EQ(scans, 2u);
+  pass(200 * kMillisecond);
+  EXPECT_EQ(count(Fault::kWireLength), 1u) << "said once";
+}
+
+TEST_F(SomeIpGateway, EventsOfStrangersAreNotTaken) {
+  pass(1000 * kMillisecond);
+  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
+    deliver(datagram, at(30999), {recording::IpAddress::v4(0xC0A80A02), 41000});
+  });
+  EXPECT_EQ(scans, 0u);
+  EXPECT_EQ(count(Fault::kWireUnknown), 1u);
+}
+
+TEST_F(SomeIpGateway, AServerThatGoesSilentIsReportedAndFoundAgain) {
+  pass(1000 * kMillisecond);
+  publish_list(1);
+  EXPECT_EQ(scans, 1u);
+  server_runs_ = false;
+  pass(4000 * kMillisecond);
+  EXPECT_EQ(count(Fault::kLink), 3u) << "each of the three subscriptions says that its offer expired";
+  server_runs_ = true;
+  server_ = replay::SdServer(
+      {.instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}}, .event_group = {}});
+  server_.start(now_ns_);
+  pass(100 * kMillisecond);
+  publish_list(1);
+  EXPECT_EQ(scans, 2u) << "within its first offer";
+}
+
+TEST_F(SomeIpGateway, AMulticastGroupIsJoinedOnTheInterfaceOfTheVehicleFile) {
+  const recording::Endpoint group{recording::IpAddress::v4(0xEF425301), 30650};
+  server_ = replay::SdServer({.instances = {{1, endpoint_of(1)}}, .event_group = group});
+  server_.start(now_ns_);
+  pass(500 * kMillisecond);
+  ASSERT_EQ(joined.size(), 1u);
+  EXPECT_EQ(joined[0].first, group);
+  EXPECT_EQ(joined[0].second, "eth0");
+  publish_list(1);
+  EXPECT_EQ(scans, 1u);
+}
+
+TEST_F(SomeIpGateway, AllocatesNothing) {
+  pass(1000 * kMillisecond);
+  publish_list(1);
+  // Encoded before, since the other side may allocate.
+  std::vector<Bytes> datagrams;
+  for (int i = 0; i < 5; ++i) {
+    const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+    replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
+      datagrams.emplace_back(datagram.begin(), datagram.end());
+    });
+  }
+  const std::uint64_t before = runtime::counted_allocations();
+  {
+    const runtime::CountAllocations counting;
+    for (const Bytes& datagram : datagrams) {
+      deliver(datagram, endpoint_of(1), {recording::IpAddress::v4(0xC0A80A02), 41000});
+    }
+  }
+  EXPECT_EQ(runtime::counted_allocations(), before);
+  EXPECT_EQ(scans, 6u);
+}
+
+}  // namespace
+}  // namespace boresight::ingest
