@@ -1,0 +1,504 @@
+#include "services/ingest_gateway/core/scan_integrity.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "services/common/geometry/frames.hpp"
+#include "services/common/runtime/allocation_counter.hpp"
+#include "services/common/runtime/config/vehicle_file.hpp"
+#include "tests/simulator/drive.hpp"
+
+namespace boresight::ingest {
+namespace {
+
+using namespace scan_integrity;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+VehicleConfig demo() {
+  return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
+}
+
+/// A radar that looks ahead, for what does not depend on where it looks.
+RadarConfig forward_radar() {
+  RadarConfig radar;
+  radar.id = 1;
+  radar.mounting_pose.position_m = {3.6, 0.0, 0.5};
+  radar.noise.range_rate_std_mps = 0.05;
+  return radar;
+}
+
+EgoMotion motion(double speed_mps, double yaw_rate_radps = 0.0, bool direction_known = true) {
+  EgoMotion ego{};
+  ego.fields = ego_field::kSpeed | ego_field::kYawRate | (direction_known ? ego_field::kReverse : 0u);
+  ego.speed_mps = static_cast<float>(speed_mps);
+  ego.yaw_rate_radps = static_cast<float>(yaw_rate_radps);
+  return ego;
+}
+
+// ---------------------------------------------------------------- simulated drives
+
+using Damage = std::function<void(RadarScan&, std::mt19937_64&)>;
+
+void scale_rates(RadarScan& scan, float by) {
+  for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) scan.range_rate_mps[i] *= by;
+}
+
+void shuffle_rates(RadarScan& scan, std::mt19937_64& random) {
+  std::shuffle(scan.range_rate_mps.data(), scan.range_rate_mps.data() + scan.number_of_valid_detections, random);
+}
+
+/// Puts range rates into ±10 m/s, as a radar of that unambiguous interval would report them.
+void fold_rates(RadarScan& scan) {
+  for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+    scan.range_rate_mps[i] = std::remainder(scan.range_rate_mps[i], 20.0F);
+  }
+  scan.fields |= scan_field::kAmbiguity;
+  scan.range_rate_min_mps = -10.0F;
+  scan.range_rate_max_mps = 10.0F;
+}
+
+/// Judges of all radars of the demo car on a simulated drive.
+std::map<std::uint32_t, std::unique_ptr<ScanJudge>> drive(const simulator::Scenario& scenario, std::uint64_t seed,
+                                                          double duration_s, const Damage& damage) {
+  const VehicleConfig vehicle = demo();
+  std::map<std::uint32_t, std::unique_ptr<ScanJudge>> judges;
+  for (const RadarConfig& radar : vehicle.radars) judges[radar.id] = std::make_unique<ScanJudge>(radar);
+  std::mt19937_64 random(seed);
+  simulator::Drive drive(scenario, vehicle, seed, duration_s);
+  const auto scan = std::make_unique<RadarScan>();
+  EgoMotion ego{};
+  while (const simulator::Event* const event = drive.next()) {
+    if (event->scan == nullptr) {
+      ego = simulator::to_message(*event, vehicle.ego);
+      ego.header.measurement_time_ns = event->time_ns;
+      continue;
+    }
+    *scan = *event->scan;
+    scan->integrity = 0;
+    if (damage) damage(*scan, random);
+    static_cast<void>(
+        judges[scan->header.source_id]->judge(*scan, event->time_ns, event->time_ns + 20 * kMillisecond, 32, &ego));
+  }
+  return judges;
+}
+
+class SimulatedDrive : public testing::TestWithParam<std::string> {};
+
+TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
+  // Crooked radars, a wrong speed signal, traffic, ghosts and clutter are sound data.
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), seed, 60.0, nullptr)) {
+      EXPECT_GT(judge->counters().scans, 1000u);
+      EXPECT_EQ(judge->counters().lost_scans, 0u);
+      for (const std::uint64_t accused : judge->counters().by_bit) EXPECT_EQ(accused, 0u) << "radar " << id;
+    }
+  }
+}
+
+TEST_P(SimulatedDrive, FoldedRangeRatesAreNotAccusedIfTheIntervalIsKnown) {
+  const auto fold = [](RadarScan& scan, std::mt19937_64&) { fold_rates(scan); };
+  for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 4, 30.0, fold)) {
+    EXPECT_EQ(judge->counters().by_bit[5], 0u) << "radar " << id;
+  }
+}
+
+TEST_P(SimulatedDrive, DamagedRangeRatesAreToldByEveryRadarAndSoon) {
+  const std::vector<std::pair<std::string, Damage>> damages = {
+      {"shuffled", shuffle_rates},
+      {"half as fast again", [](RadarScan& scan, std::mt19937_64&) { scale_rates(scan, 1.5F); }},
+      {"too slow", [](RadarScan& scan, std::mt19937_64&) { scale_rates(scan, 0.7F); }},
+      {"sign", [](RadarScan& scan, std::mt19937_64&) { scale_rates(scan, -1.0F); }},
+      {"zero", [](RadarScan& scan, std::mt19937_64&) { scale_rates(scan, 0.0F); }},
+      {"left and right",
+       [](RadarScan& scan, std::mt19937_64&) {
+         for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) scan.azimuth_rad[i] *= -1.0F;
+       }},
+      {"sign, folded",
+       [](RadarScan& scan, std::mt19937_64&) {
+         scale_rates(scan, -1.0F);
+         fold_rates(scan);
+       }},
+  };
+  for (const auto& [name, damage] : damages) {
+    for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 5, 25.0, damage)) {
+      const std::uint64_t scans = judge->counters().scans;
+      // 1500 detections make a verdict, or 3000 if they are few a scan; the demo radars have 15 … 40 that count.
+      EXPECT_GT(judge->counters().by_bit[5], scans / 3) << name << ", radar " << id;
+      EXPECT_LT(judge->counters().by_bit[5], scans - 20) << "not by a single scan";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SimulatedDrive, testing::ValuesIn(simulator::scenario_names()));
+
+TEST(ScanJudge, CrookedByEightDegreesAndFivePercentIsNoContradiction) {
+  for (const double yaw_deg : {-8.0, 8.0}) {
+    for (const double speed_scale : {0.96, 1.04}) {
+      simulator::Scenario scenario = simulator::scenario("demo_drive");
+      scenario.speed_scale = speed_scale;
+      for (auto& misalignment : scenario.misalignment) misalignment.yaw_rad = yaw_deg * M_PI / 180.0;
+      for (const auto& [id, judge] : drive(scenario, 6, 30.0, nullptr)) {
+        EXPECT_EQ(judge->counters().by_bit[5], 0u) << yaw_deg << ' ' << speed_scale << " radar " << id;
+      }
+    }
+  }
+}
+
+// ---------------------------------------------------------------- worlds of stationary things and traffic
+
+/// A scan of a forward radar: `stationary` of the detections stand still, the others drive along the road.
+void fill(RadarScan& scan, std::size_t detections, double stationary, double speed_mps, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> azimuth(-1.2, 1.2), range(3.0, 150.0), unit(0.0, 1.0);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  scan.fields = 0;
+  scan.integrity = 0;
+  scan.number_of_valid_detections = static_cast<std::uint32_t>(detections);
+  for (std::size_t i = 0; i < detections; ++i) {
+    const double angle = azimuth(random);
+    const bool oncoming = unit(random) < 0.5;
+    const double own = unit(random) < stationary ? 0.0
+                       : oncoming                ? -(0.7 + 0.5 * unit(random)) * speed_mps
+                                                 : (0.6 + 0.6 * unit(random)) * speed_mps;
+    scan.azimuth_rad[i] = static_cast<float>(angle);
+    scan.range_m[i] = static_cast<float>(range(random));
+    scan.range_rate_mps[i] = static_cast<float>((own - speed_mps) * std::cos(angle) + noise(random));
+    scan.detection_flags[i] = 0;
+  }
+}
+
+class Judged : public testing::Test {
+ protected:
+  std::uint16_t judge(const EgoMotion* ego = nullptr, unsigned bits = 8) {
+    time_ns_ += kCycle_ns;
+    ++scan_->cycle_counter;
+    return judge_.judge(*scan_, time_ns_, time_ns_ + 10 * kMillisecond, bits, ego);
+  }
+  std::uint64_t contradictions(std::size_t scans, std::size_t detections, double stationary, const EgoMotion& ego,
+                               double true_speed_mps) {
+    const std::uint64_t before = judge_.counters().by_bit[5];
+    for (std::size_t i = 0; i < scans; ++i) {
+      fill(*scan_, detections, stationary, true_speed_mps, random_);
+      EXPECT_EQ(judge(&ego) & ~kContradictsEgo, 0);
+    }
+    return judge_.counters().by_bit[5] - before;
+  }
+  /// Different in every call.
+  void fill_anew(std::size_t detections = 20) { fill(*scan_, detections, 0.5, 10.0, random_); }
+
+  std::mt19937_64 random_{21};
+  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  ScanJudge judge_{forward_radar()};
+  std::int64_t time_ns_ = 1'000'000 * kMillisecond;
+};
+
+TEST_F(Judged, TrafficIsNoContradiction) {
+  const EgoMotion ego = motion(20.0);
+  EXPECT_EQ(contradictions(1200, 200, 0.2, ego, 20.0), 0u) << "a fifth stands still";
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_EQ(contradictions(10, 200, 0.0, ego, 20.0), 0u) << "half a second of nothing but traffic";
+    EXPECT_EQ(contradictions(20, 200, 0.5, ego, 20.0), 0u);
+  }
+}
+
+TEST_F(Judged, ATrackerThatSeesTrafficOnlyIsNotAccused) {
+  EXPECT_EQ(contradictions(20 * 120, 10, 0.0, motion(25.0), 25.0), 0u);
+}
+
+TEST_F(Judged, AWrongSpeedIsToldAndTakenBackWhenItEnds) {
+  EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
+  EXPECT_GT(contradictions(100, 100, 0.6, motion(22.5), 15.0), 40u);
+  EXPECT_LT(contradictions(100, 100, 0.6, motion(15.0), 15.0), 60u);
+  EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
+}
+
+TEST_F(Judged, ATrackerWithTheWrongSignIsToldWithinAMinute) {
+  EXPECT_GT(contradictions(20 * 60, 10, 0.2, motion(-20.0), 20.0), 300u);
+}
+
+TEST_F(Judged, ReversingIsNoContradictionIfTheDirectionIsNotSignalled) {
+  EXPECT_EQ(contradictions(400, 100, 0.8, motion(7.0, 0.0, false), -7.0), 0u);
+  EXPECT_EQ(contradictions(400, 100, 0.8, motion(-7.0, 0.0, true), -7.0), 0u);
+  EXPECT_GT(contradictions(400, 100, 0.8, motion(7.0, 0.0, true), -7.0), 300u);
+}
+
+TEST_F(Judged, BrakingHardIsNoContradictionThoughTheEgoMotionIsNewerThanTheScan) {
+  for (int i = 0; i < 60; ++i) {
+    const double speed_mps = 35.0 - 10.0 * 0.05 * i;
+    fill(*scan_, 150, 0.6, speed_mps + 2.5, random_);  // measured 250 ms before the ego motion
+    EgoMotion ego = motion(speed_mps);
+    ego.longitudinal_acceleration_mps2 = -10.0F;
+    ego.header.measurement_time_ns = time_ns_ + kCycle_ns + 250 * kMillisecond;
+    EXPECT_EQ(judge(&ego), 0) << i;
+  }
+}
+
+TEST_F(Judged, WithoutSpeedYawRateOrMotionNothingIsSaidOfTheEgo) {
+  EgoMotion no_yaw_rate = motion(20.0), no_speed = motion(20.0), wild = motion(20.0);
+  no_yaw_rate.fields = ego_field::kSpeed;
+  no_speed.fields = ego_field::kYawRate;
+  wild.speed_mps = kNan;
+  const EgoMotion slow = motion(4.9), standing = motion(0.0);
+  for (const EgoMotion& ego : {no_yaw_rate, no_speed, slow, standing, wild}) {
+    for (int i = 0; i < 200; ++i) {
+      fill(*scan_, 100, 0.9, -10.0, random_);
+      EXPECT_EQ(judge(&ego), 0);
+    }
+  }
+  for (int i = 0; i < 200; ++i) {
+    fill(*scan_, 100, 0.9, -10.0, random_);
+    EXPECT_EQ(judge(nullptr), 0);
+  }
+}
+
+// ---------------------------------------------------------------- counters and time
+
+TEST_F(Judged, CountersOfAnyWidthWrapWithoutAFault) {
+  for (const unsigned bits : {1u, 2u, 4u, 8u, 16u, 32u}) {
+    ScanJudge judge(forward_radar());
+    const std::uint32_t mask = bits == 32 ? ~0u : (1u << bits) - 1;
+    std::uint32_t counter = mask - 10;
+    for (int i = 0; i < 600; ++i) {
+      fill_anew();
+      scan_->cycle_counter = counter & mask;
+      EXPECT_EQ(judge.judge(*scan_, i * kCycle_ns, i * kCycle_ns, bits, nullptr), 0) << bits << ' ' << i;
+      ++counter;
+    }
+    EXPECT_EQ(judge.counters().lost_scans, 0u);
+  }
+}
+
+TEST_F(Judged, GapsAreToldAndCountedAcrossTheWrapAndBeyondItByTime) {
+  struct Case {
+    unsigned bits;
+    std::uint32_t lost;
+  };
+  for (const Case c : {Case{4, 1}, Case{4, 14}, Case{4, 15}, Case{4, 16}, Case{4, 40}, Case{8, 1}, Case{8, 200},
+                       Case{8, 255}, Case{8, 300}, Case{8, 1000}, Case{32, 1}, Case{32, 5000}}) {
+    ScanJudge judge(forward_radar());
+    std::uint32_t counter = 250;
+    const std::uint32_t mask = c.bits == 32 ? ~0u : (1u << c.bits) - 1;
+    for (int i = 0; i < 5; ++i) {
+      fill_anew();
+      if (i == 3) counter += c.lost;
+      scan_->cycle_counter = counter & mask;
+      // Cycles of a real sensor are not to the nanosecond what was configured.
+      const std::int64_t time_ns = counter * (kCycle_ns + 200'000);
+      const std::uint16_t expected = i == 3 ? kCounterGap : 0;
+      EXPECT_EQ(judge.judge(*scan_, time_ns, time_ns, c.bits, nullptr), expected) << c.bits << ' ' << c.lost;
+      ++counter;
+    }
+    EXPECT_EQ(judge.counters().lost_scans, c.lost) << c.bits;
+  }
+}
+
+TEST_F(Judged, ARepeatedCounterIsTold) {
+  for (int i = 0; i < 20; ++i) {
+    fill_anew();
+    if (i == 7) --scan_->cycle_counter;
+    EXPECT_EQ(judge(), i == 7 ? kRepeated : 0) << i;
+  }
+  EXPECT_EQ(judge_.counters().by_bit[1], 1u);
+  EXPECT_EQ(judge_.counters().lost_scans, 0u);
+}
+
+TEST_F(Judged, ASensorThatBeginsToCountAnewHasNotLostTwoBillionScans) {
+  for (int i = 0; i < 20; ++i) {
+    fill_anew();
+    if (i == 0) scan_->cycle_counter = 100'000;
+    if (i == 10) {
+      scan_->cycle_counter = 0;
+      time_ns_ += 60 * kCycle_ns;
+    }
+    EXPECT_EQ(judge(nullptr, 32), i == 10 ? kCounterGap : 0) << i;
+  }
+  EXPECT_EQ(judge_.counters().lost_scans, 60u);
+}
+
+TEST_F(Judged, ACounterThatNeverMovesIsDisowned) {
+  for (int i = 0; i < 100; ++i) {
+    fill_anew();
+    scan_->cycle_counter = ~0u;  // judge() adds one
+    EXPECT_EQ(judge(), i > 0 && i <= 10 ? kRepeated : 0) << i;
+  }
+  time_ns_ += kCycle_ns;
+  scan_->cycle_counter = ~0u;
+  fill_anew();
+  EXPECT_EQ(judge(), kCounterGap) << "by time then";
+}
+
+TEST_F(Judged, WithoutACounterTimeTellsGaps) {
+  for (int i = 0; i < 20; ++i) {
+    fill_anew();
+    if (i == 5) time_ns_ += kCycle_ns * 4 / 10;  // late, not lost
+    if (i == 9) time_ns_ += kCycle_ns;
+    if (i == 15) time_ns_ += 7 * kCycle_ns;
+    EXPECT_EQ(judge(nullptr, 0), i == 9 || i == 15 ? kCounterGap : 0) << i;
+  }
+  EXPECT_EQ(judge_.counters().lost_scans, 8u);
+}
+
+TEST_F(Judged, OldDataAndStampsThatDoNotAdvanceAreStale) {
+  const auto at = [&](std::int64_t measured_ms, std::int64_t received_ms) {
+    fill_anew();
+    ++scan_->cycle_counter;
+    return judge_.judge(*scan_, measured_ms * kMillisecond, received_ms * kMillisecond, 8, nullptr);
+  };
+  EXPECT_EQ(at(1000, 1247), 0) << "as a real ARS548";
+  EXPECT_EQ(at(1050, 1550), 0);
+  EXPECT_EQ(at(1100, 1601), kStale);
+  EXPECT_EQ(at(1300, 1650), 0);
+  EXPECT_EQ(at(1300, 1651), 0) << "two in one burst tell nothing";
+  EXPECT_EQ(at(1300, 1665), kStale) << "stands still";
+  EXPECT_EQ(at(1299, 1700), kStale) << "goes back";
+  EXPECT_EQ(at(1400, 1750), 0);
+  EXPECT_EQ(at(200, 300), 0) << "all clocks went back together: another recording";
+}
+
+// ---------------------------------------------------------------- content
+
+TEST_F(Judged, AFrozenRadarIsTold) {
+  const EgoMotion moving = motion(4.0), standing = motion(0.0);
+  fill_anew(30);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(judge(&moving), i >= 3 ? kFrozen : 0) << i;
+  fill_anew(30);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(judge(&standing), i >= 10 ? kFrozen : 0) << i;
+  fill_anew(30);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(judge(nullptr), i >= 10 ? kFrozen : 0) << i;
+  scan_->range_m[17] = std::nextafter(scan_->range_m[17], 0.0F);
+  EXPECT_EQ(judge(&moving), 0) << "one bit is a difference";
+  // One or two tracks of a coarse tracker may well be the same for a while, and nothing is nothing.
+  for (const std::size_t few : {0u, 1u, 3u}) {
+    fill_anew(few);
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(judge(&moving), 0);
+  }
+}
+
+TEST_F(Judged, ImplausibleDetectionsAreToldIfThereAreMany) {
+  const auto with = [&](std::size_t bad, const std::function<void(std::size_t)>& spoil) {
+    fill_anew(50);
+    for (std::size_t i = 0; i < bad; ++i) spoil(i * 4);
+    return judge();
+  };
+  const std::vector<std::function<void(std::size_t)>> spoils = {
+      [&](std::size_t i) { scan_->range_m[i] = kNan; },
+      [&](std::size_t i) { scan_->range_m[i] = -1.0F; },
+      [&](std::size_t i) { scan_->range_m[i] = 361.0F; },
+      [&](std::size_t i) { scan_->azimuth_rad[i] = kNan; },
+      [&](std::size_t i) { scan_->azimuth_rad[i] = 1.3F + 0.18F; },
+      [&](std::size_t i) { scan_->azimuth_rad[i] = -7.0F; },
+      [&](std::size_t i) { scan_->range_rate_mps[i] = std::numeric_limits<float>::infinity(); },
+      [&](std::size_t i) { scan_->range_rate_mps[i] = -151.0F; },
+      [&](std::size_t i) {
+        scan_->fields |= scan_field::kElevation;
+        std::fill_n(scan_->elevation_rad.data(), 50, 0.0F);
+        for (std::size_t k = 0; k <= i; k += 4) scan_->elevation_rad[k] = 0.6F;
+      },
+      [&](std::size_t i) {
+        scan_->azimuth_rad[i] = kNan;
+        scan_->detection_flags[i] = detection_flag::kInvalid;  // no excuse for what is no number
+      },
+  };
+  for (std::size_t k = 0; k < spoils.size(); ++k) {
+    EXPECT_EQ(with(10, spoils[k]), kImplausible) << k;
+    EXPECT_EQ(with(9, spoils[k]), 0) << k << ": less than a fifth";
+  }
+  EXPECT_EQ(with(12,
+                 [&](std::size_t i) {
+                   scan_->azimuth_rad[i] = 2.0F;
+                   scan_->detection_flags[i] = detection_flag::kInvalid;
+                 }),
+            0)
+      << "the sensor says itself that the angle is invalid";
+  fill_anew(4);
+  scan_->range_m[0] = scan_->range_m[1] = 1000.0F;
+  EXPECT_EQ(judge(), 0) << "two of four are not many";
+}
+
+TEST_F(Judged, CopiesOfDetectionsAreToldIfThereAreMany) {
+  const auto copy = [&](std::size_t detections, std::size_t copies) {
+    fill_anew(detections);
+    for (std::size_t i = 0; i < copies; ++i) {
+      const std::size_t to = detections - 1 - i;
+      scan_->range_m[to] = scan_->range_m[i % 3];
+      scan_->azimuth_rad[to] = scan_->azimuth_rad[i % 3];
+      scan_->range_rate_mps[to] = scan_->range_rate_mps[i % 3];
+    }
+    return judge();
+  };
+  EXPECT_EQ(copy(100, 25), kImpossibleCopies);
+  EXPECT_EQ(copy(100, 24), 0);
+  EXPECT_EQ(copy(12, 8), kImpossibleCopies);
+  EXPECT_EQ(copy(11, 7), 0);
+  EXPECT_EQ(copy(1024, 1000), kImpossibleCopies);
+  EXPECT_EQ(copy(1024, 0), 0);
+}
+
+TEST_F(Judged, WhatTheDecoderSaysIsKeptAndCounted) {
+  fill_anew();
+  scan_->integrity = kIncomplete;
+  EXPECT_EQ(judge(), kIncomplete);
+  EXPECT_EQ(judge_.counters().by_bit[6], 1u);
+  EXPECT_EQ(judge_.counters().scans, 1u);
+}
+
+TEST_F(Judged, WildScansAreJudgedWithoutAllocatingAndInBoundedTime) {
+  const EgoMotion ego = motion(20.0, 0.1);
+  const std::uint64_t before = runtime::counted_allocations();
+  {
+    const runtime::CountAllocations counting;
+    for (int i = 0; i < 3000; ++i) {
+      auto* const words = reinterpret_cast<std::uint64_t*>(scan_.get());
+      for (int k = 0; k < 1000; ++k) words[random_() % (sizeof(RadarScan) / 8)] = random_();
+      scan_->integrity = 0;
+      if (i % 3 == 0) scan_->number_of_valid_detections = static_cast<std::uint32_t>(random_() % 1100);
+      const auto time_ns = static_cast<std::int64_t>(random_());
+      static_cast<void>(judge_.judge(*scan_, i % 2 == 0 ? time_ns : i * kCycle_ns, static_cast<std::int64_t>(random_()),
+                                     static_cast<unsigned>(random_() % 40), &ego));
+    }
+  }
+  EXPECT_EQ(runtime::counted_allocations(), before);
+  EXPECT_EQ(judge_.counters().scans, 3000u);
+}
+
+TEST_F(Judged, Cost) {
+  struct Case {
+    const char* name;
+    std::size_t detections;
+    double stationary, ego_mps;
+  };
+  for (const Case& c :
+       {Case{"sound", 300, 0.7, 15.0}, Case{"sound", 1024, 0.7, 15.0}, Case{"half of it traffic", 300, 0.5, 15.0},
+        Case{"damaged", 300, 0.7, 22.5}, Case{"damaged", 1024, 0.7, 22.5}}) {
+    const EgoMotion ego = motion(c.ego_mps);
+    fill(*scan_, c.detections, c.stationary, 15.0, random_);
+    double least_us = 1e9;
+    for (int round = 0; round < 20; ++round) {
+      const auto begin = std::chrono::steady_clock::now();
+      for (int i = 0; i < 50; ++i) {
+        scan_->range_m[0] += 0.01F;
+        static_cast<void>(judge(&ego));
+      }
+      const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - begin;
+      least_us = std::min(least_us, elapsed.count() / 50.0);
+    }
+    std::printf("%-18s %4zu detections: %.2f µs\n", c.name, c.detections, least_us);
+#ifndef BORESIGHT_SANITIZED
+    EXPECT_LT(least_us, 100.0);
+#endif
+  }
+}
+
+}  // namespace
+}  // namespace boresight::ingest
