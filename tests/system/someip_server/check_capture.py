@@ -30,13 +30,14 @@ def check(message):
         sd = SD(message[16:])
         assert not sd.haslayer(Raw) and not sd.payload, "SD message with something behind its options"
         assert sd.len_entry_array == 16 * len(sd.entry_array) > 0
+        assert all(option.len == len(bytes(option)) - 3 for option in sd.option_array), "length of an option"
         sd.len_entry_array = sd.len_option_array = None
         assert bytes(sd) == message[16:]
         return "discovery"
     assert parsed.srv_id == 0x4253 and parsed.sub_id == 1
     assert parsed.event_id | 0x8000 in EVENTS
     if parsed.msg_type == 0x22:
-        assert parsed.res == 0 and (parsed.more_seg == 0 or (parsed.len or len(message) - 8) - 12 == 1392)
+        assert parsed.res == 0 and (parsed.more_seg == 0 or len(message) - 20 == 1392)
         return "segment"
     assert parsed.msg_type == 0x02
     return "event"
@@ -45,7 +46,7 @@ def check(message):
 counts = {}
 for number, packet in enumerate(rdpcap(sys.argv[1]), 1):
     # In the story only the server sends from these ports under these addresses.
-    if UDP not in packet or packet[UDP].sport not in OFFERED or not packet.underlayer is None:
+    if UDP not in packet or packet[UDP].sport not in OFFERED:
         continue
     source = packet.payload.src
     if source not in ("10.66.83.1", "fd66::1"):
