@@ -40,11 +40,12 @@ TableRadar::TableRadar(dbc::RadarMapping mapping) : mapping_(std::move(mapping))
   }
   slots_.resize(mapping_.parts_of_slot.size());
   arrived_.resize(slots_.size());
-  needed_parts_.resize(slots_.size());
+  conditions_.resize(slots_.size());
   for (const dbc::RadarMessage& message : mapping_.messages) {
     for (const dbc::DetectionPart& part : message.parts) {
-      if (part.valid.empty()) continue;
-      for (std::size_t i = 0; i < part.slots; ++i) needed_parts_[part.slot + i] |= part.part_bit;
+      for (const dbc::Validity& validity : part.valid) {
+        for (std::size_t i = 0; i < part.slots; ++i) conditions_[part.slot + i] |= validity.bit;
+      }
     }
   }
   clear();
@@ -140,7 +141,10 @@ void TableRadar::take_part(const dbc::DetectionPart& part, Payload payload, Deco
     slot.values[static_cast<std::size_t>(quantity)] = is_number ? value : 0.0;
     slot.present |= dbc::bit_of(quantity);
   }
-  for (const dbc::MappedState& state : part.valid) slot.valid &= state.holds(payload);
+  for (const dbc::Validity& validity : part.valid) {
+    slot.judged |= validity.bit;
+    slot.valid &= validity.state.holds(payload);
+  }
 }
 
 bool TableRadar::is_complete(const dbc::RadarMessage& message) const {
@@ -172,8 +176,7 @@ void TableRadar::write_scan(RadarScan& scan) const {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     const Slot& slot = slots_[i];
-    const bool is_valid = slot.valid && (slot.parts & needed_parts_[i]) == needed_parts_[i];
-    if (is_valid && write_detection(slot, count, scan)) ++count;
+    if (slot.valid && slot.judged == conditions_[i] && write_detection(slot, count, scan)) ++count;
   }
   const auto has = [this](Quantity quantity) { return (mapping_.quantities & dbc::bit_of(quantity)) != 0; };
   const bool has_stds = has(Quantity::kRangeStd) || has(Quantity::kAzimuthStd) || has(Quantity::kElevationStd) ||
@@ -224,7 +227,7 @@ bool TableRadar::write_detection(const Slot& slot, std::size_t i, RadarScan& sca
 void TableRadar::clear() {
   for (Slot& slot : slots_) {
     slot.present = 0;
-    slot.parts = 0;
+    slot.parts = slot.judged = 0;
     slot.valid = true;
     slot.not_a_number = false;
   }

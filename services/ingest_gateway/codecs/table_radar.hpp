@@ -27,7 +27,8 @@ class TableRadar : public Decoder {
   struct Slot {
     std::array<double, dbc::kNumberOfQuantities> values;  // those whose bit is set in `present`
     std::uint32_t present = 0;
-    std::uint8_t parts = 0;  // bits of those that have come
+    std::uint8_t parts = 0;   // bits of those that have come
+    std::uint8_t judged = 0;  // bits of the conditions that have come
     bool valid = true;
     bool not_a_number = false;
 
@@ -53,8 +54,8 @@ class TableRadar : public Decoder {
   std::vector<std::uint64_t> keys_;  // of the messages, sorted
   std::vector<FrameGuard> guards_;
   std::vector<Slot> slots_;
-  std::vector<std::uint8_t> needed_parts_;  // of each slot: bits of those that say whether it is valid
-  std::vector<std::uint16_t> arrived_;      // by the first slot of a group: detections so far in order of arrival
+  std::vector<std::uint8_t> conditions_;  // of each slot: bits of those that make it valid
+  std::vector<std::uint16_t> arrived_;    // by the first slot of a group: detections so far in order of arrival
   std::size_t begun_slots_ = 0, complete_slots_ = 0;
   std::uint32_t frames_ = 0;
   std::uint32_t expected_ = 0;  // detections, by the header

@@ -22,6 +22,7 @@ enum class MultiplexRole : std::uint8_t {
 struct ValueRange {
   std::uint64_t first = 0;
   std::uint64_t last = 0;
+  [[nodiscard]] bool operator==(const ValueRange&) const = default;
 };
 
 inline constexpr std::size_t kNoSignal = static_cast<std::size_t>(-1);

@@ -21,6 +21,11 @@ namespace boresight::ingest::dbc {
 struct SwitchCondition {
   wire::CanSignal signal;
   std::vector<ValueRange> values;
+
+  [[nodiscard]] bool operator==(const SwitchCondition& other) const {
+    return signal.start_bit == other.signal.start_bit && signal.length == other.signal.length &&
+           signal.order == other.signal.order && values == other.values;
+  }
 };
 
 [[nodiscard]] inline bool all_hold(const std::vector<SwitchCondition>& conditions,
@@ -113,6 +118,12 @@ enum class SlotBy : std::uint8_t {
   kArrival,  ///< by the order of arrival of the messages
 };
 
+/// One of the conditions for a detection to be there.
+struct Validity {
+  MappedState state;
+  std::uint8_t bit = 1;  ///< 1 << number of the condition
+};
+
 /// What one message says of one detection; further parts of the same detection may come in other messages.
 struct DetectionPart {
   SlotBy slot_by = SlotBy::kIndex;
@@ -122,7 +133,7 @@ struct DetectionPart {
   MappedSignal slot_signal;   ///< kSignal: raw value − slot_signal_first = place in the group
   std::int64_t slot_signal_first = 0;
   std::vector<std::pair<Quantity, MappedSignal>> quantities;
-  std::vector<MappedState> valid;  ///< all must hold, or there is no detection
+  std::vector<Validity> valid;  ///< all must have come and hold, or there is no detection
   /// When the part is in the frame: the conditions that all of its signals share.
   std::vector<SwitchCondition> conditions;
 };

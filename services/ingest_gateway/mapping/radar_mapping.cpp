@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -241,10 +242,8 @@ class RadarReader {
     const auto found = part_index_.find(key);
     if (found != part_index_.end()) return &entry.parts[found->second];
     std::uint8_t& bits = mapping_.parts_of_slot[slot];
-    if (bits == 0xFF || (group.slot_by == SlotBy::kArrival && bits != 0)) {
-      table.reject("signal", group.slot_by == SlotBy::kArrival
-                                 ? "with slot_by = \"arrival\" all signals must be in the same frames"
-                                 : "a detection comes in more than 8 parts");
+    if (bits == 0xFF) {
+      table.reject("signal", "a detection comes in more than 8 parts");
       return nullptr;
     }
     dbc::DetectionPart part;
@@ -282,12 +281,19 @@ class RadarReader {
     }
     mapping_.quantities = mapped;
     check_quantities(signals, mapped);
-    for (config::Reader& valid : table.tables("valid")) {
+    std::vector<config::Reader> conditions = table.tables("valid");
+    if (conditions.size() > kMaxParts) {
+      table.reject("valid", "must be at most 8");
+      conditions.clear();
+    }
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      config::Reader& valid = conditions[i];
+      const auto bit = static_cast<std::uint8_t>(1u << i);
       const dbc::MappedState state = read_state(valid);
       for_each_instance(valid, group, has_messages,
                         [&](dbc::DetectionPart& part, const dbc::Message& message, const dbc::Signal& signal) {
-                          dbc::MappedState& added = part.valid.emplace_back(state);
-                          added.signal = map_signal(message, signal);
+                          part.valid.push_back({state, bit});
+                          part.valid.back().state.signal = map_signal(message, signal);
                         });
     }
     const std::string counter = table.text("counter", "");
@@ -296,9 +302,58 @@ class RadarReader {
       finish_message(message_tables[i], group, i, has_messages);
     }
     if (!has_messages) return;
+    for (const dbc::Message* message : messages_of(group)) {
+      merge_parts(messages_.at(dbc::MappedMessage::key_of(message->id, message->extended)), group);
+    }
+    const std::uint8_t bits = mapping_.parts_of_slot[group.first_slot];
+    if (group.slot_by == SlotBy::kArrival && (bits & (bits - 1)) != 0) {
+      table.reject("signals", "with slot_by = \"arrival\" all signals must be in the same frames");
+    }
     for (std::size_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot) {
       mapping_.parts_of_slot[slot] = mapping_.parts_of_slot[group.slot_by == SlotBy::kIndex ? slot : group.first_slot];
     }
+  }
+
+  static std::set<const dbc::Message*> messages_of(const Group& group) {
+    std::set<const dbc::Message*> messages;
+    for (const auto& instance : group.messages) messages.insert(instance.begin(), instance.end());
+    return messages;
+  }
+
+  /// Signals that are in every frame of a message are no part of their own if the detection's other signals in it are
+  /// multiplexed: they are read with each of those. The same below a switch that is multiplexed itself.
+  void merge_parts(dbc::RadarMessage& message, const Group& group) {
+    std::map<std::size_t, std::vector<std::size_t>> parts_by_slot;
+    for (std::size_t i = 0; i < message.parts.size(); ++i) {
+      const std::size_t slot = message.parts[i].slot;
+      if (slot >= group.first_slot && slot < group.first_slot + group.slots) parts_by_slot[slot].push_back(i);
+    }
+    std::vector<bool> is_merged(message.parts.size());
+    for (const auto& [slot, indices] : parts_by_slot) {
+      for (const std::size_t outer : indices) {
+        for (const std::size_t inner : indices) {
+          if (!is_below(message.parts[inner].conditions, message.parts[outer].conditions)) continue;
+          dbc::DetectionPart& into = message.parts[inner];
+          const dbc::DetectionPart& from = message.parts[outer];
+          into.quantities.insert(into.quantities.end(), from.quantities.begin(), from.quantities.end());
+          into.valid.insert(into.valid.end(), from.valid.begin(), from.valid.end());
+          is_merged[outer] = true;
+        }
+        if (!is_merged[outer]) continue;
+        mapping_.parts_of_slot[slot] =
+            static_cast<std::uint8_t>(mapping_.parts_of_slot[slot] & ~message.parts[outer].part_bit);
+      }
+    }
+    std::vector<dbc::DetectionPart> kept;
+    for (std::size_t i = 0; i < message.parts.size(); ++i) {
+      if (!is_merged[i]) kept.push_back(std::move(message.parts[i]));
+    }
+    message.parts = std::move(kept);
+  }
+
+  /// Conditions run from the signal's own switch to the outermost one: those of what is further out are the last ones.
+  static bool is_below(const std::vector<dbc::SwitchCondition>& inner, const std::vector<dbc::SwitchCondition>& outer) {
+    return inner.size() > outer.size() && std::equal(outer.rbegin(), outer.rend(), inner.rbegin());
   }
 
   template <typename Add>
