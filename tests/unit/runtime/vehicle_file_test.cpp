@@ -71,6 +71,49 @@ TEST(VehicleFile, RefusesWrongAddressesLinksAndMissingKeys) {
   EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("ego: is missing"));
 }
 
+VehicleConfig example_mixed() {
+  return read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/example_mixed.toml");
+}
+
+TEST(VehicleFile, KnowsEveryKindOfRadar) {
+  const VehicleConfig v = example_mixed();
+  ASSERT_EQ(v.radars.size(), 7u);
+  EXPECT_EQ(v.ego.profile, EgoProfile::kMapping);
+  EXPECT_TRUE(std::filesystem::exists(v.ego.mapping)) << "relative to the vehicle file";
+  EXPECT_TRUE(v.radar(1)->ego_feed);
+  EXPECT_FALSE(v.radar(1)->e2e.required) << "real firmware leaves it zero";
+  EXPECT_EQ(v.radar(2)->source.link, LinkKind::kSomeIp);
+  EXPECT_TRUE(v.radar(2)->e2e.required);
+  EXPECT_EQ(v.radar(2)->e2e.protection.profile, e2e::Profile::kP07);
+  EXPECT_EQ(v.radar(2)->e2e.protection.data_id, 0x42530201u);
+  EXPECT_EQ(v.radar(2)->e2e.protection.offset_bytes, 8u);
+  EXPECT_EQ(v.radar(2)->source.discovery_port, 30490);
+  EXPECT_EQ(v.radar(3)->e2e.protection.data_id, 0x10203u);
+  EXPECT_EQ(v.radar(6)->sensor_id, 1u);
+  EXPECT_EQ(v.radar(6)->output, Ars408Output::kClusters);
+  EXPECT_TRUE(std::filesystem::exists(v.radar(7)->mapping));
+}
+
+TEST(VehicleFile, RefusesWhatAProfileDoesNotKnow) {
+  const std::string someip =
+      "[[radar]]\nid = 1\nname = \"a\"\nprofile = \"boresight\"\nmounting_pose = {position_m = [0.0, 0.0, 0.0], "
+      "yaw_deg "
+      "= 0.0}\n";
+  const auto with = [&](const std::string& lines) { return error_of(std::string(kEgo) + someip + lines); };
+  EXPECT_THAT(with("source = {link = \"someip\", address = \"10.0.0.1\"}\n"), HasSubstr("source.instance: is missing"));
+  EXPECT_THAT(with("source = {link = \"someip\", address = \"10.0.0.1\", instance = 0}\n"), HasSubstr("instance"));
+  EXPECT_THAT(with("source = {link = \"someip\", address = \"10.0.0.1\", instance = 1, sender = \"10.0.0.2\"}\n"),
+              HasSubstr("sender and sender_port are given together"));
+  EXPECT_THAT(with("source = {link = \"someip\", address = \"10.0.0.1\", instance = 1, port = 30490}\n"),
+              HasSubstr("port of service discovery"));
+  const std::string source = "source = {link = \"someip\", address = \"10.0.0.1\", instance = 1}\n";
+  EXPECT_THAT(with(source + "e2e = {mode = \"on\"}\n"), HasSubstr("must be one of \"off\", \"required\""));
+  EXPECT_THAT(with(source + "e2e = {offset_bytes = 4}\n"), HasSubstr("offset_bytes"));
+  EXPECT_THAT(with(source + "sensor_id = 1\n"), HasSubstr("sensor_id"));
+  EXPECT_THAT(with(source + "ego_feed = true\n"), HasSubstr("ego_feed"));
+  EXPECT_THAT(with(source + "mapping = \"x.toml\"\n"), HasSubstr("for profile = \"mapping\" only"));
+}
+
 TEST(VehicleFile, ShippedVehiclesAreValid) {
   const std::filesystem::path folder = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config" / "vehicle";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
