@@ -7,6 +7,7 @@ namespace boresight::ingest {
 Source::Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoReceiver& ego, Sink& sink)
     : id_(radar == nullptr ? 0 : radar->id),
       clock_(radar == nullptr ? RadarConfig{} : *radar),
+      judge_(radar == nullptr ? RadarConfig{} : *radar),
       decoder_(std::move(decoder)),
       ego_(ego),
       sink_(sink) {}
@@ -24,6 +25,12 @@ void Source::publish_scan(const FrameStamp& reception, const std::optional<Senso
   if (cycle_counter_bits == 0) scan.cycle_counter = ++counted_cycles_;
   const SensorClock::Result time = clock_.map(sensor, reception);
   report(time);
+  scan.integrity = judge_.judge(scan, time.time.time_ns, reception.received_ns, cycle_counter_bits,
+                                ego_.latest_ego(time.time.time_ns));
+  SourceStatistics& statistics = sink_.statistics(id_);
+  statistics.lost = judge_.counters().lost_scans;
+  // What is missing before a scan is no fault of the scan.
+  if ((scan.integrity & ~scan_integrity::kCounterGap) != 0) ++statistics.suspect;
   sink_.publish_scan(id_, time.time);
 }
 

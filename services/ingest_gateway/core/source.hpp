@@ -6,6 +6,7 @@
 
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/ingest_gateway/codecs/decoder.hpp"
+#include "services/ingest_gateway/core/scan_integrity.hpp"
 #include "services/ingest_gateway/core/sensor_clock.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
 
@@ -50,6 +51,7 @@ class Source : public DecoderOutput {
   void report(const SensorClock::Result& time);
   std::uint32_t id_;
   SensorClock clock_;
+  ScanJudge judge_;
   std::unique_ptr<Decoder> decoder_;
   EgoReceiver& ego_;
   Sink& sink_;

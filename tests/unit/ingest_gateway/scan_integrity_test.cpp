@@ -1,7 +1,6 @@
 #include "services/ingest_gateway/core/scan_integrity.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -470,34 +469,6 @@ TEST_F(Judged, WildScansAreJudgedWithoutAllocatingAndInBoundedTime) {
   }
   EXPECT_EQ(runtime::counted_allocations(), before);
   EXPECT_EQ(judge_.counters().scans, 3000u);
-}
-
-TEST_F(Judged, Cost) {
-  struct Case {
-    const char* name;
-    std::size_t detections;
-    double stationary, ego_mps;
-  };
-  for (const Case& c :
-       {Case{"sound", 300, 0.7, 15.0}, Case{"sound", 1024, 0.7, 15.0}, Case{"half of it traffic", 300, 0.5, 15.0},
-        Case{"damaged", 300, 0.7, 22.5}, Case{"damaged", 1024, 0.7, 22.5}}) {
-    const EgoMotion ego = motion(c.ego_mps);
-    fill(*scan_, c.detections, c.stationary, 15.0, random_);
-    double least_us = 1e9;
-    for (int round = 0; round < 20; ++round) {
-      const auto begin = std::chrono::steady_clock::now();
-      for (int i = 0; i < 50; ++i) {
-        scan_->range_m[0] += 0.01F;
-        static_cast<void>(judge(&ego));
-      }
-      const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - begin;
-      least_us = std::min(least_us, elapsed.count() / 50.0);
-    }
-    std::printf("%-18s %4zu detections: %.2f µs\n", c.name, c.detections, least_us);
-#ifndef BORESIGHT_SANITIZED
-    EXPECT_LT(least_us, 100.0);
-#endif
-  }
 }
 
 }  // namespace
