@@ -1,0 +1,61 @@
+// Two hosts on one machine: the ECU with the gateway and the sensors' side, each a network namespace of its own, joined
+// by a virtual Ethernet cable. A second cable, over which the ECU's default route and all multicast routes lead, is
+// there to be chosen by mistake.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tests/system/harness/child.hpp"
+
+namespace boresight::network {
+
+enum class Host { kEcu, kSensors };
+
+inline constexpr const char* kEcuInterface = "radar0";
+inline constexpr const char* kEcuAddress = "10.77.0.2";
+inline constexpr const char* kEcuAddressV6 = "fd77::2";
+inline constexpr const char* kServerInterface = "sensor0";
+inline constexpr const char* kServerAddress = "10.77.0.1";
+inline constexpr const char* kServerAddressV6 = "fd77::1";
+/// The other cable.
+inline constexpr const char* kEcuUplink = "uplink0";
+inline constexpr const char* kForeignInterface = "foreign0";
+inline constexpr const char* kForeignAddress = "10.99.0.1";
+
+class TwoHosts {
+ public:
+  /// False where the kernel or the container does not permit namespaces or virtual cables.
+  [[nodiscard]] static bool are_possible();
+
+  /// The calling process becomes the ECU. Throws std::runtime_error if a tool fails.
+  TwoHosts();
+  ~TwoHosts();
+  TwoHosts(const TwoHosts&) = delete;
+  TwoHosts& operator=(const TwoHosts&) = delete;
+
+  /// Runs `ip` or another tool on a host; throws if it fails.
+  void run(Host host, const std::string& command) const;
+  [[nodiscard]] bool try_run(Host host, const std::string& command) const;
+  /// A process on a host; its output goes to a file that show_log() prints.
+  [[nodiscard]] std::unique_ptr<harness::Child> start(Host host, const std::string& program,
+                                                      const std::vector<std::string>& arguments) const;
+  /// Calls `make` as on that host: sockets made there stay there.
+  void as(Host host, const std::function<void()>& make) const;
+
+  /// Lays the cable between both interfaces, with the addresses of both ends.
+  void lay_cable() const;
+  void cut_cable() const;
+
+ private:
+  void lay_uplink() const;
+  int ecu_;
+  int sensors_;
+};
+
+/// What the programs of that name have written since the beginning, to standard error of the test.
+void show_log(const std::string& program);
+
+}  // namespace boresight::network
