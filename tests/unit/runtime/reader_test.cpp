@@ -95,6 +95,55 @@ TEST(Reader, BrokenTomlNamesTheLine) {
               HasSubstr("x.toml:2: not valid TOML"));
 }
 
+// Found by fuzzing: the parser asserts, or runs into undefined behaviour.
+TEST(Reader, WhatTheParserDoesNotRefuseIsRefused) {
+  for (const std::string_view text : {"[, a = 1", "[[= 1", "[[[a]]]"}) {
+    EXPECT_THAT(error_of([&] { static_cast<void>(Reader::parse(text, "x.toml")); }), HasSubstr("not valid TOML"))
+        << text;
+  }
+  for (const std::string_view text :
+       {"\nb = [0, Ţ\n", "\nc = 1 °", "\né = 1", "\nd = \"open°\n°", "\ne = \"\"\"x\"\"\" °", "\nf =0\"x°"}) {
+    EXPECT_THAT(error_of([&] { static_cast<void>(Reader::parse(text, "x.toml")); }),
+                HasSubstr("x.toml:2: not valid TOML"))
+        << text;
+  }
+}
+
+TEST(Reader, AllCharactersAreAllowedInStringsAndComments) {
+  constexpr std::string_view kText = R"toml(# 0 … 1 "
+a = "\"°" # ° '
+b = '''°
+°'''
+c = '°\'
+d = """°
+"°\""""
+e = "a ~ b ~x41"
+[f]
+"°" = 1
+)toml";
+  Reader root = Reader::parse("\xEF\xBB\xBF" + std::string(kText), "x.toml");
+  EXPECT_EQ(root.text("a", ""), "\"°");
+  EXPECT_EQ(root.text("b", ""), "°\n°");
+  EXPECT_EQ(root.text("c", ""), "°\\");
+  EXPECT_EQ(root.text("d", ""), "°\n\"°\"");
+  EXPECT_EQ(root.text("e", ""), "a ~ b ~x41");
+  static_cast<void>(root.table("f").has("x"));
+  EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("x.toml:10: f.°: unknown key"));
+}
+
+TEST(Reader, ListsOfIntegers) {
+  Reader root = Reader::parse("a = [3, -4]\nb = [1]\nc = [1.5]\nd = [1, 99]\ne = 1\n", "x.toml");
+  EXPECT_THAT(root.integers("a", {1, 4}, {-9, 9}, {}), testing::ElementsAre(3, -4));
+  EXPECT_THAT(root.integers("absent", {1, 4}, {-9, 9}, {7}), testing::ElementsAre(7));
+  EXPECT_THAT(root.integers("b", {2, 2}, {0, 9}, {5, 6}), testing::ElementsAre(5, 6));
+  for (const char* key : {"c", "d", "e"}) EXPECT_THAT(root.integers(key, {1, 4}, {0, 9}, {}), testing::IsEmpty());
+  const std::string error = error_of([&] { root.finish(); });
+  EXPECT_THAT(error, HasSubstr("x.toml:2: b: has 1 elements; must be an array of integers (0 … 9), their number 2"));
+  EXPECT_THAT(error, HasSubstr("x.toml:3: c: element 1 is not an integer in range"));
+  EXPECT_THAT(error, HasSubstr("x.toml:4: d: element 2 is not an integer in range"));
+  EXPECT_THAT(error, HasSubstr("x.toml:5: e: must be an array of integers"));
+}
+
 TEST(Reader, UnreadableFileIsNamed) {
   EXPECT_THAT(error_of([] { static_cast<void>(Reader::open("/nowhere/x.toml")); }),
               HasSubstr("/nowhere/x.toml: cannot"));

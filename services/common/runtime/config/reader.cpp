@@ -8,7 +8,9 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
+
+#include "services/common/runtime/config/toml.hpp"
+#include "services/common/runtime/config/toml_text.hpp"
 
 namespace boresight::config {
 
@@ -44,6 +46,11 @@ std::string_view type_name(toml::node_type type) {
     default:
       return "a date or time";
   }
+}
+
+/// What a string of the document says; empty if it is none.
+std::string string_of(const toml::node& node) {
+  return decode_ascii(node.value<std::string>().value_or(""));
 }
 
 }  // namespace
@@ -98,7 +105,8 @@ Reader::Node& Reader::Node::add_child(std::string child_path, std::uint32_t chil
 namespace {
 
 [[noreturn]] void throw_parse_error(const toml::parse_error& error, std::string_view file) {
-  throw Error(fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, error.description()));
+  throw Error(
+      fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, decode_ascii(error.description())));
 }
 
 }  // namespace
@@ -107,9 +115,11 @@ Reader Reader::parse(std::string_view text, std::string_view name) {
   const auto document = std::make_shared<Node::Document>();
   document->file = std::string(name);
   try {
-    document->root = toml::parse(text, name);
+    document->root = toml::parse(encode_ascii(text), name);
   } catch (const toml::parse_error& error) {
     throw_parse_error(error, name);
+  } catch (const TomlAssertion&) {
+    throw Error(fmt::format("{}: not valid TOML", name));
   }
   Node& root = document->nodes.emplace_back(*document);
   root.table = &document->root;
@@ -174,7 +184,7 @@ std::string Reader::text(std::string_view key, std::string_view fallback) {
     node_->expect(*node, key, "a string");
     return std::string(fallback);
   }
-  return node->value<std::string>().value_or(std::string(fallback));
+  return string_of(*node);
 }
 
 std::vector<double> Reader::numbers(std::string_view key, std::size_t count, Range allowed,
@@ -241,7 +251,7 @@ std::vector<std::string> Reader::texts(std::string_view key, std::vector<std::st
     return fallback;
   }
   std::vector<std::string> values;
-  for (const toml::node& element : *array) values.push_back(element.value<std::string>().value_or(""));
+  for (const toml::node& element : *array) values.push_back(string_of(element));
   return values;
 }
 
@@ -253,7 +263,7 @@ int Reader::choice_index(std::string_view key, const std::vector<std::string_vie
     node_->expect(*node, key, wanted);
     return -1;
   }
-  const std::string word = node->value<std::string>().value_or("");
+  const std::string word = string_of(*node);
   const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end()) {
     reject(key, fmt::format("\"{}\" is unknown; must be {}", word, wanted));
@@ -319,7 +329,7 @@ void Reader::finish() {
     if (node.table == nullptr) continue;
     for (const auto& [key, value] : *node.table) {
       if (node.known.contains(key.str())) continue;
-      node.note(key.source().begin.line, key.str(),
+      node.note(key.source().begin.line, decode_ascii(key.str()),
                 fmt::format("unknown key; known here: {}", fmt::join(node.known, ", ")));
     }
   }
