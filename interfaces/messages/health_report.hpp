@@ -13,7 +13,7 @@ enum class ExtendedQualifier : std::uint8_t {
   kMisaligned = 1,
   kNoData = 2,       ///< nothing within the deadline
   kRateReduced = 3,  ///< data arrive, but too rarely
-  kInvalidData = 4,  ///< the share of rejected input is too high
+  kInvalidData = 4,  ///< too large a share is rejected or suspect, or the sensor says that it is defective
   kBlocked = 5,
   kBeginningBlockage = 6,
   kExternalDisturbance = 7,
@@ -48,10 +48,18 @@ struct SensorHealth {
   /// What the misalignment does (Report A §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
+  std::uint32_t conditions;  ///< source_condition bits: what the sensor said of itself last
+  std::uint32_t reserved2;
   std::uint64_t scans;
-  std::uint64_t lost_scans;
+  std::uint64_t lost_scans;     ///< published by the gateway, missing here
+  std::uint64_t missed_scans;   ///< sent by the sensor, by its own counter, and never complete at the gateway
+  std::uint64_t suspect_scans;  ///< published by the gateway with an integrity verdict against them
+  // Of the messages' end-to-end protection, where there is one:
+  std::uint64_t e2e_lost;      ///< messages that the counter stepped over
+  std::uint64_t e2e_repeated;  ///< messages with the counter of the one before, dropped
+  std::uint64_t e2e_wrong;     ///< messages of a wrong CRC, length, Data ID or sequence, dropped
 };
-static_assert(sizeof(SensorHealth) == 104);
+static_assert(sizeof(SensorHealth) == 152);
 
 enum class ServiceCondition : std::uint8_t {
   kUnknown = 0,  ///< never heard
@@ -79,7 +87,7 @@ static_assert(sizeof(ServiceHealth) == 48);
 inline constexpr std::size_t kMaxServices = 16;
 
 struct HealthReport {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;
   DataQualifier overall;
@@ -94,6 +102,6 @@ struct HealthReport {
 };
 
 static_assert(kIsPlainMessage<HealthReport>);
-static_assert(sizeof(HealthReport) == 104 + 24 + kMaxRadars * 104 + kMaxServices * 48);
+static_assert(sizeof(HealthReport) == 104 + 24 + kMaxRadars * 152 + kMaxServices * 48);
 
 }  // namespace boresight

@@ -1,6 +1,7 @@
 // Words for the values of the messages' enumerations: the same in pictures, logs, records and diagnostics.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "interfaces/messages/alignment_estimate.hpp"
@@ -38,6 +39,18 @@ template <typename Enum, std::size_t N>
                                                       "EXTERNAL_DISTURBANCE",
                                                       "INITIALISING"};
   return detail::word_of(kNames, qualifier);
+}
+/// What source_condition bits say, as "partly blocked, supply"; empty if nothing.
+[[nodiscard]] inline std::string words_of_conditions(std::uint32_t bits) {
+  constexpr std::array<std::string_view, 7> kNames = {"blocked",     "partly blocked", "defective",         "supply",
+                                                      "temperature", "unsynchronised", "without ego motion"};
+  std::string words;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if ((bits >> i & 1u) == 0) continue;
+    if (!words.empty()) words += ", ";
+    words += kNames[i];
+  }
+  return words;
 }
 [[nodiscard]] constexpr std::string_view name_of(ServiceCondition condition) {
   constexpr std::array<std::string_view, 5> kNames = {"unknown", "alive", "degraded", "silent", "restarted"};

@@ -29,6 +29,7 @@ FileConfig read_config(config::Reader root) {
   s.window_s = supervision.number("window_s", {0.2, 60.0}, s.window_s);
   s.min_rate_ratio = supervision.number("min_rate_ratio", {0.0, 1.0}, s.min_rate_ratio);
   s.max_rejected_ratio = supervision.number("max_rejected_ratio", {0.0, 1.0}, s.max_rejected_ratio);
+  s.max_suspect_ratio = supervision.number("max_suspect_ratio", {0.0, 1.0}, s.max_suspect_ratio);
   s.restart_memory_s = supervision.number("restart_memory_s", {0.0, 60.0}, s.restart_memory_s);
   config::Reader misalignment = root.table("misalignment");
   s.confidence_sigma = misalignment.number("confidence_sigma", {0.0, 10.0}, s.confidence_sigma);

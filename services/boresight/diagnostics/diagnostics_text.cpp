@@ -78,6 +78,7 @@ std::string to_line(const diagnostics::SensorHealth& s) {
   if (s.yaw().observable()) {
     line += fmt::format("  {:+.2f} m sideways at {:.0f} m", s.lateral_displacement_m(), s.reference_range_m());
   }
+  if (s.conditions() != 0) line += "  says of itself: " + words_of_conditions(s.conditions());
   return line;
 }
 
@@ -85,12 +86,14 @@ std::string to_json(const diagnostics::SensorHealth& s) {
   return fmt::format(
       R"({{"radar_id":{},"radar":{},"vehicle":{},"time_ns":{},"data_qualifier":"{}","extended_qualifier":"{}",)"
       R"("rate_hz":{},"expected_rate_hz":{},"last_seen_s":{},{},{},{},"speed_scale":{},"speed_scale_std":{},)"
-      R"("lateral_displacement_m":{},"reference_range_m":{},"scans":{},"lost_scans":{}}})",
+      R"("lateral_displacement_m":{},"reference_range_m":{},"scans":{},"lost_scans":{},"missed_scans":{},)"
+      R"("suspect_scans":{},"e2e_lost":{},"e2e_repeated":{},"e2e_wrong":{},"conditions":"{}"}})",
       s.radar_id(), quoted(s.radar_name()), quoted(s.vehicle_name()), s.time_ns(), word(s.data_qualifier()),
       word(s.extended_qualifier()), number(s.rate_hz()), number(s.expected_rate_hz()), number(s.last_seen_s()),
       axis_json("yaw", s.yaw()), axis_json("pitch", s.pitch()), axis_json("roll", s.roll()), number(s.speed_scale()),
       number(s.speed_scale_std()), number(s.lateral_displacement_m()), number(s.reference_range_m()), s.scans(),
-      s.lost_scans());
+      s.lost_scans(), s.missed_scans(), s.suspect_scans(), s.e2e_lost(), s.e2e_repeated(), s.e2e_wrong(),
+      words_of_conditions(s.conditions()));
 }
 
 std::string to_lines(const DiagnosticArray_& array) {

@@ -126,6 +126,9 @@ void Accumulator::observe(const HealthReport& report) {
     RadarSnapshot& seen = radar(health.radar_id).seen;
     seen.data_qualifier = health.data_qualifier;
     seen.extended_qualifier = health.extended_qualifier;
+    seen.conditions = health.conditions;
+    seen.missed = health.missed_scans;
+    seen.suspect = health.suspect_scans;
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(report.number_of_services, kMaxServices); ++i) {
     const ServiceHealth& health = report.services[i];

@@ -99,6 +99,17 @@ std::size_t number_of_confirmed(const Snapshot& snapshot) {
       std::count_if(snapshot.tracks.begin(), snapshot.tracks.end(), [](const auto& t) { return t.confirmed; }));
 }
 
+/// What the sensor says of itself, and what was wrong with its scans; empty if nothing.
+std::string complaint(const RadarSnapshot& radar) {
+  std::string text = words_of_conditions(radar.conditions);
+  const auto add = [&text](std::uint64_t count, std::string_view what) {
+    if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  };
+  add(radar.missed, "scans missed on the wire");
+  add(radar.suspect, "suspect scans");
+  return text;
+}
+
 void put_radars(Page& page, const Snapshot& snapshot) {
   // What matters most comes first: a narrow terminal cuts the end.
   page.put(fmt::format("{:<13}{:<32}{:<18}{:<17}{:>8}{:>5}{:>7}{:>6}  {:<12}{}", "RADAR", "HEALTH", "YAW ± σ",
@@ -116,6 +127,10 @@ void put_radars(Page& page, const Snapshot& snapshot) {
     page.put(fmt::format("{:<12}", name_of(r.state)));
     page.put(angle_text(r.pitch, known));
     page.line();
+    if (const std::string text = complaint(r); !text.empty()) {
+      page.put(fmt::format("{:<13}{}", "", text), Ink::kWarning);
+      page.line();
+    }
   }
 }
 

@@ -63,6 +63,9 @@ RadarSnapshot read_radar(Words& words) {
   r.data_qualifier = words.value<DataQualifier>();
   r.extended_qualifier = words.value<ExtendedQualifier>();
   r.yaw_tolerance_rad = words.number();
+  r.conditions = static_cast<std::uint32_t>(words.count());
+  r.missed = words.count();
+  r.suspect = words.count();
   return r;
 }
 
@@ -120,7 +123,8 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
            << r.detections << ' ' << r.moving << ' ' << r.ghosts << ' ' << static_cast<int>(r.state);
     for (const AngleEstimate& angle : {r.yaw, r.pitch, r.roll}) write_angle(output, angle);
     output << ' ' << r.speed_scale << ' ' << r.speed_scale_std << ' ' << static_cast<int>(r.data_qualifier) << ' '
-           << static_cast<int>(r.extended_qualifier) << ' ' << r.yaw_tolerance_rad << '\n';
+           << static_cast<int>(r.extended_qualifier) << ' ' << r.yaw_tolerance_rad << ' ' << r.conditions << ' '
+           << r.missed << ' ' << r.suspect << '\n';
   }
   for (const TrackSnapshot& t : snapshot.tracks) {
     output << "track " << t.id << ' ' << (t.confirmed ? 1 : 0) << ' ' << static_cast<int>(t.movement) << ' ' << t.x_m
@@ -179,11 +183,13 @@ std::string to_json(const Snapshot& snapshot) {
     text += fmt::format(
         R"({}{{"id":{},"name":"{}","scans":{},"lost":{},"rate_hz":{},"detections":{},"moving":{},"ghosts":{},)"
         R"("state":"{}","yaw_deg":{},"yaw_std_deg":{},"pitch_deg":{},"pitch_std_deg":{},"speed_scale":{},)"
-        R"("speed_scale_std":{},"data_qualifier":"{}","extended_qualifier":"{}"}})",
+        R"("speed_scale_std":{},"data_qualifier":"{}","extended_qualifier":"{}","missed":{},"suspect":{},)"
+        R"("conditions":"{}"}})",
         separator, r.id, r.name, r.scans, r.lost, json_number(r.rate_hz), r.detections, r.moving, r.ghosts,
         name_of(r.state), json_number(r.yaw.value_rad * kDegrees), json_number(r.yaw.std_rad * kDegrees),
         json_number(r.pitch.value_rad * kDegrees), json_number(r.pitch.std_rad * kDegrees), json_number(r.speed_scale),
-        json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier));
+        json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
+        words_of_conditions(r.conditions));
     separator = ",";
   }
   text += R"(],"tracks":[)";

@@ -43,6 +43,9 @@ struct RadarSnapshot {
   DataQualifier data_qualifier = DataQualifier::kNotAvailable;
   ExtendedQualifier extended_qualifier = ExtendedQualifier::kInitialising;
   double yaw_tolerance_rad = 0.0;
+  std::uint32_t conditions = 0;  ///< source_condition bits, as the sensor says; this and the next two by way of health
+  std::uint64_t missed = 0;      ///< sent by the sensor, never complete at the gateway
+  std::uint64_t suspect = 0;     ///< with an integrity verdict against them
 };
 
 struct TrackSnapshot {

@@ -23,6 +23,7 @@ SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std
       rate_(std::max(config.window_s, 10.0 * radar.cycle_time_s)),
       messages_(config.window_s),
       rejected_(config.window_s),
+      suspect_(config.window_s),
       yaw_(config, radar.tolerance.yaw_rad),
       pitch_(config, radar.tolerance.pitch_rad),
       roll_(config, radar.tolerance.roll_rad) {}
@@ -62,6 +63,7 @@ void SensorMonitor::observe(const SourceStatistics& statistics, std::int64_t now
   const auto grown = [](std::uint64_t now, std::uint64_t before) { return now >= before ? now - before : now; };
   messages_.add(now_ns, grown(statistics.messages, last_statistics_.messages));
   rejected_.add(now_ns, grown(statistics.rejected, last_statistics_.rejected));
+  suspect_.add(now_ns, grown(statistics.suspect, last_statistics_.suspect));
   last_statistics_ = statistics;
 }
 
@@ -81,26 +83,41 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
   health.reference_range_m = static_cast<float>(config_.reference_range_m);
   health.scans = scans_;
   health.lost_scans = lost_scans_;
+  health.conditions = last_statistics_.conditions;
+  health.missed_scans = last_statistics_.lost;
+  health.suspect_scans = last_statistics_.suspect;
+  health.e2e_lost = last_statistics_.e2e_lost;
+  health.e2e_repeated = last_statistics_.e2e_repeated;
+  health.e2e_wrong = last_statistics_.e2e_wrong;
 
   const bool misaligned = yaw_.is_beyond() || pitch_.is_beyond() || roll_.is_beyond();
   const bool inhibited = yaw_.is_inhibited() || pitch_.is_inhibited() || roll_.is_inhibited();
   const double rejected = static_cast<double>(rejected_.sum(now_ns));
-  const double received = static_cast<double>(messages_.sum(now_ns)) + rejected;
-  const bool invalid = received > 0.0 && rejected > config_.max_rejected_ratio * received;
+  const double published = static_cast<double>(messages_.sum(now_ns));
+  const double suspect = static_cast<double>(suspect_.sum(now_ns));
+  const bool is_rejected = rejected > config_.max_rejected_ratio * (published + rejected);
+  const bool is_suspect = suspect > config_.max_suspect_ratio * published;
+  const auto says = [&health](std::uint32_t condition) { return (health.conditions & condition) != 0; };
   const auto say = [&health](DataQualifier effect, ExtendedQualifier reason) {
     health.data_qualifier = effect;
     health.extended_qualifier = reason;
     return health;
   };
-  // The worst effect first; of two reasons for the same effect the one that a workshop has to act on.
+  // The worst effect first; of two reasons for the same effect the one that a workshop has to act on. What the sensor
+  // said of itself last also explains its silence.
+  if (says(source_condition::kDefective)) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
+  if (says(source_condition::kBlocked)) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kBlocked);
   if (!delivers(now_ns)) {
-    if (invalid) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
+    if (is_rejected) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
     const bool young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
     return say(DataQualifier::kNotAvailable, young ? ExtendedQualifier::kInitialising : ExtendedQualifier::kNoData);
   }
   if (inhibited) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kMisaligned);
   if (misaligned) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kMisaligned);
-  if (invalid) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kInvalidData);
+  if (says(source_condition::kPartlyBlocked)) {
+    return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kBeginningBlockage);
+  }
+  if (is_rejected || is_suspect) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kInvalidData);
   if (rate_.is_full(now_ns) && health.rate_hz < config_.min_rate_ratio * expected_rate_hz_) {
     return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kRateReduced);
   }

@@ -43,6 +43,7 @@ class SensorMonitor {
   RateWindow rate_;
   RateWindow messages_;
   RateWindow rejected_;
+  RateWindow suspect_;
   SourceStatistics last_statistics_{};
   AxisJudge yaw_;
   AxisJudge pitch_;

@@ -127,6 +127,7 @@ bool verdicts_differ(const HealthReport& a, const HealthReport& b) {
   for (std::size_t i = 0; i < a.number_of_sensors; ++i) {
     const SensorHealth &x = a.sensors[i], &y = b.sensors[i];
     if (x.data_qualifier != y.data_qualifier || x.extended_qualifier != y.extended_qualifier) return true;
+    if (x.conditions != y.conditions) return true;  // the sensor's own verdict
   }
   for (std::size_t i = 0; i < a.number_of_services && i < kMaxServices; ++i) {
     const ServiceHealth &x = a.services[i], &y = b.services[i];

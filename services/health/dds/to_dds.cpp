@@ -78,6 +78,11 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
   add_value(status, "speed scale", fmt::format("{:.4f}, std {:.4f}", sensor.speed_scale, sensor.speed_scale_std));
   add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
+  add_value(status, "scans missed on the wire", fmt::format("{}", sensor.missed_scans));
+  add_value(status, "suspect scans", fmt::format("{}", sensor.suspect_scans));
+  add_value(status, "end-to-end protection",
+            fmt::format("{} lost, {} repeated, {} wrong", sensor.e2e_lost, sensor.e2e_repeated, sensor.e2e_wrong));
+  add_value(status, "says of itself", sensor.conditions == 0 ? "nothing" : words_of_conditions(sensor.conditions));
   return status;
 }
 
@@ -137,6 +142,12 @@ diagnostics::SensorHealth to_sensor_health(const SensorHealth& sensor, const Veh
   out.reference_range_m(sensor.reference_range_m);
   out.scans(sensor.scans);
   out.lost_scans(sensor.lost_scans);
+  out.missed_scans(sensor.missed_scans);
+  out.suspect_scans(sensor.suspect_scans);
+  out.e2e_lost(sensor.e2e_lost);
+  out.e2e_repeated(sensor.e2e_repeated);
+  out.e2e_wrong(sensor.e2e_wrong);
+  out.conditions(sensor.conditions);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "interfaces/messages/service_status.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 #include "services/health/dds/diagnostics_reader.hpp"
 #include "services/health/dds/diagnostics_writer.hpp"
@@ -58,6 +59,12 @@ HealthReport report() {
   crooked.lateral_displacement_m = 4.36F;
   crooked.reference_range_m = 100.0F;
   crooked.scans = 12'345'678'901ULL;
+  crooked.missed_scans = 23'456'789'012ULL;
+  crooked.suspect_scans = 34;
+  crooked.e2e_lost = 5;
+  crooked.e2e_repeated = 6;
+  crooked.e2e_wrong = 7;
+  crooked.conditions = source_condition::kSupply | source_condition::kWithoutEgoMotion;
   return r;
 }
 
@@ -106,6 +113,12 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_TRUE(s.yaw().beyond_tolerance());
   EXPECT_FALSE(s.pitch().observable());
   EXPECT_EQ(s.scans(), 12'345'678'901ULL);
+  EXPECT_EQ(s.missed_scans(), 23'456'789'012ULL);
+  EXPECT_EQ(s.suspect_scans(), 34u);
+  EXPECT_EQ(s.e2e_lost(), 5u);
+  EXPECT_EQ(s.e2e_repeated(), 6u);
+  EXPECT_EQ(s.e2e_wrong(), 7u);
+  EXPECT_EQ(s.conditions(), source_condition::kSupply | source_condition::kWithoutEgoMotion);
   EXPECT_EQ(s.lateral_displacement_m(), 4.36F);
   ASSERT_EQ(received.array.status_().size(), 1u + 2u + 6u);
   const auto& statuses = received.array.status_();
@@ -117,6 +130,11 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(statuses[2].name_(), "boresight/radar/front_right");
   EXPECT_EQ(statuses[2].message_(), "AVAILABLE_REDUCED MISALIGNED");
   EXPECT_EQ(statuses[2].level_(), 1);
+  std::map<std::string, std::string> values;
+  for (const auto& value : statuses[2].values_()) values[value.key_()] = value.value_();
+  EXPECT_EQ(values["says of itself"], "supply, without ego motion");
+  EXPECT_EQ(values["scans missed on the wire"], "23456789012");
+  EXPECT_EQ(values["suspect scans"], "34");
   EXPECT_EQ(statuses[7].name_(), "boresight/service/tracker");
   EXPECT_EQ(statuses[7].level_(), 2) << "silent";
 }
@@ -156,20 +174,26 @@ TEST(Dds, AnotherImplementationReadsBothTopics) {
   EXPECT_NE(output.find("status 1 boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos)
       << output;
   EXPECT_NE(output.find("status 2 boresight/service/tracker: silent"), std::string::npos) << output;
-  EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436"), std::string::npos) << output;
+  EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436 suspect 34 conditions 72"), std::string::npos) << output;
 }
 
 TEST(DiagnosticsText, SaysWhatAWorkshopNeeds) {
   const diagnostics::SensorHealth s = to_sensor_health(report().sensors[1], vehicle(), kTime_ns);
   const std::string line = diagnostics_text::to_line(s);
-  for (const char* part : {"front_right", "AVAILABLE_REDUCED MISALIGNED",
-                           "yaw +2.50° ± 0.02° (tolerance 1.50°, beyond)", "+4.36 m sideways at 100 m", "20.0 Hz"}) {
+  for (const char* part :
+       {"front_right", "AVAILABLE_REDUCED MISALIGNED", "yaw +2.50° ± 0.02° (tolerance 1.50°, beyond)",
+        "+4.36 m sideways at 100 m", "20.0 Hz", "says of itself: supply, without ego motion"}) {
     EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
   }
   EXPECT_EQ(line.find("pitch"), std::string::npos) << "not observable";
   const std::string json = diagnostics_text::to_json(s);
   EXPECT_NE(json.find(R"("radar":"front_right")"), std::string::npos) << json;
   EXPECT_NE(json.find(R"("extended_qualifier":"MISALIGNED")"), std::string::npos) << json;
+  EXPECT_NE(
+      json.find(
+          R"("suspect_scans":34,"e2e_lost":5,"e2e_repeated":6,"e2e_wrong":7,"conditions":"supply, without ego motion"})"),
+      std::string::npos)
+      << json;
   const auto array = to_diagnostic_array(report(), vehicle(), kTime_ns);
   const std::string lines = diagnostics_text::to_lines(array);
   EXPECT_NE(lines.find("WARN  boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos) << lines;

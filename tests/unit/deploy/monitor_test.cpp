@@ -45,6 +45,9 @@ void see_crooked_radar(Accumulator& accumulator) {
   report.sensors[1].radar_id = 2;
   report.sensors[1].data_qualifier = DataQualifier::kAvailableReduced;
   report.sensors[1].extended_qualifier = ExtendedQualifier::kMisaligned;
+  report.sensors[1].conditions = source_condition::kPartlyBlocked | source_condition::kUnsynchronised;
+  report.sensors[1].missed_scans = 12;
+  report.sensors[1].suspect_scans = 3;
   report.number_of_services = 1;
   report.services[0].service = 4;
   report.services[0].condition = ServiceCondition::kRestarted;
@@ -139,6 +142,8 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   const auto snapshots = read_record(record);
   ASSERT_EQ(snapshots.size(), 2U);
   EXPECT_EQ(to_json(snapshots[1]), to_json(written));
+  EXPECT_THAT(to_json(written),
+              ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
@@ -153,6 +158,9 @@ TEST(Render, SaysWhichRadarIsCrookedAndHowSure) {
   const std::string screen = render_screen(accumulator.snapshot(0), options);
   EXPECT_THAT(screen, ::testing::HasSubstr("+2.50° ± 0.04°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("AVAILABLE_REDUCED (MISALIGNED)"));
+  EXPECT_THAT(screen,
+              ::testing::HasSubstr(
+                  "\n             partly blocked, unsynchronised, 12 scans missed on the wire, 3 suspect scans\n"));
   EXPECT_THAT(screen, ::testing::HasSubstr("1 confirmed, 1 tentative"));
   EXPECT_THAT(screen, ::testing::HasSubstr("10.0 m behind"));
   EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restarts)"));

@@ -211,6 +211,82 @@ TEST_F(SupervisionTest, RejectedFramesAreInvalidData) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
+TEST_F(SupervisionTest, SuspectScansBeyondTheirShareAreInvalidData) {
+  run(3.0);
+  const auto run_with_suspects = [this](int every_nth_tenth_of_a_second) {
+    for (int i = 0; i < 30; ++i) {
+      if (i % every_nth_tenth_of_a_second == 0) ++status_[0].sources[0].suspect;  // beside 2 scans in that time
+      run(0.1);
+    }
+  };
+  run_with_suspects(10);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "1 of 20 is within 10 %";
+  EXPECT_EQ(radar(1).suspect_scans, 3u);
+  run_with_suspects(1);
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailableReduced);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInvalidData);
+  EXPECT_EQ(radar(1).suspect_scans, 33u);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+  run(5.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
+}
+
+TEST_F(SupervisionTest, WhatTheSensorSaysOfItselfIsBelieved) {
+  run(3.0);
+  SourceStatistics& source = status_[0].sources[0];
+  const auto verdict_with = [&](std::uint32_t conditions) {
+    source.conditions = conditions;
+    run(0.2);
+    EXPECT_EQ(radar(1).conditions, conditions);
+    EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+    return std::pair(radar(1).data_qualifier, radar(1).extended_qualifier);
+  };
+  using enum DataQualifier;
+  using enum ExtendedQualifier;
+  namespace c = source_condition;
+  EXPECT_EQ(verdict_with(c::kPartlyBlocked), std::pair(kAvailableReduced, kBeginningBlockage));
+  EXPECT_EQ(verdict_with(c::kBlocked), std::pair(kNotAvailable, kBlocked));
+  EXPECT_EQ(verdict_with(c::kDefective), std::pair(kNotAvailable, kInvalidData));
+  EXPECT_EQ(verdict_with(c::kSupply | c::kTemperature | c::kUnsynchronised | c::kWithoutEgoMotion),
+            std::pair(kAvailable, kNormal))
+      << "told, and no reason to distrust its data";
+  EXPECT_EQ(verdict_with(0), std::pair(kAvailable, kNormal));
+}
+
+TEST_F(SupervisionTest, OfTwoReasonsTheWorseEffectIsSaidAndThenWhatAWorkshopHasToActOn) {
+  estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  run(3.0);
+  SourceStatistics& source = status_[0].sources[0];
+  source.conditions = source_condition::kPartlyBlocked;
+  run(0.2);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
+  estimate_[0].alignment_yaw_rad = static_cast<float>(8.0 * kDegree);
+  source.conditions = source_condition::kBlocked | source_condition::kPartlyBlocked;
+  run(1.0);
+  EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked);
+  silent_radar_ = 1;
+  run(1.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked) << "which is why it is silent";
+  source.conditions = 0;
+  run(0.2);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
+}
+
+TEST_F(SupervisionTest, ScansThatNeverCameAreTold) {
+  status_[0].sources[0].lost = 7;
+  status_[0].sources[0].e2e_lost = 8;
+  status_[0].sources[0].e2e_repeated = 9;
+  status_[0].sources[0].e2e_wrong = 10;
+  run(1.0);
+  EXPECT_EQ(radar(1).missed_scans, 7u);
+  EXPECT_EQ(radar(1).e2e_lost, 8u);
+  EXPECT_EQ(radar(1).e2e_repeated, 9u);
+  EXPECT_EQ(radar(1).e2e_wrong, 10u);
+  EXPECT_EQ(radar(1).lost_scans, 0u) << "nothing was lost behind the gateway";
+  EXPECT_EQ(radar(2).missed_scans, 0u);
+}
+
 TEST_F(SupervisionTest, GapsAreCountedAndARestartIsNoGap) {
   run(1.0);
   sequence_[1] += 3;
@@ -316,6 +392,10 @@ TEST_F(SupervisionTest, OnlyAVerdictMakesReportsDiffer) {
   const auto before = std::make_unique<HealthReport>(*report_);
   run(1.0);
   EXPECT_FALSE(verdicts_differ(*before, *report_));
+  status_[0].sources[0].conditions = source_condition::kTemperature;
+  run(0.2);
+  EXPECT_TRUE(verdicts_differ(*before, *report_)) << "the sensor's own";
+  status_[0].sources[0].conditions = 0;
   silent_radar_ = 1;
   run(1.0);
   EXPECT_TRUE(verdicts_differ(*before, *report_));

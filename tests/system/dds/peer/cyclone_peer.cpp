@@ -60,8 +60,9 @@ int main(int argc, char** argv) {
       }
     });
     sensor_came |= take<boresight_diagnostics_SensorHealth>(sensors, [](const auto& s) {
-      std::printf("sensor %u %s %d %d yaw %.4f\n", s.radar_id, s.radar_name, static_cast<int>(s.data_qualifier),
-                  static_cast<int>(s.extended_qualifier), static_cast<double>(s.yaw.error_rad));
+      std::printf("sensor %u %s %d %d yaw %.4f suspect %llu conditions %u\n", s.radar_id, s.radar_name,
+                  static_cast<int>(s.data_qualifier), static_cast<int>(s.extended_qualifier),
+                  static_cast<double>(s.yaw.error_rad), static_cast<unsigned long long>(s.suspect_scans), s.conditions);
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
