@@ -1,0 +1,45 @@
+// Detections are decoded straight into the memory that leaves the process: nothing in between is a copy of them.
+#include <bit>
+#include <cstring>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/benchmarks/ingest/copies/count_copies.hpp"
+#include "tests/benchmarks/ingest/copies/find_sentinels.hpp"
+
+namespace boresight::bench {
+namespace {
+
+TEST(Copies, AnArs548ListGoesFromItsDatagramIntoTheScan) {
+  const Copies copies = count_ars548_copies();
+  EXPECT_EQ(copies.intermediate, 0u);
+  EXPECT_EQ(copies.decoded, 1u);
+  EXPECT_TRUE(copies.into_the_sinks_memory);
+}
+
+TEST(Copies, SegmentsArePutTogetherOnceAndDecodedFromThere) {
+  const Copies copies = count_someip_copies();
+  EXPECT_EQ(copies.intermediate, 1u);
+  EXPECT_EQ(copies.decoded, 1u);
+  EXPECT_TRUE(copies.into_the_sinks_memory);
+}
+
+TEST(Copies, ACopyIsSeenWhereverItIs) {
+  constexpr std::size_t kDetections = 700;
+  // Memory first: what is freed and taken anew may hold sentinels of an earlier test.
+  std::vector<float> numbers(kDetections), same_numbers(kDetections);
+  std::vector<std::uint8_t> unaligned(1 + 4 * kDetections);
+  const SentinelPlaces before = find_sentinels(kDetections);
+  for (std::size_t i = 0; i < kDetections; ++i) {
+    numbers[i] = same_numbers[i] = sentinel_range_m(i);
+    const auto bits = __builtin_bswap32(std::bit_cast<std::uint32_t>(numbers[i]));
+    std::memcpy(unaligned.data() + 1 + 4 * i, &bits, sizeof(bits));
+  }
+  const SentinelPlaces after = find_sentinels(kDetections);
+  EXPECT_EQ(after.as_float - before.as_float, 2u);
+  EXPECT_EQ(after.on_wire_order - before.on_wire_order, 1u);
+}
+
+}  // namespace
+}  // namespace boresight::bench
