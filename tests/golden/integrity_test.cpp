@@ -59,6 +59,11 @@ class RealDriveIntegrity : public testing::Test {
 TEST_F(RealDriveIntegrity, AsItIsNothingIsWrongWithIt) {
   const auto counters = judge([](RadarScan&, std::size_t) { return true; });
   EXPECT_EQ(counters.scans, 1200u);
+  for (const Decoded& message : decoding_.messages) {
+    if (message.scan) {
+      EXPECT_EQ(message.scan->integrity, 0) << "the gateway's own verdict";
+    }
+  }
   EXPECT_EQ(counters.lost_scans, 0u);
   for (const std::uint64_t accused : counters.by_bit) EXPECT_EQ(accused, 0u);
 }
@@ -136,6 +141,7 @@ TEST(RealArs548Integrity, AsItIsNothingIsWrongWithIt) {
     if (!message.scan) continue;
     const std::int64_t time_ns = message.scan->header.measurement_time_ns;
     EXPECT_EQ(message.scan->number_of_valid_detections, 308u);
+    EXPECT_EQ(message.scan->integrity, 0) << "the gateway's own verdict";
     EXPECT_EQ(judge.judge(*message.scan, time_ns, time_ns + 247'000'000, 0, nullptr), 0);
   }
   EXPECT_EQ(judge.counters().scans, 1u);

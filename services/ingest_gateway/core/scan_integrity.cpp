@@ -53,11 +53,12 @@ std::uint16_t ScanJudge::judge(const RadarScan& scan, std::int64_t measurement_t
   const auto accuse = [&verdict](bool guilty, std::uint16_t bit) {
     if (guilty) verdict = static_cast<std::uint16_t>(verdict | bit);
   };
+  compare(fingerprint(scan, detections));
   if (has_last_) {
     accuse(true, judge_order(scan, measurement_time_ns, std::min(cycle_counter_bits, 32u)));
   }
   accuse(is_stale(measurement_time_ns, received_ns), kStale);
-  accuse(is_frozen(scan, detections, latest_ego), kFrozen);
+  accuse(is_frozen(detections, latest_ego), kFrozen);
   accuse(is_implausible(scan, detections), kImplausible);
   const std::size_t copies = copies_.count(scan, detections);
   accuse(copies >= kLeastCopies && copies * kCopiesPart >= detections, kImpossibleCopies);
@@ -88,6 +89,10 @@ std::uint16_t ScanJudge::judge_order(const RadarScan& scan, std::int64_t measure
     if (!counter_moves_) ++repeats_since_start_;
     if (counter_moves_ || repeats_since_start_ <= kScansToDisown) return judge_counter(steps, bits, cycles);
   }
+  // The same content with the same stamp has been sent, or read, twice.
+  if (equal_scans_ > 0 && measurement_time_ns <= last_measured_ns_ && scan.number_of_valid_detections > 0) {
+    return scan_integrity::kRepeated;
+  }
   if (cycles <= kCyclesToGap) return 0;
   counters_.lost_scans += static_cast<std::uint64_t>(std::max(1.0, std::round(cycles) - 1.0));
   return scan_integrity::kCounterGap;
@@ -113,10 +118,12 @@ bool ScanJudge::is_stale(std::int64_t measurement_time_ns, std::int64_t received
   return has_last_ && frames_come && measurement_time_ns <= last_measured_ns_;
 }
 
-bool ScanJudge::is_frozen(const RadarScan& scan, std::size_t detections, const EgoMotion* ego) {
-  const std::uint64_t now = fingerprint(scan, detections);
+void ScanJudge::compare(std::uint64_t now) {
   equal_scans_ = has_last_ && now == last_fingerprint_ ? equal_scans_ + 1 : 0;
   last_fingerprint_ = now;
+}
+
+bool ScanJudge::is_frozen(std::size_t detections, const EgoMotion* ego) const {
   const bool may_stand = ego == nullptr || !ego->has(ego_field::kSpeed) || !(std::abs(ego->speed_mps) > kStanding_mps);
   return equal_scans_ >= (may_stand ? kFrozenRepeatsStanding : kFrozenRepeats) &&
          detections >= (may_stand ? kFrozenDetectionsStanding : kFrozenDetections);

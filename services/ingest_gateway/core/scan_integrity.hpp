@@ -37,7 +37,8 @@ class ScanJudge {
   [[nodiscard]] std::uint16_t judge_order(const RadarScan& scan, std::int64_t measurement_time_ns, unsigned bits);
   [[nodiscard]] std::uint16_t judge_counter(std::uint32_t steps, unsigned bits, double cycles);
   [[nodiscard]] bool is_stale(std::int64_t measurement_time_ns, std::int64_t received_ns) const;
-  [[nodiscard]] bool is_frozen(const RadarScan& scan, std::size_t detections, const EgoMotion* ego);
+  void compare(std::uint64_t fingerprint);
+  [[nodiscard]] bool is_frozen(std::size_t detections, const EgoMotion* ego) const;
   [[nodiscard]] bool is_implausible(const RadarScan& scan, std::size_t detections) const;
 
   FieldOfView field_of_view_;

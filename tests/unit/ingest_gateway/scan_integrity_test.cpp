@@ -348,6 +348,15 @@ TEST_F(Judged, WithoutACounterTimeTellsGaps) {
   EXPECT_EQ(judge_.counters().lost_scans, 8u);
 }
 
+TEST_F(Judged, WithoutACounterTheSameContentAndStampAreARepetition) {
+  for (int i = 0; i < 20; ++i) {
+    if (i != 9) fill_anew();
+    if (i == 9 || i == 10) time_ns_ -= kCycle_ns;
+    const int verdict = judge(nullptr, 0) & ~kStale;
+    EXPECT_EQ(verdict, i == 9 ? kRepeated : 0) << i << ": another content with the same stamp is none";
+  }
+}
+
 TEST_F(Judged, OldDataAndStampsThatDoNotAdvanceAreStale) {
   const auto at = [&](std::int64_t measured_ms, std::int64_t received_ms) {
     fill_anew();
