@@ -1,4 +1,5 @@
 // `boresight decode`: what the gateway understands of recordings, as a table or as a verdict.
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/options.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
+#include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 
 namespace boresight {
 
@@ -28,6 +30,8 @@ struct Options {
   std::vector<std::filesystem::path> files;
   std::string profile;
   std::string interface;
+  std::uint32_t sensor_id = 0;
+  std::string mapping;
   runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
   bool csv = false, ego = false, check = false;
   std::string out = "-";
@@ -39,15 +43,34 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+recording::ReadOptions read_options(const Options& options) {
+  return {.can_interface = options.interface.empty() ? "can0" : options.interface};
+}
+
 VehicleConfig vehicle_of(const Options& options) {
   if (options.profile.empty() == options.configuration.vehicle_name.empty()) {
     throw UsageError("give either --profile or --vehicle");
   }
   if (options.profile.empty()) return options.configuration.vehicle();
+  decode::MadeUp made_up{.interface = options.interface, .sensor_id = options.sensor_id, .mapping = options.mapping};
   for (const auto& [name, profile] : decode::profiles()) {
-    if (name == options.profile) return decode::made_up_vehicle({.profile = profile, .interface = options.interface});
+    if (name == options.profile) made_up.profile = profile;
   }
-  throw UsageError("unknown profile");
+  if ((made_up.profile == RadarProfile::kMapping) == options.mapping.empty()) {
+    throw UsageError("--profile mapping and --mapping belong together");
+  }
+  const bool can_be_read_twice = std::find(options.files.begin(), options.files.end(), "-") == options.files.end();
+  const bool has_senders = made_up.profile == RadarProfile::kArs548 || made_up.profile == RadarProfile::kBoresight;
+  if (has_senders && can_be_read_twice) {
+    const auto reader = recording::open_recordings(
+        options.files, [](const std::string&) {}, read_options(options));
+    made_up.senders = decode::find_senders(*reader, made_up.profile);
+  }
+  if (made_up.profile == RadarProfile::kBoresight && made_up.senders.radars.empty()) {
+    throw UsageError(can_be_read_twice ? "no detection list of a Boresight service among the first datagrams"
+                                       : "--profile boresight looks for the service first: give a file, or --vehicle");
+  }
+  return decode::made_up_vehicle(made_up);
 }
 
 /// Text to a file or to standard output; every failure to write is an error.
@@ -96,7 +119,7 @@ int run(const Options& options) {
                           : options.ego ? decode::Table::kEgo
                                         : decode::Table::kNone);
   for (const RadarConfig& radar : vehicle.radars) sink.check().add_source(radar.id, radar.name);
-  ingest::Gateway gateway(vehicle, sink);
+  ingest::Gateway gateway(vehicle, sink, ingest::read_mappings(vehicle));
 
   terminal::ProgressBar bar("decoding");
   std::uint64_t problems = 0;
@@ -105,8 +128,7 @@ int run(const Options& options) {
     bar.wipe();
     std::fprintf(stderr, "%s\n", problem.c_str());
   };
-  const auto reader = recording::open_recordings(
-      options.files, tell, {.can_interface = options.interface.empty() ? "can0" : options.interface});
+  const auto reader = recording::open_recordings(options.files, tell, read_options(options));
   Output output(options.out);
   std::string& rows = sink.rows();
   if (options.csv) rows += decode::detection_header();
@@ -149,11 +171,15 @@ void add_decode_command(CLI::App& app, int& exit_code) {
   std::vector<std::string> names;
   for (const auto& [name, profile] : decode::profiles()) names.push_back(name);
   command->add_option("files", options->files, "recordings, merged by time; \"-\" is standard input")->required();
-  command->add_option("--profile", options->profile, "one radar of that protocol, from any sender, without a vehicle")
+  command->add_option("--profile", options->profile, "radars of that protocol, from any sender, without a vehicle file")
       ->check(CLI::IsMember(names));
   command->add_option(
       "--interface", options->interface,
       "CAN interface to listen to with --profile (else any); also the one that captures lack a name of");
+  command->add_option("--sensor-id", options->sensor_id, "of an ARS408 with --profile")
+      ->check(CLI::Range(0u, 7u))
+      ->capture_default_str();
+  command->add_option("--mapping", options->mapping, "mapping file of --profile mapping");
   command->add_option("--vehicle", options->configuration.vehicle_name, "the radars and ego signals of a vehicle file");
   command->add_option("--config", options->configuration.directory, "folder with vehicle/ and services/")
       ->capture_default_str();

@@ -111,12 +111,14 @@ void Check::take_ego(const ingest::MeasurementTime& time) {
   ++f.scans;
 }
 
-void Check::take_fault(std::uint32_t id, std::string_view what) {
+void Check::take_fault(std::uint32_t id, Fault fault, std::string_view what) {
   SourceFindings& f = sources_[id];
-  ++f.rejected;
+  const bool is_note = fault == Fault::kTimeJump;
+  f.rejected += is_note ? 0 : 1;
+  auto& reasons = is_note ? f.noted_by_reason : f.rejected_by_reason;
   std::string reason = without_numbers(what);
-  if (f.rejected_by_reason.size() >= kMaxReasons && !f.rejected_by_reason.contains(reason)) reason = "other reasons";
-  ++f.rejected_by_reason[reason];
+  if (reasons.size() >= kMaxReasons && !reasons.contains(reason)) reason = "other reasons";
+  ++reasons[reason];
 }
 
 std::uint64_t Check::gaps(const SourceFindings& findings) {
@@ -180,6 +182,7 @@ std::string Check::report(const std::array<SourceStatistics, kMaxRadars + 1>& st
       line(f.integrity[bit], "scans: " + integrity_names(static_cast<std::uint16_t>(1u << bit)));
     }
     for (const auto& [reason, count] : f.rejected_by_reason) line(count, "rejected: " + reason);
+    for (const auto& [reason, count] : f.noted_by_reason) line(count, "noted: " + reason);
   }
   damaged = damaged || !anything;
   text += damaged ? (anything ? "DAMAGED\n" : "DAMAGED: nothing of any source\n") : "SOUND\n";

@@ -41,6 +41,7 @@ struct SourceFindings {
   std::uint64_t rejected = 0;
   /// By reason, with numbers replaced by '#'; at most 32 reasons, then "other reasons".
   std::map<std::string, std::uint64_t, std::less<>> rejected_by_reason;
+  std::map<std::string, std::uint64_t, std::less<>> noted_by_reason;     ///< likewise
   std::array<std::uint64_t, scan_integrity::kNumberOfBits> integrity{};  ///< scans with that bit
   /// The first scan and the latest lack frames: a recording begins and ends in the middle of a cycle.
   bool first_is_incomplete = false, last_is_incomplete = false;
@@ -58,7 +59,9 @@ class Check {
 
   void take_scan(std::uint32_t id, const RadarScan& scan, const ingest::MeasurementTime& time);
   void take_ego(const ingest::MeasurementTime& time);
-  void take_fault(std::uint32_t id, std::string_view what);
+  /// A clock that jumps or is not synchronised is noted and no damage by itself: what matters of it is seen in the
+  /// times of the scans.
+  void take_fault(std::uint32_t id, Fault fault, std::string_view what);
 
   /// Intervals of more than two and a half median ones.
   [[nodiscard]] static std::uint64_t gaps(const SourceFindings& findings);

@@ -38,8 +38,7 @@ class Row {
     separate();
     if (time_ns < 0) text_ += '-';
     std::array<char, kMaxNumber> digits;
-    char* const end =
-        std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(time_ns / kSecond_ns)).ptr;
+    char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(time_ns / kSecond_ns)).ptr;
     text_.append(digits.data(), end);
     std::int64_t fraction = std::abs(time_ns % kSecond_ns);
     std::array<char, 10> decimals;

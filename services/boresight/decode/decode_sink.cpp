@@ -19,9 +19,9 @@ void DecodeSink::publish_ego(const ingest::MeasurementTime& time) {
   if (table_ == Table::kEgo) append_ego(rows_, *ego_, time);
 }
 
-void DecodeSink::fault(Fault /*fault*/, std::string_view what, std::uint32_t radar_id) {
+void DecodeSink::fault(Fault fault, std::string_view what, std::uint32_t radar_id) {
   ++statistics(radar_id).rejected;
-  check_.take_fault(radar_id, what);
+  check_.take_fault(radar_id, fault, what);
 }
 
 SourceStatistics& DecodeSink::statistics(std::uint32_t radar_id) {

@@ -17,6 +17,11 @@ std::string filter_of(const SourceAddress& source) {
   return filter + ")";
 }
 
+/// Where events come to is settled by discovery: a port of this ECU, or a multicast group of the server's choice.
+std::string someip_filter_of(const SourceAddress& source) {
+  return "(udp and (dst host " + source.address + " or ip multicast or ip6 multicast))";
+}
+
 template <typename T>
 void add_once(std::vector<T>& list, const T& value) {
   if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
@@ -45,11 +50,12 @@ CapturePlan plan_of(const VehicleConfig& vehicle) {
     auto network = std::find_if(networks.begin(), networks.end(),
                                 [&](const Collected& candidate) { return candidate.interface == interface; });
     if (network == networks.end()) {
-      networks.push_back({interface, {"udp port 30490"}, {}});
+      networks.push_back({interface, {"udp port " + std::to_string(source->discovery_port)}, {}});
       network = networks.end() - 1;
     }
-    add_once(network->filters, filter_of(*source));
-    const auto address = recording::parse_ip(source->address);
+    const bool is_someip = source->link == LinkKind::kSomeIp;
+    add_once(network->filters, is_someip ? someip_filter_of(*source) : filter_of(*source));
+    const auto address = recording::parse_ip(is_someip ? source->discovery_address : source->address);
     if (address && address->is_multicast()) add_once(network->multicast, *address);
   }
   for (const Collected& network : networks) {

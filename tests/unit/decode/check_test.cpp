@@ -47,14 +47,14 @@ TEST_F(CheckTest, NothingAtAllIsDamaged) {
 
 TEST_F(CheckTest, EachKindOfDamageIsFoundAndNamed) {
   const std::vector<std::pair<std::function<void()>, std::string>> damages = {
-      {[this] { check_.take_fault(1, "CRC 17 is not 99"); }, "1 rejected: CRC # is not #"},
+      {[this] { check_.take_fault(1, Fault::kWireValue, "CRC 17 is not 99"); }, "1 rejected: CRC # is not #"},
       {[this] { scans(10, 130); }, "1 gaps in time"},
       {[this] { scan(900); }, "1 measured before the one before"},
       {[this] { scan(6000, scan_integrity::kFrozen), scans(1, 101); }, "1 scans: frozen"},
       {[this] { scan(6000, scan_integrity::kIncomplete), scans(1, 101); }, "1 scans: incomplete"},
       {[this] { statistics_[1].lost = 7; }, "7 scans lost"},
       {[this] { counts_.problems = 2; }, "2 unreadable"},
-      {[this] { check_.take_fault(0, "unknown sender"); }, "1 rejected: unknown sender"}};
+      {[this] { check_.take_fault(0, Fault::kWireUnknown, "unknown sender"); }, "1 rejected: unknown sender"}};
   for (const auto& [damage, name] : damages) {
     check_ = Check();
     check_.add_source(1, "front");
@@ -83,10 +83,18 @@ TEST_F(CheckTest, CyclesCutAtTheEndsAndRareDoubtsAreNoDamage) {
   EXPECT_TRUE(is_damaged());
 }
 
+TEST_F(CheckTest, AClockThatIsNotSynchronisedIsNotedOnly) {
+  scans(100);
+  check_.take_fault(1, Fault::kTimeJump, "the sensor's clock jumped by 5 s");
+  EXPECT_FALSE(is_damaged());
+  EXPECT_THAT(report_, HasSubstr("1 noted: the sensor's clock jumped by # s"));
+}
+
 TEST_F(CheckTest, ReasonsAreGroupedAndBounded) {
   for (int i = 0; i < 1000; ++i) {
-    check_.take_fault(1, "ARS548: count " + std::to_string(i) + ".5 is beyond 800");
-    check_.take_fault(1, std::string("reason ") + static_cast<char>('A' + i % 26) + static_cast<char>('a' + i / 26));
+    check_.take_fault(1, Fault::kWireValue, "ARS548: count " + std::to_string(i) + ".5 is beyond 800");
+    check_.take_fault(1, Fault::kWireValue,
+                      std::string("reason ") + static_cast<char>('A' + i % 26) + static_cast<char>('a' + i / 26));
   }
   EXPECT_TRUE(is_damaged());
   EXPECT_THAT(report_, HasSubstr("1000 rejected: ARS548: count # is beyond #\n"));

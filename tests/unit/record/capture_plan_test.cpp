@@ -16,13 +16,22 @@ using recording::append_number;
 
 VehicleConfig vehicle() {
   VehicleConfig vehicle;
-  vehicle.ego.source = {LinkKind::kCan, "can0", "", 0, ""};
+  const auto source = [](LinkKind link, const char* interface, const char* address, int port, const char* sender) {
+    SourceAddress made;
+    made.link = link;
+    made.interface = interface;
+    made.address = address;
+    made.port = static_cast<std::uint16_t>(port);
+    made.sender = sender;
+    return made;
+  };
+  vehicle.ego.source = source(LinkKind::kCan, "can0", "", 0, "");
   vehicle.radars.resize(5);
-  vehicle.radars[0].source = {LinkKind::kCan, "can1", "", 0, ""};
-  vehicle.radars[1].source = {LinkKind::kCan, "can0", "", 0, ""};
-  vehicle.radars[2].source = {LinkKind::kUdp, "eth0", "224.0.2.2", 42102, "10.13.1.113"};
-  vehicle.radars[3].source = {LinkKind::kUdp, "eth0", "224.0.2.2", 42102, "10.13.1.114"};
-  vehicle.radars[4].source = {LinkKind::kUdp, "eth0", "ff05::2", 42103, ""};
+  vehicle.radars[0].source = source(LinkKind::kCan, "can1", "", 0, "");
+  vehicle.radars[1].source = source(LinkKind::kCan, "can0", "", 0, "");
+  vehicle.radars[2].source = source(LinkKind::kUdp, "eth0", "224.0.2.2", 42102, "10.13.1.113");
+  vehicle.radars[3].source = source(LinkKind::kUdp, "eth0", "224.0.2.2", 42102, "10.13.1.114");
+  vehicle.radars[4].source = source(LinkKind::kUdp, "eth0", "ff05::2", 42103, "");
   return vehicle;
 }
 
@@ -102,6 +111,22 @@ TEST(CapturePlan, TheFilterTakesEveryFragmentOfTheRadarsAndNothingElse) {
     EXPECT_TRUE(filter.takes(ethernet(0x86DD, std::string(v6).replace(42, 2, port), tagged)));
     EXPECT_TRUE(filter.takes(ethernet(0x86DD, std::string(v6).replace(6, 1, "\x2C"), tagged))) << "fragment";
   }
+}
+
+TEST(CapturePlan, OfSomeIpAllThatMayBeAnEventIsTaken) {
+  VehicleConfig one = vehicle();
+  one.radars.resize(1);
+  one.radars[0].source.link = LinkKind::kSomeIp;
+  one.radars[0].source.interface = "eth1";
+  one.radars[0].source.address = "10.0.0.2";
+  one.radars[0].source.port = 30600;
+  const CapturePlan plan = plan_of(one);
+  ASSERT_EQ(plan.packets.size(), 1u);
+  EXPECT_THAT(plan.packets[0].multicast, testing::ElementsAre(*recording::parse_ip("224.244.224.245")));
+  const Filter filter(plan.packets[0].filter);
+  EXPECT_TRUE(filter.takes(ethernet(0x0800, ipv4(0x0A000001, 0x0A000002, 30600))));
+  EXPECT_TRUE(filter.takes(ethernet(0x0800, ipv4(0x0A000001, 0xEF000001, 5000)))) << "a group that the server chose";
+  EXPECT_FALSE(filter.takes(ethernet(0x0800, ipv4(0x0A000001, 0x0A000003, 30600)))) << "another ECU";
 }
 
 TEST(OutputFiles, OneFileOrAFolderAndNothingIsOverwritten) {
