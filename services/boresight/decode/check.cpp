@@ -167,7 +167,7 @@ std::string Check::report(const std::array<SourceStatistics, kMaxRadars + 1>& st
           fmt::format("radar {} {}: {}, {} scans, {} detections", id, f.name, name_of(verdict), f.scans, f.detections);
     }
     if (f.scans > 1) {
-      text += fmt::format(", {:.3f} s, every {:.1f} ms", static_cast<double>(f.last_ns - f.first_ns) * 1e-9,
+      text += fmt::format(", {:.3f} s, about every {:.0f} ms", static_cast<double>(f.last_ns - f.first_ns) * 1e-9,
                           f.intervals.median_s() * 1e3);
     }
     text += '\n';

@@ -64,18 +64,18 @@ TEST_F(Decode, ADriveIsSoundAndItsTableHasARowForEachDetection) {
 }
 
 TEST_F(Decode, TheSameRecordingGivesTheSameBytesHoweverFastItComes) {
-  ASSERT_EQ(decode("--profile ars548 --csv " + files_.front().string()), 0) << errors();
+  ASSERT_EQ(decode("--vehicle demo --csv " + files_.front().string()), 0) << errors();
   const std::string once = output();
   ASSERT_GT(once.size(), 10'000u);
-  ASSERT_EQ(decode("--profile ars548 --csv " + files_.front().string()), 0) << errors();
+  ASSERT_EQ(decode("--vehicle demo --csv " + files_.front().string()), 0) << errors();
   EXPECT_TRUE(output() == once) << "again";
-  ASSERT_EQ(decode("--profile ars548 --csv -", "cat " + files_.front().string() + " | "), 0) << errors();
+  ASSERT_EQ(decode("--vehicle demo --csv -", "cat " + files_.front().string() + " | "), 0) << errors();
   EXPECT_TRUE(output() == once) << "by a pipe";
   const std::string slowly = "{ head -c 100000 " + files_.front().string() + "; sleep 0.5; tail -c +100001 " +
                              files_.front().string() + "; } | ";
-  ASSERT_EQ(decode("--profile ars548 --csv -", slowly), 0) << errors();
+  ASSERT_EQ(decode("--vehicle demo --csv -", slowly), 0) << errors();
   EXPECT_TRUE(output() == once) << "by a pipe that pauses";
-  ASSERT_EQ(decode("--profile ars548 --csv --out /tmp/table.csv " + files_.front().string()), 0) << errors();
+  ASSERT_EQ(decode("--vehicle demo --csv --out /tmp/table.csv " + files_.front().string()), 0) << errors();
   EXPECT_TRUE(text_of("/tmp/table.csv") == once) << "to a file";
 }
 
