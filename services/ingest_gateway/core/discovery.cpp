@@ -101,6 +101,7 @@ void Discovery::unsubscribed(std::size_t index, someip::UnsubscribeReason reason
       receiver_.fault(index, Fault::kLink, "SOME/IP: the server's offer expired: it is not heard any more");
       break;
     case Reason::kServerReboot:
+      receiver_.forget_sequence(index);
       receiver_.fault(index, Fault::kLink, "SOME/IP: the server started again; subscribing anew");
       break;
     case Reason::kServerChanged:

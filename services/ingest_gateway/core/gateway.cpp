@@ -129,16 +129,21 @@ void Gateway::take(const recording::Frame& frame, const FrameStamp& stamp) {
 }
 
 void Gateway::finish() {
+  // Discovery is left alone: that a server is not heard after the end of a recording is nothing to complain of.
   constexpr std::int64_t kLong_ns = 10'000'000'000;
-  tick(last_tick_ns_ + kLong_ns);
+  tick_sources(last_tick_ns_ + kLong_ns);
 }
 
 void Gateway::tick(std::int64_t now_ns) {
+  tick_sources(now_ns);
+  for (const auto& discovery : discoveries_) discovery->tick(now_ns);
+}
+
+void Gateway::tick_sources(std::int64_t now_ns) {
   last_tick_ns_ = now_ns;
   ego_source_.tick(now_ns);
   for (const auto& source : sources_) source->tick(now_ns);
   someip_.tick(now_ns);
-  for (const auto& discovery : discoveries_) discovery->tick(now_ns);
 }
 
 void Gateway::start(std::int64_t now_ns) {

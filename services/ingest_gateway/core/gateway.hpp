@@ -49,6 +49,7 @@ class Gateway : private EgoReceiver {
     recording::IpAddress sender;      // unspecified: any
     Source* source;
   };
+  void tick_sources(std::int64_t now_ns);
   void take_can(const recording::Frame& frame, const FrameStamp& stamp);
   void take_udp(const recording::Frame& frame, const FrameStamp& stamp);
   [[nodiscard]] bool is_for_someip(const recording::Frame& frame) const;

@@ -1,6 +1,7 @@
 // What a service discovery client makes of what it hears.
 #include <algorithm>
 
+#include "services/ingest_gateway/codecs/someip/fault_kinds.hpp"
 #include "services/ingest_gateway/core/sd_client.hpp"
 
 namespace boresight::ingest::someip {
@@ -29,16 +30,6 @@ Fault kind_of(SdFault fault) {
       return Fault::kWireUnknown;
     default:
       return Fault::kWireValue;
-  }
-}
-
-Fault kind_of(ReadResult result) {
-  switch (result) {
-    case ReadResult::kProtocolVersion:
-    case ReadResult::kMessageType:
-      return Fault::kWireValue;
-    default:
-      return Fault::kWireLength;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/ingest_gateway/codecs/protection.hpp"
+#include "services/ingest_gateway/codecs/someip/fault_kinds.hpp"
 
 namespace boresight::ingest {
 
@@ -37,9 +38,9 @@ bool SomeIpReceiver::knows(const recording::Endpoint& server) const {
 }
 
 void SomeIpReceiver::prepare() {
-  // Two messages of each source, so that a late segment does not cost the next message, and some for strangers.
+  // Two messages of each source: a segment whose header was damaged begins another that never ends.
   if (!subscriptions_.empty()) {
-    reassembler_.emplace(2 * subscriptions_.size() + 4, service::kMaxMessageBytes, kReassemblyTimeout_ns);
+    reassembler_.emplace(2 * subscriptions_.size(), service::kMaxMessageBytes, kReassemblyTimeout_ns);
   }
 }
 
@@ -52,52 +53,62 @@ void SomeIpReceiver::tick(std::int64_t now_ns) {
   }
 }
 
+void SomeIpReceiver::fault_of_sender(const recording::Endpoint& sender, Fault fault, std::string_view what) {
+  std::uint32_t radar_id = 0;  // where ego motion comes from the same endpoint, it is the radar that counts
+  for (const Subscription& subscription : subscriptions_) {
+    if (subscription.server == sender) radar_id = std::max(radar_id, subscription.source->id());
+  }
+  sink_.fault(fault, what, radar_id);
+}
+
 void SomeIpReceiver::take_datagram(const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken) {
   someip::MessageReader reader(datagram.payload);
   someip::Message message;
   for (auto result = reader.next(message); result != someip::ReadResult::kEnd; result = reader.next(message)) {
     if (result != someip::ReadResult::kMessage) {
-      sink_.fault(Fault::kWireLength, someip::describe(result), 0);
+      fault_of_sender(datagram.source, someip::kind_of(result), someip::describe(result));
       continue;
     }
     if (message.service != service::kServiceId) continue;  // other services of the same socket
+    const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(), [&](const Subscription& s) {
+      return s.event == message.method && s.server == datagram.source;
+    });
+    // Before segments take memory: strangers must not drive out what our servers have begun.
+    if (found == subscriptions_.end()) {
+      sink_.fault(Fault::kWireUnknown, "SOME/IP: event of the Boresight service from a sender that nobody waits for",
+                  0);
+      continue;
+    }
     if (!message.tp) {
-      take_message(message, datagram, stamp, taken);
+      take_message(*found, message, datagram, stamp, taken);
       continue;
     }
     someip::Message whole;
     const someip::TpResult part = reassembler_->take(message, datagram.source, stamp.received_ns, whole);
     if (part == someip::TpResult::kComplete) {
-      take_message(whole, datagram, stamp, taken);
+      take_message(*found, whole, datagram, stamp, taken);
     } else if (someip::is_fault(part)) {
-      sink_.fault(Fault::kWireValue, someip::describe(part), 0);
+      found->source->fault(someip::kind_of(part), someip::describe(part));
     }
   }
 }
 
-void SomeIpReceiver::take_message(const someip::Message& message, const recording::Frame& datagram,
-                                  const FrameStamp& stamp, std::uint32_t& taken) {
-  const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(), [&](const Subscription& s) {
-    return s.event == message.method && s.server == datagram.source;
-  });
-  if (found == subscriptions_.end()) {
-    sink_.fault(Fault::kWireUnknown, "SOME/IP: event of the Boresight service from a sender that nobody waits for", 0);
-    return;
-  }
-  Source& source = *found->source;
+void SomeIpReceiver::take_message(Subscription& subscription, const someip::Message& message,
+                                  const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken) {
+  Source& source = *subscription.source;
   if (message.interface_version != service::kMajorVersion || message.type != someip::MessageType::kNotification ||
       message.return_code != 0) {
     source.fault(Fault::kWireValue, "SOME/IP: interface version, message type or return code is not 1, 0x02, 0");
     return;
   }
-  if (!passes_e2e(*found, message)) return;
-  if (message.payload.size() < found->body_offset) {
+  if (!passes_e2e(subscription, message)) return;
+  if (message.payload.size() < subscription.body_offset) {
     source.fault(Fault::kWireLength, "SOME/IP: message is shorter than its E2E header");
     return;
   }
-  taken |= 1u << static_cast<unsigned>(found - subscriptions_.begin());
+  taken |= 1u << static_cast<unsigned>(&subscription - subscriptions_.data());
   recording::Frame body = datagram;
-  body.payload = message.payload.subspan(found->body_offset);
+  body.payload = message.payload.subspan(subscription.body_offset);
   source.take(body, stamp);
 }
 

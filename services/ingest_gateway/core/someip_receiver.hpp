@@ -22,6 +22,8 @@ class SomeIpReceiver {
   std::size_t add(Source& source, std::uint16_t event, const E2eConfig& e2e);
   /// Where the source's events come from now, as its offer says; nullopt: it is not offered.
   void set_server(std::size_t index, const std::optional<recording::Endpoint>& server);
+  /// The source's server started again: its first message is compared with nothing.
+  void forget_sequence(std::size_t index) { subscriptions_[index].checker.reset(); }
   [[nodiscard]] bool knows(const recording::Endpoint& server) const;
   /// After the last add(): takes the memory for messages in segments.
   void prepare();
@@ -51,8 +53,10 @@ class SomeIpReceiver {
     std::optional<recording::Endpoint> server;
   };
   void take_datagram(const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken);
-  void take_message(const someip::Message& message, const recording::Frame& datagram, const FrameStamp& stamp,
-                    std::uint32_t& taken);
+  void take_message(Subscription& subscription, const someip::Message& message, const recording::Frame& datagram,
+                    const FrameStamp& stamp, std::uint32_t& taken);
+  /// Counted for the source whose server sent it, if it is one.
+  void fault_of_sender(const recording::Endpoint& sender, Fault fault, std::string_view what);
   [[nodiscard]] bool passes_e2e(Subscription& subscription, const someip::Message& message);
 
   Sink& sink_;

@@ -18,6 +18,9 @@ constexpr std::uint32_t kOffsetMask = 0xFFFFFFF0;  // in bytes: the 28-bit field
 constexpr std::int64_t kDuplicatesCome_ns = 20'000'000;
 // A segment of one of so many sessions before the present one was overtaken. Further off, the sender started again.
 constexpr std::uint16_t kOvertakenSessions = 16;
+// A message of which nothing came for so long neither makes others late nor keeps its bytes when its session begins
+// (again): it was a stray, or a segment whose session id was damaged.
+constexpr std::int64_t kStalls_ns = 20'000'000;
 
 std::size_t units_in(std::size_t bytes) {
   return (bytes + kUnitBytes - 1) / kUnitBytes;
@@ -125,10 +128,14 @@ TpReassembler::Assembly* TpReassembler::find(const Message& segment, const recor
 
 TpReassembler::Assembly& TpReassembler::begin(const Message& segment, const recording::Endpoint& sender,
                                               std::int64_t now_ns) {
-  // Free ones first, then those kept only to know duplicates, then the oldest.
-  const auto gives_way_before = [](const Assembly& a, const Assembly& b) {
-    const auto rank = [](State state) { return state == State::kFree ? 0 : state == State::kAssembling ? 2 : 1; };
-    return rank(a.state) != rank(b.state) ? rank(a.state) < rank(b.state) : a.since_ns < b.since_ns;
+  // Free ones first, then those kept only to know duplicates, then the sender's own, so that one that begins much and
+  // ends nothing harms itself; then the oldest.
+  const auto rank = [&](const Assembly& a) {
+    if (a.state != State::kAssembling) return a.state == State::kFree ? 0 : 1;
+    return a.sender == sender ? 2 : 3;
+  };
+  const auto gives_way_before = [&](const Assembly& a, const Assembly& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : a.since_ns < b.since_ns;
   };
   Assembly& assembly = *std::min_element(assemblies_.begin(), assemblies_.end(), gives_way_before);
   drop(assembly);
@@ -185,7 +192,7 @@ TpResult TpReassembler::place(Assembly& assembly, std::size_t offset, std::span<
 Message TpReassembler::finish(Assembly& assembly, const Message& last_segment, std::int64_t now_ns) {
   ++statistics_.completed;
   assembly.state = State::kDelivered;
-  assembly.since_ns = now_ns;
+  assembly.since_ns = assembly.last_ns = now_ns;
   Message complete = assembly.header;
   complete.return_code = last_segment.return_code;
   const std::span<std::uint8_t> whole = buffer_of(assembly).first(kHeaderBytes + assembly.total_bytes);
@@ -217,9 +224,10 @@ TpResult TpReassembler::take(const Message& segment, const recording::Endpoint& 
     drop(*assembly);
     assembly = nullptr;
   }
-  if (assembly != nullptr && assembly->header.session != segment.session) {
+  const bool stalls = assembly != nullptr && now_ns - assembly->last_ns > kStalls_ns;
+  if (assembly != nullptr && (assembly->header.session != segment.session || (stalls && offset == 0))) {
     const auto behind = static_cast<std::uint16_t>(assembly->header.session - segment.session);
-    if (behind <= kOvertakenSessions) {
+    if (behind <= kOvertakenSessions && !stalls) {
       ++statistics_.late_segments;
       return TpResult::kLate;
     }
@@ -236,11 +244,12 @@ TpResult TpReassembler::take(const Message& segment, const recording::Endpoint& 
     if (assembly != nullptr) {
       drop(*assembly);
       assembly->state = State::kRefused;
-      assembly->since_ns = now_ns;
+      assembly->since_ns = assembly->last_ns = now_ns;
     }
     return TpResult::kOverSize;
   }
   if (assembly == nullptr) assembly = &begin(segment, sender, now_ns);
+  assembly->last_ns = now_ns;
   const TpResult result = place(*assembly, offset, data, last);
   if (result == TpResult::kContradiction) return bad(result);
   if (result == TpResult::kComplete) complete = finish(*assembly, segment, now_ns);

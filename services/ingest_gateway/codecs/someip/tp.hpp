@@ -43,8 +43,9 @@ struct TpStatistics {
 
 /// Puts messages together from segments that arrive in any order. Segments belong together if Message ID, versions,
 /// type, Request ID and sender agree. Of what arrives twice the first wins. A message is dropped when the same sender
-/// begins the next of its kind, when it takes too long, or when all assemblies are busy and it is the oldest. A segment
-/// that is wrong in itself is left out; the message can still become whole by the right one.
+/// begins the next of its kind, when it takes too long, or when all assemblies are busy and it is the oldest, of those
+/// of the sender that wants to begin another if it has any. A segment that is wrong in itself is left out; the message
+/// can still become whole by the right one.
 ///
 /// Memory: `slots` × (`max_message_bytes` + 1/128 of it), taken by the constructor; nothing is allocated later.
 class TpReassembler {
@@ -70,6 +71,7 @@ class TpReassembler {
     Message header;
     recording::Endpoint sender;
     std::int64_t since_ns = 0;       // of the first segment, or of the end
+    std::int64_t last_ns = 0;        // of the latest segment that was taken
     std::size_t received_units = 0;  // of 16 bytes
     std::size_t received_end = 0;    // behind the last byte that came
     std::size_t total_bytes = 0;     // known once the last segment came, else 0

@@ -1,0 +1,22 @@
+// Which counted fault a bad message or segment is.
+#pragma once
+
+#include "interfaces/messages/service_status.hpp"
+#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/ingest_gateway/codecs/someip/tp.hpp"
+
+namespace boresight::ingest::someip {
+
+/// Of results that are faults.
+[[nodiscard]] constexpr Fault kind_of(ReadResult result) {
+  const bool is_value = result == ReadResult::kProtocolVersion || result == ReadResult::kMessageType;
+  return is_value ? Fault::kWireValue : Fault::kWireLength;
+}
+
+[[nodiscard]] constexpr Fault kind_of(TpResult result) {
+  const bool is_length =
+      result == TpResult::kTooShort || result == TpResult::kNotMultiple || result == TpResult::kOverSize;
+  return is_length ? Fault::kWireLength : Fault::kWireValue;
+}
+
+}  // namespace boresight::ingest::someip
