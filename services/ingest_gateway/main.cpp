@@ -1,7 +1,10 @@
 // boresight-ingest_gateway: frames from CAN, UDP or a replay in, scans and ego motions out.
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "services/common/runtime/clock.hpp"
+#include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_main.hpp"
 #include "services/ingest_gateway/bus_sink.hpp"
 #include "services/ingest_gateway/config.hpp"
@@ -14,8 +17,17 @@ using namespace boresight;
 
 namespace {
 
+void log_warnings(const ingest::Mappings& mappings) {
+  const auto log = [](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) runtime::log::warning("{}", warning);
+  };
+  if (mappings.ego) log(mappings.ego->warnings);
+  for (const auto& [radar_id, mapping] : mappings.radars) log(mapping.warnings);
+}
+
 int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mappings& mappings,
         const ingest::Config& config) {
+  log_warnings(mappings);
   ingest::BusSink sink(node);
   ingest::Gateway gateway(vehicle, sink, mappings);
   ingest::Links links(node, {.on_frame =
