@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/socket_address.hpp"
+#include "services/ingest_gateway/links/network_watch.hpp"
 
 namespace boresight::ingest {
 
@@ -24,6 +26,8 @@ void Links::add(std::unique_ptr<Link> link) {
 }
 
 void Links::add_live(const VehicleConfig& vehicle) {
+  // Not told of changes, a gateway whose interface was replaced would miss up to a second more of multicast.
+  add(std::make_unique<NetworkWatch>([this] { keep_open(); }, events_));
   std::vector<SourceAddress> sources{vehicle.ego.source};
   for (const RadarConfig& radar : vehicle.radars) sources.push_back(radar.source);
   for (const SourceAddress& source : sources) {
@@ -51,6 +55,10 @@ void Links::add_udp(const recording::Endpoint& local, const std::string& interfa
       return;
     }
   }
+  const auto is_known = [&](const Interface& known) { return known.name == interface; };
+  if (!interface.empty() && std::none_of(interfaces_.begin(), interfaces_.end(), is_known)) {
+    interfaces_.push_back({interface, is_running(interface)});
+  }
   auto link = std::make_unique<UdpLink>(local, interface, events_, sharing);
   UdpLink* const added = link.get();
   udp_.push_back({local, interface, added, 1});
@@ -58,11 +66,26 @@ void Links::add_udp(const recording::Endpoint& local, const std::string& interfa
 }
 
 void Links::keep_open() {
+  const runtime::AllowAllocations not_the_data_path;
+  retired_.clear();
+  bool came_up = look_at_interfaces();
   for (const auto& entry : entries_) {
     entry->link->check();
-    if (entry->link->descriptor() < 0) static_cast<void>(entry->link->open());
+    if (entry->link->descriptor() < 0) came_up = entry->link->open() || came_up;
     watch(*entry);
   }
+  if (came_up && events_.on_network_up) events_.on_network_up();
+}
+
+/// True if one of them has come up.
+bool Links::look_at_interfaces() {
+  bool came_up = false;
+  for (Interface& interface : interfaces_) {
+    const bool was_running = std::exchange(interface.running, is_running(interface.name));
+    came_up = came_up || (!was_running && interface.running);
+    if (was_running && !interface.running) events_.on_fault(Fault::kLink, "interface " + interface.name + " is down");
+  }
+  return came_up;
 }
 
 void Links::watch(Entry& entry) {
@@ -114,11 +137,13 @@ void Links::leave(const recording::Endpoint& group, std::string_view interface) 
   const auto found = std::find_if(udp_.begin(), udp_.end(),
                                   [&](const Udp& udp) { return udp.local == group && udp.interface == interface; });
   if (found == udp_.end() || --found->users > 0) return;
-  std::erase_if(entries_, [&](const std::unique_ptr<Entry>& entry) {
-    if (entry->link.get() != found->link) return false;
-    if (entry->watched >= 0) node_.remove_descriptor(entry->watched);
-    return true;
-  });
+  const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const std::unique_ptr<Entry>& e) { return e->link.get() == found->link; });
+  // A datagram that came by this very link may have led here, or the time that it told: the link is only closed.
+  found->link->close();
+  watch(**entry);
+  retired_.push_back(std::move(*entry));
+  entries_.erase(entry);
   udp_.erase(found);
 }
 

@@ -21,7 +21,7 @@ class Links {
   void add(std::unique_ptr<Link> link);
   /// All links of the vehicle file.
   void add_live(const VehicleConfig& vehicle);
-  /// To be called each second: what is down is tried again.
+  /// To be called each second: what is down is tried again. Called by itself, too, when the network has changed.
   void keep_open();
 
   /// To the CAN interface or from the local UDP endpoint that the frame names; UDP without a source leaves by a socket
@@ -42,13 +42,20 @@ class Links {
     UdpLink* link;
     unsigned users;
   };
+  struct Interface {
+    std::string name;
+    bool running;
+  };
   void add_udp(const recording::Endpoint& local, const std::string& interface, Sharing sharing);
   void watch(Entry& entry);
+  [[nodiscard]] bool look_at_interfaces();
   runtime::Node& node_;
   LinkEvents events_;
   std::vector<std::unique_ptr<Entry>> entries_;
   std::vector<CanLink*> can_;
   std::vector<Udp> udp_;
+  std::vector<Interface> interfaces_;            // of udp_
+  std::vector<std::unique_ptr<Entry>> retired_;  // closed; one of them may be what is being read
   Socket sender_v4_;
   Socket sender_v6_;
   bool sending_fails_ = false;

@@ -36,7 +36,8 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
                                    gateway.take(frame, stamp);
                                  },
                              .on_fault = [&](Fault fault, std::string_view what) { node.fault(fault, what); },
-                             .on_end = [&] { gateway.finish(); }});
+                             .on_end = [&] { gateway.finish(); },
+                             .on_network_up = [&] { gateway.network_is_up(runtime::monotonic_now_ns()); }});
   if (config.input == ingest::Input::kReplay) {
     links.add(std::make_unique<ingest::TunnelLink>(config.tunnel_path, links.events()));
   } else {

@@ -53,6 +53,11 @@ void Discovery::stop(std::int64_t now_ns) {
   tell_receiver();
 }
 
+void Discovery::network_is_up(std::int64_t now_ns) {
+  client_->link_up(now_ns);
+  tell_receiver();
+}
+
 void Discovery::take(const recording::Frame& frame, std::int64_t now_ns) {
   // What comes back of our own multicast says nothing new.
   if (frame.source == recording::Endpoint{local_, group_.port}) return;

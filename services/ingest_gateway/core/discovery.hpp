@@ -26,6 +26,8 @@ class Discovery : private someip::SdActions {
   /// Begins to look for the services. With a recording it only listens, as nothing is sent then.
   void start(std::int64_t now_ns);
   void stop(std::int64_t now_ns);
+  /// The network is back: does not wait for the next offers of what is missing.
+  void network_is_up(std::int64_t now_ns);
   /// Whether the frame is one of service discovery on this network.
   [[nodiscard]] bool is_for(const recording::Frame& frame) const {
     return frame.destination.port == group_.port || frame.source.port == group_.port;

@@ -153,6 +153,10 @@ void Gateway::start(std::int64_t now_ns) {
   for (const auto& discovery : discoveries_) discovery->start(now_ns);
 }
 
+void Gateway::network_is_up(std::int64_t now_ns) {
+  for (const auto& discovery : discoveries_) discovery->network_is_up(now_ns);
+}
+
 void Gateway::stop() {
   for (const auto& discovery : discoveries_) discovery->stop(last_tick_ns_);
 }

@@ -36,6 +36,8 @@ class Gateway : private EgoReceiver {
   void start(std::int64_t now_ns);
   /// Ends subscriptions.
   void stop();
+  /// An interface or address of live input is back: looks for services that are missing.
+  void network_is_up(std::int64_t now_ns);
   /// No frame will come any more: ends what is incomplete.
   void finish();
 

@@ -14,7 +14,8 @@ namespace boresight::ingest {
 struct LinkEvents {
   std::function<void(const recording::Frame&, const FrameStamp&)> on_frame;
   std::function<void(Fault, std::string_view)> on_fault;
-  std::function<void()> on_end;  ///< a recording has been played to its end, or its replay has died
+  std::function<void()> on_end;         ///< a recording has been played to its end, or its replay has died
+  std::function<void()> on_network_up;  ///< an interface or address is back; may be empty
 };
 
 /// A source of frames with a file descriptor to wait for.
@@ -31,7 +32,7 @@ class Link {
   [[nodiscard]] virtual int descriptor() const = 0;
   /// Takes what has arrived, some dozens of frames at most, so that the other links get their turn.
   virtual void read() = 0;
-  /// Called each second: closes the link if what it is built on was replaced.
+  /// Called each second and when the network has changed: closes the link if what it is built on was replaced.
   virtual void check() {}
   [[nodiscard]] virtual const std::string& name() const = 0;
 };

@@ -6,8 +6,10 @@
 
 #include <net/if.h>
 #include <netinet/in.h>
+#include <sys/stat.h>
 
 #include "services/common/runtime/socket_address.hpp"
+#include "services/ingest_gateway/links/port_users.hpp"
 
 namespace boresight::ingest {
 
@@ -20,6 +22,20 @@ constexpr int kFramesPerTurn = 32;
 std::string name_of(const recording::Endpoint& local) {
   const std::string address = recording::to_text(local.address);
   return "udp " + (local.address.is_v4() ? address : "[" + address + "]") + ":" + std::to_string(local.port);
+}
+
+/// The kernel's form of an address. Those of IPv6 that mean something on one link only need its number.
+socklen_t to_kernel(const recording::Endpoint& endpoint, unsigned interface_index, sockaddr_storage& out) {
+  const socklen_t length = runtime::to_sockaddr(endpoint, out);
+  const auto& bytes = endpoint.address.bytes;
+  const bool one_link = bytes[0] == 0xFF || (bytes[0] == 0xFE && (bytes[1] & 0xC0) == 0x80);
+  if (out.ss_family == AF_INET6 && one_link) {
+    sockaddr_in6 v6{};
+    std::memcpy(&v6, &out, sizeof(v6));
+    v6.sin6_scope_id = interface_index;
+    std::memcpy(&out, &v6, sizeof(v6));
+  }
+  return length;
 }
 
 }  // namespace
@@ -63,13 +79,19 @@ bool UdpLink::open() {
 bool UdpLink::is_taken_by_another() const {
   const Socket probe(socket(is_v6() ? AF_INET6 : AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_storage address{};
-  const socklen_t length = runtime::to_sockaddr(local_, address);
+  const socklen_t length = to_kernel(local_, interface_index_, address);
   return bind(probe.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0 && errno == EADDRINUSE;
+}
+
+bool UdpLink::is_shared_with_another() const {
+  struct stat own {};
+  return fstat(socket_.get(), &own) == 0 && has_other_user(local_, own.st_ino);
 }
 
 bool UdpLink::bind_local() {
   recording::Endpoint bound = local_;
-  if (sharing_ == Sharing::kPolite && is_taken_by_another()) {
+  has_own_port_ = sharing_ == Sharing::kPolite && is_taken_by_another();
+  if (has_own_port_) {
     bound.port = 0;
     if (!sharing_reported_) {
       sharing_reported_ = true;
@@ -80,15 +102,19 @@ bool UdpLink::bind_local() {
   }
   const int on = 1;
   setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  if (local_.address.is_multicast()) {
+    // Else the group would be heard on every interface on which any program of this host has joined it. And no
+    // SO_REUSEPORT: kernels of 2025 hand what one member alone may hear to any socket that shares the port that way.
+    const int off = 0;
+    if (is_v6()) {
+      setsockopt(socket_.get(), IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof(off));
+    } else {
+      setsockopt(socket_.get(), IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof(off));
+    }
+  }
   sockaddr_storage address{};
   // Bound to the group itself, a socket does not receive what is sent to other groups or hosts on the same port.
-  const socklen_t length = runtime::to_sockaddr(bound, address);
-  if (address.ss_family == AF_INET6) {
-    sockaddr_in6 v6{};
-    std::memcpy(&v6, &address, sizeof(v6));
-    v6.sin6_scope_id = interface_index_;  // without it link-local addresses have no meaning
-    std::memcpy(&address, &v6, sizeof(v6));
-  }
+  const socklen_t length = to_kernel(bound, interface_index_, address);
   return bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0;
 }
 
@@ -113,14 +139,18 @@ void UdpLink::choose_outgoing_interface(unsigned interface_index) {
 
 void UdpLink::check() {
   // An interface that was removed and made anew has another index, and the kernel has forgotten the membership.
-  if (!socket_.is_open() || interface_.empty()) return;
-  if (if_nametoindex(interface_.c_str()) != interface_index_) fail("interface " + interface_ + " was replaced");
+  if (socket_.is_open() && !interface_.empty() && if_nametoindex(interface_.c_str()) != interface_index_) {
+    fail("interface " + interface_ + " was removed or replaced");
+  }
+  // Another stack has come or gone: opened again, the link makes room for it or takes the port back.
+  if (!socket_.is_open() || sharing_ != Sharing::kPolite) return;
+  if (has_own_port_ ? !is_taken_by_another() : is_shared_with_another()) socket_.reset();
 }
 
 bool UdpLink::send(const recording::Endpoint& to, std::span<const std::uint8_t> payload) {
   if (!socket_.is_open()) return false;
   sockaddr_storage address{};
-  const socklen_t length = runtime::to_sockaddr(to, address);
+  const socklen_t length = to_kernel(to, interface_index_, address);
   const bool sent = sendto(socket_.get(), payload.data(), payload.size(), 0,
                            reinterpret_cast<const sockaddr*>(&address), length) >= 0;
   if (!sent && !sending_fails_) {

@@ -14,8 +14,8 @@ namespace boresight::ingest {
 /// How a socket shares its address with those of other processes.
 enum class Sharing : std::uint8_t {
   kOrdinary,
-  /// The unicast port of service discovery: if another stack of this host has it already, that one keeps it, as the
-  /// kernel hands unicast to one socket only, and this link sends from a port of its own.
+  /// The unicast port of service discovery: while another stack of this host has it, too, the port is left to that one,
+  /// whoever came first, as the kernel hands unicast to one socket only, and this link uses a port of its own.
   kPolite,
 };
 
@@ -30,6 +30,7 @@ class UdpLink : public Link {
   [[nodiscard]] int descriptor() const override { return socket_.get(); }
   void read() override;
   void check() override;
+  void close() { socket_.reset(); }
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const recording::Endpoint& local() const { return local_; }
 
@@ -43,6 +44,7 @@ class UdpLink : public Link {
   [[nodiscard]] bool join_group(unsigned interface_index);
   void choose_outgoing_interface(unsigned interface_index);
   [[nodiscard]] bool is_taken_by_another() const;
+  [[nodiscard]] bool is_shared_with_another() const;
   recording::Endpoint local_;
   std::string interface_;
   Sharing sharing_;
@@ -52,6 +54,7 @@ class UdpLink : public Link {
   unsigned interface_index_ = 0;
   std::uint32_t kernel_drops_ = 0;
   bool buffer_reported_ = false;
+  bool has_own_port_ = false;  // because another stack has the one wanted
   bool sharing_reported_ = false;
   bool sending_fails_ = false;
   std::vector<std::uint8_t> buffer_;

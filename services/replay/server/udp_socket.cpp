@@ -90,9 +90,8 @@ UdpSocket UdpSocket::bound_to(const recording::Endpoint& local, const std::strin
 UdpSocket UdpSocket::member_of(const recording::Endpoint& group, const std::string& interface) {
   UdpSocket socket(group, interface);
   const int on = 1, off = 0;
+  // No SO_REUSEPORT: of sockets that share so, Linux 6.18 picks one for what came by another one's interface.
   socket.set(SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on), "share the address");
-  // Stacks that share by this option only could not be shared with otherwise; each member still gets every datagram.
-  socket.set(SOL_SOCKET, SO_REUSEPORT, &on, sizeof(on), "share the port");
   // Bound to the group, the socket receives nothing that was sent to another address.
   socket.bind_to(group);
   if (socket.v4_) {

@@ -37,7 +37,6 @@ Offers::Offers(const TwoHosts& hosts, const std::string& group) : socket_(-1) {
     const int on = 1;
     const int off = 0;
     setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-    setsockopt(socket_, SOL_SOCKET, SO_REUSEPORT, &on, sizeof(on));
     setsockopt(socket_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on));
     // Only by the interface joined, not by those that others of this host have joined.
     setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof(off));

@@ -34,7 +34,8 @@ void enter(int network) {
 bool TwoHosts::are_possible() {
   harness::Child attempt([] {
     if (unshare(CLONE_NEWNET) != 0) return 1;
-    return std::system("ip link add name probe0 type veth peer name probe1 2>/dev/null") == 0 ? 0 : 1;
+    const bool cables = std::system("ip link add name probe0 type veth peer name probe1 2>/dev/null") == 0;
+    return cables && std::system("ip link add name probe2 type bridge 2>/dev/null") == 0 ? 0 : 1;
   });
   return attempt.wait_for(5.0) == 0;
 }
@@ -46,6 +47,7 @@ TwoHosts::TwoHosts() {
   ecu_ = this_network();
   for (const Host host : {Host::kEcu, Host::kSensors}) run(host, "ip link set lo up");
   lay_uplink();
+  install_switch();
   lay_cable();
 }
 
@@ -87,12 +89,16 @@ std::unique_ptr<harness::Child> TwoHosts::start(Host host, const std::string& pr
   });
 }
 
+void TwoHosts::install_switch() const {
+  run(Host::kSensors,
+      "ip link add name sensor0 type bridge mcast_snooping 0 && ip address add 10.77.0.1/24 dev sensor0 && "
+      "ip -6 address add fd77::1/64 dev sensor0 nodad && ip link set sensor0 up");
+}
+
 void TwoHosts::lay_cable() const {
   const std::string sensors = "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(sensors_);
-  run(Host::kEcu, "ip link add name radar0 type veth peer name sensor0 netns " + sensors);
-  run(Host::kSensors,
-      "ip address add 10.77.0.1/24 dev sensor0 && ip -6 address add fd77::1/64 dev sensor0 nodad && "
-      "ip link set sensor0 up");
+  run(Host::kEcu, "ip link add name radar0 type veth peer name port0 netns " + sensors);
+  run(Host::kSensors, "ip link set port0 master sensor0 && ip link set port0 up");
   run(Host::kEcu,
       "ip address add 10.77.0.2/24 dev radar0 && ip -6 address add fd77::2/64 dev radar0 nodad && "
       "ip link set radar0 up");

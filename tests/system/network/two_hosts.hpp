@@ -1,12 +1,13 @@
 // Two hosts on one machine: the ECU with the gateway and the sensors' side, each a network namespace of its own, joined
-// by a virtual Ethernet cable. A second cable, over which the ECU's default route and all multicast routes lead, is
-// there to be chosen by mistake.
+// by a virtual Ethernet cable between the ECU and a switch on the sensors' side. A second cable, over which the ECU's
+// default route and all multicast routes lead, is there to be chosen by mistake.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/system/harness/child.hpp"
 
@@ -17,7 +18,8 @@ enum class Host { kEcu, kSensors };
 inline constexpr const char* kEcuInterface = "radar0";
 inline constexpr const char* kEcuAddress = "10.77.0.2";
 inline constexpr const char* kEcuAddressV6 = "fd77::2";
-inline constexpr const char* kServerInterface = "sensor0";
+inline constexpr const char* kServerInterface = "sensor0";  ///< the switch; stays when the cable is cut
+inline constexpr const char* kServerPort = "port0";         ///< the switch's end of the cable
 inline constexpr const char* kServerAddress = "10.77.0.1";
 inline constexpr const char* kServerAddressV6 = "fd77::1";
 /// The other cable.
@@ -45,11 +47,12 @@ class TwoHosts {
   /// Calls `make` as on that host: sockets made there stay there.
   void as(Host host, const std::function<void()>& make) const;
 
-  /// Lays the cable between both interfaces, with the addresses of both ends.
+  /// Makes the ECU's interface with its addresses, and the switch's end of the cable; both are deleted by cut_cable().
   void lay_cable() const;
   void cut_cable() const;
 
  private:
+  void install_switch() const;
   void lay_uplink() const;
   int ecu_;
   int sensors_;

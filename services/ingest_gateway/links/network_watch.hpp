@@ -1,0 +1,35 @@
+// Tells at once when interfaces or addresses of this host come, go or change.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "services/ingest_gateway/links/link.hpp"
+#include "services/ingest_gateway/links/socket.hpp"
+
+namespace boresight::ingest {
+
+/// Whether the interface is there, switched on and has a carrier.
+[[nodiscard]] bool is_running(const std::string& interface);
+
+/// The kernel's news of its network interfaces (rtnetlink). Their content does not matter: who is told looks for
+/// itself.
+class NetworkWatch : public Link {
+ public:
+  NetworkWatch(std::function<void()> on_change, LinkEvents events)
+      : on_change_(std::move(on_change)), events_(std::move(events)) {}
+
+  bool open() override;
+  [[nodiscard]] int descriptor() const override { return socket_.get(); }
+  void read() override;
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+ private:
+  std::string name_ = "network watch";
+  std::function<void()> on_change_;
+  LinkEvents events_;
+  Socket socket_;
+  bool failure_reported_ = false;
+};
+
+}  // namespace boresight::ingest
