@@ -52,6 +52,7 @@ void Links::add_udp(const recording::Endpoint& local, const std::string& interfa
   for (Udp& udp : udp_) {
     if (udp.local == local && udp.interface == interface) {
       ++udp.users;
+      udp.link->add_user();
       return;
     }
   }

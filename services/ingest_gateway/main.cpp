@@ -9,6 +9,7 @@
 #include "services/ingest_gateway/bus_sink.hpp"
 #include "services/ingest_gateway/config.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
+#include "services/ingest_gateway/core/silence.hpp"
 #include "services/ingest_gateway/links/tunnel_link.hpp"
 #include "services/ingest_gateway/live_links.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
@@ -30,8 +31,10 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
   log_warnings(mappings);
   ingest::BusSink sink(node);
   ingest::Gateway gateway(vehicle, sink, mappings);
+  ingest::Silence silence;
   ingest::Links links(node, {.on_frame =
                                  [&](const recording::Frame& frame, const ingest::FrameStamp& stamp) {
+                                   silence.frame_came();
                                    sink.frame_begins(runtime::monotonic_now_ns());
                                    gateway.take(frame, stamp);
                                  },
@@ -44,7 +47,10 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
     links.add_live(vehicle);
     sink.use(links);
     gateway.start(runtime::monotonic_now_ns());
-    node.every(5'000'000, [&] { gateway.tick(runtime::monotonic_now_ns()); });
+    node.every(5'000'000, [&] {
+      const std::int64_t now_ns = runtime::monotonic_now_ns();
+      if (silence.reigns(now_ns)) gateway.tick(now_ns);
+    });
   }
   node.every(1'000'000'000, [&] { links.keep_open(); });
   const int exit_code = node.spin();

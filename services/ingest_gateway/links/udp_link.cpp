@@ -1,5 +1,6 @@
 #include "services/ingest_gateway/links/udp_link.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -15,8 +16,10 @@ namespace boresight::ingest {
 
 namespace {
 
-// Twenty queued detection lists of the largest radar; the kernel's default of 208 KiB kept three of them.
+// Twenty queued detection lists of the largest radar, for each radar; the kernel's default of 208 KiB kept three of
+// them.
 constexpr int kReceiveBuffer = 2 * 1024 * 1024;
+constexpr unsigned kMaxReceiveBuffers = 16;
 constexpr int kFramesPerTurn = 32;
 
 std::string name_of(const recording::Endpoint& local) {
@@ -61,12 +64,7 @@ bool UdpLink::open() {
   interface_index_ = interface_.empty() ? 0 : if_nametoindex(interface_.c_str());
   if (!interface_.empty() && interface_index_ == 0) return fail("no interface named " + interface_);
   request_stamps_and_drops(socket_.get());
-  const int given = request_receive_buffer(socket_.get(), kReceiveBuffer);
-  if (given < kReceiveBuffer && !buffer_reported_) {
-    buffer_reported_ = true;
-    events_.on_fault(Fault::kLink, name_ + ": receive buffer is " + std::to_string(given) +
-                                       " of 2097152 bytes wanted; raise net.core.rmem_max");
-  }
+  reserve_receive_buffer();
   if (!bind_local()) return fail("cannot bind: " + last_error());
   choose_outgoing_interface(interface_index_);
   if (local_.address.is_multicast() && !join_group(interface_index_)) {
@@ -74,6 +72,23 @@ bool UdpLink::open() {
   }
   kernel_drops_ = 0;
   return true;
+}
+
+void UdpLink::add_user() {
+  ++users_;
+  if (socket_.is_open()) reserve_receive_buffer();
+}
+
+void UdpLink::reserve_receive_buffer() {
+  const int wanted = kReceiveBuffer * static_cast<int>(std::min(users_, kMaxReceiveBuffers));
+  const int given = request_receive_buffer(socket_.get(), wanted);
+  // What one burst needs is the least; more makes room for a burst of each of the sources that share the socket.
+  if (given < kReceiveBuffer && !buffer_reported_) {
+    buffer_reported_ = true;
+    events_.on_fault(Fault::kLink, name_ + ": receive buffer is " + std::to_string(given) + " of " +
+                                       std::to_string(kReceiveBuffer) +
+                                       " bytes wanted at least; raise net.core.rmem_max");
+  }
 }
 
 bool UdpLink::is_taken_by_another() const {

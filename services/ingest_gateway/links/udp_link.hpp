@@ -34,6 +34,9 @@ class UdpLink : public Link {
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const recording::Endpoint& local() const { return local_; }
 
+  /// One more source uses this link: its bursts get room of their own in the receive buffer.
+  void add_user();
+
   /// Sends one datagram; multicast leaves by the link's interface. What cannot be sent is a fault, once until it can.
   bool send(const recording::Endpoint& to, std::span<const std::uint8_t> payload);
 
@@ -43,6 +46,7 @@ class UdpLink : public Link {
   [[nodiscard]] bool bind_local();
   [[nodiscard]] bool join_group(unsigned interface_index);
   void choose_outgoing_interface(unsigned interface_index);
+  void reserve_receive_buffer();
   [[nodiscard]] bool is_taken_by_another() const;
   [[nodiscard]] bool is_shared_with_another() const;
   recording::Endpoint local_;
@@ -53,6 +57,7 @@ class UdpLink : public Link {
   Socket socket_;
   unsigned interface_index_ = 0;
   std::uint32_t kernel_drops_ = 0;
+  unsigned users_ = 1;
   bool buffer_reported_ = false;
   bool has_own_port_ = false;  // because another stack has the one wanted
   bool sharing_reported_ = false;

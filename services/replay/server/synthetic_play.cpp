@@ -41,7 +41,11 @@ void play_synthetic(const SyntheticOptions& options, const std::vector<MountingP
   while (!runtime::stop_signalled()) {
     Beat& beat = *std::min_element(beats.begin(), beats.end(),
                                    [](const Beat& a, const Beat& b) { return a.next_ns < b.next_ns; });
-    if (static_cast<double>(beat.next_ns - start_ns) * 1e-9 > options.duration_s) return;
+    if (static_cast<double>(beat.next_ns - start_ns) * 1e-9 > options.duration_s) {
+      // The offer lasts as long as was asked, so that what was sent last is not withdrawn on its way.
+      server.serve_until(start_ns + static_cast<std::int64_t>(options.duration_s * 1e9));
+      return;
+    }
     server.serve_until(beat.next_ns);
     if (runtime::stop_signalled()) return;
     if (beat.radar == 0) {
