@@ -1,0 +1,42 @@
+// Eight ARS548 as a process on the radars' side of the network.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "tests/system/harness/child.hpp"
+
+namespace boresight::bench {
+
+class Ars548Radars {
+ public:
+  /// Encodes what they will send, opens their sockets and begins to send ego motion at 50 Hz.
+  Ars548Radars();
+
+  /// Each of them sends for that long, their cycles evenly apart. Returns at once.
+  void send_for(double seconds);
+  /// `lists` lists of all radars in turn, as fast as they go; ego motion pauses. Returns at once.
+  void send_burst(std::uint32_t lists);
+  [[nodiscard]] bool is_done() const { return control_->lists_to_send == 0; }
+
+  [[nodiscard]] std::uint64_t sent() const { return control_->sent; }
+  /// Lists that the kernel would not send.
+  [[nodiscard]] std::uint64_t refused() const { return control_->refused; }
+
+ private:
+  struct Control {
+    volatile std::uint32_t lists_to_send;  // written last by the bench, counted down to 0 by the radars
+    volatile bool at_once;
+    volatile std::uint64_t sent, refused;
+  };
+  int run();
+
+  harness::Shared<Control> control_;
+  std::unique_ptr<harness::Child> process_;
+};
+
+/// A process that does nothing but receive what the ARS548 send, with the gateway's receive buffer: what the kernel
+/// alone costs a receiver.
+[[nodiscard]] std::unique_ptr<harness::Child> start_bare_receiver();
+
+}  // namespace boresight::bench
