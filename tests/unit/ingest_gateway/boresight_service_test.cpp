@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/common/e2e/protector.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "services/replay/core/datagrams.hpp"
@@ -366,6 +367,52 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   EXPECT_EQ(source_statistics[1].e2e_repeated, 1u);
   EXPECT_EQ(source_statistics[2].e2e_wrong, 0u);
 }
+
+/// A project may protect the service's messages by a shorter profile and put the header further back.
+class OtherProfiles : public testing::TestWithParam<e2e::Config> {};
+
+TEST_P(OtherProfiles, AreCheckedAndTheBodyFoundBehindThem) {
+  VehicleConfig v = vehicle();
+  v.radars.resize(1);
+  v.radars[0].e2e.protection = GetParam();
+  v.radars[0].source.sender = "192.168.10.13";
+  v.radars[0].source.sender_port = 30601;
+  MemorySink sink;
+  Gateway gateway(v, sink);
+  const Bytes example = replay::document_example("detection list");
+  e2e::Protector protector(GetParam());
+  const auto send = [&](bool damaged) {
+    Bytes message(example.begin(), example.begin() + 16);
+    message.resize(8 + GetParam().offset_bytes + e2e::header_bytes(GetParam().profile));
+    message.insert(message.end(), example.begin() + 36, example.end());
+    message[7] = static_cast<std::uint8_t>(message.size() - 8);
+    ASSERT_TRUE(protector.protect(std::span(message).subspan(8)));
+    if (damaged) message.back() ^= 1;
+    recording::Frame frame;
+    frame.kind = recording::FrameKind::kUdp;
+    frame.source = {recording::IpAddress::v4(0xC0A80A0D), 30601};
+    frame.destination = {recording::IpAddress::v4(0xC0A80A02), 41000};
+    frame.payload = message;
+    gateway.take(frame, {5'000'000'000, 1'767'225'595'260'000'000, TimeSource::kLinkArrival});
+  };
+  send(false);
+  ASSERT_EQ(sink.scans, 1u);
+  EXPECT_EQ(sink.scan->number_of_valid_detections, 2u);
+  EXPECT_EQ(sink.scan->range_m[1], 120.0F);
+  send(true);
+  EXPECT_EQ(sink.scans, 1u);
+  EXPECT_EQ(sink.source_statistics[1].e2e_wrong, 1u);
+  send(false);
+  EXPECT_EQ(sink.scans, 2u);
+  EXPECT_EQ(sink.source_statistics[1].e2e_lost, 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, OtherProfiles,
+    testing::Values(e2e::Config{.profile = e2e::Profile::kP04, .data_id = 7, .offset_bytes = 8, .max_delta_counter = 9},
+                    e2e::Config{.profile = e2e::Profile::kP06, .data_id = 7, .offset_bytes = 8, .max_delta_counter = 9},
+                    e2e::Config{
+                        .profile = e2e::Profile::kP07, .data_id = 7, .offset_bytes = 20, .max_delta_counter = 9}));
 
 TEST_F(SomeIpGateway, ALostSegmentCostsItsMessageOnly) {
   pass(1000 * kMillisecond);
