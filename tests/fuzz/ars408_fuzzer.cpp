@@ -6,36 +6,34 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
 #include <utility>
 
 #include "services/ingest_gateway/codecs/ars408.hpp"
+#include "tests/fuzz/support.hpp"
 
 namespace {
 
 using namespace boresight;
+using fuzz::require;
 namespace layout = wire::ars408;
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 /// Checks what comes out.
 class Output : public ingest::DecoderOutput {
  public:
-  RadarScan* begin_scan() override { return scan_.get(); }
+  RadarScan* begin_scan() override { return fuzz::stale(scan_); }
   void publish_scan(const ingest::FrameStamp&, const std::optional<ingest::SensorStamp>& sensor,
                     unsigned bits) override {
     require(!sensor.has_value() && bits == 16);
-    require(scan_->number_of_valid_detections <= 256);
-    for (std::size_t i = 0; i < scan_->number_of_valid_detections; ++i) {
-      require(scan_->range_m[i] >= 0.0F && scan_->range_m[i] < 1200.0F);
-      require(std::abs(scan_->azimuth_rad[i]) < 3.15F);
-      require(std::abs(scan_->range_rate_mps[i]) < 145.0F);
-      require(scan_->range_std_m[i] >= 0.0F && scan_->range_std_m[i] < 10.1F);
-      require(scan_->azimuth_std_rad[i] >= 0.0F && scan_->azimuth_std_rad[i] < 1.82F);
-      require(scan_->range_rate_std_mps[i] >= 0.0F && std::isfinite(scan_->range_rate_std_mps[i]));
-      require(scan_->existence_probability[i] >= 0.0F && scan_->existence_probability[i] <= 1.0F);
+    fuzz::require_possible(scan_);
+    require(scan_.number_of_valid_detections <= 256);
+    for (std::size_t i = 0; i < scan_.number_of_valid_detections; ++i) {
+      require(scan_.range_m[i] >= 0.0F && scan_.range_m[i] < 1200.0F);
+      require(std::abs(scan_.azimuth_rad[i]) < 3.15F);
+      require(std::abs(scan_.range_rate_mps[i]) < 145.0F);
+      require(scan_.range_std_m[i] >= 0.0F && scan_.range_std_m[i] < 10.1F);
+      require(scan_.azimuth_std_rad[i] >= 0.0F && scan_.azimuth_std_rad[i] < 1.82F);
+      require(scan_.range_rate_std_mps[i] >= 0.0F && std::isfinite(scan_.range_rate_std_mps[i]));
+      require(scan_.existence_probability[i] >= 0.0F && scan_.existence_probability[i] <= 1.0F);
     }
   }
   void discard_scan() override { std::abort(); }
@@ -44,7 +42,7 @@ class Output : public ingest::DecoderOutput {
   void fault(Fault, std::string_view what) override { require(!what.empty()); }
 
  private:
-  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  static inline RadarScan scan_;
 };
 
 }  // namespace
@@ -61,6 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
        {layout::kStateId, layout::kStateBytes}}};
   ingest::Ars408 first(0), second(5);
   Output output;
+  const fuzz::NoAllocation guard;
   std::int64_t now_ns = 1'000'000'000;
   std::span<const std::uint8_t> rest(input, size);
   const auto take = [&rest](std::size_t bytes) {

@@ -12,15 +12,13 @@
 #include "services/ingest_gateway/codecs/ars548.hpp"
 #include "services/ingest_gateway/codecs/ars548_objects.hpp"
 #include "services/ingest_gateway/codecs/someip/big_endian.hpp"
+#include "tests/fuzz/support.hpp"
 
 namespace {
 
 using namespace boresight;
+using fuzz::require;
 namespace layout = wire::ars548;
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 void require_possible(const RadarScan& scan) {
   require(scan.number_of_valid_detections <= layout::kMaxDetectionRecords);
@@ -66,11 +64,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   }
   static const auto scan = std::make_unique<RadarScan>();
   static const auto objects = std::make_unique<ingest::ars548::ObjectList>();
+  const fuzz::NoAllocation guard;
   std::string_view problem;
   const ingest::DecodeResult result = ingest::ars548::check(datagram, problem);
   require(!ingest::fault_of(result) || !problem.empty());
   if (result == ingest::DecodeResult::kComplete) {
-    static_cast<void>(ingest::ars548::decode(datagram, *scan));
+    static_cast<void>(ingest::ars548::decode(datagram, *fuzz::stale(*scan)));
+    scan->integrity = 0;  // written by others
+    fuzz::require_possible(*scan);
     require_possible(*scan);
   }
   if (result == ingest::DecodeResult::kAccepted) require(ingest::ars548::conditions(datagram) < 1u << 7);

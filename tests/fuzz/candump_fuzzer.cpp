@@ -6,16 +6,15 @@
 #include "services/common/recording/candump.hpp"
 #include "services/common/recording/candump_reader.hpp"
 #include "services/common/recording/writer.hpp"
+#include "tests/fuzz/support.hpp"
 
 using namespace boresight::recording;
+using boresight::fuzz::require;
 
 namespace {
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
 void check_line(std::string_view text) {
+  const boresight::fuzz::NoAllocation guard;
   CandumpLine line;
   const CandumpResult result = parse_candump_line(text, line);
   require(!describe(result).empty());
@@ -24,6 +23,7 @@ void check_line(std::string_view text) {
   require(frame.can_id <= (frame.can_extended ? 0x1FFFFFFFu : 0x7FFu));
   require(frame.payload.size() <= (frame.kind == FrameKind::kCanFd ? 64u : 8u));
   require(frame.stamp_ns >= 0);
+  require(!frame.interface_name().empty());
   std::array<char, kMaxCandumpText> written{};
   const std::size_t size = format_candump(frame, false, written);
   require(size > 0);
@@ -32,6 +32,7 @@ void check_line(std::string_view text) {
   require(again.frame.can_id == frame.can_id && again.frame.can_extended == frame.can_extended);
   require(again.frame.kind == frame.kind && again.frame.can_remote == frame.can_remote);
   require(again.frame.payload.size() == frame.payload.size());
+  require(again.frame.interface_name() == frame.interface_name());
   require(frame.payload.empty() ||
           std::memcmp(again.frame.payload.data(), frame.payload.data(), frame.payload.size()) == 0);
 }

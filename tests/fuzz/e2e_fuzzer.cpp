@@ -8,10 +8,13 @@
 
 #include "services/common/e2e/checker.hpp"
 #include "services/common/e2e/protector.hpp"
+#include "tests/fuzz/support.hpp"
 
 namespace {
 
 using namespace boresight::e2e;
+using boresight::fuzz::NoAllocation;
+using boresight::fuzz::require;
 
 /// Hands out the leading bytes of the input; zeros when it is used up.
 class Choices {
@@ -31,10 +34,6 @@ class Choices {
   std::size_t at_ = 0;
 };
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
@@ -52,8 +51,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   // As it came, twice: a message is never new the second time.
   const std::vector<std::uint8_t> data = choices.rest();
   Checker receiver(config);
-  receiver.check(data);
-  const Status again = receiver.check(data);
+  const Status again = [&] {
+    const NoAllocation guard;
+    receiver.check(data);
+    return receiver.check(data);
+  }();
   if (valid && config.profile != Profile::kNone) require(!is_acceptable(again));
 
   // Whole and in pieces that may end within the header.
@@ -66,6 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   std::vector<std::uint8_t> message = data;
   Protector sender(config);
   Checker fresh(config);
+  const NoAllocation guard;
   for (int i = 0; i < 18; ++i) {  // beyond the wrap of the short counters
     if (!sender.protect(message)) {
       require(message == data);

@@ -8,7 +8,7 @@
 #include "services/ingest_gateway/codecs/table_ego.hpp"
 #include "services/ingest_gateway/codecs/table_radar.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
-#include "tests/fuzz/decoder_sink.hpp"
+#include "tests/fuzz/checked_output.hpp"
 #include "tests/fuzz/mapping_texts.hpp"
 
 namespace {
@@ -18,9 +18,10 @@ using namespace boresight::ingest;
 
 template <typename Mapping>
 void feed(const Mapping& mapping, Decoder& decoder) {
-  fuzz::DecoderSink sink;
+  fuzz::CheckedOutput sink(true);
   std::vector<std::uint8_t> payload(64);
   recording::Frame frame;
+  const fuzz::NoAllocation guard;
   for (std::int64_t i = 0; i < 64; ++i) {
     const auto& message = mapping.messages[static_cast<std::size_t>(i) % mapping.messages.size()].frame;
     for (std::size_t k = 0; k < payload.size(); ++k) {
@@ -30,6 +31,7 @@ void feed(const Mapping& mapping, Decoder& decoder) {
     frame.can_extended = message.extended;
     frame.payload = std::span(payload).first(message.length_bytes);
     decoder.take(frame, {i * 1'000'000, 0, TimeSource::kLinkArrival}, sink);
+    sink.require_at_rest();
   }
   decoder.tick(10'000'000'000, sink);
 }

@@ -1,10 +1,12 @@
-// Whole recordings, as the reader finds out their format: captures, candump logs, and what is neither.
+// Whole recordings, as the reader finds out their format: captures, candump logs, and what is neither. Their stamps are
+// put on this ECU's clock.
 #include <cstdlib>
 
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include "services/common/recording/reader.hpp"
+#include "services/ingest_gateway/codecs/frame_stamp.hpp"
 
 using namespace boresight::recording;
 
@@ -16,8 +18,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto reader = open_recording(name, [&](const std::string&) { ++problems; });
     Frame frame;
+    boresight::ingest::RecordingClock clock;
+    bool jumped = false;
     std::uint64_t frames = 0;
     while (reader->next(frame)) {
+      static_cast<void>(clock.map(frame.stamp_ns, 1'000'000, jumped));
       unsigned sum = 0;
       for (const std::uint8_t byte : frame.payload) sum += byte;
       if (++frames > size || sum > 255u * 65536u) std::abort();  // every frame takes at least a byte of the file

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
-#include <vector>
 
 #include "services/ingest_gateway/core/sd_client.hpp"
+#include "tests/fuzz/support.hpp"
 
 namespace {
 
@@ -62,16 +62,16 @@ class CheckedActions : public SdActions {
 
 /// Bytes after the action: how long the SD payload is, then the payload; session and header are made sound, because
 /// otherwise next to nothing would get through.
-std::vector<std::uint8_t> sd_datagram(const std::uint8_t* payload, std::size_t size, std::uint8_t session) {
+std::span<const std::uint8_t> sd_datagram(std::span<const std::uint8_t> payload, std::uint8_t session) {
+  static std::array<std::uint8_t, kHeaderBytes + 255> bytes;
   Message header;
   header.service = kSdService;
   header.method = kSdMethod;
   header.session = session;
   header.protocol_version = header.interface_version = 1;
-  std::vector<std::uint8_t> bytes(kHeaderBytes + size);
-  write_header(header, size, std::span(bytes).first<kHeaderBytes>());
-  std::copy_n(payload, size, bytes.begin() + kHeaderBytes);
-  return bytes;
+  write_header(header, payload.size(), std::span(bytes).first<kHeaderBytes>());
+  std::copy(payload.begin(), payload.end(), bytes.begin() + kHeaderBytes);
+  return std::span(bytes).first(kHeaderBytes + payload.size());
 }
 
 }  // namespace
@@ -86,6 +86,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                   actions);
   std::int64_t now_ns = 1'000'000'000;
   const std::int64_t begin_ns = now_ns;
+  const fuzz::NoAllocation guard;
   std::int64_t due_ns = client.start(now_ns);
   while (size >= 5) {
     const std::uint8_t action = data[0];
@@ -97,8 +98,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     data += 5 + length;
     size -= 5 + length;
     if (action < 200) {
-      const std::vector<std::uint8_t> bytes = sd_datagram(payload, length, session);
-      due_ns = client.take(bytes, sender, (action & 1) != 0, now_ns);
+      due_ns = client.take(sd_datagram({payload, length}, session), sender, (action & 1) != 0, now_ns);
     } else if (action < 210) {
       due_ns = client.take({payload, length}, sender, true, now_ns);
     } else if (action < 230) {

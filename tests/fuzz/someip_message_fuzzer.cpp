@@ -4,9 +4,11 @@
 #include <cstdlib>
 
 #include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "tests/fuzz/support.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace boresight::ingest::someip;
+  const boresight::fuzz::NoAllocation guard;
   MessageReader reader({data, size});
   Message message;
   std::size_t read = 0;

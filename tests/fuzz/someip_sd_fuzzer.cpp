@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "services/ingest_gateway/codecs/someip/sd.hpp"
+#include "tests/fuzz/support.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace boresight;
@@ -14,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   message.interface_version = 1;
   message.payload = {data, size};
   static SdMessage sd;
+  const fuzz::NoAllocation guard;
   if (sd.read(message) != SdFault::kNone) return 0;
   recording::Endpoint endpoint;
   for (const SdMessage::Family family : {SdMessage::Family::kIpv4, SdMessage::Family::kIpv6}) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "services/ingest_gateway/codecs/someip/tp.hpp"
+#include "tests/fuzz/support.hpp"
 
 namespace {
 
@@ -36,6 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::int64_t now_ns = 0;
   std::uint16_t session = 0;
   Message complete;
+  const fuzz::NoAllocation guard;
   while (size > 7) {
     // A segment: kind, session, time, flags, then the TP header as the wire has it and up to 255 bytes.
     Message segment;

@@ -6,33 +6,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
-#include <vector>
 
 #include "services/common/e2e/crc.hpp"
 #include "services/ingest_gateway/codecs/srr520.hpp"
+#include "tests/fuzz/support.hpp"
 
 namespace {
 
 using namespace boresight;
+using fuzz::require;
 namespace layout = wire::srr520;
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 /// Checks what comes out.
 class Output : public ingest::DecoderOutput {
  public:
-  RadarScan* begin_scan() override { return scan_.get(); }
+  RadarScan* begin_scan() override { return fuzz::stale(scan_); }
   void publish_scan(const ingest::FrameStamp&, const std::optional<ingest::SensorStamp>& sensor,
                     unsigned bits) override {
     require(sensor.has_value() && bits == 32);
-    require(scan_->number_of_valid_detections <= 500);
-    for (std::size_t i = 0; i < scan_->number_of_valid_detections; ++i) {
-      require(scan_->range_m[i] >= 0.0F && scan_->range_m[i] < 100.1F);
-      require(std::abs(scan_->azimuth_rad[i]) < 1.6F);
-      require(std::abs(scan_->range_rate_mps[i]) < 15.1F);
+    fuzz::require_possible(scan_);
+    require(scan_.number_of_valid_detections <= 500);
+    for (std::size_t i = 0; i < scan_.number_of_valid_detections; ++i) {
+      require(scan_.range_m[i] >= 0.0F && scan_.range_m[i] < 100.1F);
+      require(std::abs(scan_.azimuth_rad[i]) < 1.6F);
+      require(std::abs(scan_.range_rate_mps[i]) < 15.1F);
     }
   }
   void discard_scan() override { std::abort(); }
@@ -44,7 +41,7 @@ class Output : public ingest::DecoderOutput {
   void fault(Fault, std::string_view what) override { require(!what.empty()); }
 
  private:
-  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  static inline RadarScan scan_;
 };
 
 class Bus {
@@ -75,6 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
                                                  layout::kNearRecordId,   layout::kHrrHeaderId,   layout::kHrrRecordId,
                                                  layout::kObjectHeaderId, layout::kObjectRecordId};
   Bus bus;
+  const fuzz::NoAllocation guard;
   std::span<const std::uint8_t> rest(input, size);
   const auto take = [&rest](std::size_t bytes) {
     const auto taken = rest.first(std::min(bytes, rest.size()));
@@ -92,13 +90,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
       // A whole list, sound but for its fields: header and detections from the input, closed with the right CRC.
       const std::size_t kind = choice % layout::kLists.size();
       const layout::ListLayout& list = layout::kLists[kind];
-      std::vector<std::uint8_t> all(layout::kHeaderBytes + list.number_of_frames * layout::kRecordFrameBytes);
+      std::array<std::uint8_t, layout::kHeaderBytes + layout::kMaxRecordFrames * layout::kRecordFrameBytes> bytes{};
+      const auto all = std::span(bytes).first(layout::kHeaderBytes + list.number_of_frames * layout::kRecordFrameBytes);
       const auto content = take(400);
       std::copy_n(content.begin(), std::min(content.size(), all.size()), all.begin());
-      bus.send(list.header_id, std::span(all).first(layout::kHeaderBytes));
+      bus.send(list.header_id, all.first(layout::kHeaderBytes));
       for (std::size_t i = 0; i < list.number_of_frames; ++i) {
         const auto record =
-            std::span(all).subspan(layout::kHeaderBytes + i * layout::kRecordFrameBytes, layout::kRecordFrameBytes);
+            all.subspan(layout::kHeaderBytes + i * layout::kRecordFrameBytes, layout::kRecordFrameBytes);
         record[layout::kFrameNumber] = static_cast<std::uint8_t>(i);
         record[layout::kFrameSequence] = all[layout::header::kSequenceCounter];
         bus.send(list.record_id, record);

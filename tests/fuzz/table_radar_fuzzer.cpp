@@ -9,7 +9,7 @@
 #include "services/ingest_gateway/codecs/table_ego.hpp"
 #include "services/ingest_gateway/codecs/table_radar.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
-#include "tests/fuzz/decoder_sink.hpp"
+#include "tests/fuzz/checked_output.hpp"
 #include "tests/fuzz/mapping_texts.hpp"
 
 namespace {
@@ -33,9 +33,10 @@ struct Mappings {
 
 template <typename Mapping>
 void play(const Mapping& mapping, Decoder& decoder, std::span<const std::uint8_t> data) {
-  fuzz::DecoderSink sink;
+  fuzz::CheckedOutput sink(true);
   recording::Frame frame;
   std::int64_t now_ns = 0;
+  const fuzz::NoAllocation guard;
   while (data.size() >= 3) {
     const auto& message = mapping.messages[data[0] % mapping.messages.size()].frame;
     // Mostly the right length; the highest bits say otherwise.
@@ -47,6 +48,7 @@ void play(const Mapping& mapping, Decoder& decoder, std::span<const std::uint8_t
     frame.payload = data.first(std::min(wanted, data.size()));
     data = data.subspan(frame.payload.size());
     decoder.take(frame, {now_ns, 0, TimeSource::kLinkArrival}, sink);
+    sink.require_at_rest();
   }
   decoder.tick(now_ns + 1'000'000'000, sink);
 }

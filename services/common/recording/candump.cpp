@@ -301,7 +301,7 @@ std::string_view describe(CandumpResult result) {
     case CandumpResult::kBadStamp:
       return "time stamp is neither (seconds.fraction) nor (YYYY-MM-DD hh:mm:ss.fraction)";
     case CandumpResult::kBadName:
-      return "interface name missing or longer than 15 characters";
+      return "interface name missing, longer than 15 characters or with control characters";
     case CandumpResult::kBadId:
       return "CAN id is not 3 (up to 7FF) or 8 (up to 1FFFFFFF) hexadecimal digits";
     case CandumpResult::kBadData:
@@ -340,7 +340,11 @@ CandumpResult parse_candump_line(std::string_view line, CandumpLine& out) {
   if (!is_date && !parse_seconds(stamp, out.frame.stamp_ns, second_digits)) return CandumpResult::kBadStamp;
   rest.remove_prefix(close + 1);
   const std::string_view name = take_word(rest);
-  if (name.empty() || name.size() > 15) return CandumpResult::kBadName;
+  // A zero byte would end the name early.
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; };
+  if (name.empty() || name.size() > 15 || std::any_of(name.begin(), name.end(), is_control)) {
+    return CandumpResult::kBadName;
+  }
   out.frame.set_interface(name);
   const std::string_view word = take_word(rest);
   const std::size_t hash = word.find('#');

@@ -18,7 +18,7 @@ enum class CandumpResult : std::uint8_t {
   kCanXl,         ///< a CAN XL frame, which nothing here decodes
   kNoStamp,       ///< a console line without a time stamp
   kBadStamp,      ///< a stamp that is neither `(seconds.fraction)` nor `(date time.fraction)`
-  kBadName,       ///< no interface name, or longer than 15 characters
+  kBadName,       ///< no interface name, longer than 15 characters, or with control characters
   kBadId,         ///< CAN id not 3 or 8 hexadecimal digits, or out of range
   kBadData,       ///< odd digits, no hexadecimal, or another number of bytes than the kind of frame carries
   kTrailingText,  ///< something other than a direction (R, T) or the console's ASCII column after the data

@@ -64,6 +64,7 @@ TEST(Candump, SaysWhatIsWrong) {
   }
   EXPECT_EQ(parse("(1.0)").result, CandumpResult::kBadName);
   EXPECT_EQ(parse("(1.0) a_name_of_17_chars 123#00").result, CandumpResult::kBadName);
+  EXPECT_EQ(parse(std::string_view("(1.0) \0can0 123#00", 18)).result, CandumpResult::kBadName);
   for (const char* line : {"(1.0) can0 12#00", "(1.0) can0 1234#00", "(1.0) can0 800#00", "(1.0) can0 4FFFFFFF#00",
                            "(1.0) can0 12G#00", "(1.0) can0"}) {
     EXPECT_EQ(parse(line).result, CandumpResult::kBadId) << line;
