@@ -103,7 +103,7 @@ struct UdpDecoder::State {
   std::uint64_t given_up = 0;
 };
 
-UdpDecoder::UdpDecoder() : state_(std::make_unique<State>()) {}
+UdpDecoder::UdpDecoder() = default;
 UdpDecoder::~UdpDecoder() = default;
 UdpDecoder::UdpDecoder(UdpDecoder&&) noexcept = default;
 UdpDecoder& UdpDecoder::operator=(UdpDecoder&&) noexcept = default;
@@ -227,6 +227,7 @@ PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer 
   if (data.empty() || offset + data.size() > kMaxDatagram || (more && data.size() % kBlock != 0)) {
     return PacketResult::kBadHeader;
   }
+  if (!state_) state_ = std::make_unique<State>();
   constexpr std::int64_t kTimeout_ns = 30'000'000'000;  // as Linux has it; identifications come again
   const std::uint64_t given_up_before = state_->given_up;
   Assembly* assembly = nullptr;
@@ -259,12 +260,13 @@ PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer 
 }
 
 std::size_t UdpDecoder::unfinished() const {
+  if (!state_) return 0;
   return static_cast<std::size_t>(std::count_if(state_->assemblies.begin(), state_->assemblies.end(),
                                                 [](const Assembly& assembly) { return assembly.active; }));
 }
 
 std::uint64_t UdpDecoder::given_up() const {
-  return state_->given_up;
+  return state_ ? state_->given_up : 0;
 }
 
 }  // namespace boresight::recording

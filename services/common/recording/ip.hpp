@@ -30,7 +30,8 @@ enum class PacketResult : std::uint8_t {
 /// Link layer of a capture.
 enum class LinkLayer : std::uint8_t { kEthernet, kRawIp };
 
-/// Decodes packets one after another. Memory is fixed: up to 16 datagrams are assembled at a time, the oldest gives
+/// Decodes packets one after another. Memory is fixed (a megabyte, taken at the first fragment): up to 16 datagrams are
+/// assembled at a time, the oldest gives
 /// way, as does one whose fragments are 30 s apart. A repeated fragment is ignored; where fragments contradict each
 /// other (they overlap, or reach beyond the last one), what was assembled is given up and the newest begins anew, so
 /// that a sender that uses an identification again is understood.
@@ -53,7 +54,7 @@ class UdpDecoder {
  private:
   struct Assembly;
   struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<State> state_;  // none before the first fragment
 };
 
 }  // namespace boresight::recording

@@ -8,7 +8,7 @@ namespace boresight::recording {
 
 namespace {
 
-constexpr std::size_t kCapacity = 256 * 1024;
+constexpr std::size_t kCapacity = 128 * 1024;
 
 }  // namespace
 

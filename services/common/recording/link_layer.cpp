@@ -48,6 +48,12 @@ bool is_supported_link(int link_type) {
   }
 }
 
+int data_link_of(std::uint16_t link_type) {
+  constexpr std::uint16_t kRaw = 101, kLoop = 108;  // DLT_RAW and DLT_LOOP are numbered by operating system
+  if (link_type == kRaw) return DLT_RAW;
+  return link_type == kLoop ? DLT_LOOP : link_type;
+}
+
 std::string_view supported_links() {
   return "Ethernet, raw IP, SocketCAN, Linux cooked v1 and v2, loopback";
 }

@@ -11,6 +11,8 @@ namespace boresight::recording {
 
 /// Whether captures of that link type (libpcap's DLT_…) can be decoded.
 [[nodiscard]] bool is_supported_link(int link_type);
+/// libpcap's DLT_… of the link type in a file, which differ for raw IP and the BSD loopback.
+[[nodiscard]] int data_link_of(std::uint16_t link_type);
 /// For messages: "Ethernet, raw IP, …".
 [[nodiscard]] std::string_view supported_links();
 

@@ -1,19 +1,19 @@
-// Captures (pcap, pcapng) as frames, by libpcap.
+// Classic pcap captures as frames, by libpcap.
 #pragma once
 
 #include <cstdio>
 #include <memory>
 
 #include "services/common/recording/byte_source.hpp"
-#include "services/common/recording/ip.hpp"
+#include "services/common/recording/packet_decoder.hpp"
 #include "services/common/recording/reader.hpp"
 
 struct pcap;
 
 namespace boresight::recording {
 
-/// Whether a file that begins so is a capture.
-[[nodiscard]] bool is_capture(std::span<const std::uint8_t> head);
+/// Whether a file that begins so is a pcap capture.
+[[nodiscard]] bool is_pcap(std::span<const std::uint8_t> head);
 
 class PcapReader : public Reader {
  public:
@@ -24,24 +24,15 @@ class PcapReader : public Reader {
   PcapReader& operator=(const PcapReader&) = delete;
 
   [[nodiscard]] bool next(Frame& frame) override;
-  [[nodiscard]] Counts counts() const override { return counts_; }
+  [[nodiscard]] Counts counts() const override { return decoder_.counts(); }
   [[nodiscard]] Progress progress() const override { return {source_->position(), source_->total()}; }
 
  private:
-  void problem(std::string_view text);
-  void end(int status);
-
   std::unique_ptr<ByteSource> source_;
-  OnProblem on_problem_;
-  ReadOptions options_;
+  PacketDecoder decoder_;
+  CaptureInterface interface_;
   std::unique_ptr<char[]> buffer_;  ///< of the stream that libpcap reads
   pcap* pcap_ = nullptr;
-  int link_type_ = 0;
-  UdpDecoder udp_;
-  std::uint64_t given_up_ = 0;
-  std::uint64_t number_ = 0;
-  std::int64_t last_stamp_ns_ = 0;
-  Counts counts_;
   bool ended_ = false;
 };
 

@@ -6,6 +6,7 @@
 
 #include "services/common/recording/candump_reader.hpp"
 #include "services/common/recording/pcap_reader.hpp"
+#include "services/common/recording/pcapng_reader.hpp"
 
 namespace boresight::recording {
 
@@ -89,7 +90,10 @@ std::string_view known_but_unsupported(std::span<const std::uint8_t> head) {
 std::unique_ptr<Reader> open_recording(const std::filesystem::path& file, OnProblem on_problem,
                                        const ReadOptions& options) {
   auto source = std::make_unique<ByteSource>(file);
-  if (is_capture(source->head())) {
+  if (is_pcapng(source->head())) {
+    return std::make_unique<PcapngReader>(std::move(source), std::move(on_problem), options);
+  }
+  if (is_pcap(source->head())) {
     return std::make_unique<PcapReader>(std::move(source), std::move(on_problem), options);
   }
   if (const std::string_view format = known_but_unsupported(source->head()); !format.empty()) {

@@ -23,7 +23,7 @@ class OpenError : public std::runtime_error {
 using OnProblem = std::function<void(const std::string&)>;
 
 struct ReadOptions {
-  /// The interface of CAN frames in captures that do not name it: classic pcap never does.
+  /// The interface of CAN frames in captures that do not name it: classic pcap never does, pcapng mostly does.
   std::string can_interface = "can0";
 };
 

@@ -70,7 +70,7 @@ TEST_F(CandumpFiles, WhatIsNoCandumpAtAllIsRefusedLineByLineInFixedMemory) {
 }
 
 TEST_F(CandumpFiles, LinesMeetEveryBorderOfTheBuffer) {
-  // 256 KiB buffers: lines of many lengths so that their ends fall anywhere.
+  // 128 KiB buffers: lines of many lengths so that their ends fall anywhere.
   std::string text;
   int lines = 0;
   for (; text.size() < 1'500'000; ++lines) {
@@ -238,6 +238,109 @@ TEST_F(Captures, OtherTrafficIsCountedAndOtherLinksAreRefusedByName) {
     EXPECT_NE(std::string(error.what()).find("wifi.pcap: link type IEEE802_11 is not supported"), std::string::npos)
         << error.what();
   }
+}
+
+TEST_F(Captures, PcapngTellsInterfacesApart) {
+  const std::string ethernet = std::string(12, '\1') + std::string("\x08\x00", 2);
+  const std::string file = pcapng_file({{227, "can1"}, {1, "eth0"}, {227, "can2", false}, {105, "wlan0"}},
+                                       {{5, 7, socketcan_packet(0x123, "one"), 0, 0},
+                                        {6, 7, ethernet + udp_packet("hello"), 0, 1},
+                                        {7, 7, socketcan_packet(0x123, "two"), 0, 2},
+                                        {8, 7, "radio", 0, 3},
+                                        {9, 7, ethernet + udp_packet("again"), 0, 1}});
+  const Contents c = read(write("many.pcapng", file));
+  ASSERT_EQ(c.frames.size(), 4u);
+  EXPECT_EQ(c.frames[0].frame.interface_name(), "can1");
+  EXPECT_EQ(c.frames[0].frame.stamp_ns, 5'000'000'007);
+  EXPECT_EQ(c.frames[0].data, "one");
+  EXPECT_EQ(c.frames[1].data, "hello");
+  EXPECT_EQ(c.frames[1].frame.interface_name(), "");
+  EXPECT_EQ(c.frames[2].frame.interface_name(), "can2");
+  EXPECT_EQ(c.frames[2].frame.stamp_ns, 7'000'007'000) << "microseconds";
+  EXPECT_EQ(c.frames[3].data, "again");
+  ASSERT_EQ(problems_.size(), 1u);
+  EXPECT_NE(problems_[0].find("interface wlan0 has link type 105"), std::string::npos) << problems_[0];
+  EXPECT_EQ(c.progress.position_bytes, file.size());
+}
+
+TEST_F(Captures, PcapngOfTwoSectionsAndUnknownBlocks) {
+  std::string huge(700'000, 'n');
+  const std::string file = pcapng_file({{227, "can1"}}, {{1, 0, socketcan_packet(1, "a")}}) + pcapng_block(4, huge) +
+                           pcapng_block(0x77777777, "what") +
+                           pcapng_file({{227, "can2"}}, {{2, 0, socketcan_packet(2, "b")}});
+  const Contents c = read(write("two.pcapng", file));
+  ASSERT_EQ(c.frames.size(), 2u);
+  EXPECT_EQ(c.frames[1].frame.interface_name(), "can2") << "interfaces are those of the section";
+  EXPECT_TRUE(problems_.empty());
+}
+
+TEST_F(Captures, PcapngUnitsOfTime) {
+  const auto stamp_of = [&](std::uint8_t resolution, std::uint64_t stamp) {
+    std::string file = pcapng_file({{227, "can1"}}, {{0, 0, socketcan_packet(1, "a")}});
+    const auto unit = file.find(std::string("\x09\x00\x01\x00\x09", 5));
+    file[unit + 4] = static_cast<char>(resolution);
+    std::string halves;
+    append_number(halves, stamp >> 32, 4);
+    append_number(halves, stamp & 0xFFFFFFFF, 4);
+    const auto packet = file.find(std::string("\x06\x00\x00\x00", 4), unit + 8);
+    file.replace(packet + 12, 8, halves);
+    const Contents c = read(write("unit.pcapng", file));
+    return c.frames.size() == 1 ? c.frames[0].frame.stamp_ns : -1;
+  };
+  EXPECT_EQ(stamp_of(9, 1'700'000'000'123'456'789), 1'700'000'000'123'456'789);
+  EXPECT_EQ(stamp_of(6, 1'700'000'000'123'456), 1'700'000'000'123'456'000);
+  EXPECT_EQ(stamp_of(0, 17), 17'000'000'000);
+  EXPECT_EQ(stamp_of(12, 1'500'000'000'007'000), 1'500'000'000'007);
+  EXPECT_EQ(stamp_of(0x80 | 1, 3), 1'500'000'000);
+  EXPECT_EQ(stamp_of(0x80 | 32, std::uint64_t{5} << 32 | 0x80000000), 5'500'000'000);
+  EXPECT_EQ(stamp_of(0x80 | 63, 0xC000000000000000), 1'500'000'000);
+  EXPECT_EQ(stamp_of(0, ~std::uint64_t{0}), -1) << "beyond all time";
+  EXPECT_EQ(stamp_of(20, 1), -1) << "no such unit";
+}
+
+TEST_F(Captures, DamageInPcapngCostsWhatItCovers) {
+  std::vector<CapturedPacket> packets;
+  for (std::uint32_t i = 0; i < 100; ++i) packets.push_back({i, 0, socketcan_packet(i, "12345678")});
+  const std::string whole = pcapng_file({{227, "can1"}}, packets);
+  ASSERT_EQ(read(write("whole.pcapng", whole)).frames.size(), 100u);
+  for (const char garbage : {'\0', '\xFF', '\x06'}) {
+    std::string damaged = whole;
+    std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2), 60, garbage);
+    problems_.clear();
+    const std::size_t frames = read(write("damaged.pcapng", damaged)).frames.size();
+    EXPECT_GE(frames, 97u);
+    EXPECT_LT(frames, 100u);
+    EXPECT_GE(problems_.size(), 1u);
+    EXPECT_LE(problems_.size(), 3u);
+  }
+  problems_.clear();
+  EXPECT_EQ(read(write("cut.pcapng", whole.substr(0, whole.size() - 10))).frames.size(), 99u);
+  EXPECT_EQ(problems_.size(), 1u);
+  std::string other_order;
+  append_number(other_order, 0x0A0D0D0A, 4, true);
+  append_number(other_order, 28, 4, true);
+  append_number(other_order, 0x1A2B3C4D, 4, true);
+  append_number(other_order, 0x00010000FFFFFFFF, 8, true);
+  append_number(other_order, 0xFFFFFFFF, 4, true);
+  append_number(other_order, 28, 4, true);
+  append_number(other_order, 1, 4, true);
+  append_number(other_order, 20, 4, true);
+  append_number(other_order, 227u << 16, 4, true);
+  append_number(other_order, 65535, 4, true);
+  append_number(other_order, 20, 4, true);
+  append_number(other_order, 6, 4, true);
+  append_number(other_order, 48, 4, true);
+  append_number(other_order, 0, 4, true);
+  append_number(other_order, 2'000'003, 8, true);
+  append_number(other_order, 16, 4, true);
+  append_number(other_order, 16, 4, true);
+  other_order += socketcan_packet(0x123, "big");
+  append_number(other_order, 48, 4, true);
+  const Contents c = read(write("big.pcapng", other_order));
+  ASSERT_EQ(c.frames.size(), 1u);
+  EXPECT_EQ(c.frames[0].data, "big");
+  EXPECT_EQ(c.frames[0].frame.stamp_ns, 2'000'003'000) << "microseconds unless said otherwise";
+  EXPECT_EQ(c.frames[0].frame.interface_name(), "can0");
 }
 
 TEST_F(Captures, StampsThatGoBackAreCountedAndMissingFragmentsAreSaid) {
