@@ -15,6 +15,9 @@ constexpr std::int64_t kBetweenSubscribes_ns = 100'000'000;
 // Without Ack, Subscribe is repeated after so long even if the server does not offer again.
 constexpr std::int64_t kRepeatUnacknowledged_ns = 2 * kSecond_ns;
 constexpr std::int64_t kComplainUnacknowledged_ns = 2 * kSecond_ns;
+// Renewals are acknowledged after each offer, or after 2 s at the latest. A server of which neither Ack nor event came
+// for longer gives way to another that offers the same instance, whatever the time to live of its offer.
+constexpr std::int64_t kSilentFor_ns = 2'500'000'000;
 
 }  // namespace
 
@@ -104,6 +107,7 @@ std::int64_t SdClient::link_up(std::int64_t now_ns) {
 
 void SdClient::confirm(Subscription& s, std::uint32_t ttl_s, std::int64_t now_ns) {
   s.confirmed_until_ns = expiry(now_ns, ttl_s);
+  s.alive_until_ns = after(now_ns, kSilentFor_ns);
   s.complain_at_ns = kNever;
   forget_refusals(s);
   if (s.state.phase == Phase::kSubscribed) return;

@@ -95,8 +95,9 @@ struct SdSubscriptionState {
 /// subscription, whatever arrives.
 ///
 /// Messages are seen by sessions of their sender, endpoints are taken from options: an offer's endpoint need not be
-/// where the offer came from. Because another program on this host may share the SD port and receive the Acks meant
-/// for us, arriving events count as an Ack.
+/// where the offer came from. A server that answers
+/// keeps its place against others that offer the same instance; one that does not loses it to them. Because another
+/// program on this host may share the SD port and receive the Acks meant for us, arriving events count as an Ack.
 class SdClient {
  public:
   static constexpr std::int64_t kNever = kNever_ns;
@@ -138,6 +139,7 @@ class SdClient {
     std::int64_t refused_until_ns = std::numeric_limits<std::int64_t>::min();  // after a Nack
     std::int64_t confirmed_until_ns = kNever;
     std::int64_t complain_at_ns = kNever;  // that there is no Ack
+    std::int64_t alive_until_ns = 0;       // until then no other server takes this one's place
     bool sent = false;                     // a Subscribe, since the offer
     bool stop_first = false;               // withdraw what the server may still have of us before subscribing
     unsigned refusals = 0;
@@ -148,6 +150,7 @@ class SdClient {
   void take_offer(const SdEntry& entry, const recording::Endpoint& peer, std::int64_t now_ns);
   void take_ack(const SdEntry& entry, const recording::Endpoint& peer, std::int64_t now_ns);
   void take_reboot(const recording::Endpoint& peer, std::int64_t now_ns);
+  [[nodiscard]] bool shows_life(const recording::Endpoint& peer, std::int64_t now_ns) const;
   void bind(Subscription& s, const SdEntry& entry, const recording::Endpoint& peer, const recording::Endpoint& server,
             std::int64_t now_ns);
   void confirm(Subscription& s, std::uint32_t ttl_s, std::int64_t now_ns);

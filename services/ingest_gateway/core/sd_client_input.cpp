@@ -13,6 +13,9 @@ using recording::Endpoint;
 constexpr unsigned kMaxRefusalsDoubling = 5;  // waits of 1, 2, 4 … 32 s
 // What offered for ever and started again has to offer again within this time.
 constexpr std::int64_t kOfferAfterReboot_ns = 5 * kSecond_ns;
+// A server answers within 100 ms, and our Subscribe may have been put off for as long. One that has not after this time
+// may be one that does not exist: another that offers the instance takes its place.
+constexpr std::int64_t kAnswersWithin_ns = 400'000'000;
 
 Fault kind_of(SdFault fault) {
   switch (fault) {
@@ -133,7 +136,8 @@ void SdClient::take_offer(const SdEntry& entry, const Endpoint& peer, std::int64
     if (s.config.instance != kAnyInstance && s.config.instance != entry.instance) continue;
     concerns_us = true;
     if (!is_seeking && s.state.instance != entry.instance) continue;
-    if (!is_seeking && s.state.peer.address != peer.address) {
+    const bool is_anothers = !is_seeking && s.state.peer.address != peer.address;
+    if (is_anothers && (entry.ttl_s == 0 || shows_life(s.state.peer, now_ns))) {
       ++statistics_.offers_by_others;
       continue;
     }
@@ -158,11 +162,22 @@ void SdClient::take_offer(const SdEntry& entry, const Endpoint& peer, std::int64
   }
 }
 
+bool SdClient::shows_life(const Endpoint& peer, std::int64_t now_ns) const {
+  return std::any_of(subscriptions_.begin(), subscriptions_.end(), [&](const Subscription& s) {
+    return s.state.phase != Phase::kSeeking && s.state.peer.address == peer.address && now_ns <= s.alive_until_ns;
+  });
+}
+
 void SdClient::bind(Subscription& s, const SdEntry& entry, const Endpoint& peer, const Endpoint& server,
                     std::int64_t now_ns) {
   SdSubscriptionState& state = s.state;
   if (state.phase == Phase::kSeeking) {
     state.phase = Phase::kSubscribing;
+    s.alive_until_ns = after(now_ns, kAnswersWithin_ns);
+  } else if (state.peer.address != peer.address) {
+    lose(s, UnsubscribeReason::kServerChanged);
+    state.phase = Phase::kSubscribing;
+    s.alive_until_ns = after(now_ns, kAnswersWithin_ns);
   } else if (state.server != server || state.major != entry.major) {
     end(s, UnsubscribeReason::kServerChanged);
     s.sent = false;

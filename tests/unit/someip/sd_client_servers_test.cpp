@@ -59,6 +59,38 @@ TEST_F(SdClientServers, TheFirstOfTwoInstancesIsTakenAndKept) {
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 StopOffer", "subscribed 0 10.0.0.21:30501"));
 }
 
+TEST_F(SdClientServers, AServerThatDoesNotAnswerGivesWayToAnother) {
+  Server ghost{.address = 0x0A000063};
+  start();
+  multicast(ghost.offer(kForever_s), ghost);
+  offer();
+  EXPECT_EQ(client_->state(0).peer, ghost.sd()) << "it has had no time to answer";
+  pass(kSecond);
+  multicast(server_.offer(0), server_);
+  EXPECT_EQ(client_->state(0).peer, ghost.sd()) << "a StopOffer of another is none of ours";
+  offer();
+  ack();
+  EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
+  // And the other way round: an answer keeps the place for as long as the next one may take.
+  multicast(ghost.offer(kForever_s), ghost);
+  pass(2 * kSecond);
+  multicast(ghost.offer(kForever_s), ghost);
+  EXPECT_EQ(client_->state(0).peer, server_.sd());
+}
+
+TEST_F(SdClientServers, AServerOfTwoEventgroupsIsAliveByOneOfThem) {
+  make({{.index = 0, .service = 0x1234, .eventgroup = 0x10, .local_port = 40001},
+        {.index = 1, .service = 0x1234, .eventgroup = 0x11, .local_port = 40001}});
+  Server other{.address = 0x0A000063};
+  start();
+  offer();
+  ack();
+  pass(kSecond);  // the second eventgroup is never acknowledged
+  multicast(other.offer(), other);
+  EXPECT_EQ(client_->state(0).peer, server_.sd());
+  EXPECT_EQ(client_->state(1).peer, server_.sd());
+}
+
 TEST_F(SdClientServers, AServerThatMovedIsFollowed) {
   become_subscribed();
   server_.event_port = 31000;
