@@ -18,6 +18,7 @@ using namespace boresight::ingest;
 
 template <typename Mapping>
 void feed(const Mapping& mapping, Decoder& decoder) {
+  fuzz::require(!mapping.messages.empty());
   fuzz::CheckedOutput sink(true);
   std::vector<std::uint8_t> payload(64);
   recording::Frame frame;

@@ -135,7 +135,7 @@ class EgoReader {
     table.require("signal");
     const std::string name = table.text("signal", "");
     dbc::MappedState state = read_state(table);
-    if (entry == nullptr || name.empty()) return;
+    if (entry == nullptr || !table.has("signal")) return;
     const dbc::Signal* const signal = names_.signal(table, "signal", *message, name);
     if (signal == nullptr) return;
     state.signal = map_signal(*message, *signal);

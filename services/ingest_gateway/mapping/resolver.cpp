@@ -84,7 +84,10 @@ Resolver::Resolver(config::Reader& root, std::string_view kind, const LoadDataba
   root.require("dbc");
   const std::string file = root.text("dbc", "");
   id_offset_ = static_cast<std::uint32_t>(root.integer("id_offset", {0, 0x1FFFFFFF}, 0));
-  if (file.empty()) return;
+  if (file.empty()) {
+    if (root.has("dbc")) root.reject("dbc", "is empty");
+    return;
+  }
   try {
     database_ = load(file);
     is_loaded_ = true;
@@ -94,7 +97,11 @@ Resolver::Resolver(config::Reader& root, std::string_view kind, const LoadDataba
 }
 
 const dbc::Message* Resolver::message(config::Reader& at, std::string_view key, const std::string& name) const {
-  if (!is_loaded_ || name.empty()) return nullptr;
+  if (!is_loaded_) return nullptr;
+  if (name.empty()) {
+    if (at.has(key)) at.reject(key, "is empty");
+    return nullptr;
+  }
   const dbc::Message* const found = database_.find(name);
   if (found == nullptr) {
     at.reject(key,

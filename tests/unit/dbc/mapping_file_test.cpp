@@ -226,6 +226,9 @@ TEST(MappingFile, EgoMappingMustBeWhole) {
   EXPECT_THAT(error_of(std::string(kEgo)), IsEmpty());
   EXPECT_THAT(ego_error("[speed]", "[yaw_rate]"), HasSubstr("wants either a table speed or a table pulses"));
   EXPECT_THAT(ego_error("is = [1, 2]", ""), HasSubstr("reverse: wants either is or is_not"));
+  EXPECT_THAT(ego_error("\"x.dbc\"", "\"\""), HasSubstr("m.toml:2: dbc: is empty"));
+  EXPECT_THAT(ego_error("\"TRACK_A_0\"", "\"\""), HasSubstr("speed.message: is empty"));
+  EXPECT_THAT(ego_error("\"COUNTER\"", "\"\""), HasSubstr("reverse.signal: there is no signal \"\""));
   EXPECT_THAT(ego_error("is = [1, 2]", "is = []"), HasSubstr("reverse.is: has 0 elements"));
   EXPECT_THAT(ego_error("[\"REL_SPEED\"]", "[]"), HasSubstr("speed.signals: has 0 elements; must have 1 … 8"));
   EXPECT_THAT(ego_error("signals = [", "plausible_mps = [5, 5]\nsignals = ["),
