@@ -100,6 +100,10 @@ void SdClient::link_down() {
 std::int64_t SdClient::link_up(std::int64_t now_ns) {
   link_is_up_ = true;
   seek_from(now_ns);
+  // A server that is still known may hold a subscription that has run out, or look for us under an old MAC address.
+  for (Subscription& s : subscriptions_) {
+    if (s.state.phase != Phase::kSeeking) subscribe_soon(s, now_ns);
+  }
   return tick(now_ns);
 }
 

@@ -110,7 +110,8 @@ class SdClient {
   /// Withdraws all subscriptions.
   void stop(std::int64_t now_ns);
   void link_down();
-  /// Seeks again; a server that went on in between is subscribed to anew.
+  /// Seeks again; a server that went on in between is subscribed to anew. Without link_down() before, what is known is
+  /// kept, and its subscriptions are renewed at once.
   std::int64_t link_up(std::int64_t now_ns);
   std::int64_t tick(std::int64_t now_ns);
 

@@ -55,5 +55,20 @@ TEST_F(Interfaces, Ipv6) {
   expect_flow("IPv6: interface deleted and made anew after 0.5 s", kOfferCycle_s);
 }
 
+/// Addresses that mean something on one link only.
+TEST_F(Interfaces, Ipv6LinkLocal) {
+  hosts().run(Host::kEcu, "ip -6 address add fe80::77:2/64 dev radar0 nodad");
+  hosts().run(Host::kSensors, "ip -6 address add fe80::77:1/64 dev sensor0 nodad");
+  write_vehicle("fe80::77:2", kGroupV6);
+  offers_ = std::make_unique<Offers>(hosts(), kGroupV6);
+  start_gateway();
+  start_server("fe80::77:1");
+  expect_flow_after_offer("IPv6 link-local addresses");
+  stop_server();
+  stop_gateway();
+  hosts().run(Host::kEcu, "ip -6 address del fe80::77:2/64 dev radar0");
+  hosts().run(Host::kSensors, "ip -6 address del fe80::77:1/64 dev sensor0");
+}
+
 }  // namespace
 }  // namespace boresight::network

@@ -57,6 +57,7 @@ void Story::TearDown() {
     damaged += witness()[i].is_as_sent ? 0 : 1;
   }
   EXPECT_EQ(damaged, 0u) << "scans differ from what the server made up";
+  EXPECT_EQ(witness().status().heap_allocations, 0u) << "on the gateway's data path";
   if (!HasFailure()) return;
   show_log(kGateway);
   show_log(kReplay);
