@@ -263,7 +263,8 @@ CandumpResult parse_console_body(std::string_view id_word, std::string_view rest
     out.frame.can_remote = true;
     rest.remove_prefix(kRemote.size());
     skip_spaces(rest);
-    return rest.empty() ? CandumpResult::kFrame : CandumpResult::kTrailingText;
+    if (!rest.empty()) return CandumpResult::kTrailingText;
+    return id == IdKind::kError ? CandumpResult::kErrorFrame : CandumpResult::kFrame;
   }
   bool swapped = false;
   for (std::size_t i = 0; i < length; ++i) {

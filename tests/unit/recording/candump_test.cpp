@@ -119,6 +119,7 @@ TEST(Candump, ConsoleFdRemoteErrorAndOtherViews) {
   EXPECT_EQ(parse(" (0000000001.0)  can0  20000004   [8]  00 04 00 00 00 00 00 00   ERRORFRAME").result,
             CandumpResult::kErrorFrame);
   EXPECT_EQ(parse("(1.0) can0 20000004#0004000000000000").result, CandumpResult::kErrorFrame);
+  EXPECT_EQ(parse(" (0000000001.0)  can0  20000004   [8]  remote request").result, CandumpResult::kErrorFrame);
   EXPECT_EQ(parse("\tcontroller-problem{rx-error-warning}").result, CandumpResult::kEmpty);
   const Parsed extra = parse(" (0000000001.0)  can0  TX B E  123  [02]  01 02");
   ASSERT_EQ(extra.result, CandumpResult::kFrame);
