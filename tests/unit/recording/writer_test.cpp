@@ -1,5 +1,6 @@
 #include "services/common/recording/writer.hpp"
 
+#include <cstdlib>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -98,6 +99,49 @@ TEST_F(Writers, AnyFrameWrittenIsReadAsItWas) {
     ASSERT_EQ(written[i].data, c.frames[i].data);
   }
   EXPECT_THAT(problems_, testing::ElementsAre(testing::HasSubstr("the kernel dropped frames here")));
+}
+
+TEST_F(Writers, TheConsoleFormatOfCanUtilsReadsAsTheLogItWasMadeOf) {
+  if (std::system("command -v log2long > /dev/null") != 0) GTEST_SKIP() << "skipped: no can-utils";
+  {
+    CandumpWriter writer(folder_ / "log");
+    const std::array<std::uint8_t, 64> data = {0x41, 0x27, 0x20, 0x60, 0xFF, 0x5B, 0x28, 0x23, 0x0A};
+    for (std::size_t size : {0, 1, 4, 8, 12, 64}) {
+      for (const bool extended : {false, true}) {
+        Frame frame;
+        frame.kind = size > 8 ? FrameKind::kCanFd : FrameKind::kCan;
+        frame.stamp_ns = 1'700'000'000'000'001'000;
+        frame.set_interface("can1");
+        frame.can_extended = extended;
+        frame.can_id = 0x7F0;
+        frame.payload = std::span(data).first(size);
+        writer.write(frame);
+        if (size > 8) continue;
+        writer.write(frame, true);
+        frame.can_remote = true;
+        writer.write(frame);
+        frame.kind = FrameKind::kCanFd;
+        frame.can_remote = false;
+        writer.write(frame);
+      }
+    }
+    writer.flush();
+  }
+  const std::string in = (folder_ / "log").string(), out = (folder_ / "long").string();
+  ASSERT_EQ(std::system(("log2long < " + in + " > " + out).c_str()), 0);
+  const Contents log = read(in), console = read(out);
+  EXPECT_TRUE(problems_.empty()) << problems_[0];
+  ASSERT_EQ(log.frames.size(), 28u);
+  ASSERT_EQ(console.frames.size(), log.frames.size());
+  EXPECT_EQ(console.counts.error_frames, 8u);
+  EXPECT_EQ(log.counts.error_frames, 8u);
+  for (std::size_t i = 0; i < log.frames.size(); ++i) {
+    const Frame &a = log.frames[i].frame, &b = console.frames[i].frame;
+    EXPECT_EQ(std::tuple(a.kind, a.stamp_ns, a.interface, a.can_id, a.can_extended, a.can_remote),
+              std::tuple(b.kind, b.stamp_ns, b.interface, b.can_id, b.can_extended, b.can_remote))
+        << i;
+    EXPECT_EQ(log.frames[i].data, console.frames[i].data) << i;
+  }
 }
 
 TEST_F(Writers, PacketsKeepTheirNanosecondsAndTheirSizeOnTheWire) {
