@@ -129,6 +129,7 @@ void SdClient::set_group(Subscription& s, const std::optional<Endpoint>& group) 
 /// Not subscribed any more; the server is still known.
 void SdClient::end(Subscription& s, UnsubscribeReason reason) {
   set_group(s, std::nullopt);
+  s.group_stays_until_ns = std::numeric_limits<std::int64_t>::min();
   s.confirmed_until_ns = kNever;
   if (s.state.phase != Phase::kSubscribed) return;
   s.state.phase = Phase::kSubscribing;

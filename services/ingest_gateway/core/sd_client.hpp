@@ -141,8 +141,9 @@ class SdClient {
     std::int64_t confirmed_until_ns = kNever;
     std::int64_t complain_at_ns = kNever;  // that there is no Ack
     std::int64_t alive_until_ns = 0;       // until then no other server takes this one's place
-    bool sent = false;                     // a Subscribe, since the offer
-    bool stop_first = false;               // withdraw what the server may still have of us before subscribing
+    std::int64_t group_stays_until_ns = std::numeric_limits<std::int64_t>::min();
+    bool sent = false;        // a Subscribe, since the offer
+    bool stop_first = false;  // withdraw what the server may still have of us before subscribing
     unsigned refusals = 0;
   };
 

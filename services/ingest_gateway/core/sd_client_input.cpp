@@ -16,6 +16,8 @@ constexpr std::int64_t kOfferAfterReboot_ns = 5 * kSecond_ns;
 // A server answers within 100 ms, and our Subscribe may have been put off for as long. One that has not after this time
 // may be one that does not exist: another that offers the instance takes its place.
 constexpr std::int64_t kAnswersWithin_ns = 400'000'000;
+// Acks that name ever other groups must not open and close sockets as fast as they come.
+constexpr std::int64_t kGroupStays_ns = kSecond_ns;
 
 Fault kind_of(SdFault fault) {
   switch (fault) {
@@ -217,7 +219,13 @@ void SdClient::take_ack(const SdEntry& entry, const Endpoint& peer, std::int64_t
     return;
   }
   ++statistics_.acks;
-  set_group(s, fault == SdFault::kNone ? std::optional(group) : std::nullopt);
+  const std::optional<Endpoint> wanted = fault == SdFault::kNone ? std::optional(group) : std::nullopt;
+  if (wanted != s.state.group && now_ns < s.group_stays_until_ns) {
+    actions_.fault(Fault::kLink, "SOME/IP-SD: Acks name another multicast group within a second; the first one stays");
+  } else if (wanted != s.state.group) {
+    set_group(s, wanted);
+    s.group_stays_until_ns = after(now_ns, kGroupStays_ns);
+  }
   confirm(s, entry.ttl_s, now_ns);
 }
 

@@ -1,6 +1,7 @@
 """A recording of a faulty server in the making, and what has to become of it."""
 from scapy.layers.inet import IP, UDP
 from scapy.layers.l2 import Ether
+from scapy.utils import checksum
 
 from wire import *
 
@@ -34,7 +35,7 @@ NO_ENDPOINT = "wrong value", "states no UDP endpoint"
 class Recording:
     def __init__(self):
         self.now_ns = EPOCH_NS
-        self.packets, self.faults = [], {}
+        self.packets, self.headers, self.faults = [], {}, {}
         self.delivered, self.optional, self.egos = [], [], []
         self.e2e = {1: [0, 0, 0], 2: [0, 0, 0]}  # lost, repeated, wrong
         self.at_least = False  # faults are only counted in sum
@@ -47,11 +48,16 @@ class Recording:
         self.now_ns += int(milliseconds * MILLISECOND)
 
     def packet(self, payload, source, destination):
-        packet = Ether(src="02:00:00:00:00:01", dst="02:00:00:00:00:02") / IP(src=source[0], dst=destination[0]) / UDP(
-            sport=source[1], dport=destination[1]) / Raw(payload)
-        packet.time = self.now_ns / 10**9
-        packet.now_ns = self.now_ns
-        self.packets.append(packet)
+        way = source + destination
+        if way not in self.headers:
+            self.headers[way] = bytes(Ether(src="02:00:00:00:00:01", dst="02:00:00:00:00:02") /
+                                      IP(src=source[0], dst=destination[0], len=0, chksum=0) /
+                                      UDP(sport=source[1], dport=destination[1], len=0, chksum=0))
+        header = bytearray(self.headers[way])
+        header[16:18] = (28 + len(payload)).to_bytes(2, "big")
+        header[24:26] = checksum(bytes(header[14:34])).to_bytes(2, "big")
+        header[38:40] = (8 + len(payload)).to_bytes(2, "big")
+        self.packets.append((self.now_ns, bytes(header) + payload))
         self.now_ns += 20_000
 
     def send(self, payloads, source=None, to=(CLIENT, CLIENT_PORT)):

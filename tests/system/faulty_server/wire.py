@@ -89,11 +89,9 @@ def protected(instance, event, session, counter, body, *, kind=0x02, protocol=1,
 
 def segment(message, offset, data, more, *, reserved=0):
     """One TP segment of the message, with any offset and data."""
-    whole = SOMEIP(message[:16])
-    whole.remove_payload()
-    whole.len, whole.msg_type = None, whole.msg_type | 0x20
-    whole.offset, whole.res, whole.more_seg = offset // 16, reserved, int(more)
-    return bytes(whole / Raw(data))
+    header = bytes(SOMEIP(msg_type=message[14] | 0x20, offset=offset // 16, res=reserved, more_seg=int(more)))[16:20]
+    length = (12 + len(data)).to_bytes(4, "big")
+    return message[:4] + length + message[8:14] + bytes([message[14] | 0x20, message[15]]) + header + data
 
 
 def segments(message, size=SEGMENT_BYTES, step=None):

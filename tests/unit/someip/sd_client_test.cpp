@@ -305,10 +305,28 @@ TEST_F(SdClientLife, JoinsTheGroupOfTheAckAndLeavesItWithTheSubscription) {
   EXPECT_THAT(actions_.taken(), ElementsAre("join 0 239.1.2.3:30600", kSubscribed0));
   unicast(server_.ack_multicast(0xEF010203, 30600), server_);
   EXPECT_THAT(actions_.taken(), IsEmpty());
+  pass(kSecond);
   unicast(server_.ack_multicast(0xEF010204, 30600), server_);
   EXPECT_THAT(actions_.taken(), ElementsAre("leave 0 239.1.2.3:30600", "join 0 239.1.2.4:30600"));
   multicast(server_.offer(0), server_);
   EXPECT_THAT(actions_.taken(), ElementsAre("leave 0 239.1.2.4:30600", "unsubscribed 0 StopOffer"));
+}
+
+TEST_F(SdClientLife, AcksThatNameEverOtherGroupsChangeItOnceASecond) {
+  start();
+  offer();
+  for (int i = 0; i < 25; ++i) {
+    const auto last = static_cast<std::uint32_t>(i % 2);
+    unicast(i % 3 == 2 ? server_.ack() : server_.ack_multicast(0xEF010203 + last, 30600), server_);
+    now_ns_ += 100 * kMillisecond;
+  }
+  const std::vector<std::string> taken = actions_.taken();
+  const auto joins = std::count_if(taken.begin(), taken.end(), [](const auto& t) { return t.starts_with("join"); });
+  const auto leaves = std::count_if(taken.begin(), taken.end(), [](const auto& t) { return t.starts_with("leave"); });
+  EXPECT_GE(joins, 2);
+  EXPECT_LE(joins + leaves, 2 * 3);
+  EXPECT_GT(actions_.faults, 10u);
+  EXPECT_EQ(client_->state(0).phase, SdSubscriptionState::Phase::kSubscribed);
 }
 
 TEST_F(SdClientLife, AnAckWhoseGroupIsNoneIsAFault) {
