@@ -8,8 +8,8 @@
 #include "services/common/runtime/service_main.hpp"
 #include "services/ingest_gateway/bus_sink.hpp"
 #include "services/ingest_gateway/config.hpp"
+#include "services/ingest_gateway/core/backlog.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
-#include "services/ingest_gateway/core/silence.hpp"
 #include "services/ingest_gateway/links/tunnel_link.hpp"
 #include "services/ingest_gateway/live_links.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
@@ -31,11 +31,12 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
   log_warnings(mappings);
   ingest::BusSink sink(node);
   ingest::Gateway gateway(vehicle, sink, mappings);
-  ingest::Silence silence;
+  ingest::Backlog backlog;
   ingest::Links links(node, {.on_frame =
                                  [&](const recording::Frame& frame, const ingest::FrameStamp& stamp) {
-                                   silence.frame_came();
-                                   sink.frame_begins(runtime::monotonic_now_ns());
+                                   const std::int64_t now_ns = runtime::monotonic_now_ns();
+                                   backlog.frame_taken(now_ns - stamp.received_ns);
+                                   sink.frame_begins(now_ns);
                                    gateway.take(frame, stamp);
                                  },
                              .on_fault = [&](Fault fault, std::string_view what) { node.fault(fault, what); },
@@ -49,7 +50,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const ingest::Mapping
     gateway.start(runtime::monotonic_now_ns());
     node.every(5'000'000, [&] {
       const std::int64_t now_ns = runtime::monotonic_now_ns();
-      if (silence.reigns(now_ns)) gateway.tick(now_ns);
+      if (backlog.is_read(now_ns)) gateway.tick(now_ns);
     });
   }
   node.every(1'000'000'000, [&] { links.keep_open(); });

@@ -118,9 +118,12 @@ void Gateway::add_someip(Source& source, const SourceAddress& address, std::uint
 Gateway::~Gateway() = default;
 
 void Gateway::take(const recording::Frame& frame, const FrameStamp& stamp) {
-  if (!started_) start(stamp.received_ns);
+  if (!started_) {
+    start(stamp.received_ns);
+    stamps_tell_time_ = true;
+  }
   // A clock that went back ticks at once, so that nothing waits for the old time to come again.
-  if (std::abs(stamp.received_ns - last_tick_ns_) >= kTick_ns) tick(stamp.received_ns);
+  if (stamps_tell_time_ && std::abs(stamp.received_ns - last_tick_ns_) >= kTick_ns) tick(stamp.received_ns);
   if (frame.kind == recording::FrameKind::kUdp) {
     take_udp(frame, stamp);
   } else if (!frame.can_remote) {

@@ -28,8 +28,9 @@ class Gateway : private EgoReceiver {
   /// Frames of unknown ids on a known CAN bus are ignored, as buses carry much else; datagrams from unknown senders
   /// to a radar's port are faults.
   void take(const recording::Frame& frame, const FrameStamp& stamp);
-  /// Time passes: to be called every 5 ms or so of silence with live input, so that incomplete cycles end. take() does
-  /// so by the stamps of the frames, which is all that a recording needs: the result does not depend on its speed.
+  /// Time passes, so that incomplete cycles end: to be called every 5 ms or so with live input, whose links do not hand
+  /// in their frames in the order of their stamps, while no old frames wait to be taken. With a recording, take() does
+  /// so by the stamps of the frames: the result does not depend on its speed.
   void tick(std::int64_t now_ns);
   /// Looks for the services of the vehicle file and tells sensors what they have to send. With a recording, take() does
   /// so by itself, and nobody hears.
@@ -72,6 +73,7 @@ class Gateway : private EgoReceiver {
   std::vector<std::unique_ptr<Discovery>> discoveries_;
   std::vector<std::uint16_t> someip_ports_;  // at which events arrive
   bool started_ = false;
+  bool stamps_tell_time_ = false;  // nobody has called start(): a recording
   SensorFeed feed_;
   EgoMotion latest_ego_{};
   bool has_ego_ = false;

@@ -6,6 +6,13 @@
 
 namespace boresight::bench {
 
+/// Sanitizers forbid to look everywhere.
+#ifdef BORESIGHT_SANITIZED
+inline constexpr bool kCanFindSentinels = false;
+#else
+inline constexpr bool kCanFindSentinels = true;
+#endif
+
 /// A range that only detection `i` of 1024 has and that does not come about by chance.
 [[nodiscard]] float sentinel_range_m(std::size_t i);
 
