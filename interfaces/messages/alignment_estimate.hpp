@@ -17,31 +17,55 @@ enum class AlignmentState : std::uint8_t {
 enum class AlignmentParameter : std::uint8_t { kSpeedScale = 0, kYaw = 1, kPitch = 2, kRoll = 3 };
 inline constexpr std::size_t kNumberOfAlignmentParameters = 4;
 
-/// Bits of `AlignmentEstimate::observable`: which axes the data support at all.
+/// Bits of `AlignmentEstimate::observable`: what the data support at all; the rest is NOT OBSERVABLE, its values are
+/// the prior's. A radar that looks to the side can have a pitch about the vehicle's axis that is known while neither
+/// pitch nor roll about its own axes is, so both triples have their bits.
 namespace alignment_axis {
 inline constexpr std::uint32_t kSpeedScale = 1u << 0;
-inline constexpr std::uint32_t kYaw = 1u << 1;
+inline constexpr std::uint32_t kYaw = 1u << 1;  ///< about the sensor's axes (α, β, γ)
 inline constexpr std::uint32_t kPitch = 1u << 2;
 inline constexpr std::uint32_t kRoll = 1u << 3;
+inline constexpr std::uint32_t kVehicleYaw = 1u << 4;  ///< about the vehicle's axes
+inline constexpr std::uint32_t kVehiclePitch = 1u << 5;
+inline constexpr std::uint32_t kVehicleRoll = 1u << 6;
+inline constexpr std::uint32_t kYawRateBias = 1u << 7;
+inline constexpr std::uint32_t kSlip = 1u << 8;
 }  // namespace alignment_axis
 
-/// Key figures of the corrected range-rate residual over the estimator's sliding window (Report A §8).
+/// Key figures (Report A §8). What is not known (yet) is NaN, or 0 for counts.
 struct AlignmentKpis {
-  float residual_rmse_mps;
+  float residual_rmse_mps;              ///< of the corrected range-rate residual of inliers over the sliding window
   float uncorrected_residual_rmse_mps;  ///< the same with k_v = 1 and no correction
   float residual_skewness;
-  float residual_kurtosis;  ///< 3 for a Gaussian
-  float inlier_ratio;       ///< 0…1
-  float seconds_of_drive;   ///< time spent estimating (fast enough, data present)
+  float residual_kurtosis;                     ///< 3 for a Gaussian
+  float inlier_ratio;                          ///< 0…1
+  float seconds_of_drive;                      ///< time spent estimating (fast enough, data present)
+  std::array<float, 4> seconds_to_95_percent;  ///< of drive until 95 % of the way from the start to today's value;
+                                               ///< k_v, then yaw, pitch, roll about the vehicle's axes
+  std::array<std::uint32_t, 4> scans_to_95_percent;  ///< scans of this radar; 0: not known
+  std::array<float, 4> drift_per_minute;             ///< change over the last minute of drive: 1/min, then rad/min
+  float nees;  ///< over the observable of these four, divided by their number; 1 is honest.
+               ///< NaN unless the configuration knows the truth (simulated drives)
+  std::uint32_t reserved;
   std::uint64_t scans_used;
   std::uint64_t detections_used;
 };
-static_assert(sizeof(AlignmentKpis) == 40);
+static_assert(sizeof(AlignmentKpis) == 96);
 
-/// Mounting correction of the radar `header.source_id`: actual mounting = nominal + correction, rotation
-/// R(sensor→vehicle) = R_z(α_b+α_m)·R_y(−(β_b+β_m))·R_x(γ_b+γ_m), α yaw, β pitch (positive looks up), γ roll.
+/// A sudden change of one radar's mounting.
+struct AlignmentKnock {
+  std::int64_t time_ns;                       ///< measurement time at which it was told; 0: never
+  std::array<float, 3> rotation_vehicle_rad;  ///< estimated turn about the vehicle's x, y, z axes (right-handed)
+  std::uint32_t count;                        ///< since the start of the service
+};
+static_assert(sizeof(AlignmentKnock) == 24);
+
+/// Mounting correction of the radar `header.source_id`, in two forms of the same rotation.
+/// Sensor form: actual mounting = nominal + correction, R(sensor→vehicle) = R_z(α_b+α_m)·R_y(−(β_b+β_m))·R_x(γ_b+γ_m),
+/// α yaw, β pitch (positive looks up), γ roll. Vehicle form: R(actual) = Exp(d)·R(nominal) with the rotation vector d
+/// in vehicle axes; yaw = d_z, roll = d_x, pitch = −d_y, so that a positive pitch of a radar that looks ahead is up.
 struct AlignmentEstimate {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;
   AlignmentState state;
@@ -51,14 +75,24 @@ struct AlignmentEstimate {
   float alignment_yaw_rad;
   float alignment_pitch_rad;
   float alignment_roll_rad;
+  float vehicle_yaw_rad;
+  float vehicle_pitch_rad;
+  float vehicle_roll_rad;
+  float yaw_rate_bias_radps;  ///< signalled = true + bias
+  float yaw_rate_bias_std_radps;
+  float slip_coefficient_radps2pm;  ///< c of V_y = −c·V·(V·ω), rad per m/s²
+  float slip_coefficient_std_radps2pm;
+  float angle_noise_scale;  ///< by which the sensor's angle stds must be multiplied to explain the residuals
   /// Row-major 4 × 4 over (k_v, yaw, pitch, roll), units 1 and rad; rows of unobservable axes hold the prior.
   alignas(16) std::array<float, 16> covariance;
+  std::array<float, 16> vehicle_covariance;  ///< the same over (k_v, vehicle yaw, pitch, roll)
+  AlignmentKnock knock;
   AlignmentKpis kpis;
 
   [[nodiscard]] bool is_observable(std::uint32_t axis_bits) const { return (observable & axis_bits) == axis_bits; }
 };
 
 static_assert(kIsPlainMessage<AlignmentEstimate>);
-static_assert(sizeof(AlignmentEstimate) == 240);
+static_assert(sizeof(AlignmentEstimate) == 416);
 
 }  // namespace boresight

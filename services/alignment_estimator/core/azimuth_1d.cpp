@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -303,6 +304,20 @@ void Azimuth1d::write(AlignmentEstimate& out) const {
   out.covariance[1] = out.covariance[4] = static_cast<float>(published(0, 1));
   out.covariance[5] = static_cast<float>(published(1, 1));
   out.covariance[10] = out.covariance[15] = static_cast<float>(config_.prior_yaw_std_rad * config_.prior_yaw_std_rad);
+  if (out.is_observable(alignment_axis::kYaw)) out.observable |= alignment_axis::kVehicleYaw;
+  out.vehicle_yaw_rad = out.alignment_yaw_rad;
+  out.vehicle_pitch_rad = out.vehicle_roll_rad = 0.0F;
+  out.vehicle_covariance = out.covariance;
+  out.yaw_rate_bias_radps = out.yaw_rate_bias_std_radps = 0.0F;
+  out.slip_coefficient_radps2pm = out.slip_coefficient_std_radps2pm = 0.0F;
+  out.angle_noise_scale = 1.0F;
+  out.knock = {};
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  out.kpis.seconds_to_95_percent.fill(kUnknown);
+  out.kpis.scans_to_95_percent = {};
+  out.kpis.drift_per_minute.fill(kUnknown);
+  out.kpis.nees = kUnknown;
+  out.kpis.reserved = 0;
   residuals_.write(out.kpis);
   out.kpis.seconds_of_drive = static_cast<float>(seconds_of_drive_);
   out.kpis.scans_used = scans_used_;

@@ -1,0 +1,70 @@
+// What a statistical alignment drive is made of: detections drawn independently scan by scan, with a truth that is
+// known to the last digit and disturbances that can be switched on one by one. For the alignment estimators' accuracy;
+// the world with objects that persist is the other simulator.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "services/common/vehicle/vehicle.hpp"
+#include "tests/simulator/scenario.hpp"
+
+namespace boresight::simulator {
+
+enum class RoadKind : std::uint8_t { kCity, kMotorway, kStraight, kSlow, kMixed };
+
+/// How range rates follow from angles: the exact rotation, or the planar roll model of Report A (10)(11), for
+/// reproducing its tables.
+enum class MountingModel : std::uint8_t { kExact, kPlanar };
+
+/// How elevations are drawn: reflectors at heights seen from the road, Report A's uniform −0.02…0.06 rad, or none.
+enum class ElevationKind : std::uint8_t { kScene, kUniform, kZero };
+
+struct AlignmentRadar {
+  RadarConfig config;              ///< nominal mounting, field of view, noise stds as the estimator is told them
+  Misalignment truth;              ///< α, β, γ added to the nominal angles
+  bool measures_elevation = true;  ///< else scans lack the field
+  bool states_stds = false;        ///< scans carry the stds
+  double first_scan_s = 0.0;       ///< radars whose first scans differ are not synchronised
+  double mean_detections = 60.0;   ///< a scan
+  double ambiguity_mps = 0.0;      ///< width of the unambiguous interval, around 0; 0: none
+  double noise_scale = 1.0;        ///< real angle noise over the stated one
+};
+
+struct Knock {
+  double time_s = 0.0;
+  std::size_t radar = 0;                                ///< index
+  Eigen::Vector3d rotation_vehicle_rad{0.0, 0.0, 0.0};  ///< turn about vehicle axes, Exp(d)·R
+};
+
+struct AlignmentSpec {
+  double duration_s = 180.0;
+  RoadKind road = RoadKind::kMixed;
+  std::uint64_t seed = 1;
+  double speed_scale = 1.01;  ///< k_v
+  std::vector<AlignmentRadar> radars;
+  MountingModel model = MountingModel::kExact;
+  ElevationKind elevation = ElevationKind::kScene;
+  double ego_rate_hz = 20.0;
+  /// Share of detections that do not stand still: vehicles with and against the traffic, slow walkers, ghosts.
+  double outlier_share = 0.25;
+  double azimuth_std_edge = 0.35;  ///< azimuth noise grows as 1/max(cos α, this); 1: it does not
+  double speed_std_mps = 0.02;     ///< white, a message
+  double yaw_rate_std_radps = 0.001;
+  double yaw_rate_bias_radps = 0.0;        ///< signalled = true + bias
+  double slip_coefficient_radps2pm = 0.0;  ///< V_y = −c·V·(V·ω)
+  double body_pitch_std_rad = 0.0;         ///< Ornstein–Uhlenbeck
+  double body_pitch_correlation_s = 0.3;
+  double body_pitch_per_acceleration_radps2pm = 0.0;  ///< nose down when braking
+  std::vector<Knock> knocks;
+};
+
+/// Four corner radars, as in drive_1: noise, mounting and truth of Report A's Table 1.
+[[nodiscard]] AlignmentSpec four_corner_radars();
+/// The published set-up: planar truth, slow drive, no outliers, residuals of 0.20 → 0.027 m/s.
+[[nodiscard]] AlignmentSpec published_setup();
+
+}  // namespace boresight::simulator
