@@ -24,8 +24,9 @@ inline constexpr std::uint16_t kAmbiguous = 1u << 1;  ///< the range rate lies o
 
 /// Bits of `RadarScan::integrity`: what the gateway found wrong with the scan as a whole. Zero: nothing.
 namespace scan_integrity {
-inline constexpr std::uint16_t kCounterGap = 1u << 0;      ///< scans are missing before this one
-inline constexpr std::uint16_t kRepeated = 1u << 1;        ///< the sensor's counter did not advance
+inline constexpr std::uint16_t kCounterGap = 1u << 0;  ///< scans are missing before this one
+inline constexpr std::uint16_t kRepeated =
+    1u << 1;  ///< a list that came before: by the sensor's counter, else by its content and stamp
 inline constexpr std::uint16_t kFrozen = 1u << 2;          ///< the same detections as before, to the last bit
 inline constexpr std::uint16_t kStale = 1u << 3;           ///< measured too long before it came, or stamps stand still
 inline constexpr std::uint16_t kImplausible = 1u << 4;     ///< too many detections outside what the sensor can see

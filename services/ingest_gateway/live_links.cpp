@@ -10,15 +10,6 @@
 
 namespace boresight::ingest {
 
-namespace {
-
-/// The vehicle file has been checked before.
-recording::IpAddress address_of(const std::string& text) {
-  return recording::parse_ip(text).value_or(recording::IpAddress{});
-}
-
-}  // namespace
-
 void Links::add(std::unique_ptr<Link> link) {
   entries_.push_back(std::make_unique<Entry>(Entry{std::move(link)}));
   static_cast<void>(entries_.back()->link->open());
@@ -39,11 +30,12 @@ void Links::add_live(const VehicleConfig& vehicle) {
       add(std::move(link));
       continue;
     }
-    const recording::IpAddress address = address_of(source.address);
+    const recording::IpAddress address = recording::ip_or_unspecified(source.address);
     add_udp({address, source.port}, source.interface, Sharing::kOrdinary);
     if (source.link == LinkKind::kSomeIp) {
       add_udp({address, source.discovery_port}, source.interface, Sharing::kPolite);
-      add_udp({address_of(source.discovery_address), source.discovery_port}, source.interface, Sharing::kOrdinary);
+      add_udp({recording::ip_or_unspecified(source.discovery_address), source.discovery_port}, source.interface,
+              Sharing::kOrdinary);
     }
   }
 }

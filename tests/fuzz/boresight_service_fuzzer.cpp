@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "interfaces/wire/boresight_service.hpp"
+#include "services/ingest_gateway/codecs/big_endian.hpp"
 #include "services/ingest_gateway/codecs/boresight_service.hpp"
-#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
 #include "tests/fuzz/checked_output.hpp"
 
 namespace {
@@ -21,16 +21,16 @@ void make_list_agree(std::vector<std::uint8_t>& body) {
   const std::size_t count = (body.size() - header_bytes) / record_bytes;
   body.resize(header_bytes + count * record_bytes);
   body.shrink_to_fit();  // so that the sanitizer sees a byte read beyond it
-  ingest::someip::write_u16(body.data() + list::kLayoutVersion, list::kLayoutVersionValue);
-  ingest::someip::write_u16(body.data() + list::kHeaderBytes, static_cast<std::uint16_t>(header_bytes));
-  ingest::someip::write_u16(body.data() + list::kNumberOfDetections, static_cast<std::uint16_t>(count));
-  ingest::someip::write_u16(body.data() + list::kRecordBytes, static_cast<std::uint16_t>(record_bytes));
+  ingest::write_u16(body.data() + list::kLayoutVersion, list::kLayoutVersionValue);
+  ingest::write_u16(body.data() + list::kHeaderBytes, static_cast<std::uint16_t>(header_bytes));
+  ingest::write_u16(body.data() + list::kNumberOfDetections, static_cast<std::uint16_t>(count));
+  ingest::write_u16(body.data() + list::kRecordBytes, static_cast<std::uint16_t>(record_bytes));
 }
 
 void make_ego_agree(std::vector<std::uint8_t>& body) {
   if (body.size() < ego::kMinBodyBytes) return;
-  ingest::someip::write_u16(body.data() + ego::kLayoutVersion, ego::kLayoutVersionValue);
-  ingest::someip::write_u16(body.data() + ego::kBodyBytes, static_cast<std::uint16_t>(body.size()));
+  ingest::write_u16(body.data() + ego::kLayoutVersion, ego::kLayoutVersionValue);
+  ingest::write_u16(body.data() + ego::kBodyBytes, static_cast<std::uint16_t>(body.size()));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/e2e/protector.hpp"
-#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
+#include "services/ingest_gateway/codecs/big_endian.hpp"
 #include "services/ingest_gateway/codecs/someip/message.hpp"
 #include "services/ingest_gateway/codecs/someip/sd.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
@@ -71,15 +71,15 @@ class Sender {
     const auto body = message.subspan(service::kBody);
     std::fill(body.begin(), body.end(), std::uint8_t{0});
     std::copy_n(content.begin(), std::min(content.size(), body.size()), body.begin());
-    someip::write_u16(body.data(), 1);
+    ingest::write_u16(body.data(), 1);
     if (is_list) {
       namespace list = service::detection_list;
-      someip::write_u16(body.data() + list::kHeaderBytes, list::kMinHeaderBytes);
-      someip::write_u16(body.data() + list::kRecordBytes, list::kMinRecordBytes);
-      someip::write_u16(body.data() + list::kNumberOfDetections,
+      ingest::write_u16(body.data() + list::kHeaderBytes, list::kMinHeaderBytes);
+      ingest::write_u16(body.data() + list::kRecordBytes, list::kMinRecordBytes);
+      ingest::write_u16(body.data() + list::kNumberOfDetections,
                         static_cast<std::uint16_t>((body.size() - list::kMinHeaderBytes) / list::kMinRecordBytes));
     } else {
-      someip::write_u16(body.data() + service::ego_motion::kBodyBytes, service::ego_motion::kMinBodyBytes);
+      ingest::write_u16(body.data() + service::ego_motion::kBodyBytes, service::ego_motion::kMinBodyBytes);
     }
     (is_list ? list_protector_ : ego_protector_).protect(message.subspan(service::kProtectedFrom));
     return message;

@@ -1,8 +1,6 @@
 // Public DBC files, and a recording decoded through one and a mapping as by the codec that is written by hand.
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -206,7 +204,7 @@ struct Drain : ingest::DecoderOutput {
   RadarScan scan{};
 };
 
-TEST(CostByMapping, NothingIsAllocatedForAFrame) {
+TEST(Mapped, NothingIsAllocatedForAFrame) {
   REQUIRE_RECORDING(kRecording);
   REQUIRE_RECORDING(kDbcFolder);
   std::vector<recording::Frame> frames;
@@ -222,29 +220,17 @@ TEST(CostByMapping, NothingIsAllocatedForAFrame) {
   const MappingFile ego_file(kEgoMapping, kDbcFolder / "toyota_2017_ref_pt.dbc");
   ingest::TableRadar radar(ingest::read_radar_mapping(radar_file.path()));
   ingest::TableEgo ego(ingest::read_ego_mapping(ego_file.path()));
-  ingest::ToyotaRadar by_hand;
   const auto drain = std::make_unique<Drain>();
-  const auto nanoseconds_per_frame = [&](ingest::Decoder& decoder) {
-    const auto begin = std::chrono::steady_clock::now();
-    for (const recording::Frame& frame : frames) {
-      decoder.take(frame, {frame.stamp_ns, 0, TimeSource::kLinkArrival}, *drain);
-    }
-    const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - begin;
-    return elapsed.count() / static_cast<double>(frames.size());
-  };
   const std::uint64_t before = runtime::counted_allocations();
-  double table_ns = 0.0, hand_ns = 0.0, ego_ns = 0.0;
   {
     const runtime::CountAllocations count;
-    table_ns = nanoseconds_per_frame(radar);
-    hand_ns = nanoseconds_per_frame(by_hand);
-    ego_ns = nanoseconds_per_frame(ego);
+    for (const recording::Frame& frame : frames) {
+      const ingest::FrameStamp stamp{frame.stamp_ns, 0, TimeSource::kLinkArrival};
+      radar.take(frame, stamp, *drain);
+      ego.take(frame, stamp, *drain);
+    }
   }
   EXPECT_EQ(runtime::counted_allocations(), before);
-  std::printf("a frame costs %.0f ns by mapping, %.0f ns by hand, %.0f ns for ego by mapping\n", table_ns, hand_ns,
-              ego_ns);
-  EXPECT_LT(table_ns, 5'000.0);
-  EXPECT_LT(ego_ns, 5'000.0);
 }
 
 TEST(ToyotaEgoByMapping, ReadingsMakeTheEgoMotionOfTheCodecByHand) {

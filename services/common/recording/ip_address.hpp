@@ -48,6 +48,10 @@ struct IpAddress {
 
 /// "10.13.1.113" or "fd00::1"; nullopt if the text is neither.
 [[nodiscard]] std::optional<IpAddress> parse_ip(std::string_view text);
+/// The same for text that was checked before: unspecified for "" and what is no address.
+[[nodiscard]] inline IpAddress ip_or_unspecified(std::string_view text) {
+  return parse_ip(text).value_or(IpAddress{});
+}
 /// The usual text; "" for the unspecified address.
 [[nodiscard]] std::string to_text(const IpAddress& address);
 

@@ -115,11 +115,14 @@ SensorStamp decode(std::span<const std::uint8_t> datagram, RadarScan& scan) {
     write_detection(bytes + layout::kDetections + i * layout::kDetectionBytes, i, scan.range_rate_min_mps,
                     scan.range_rate_max_mps, scan);
   }
-  SensorStamp time;
-  time.time_ns = static_cast<std::int64_t>(read_u32(bytes + layout::kSeconds)) * 1'000'000'000 +
-                 read_u32(bytes + layout::kNanoseconds);
-  time.synchronised = bytes[layout::kSyncStatus] == layout::kSyncOk;
-  return time;
+  return stamp_of(datagram);
+}
+
+SensorStamp stamp_of(std::span<const std::uint8_t> list) {
+  const std::uint8_t* const bytes = list.data();
+  return {static_cast<std::int64_t>(read_u32(bytes + layout::kSeconds)) * 1'000'000'000 +
+              read_u32(bytes + layout::kNanoseconds),
+          bytes[layout::kSyncStatus] == layout::kSyncOk};
 }
 
 std::uint32_t conditions(std::span<const std::uint8_t> status) {

@@ -21,6 +21,9 @@ namespace boresight::ingest::ars548 {
 /// m/s; range rate positive when receding, as on the wire. A single implausible detection is flagged, not refused.
 [[nodiscard]] SensorStamp decode(std::span<const std::uint8_t> datagram, RadarScan& scan);
 
+/// The stamp of a detection or object list, both of which have it in the same place.
+[[nodiscard]] SensorStamp stamp_of(std::span<const std::uint8_t> list);
+
 /// source_condition bits of a status message that check() found kAccepted.
 [[nodiscard]] std::uint32_t conditions(std::span<const std::uint8_t> status);
 

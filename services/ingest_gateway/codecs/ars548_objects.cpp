@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
+#include "services/ingest_gateway/codecs/ars548.hpp"
+#include "services/ingest_gateway/codecs/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
 
 namespace layout = wire::ars548;
-using someip::read_f32, someip::read_u16, someip::read_u32;
 
 namespace {
 
@@ -125,9 +125,7 @@ DecodeResult check_objects(std::span<const std::uint8_t> datagram, std::string_v
 
 void decode_objects(std::span<const std::uint8_t> datagram, ObjectList& list) {
   const std::uint8_t* const bytes = datagram.data();
-  list.time.time_ns = static_cast<std::int64_t>(read_u32(bytes + layout::kSeconds)) * 1'000'000'000 +
-                      read_u32(bytes + layout::kNanoseconds);
-  list.time.synchronised = bytes[layout::kSyncStatus] == layout::kSyncOk;
+  list.time = stamp_of(datagram);
   list.cycle_counter = read_u32(bytes + layout::kSequenceCounter);
   list.number_of_objects = bytes[layout::kNumberOfObjects];
   for (std::size_t i = 0; i < list.number_of_objects; ++i) {

@@ -41,18 +41,26 @@ class RecordingClock {
   std::int64_t offset_ns_ = 0;
 };
 
-/// Time of measurement by a sensor's own stamp, if its clock is synchronised and the stamp lies 5 ms after … 1 s before
-/// reception; else the time of reception less the usual latency, marked as such.
+/// Nothing sound takes longer from measurement to reception; a real ARS548 stamps 247 ms before its list arrives.
+inline constexpr std::int64_t kMaxDelay_ns = 1'000'000'000;
+
+/// Whether a stamp on the epoch's clock lies 5 ms after … kMaxDelay_ns before reception. gPTP keeps clocks within
+/// microseconds; 5 ms is what a clock may be ahead that has just been locked.
+[[nodiscard]] inline bool is_plausible(std::int64_t sensor_epoch_ns, const FrameStamp& stamp) {
+  const std::int64_t delay_ns = stamp.received_ns - (sensor_epoch_ns - stamp.epoch_offset_ns);
+  return delay_ns >= -5'000'000 && delay_ns <= kMaxDelay_ns;
+}
+
+/// Time of measurement by a sensor's own stamp, if its clock is synchronised and the stamp plausible; else the time of
+/// reception less the usual latency, marked as such.
 struct MeasurementTime {
   std::int64_t time_ns;
   TimeSource source;
 };
 [[nodiscard]] inline MeasurementTime measurement_time(std::int64_t sensor_epoch_ns, bool synchronised,
                                                       const FrameStamp& stamp, std::int64_t latency_ns) {
-  const std::int64_t sensor_ns = sensor_epoch_ns - stamp.epoch_offset_ns;
-  const std::int64_t delay_ns = stamp.received_ns - sensor_ns;
-  if (synchronised && delay_ns >= -5'000'000 && delay_ns <= 1'000'000'000) {
-    return {sensor_ns, TimeSource::kSensorSynchronised};
+  if (synchronised && is_plausible(sensor_epoch_ns, stamp)) {
+    return {sensor_epoch_ns - stamp.epoch_offset_ns, TimeSource::kSensorSynchronised};
   }
   return {stamp.received_ns - latency_ns, stamp.source};
 }

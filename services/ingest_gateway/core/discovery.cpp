@@ -8,25 +8,16 @@ namespace boresight::ingest {
 
 namespace service = wire::boresight_service;
 
-namespace {
-
-/// The vehicle file has been checked before.
-recording::IpAddress address_of(const std::string& text) {
-  return recording::parse_ip(text).value_or(recording::IpAddress{});
-}
-
-}  // namespace
-
 Discovery::Discovery(const SourceAddress& network, SomeIpReceiver& receiver, Sink& sink)
     : interface_(network.interface),
-      local_(address_of(network.address)),
-      group_{address_of(network.discovery_address), network.discovery_port},
+      local_(recording::ip_or_unspecified(network.address)),
+      group_{recording::ip_or_unspecified(network.discovery_address), network.discovery_port},
       receiver_(receiver),
       sink_(sink) {}
 
 bool Discovery::is_on(const SourceAddress& network) const {
-  return network.interface == interface_ && address_of(network.address) == local_ &&
-         recording::Endpoint{address_of(network.discovery_address), network.discovery_port} == group_;
+  return network.interface == interface_ && recording::ip_or_unspecified(network.address) == local_ &&
+         recording::Endpoint{recording::ip_or_unspecified(network.discovery_address), network.discovery_port} == group_;
 }
 
 void Discovery::add(std::size_t index, const SourceAddress& address, std::uint16_t eventgroup) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -57,9 +58,15 @@ std::unique_ptr<Decoder> make_ego_decoder(const EgoConfig& ego, const Mappings& 
   return std::make_unique<service::EgoEvent>();
 }
 
-/// The vehicle file has been checked before.
-recording::IpAddress address_of(const std::string& text) {
-  return recording::parse_ip(text).value_or(recording::IpAddress{});
+/// The radar whose lists carry the vehicle's motion and are decoded anyway.
+std::optional<std::uint32_t> radar_with_ego_signals(const VehicleConfig& vehicle) {
+  if (vehicle.ego.profile != EgoProfile::kSrr520) return std::nullopt;
+  for (const RadarConfig& radar : vehicle.radars) {
+    if (radar.profile == RadarProfile::kSrr520 && radar.source.interface == vehicle.ego.source.interface) {
+      return radar.id;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -70,10 +77,11 @@ Gateway::Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappi
       ego_source_(nullptr, make_ego_decoder(vehicle.ego, mappings), static_cast<EgoReceiver&>(*this), sink),
       someip_(sink),
       feed_(vehicle) {
+  ego_source_id_ = radar_with_ego_signals(vehicle).value_or(ego_source_.id());
   if (vehicle.ego.source.link == LinkKind::kSomeIp) {
     add_someip(ego_source_, vehicle.ego.source, wire::boresight_service::kEventEgoMotion,
                wire::boresight_service::kEventgroupEgoMotion, vehicle.ego.e2e);
-  } else {
+  } else if (ego_source_id_ == ego_source_.id()) {
     can_.push_back({vehicle.ego.source.interface, &ego_source_});
   }
   for (const RadarConfig& radar : vehicle.radars) add_radar(radar, mappings);
@@ -91,7 +99,9 @@ void Gateway::add_radar(const RadarConfig& radar, const Mappings& mappings) {
       can_.push_back({address.interface, &source});
       break;
     case LinkKind::kUdp:
-      udp_.push_back({{address_of(address.address), address.port}, address_of(address.sender), &source});
+      udp_.push_back({{recording::ip_or_unspecified(address.address), address.port},
+                      recording::ip_or_unspecified(address.sender),
+                      &source});
       break;
     case LinkKind::kSomeIp:
       add_someip(source, address, wire::boresight_service::kEventDetectionList,
@@ -105,7 +115,7 @@ void Gateway::add_someip(Source& source, const SourceAddress& address, std::uint
   const std::size_t index = someip_.add(source, event, e2e);
   someip_ports_.push_back(address.port);
   if (!address.sender.empty()) {
-    someip_.set_server(index, recording::Endpoint{address_of(address.sender), address.sender_port});
+    someip_.set_server(index, recording::Endpoint{recording::ip_or_unspecified(address.sender), address.sender_port});
     return;
   }
   auto found = std::find_if(discoveries_.begin(), discoveries_.end(), [&](const auto& d) { return d->is_on(address); });
@@ -204,7 +214,7 @@ void Gateway::take_udp(const recording::Frame& frame, const FrameStamp& stamp) {
 }
 
 void Gateway::take_ego(std::uint32_t source_id, const EgoReading& reading, const FrameStamp& reception) {
-  if (source_id != ego_source_.id()) return;
+  if (source_id != ego_source_id_) return;
   const EgoAssembler::Result result = ego_.take(reading, reception);
   if (result.time_jumped) sink_.fault(Fault::kTimeJump, "ego signals: the clock of their frames went back", source_id);
   if (!result.rejected.empty()) sink_.fault(Fault::kWireValue, result.rejected, source_id);
@@ -212,11 +222,11 @@ void Gateway::take_ego(std::uint32_t source_id, const EgoReading& reading, const
   EgoMotion* const out = sink_.begin_ego();
   if (out == nullptr) return;  // counted where the memory was refused
   ego_.write(*out);
-  feed_.send(*out, reception.received_ns, sink_);
   latest_ego_ = *out;
   latest_ego_.header.measurement_time_ns = ego_.time().time_ns;
   has_ego_ = true;
   sink_.publish_ego(ego_.time());
+  feed_.send(latest_ego_, reception.received_ns, sink_);
 }
 
 const EgoMotion* Gateway::latest_ego(std::int64_t time_ns) const {

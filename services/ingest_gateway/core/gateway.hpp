@@ -66,6 +66,7 @@ class Gateway : private EgoReceiver {
   std::int64_t last_tick_ns_ = 0;
   EgoAssembler ego_;
   Source ego_source_;
+  std::uint32_t ego_source_id_ = 0;  // whose ego readings count
   std::vector<std::unique_ptr<Source>> sources_;
   std::vector<CanRoute> can_;
   std::vector<UdpRoute> udp_;

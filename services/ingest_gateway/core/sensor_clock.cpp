@@ -7,10 +7,6 @@ namespace boresight::ingest {
 
 namespace {
 
-// gPTP keeps clocks within microseconds; 5 ms is what a clock may be ahead that has just been locked.
-constexpr std::int64_t kMaxAhead_ns = 5'000'000;
-// A real ARS548 stamps 247 ms before its list arrives; nothing sound takes a second.
-constexpr std::int64_t kMaxDelay_ns = 1'000'000'000;
 /// Stamps beyond are no times (146 years), and differences of those within do not overflow.
 constexpr std::int64_t kMaxStamp_ns = std::int64_t{1} << 62;
 
@@ -36,7 +32,7 @@ SensorClock::Result SensorClock::map(const std::optional<SensorStamp>& sensor, c
   Result result;
   result.time = {reception.received_ns - latency_ns_, reception.source};
   const bool usable = sensor && sensor->time_ns >= 0 && sensor->time_ns < kMaxStamp_ns;
-  const bool synchronised = usable && sensor->synchronised && is_plausible(*sensor, reception);
+  const bool synchronised = usable && sensor->synchronised && is_plausible(sensor->time_ns, reception);
   if (usable) {
     follow(sensor->time_ns, reception.received_ns, result);
   } else {
@@ -61,11 +57,6 @@ SensorClock::Result SensorClock::map(const std::optional<SensorStamp>& sensor, c
   was_synchronised_ = synchronised;
   keep_order(result);
   return result;
-}
-
-bool SensorClock::is_plausible(const SensorStamp& sensor, const FrameStamp& reception) const {
-  const std::int64_t delay_ns = reception.received_ns - (sensor.time_ns - reception.epoch_offset_ns);
-  return delay_ns >= -kMaxAhead_ns && delay_ns <= kMaxDelay_ns;
 }
 
 /// Keeps the estimate of the clocks' offset; begins anew after a jump.

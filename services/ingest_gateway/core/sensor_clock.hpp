@@ -30,7 +30,6 @@ class SensorClock {
   [[nodiscard]] Result map(const std::optional<SensorStamp>& sensor, const FrameStamp& reception);
 
  private:
-  [[nodiscard]] bool is_plausible(const SensorStamp& sensor, const FrameStamp& reception) const;
   void follow(std::int64_t stamp_ns, std::int64_t received_ns, Result& result);
   void begin_anew(std::int64_t stamp_ns, std::int64_t received_ns);
   void keep_order(Result& result);

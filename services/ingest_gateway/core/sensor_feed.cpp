@@ -16,8 +16,7 @@ constexpr std::int64_t kCanPeriod_ns = 20'000'000;
 SensorFeed::SensorFeed(const VehicleConfig& vehicle) {
   for (const RadarConfig& radar : vehicle.radars) {
     if (radar.profile == RadarProfile::kArs548 && radar.ego_feed) {
-      const auto address = recording::parse_ip(radar.source.sender);
-      ars548_.push_back({{address.value_or(recording::IpAddress{}), wire::ars548::kSensorPort},
+      ars548_.push_back({{recording::ip_or_unspecified(radar.source.sender), wire::ars548::kSensorPort},
                          ars548::MotionFeed({.steering_ratio = radar.steering_ratio})});
     } else if (radar.profile == RadarProfile::kArs408) {
       ars408_.push_back({radar.source.interface, radar.sensor_id, radar.output, radar.ego_feed});

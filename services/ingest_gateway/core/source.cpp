@@ -13,7 +13,7 @@ Source::Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoRe
       sink_(sink) {}
 
 RadarScan* Source::begin_scan() {
-  // A radar whose lists carry ego signals may be named as the source of those, once more and without its scans.
+  // A radar may be there for its ego signals only.
   if (id_ == 0) return nullptr;
   scan_ = sink_.begin_scan();
   return scan_;

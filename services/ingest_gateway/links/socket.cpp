@@ -35,38 +35,52 @@ int request_receive_buffer(int descriptor, int bytes) {
   return given / 2;  // the kernel reports twice what it was asked for, for its own book-keeping
 }
 
-FrameStamp read_control(const msghdr& message, std::uint32_t& drops) {
+namespace {
+
+void read_control(msghdr& message, Reception& reception) {
   const std::int64_t now_ns = runtime::monotonic_now_ns();
   const std::int64_t offset_ns = runtime::realtime_now_ns() - now_ns;
-  FrameStamp stamp{now_ns, offset_ns, TimeSource::kUserArrival};
-  for (const cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr;
-       c = CMSG_NXTHDR(const_cast<msghdr*>(&message), const_cast<cmsghdr*>(c))) {
+  reception.stamp = {now_ns, offset_ns, TimeSource::kUserArrival};
+  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
     if (c->cmsg_level != SOL_SOCKET) continue;
     if (c->cmsg_type == SO_RXQ_OVFL) {
-      std::memcpy(&drops, CMSG_DATA(c), sizeof(drops));
+      std::memcpy(&reception.drops, CMSG_DATA(c), sizeof(reception.drops));
     } else if (c->cmsg_type == SO_TIMESTAMPING) {
       timespec software{};
       std::memcpy(&software, CMSG_DATA(c), sizeof(software));
       const std::int64_t kernel_ns = static_cast<std::int64_t>(software.tv_sec) * 1'000'000'000 + software.tv_nsec;
       if (kernel_ns == 0) continue;
-      stamp.received_ns = kernel_ns - offset_ns;
-      stamp.source = TimeSource::kLinkArrival;
+      reception.stamp.received_ns = kernel_ns - offset_ns;
+      reception.stamp.source = TimeSource::kLinkArrival;
     }
   }
-  return stamp;
 }
 
-FrameStamp stamp_and_drops(const msghdr& message, std::uint32_t& drops, std::string_view of_what,
-                           const LinkEvents& events) {
-  const std::uint32_t drops_before = drops;
-  const FrameStamp stamp = read_control(message, drops);
-  if (drops != drops_before) {
-    std::array<char, 128> text{};
-    std::snprintf(text.data(), text.size(), "the kernel dropped %u %.*s: its receive buffer was full",
-                  drops - drops_before, static_cast<int>(of_what.size()), of_what.data());
-    events.on_fault(Fault::kLink, text.data());
-  }
-  return stamp;
+}  // namespace
+
+ssize_t receive(const Socket& socket, std::span<std::uint8_t> buffer, Reception& reception) {
+  iovec data{buffer.data(), buffer.size()};
+  alignas(cmsghdr) std::array<char, 256> control{};
+  msghdr message{};
+  message.msg_name = &reception.sender;
+  message.msg_namelen = sizeof(reception.sender);
+  message.msg_iov = &data;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t length = recvmsg(socket.get(), &message, MSG_DONTWAIT);
+  if (length >= 0) read_control(message, reception);
+  return length;
+}
+
+void report_drops(const Reception& reception, std::uint32_t& drops, std::string_view of_what,
+                  const LinkEvents& events) {
+  if (reception.drops == drops) return;
+  std::array<char, 128> text{};
+  std::snprintf(text.data(), text.size(), "the kernel dropped %u %.*s: its receive buffer was full",
+                reception.drops - drops, static_cast<int>(of_what.size()), of_what.data());
+  drops = reception.drops;
+  events.on_fault(Fault::kLink, text.data());
 }
 
 std::string last_error() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -40,13 +41,18 @@ void request_stamps_and_drops(int descriptor);
 /// Asks for a receive buffer of that size, by privilege if the process has it; returns what the kernel gave.
 [[nodiscard]] int request_receive_buffer(int descriptor, int bytes);
 
-/// Reads stamp and drop counter from the control messages of a received message. Without a kernel stamp the stamp is
-/// the time of the call and says so. `drops` keeps its value if the kernel said nothing.
-[[nodiscard]] FrameStamp read_control(const msghdr& message, std::uint32_t& drops);
+/// What comes with a received message.
+struct Reception {
+  sockaddr_storage sender{};
+  FrameStamp stamp;  ///< the kernel's; without one, the time of the call, and it says so
+  std::uint32_t drops =
+      0;  ///< by the kernel since the socket was opened; keeps its value where the kernel says nothing
+};
+/// Takes one message without waiting: its length, or −1 as recvmsg().
+[[nodiscard]] ssize_t receive(const Socket& socket, std::span<std::uint8_t> buffer, Reception& reception);
 
-/// The same for a link: a drop counter beyond `drops`, which follows it, is reported as a fault.
-[[nodiscard]] FrameStamp stamp_and_drops(const msghdr& message, std::uint32_t& drops, std::string_view of_what,
-                                         const LinkEvents& events);
+/// For a link: what the kernel has dropped since `drops`, which follows it, is a fault.
+void report_drops(const Reception& reception, std::uint32_t& drops, std::string_view of_what, const LinkEvents& events);
 
 [[nodiscard]] std::string last_error();
 

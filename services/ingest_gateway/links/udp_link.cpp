@@ -177,17 +177,8 @@ bool UdpLink::send(const recording::Endpoint& to, std::span<const std::uint8_t> 
 
 void UdpLink::read() {
   for (int i = 0; i < kFramesPerTurn && socket_.is_open(); ++i) {
-    sockaddr_storage sender{};
-    iovec data{buffer_.data(), buffer_.size()};
-    alignas(cmsghdr) std::array<char, 256> control{};
-    msghdr message{};
-    message.msg_name = &sender;
-    message.msg_namelen = sizeof(sender);
-    message.msg_iov = &data;
-    message.msg_iovlen = 1;
-    message.msg_control = control.data();
-    message.msg_controllen = control.size();
-    const ssize_t length = recvmsg(socket_.get(), &message, 0);
+    Reception reception{.sender = {}, .stamp = {}, .drops = kernel_drops_};
+    const ssize_t length = receive(socket_, buffer_, reception);
     if (length < 0) {
       // ECONNREFUSED tells that a peer refused what was sent before; ENETDOWN passes when the interface is back.
       if (errno != EAGAIN && errno != EINTR && errno != ECONNREFUSED && errno != ENETDOWN) {
@@ -195,14 +186,14 @@ void UdpLink::read() {
       }
       return;
     }
+    report_drops(reception, kernel_drops_, "datagrams", events_);
     recording::Frame frame;
     frame.kind = recording::FrameKind::kUdp;
-    const FrameStamp stamp = stamp_and_drops(message, kernel_drops_, "datagrams", events_);
-    frame.stamp_ns = stamp.received_ns;
-    frame.source = runtime::from_sockaddr(sender);
+    frame.stamp_ns = reception.stamp.received_ns;
+    frame.source = runtime::from_sockaddr(reception.sender);
     frame.destination = local_;
     frame.payload = {buffer_.data(), static_cast<std::size_t>(length)};
-    events_.on_frame(frame, stamp);
+    events_.on_frame(frame, reception.stamp);
   }
 }
 

@@ -3,12 +3,10 @@
 #include <cstring>
 #include <stdexcept>
 
-#include <linux/can.h>
-#include <linux/can/raw.h>
-#include <net/if.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "services/common/runtime/can_socket.hpp"
 #include "services/common/runtime/socket_address.hpp"
 #include "services/replay/senders/sender.hpp"
 
@@ -67,25 +65,15 @@ class WireSender : public Sender {
   int can_socket(const std::string& interface) {
     const auto found = can_.find(interface);
     if (found != can_.end()) return found->second;
-    const auto fail = [&](const std::string& what) { throw std::runtime_error(interface + ": " + what); };
-    const int descriptor = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);
-    if (descriptor < 0) fail(errno == EAFNOSUPPORT ? "this kernel has no CAN" : std::strerror(errno));
-    const int on = 1;
-    setsockopt(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof(on));
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
-    if (address.can_ifindex == 0) fail("no such interface");
-    if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) fail(std::strerror(errno));
+    std::string problem;
+    const int descriptor = runtime::open_can_socket(interface, false, problem);
+    if (descriptor < 0) throw std::runtime_error(interface + ": " + problem);
     return can_[interface] = descriptor;
   }
 
   bool send_can(const recording::Frame& frame) {
     canfd_frame raw{};
-    raw.can_id = frame.can_id | (frame.can_extended ? CAN_EFF_FLAG : 0u) | (frame.can_remote ? CAN_RTR_FLAG : 0u);
-    raw.len = static_cast<std::uint8_t>(std::min<std::size_t>(frame.payload.size(), sizeof(raw.data)));
-    std::copy_n(frame.payload.data(), raw.len, raw.data);
-    const std::size_t size = frame.kind == recording::FrameKind::kCanFd ? CANFD_MTU : CAN_MTU;
+    const std::size_t size = runtime::to_kernel(frame, raw);
     return write(can_socket(std::string(frame.interface_name())), &raw, size) == static_cast<ssize_t>(size);
   }
 

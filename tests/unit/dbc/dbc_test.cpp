@@ -2,7 +2,6 @@
 #include "services/ingest_gateway/dbc/dbc.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -252,13 +251,6 @@ TEST(Dbc, CarriageReturnsAndAByteOrderMark) {
   EXPECT_THAT(names_of(database.messages.at(0)), ElementsAre("S"));
 }
 
-/// Seconds to read a text.
-double seconds(const std::string& text) {
-  const auto begin = std::chrono::steady_clock::now();
-  static_cast<void>(parse_dbc(text, "big.dbc"));
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
 TEST(Dbc, ABigFileIsReadCompletely) {
   std::string text(kPreamble);
   for (int m = 0; m < 2000; ++m) {
@@ -273,8 +265,8 @@ TEST(Dbc, ABigFileIsReadCompletely) {
   EXPECT_TRUE(std::ranges::all_of(database.messages, [](const Message& m) { return m.signals.size() == 32; }));
 }
 
-// Each of these took time with the square of its size in readers that search ahead from every line.
-TEST(Dbc, HostileTextsTakeTimeInProportion) {
+// Each of these takes hours in readers that search ahead from every line: the test's time limit would end it.
+TEST(Dbc, HostileTextsComeToAnEnd) {
   constexpr std::size_t kLines = 200'000;
   const auto repeated = [](std::string_view line) {
     std::string text = "BO_ 1 A: 8 X\n";
@@ -284,7 +276,7 @@ TEST(Dbc, HostileTextsTakeTimeInProportion) {
   for (const std::string_view line :
        {"X \\\"\n", "X \"\n", "X y\n", "SG_ A : 0|1@1+ (1,0) [0|0] \"\n", "BO_ 1 A: 8 X\n",
         " SG_ A m1M : 0|8@1+ (1,0) [0|0] \"\" X\n", "SG_MUL_VAL_ 1 A A 1-1,\n"}) {
-    EXPECT_LT(seconds(repeated(line)), 5.0) << line;
+    EXPECT_LE(parse_dbc(repeated(line), "big.dbc").problems.size(), kMaxProblems) << line;
   }
   const Database database = parse_dbc(repeated("BO_ 1 A: 8 X\n"), "t.dbc");
   EXPECT_THAT(database.problems, SizeIs(kMaxProblems));

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "services/ingest_gateway/codecs/decoder.hpp"
+#include "tests/unit/ingest_gateway/fault_counts.hpp"
 
 namespace boresight::ingest {
 
 /// Does not allocate once constructed, but for the texts of faults.
-class MemoryOutput : public DecoderOutput {
+class MemoryOutput : public DecoderOutput, public FaultCounts {
  public:
   RadarScan* begin_scan() override { return refuse_memory ? nullptr : scan.get(); }
   void publish_scan(const FrameStamp& reception, const std::optional<SensorStamp>& sensor, unsigned bits) override {
@@ -32,12 +33,6 @@ class MemoryOutput : public DecoderOutput {
     ++faults[static_cast<std::size_t>(kind)];
     last_fault = what;
   }
-  [[nodiscard]] std::size_t count(Fault kind) const { return faults[static_cast<std::size_t>(kind)]; }
-  [[nodiscard]] std::size_t all_faults() const {
-    std::size_t sum = 0;
-    for (const std::size_t n : faults) sum += n;
-    return sum;
-  }
 
   std::unique_ptr<RadarScan> scan = std::make_unique<RadarScan>();
   bool refuse_memory = false;
@@ -47,7 +42,6 @@ class MemoryOutput : public DecoderOutput {
   unsigned last_counter_bits = 0;
   std::optional<std::uint32_t> conditions;
   EgoReading last_ego{};
-  std::array<std::size_t, kNumberOfFaults> faults{};
   std::string last_fault;
 };
 

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "services/ingest_gateway/core/sink.hpp"
+#include "tests/unit/ingest_gateway/fault_counts.hpp"
 
 namespace boresight::ingest {
 
-class MemorySink : public Sink {
+class MemorySink : public Sink, public FaultCounts {
  public:
   RadarScan* begin_scan() override { return refuse_memory ? nullptr : scan.get(); }
   void publish_scan(std::uint32_t radar_id, const MeasurementTime& time) override {
@@ -28,12 +29,6 @@ class MemorySink : public Sink {
     last_fault_radar = radar_id;
   }
   SourceStatistics& statistics(std::uint32_t radar_id) override { return source_statistics[radar_id]; }
-  [[nodiscard]] std::size_t count(Fault kind) const { return faults[static_cast<std::size_t>(kind)]; }
-  [[nodiscard]] std::size_t all_faults() const {
-    std::size_t sum = 0;
-    for (const std::size_t n : faults) sum += n;
-    return sum;
-  }
 
   std::unique_ptr<RadarScan> scan = std::make_unique<RadarScan>();
   EgoMotion ego{};
@@ -42,7 +37,6 @@ class MemorySink : public Sink {
   std::array<SourceStatistics, kMaxRadars + 1> source_statistics{};
   std::uint32_t last_radar = 0, last_fault_radar = 99;
   MeasurementTime last_time{};
-  std::array<std::size_t, kNumberOfFaults> faults{};
 };
 
 }  // namespace boresight::ingest

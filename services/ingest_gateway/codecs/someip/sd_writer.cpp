@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/ingest_gateway/codecs/someip/big_endian.hpp"
+#include "services/ingest_gateway/codecs/big_endian.hpp"
 
 namespace boresight::ingest::someip {
 
