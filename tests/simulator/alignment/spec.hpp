@@ -35,7 +35,7 @@ struct AlignmentRadar {
 };
 
 struct Knock {
-  double time_s = 0.0;
+  double time_s = 0.0;                                  ///< of measurement, as AlignmentEvent::time_s
   std::size_t radar = 0;                                ///< index
   Eigen::Vector3d rotation_vehicle_rad{0.0, 0.0, 0.0};  ///< turn about vehicle axes, Exp(d)·R
 };
@@ -44,8 +44,8 @@ struct AlignmentSpec {
   double duration_s = 180.0;
   RoadKind road = RoadKind::kMixed;
   std::uint64_t seed = 1;
-  double speed_scale = 1.01;  ///< k_v
-  std::vector<AlignmentRadar> radars;
+  double speed_scale = 1.01;           ///< k_v
+  std::vector<AlignmentRadar> radars;  ///< their ids need not be 1, 2, …; `config.noise` is also the real noise
   MountingModel model = MountingModel::kExact;
   ElevationKind elevation = ElevationKind::kScene;
   double ego_rate_hz = 20.0;
