@@ -4,7 +4,7 @@ namespace boresight::alignment {
 
 Config read_config(config::Reader root) {
   Config c;
-  c.method = root.choice<Method>("method", {{"azimuth_1d", Method::kAzimuth1d}}, c.method);
+  c.method = root.choice<MethodName>("method", {{"azimuth_1d", MethodName::kAzimuth1d}}, c.method);
   c.min_speed_mps = root.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
   c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
   config::Reader prior = root.table("prior");

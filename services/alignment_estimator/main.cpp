@@ -27,7 +27,8 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Conf
                                      .time_source = scan.header.time_source,
                                      .stage = std::nullopt,
                                      .begin_ns = 0};
-        estimates.publish(origin, [&](AlignmentEstimate& out) { estimator.radar(scan.header.source_id)->write(out); });
+        estimates.publish(
+            origin, [&](AlignmentEstimate& out) { static_cast<void>(estimator.write(scan.header.source_id, out)); });
         break;
       }
     }

@@ -30,7 +30,7 @@ class Chain {
     }
     if (estimator_.add_scan(*event.scan) == alignment::ScanResult::kPublish) {
       AlignmentEstimate estimate{};
-      estimator_.radar(event.scan->header.source_id)->write(estimate);
+      static_cast<void>(estimator_.write(event.scan->header.source_id, estimate));
       estimate.header.source_id = event.scan->header.source_id;
       estimate.header.sequence = ++estimates_;
       estimate.header.measurement_time_ns = event.scan->header.measurement_time_ns;

@@ -122,13 +122,14 @@ TEST(AlignmentDrive, YawAndSpeedScaleAreFoundDespitePitchAndRoll) {
   }
   finish();
   for (const auto& [id, yaw_rad] : truth.yaw_rad) {
-    const alignment::Azimuth1d& radar = *estimator.radar(id);
-    std::printf("radar %u: k_v %.5f (true %.5f), yaw %+.3f° ± %.3f° (true %+.3f°)\n", id, radar.speed_scale(),
-                truth.speed_scale, radar.yaw_rad() / kDegree, std::sqrt(radar.covariance()(1, 1)) / kDegree,
+    AlignmentEstimate found{};
+    ASSERT_TRUE(estimator.write(id, found));
+    std::printf("radar %u: k_v %.5f (true %.5f), yaw %+.3f° ± %.3f° (true %+.3f°)\n", id, found.speed_scale,
+                truth.speed_scale, found.alignment_yaw_rad / kDegree, std::sqrt(found.covariance[5]) / kDegree,
                 yaw_rad / kDegree);
-    EXPECT_EQ(radar.state(), AlignmentState::kConverged) << id;
-    EXPECT_NEAR(radar.speed_scale(), truth.speed_scale, 5e-4) << id;
-    EXPECT_NEAR(radar.yaw_rad(), yaw_rad, 0.05 * kDegree) << id;
+    EXPECT_EQ(found.state, AlignmentState::kConverged) << id;
+    EXPECT_NEAR(found.speed_scale, truth.speed_scale, 5e-4) << id;
+    EXPECT_NEAR(found.alignment_yaw_rad, yaw_rad, 0.05 * kDegree) << id;
   }
 }
 

@@ -126,11 +126,12 @@ TEST_F(Comma2k19, SpeedScaleIsThatOfTheInertialReference) {
       static_cast<void>(estimator.add_scan(*message.scan));
     }
   }
-  const alignment::Azimuth1d& radar = *estimator.radar(1);
-  std::printf("k_v %.4f ± %.4f (inertial / signalled speed %.4f), yaw %+.2f° ± %.2f°\n", radar.speed_scale(),
-              std::sqrt(radar.covariance()(0, 0)), reference / signalled, radar.yaw_rad() * 180.0 / M_PI,
-              std::sqrt(radar.covariance()(1, 1)) * 180.0 / M_PI);
-  EXPECT_NEAR(radar.speed_scale() / (reference / signalled), 1.0, 0.005);
+  AlignmentEstimate radar{};
+  ASSERT_TRUE(estimator.write(1, radar));
+  std::printf("k_v %.4f ± %.4f (inertial / signalled speed %.4f), yaw %+.2f° ± %.2f°\n", radar.speed_scale,
+              std::sqrt(radar.covariance[0]), reference / signalled, radar.alignment_yaw_rad * 180.0 / M_PI,
+              std::sqrt(radar.covariance[5]) * 180.0 / M_PI);
+  EXPECT_NEAR(radar.speed_scale / (reference / signalled), 1.0, 0.005);
 }
 
 }  // namespace

@@ -33,8 +33,9 @@ Result estimate(const Decoding& drive, const VehicleConfig& car, const alignment
       static_cast<void>(estimator.add_scan(*message.scan));
     }
   }
-  const alignment::Azimuth1d& radar = *estimator.radar(1);
-  return {radar.speed_scale(), std::sqrt(radar.covariance()(0, 0)), radar.yaw_rad()};
+  AlignmentEstimate found{};
+  EXPECT_TRUE(estimator.write(1, found));
+  return {found.speed_scale, std::sqrt(found.covariance[0]), found.alignment_yaw_rad};
 }
 
 class RealDrive : public testing::Test {

@@ -66,13 +66,9 @@ Eigen::Matrix2d positive_part(const Eigen::Matrix2d& matrix, const Eigen::Vector
   return scale.cwiseInverse().asDiagonal() * positive * scale.cwiseInverse().asDiagonal();
 }
 
-bool all_finite(double a, double b, double c, double d) {
-  return std::isfinite(a) && std::isfinite(b) && std::isfinite(c) && std::isfinite(d);
-}
-
 }  // namespace
 
-Azimuth1d::Azimuth1d(const RadarConfig& radar, const Config& config)
+YawFilter::YawFilter(const RadarConfig& radar, const Config& config)
     : radar_(radar), config_(config), nominal_(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0)) {
   // At k_v = 1 and yaw = 0 the two parts of p are k_v and yaw.
   covariance_ = Eigen::Vector2d(config.prior_speed_scale_std * config.prior_speed_scale_std,
@@ -81,8 +77,13 @@ Azimuth1d::Azimuth1d(const RadarConfig& radar, const Config& config)
   prior_information_ = covariance_.inverse();
 }
 
-void Azimuth1d::process(const RadarScan& scan, const EgoSample& ego) {
-  const std::int64_t time_ns = scan.header.measurement_time_ns;
+void YawFilter::process(const RadarScan& scan, const EgoSample& ego) {
+  take_detections(scan, radar_, detections_);
+  process(detections_, ego);
+}
+
+void YawFilter::process(const ScanDetections& scan, const EgoSample& ego) {
+  const std::int64_t time_ns = scan.time_ns;
   const double since_last_s = last_time_ns_ == 0 ? 0.0 : static_cast<double>(time_ns - last_time_ns_) * 1e-9;
   // A recording that starts again, or a pause, is no drive; the estimate stays.
   const double elapsed_s = since_last_s > 0.0 && since_last_s < 1.0 ? since_last_s : radar_.cycle_time_s;
@@ -113,35 +114,22 @@ void Azimuth1d::process(const RadarScan& scan, const EgoSample& ego) {
   state_ = sure ? AlignmentState::kConverged : AlignmentState::kConverging;
 }
 
-void Azimuth1d::collect(const RadarScan& scan, const EgoSample& ego) {
-  number_of_candidates_ = 0;
-  const bool has_elevation = scan.has(scan_field::kElevation);
-  const bool has_stds = scan.has(scan_field::kStds);
+void YawFilter::collect(const ScanDetections& scan, const EgoSample& ego) {
+  number_of_candidates_ = scan.count;
   const UnknownElevation unknown = unknown_elevation(radar_.field_of_view);
-  unknown_cosine_variance_ = has_elevation ? 0.0 : unknown.variance / (unknown.mean_cosine * unknown.mean_cosine);
+  unknown_cosine_variance_ = scan.has_elevation ? 0.0 : unknown.variance / (unknown.mean_cosine * unknown.mean_cosine);
   const Eigen::Vector3d velocity =
       geometry::sensor_velocity(p_.norm(), ego.speed_mps, ego.yaw_rate_radps, radar_.mounting_pose.position_m);
-  const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
-  for (std::size_t i = 0; i < count; ++i) {
-    if ((scan.detection_flags[i] & (detection_flag::kInvalid | detection_flag::kAmbiguous)) != 0) continue;
-    const double azimuth = scan.azimuth_rad[i];
-    const double elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
-    const double range_rate = scan.range_rate_mps[i];
-    if (!all_finite(azimuth, elevation, range_rate, 0.0)) continue;
-    double azimuth_std = has_stds ? scan.azimuth_std_rad[i] : radar_.noise.azimuth_std_rad;
-    double elevation_std = has_stds && has_elevation ? scan.elevation_std_rad[i] : radar_.noise.elevation_std_rad;
-    double range_rate_std = has_stds ? scan.range_rate_std_mps[i] : radar_.noise.range_rate_std_mps;
-    if (!(azimuth_std > 0.0)) azimuth_std = radar_.noise.azimuth_std_rad;
-    if (!(elevation_std > 0.0)) elevation_std = radar_.noise.elevation_std_rad;
-    if (!(range_rate_std > 0.0)) range_rate_std = radar_.noise.range_rate_std_mps;
-    if (!all_finite(azimuth_std, elevation_std, range_rate_std, 0.0)) continue;
-    const double ca = std::cos(azimuth), sa = std::sin(azimuth);
-    const double ce = has_elevation ? std::cos(elevation) : unknown.mean_cosine, se = std::sin(elevation);
-    Candidate& candidate = candidates_[number_of_candidates_++];
+  for (std::size_t i = 0; i < scan.count; ++i) {
+    const double azimuth_std = scan.azimuth_std_rad[i], range_rate_std = scan.range_rate_std_mps[i];
+    const double ca = std::cos(scan.azimuth_rad[i]), sa = std::sin(scan.azimuth_rad[i]);
+    const double ce = scan.has_elevation ? std::cos(scan.elevation_rad[i]) : unknown.mean_cosine;
+    const double se = std::sin(scan.elevation_rad[i]);
+    Candidate& candidate = candidates_[i];
     candidate.direction = nominal_ * Eigen::Vector3d(ce * ca, ce * sa, se);
-    candidate.range_rate_mps = range_rate;
-    double by_elevation = velocity.dot(nominal_ * Eigen::Vector3d(-se * ca, -se * sa, ce)) * elevation_std;
-    if (!has_elevation)
+    candidate.range_rate_mps = scan.range_rate_mps[i];
+    double by_elevation = velocity.dot(nominal_ * Eigen::Vector3d(-se * ca, -se * sa, ce)) * scan.elevation_std_rad[i];
+    if (!scan.has_elevation)
       by_elevation = velocity.dot(nominal_ * Eigen::Vector3d(ca, sa, 0.0)) * std::sqrt(unknown.variance);
     candidate.across = nominal_ * Eigen::Vector3d(-ce * sa, ce * ca, 0.0);
     candidate.azimuth_variance = azimuth_std * azimuth_std;
@@ -149,11 +137,11 @@ void Azimuth1d::collect(const RadarScan& scan, const EgoSample& ego) {
   }
 }
 
-double Azimuth1d::start_std_mps() const {
+double YawFilter::start_std_mps() const {
   return config_.start_gate_mps * std::max(0.0, 1.0 - since_start_s_ / config_.start_duration_s);
 }
 
-void Azimuth1d::drift(double elapsed_s) {
+void YawFilter::drift(double elapsed_s) {
   const Eigen::Matrix2d before = covariance_;
   covariance_(0, 0) += config_.speed_scale_drift_per_sqrt_s * config_.speed_scale_drift_per_sqrt_s * elapsed_s;
   covariance_(1, 1) += config_.yaw_drift_rad_per_sqrt_s * config_.yaw_drift_rad_per_sqrt_s * elapsed_s;
@@ -162,7 +150,7 @@ void Azimuth1d::drift(double elapsed_s) {
   feigned_ = (keep * feigned_ * keep.transpose()).eval();
 }
 
-void Azimuth1d::update(const EgoSample& ego) {
+void YawFilter::update(const EgoSample& ego) {
   const ScanMotion motion = motion_of(ego, radar_);
   const Eigen::Matrix2d prior_information = covariance_.inverse();
   const Eigen::Vector2d prior = p_;
@@ -220,7 +208,7 @@ void Azimuth1d::update(const EgoSample& ego) {
   feigned_ += feigned;
 }
 
-void Azimuth1d::count_residuals(const EgoSample& ego) {
+void YawFilter::count_residuals(const EgoSample& ego) {
   const ScanMotion motion = motion_of(ego, radar_);
   const double speed_scale = p_.norm(), yaw_rad = std::atan2(p_(1), p_(0));
   for (std::size_t i = 0; i < number_of_candidates_; ++i) {
@@ -240,7 +228,7 @@ void Azimuth1d::count_residuals(const EgoSample& ego) {
   }
 }
 
-void Azimuth1d::judge_scene() {
+void YawFilter::judge_scene() {
   if (stationary_seen_) return;
   stationary_seen_ = residuals_.stands_out();
   // A solution that was drawn from a background alone would be too sure of itself to be left again.
@@ -248,7 +236,7 @@ void Azimuth1d::judge_scene() {
     restart();
 }
 
-void Azimuth1d::restart() {
+void YawFilter::restart() {
   p_ = {1.0, 0.0};
   covariance_ = prior_information_.inverse();
   feigned_.setZero();
@@ -256,7 +244,7 @@ void Azimuth1d::restart() {
   residuals_ = {};
 }
 
-Azimuth1d::Supported Azimuth1d::supported() const {
+YawFilter::Supported YawFilter::supported() const {
   const Eigen::Vector2d prior(1.0, 0.0);
   const Eigen::Matrix2d prior_covariance = prior_information_.inverse();
   if (!stationary_seen_) return {prior, prior_covariance};
@@ -267,12 +255,12 @@ Azimuth1d::Supported Azimuth1d::supported() const {
   return {prior + covariance * learnt * (p_ - prior), covariance};
 }
 
-double Azimuth1d::yaw_rad() const {
+double YawFilter::yaw_rad() const {
   const Eigen::Vector2d p = supported().p;
   return std::atan2(p(1), p(0));
 }
 
-Eigen::Matrix2d Azimuth1d::covariance() const {
+Eigen::Matrix2d YawFilter::covariance() const {
   const Supported known = supported();
   if (!stationary_seen_) return known.covariance;
   const double speed_scale = known.p.norm();
@@ -286,7 +274,7 @@ Eigen::Matrix2d Azimuth1d::covariance() const {
   return published;
 }
 
-void Azimuth1d::write(AlignmentEstimate& out) const {
+void YawFilter::write(AlignmentEstimate& out) const {
   out.state = state_;
   out.reserved = {};
   const Eigen::Matrix2d published = covariance();

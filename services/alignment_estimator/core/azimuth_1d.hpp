@@ -10,7 +10,8 @@
 #include "interfaces/messages/alignment_estimate.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/alignment_estimator/core/config.hpp"
-#include "services/alignment_estimator/core/residual_statistics.hpp"
+#include "services/alignment_estimator/core/scan_detections.hpp"
+#include "services/alignment_estimator/core/scene_statistics.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -22,17 +23,22 @@ namespace boresight::alignment {
 /// are unknowns of the scan and eliminated; gradients are taken at the line of sight that fits best, since the noise of
 /// the angles is in both sides of the equation (errors in variables, Report A §1.4), and the information that this
 /// noise feigns is taken off; nothing is claimed before a stationary world stands out of the background.
-class Azimuth1d {
+class YawFilter {
  public:
-  Azimuth1d(const RadarConfig& radar, const Config& config);
+  YawFilter(const RadarConfig& radar, const Config& config);
 
   /// Takes one scan with the ego motion of its measurement time.
   void process(const RadarScan& scan, const EgoSample& ego);
+  void process(const ScanDetections& scan, const EgoSample& ego);
 
   /// Writes everything but the header.
   void write(AlignmentEstimate& out) const;
 
   [[nodiscard]] AlignmentState state() const { return state_; }
+  [[nodiscard]] std::uint64_t scans_used() const { return scans_used_; }
+  [[nodiscard]] std::uint64_t detections_used() const { return detections_used_; }
+  [[nodiscard]] double seconds_of_drive() const { return seconds_of_drive_; }
+  [[nodiscard]] double inlier_ratio() const { return residuals_.inlier_ratio(); }
   /// 1 and 0 while no stationary world was seen.
   [[nodiscard]] double speed_scale() const { return supported().p.norm(); }
   [[nodiscard]] double yaw_rad() const;
@@ -54,7 +60,7 @@ class Azimuth1d {
     Eigen::Matrix2d covariance;
   };
   [[nodiscard]] Supported supported() const;
-  void collect(const RadarScan& scan, const EgoSample& ego);
+  void collect(const ScanDetections& scan, const EgoSample& ego);
   void drift(double elapsed_s);
   void update(const EgoSample& ego);
   void count_residuals(const EgoSample& ego);
@@ -78,9 +84,10 @@ class Azimuth1d {
   double seconds_of_drive_ = 0.0;
   std::uint64_t scans_used_ = 0;
   std::uint64_t detections_used_ = 0;
-  ResidualStatistics residuals_;
+  SceneStatistics residuals_;
   std::array<Candidate, kMaxDetections> candidates_;
   std::size_t number_of_candidates_ = 0;
+  ScanDetections detections_;
 };
 
 }  // namespace boresight::alignment

@@ -1,15 +1,44 @@
 // Settings of the alignment estimator; the defaults are what config/services/alignment_estimator.toml ships.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace boresight::alignment {
 
-/// Estimators to choose from.
-enum class Method : std::uint8_t { kAzimuth1d };
+/// Estimators to choose from: Boresight's own, and those of the literature (Report A §8).
+enum class MethodName : std::uint8_t { kBoresight, kSteepestDescent, kNls, kTls, kNelderMead, kAzimuth1d };
+
+/// As they are called in configuration and on the command line.
+inline constexpr std::array<std::pair<std::string_view, MethodName>, 6> kMethodNames{{
+    {"boresight", MethodName::kBoresight},
+    {"steepest_descent", MethodName::kSteepestDescent},
+    {"nls", MethodName::kNls},
+    {"tls", MethodName::kTls},
+    {"nelder_mead", MethodName::kNelderMead},
+    {"azimuth_1d", MethodName::kAzimuth1d},
+}};
+
+/// What a simulated drive knows of itself; added to the nominal angles.
+struct Truth {
+  struct Radar {
+    std::uint32_t id = 0;
+    double yaw_rad = 0.0;
+    double pitch_rad = 0.0;
+    double roll_rad = 0.0;
+  };
+  double speed_scale = 1.0;
+  std::vector<Radar> radars;
+};
 
 struct Config {
-  Method method = Method::kAzimuth1d;
+  MethodName method = MethodName::kAzimuth1d;
+  std::optional<Truth> truth;         ///< for the NEES
+  double residual_gate_sigma = 4.0;   ///< key figures: residuals beyond this many stds are no inliers
   double min_speed_mps = 5.0;         ///< slower driving tells nothing (Report A §8)
   double prior_yaw_std_rad = 0.0698;  ///< 4°: how crooked a radar may be before anything was measured
   double prior_speed_scale_std = 0.03;

@@ -1,34 +1,119 @@
 #include "services/alignment_estimator/core/estimator.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/alignment_estimator/core/kpi/count_residuals.hpp"
+#include "services/alignment_estimator/core/kpi/nees.hpp"
+#include "services/alignment_estimator/core/make_method.hpp"
+#include "services/alignment_estimator/core/write_estimate.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
 
 namespace boresight::alignment {
 
-Estimator::Estimator(const VehicleConfig& vehicle, const Config& config) : config_(config) {
-  radars_.reserve(vehicle.radars.size());
-  for (const RadarConfig& radar : vehicle.radars) radars_.push_back({radar.id, Azimuth1d(radar, config), 0});
+namespace {
+
+/// R(sensor→vehicle) as really mounted; none if the truth does not name the radar.
+std::optional<Eigen::Matrix3d> actual_mounting(const RadarConfig& radar, const std::optional<Truth>& truth) {
+  if (!truth) return std::nullopt;
+  for (const Truth::Radar& t : truth->radars) {
+    if (t.id == radar.id) {
+      return geometry::sensor_to_vehicle(radar.mounting_pose, t.yaw_rad, t.pitch_rad, t.roll_rad);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Estimator::Estimator(const VehicleConfig& vehicle, const Config& config)
+    : config_(config), method_(make_method(vehicle, config)) {
+  radars_.resize(vehicle.radars.size());
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    radars_[i].config = vehicle.radars[i];
+    radars_[i].actual = actual_mounting(vehicle.radars[i], config.truth);
+  }
 }
 
 ScanResult Estimator::add_scan(const RadarScan& scan) {
-  const auto entry =
-      std::find_if(radars_.begin(), radars_.end(), [&](const Entry& e) { return e.id == scan.header.source_id; });
-  if (entry == radars_.end()) return ScanResult::kUnknownRadar;
+  const auto radar = std::find_if(radars_.begin(), radars_.end(),
+                                  [&](const Radar& r) { return r.config.id == scan.header.source_id; });
+  if (radar == radars_.end()) return ScanResult::kUnknownRadar;
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   const EgoSample ego = ego_.at(time_ns);
-  entry->method.process(scan, ego);
+  const bool moves = ego.valid && !ego.stale;
+  radar->seen = true;
+  if (moves) {
+    const auto index = static_cast<std::size_t>(radar - radars_.begin());
+    take_detections(scan, radar->config, detections_);
+    method_->process(index, detections_, ego);
+    observe(index, ego);
+  }
   const auto period_ns = static_cast<std::int64_t>(config_.publish_period_s * 1e9);
   // The measurement clock decides, so that a replay publishes the same estimates at any speed; a clock that went
   // back publishes at once.
-  if (time_ns >= entry->next_publish_ns || time_ns < entry->next_publish_ns - 2 * period_ns) {
-    entry->next_publish_ns = time_ns + period_ns;
+  if (time_ns >= radar->next_publish_ns || time_ns < radar->next_publish_ns - 2 * period_ns) {
+    radar->next_publish_ns = time_ns + period_ns;
     return ScanResult::kPublish;
   }
-  return ego.valid && !ego.stale ? ScanResult::kUsed : ScanResult::kNoEgoMotion;
+  return moves ? ScanResult::kUsed : ScanResult::kNoEgoMotion;
 }
 
-const Azimuth1d* Estimator::radar(std::uint32_t id) const {
-  const auto entry = std::find_if(radars_.begin(), radars_.end(), [&](const Entry& e) { return e.id == id; });
-  return entry == radars_.end() ? nullptr : &entry->method;
+void Estimator::observe(std::size_t index, const EgoSample& ego) {
+  Radar& radar = radars_[index];
+  const RadarEstimate e = method_->estimate(index);
+  // A scan that the method could not use (too slow, too few detections) is no evidence of how well it does.
+  if (e.scans_used == radar.scans_used) return;
+  radar.residuals.fade(std::max(0.0, e.seconds_of_drive - radar.seconds_of_drive), config_.kpi_window_s);
+  radar.scans_used = e.scans_used;
+  radar.seconds_of_drive = e.seconds_of_drive;
+  const std::span<double> predicted(predicted_.data(), detections_.count);
+  method_->predict(index, detections_, ego, predicted);
+  count_residuals(radar.config, e, detections_, ego, predicted, config_.residual_gate_sigma, radar.residuals);
+  radar.convergence.add(e.seconds_of_drive, e.scans_used, vehicle_form(radar.config, e), e.knock.count);
+}
+
+RadarEstimate Estimator::estimate(std::size_t radar) const {
+  RadarEstimate e = method_->estimate(radar);
+  // Methods are not asked to judge scans without ego motion.
+  if (radars_[radar].seen) e.state = std::max(e.state, AlignmentState::kWaiting);
+  return e;
+}
+
+bool Estimator::write(std::uint32_t radar_id, AlignmentEstimate& out) const {
+  const auto found =
+      std::find_if(radars_.begin(), radars_.end(), [&](const Radar& r) { return r.config.id == radar_id; });
+  if (found == radars_.end()) return false;
+  const RadarEstimate e = estimate(static_cast<std::size_t>(found - radars_.begin()));
+  write_estimate(found->config, e, config_.prior_yaw_std_rad, out);
+  AlignmentKpis& kpis = out.kpis;
+  found->residuals.write(kpis);
+  kpis.seconds_of_drive = static_cast<float>(e.seconds_of_drive);
+  kpis.scans_used = e.scans_used;
+  kpis.detections_used = e.detections_used;
+  kpis.reserved = 0;
+  constexpr std::array<std::uint32_t, 4> kAxes{alignment_axis::kSpeedScale, alignment_axis::kVehicleYaw,
+                                               alignment_axis::kVehiclePitch, alignment_axis::kVehicleRoll};
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    const auto parameter = static_cast<AlignmentParameter>(i);
+    const double std = out.is_observable(kAxes[i]) ? std::sqrt(static_cast<double>(out.vehicle_covariance[5 * i]))
+                                                   : std::numeric_limits<double>::infinity();
+    const Convergence::Settled settled = found->convergence.to_95_percent(parameter, std);
+    kpis.seconds_to_95_percent[i] = static_cast<float>(settled.seconds);
+    kpis.scans_to_95_percent[i] = settled.scans;
+    kpis.drift_per_minute[i] = static_cast<float>(found->convergence.drift_per_minute(parameter));
+  }
+  kpis.nees = found->actual ? static_cast<float>(nees(e, config_.truth->speed_scale, *found->actual))
+                            : std::numeric_limits<float>::quiet_NaN();
+  return true;
+}
+
+Memory Estimator::memory() const {
+  Memory memory;
+  method_->save(memory);
+  return memory;
 }
 
 }  // namespace boresight::alignment

@@ -1,12 +1,16 @@
-// All radars of the vehicle, each with its estimator, fed in the order of the messages.
+// All radars of the vehicle under one method, fed in the order of the messages; estimates with their key figures out.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "services/alignment_estimator/core/azimuth_1d.hpp"
+#include "interfaces/messages/ego_motion.hpp"
 #include "services/alignment_estimator/core/config.hpp"
+#include "services/alignment_estimator/core/kpi/convergence.hpp"
+#include "services/alignment_estimator/core/kpi/residual_statistics.hpp"
+#include "services/alignment_estimator/core/method.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -20,24 +24,46 @@ enum class ScanResult : std::uint8_t {
   kNoEgoMotion,   ///< waiting: no ego motion at the time of the scan
 };
 
+/// No allocation after construction.
 class Estimator {
  public:
+  /// Throws std::invalid_argument for a method that is not on offer.
   Estimator(const VehicleConfig& vehicle, const Config& config);
 
   void add_ego_motion(const EgoMotion& motion) { ego_.add(motion); }
   [[nodiscard]] ScanResult add_scan(const RadarScan& scan);
-  /// The estimate of one radar; nullptr for an unknown one.
-  [[nodiscard]] const Azimuth1d* radar(std::uint32_t id) const;
+  /// Everything but the header, key figures included; false for an unknown radar.
+  [[nodiscard]] bool write(std::uint32_t radar_id, AlignmentEstimate& out) const;
+
+  /// By the place in the vehicle's list of radars.
+  [[nodiscard]] RadarEstimate estimate(std::size_t radar) const;
+  [[nodiscard]] const ResidualStatistics& residuals(std::size_t radar) const { return radars_[radar].residuals; }
+  [[nodiscard]] const Convergence& convergence(std::size_t radar) const { return radars_[radar].convergence; }
+
+  /// What shall survive the ignition cycle; without radars if the method remembers nothing.
+  [[nodiscard]] Memory memory() const;
+  /// To be called before the first scan.
+  void restore(const Memory& memory) { method_->restore(memory); }
 
  private:
-  struct Entry {
-    std::uint32_t id;
-    Azimuth1d method;
-    std::int64_t next_publish_ns;
+  struct Radar {
+    RadarConfig config;
+    std::optional<Eigen::Matrix3d> actual;  ///< as really mounted, where the truth is known
+    bool seen = false;
+    std::int64_t next_publish_ns = 0;
+    std::uint64_t scans_used = 0;
+    double seconds_of_drive = 0.0;
+    ResidualStatistics residuals;
+    Convergence convergence;
   };
+  void observe(std::size_t index, const EgoSample& ego);
+
   Config config_;
   EgoHistory ego_;
-  std::vector<Entry> radars_;
+  std::unique_ptr<Method> method_;
+  std::vector<Radar> radars_;
+  ScanDetections detections_;
+  std::array<double, kMaxDetections> predicted_;
 };
 
 }  // namespace boresight::alignment

@@ -22,8 +22,8 @@ Config pure() {
   return c;
 }
 
-std::unique_ptr<Azimuth1d> run(const SyntheticDrive& drive, const Config& config, int scans, unsigned seed) {
-  auto method = std::make_unique<Azimuth1d>(drive.radar(), config);
+std::unique_ptr<YawFilter> run(const SyntheticDrive& drive, const Config& config, int scans, unsigned seed) {
+  auto method = std::make_unique<YawFilter>(drive.radar(), config);
   Synthesizer synthesizer(drive, seed);
   for (int i = 0; i < scans; ++i) {
     synthesizer.next();
@@ -91,7 +91,7 @@ TEST(Azimuth1d, AMirroredWorldGivesTheMirroredAnswer) {
 
 TEST(Azimuth1d, TheOrderOfDetectionsDoesNotMatter) {
   const SyntheticDrive drive;
-  Azimuth1d forward(drive.radar(), Config{}), backward(drive.radar(), Config{});
+  YawFilter forward(drive.radar(), Config{}), backward(drive.radar(), Config{});
   Synthesizer synthesizer(drive, 9);
   for (int i = 0; i < 100; ++i) {
     synthesizer.next();
@@ -115,7 +115,7 @@ TEST(Azimuth1d, IsTheBatchTotalLeastSquaresOfTheSameData) {
   config.start_gate_mps = 0.0;
   const RadarConfig radar = drive.radar();
   const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
-  Azimuth1d filter(radar, config);
+  YawFilter filter(radar, config);
   Synthesizer synthesizer(drive, 11);
   struct Row {
     double azimuth, range_rate;
@@ -228,7 +228,7 @@ TEST(Azimuth1d, ErrorsOfTheSpeedSignalAreInItsCovariance) {
 
 TEST(Azimuth1d, StandingStillOrAloneItWaits) {
   SyntheticDrive drive;
-  Azimuth1d method(drive.radar(), Config{});
+  YawFilter method(drive.radar(), Config{});
   EXPECT_EQ(method.state(), AlignmentState::kNoData);
   Synthesizer synthesizer(drive, 1);
   const auto expect_untouched = [&](const char* what) {
@@ -269,7 +269,7 @@ TEST(Azimuth1d, StandingStillOrAloneItWaits) {
 
 TEST(Azimuth1d, NotANumberAmongGoodOnesHarmsNothing) {
   const SyntheticDrive drive;
-  Azimuth1d method(drive.radar(), Config{});
+  YawFilter method(drive.radar(), Config{});
   Synthesizer synthesizer(drive, 6);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (int i = 0; i < 300; ++i) {
@@ -288,7 +288,7 @@ TEST(Azimuth1d, FollowsAnEstimateThatItPublishes) {
   AlignmentEstimate out{};
   method->write(out);
   EXPECT_EQ(out.state, AlignmentState::kConverged);
-  EXPECT_EQ(out.observable, alignment_axis::kSpeedScale | alignment_axis::kYaw);
+  EXPECT_EQ(out.observable, alignment_axis::kSpeedScale | alignment_axis::kYaw | alignment_axis::kVehicleYaw);
   EXPECT_NEAR(out.alignment_yaw_rad, method->yaw_rad(), 1e-7);
   EXPECT_NEAR(out.covariance[5], method->covariance()(1, 1), 1e-9);
   EXPECT_GT(out.kpis.inlier_ratio, 0.7F);
@@ -300,7 +300,7 @@ TEST(Azimuth1d, FollowsAnEstimateThatItPublishes) {
 
 TEST(Azimuth1d, AllocatesNothing) {
   const SyntheticDrive drive;
-  Azimuth1d method(drive.radar(), Config{});
+  YawFilter method(drive.radar(), Config{});
   Synthesizer synthesizer(drive, 10);
   AlignmentEstimate out{};
   for (int i = 0; i < 10; ++i) {

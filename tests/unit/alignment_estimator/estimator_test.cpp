@@ -22,6 +22,12 @@ EgoMotion motion(std::int64_t time_ns, const EgoSample& ego) {
   return m;
 }
 
+AlignmentEstimate written(const Estimator& estimator, std::uint32_t radar) {
+  AlignmentEstimate out{};
+  EXPECT_TRUE(estimator.write(radar, out));
+  return out;
+}
+
 VehicleConfig car(const SyntheticDrive& left, const SyntheticDrive& right) {
   VehicleConfig vehicle;
   vehicle.radars.push_back(left.radar());
@@ -45,9 +51,10 @@ TEST(Estimator, EachRadarHasItsOwnEstimate) {
     static_cast<void>(estimator.add_scan(*a.scan));
     static_cast<void>(estimator.add_scan(*b.scan));
   }
-  EXPECT_NEAR(estimator.radar(1)->yaw_rad(), left.yaw_rad, 0.03 * kDegree);
-  EXPECT_NEAR(estimator.radar(2)->yaw_rad(), right.yaw_rad, 0.03 * kDegree);
-  EXPECT_EQ(estimator.radar(3), nullptr);
+  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, left.yaw_rad, 0.03 * kDegree);
+  EXPECT_NEAR(written(estimator, 2).alignment_yaw_rad, right.yaw_rad, 0.03 * kDegree);
+  AlignmentEstimate out{};
+  EXPECT_FALSE(estimator.write(3, out));
 }
 
 TEST(Estimator, PublishesByTheMeasurementClock) {
@@ -75,7 +82,7 @@ TEST(Estimator, SaysWhatItCannotUse) {
   EXPECT_EQ(estimator.add_scan(scan), ScanResult::kPublish) << "even without ego motion: that it waits";
   scan.header.measurement_time_ns += 50'000'000;
   EXPECT_EQ(estimator.add_scan(scan), ScanResult::kNoEgoMotion);
-  EXPECT_EQ(estimator.radar(1)->state(), AlignmentState::kWaiting);
+  EXPECT_EQ(written(estimator, 1).state, AlignmentState::kWaiting);
   EgoMotion bad = motion(scan.header.measurement_time_ns, synthesizer.ego);
   bad.speed_mps = std::numeric_limits<float>::quiet_NaN();
   estimator.add_ego_motion(bad);
@@ -107,18 +114,19 @@ TEST(Estimator, LyingLengthsAndWildNumbersDoNotSpoilIt) {
     // Beyond what is valid there are stale rows; a count beyond the capacity must not be believed.
     if (i % 10 == 7) scan.number_of_valid_detections = 0xFFFFFFFF;
     static_cast<void>(estimator.add_scan(scan));
-    const Azimuth1d& radar = *estimator.radar(1);
-    ASSERT_TRUE(std::isfinite(radar.yaw_rad()) && std::isfinite(radar.speed_scale())) << i;
-    ASSERT_TRUE(radar.covariance().allFinite()) << i;
+    const RadarEstimate radar = estimator.estimate(0);
+    ASSERT_TRUE(radar.sensor_to_vehicle.allFinite() && std::isfinite(radar.speed_scale)) << i;
+    ASSERT_TRUE(radar.covariance.allFinite()) << i;
   }
-  EXPECT_NEAR(estimator.radar(1)->yaw_rad(), drive.yaw_rad, 0.1 * kDegree);
-  EXPECT_NEAR(estimator.radar(1)->speed_scale(), drive.speed_scale, 2e-3);
+  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, drive.yaw_rad, 0.1 * kDegree);
+  EXPECT_NEAR(written(estimator, 1).speed_scale, drive.speed_scale, 2e-3);
 }
 
 TEST(Estimator, AllocatesNothing) {
   const SyntheticDrive drive;
   Estimator estimator(car(drive, drive), Config{});
   Synthesizer synthesizer(drive, 6);
+  AlignmentEstimate out{};
   for (int i = 0; i < 100; ++i) {
     synthesizer.next();
     const EgoMotion ego = motion(synthesizer.scan->header.measurement_time_ns, synthesizer.ego);
@@ -127,6 +135,7 @@ TEST(Estimator, AllocatesNothing) {
       const runtime::CountAllocations counting;
       estimator.add_ego_motion(ego);
       static_cast<void>(estimator.add_scan(*synthesizer.scan));
+      static_cast<void>(estimator.write(1, out));
     }
     ASSERT_EQ(runtime::counted_allocations(), before);
   }

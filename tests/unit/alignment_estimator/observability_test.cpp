@@ -10,8 +10,8 @@
 namespace boresight::alignment {
 namespace {
 
-std::unique_ptr<Azimuth1d> run(const SyntheticDrive& drive, int scans, unsigned seed) {
-  auto method = std::make_unique<Azimuth1d>(drive.radar(), Config{});
+std::unique_ptr<YawFilter> run(const SyntheticDrive& drive, int scans, unsigned seed) {
+  auto method = std::make_unique<YawFilter>(drive.radar(), Config{});
   Synthesizer synthesizer(drive, seed);
   for (int i = 0; i < scans; ++i) {
     synthesizer.next();
@@ -64,7 +64,7 @@ SyntheticDrive one_azimuth(double from_ahead_deg) {
   return drive;
 }
 
-AlignmentEstimate written(const Azimuth1d& method) {
+AlignmentEstimate written(const YawFilter& method) {
   AlignmentEstimate out{};
   method.write(out);
   return out;
@@ -105,7 +105,7 @@ TEST(Observability, AheadTellsOnlySpeedAndSidewaysOnlyYaw) {
     EXPECT_NEAR(ahead->speed_scale(), 1.01, 0.004);
     const SyntheticDrive drive = one_azimuth(90.0);
     const auto sideways = run(drive, 1000, seed);
-    EXPECT_EQ(written(*sideways).observable, alignment_axis::kYaw);
+    EXPECT_EQ(written(*sideways).observable, alignment_axis::kYaw | alignment_axis::kVehicleYaw);
     EXPECT_NEAR(written(*sideways).covariance[0], Config{}.prior_speed_scale_std * Config{}.prior_speed_scale_std,
                 1e-4);
     EXPECT_LT(std::abs(sideways->yaw_rad() - drive.yaw_rad), 3.0 * std::sqrt(sideways->covariance()(1, 1)));
@@ -134,7 +134,7 @@ TEST(Observability, WithoutAStationaryWorldNothingIsClaimed) {
   const SyntheticDrive standing;
   const Config config;
   for (unsigned seed = 1; seed <= 10; ++seed) {
-    Azimuth1d method(moving.radar(), config);
+    YawFilter method(moving.radar(), config);
     Synthesizer traffic(moving, seed), world(standing, seed);
     for (int i = 0; i < 1000; ++i) {
       traffic.next();
@@ -160,7 +160,7 @@ TEST(Observability, AConvoyIsNoStationaryWorld) {
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
-  Azimuth1d method(drive.radar(), Config{});
+  YawFilter method(drive.radar(), Config{});
   Synthesizer synthesizer(drive, 5);
   for (int i = 0; i < 400; ++i) {
     synthesizer.next();

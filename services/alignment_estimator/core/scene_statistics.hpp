@@ -8,7 +8,7 @@
 
 namespace boresight::alignment {
 
-class ResidualStatistics {
+class SceneStatistics {
  public:
   /// Fades what is known by the time that passed; `window_s` is the time constant.
   void fade(double elapsed_s, double window_s) {
@@ -32,6 +32,7 @@ class ResidualStatistics {
     if (is_near) near_ += 1.0;
   }
 
+  [[nodiscard]] double inlier_ratio() const { return all_ > 0.0 ? inliers_ / all_ : 0.0; }
   /// In the gate and near it.
   [[nodiscard]] double counted() const { return inliers_ + near_; }
   /// Whether the gate holds clearly more (five stds of the counts, and most of what it holds) than the neighbourhood,

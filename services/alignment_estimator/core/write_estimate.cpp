@@ -1,0 +1,63 @@
+#include "services/alignment_estimator/core/write_estimate.hpp"
+
+#include <cmath>
+
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+void write_covariance(const Eigen::Matrix4d& covariance, std::array<float, 16>& out) {
+  Eigen::Map<Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(out.data()) = covariance.cast<float>();
+}
+
+}  // namespace
+
+Eigen::Vector4d vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate) {
+  const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
+  const Eigen::Vector3d turn = geometry::so3_log(estimate.sensor_to_vehicle * nominal.transpose());
+  return {estimate.speed_scale, turn.z(), -turn.y(), turn.x()};
+}
+
+void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, double prior_angle_std_rad,
+                    AlignmentEstimate& out) {
+  out.state = estimate.state;
+  out.reserved = {};
+  const Eigen::Vector4d vehicle = vehicle_form(radar, estimate);
+  out.speed_scale = static_cast<float>(estimate.speed_scale);
+  out.vehicle_yaw_rad = static_cast<float>(vehicle(1));
+  out.vehicle_pitch_rad = static_cast<float>(vehicle(2));
+  out.vehicle_roll_rad = static_cast<float>(vehicle(3));
+  // (k_v, d_x, d_y, d_z) → (k_v, yaw, pitch, roll).
+  Eigen::Matrix4d to_vehicle_form = Eigen::Matrix4d::Zero();
+  to_vehicle_form(0, 0) = to_vehicle_form(1, 3) = to_vehicle_form(3, 1) = 1.0;
+  to_vehicle_form(2, 2) = -1.0;
+  write_covariance(to_vehicle_form * estimate.covariance * to_vehicle_form.transpose(), out.vehicle_covariance);
+
+  const Eigen::Vector3d angles = geometry::euler_angles(estimate.sensor_to_vehicle);
+  const MountingPose& nominal = radar.mounting_pose;
+  out.alignment_yaw_rad = static_cast<float>(geometry::wrap_angle(angles(0) - nominal.yaw_rad));
+  out.alignment_pitch_rad = static_cast<float>(angles(1) - nominal.pitch_rad);
+  out.alignment_roll_rad = static_cast<float>(geometry::wrap_angle(angles(2) - nominal.roll_rad));
+  Eigen::Matrix4d to_angles = Eigen::Matrix4d::Identity();
+  to_angles.bottomRightCorner<3, 3>() = geometry::euler_gradient(angles(0), angles(1));
+  const Eigen::Matrix4d covariance = to_angles * estimate.covariance * to_angles.transpose();
+  write_covariance(covariance, out.covariance);
+
+  out.observable = estimate.observable;
+  const double limit = 0.25 * prior_angle_std_rad * prior_angle_std_rad;
+  if (covariance(1, 1) < limit) out.observable |= alignment_axis::kYaw;
+  if (covariance(2, 2) < limit) out.observable |= alignment_axis::kPitch;
+  if (covariance(3, 3) < limit) out.observable |= alignment_axis::kRoll;
+
+  out.yaw_rate_bias_radps = static_cast<float>(estimate.yaw_rate_bias_radps);
+  out.yaw_rate_bias_std_radps = static_cast<float>(estimate.yaw_rate_bias_std_radps);
+  out.slip_coefficient_radps2pm = static_cast<float>(estimate.slip_coefficient_radps2pm);
+  out.slip_coefficient_std_radps2pm = static_cast<float>(estimate.slip_coefficient_std_radps2pm);
+  out.angle_noise_scale = static_cast<float>(estimate.angle_noise_scale);
+  out.knock = estimate.knock;
+}
+
+}  // namespace boresight::alignment

@@ -1,0 +1,20 @@
+// What a method believes → the message: the same rotation about the vehicle's and about the sensor's axes.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "services/alignment_estimator/core/method.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::alignment {
+
+/// (k_v, yaw, pitch, roll) about the vehicle's axes, with the signs of the message.
+[[nodiscard]] Eigen::Vector4d vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate);
+
+/// Writes everything but the header and the key figures. An axis of the sensor is called observable once the data say
+/// clearly more of it than `prior_angle_std_rad` did.
+void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, double prior_angle_std_rad,
+                    AlignmentEstimate& out);
+
+}  // namespace boresight::alignment
