@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "interfaces/wire/ars548.hpp"
+#include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
 #include "services/ingest_gateway/codecs/ars548_objects.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
 #include "tests/fuzz/support.hpp"
 
 namespace {
@@ -57,10 +57,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
     const Kind& kind = kKinds[choice];
     datagram.insert(datagram.begin(), layout::kShortHeaderBytes, 0);
     datagram.resize(kind.bytes);
-    ingest::write_u16(datagram.data() + 2, kind.method);
-    ingest::write_u32(datagram.data() + 4, static_cast<std::uint32_t>(kind.bytes - layout::kShortHeaderBytes));
+    boresight::write_u16(datagram.data() + 2, kind.method);
+    boresight::write_u32(datagram.data() + 4, static_cast<std::uint32_t>(kind.bytes - layout::kShortHeaderBytes));
     // The count lies behind all records, where a short input does not reach.
-    if (choice == 0) ingest::write_u32(datagram.data() + layout::kNumberOfDetections, 3u * input[0]);
+    if (choice == 0) boresight::write_u32(datagram.data() + layout::kNumberOfDetections, 3u * input[0]);
   }
   static const auto scan = std::make_unique<RadarScan>();
   static const auto objects = std::make_unique<ingest::ars548::ObjectList>();

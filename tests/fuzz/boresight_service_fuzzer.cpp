@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interfaces/wire/boresight_service.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/boresight_service.hpp"
 #include "tests/fuzz/checked_output.hpp"
 
@@ -21,16 +21,16 @@ void make_list_agree(std::vector<std::uint8_t>& body) {
   const std::size_t count = (body.size() - header_bytes) / record_bytes;
   body.resize(header_bytes + count * record_bytes);
   body.shrink_to_fit();  // so that the sanitizer sees a byte read beyond it
-  ingest::write_u16(body.data() + list::kLayoutVersion, list::kLayoutVersionValue);
-  ingest::write_u16(body.data() + list::kHeaderBytes, static_cast<std::uint16_t>(header_bytes));
-  ingest::write_u16(body.data() + list::kNumberOfDetections, static_cast<std::uint16_t>(count));
-  ingest::write_u16(body.data() + list::kRecordBytes, static_cast<std::uint16_t>(record_bytes));
+  boresight::write_u16(body.data() + list::kLayoutVersion, list::kLayoutVersionValue);
+  boresight::write_u16(body.data() + list::kHeaderBytes, static_cast<std::uint16_t>(header_bytes));
+  boresight::write_u16(body.data() + list::kNumberOfDetections, static_cast<std::uint16_t>(count));
+  boresight::write_u16(body.data() + list::kRecordBytes, static_cast<std::uint16_t>(record_bytes));
 }
 
 void make_ego_agree(std::vector<std::uint8_t>& body) {
   if (body.size() < ego::kMinBodyBytes) return;
-  ingest::write_u16(body.data() + ego::kLayoutVersion, ego::kLayoutVersionValue);
-  ingest::write_u16(body.data() + ego::kBodyBytes, static_cast<std::uint16_t>(body.size()));
+  boresight::write_u16(body.data() + ego::kLayoutVersion, ego::kLayoutVersionValue);
+  boresight::write_u16(body.data() + ego::kBodyBytes, static_cast<std::uint16_t>(body.size()));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "interfaces/wire/ars548.hpp"
 #include "interfaces/wire/srr520.hpp"
 #include "interfaces/wire/toyota.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 #include "tests/fuzz/checked_sink.hpp"
@@ -97,9 +97,9 @@ std::span<const std::uint8_t> ars548(std::uint8_t choice, std::span<const std::u
   std::fill(message.begin(), message.end(), std::uint8_t{0});
   std::copy_n(content.begin(), std::min(content.size(), message.size() - layout::kShortHeaderBytes),
               message.begin() + layout::kShortHeaderBytes);
-  ingest::write_u16(message.data() + 2, is_list ? layout::kMethodDetectionList : layout::kMethodStatus);
-  ingest::write_u32(message.data() + 4, static_cast<std::uint32_t>(message.size() - layout::kShortHeaderBytes));
-  if (is_list) ingest::write_u32(message.data() + layout::kNumberOfDetections, 3u * choice);
+  boresight::write_u16(message.data() + 2, is_list ? layout::kMethodDetectionList : layout::kMethodStatus);
+  boresight::write_u32(message.data() + 4, static_cast<std::uint32_t>(message.size() - layout::kShortHeaderBytes));
+  if (is_list) boresight::write_u32(message.data() + layout::kNumberOfDetections, 3u * choice);
   return message;
 }
 

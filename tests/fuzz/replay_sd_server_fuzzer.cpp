@@ -7,12 +7,13 @@
 #include <cstdlib>
 #include <vector>
 
-#include "services/replay/core/sd_server.hpp"
+#include "services/common/someip/sd_server.hpp"
+#include "services/replay/core/radar_service.hpp"
 
 namespace {
 
 using namespace boresight;
-using namespace boresight::replay;
+using namespace boresight::someip;
 
 void require(bool condition) {
   if (!condition) std::abort();
@@ -22,6 +23,7 @@ const recording::Endpoint kGroup{recording::IpAddress::v4(0xEF425301), 30650};
 
 SdServerConfig configuration(bool multicast) {
   SdServerConfig config;
+  config.service = replay::radar_service();
   config.instances = {{1, {recording::IpAddress::v4(0x0A000001), 30601}},
                       {3, {recording::IpAddress::v4(0x0A000001), 30603}}};
   if (multicast) config.event_group = kGroup;

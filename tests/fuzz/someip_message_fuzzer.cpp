@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 #include "tests/fuzz/support.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace boresight::ingest::someip;
+  using namespace boresight::someip;
   const boresight::fuzz::NoAllocation guard;
   MessageReader reader({data, size});
   Message message;

@@ -6,8 +6,8 @@
 
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/e2e/protector.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/big_endian.hpp"
+#include "services/common/someip/message.hpp"
 #include "services/ingest_gateway/codecs/someip/sd.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "tests/fuzz/checked_sink.hpp"
@@ -71,15 +71,15 @@ class Sender {
     const auto body = message.subspan(service::kBody);
     std::fill(body.begin(), body.end(), std::uint8_t{0});
     std::copy_n(content.begin(), std::min(content.size(), body.size()), body.begin());
-    ingest::write_u16(body.data(), 1);
+    boresight::write_u16(body.data(), 1);
     if (is_list) {
       namespace list = service::detection_list;
-      ingest::write_u16(body.data() + list::kHeaderBytes, list::kMinHeaderBytes);
-      ingest::write_u16(body.data() + list::kRecordBytes, list::kMinRecordBytes);
-      ingest::write_u16(body.data() + list::kNumberOfDetections,
-                        static_cast<std::uint16_t>((body.size() - list::kMinHeaderBytes) / list::kMinRecordBytes));
+      boresight::write_u16(body.data() + list::kHeaderBytes, list::kMinHeaderBytes);
+      boresight::write_u16(body.data() + list::kRecordBytes, list::kMinRecordBytes);
+      boresight::write_u16(body.data() + list::kNumberOfDetections,
+                           static_cast<std::uint16_t>((body.size() - list::kMinHeaderBytes) / list::kMinRecordBytes));
     } else {
-      ingest::write_u16(body.data() + service::ego_motion::kBodyBytes, service::ego_motion::kMinBodyBytes);
+      boresight::write_u16(body.data() + service::ego_motion::kBodyBytes, service::ego_motion::kMinBodyBytes);
     }
     (is_list ? list_protector_ : ego_protector_).protect(message.subspan(service::kProtectedFrom));
     return message;
@@ -219,8 +219,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         continue;
     }
     if ((choice & 7u) < 2 || (choice & 0x70) == 0x70) {
-      frame.source.port = someip::kSdPort;
-      frame.destination.port = someip::kSdPort;
+      frame.source.port = ingest::someip::kSdPort;
+      frame.destination.port = ingest::someip::kSdPort;
       if ((choice & 0x80) != 0) frame.destination.address = recording::IpAddress::v4(0xE0F4E0F5);
     }
     gateway.take(frame, {now_ns, 0, TimeSource::kLinkArrival});

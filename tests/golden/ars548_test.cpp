@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "services/common/recording/reader.hpp"
+#include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
 #include "tests/golden/support/decoded.hpp"
 #include "tests/golden/support/yaml.hpp"
 
@@ -75,7 +75,7 @@ TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
 
 TEST_F(Ars548, WhatAScanDoesNotCarryLiesWhereItIsSaidToLie) {
   namespace layout = wire::ars548;
-  using ingest::read_f32, ingest::read_u16;
+  using boresight::read_f32, boresight::read_u16;
   Record head;
   const auto expected = read_yaml_list(kExpected, head);
   const auto reader = recording::open_recording(kRecording, [](const std::string& what) { ADD_FAILURE() << what; });

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "interfaces/wire/ars548.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/protection.hpp"
 
 namespace boresight::ingest::ars548 {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "interfaces/wire/ars548.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
 
@@ -24,9 +24,9 @@ constexpr double kMaxSteeringAngle_deg = 90.0;
 std::uint8_t* begin(const layout::MotionInput& input, MotionDatagram& out) {
   out.bytes.fill(0);
   out.size = input.bytes;
-  ingest::write_u16(out.bytes.data(), layout::kServiceId);
-  ingest::write_u16(out.bytes.data() + 2, input.method);
-  ingest::write_u32(out.bytes.data() + 4, static_cast<std::uint32_t>(input.bytes - layout::kShortHeaderBytes));
+  boresight::write_u16(out.bytes.data(), layout::kServiceId);
+  boresight::write_u16(out.bytes.data() + 2, input.method);
+  boresight::write_u32(out.bytes.data() + 4, static_cast<std::uint32_t>(input.bytes - layout::kShortHeaderBytes));
   return out.bytes.data() + input.value;
 }
 
@@ -37,7 +37,7 @@ std::span<const MotionDatagram> MotionFeed::encode(const EgoMotion& ego, std::in
   std::size_t count = 0;
   const auto put = [&](const layout::MotionInput& input, double value, double limit) {
     if (!std::isfinite(value)) return;
-    ingest::write_f32(begin(input, datagrams_[count++]), static_cast<float>(std::clamp(value, -limit, limit)));
+    boresight::write_f32(begin(input, datagrams_[count++]), static_cast<float>(std::clamp(value, -limit, limit)));
   };
   if (ego.has(ego_field::kSpeed) && std::isfinite(ego.speed_mps)) {
     const double speed_mps = std::abs(static_cast<double>(ego.speed_mps));

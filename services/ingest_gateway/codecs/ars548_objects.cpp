@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
 

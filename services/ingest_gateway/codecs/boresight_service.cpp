@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "interfaces/wire/boresight_service.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 
 namespace boresight::ingest::service {
 

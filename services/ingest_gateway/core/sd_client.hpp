@@ -11,7 +11,7 @@
 
 #include "interfaces/messages/service_status.hpp"
 #include "services/common/recording/ip_address.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 #include "services/ingest_gateway/codecs/someip/sd.hpp"
 #include "services/ingest_gateway/codecs/someip/sd_writer.hpp"
 #include "services/ingest_gateway/core/sd_peers.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "services/common/e2e/checker.hpp"
+#include "services/common/someip/message.hpp"
 #include "services/common/vehicle/vehicle.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
 #include "services/ingest_gateway/codecs/someip/tp.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
 #include "services/ingest_gateway/core/source.hpp"

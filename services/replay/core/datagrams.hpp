@@ -8,7 +8,7 @@
 #include <span>
 
 #include "interfaces/wire/boresight_service.hpp"
-#include "services/replay/core/byte_writer.hpp"
+#include "services/common/someip/byte_writer.hpp"
 
 namespace boresight::replay {
 
@@ -39,7 +39,7 @@ void for_each_datagram(std::span<const std::uint8_t> message, Send&& send) {
     const std::span<const std::uint8_t> part =
         payload.subspan(at, std::min(service::kSegmentBytes, payload.size() - at));
     const bool more = at + part.size() < payload.size();
-    ByteWriter writer(segment);
+    someip::ByteWriter writer(segment);
     writer.bytes(message.first(4));
     writer.u32(static_cast<std::uint32_t>(8 + kTpHeaderBytes + part.size()));
     writer.bytes(message.subspan(8, kMessageType - 8));

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "interfaces/wire/boresight_service.hpp"
-#include "services/replay/core/byte_writer.hpp"
+#include "services/common/someip/byte_writer.hpp"
 
 namespace boresight::replay {
 
@@ -30,7 +30,7 @@ bool within(float value, float min, float max) {
   return value >= min && value <= max;
 }
 
-void write_time(ByteWriter& out, const SensorTime& time) {
+void write_time(someip::ByteWriter& out, const SensorTime& time) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   const bool fits = time.epoch_ns >= 0 && time.epoch_ns / kSecond_ns <= 0xFFFF'FFFF;
   out.u32(fits ? static_cast<std::uint32_t>(time.epoch_ns / kSecond_ns) : 0);
@@ -41,7 +41,7 @@ void write_time(ByteWriter& out, const SensorTime& time) {
 /// Writes the quantities of one record and remembers whether one of them was not allowed.
 class RecordWriter {
  public:
-  RecordWriter(ByteWriter& out, std::uint32_t fields) : out_(out), fields_(fields) {}
+  RecordWriter(someip::ByteWriter& out, std::uint32_t fields) : out_(out), fields_(fields) {}
 
   void stated(float value, float min, float max) {
     const bool allowed = within(value, min, max);
@@ -65,12 +65,12 @@ class RecordWriter {
   }
 
  private:
-  ByteWriter& out_;
+  someip::ByteWriter& out_;
   std::uint32_t fields_;
   std::uint16_t flags_ = 0;
 };
 
-void write_record(ByteWriter& out, const RadarScan& scan, std::uint32_t fields, std::size_t i) {
+void write_record(someip::ByteWriter& out, const RadarScan& scan, std::uint32_t fields, std::size_t i) {
   namespace field = wire_list::field;
   namespace limit = wire_list::limit;
   RecordWriter record(out, fields);
@@ -102,7 +102,7 @@ std::size_t write_detection_list(const RadarScan& scan, const SensorTime& time, 
       within(scan.range_rate_max_mps, -kLimit, kLimit) && scan.range_rate_min_mps < scan.range_rate_max_mps;
   if (!has_interval) fields &= ~wire_list::field::kAmbiguity;
 
-  ByteWriter writer(out);
+  someip::ByteWriter writer(out);
   writer.u16(wire_list::kLayoutVersionValue);
   writer.u16(wire_list::kMinHeaderBytes);
   write_time(writer, time);
@@ -140,7 +140,7 @@ std::size_t write_ego_motion(const EgoMotion& ego, const SensorTime& time, std::
     steering_angle_rad = ego.steering_angle_rad;
   }
 
-  ByteWriter writer(out);
+  someip::ByteWriter writer(out);
   writer.u16(wire_ego::kLayoutVersionValue);
   writer.u16(wire_ego::kMinBodyBytes);
   write_time(writer, time);

@@ -1,7 +1,7 @@
 #include "services/replay/core/event_encoder.hpp"
 
 #include "interfaces/wire/boresight_service.hpp"
-#include "services/replay/core/byte_writer.hpp"
+#include "services/common/someip/byte_writer.hpp"
 
 namespace boresight::replay {
 
@@ -43,7 +43,7 @@ std::span<const std::uint8_t> EventEncoder::ego_motion(const EgoMotion& ego, con
 std::span<const std::uint8_t> EventEncoder::finish(std::uint16_t event, std::size_t body_bytes,
                                                    e2e::Protector& protector) {
   const std::span<std::uint8_t> message = std::span(message_).first(service::kBody + body_bytes);
-  ByteWriter header(message);
+  someip::ByteWriter header(message);
   header.u16(service::kServiceId);
   header.u16(event);
   header.u32(static_cast<std::uint32_t>(message.size() - 8));

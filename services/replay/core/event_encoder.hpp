@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "services/common/e2e/protector.hpp"
+#include "services/common/someip/session_counter.hpp"
 #include "services/replay/core/event_body.hpp"
-#include "services/replay/core/session_counter.hpp"
 
 namespace boresight::replay {
 
@@ -30,7 +30,7 @@ class EventEncoder {
                                                      e2e::Protector& protector);
   [[nodiscard]] std::span<std::uint8_t> body();
 
-  SessionCounter session_;
+  someip::SessionCounter session_;
   e2e::Protector list_protector_;
   e2e::Protector ego_protector_;
   std::vector<std::uint8_t> message_;

@@ -112,7 +112,7 @@ void serve_recordings(const VehicleConfig& vehicle, const PlayOptions& options, 
 void print(const SomeIpServer& server) {
   const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
   const ServerCounts& sent = server.counts();
-  const SdStatistics& discovery = server.discovery();
+  const someip::SdStatistics& discovery = server.discovery();
   std::printf(
       "served %llu detection lists and %llu ego motions in %llu datagrams (%.1f MB); "
       "%llu events without subscriber, %llu datagrams refused by the kernel\n",

@@ -12,6 +12,7 @@
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/stop_signal.hpp"
+#include "services/replay/core/radar_service.hpp"
 
 namespace boresight::replay {
 
@@ -22,8 +23,9 @@ namespace {
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-SdServerConfig discovery_config(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances) {
-  SdServerConfig config;
+someip::SdServerConfig discovery_config(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances) {
+  someip::SdServerConfig config;
+  config.service = radar_service();
   for (const std::uint16_t number : instances) {
     config.instances.push_back({number, {options.address, static_cast<std::uint16_t>(options.first_port + number)}});
   }
@@ -48,15 +50,15 @@ DataIds data_ids(std::uint32_t base, std::uint16_t instance) {
 SomeIpServer::SomeIpServer(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances)
     : options_(options),
       discovery_(discovery_config(options, instances)),
-      discovery_unicast_(UdpSocket::bound_to({options.address, options.discovery_group.port}, options.interface,
-                                             options.multicast_hops)),
-      discovery_multicast_(UdpSocket::member_of(options.discovery_group, options.interface)),
+      discovery_unicast_(runtime::UdpSocket::bound_to({options.address, options.discovery_group.port},
+                                                      options.interface, options.multicast_hops)),
+      discovery_multicast_(runtime::UdpSocket::member_of(options.discovery_group, options.interface)),
       flush_ns_(kNever),
       buffer_(65536) {
   for (const std::uint16_t number : instances) {
     const recording::Endpoint local{options.address, static_cast<std::uint16_t>(options.first_port + number)};
     instances_.push_back({number,
-                          UdpSocket::bound_to(local, options.interface, options.multicast_hops),
+                          runtime::UdpSocket::bound_to(local, options.interface, options.multicast_hops),
                           EventEncoder(data_ids(options.data_id_base, number)),
                           {}});
   }
@@ -89,7 +91,7 @@ void SomeIpServer::serve_until(std::int64_t due_ns) {
   }
 }
 
-void SomeIpServer::receive(const UdpSocket& socket, bool by_multicast) {
+void SomeIpServer::receive(const runtime::UdpSocket& socket, bool by_multicast) {
   // Bounded, so that a storm of discovery does not hold the events up.
   constexpr int kDatagramsPerTurn = 32;
   for (int i = 0; i < kDatagramsPerTurn; ++i) {
@@ -107,7 +109,7 @@ void SomeIpServer::receive(const UdpSocket& socket, bool by_multicast) {
 }
 
 void SomeIpServer::send_discovery() {
-  for (const SdOutgoing& message : outgoing_) {
+  for (const someip::SdOutgoing& message : outgoing_) {
     // A link that is down loses it; the next offer repeats what matters.
     static_cast<void>(discovery_unicast_.send(message.to.value_or(options_.discovery_group), message.message));
   }

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "services/common/runtime/udp_socket.hpp"
+#include "services/common/someip/sd_server.hpp"
 #include "services/replay/core/datagrams.hpp"
 #include "services/replay/core/event_encoder.hpp"
-#include "services/replay/core/sd_server.hpp"
-#include "services/replay/server/udp_socket.hpp"
 
 namespace boresight::replay {
 
@@ -57,16 +57,16 @@ class SomeIpServer {
   /// True if somebody has subscribed the detections of one instance at least.
   [[nodiscard]] bool has_subscriber();
   [[nodiscard]] const ServerCounts& counts() const { return counts_; }
-  [[nodiscard]] const SdStatistics& discovery() const { return discovery_.statistics(); }
+  [[nodiscard]] const someip::SdStatistics& discovery() const { return discovery_.statistics(); }
 
  private:
   struct Instance {
     std::uint16_t number;
-    UdpSocket socket;
+    runtime::UdpSocket socket;
     EventEncoder encoder;
     std::map<recording::Endpoint, SharedDatagram> waiting;
   };
-  void receive(const UdpSocket& socket, bool by_multicast);
+  void receive(const runtime::UdpSocket& socket, bool by_multicast);
   void send_discovery();
   [[nodiscard]] std::span<const recording::Endpoint> destinations(const Instance& instance, std::uint16_t eventgroup);
   void deliver(Instance& instance, std::span<const recording::Endpoint> destinations,
@@ -77,13 +77,13 @@ class SomeIpServer {
   void flush();
 
   SomeIpOptions options_;
-  SdServer discovery_;
-  UdpSocket discovery_unicast_;
-  UdpSocket discovery_multicast_;
+  someip::SdServer discovery_;
+  runtime::UdpSocket discovery_unicast_;
+  runtime::UdpSocket discovery_multicast_;
   std::vector<Instance> instances_;
   std::int64_t flush_ns_;
   std::vector<std::uint8_t> buffer_;
-  std::vector<SdOutgoing> outgoing_;
+  std::vector<someip::SdOutgoing> outgoing_;
   ServerCounts counts_;
 };
 

@@ -7,7 +7,7 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "interfaces/wire/ars548.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 #include "services/replay/core/datagrams.hpp"
 #include "services/replay/core/event_encoder.hpp"
 #include "services/replay/core/synthetic.hpp"
@@ -32,9 +32,9 @@ namespace boresight::bench {
 /// The list of the next cycle: counter and stamp go on, the detections stay.
 inline void advance_ars548(std::span<std::uint8_t> list, std::int64_t epoch_ns, std::uint32_t counter) {
   namespace layout = wire::ars548;
-  ingest::write_u32(list.data() + layout::kSeconds, static_cast<std::uint32_t>(epoch_ns / 1'000'000'000));
-  ingest::write_u32(list.data() + layout::kNanoseconds, static_cast<std::uint32_t>(epoch_ns % 1'000'000'000));
-  ingest::write_u32(list.data() + layout::kSequenceCounter, counter);
+  boresight::write_u32(list.data() + layout::kSeconds, static_cast<std::uint32_t>(epoch_ns / 1'000'000'000));
+  boresight::write_u32(list.data() + layout::kNanoseconds, static_cast<std::uint32_t>(epoch_ns % 1'000'000'000));
+  boresight::write_u32(list.data() + layout::kSequenceCounter, counter);
 }
 
 /// A detection list of the Boresight service as its server sends it, in segments.

@@ -10,10 +10,11 @@
 
 #include "services/common/e2e/protector.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
+#include "services/common/someip/sd_server.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "services/replay/core/datagrams.hpp"
 #include "services/replay/core/event_encoder.hpp"
-#include "services/replay/core/sd_server.hpp"
+#include "services/replay/core/radar_service.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
 #include "tests/unit/replay/document.hpp"
@@ -265,9 +266,9 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
     for (const std::int64_t end = now_ns_ + duration_ns; now_ns_ < end;) {
       now_ns_ += 10 * kMillisecond;
       if (server_runs_) server_.tick(now_ns_, answers_);
-      std::vector<replay::SdOutgoing> batch;
+      std::vector<boresight::someip::SdOutgoing> batch;
       std::swap(batch, answers_);
-      for (const replay::SdOutgoing& out : batch) {
+      for (const boresight::someip::SdOutgoing& out : batch) {
         deliver(out.message, at(30490), out.to.value_or(recording::Endpoint{kGroup, 30490}));
       }
       gateway_.tick(now_ns_);
@@ -289,10 +290,11 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
   static inline const recording::IpAddress kGroup = recording::IpAddress::v4(0xE0F4E0F5);
   std::int64_t now_ns_ = 0;
   std::unique_ptr<RadarScan> given_ = std::make_unique<RadarScan>();
-  replay::SdServer server_{
-      {.instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}}, .event_group = {}}};
+  boresight::someip::SdServer server_{{.service = replay::radar_service(),
+                                       .instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}},
+                                       .event_group = {}}};
   std::array<replay::EventEncoder, 10> encoders_ = make_encoders();
-  std::vector<replay::SdOutgoing> answers_;
+  std::vector<boresight::someip::SdOutgoing> answers_;
   bool server_runs_ = true;
   std::size_t datagrams_sent = 0;
   std::vector<std::pair<recording::Endpoint, std::string>> joined;
@@ -449,8 +451,9 @@ TEST_F(SomeIpGateway, AServerThatGoesSilentIsReportedAndFoundAgain) {
   pass(4000 * kMillisecond);
   EXPECT_EQ(count(Fault::kLink), 3u) << "each of the three subscriptions says that its offer expired";
   server_runs_ = true;
-  server_ = replay::SdServer(
-      {.instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}}, .event_group = {}});
+  server_ = boresight::someip::SdServer({.service = replay::radar_service(),
+                                         .instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}},
+                                         .event_group = {}});
   server_.start(now_ns_);
   pass(100 * kMillisecond);
   publish_list(1);
@@ -459,7 +462,8 @@ TEST_F(SomeIpGateway, AServerThatGoesSilentIsReportedAndFoundAgain) {
 
 TEST_F(SomeIpGateway, AMulticastGroupIsJoinedOnTheInterfaceOfTheVehicleFile) {
   const recording::Endpoint group{recording::IpAddress::v4(0xEF425301), 30650};
-  server_ = replay::SdServer({.instances = {{1, endpoint_of(1)}}, .event_group = group});
+  server_ = boresight::someip::SdServer(
+      {.service = replay::radar_service(), .instances = {{1, endpoint_of(1)}}, .event_group = group});
   server_.start(now_ns_);
   pass(500 * kMillisecond);
   ASSERT_EQ(joined.size(), 1u);

@@ -227,7 +227,7 @@ TEST(EventBody, NothingIsWrittenBeyondTheEnd) {
 }
 
 TEST(SessionCounter, NeverZeroAndKnowsThatItWrapped) {
-  SessionCounter counter;
+  someip::SessionCounter counter;
   for (std::uint32_t i = 1; i <= 0xFFFF; ++i) {
     ASSERT_EQ(counter.take(), i);
     ASSERT_FALSE(counter.wrapped());

@@ -1,8 +1,9 @@
-#include "services/replay/core/sd_server.hpp"
+#include "services/common/someip/sd_server.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/replay/core/radar_service.hpp"
 #include "tests/unit/replay/document.hpp"
 
 namespace boresight::replay {
@@ -14,6 +15,9 @@ using ::testing::IsEmpty;
 using Bytes = std::vector<std::uint8_t>;
 using recording::Endpoint;
 using recording::IpAddress;
+using someip::SdOutgoing;
+using someip::SdServer;
+using someip::SdServerConfig;
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1'000 * kMs;
@@ -103,6 +107,7 @@ class SdServerTest : public ::testing::Test {
  protected:
   static SdServerConfig configuration(bool multicast) {
     SdServerConfig config;
+    config.service = radar_service();
     config.instances = {{3, kServerEvents}};
     if (multicast) config.event_group = kGroup;
     config.max_subscribers = 8;
@@ -167,6 +172,7 @@ TEST_F(SdServerTest, CyclesThatWereMissedAreNotMadeUpFor) {
 
 TEST_F(SdServerTest, OffersSeveralInstancesWithTheirEndpointsInOneMessage) {
   SdServerConfig config;
+  config.service = radar_service();
   IpAddress v6;
   v6.bytes = {0xFD, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
   config.instances = {{1, endpoint(13, 30601)}, {2, {v6, 30602}}};

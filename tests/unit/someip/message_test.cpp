@@ -1,5 +1,5 @@
 // The messages of a datagram. The two hexadecimal messages were made by scapy 2.5 (scapy.contrib.automotive.someip).
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,9 @@
 #include "tests/unit/someip/bytes.hpp"
 
 namespace boresight::ingest::someip {
+
+using namespace boresight::someip;
+
 namespace {
 
 using test::append;

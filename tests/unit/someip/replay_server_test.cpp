@@ -8,11 +8,12 @@
 
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/e2e/checker.hpp"
+#include "services/common/someip/sd_server.hpp"
 #include "services/ingest_gateway/codecs/someip/tp.hpp"
 #include "services/ingest_gateway/core/sd_client.hpp"
 #include "services/replay/core/datagrams.hpp"
 #include "services/replay/core/event_encoder.hpp"
-#include "services/replay/core/sd_server.hpp"
+#include "services/replay/core/radar_service.hpp"
 #include "tests/unit/someip/bytes.hpp"
 
 namespace boresight::ingest::someip {
@@ -65,10 +66,11 @@ class Drive : public testing::Test, public SdActions {
   void fault(Fault /*fault*/, std::string_view what) override { faults_.emplace_back(what); }
 
   void start_server(std::optional<Endpoint> event_group = {}) {
-    replay::SdServerConfig config;
+    boresight::someip::SdServerConfig config;
+    config.service = replay::radar_service();
     config.instances = {{kRadar, kEventsFrom}};
     config.event_group = event_group;
-    server_ = std::make_unique<replay::SdServer>(config);
+    server_ = std::make_unique<boresight::someip::SdServer>(config);
     server_->start(now_ns_);
   }
   void kill_server() { server_.reset(); }
@@ -89,7 +91,7 @@ class Drive : public testing::Test, public SdActions {
   bool server_serves() { return !server_->destinations(kRadar, service::kEventgroupDetections, now_ns_).empty(); }
 
   std::unique_ptr<SdClient> client_;
-  std::unique_ptr<replay::SdServer> server_;
+  std::unique_ptr<boresight::someip::SdServer> server_;
   std::int64_t now_ns_ = 77 * kSecond;
   std::int64_t due_ns_ = SdClient::kNever;
   double loss_ = 0.0;
@@ -107,14 +109,14 @@ class Drive : public testing::Test, public SdActions {
   bool arrives() { return link_is_up_ && std::uniform_real_distribution()(random_) >= loss_; }
 
   void step() {
-    std::vector<replay::SdOutgoing> from_server;
+    std::vector<boresight::someip::SdOutgoing> from_server;
     if (server_ && server_->next_due_ns() <= now_ns_) server_->tick(now_ns_, from_server);
     for (const ToServer& sent : std::exchange(to_server_, {})) {
       if (!server_ || !arrives()) continue;
       const auto fault = server_->receive(now_ns_, sent.datagram, kClient, sent.by_multicast, from_server);
       EXPECT_EQ(fault.value_or(""), "");
     }
-    for (const replay::SdOutgoing& sent : from_server) {
+    for (const boresight::someip::SdOutgoing& sent : from_server) {
       if (!arrives()) continue;
       EXPECT_EQ(sent.to.value_or(kClient), kClient);
       due_ns_ = client_->take(sent.message, kServer, !sent.to, now_ns_);
@@ -164,10 +166,10 @@ TEST_F(Drive, AServerThatStopsSaysSo) {
   start_server();
   time_until_subscribed();
   pass(kSecond);
-  std::vector<replay::SdOutgoing> out;
+  std::vector<boresight::someip::SdOutgoing> out;
   server_->stop(out);
   ASSERT_FALSE(out.empty());
-  for (const replay::SdOutgoing& sent : out) {
+  for (const boresight::someip::SdOutgoing& sent : out) {
     due_ns_ = client_->take(sent.message, kServer, !sent.to, now_ns_);
   }
   EXPECT_THAT(reasons_, testing::ElementsAre(UnsubscribeReason::kStopOffer));

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "interfaces/messages/service_status.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 #include "services/ingest_gateway/codecs/someip/tp.hpp"
 
 namespace boresight::ingest::someip {
+
+using namespace boresight::someip;
 
 /// Of results that are faults.
 [[nodiscard]] constexpr Fault kind_of(ReadResult result) {

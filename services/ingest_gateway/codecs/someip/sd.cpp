@@ -1,6 +1,6 @@
 #include "services/ingest_gateway/codecs/someip/sd.hpp"
 
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 
 namespace boresight::ingest::someip {
 

@@ -8,9 +8,12 @@
 #include <string_view>
 
 #include "services/common/recording/ip_address.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 
 namespace boresight::ingest::someip {
+
+using namespace boresight::someip;
+using boresight::someip::describe;
 
 inline constexpr std::uint16_t kSdService = 0xFFFF;
 inline constexpr std::uint16_t kSdMethod = 0x8100;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 
 namespace boresight::ingest::someip {
 

@@ -7,10 +7,12 @@
 #include <span>
 
 #include "services/common/recording/ip_address.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 #include "services/ingest_gateway/codecs/someip/sd.hpp"
 
 namespace boresight::ingest::someip {
+
+using namespace boresight::someip;
 
 /// Which subscription an entry is about.
 struct EventgroupId {

@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "services/common/recording/ip_address.hpp"
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 
 namespace boresight::ingest::someip {
+
+using namespace boresight::someip;
+using boresight::someip::describe;
 
 enum class TpResult : std::uint8_t {
   kAccepted,       ///< taken; segments are still missing

@@ -49,8 +49,8 @@ void can_fd_srr520_per_frame(benchmark::State& state) {
   Traffic cycle;
   Bytes header(layout::kHeaderBytes), listed;
   header[layout::header::kSyncStatus] = layout::kSyncOk;
-  ingest::write_u16(header.data() + layout::header::kAmbiguousVelocity, 39794);
-  ingest::write_u16(header.data() + list.count_offset, detections);
+  boresight::write_u16(header.data() + layout::header::kAmbiguousVelocity, 39794);
+  boresight::write_u16(header.data() + list.count_offset, detections);
   listed = header;
   cycle.add_can("can1", list.header_id, header);
   for (std::size_t i = 0; i < list.number_of_frames; ++i) {
@@ -63,7 +63,7 @@ void can_fd_srr520_per_frame(benchmark::State& state) {
   }
   Bytes closing(layout::kClosingBytes);
   closing[layout::closing::kListId] = layout::kNearList;
-  ingest::write_u16(closing.data() + layout::closing::kCrc, e2e::crc16_ccitt_false(listed));
+  boresight::write_u16(closing.data() + layout::closing::kCrc, e2e::crc16_ccitt_false(listed));
   cycle.add_can("can1", layout::kClosingId, closing);
   measure_can(state, bench, cycle, 1);
 }

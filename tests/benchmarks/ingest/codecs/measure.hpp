@@ -12,7 +12,7 @@
 #include <benchmark/benchmark.h>
 
 #include "services/common/recording/frame.hpp"
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 
 namespace boresight::bench {
 
@@ -37,7 +37,7 @@ inline void swap_words(Frames frames) {
   alignas(64) static std::array<float, 16384> to;
   for (const recording::Frame& frame : frames) {
     const std::size_t words = std::min(frame.payload.size() / 4, to.size());
-    for (std::size_t i = 0; i < words; ++i) to[i] = ingest::read_f32(frame.payload.data() + 4 * i);
+    for (std::size_t i = 0; i < words; ++i) to[i] = boresight::read_f32(frame.payload.data() + 4 * i);
     benchmark::ClobberMemory();
   }
 }

@@ -1,6 +1,6 @@
 // Detection lists of the Boresight service in segments, and its discovery.
 #include "interfaces/wire/boresight_service.hpp"
-#include "services/replay/core/sd_message.hpp"
+#include "services/common/someip/sd_message.hpp"
 #include "tests/benchmarks/ingest/codecs/measure.hpp"
 #include "tests/benchmarks/ingest/gateway_bench.hpp"
 #include "tests/benchmarks/ingest/scans.hpp"
@@ -45,7 +45,7 @@ void someip_sd_per_offer(benchmark::State& state) {
   VehicleConfig vehicle = someip_vehicle(true);
   const recording::Endpoint discovery{kServer.address, 30490};
   const recording::Endpoint group{recording::parse_ip(vehicle.radars[0].source.discovery_address).value(), 30490};
-  replay::SdWriter writer;
+  boresight::someip::SdWriter writer;
   const RadarConfig radar = vehicle.radars[0];
   vehicle.radars.clear();
   for (std::uint16_t instance = 1; instance <= kRadars; ++instance) {
@@ -64,7 +64,7 @@ void someip_sd_per_offer(benchmark::State& state) {
     bench.next_cycle();
     session = session == 0xFFFF ? std::uint16_t{1} : static_cast<std::uint16_t>(session + 1);
     constexpr std::size_t kSession = 10;
-    ingest::write_u16(traffic.bytes(0).data() + kSession, session);
+    boresight::write_u16(traffic.bytes(0).data() + kSession, session);
   };
   measure(state, kRadars, traffic.frames(), prepare, [&] { bench.take(traffic); });
   if (bench.sink.count(Fault::kWireValue) + bench.sink.count(Fault::kWireLength) != 0) {

@@ -39,24 +39,24 @@ BENCHMARK(ars548_rejected_list)->UseManualTime();
 Traffic fragments_of(std::span<const std::uint8_t> payload) {
   constexpr std::size_t kUdpHeader = 8, kIpHeader = 20, kEthernetHeader = 14, kPerFragment = 1480;
   Bytes datagram(kUdpHeader + payload.size());
-  ingest::write_u16(datagram.data(), kArs548Sensor.port);
-  ingest::write_u16(datagram.data() + 2, kArs548Group.port);
-  ingest::write_u16(datagram.data() + 4, static_cast<std::uint16_t>(datagram.size()));
+  boresight::write_u16(datagram.data(), kArs548Sensor.port);
+  boresight::write_u16(datagram.data() + 2, kArs548Group.port);
+  boresight::write_u16(datagram.data() + 4, static_cast<std::uint16_t>(datagram.size()));
   std::copy(payload.begin(), payload.end(), datagram.begin() + kUdpHeader);
   Traffic packets;
   for (std::size_t at = 0; at < datagram.size(); at += kPerFragment) {
     const std::size_t size = std::min(kPerFragment, datagram.size() - at);
     const bool more = at + size < datagram.size();
     Bytes packet(kEthernetHeader + kIpHeader + size);
-    ingest::write_u16(packet.data() + 12, 0x0800);
+    boresight::write_u16(packet.data() + 12, 0x0800);
     std::uint8_t* const ip = packet.data() + kEthernetHeader;
     ip[0] = 0x45;
-    ingest::write_u16(ip + 2, static_cast<std::uint16_t>(kIpHeader + size));
-    ingest::write_u16(ip + 6, static_cast<std::uint16_t>((more ? 0x2000u : 0u) | at / 8));
+    boresight::write_u16(ip + 2, static_cast<std::uint16_t>(kIpHeader + size));
+    boresight::write_u16(ip + 6, static_cast<std::uint16_t>((more ? 0x2000u : 0u) | at / 8));
     ip[8] = 1;
     ip[9] = 17;
-    ingest::write_u32(ip + 12, kArs548Sensor.address.to_v4());
-    ingest::write_u32(ip + 16, kArs548Group.address.to_v4());
+    boresight::write_u32(ip + 12, kArs548Sensor.address.to_v4());
+    boresight::write_u32(ip + 16, kArs548Group.address.to_v4());
     std::copy_n(datagram.begin() + static_cast<std::ptrdiff_t>(at), size, ip + kIpHeader);
     packets.add_udp({}, {}, std::move(packet));
   }
@@ -73,7 +73,7 @@ void ip_reassembly_per_fragment(benchmark::State& state) {
   const auto prepare = [&] {
     ++identification;
     for (std::size_t i = 0; i < packets.frames().size(); ++i)
-      ingest::write_u16(packets.bytes(i).data() + 18, identification);
+      boresight::write_u16(packets.bytes(i).data() + 18, identification);
   };
   const auto take = [&] {
     for (const recording::Frame& packet : packets.frames()) {

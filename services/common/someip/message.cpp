@@ -1,8 +1,8 @@
-#include "services/ingest_gateway/codecs/someip/message.hpp"
+#include "services/common/someip/message.hpp"
 
-#include "services/ingest_gateway/codecs/big_endian.hpp"
+#include "services/common/someip/big_endian.hpp"
 
-namespace boresight::ingest::someip {
+namespace boresight::someip {
 
 namespace {
 
@@ -54,9 +54,7 @@ ReadResult MessageReader::next(Message& message) {
   const std::span<const std::uint8_t> counted = rest_.subspan(8, length);
   rest_ = rest_.subspan(8 + length);
   at_end_ = rest_.empty();
-  if (bytes[12] != kProtocolVersion) return ReadResult::kProtocolVersion;
   const auto plain_type = static_cast<std::uint8_t>(bytes[14] & ~kTpBit);
-  if (!is_known(plain_type)) return ReadResult::kMessageType;
   message.service = read_u16(bytes);
   message.method = read_u16(bytes + 2);
   message.client = read_u16(bytes + 8);
@@ -68,7 +66,8 @@ ReadResult MessageReader::next(Message& message) {
   message.return_code = bytes[15];
   message.payload = counted.subspan(kLengthCountsBytes);
   message.protected_data = counted;
-  return ReadResult::kMessage;
+  if (bytes[12] != kProtocolVersion) return ReadResult::kProtocolVersion;
+  return is_known(plain_type) ? ReadResult::kMessage : ReadResult::kMessageType;
 }
 
 void write_header(const Message& message, std::size_t payload_bytes, std::span<std::uint8_t, kHeaderBytes> out) {
@@ -83,4 +82,4 @@ void write_header(const Message& message, std::size_t payload_bytes, std::span<s
   out[15] = message.return_code;
 }
 
-}  // namespace boresight::ingest::someip
+}  // namespace boresight::someip

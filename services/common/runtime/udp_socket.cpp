@@ -1,4 +1,4 @@
-#include "services/replay/server/udp_socket.hpp"
+#include "services/common/runtime/udp_socket.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -12,13 +12,13 @@
 
 #include "services/common/runtime/socket_address.hpp"
 
-namespace boresight::replay {
+namespace boresight::runtime {
 
 namespace {
 
 /// The kernel's form of an address; those that are valid on one link only need its number with IPv6.
 socklen_t kernel_address(const recording::Endpoint& endpoint, unsigned interface_index, sockaddr_storage& out) {
-  const socklen_t size = runtime::to_sockaddr(endpoint, out);
+  const socklen_t size = to_sockaddr(endpoint, out);
   const auto& bytes = endpoint.address.bytes;
   const bool one_link = bytes[0] == 0xFF || (bytes[0] == 0xFE && (bytes[1] & 0xC0) == 0x80);
   if (out.ss_family == AF_INET6 && one_link) reinterpret_cast<sockaddr_in6&>(out).sin6_scope_id = interface_index;
@@ -97,7 +97,7 @@ UdpSocket UdpSocket::member_of(const recording::Endpoint& group, const std::stri
   if (socket.v4_) {
     ip_mreqn request{};
     sockaddr_storage address{};
-    static_cast<void>(runtime::to_sockaddr(group, address));
+    static_cast<void>(to_sockaddr(group, address));
     request.imr_multiaddr = reinterpret_cast<const sockaddr_in&>(address).sin_addr;
     request.imr_ifindex = static_cast<int>(socket.interface_index_);
     socket.set(IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof(off), "keep to its own memberships");
@@ -127,8 +127,8 @@ std::optional<std::span<const std::uint8_t>> UdpSocket::receive(std::span<std::u
   const ssize_t length =
       recvfrom(descriptor_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&address), &size);
   if (length < 0) return std::nullopt;
-  from = runtime::from_sockaddr(address);
+  from = from_sockaddr(address);
   return buffer.first(static_cast<std::size_t>(length));
 }
 
-}  // namespace boresight::replay
+}  // namespace boresight::runtime

@@ -1,10 +1,10 @@
-#include "services/replay/core/sd_message.hpp"
+#include "services/common/someip/sd_message.hpp"
 
 #include <algorithm>
 
-#include "services/replay/core/byte_writer.hpp"
+#include "services/common/someip/byte_writer.hpp"
 
-namespace boresight::replay {
+namespace boresight::someip {
 
 namespace {
 
@@ -206,4 +206,4 @@ std::vector<std::uint8_t> SdWriter::finish(std::uint16_t session, bool reboot) c
   return message;
 }
 
-}  // namespace boresight::replay
+}  // namespace boresight::someip

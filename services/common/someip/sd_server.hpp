@@ -1,5 +1,6 @@
 // The server's side of SOME/IP service discovery: offers, answers, subscriptions (interfaces/wire/boresight_service.md,
-// 5). Knows no socket and no clock: datagrams and times are arguments, answers are returned.
+// 5), for one service in one or several instances. Knows no socket and no clock: datagrams and times are arguments,
+// answers are returned.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +12,26 @@
 #include <vector>
 
 #include "services/common/recording/ip_address.hpp"
-#include "services/replay/core/sd_message.hpp"
-#include "services/replay/core/session_counter.hpp"
+#include "services/common/someip/sd_message.hpp"
+#include "services/common/someip/session_counter.hpp"
 
-namespace boresight::replay {
+namespace boresight::someip {
 
 struct OfferedInstance {
   std::uint16_t instance = 1;
-  recording::Endpoint endpoint;  ///< where its events come from
+  recording::Endpoint endpoint;  ///< where its events come from and where it takes requests
+};
+
+/// What every instance offers.
+struct OfferedService {
+  std::uint16_t id = 0;
+  std::uint8_t major = 1;
+  std::uint32_t minor = 0;
+  std::vector<std::uint16_t> eventgroups;  ///< others are refused
 };
 
 struct SdServerConfig {
+  OfferedService service;
   std::vector<OfferedInstance> instances;
   std::optional<recording::Endpoint> event_group;  ///< events go there instead of to the subscribers
   std::int64_t initial_wait_ns = 50'000'000;       ///< the caller draws it between 10 and 100 ms
@@ -68,6 +78,13 @@ class SdServer {
   /// subscribers. Valid until the next call of another function.
   [[nodiscard]] std::span<const recording::Endpoint> destinations(std::uint16_t instance, std::uint16_t eventgroup,
                                                                   std::int64_t now_ns);
+  /// Subscriptions that the last receive() has made, renewals aside: a field sends them its value.
+  struct NewSubscriber {
+    std::uint16_t instance;
+    std::uint16_t eventgroup;
+    recording::Endpoint endpoint;
+  };
+  [[nodiscard]] std::span<const NewSubscriber> new_subscribers() const { return new_subscribers_; }
   [[nodiscard]] const SdStatistics& statistics() const { return statistics_; }
 
  private:
@@ -102,6 +119,8 @@ class SdServer {
   void unsubscribe(const SdEntry& entry, const recording::Endpoint& from);
   void expire(std::int64_t now_ns);
   void offer_all(std::uint32_t ttl_s, std::vector<SdOutgoing>& out);
+  [[nodiscard]] bool asks_for(const SdEntry& entry, std::uint16_t instance) const;
+  [[nodiscard]] SdWriter::Service offered(std::uint16_t instance) const;
   [[nodiscard]] bool serves(std::uint16_t instance) const;
   [[nodiscard]] Peer& peer(const recording::Endpoint& from, std::int64_t now_ns);
 
@@ -113,8 +132,9 @@ class SdServer {
   std::map<recording::Endpoint, Peer> peers_;
   std::vector<Subscription> subscriptions_;
   std::vector<recording::Endpoint> destinations_;
+  std::vector<NewSubscriber> new_subscribers_;
   SdMessage received_;
   SdStatistics statistics_;
 };
 
-}  // namespace boresight::replay
+}  // namespace boresight::someip

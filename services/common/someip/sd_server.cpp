@@ -1,25 +1,14 @@
-#include "services/replay/core/sd_server.hpp"
+#include "services/common/someip/sd_server.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "interfaces/wire/boresight_service.hpp"
-
-namespace boresight::replay {
-
-namespace service = wire::boresight_service;
+namespace boresight::someip {
 
 namespace {
 
 constexpr std::uint32_t kTtlForever = 0xFFFFFF;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
-bool asks_for(const SdEntry& entry, std::uint16_t instance) {
-  return entry.type == static_cast<std::uint8_t>(SdEntryType::kFindService) && entry.service == service::kServiceId &&
-         (entry.instance == 0xFFFF || entry.instance == instance) &&
-         (entry.major == 0xFF || entry.major == service::kMajorVersion) &&
-         (entry.minor == 0xFFFF'FFFF || entry.minor == service::kMinorVersion);
-}
 
 bool same_subscriber(std::uint8_t counter, const recording::Endpoint& endpoint, const SdEntry& entry) {
   return counter == entry.counter && endpoint == entry.endpoint;
@@ -28,6 +17,17 @@ bool same_subscriber(std::uint8_t counter, const recording::Endpoint& endpoint, 
 }  // namespace
 
 SdServer::SdServer(SdServerConfig config) : config_(std::move(config)) {}
+
+bool SdServer::asks_for(const SdEntry& entry, std::uint16_t instance) const {
+  return entry.type == static_cast<std::uint8_t>(SdEntryType::kFindService) && entry.service == config_.service.id &&
+         (entry.instance == 0xFFFF || entry.instance == instance) &&
+         (entry.major == 0xFF || entry.major == config_.service.major) &&
+         (entry.minor == 0xFFFF'FFFF || entry.minor == config_.service.minor);
+}
+
+SdWriter::Service SdServer::offered(std::uint16_t instance) const {
+  return {config_.service.id, instance, config_.service.major, config_.service.minor};
+}
 
 void SdServer::start(std::int64_t now_ns) {
   running_ = true;
@@ -56,9 +56,8 @@ void SdServer::tick(std::int64_t now_ns, std::vector<SdOutgoing>& out) {
 
 void SdServer::offer_all(std::uint32_t ttl_s, std::vector<SdOutgoing>& out) {
   SdWriter writer;
-  for (const OfferedInstance& offered : config_.instances) {
-    writer.offer({service::kServiceId, offered.instance, service::kMajorVersion, service::kMinorVersion}, ttl_s,
-                 offered.endpoint);
+  for (const OfferedInstance& entry : config_.instances) {
+    writer.offer(offered(entry.instance), ttl_s, entry.endpoint);
   }
   const std::uint16_t session = multicast_session_.take();
   out.push_back({std::nullopt, writer.finish(session, !multicast_session_.wrapped())});
@@ -67,6 +66,7 @@ void SdServer::offer_all(std::uint32_t ttl_s, std::vector<SdOutgoing>& out) {
 std::optional<std::string_view> SdServer::receive(std::int64_t now_ns, std::span<const std::uint8_t> datagram,
                                                   const recording::Endpoint& from, bool by_multicast,
                                                   std::vector<SdOutgoing>& out) {
+  new_subscribers_.clear();
   if (!running_) return std::nullopt;
   expire(now_ns);
   while (!datagram.empty()) {
@@ -127,12 +127,10 @@ void SdServer::take_message(const SdMessage& message, std::int64_t now_ns, const
 void SdServer::answer_finds(std::span<const SdEntry> entries, SdWriter& answer) const {
   if (offers_sent_ == 0) return;
   // Each instance at most once, however many entries ask, so that a message never makes a larger answer than an offer.
-  for (const OfferedInstance& offered : config_.instances) {
+  for (const OfferedInstance& own : config_.instances) {
     const bool wanted = std::any_of(entries.begin(), entries.end(),
-                                    [&offered](const SdEntry& entry) { return asks_for(entry, offered.instance); });
-    if (!wanted) continue;
-    answer.offer({service::kServiceId, offered.instance, service::kMajorVersion, service::kMinorVersion},
-                 config_.offer_ttl_s, offered.endpoint);
+                                    [&](const SdEntry& entry) { return asks_for(entry, own.instance); });
+    if (wanted) answer.offer(offered(own.instance), config_.offer_ttl_s, own.endpoint);
   }
 }
 
@@ -153,9 +151,10 @@ void SdServer::take_subscription(const SdEntry& entry, std::int64_t now_ns, cons
 }
 
 bool SdServer::subscribe(const SdEntry& entry, std::int64_t now_ns, const recording::Endpoint& from) {
-  const bool known =
-      entry.service == service::kServiceId && serves(entry.instance) && entry.major == service::kMajorVersion &&
-      (entry.eventgroup == service::kEventgroupDetections || entry.eventgroup == service::kEventgroupEgoMotion);
+  const std::vector<std::uint16_t>& eventgroups = config_.service.eventgroups;
+  const bool known = entry.service == config_.service.id && serves(entry.instance) &&
+                     entry.major == config_.service.major &&
+                     std::find(eventgroups.begin(), eventgroups.end(), entry.eventgroup) != eventgroups.end();
   if (!known || !entry.endpoint) return false;
   const std::int64_t expires_ns =
       entry.ttl_s == kTtlForever ? kNever : now_ns + static_cast<std::int64_t>(entry.ttl_s) * kSecond_ns;
@@ -171,12 +170,13 @@ bool SdServer::subscribe(const SdEntry& entry, std::int64_t now_ns, const record
   if (others >= config_.max_subscribers) return false;
   subscriptions_.push_back(
       {entry.instance, entry.eventgroup, entry.counter, from.address, *entry.endpoint, expires_ns});
+  new_subscribers_.push_back({entry.instance, entry.eventgroup, *entry.endpoint});
   return true;
 }
 
 void SdServer::unsubscribe(const SdEntry& entry, const recording::Endpoint& from) {
   std::erase_if(subscriptions_, [&](const Subscription& s) {
-    return entry.service == service::kServiceId && s.instance == entry.instance && s.eventgroup == entry.eventgroup &&
+    return entry.service == config_.service.id && s.instance == entry.instance && s.eventgroup == entry.eventgroup &&
            s.client == from.address && same_subscriber(s.counter, s.endpoint, entry);
   });
 }
@@ -197,4 +197,4 @@ std::span<const recording::Endpoint> SdServer::destinations(std::uint16_t instan
   return destinations_;
 }
 
-}  // namespace boresight::replay
+}  // namespace boresight::someip

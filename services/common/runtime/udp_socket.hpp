@@ -8,7 +8,7 @@
 
 #include "services/common/recording/ip_address.hpp"
 
-namespace boresight::replay {
+namespace boresight::runtime {
 
 /// Owns a non-blocking UDP socket. All functions that open one throw std::runtime_error with the cause.
 class UdpSocket {
@@ -41,4 +41,4 @@ class UdpSocket {
   int descriptor_;
 };
 
-}  // namespace boresight::replay
+}  // namespace boresight::runtime

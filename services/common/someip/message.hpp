@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace boresight::ingest::someip {
+namespace boresight::someip {
 
 inline constexpr std::size_t kHeaderBytes = 16;
 /// What the length field counts besides the payload: Request ID, versions, type and return code.
@@ -57,7 +57,8 @@ class MessageReader {
  public:
   explicit MessageReader(std::span<const std::uint8_t> datagram) : rest_(datagram), at_end_(false) {}
 
-  /// Writes `message` if the result is kMessage. An empty datagram is a fault (kHeaderCut).
+  /// Writes `message` if the result is kMessage, and also if it is one of those that skip a message, so that it can be
+  /// answered. An empty datagram is a fault (kHeaderCut).
   [[nodiscard]] ReadResult next(Message& message);
 
  private:
@@ -69,4 +70,4 @@ class MessageReader {
 /// Bytes of a message's header before its payload; `payload_bytes` below 2^32 − 8.
 void write_header(const Message& message, std::size_t payload_bytes, std::span<std::uint8_t, kHeaderBytes> out);
 
-}  // namespace boresight::ingest::someip
+}  // namespace boresight::someip

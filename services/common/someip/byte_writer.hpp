@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace boresight::replay {
+namespace boresight::someip {
 
 /// Writes one value after the other. What does not fit is left out and remembered, so that a caller asks once, at the
 /// end, instead of at each value.
@@ -47,4 +47,4 @@ class ByteWriter {
   std::size_t size_ = 0;
 };
 
-}  // namespace boresight::replay
+}  // namespace boresight::someip

@@ -11,7 +11,7 @@
 
 #include "services/common/recording/ip_address.hpp"
 
-namespace boresight::replay {
+namespace boresight::someip {
 
 enum class SdEntryType : std::uint8_t {
   kFindService = 0x00,
@@ -74,4 +74,4 @@ class SdWriter {
   std::vector<std::vector<std::uint8_t>> options_;
 };
 
-}  // namespace boresight::replay
+}  // namespace boresight::someip

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace boresight::replay {
+namespace boresight::someip {
 
 /// SOME/IP session ids: 1, 2, … 0xFFFF, 1, …
 class SessionCounter {
@@ -25,4 +25,4 @@ class SessionCounter {
   bool wrapped_ = false;
 };
 
-}  // namespace boresight::replay
+}  // namespace boresight::someip

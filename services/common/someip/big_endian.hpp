@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace boresight::ingest {
+namespace boresight {
 
 [[nodiscard]] constexpr std::uint16_t read_u16(const std::uint8_t* p) {
   return static_cast<std::uint16_t>(p[0] << 8 | p[1]);
@@ -35,4 +35,4 @@ constexpr void write_f32(std::uint8_t* p, float value) {
   write_u32(p, std::bit_cast<std::uint32_t>(value));
 }
 
-}  // namespace boresight::ingest
+}  // namespace boresight
