@@ -54,8 +54,8 @@ AlignmentSpec published_setup() {
   spec.yaw_rate_std_radps = 0.0;
   for (AlignmentRadar& radar : spec.radars) {
     radar.mean_detections = 64.0;
-    radar.config.noise.range_rate_std_mps = 0.0224;
-    radar.config.noise.azimuth_std_rad = 0.155 * kDegree;
+    radar.config.noise.range_rate_std_mps = 0.022;
+    radar.config.noise.azimuth_std_rad = 0.15 * kDegree;
     radar.config.noise.elevation_std_rad = 0.3 * kDegree;
   }
   return spec;

@@ -1,0 +1,58 @@
+// The Cramér–Rao bound of a drive: how well any unbiased estimator can know the alignment after what was driven, if it
+// were told which detections stand still.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "tests/simulator/alignment/drive.hpp"
+
+namespace boresight::simulator {
+
+/// What is known before the drive; 0: the parameter is known exactly.
+struct BoundPriors {
+  double speed_scale_std = 0.02;
+  double rotation_std_rad = 3.0 * M_PI / 180.0;  ///< about each axis of the vehicle, of every radar
+  double yaw_rate_bias_std_radps = 0.0;
+  double slip_coefficient_std_radps2pm = 0.0;
+};
+
+/// Sums the information of a drive's stationary detections at the truth, each with the variance
+/// σ_ṙ² + (∂_α ṙ·σ_α)² + (∂_β ṙ·σ_β)² of its real noise. The errors of the speed and yaw-rate signals are eliminated
+/// jointly for all scans that share an ego motion, body pitch as the time-correlated process that it is. Parameters in
+/// the order of alignment::Memory: k_v, yaw-rate bias, slip coefficient, then of each radar the turn about the
+/// vehicle's x, y and z axes.
+///
+/// What it takes as known, so that it stays a bound: what body pitch owes to acceleration; and for radars without
+/// elevation their roll and pitch, which keep their prior. Knocks turn the truth only.
+class CramerRaoBound {
+ public:
+  static constexpr Eigen::Index kShared = 3;
+
+  /// Throws std::invalid_argument for drives of the planar model, whose truth is no rotation. `drive` must outlive it.
+  CramerRaoBound(const AlignmentSpec& spec, const AlignmentDrive& drive, const BoundPriors& priors = {});
+
+  /// Takes the drive's events in their order.
+  void add(const AlignmentEvent& event);
+  /// Square, 3 + 3 × radars rows.
+  [[nodiscard]] Eigen::MatrixXd covariance() const;
+  /// Stds of a radar's turn about the vehicle's x, y and z axes (rad).
+  [[nodiscard]] Eigen::Vector3d rotation_std_rad(std::size_t radar) const;
+  [[nodiscard]] double speed_scale_std() const;
+
+ private:
+  void eliminate(Eigen::MatrixXd& information, Eigen::Index variable) const;
+  void renew_ego_errors();
+  void advance_pitch(double time_s);
+
+  AlignmentSpec spec_;
+  const AlignmentDrive& drive_;
+  Eigen::Index parameters_;
+  std::vector<bool> known_;      ///< of the parameters
+  Eigen::MatrixXd information_;  ///< of the parameters, then the errors of speed and yaw rate, then body pitch
+  double pitch_time_s_ = 0.0;
+};
+
+}  // namespace boresight::simulator
