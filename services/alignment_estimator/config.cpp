@@ -1,9 +1,33 @@
 #include "services/alignment_estimator/config.hpp"
 
+#include "interfaces/messages/header.hpp"
+
 namespace boresight::alignment {
 
-Config read_config(config::Reader root) {
-  Config c;
+namespace {
+
+std::optional<Truth> read_truth(config::Reader root) {
+  if (!root.has("truth")) return std::nullopt;
+  config::Reader table = root.table("truth");
+  Truth truth;
+  truth.speed_scale = table.number("speed_scale", {0.5, 2.0}, truth.speed_scale);
+  for (config::Reader& entry : table.tables("radar")) {
+    Truth::Radar radar;
+    entry.require("id");
+    radar.id = static_cast<std::uint32_t>(entry.integer("id", {1, kMaxRadars}, 1));
+    radar.yaw_rad = entry.angle_deg("yaw_deg", {-45.0, 45.0}, 0.0);
+    radar.pitch_rad = entry.angle_deg("pitch_deg", {-45.0, 45.0}, 0.0);
+    radar.roll_rad = entry.angle_deg("roll_deg", {-45.0, 45.0}, 0.0);
+    truth.radars.push_back(radar);
+  }
+  return truth;
+}
+
+}  // namespace
+
+Settings read_settings(config::Reader root) {
+  Settings settings;
+  Config& c = settings.estimator;
   c.method = root.choice<MethodName>("method", {{"azimuth_1d", MethodName::kAzimuth1d}}, c.method);
   c.min_speed_mps = root.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
   c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
@@ -25,8 +49,15 @@ Config read_config(config::Reader root) {
   c.systematic_speed_scale_std =
       convergence.number("systematic_speed_scale_std", {0.0, 0.1}, c.systematic_speed_scale_std);
   c.kpi_window_s = root.number("kpi_window_s", {1.0, 3600.0}, c.kpi_window_s);
+  c.residual_gate_sigma = root.number("residual_gate_sigma", {2.0, 20.0}, c.residual_gate_sigma);
+  c.truth = read_truth(root);
+  MemorySettings& memory = settings.memory;
+  config::Reader memory_table = root.table("memory");
+  memory.enabled = memory_table.boolean("enabled", memory.enabled);
+  memory.path = memory_table.text("path", memory.path);
+  memory.period_s = memory_table.number("period_s", {1.0, 3600.0}, memory.period_s);
   root.finish();
-  return c;
+  return settings;
 }
 
 }  // namespace boresight::alignment

@@ -1,12 +1,27 @@
-// config/services/alignment_estimator.toml → alignment::Config.
+// config/services/alignment_estimator.toml → what the service runs with.
 #pragma once
+
+#include <string>
 
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/common/runtime/config/reader.hpp"
 
 namespace boresight::alignment {
 
+/// What survives the ignition cycle, and where.
+struct MemorySettings {
+  bool enabled = true;
+  /// "": `alignment` in the folder that systemd names in $STATE_DIRECTORY; without one nothing is remembered.
+  std::string path;
+  double period_s = 30.0;
+};
+
+struct Settings {
+  Config estimator;
+  MemorySettings memory;
+};
+
 /// Reads the document; throws config::Error.
-[[nodiscard]] Config read_config(config::Reader root);
+[[nodiscard]] Settings read_settings(config::Reader root);
 
 }  // namespace boresight::alignment

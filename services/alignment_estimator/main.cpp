@@ -1,17 +1,46 @@
 // boresight-alignment_estimator: ego motion and scans in, one estimate a radar and period out.
+#include <cstdlib>
+
 #include "services/alignment_estimator/config.hpp"
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/alignment_estimator/store/keeper.hpp"
+#include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_main.hpp"
 
 using namespace boresight;
 
 namespace {
 
-int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Config& config) {
-  alignment::Estimator estimator(vehicle, config);
+std::optional<std::filesystem::path> memory_file(const alignment::MemorySettings& settings) {
+  if (!settings.enabled) return std::nullopt;
+  if (!settings.path.empty()) return settings.path;
+  const char* const folder = std::getenv("STATE_DIRECTORY");
+  if (folder == nullptr || *folder == '\0') return std::nullopt;
+  return std::filesystem::path(folder) / "alignment";
+}
+
+/// Logs what is new; the publications carry it as well.
+void report_knocks(const VehicleConfig& vehicle, const alignment::Estimator& estimator,
+                   std::array<std::uint32_t, kMaxRadars>& reported) {
+  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+    const AlignmentKnock knock = estimator.estimate(i).knock;
+    if (knock.count == reported[i]) continue;
+    reported[i] = knock.count;
+    const auto degrees = [&knock](std::size_t axis) { return knock.rotation_vehicle_rad[axis] * 180.0 / M_PI; };
+    runtime::log::warning("radar {} was knocked: by {:+.2f}, {:+.2f}, {:+.2f} deg about the vehicle's x, y, z axes",
+                          vehicle.radars[i].name, degrees(0), degrees(1), degrees(2));
+  }
+}
+
+int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Settings& settings) {
+  alignment::Estimator estimator(vehicle, settings.estimator);
+  alignment::Keeper keeper(node, estimator, vehicle, memory_file(settings.memory), settings.memory.period_s);
   runtime::Publisher<AlignmentEstimate> estimates(node);
+  std::array<std::uint32_t, kMaxRadars> reported_knocks{};
+  node.every(1'000'000'000, [&] { report_knocks(vehicle, estimator, reported_knocks); });
   node.on<EgoMotion>([&](const EgoMotion& motion) { estimator.add_ego_motion(motion); });
   node.on<RadarScan>([&](const RadarScan& scan) {
+    const std::uint32_t id = scan.header.source_id;
     switch (estimator.add_scan(scan)) {
       case alignment::ScanResult::kUsed:
         break;
@@ -22,18 +51,19 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Conf
         node.fault(Fault::kSideInputMissing, "scan without ego motion of its time");
         break;
       case alignment::ScanResult::kPublish: {
-        const runtime::Origin origin{.source_id = scan.header.source_id,
+        const runtime::Origin origin{.source_id = id,
                                      .measurement_time_ns = scan.header.measurement_time_ns,
                                      .time_source = scan.header.time_source,
                                      .stage = std::nullopt,
                                      .begin_ns = 0};
-        estimates.publish(
-            origin, [&](AlignmentEstimate& out) { static_cast<void>(estimator.write(scan.header.source_id, out)); });
+        estimates.publish(origin, [&](AlignmentEstimate& out) { static_cast<void>(estimator.write(id, out)); });
         break;
       }
     }
   });
-  return node.spin();
+  const int exit_code = node.spin();
+  keeper.finish();
+  return exit_code;
 }
 
 }  // namespace
@@ -42,8 +72,8 @@ int main(int argc, char** argv) {
   return runtime::service_main(
       catalogue::Service::kAlignmentEstimator, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
         const VehicleConfig vehicle = files.vehicle();
-        const alignment::Config config =
-            alignment::read_config(config::Reader::open(files.service_file("alignment_estimator")));
-        return [vehicle, config](runtime::Node& node) { return run(node, vehicle, config); };
+        const alignment::Settings settings =
+            alignment::read_settings(config::Reader::open(files.service_file("alignment_estimator")));
+        return [vehicle, settings](runtime::Node& node) { return run(node, vehicle, settings); };
       });
 }
