@@ -1,0 +1,35 @@
+// Report A (24)(25): damped nonlinear least squares, and the 1-D reference of the literature in the same way.
+#pragma once
+
+#include <Eigen/Cholesky>
+
+#include "services/alignment_estimator/core/published/published_method.hpp"
+
+namespace boresight::alignment::published {
+
+/// −η ∘ (JᵀJ + λI)⁻¹ JᵀR; λ > 0. (24) is printed without the transposition of J. A parameter without gradient gets no
+/// step.
+[[nodiscard]] inline Eigen::Vector4d least_squares_step(const NormalEquations& equations, double damping,
+                                                        const Eigen::Vector4d& rate) {
+  const Eigen::Matrix4d damped = equations.jtj + damping * Eigen::Matrix4d::Identity();
+  return -rate.cwiseProduct(damped.ldlt().solve(equations.jtr));
+}
+
+/// All four parameters (`Kind::kLeastSquares`), or k_v and α with β = γ = 0 (`Kind::kAzimuth1d`), for which Report A
+/// names no algorithm: it gets the same one.
+class LeastSquares final : public PublishedMethod {
+ public:
+  LeastSquares(const VehicleConfig& vehicle, const PublishedConfig& config, bool azimuth_only)
+      : PublishedMethod(vehicle, config, azimuth_only ? 2 : 4, 0),
+        damping_(config.least_squares_damping),
+        rate_(config.least_squares_rate.data()) {}
+
+ private:
+  [[nodiscard]] Eigen::Vector4d step(const ScanView& scan) override {
+    return least_squares_step(scan.equations, damping_, rate_);
+  }
+  double damping_;
+  Eigen::Vector4d rate_;
+};
+
+}  // namespace boresight::alignment::published
