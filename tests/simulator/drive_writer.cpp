@@ -9,6 +9,7 @@
 #include <arpa/inet.h>
 
 #include "tests/simulator/drive.hpp"
+#include "tests/simulator/text_file.hpp"
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/simulator/wire/pcap_writer.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
@@ -18,20 +19,6 @@ namespace boresight::simulator {
 namespace {
 
 constexpr std::int64_t kRadarLatency_ns = 20'000'000;  // from measurement to the last fragment on the wire
-
-class TextFile {
- public:
-  explicit TextFile(const std::filesystem::path& file) : file_(std::fopen(file.c_str(), "we")) {
-    if (file_ == nullptr) throw std::runtime_error(file.string() + ": cannot be written");
-  }
-  ~TextFile() { std::fclose(file_); }
-  TextFile(const TextFile&) = delete;
-  TextFile& operator=(const TextFile&) = delete;
-  [[nodiscard]] std::FILE* get() const { return file_; }
-
- private:
-  std::FILE* file_;
-};
 
 const char* name_of(Provenance provenance) {
   switch (provenance) {
@@ -72,6 +59,7 @@ void write_truth(const std::filesystem::path& file, const Scenario& scenario, co
                  radar.id, m.yaw_rad * kDegrees, radar.id, m.pitch_rad * kDegrees, radar.id, m.roll_rad * kDegrees);
     std::fprintf(out.get(), "scans,%u,%zu,1\n", radar.id, scans[radar.id]);
   }
+  out.finish();
 }
 
 void write_objects(std::FILE* out, const Drive& drive, double t_s) {
@@ -146,6 +134,7 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
     ++scans[radar.id];
     files.number_of_detections += event->truth->size();
   }
+  for (const TextFile* file : {&ego_log, &detections, &objects}) file->finish();
   write_truth(files.truth, scenario, vehicle, scans);
   progress(1.0);
   return files;

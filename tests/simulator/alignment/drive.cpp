@@ -16,7 +16,7 @@ namespace boresight::simulator {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr std::int64_t kStart_ns = 1'000'000'000;
+constexpr auto kStart_ns = static_cast<std::int64_t>(AlignmentDrive::kStart_s * 1e9);
 
 std::int64_t stamp_ns(double since_start_s) {
   return kStart_ns + std::llround(since_start_s * 1e9);

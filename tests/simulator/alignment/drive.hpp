@@ -31,12 +31,14 @@ struct AlignmentEvent {
 
 class AlignmentDrive {
  public:
+  static constexpr double kStart_s = 1.0;  ///< measurement time of the first messages
+
   explicit AlignmentDrive(const AlignmentSpec& spec);
   ~AlignmentDrive();
   AlignmentDrive(const AlignmentDrive&) = delete;
   AlignmentDrive& operator=(const AlignmentDrive&) = delete;
 
-  /// False at the end. An ego motion comes before the scans of the same time. Measurement times start at 1 s.
+  /// False at the end. An ego motion comes before the scans of the same time. Measurement times start at kStart_s.
   [[nodiscard]] bool next(AlignmentEvent& event);
   /// The vehicle as configured (nominal), for the estimator.
   [[nodiscard]] VehicleConfig vehicle() const;

@@ -1,7 +1,10 @@
 #include "tests/simulator/alignment/spec.hpp"
 
+#include <array>
 #include <cmath>
 #include <string>
+
+#include "tests/simulator/random.hpp"
 
 namespace boresight::simulator {
 
@@ -9,14 +12,33 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
+/// Report A, Table 1: (α, β, γ) of the radars in degrees.
+constexpr std::array<std::array<double, 3>, 4> kTable1_deg{
+    {{-1.0, 1.0, 2.0}, {2.0, -1.0, 1.0}, {1.0, 2.0, -1.0}, {-2.0, -2.0, -2.0}}};
+
+void set_source(RadarConfig& radar) {
+  radar.profile = RadarProfile::kArs548;
+  radar.source = {};
+  radar.source.link = LinkKind::kUdp;
+  radar.source.address = "224.0.2.2";
+  radar.source.port = 42102;
+  radar.source.sender = "10.13.1." + std::to_string(112 + radar.id);
+}
+
+void add_radar(AlignmentSpec& spec, const RadarConfig& config) {
+  const std::array<double, 3>& angles = kTable1_deg[spec.radars.size() % kTable1_deg.size()];
+  AlignmentRadar radar;
+  radar.config = config;
+  set_source(radar.config);
+  radar.truth = {angles[0] * kDegree, angles[1] * kDegree, angles[2] * kDegree};
+  radar.states_stds = true;
+  spec.radars.push_back(radar);
+}
+
 RadarConfig corner_radar(std::uint32_t id, const char* name, double x_m, double y_m, double yaw_deg) {
   RadarConfig radar;
   radar.id = id;
   radar.name = name;
-  radar.source.link = LinkKind::kUdp;
-  radar.source.address = "224.0.2.2";
-  radar.source.port = 42102;
-  radar.source.sender = "10.13.1." + std::to_string(112 + id);
   radar.mounting_pose.position_m = {x_m, y_m, 0.5};
   radar.mounting_pose.yaw_rad = yaw_deg * kDegree;
   // Detections are drawn 5° and 3° inside: ±65° and ±15° as in the prototype.
@@ -30,17 +52,10 @@ RadarConfig corner_radar(std::uint32_t id, const char* name, double x_m, double 
 
 AlignmentSpec four_corner_radars() {
   AlignmentSpec spec;
-  const auto add = [&spec](const RadarConfig& config, double yaw_deg, double pitch_deg, double roll_deg) {
-    AlignmentRadar radar;
-    radar.config = config;
-    radar.truth = {yaw_deg * kDegree, pitch_deg * kDegree, roll_deg * kDegree};
-    radar.states_stds = true;
-    spec.radars.push_back(radar);
-  };
-  add(corner_radar(1, "front_left", 3.65, 0.75, 45.0), -1.0, 1.0, 2.0);
-  add(corner_radar(2, "front_right", 3.65, -0.75, -45.0), 2.0, -1.0, 1.0);
-  add(corner_radar(3, "rear_left", -0.85, 0.70, 135.0), 1.0, 2.0, -1.0);
-  add(corner_radar(4, "rear_right", -0.85, -0.70, -135.0), -2.0, -2.0, -2.0);
+  add_radar(spec, corner_radar(1, "front_left", 3.65, 0.75, 45.0));
+  add_radar(spec, corner_radar(2, "front_right", 3.65, -0.75, -45.0));
+  add_radar(spec, corner_radar(3, "rear_left", -0.85, 0.70, 135.0));
+  add_radar(spec, corner_radar(4, "rear_right", -0.85, -0.70, -135.0));
   return spec;
 }
 
@@ -59,6 +74,24 @@ AlignmentSpec published_setup() {
     radar.config.noise.elevation_std_rad = 0.3 * kDegree;
   }
   return spec;
+}
+
+AlignmentSpec radars_of(const VehicleConfig& vehicle) {
+  AlignmentSpec spec;
+  spec.speed_std_mps = vehicle.ego.speed_std_mps;
+  spec.yaw_rate_std_radps = vehicle.ego.yaw_rate_std_radps;
+  for (const RadarConfig& radar : vehicle.radars) add_radar(spec, radar);
+  return spec;
+}
+
+void draw_truth(AlignmentSpec& spec) {
+  Stream stream(spec.seed, "alignment truth");
+  spec.speed_scale = stream.uniform(0.97, 1.03);
+  for (AlignmentRadar& radar : spec.radars) {
+    for (double* angle : {&radar.truth.yaw_rad, &radar.truth.pitch_rad, &radar.truth.roll_rad}) {
+      *angle = stream.uniform(-3.0, 3.0) * kDegree;
+    }
+  }
 }
 
 }  // namespace boresight::simulator

@@ -66,5 +66,10 @@ struct AlignmentSpec {
 [[nodiscard]] AlignmentSpec four_corner_radars();
 /// The published set-up: planar truth, slow drive, no outliers, residuals of 0.20 → 0.027 m/s.
 [[nodiscard]] AlignmentSpec published_setup();
+/// The radars of a vehicle, with its stds of the ego signals; misaligned as those of Table 1 in turn. Their sources
+/// become those of ARS548, which the drive's files are written for.
+[[nodiscard]] AlignmentSpec radars_of(const VehicleConfig& vehicle);
+/// Another truth by the seed: k_v in 0.97…1.03, each angle within ±3°.
+void draw_truth(AlignmentSpec& spec);
 
 }  // namespace boresight::simulator

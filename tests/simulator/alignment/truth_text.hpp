@@ -1,0 +1,23 @@
+// The truth of an alignment drive as text.
+#pragma once
+
+#include <string>
+
+#include "tests/simulator/alignment/bound.hpp"
+#include "tests/simulator/alignment/drive.hpp"
+
+namespace boresight::simulator {
+
+/// RMSE of the range rates of stationary detections (m/s).
+struct AlignmentResiduals {
+  double uncorrected_mps, at_truth_mps;
+};
+
+/// Lines of a key and pairs of name and value, angles in degrees: k_v, a line a radar with α, β, γ before any knock,
+/// noise, disturbance, a line a knock with α, β, γ after it, residuals, and the bound where there is one.
+[[nodiscard]] std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive,
+                                     const AlignmentResiduals& residuals, const CramerRaoBound* bound);
+
+[[nodiscard]] const char* name_of(RoadKind road);
+
+}  // namespace boresight::simulator
