@@ -1,0 +1,168 @@
+#include "services/alignment_estimator/core/filter/graduated_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "services/alignment_estimator/core/filter/spread.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+constexpr std::size_t kColumns = 8;
+/// One pass each this often, so that slow radars start as soon as fast ones.
+constexpr double kPassPeriod_s = 0.05;
+constexpr double kMinScale_mps = 0.02;
+/// Nothing is believed that lies further from the prior than this many of its stds.
+constexpr double kPlausibleStds = 3.5;
+
+}  // namespace
+
+GraduatedStart::GraduatedStart(const FilterConfig& config)
+    : config_(config), columns_(kColumns * kCapacity), model_(1) {}
+
+void GraduatedStart::clear() {
+  number_of_scans_ = number_of_sightings_ = 0;
+  seconds_ = 0.0;
+  passes_ = 0;
+  passes_due_ = 0.0;
+}
+
+void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
+  if (number_of_scans_ == kMaxScans || s.count == 0) return;
+  // Every n-th detection of a long scan: sensors sort by range or angle, the first ones are no sample.
+  const std::size_t stride = (s.count + kMaxPerScan - 1) / kMaxPerScan;
+  const std::size_t count = (s.count + stride - 1) / stride;
+  if (number_of_sightings_ + count > kCapacity) return;
+  const std::array<const double*, kColumns> from{s.x.data(),
+                                                 s.y.data(),
+                                                 s.z.data(),
+                                                 s.range_rate_mps.data(),
+                                                 s.azimuth_variance.data(),
+                                                 s.elevation_variance.data(),
+                                                 s.range_rate_variance.data(),
+                                                 s.azimuth_std_slope.data()};
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    double* const to = columns_.data() + c * kCapacity + number_of_sightings_;
+    for (std::size_t i = 0; i < count; ++i) to[i] = from[c][i * stride];
+  }
+  scans_[number_of_scans_++] = {number_of_sightings_, count, motion, s.ambiguity_mps, s.has_elevation};
+  number_of_sightings_ += count;
+}
+
+void GraduatedStart::begin(const StartPrior& prior) {
+  model_.speed_scale = prior.speed_scale;
+  model_.sensor_to_vehicle[0] = prior.sensor_to_vehicle;
+  model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
+  model_.slip_radps2pm = prior.slip_radps2pm;
+  off_.setZero();
+  scale_mps_ = config_.start_scale_mps;
+}
+
+GraduatedStart::Verdict GraduatedStart::add(const Sightings& sightings, const std::array<double, 3>& position_m,
+                                            const ScanMotion3d& motion, double elapsed_s,
+                                            double other_relative_variance, const StartPrior& prior,
+                                            double angle_scale) {
+  store(sightings, motion);
+  seconds_ += elapsed_s;
+  const bool enough =
+      seconds_ >= config_.start_seconds && static_cast<double>(number_of_sightings_) >= config_.start_detections;
+  if (!enough && number_of_scans_ < kMaxScans) return Verdict::kSearching;
+  if (passes_ == 0) begin(prior);
+  passes_due_ = std::min(passes_due_ + std::max(1.0, elapsed_s / kPassPeriod_s), 3.0);
+  while (passes_due_ >= 1.0 && passes_ < config_.start_passes) {
+    passes_due_ -= 1.0;
+    ++passes_;
+    pass(position_m, other_relative_variance, prior, angle_scale, passes_ == config_.start_passes);
+  }
+  if (passes_ < config_.start_passes) return Verdict::kSearching;
+  const Verdict verdict = judge(prior);
+  clear();
+  return verdict;
+}
+
+void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_relative_variance,
+                          const StartPrior& prior, double angle_scale, bool last) {
+  Judgement judgement;
+  judgement.gate = config_.outlier_gate_sigma;
+  judgement.min_std_mps = last ? 0.0 : scale_mps_;
+  judgement.angle_scale = angle_scale;
+  judgement.velocity_variance.setZero();
+  scale_mps_ = std::max(scale_mps_ * config_.start_shrink, kMinScale_mps);
+  std::array<Eigen::Matrix3d, kMaxScans> information;
+  std::array<Eigen::Vector3d, kMaxScans> score;
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), feigned = Eigen::Matrix3d::Zero();
+  inliers_ = near_ = standing_ = counted_ = 0.0;
+  bool has_elevation = false;
+  for (std::size_t k = 0; k < number_of_scans_; ++k) {
+    const Scan& scan = scans_[k];
+    const double* const c = columns_.data() + scan.first;
+    const SightingRun run{c,
+                          c + kCapacity,
+                          c + 2 * kCapacity,
+                          c + 3 * kCapacity,
+                          c + 4 * kCapacity,
+                          c + 5 * kCapacity,
+                          c + 6 * kCapacity,
+                          c + 7 * kCapacity,
+                          scan.count,
+                          scan.ambiguity_mps,
+                          other_relative_variance};
+    const ScanSums sums =
+        sum_scan(run, sensor_velocity(model_, model_.nuisances, 0, position_m, scan.motion).g, judgement);
+    information[k] = sums.information;
+    score[k] = sums.score;
+    all += sums.information;
+    feigned += sums.feigned;
+    inliers_ += sums.inliers;
+    near_ += sums.near;
+    standing_ += sums.standing;
+    counted_ += static_cast<double>(scan.count);
+    has_elevation = has_elevation || scan.has_elevation;
+  }
+  Spread spread;
+  spread.add(all, feigned, inliers_, 0.0);
+  const Eigen::Matrix3d support = spread.support(has_elevation);
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  normal(0, 0) = 1.0 / prior.speed_scale_variance;
+  normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
+  Eigen::Vector4d right = -normal * off_;
+  for (std::size_t k = 0; k < number_of_scans_; ++k) {
+    const VelocityGradient all_gradients =
+        sensor_velocity(model_, model_.nuisances, 0, position_m, scans_[k].motion).gradient;
+    Eigen::Matrix<double, 4, 3> gradient;
+    gradient << all_gradients.row(column::kSpeedScale), all_gradients.middleRows<3>(column::kShared);
+    const Eigen::Matrix<double, 4, 3> supported = gradient * support;
+    normal.noalias() += supported * information[k] * supported.transpose();
+    right.noalias() += supported * score[k];
+  }
+  const Eigen::LLT<Eigen::Matrix4d> solver(normal);
+  Eigen::Vector4d step = solver.solve(right);
+  if (solver.info() != Eigen::Success || !step.allFinite()) step.setZero();
+  const double length = step.tail<3>().norm();
+  if (length > 0.3) step *= 0.3 / length;
+  model_.speed_scale += step(0);
+  model_.sensor_to_vehicle[0] = geometry::so3_exp(step.tail<3>()) * model_.sensor_to_vehicle[0];
+  off_ += step;
+  if (!last) return;
+  result_.speed_scale = model_.speed_scale;
+  result_.sensor_to_vehicle = model_.sensor_to_vehicle[0];
+  result_.covariance = solver.solve(Eigen::Matrix4d::Identity());
+  result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
+}
+
+GraduatedStart::Verdict GraduatedStart::judge(const StartPrior& prior) const {
+  // The gate must hold clearly more than its neighbourhood, twice as wide, lets expect of a background: five stds of
+  // the counts, and most of what it holds.
+  const double excess = inliers_ - 0.5 * near_;
+  const bool stands_out = excess > 0.5 * inliers_ && excess * excess > 25.0 * (inliers_ + 0.25 * near_);
+  const double rotation_limit = kPlausibleStds * std::sqrt(prior.rotation_variance);
+  const bool plausible = std::abs(off_(0)) < kPlausibleStds * std::sqrt(prior.speed_scale_variance) &&
+                         off_.tail<3>().cwiseAbs().maxCoeff() < rotation_limit && result_.covariance.allFinite();
+  return stands_out && plausible ? Verdict::kFound : Verdict::kNothing;
+}
+
+}  // namespace boresight::alignment

@@ -1,0 +1,83 @@
+// Finds where a radar looks from its first scans alone, whatever moves around it: graduated non-convexity over a
+// window of scans, a pass a scan, so that no scan costs much more than another.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/alignment_estimator/core/filter/motion_model.hpp"
+#include "services/alignment_estimator/core/filter/scan_sums.hpp"
+
+namespace boresight::alignment {
+
+/// Where the search begins and how far it may go.
+struct StartPrior {
+  double speed_scale = 1.0;
+  double speed_scale_variance = 1.0;
+  Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
+  double rotation_variance = 1.0;
+  double yaw_rate_bias_radps = 0.0;
+  double slip_radps2pm = 0.0;
+};
+
+struct StartResult {
+  double speed_scale = 1.0;
+  Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes
+  double inlier_ratio = 0.0;
+};
+
+class GraduatedStart {
+ public:
+  enum class Verdict {
+    kSearching,
+    kNothing,  ///< no stationary world stands out; the window is empty again
+    kFound,
+  };
+
+  explicit GraduatedStart(const FilterConfig& config);
+
+  /// Empties the window.
+  void clear();
+  /// Takes a scan into the window while there is room and makes the passes that are due.
+  [[nodiscard]] Verdict add(const Sightings& sightings, const std::array<double, 3>& position_m,
+                            const ScanMotion3d& motion, double elapsed_s, double other_relative_variance,
+                            const StartPrior& prior, double angle_scale);
+  [[nodiscard]] const StartResult& result() const { return result_; }
+
+ private:
+  static constexpr std::size_t kMaxScans = 64;
+  static constexpr std::size_t kMaxPerScan = 96;
+  static constexpr std::size_t kCapacity = 3072;
+  struct Scan {
+    std::size_t first, count;
+    ScanMotion3d motion;
+    double ambiguity_mps;
+    bool has_elevation;
+  };
+  void store(const Sightings& sightings, const ScanMotion3d& motion);
+  void begin(const StartPrior& prior);
+  void pass(const std::array<double, 3>& position_m, double other_relative_variance, const StartPrior& prior,
+            double angle_scale, bool last);
+  [[nodiscard]] Verdict judge(const StartPrior& prior) const;
+
+  FilterConfig config_;
+  std::vector<double> columns_;  ///< eight columns of kCapacity
+  std::array<Scan, kMaxScans> scans_;
+  std::size_t number_of_scans_ = 0;
+  std::size_t number_of_sightings_ = 0;
+  double seconds_ = 0.0;
+  int passes_ = 0;
+  double passes_due_ = 0.0;
+  double scale_mps_ = 0.0;
+  Eigen::Vector4d off_ = Eigen::Vector4d::Zero();
+  double inliers_ = 0.0, near_ = 0.0, standing_ = 0.0, counted_ = 0.0;
+  StartResult result_;
+  JointState model_;
+};
+
+}  // namespace boresight::alignment

@@ -1,0 +1,87 @@
+// Mean and covariance of everything that the radars of a vehicle have in common and of each radar's rotation, and the
+// update by what a scan says of one sensor's velocity: three numbers, however many detections.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "interfaces/messages/header.hpp"
+
+namespace boresight::alignment {
+
+/// Columns of the joint covariance that all radars share. The last four are errors of the motion at the instant of the
+/// last scan, with statistics of their own (NuisanceModel).
+namespace column {
+inline constexpr Eigen::Index kSpeedScale = 0;
+inline constexpr Eigen::Index kYawRateBias = 1;
+inline constexpr Eigen::Index kSlip = 2;
+inline constexpr Eigen::Index kPitchPerAcceleration = 3;
+inline constexpr Eigen::Index kSpeed = 4;      ///< δV, true = signalled + δV, m/s
+inline constexpr Eigen::Index kYawRate = 5;    ///< δω, rad/s
+inline constexpr Eigen::Index kBodyPitch = 6;  ///< rad; moves the body's velocity by V·θ upwards
+inline constexpr Eigen::Index kSideSlip = 7;   ///< rad; by V·ψ to the left
+inline constexpr Eigen::Index kShared = 8;
+inline constexpr Eigen::Index kNuisances = kSpeed;
+inline constexpr Eigen::Index kNumberOfNuisances = 4;
+/// Of each radar: rotation about the vehicle's x, y, z (left error, Exp(d)·R), logarithm of its own scale of range
+/// rates (0 unless elevation is not measured).
+inline constexpr Eigen::Index kPerRadar = 4;
+inline constexpr Eigen::Index kTouched = kShared + kPerRadar;
+inline constexpr Eigen::Index kMax = kShared + kPerRadar * static_cast<Eigen::Index>(kMaxRadars);
+[[nodiscard]] constexpr Eigen::Index of_radar(std::size_t radar) {
+  return kShared + kPerRadar * static_cast<Eigen::Index>(radar);
+}
+}  // namespace column
+
+/// d g/d(column) of one scan: the shared columns, then the radar's four.
+using VelocityGradient = Eigen::Matrix<double, column::kTouched, 3>;
+
+class JointState {
+ public:
+  explicit JointState(std::size_t radars);
+
+  double speed_scale = 1.0;
+  double yaw_rate_bias_radps = 0.0;
+  double slip_radps2pm = 0.0;
+  double pitch_per_acceleration_radps2pm = 0.0;
+  Eigen::Vector4d nuisances = Eigen::Vector4d::Zero();  ///< δV, δω, θ, ψ
+  std::array<Eigen::Matrix3d, kMaxRadars> sensor_to_vehicle;
+  std::array<double, kMaxRadars> log_scale{};
+
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  [[nodiscard]] double covariance(Eigen::Index row, Eigen::Index column) const { return p_(row, column); }
+  /// Sets a diagonal entry and cuts the column's correlations.
+  void set_variance(Eigen::Index index, double variance);
+  void set_covariance(Eigen::Index row, Eigen::Index column, double value) {
+    p_(row, column) = p_(column, row) = value;
+  }
+  void add_variance(Eigen::Index index, double variance) { p_(index, index) += variance; }
+  /// Scales a column's correlations and sets its variance: an Ornstein–Uhlenbeck step.
+  void decay(Eigen::Index index, double keep, double added_variance);
+  /// Multiplies the whole covariance.
+  void inflate(double factor) { p_ *= factor; }
+
+  /// P·G over the touched columns, and the covariance Gᵀ·P·G of the sensor's velocity in its frame.
+  void project(std::size_t radar, const VelocityGradient& gradient);
+  [[nodiscard]] const Eigen::Matrix3d& velocity_covariance() const { return c_; }
+  /// Takes up an information and a score of g, by the last projection. False, and nothing changes, if the result were
+  /// not finite or not plausible.
+  [[nodiscard]] bool update(const Eigen::Matrix3d& information, const Eigen::Vector3d& score);
+
+  [[nodiscard]] bool finite() const { return p_.allFinite(); }
+
+ private:
+  void move(const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::kMax, 1>& step);
+
+  using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, column::kMax, column::kMax>;
+  using Projection = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, column::kMax, 3>;
+  std::size_t radars_;
+  Eigen::Index size_;
+  Covariance p_;
+  Projection pg_, pgx_;
+  Eigen::Matrix3d c_;
+};
+
+}  // namespace boresight::alignment

@@ -1,0 +1,140 @@
+#include "services/alignment_estimator/core/filter/knock_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace boresight::alignment {
+
+namespace {
+
+/// A block says something of an axis if its σ is below this share of the step that is looked for.
+constexpr double kMaxStdShare = 0.35;
+/// Blocks that say too little are joined, up to this many.
+constexpr int kMaxJoined = 8;
+constexpr double kPriorStd_rad = 0.07;
+/// Blocks over which drift and usual share are averaged.
+constexpr double kSlowBlocks = 60.0;
+constexpr double kCollapse = 0.5;
+/// Detections without which a share is no share.
+constexpr double kMinDetections = 20.0;
+/// A radar that is alone cannot take off what is common: its deviation must be larger.
+constexpr double kAlone = 2.0;
+
+}  // namespace
+
+KnockDetector::KnockDetector(std::size_t radars, const FilterConfig& config)
+    : config_(config), number_(std::min(radars, kMaxRadars)) {}
+
+void KnockDetector::clear(std::size_t radar) {
+  radars_[radar] = {};
+}
+
+double KnockDetector::sum(std::size_t radar) const {
+  return *std::max_element(radars_[radar].sums.begin(), radars_[radar].sums.end());
+}
+
+std::uint32_t KnockDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
+                                 const Eigen::Vector2d& score, double standing, double detections) {
+  // A common grid of blocks, so that radars are compared over the same time.
+  const auto length_ns = static_cast<std::int64_t>(config_.knock_block_s * 1e9);
+  const std::int64_t block = time_ns / length_ns;
+  std::uint32_t suspicious = 0;
+  if (block != block_) {
+    for (std::size_t r = 0; r < number_; ++r) close(radars_[r]);
+    suspicious = judge();
+    block_ = block;
+  }
+  Radar& own = radars_[radar];
+  own.active = true;
+  own.information += information;
+  own.score += score;
+  own.standing += standing;
+  own.detections += detections;
+  return suspicious;
+}
+
+void KnockDetector::close(Radar& radar) const {
+  radar.known = {};
+  radar.collapsed = false;
+  if (!radar.active) return;
+  ++radar.blocks;
+  if (radar.detections >= kMinDetections) {
+    const double share = radar.standing / radar.detections;
+    radar.collapsed = radar.usual_share > 0.0 && share < kCollapse * radar.usual_share;
+    if (radar.usual_share < 0.0) radar.usual_share = share;
+    if (!radar.collapsed) radar.usual_share += (share - radar.usual_share) / kSlowBlocks;
+  }
+  Eigen::Matrix2d information = radar.information;
+  information.diagonal().array() += 1.0 / (kPriorStd_rad * kPriorStd_rad);
+  const Eigen::Matrix2d covariance = information.inverse();
+  radar.deviation = covariance * radar.score;
+  const std::array<double, 2> limit{config_.knock_pitch_rad, config_.knock_yaw_rad};
+  bool all = true;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    radar.known[a] = std::sqrt(covariance(axis, axis)) < kMaxStdShare * limit[a] && radar.deviation.allFinite();
+    all = all && radar.known[a];
+  }
+  // The share of a collapsed block is what is believed of it, not where its few survivors lie.
+  if (radar.collapsed) radar.known = {};
+  if (all || radar.collapsed || radar.known[1] || radar.blocks >= kMaxJoined) {
+    radar.information.setZero();
+    radar.score.setZero();
+    radar.standing = radar.detections = 0.0;
+    radar.blocks = 0;
+  }
+}
+
+double KnockDetector::common(std::size_t radar, Eigen::Index axis) const {
+  std::array<double, kMaxRadars> others;
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < number_; ++r) {
+    if (r != radar && radars_[r].known[static_cast<std::size_t>(axis)]) others[count++] = radars_[r].deviation(axis);
+  }
+  if (count == 0) return 0.0;
+  std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count));
+  const double low = others[(count - 1) / 2], high = others[count / 2];
+  const double middle = std::abs(low) < std::abs(high) ? low : high;
+  // Of two radars the one that deviates more is the one that moved.
+  const double own = radars_[radar].deviation(axis);
+  if (count == 1 && std::abs(own) < std::abs(middle)) return own;
+  return middle;
+}
+
+std::uint32_t KnockDetector::judge() {
+  std::uint32_t suspicious = 0;
+  const std::array<double, 2> limits{config_.knock_pitch_rad, config_.knock_yaw_rad};
+  for (std::size_t r = 0; r < number_; ++r) {
+    Radar& radar = radars_[r];
+    if (!radar.active) continue;
+    std::size_t others = 0, others_collapsed = 0;
+    for (std::size_t q = 0; q < number_; ++q) {
+      if (q == r || !radars_[q].active) continue;
+      ++others;
+      if (radars_[q].collapsed) ++others_collapsed;
+    }
+    for (std::size_t a = 0; a < 2; ++a) {
+      if (!radar.known[a]) continue;
+      const auto axis = static_cast<Eigen::Index>(a);
+      radar.own(axis) = radar.deviation(axis) - common(r, axis);
+      const double limit = others == 0 ? kAlone * limits[a] : limits[a];
+      const double d = radar.own(axis) / limit;
+      // One wild block alone is no knock: it counts as much as a step of twice the limit.
+      double& up = radar.sums[2 * a];
+      double& down = radar.sums[2 * a + 1];
+      up = std::max(0.0, up + std::min(d - 1.0, 1.0));
+      down = std::max(0.0, down + std::min(-d - 1.0, 1.0));
+      if (std::abs(d) < 1.0) radar.drift(axis) += (radar.own(axis) - radar.drift(axis)) / kSlowBlocks;
+    }
+    // What jams all radars at once is no knock of one.
+    double& collapse = radar.sums[4];
+    const bool alone = radar.collapsed && 2 * others_collapsed <= others;
+    collapse = std::max(0.0, collapse + (alone ? 1.0 : -1.0));
+    if (sum(r) > config_.knock_sum_blocks) suspicious |= 1u << r;
+  }
+  return suspicious;
+}
+
+}  // namespace boresight::alignment

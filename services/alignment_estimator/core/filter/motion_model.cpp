@@ -1,0 +1,41 @@
+#include "services/alignment_estimator/core/filter/motion_model.hpp"
+
+#include <cmath>
+
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& nuisances, std::size_t radar,
+                               const std::array<double, 3>& position_m, const ScanMotion3d& motion) {
+  const double x = position_m[0], y = position_m[1];
+  const double signalled = motion.speed_mps + nuisances(0);
+  const double speed = state.speed_scale * signalled;
+  const double yaw_rate = motion.yaw_rate_radps + nuisances(1) - state.yaw_rate_bias_radps;
+  const double slip = state.slip_radps2pm;
+  const double pitch = nuisances(2) + state.pitch_per_acceleration_radps2pm * motion.acceleration_mps2;
+  const Eigen::Vector3d v(speed - yaw_rate * y, yaw_rate * x - slip * speed * speed * yaw_rate + speed * nuisances(3),
+                          speed * pitch);
+  const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate + nuisances(3), pitch);
+  const Eigen::Vector3d by_yaw_rate(-y, x - slip * speed * speed, 0.0);
+  const Eigen::Matrix3d& rotation = state.sensor_to_vehicle[radar];
+  const Eigen::Matrix3d to_sensor = std::exp(state.log_scale[radar]) * rotation.transpose();
+  SensorVelocity out;
+  out.g = to_sensor * v;
+  Eigen::Matrix<double, 3, column::kTouched> by;
+  by.col(column::kSpeedScale) = signalled * by_speed;
+  by.col(column::kYawRateBias) = -by_yaw_rate;
+  by.col(column::kSlip) << 0.0, -speed * speed * yaw_rate, 0.0;
+  by.col(column::kPitchPerAcceleration) << 0.0, 0.0, speed * motion.acceleration_mps2;
+  by.col(column::kSpeed) = state.speed_scale * by_speed;
+  by.col(column::kYawRate) = by_yaw_rate;
+  by.col(column::kBodyPitch) << 0.0, 0.0, speed;
+  by.col(column::kSideSlip) << 0.0, speed, 0.0;
+  // (Exp(d)·R)ᵀ·v = Rᵀ·(v − d × v) = Rᵀ·(v + v × d).
+  by.middleCols<3>(column::kShared) = geometry::cross_matrix(v);
+  by.col(column::kShared + 3) = v;
+  out.gradient.noalias() = (to_sensor * by).transpose();
+  return out;
+}
+
+}  // namespace boresight::alignment

@@ -1,0 +1,29 @@
+// Velocity of a sensor over ground and its derivatives to everything that is estimated (algorithms.md §0).
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "services/alignment_estimator/core/filter/joint_state.hpp"
+
+namespace boresight::alignment {
+
+/// Motion as signalled at the time of a scan; the acceleration is that of the speed signal.
+struct ScanMotion3d {
+  double speed_mps = 0.0;
+  double yaw_rate_radps = 0.0;
+  double acceleration_mps2 = 0.0;
+};
+
+/// Velocity g = (1 + λ)·Rᵀ·v of the sensor in its own frame, m/s, and its gradient.
+struct SensorVelocity {
+  Eigen::Vector3d g;
+  VelocityGradient gradient;
+};
+/// `nuisances`: δV, δω, body pitch, side slip; those of the state at the instant of its last scan, or none.
+[[nodiscard]] SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& nuisances,
+                                             std::size_t radar, const std::array<double, 3>& position_m,
+                                             const ScanMotion3d& motion);
+
+}  // namespace boresight::alignment

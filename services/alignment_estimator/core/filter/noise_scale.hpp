@@ -1,0 +1,46 @@
+// By how much a radar's real noise differs from what is stated, learnt from its residuals.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/alignment_estimator/core/filter/scan_sums.hpp"
+
+namespace boresight::alignment {
+
+/// Factors of the variances of range rates and of angles: Fisher scoring on sliding sums of the residuals' squares,
+/// which is possible because the angles' share of a residual grows with speed and angle.
+class NoiseScale {
+ public:
+  void add(const ScanSums& sums, double keep) {
+    score_rate_ = keep * score_rate_ + sums.noise_score_rate;
+    score_angle_ = keep * score_angle_ + sums.noise_score_angle;
+    rate_rate_ = keep * rate_rate_ + sums.noise_rate_rate;
+    rate_angle_ = keep * rate_angle_ + sums.noise_rate_angle;
+    angle_angle_ = keep * angle_angle_ + sums.noise_angle_angle;
+    // The stated noise counts like this many detections.
+    constexpr double kPrior = 100.0;
+    constexpr double kRate = 0.1;
+    const double a = rate_rate_ + kPrior, b = rate_angle_, c = angle_angle_ + kPrior;
+    const double determinant = a * c - b * b;
+    if (!(determinant > 0.0) || !std::isfinite(determinant)) return;
+    const double step_rate = std::clamp(kRate * (c * score_rate_ - b * score_angle_) / determinant, -0.1, 0.1);
+    const double step_angle = std::clamp(kRate * (a * score_angle_ - b * score_rate_) / determinant, -0.1, 0.1);
+    score_rate_ -= rate_rate_ * step_rate + rate_angle_ * step_angle;
+    score_angle_ -= rate_angle_ * step_rate + angle_angle_ * step_angle;
+    log_rate_ = std::clamp(log_rate_ + step_rate, -2.5, 2.5);
+    log_angle_ = std::clamp(log_angle_ + step_angle, -2.5, 2.5);
+  }
+  [[nodiscard]] double rate_variance_factor() const { return std::exp(log_rate_); }
+  [[nodiscard]] double angle_variance_factor() const { return std::exp(log_angle_); }
+  void set_angle_scale(double scale) {
+    if (scale > 0.0 && std::isfinite(scale)) log_angle_ = std::clamp(2.0 * std::log(scale), -2.5, 2.5);
+  }
+
+ private:
+  double log_rate_ = 0.0, log_angle_ = 0.0;
+  double score_rate_ = 0.0, score_angle_ = 0.0;
+  double rate_rate_ = 0.0, rate_angle_ = 0.0, angle_angle_ = 0.0;
+};
+
+}  // namespace boresight::alignment

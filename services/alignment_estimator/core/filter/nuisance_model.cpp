@@ -1,0 +1,95 @@
+#include "services/alignment_estimator/core/filter/nuisance_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::alignment {
+
+namespace {
+
+/// Instants further apart say nothing of each other.
+constexpr double kMaxStep_s = 0.3;
+/// The first estimates count like this many instants (in units of Fisher information of ln σ²).
+constexpr double kPriorInformation = 25.0;
+constexpr double kMinCorrelation_s = 0.005, kMaxCorrelation_s = 1.5;
+
+double square(double v) {
+  return v * v;
+}
+
+}  // namespace
+
+NuisanceModel::NuisanceModel(const FilterConfig& config) : config_(config) {
+  const auto process = [](double std, double correlation_s, double min_std, double max_std) {
+    Process p{};
+    p.variance = std * std;
+    p.correlation_s = correlation_s;
+    p.min_variance = min_std * min_std;
+    p.max_variance = max_std * max_std;
+    return p;
+  };
+  processes_[0] = process(config.speed_std_mps, config.ego_correlation_s, 1e-3, 1.0);
+  processes_[1] = process(config.yaw_rate_std_radps, config.ego_correlation_s, 5e-5, 0.1);
+  processes_[2] = process(config.body_pitch_std_rad, config.body_correlation_s, 1e-4, 0.05);
+  processes_[3] = process(config.side_slip_std_rad, config.body_correlation_s, 1e-5, 0.02);
+}
+
+void NuisanceModel::state_stds(double speed_std_mps, double yaw_rate_std_radps) {
+  if (experience_s_ > 0.0) return;
+  if (speed_std_mps > 0.0) processes_[0].variance = square(std::clamp(speed_std_mps, 5e-3, 0.5));
+  if (yaw_rate_std_radps > 0.0) processes_[1].variance = square(std::clamp(yaw_rate_std_radps, 2e-4, 0.05));
+}
+
+void NuisanceModel::reset(JointState& state) {
+  for (std::size_t i = 0; i < processes_.size(); ++i) {
+    state.set_variance(column::kNuisances + static_cast<Eigen::Index>(i), processes_[i].variance);
+    processes_[i].armed = false;
+  }
+  state.nuisances.setZero();
+}
+
+void NuisanceModel::step(JointState& state, double elapsed_s) {
+  const double elapsed = std::abs(elapsed_s);
+  for (std::size_t i = 0; i < processes_.size(); ++i) {
+    Process& p = processes_[i];
+    const Eigen::Index index = column::kNuisances + static_cast<Eigen::Index>(i);
+    const double mean = state.nuisances(static_cast<Eigen::Index>(i));
+    if (p.armed && elapsed < kMaxStep_s) learn(p, mean, state.covariance(index, index), elapsed);
+    // The process is the same backwards in time: a scan that comes late is no special case.
+    p.keep = std::exp(-elapsed / p.correlation_s);
+    state.decay(index, p.keep, (1.0 - p.keep * p.keep) * p.variance);
+    p.previous_mean = mean;
+    p.predicted_mean = state.nuisances(static_cast<Eigen::Index>(i)) = p.keep * mean;
+    p.predicted_variance = state.covariance(index, index);
+    p.armed = true;
+  }
+  experience_s_ += std::min(elapsed, kMaxStep_s);
+  last_elapsed_s_ = elapsed;
+}
+
+void NuisanceModel::learn(Process& p, double mean, double variance, double elapsed_s) {
+  // Gain of this instant's data; what they said of the error, free of the prediction, is the innovation over it.
+  const double gain = 1.0 - variance / p.predicted_variance;
+  if (!(gain > 1e-6) || !(gain <= 1.0) || !std::isfinite(mean)) return;
+  const double moved = mean - p.predicted_mean;
+  const double normalised = std::min(moved * moved / (gain * p.predicted_variance), 25.0);
+  const double fade = std::exp(-elapsed_s / config_.nuisance_memory_s);
+  p.score = fade * p.score + gain * (normalised - 1.0);
+  p.fisher = fade * p.fisher + gain * gain;
+  const double weight = gain / p.predicted_variance;  // inverse variance of the innovation
+  p.product = fade * p.product + weight * (moved / gain) * p.previous_mean;
+  p.square = fade * p.square + weight * p.previous_mean * p.previous_mean;
+  // Small steps of Newton's kind; the sums are reduced by what the step takes off.
+  const double rate = std::min(1.0, elapsed_s / 1.0);
+  const double change = std::clamp(rate * p.score / (p.fisher + kPriorInformation), -0.2, 0.2);
+  p.variance = std::clamp(p.variance * std::exp(change), p.min_variance, p.max_variance);
+  p.score -= change * p.fisher;
+  const double correct = rate * p.product / (p.square + kPriorInformation);
+  const double keep = std::clamp(p.keep + std::clamp(correct, -0.05, 0.05), 0.0, 0.98);
+  const double step_s = std::max(last_elapsed_s_, 1e-3);
+  const double correlation = keep > 1e-3 ? -step_s / std::log(keep) : kMinCorrelation_s;
+  p.correlation_s = std::clamp(correlation, kMinCorrelation_s, kMaxCorrelation_s);
+  p.product -= correct * p.square;
+}
+
+}  // namespace boresight::alignment

@@ -1,0 +1,426 @@
+#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+constexpr std::size_t kMinSightings = 4;
+constexpr double kSameInstant_s = 5e-4;
+constexpr double kMaxGap_s = 1.0;
+/// Time constants of a radar's sliding statistics.
+constexpr double kSpreadMemory_s = 20.0, kNoiseMemory_s = 60.0, kInlierMemory_s = 10.0;
+/// A scan in which so much less than usual stands still is not used.
+constexpr double kStrangeShare = 0.4;
+/// χ² of three degrees of freedom that is passed once in 10⁴: a rotation that is another one.
+constexpr double kAnother = 21.1;
+/// A rotation that is confirmed as a knock is at least this large.
+constexpr double kMinKnock_rad = 0.0044;
+/// A suspicion that no new start confirms or refutes within this time is dropped.
+constexpr double kMaxSuspicion_s = 20.0;
+constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
+
+double square(double v) {
+  return v * v;
+}
+double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+}  // namespace
+
+RobustFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filter)
+    : config(radar),
+      nominal(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0)),
+      unknown(unknown_elevation(radar.field_of_view)),
+      start(filter) {}
+
+RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& config)
+    : config_(config), state_(vehicle.radars.size()), nuisance_model_(config), knocks_(vehicle.radars.size(), config) {
+  const std::size_t count = std::min(vehicle.radars.size(), kMaxRadars);
+  radars_.reserve(count);
+  state_.set_variance(column::kSpeedScale, square(config.prior_speed_scale_std));
+  state_.set_variance(column::kYawRateBias, square(config.prior_yaw_rate_bias_std_radps));
+  state_.set_variance(column::kSlip, square(config.prior_slip_coefficient_std_radps2pm));
+  state_.set_variance(column::kPitchPerAcceleration, square(config.prior_pitch_per_acceleration_std_radps2pm));
+  for (std::size_t r = 0; r < count; ++r) {
+    radars_.emplace_back(vehicle.radars[r], config);
+    state_.sensor_to_vehicle[r] = radars_[r].nominal;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      state_.set_variance(column::of_radar(r) + i, square(config.prior_rotation_std_rad));
+    }
+  }
+}
+
+bool RobustFilter::usable(const EgoSample& ego) const {
+  return ego.valid && !ego.stale && std::abs(ego.speed_mps) >= config_.min_speed_mps &&
+         std::abs(ego.speed_mps) < kMaxSpeed_mps && std::abs(ego.yaw_rate_radps) < kMaxYawRate_radps;
+}
+
+bool RobustFilter::any_running_but(std::size_t radar) const {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (r != radar && radars_[r].phase == Phase::kRunning) return true;
+  }
+  return false;
+}
+
+void RobustFilter::advance(std::int64_t time_ns) {
+  const double elapsed_s = has_instant_ ? seconds(time_ns - instant_ns_) : 0.0;
+  if (!has_instant_ || std::abs(elapsed_s) > kMaxGap_s) {
+    nuisance_model_.reset(state_);
+  } else if (std::abs(elapsed_s) > kSameInstant_s) {
+    nuisance_model_.step(state_, elapsed_s);
+  } else {
+    return;
+  }
+  // What a parked car's mounting does is no matter of the time that passed.
+  const double drift_s = std::clamp(elapsed_s, 0.0, kMaxGap_s);
+  state_.add_variance(column::kSpeedScale, square(config_.speed_scale_drift_per_sqrt_s) * drift_s);
+  state_.add_variance(column::kYawRateBias, square(config_.yaw_rate_bias_drift_radps_per_sqrt_s) * drift_s);
+  const double turn = square(config_.rotation_drift_rad_per_sqrt_s) * drift_s;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    for (Eigen::Index i = 0; i < 3; ++i) state_.add_variance(column::of_radar(r) + i, turn);
+  }
+  instant_ns_ = time_ns;
+  has_instant_ = true;
+}
+
+void RobustFilter::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {
+  if (index >= radars_.size()) return;
+  Radar& radar = radars_[index];
+  const double since_s = radar.last_time_ns == 0 ? 0.0 : seconds(scan.time_ns - radar.last_time_ns);
+  const double elapsed_s = since_s > 0.0 && since_s < kMaxGap_s ? since_s : radar.config.cycle_time_s;
+  radar.last_time_ns = scan.time_ns;
+  if (!usable(ego)) {
+    radar.state = std::max(radar.state, AlignmentState::kWaiting);
+    return;
+  }
+  take_sightings(scan, radar.config, radar.unknown, config_.azimuth_std_edge, sightings_);
+  if (sightings_.count < kMinSightings) {
+    radar.state = std::max(radar.state, AlignmentState::kWaiting);
+    return;
+  }
+  nuisance_model_.state_stds(ego.speed_std_mps, ego.yaw_rate_std_radps);
+  advance(scan.time_ns);
+  const ScanMotion3d motion = trend_.at(scan.time_ns, ego);
+  switch (radar.phase) {
+    case Phase::kStarting:
+      search(index, motion, elapsed_s);
+      if (radar.phase == Phase::kStarting) {
+        radar.state = std::max(radar.state, AlignmentState::kWaiting);
+        return;
+      }
+      break;
+    case Phase::kRunning:
+      update(index, motion, elapsed_s, scan.time_ns);
+      break;
+    case Phase::kSuspected:
+      search(index, motion, elapsed_s);
+      break;
+  }
+  radar.seconds_of_drive += elapsed_s;
+  radar.since_start_s += elapsed_s;
+  const bool sure = std::sqrt(state_.covariance(column::of_radar(index) + 2, column::of_radar(index) + 2)) <
+                        config_.converged_yaw_std_rad &&
+                    radar.seconds_of_drive >= config_.min_seconds_to_converge;
+  radar.state = sure ? AlignmentState::kConverged : AlignmentState::kConverging;
+}
+
+StartPrior RobustFilter::start_prior(std::size_t index) const {
+  const Radar& radar = radars_[index];
+  StartPrior prior;
+  // Others know the speed by now; what a radar that is alone knows of it may be as wrong as the rest of its estimate.
+  const bool known = any_running_but(index);
+  prior.speed_scale = known ? state_.speed_scale : 1.0;
+  prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3) +
+                                           radar.unknown.relative_variance
+                                     : square(config_.prior_speed_scale_std);
+  prior.sensor_to_vehicle = radar.nominal;
+  prior.rotation_variance = square(config_.prior_rotation_std_rad);
+  prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
+  prior.slip_radps2pm = state_.slip_radps2pm;
+  return prior;
+}
+
+void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double elapsed_s) {
+  Radar& radar = radars_[index];
+  const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
+  const GraduatedStart::Verdict verdict =
+      radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, unknown_variance,
+                      start_prior(index), radar.noise.angle_variance_factor());
+  if (verdict == GraduatedStart::Verdict::kFound) {
+    if (radar.phase == Phase::kSuspected) {
+      verify(index, radar.start.result(), radar.last_time_ns);
+    } else {
+      adopt(index, radar.start.result());
+    }
+    return;
+  }
+  if (radar.phase == Phase::kSuspected && seconds(radar.last_time_ns - radar.suspected_ns) > kMaxSuspicion_s) {
+    radar.phase = Phase::kRunning;
+    radar.start.clear();
+    knocks_.clear(index);
+  }
+}
+
+void RobustFilter::adopt(std::size_t index, const StartResult& found) {
+  Radar& radar = radars_[index];
+  const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
+  if (!any_running_but(index)) {
+    const double variance = config_.start_inflation * found.covariance(0, 0);
+    const double difference = found.speed_scale - state_.speed_scale;
+    const double expected = variance + unknown_variance + state_.covariance(column::kSpeedScale, column::kSpeedScale);
+    // A memory that agrees is better than the start; the prior is not.
+    if (!radar.remembered || square(difference) > 16.0 * expected) {
+      state_.speed_scale = found.speed_scale;
+      state_.set_variance(column::kSpeedScale, variance + unknown_variance);
+    }
+  }
+  const Eigen::Index scale = column::of_radar(index) + 3;
+  if (state_.covariance(scale, scale) == 0.0 && unknown_variance > 0.0) {
+    // Only the product of k_v and the radar's own scale is measured.
+    state_.set_variance(scale, unknown_variance);
+    if (!any_running_but(index)) state_.set_covariance(column::kSpeedScale, scale, -unknown_variance);
+  }
+  bool agrees = false;
+  if (radar.remembered) {
+    const Eigen::Vector3d off =
+        geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
+    Eigen::Matrix3d covariance = config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        covariance(i, j) += state_.covariance(column::of_radar(index) + i, column::of_radar(index) + j);
+      }
+    }
+    const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
+    agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kAnother;
+  }
+  if (!agrees) place(index, found);
+  radar.phase = Phase::kRunning;
+  radar.remembered = false;
+  radar.since_start_s = 0.0;
+  radar.inlier_ratio = found.inlier_ratio;
+  knocks_.clear(index);
+}
+
+void RobustFilter::place(std::size_t index, const StartResult& found) {
+  state_.sensor_to_vehicle[index] = found.sensor_to_vehicle;
+  const Eigen::Index first = column::of_radar(index);
+  for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      state_.set_covariance(first + i, first + j, config_.start_inflation * found.covariance(1 + i, 1 + j));
+    }
+  }
+}
+
+void RobustFilter::verify(std::size_t index, const StartResult& found, std::int64_t time_ns) {
+  Radar& radar = radars_[index];
+  const Eigen::Index first = column::of_radar(index);
+  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
+  Eigen::Matrix3d covariance = config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) covariance(i, j) += state_.covariance(first + i, first + j);
+  }
+  const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
+  const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
+  const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;
+  if (another) {
+    place(index, found);
+    radar.since_start_s = 0.0;
+    if (!radar.drifted) {
+      radar.knock.time_ns = time_ns;
+      for (std::size_t i = 0; i < 3; ++i) {
+        radar.knock.rotation_vehicle_rad[i] = static_cast<float>(off(static_cast<Eigen::Index>(i)));
+      }
+      ++radar.knock.count;
+    }
+    radar.inlier_ratio = found.inlier_ratio;
+  }
+  radar.phase = Phase::kRunning;
+  knocks_.clear(index);
+}
+
+void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns) {
+  Radar& radar = radars_[index];
+  const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
+  const SensorVelocity velocity =
+      sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m, motion);
+  state_.project(index, velocity.gradient);
+  Judgement judgement;
+  judgement.gate = config_.outlier_gate_sigma;
+  judgement.range_rate_scale = radar.noise.rate_variance_factor();
+  judgement.angle_scale = radar.noise.angle_variance_factor();
+  judgement.velocity_variance = state_.velocity_covariance();
+  const ScanSums sums = sum_scan(run_of(sightings_, unknown_variance), velocity.g, judgement);
+  const auto detections = static_cast<double>(sightings_.count);
+  const double share = sums.standing / detections;
+  const bool strange = radar.inlier_ratio > 0.0 && share < kStrangeShare * radar.inlier_ratio;
+  if (!strange) radar.inlier_ratio += (share - radar.inlier_ratio) * (1.0 - std::exp(-elapsed_s / kInlierMemory_s));
+
+  radar.spread.add(sums.information, sums.feigned, sums.inliers, std::exp(-elapsed_s / kSpreadMemory_s));
+  const Eigen::Matrix3d support = radar.spread.support(sightings_.has_elevation);
+  if (sums.weights > 0.0) {
+    const double ratio = sums.curvature / sums.weights;
+    if (radar.curvature < 0.0) radar.curvature = 0.85;
+    radar.curvature += (ratio - radar.curvature) * std::min(1.0, elapsed_s / 5.0);
+  }
+  const double curvature = std::clamp(radar.curvature, 0.2, 1.0);
+  const Eigen::Matrix3d information = curvature * support * sums.information * support.transpose();
+  const Eigen::Vector3d score = support * sums.score;
+
+  const Eigen::Matrix<double, 2, 3> turn = velocity.gradient.middleRows<2>(column::kShared + 1);
+  const std::uint32_t suspicious =
+      knocks_.add(index, time_ns, turn * information * turn.transpose(), turn * score, sums.standing, detections);
+  if (suspicious != 0) watch(suspicious, time_ns);
+  if (strange || radar.phase != Phase::kRunning) return;
+  if (!state_.update(information, score)) return;
+  radar.noise.add(sums, std::exp(-elapsed_s / kNoiseMemory_s));
+  ++radar.scans_used;
+  radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
+}
+
+void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if ((suspicious >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
+    // What grew over a minute is a drift: followed, but not reported as a knock.
+    const Eigen::Vector2d& own = knocks_.deviation(r);
+    const Eigen::Vector2d& drift = knocks_.drift(r);
+    radars_[r].drifted = !knocks_.collapsed(r) && own.dot(drift) > 0.4 * own.squaredNorm();
+    radars_[r].phase = Phase::kSuspected;
+    radars_[r].suspected_ns = time_ns;
+    radars_[r].start.clear();
+  }
+}
+
+RadarEstimate RobustFilter::estimate(std::size_t index) const {
+  RadarEstimate out;
+  if (index >= radars_.size()) return out;
+  const Radar& radar = radars_[index];
+  const Eigen::Index first = column::of_radar(index);
+  out.state = radar.state;
+  out.speed_scale = state_.speed_scale;
+  out.sensor_to_vehicle = state_.sensor_to_vehicle[index];
+  const std::array<Eigen::Index, 4> rows{column::kSpeedScale, first, first + 1, first + 2};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      out.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = state_.covariance(rows[i], rows[j]);
+    }
+  }
+  // An axis counts as observable once the data say clearly more than the prior did.
+  const auto learnt = [&](Eigen::Index row, double prior_std) {
+    return state_.covariance(row, row) < 0.25 * square(prior_std);
+  };
+  const bool known = radar.phase != Phase::kStarting || radar.remembered;
+  if (known && learnt(rows[0], config_.prior_speed_scale_std)) out.observable |= alignment_axis::kSpeedScale;
+  if (known && learnt(rows[1], config_.prior_rotation_std_rad)) out.observable |= alignment_axis::kVehicleRoll;
+  if (known && learnt(rows[2], config_.prior_rotation_std_rad)) out.observable |= alignment_axis::kVehiclePitch;
+  if (known && learnt(rows[3], config_.prior_rotation_std_rad)) out.observable |= alignment_axis::kVehicleYaw;
+  if (learnt(column::kYawRateBias, config_.prior_yaw_rate_bias_std_radps)) {
+    out.observable |= alignment_axis::kYawRateBias;
+  }
+  if (learnt(column::kSlip, config_.prior_slip_coefficient_std_radps2pm)) out.observable |= alignment_axis::kSlip;
+  out.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
+  out.yaw_rate_bias_std_radps = std::sqrt(state_.covariance(column::kYawRateBias, column::kYawRateBias));
+  out.slip_coefficient_radps2pm = state_.slip_radps2pm;
+  out.slip_coefficient_std_radps2pm = std::sqrt(state_.covariance(column::kSlip, column::kSlip));
+  out.angle_noise_scale = std::sqrt(radar.noise.angle_variance_factor());
+  out.inlier_ratio = std::max(0.0, radar.inlier_ratio);
+  out.scans_used = radar.scans_used;
+  out.detections_used = radar.detections_used;
+  out.seconds_of_drive = radar.seconds_of_drive;
+  out.knock = radar.knock;
+  return out;
+}
+
+void RobustFilter::predict(std::size_t index, const ScanDetections& scan, const EgoSample& ego,
+                           std::span<double> out) const {
+  const std::size_t count = std::min(scan.count, out.size());
+  if (index >= radars_.size()) {
+    std::fill_n(out.begin(), count, 0.0);
+    return;
+  }
+  const Radar& radar = radars_[index];
+  const ScanMotion3d motion{ego.speed_mps, ego.yaw_rate_radps, 0.0};
+  const Eigen::Vector3d g =
+      sensor_velocity(state_, Eigen::Vector4d::Zero(), index, radar.config.mounting_pose.position_m, motion).g;
+  const double mean_cosine = scan.has_elevation ? 1.0 : radar.unknown.mean_cosine;
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = -mean_cosine * geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]).dot(g);
+  }
+}
+
+void RobustFilter::save(Memory& memory) const {
+  memory = {};
+  memory.number_of_radars = radars_.size();
+  memory.speed_scale = state_.speed_scale;
+  memory.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
+  memory.slip_coefficient_radps2pm = state_.slip_radps2pm;
+  const std::size_t size = memory.number_of_parameters();
+  const auto row_of = [](std::size_t parameter) {
+    if (parameter < Memory::kShared) return static_cast<Eigen::Index>(parameter);
+    const std::size_t rest = parameter - Memory::kShared;
+    return column::of_radar(rest / 3) + static_cast<Eigen::Index>(rest % 3);
+  };
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) {
+      memory.covariance[i * size + j] = state_.covariance(row_of(i), row_of(j));
+    }
+  }
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const Radar& radar = radars_[r];
+    const Eigen::Vector3d turn = geometry::so3_log(state_.sensor_to_vehicle[r] * radar.nominal.transpose());
+    memory.radars[r] = {radar.config.id,
+                        {turn.x(), turn.y(), turn.z()},
+                        std::sqrt(radar.noise.angle_variance_factor()),
+                        radar.seconds_of_drive};
+  }
+}
+
+void RobustFilter::restore(const Memory& memory) {
+  if (memory.number_of_radars != radars_.size()) return;
+  const std::size_t size = memory.number_of_parameters();
+  const auto variance = [&](std::size_t i) { return memory.covariance[i * size + i]; };
+  const auto usable_variance = [](double v, double prior_std) { return v > 0.0 && v < square(prior_std); };
+  state_.speed_scale = memory.speed_scale;
+  state_.yaw_rate_bias_radps = memory.yaw_rate_bias_radps;
+  state_.slip_radps2pm = memory.slip_coefficient_radps2pm;
+  // Correlations are not taken over: a block of twice the variance and more bounds them.
+  const auto remembered = [&](double v, double floor_std, double prior_std) {
+    if (!usable_variance(v, prior_std)) return square(prior_std);
+    return std::min(config_.memory_inflation * v + square(floor_std), square(prior_std));
+  };
+  state_.set_variance(column::kSpeedScale,
+                      remembered(variance(0), config_.memory_speed_scale_std, config_.prior_speed_scale_std));
+  state_.set_variance(column::kYawRateBias, remembered(variance(1), 0.25 * config_.prior_yaw_rate_bias_std_radps,
+                                                       config_.prior_yaw_rate_bias_std_radps));
+  state_.set_variance(column::kSlip, remembered(variance(2), 0.25 * config_.prior_slip_coefficient_std_radps2pm,
+                                                config_.prior_slip_coefficient_std_radps2pm));
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    Radar& radar = radars_[r];
+    const Memory::Radar& known = memory.radars[r];
+    const Eigen::Vector3d turn(known.rotation_vehicle_rad[0], known.rotation_vehicle_rad[1],
+                               known.rotation_vehicle_rad[2]);
+    if (known.id != radar.config.id || !turn.allFinite() || turn.norm() > 1.0) continue;
+    state_.sensor_to_vehicle[r] = geometry::so3_exp(turn) * radar.nominal;
+    for (std::size_t i = 0; i < 3; ++i) {
+      state_.set_variance(column::of_radar(r) + static_cast<Eigen::Index>(i),
+                          remembered(variance(Memory::kShared + 3 * r + i), config_.memory_rotation_std_rad,
+                                     config_.prior_rotation_std_rad));
+    }
+    radar.noise.set_angle_scale(known.angle_noise_scale);
+    radar.seconds_of_drive = known.seconds_of_drive;
+    radar.remembered = true;
+    radar.phase = Phase::kStarting;
+    radar.start.clear();
+  }
+}
+
+}  // namespace boresight::alignment

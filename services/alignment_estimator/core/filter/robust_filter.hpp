@@ -1,0 +1,87 @@
+// Boresight's own alignment estimator: a robust recursive information filter over all radars of the vehicle
+// (algorithms.md §1.4).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/alignment_estimator/core/filter/ego_trend.hpp"
+#include "services/alignment_estimator/core/filter/graduated_start.hpp"
+#include "services/alignment_estimator/core/filter/joint_state.hpp"
+#include "services/alignment_estimator/core/filter/knock_detector.hpp"
+#include "services/alignment_estimator/core/filter/noise_scale.hpp"
+#include "services/alignment_estimator/core/filter/nuisance_model.hpp"
+#include "services/alignment_estimator/core/filter/spread.hpp"
+#include "services/alignment_estimator/core/method.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::alignment {
+
+/// Large: never on the stack.
+class RobustFilter : public Method {
+ public:
+  RobustFilter(const VehicleConfig& vehicle, const FilterConfig& config);
+
+  void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) override;
+  [[nodiscard]] RadarEstimate estimate(std::size_t radar) const override;
+  void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego,
+               std::span<double> out) const override;
+  void save(Memory& memory) const override;
+  void restore(const Memory& memory) override;
+
+  /// For tests and benchmarks.
+  [[nodiscard]] const JointState& state() const { return state_; }
+  [[nodiscard]] const NuisanceModel& nuisance_model() const { return nuisance_model_; }
+  [[nodiscard]] const KnockDetector& knock_detector() const { return knocks_; }
+
+ private:
+  enum class Phase : std::uint8_t {
+    kStarting,   ///< searching; the estimate is the prior, or what was remembered
+    kRunning,    //
+    kSuspected,  ///< the estimate stands still while a new start is made beside it
+  };
+  struct Radar {
+    RadarConfig config;
+    Eigen::Matrix3d nominal;
+    UnknownElevation unknown;
+    Phase phase = Phase::kStarting;
+    bool remembered = false;  ///< the state holds what a memory said
+    AlignmentState state = AlignmentState::kNoData;
+    GraduatedStart start;
+    Spread spread;
+    NoiseScale noise;
+    std::int64_t last_time_ns = 0;
+    double seconds_of_drive = 0.0;
+    double since_start_s = 0.0;
+    double curvature = -1.0;     ///< sliding E[ψ′]/E[w]
+    double inlier_ratio = -1.0;  ///< sliding
+    std::uint64_t scans_used = 0, detections_used = 0;
+    std::int64_t suspected_ns = 0;
+    bool drifted = false;
+    AlignmentKnock knock{};
+    Radar(const RadarConfig& radar, const FilterConfig& filter);
+  };
+  [[nodiscard]] bool usable(const EgoSample& ego) const;
+  void advance(std::int64_t time_ns);
+  [[nodiscard]] StartPrior start_prior(std::size_t radar) const;
+  void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
+  void adopt(std::size_t radar, const StartResult& found);
+  void verify(std::size_t radar, const StartResult& found, std::int64_t time_ns);
+  void place(std::size_t radar, const StartResult& found);
+  void update(std::size_t radar, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns);
+  void watch(std::uint32_t suspicious, std::int64_t time_ns);
+  [[nodiscard]] bool any_running_but(std::size_t radar) const;
+
+  FilterConfig config_;
+  std::vector<Radar> radars_;
+  JointState state_;
+  NuisanceModel nuisance_model_;
+  KnockDetector knocks_;
+  EgoTrend trend_;
+  Sightings sightings_;
+  std::int64_t instant_ns_ = 0;
+  bool has_instant_ = false;
+};
+
+}  // namespace boresight::alignment

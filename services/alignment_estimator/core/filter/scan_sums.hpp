@@ -1,0 +1,53 @@
+// What a scan says of the sensor's velocity in its own frame. The range rate of what stands still is −u·g with
+// g = Rᵀv, so that all parameters act through the three components of g: a scan is summed into a 3 × 3 information and
+// a score whatever the number of parameters.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "services/alignment_estimator/core/filter/sightings.hpp"
+
+namespace boresight::alignment {
+
+/// A run of sightings inside their columns.
+struct SightingRun {
+  const double* x;
+  const double* y;
+  const double* z;
+  const double* range_rate_mps;
+  const double* azimuth_variance;
+  const double* elevation_variance;
+  const double* range_rate_variance;
+  const double* azimuth_std_slope;
+  std::size_t count;
+  double ambiguity_mps;
+  double other_relative_variance;  ///< of the range rate over its square: elevation that is not measured
+};
+[[nodiscard]] SightingRun run_of(const Sightings& sightings, double other_relative_variance);
+
+/// How residuals are judged.
+struct Judgement {
+  double gate = 5.0;                  ///< Tukey's constant
+  double min_std_mps = 0.0;           ///< residual σ of the gate is at least this (graduated start)
+  double range_rate_scale = 1.0;      ///< factors of the variances
+  double angle_scale = 1.0;           //
+  Eigen::Matrix3d velocity_variance;  ///< of g as predicted, widens the gate
+};
+
+struct ScanSums {
+  Eigen::Matrix3d information;  ///< Σ W u uᵀ, W Tukey's weight over the residual's variance; with the angles' noise
+  Eigen::Matrix3d feigned;      ///< the part of it that the angles' noise feigns
+  Eigen::Vector3d score;        ///< of g, corrected for errors in variables: no expectation at the true g
+  double weights = 0.0, curvature = 0.0;  ///< Σ w and Σ ψ′
+  double inliers = 0.0;                   ///< residuals in the gate
+  double near = 0.0;                      ///< beyond, but within three times of it
+  double standing = 0.0;                  ///< with weights over 0.2
+  // Scores and Fisher information of the logarithms of the two variance factors.
+  double noise_score_rate = 0.0, noise_score_angle = 0.0;
+  double noise_rate_rate = 0.0, noise_rate_angle = 0.0, noise_angle_angle = 0.0;
+};
+
+/// Residuals at g, the velocity of the sensor in its own frame (m/s). No allocation.
+[[nodiscard]] ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& g, const Judgement& judgement);
+
+}  // namespace boresight::alignment

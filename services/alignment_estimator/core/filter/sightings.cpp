@@ -1,0 +1,70 @@
+#include "services/alignment_estimator/core/filter/sightings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::alignment {
+
+namespace {
+
+/// No relative speed on a road is beyond.
+constexpr double kMaxRangeRate_mps = 200.0;
+
+}  // namespace
+
+UnknownElevation unknown_elevation(const FieldOfView& view) {
+  const double low = view.elevation_min_rad, high = view.elevation_max_rad;
+  const double width = high - low;
+  if (!(width > 1e-6) || width > M_PI) return {std::isfinite(low) ? std::max(0.1, std::cos(low)) : 1.0, 0.0};
+  const double mean = std::max(0.1, (std::sin(high) - std::sin(low)) / width);
+  const double square = 0.5 + 0.25 * (std::sin(2.0 * high) - std::sin(2.0 * low)) / width;
+  return {mean, std::max(0.0, square - mean * mean) / (mean * mean)};
+}
+
+void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const UnknownElevation& unknown, double edge,
+                    Sightings& out) {
+  out.has_elevation = scan.has_elevation;
+  out.ambiguity_mps = std::isfinite(scan.ambiguity_mps) && scan.ambiguity_mps > 0.1 ? scan.ambiguity_mps : 0.0;
+  std::size_t n = 0;
+  const std::size_t count = std::min(scan.count, kMaxDetections);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double azimuth = scan.azimuth_rad[i], elevation = scan.elevation_rad[i], rate = scan.range_rate_mps[i];
+    // Written so that what is not a number is left out as well.
+    if (!(std::abs(azimuth) <= M_PI && std::abs(elevation) < 1.5 && std::abs(rate) < kMaxRangeRate_mps)) continue;
+    double azimuth_std = scan.azimuth_std_rad[i];
+    const double elevation_std = scan.elevation_std_rad[i], rate_std = scan.range_rate_std_mps[i];
+    if (!(azimuth_std > 0.0 && elevation_std > 0.0 && rate_std > 0.0)) continue;
+    const double ca = std::cos(azimuth), sa = std::sin(azimuth);
+    double slope = 0.0;
+    // An antenna's aperture shrinks with the cosine; sensors that state σ have that in them.
+    if (azimuth_std == radar.noise.azimuth_std_rad && edge < 1.0) {
+      azimuth_std /= std::max(ca, edge);
+      if (ca > edge) slope = sa / ca;
+    }
+    azimuth_std = std::min(azimuth_std, 0.5);
+    out.azimuth_variance[n] = azimuth_std * azimuth_std;
+    out.azimuth_std_slope[n] = slope;
+    out.range_rate_variance[n] = rate_std * rate_std;
+    out.range_rate_mps[n] = rate;
+    // The mean of a noisy angle's cosine is shorter by exp(−σ²/2).
+    const double stretch_azimuth = 1.0 + 0.5 * out.azimuth_variance[n];
+    if (scan.has_elevation) {
+      const double bounded = std::min(elevation_std, 0.5);
+      out.elevation_variance[n] = bounded * bounded;
+      const double stretch = 1.0 + 0.5 * out.elevation_variance[n];
+      const double ce = std::cos(elevation);
+      out.x[n] = ce * ca * stretch_azimuth * stretch;
+      out.y[n] = ce * sa * stretch_azimuth * stretch;
+      out.z[n] = std::sin(elevation) * stretch;
+    } else {
+      out.elevation_variance[n] = 0.0;
+      out.x[n] = unknown.mean_cosine * ca * stretch_azimuth;
+      out.y[n] = unknown.mean_cosine * sa * stretch_azimuth;
+      out.z[n] = 0.0;
+    }
+    ++n;
+  }
+  out.count = n;
+}
+
+}  // namespace boresight::alignment
