@@ -1,0 +1,24 @@
+// The groups of bars, each in a file of its name.
+#pragma once
+
+#include "tests/benchmarks/alignment/common/options.hpp"
+#include "tests/benchmarks/alignment/common/report.hpp"
+
+namespace boresight::bench {
+
+void clean(const Options& options, Report& report);
+void disturbed(const Options& options, Report& report);
+void roll(const Options& options, Report& report);
+void honesty(const Options& options, Report& report);
+void degenerate(const Options& options, Report& report);
+void cramer_rao(const Options& options, Report& report);
+void time_to_95_percent(const Options& options, Report& report);
+void published(const Options& options, Report& report);
+void outliers(const Options& options, Report& report);
+void knock(const Options& options, Report& report);
+void false_alarms(const Options& options, Report& report);
+void cost(const Options& options, Report& report);
+void plate(const Options& options, Report& report);
+void drive_1(const Options& options, Report& report);
+
+}  // namespace boresight::bench

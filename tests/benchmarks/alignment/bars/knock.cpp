@@ -1,0 +1,106 @@
+// A knock of one radar: how long until it is told, whether the right radar is named, how the estimate follows.
+#include "tests/benchmarks/alignment/bars/bars.hpp"
+#include "tests/benchmarks/alignment/common/drives.hpp"
+#include "tests/benchmarks/alignment/common/many_runs.hpp"
+#include "tests/benchmarks/alignment/common/methods.hpp"
+
+namespace boresight::bench {
+
+namespace {
+
+using simulator::AlignmentSpec;
+using simulator::RoadKind;
+
+constexpr double kKnockAt_s = 60.0;
+
+struct Case {
+  const char* name;
+  int parameter;
+  Eigen::Vector3d rotation_deg;  ///< about vehicle axes; the sign alternates from seed to seed
+  double bar_s;                  ///< 0: not judged
+};
+
+const Case kCases[] = {
+    {"1° yaw", kYaw, {0.0, 0.0, 1.0}, 3.0},   {"2° pitch", kPitch, {0.0, 2.0, 0.0}, 6.0},
+    {"0.5° yaw", kYaw, {0.0, 0.0, 0.5}, 0.0}, {"2° roll", kRoll, {2.0, 0.0, 0.0}, 0.0},
+    {"5° yaw", kYaw, {0.0, 0.0, 5.0}, 0.0},
+};
+
+struct Outcome {
+  std::vector<double> delays_s;  ///< infinite where it was never told
+  double wrong_radar = 0.0;      ///< told of a radar that nobody touched
+};
+
+Outcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Run>& runs) {
+  Outcome out;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const simulator::Knock& knock = specs[i].knocks.front();
+    double delay_s = std::numeric_limits<double>::infinity();
+    for (const KnockSeen& seen : runs[i].knocks) {
+      if (seen.radar != knock.radar || seen.time_s < kKnockAt_s) {
+        out.wrong_radar += 1.0;
+      } else if (std::isinf(delay_s)) {
+        delay_s = seen.time_s - kKnockAt_s;
+      }
+    }
+    out.delays_s.push_back(delay_s);
+  }
+  return out;
+}
+
+}  // namespace
+
+void knock(const Options& options, Report& report) {
+  const std::size_t seeds = options.seeds(32);
+  Table table{"knock",
+              "seconds from the knock until it is told: median (95 % quantile)",
+              {"knock", "road", "delay s", "never told", "wrong radar told", "error 20 s later °"},
+              {}};
+  for (const Case& one : kCases) {
+    std::vector<double> all_delays_s;
+    for (const bool with_disturbances : {false, true}) {
+      std::vector<AlignmentSpec> specs;
+      for (std::size_t seed = 0; seed < seeds; ++seed) {
+        AlignmentSpec spec = with_disturbances ? disturbed_drive(RoadKind::kMixed, 90.0, 3000 + seed)
+                                               : clean_drive(RoadKind::kMixed, 90.0, 3000 + seed);
+        const double sign = seed / 4 % 2 == 0 ? 1.0 : -1.0;  // measurement times start at 1 s
+        spec.knocks.push_back({1.0 + kKnockAt_s, seed % 4, sign * one.rotation_deg * kDegree});
+        specs.push_back(spec);
+      }
+      const auto runs = run_drives(specs, own_method().make, options);
+      const Outcome outcome = outcome_of(specs, runs);
+      all_delays_s.insert(all_delays_s.end(), outcome.delays_s.begin(), outcome.delays_s.end());
+      std::vector<double> later;
+      Curve response{"knock", one.name, with_disturbances ? "disturbed" : "clean", {}};
+      for (std::size_t s = 0; s < runs.front().snapshots.size(); ++s) {
+        const double time_s = runs.front().snapshots[s].time_s - kKnockAt_s;
+        if (time_s < -5.0) continue;
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+          if (s >= runs[i].snapshots.size()) continue;
+          errors.push_back(std::abs(runs[i].snapshots[s].radars[specs[i].knocks[0].radar].error(one.parameter)));
+        }
+        response.points.emplace_back(time_s, median(errors) / kDegree);
+        if (time_s >= 20.0 && later.empty()) later = errors;
+      }
+      report.add(std::move(response));
+      table.rows.push_back({one.name, with_disturbances ? "mixed, disturbed" : "mixed",
+                            number(median(outcome.delays_s)) + " (" + number(quantile(outcome.delays_s, 0.95)) + ")",
+                            fixed(static_cast<double>(std::count_if(outcome.delays_s.begin(), outcome.delays_s.end(),
+                                                                    [](double d) { return std::isinf(d); })),
+                                  0) +
+                                " of " + std::to_string(seeds),
+                            fixed(outcome.wrong_radar, 0), number(median(later) / kDegree)});
+    }
+    if (one.bar_s > 0.0) {
+      report.at_most(
+          "knock", one.name, median(all_delays_s), one.bar_s, "s",
+          "median over 2 × " + std::to_string(seeds) +
+              " seeds, each radar in turn, either sign, half of the drives disturbed; the 95 % quantile is " +
+              number(quantile(all_delays_s, 0.95)) + " s");
+    }
+  }
+  report.add(std::move(table));
+}
+
+}  // namespace boresight::bench

@@ -1,0 +1,51 @@
+// Radars crooked by 5° about each axis, and every second detection moves or is a ghost.
+#include "tests/benchmarks/alignment/bars/bars.hpp"
+#include "tests/benchmarks/alignment/common/drives.hpp"
+#include "tests/benchmarks/alignment/common/many_runs.hpp"
+#include "tests/benchmarks/alignment/common/methods.hpp"
+#include "tests/simulator/random.hpp"
+
+namespace boresight::bench {
+
+void outliers(const Options& options, Report& report) {
+  using simulator::RoadKind;
+  const std::size_t seeds = options.seeds(40);
+  double worst = 100.0;
+  Table table{"outliers",
+              "share of runs captured, 5° errors about each axis",
+              {"share of outliers", "city", "motorway", "mixed"},
+              {}};
+  for (const double share : {0.25, 0.5, 0.6}) {
+    std::vector<std::string> row = {fixed(100.0 * share, 0) + " %"};
+    for (const RoadKind road : {RoadKind::kCity, RoadKind::kMotorway, RoadKind::kMixed}) {
+      std::vector<simulator::AlignmentSpec> specs;
+      for (std::size_t seed = 0; seed < seeds; ++seed) {
+        simulator::AlignmentSpec spec = clean_drive(road, options.seconds(60.0), 2000 + seed);
+        spec.outlier_share = share;
+        simulator::Stream stream(spec.seed, "bench 5 degrees");
+        const auto five_degrees = [&] { return (stream.uniform() < 0.5 ? -5.0 : 5.0) * kDegree; };
+        for (auto& radar : spec.radars) radar.truth = {five_degrees(), five_degrees(), five_degrees()};
+        specs.push_back(spec);
+      }
+      const auto runs = run_drives(specs, own_method().make, options);
+      double captured = 0.0;
+      for (const Run& run : runs) {
+        const Snapshot& last = run.last();
+        captured += worst_radar(last, kYaw) < 0.1 * kDegree && worst_radar(last, kPitch) < 0.5 * kDegree &&
+                            worst_radar(last, kSpeedScale) < 1e-3
+                        ? 1.0
+                        : 0.0;
+      }
+      const double percent = 100.0 * captured / static_cast<double>(runs.size());
+      row.push_back(fixed(percent, 1) + " %");
+      if (share == 0.5) worst = std::min(worst, percent);
+    }
+    table.rows.push_back(row);
+  }
+  report.at_least("outliers", "captured with 50 % movers and ghosts, 5° errors", worst, 95.0, "%",
+                  "worst of 3 road kinds, " + std::to_string(seeds) +
+                      " runs each, 60 s; captured: all radars' yaw within 0.1°, pitch 0.5°, k_v 1e-3");
+  report.add(std::move(table));
+}
+
+}  // namespace boresight::bench

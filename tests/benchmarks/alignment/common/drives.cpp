@@ -1,0 +1,174 @@
+#include "tests/benchmarks/alignment/common/drives.hpp"
+
+#include <cmath>
+
+#include "tests/simulator/random.hpp"
+
+namespace boresight::bench {
+
+using simulator::AlignmentRadar;
+using simulator::AlignmentSpec;
+using simulator::RoadKind;
+using simulator::Stream;
+
+namespace {
+
+double either_sign(Stream& stream, double low, double high) {
+  const double magnitude = stream.uniform(low, high);
+  return stream.uniform() < 0.5 ? -magnitude : magnitude;
+}
+
+void draw_truth(AlignmentSpec& spec) {
+  Stream stream(spec.seed, "bench truth");
+  spec.speed_scale = stream.uniform(0.98, 1.02);
+  for (AlignmentRadar& radar : spec.radars) {
+    radar.truth.yaw_rad = either_sign(stream, 1.0, 2.5) * kDegree;
+    radar.truth.pitch_rad = either_sign(stream, 1.0, 2.5) * kDegree;
+    radar.truth.roll_rad = either_sign(stream, 1.0, 2.5) * kDegree;
+  }
+}
+
+void disturb(AlignmentSpec& spec) {
+  Stream stream(spec.seed, "bench disturbances");
+  spec.yaw_rate_bias_radps = (stream.uniform() < 0.5 ? -0.1 : 0.1) * kDegree;
+  spec.slip_coefficient_radps2pm = stream.uniform(0.003, 0.006);
+  spec.body_pitch_std_rad = 0.3 * kDegree;
+  spec.body_pitch_per_acceleration_radps2pm = 0.2 * kDegree;
+}
+
+AlignmentRadar radar_at(const AlignmentRadar& like, std::uint32_t id, double x_m, double y_m, double yaw_deg) {
+  AlignmentRadar radar = like;
+  radar.config.id = id;
+  radar.config.name = "radar_" + std::to_string(id);
+  radar.config.mounting_pose.position_m = {x_m, y_m, 0.5};
+  radar.config.mounting_pose.yaw_rad = yaw_deg * kDegree;
+  return radar;
+}
+
+AlignmentSpec city(double duration_s, std::uint64_t seed) {
+  return clean_drive(RoadKind::kCity, duration_s, seed);
+}
+AlignmentSpec motorway(double duration_s, std::uint64_t seed) {
+  return clean_drive(RoadKind::kMotorway, duration_s, seed);
+}
+AlignmentSpec mixed(double duration_s, std::uint64_t seed) {
+  return clean_drive(RoadKind::kMixed, duration_s, seed);
+}
+AlignmentSpec straight(double duration_s, std::uint64_t seed) {
+  return clean_drive(RoadKind::kStraight, duration_s, seed);
+}
+AlignmentSpec slow(double duration_s, std::uint64_t seed) {
+  return clean_drive(RoadKind::kSlow, duration_s, seed);
+}
+AlignmentSpec disturbed_city(double duration_s, std::uint64_t seed) {
+  return disturbed_drive(RoadKind::kCity, duration_s, seed);
+}
+AlignmentSpec disturbed_mixed(double duration_s, std::uint64_t seed) {
+  return disturbed_drive(RoadKind::kMixed, duration_s, seed);
+}
+
+AlignmentSpec unsynchronised(double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = mixed(duration_s, seed);
+  const double cycles_s[] = {0.05, 0.06, 0.07, 0.04};
+  for (std::size_t r = 0; r < spec.radars.size(); ++r) {
+    spec.radars[r].first_scan_s = 0.0137 * static_cast<double>(r);
+    spec.radars[r].config.cycle_time_s = cycles_s[r];
+  }
+  return spec;
+}
+
+/// Ahead, at the corners, and behind; the second on its head, the third with an ambiguity of range rates, the fourth
+/// without elevation, none of the last two with stated stds.
+AlignmentSpec mixed_radars(double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = mixed(duration_s, seed);
+  const AlignmentRadar like = spec.radars[0];
+  spec.radars = {radar_at(like, 1, 3.8, 0.0, 0.0), radar_at(like, 2, 3.65, -0.75, -45.0),
+                 radar_at(like, 3, -0.85, 0.7, 135.0), radar_at(like, 4, -1.0, 0.0, 180.0)};
+  spec.radars[1].config.mounting_pose.roll_rad = M_PI;
+  spec.radars[2].ambiguity_mps = 30.0;
+  spec.radars[2].states_stds = false;
+  spec.radars[3].measures_elevation = false;
+  spec.radars[3].states_stds = false;
+  draw_truth(spec);
+  return spec;
+}
+
+AlignmentSpec one_radar(double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = mixed(duration_s, seed);
+  spec.radars.resize(1);
+  return spec;
+}
+
+AlignmentSpec sixteen_radars(double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = mixed(duration_s, seed);
+  const AlignmentRadar like = spec.radars[0];
+  spec.radars.clear();
+  for (std::uint32_t i = 0; i < kMaxRadars; ++i) {
+    const double yaw_deg = -180.0 + 22.5 * static_cast<double>(i);
+    const double x_m = 1.4 + 2.3 * std::cos(yaw_deg * kDegree), y_m = 0.8 * std::sin(yaw_deg * kDegree);
+    spec.radars.push_back(radar_at(like, i + 1, x_m, y_m, yaw_deg));
+    spec.radars.back().mean_detections = 30.0;
+  }
+  draw_truth(spec);
+  return spec;
+}
+
+/// Sensors whose angle noise is 1.6 times what they state.
+AlignmentSpec understated_noise(double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = mixed(duration_s, seed);
+  for (AlignmentRadar& radar : spec.radars) radar.noise_scale = 1.6;
+  return spec;
+}
+
+}  // namespace
+
+AlignmentSpec clean_drive(RoadKind road, double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = simulator::four_corner_radars();
+  spec.road = road;
+  spec.duration_s = duration_s;
+  spec.seed = seed;
+  draw_truth(spec);
+  return spec;
+}
+
+AlignmentSpec disturbed_drive(RoadKind road, double duration_s, std::uint64_t seed) {
+  AlignmentSpec spec = clean_drive(road, duration_s, seed);
+  disturb(spec);
+  return spec;
+}
+
+const std::vector<DriveKind>& drive_kinds() {
+  static const std::vector<DriveKind> kinds = {
+      {"city", city},
+      {"motorway", motorway},
+      {"mixed", mixed},
+      {"straight", straight},
+      {"slow", slow},
+      {"disturbed city", disturbed_city},
+      {"disturbed mixed", disturbed_mixed},
+      {"unsynchronised", unsynchronised},
+      {"mixed radars", mixed_radars},
+      {"one radar", one_radar},
+      {"16 radars", sixteen_radars},
+      {"understated noise", understated_noise},
+  };
+  return kinds;
+}
+
+const char* name_of(RoadKind road) {
+  switch (road) {
+    case RoadKind::kCity:
+      return "city";
+    case RoadKind::kMotorway:
+      return "motorway";
+    case RoadKind::kStraight:
+      return "straight";
+    case RoadKind::kSlow:
+      return "slow";
+    case RoadKind::kMixed:
+      return "mixed";
+  }
+  return "";
+}
+
+}  // namespace boresight::bench

@@ -1,0 +1,47 @@
+// The same minute of driving over and over, ready in memory as methods take it: for measuring what they cost.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "services/alignment_estimator/core/method.hpp"
+#include "services/alignment_estimator/core/scan_detections.hpp"
+#include "services/common/estimation/ego_history.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::bench {
+
+class Load {
+ public:
+  Load(std::size_t radars, double detections_per_scan, double seconds);
+
+  [[nodiscard]] const VehicleConfig& vehicle() const { return vehicle_; }
+  /// Gives the method one scan of each radar; returns the number of detections.
+  std::size_t give_cycle(alignment::Method& method);
+  /// Once through all scans, so that start-up is over.
+  void warm_up(alignment::Method& method);
+
+ private:
+  struct Entry {
+    std::size_t radar;
+    EgoSample ego;
+    std::unique_ptr<alignment::ScanDetections> detections;
+  };
+  VehicleConfig vehicle_;
+  std::vector<Entry> entries_;
+  std::size_t next_ = 0;
+  std::int64_t duration_ns_;
+};
+
+/// Median time of a cycle of all radars, over `cycles`, after warming up.
+struct CycleCost {
+  double us_per_cycle;
+  double ns_per_detection;
+  std::size_t allocations;
+};
+[[nodiscard]] CycleCost measure_cycles(Load& load, alignment::Method& method, std::size_t cycles);
+/// Without warming up.
+[[nodiscard]] std::size_t count_allocations(Load& load, alignment::Method& method, std::size_t cycles);
+
+}  // namespace boresight::bench

@@ -1,0 +1,24 @@
+// The methods by the names that configuration and the offline tool use.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/benchmarks/alignment/common/runner.hpp"
+
+namespace boresight::bench {
+
+struct NamedMethod {
+  std::string name;  ///< "nelder_mead"
+  MakeMethod make;
+};
+
+/// Boresight's own estimator with its shipped settings.
+[[nodiscard]] NamedMethod own_method();
+/// The published ones with their published constants, in the order of Report A; with the gate that keeps movers out.
+[[nodiscard]] std::vector<NamedMethod> published_methods();
+/// As published: every detection counts.
+[[nodiscard]] std::vector<NamedMethod> published_methods_without_gate();
+
+}  // namespace boresight::bench

@@ -1,0 +1,23 @@
+// How much of the benchmark is run.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+namespace boresight::bench {
+
+struct Options {
+  bool quick = false;      ///< two seeds and short drives: whether it runs, not how good it is
+  std::string only;        ///< group of bars; empty: all
+  std::size_t jobs = 2;    ///< threads
+  std::string drive_data;  ///< folder of drive_1; empty: left out
+
+  [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
+    return quick ? std::min<std::size_t>(wanted, 2) : wanted;
+  }
+  [[nodiscard]] double seconds(double wanted) const { return quick ? std::min(wanted, 12.0) : wanted; }
+  [[nodiscard]] bool wants(const std::string& group) const { return only.empty() || only == group; }
+};
+
+}  // namespace boresight::bench

@@ -1,0 +1,65 @@
+// What the benchmark found: bars with PASS or FAIL, tables, and curves for the figures; as text, Markdown and JSON.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace boresight::bench {
+
+struct Bar {
+  std::string group;
+  std::string what;
+  double figure = 0.0;
+  double low = 0.0;  ///< passes in low…high; infinite where there is no such limit
+  double high = 0.0;
+  std::string unit;
+  std::string how;  ///< drives, seeds, statistic
+
+  [[nodiscard]] bool passes() const { return figure >= low && figure <= high; }
+  [[nodiscard]] std::string limit() const;
+};
+
+struct Table {
+  std::string name;
+  std::string caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// One curve of one panel of a figure.
+struct Curve {
+  std::string figure;
+  std::string panel;
+  std::string label;
+  std::vector<std::pair<double, double>> points;
+};
+
+class Report {
+ public:
+  void at_most(std::string group, std::string what, double figure, double bar, std::string unit, std::string how);
+  void at_least(std::string group, std::string what, double figure, double bar, std::string unit, std::string how);
+  void within(std::string group, std::string what, double figure, double low, double high, std::string unit,
+              std::string how);
+  void add(Table table) { tables_.push_back(std::move(table)); }
+  void add(Curve curve) { curves_.push_back(std::move(curve)); }
+
+  [[nodiscard]] const std::vector<Bar>& bars() const { return bars_; }
+  void print(std::ostream& out) const;
+  /// Each table between the marks that the document has, <!-- begin: NAME --> and <!-- end: NAME -->.
+  void write_markdown(std::ostream& out) const;
+  void write_json(std::ostream& out) const;
+
+ private:
+  [[nodiscard]] Table bars_table() const;
+  std::vector<Bar> bars_;
+  std::vector<Table> tables_;
+  std::vector<Curve> curves_;
+};
+
+/// Three significant digits; "—" if not a number, "never" if infinite.
+[[nodiscard]] std::string number(double value);
+[[nodiscard]] std::string fixed(double value, int digits);
+
+}  // namespace boresight::bench
