@@ -23,6 +23,16 @@ std::string tick_text(double value) {
   return fmt::format("{:.4g}", value);
 }
 
+/// With as many decimals as tell neighbouring ticks apart.
+std::string tick_text(double value, const std::vector<double>& ticks) {
+  if (ticks.size() < 2) return tick_text(value);
+  const double step = ticks[1] - ticks[0];
+  const double largest = std::max(std::abs(ticks.front()), std::abs(ticks.back()));
+  constexpr double kTooSmall = 1e-5, kTooLarge = 1e6;
+  if (step < kTooSmall || largest >= kTooLarge) return tick_text(value);
+  return fmt::format("{:.{}f}", value, std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))));
+}
+
 }  // namespace
 
 std::string escape(const std::string& text) {
@@ -142,13 +152,14 @@ std::string SvgChart::axes() const {
   for (const double value : x_ticks) {
     text += fmt::format("<path class=\"grid\" d=\"M{0:.1f},{1:.1f}V{2:.1f}\"/>", px(value), kTop, bottom);
     text += fmt::format("<text class=\"tick\" text-anchor=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", px(value),
-                        bottom + 14.0, tick_text(value));
+                        bottom + 14.0, x_.logarithmic ? tick_text(value) : tick_text(value, x_ticks));
   }
   const int rows = std::max(2, static_cast<int>((height_ - kTop - kBottom) / 32.0));
-  for (const double value : y_.label.empty() ? std::vector<double>{} : ticks(y_.min, y_.max, rows)) {
+  const std::vector<double> y_ticks = y_.label.empty() ? std::vector<double>{} : ticks(y_.min, y_.max, rows);
+  for (const double value : y_ticks) {
     text += fmt::format("<path class=\"grid\" d=\"M{:.1f},{:.1f}H{:.1f}\"/>", kLeft, py(value), width_ - kRight);
     text += fmt::format("<text class=\"tick\" text-anchor=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", kLeft - 6.0,
-                        py(value) + 3.5, tick_text(value));
+                        py(value) + 3.5, tick_text(value, y_ticks));
   }
   text += fmt::format("<text class=\"label\" text-anchor=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
                       width_ - kRight, height_ - 6.0, escape(x_.label));
@@ -159,12 +170,20 @@ std::string SvgChart::axes() const {
 }
 
 std::string SvgChart::finish() const {
+  return render("");
+}
+
+std::string SvgChart::finish_at(double x, double y) const {
+  return render(fmt::format(" x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\"", x, y, width_, height_));
+}
+
+std::string SvgChart::render(const std::string& placement) const {
   // Clip paths need names that are unique in the page; the nested <svg> clips without one.
   return fmt::format(
-      "<svg class=\"chart\" viewBox=\"0 0 {0:.0f} {1:.0f}\" role=\"img\">\n{2}"
+      "<svg class=\"chart\"{8} viewBox=\"0 0 {0:.0f} {1:.0f}\" role=\"img\">\n{2}"
       "<svg x=\"{3}\" y=\"{4}\" width=\"{5:.1f}\" height=\"{6:.1f}\" viewBox=\"{3} {4} {5:.1f} {6:.1f}\">\n{7}</svg>\n"
       "<rect class=\"frame\" x=\"{3}\" y=\"{4}\" width=\"{5:.1f}\" height=\"{6:.1f}\"/>\n</svg>\n",
-      width_, height_, axes(), kLeft, kTop, width_ - kLeft - kRight, height_ - kTop - kBottom, body_);
+      width_, height_, axes(), kLeft, kTop, width_ - kLeft - kRight, height_ - kTop - kBottom, body_, placement);
 }
 
 }  // namespace boresight::report

@@ -34,6 +34,8 @@ class SvgChart {
   void dot(Point at, double radius_px, const std::string& css_class, const std::string& tooltip = {});
   void text(Point at, const std::string& text, const std::string& css_class);
   [[nodiscard]] std::string finish() const;
+  /// As a part of a larger picture, with its corner at (x, y).
+  [[nodiscard]] std::string finish_at(double x, double y) const;
 
   /// Round numbers that divide [min, max] in about `count` steps.
   [[nodiscard]] static std::vector<double> ticks(double min, double max, int count);
@@ -42,6 +44,7 @@ class SvgChart {
   [[nodiscard]] double px(double x) const;
   [[nodiscard]] double py(double y) const;
   [[nodiscard]] std::string axes() const;
+  [[nodiscard]] std::string render(const std::string& placement) const;
 
   double width_;
   double height_;

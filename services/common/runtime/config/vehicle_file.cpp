@@ -96,6 +96,11 @@ std::string read_mapping(Reader& reader, bool needed) {
   return mapping;
 }
 
+/// Offline a source may be left out; one that is there is checked all the same.
+bool has_source(const Reader& reader, VehicleUse use) {
+  return use == VehicleUse::kLive || reader.has("source");
+}
+
 void check_link(Reader& reader, LinkKind link, LinkKind needed) {
   if (!reader.has("profile") || !reader.has("source") || link == needed) return;
   constexpr std::array<std::string_view, 3> kNames = {"can", "udp", "someip"};
@@ -146,16 +151,16 @@ AlignmentTolerance read_tolerance(Reader reader) {
   return tolerance;
 }
 
-EgoConfig read_ego(Reader reader) {
+EgoConfig read_ego(Reader reader, VehicleUse use) {
   EgoConfig ego;
-  reader.require("source");
+  if (use == VehicleUse::kLive) reader.require("source");
   ego.profile = reader.choice<EgoProfile>("profile",
                                           {{"toyota", EgoProfile::kToyota},
                                            {"srr520", EgoProfile::kSrr520},
                                            {"mapping", EgoProfile::kMapping},
                                            {"boresight", EgoProfile::kBoresight}},
                                           ego.profile);
-  ego.source = read_source(reader.table("source"));
+  if (has_source(reader, use)) ego.source = read_source(reader.table("source"));
   const bool is_someip = ego.profile == EgoProfile::kBoresight;
   check_link(reader, ego.source.link, is_someip ? LinkKind::kSomeIp : LinkKind::kCan);
   namespace service = wire::boresight_service;
@@ -168,9 +173,11 @@ EgoConfig read_ego(Reader reader) {
   return ego;
 }
 
-RadarConfig read_radar(Reader reader) {
+RadarConfig read_radar(Reader reader, VehicleUse use) {
   RadarConfig radar;
-  for (const char* key : {"id", "name", "profile", "source", "mounting_pose"}) reader.require(key);
+  for (const char* key : {"id", "name", "mounting_pose"}) reader.require(key);
+  if (use == VehicleUse::kLive || reader.has("source")) reader.require("profile");
+  if (use == VehicleUse::kLive) reader.require("source");
   radar.id = static_cast<std::uint32_t>(reader.integer("id", {1, kMaxRadars}, 0));
   radar.name = reader.text("name", "");
   if (reader.has("name") && (radar.name.empty() || radar.name.size() > 31)) {
@@ -184,7 +191,7 @@ RadarConfig read_radar(Reader reader) {
                                                {"mapping", RadarProfile::kMapping},
                                                {"boresight", RadarProfile::kBoresight}},
                                               radar.profile);
-  radar.source = read_source(reader.table("source"));
+  if (has_source(reader, use)) radar.source = read_source(reader.table("source"));
   const bool is_ars548 = radar.profile == RadarProfile::kArs548;
   const bool is_ars408 = radar.profile == RadarProfile::kArs408;
   const bool is_someip = radar.profile == RadarProfile::kBoresight;
@@ -231,19 +238,25 @@ bool same_source(const RadarConfig& a, const RadarConfig& b) {
 
 }  // namespace
 
-VehicleConfig read_vehicle(Reader root) {
+VehicleConfig read_vehicle(Reader root, VehicleUse use) {
   VehicleConfig vehicle;
-  for (const char* key : {"name", "ego", "radar"}) root.require(key);
+  for (const char* key : {"name", "radar"}) root.require(key);
+  if (use == VehicleUse::kLive) root.require("ego");
   vehicle.name = root.text("name", "");
-  vehicle.ego = read_ego(root.table("ego"));
+  vehicle.ego = read_ego(root.table("ego"), use);
+  std::vector<bool> has_source;
   std::vector<Reader> readers = root.tables("radar");
   if (readers.size() > kMaxRadars) root.reject("radar", fmt::format("at most {} radars", kMaxRadars));
   for (Reader& reader : readers) {
-    RadarConfig radar = read_radar(reader);
-    for (const RadarConfig& other : vehicle.radars) {
+    RadarConfig radar = read_radar(reader, use);
+    has_source.push_back(reader.has("source"));
+    for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+      const RadarConfig& other = vehicle.radars[i];
       if (other.id == radar.id) reader.reject("id", fmt::format("{} is already used by {}", radar.id, other.name));
       if (other.name == radar.name) reader.reject("name", fmt::format("\"{}\" is already used", radar.name));
-      if (same_source(other, radar)) reader.reject("source", fmt::format("is the source of {} too", other.name));
+      if (has_source[i] && has_source.back() && same_source(other, radar)) {
+        reader.reject("source", fmt::format("is the source of {} too", other.name));
+      }
     }
     vehicle.radars.push_back(std::move(radar));
   }
@@ -253,8 +266,8 @@ VehicleConfig read_vehicle(Reader root) {
   return vehicle;
 }
 
-VehicleConfig read_vehicle_file(const std::filesystem::path& file) {
-  VehicleConfig vehicle = read_vehicle(Reader::open(file));
+VehicleConfig read_vehicle_file(const std::filesystem::path& file, VehicleUse use) {
+  VehicleConfig vehicle = read_vehicle(Reader::open(file), use);
   const auto resolve = [&file](std::string& mapping) {
     if (!mapping.empty()) mapping = (file.parent_path() / mapping).lexically_normal().string();
   };

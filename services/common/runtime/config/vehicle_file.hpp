@@ -1,6 +1,7 @@
 // config/vehicle/*.toml → VehicleConfig.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "services/common/runtime/config/reader.hpp"
@@ -8,8 +9,11 @@
 
 namespace boresight::config {
 
+/// kOffline: for tables of detections instead of links; `ego`, `profile` and `source` may be left out.
+enum class VehicleUse : std::uint8_t { kLive, kOffline };
+
 /// Reads the open document; throws Error with every problem found (see config/schema/vehicle.md).
-[[nodiscard]] VehicleConfig read_vehicle(Reader root);
-[[nodiscard]] VehicleConfig read_vehicle_file(const std::filesystem::path& file);
+[[nodiscard]] VehicleConfig read_vehicle(Reader root, VehicleUse use = VehicleUse::kLive);
+[[nodiscard]] VehicleConfig read_vehicle_file(const std::filesystem::path& file, VehicleUse use = VehicleUse::kLive);
 
 }  // namespace boresight::config

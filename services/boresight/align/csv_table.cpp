@@ -1,0 +1,157 @@
+#include "services/boresight/align/csv_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace boresight::align {
+
+namespace {
+
+constexpr std::size_t kMaxLine = 4096;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::string_view trim(std::string_view text) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// For error messages: short, and nothing that would upset a terminal.
+std::string quote(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string result = "\"";
+  for (const char c : text.substr(0, kLongest)) result += c >= ' ' && c <= '~' ? c : '?';
+  return result + (text.size() > kLongest ? "…\"" : "\"");
+}
+
+bool is_number(std::string_view text) {
+  double unused = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), unused);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+}  // namespace
+
+CsvTable::CsvTable(recording::ByteSource& source, std::span<const Column> columns, Problems& problems)
+    : source_(source),
+      lines_(source, kMaxLine),
+      columns_(columns),
+      problems_(problems),
+      cell_of_(columns.size(), -1),
+      offset_of_(columns.size(), 0) {
+  std::string expected;
+  for (const Column& column : columns) {
+    if (column.required) expected += (expected.empty() ? "" : ",") + std::string(column.name);
+  }
+  std::string_view header;
+  if (!next_line(header)) {
+    throw TableError(fmt::format("{}: is empty; the first line must name the columns {}", source.name(), expected));
+  }
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (header.substr(0, kByteOrderMark.size()) == kByteOrderMark) header.remove_prefix(kByteOrderMark.size());
+  if (is_number(trim(header.substr(0, header.find(','))))) {
+    throw TableError(
+        fmt::format("{}: begins with a number; the first line must name the columns {}", place(0), expected));
+  }
+  for (std::size_t begin = 0; begin <= header.size();) {
+    const std::size_t end = std::min(header.find(',', begin), header.size());
+    const std::string_view name = trim(header.substr(begin, end - begin));
+    const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    if (found == columns.end()) {
+      column_of_.push_back(-1);
+      ignored_.emplace_back(quote(name));
+    } else {
+      const auto column = static_cast<std::size_t>(found - columns.begin());
+      if (has(column)) throw TableError(fmt::format("{}: column {} is there twice", place(begin), name));
+      cell_of_[column] = static_cast<int>(column_of_.size());
+      column_of_.push_back(static_cast<int>(column));
+    }
+    begin = end + 1;
+  }
+  std::string missing;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].required && !has(i)) missing += (missing.empty() ? "" : ", ") + std::string(columns[i].name);
+  }
+  if (!missing.empty()) {
+    throw TableError(fmt::format("{}: the header lacks {}; it must name the columns {} (in any order), and is {}",
+                                 place(0), missing, expected, quote(header)));
+  }
+}
+
+std::string CsvTable::place(std::size_t offset) const {
+  return fmt::format("{}:{}:{}", source_.name(), line_number_, offset + 1);
+}
+
+bool CsvTable::next_line(std::string_view& line) {
+  while (lines_.next(line)) {
+    ++line_number_;
+    const std::string_view text = trim(line);
+    if (!text.empty() && text.front() != '#') return true;
+  }
+  if (lines_.error() != 0) {
+    throw TableError(fmt::format("{}: cannot be read on after line {}: {}", source_.name(), line_number_,
+                                 std::strerror(lines_.error())));
+  }
+  return false;
+}
+
+bool CsvTable::next(std::span<double> values) {
+  for (std::string_view line; next_line(line);) {
+    if (parse(line, values)) return true;
+  }
+  return false;
+}
+
+void CsvTable::reject(std::size_t column, const std::string& problem) {
+  problems_.bad_line(fmt::format("{}: {}: {}", place(offset_of_[column]), columns_[column].name, problem));
+}
+
+bool CsvTable::parse(std::string_view line, std::span<double> values) {
+  if (line.size() > kMaxLine) {
+    problems_.bad_line(fmt::format("{}: longer than {} characters", place(kMaxLine), kMaxLine));
+    return false;
+  }
+  std::fill(values.begin(), values.end(), kNaN);
+  std::size_t cell = 0;
+  for (std::size_t begin = 0; begin <= line.size(); ++cell) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const int index = cell < column_of_.size() ? column_of_[cell] : -1;
+    if (index >= 0) {
+      const auto i = static_cast<std::size_t>(index);
+      const Column& column = columns_[i];
+      std::string_view text = trim(line.substr(begin, end - begin));
+      offset_of_[i] = begin;
+      const auto wrong = [&] {
+        reject(i, fmt::format("read {}, allowed is a number {:g} … {:g}{}{}{}", quote(text), column.min, column.max,
+                              column.unit.empty() ? "" : " ", column.unit, column.may_be_empty ? ", or nothing" : ""));
+      };
+      if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+      double value = kNaN;
+      if (!text.empty() || !column.may_be_empty) {
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        // A number that is too small for a double is as good as zero.
+        const bool is_tiny = error == std::errc::result_out_of_range && text.find("e-") != std::string_view::npos;
+        if (is_tiny) value = 0.0;
+        if ((error != std::errc{} && !is_tiny) || stop != text.data() + text.size()) return wrong(), false;
+      }
+      const bool is_allowed = std::isnan(value) ? column.may_be_empty : value >= column.min && value <= column.max;
+      if (!is_allowed) return wrong(), false;
+      values[i] = value;
+    }
+    begin = end + 1;
+  }
+  if (cell != column_of_.size()) {
+    problems_.bad_line(
+        fmt::format("{}: has {} columns, the header has {}", place(line.size()), cell, column_of_.size()));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace boresight::align

@@ -1,0 +1,69 @@
+// Tables of numbers with a header line: columns by name in any order, each number checked against what is allowed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/boresight/align/problems.hpp"
+#include "services/common/recording/byte_source.hpp"
+#include "services/common/recording/line_reader.hpp"
+
+namespace boresight::align {
+
+/// A file that cannot be used at all; what() names file, line and cause.
+class TableError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A column that is read if the table has it.
+struct Column {
+  std::string_view name;
+  double min, max;  ///< of allowed values
+  std::string_view unit;
+  bool required = true;       ///< else the table may lack it
+  bool may_be_empty = false;  ///< an empty cell or "nan" is read as NaN
+};
+
+class CsvTable {
+ public:
+  /// Reads the header; throws TableError if there is none or a required column is missing or twice there. Empty lines
+  /// and those that begin with '#' are passed over. `columns` must outlive the table.
+  CsvTable(recording::ByteSource& source, std::span<const Column> columns, Problems& problems);
+
+  /// The next row's values in the order of `columns`, NaN where there is none. Rows that cannot be read are problems
+  /// and passed over. False at the end; throws TableError if the file cannot be read on.
+  [[nodiscard]] bool next(std::span<double> values);
+
+  /// Notes the row that next() gave last as bad after all.
+  void reject(std::size_t column, const std::string& problem);
+  /// Tells that the row that next() gave last is good.
+  void accept() { problems_.good_line(); }
+
+  [[nodiscard]] bool has(std::size_t column) const { return cell_of_[column] >= 0; }
+  /// Names of the table's columns that nobody reads.
+  [[nodiscard]] const std::vector<std::string>& ignored() const { return ignored_; }
+  [[nodiscard]] std::uint64_t line_number() const { return line_number_; }
+
+ private:
+  [[nodiscard]] bool next_line(std::string_view& line);
+  [[nodiscard]] bool parse(std::string_view line, std::span<double> values);
+  [[nodiscard]] std::string place(std::size_t offset) const;
+
+  recording::ByteSource& source_;
+  recording::LineReader lines_;
+  std::span<const Column> columns_;
+  Problems& problems_;
+  std::vector<int> cell_of_;            // by column: which cell, −1: none
+  std::vector<int> column_of_;          // by cell: which column, −1: ignored
+  std::vector<std::size_t> offset_of_;  // by column: where its text begins in the line
+  std::vector<std::string> ignored_;
+  std::uint64_t line_number_ = 0;
+};
+
+}  // namespace boresight::align

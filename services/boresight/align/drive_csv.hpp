@@ -1,0 +1,49 @@
+// Detections of a drive as a table, row by row, put together to scans.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "interfaces/messages/radar_scan.hpp"
+#include "services/boresight/align/csv_table.hpp"
+#include "services/boresight/align/time_order.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::align {
+
+/// Columns t (s, any origin), radar (id), range (m), az and el (rad, + left, + up, sensor axes), vr (m/s, + receding).
+/// `el` may be absent or empty: the radar measures none. Optional: az_std, el_std (rad), vr_std (m/s), and vr_min,
+/// vr_max (m/s), the unambiguous interval of vr. Everything else is ignored; is_stationary, the truth, above all.
+class DriveReader {
+ public:
+  /// Throws TableError as CsvTable does. All arguments must outlive the reader.
+  DriveReader(recording::ByteSource& source, const VehicleConfig& vehicle, Problems& problems);
+
+  /// The next scan: consecutive rows of the same time and radar. `time_s` is that of the table; of the header only
+  /// source_id is written. `scan` must have been zeroed once. False at the end.
+  [[nodiscard]] bool next(RadarScan& scan, double& time_s);
+
+  /// Columns that are ignored, but for is_stationary.
+  [[nodiscard]] std::vector<std::string> ignored_columns() const;
+  [[nodiscard]] std::uint64_t dropped_detections() const { return dropped_; }
+  /// Rows of radars that the vehicle file does not have, by id; they count as bad lines as well.
+  [[nodiscard]] const std::map<std::uint32_t, std::uint64_t>& unknown_radars() const { return unknown_; }
+
+ private:
+  static constexpr std::size_t kColumns = 11;
+  /// Reads on to the next good row; false at the end.
+  bool read_row();
+
+  const VehicleConfig& vehicle_;
+  CsvTable table_;
+  TimeOrder order_;
+  std::array<double, kColumns> row_{};
+  bool has_row_ = false;
+  std::uint64_t dropped_ = 0;
+  std::map<std::uint32_t, std::uint64_t> unknown_;
+};
+
+}  // namespace boresight::align

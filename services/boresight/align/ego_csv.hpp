@@ -1,0 +1,31 @@
+// The vehicle's motion as a table.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "interfaces/messages/ego_motion.hpp"
+#include "services/boresight/align/csv_table.hpp"
+#include "services/boresight/align/time_order.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::align {
+
+/// Columns t (s, on the clock of the detections), v (m/s, as signalled, + forward), yaw_rate (rad/s, + left).
+class EgoReader {
+ public:
+  /// `config` has the stds of the signals. Throws TableError as CsvTable does. All arguments must outlive the reader.
+  EgoReader(recording::ByteSource& source, const EgoConfig& config, Problems& problems);
+
+  /// The next motion; `time_s` is that of the table, the header's is left alone. False at the end.
+  [[nodiscard]] bool next(EgoMotion& motion, double& time_s);
+  [[nodiscard]] const std::vector<std::string>& ignored_columns() const { return table_.ignored(); }
+
+ private:
+  EgoConfig config_;
+  CsvTable table_;
+  TimeOrder order_;
+};
+
+}  // namespace boresight::align

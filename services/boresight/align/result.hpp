@@ -1,0 +1,78 @@
+// What `boresight align` found: values only, from which JSON, picture and table are made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interfaces/messages/alignment_estimate.hpp"
+#include "services/alignment_estimator/core/method.hpp"
+#include "services/boresight/align/residuals.hpp"
+
+namespace boresight::align {
+
+/// Order of the four parameters everywhere: k_v, then yaw, pitch, roll (rad) about the vehicle's axes.
+inline constexpr std::size_t kParameters = 4;
+
+/// Estimates at one instant.
+struct Sample {
+  struct Radar {
+    AlignmentState state = AlignmentState::kNoData;
+    std::uint32_t observable = 0;  ///< alignment_axis bits
+    std::array<double, kParameters> values{}, stds{};
+  };
+  double x = 0.0;  ///< time of the recording in s, or the iteration
+  double speed_scale = 1.0, speed_scale_std = 0.0;
+  double yaw_rate_bias_radps = 0.0, yaw_rate_bias_std_radps = 0.0;
+  double slip_coefficient_radps2pm = 0.0, slip_coefficient_std_radps2pm = 0.0;
+  std::vector<Radar> radars;
+};
+
+struct KnockEvent {
+  double time_s = 0.0;
+  std::array<double, 3> yaw_pitch_roll_rad{};  ///< of the turn, about the vehicle's axes
+};
+
+/// Errors are estimate − truth; of the angles those of the turn that is left, R(estimate) = Exp(e)·R(truth), about the
+/// vehicle's axes. The NEES is error²/variance.
+struct TruthComparison {
+  std::array<double, kParameters> true_values{};  ///< as in Sample
+  std::array<double, kParameters> errors{}, nees{};
+  std::array<double, 3> sensor_errors_rad{};  ///< of α, β, γ
+  /// Drive until the value stayed within 5 % of the way from nominal to truth; NaN: never.
+  std::array<double, kParameters> seconds_to_95_percent{};
+};
+
+struct RadarResult {
+  std::uint32_t id = 0;
+  std::string name;
+  bool measures_elevation = false;
+  alignment::RadarEstimate estimate;
+  AlignmentEstimate message{};  ///< as the service publishes it, without header
+  std::uint64_t scans = 0, scans_without_ego = 0, detections = 0;
+  ResidualSummary residuals;
+  double cpu_us_per_scan = 0.0, max_cpu_us_per_scan = 0.0;  ///< NaN where no scan was processed one by one
+  std::vector<KnockEvent> knocks;
+  /// post_factum: what the data say of α, β, γ: "supported" or why not.
+  std::vector<std::string> support;
+  std::optional<TruthComparison> truth;
+};
+
+struct Result {
+  std::string method;
+  std::string vehicle;
+  double start_s = 0.0, end_s = 0.0;  ///< of scans, on the recording's clock; NaN without any
+  double ego_start_s = 0.0, ego_end_s = 0.0;
+  std::uint64_t scans = 0, detections = 0, ego_motions = 0;
+  double speed_scale = 1.0, speed_scale_std = 0.0;
+  bool speed_scale_observable = false;
+  std::optional<double> true_speed_scale, true_yaw_rate_bias_radps, true_slip_coefficient_radps2pm;
+  std::string speed_scale_support;  ///< post_factum, as RadarResult::support
+  std::vector<RadarResult> radars;
+  bool x_is_iteration = false;
+  std::vector<Sample> series;
+};
+
+}  // namespace boresight::align

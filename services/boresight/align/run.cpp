@@ -1,0 +1,259 @@
+#include "services/boresight/align/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "services/alignment_estimator/core/scan_detections.hpp"
+#include "services/alignment_estimator/core/write_estimate.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::align {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// Places of (k_v, yaw, pitch, roll) in the covariance of (k_v, d_x, d_y, d_z).
+constexpr std::array<Eigen::Index, kParameters> kPlace = {0, 3, 2, 1};
+
+std::array<double, kParameters> to_array(const Eigen::Vector4d& v) {
+  return {v(0), v(1), v(2), v(3)};
+}
+
+std::array<double, kParameters> stds_of(const alignment::RadarEstimate& estimate) {
+  std::array<double, kParameters> stds{};
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    stds.at(i) = std::sqrt(std::max(0.0, estimate.covariance(kPlace.at(i), kPlace.at(i))));
+  }
+  return stds;
+}
+
+/// k_v of the vehicle: that of the radars, weighted by their variances, where each has its own. Their errors have a
+/// common part, so the smallest std is not divided.
+void share_speed_scale(Sample& sample) {
+  double sum = 0.0, weights = 0.0, best_std = std::numeric_limits<double>::infinity();
+  for (const Sample::Radar& radar : sample.radars) {
+    if ((radar.observable & alignment_axis::kSpeedScale) == 0) continue;
+    const double weight = 1.0 / std::max(1e-18, radar.stds[0] * radar.stds[0]);
+    sum += weight * radar.values[0];
+    weights += weight;
+    best_std = std::min(best_std, radar.stds[0]);
+  }
+  if (weights > 0.0) {
+    sample.speed_scale = sum / weights;
+    sample.speed_scale_std = best_std;
+  } else if (!sample.radars.empty()) {
+    sample.speed_scale = sample.radars.front().values[0];
+    sample.speed_scale_std = sample.radars.front().stds[0];
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, method] : alignment::kMethodNames) names.emplace_back(name);
+  return names;
+}
+
+Run::Run(const VehicleConfig& vehicle, Options options)
+    : vehicle_(vehicle),
+      options_(std::move(options)),
+      detections_(std::make_unique<alignment::ScanDetections>()),
+      ego_start_s_(kNaN),
+      ego_end_s_(kNaN),
+      start_s_(kNaN),
+      end_s_(kNaN) {
+  for (const auto& [name, method] : alignment::kMethodNames) {
+    if (name != options_.method) continue;
+    options_.config.method = method;
+    estimator_ = std::make_unique<alignment::Estimator>(vehicle_, options_.config);
+  }
+  if (estimator_ == nullptr) throw std::invalid_argument(options_.method + " is no alignment method");
+  for (const RadarConfig& config : vehicle_.radars) {
+    Radar& radar = radars_.emplace_back();
+    radar.config = config;
+    radar.nominal = geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0);
+    radar.true_values.fill(kNaN);
+    radar.seconds_to_95_percent.fill(kNaN);
+    if (!options_.truth) continue;
+    radar.true_values[0] = options_.truth->speed_scale.value_or(kNaN);
+    const auto known = options_.truth->radars.find(config.id);
+    if (known == options_.truth->radars.end()) continue;
+    radar.truth = true_mounting(known->second, config.mounting_pose);
+    const Eigen::Vector3d turn = geometry::so3_log(*radar.truth * radar.nominal.transpose());
+    radar.true_values = {radar.true_values[0], turn.z(), -turn.y(), turn.x()};
+  }
+}
+
+std::int64_t Run::to_ns(double time_s) const {
+  // A second after the beginning of the clock, as 0 means "never" to some.
+  return kSecond_ns + std::llround((time_s - options_.origin_s) * 1e9);
+}
+
+void Run::add_ego(EgoMotion& motion, double time_s) {
+  motion.header.measurement_time_ns = to_ns(time_s);
+  ++ego_motions_;
+  if (std::isnan(ego_start_s_)) ego_start_s_ = time_s;
+  ego_end_s_ = time_s;
+  ego_.add(motion);
+  estimator_->add_ego_motion(motion);
+}
+
+void Run::add_scan(RadarScan& scan, double time_s) {
+  const auto found = std::find_if(radars_.begin(), radars_.end(),
+                                  [&](const Radar& r) { return r.config.id == scan.header.source_id; });
+  if (found == radars_.end()) return;
+  if (std::isnan(start_s_)) start_s_ = next_sample_s_ = end_s_ = time_s;
+  observe_until(time_s);
+  end_s_ = std::max(end_s_, time_s);
+  scan.header.measurement_time_ns = to_ns(time_s);
+
+  Radar& radar = *found;
+  ++radar.scans;
+  radar.detections += scan.number_of_valid_detections;
+  radar.measures_elevation = radar.measures_elevation || scan.has(scan_field::kElevation);
+  const EgoSample ego = ego_.at(scan.header.measurement_time_ns);
+  const bool moves = ego.valid && !ego.stale;
+  if (!moves) ++radar.scans_without_ego;
+  if (moves && std::abs(ego.speed_mps) >= options_.config.min_speed_mps) {
+    alignment::take_detections(scan, radar.config, *detections_);
+    radar.residuals.add(*detections_, ego);
+  }
+  const std::int64_t before_ns = options_.cpu_time_ns ? options_.cpu_time_ns() : 0;
+  static_cast<void>(estimator_->add_scan(scan));
+  if (options_.cpu_time_ns && moves) {
+    const std::int64_t took_ns = options_.cpu_time_ns() - before_ns;
+    radar.cpu_ns += took_ns;
+    radar.max_cpu_ns = std::max(radar.max_cpu_ns, took_ns);
+    ++radar.timed_scans;
+  }
+  observe(radar, estimator_->estimate(static_cast<std::size_t>(found - radars_.begin())));
+}
+
+void Run::observe(Radar& radar, const alignment::RadarEstimate& estimate) {
+  if (estimate.knock.count != radar.knocks_seen) {
+    radar.knocks_seen = estimate.knock.count;
+    const auto& turn = estimate.knock.rotation_vehicle_rad;
+    radar.knocks.push_back({options_.origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kSecond_ns),
+                            {turn[2], -turn[1], turn[0]}});
+  }
+  if (!options_.truth) return;
+  const auto values = to_array(alignment::vehicle_form(radar.config, estimate));
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    const double start = i == 0 ? 1.0 : 0.0;
+    const bool is_there =
+        std::abs(values.at(i) - radar.true_values.at(i)) <= 0.05 * std::abs(radar.true_values.at(i) - start);
+    double& reached_s = radar.seconds_to_95_percent.at(i);
+    if (!is_there) {
+      reached_s = kNaN;
+    } else if (std::isnan(reached_s)) {
+      reached_s = estimate.seconds_of_drive;
+    }
+  }
+}
+
+void Run::observe_until(double time_s) {
+  constexpr double kInterval_s = 1.0, kLongestGap_s = 10.0;
+  // While nothing comes nothing changes.
+  if (time_s > next_sample_s_ + kLongestGap_s) next_sample_s_ = time_s - kLongestGap_s;
+  for (; next_sample_s_ <= time_s; next_sample_s_ += kInterval_s) series_.push_back(sample(next_sample_s_));
+}
+
+Sample Run::sample(double time_s) {
+  Sample sample;
+  sample.x = time_s;
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    const alignment::RadarEstimate e = estimator_->estimate(i);
+    sample.radars.push_back(
+        {e.state, e.observable, to_array(alignment::vehicle_form(radars_[i].config, e)), stds_of(e)});
+    // Shared by all radars, or known to one of them: the surest counts.
+    const auto is_surer = [](double std, double than) { return std > 0.0 && (than == 0.0 || std < than); };
+    if (is_surer(e.yaw_rate_bias_std_radps, sample.yaw_rate_bias_std_radps)) {
+      sample.yaw_rate_bias_radps = e.yaw_rate_bias_radps;
+      sample.yaw_rate_bias_std_radps = e.yaw_rate_bias_std_radps;
+    }
+    if (is_surer(e.slip_coefficient_std_radps2pm, sample.slip_coefficient_std_radps2pm)) {
+      sample.slip_coefficient_radps2pm = e.slip_coefficient_radps2pm;
+      sample.slip_coefficient_std_radps2pm = e.slip_coefficient_std_radps2pm;
+    }
+  }
+  share_speed_scale(sample);
+  return sample;
+}
+
+Result Run::finish() {
+  Result result;
+  result.method = options_.method;
+  result.vehicle = vehicle_.name;
+  result.start_s = start_s_;
+  result.end_s = end_s_;
+  result.ego_start_s = ego_start_s_;
+  result.ego_end_s = ego_end_s_;
+  result.ego_motions = ego_motions_;
+  for (const Radar& radar : radars_) {
+    RadarResult& r = result.radars.emplace_back();
+    r.id = radar.config.id;
+    r.name = radar.config.name;
+    r.measures_elevation = radar.measures_elevation;
+    r.scans = radar.scans;
+    r.scans_without_ego = radar.scans_without_ego;
+    r.detections = radar.detections;
+    const double timed = static_cast<double>(radar.timed_scans);
+    r.cpu_us_per_scan = radar.timed_scans > 0 ? 1e-3 * static_cast<double>(radar.cpu_ns) / timed : kNaN;
+    r.max_cpu_us_per_scan = radar.timed_scans > 0 ? 1e-3 * static_cast<double>(radar.max_cpu_ns) : kNaN;
+    r.knocks = radar.knocks;
+    result.scans += radar.scans;
+    result.detections += radar.detections;
+  }
+  finish_estimator(result);
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    RadarResult& r = result.radars[i];
+    r.residuals = radars_[i].residuals.judge(r.estimate, radars_[i].config, radars_[i].nominal);
+    if (options_.truth && radars_[i].truth) r.truth = compare(radars_[i], r);
+  }
+  if (options_.truth) {
+    result.true_speed_scale = options_.truth->speed_scale;
+    result.true_yaw_rate_bias_radps = options_.truth->yaw_rate_bias_radps;
+    result.true_slip_coefficient_radps2pm = options_.truth->slip_coefficient_radps2pm;
+  }
+  return result;
+}
+
+void Run::finish_estimator(Result& result) {
+  const Sample last = sample(end_s_);
+  if (!std::isnan(end_s_)) series_.push_back(last);
+  result.series = std::move(series_);
+  result.speed_scale = last.speed_scale;
+  result.speed_scale_std = last.speed_scale_std;
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    RadarResult& r = result.radars[i];
+    r.estimate = estimator_->estimate(i);
+    static_cast<void>(estimator_->write(r.id, r.message));
+    if ((r.estimate.observable & alignment_axis::kSpeedScale) != 0) result.speed_scale_observable = true;
+  }
+}
+
+TruthComparison Run::compare(const Radar& radar, const RadarResult& result) const {
+  TruthComparison comparison;
+  comparison.true_values = radar.true_values;
+  comparison.seconds_to_95_percent = radar.seconds_to_95_percent;
+  const Eigen::Matrix3d& estimated = result.estimate.sensor_to_vehicle;
+  const Eigen::Vector3d turn = geometry::so3_log(estimated * radar.truth->transpose());
+  comparison.errors = {result.estimate.speed_scale - radar.true_values[0], turn.z(), -turn.y(), turn.x()};
+  const auto stds = stds_of(result.estimate);
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    const double normalised = comparison.errors.at(i) / stds.at(i);
+    comparison.nees.at(i) = stds.at(i) > 0.0 ? normalised * normalised : kNaN;
+  }
+  const Eigen::Vector3d difference = geometry::euler_angles(estimated) - geometry::euler_angles(*radar.truth);
+  for (std::size_t i = 0; i < 3; ++i) {
+    comparison.sensor_errors_rad.at(i) = geometry::wrap_angle(difference(static_cast<Eigen::Index>(i)));
+  }
+  return comparison;
+}
+
+}  // namespace boresight::align

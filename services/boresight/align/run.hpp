@@ -1,0 +1,80 @@
+// One alignment method over one recording: the service's core, fed with ego motions and scans, observed once a second.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interfaces/messages/ego_motion.hpp"
+#include "interfaces/messages/radar_scan.hpp"
+#include "services/alignment_estimator/core/config.hpp"
+#include "services/alignment_estimator/core/estimator.hpp"
+#include "services/boresight/align/residuals.hpp"
+#include "services/boresight/align/result.hpp"
+#include "services/boresight/align/truth_file.hpp"
+#include "services/common/estimation/ego_history.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::align {
+
+/// Names that --method takes.
+[[nodiscard]] std::vector<std::string> method_names();
+
+class Run {
+ public:
+  struct Options {
+    std::string method = "boresight";  ///< one of method_names()
+    alignment::Config config;          ///< its method is overruled
+    /// Time on the recording's clock, before everything in it, that the estimator's clock counts from.
+    double origin_s = 0.0;
+    std::optional<Truth> truth;
+    std::function<std::int64_t()> cpu_time_ns;  ///< of this thread, for the cost of a scan
+  };
+  /// Throws std::invalid_argument for a method that is not on offer.
+  Run(const VehicleConfig& vehicle, Options options);
+
+  /// In the order of time, ego motions before the scans of the same time; headers are written here.
+  void add_ego(EgoMotion& motion, double time_s);
+  void add_scan(RadarScan& scan, double time_s);
+  [[nodiscard]] Result finish();
+
+ private:
+  struct Radar {
+    RadarConfig config;
+    Eigen::Matrix3d nominal;
+    bool measures_elevation = false;
+    std::uint64_t scans = 0, scans_without_ego = 0, detections = 0;
+    std::int64_t cpu_ns = 0, max_cpu_ns = 0;
+    std::uint64_t timed_scans = 0;
+    ResidualSample residuals;
+    std::uint32_t knocks_seen = 0;
+    std::vector<KnockEvent> knocks;
+    std::optional<Eigen::Matrix3d> truth;           ///< R(sensor→vehicle)
+    std::array<double, kParameters> true_values{};  ///< where the truth is known
+    std::array<double, kParameters> seconds_to_95_percent{};
+  };
+  [[nodiscard]] std::int64_t to_ns(double time_s) const;
+  void observe_until(double time_s);
+  [[nodiscard]] Sample sample(double time_s);
+  /// After a scan: knocks, and whether the truth is reached.
+  void observe(Radar& radar, const alignment::RadarEstimate& estimate);
+  void finish_estimator(Result& result);
+  [[nodiscard]] TruthComparison compare(const Radar& radar, const RadarResult& result) const;
+
+  VehicleConfig vehicle_;
+  Options options_;
+  std::unique_ptr<alignment::Estimator> estimator_;
+  EgoHistory ego_;
+  std::vector<Radar> radars_;
+  std::unique_ptr<alignment::ScanDetections> detections_;
+  std::uint64_t ego_motions_ = 0;
+  double ego_start_s_, ego_end_s_, start_s_, end_s_;
+  double next_sample_s_ = 0.0;
+  std::vector<Sample> series_;
+};
+
+}  // namespace boresight::align

@@ -1,0 +1,83 @@
+#include "services/boresight/align/truth_file.hpp"
+
+#include <cmath>
+#include <istream>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "interfaces/messages/header.hpp"
+#include "services/common/geometry/frames.hpp"
+
+namespace boresight::align {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// Of "a 1 b text 2" the pairs (a, 1); words that no number follows are passed over.
+std::map<std::string, double> pairs(std::istringstream& words) {
+  std::map<std::string, double> result;
+  std::string key;
+  for (std::string word; words >> word; key = word) {
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (!key.empty() && *end == '\0' && std::isfinite(value)) result.emplace(key, value);
+  }
+  return result;
+}
+
+std::optional<double> find(const std::map<std::string, double>& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
+
+Truth read_truth(std::istream& input, const std::string& name) {
+  Truth truth;
+  int number = 0;
+  for (std::string line; std::getline(input, line);) {
+    ++number;
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    const auto fail = [&](const std::string& what) {
+      throw std::runtime_error(fmt::format("{}:{}: {}", name, number, what));
+    };
+    if (kind == "k_v") {
+      double value = NAN;
+      if (!(words >> value) || !std::isfinite(value)) fail("k_v: a number must follow");
+      truth.speed_scale = value;
+    } else if (kind == "radar") {
+      std::uint32_t id = 0;
+      if (!(words >> id) || id < 1 || id > kMaxRadars) fail(fmt::format("radar: an id 1 … {} must follow", kMaxRadars));
+      const auto values = pairs(words);
+      Truth::Radar radar;
+      if (const auto mount = find(values, "mount_az_deg")) radar.mount_yaw_rad = *mount * kDegree;
+      constexpr std::array<const char*, 3> kKeys = {"alpha_deg", "beta_deg", "gamma_deg"};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto value = find(values, kKeys.at(i));
+        if (!value) fail(fmt::format("radar {}: {} and a number are missing", id, kKeys.at(i)));
+        radar.sensor_rad.at(i) = *value * kDegree;
+      }
+      truth.radars[id] = radar;
+    } else if (kind == "disturbance") {
+      const auto values = pairs(words);
+      truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
+      truth.slip_coefficient_radps2pm = find(values, "rear_slip_coeff");
+    }
+  }
+  if (!truth.speed_scale && truth.radars.empty()) {
+    throw std::runtime_error(name + ": holds no truth (lines \"k_v VALUE\" and \"radar ID … alpha_deg VALUE …\")");
+  }
+  return truth;
+}
+
+Eigen::Matrix3d true_mounting(const Truth::Radar& truth, const MountingPose& nominal) {
+  return geometry::sensor_to_vehicle(truth.mount_yaw_rad.value_or(nominal.yaw_rad) + truth.sensor_rad[0],
+                                     nominal.pitch_rad + truth.sensor_rad[1], nominal.roll_rad + truth.sensor_rad[2]);
+}
+
+}  // namespace boresight::align

@@ -1,0 +1,123 @@
+#include <limits>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "services/boresight/align/json.hpp"
+#include "services/boresight/align/json_writer.hpp"
+#include "services/boresight/align/plot.hpp"
+#include "services/boresight/align/residuals.hpp"
+#include "services/boresight/align/table.hpp"
+#include "services/boresight/align/truth_file.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "tests/unit/align/tables.hpp"
+
+namespace boresight::align {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(JsonWriter, WhatIsNoNumberOrNoTextStaysValid) {
+  JsonWriter json;
+  json.begin_object().field("a", kNaN).field("b", HUGE_VAL).field("c\"\n", "\xFF\xC3[ä\x01\\").field("d", true);
+  json.key("e").begin_array().value(0.1).value(std::uint64_t{7}).begin_array().end_array().end_array().end_object();
+  EXPECT_EQ(json.text(), "{\"a\":null,\"b\":null,\"c\\\"\\u000a\":\"??[ä\\u0001\\\\\",\"d\":true,\"e\":[0.1,7,[]]}");
+  EXPECT_TRUE(testing::JsonCheck::is_valid(json.text()));
+  EXPECT_FALSE(testing::JsonCheck::is_valid("{\"a\":nan}")) << "the check can fail";
+  EXPECT_FALSE(testing::JsonCheck::is_valid("{\"a\":1,}"));
+}
+
+TEST(Moments, AreThoseOfTheDefinition) {
+  const Moments m = moments({1.0, 1.0, 1.0, 5.0});
+  EXPECT_DOUBLE_EQ(m.rmse_mps, std::sqrt(7.0));
+  EXPECT_NEAR(m.skewness, 2.0 / std::sqrt(3.0), 1e-12);  // of a two-point distribution with p = 1/4
+  EXPECT_NEAR(m.kurtosis, 7.0 / 3.0, 1e-12);
+  EXPECT_TRUE(std::isnan(moments({}).rmse_mps));
+  EXPECT_TRUE(std::isnan(moments({2.0, 2.0}).kurtosis));
+}
+
+TEST(TruthFile, ReadsTheFormatOfTheRecordedDrive) {
+  std::istringstream text(
+      "# kind=mixed\nk_v 1.0100\nradar 3 mount_az_deg 135.0 x -0.85 y 0.70 alpha_deg 1.00 beta_deg 2.00 gamma_deg "
+      "-1.00\n"
+      "disturbance yaw_rate_bias 0.001 rad/s (measured = true + bias) rear_slip_coeff 0.0030 rad/(m/s2)\n");
+  const Truth truth = read_truth(text, "truth.txt");
+  EXPECT_DOUBLE_EQ(truth.speed_scale.value(), 1.01);
+  EXPECT_DOUBLE_EQ(truth.yaw_rate_bias_radps.value(), 0.001);
+  EXPECT_DOUBLE_EQ(truth.slip_coefficient_radps2pm.value(), 0.003);
+  const MountingPose nominal{.position_m = {}, .yaw_rad = 0.0, .pitch_rad = 0.0, .roll_rad = M_PI};
+  const double degree = M_PI / 180.0;
+  EXPECT_TRUE(true_mounting(truth.radars.at(3), nominal)
+                  .isApprox(geometry::sensor_to_vehicle(136.0 * degree, 2.0 * degree, 179.0 * degree)));
+}
+
+TEST(TruthFile, RefusesWhatHoldsNone) {
+  const auto error_of = [](const std::string& text) -> std::string {
+    std::istringstream stream(text);
+    try {
+      static_cast<void>(read_truth(stream, "truth.txt"));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(error_of("hello\n"), HasSubstr("holds no truth"));
+  EXPECT_THAT(error_of("k_v fast\n"), HasSubstr("truth.txt:1: k_v"));
+  EXPECT_THAT(error_of("radar 17 alpha_deg 1\n"), HasSubstr("1 … 16"));
+  EXPECT_THAT(error_of("k_v 1\nradar 1 alpha_deg 1 beta_deg 2\n"), HasSubstr("truth.txt:2: radar 1: gamma_deg"));
+}
+
+/// With nothing known: every figure NaN.
+Result empty_result() {
+  Result result;
+  result.method = "boresight";
+  result.vehicle = "<car & \"co\">";
+  result.start_s = result.end_s = kNaN;
+  RadarResult& radar = result.radars.emplace_back();
+  radar.id = 1;
+  radar.name = "front";
+  radar.cpu_us_per_scan = kNaN;
+  radar.residuals = {{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN}, kNaN, 0, {}};
+  return result;
+}
+
+TEST(Outputs, OfNothingAreWellFormed) {
+  const Result result = empty_result();
+  const std::string json = to_json(result, {});
+  EXPECT_TRUE(testing::JsonCheck::is_valid(json)) << json;
+  EXPECT_THAT(json, HasSubstr("\"yaw\":\"NOT_OBSERVABLE\""));
+  const std::string svg = to_svg(result);
+  EXPECT_THAT(svg, HasSubstr("&lt;car &amp; &quot;co&quot;&gt;"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(to_table(result), HasSubstr("not observable"));
+  EXPECT_THAT(to_table(result), HasSubstr("k_v not observable"));
+}
+
+TEST(Outputs, SayWhatIsNotObservable) {
+  Result result = empty_result();
+  result.start_s = 0.0;
+  result.end_s = 1.0;
+  AlignmentEstimate& message = result.radars[0].message;
+  message.observable = alignment_axis::kVehicleYaw;
+  message.vehicle_yaw_rad = 0.01F;
+  message.vehicle_covariance[5] = 1e-6F;
+  for (const double x : {0.0, 1.0}) {
+    Sample& sample = result.series.emplace_back();
+    sample.x = x;
+    sample.radars.push_back(
+        {AlignmentState::kConverged, message.observable, {1.0, 0.01, 0.0, 0.0}, {0.0, 1e-3, 1.0, 1.0}});
+  }
+  const std::string svg = to_svg(result);
+  EXPECT_THAT(svg, HasSubstr("1 front, yaw: +0.573 ± 0.057°"));
+  EXPECT_THAT(svg, HasSubstr("1 front, pitch: not observable"));
+  const std::string json = to_json(result, {});
+  EXPECT_TRUE(testing::JsonCheck::is_valid(json));
+  EXPECT_THAT(json, HasSubstr("\"yaw\":\"OBSERVABLE\",\"pitch\":\"NOT_OBSERVABLE\""));
+  EXPECT_THAT(to_table(result), HasSubstr("+0.573 ± 0.057°"));
+}
+
+}  // namespace
+}  // namespace boresight::align
