@@ -56,6 +56,7 @@ Settings read_settings(config::Reader root) {
   memory.enabled = memory_table.boolean("enabled", memory.enabled);
   memory.path = memory_table.text("path", memory.path);
   memory.period_s = memory_table.number("period_s", {1.0, 3600.0}, memory.period_s);
+  settings.station = station::read_settings(root.table("station"));
   root.finish();
   return settings;
 }

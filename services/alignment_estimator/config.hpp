@@ -4,6 +4,7 @@
 #include <string>
 
 #include "services/alignment_estimator/core/config.hpp"
+#include "services/alignment_estimator/station/settings.hpp"
 #include "services/common/runtime/config/reader.hpp"
 
 namespace boresight::alignment {
@@ -19,6 +20,7 @@ struct MemorySettings {
 struct Settings {
   Config estimator;
   MemorySettings memory;
+  station::Settings station;
 };
 
 /// Reads the document; throws config::Error.

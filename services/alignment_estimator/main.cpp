@@ -3,6 +3,8 @@
 
 #include "services/alignment_estimator/config.hpp"
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/alignment_estimator/station/calibration_server.hpp"
+#include "services/alignment_estimator/station/core/seeding.hpp"
 #include "services/alignment_estimator/store/keeper.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_main.hpp"
@@ -36,11 +38,20 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Sett
   alignment::Estimator estimator(vehicle, settings.estimator);
   alignment::Keeper keeper(node, estimator, vehicle, memory_file(settings.memory), settings.memory.period_s);
   runtime::Publisher<AlignmentEstimate> estimates(node);
+  alignment::station::CalibrationServer calibration(node, vehicle, settings.station, [&](const auto& seed) {
+    const bool taken_over = alignment::station::seed_estimator(seed, estimator);
+    if (taken_over) keeper.remember();
+    return taken_over;
+  });
   std::array<std::uint32_t, kMaxRadars> reported_knocks{};
   node.every(1'000'000'000, [&] { report_knocks(vehicle, estimator, reported_knocks); });
-  node.on<EgoMotion>([&](const EgoMotion& motion) { estimator.add_ego_motion(motion); });
+  node.on<EgoMotion>([&](const EgoMotion& motion) {
+    estimator.add_ego_motion(motion);
+    calibration.add_ego_motion(motion);
+  });
   node.on<RadarScan>([&](const RadarScan& scan) {
     const std::uint32_t id = scan.header.source_id;
+    calibration.add_scan(scan);
     switch (estimator.add_scan(scan)) {
       case alignment::ScanResult::kUsed:
         break;

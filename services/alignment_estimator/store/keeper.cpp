@@ -64,6 +64,13 @@ void Keeper::keep() {
   if (writer_->offer(memory)) kept_drive_s_ = drive_s(memory);
 }
 
+void Keeper::remember() {
+  if (!writer_) return;
+  const Memory memory = estimator_.memory();
+  // What the writer cannot take now, the next turn or the end does.
+  kept_drive_s_ = writer_->offer(memory) ? drive_s(memory) : -1.0;
+}
+
 void Keeper::finish() {
   if (!writer_) return;
   const Memory memory = estimator_.memory();

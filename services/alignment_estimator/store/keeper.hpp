@@ -17,6 +17,8 @@ class Keeper {
   /// (kWireValue, or kVersionMismatch), one that the file system refuses too (kLink).
   Keeper(runtime::Node& node, Estimator& estimator, const VehicleConfig& vehicle,
          const std::optional<std::filesystem::path>& file, double period_s);
+  /// Something was learnt that no drive taught, a calibration: it is put down at once.
+  void remember();
   /// The last memory, if there is something new in it; call it when the node has stopped.
   void finish();
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <random>
 
 #include <poll.h>
 
@@ -31,11 +29,6 @@ someip::SdServerConfig discovery_config(const SomeIpOptions& options, const std:
   }
   config.event_group = options.event_group;
   config.cycle_ns = static_cast<std::int64_t>(options.offer_cycle_s * 1e9);
-  config.offer_ttl_s =
-      std::max(service::discovery::kOfferTtl_s, static_cast<std::uint32_t>(std::ceil(3.0 * options.offer_cycle_s)));
-  // So that ECUs that are switched on together do not offer together.
-  std::random_device random;
-  config.initial_wait_ns = std::uniform_int_distribution<std::int64_t>(10'000'000, 100'000'000)(random);
   return config;
 }
 
@@ -49,12 +42,10 @@ DataIds data_ids(std::uint32_t base, std::uint16_t instance) {
 
 SomeIpServer::SomeIpServer(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances)
     : options_(options),
-      discovery_(discovery_config(options, instances)),
-      discovery_unicast_(runtime::UdpSocket::bound_to({options.address, options.discovery_group.port},
-                                                      options.interface, options.multicast_hops)),
-      discovery_multicast_(runtime::UdpSocket::member_of(options.discovery_group, options.interface)),
-      flush_ns_(kNever),
-      buffer_(65536) {
+      discovery_({options.interface, options.address, options.discovery_group, options.multicast_hops},
+                 discovery_config(options, instances),
+                 {[this](const recording::IpAddress& from, std::string_view what) { report(from, what); }, {}}),
+      flush_ns_(kNever) {
   for (const std::uint16_t number : instances) {
     const recording::Endpoint local{options.address, static_cast<std::uint16_t>(options.first_port + number)};
     instances_.push_back({number,
@@ -62,7 +53,6 @@ SomeIpServer::SomeIpServer(const SomeIpOptions& options, const std::vector<std::
                           EventEncoder(data_ids(options.data_id_base, number)),
                           {}});
   }
-  discovery_.start(runtime::monotonic_now_ns());
 }
 
 SomeIpServer::~SomeIpServer() {
@@ -70,50 +60,26 @@ SomeIpServer::~SomeIpServer() {
 }
 
 void SomeIpServer::serve_until(std::int64_t due_ns) {
-  std::array<pollfd, 2> watched{
-      {{discovery_unicast_.descriptor(), POLLIN, 0}, {discovery_multicast_.descriptor(), POLLIN, 0}}};
+  const std::array<int, 2> descriptors = discovery_.descriptors();
+  std::array<pollfd, 2> watched{{{descriptors[0], POLLIN, 0}, {descriptors[1], POLLIN, 0}}};
   while (true) {
     std::int64_t now_ns = runtime::monotonic_now_ns();
-    discovery_.tick(now_ns, outgoing_);
-    send_discovery();
+    discovery_.tick(now_ns);
     if (now_ns >= flush_ns_) flush();
     // A stop signal between its check and the call is seen this much later at the latest.
     constexpr std::int64_t kLongest_ns = 100'000'000;
     const std::int64_t next_ns = std::min({due_ns, discovery_.next_due_ns(), flush_ns_, now_ns + kLongest_ns});
     const std::int64_t wait_ns = std::max<std::int64_t>(next_ns - now_ns, 0);
     const timespec wait{.tv_sec = wait_ns / kSecond_ns, .tv_nsec = wait_ns % kSecond_ns};
-    if (ppoll(watched.data(), watched.size(), &wait, nullptr) > 0) {
-      receive(discovery_unicast_, false);
-      receive(discovery_multicast_, true);
-    }
+    if (ppoll(watched.data(), watched.size(), &wait, nullptr) > 0) discovery_.receive();
     now_ns = runtime::monotonic_now_ns();
     if (now_ns >= due_ns || runtime::stop_signalled()) return;
   }
 }
 
-void SomeIpServer::receive(const runtime::UdpSocket& socket, bool by_multicast) {
-  // Bounded, so that a storm of discovery does not hold the events up.
-  constexpr int kDatagramsPerTurn = 32;
-  for (int i = 0; i < kDatagramsPerTurn; ++i) {
-    recording::Endpoint from;
-    const auto datagram = socket.receive(buffer_, from);
-    if (!datagram) return;
-    const bool own = from.address == options_.address && from.port == options_.discovery_group.port;
-    if (own && by_multicast) continue;
-    const auto problem = discovery_.receive(runtime::monotonic_now_ns(), *datagram, from, by_multicast, outgoing_);
-    if (problem && discovery_.statistics().malformed == 1) {
-      runtime::log::warning("{}: {}; further ones are only counted", recording::to_text(from.address), *problem);
-    }
-    send_discovery();
-  }
-}
-
-void SomeIpServer::send_discovery() {
-  for (const someip::SdOutgoing& message : outgoing_) {
-    // A link that is down loses it; the next offer repeats what matters.
-    static_cast<void>(discovery_unicast_.send(message.to.value_or(options_.discovery_group), message.message));
-  }
-  outgoing_.clear();
+void SomeIpServer::report(const recording::IpAddress& from, std::string_view what) const {
+  if (discovery_.statistics().malformed > 1) return;
+  runtime::log::warning("{}: {}; further ones are only counted", recording::to_text(from), what);
 }
 
 bool SomeIpServer::send(std::uint16_t number, const RadarScan& scan, const SensorTime& time) {
@@ -195,8 +161,7 @@ void SomeIpServer::flush() {
 
 void SomeIpServer::stop() {
   flush();
-  discovery_.stop(outgoing_);
-  send_discovery();
+  discovery_.stop();
 }
 
 bool SomeIpServer::has_subscriber() {

@@ -6,11 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "services/common/runtime/discovery_server.hpp"
 #include "services/common/runtime/udp_socket.hpp"
-#include "services/common/someip/sd_server.hpp"
 #include "services/replay/core/datagrams.hpp"
 #include "services/replay/core/event_encoder.hpp"
 
@@ -66,8 +67,8 @@ class SomeIpServer {
     EventEncoder encoder;
     std::map<recording::Endpoint, SharedDatagram> waiting;
   };
-  void receive(const runtime::UdpSocket& socket, bool by_multicast);
-  void send_discovery();
+  /// The first malformed datagram of discovery is worth a line.
+  void report(const recording::IpAddress& from, std::string_view what) const;
   [[nodiscard]] std::span<const recording::Endpoint> destinations(const Instance& instance, std::uint16_t eventgroup);
   void deliver(Instance& instance, std::span<const recording::Endpoint> destinations,
                std::span<const std::uint8_t> message);
@@ -77,13 +78,9 @@ class SomeIpServer {
   void flush();
 
   SomeIpOptions options_;
-  someip::SdServer discovery_;
-  runtime::UdpSocket discovery_unicast_;
-  runtime::UdpSocket discovery_multicast_;
+  runtime::DiscoveryServer discovery_;
   std::vector<Instance> instances_;
   std::int64_t flush_ns_;
-  std::vector<std::uint8_t> buffer_;
-  std::vector<someip::SdOutgoing> outgoing_;
   ServerCounts counts_;
 };
 
