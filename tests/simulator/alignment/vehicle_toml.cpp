@@ -13,12 +13,23 @@ std::string degrees(double angle_rad) {
   return fmt::format("{:.12g}", angle_rad * (180.0 / M_PI));
 }
 
+/// As a basic string of TOML; names come from a file that could hold them, so no control characters do.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 std::string radar_toml(const RadarConfig& radar) {
   const MountingPose& pose = radar.mounting_pose;
   const FieldOfView& view = radar.field_of_view;
   const SensorNoise& noise = radar.noise;
   const AlignmentTolerance& tolerance = radar.tolerance;
-  std::string text = fmt::format("\n[[radar]]\nid = {}\nname = \"{}\"\nprofile = \"ars548\"\n", radar.id, radar.name);
+  std::string text =
+      fmt::format("\n[[radar]]\nid = {}\nname = {}\nprofile = \"ars548\"\n", radar.id, quoted(radar.name));
   text += fmt::format("source = {{link = \"udp\", address = \"{}\", port = {}, sender = \"{}\"}}\n",
                       radar.source.address, radar.source.port, radar.source.sender);
   text += fmt::format("cycle_time_s = {}\ndeadline_s = {}\n", radar.cycle_time_s, radar.deadline_s);
@@ -42,10 +53,10 @@ std::string radar_toml(const RadarConfig& radar) {
 
 std::string vehicle_toml(const VehicleConfig& vehicle) {
   std::string text = fmt::format(
-      "# The vehicle of a simulated alignment drive, as it was meant to be.\nname = \"{}\"\n\n[ego]\n"
+      "# The vehicle of a simulated alignment drive, as it was meant to be.\nname = {}\n\n[ego]\n"
       "profile = \"toyota\"\nsource = {{link = \"can\", interface = \"{}\"}}\nspeed_std_mps = {}\n"
       "yaw_rate_std_radps = {}\n",
-      vehicle.name, vehicle.ego.source.interface, vehicle.ego.speed_std_mps, vehicle.ego.yaw_rate_std_radps);
+      quoted(vehicle.name), vehicle.ego.source.interface, vehicle.ego.speed_std_mps, vehicle.ego.yaw_rate_std_radps);
   for (const RadarConfig& radar : vehicle.radars) text += radar_toml(radar);
   return text;
 }

@@ -126,6 +126,7 @@ TEST(AlignmentCsv, TheServicesReadTheVehicleFile) {
   const Folder folder;
   AlignmentSpec spec = small_drive();
   spec.duration_s = 0.2;
+  spec.radars[0].config.name = R"(a "named\" one)";
   spec.radars[2].config.mounting_pose.pitch_rad = -3.0 * kDegree;
   spec.radars[3].config.mounting_pose.roll_rad = M_PI;
   const VehicleConfig read =

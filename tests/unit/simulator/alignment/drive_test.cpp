@@ -7,6 +7,8 @@
 #include <set>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::simulator {
@@ -201,6 +203,89 @@ TEST(AlignmentDrive, NoiseIsWhatIsStated) {
   EXPECT_NEAR(std::sqrt(sum[1] / all), 2.0, 0.06);
   EXPECT_NEAR(std::sqrt(rate_sum[0] / static_cast<double>(count[0])), 0.03, 0.001);
   EXPECT_NEAR(static_cast<double>(count[0]) / all, 0.75, 0.02) << "share of outliers";
+}
+
+TEST(AlignmentDrive, NoisesAreIndependent) {
+  const AlignmentSpec spec = short_drive(60.0);
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  double n = 0.0;
+  for (const Heard::Scan& scan : hear(spec).scans) {
+    const AlignmentRadar& radar = spec.radars[scan.radar];
+    for (std::size_t i = 0; i < scan.truth.size(); ++i) {
+      const AlignmentDetectionTruth& t = scan.truth[i];
+      if (!t.stationary) continue;
+      const double rate =
+          expected_range_rate(radar.config.mounting_pose, radar.truth, t.azimuth_rad, t.elevation_rad, scan);
+      const Eigen::Vector3d z((scan.azimuth[i] - t.azimuth_rad) / scan.azimuth_std[i],
+                              (scan.elevation[i] - t.elevation_rad) / (0.6 * kDegree),
+                              (scan.range_rate[i] - rate) / 0.03);
+      sum += z * z.transpose();
+      n += 1.0;
+    }
+  }
+  EXPECT_LT((sum / n - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 0.02) << sum / n;
+}
+
+TEST(AlignmentDrive, TheNoseGoesDownWhenBraking) {
+  AlignmentSpec spec = short_drive(120.0);
+  spec.body_pitch_per_acceleration_radps2pm = 0.004;
+  AlignmentDrive drive(spec);
+  AlignmentEvent event;
+  double last_speed = 0.0, last_vertical = 0.0;
+  std::size_t braking = 0, gathering = 0;
+  while (drive.next(event)) {
+    if (event.ego == nullptr) continue;
+    const double acceleration = (event.speed_mps - last_speed) * spec.ego_rate_hz;
+    // Velocity in body axes: with the nose down the car moves towards its own roof. Not where it changes just now.
+    if (acceleration < -1.0 && last_vertical != 0.0 && std::abs(event.vertical_speed_mps / last_vertical - 1.0) < 0.1) {
+      ++braking;
+      EXPECT_NEAR(event.vertical_speed_mps / event.speed_mps, -0.004 * acceleration, 0.001);
+    }
+    if (acceleration > 1.0 && acceleration < 3.0 && event.vertical_speed_mps < 0.0) ++gathering;
+    last_speed = event.speed_mps;
+    last_vertical = event.vertical_speed_mps;
+  }
+  EXPECT_GT(braking, 20U);
+  EXPECT_GT(gathering, 20U);
+}
+
+TEST(AlignmentDrive, RoadsAreOfTheirKind) {
+  struct Seen {
+    double slowest = 1e9, fastest = 0.0, turning = 0.0, lateral = 0.0, longitudinal = 0.0;
+  };
+  const auto see = [](RoadKind road) {
+    AlignmentSpec spec;
+    spec.duration_s = 600.0;
+    spec.road = road;
+    Seen seen;
+    double last = 0.0, n = 0.0;
+    for (const Heard::Ego& ego : hear(spec).egos) {
+      seen.slowest = std::min(seen.slowest, ego.speed_mps);
+      seen.fastest = std::max(seen.fastest, ego.speed_mps);
+      seen.lateral = std::max(seen.lateral, std::abs(ego.speed_mps * ego.yaw_rate_radps));
+      if (n > 0.0) seen.longitudinal = std::max(seen.longitudinal, std::abs(ego.speed_mps - last) * spec.ego_rate_hz);
+      last = ego.speed_mps;
+      n += 1.0;
+      seen.turning += std::abs(ego.yaw_rate_radps);
+    }
+    seen.turning /= n;
+    return seen;
+  };
+  const Seen city = see(RoadKind::kCity), motorway = see(RoadKind::kMotorway), straight = see(RoadKind::kStraight),
+             slow = see(RoadKind::kSlow), mixed = see(RoadKind::kMixed);
+  for (const Seen& seen : {city, motorway, straight, slow, mixed}) {
+    EXPECT_GE(seen.slowest, 5.0 - 1e-9);
+    EXPECT_LE(seen.lateral, 3.2 + 1e-9);
+    EXPECT_LE(seen.longitudinal, 3.0 + 1e-6);
+  }
+  EXPECT_EQ(straight.turning, 0.0);
+  EXPECT_GT(straight.fastest, straight.slowest + 5.0);
+  EXPECT_GT(motorway.slowest, 23.9);
+  EXPECT_LT(city.fastest, 15.1);
+  EXPECT_LT(slow.fastest, 11.6);
+  EXPECT_GT(city.turning, 3.0 * motorway.turning);
+  EXPECT_GT(mixed.fastest, 25.0);
+  EXPECT_GT(mixed.turning, 2.0 * motorway.turning);
 }
 
 TEST(AlignmentDrive, RangeRatesAreFoldedIntoTheUnambiguousInterval) {

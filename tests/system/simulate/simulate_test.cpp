@@ -1,0 +1,83 @@
+// `boresight simulate --alignment-drive`: what was asked for is in the files, and what cannot be asked for is refused.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+namespace boresight {
+namespace {
+
+using testing::HasSubstr;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// Runs the command in a shell; returns its exit code.
+int simulate(const std::string& arguments) {
+  const std::string command =
+      BORESIGHT_BINARY_DIR "/boresight simulate " + arguments + " > /tmp/simulate.out 2> /tmp/simulate.err";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+std::string errors() {
+  return text_of("/tmp/simulate.err");
+}
+
+TEST(Simulate, AnAlignmentDriveHasWhatWasAskedFor) {
+  ASSERT_EQ(simulate("--alignment-drive city --seed 5 --duration 12 --out /tmp/a --yaw-rate-bias 0.1 --slip 0.003 "
+                     "--body-pitch 0.3 --knock 2,3,0,2,0 --knock 4,1,0,0,1 --no-elevation 2 --stds --ambiguity 40"),
+            0)
+      << errors();
+  const std::string truth = text_of("/tmp/a/truth.txt");
+  EXPECT_THAT(truth, HasSubstr("kind=city duration_s=12"));
+  EXPECT_THAT(truth, HasSubstr("yaw_rate_bias 0.001745 "));
+  EXPECT_THAT(truth, HasSubstr("rear_slip_coeff 0.0030 "));
+  EXPECT_THAT(truth, HasSubstr("pitch_std 0.300 "));
+  EXPECT_THAT(truth, HasSubstr("knock t 2.0000 radar 3 turn_x_deg 0.0000 turn_y_deg 2.0000"));
+  EXPECT_THAT(truth, HasSubstr("knock t 4.0000 radar 1 "));
+  EXPECT_THAT(truth, HasSubstr("crlb_sd kv "));
+  EXPECT_THAT(text_of("/tmp/a/drive.csv"),
+              testing::StartsWith("t,radar,range,az,el,vr,is_stationary,az_std,el_std,vr_std,vr_min,vr_max\n"));
+  ASSERT_EQ(simulate("--alignment-drive city --seed 5 --duration 12 --out /tmp/b --yaw-rate-bias 0.1 --slip 0.003 "
+                     "--body-pitch 0.3 --knock 2,3,0,2,0 --knock 4,1,0,0,1 --no-elevation 2 --stds --ambiguity 40"),
+            0);
+  for (const char* file : {"drive.csv", "ego.csv", "vehicle.toml", "truth.txt"}) {
+    EXPECT_TRUE(text_of(std::filesystem::path("/tmp/a") / file) == text_of(std::filesystem::path("/tmp/b") / file))
+        << file << ": the same command gives the same bytes";
+  }
+}
+
+TEST(Simulate, AnAlignmentDriveOfAVehicleFileHasItsRadars) {
+  ASSERT_EQ(simulate("--alignment-drive mixed --random-truth --duration 2 --out /tmp/a --vehicle " BORESIGHT_SOURCE_DIR
+                     "/config/vehicle/ars548_single.toml"),
+            0)
+      << errors();
+  const std::string truth = text_of("/tmp/a/truth.txt");
+  EXPECT_THAT(truth, HasSubstr("radar 1 mount_az_deg 0 x 3.87"));
+  EXPECT_THAT(truth, testing::Not(HasSubstr("radar 2")));
+  EXPECT_THAT(truth, testing::Not(HasSubstr("k_v 1.010000")));
+}
+
+TEST(Simulate, WhatMakesNoSenseIsRefused) {
+  EXPECT_EQ(simulate("--out /tmp/a"), 2);
+  EXPECT_THAT(errors(), HasSubstr("--vehicle"));
+  EXPECT_EQ(simulate("--alignment-drive moon --out /tmp/a"), 2);
+  EXPECT_EQ(simulate("--alignment-drive city --scenario demo_drive --out /tmp/a"), 2);
+  EXPECT_EQ(simulate("--slip 0.003 --vehicle v.toml --out /tmp/a"), 2) << "without --alignment-drive it means nothing";
+  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --knock 1,2,3"), 0);
+  EXPECT_THAT(errors(), HasSubstr("--knock 1,2,3: "));
+  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --knock 1,9,0,0,1"), 0);
+  EXPECT_THAT(errors(), HasSubstr("no radar 9"));
+  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --no-elevation 5"), 0);
+  EXPECT_NE(simulate("--alignment-drive city --duration 1 --out /proc/nowhere"), 0);
+}
+
+}  // namespace
+}  // namespace boresight
