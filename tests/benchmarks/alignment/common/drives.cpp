@@ -18,7 +18,7 @@ double either_sign(Stream& stream, double low, double high) {
   return stream.uniform() < 0.5 ? -magnitude : magnitude;
 }
 
-void draw_truth(AlignmentSpec& spec) {
+void misalign(AlignmentSpec& spec) {
   Stream stream(spec.seed, "bench truth");
   spec.speed_scale = stream.uniform(0.98, 1.02);
   for (AlignmentRadar& radar : spec.radars) {
@@ -89,7 +89,7 @@ AlignmentSpec mixed_radars(double duration_s, std::uint64_t seed) {
   spec.radars[2].states_stds = false;
   spec.radars[3].measures_elevation = false;
   spec.radars[3].states_stds = false;
-  draw_truth(spec);
+  misalign(spec);
   return spec;
 }
 
@@ -109,7 +109,7 @@ AlignmentSpec sixteen_radars(double duration_s, std::uint64_t seed) {
     spec.radars.push_back(radar_at(like, i + 1, x_m, y_m, yaw_deg));
     spec.radars.back().mean_detections = 30.0;
   }
-  draw_truth(spec);
+  misalign(spec);
   return spec;
 }
 
@@ -127,7 +127,7 @@ AlignmentSpec clean_drive(RoadKind road, double duration_s, std::uint64_t seed) 
   spec.road = road;
   spec.duration_s = duration_s;
   spec.seed = seed;
-  draw_truth(spec);
+  misalign(spec);
   return spec;
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "services/alignment_estimator/core/make_method.hpp"
+#include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/published/published.hpp"
 
 namespace boresight::bench {
@@ -31,12 +31,15 @@ std::vector<NamedMethod> published_with(const PublishedConfig& config) {
 
 NamedMethod own_method() {
   return {"boresight", [](const VehicleConfig& vehicle) {
-            alignment::Config config;
-            return alignment::make_method(vehicle, config);
+            return std::make_unique<alignment::RobustFilter>(vehicle, alignment::FilterConfig{});
           }};
 }
 
-std::vector<NamedMethod> published_methods() { return published_with({}); }
-std::vector<NamedMethod> published_methods_without_gate() { return published_with(alignment::published::as_published()); }
+std::vector<NamedMethod> published_methods() {
+  return published_with({});
+}
+std::vector<NamedMethod> published_methods_without_gate() {
+  return published_with(alignment::published::as_published());
+}
 
 }  // namespace boresight::bench
