@@ -26,6 +26,7 @@ constexpr std::pair<const char*, void (*)(const Options&, Report&)> kGroups[] = 
     {"published", published},
     {"outliers", outliers},
     {"knock", knock},
+    {"false_alarms", false_alarms},
     {"cost", cost},
 };
 // clang-format on
