@@ -60,7 +60,8 @@ void write_residuals(JsonWriter& json, const ResidualSummary& residuals) {
 
 void write_truth(JsonWriter& json, const TruthComparison& truth) {
   json.key("truth").begin_object();
-  for (std::size_t i = 0; i < kParameters; ++i) json.field(key_of(i), shown(i, truth.true_values.at(i)));
+  for (std::size_t i = 0; i < kParameters; ++i)
+    json.field(key_of(i), shown(i, truth.mountings[truth.true_now].values.at(i)));
   for (std::size_t i = 0; i < kParameters; ++i) json.field(key_of(i, "_error"), shown(i, truth.errors.at(i)));
   for (std::size_t i = 0; i < 3; ++i) {
     json.field(std::string(kSensorNames.at(i)) + "_error_deg", truth.sensor_errors_rad.at(i) * kDegrees);
@@ -69,7 +70,9 @@ void write_truth(JsonWriter& json, const TruthComparison& truth) {
   for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.nees.at(i));
   json.end_object().key("seconds_to_95_percent").begin_object();
   for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.seconds_to_95_percent.at(i));
-  json.end_object().end_object();
+  json.end_object().key("knocks").begin_array();
+  for (std::size_t i = 1; i < truth.mountings.size(); ++i) json.value(truth.mountings[i].from_s);
+  json.end_array().end_object();
 }
 
 void write_radar(JsonWriter& json, const RadarResult& radar) {

@@ -44,7 +44,7 @@ struct Curve {
   std::string title, unit, axis;  // the axis is called by its unit, unless it has a name of its own
   int decimals = 3;
   double smallest_span = 0.01;
-  double truth = kNaN;
+  std::vector<Point> truth;  // (from when on, value); the last is true at the end
   std::function<double(const Sample&)> value, std;
   std::function<bool(const Sample&)> observable;
 };
@@ -112,7 +112,7 @@ class Picture {
            .axis = "k_v",
            .decimals = 6,
            .smallest_span = 1e-4,
-           .truth = result_.true_speed_scale.value_or(kNaN),
+           .truth = constant(result_.true_speed_scale, 1.0),
            .value = [](const Sample& s) { return s.speed_scale; },
            .std = [](const Sample& s) { return s.speed_scale_std; },
            .observable = [](const Sample& s) { return any(s, alignment_axis::kSpeedScale); }},
@@ -126,7 +126,7 @@ class Picture {
              .axis = "",
              .decimals = 4,
              .smallest_span = 0.01,
-             .truth = result_.true_yaw_rate_bias_radps.value_or(kNaN) * kDegrees,
+             .truth = constant(result_.true_yaw_rate_bias_radps, kDegrees),
              .value = [](const Sample& s) { return s.yaw_rate_bias_radps * kDegrees; },
              .std = [](const Sample& s) { return s.yaw_rate_bias_std_radps * kDegrees; },
              .observable = [](const Sample& s) { return any(s, alignment_axis::kYawRateBias); }},
@@ -138,7 +138,7 @@ class Picture {
              .axis = "",
              .decimals = 3,
              .smallest_span = 0.1,
-             .truth = result_.true_slip_coefficient_radps2pm.value_or(kNaN) * 1e3,
+             .truth = constant(result_.true_slip_coefficient_radps2pm, 1e3),
              .value = [](const Sample& s) { return s.slip_coefficient_radps2pm * 1e3; },
              .std = [](const Sample& s) { return s.slip_coefficient_std_radps2pm * 1e3; },
              .observable = [](const Sample& s) { return any(s, alignment_axis::kSlip); }},
@@ -160,7 +160,7 @@ class Picture {
              .axis = "degrees",
              .decimals = 3,
              .smallest_span = 0.02,
-             .truth = radar.truth ? radar.truth->true_values.at(i) * kDegrees : kNaN,
+             .truth = mountings(radar, i),
              .value = [index, i](const Sample& s) { return s.radars[index].values.at(i) * kDegrees; },
              .std = [index, i](const Sample& s) { return s.radars[index].stds.at(i) * kDegrees; },
              .observable = [index,
@@ -171,6 +171,18 @@ class Picture {
     end_row();
   }
 
+  static std::vector<Point> constant(const std::optional<double>& value, double factor) {
+    return value ? std::vector<Point>{{0.0, *value * factor}} : std::vector<Point>{};
+  }
+  [[nodiscard]] std::vector<Point> mountings(const RadarResult& radar, std::size_t parameter) const {
+    std::vector<Point> points;
+    if (!radar.truth) return points;
+    for (const TruthComparison::Mounting& mounting : radar.truth->mountings) {
+      const double from_s = std::max(0.0, mounting.from_s - result_.start_s);
+      points.push_back({result_.x_is_iteration ? 0.0 : from_s, mounting.values.at(parameter) * kDegrees});
+    }
+    return points;
+  }
   static bool any(const Sample& sample, std::uint32_t bit) {
     return std::any_of(sample.radars.begin(), sample.radars.end(),
                        [bit](const Sample::Radar& r) { return (r.observable & bit) != 0; });
@@ -190,7 +202,7 @@ class Picture {
       include(curve.value(sample) - 2.0 * curve.std(sample));
       include(curve.value(sample) + 2.0 * curve.std(sample));
     }
-    include(curve.truth);
+    for (const Point& point : curve.truth) include(point.y);
     if (!(low <= high)) low = high = 0.0;
     const double middle = 0.5 * (low + high);
     const double half = std::max(0.5 * curve.smallest_span, (0.5 + kRoom) * (high - low));
@@ -205,8 +217,9 @@ class Picture {
                                             " ± " + number(curve.std(last), curve.decimals, curve.unit, false)
                                       : ": not observable";
     }
-    if (std::isfinite(curve.truth))
-      title += " (true " + number(curve.truth, curve.decimals, curve.unit, !curve.unit.empty()) + ")";
+    if (!curve.truth.empty()) {
+      title += " (true " + number(curve.truth.back().y, curve.decimals, curve.unit, !curve.unit.empty()) + ")";
+    }
     SvgChart chart(kWidth, kHeight, x_axis(), y_axis(curve));
     std::vector<Point> lower, upper, known, unknown;
     for (const Sample& sample : result_.series) {
@@ -219,7 +232,12 @@ class Picture {
     chart.band(lower, upper, "sigma");
     chart.line(unknown, "unknown");
     chart.line(known, "estimate");
-    if (std::isfinite(curve.truth)) chart.horizontal(curve.truth, "truth");
+    std::vector<Point> truth;
+    for (std::size_t i = 0; i < curve.truth.size(); ++i) {
+      truth.push_back(curve.truth[i]);
+      truth.push_back({i + 1 < curve.truth.size() ? curve.truth[i + 1].x : std::max(x_max_, 1.0), curve.truth[i].y});
+    }
+    chart.line(truth, "truth");
     for (const KnockEvent& knock : knocks) chart.vertical(knock.time_s - result_.start_s, "knock", "knock");
     place(chart, title);
   }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "interfaces/messages/alignment_estimate.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/boresight/align/residuals.hpp"
@@ -38,10 +40,18 @@ struct KnockEvent {
 /// Errors are estimate − truth; of the angles those of the turn that is left, R(estimate) = Exp(e)·R(truth), about the
 /// vehicle's axes. The NEES is error²/variance.
 struct TruthComparison {
-  std::array<double, kParameters> true_values{};  ///< as in Sample
+  /// A mounting that was true from some time on; several where the radar was knocked.
+  struct Mounting {
+    double from_s = 0.0;  ///< −∞ for the first
+    Eigen::Matrix3d sensor_to_vehicle;
+    std::array<double, kParameters> values{};  ///< as in Sample; k_v is NaN where it is not known
+  };
+  std::vector<Mounting> mountings;
+  std::size_t true_now = 0;  ///< which of them at the end
   std::array<double, kParameters> errors{}, nees{};
   std::array<double, 3> sensor_errors_rad{};  ///< of α, β, γ
-  /// Drive until the value stayed within 5 % of the way from nominal to truth; NaN: never.
+  /// Drive until the value stayed within 5 % of the way from nominal to truth, after a knock that changed it from the
+  /// knock and the truth before; NaN: never.
   std::array<double, kParameters> seconds_to_95_percent{};
 };
 

@@ -51,6 +51,27 @@ void share_speed_scale(Sample& sample) {
   }
 }
 
+/// In the order of time; none if the truth does not name the radar.
+std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const RadarConfig& config) {
+  std::vector<TruthComparison::Mounting> mountings;
+  const auto known = truth.radars.find(config.id);
+  if (known == truth.radars.end()) return mountings;
+  const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0);
+  const auto add = [&](double from_s, const Truth::Radar& radar) {
+    const Eigen::Matrix3d actual = true_mounting(radar, config.mounting_pose);
+    const Eigen::Vector3d turn = geometry::so3_log(actual * nominal.transpose());
+    mountings.push_back({from_s, actual, {truth.speed_scale.value_or(kNaN), turn.z(), -turn.y(), turn.x()}});
+  };
+  Truth::Radar radar = known->second;
+  add(-std::numeric_limits<double>::infinity(), radar);
+  for (const Truth::Knock& knock : truth.knocks) {
+    if (knock.radar != config.id) continue;
+    radar.sensor_rad = knock.sensor_rad;
+    add(knock.time_s, radar);
+  }
+  return mountings;
+}
+
 }  // namespace
 
 std::vector<std::string> method_names() {
@@ -77,15 +98,9 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     Radar& radar = radars_.emplace_back();
     radar.config = config;
     radar.nominal = geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0);
-    radar.true_values.fill(kNaN);
     radar.seconds_to_95_percent.fill(kNaN);
-    if (!options_.truth) continue;
-    radar.true_values[0] = options_.truth->speed_scale.value_or(kNaN);
-    const auto known = options_.truth->radars.find(config.id);
-    if (known == options_.truth->radars.end()) continue;
-    radar.truth = true_mounting(known->second, config.mounting_pose);
-    const Eigen::Vector3d turn = geometry::so3_log(*radar.truth * radar.nominal.transpose());
-    radar.true_values = {radar.true_values[0], turn.z(), -turn.y(), turn.x()};
+    radar.way_begin[0] = 1.0;
+    if (options_.truth) radar.truth = true_mountings(*options_.truth, config);
   }
 }
 
@@ -131,27 +146,41 @@ void Run::add_scan(RadarScan& scan, double time_s) {
     radar.max_cpu_ns = std::max(radar.max_cpu_ns, took_ns);
     ++radar.timed_scans;
   }
-  observe(radar, estimator_->estimate(static_cast<std::size_t>(found - radars_.begin())));
+  const alignment::RadarEstimate estimate = estimator_->estimate(static_cast<std::size_t>(found - radars_.begin()));
+  observe_knocks(radar, estimate, options_.origin_s);
+  observe_truth(radar, estimate, time_s);
 }
 
-void Run::observe(Radar& radar, const alignment::RadarEstimate& estimate) {
-  if (estimate.knock.count != radar.knocks_seen) {
-    radar.knocks_seen = estimate.knock.count;
-    const auto& turn = estimate.knock.rotation_vehicle_rad;
-    radar.knocks.push_back({options_.origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kSecond_ns),
-                            {turn[2], -turn[1], turn[0]}});
+void Run::observe_knocks(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s) {
+  if (estimate.knock.count == radar.knocks_seen) return;
+  radar.knocks_seen = estimate.knock.count;
+  const auto& turn = estimate.knock.rotation_vehicle_rad;
+  radar.knocks.push_back(
+      {origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kSecond_ns), {turn[2], -turn[1], turn[0]}});
+}
+
+void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s) {
+  if (radar.truth.empty()) return;
+  while (radar.true_now + 1 < radar.truth.size() && radar.truth[radar.true_now + 1].from_s <= time_s) {
+    const auto before = radar.truth[radar.true_now].values;
+    const auto after = radar.truth[++radar.true_now].values;
+    for (std::size_t i = 1; i < kParameters; ++i) {
+      constexpr double kSame_rad = 1e-5;
+      if (std::abs(after.at(i) - before.at(i)) < kSame_rad) continue;
+      radar.way_begin.at(i) = before.at(i);
+      radar.way_begin_s.at(i) = estimate.seconds_of_drive;
+      radar.seconds_to_95_percent.at(i) = kNaN;
+    }
   }
-  if (!options_.truth) return;
   const auto values = to_array(alignment::vehicle_form(radar.config, estimate));
   for (std::size_t i = 0; i < kParameters; ++i) {
-    const double start = i == 0 ? 1.0 : 0.0;
-    const bool is_there =
-        std::abs(values.at(i) - radar.true_values.at(i)) <= 0.05 * std::abs(radar.true_values.at(i) - start);
+    const double goal = radar.truth[radar.true_now].values.at(i);
+    const bool is_there = std::abs(values.at(i) - goal) <= 0.05 * std::abs(goal - radar.way_begin.at(i));
     double& reached_s = radar.seconds_to_95_percent.at(i);
     if (!is_there) {
       reached_s = kNaN;
     } else if (std::isnan(reached_s)) {
-      reached_s = estimate.seconds_of_drive;
+      reached_s = estimate.seconds_of_drive - radar.way_begin_s.at(i);
     }
   }
 }
@@ -213,7 +242,7 @@ Result Run::finish() {
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     RadarResult& r = result.radars[i];
     r.residuals = radars_[i].residuals.judge(r.estimate, radars_[i].config, radars_[i].nominal);
-    if (options_.truth && radars_[i].truth) r.truth = compare(radars_[i], r);
+    if (!radars_[i].truth.empty()) r.truth = compare(radars_[i], r);
   }
   if (options_.truth) {
     result.true_speed_scale = options_.truth->speed_scale;
@@ -237,22 +266,25 @@ void Run::finish_estimator(Result& result) {
   }
 }
 
-TruthComparison Run::compare(const Radar& radar, const RadarResult& result) const {
+TruthComparison Run::compare(const Radar& radar, const RadarResult& result) {
   TruthComparison comparison;
-  comparison.true_values = radar.true_values;
+  comparison.mountings = radar.truth;
   comparison.seconds_to_95_percent = radar.seconds_to_95_percent;
+  const TruthComparison::Mounting& truth = radar.truth[radar.true_now];
   const Eigen::Matrix3d& estimated = result.estimate.sensor_to_vehicle;
-  const Eigen::Vector3d turn = geometry::so3_log(estimated * radar.truth->transpose());
-  comparison.errors = {result.estimate.speed_scale - radar.true_values[0], turn.z(), -turn.y(), turn.x()};
+  const Eigen::Vector3d turn = geometry::so3_log(estimated * truth.sensor_to_vehicle.transpose());
+  comparison.errors = {result.estimate.speed_scale - truth.values[0], turn.z(), -turn.y(), turn.x()};
   const auto stds = stds_of(result.estimate);
   for (std::size_t i = 0; i < kParameters; ++i) {
     const double normalised = comparison.errors.at(i) / stds.at(i);
     comparison.nees.at(i) = stds.at(i) > 0.0 ? normalised * normalised : kNaN;
   }
-  const Eigen::Vector3d difference = geometry::euler_angles(estimated) - geometry::euler_angles(*radar.truth);
+  const Eigen::Vector3d difference =
+      geometry::euler_angles(estimated) - geometry::euler_angles(truth.sensor_to_vehicle);
   for (std::size_t i = 0; i < 3; ++i) {
     comparison.sensor_errors_rad.at(i) = geometry::wrap_angle(difference(static_cast<Eigen::Index>(i)));
   }
+  comparison.true_now = radar.true_now;
   return comparison;
 }
 

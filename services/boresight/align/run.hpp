@@ -53,17 +53,18 @@ class Run {
     ResidualSample residuals;
     std::uint32_t knocks_seen = 0;
     std::vector<KnockEvent> knocks;
-    std::optional<Eigen::Matrix3d> truth;           ///< R(sensor→vehicle)
-    std::array<double, kParameters> true_values{};  ///< where the truth is known
-    std::array<double, kParameters> seconds_to_95_percent{};
+    std::vector<TruthComparison::Mounting> truth;  ///< none where it is not known
+    std::size_t true_now = 0;
+    std::array<double, kParameters> way_begin{}, way_begin_s{}, seconds_to_95_percent{};
   };
   [[nodiscard]] std::int64_t to_ns(double time_s) const;
   void observe_until(double time_s);
   [[nodiscard]] Sample sample(double time_s);
-  /// After a scan: knocks, and whether the truth is reached.
-  void observe(Radar& radar, const alignment::RadarEstimate& estimate);
+  /// After a scan.
+  static void observe_knocks(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s);
+  static void observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s);
   void finish_estimator(Result& result);
-  [[nodiscard]] TruthComparison compare(const Radar& radar, const RadarResult& result) const;
+  [[nodiscard]] static TruthComparison compare(const Radar& radar, const RadarResult& result);
 
   VehicleConfig vehicle_;
   Options options_;

@@ -1,5 +1,6 @@
 #include "services/boresight/align/truth_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <istream>
 #include <sstream>
@@ -33,6 +34,12 @@ std::optional<double> find(const std::map<std::string, double>& values, const st
   return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::optional<std::array<double, 3>> sensor_angles(const std::map<std::string, double>& values) {
+  const auto alpha = find(values, "alpha_deg"), beta = find(values, "beta_deg"), gamma = find(values, "gamma_deg");
+  if (!alpha || !beta || !gamma) return std::nullopt;
+  return std::array<double, 3>{*alpha * kDegree, *beta * kDegree, *gamma * kDegree};
+}
+
 }  // namespace
 
 Truth read_truth(std::istream& input, const std::string& name) {
@@ -55,20 +62,28 @@ Truth read_truth(std::istream& input, const std::string& name) {
       if (!(words >> id) || id < 1 || id > kMaxRadars) fail(fmt::format("radar: an id 1 … {} must follow", kMaxRadars));
       const auto values = pairs(words);
       Truth::Radar radar;
-      if (const auto mount = find(values, "mount_az_deg")) radar.mount_yaw_rad = *mount * kDegree;
-      constexpr std::array<const char*, 3> kKeys = {"alpha_deg", "beta_deg", "gamma_deg"};
+      constexpr std::array<const char*, 3> kMounts = {"mount_az_deg", "mount_pitch_deg", "mount_roll_deg"};
       for (std::size_t i = 0; i < 3; ++i) {
-        const auto value = find(values, kKeys.at(i));
-        if (!value) fail(fmt::format("radar {}: {} and a number are missing", id, kKeys.at(i)));
-        radar.sensor_rad.at(i) = *value * kDegree;
+        if (const auto mount = find(values, kMounts.at(i))) radar.mount_rad.at(i) = *mount * kDegree;
       }
+      const auto angles = sensor_angles(values);
+      if (!angles) fail(fmt::format("radar {}: alpha_deg, beta_deg and gamma_deg must follow, each with a number", id));
+      radar.sensor_rad = *angles;
       truth.radars[id] = radar;
+    } else if (kind == "knock") {
+      const auto values = pairs(words);
+      const auto time_s = find(values, "t"), id = find(values, "radar");
+      const auto angles = sensor_angles(values);
+      if (!time_s || !id || !angles) fail("knock: t, radar, alpha_deg, beta_deg and gamma_deg must follow");
+      truth.knocks.push_back({*time_s, static_cast<std::uint32_t>(std::clamp(*id, 0.0, 99.0)), *angles});
     } else if (kind == "disturbance") {
       const auto values = pairs(words);
       truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
       truth.slip_coefficient_radps2pm = find(values, "rear_slip_coeff");
     }
   }
+  std::stable_sort(truth.knocks.begin(), truth.knocks.end(),
+                   [](const Truth::Knock& a, const Truth::Knock& b) { return a.time_s < b.time_s; });
   if (!truth.speed_scale && truth.radars.empty()) {
     throw std::runtime_error(name + ": holds no truth (lines \"k_v VALUE\" and \"radar ID … alpha_deg VALUE …\")");
   }
@@ -76,8 +91,9 @@ Truth read_truth(std::istream& input, const std::string& name) {
 }
 
 Eigen::Matrix3d true_mounting(const Truth::Radar& truth, const MountingPose& nominal) {
-  return geometry::sensor_to_vehicle(truth.mount_yaw_rad.value_or(nominal.yaw_rad) + truth.sensor_rad[0],
-                                     nominal.pitch_rad + truth.sensor_rad[1], nominal.roll_rad + truth.sensor_rad[2]);
+  return geometry::sensor_to_vehicle(truth.mount_rad[0].value_or(nominal.yaw_rad) + truth.sensor_rad[0],
+                                     truth.mount_rad[1].value_or(nominal.pitch_rad) + truth.sensor_rad[1],
+                                     truth.mount_rad[2].value_or(nominal.roll_rad) + truth.sensor_rad[2]);
 }
 
 }  // namespace boresight::align

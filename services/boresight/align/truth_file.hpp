@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -19,17 +20,26 @@ struct Truth {
   std::optional<double> yaw_rate_bias_radps;
   std::optional<double> slip_coefficient_radps2pm;
   struct Radar {
-    std::optional<double> mount_yaw_rad;  ///< as the file says
-    std::array<double, 3> sensor_rad{};   ///< α, β, γ
+    /// Nominal yaw, pitch and roll, as the file says.
+    std::array<std::optional<double>, 3> mount_rad;
+    std::array<double, 3> sensor_rad{};  ///< α, β, γ
+  };
+  /// From `time_s` on a radar is mounted otherwise.
+  struct Knock {
+    double time_s = 0.0;
+    std::uint32_t radar = 0;
+    std::array<double, 3> sensor_rad{};
   };
   std::map<std::uint32_t, Radar> radars;  ///< by id
+  std::vector<Knock> knocks;              ///< in the order of time
 };
 
-/// Lines "k_v VALUE", "radar ID" and "disturbance" with pairs "key value"; others (and comments) are for other readers.
-/// Throws std::runtime_error naming line and cause if a number is missing or none of these lines is there.
+/// Lines "k_v VALUE", and "radar ID", "knock" and "disturbance" with pairs "key value"; others (and comments) are for
+/// other readers. /// Throws std::runtime_error naming line and cause if a number is missing or none of these lines is
+/// there.
 [[nodiscard]] Truth read_truth(std::istream& input, const std::string& name);
 
-/// R(sensor→vehicle) = R_z(mount+α)·R_y(−(pitch_b+β))·R_x(roll_b+γ); what the truth does not say of the nominal
+/// R(sensor→vehicle) = R_z(yaw_b+α)·R_y(−(pitch_b+β))·R_x(roll_b+γ); what the truth does not say of the nominal
 /// mounting is that of the vehicle file.
 [[nodiscard]] Eigen::Matrix3d true_mounting(const Truth::Radar& truth, const MountingPose& nominal);
 
