@@ -4,7 +4,6 @@
 #include "services/alignment_estimator/config.hpp"
 #include "services/alignment_estimator/core/estimator.hpp"
 #include "services/alignment_estimator/station/calibration_server.hpp"
-#include "services/alignment_estimator/station/core/seeding.hpp"
 #include "services/alignment_estimator/store/keeper.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/service_main.hpp"
@@ -39,7 +38,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Sett
   alignment::Keeper keeper(node, estimator, vehicle, memory_file(settings.memory), settings.memory.period_s);
   runtime::Publisher<AlignmentEstimate> estimates(node);
   alignment::station::CalibrationServer calibration(node, vehicle, settings.station, [&](const auto& seed) {
-    const bool taken_over = alignment::station::seed_estimator(seed, estimator);
+    const bool taken_over = estimator.seed(seed);
     if (taken_over) keeper.remember();
     return taken_over;
   });

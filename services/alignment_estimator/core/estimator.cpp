@@ -110,6 +110,14 @@ bool Estimator::write(std::uint32_t radar_id, AlignmentEstimate& out) const {
   return true;
 }
 
+bool Estimator::seed(const RotationSeed& seed) {
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    if (radars_[i].config.id != seed.radar_id) continue;
+    return method_->seed(i, seed.rotation_vehicle_rad, seed.covariance);
+  }
+  return false;
+}
+
 Memory Estimator::memory() const {
   Memory memory;
   method_->save(memory);

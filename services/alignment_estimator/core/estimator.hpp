@@ -11,6 +11,7 @@
 #include "services/alignment_estimator/core/kpi/convergence.hpp"
 #include "services/alignment_estimator/core/kpi/residual_statistics.hpp"
 #include "services/alignment_estimator/core/method.hpp"
+#include "services/alignment_estimator/core/plate/seed.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -44,6 +45,8 @@ class Estimator {
   [[nodiscard]] Memory memory() const;
   /// To be called before the first scan.
   void restore(const Memory& memory) { method_->restore(memory); }
+  /// A calibration's result, at any time: see Method::seed(). False for an unknown radar, too.
+  [[nodiscard]] bool seed(const RotationSeed& seed);
 
  private:
   struct Radar {

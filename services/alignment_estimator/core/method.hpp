@@ -52,6 +52,13 @@ class Method {
   /// What shall survive the ignition cycle, and taking it up again; a method that has nothing to remember does nothing.
   virtual void save(Memory&) const {}
   virtual void restore(const Memory&) {}
+  /// A calibration has measured this radar's rotation now (vector d of R(actual) = Exp(d)·R(nominal), covariance of d,
+  /// rad²): it replaces what was believed of it, at full weight, unlike what is only remembered. False, and nothing
+  /// changes, if it is not finite or the method starts from nothing but the nominal mounting. Never allocates.
+  virtual bool seed(std::size_t /*radar*/, const Eigen::Vector3d& /*rotation_vehicle_rad*/,
+                    const Eigen::Matrix3d& /*covariance*/) {
+    return false;
+  }
 };
 
 }  // namespace boresight::alignment

@@ -177,8 +177,10 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     const double variance = config_.start_inflation * found.covariance(0, 0);
     const double difference = found.speed_scale - state_.speed_scale;
     const double expected = variance + unknown_variance + state_.covariance(column::kSpeedScale, column::kSpeedScale);
-    // A memory that agrees is better than the start; the prior is not.
-    if (!radar.remembered || square(difference) > 16.0 * expected) {
+    // A memory that agrees is better than the start; the prior is not, and a seed leaves k_v at it.
+    const bool scale_is_known = radar.remembered && state_.covariance(column::kSpeedScale, column::kSpeedScale) <
+                                                        0.25 * square(config_.prior_speed_scale_std);
+    if (!scale_is_known || square(difference) > 16.0 * expected) {
       state_.speed_scale = found.speed_scale;
       state_.set_variance(column::kSpeedScale, variance + unknown_variance);
     }
@@ -421,6 +423,26 @@ void RobustFilter::restore(const Memory& memory) {
     radar.phase = Phase::kStarting;
     radar.start.clear();
   }
+}
+
+bool RobustFilter::seed(std::size_t index, const Eigen::Vector3d& rotation_vehicle_rad,
+                        const Eigen::Matrix3d& covariance) {
+  const bool usable = index < radars_.size() && rotation_vehicle_rad.allFinite() &&
+                      rotation_vehicle_rad.norm() <= 1.0 && covariance.allFinite() &&
+                      (covariance.diagonal().array() > 0.0).all();
+  if (!usable) return false;
+  Radar& radar = radars_[index];
+  state_.sensor_to_vehicle[index] = geometry::so3_exp(rotation_vehicle_rad) * radar.nominal;
+  const Eigen::Index first = column::of_radar(index);
+  for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, covariance(i, i));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) state_.set_covariance(first + i, first + j, covariance(i, j));
+  }
+  radar.seconds_of_drive = 0.0;
+  radar.remembered = true;
+  radar.phase = Phase::kStarting;
+  radar.start.clear();
+  return true;
 }
 
 }  // namespace boresight::alignment

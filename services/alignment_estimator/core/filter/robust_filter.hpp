@@ -29,6 +29,7 @@ class RobustFilter : public Method {
                std::span<double> out) const override;
   void save(Memory& memory) const override;
   void restore(const Memory& memory) override;
+  bool seed(std::size_t radar, const Eigen::Vector3d& rotation_vehicle_rad, const Eigen::Matrix3d& covariance) override;
 
   /// For tests and benchmarks.
   [[nodiscard]] const JointState& state() const { return state_; }
