@@ -15,7 +15,8 @@ namespace boresight::align {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// The origin on the estimator's clock: what comes a little before it shall not be at 0, which means "never".
+constexpr std::int64_t kOrigin_ns = 10'000'000'000;
 /// Places of (k_v, yaw, pitch, roll) in the covariance of (k_v, d_x, d_y, d_z).
 constexpr std::array<Eigen::Index, kParameters> kPlace = {0, 3, 2, 1};
 
@@ -104,9 +105,9 @@ Run::Run(const VehicleConfig& vehicle, Options options)
   }
 }
 
-std::int64_t Run::to_ns(double time_s) const {
-  // A second after the beginning of the clock, as 0 means "never" to some.
-  return kSecond_ns + std::llround((time_s - options_.origin_s) * 1e9);
+std::int64_t Run::to_ns(double time_s) {
+  if (std::isnan(options_.origin_s)) options_.origin_s = time_s;
+  return kOrigin_ns + std::llround((time_s - options_.origin_s) * 1e9);
 }
 
 void Run::add_ego(EgoMotion& motion, double time_s) {
@@ -156,7 +157,7 @@ void Run::observe_knocks(Radar& radar, const alignment::RadarEstimate& estimate,
   radar.knocks_seen = estimate.knock.count;
   const auto& turn = estimate.knock.rotation_vehicle_rad;
   radar.knocks.push_back(
-      {origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kSecond_ns), {turn[2], -turn[1], turn[0]}});
+      {origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kOrigin_ns), {turn[2], -turn[1], turn[0]}});
 }
 
 void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s) {

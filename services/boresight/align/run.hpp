@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,8 +30,9 @@ class Run {
   struct Options {
     std::string method = "boresight";  ///< one of method_names()
     alignment::Config config;          ///< its method is overruled
-    /// Time on the recording's clock, before everything in it, that the estimator's clock counts from.
-    double origin_s = 0.0;
+    /// Time on the recording's clock that the estimator's clock counts from; not more than ten seconds after what comes
+    /// first. NaN: the time of what comes first.
+    double origin_s = std::numeric_limits<double>::quiet_NaN();
     std::optional<Truth> truth;
     std::function<std::int64_t()> cpu_time_ns;  ///< of this thread, for the cost of a scan
   };
@@ -57,7 +59,7 @@ class Run {
     std::size_t true_now = 0;
     std::array<double, kParameters> way_begin{}, way_begin_s{}, seconds_to_95_percent{};
   };
-  [[nodiscard]] std::int64_t to_ns(double time_s) const;
+  [[nodiscard]] std::int64_t to_ns(double time_s);
   void observe_until(double time_s);
   [[nodiscard]] Sample sample(double time_s);
   /// After a scan.

@@ -14,12 +14,16 @@
 #include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/align/json.hpp"
 #include "services/boresight/align/plot.hpp"
+#include "services/boresight/align/recording_feed.hpp"
 #include "services/boresight/align/run.hpp"
 #include "services/boresight/align/table.hpp"
 #include "services/boresight/align/truth_file.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
+#include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/ingest_gateway/core/gateway.hpp"
+#include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 
 namespace boresight {
 
@@ -29,6 +33,7 @@ constexpr int kExitUsage = 2;
 
 struct Options {
   std::string drive, ego, vehicle, config, truth, json, plot;
+  std::vector<std::string> recordings;
   std::string method = "boresight";
 };
 
@@ -72,7 +77,7 @@ class Align {
                    .vehicle = options_.vehicle,
                    .config = options_.config,
                    .truth = options_.truth,
-                   .recordings = {}};
+                   .recordings = options_.recordings};
     align::Run::Options run_options;
     run_options.method = options_.method;
     run_options.cpu_time_ns = cpu_time_ns;
@@ -84,9 +89,9 @@ class Align {
       if (!truth) throw std::runtime_error(options_.truth + ": " + std::strerror(errno));
       run_options.truth = align::read_truth(truth, options_.truth);
     }
+    if (!options_.recordings.empty()) return report(run_recordings(std::move(run_options)));
     const VehicleConfig vehicle = config::read_vehicle_file(options_.vehicle, config::VehicleUse::kOffline);
-    const align::Result result = run_tables(vehicle, std::move(run_options));
-    return report(result);
+    return report(run_tables(vehicle, std::move(run_options)));
   }
 
  private:
@@ -109,7 +114,8 @@ class Align {
       }
       run.add_scan(*scan, scan_s);
       constexpr std::uint64_t kScansBetweenLooks = 64;
-      if (scans % kScansBetweenLooks == 0 && bar_.is_due()) show_progress(drive_source, scan_s);
+      if (scans % kScansBetweenLooks == 0 && bar_.is_due())
+        show_progress(drive_source.position(), drive_source.total());
     }
     bar_.wipe();
     for (; has_motion; has_motion = ego.next(motion, motion_s)) run.add_ego(motion, motion_s);
@@ -124,10 +130,38 @@ class Align {
     return run.finish();
   }
 
-  void show_progress(const recording::ByteSource& source, double time_s) {
-    const double share =
-        source.total() == 0 ? -1.0 : static_cast<double>(source.position()) / static_cast<double>(source.total());
-    bar_.show(share, fmt::format("{:.0f} s of the drive", time_s));
+  align::Result run_recordings(align::Run::Options run_options) {
+    const VehicleConfig vehicle = config::read_vehicle_file(options_.vehicle);
+    align::Run run(vehicle, std::move(run_options));
+    align::RecordingFeed feed(run);
+    ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
+    const std::vector<std::filesystem::path> files(options_.recordings.begin(), options_.recordings.end());
+    const auto reader =
+        recording::open_recordings(files, [this](const std::string& text) { problems_.bad_line(text); });
+    recording::Frame frame;
+    for (std::uint64_t frames = 1; reader->next(frame); ++frames) {
+      // The recording's own clock is the only one, so that the result depends on nothing else.
+      gateway.take(frame, {frame.stamp_ns, 0, TimeSource::kLinkArrival});
+      problems_.good_line();
+      constexpr std::uint64_t kFramesBetweenLooks = 256;
+      if (frames % kFramesBetweenLooks == 0 && bar_.is_due()) {
+        const recording::Progress progress = reader->progress();
+        show_progress(progress.position_bytes, progress.total_bytes);
+      }
+    }
+    gateway.finish();
+    feed.finish();
+    bar_.wipe();
+    if (feed.rejected() > 0) {
+      tell(fmt::format("{} messages were rejected; `boresight decode --check` tells why", feed.rejected()));
+    }
+    if (feed.doubtful() > 0) tell(fmt::format("{} scans of doubtful integrity were left out", feed.doubtful()));
+    return run.finish();
+  }
+
+  void show_progress(std::uint64_t position, std::uint64_t total) {
+    bar_.show(total == 0 ? -1.0 : static_cast<double>(position) / static_cast<double>(total),
+              fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(position)));
   }
 
   /// Something that makes the result doubtful.
@@ -143,7 +177,8 @@ class Align {
       tell(fmt::format("… and {} more", problems_.bad_lines() - align::Problems::kShown));
     }
     if (problems_.bad_lines() > 0) {
-      const std::string text = fmt::format("{} of {} lines were left out", problems_.bad_lines(), problems_.lines());
+      const std::string text = fmt::format("{} of {} {} were left out", problems_.bad_lines(), problems_.lines(),
+                                           options_.recordings.empty() ? "lines" : "frames");
       if (problems_.too_many()) {
         complain(text + ": more than one in a hundred");
       } else {
@@ -189,11 +224,13 @@ void add_align_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "align", "estimate how the radars are mounted and how wrong the speed signal is, from a recorded drive");
   const auto options = std::make_shared<Options>();
-  command
-      ->add_option("--drive", options->drive, "table of detections (t,radar,range,az,el,vr); \"-\" is standard input")
+  command->add_option("--drive", options->drive,
+                      "table of detections (t,radar,range,az,el,vr); \"-\" is standard input");
+  command->add_option("--ego", options->ego, "table of ego motions (t,v,yaw_rate)");
+  command->add_option("--recording", options->recordings,
+                      "instead of tables: pcap, pcapng or candump log, as the vehicle's links have it; repeatable");
+  command->add_option("--vehicle", options->vehicle, "vehicle file; for tables links may be left out in it")
       ->required();
-  command->add_option("--ego", options->ego, "table of ego motions (t,v,yaw_rate)")->required();
-  command->add_option("--vehicle", options->vehicle, "vehicle file; links may be left out in it")->required();
   command->add_option("--method", options->method, "how to estimate")
       ->check(CLI::IsMember(align::method_names()))
       ->capture_default_str();
@@ -206,6 +243,11 @@ void add_align_command(CLI::App& app, int& exit_code) {
       "left out, unknown radars, no detection, no ego motion), 2 wrong command line or configuration.");
   command->callback([options, &exit_code] {
     try {
+      const bool has_tables = !options->drive.empty() && !options->ego.empty();
+      const bool has_any_table = !options->drive.empty() || !options->ego.empty();
+      if (options->recordings.empty() ? !has_tables : has_any_table) {
+        throw UsageError("give either --drive and --ego, or --recording");
+      }
       if (options->drive == "-" && options->ego == "-")
         throw UsageError("only one of the tables can be standard input");
       if (options->json == "-" && options->plot == "-") throw UsageError("only one result can go to standard output");

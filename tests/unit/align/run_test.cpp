@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "services/common/runtime/config/vehicle_file.hpp"
+#include "tests/simulator/drive_writer.hpp"
 #include "tests/unit/align/tables.hpp"
 
 namespace boresight::align {
@@ -220,6 +222,24 @@ TEST_F(Align, WrongCommandLinesAndFilesAreTold) {
   EXPECT_EQ(align("--drive . --ego ego.csv --vehicle vehicle.toml --method azimuth_1d"), 1);
   EXPECT_EQ(align("--drive drive.csv --ego ego.csv --vehicle vehicle.toml --method azimuth_1d --json no/out.json"), 1);
   EXPECT_THAT(errors(), HasSubstr("no/out.json: No such file"));
+}
+
+TEST_F(Align, RecordingsOfTheWireAreAlignedAsTheServiceDoes) {
+  const fs::path demo = fs::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml";
+  const auto files = simulator::write_drive(simulator::scenario("demo_drive"), config::read_vehicle_file(demo), 1, 10.0,
+                                            folder_ / "wire", [](double) {});
+  ASSERT_EQ(align("--recording " + files.radars.string() + " --recording " + files.ego.string() + " --vehicle " +
+                  demo.string() + " --method azimuth_1d --json out.json"),
+            0)
+      << errors();
+  EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
+  EXPECT_THAT(json(), HasSubstr("\"scans\":" + std::to_string(files.scans)));
+  EXPECT_THAT(json(), HasSubstr("CONVERG"));
+  EXPECT_THAT(json(), HasSubstr("\"scans_without_ego_motion\":0"));
+  EXPECT_EQ(align("--recording a --drive drive.csv --ego ego.csv --vehicle vehicle.toml"), 2);
+  EXPECT_EQ(align("--recording nowhere.pcap --vehicle " + demo.string() + " --method azimuth_1d"), 1);
+  EXPECT_EQ(align("--recording " + files.radars.string() + " --vehicle vehicle.toml --method azimuth_1d"), 2)
+      << "this vehicle has no links";
 }
 
 TEST_F(Align, SettingsAreTakenFromAFile) {
