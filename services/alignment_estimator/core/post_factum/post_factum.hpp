@@ -15,8 +15,8 @@ namespace boresight::alignment::post_factum {
 /// One detection with the signalled motion of its instant (at the rear axle, without k_v).
 struct Detection {
   double azimuth_rad = 0.0;
-  double elevation_rad = 0.0;  ///< means something only if Recording::has_elevation
-  double range_rate_mps = 0.0;
+  double elevation_rad = 0.0;   ///< means something only if Recording::has_elevation
+  double range_rate_mps = 0.0;  ///< not aliased: what may be is to be left out by the caller
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
 };
@@ -36,7 +36,7 @@ struct Config {
   double speed_scale_cost = 0.1;                  ///< of (31)
   std::size_t detections_per_iteration = 256;     ///< of each radar
   double rate = 1e-4;                             ///< η
-  std::size_t iterations = 60'000;                ///< not published: six times what 95 % takes at this η
+  std::size_t iterations = 60'000;                ///< not published: six times the time constant 1/η
   std::uint64_t seed = 1;
   double min_speed_mps = 5.0;
   /// Ours: RadarScenes says which detections move with the world, other recordings do not. Detections further than
@@ -44,17 +44,26 @@ struct Config {
   /// fit gives, are left out. 0: none.
   double gate_sigma = 4.0;
   double gate_floor_mps = 0.1;
-  std::size_t history_every = 100;  ///< iterations between two entries of the history
-  /// For the judgement of what the data support: how many fill-ins are solved to the end, and by how much their mean
-  /// is shifted.
-  std::size_t judgement_seeds = 8;
-  double judgement_shift_rad = 0.01;
+  std::size_t min_detections = 128;  ///< of a radar in the whole recording: with fewer it does not take part
+  std::size_t history_every = 100;   ///< iterations between two entries of the history
+  /// For the judgement of what the data support (ours): how many draws of the missing elevations are solved to the end,
+  /// over how many detections of each radar; by how much their mean (rad) and their tilt (rad per rad of azimuth) are
+  /// moved, how many times as wide they are drawn, how much roll may be there that nobody measured; and what counts as
+  /// supported.
+  std::size_t judgement_draws = 8;
+  std::size_t judgement_detections = 20'000;
+  double judgement_shift_rad = 0.035;  ///< 2°, as the errors of Report A's simulation
+  double judgement_width = 2.0;
+  double judgement_roll_rad = 0.035;
+  double prior_angle_std_rad = 0.0698;  ///< 4°: no std is larger
+  double believable_speed_scale = 2e-3;
+  double believable_angle_rad = 0.0052;  ///< 0.3°
 };
 
 /// Why a parameter is not to be believed.
 enum class Support : std::uint8_t {
   kSupported,
-  kFollowsFillIn,  ///< changes with the mean of the elevations that were made up
+  kFollowsFillIn,  ///< changes with how the elevations were made up
   kSpreads,        ///< changes with the draw of the elevations that were made up
   kUncertain,      ///< the information matrix leaves it open
   kNoData,
@@ -62,10 +71,16 @@ enum class Support : std::uint8_t {
 
 struct Parameter {
   double value = 0.0;
-  double std = 0.0;     ///< from the information matrix and the residuals' variance; ±∞ where singular
+  /// From the information matrix and the residuals' variance, with missing elevations at their mean: the draws feign
+  /// information (they make a roll look like noise, which is then found to be 0).
+  double std = 0.0;
   double spread = 0.0;  ///< std over fill-ins, each solved to the end
-  double response =
-      0.0;  ///< change by a shift of the fill-in's mean, over that shift; −1: minus the mean (rad per rad)
+  /// Change by moving the mean of the made-up elevations, over that move, or by tilting them along the azimuth, over
+  /// that tilt, whichever is larger: −1 says that the parameter is minus what was made up, and no measurement.
+  double response = 0.0;
+  /// By how much the parameter changes if what was made up had been made up otherwise: the root of the sum of squares
+  /// over another mean, tilt and width of the elevations, and another roll. No std tells of it.
+  double made_up = 0.0;
   Support support = Support::kNoData;
 };
 
@@ -93,11 +108,14 @@ struct Result {
   Parameter speed_scale;
   std::vector<RadarResult> radars;
   Residuals before, after;  ///< of all
+  Residuals yaw_only;       ///< with k_v and yaw only, pitch, roll and missing elevations 0: what the rest is worth
   std::vector<Step> history;
 };
 
 /// All radars together for one k_v and per-radar α, β, γ, by nonlinear total least squares. Same input and seed, same
-/// output. For offline tools: allocates and takes seconds.
+/// output. For offline tools: allocates and takes seconds. What the data support is judged within the planar model of
+/// Report A, which is no rotation: where elevation is measured, it lets pitch and roll seem better known than they are
+/// (algorithms.md §1.4).
 [[nodiscard]] Result calibrate(std::span<const Recording> radars, const Config& config = {});
 
 /// One word or two: "supported", "follows the made-up elevation", …

@@ -1,0 +1,16 @@
+// Which detections of a recording stand still: RadarScenes says so of each, other recordings do not.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+
+namespace boresight::alignment::post_factum {
+
+/// The recordings with what can be used: finite, fast enough and, if the gate is on, near what a robust fit of k_v and
+/// of each radar's yaw expects of a world that stands still (Tukey weights, joint over radars; missing elevation 0).
+/// Same radars in the same order; a radar with fewer than `config.min_detections` comes out empty.
+[[nodiscard]] std::vector<Recording> gated(std::span<const Recording> radars, const Config& config);
+
+}  // namespace boresight::alignment::post_factum
