@@ -27,7 +27,10 @@ struct AxisHealth {
   float tolerance_rad;
   std::uint8_t observable;        ///< 1 if the estimator could see this axis
   std::uint8_t beyond_tolerance;  ///< 1 after debouncing, by confidence
-  std::array<std::uint8_t, 2> reserved;
+  /// 1: of the turn about the vehicle's axis, because it is beyond its tolerance or the sensor's axis is not
+  /// observable; 0: about the sensor's own.
+  std::uint8_t about_vehicle_axis;
+  std::uint8_t reserved;
 };
 static_assert(sizeof(AxisHealth) == 16);
 
@@ -49,7 +52,7 @@ struct SensorHealth {
   float lateral_displacement_m;
   float reference_range_m;
   std::uint32_t conditions;  ///< source_condition bits: what the sensor said of itself last
-  std::uint32_t reserved2;
+  std::uint32_t knocks;      ///< sudden changes of the mounting, since the estimator's start
   std::uint64_t scans;
   std::uint64_t lost_scans;     ///< published by the gateway, missing here
   std::uint64_t missed_scans;   ///< sent by the sensor, by its own counter, and never complete at the gateway

@@ -37,6 +37,7 @@ class AxisJudge {
     since_ns_ = kNever;
   }
 
+  [[nodiscard]] bool is_observable() const { return observable_; }
   [[nodiscard]] bool is_beyond() const { return beyond_; }
   /// Beyond tolerance, and so far that the sensor is of no use.
   [[nodiscard]] bool is_inhibited() const { return beyond_ && std::abs(error_rad_) > config_.inhibit_rad; }
@@ -46,7 +47,8 @@ class AxisJudge {
             .tolerance_rad = static_cast<float>(tolerance_rad_),
             .observable = observable_ ? std::uint8_t{1} : std::uint8_t{0},
             .beyond_tolerance = beyond_ ? std::uint8_t{1} : std::uint8_t{0},
-            .reserved = {}};
+            .about_vehicle_axis = 0,
+            .reserved = 0};
   }
 
  private:

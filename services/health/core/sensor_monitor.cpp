@@ -2,14 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "services/common/geometry/so3.hpp"
 
 namespace boresight::health {
 
 namespace {
 
-double std_of(const AlignmentEstimate& estimate, AlignmentParameter parameter) {
+double std_of(const std::array<float, 16>& covariance, AlignmentParameter parameter) {
   const auto i = static_cast<std::size_t>(parameter);
-  return std::sqrt(static_cast<double>(estimate.covariance[i * kNumberOfAlignmentParameters + i]));
+  return std::sqrt(static_cast<double>(covariance[i * kNumberOfAlignmentParameters + i]));
+}
+
+/// The turn about a vehicle's axis (0 x, 1 y, 2 z) that alone takes one of the sensor's angles to its tolerance.
+double vehicle_tolerance(const RadarConfig& radar, Eigen::Index axis) {
+  const MountingPose& pose = radar.mounting_pose;
+  // Looking straight up or down yaw and roll are one: such a radar is judged by its own axes only.
+  if (std::abs(std::cos(pose.pitch_rad)) < 0.1) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d angles = geometry::euler_gradient(pose.yaw_rad, pose.pitch_rad).col(axis).cwiseAbs();
+  const AlignmentTolerance& t = radar.tolerance;
+  return (Eigen::Vector3d(t.yaw_rad, t.pitch_rad, t.roll_rad).array() / angles.array().max(1e-3)).minCoeff();
 }
 
 }  // namespace
@@ -24,9 +37,17 @@ SensorMonitor::SensorMonitor(const RadarConfig& radar, const Config& config, std
       messages_(config.window_s),
       rejected_(config.window_s),
       suspect_(config.window_s),
-      yaw_(config, radar.tolerance.yaw_rad),
-      pitch_(config, radar.tolerance.pitch_rad),
-      roll_(config, radar.tolerance.roll_rad) {}
+      yaw_{{config, radar.tolerance.yaw_rad}, {config, vehicle_tolerance(radar, 2)}},
+      pitch_{{config, radar.tolerance.pitch_rad}, {config, vehicle_tolerance(radar, 1)}},
+      roll_{{config, radar.tolerance.roll_rad}, {config, vehicle_tolerance(radar, 0)}} {}
+
+AxisHealth SensorMonitor::Angle::health() const {
+  const bool by_vehicle = sensor.is_beyond() ? false : vehicle.is_beyond() || !sensor.is_observable();
+  if (!by_vehicle || !vehicle.is_observable()) return sensor.health();
+  AxisHealth health = vehicle.health();
+  health.about_vehicle_axis = 1;
+  return health;
+}
 
 void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
   // After a silence the rate is judged by what comes now, or it would stay low for a window without reason.
@@ -46,13 +67,21 @@ void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
 void SensorMonitor::observe(const AlignmentEstimate& estimate) {
   const bool estimating = estimate.state == AlignmentState::kConverging || estimate.state == AlignmentState::kConverged;
   const std::int64_t time_ns = estimate.header.measurement_time_ns;
-  const auto judge = [&](AxisJudge& axis, float error_rad, AlignmentParameter parameter, std::uint32_t bit) {
-    axis.update(error_rad, std_of(estimate, parameter), estimating && estimate.is_observable(bit), time_ns);
+  const auto judge = [&](Angle& angle, AlignmentParameter parameter, float sensor_rad, std::uint32_t sensor_bit,
+                         float vehicle_rad, std::uint32_t vehicle_bit) {
+    angle.sensor.update(sensor_rad, std_of(estimate.covariance, parameter),
+                        estimating && estimate.is_observable(sensor_bit), time_ns);
+    angle.vehicle.update(vehicle_rad, std_of(estimate.vehicle_covariance, parameter),
+                         estimating && estimate.is_observable(vehicle_bit), time_ns);
   };
-  judge(yaw_, estimate.alignment_yaw_rad, AlignmentParameter::kYaw, alignment_axis::kYaw);
-  judge(pitch_, estimate.alignment_pitch_rad, AlignmentParameter::kPitch, alignment_axis::kPitch);
-  judge(roll_, estimate.alignment_roll_rad, AlignmentParameter::kRoll, alignment_axis::kRoll);
-  const double scale_std = std_of(estimate, AlignmentParameter::kSpeedScale);
+  judge(yaw_, AlignmentParameter::kYaw, estimate.alignment_yaw_rad, alignment_axis::kYaw, estimate.vehicle_yaw_rad,
+        alignment_axis::kVehicleYaw);
+  judge(pitch_, AlignmentParameter::kPitch, estimate.alignment_pitch_rad, alignment_axis::kPitch,
+        estimate.vehicle_pitch_rad, alignment_axis::kVehiclePitch);
+  judge(roll_, AlignmentParameter::kRoll, estimate.alignment_roll_rad, alignment_axis::kRoll, estimate.vehicle_roll_rad,
+        alignment_axis::kVehicleRoll);
+  knocks_ = estimate.knock.count;
+  const double scale_std = std_of(estimate.covariance, AlignmentParameter::kSpeedScale);
   if (!std::isfinite(estimate.speed_scale) || !std::isfinite(scale_std)) return;
   speed_scale_ = estimate.speed_scale;
   speed_scale_std_ = scale_std;
@@ -84,6 +113,7 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
   health.scans = scans_;
   health.lost_scans = lost_scans_;
   health.conditions = last_statistics_.conditions;
+  health.knocks = knocks_;
   health.missed_scans = last_statistics_.lost;
   health.suspect_scans = last_statistics_.suspect;
   health.e2e_lost = last_statistics_.e2e_lost;

@@ -45,9 +45,18 @@ class SensorMonitor {
   RateWindow rejected_;
   RateWindow suspect_;
   SourceStatistics last_statistics_{};
-  AxisJudge yaw_;
-  AxisJudge pitch_;
-  AxisJudge roll_;
+  /// One angle about the sensor's own axis and about the vehicle's: either may be known without the other.
+  struct Angle {
+    AxisJudge sensor;
+    AxisJudge vehicle;
+    [[nodiscard]] bool is_beyond() const { return sensor.is_beyond() || vehicle.is_beyond(); }
+    [[nodiscard]] bool is_inhibited() const { return sensor.is_inhibited() || vehicle.is_inhibited(); }
+    [[nodiscard]] AxisHealth health() const;
+  };
+  Angle yaw_;
+  Angle pitch_;
+  Angle roll_;
+  std::uint32_t knocks_ = 0;
   double speed_scale_ = 1.0;
   double speed_scale_std_ = 0.0;
 };

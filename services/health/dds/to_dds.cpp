@@ -55,10 +55,11 @@ void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth
     add_value(status, name, "not observable");
     return;
   }
-  add_value(status, name,
-            fmt::format("{:+.2f} deg, std {:.3f} deg, tolerance {:.2f} deg{}", axis.error_rad * kDegrees,
-                        axis.std_rad * kDegrees, axis.tolerance_rad * kDegrees,
-                        axis.beyond_tolerance != 0 ? ", beyond" : ""));
+  add_value(
+      status, name,
+      fmt::format("{:+.2f} deg, std {:.3f} deg, tolerance {:.2f} deg{}{}", axis.error_rad * kDegrees,
+                  axis.std_rad * kDegrees, axis.tolerance_rad * kDegrees, axis.beyond_tolerance != 0 ? ", beyond" : "",
+                  axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
 }
 
 DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& vehicle) {
@@ -76,6 +77,7 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   add_axis(status, "roll error", sensor.roll);
   add_value(status, "lateral displacement",
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
+  add_value(status, "knocks", fmt::format("{}", sensor.knocks));
   add_value(status, "speed scale", fmt::format("{:.4f}, std {:.4f}", sensor.speed_scale, sensor.speed_scale_std));
   add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
   add_value(status, "scans missed on the wire", fmt::format("{}", sensor.missed_scans));

@@ -47,13 +47,14 @@ AlignmentEstimate estimate(double yaw_rad, double scale) {
   e.header.sequence = 77;
   e.header.measurement_time_ns = kTime;
   e.state = AlignmentState::kConverged;
-  e.observable = alignment_axis::kYaw | alignment_axis::kSpeedScale;
-  e.alignment_yaw_rad = static_cast<float>(yaw_rad);
-  e.alignment_pitch_rad = 0.5F;  // not observable: must not be applied
+  e.observable = alignment_axis::kYaw | alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale;
+  e.alignment_yaw_rad = e.vehicle_yaw_rad = static_cast<float>(yaw_rad);
+  e.alignment_pitch_rad = e.vehicle_pitch_rad = 0.5F;  // not observable: must not be applied
   e.speed_scale = static_cast<float>(scale);
   e.covariance[0] = 1e-6F;
   e.covariance[5] = 1e-7F;
   e.covariance[10] = e.covariance[15] = 0.005F;
+  e.vehicle_covariance = e.covariance;
   return e;
 }
 
@@ -311,9 +312,9 @@ TEST_F(CorrectorTest, SideInputsThatAreNoNumbersAreNotApplied) {
   for (int what = 0; what < 4; ++what) {
     Corrector corrector(one_radar(), Config{});
     AlignmentEstimate bad = estimate(2.0 * kDegree, 1.01);
-    if (what == 0) bad.alignment_yaw_rad = bad.speed_scale = nan;
-    if (what == 1) bad.covariance[0] = bad.covariance[5] = nan;
-    if (what == 2) bad.covariance[0] = bad.covariance[5] = -1.0F;
+    if (what == 0) bad.vehicle_yaw_rad = bad.speed_scale = nan;
+    if (what == 1) bad.covariance[0] = bad.vehicle_covariance[5] = nan;
+    if (what == 2) bad.covariance[0] = bad.vehicle_covariance[5] = -1.0F;
     if (what == 3) bad.observable = 0;
     ASSERT_TRUE(corrector.add_alignment(bad));
     corrector.add_ego_motion(ego(10.0F, 0.0F));

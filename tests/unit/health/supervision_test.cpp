@@ -191,6 +191,40 @@ TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyWhatIsObservableCounts) {
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal) << "2° of roll are within 3°";
 }
 
+TEST_F(SupervisionTest, APitchThatIsKnownAboutTheVehiclesAxisOnlyCounts) {
+  // A radar that looks 45° to the side: of its own axes neither pitch nor roll is observable on straight roads.
+  VehicleConfig vehicle = two_radars();
+  vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kDegree;
+  vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kDegree;
+  supervision_ = Supervision(vehicle, Config{}, now_);
+  run(3.0);
+  for (auto& estimate : estimate_) {
+    estimate.observable |= alignment_axis::kVehiclePitch | alignment_axis::kVehicleYaw;
+    estimate.vehicle_pitch_rad = static_cast<float>(2.0 * kDegree);
+    estimate.vehicle_covariance[10] = static_cast<float>(0.02 * kDegree * 0.02 * kDegree);
+  }
+  run(3.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "a share of 0.71 is pitch of the sensor";
+  EXPECT_EQ(radar(1).pitch.observable, 1);
+  EXPECT_EQ(radar(1).pitch.about_vehicle_axis, 1);
+  EXPECT_NEAR(radar(1).pitch.tolerance_rad, 1.5 * std::sqrt(2.0) * kDegree, 1e-6);
+  EXPECT_NEAR(radar(2).pitch.tolerance_rad, 3.0 * kDegree, 1e-6) << "to the side it is the sensor's roll";
+  for (auto& estimate : estimate_) estimate.vehicle_pitch_rad = static_cast<float>(2.5 * kDegree);
+  run(3.0);
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
+  EXPECT_EQ(radar(1).pitch.beyond_tolerance, 1);
+  EXPECT_NEAR(radar(1).pitch.error_rad, 2.5 * kDegree, 1e-6);
+  EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
+}
+
+TEST_F(SupervisionTest, KnocksAreCounted) {
+  run(1.0);
+  EXPECT_EQ(radar(2).knocks, 0u);
+  estimate_[1].knock.count = 2;
+  run(1.0);
+  EXPECT_EQ(radar(2).knocks, 2u);
+}
+
 TEST_F(SupervisionTest, AnEstimatorThatWaitsIsNotBelieved) {
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
   estimate_[1].state = AlignmentState::kWaiting;

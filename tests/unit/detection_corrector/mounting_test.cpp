@@ -1,0 +1,114 @@
+// The part of the estimated rotation that may be applied.
+#include "services/detection_corrector/core/mounting.hpp"
+
+#include <gtest/gtest.h>
+
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::corrector {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+const Eigen::Vector3d kTurn = Eigen::Vector3d(1.5, -2.0, 1.0) * kDegree;
+
+RadarConfig radar(double yaw_deg, double roll_deg = 0.0) {
+  RadarConfig r;
+  r.mounting_pose = {{3.6, 0.7, 0.5}, yaw_deg * kDegree, 0.0, roll_deg * kDegree};
+  return r;
+}
+
+/// Both forms of kTurn; `covariance` about the vehicle's x, y, z.
+AlignmentEstimate estimate(const RadarConfig& of, const Eigen::Matrix3d& covariance, std::uint32_t observable) {
+  AlignmentEstimate e{};
+  e.header.sequence = 5;
+  e.observable = observable;
+  e.speed_scale = 1.01F;
+  e.vehicle_roll_rad = static_cast<float>(kTurn.x());
+  e.vehicle_pitch_rad = static_cast<float>(-kTurn.y());
+  e.vehicle_yaw_rad = static_cast<float>(kTurn.z());
+  Eigen::Matrix3d to_message;  // (x, y, z) → (yaw, pitch, roll)
+  to_message << 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0;
+  const Eigen::Matrix3f rows = (to_message * covariance * to_message.transpose()).cast<float>();
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      e.vehicle_covariance[static_cast<std::size_t>(4 * (r + 1) + c + 1)] = rows(r, c);
+    }
+  }
+  const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(of.mounting_pose, 0.0, 0.0, 0.0);
+  const Eigen::Vector3d angles = geometry::euler_angles(geometry::so3_exp(kTurn) * nominal);
+  e.alignment_yaw_rad = static_cast<float>(angles(0) - of.mounting_pose.yaw_rad);
+  e.alignment_pitch_rad = static_cast<float>(angles(1));
+  e.alignment_roll_rad = static_cast<float>(angles(2) - of.mounting_pose.roll_rad);
+  return e;
+}
+
+constexpr std::uint32_t kAll =
+    alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch | alignment_axis::kVehicleRoll;
+
+Eigen::Matrix3d stds(double x_deg, double y_deg, double z_deg) {
+  const Eigen::Vector3d std = Eigen::Vector3d(x_deg, y_deg, z_deg) * kDegree;
+  return std.cwiseAbs2().asDiagonal();
+}
+
+/// The applied turn.
+Eigen::Vector3d applied(const RadarConfig& to, const AlignmentEstimate& e) {
+  const Mounting mounting = mounting_of(to, &e, Config{});
+  return geometry::so3_log(mounting.sensor_to_vehicle *
+                           geometry::sensor_to_vehicle(to.mounting_pose, 0.0, 0.0, 0.0).transpose());
+}
+
+TEST(Mounting, AllSureIsTheWholeRotation) {
+  for (const double yaw_deg : {0.0, 45.0, -135.0, 180.0}) {
+    for (const double roll_deg : {0.0, 180.0}) {
+      const RadarConfig r = radar(yaw_deg, roll_deg);
+      const AlignmentEstimate e = estimate(r, stds(0.1, 0.1, 0.1), kAll);
+      const Mounting mounting = mounting_of(r, &e, Config{});
+      const Eigen::Matrix3d by_angles = geometry::sensor_to_vehicle(r.mounting_pose, e.alignment_yaw_rad,
+                                                                    e.alignment_pitch_rad, e.alignment_roll_rad);
+      EXPECT_LT((mounting.sensor_to_vehicle - by_angles).norm(), 1e-6) << yaw_deg << ", " << roll_deg;
+      EXPECT_EQ(mounting.alignment_sequence, 5u);
+    }
+  }
+}
+
+TEST(Mounting, ARadarToTheSideIsTurnedByThePitchThatIsKnown) {
+  // Straight driving: about the vehicle's y and z it is sure, about x it is not. About the sensor's own axes, at 45°,
+  // neither pitch nor roll is known, and applying angle by angle would leave the known pitch out.
+  const RadarConfig r = radar(45.0);
+  const std::uint32_t observable = alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch;
+  const Eigen::Vector3d turn = applied(r, estimate(r, stds(4.0, 0.1, 0.02), observable));
+  EXPECT_LT((turn - Eigen::Vector3d(0.0, kTurn.y(), kTurn.z())).norm(), 1e-4 * kDegree);
+  // The same by its spread alone: observable, but not sure enough.
+  const Eigen::Vector3d unsure = applied(r, estimate(r, stds(0.8, 0.1, 0.02), kAll));
+  EXPECT_LT((unsure - Eigen::Vector3d(0.0, kTurn.y(), kTurn.z())).norm(), 1e-4 * kDegree);
+}
+
+TEST(Mounting, WhatIsNotObservableIsNotAppliedHoweverSmallItsRow) {
+  const RadarConfig r = radar(0.0);
+  const Eigen::Vector3d turn = applied(r, estimate(r, stds(0.0, 0.0, 0.0), alignment_axis::kVehicleYaw));
+  EXPECT_LT((turn - Eigen::Vector3d(0.0, 0.0, kTurn.z())).norm(), 1e-4 * kDegree);
+  EXPECT_EQ(applied(r, estimate(r, stds(0.1, 0.1, 0.1), 0)).norm(), 0.0);
+}
+
+TEST(Mounting, APlateKnowsTheSensorsPitchOfARadarToTheSide) {
+  // Pitch about the sensor's axis to 0.05°, roll about boresight to 2°: about the vehicle's x and y both are unsure.
+  const RadarConfig r = radar(45.0);
+  const Eigen::Vector3d boresight(std::sqrt(0.5), std::sqrt(0.5), 0.0), across(-std::sqrt(0.5), std::sqrt(0.5), 0.0);
+  const Eigen::Matrix3d covariance = std::pow(2.0 * kDegree, 2) * boresight * boresight.transpose() +
+                                     std::pow(0.05 * kDegree, 2) * across * across.transpose() + stds(0.0, 0.0, 0.05);
+  const Eigen::Vector3d turn = applied(r, estimate(r, covariance, kAll));
+  const Eigen::Vector3d expected = across * across.dot(kTurn) + Eigen::Vector3d(0.0, 0.0, kTurn.z());
+  EXPECT_LT((turn - expected).norm(), 1e-3 * kDegree);
+}
+
+TEST(Mounting, WithoutAnEstimateItIsTheNominalOne) {
+  const RadarConfig r = radar(45.0);
+  const Mounting mounting = mounting_of(r, nullptr, Config{});
+  EXPECT_EQ(mounting.sensor_to_vehicle, geometry::sensor_to_vehicle(r.mounting_pose, 0.0, 0.0, 0.0));
+  EXPECT_EQ(mounting.alignment_sequence, 0u);
+  EXPECT_EQ(mounting.speed_scale, 1.0);
+}
+
+}  // namespace
+}  // namespace boresight::corrector
