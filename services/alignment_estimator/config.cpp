@@ -6,6 +6,48 @@ namespace boresight::alignment {
 
 namespace {
 
+std::array<double, 4> four(config::Reader& table, std::string_view key, config::Range allowed,
+                           const std::array<double, 4>& fallback) {
+  const std::vector<double> values = table.numbers(key, 4, allowed, {fallback.begin(), fallback.end()});
+  return {values[0], values[1], values[2], values[3]};
+}
+
+published::PublishedConfig read_published(config::Reader table) {
+  using published::RoadModel;
+  published::PublishedConfig c;
+  c.road_model = table.choice<RoadModel>("road_model",
+                                         {{"full", RoadModel::kFull},
+                                          {"straight_where_slow", RoadModel::kStraightWhereSlow},
+                                          {"straight", RoadModel::kStraight}},
+                                         c.road_model);
+  c.straight_yaw_rate_radps = table.angle_deg("straight_yaw_rate_deg", {0.0, 10.0}, c.straight_yaw_rate_radps);
+  c.min_speed_mps = table.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
+  c.steepest_descent_rate = four(table, "steepest_descent_rate", {0.0, 1.0}, c.steepest_descent_rate);
+  c.least_squares_rate = four(table, "nls_rate", {0.0, 1.0}, c.least_squares_rate);
+  c.least_squares_damping = table.number("nls_damping", {0.0, 1e6}, c.least_squares_damping);
+  c.total_least_squares_rate = table.number("tls_rate", {0.0, 1.0}, c.total_least_squares_rate);
+  c.nelder_mead_detections = static_cast<std::size_t>(table.integer(
+      "nelder_mead_detections", {4, kMaxDetections}, static_cast<std::int64_t>(c.nelder_mead_detections)));
+  c.nelder_mead_iterations =
+      static_cast<int>(table.integer("nelder_mead_iterations", {1, 1000}, c.nelder_mead_iterations));
+  c.nelder_mead_filter_scans = table.number("nelder_mead_filter_scans", {1.0, 1e6}, c.nelder_mead_filter_scans);
+  c.nelder_mead_edge = four(table, "nelder_mead_edge", {1e-6, 1.0}, c.nelder_mead_edge);
+  c.gate = table.boolean("gate", c.gate);
+  c.gate_sigma = table.number("gate_sigma", {1.0, 20.0}, c.gate_sigma);
+  c.gate_floor_mps = table.number("gate_floor_mps", {0.0, 5.0}, c.gate_floor_mps);
+  c.min_detections = static_cast<std::size_t>(
+      table.integer("min_detections", {1, kMaxDetections}, static_cast<std::int64_t>(c.min_detections)));
+  c.max_speed_scale_error = table.number("max_speed_scale_error", {0.001, 0.5}, c.max_speed_scale_error);
+  c.max_angle_rad = table.angle_deg("max_angle_deg", {0.1, 45.0}, c.max_angle_rad);
+  c.prior_speed_scale_std = table.number("prior_speed_scale_std", {1e-4, 0.5}, c.prior_speed_scale_std);
+  c.prior_angle_std_rad = table.angle_deg("prior_angle_std_deg", {0.1, 30.0}, c.prior_angle_std_rad);
+  c.window_s = table.number("window_s", {0.1, 36000.0}, c.window_s);
+  c.converged_angle_rad = table.angle_deg("converged_angle_deg", {0.001, 10.0}, c.converged_angle_rad);
+  c.converged_speed_scale = table.number("converged_speed_scale", {1e-6, 0.1}, c.converged_speed_scale);
+  c.seed = static_cast<std::uint64_t>(table.integer("seed", {0, 1e15}, static_cast<std::int64_t>(c.seed)));
+  return c;
+}
+
 std::optional<Truth> read_truth(config::Reader root) {
   if (!root.has("truth")) return std::nullopt;
   config::Reader table = root.table("truth");
@@ -28,7 +70,7 @@ std::optional<Truth> read_truth(config::Reader root) {
 Settings read_settings(config::Reader root) {
   Settings settings;
   Config& c = settings.estimator;
-  c.method = root.choice<MethodName>("method", {{"azimuth_1d", MethodName::kAzimuth1d}}, c.method);
+  c.method = root.choice<MethodName>("method", {kMethodNames.begin(), kMethodNames.end()}, c.method);
   c.min_speed_mps = root.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
   c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
   config::Reader prior = root.table("prior");
@@ -50,6 +92,7 @@ Settings read_settings(config::Reader root) {
       convergence.number("systematic_speed_scale_std", {0.0, 0.1}, c.systematic_speed_scale_std);
   c.kpi_window_s = root.number("kpi_window_s", {1.0, 3600.0}, c.kpi_window_s);
   c.residual_gate_sigma = root.number("residual_gate_sigma", {2.0, 20.0}, c.residual_gate_sigma);
+  c.published = read_published(root.table("published"));
   c.truth = read_truth(root);
   MemorySettings& memory = settings.memory;
   config::Reader memory_table = root.table("memory");

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "services/alignment_estimator/core/published/config.hpp"
+
 namespace boresight::alignment {
 
 /// Estimators to choose from: Boresight's own, and those of the literature (Report A §8).
@@ -36,11 +38,12 @@ struct Truth {
 };
 
 struct Config {
-  MethodName method = MethodName::kAzimuth1d;
-  std::optional<Truth> truth;         ///< for the NEES
-  double residual_gate_sigma = 4.0;   ///< key figures: residuals beyond this many stds are no inliers
-  double min_speed_mps = 5.0;         ///< slower driving tells nothing (Report A §8)
-  double prior_yaw_std_rad = 0.0698;  ///< 4°: how crooked a radar may be before anything was measured
+  MethodName method = MethodName::kBoresight;
+  published::PublishedConfig published;  ///< of all methods but kBoresight
+  std::optional<Truth> truth;            ///< for the NEES
+  double residual_gate_sigma = 4.0;      ///< key figures: residuals beyond this many stds are no inliers
+  double min_speed_mps = 5.0;            ///< slower driving tells nothing (Report A §8)
+  double prior_yaw_std_rad = 0.0698;     ///< 4°: how crooked a radar may be before anything was measured
   double prior_speed_scale_std = 0.03;
   double yaw_drift_rad_per_sqrt_s = 3e-6;  ///< random walk by which the mounting may change
   double speed_scale_drift_per_sqrt_s = 1e-5;

@@ -3,12 +3,28 @@
 #include <stdexcept>
 
 #include "services/alignment_estimator/core/azimuth_1d_method.hpp"
+#include "services/alignment_estimator/core/published/published.hpp"
 
 namespace boresight::alignment {
 
 std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& config) {
-  if (config.method == MethodName::kAzimuth1d) return std::make_unique<Azimuth1dMethod>(vehicle, config);
-  throw std::invalid_argument("this alignment method is not on offer");
+  using published::Kind;
+  const auto make = [&](Kind kind) { return published::make_published(kind, vehicle, config.published); };
+  switch (config.method) {
+    case MethodName::kBoresight:
+      return std::make_unique<Azimuth1dMethod>(vehicle, config);
+    case MethodName::kSteepestDescent:
+      return make(Kind::kSteepestDescent);
+    case MethodName::kNls:
+      return make(Kind::kLeastSquares);
+    case MethodName::kTls:
+      return make(Kind::kTotalLeastSquares);
+    case MethodName::kNelderMead:
+      return make(Kind::kNelderMead);
+    case MethodName::kAzimuth1d:
+      return make(Kind::kAzimuth1d);
+  }
+  throw std::invalid_argument("no such alignment method");
 }
 
 }  // namespace boresight::alignment

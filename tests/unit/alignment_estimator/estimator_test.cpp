@@ -122,6 +122,45 @@ TEST(Estimator, LyingLengthsAndWildNumbersDoNotSpoilIt) {
   EXPECT_NEAR(written(estimator, 1).speed_scale, drive.speed_scale, 2e-3);
 }
 
+TEST(Estimator, EveryMethodByItsNameRunsWithKeyFiguresAndAllocatesNothing) {
+  SyntheticDrive drive;
+  drive.elevation_limit_rad = 0.15;
+  for (const auto& [name, method] : kMethodNames) {
+    Config config;
+    config.method = method;
+    config.truth = Truth{.speed_scale = drive.speed_scale,
+                         .radars = {{.id = 1, .yaw_rad = drive.yaw_rad, .pitch_rad = 0.0, .roll_rad = 0.0}}};
+    Estimator estimator(car(drive, drive), config);
+    Synthesizer synthesizer(drive, 7);
+    AlignmentEstimate out{};
+    for (int i = 0; i < 1300; ++i) {
+      synthesizer.next();
+      const EgoMotion ego = motion(synthesizer.scan->header.measurement_time_ns, synthesizer.ego);
+      const std::uint64_t before = runtime::counted_allocations();
+      {
+        const runtime::CountAllocations counting;
+        estimator.add_ego_motion(ego);
+        static_cast<void>(estimator.add_scan(*synthesizer.scan));
+        ASSERT_TRUE(estimator.write(1, out));
+      }
+      ASSERT_EQ(runtime::counted_allocations(), before) << name;
+    }
+    EXPECT_GE(out.state, AlignmentState::kConverging) << name;
+    EXPECT_GT(out.kpis.scans_used, 1000u) << name;
+    EXPECT_GT(out.kpis.residual_rmse_mps, 0.0F) << name;
+    EXPECT_LT(out.kpis.residual_rmse_mps, 1.01F * out.kpis.uncorrected_residual_rmse_mps) << name;
+    EXPECT_NEAR(out.kpis.inlier_ratio, 0.8F, 0.3F) << name;
+    EXPECT_FALSE(std::isnan(out.kpis.drift_per_minute[1])) << name;
+    EXPECT_NE(std::isnan(out.kpis.nees), (out.observable & 0x71) != 0) << name;
+    std::printf("%-17.*s yaw %+.3f° ± %.3f°, k_v %.4f, 95 %% after %.1f s, RMSE %.3f of %.3f m/s, NEES %.2f\n",
+                static_cast<int>(name.size()), name.data(), out.vehicle_yaw_rad / kDegree,
+                std::sqrt(out.vehicle_covariance[5]) / kDegree, out.speed_scale, out.kpis.seconds_to_95_percent[1],
+                out.kpis.residual_rmse_mps, out.kpis.uncorrected_residual_rmse_mps, out.kpis.nees);
+    ASSERT_TRUE(estimator.write(2, out));
+    EXPECT_TRUE(std::isnan(out.kpis.nees)) << "no truth, no NEES";
+  }
+}
+
 TEST(Estimator, AllocatesNothing) {
   const SyntheticDrive drive;
   Estimator estimator(car(drive, drive), Config{});
