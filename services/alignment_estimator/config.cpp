@@ -6,6 +6,63 @@ namespace boresight::alignment {
 
 namespace {
 
+FilterConfig read_filter(config::Reader table) {
+  FilterConfig c;
+  c.min_speed_mps = table.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
+  c.outlier_gate_sigma = table.number("outlier_gate_sigma", {2.0, 20.0}, c.outlier_gate_sigma);
+  c.azimuth_std_edge = table.number("azimuth_std_edge", {0.05, 1.0}, c.azimuth_std_edge);
+
+  config::Reader prior = table.table("prior");
+  c.prior_speed_scale_std = prior.number("speed_scale_std", {1e-4, 0.5}, c.prior_speed_scale_std);
+  c.prior_rotation_std_rad = prior.angle_deg("rotation_std_deg", {0.1, 30.0}, c.prior_rotation_std_rad);
+  c.prior_yaw_rate_bias_std_radps =
+      prior.angle_deg("yaw_rate_bias_std_deg", {0.0, 10.0}, c.prior_yaw_rate_bias_std_radps);
+  c.prior_slip_coefficient_std_radps2pm =
+      prior.number("slip_coefficient_std", {0.0, 0.1}, c.prior_slip_coefficient_std_radps2pm);
+  c.prior_pitch_per_acceleration_std_radps2pm =
+      prior.number("pitch_per_acceleration_std", {0.0, 0.1}, c.prior_pitch_per_acceleration_std_radps2pm);
+
+  config::Reader drift = table.table("drift");
+  c.rotation_drift_rad_per_sqrt_s =
+      drift.angle_deg("rotation_per_sqrt_s_deg", {0.0, 1.0}, c.rotation_drift_rad_per_sqrt_s);
+  c.speed_scale_drift_per_sqrt_s = drift.number("speed_scale_per_sqrt_s", {0.0, 0.1}, c.speed_scale_drift_per_sqrt_s);
+  c.yaw_rate_bias_drift_radps_per_sqrt_s =
+      drift.angle_deg("yaw_rate_bias_per_sqrt_s_deg", {0.0, 1.0}, c.yaw_rate_bias_drift_radps_per_sqrt_s);
+
+  config::Reader motion = table.table("motion");
+  c.speed_std_mps = motion.number("speed_std_mps", {1e-4, 5.0}, c.speed_std_mps);
+  c.yaw_rate_std_radps = motion.angle_deg("yaw_rate_std_deg", {1e-4, 10.0}, c.yaw_rate_std_radps);
+  c.body_pitch_std_rad = motion.angle_deg("body_pitch_std_deg", {1e-4, 5.0}, c.body_pitch_std_rad);
+  c.side_slip_std_rad = motion.angle_deg("side_slip_std_deg", {1e-4, 5.0}, c.side_slip_std_rad);
+  c.ego_correlation_s = motion.number("ego_correlation_s", {1e-3, 60.0}, c.ego_correlation_s);
+  c.body_correlation_s = motion.number("body_correlation_s", {1e-3, 60.0}, c.body_correlation_s);
+  c.nuisance_memory_s = motion.number("memory_s", {1.0, 36000.0}, c.nuisance_memory_s);
+
+  config::Reader start = table.table("start");
+  c.start_seconds = start.number("seconds", {0.05, 60.0}, c.start_seconds);
+  c.start_detections = start.number("detections", {10.0, 2000.0}, c.start_detections);
+  c.start_passes = static_cast<int>(start.integer("passes", {1, 100}, c.start_passes));
+  c.start_scale_mps = start.number("scale_mps", {0.05, 50.0}, c.start_scale_mps);
+  c.start_shrink = start.number("shrink", {0.1, 0.99}, c.start_shrink);
+  c.start_inflation = start.number("inflation", {1.0, 1000.0}, c.start_inflation);
+
+  config::Reader convergence = table.table("convergence");
+  c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
+  c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
+
+  config::Reader remembered = table.table("remembered");
+  c.memory_inflation = remembered.number("inflation", {1.0, 1000.0}, c.memory_inflation);
+  c.memory_rotation_std_rad = remembered.angle_deg("rotation_std_deg", {0.0, 30.0}, c.memory_rotation_std_rad);
+  c.memory_speed_scale_std = remembered.number("speed_scale_std", {0.0, 0.5}, c.memory_speed_scale_std);
+
+  config::Reader knock = table.table("knock");
+  c.knock_block_s = knock.number("block_s", {0.1, 60.0}, c.knock_block_s);
+  c.knock_yaw_rad = knock.angle_deg("yaw_deg", {0.05, 30.0}, c.knock_yaw_rad);
+  c.knock_pitch_rad = knock.angle_deg("pitch_deg", {0.05, 30.0}, c.knock_pitch_rad);
+  c.knock_sum_blocks = knock.number("sum_blocks", {0.1, 100.0}, c.knock_sum_blocks);
+  return c;
+}
+
 std::array<double, 4> four(config::Reader& table, std::string_view key, config::Range allowed,
                            const std::array<double, 4>& fallback) {
   const std::vector<double> values = table.numbers(key, 4, allowed, {fallback.begin(), fallback.end()});
@@ -71,27 +128,10 @@ Settings read_settings(config::Reader root) {
   Settings settings;
   Config& c = settings.estimator;
   c.method = root.choice<MethodName>("method", {kMethodNames.begin(), kMethodNames.end()}, c.method);
-  c.min_speed_mps = root.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
   c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
-  config::Reader prior = root.table("prior");
-  c.prior_yaw_std_rad = prior.angle_deg("yaw_std_deg", {0.1, 30.0}, c.prior_yaw_std_rad);
-  c.prior_speed_scale_std = prior.number("speed_scale_std", {1e-4, 0.5}, c.prior_speed_scale_std);
-  config::Reader drift = root.table("drift");
-  c.yaw_drift_rad_per_sqrt_s = drift.angle_deg("yaw_deg_per_sqrt_s", {0.0, 1.0}, c.yaw_drift_rad_per_sqrt_s);
-  c.speed_scale_drift_per_sqrt_s = drift.number("speed_scale_per_sqrt_s", {0.0, 0.1}, c.speed_scale_drift_per_sqrt_s);
-  config::Reader robust = root.table("robustness");
-  c.outlier_gate_sigma = robust.number("outlier_gate_sigma", {2.0, 20.0}, c.outlier_gate_sigma);
-  c.start_gate_mps = robust.number("start_gate_mps", {0.0, 5.0}, c.start_gate_mps);
-  c.start_duration_s = robust.number("start_duration_s", {0.1, 60.0}, c.start_duration_s);
-  c.ego_error_correlation_s = robust.number("ego_error_correlation_s", {0.0, 60.0}, c.ego_error_correlation_s);
-  config::Reader convergence = root.table("convergence");
-  c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
-  c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
-  c.systematic_yaw_std_rad = convergence.angle_deg("systematic_yaw_std_deg", {0.0, 5.0}, c.systematic_yaw_std_rad);
-  c.systematic_speed_scale_std =
-      convergence.number("systematic_speed_scale_std", {0.0, 0.1}, c.systematic_speed_scale_std);
   c.kpi_window_s = root.number("kpi_window_s", {1.0, 3600.0}, c.kpi_window_s);
   c.residual_gate_sigma = root.number("residual_gate_sigma", {2.0, 20.0}, c.residual_gate_sigma);
+  c.filter = read_filter(root.table("filter"));
   c.published = read_published(root.table("published"));
   c.truth = read_truth(root);
   MemorySettings& memory = settings.memory;

@@ -19,6 +19,7 @@ struct Result {
   double speed_scale;
   double speed_scale_std;
   double yaw_rad;
+  double yaw_std_rad;
 };
 
 /// The estimate at the end of the drive, whose speed signal is multiplied by `factor`.
@@ -35,7 +36,7 @@ Result estimate(const Decoding& drive, const VehicleConfig& car, const alignment
   }
   AlignmentEstimate found{};
   EXPECT_TRUE(estimator.write(1, found));
-  return {found.speed_scale, std::sqrt(found.covariance[0]), found.alignment_yaw_rad};
+  return {found.speed_scale, std::sqrt(found.covariance[0]), found.alignment_yaw_rad, std::sqrt(found.covariance[5])};
 }
 
 class RealDrive : public testing::Test {
@@ -57,8 +58,8 @@ TEST_F(RealDrive, AWrongSpeedSignalIsFoundWhateverItsError) {
   const Result as_it_is = estimate(drive_, car_, {});
   for (const double factor : {0.96, 0.98, 1.02, 1.04}) {
     const Result scaled = estimate(drive_, car_, {}, factor);
-    EXPECT_NEAR(scaled.speed_scale * factor, as_it_is.speed_scale, 3e-4) << factor;
-    EXPECT_NEAR(scaled.yaw_rad, as_it_is.yaw_rad, 0.002) << factor;
+    EXPECT_NEAR(scaled.speed_scale * factor, as_it_is.speed_scale, 0.5 * as_it_is.speed_scale_std) << factor;
+    EXPECT_NEAR(scaled.yaw_rad, as_it_is.yaw_rad, 1.5 * as_it_is.yaw_std_rad) << factor;
   }
 }
 
@@ -69,13 +70,15 @@ TEST_F(RealDrive, NeitherPriorNorStartDecide) {
     change(config);
     return estimate(drive_, car_, config).speed_scale;
   };
-  EXPECT_NEAR(changed([](auto& c) { c.prior_speed_scale_std = 0.01; }), as_it_is.speed_scale, 3e-4);
-  EXPECT_NEAR(changed([](auto& c) { c.prior_speed_scale_std = 0.1; }), as_it_is.speed_scale, 3e-4);
-  EXPECT_NEAR(changed([](auto& c) { c.start_gate_mps = 0.0; }), as_it_is.speed_scale, 3e-4);
-  EXPECT_NEAR(changed([](auto& c) { c.start_gate_mps = 1.0; }), as_it_is.speed_scale, 3e-4);
-  // The gate does matter, since what passes it is not Gaussian: by less than σ from half to double.
-  EXPECT_NEAR(changed([](auto& c) { c.outlier_gate_sigma = 2.0; }), as_it_is.speed_scale, as_it_is.speed_scale_std);
-  EXPECT_NEAR(changed([](auto& c) { c.outlier_gate_sigma = 8.0; }), as_it_is.speed_scale, as_it_is.speed_scale_std);
+  EXPECT_NEAR(changed([](auto& c) { c.filter.prior_speed_scale_std = 0.01; }), as_it_is.speed_scale, 3e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.filter.prior_speed_scale_std = 0.1; }), as_it_is.speed_scale, 3e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 1.0; }), as_it_is.speed_scale, 3e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 4.0; }), as_it_is.speed_scale, 3e-4);
+  // The gate does matter, since what passes it is not Gaussian: by less than two σ from 2 to 8 stds.
+  EXPECT_NEAR(changed([](auto& c) { c.filter.outlier_gate_sigma = 2.0; }), as_it_is.speed_scale,
+              2.0 * as_it_is.speed_scale_std);
+  EXPECT_NEAR(changed([](auto& c) { c.filter.outlier_gate_sigma = 8.0; }), as_it_is.speed_scale,
+              2.0 * as_it_is.speed_scale_std);
 }
 
 TEST_F(RealDrive, IsTheMedianOfWhatStandsStill) {

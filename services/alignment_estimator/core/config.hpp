@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/published/config.hpp"
 
 namespace boresight::alignment {
@@ -39,25 +40,21 @@ struct Truth {
 
 struct Config {
   MethodName method = MethodName::kBoresight;
-  published::PublishedConfig published;  ///< of all methods but kBoresight
-  std::optional<Truth> truth;            ///< for the NEES
-  double residual_gate_sigma = 4.0;      ///< key figures: residuals beyond this many stds are no inliers
-  double min_speed_mps = 5.0;            ///< slower driving tells nothing (Report A §8)
-  double prior_yaw_std_rad = 0.0698;     ///< 4°: how crooked a radar may be before anything was measured
-  double prior_speed_scale_std = 0.03;
-  double yaw_drift_rad_per_sqrt_s = 3e-6;  ///< random walk by which the mounting may change
-  double speed_scale_drift_per_sqrt_s = 1e-5;
-  double outlier_gate_sigma = 4.0;  ///< Tukey's constant: residuals beyond this many stds have no weight
-  double start_gate_mps = 0.5;      ///< added to the std at the start and faded out, so that no wrong solution locks in
-  double start_duration_s = 3.0;
-  double ego_error_correlation_s = 0.2;    ///< how long an error of the speed or yaw-rate signal lasts
-  double converged_yaw_std_rad = 0.00175;  ///< 0.1°
-  double min_seconds_to_converge = 5.0;
-  /// What pitch and roll errors, which this method does not model, do to yaw and k_v; added to the covariance.
-  double systematic_yaw_std_rad = 3.5e-4;
-  double systematic_speed_scale_std = 3e-4;
-  double kpi_window_s = 20.0;
+  FilterConfig filter;                   ///< of kBoresight
+  published::PublishedConfig published;  ///< of all others
   double publish_period_s = 0.2;
+  double kpi_window_s = 20.0;        ///< time constant of the residual statistics
+  double residual_gate_sigma = 4.0;  ///< key figures: residuals beyond this many stds are no inliers
+  std::optional<Truth> truth;        ///< for the NEES
+
+  /// How crooked a radar may be before anything was measured, as the chosen method takes it.
+  [[nodiscard]] double prior_angle_std_rad() const {
+    return method == MethodName::kBoresight ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
+  }
+  /// Below it a drive tells nothing.
+  [[nodiscard]] double min_speed_mps() const {
+    return method == MethodName::kBoresight ? filter.min_speed_mps : published.min_speed_mps;
+  }
 };
 
 }  // namespace boresight::alignment

@@ -44,13 +44,8 @@ ScanResult Estimator::add_scan(const RadarScan& scan) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   const EgoSample ego = ego_.at(time_ns);
   const bool moves = ego.valid && !ego.stale;
-  radar->seen = true;
-  if (moves) {
-    const auto index = static_cast<std::size_t>(radar - radars_.begin());
-    take_detections(scan, radar->config, detections_);
-    method_->process(index, detections_, ego);
-    observe(index, ego);
-  }
+  if (!radar->seen) begin(static_cast<std::size_t>(radar - radars_.begin()));
+  if (moves) offer(static_cast<std::size_t>(radar - radars_.begin()), scan, ego);
   const auto period_ns = static_cast<std::int64_t>(config_.publish_period_s * 1e9);
   // The measurement clock decides, so that a replay publishes the same estimates at any speed; a clock that went
   // back publishes at once.
@@ -61,18 +56,41 @@ ScanResult Estimator::add_scan(const RadarScan& scan) {
   return moves ? ScanResult::kUsed : ScanResult::kNoEgoMotion;
 }
 
-void Estimator::observe(std::size_t index, const EgoSample& ego) {
+void Estimator::begin(std::size_t index) {
   Radar& radar = radars_[index];
   const RadarEstimate e = method_->estimate(index);
-  // A scan that the method could not use (too slow, too few detections) is no evidence of how well it does.
-  if (e.scans_used == radar.scans_used) return;
-  radar.residuals.fade(std::max(0.0, e.seconds_of_drive - radar.seconds_of_drive), config_.kpi_window_s);
+  radar.seen = true;
   radar.scans_used = e.scans_used;
-  radar.seconds_of_drive = e.seconds_of_drive;
+  // Where the way to the estimate begins: the nominal mounting, or what was remembered.
+  radar.convergence.add(0.0, 0, vehicle_form(radar.config, e), e.knock.count);
+}
+
+void Estimator::offer(std::size_t index, const RadarScan& scan, const EgoSample& ego) {
+  Radar& radar = radars_[index];
+  take_detections(scan, radar.config, detections_);
+  method_->process(index, detections_, ego);
+  const double since_s =
+      radar.last_time_ns == 0 ? 0.0 : static_cast<double>(detections_.time_ns - radar.last_time_ns) * 1e-9;
+  radar.last_time_ns = detections_.time_ns;
+  if (std::abs(ego.speed_mps) < config_.min_speed_mps() || detections_.count == 0) return;
+  // A recording that starts again, or a pause, is no drive.
+  const double elapsed_s = since_s > 0.0 && since_s < 1.0 ? since_s : radar.config.cycle_time_s;
+  radar.drive_s += elapsed_s;
+  ++radar.drive_scans;
+  observe(index, ego, elapsed_s);
+}
+
+void Estimator::observe(std::size_t index, const EgoSample& ego, double elapsed_s) {
+  Radar& radar = radars_[index];
+  const RadarEstimate e = method_->estimate(index);
+  radar.convergence.add(radar.drive_s, radar.drive_scans, vehicle_form(radar.config, e), e.knock.count);
+  // A scan that the method did not use is no evidence of how well it does.
+  if (e.scans_used == radar.scans_used) return;
+  radar.scans_used = e.scans_used;
+  radar.residuals.fade(elapsed_s, config_.kpi_window_s);
   const std::span<double> predicted(predicted_.data(), detections_.count);
   method_->predict(index, detections_, ego, predicted);
   count_residuals(radar.config, e, detections_, ego, predicted, config_.residual_gate_sigma, radar.residuals);
-  radar.convergence.add(e.seconds_of_drive, e.scans_used, vehicle_form(radar.config, e), e.knock.count);
 }
 
 RadarEstimate Estimator::estimate(std::size_t radar) const {
@@ -87,7 +105,7 @@ bool Estimator::write(std::uint32_t radar_id, AlignmentEstimate& out) const {
       std::find_if(radars_.begin(), radars_.end(), [&](const Radar& r) { return r.config.id == radar_id; });
   if (found == radars_.end()) return false;
   const RadarEstimate e = estimate(static_cast<std::size_t>(found - radars_.begin()));
-  write_estimate(found->config, e, config_.prior_yaw_std_rad, out);
+  write_estimate(found->config, e, config_.prior_angle_std_rad(), out);
   AlignmentKpis& kpis = out.kpis;
   found->residuals.write(kpis);
   kpis.seconds_of_drive = static_cast<float>(e.seconds_of_drive);

@@ -54,12 +54,16 @@ class Estimator {
     std::optional<Eigen::Matrix3d> actual;  ///< as really mounted, where the truth is known
     bool seen = false;
     std::int64_t next_publish_ns = 0;
+    std::int64_t last_time_ns = 0;
+    double drive_s = 0.0;  ///< of scans that were offered to the method, fast enough: the clock of the key figures
+    std::uint64_t drive_scans = 0;
     std::uint64_t scans_used = 0;
-    double seconds_of_drive = 0.0;
     ResidualStatistics residuals;
     Convergence convergence;
   };
-  void observe(std::size_t index, const EgoSample& ego);
+  void begin(std::size_t index);
+  void offer(std::size_t index, const RadarScan& scan, const EgoSample& ego);
+  void observe(std::size_t index, const EgoSample& ego, double elapsed_s);
 
   Config config_;
   EgoHistory ego_;

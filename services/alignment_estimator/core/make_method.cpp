@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "services/alignment_estimator/core/azimuth_1d_method.hpp"
+#include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/published/published.hpp"
 
 namespace boresight::alignment {
@@ -12,7 +12,7 @@ std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& 
   const auto make = [&](Kind kind) { return published::make_published(kind, vehicle, config.published); };
   switch (config.method) {
     case MethodName::kBoresight:
-      return std::make_unique<Azimuth1dMethod>(vehicle, config);
+      return std::make_unique<RobustFilter>(vehicle, config.filter);
     case MethodName::kSteepestDescent:
       return make(Kind::kSteepestDescent);
     case MethodName::kNls:

@@ -149,7 +149,13 @@ TEST(Estimator, EveryMethodByItsNameRunsWithKeyFiguresAndAllocatesNothing) {
     EXPECT_GT(out.kpis.scans_used, 1000u) << name;
     EXPECT_GT(out.kpis.residual_rmse_mps, 0.0F) << name;
     EXPECT_LT(out.kpis.residual_rmse_mps, 1.01F * out.kpis.uncorrected_residual_rmse_mps) << name;
-    EXPECT_NEAR(out.kpis.inlier_ratio, 0.8F, 0.3F) << name;
+    EXPECT_GT(out.kpis.inlier_ratio, 0.3F) << name;  // that which does not converge on this drive
+    EXPECT_LT(out.kpis.inlier_ratio, 0.9F) << name;
+    if (method == MethodName::kBoresight) {
+      EXPECT_NEAR(out.kpis.inlier_ratio, 0.8F, 0.05F);
+      EXPECT_LT(out.kpis.seconds_to_95_percent[1], 2.0F);
+      EXPECT_GT(out.kpis.seconds_to_95_percent[1], 0.2F);
+    }
     EXPECT_FALSE(std::isnan(out.kpis.drift_per_minute[1])) << name;
     EXPECT_NE(std::isnan(out.kpis.nees), (out.observable & 0x71) != 0) << name;
     std::printf("%-17.*s yaw %+.3f° ± %.3f°, k_v %.4f, 95 %% after %.1f s, RMSE %.3f of %.3f m/s, NEES %.2f\n",
