@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kFarthest_m = 60.0;  // of the vehicle's centre from the ego vehicle: what four corner radars shall see
 constexpr double kMatch_m = 4.0;
+/// The alignment estimator, which here remembers nothing, takes over a second to find that a radar is 2.5° crooked;
+/// what such a radar makes up meanwhile is counted apart.
+constexpr double kAligned_s = 1.5;
 
 struct Object {
   std::size_t index;
@@ -25,6 +28,7 @@ struct Figures {
   double worst_delay_s = 0.0;
   double position_square = 0.0, velocity_square = 0.0;
   std::size_t false_ids = 0, false_instants = 0, instants = 0, ids = 0;
+  std::size_t early_false_ids = 0, early_false_instants = 0;  // of tracks born before kAligned_s
   std::size_t switches = 0;
   [[nodiscard]] double share() const { return static_cast<double>(found) / static_cast<double>(chances); }
   [[nodiscard]] double position_rmse_m() const { return std::sqrt(position_square / static_cast<double>(found)); }
@@ -60,7 +64,11 @@ Figures judge(const std::string& scenario, std::uint64_t seed, double duration_s
   };
   std::map<std::size_t, Memory> memory;
   std::set<std::uint32_t> ids;
-  std::map<std::uint32_t, std::pair<std::size_t, std::size_t>> life;  // instants, of which without an object
+  struct Life {
+    double born_s;
+    std::size_t instants = 0, wrong = 0;  // of which without an object
+  };
+  std::map<std::uint32_t, Life> life;
   const auto end_stay = [&](Memory& m, double t_s) {
     if (m.since_s >= 0.0 && t_s - m.since_s > 3.0) {
       ++figures.stays;
@@ -82,11 +90,11 @@ Figures judge(const std::string& scenario, std::uint64_t seed, double duration_s
       // A long vehicle's track may lie at either of its ends.
       const bool real = std::any_of(objects.begin(), objects.end(),
                                     [&](const Object& o) { return (o.position_m - p).norm() < kMatch_m + 3.0; });
-      auto& [instants, wrong] = life[track.tracking_id];
-      ++instants;
+      Life& its = life.try_emplace(track.tracking_id, Life{t_s}).first->second;
+      ++its.instants;
       if (!real) {
-        ++figures.false_instants;
-        ++wrong;
+        ++(its.born_s < kAligned_s ? figures.early_false_instants : figures.false_instants);
+        ++its.wrong;
       }
     }
     for (const Object& object : objects) {
@@ -122,13 +130,16 @@ Figures judge(const std::string& scenario, std::uint64_t seed, double duration_s
   }
   for (auto& [index, m] : memory) end_stay(m, duration_s);
   figures.ids = ids.size();
-  for (const auto& [id, counts] : life) figures.false_ids += 2 * counts.second > counts.first ? 1 : 0;
+  for (const auto& [id, its] : life) {
+    if (2 * its.wrong > its.instants) ++(its.born_s < kAligned_s ? figures.early_false_ids : figures.false_ids);
+  }
   std::printf(
       "%s, seed %llu: %zu of %zu stays of over 3 s found, at the latest after %.2f s; tracked %.1f %% of the time; "
-      "position %.2f m, velocity %.2f m/s rms; %zu ids, %zu false, %.3f false at a time; %zu switches\n",
+      "position %.2f m, velocity %.2f m/s rms; %zu ids, %zu false, %.3f false at a time; %zu false before radars are "
+      "aligned; %zu switches\n",
       scenario.c_str(), static_cast<unsigned long long>(seed), figures.stays_found, figures.stays,
       figures.worst_delay_s, 100.0 * figures.share(), figures.position_rmse_m(), figures.velocity_rmse_mps(),
-      figures.ids, figures.false_ids, figures.false_tracks(), figures.switches);
+      figures.ids, figures.false_ids, figures.false_tracks(), figures.early_false_ids, figures.switches);
   return figures;
 }
 
@@ -146,6 +157,8 @@ TEST_P(Tracking, FindsEveryVehicleSoonAndMakesUpLittle) {
     EXPECT_LT(figures.velocity_rmse_mps(), 2.5);
     EXPECT_LT(figures.false_tracks(), 0.05);
     EXPECT_LE(figures.false_ids, 2u);
+    EXPECT_LE(figures.early_false_ids, 8u);
+    EXPECT_LT(static_cast<double>(figures.early_false_instants), 0.3 * static_cast<double>(figures.instants));
     EXPECT_LE(figures.ids, 4 * figures.stays);
     EXPECT_LE(figures.switches, 2 * figures.stays);
   }
