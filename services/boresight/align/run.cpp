@@ -135,7 +135,7 @@ void Run::add_scan(RadarScan& scan, double time_s) {
   const EgoSample ego = ego_.at(scan.header.measurement_time_ns);
   const bool moves = ego.valid && !ego.stale;
   if (!moves) ++radar.scans_without_ego;
-  if (moves && std::abs(ego.speed_mps) >= options_.config.min_speed_mps) {
+  if (moves && std::abs(ego.speed_mps) >= options_.config.min_speed_mps()) {
     alignment::take_detections(scan, radar.config, *detections_);
     radar.residuals.add(*detections_, ego);
   }
