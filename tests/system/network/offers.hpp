@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/system/network/two_hosts.hpp"
+#include "tests/system/harness/two_hosts.hpp"
 
 namespace boresight::network {
 

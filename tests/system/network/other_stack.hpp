@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tests/system/network/two_hosts.hpp"
+#include "tests/system/harness/two_hosts.hpp"
 
 namespace boresight::network {
 

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/system/harness/roudi.hpp"
+#include "tests/system/harness/two_hosts.hpp"
 #include "tests/system/network/offers.hpp"
-#include "tests/system/network/two_hosts.hpp"
 #include "tests/system/network/witness.hpp"
 
 namespace boresight::network {

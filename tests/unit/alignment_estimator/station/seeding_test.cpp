@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "services/alignment_estimator/core/estimator.hpp"
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/plate/seed.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment {
 namespace {
@@ -122,6 +124,63 @@ TEST(PlateSeed, IsRefusedWhereItCannotBeUsed) {
   EXPECT_FALSE(seed_radar(estimator, wrong));
   EXPECT_EQ(estimator.estimate(0).sensor_to_vehicle, before.sensor_to_vehicle);
   EXPECT_EQ(estimator.estimate(0).covariance, before.covariance);
+}
+
+TEST(PlateSeed, IsRefusedByMethodsThatStartFromTheNominalMounting) {
+  const VehicleConfig three = vehicle();
+  RotationSeed seed;
+  ASSERT_TRUE(seed_from_plate(three.radars[0], 0.01, 1e-4, 0.02, 1e-4, {}, seed));
+  for (const MethodName method : {MethodName::kAzimuth1d, MethodName::kNls, MethodName::kNelderMead}) {
+    Config config;
+    config.method = method;
+    Estimator estimator(three, config);
+    EXPECT_FALSE(estimator.seed(seed)) << static_cast<int>(method);
+  }
+  Estimator estimator(three, {});
+  EXPECT_TRUE(estimator.seed(seed)) << "the default method";
+  seed.radar_id = 9;
+  EXPECT_FALSE(estimator.seed(seed)) << "a radar that the vehicle has not";
+}
+
+TEST(PlateSeed, IsWorthMinutesOfDriving) {
+  simulator::AlignmentSpec spec = simulator::four_corner_radars();
+  spec.duration_s = 12.0;
+  spec.road = simulator::RoadKind::kMotorway;
+  simulator::AlignmentDrive drive(spec);
+  const VehicleConfig four = drive.vehicle();
+  Config config;
+  config.method = MethodName::kBoresight;
+  Estimator with_seed(four, config), without(four, config);
+  for (std::size_t i = 0; i < four.radars.size(); ++i) {
+    RotationSeed seed;
+    seed.radar_id = four.radars[i].id;
+    seed.rotation_vehicle_rad =
+        geometry::so3_log(drive.sensor_to_vehicle(i, 0.0) * nominal(four.radars[i]).transpose());
+    seed.covariance = Eigen::Vector3d::Constant(std::pow(0.05 * kDegree_rad, 2)).asDiagonal();
+    // Off by two of its stds, as a real one may be.
+    seed.rotation_vehicle_rad.y() += 0.1 * kDegree_rad;
+    ASSERT_TRUE(with_seed.seed(seed));
+  }
+  simulator::AlignmentEvent event;
+  while (drive.next(event)) {
+    for (Estimator* const estimator : {&with_seed, &without}) {
+      if (event.ego != nullptr) estimator->add_ego_motion(*event.ego);
+      if (event.scan != nullptr) static_cast<void>(estimator->add_scan(*event.scan));
+    }
+  }
+  for (std::size_t i = 0; i < four.radars.size(); ++i) {
+    const RadarEstimate seeded = with_seed.estimate(i), plain = without.estimate(i);
+    ASSERT_GT(seeded.scans_used, 50u);
+    EXPECT_LE(std::sqrt(seeded.covariance(kTurnX, kTurnX)), 0.06 * kDegree_rad);
+    EXPECT_GT(std::sqrt(plain.covariance(kTurnX, kTurnX)), 0.2 * kDegree_rad);
+    const Eigen::Vector3d error =
+        geometry::so3_log(seeded.sensor_to_vehicle * drive.sensor_to_vehicle(i, 13.0).transpose());
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      EXPECT_LT(std::abs(error[axis]), 4.0 * std::sqrt(seeded.covariance(1 + axis, 1 + axis)))
+          << "radar " << i << ", axis " << axis;
+    }
+    EXPECT_NEAR(seeded.speed_scale, spec.speed_scale, 0.005);
+  }
 }
 
 }  // namespace

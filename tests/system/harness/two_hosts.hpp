@@ -1,6 +1,6 @@
-// Two hosts on one machine: the ECU with the gateway and the sensors' side, each a network namespace of its own, joined
-// by a virtual Ethernet cable between the ECU and a switch on the sensors' side. A second cable, over which the ECU's
-// default route and all multicast routes lead, is there to be chosen by mistake.
+// Two hosts on one machine: the ECU with the services and the sensors' (or the station's) side, each a network
+// namespace of its own, joined by a virtual Ethernet cable between the ECU and a switch on the sensors' side. A second
+// cable, over which the ECU's default route and all multicast routes lead, is there to be chosen by mistake.
 #pragma once
 
 #include <functional>
@@ -60,5 +60,8 @@ class TwoHosts {
 
 /// What the programs of that name have written since the beginning, to standard error of the test.
 void show_log(const std::string& program);
+
+/// main() of such tests: without the right to make namespaces and cables all of them are skipped (exit code 77).
+[[nodiscard]] int run_tests_on_two_hosts(int argc, char** argv);
 
 }  // namespace boresight::network

@@ -1,4 +1,4 @@
-#include "tests/system/network/two_hosts.hpp"
+#include "tests/system/harness/two_hosts.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
 
@@ -123,6 +124,16 @@ void TwoHosts::lay_uplink() const {
 void show_log(const std::string& program) {
   std::ifstream log(log_of(program));
   std::cerr << "--- " << program << "\n" << log.rdbuf() << std::flush;
+}
+
+int run_tests_on_two_hosts(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  if (!TwoHosts::are_possible()) {
+    std::puts("skipped: network namespaces or virtual Ethernet cables are not permitted");
+    constexpr int kSkipped = 77;
+    return kSkipped;
+  }
+  return RUN_ALL_TESTS();
 }
 
 }  // namespace boresight::network
