@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = EXIT_SUCCESS;
   boresight::add_align_command(app, exit_code);
+  boresight::add_calibrate_command(app, exit_code);
   boresight::add_catalogue_command(app, exit_code);
   boresight::add_decode_command(app, exit_code);
   boresight::add_demo_command(app, exit_code);

@@ -481,6 +481,7 @@ PlateResult evaluate(const Measurements& measurements, const FitConfig& config) 
   const std::array<bool, kMaxTilts>& used = solution.used;
   for (std::size_t i = 0; i < points.count; ++i) {
     result.tilts[i].used = used[i];
+    result.tilts[i].taken_db = points.amplitude[i];
     result.tilts[i].fitted_db = parabola.at(points.tilt[i]);
     if (used[i]) ++result.tilts_used;
   }

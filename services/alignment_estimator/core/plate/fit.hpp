@@ -11,8 +11,10 @@
 namespace boresight::alignment::plate {
 
 enum class FitMethod : std::uint8_t {
-  kRobust,     ///< medians in dB, RANSAC and least squares; azimuth by a mean within 3 MAD
-  kPublished,  ///< Report A §7: weighted least squares of means (2)–(8); azimuth by two rounds of 2σ (9)
+  /// Each tilt's median in dB, sharpened by Tukey's biweight; RANSAC and least squares; azimuth by a mean within 3 MAD.
+  kRobust,
+  /// Report A §7: weighted least squares of means (2)–(8); azimuth by two rounds of 2σ (9).
+  kPublished,
 };
 
 /// Why a run failed.
@@ -53,6 +55,7 @@ struct TiltSummary {
   std::size_t scans = 0;
   double mean_db = 0.0, std_db = 0.0, median_db = 0.0;
   double mean_azimuth_rad = 0.0, azimuth_std_rad = 0.0;
+  double taken_db = 0.0;  ///< what the fit took it for
   double fitted_db = 0.0;
   bool used = false;  ///< by the fit; the robust one leaves out tilts that contradict the others
 };

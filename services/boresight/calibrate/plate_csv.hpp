@@ -1,0 +1,14 @@
+// A recorded run of the tilting plate as a table.
+#pragma once
+
+#include "services/alignment_estimator/core/plate/measurement.hpp"
+#include "services/boresight/align/csv_table.hpp"
+
+namespace boresight::calibrate {
+
+/// Columns tilt_deg (−20…20, positive = toward the ground), amplitude_db (−200…200) and azimuth_deg (−90…90, sensor
+/// frame, + left), a row a scan; other columns are ignored, such as the scan's number. Consecutive rows of the same
+/// tilt belong together. Rows that cannot be used are problems and left out; throws align::TableError as CsvTable does.
+[[nodiscard]] alignment::plate::Measurements read_plate(recording::ByteSource& source, align::Problems& problems);
+
+}  // namespace boresight::calibrate

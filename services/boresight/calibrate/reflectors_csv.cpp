@@ -1,0 +1,65 @@
+#include "services/boresight/calibrate/reflectors_csv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace boresight::calibrate {
+
+namespace {
+
+/// All rows of one reflector.
+struct Rows {
+  Eigen::Vector3d surveyed_m;
+  std::uint64_t line = 0;
+  std::vector<double> range_m, azimuth_rad, elevation_rad;
+};
+
+double median(std::vector<double>& values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+}  // namespace
+
+ReflectorTable read_reflectors(recording::ByteSource& source, align::Problems& problems) {
+  constexpr double kRadians = M_PI / 180.0;
+  constexpr std::array<align::Column, 6> kColumns{{{"x_m", -100.0, 100.0, "m"},
+                                                   {"y_m", -100.0, 100.0, "m"},
+                                                   {"z_m", -100.0, 100.0, "m"},
+                                                   {"range_m", 0.0, 100.0, "m"},
+                                                   {"azimuth_deg", -90.0, 90.0, "deg"},
+                                                   {"elevation_deg", -90.0, 90.0, "deg", false, true}}};
+  align::CsvTable table(source, kColumns, problems);
+  ReflectorTable result;
+  std::vector<Rows> reflectors;
+  std::array<double, kColumns.size()> row{};
+  result.has_elevation = table.has(5);
+  while (table.next(row)) {
+    const Eigen::Vector3d surveyed(row[0], row[1], row[2]);
+    auto found = std::find_if(reflectors.begin(), reflectors.end(),
+                              [&](const Rows& rows) { return rows.surveyed_m == surveyed; });
+    if (found == reflectors.end()) {
+      found = reflectors.insert(found, {surveyed, table.line_number(), {}, {}, {}});
+    }
+    found->range_m.push_back(row[3]);
+    found->azimuth_rad.push_back(row[4] * kRadians);
+    found->elevation_rad.push_back(row[5] * kRadians);
+    result.has_elevation = result.has_elevation && !std::isnan(row[5]);
+    table.accept();
+  }
+  for (Rows& rows : reflectors) {
+    alignment::reflectors::Position position;
+    position.surveyed_m = rows.surveyed_m;
+    position.range_m = median(rows.range_m);
+    position.azimuth_rad = median(rows.azimuth_rad);
+    if (result.has_elevation) position.elevation_rad = median(rows.elevation_rad);
+    position.scans = rows.range_m.size();
+    result.positions.push_back(position);
+    result.lines.push_back(rows.line);
+  }
+  return result;
+}
+
+}  // namespace boresight::calibrate

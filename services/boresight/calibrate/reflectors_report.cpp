@@ -1,0 +1,125 @@
+#include "services/boresight/calibrate/reflectors_report.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "services/boresight/calibrate/seed_json.hpp"
+
+namespace boresight::calibrate {
+
+namespace reflectors = alignment::reflectors;
+
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::string angle(const char* name, double value_rad, double std_rad, bool observable) {
+  if (!observable) return fmt::format("  {:6}not observable (±{:.2f} deg)\n", name, std_rad * kDegrees);
+  return fmt::format("  {:6}{:+.3f} ± {:.3f} deg\n", name, value_rad * kDegrees, std_rad * kDegrees);
+}
+
+void write_angle(align::JsonWriter& json, const std::string& name, bool known, double value_rad, double std_rad,
+                 bool observable) {
+  json.key(name).begin_object().field("value_deg", known ? value_rad * kDegrees : kNaN);
+  json.field("std_deg", known ? std_rad * kDegrees : kNaN).field("observable", known && observable).end_object();
+}
+
+}  // namespace
+
+std::string problem_of(const ReflectorRun& run, reflectors::Problem problem, std::size_t position) {
+  using reflectors::Problem;
+  if (problem == Problem::kNone) return "";
+  std::string text(reflectors::explain(problem));
+  if (problem == Problem::kTooFewPositions) {
+    return fmt::format("{}: {}: {} given, allowed are {} or more", run.source, text, run.table.positions.size(),
+                       run.config.min_positions);
+  }
+  const bool is_of_one = problem == Problem::kNotFinite || problem == Problem::kOutOfRange ||
+                         problem == Problem::kOutOfView || problem == Problem::kNotALine;
+  if (!is_of_one || position >= run.table.positions.size()) return fmt::format("{}: {}", run.source, text);
+  const Eigen::Vector3d& place = run.table.positions[position].surveyed_m;
+  text = fmt::format("{}:{}: {}: ({:g}, {:g}, {:g}) m", run.source, run.table.lines[position], text, place.x(),
+                     place.y(), place.z());
+  if (problem == Problem::kOutOfRange) {
+    const auto& mount = run.radar.mounting_pose.position_m;
+    text += fmt::format(" is {:.2f} m from the radar at ({:g}, {:g}, {:g}) m, allowed are {:g} … {:g} m",
+                        (place - Eigen::Vector3d(mount.data())).norm(), mount[0], mount[1], mount[2],
+                        run.config.range_min_m, run.config.range_max_m);
+  } else if (problem == Problem::kNotALine) {
+    text += fmt::format(", allowed are {:g} m beside it", run.config.line_tolerance_m);
+  }
+  return text;
+}
+
+std::string to_table(const ReflectorRun& run) {
+  const reflectors::Result& result = run.result;
+  std::string text = fmt::format("radar {} {}: {} reflector positions{}\n", run.radar.id, run.radar.name,
+                                 run.table.positions.size(), run.config.has_elevation ? "" : ", no elevation");
+  if (!result.used.empty()) {
+    text += "     x/m      y/m      z/m  range/m  scans  residual azimuth/deg  elevation/deg\n";
+    for (std::size_t i = 0; i < run.table.positions.size(); ++i) {
+      const reflectors::Position& position = run.table.positions[i];
+      text += fmt::format("{:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6d} {:21.3f}", position.surveyed_m.x(),
+                          position.surveyed_m.y(), position.surveyed_m.z(), position.range_m, position.scans,
+                          result.residual_azimuth_rad[i] * kDegrees);
+      text += run.config.has_elevation ? fmt::format(" {:14.3f}", result.residual_elevation_rad[i] * kDegrees)
+                                       : std::string(15, ' ');
+      text += result.used[i] ? "\n" : "  left out\n";
+    }
+  }
+  if (result.ok()) {
+    text += fmt::format("directions ({} of {} positions, noise {:.2f} × as stated):\n", result.positions_used,
+                        run.table.positions.size(), result.noise_scale);
+    text += angle("yaw", result.yaw_rad, result.yaw_std_rad, true);
+    text += angle("pitch", result.pitch_rad, result.pitch_std_rad, result.pitch_observable);
+    text += angle("roll", result.roll_rad, result.roll_std_rad, result.roll_observable);
+  } else {
+    text += "FAILED: " + problem_of(run, result.problem, result.problem_position) + "\n";
+  }
+  if (run.line.ok()) {
+    text += fmt::format("published line ({} the driving direction):\n", run.line.across ? "square to" : "along");
+    text += angle("yaw", run.line.yaw_rad, run.line.yaw_std_rad, true);
+    if (run.config.has_elevation) text += angle("pitch", run.line.pitch_rad, run.line.pitch_std_rad, true);
+  } else if (result.ok()) {
+    text += "published line: " + problem_of(run, run.line.problem, run.line.problem_position) + "\n";
+  }
+  return text;
+}
+
+std::string to_json(const ReflectorRun& run) {
+  const reflectors::Result& result = run.result;
+  const bool known = result.ok();
+  align::JsonWriter json;
+  json.begin_object().field("tool", "boresight calibrate reflectors").field("version", run.tool_version);
+  json.field("source", run.source).field("radar", std::uint64_t{run.radar.id}).field("ok", known);
+  json.field("problem", problem_of(run, result.problem, result.problem_position));
+  json.field("has_elevation", run.config.has_elevation);
+  write_angle(json, "yaw", known, result.yaw_rad, result.yaw_std_rad, true);
+  write_angle(json, "pitch", known, result.pitch_rad, result.pitch_std_rad, result.pitch_observable);
+  write_angle(json, "roll", known, result.roll_rad, result.roll_std_rad, result.roll_observable);
+  json.field("noise_scale", known ? result.noise_scale : kNaN);
+  json.field("positions_used", std::uint64_t{result.positions_used});
+  json.key("line").begin_object().field("ok", run.line.ok());
+  json.field("problem", problem_of(run, run.line.problem, run.line.problem_position));
+  json.field("across", run.line.across);
+  write_angle(json, "yaw", run.line.ok(), run.line.yaw_rad, run.line.yaw_std_rad, true);
+  write_angle(json, "pitch", run.line.ok() && run.config.has_elevation, run.line.pitch_rad, run.line.pitch_std_rad,
+              true);
+  json.end_object().key("positions").begin_array();
+  for (std::size_t i = 0; i < result.used.size(); ++i) {
+    const reflectors::Position& position = run.table.positions[i];
+    json.begin_object().field("x_m", position.surveyed_m.x()).field("y_m", position.surveyed_m.y());
+    json.field("z_m", position.surveyed_m.z()).field("scans", std::uint64_t{position.scans});
+    json.field("residual_azimuth_deg", result.residual_azimuth_rad[i] * kDegrees);
+    json.field("residual_elevation_deg", run.config.has_elevation ? result.residual_elevation_rad[i] * kDegrees : kNaN);
+    json.field("used", static_cast<bool>(result.used[i])).end_object();
+  }
+  json.end_array();
+  if (known) write_seed(json, result.rotation);
+  return json.end_object().text() + "\n";
+}
+
+}  // namespace boresight::calibrate

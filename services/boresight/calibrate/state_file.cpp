@@ -1,0 +1,44 @@
+#include "services/boresight/calibrate/state_file.hpp"
+
+#include <memory>
+#include <stdexcept>
+
+#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/memory/codec.hpp"
+#include "services/alignment_estimator/store/memory_file.hpp"
+
+namespace boresight::calibrate {
+
+std::string seed_state_file(const std::filesystem::path& file, const VehicleConfig& vehicle,
+                            const alignment::RotationSeed& seed) {
+  using Kind = alignment::LoadedMemory::Kind;
+  const alignment::Identity identity = alignment::identity_of(vehicle);
+  const auto loaded = std::make_unique<alignment::LoadedMemory>(alignment::load_memory(file, identity));
+  std::string news;
+  switch (loaded->kind) {
+    case Kind::kTaken:
+      if (loaded->left_out > 0) {
+        news = file.string() +
+               ": radars mounted otherwise than remembered were left out: " + std::to_string(loaded->left_out);
+      }
+      break;
+    case Kind::kUnreadable:
+      throw std::runtime_error(file.string() + ": " + loaded->reason);
+    case Kind::kRejected:
+      news = file.string() + " was " + loaded->reason + "; it is kept aside with .rejected, and begun anew";
+      [[fallthrough]];
+    case Kind::kMissing:
+      // What the estimator believes before it has seen anything.
+      std::make_unique<alignment::RobustFilter>(vehicle, alignment::FilterConfig{})->save(loaded->memory);
+      break;
+  }
+  const auto bytes = std::make_unique<alignment::MemoryBytes>();
+  if (!alignment::put_seed(seed, loaded->memory)) throw std::runtime_error(file.string() + ": no room for the radar");
+  const std::size_t size = alignment::encode_memory(loaded->memory, identity, *bytes);
+  if (size == 0) throw std::runtime_error(file.string() + ": radar " + std::to_string(seed.radar_id) + " is unknown");
+  const std::string problem = alignment::write_memory_file(file, std::span(bytes->data(), size));
+  if (!problem.empty()) throw std::runtime_error(file.string() + ": " + problem);
+  return news;
+}
+
+}  // namespace boresight::calibrate

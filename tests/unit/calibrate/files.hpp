@@ -1,0 +1,76 @@
+// Tables of simulated calibrations in a folder of their own.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "services/common/geometry/frames.hpp"
+#include "tests/simulator/alignment/plate.hpp"
+
+namespace boresight::calibrate::testing {
+
+inline constexpr double kDegrees = 180.0 / M_PI;
+
+/// A folder that lives as long as this does.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "boresight_calibrate_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+    return path(name);
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream file(path(name));
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string plate_table(const simulator::PlateSpec& spec, std::uint64_t seed = 1) {
+  std::mt19937_64 random(seed);
+  const alignment::plate::Measurements run = simulator::simulate_plate(spec, random);
+  std::string text = "# simulated\ntilt_deg,scan,amplitude_db,azimuth_deg\n";
+  for (std::size_t i = 0; i < run.number_of_tilts; ++i) {
+    const alignment::plate::TiltMeasurement& tilt = run.tilts[i];
+    for (std::size_t k = 0; k < tilt.scans; ++k) {
+      text += fmt::format("{},{},{},{}\n", tilt.tilt_rad * kDegrees, k, tilt.amplitude_db[k],
+                          tilt.azimuth_rad[k] * kDegrees);
+    }
+  }
+  return text;
+}
+
+/// Twelve reflectors along the driving direction, `beside_m` to the left, as seen without noise by a radar.
+inline std::string reflector_table(const MountingPose& pose, double yaw_deg, double pitch_deg, double beside_m,
+                                   bool with_elevation = true) {
+  std::string text =
+      with_elevation ? "x_m,y_m,z_m,range_m,azimuth_deg,elevation_deg\n" : "x_m,y_m,z_m,range_m,azimuth_deg\n";
+  const Eigen::Matrix3d actual = geometry::sensor_to_vehicle(pose, yaw_deg / kDegrees, pitch_deg / kDegrees, 0.0);
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::Vector3d place(10.0 + 3.0 * i, beside_m, pose.position_m[2]);
+    const Eigen::Vector3d way = actual.transpose() * (place - Eigen::Vector3d(pose.position_m.data()));
+    text += fmt::format("{},{},{},{},{}", place.x(), place.y(), place.z(), way.norm(),
+                        std::atan2(way.y(), way.x()) * kDegrees);
+    text += with_elevation ? fmt::format(",{}\n", std::asin(way.z() / way.norm()) * kDegrees) : "\n";
+  }
+  return text;
+}
+
+}  // namespace boresight::calibrate::testing
