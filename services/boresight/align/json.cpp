@@ -84,7 +84,7 @@ void write_radar(JsonWriter& json, const RadarResult& radar) {
                                                    m.vehicle_roll_rad};
   for (std::size_t i = 0; i < kParameters; ++i) {
     json.field(key_of(i), shown(i, vehicle.at(i)));
-    json.field(key_of(i, "_std"), shown(i, std_of(m.vehicle_covariance, i)));
+    json.field(key_of(i, "_std"), shown(i, radar.stds.at(i)));
   }
   const std::array<double, 3> sensor = {m.alignment_yaw_rad, m.alignment_pitch_rad, m.alignment_roll_rad};
   for (std::size_t i = 0; i < 3; ++i) {

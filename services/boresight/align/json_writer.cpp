@@ -86,7 +86,7 @@ JsonWriter& JsonWriter::value(std::string_view text) {
 JsonWriter& JsonWriter::value(double number) {
   separate();
   if (std::isfinite(number)) {
-    fmt::format_to(std::back_inserter(text_), "{:.9g}", number);
+    fmt::format_to(std::back_inserter(text_), "{:.9g}", number + 0.0);  // no "-0"
   } else {
     text_ += "null";
   }

@@ -199,6 +199,7 @@ class Picture {
     };
     for (const Sample& sample : result_.series) {
       if (x(sample) < kStartShare * x_max_) continue;
+      include(curve.value(sample));
       include(curve.value(sample) - 2.0 * curve.std(sample));
       include(curve.value(sample) + 2.0 * curve.std(sample));
     }

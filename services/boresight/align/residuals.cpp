@@ -65,6 +65,21 @@ void ResidualSample::add(const alignment::ScanDetections& scan, const EgoSample&
   }
 }
 
+alignment::post_factum::Recording ResidualSample::recording(const MountingPose& nominal, bool has_elevation) const {
+  alignment::post_factum::Recording recording;
+  recording.nominal = nominal;
+  recording.has_elevation = has_elevation;
+  recording.detections.reserve(detections_.size());
+  for (const Scan& scan : scans_) {
+    for (std::size_t i = scan.first; i < scan.first + scan.count; ++i) {
+      const Detection& d = detections_[i];
+      recording.detections.push_back(
+          {d.azimuth_rad, d.elevation_rad, d.range_rate_mps, scan.speed_mps, scan.yaw_rate_radps});
+    }
+  }
+  return recording;
+}
+
 ResidualSummary ResidualSample::judge(const alignment::RadarEstimate& estimate, const RadarConfig& radar,
                                       const Eigen::Matrix3d& nominal) const {
   std::vector<double> before, after;       // of inliers

@@ -60,7 +60,8 @@ struct RadarResult {
   std::string name;
   bool measures_elevation = false;
   alignment::RadarEstimate estimate;
-  AlignmentEstimate message{};  ///< as the service publishes it, without header
+  AlignmentEstimate message{};             ///< as the service publishes it, without header
+  std::array<double, kParameters> stds{};  ///< of k_v and the message's vehicle yaw, pitch, roll
   std::uint64_t scans = 0, scans_without_ego = 0, detections = 0;
   ResidualSummary residuals;
   double cpu_us_per_scan = 0.0, max_cpu_us_per_scan = 0.0;  ///< NaN where no scan was processed one by one
@@ -79,6 +80,7 @@ struct Result {
   double speed_scale = 1.0, speed_scale_std = 0.0;
   bool speed_scale_observable = false;
   std::optional<double> true_speed_scale, true_yaw_rate_bias_radps, true_slip_coefficient_radps2pm;
+  std::string problem;              ///< why there is no result; "" where there is
   std::string speed_scale_support;  ///< post_factum, as RadarResult::support
   std::vector<RadarResult> radars;
   bool x_is_iteration = false;

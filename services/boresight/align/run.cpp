@@ -7,6 +7,8 @@
 
 #include "services/alignment_estimator/core/scan_detections.hpp"
 #include "services/alignment_estimator/core/write_estimate.hpp"
+#include "services/boresight/align/post_factum.hpp"
+#include "services/boresight/align/stds.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -14,22 +16,13 @@ namespace boresight::align {
 
 namespace {
 
+constexpr std::string_view kPostFactum = "post_factum";
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// The origin on the estimator's clock: what comes a little before it shall not be at 0, which means "never".
 constexpr std::int64_t kOrigin_ns = 10'000'000'000;
-/// Places of (k_v, yaw, pitch, roll) in the covariance of (k_v, d_x, d_y, d_z).
-constexpr std::array<Eigen::Index, kParameters> kPlace = {0, 3, 2, 1};
 
 std::array<double, kParameters> to_array(const Eigen::Vector4d& v) {
   return {v(0), v(1), v(2), v(3)};
-}
-
-std::array<double, kParameters> stds_of(const alignment::RadarEstimate& estimate) {
-  std::array<double, kParameters> stds{};
-  for (std::size_t i = 0; i < kParameters; ++i) {
-    stds.at(i) = std::sqrt(std::max(0.0, estimate.covariance(kPlace.at(i), kPlace.at(i))));
-  }
-  return stds;
 }
 
 /// k_v of the vehicle: that of the radars, weighted by their variances, where each has its own. Their errors have a
@@ -78,6 +71,7 @@ std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const auto& [name, method] : alignment::kMethodNames) names.emplace_back(name);
+  names.emplace_back(kPostFactum);
   return names;
 }
 
@@ -94,7 +88,9 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     options_.config.method = method;
     estimator_ = std::make_unique<alignment::Estimator>(vehicle_, options_.config);
   }
-  if (estimator_ == nullptr) throw std::invalid_argument(options_.method + " is no alignment method");
+  if (estimator_ == nullptr && options_.method != kPostFactum) {
+    throw std::invalid_argument(options_.method + " is no alignment method");
+  }
   for (const RadarConfig& config : vehicle_.radars) {
     Radar& radar = radars_.emplace_back();
     radar.config = config;
@@ -116,7 +112,7 @@ void Run::add_ego(EgoMotion& motion, double time_s) {
   if (std::isnan(ego_start_s_)) ego_start_s_ = time_s;
   ego_end_s_ = time_s;
   ego_.add(motion);
-  estimator_->add_ego_motion(motion);
+  if (estimator_) estimator_->add_ego_motion(motion);
 }
 
 void Run::add_scan(RadarScan& scan, double time_s) {
@@ -139,6 +135,7 @@ void Run::add_scan(RadarScan& scan, double time_s) {
     alignment::take_detections(scan, radar.config, *detections_);
     radar.residuals.add(*detections_, ego);
   }
+  if (!estimator_) return;
   const std::int64_t before_ns = options_.cpu_time_ns ? options_.cpu_time_ns() : 0;
   static_cast<void>(estimator_->add_scan(scan));
   if (options_.cpu_time_ns && moves) {
@@ -188,6 +185,7 @@ void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, 
 
 void Run::observe_until(double time_s) {
   constexpr double kInterval_s = 1.0, kLongestGap_s = 10.0;
+  if (!estimator_) return;
   // While nothing comes nothing changes.
   if (time_s > next_sample_s_ + kLongestGap_s) next_sample_s_ = time_s - kLongestGap_s;
   for (; next_sample_s_ <= time_s; next_sample_s_ += kInterval_s) series_.push_back(sample(next_sample_s_));
@@ -198,8 +196,8 @@ Sample Run::sample(double time_s) {
   sample.x = time_s;
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     const alignment::RadarEstimate e = estimator_->estimate(i);
-    sample.radars.push_back(
-        {e.state, e.observable, to_array(alignment::vehicle_form(radars_[i].config, e)), stds_of(e)});
+    sample.radars.push_back({e.state, e.observable, to_array(alignment::vehicle_form(radars_[i].config, e)),
+                             component_stds(radars_[i].config, e)});
     // Shared by all radars, or known to one of them: the surest counts.
     const auto is_surer = [](double std, double than) { return std > 0.0 && (than == 0.0 || std < than); };
     if (is_surer(e.yaw_rate_bias_std_radps, sample.yaw_rate_bias_std_radps)) {
@@ -239,9 +237,16 @@ Result Run::finish() {
     result.scans += radar.scans;
     result.detections += radar.detections;
   }
-  finish_estimator(result);
+  if (estimator_) {
+    finish_estimator(result);
+  } else {
+    std::vector<const ResidualSample*> samples;
+    for (const Radar& radar : radars_) samples.push_back(&radar.residuals);
+    solve_post_factum(vehicle_, samples, options_.post_factum, result);
+  }
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     RadarResult& r = result.radars[i];
+    r.stds = component_stds(radars_[i].config, r.estimate);
     r.residuals = radars_[i].residuals.judge(r.estimate, radars_[i].config, radars_[i].nominal);
     if (!radars_[i].truth.empty()) r.truth = compare(radars_[i], r);
   }
@@ -275,7 +280,7 @@ TruthComparison Run::compare(const Radar& radar, const RadarResult& result) {
   const Eigen::Matrix3d& estimated = result.estimate.sensor_to_vehicle;
   const Eigen::Vector3d turn = geometry::so3_log(estimated * truth.sensor_to_vehicle.transpose());
   comparison.errors = {result.estimate.speed_scale - truth.values[0], turn.z(), -turn.y(), turn.x()};
-  const auto stds = stds_of(result.estimate);
+  const auto stds = turn_stds(result.estimate);
   for (std::size_t i = 0; i < kParameters; ++i) {
     const double normalised = comparison.errors.at(i) / stds.at(i);
     comparison.nees.at(i) = stds.at(i) > 0.0 ? normalised * normalised : kNaN;

@@ -14,6 +14,7 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
 #include "services/boresight/align/residuals.hpp"
 #include "services/boresight/align/result.hpp"
 #include "services/boresight/align/truth_file.hpp"
@@ -22,7 +23,7 @@
 
 namespace boresight::align {
 
-/// Names that --method takes.
+/// Names that --method takes: the estimator's, and post_factum.
 [[nodiscard]] std::vector<std::string> method_names();
 
 class Run {
@@ -33,6 +34,7 @@ class Run {
     /// Time on the recording's clock that the estimator's clock counts from; not more than ten seconds after what comes
     /// first. NaN: the time of what comes first.
     double origin_s = std::numeric_limits<double>::quiet_NaN();
+    alignment::post_factum::Config post_factum{};
     std::optional<Truth> truth;
     std::function<std::int64_t()> cpu_time_ns;  ///< of this thread, for the cost of a scan
   };
@@ -70,7 +72,7 @@ class Run {
 
   VehicleConfig vehicle_;
   Options options_;
-  std::unique_ptr<alignment::Estimator> estimator_;
+  std::unique_ptr<alignment::Estimator> estimator_;  ///< none for post_factum, which wants all at once
   EgoHistory ego_;
   std::vector<Radar> radars_;
   std::unique_ptr<alignment::ScanDetections> detections_;

@@ -28,10 +28,6 @@ std::string seconds(double value) {
   return std::isfinite(value) ? fmt::format("{:.1f}", value) : "–";
 }
 
-double std_of(const AlignmentEstimate& m, std::size_t i) {
-  return std::sqrt(static_cast<double>(m.vehicle_covariance.at(5 * i)));
-}
-
 std::string mps(double value) {
   return std::isfinite(value) ? fmt::format("{:.4f}", value) : "–";
 }
@@ -49,9 +45,9 @@ std::string to_table(const Result& result) {
   for (const RadarResult& r : result.radars) {
     const AlignmentEstimate& m = r.message;
     text += padded(fmt::format("{} {}", r.id, r.name), kName);
-    text += padded(angle(m.vehicle_yaw_rad, std_of(m, 1), m.is_observable(alignment_axis::kVehicleYaw)), kAngle);
-    text += padded(angle(m.vehicle_pitch_rad, std_of(m, 2), m.is_observable(alignment_axis::kVehiclePitch)), kAngle);
-    text += padded(angle(m.vehicle_roll_rad, std_of(m, 3), m.is_observable(alignment_axis::kVehicleRoll)), kAngle);
+    text += padded(angle(m.vehicle_yaw_rad, r.stds[1], m.is_observable(alignment_axis::kVehicleYaw)), kAngle);
+    text += padded(angle(m.vehicle_pitch_rad, r.stds[2], m.is_observable(alignment_axis::kVehiclePitch)), kAngle);
+    text += padded(angle(m.vehicle_roll_rad, r.stds[3], m.is_observable(alignment_axis::kVehicleRoll)), kAngle);
     text += padded(mps(r.residuals.before.rmse_mps) + " → " + mps(r.residuals.after.rmse_mps), 18);
     const auto& t95 = m.kpis.seconds_to_95_percent;
     text += padded(seconds(t95[1]) + " / " + seconds(t95[2]) + " / " + seconds(t95[3]), 17);
@@ -59,6 +55,10 @@ std::string to_table(const Result& result) {
     text += name_of(m.state);
     if (!r.knocks.empty()) text += fmt::format(", {} knock{}", r.knocks.size(), r.knocks.size() == 1 ? "" : "s");
     text += '\n';
+    constexpr std::array<const char*, 3> kSensorAxes = {"alpha", "beta", "gamma"};
+    for (std::size_t i = 0; i < r.support.size(); ++i) {
+      text += padded("", kName) + kSensorAxes.at(i) + " " + r.support[i] + '\n';
+    }
     if (r.truth) {
       const auto error = [&](std::size_t i) { return fmt::format("{:+.4f}°", r.truth->errors.at(i) * kDegrees); };
       text += padded("  error", kName) + padded(error(1), kAngle) + padded(error(2), kAngle) + error(3) + '\n';

@@ -190,6 +190,7 @@ class Align {
                        kMaxDetections));
     }
     if (result.scans == 0) complain("there is no detection in the drive");
+    if (!result.problem.empty()) complain(result.problem);
     std::uint64_t without_ego = 0;
     for (const align::RadarResult& radar : result.radars) without_ego += radar.scans_without_ego;
     if (without_ego > 0) {

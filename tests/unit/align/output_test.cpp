@@ -116,7 +116,7 @@ TEST(Outputs, SayWhatIsNotObservable) {
   AlignmentEstimate& message = result.radars[0].message;
   message.observable = alignment_axis::kVehicleYaw;
   message.vehicle_yaw_rad = 0.01F;
-  message.vehicle_covariance[5] = 1e-6F;
+  result.radars[0].stds = {0.0, 1e-3, 1.0, 1.0};
   for (const double x : {0.0, 1.0}) {
     Sample& sample = result.series.emplace_back();
     sample.x = x;

@@ -1,0 +1,130 @@
+#include "services/boresight/align/post_factum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/write_estimate.hpp"
+#include "services/boresight/align/stds.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::align {
+
+namespace {
+
+namespace post_factum = alignment::post_factum;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+/// What stands for a std that is not finite.
+constexpr double kOpen_rad = 1.0;
+
+bool is_supported(const post_factum::Parameter& parameter) {
+  return parameter.support == post_factum::Support::kSupported;
+}
+
+double std_of(const post_factum::Parameter& parameter) {
+  return std::isfinite(parameter.std) ? std::hypot(parameter.std, parameter.spread) : kOpen_rad;
+}
+
+alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scale, double yaw, double pitch,
+                                     double roll) {
+  alignment::RadarEstimate e;
+  e.speed_scale = speed_scale;
+  e.sensor_to_vehicle = geometry::sensor_to_vehicle(pose, yaw, pitch, roll);
+  return e;
+}
+
+/// Of (k_v, d_x, d_y, d_z) from the stds of (α, β, γ), whose correlations the method does not tell.
+Eigen::Matrix4d covariance_of(const post_factum::Parameter& speed_scale, const post_factum::RadarResult& radar,
+                              const Eigen::Matrix3d& sensor_to_vehicle) {
+  const Eigen::Vector3d angles = geometry::euler_angles(sensor_to_vehicle);
+  const Eigen::Matrix3d to_turn = geometry::euler_gradient(angles(0), angles(1)).inverse();
+  const Eigen::Vector3d stds(std_of(radar.yaw), std_of(radar.pitch), std_of(radar.roll));
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  covariance(0, 0) = std_of(speed_scale) * std_of(speed_scale);
+  covariance.bottomRightCorner<3, 3>() = to_turn * stds.cwiseAbs2().asDiagonal() * to_turn.transpose();
+  return covariance;
+}
+
+/// Only k_v and yaw can be: the planar roll model is no rotation and leaves pitch and roll wrong by up to 1.5° each,
+/// whatever their stds (algorithms: Report A's (10)(11) against the exact rotation).
+std::uint32_t observable_of(const post_factum::Parameter& speed_scale, const post_factum::RadarResult& radar) {
+  std::uint32_t bits = 0;
+  if (is_supported(speed_scale)) bits |= alignment_axis::kSpeedScale;
+  if (is_supported(radar.yaw)) bits |= alignment_axis::kYaw | alignment_axis::kVehicleYaw;
+  return bits;
+}
+
+std::string support_of(const post_factum::Parameter& parameter, bool by_planar_model) {
+  const std::string text = post_factum::to_text(parameter.support);
+  if (!by_planar_model || !is_supported(parameter)) return text;
+  return text + ", but by the planar roll model, which is no rotation: may be off by 1.5 degrees";
+}
+
+void add_series(const VehicleConfig& vehicle, const post_factum::Result& found, Result& result) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  for (const post_factum::Step& step : found.history) {
+    Sample& sample = result.series.emplace_back();
+    sample.x = static_cast<double>(step.iteration);
+    sample.speed_scale = step.parameters[0];
+    const bool is_last = &step == &found.history.back();
+    sample.speed_scale_std = is_last ? result.speed_scale_std : kUnknown;
+    for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+      const double* const angles = &step.parameters[1 + 3 * i];
+      const auto e = estimate_of(vehicle.radars[i].mounting_pose, step.parameters[0], angles[0], angles[1], angles[2]);
+      const Eigen::Vector4d form = alignment::vehicle_form(vehicle.radars[i], e);
+      Sample::Radar& radar = sample.radars.emplace_back();
+      radar.state = result.radars[i].estimate.state;
+      radar.observable = result.radars[i].message.observable;
+      radar.values = {form(0), form(1), form(2), form(3)};
+      radar.stds.fill(kUnknown);
+      if (is_last) radar.stds = result.radars[i].stds;
+    }
+  }
+}
+
+}  // namespace
+
+void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
+                       const post_factum::Config& settings, Result& result) {
+  std::vector<post_factum::Recording> recordings;
+  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+    recordings.push_back(samples[i]->recording(vehicle.radars[i].mounting_pose, result.radars[i].measures_elevation));
+  }
+  const post_factum::Result found = post_factum::calibrate(recordings, settings);
+  result.problem = found.problem;
+  result.x_is_iteration = true;
+  for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
+    RadarResult& radar = result.radars[i];
+    const RadarConfig& config = vehicle.radars[i];
+    if (found.ok) {
+      const post_factum::RadarResult& r = found.radars[i];
+      radar.estimate =
+          estimate_of(config.mounting_pose, found.speed_scale.value, r.yaw.value, r.pitch.value, r.roll.value);
+      radar.estimate.covariance = covariance_of(found.speed_scale, r, radar.estimate.sensor_to_vehicle);
+      radar.estimate.state = r.used > 0 ? AlignmentState::kConverged : AlignmentState::kNoData;
+      radar.estimate.observable = observable_of(found.speed_scale, r);
+      radar.estimate.detections_used = r.used;
+      radar.estimate.inlier_ratio = r.offered > 0 ? static_cast<double>(r.used) / static_cast<double>(r.offered) : kNaN;
+      radar.support = {support_of(r.yaw, false), support_of(r.pitch, true), support_of(r.roll, true)};
+    } else {
+      radar.estimate = estimate_of(config.mounting_pose, 1.0, 0.0, 0.0, 0.0);
+      radar.estimate.covariance = Eigen::Vector4d(1.0, 1.0, 1.0, 1.0).asDiagonal();
+    }
+    alignment::write_estimate(config, radar.estimate, 0.0, radar.message);
+    radar.message.kpis.seconds_to_95_percent.fill(kNaN);
+  }
+  if (!found.ok) return;
+  result.speed_scale = found.speed_scale.value;
+  result.speed_scale_std = std_of(found.speed_scale);
+  result.speed_scale_observable = is_supported(found.speed_scale);
+  result.speed_scale_support = post_factum::to_text(found.speed_scale.support);
+  for (RadarResult& radar : result.radars) radar.stds = component_stds(*vehicle.radar(radar.id), radar.estimate);
+  add_series(vehicle, found, result);
+}
+
+}  // namespace boresight::align

@@ -1,0 +1,18 @@
+// The post-factum calibration over a whole recording, as a result like that of the methods that go scan by scan.
+#pragma once
+
+#include <vector>
+
+#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/boresight/align/residuals.hpp"
+#include "services/boresight/align/result.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::align {
+
+/// Fills k_v, the radars' estimates and messages, what the data support, and the iterations as series. `result` has the
+/// radars of the vehicle file in its order, `samples` their detections. Takes seconds.
+void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
+                       const alignment::post_factum::Config& settings, Result& result);
+
+}  // namespace boresight::align
