@@ -129,6 +129,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   normal(0, 0) = 1.0 / prior.speed_scale_variance;
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
+  const Eigen::Matrix4d prior_information = normal;
   Eigen::Vector4d right = -normal * off_;
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
     const VelocityGradient all_gradients =
@@ -150,7 +151,8 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   if (!last) return;
   result_.speed_scale = model_.speed_scale;
   result_.sensor_to_vehicle = model_.sensor_to_vehicle[0];
-  result_.covariance = solver.solve(Eigen::Matrix4d::Identity());
+  const Eigen::Matrix4d believed = prior_information + (normal - prior_information) / config_.start_inflation;
+  result_.covariance = believed.llt().solve(Eigen::Matrix4d::Identity());
   result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
 }
 

@@ -27,7 +27,7 @@ struct StartPrior {
 struct StartResult {
   double speed_scale = 1.0;
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes, inflated
   double inlier_ratio = 0.0;
 };
 

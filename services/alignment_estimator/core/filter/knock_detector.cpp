@@ -20,7 +20,7 @@ constexpr double kCollapse = 0.5;
 /// Detections without which a share is no share.
 constexpr double kMinDetections = 20.0;
 /// A radar that is alone cannot take off what is common: its deviation must be larger.
-constexpr double kAlone = 2.0;
+constexpr double kAlone = 1.25;
 
 }  // namespace
 

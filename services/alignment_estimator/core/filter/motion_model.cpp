@@ -1,13 +1,22 @@
 #include "services/alignment_estimator/core/filter/motion_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::alignment {
 
+namespace {
+
+/// A lateral velocity counts fully up to a relative variance of one over this, and not at all from twice that on.
+constexpr double kDoubt = 8.0;
+
+}  // namespace
+
 SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& nuisances, std::size_t radar,
-                               const std::array<double, 3>& position_m, const ScanMotion3d& motion) {
+                               const std::array<double, 3>& position_m, const ScanMotion3d& motion,
+                               double pitch_share) {
   const double x = position_m[0], y = position_m[1];
   const double signalled = motion.speed_mps + nuisances(0);
   const double speed = state.speed_scale * signalled;
@@ -33,6 +42,21 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   by.col(column::kSideSlip) << 0.0, speed, 0.0;
   // (Exp(d)·R)ᵀ·v = Rᵀ·(v − d × v) = Rᵀ·(v + v × d).
   by.middleCols<3>(column::kShared) = geometry::cross_matrix(v);
+  // Roll acts through the small lateral and vertical velocities alone. Where these are no better known than their
+  // size, noise in them would pass for the motion that makes roll observable.
+  const double lateral = (x - slip * speed * speed) * (motion.yaw_rate_radps - state.yaw_rate_bias_radps);
+  const double by_slip = speed * speed * yaw_rate, by_rate = x - slip * speed * speed;
+  const double variance = by_slip * by_slip * state.covariance(column::kSlip, column::kSlip) +
+                          by_rate * by_rate *
+                              (state.covariance(column::kYawRateBias, column::kYawRateBias) +
+                               state.covariance(column::kYawRate, column::kYawRate));
+  const double lateral_share = std::clamp(2.0 - kDoubt * variance / (lateral * lateral + 1e-12), 0.0, 1.0);
+  const double by_acceleration = state.pitch_per_acceleration_radps2pm;
+  const double stds = std::abs(by_acceleration) /
+                      std::sqrt(state.covariance(column::kPitchPerAcceleration, column::kPitchPerAcceleration) + 1e-12);
+  const double vertical = speed * (pitch_share * nuisances(2) +
+                                   std::clamp(stds - 2.0, 0.0, 1.0) * by_acceleration * motion.acceleration_mps2);
+  by.col(column::kShared) << 0.0, vertical, -lateral_share * lateral;
   by.col(column::kShared + 3) = v;
   out.gradient.noalias() = (to_sensor * by).transpose();
   return out;

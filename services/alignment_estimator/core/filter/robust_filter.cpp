@@ -102,7 +102,8 @@ void RobustFilter::process(std::size_t index, const ScanDetections& scan, const 
     radar.state = std::max(radar.state, AlignmentState::kWaiting);
     return;
   }
-  take_sightings(scan, radar.config, radar.unknown, config_.azimuth_std_edge, sightings_);
+  take_sightings(scan, radar.config, radar.unknown, config_.azimuth_std_edge, radar.noise.angle_variance_factor(),
+                 sightings_);
   if (sightings_.count < kMinSightings) {
     radar.state = std::max(radar.state, AlignmentState::kWaiting);
     return;
@@ -174,7 +175,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   Radar& radar = radars_[index];
   const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
   if (!any_running_but(index)) {
-    const double variance = config_.start_inflation * found.covariance(0, 0);
+    const double variance = found.covariance(0, 0);
     const double difference = found.speed_scale - state_.speed_scale;
     const double expected = variance + unknown_variance + state_.covariance(column::kSpeedScale, column::kSpeedScale);
     // A memory that agrees is better than the start; the prior is not, and a seed leaves k_v at it.
@@ -195,7 +196,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   if (radar.remembered) {
     const Eigen::Vector3d off =
         geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
-    Eigen::Matrix3d covariance = config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
+    Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>();
     for (Eigen::Index i = 0; i < 3; ++i) {
       for (Eigen::Index j = 0; j < 3; ++j) {
         covariance(i, j) += state_.covariance(column::of_radar(index) + i, column::of_radar(index) + j);
@@ -218,7 +219,7 @@ void RobustFilter::place(std::size_t index, const StartResult& found) {
   for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
-      state_.set_covariance(first + i, first + j, config_.start_inflation * found.covariance(1 + i, 1 + j));
+      state_.set_covariance(first + i, first + j, found.covariance(1 + i, 1 + j));
     }
   }
 }
@@ -227,7 +228,7 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
   Radar& radar = radars_[index];
   const Eigen::Index first = column::of_radar(index);
   const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
-  Eigen::Matrix3d covariance = config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
+  Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) covariance(i, j) += state_.covariance(first + i, first + j);
   }
@@ -253,8 +254,8 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
 void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns) {
   Radar& radar = radars_[index];
   const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
-  const SensorVelocity velocity =
-      sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m, motion);
+  const SensorVelocity velocity = sensor_velocity(
+      state_, state_.nuisances, index, radar.config.mounting_pose.position_m, motion, nuisance_model_.pitch_share());
   state_.project(index, velocity.gradient);
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;

@@ -91,12 +91,17 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     information.add(weight, x, y, z);
     feigned.add(weight * va, -y, x, 0.0);
     feigned.add(weight * ve, tx, ty, ce);
-    // The noise of the angles is in the residual and in the gradient: E[ψ(e)·ε] = Cov(e, ε)·E[ψ′] (Stein) is taken off,
-    // and what comes of weights that were computed from noisy angles.
+    // The noise of the angles is in the residual and in the gradient: E[ψ(e)·ε] = Cov(e, ε)·E[ψ′] (Stein) is taken off.
+    // So are the next terms: variances were computed from noisy angles (s2a, s2b are their derivatives), and the range
+    // rate is curved, so that residuals are skewed and a weight that falls with their size prefers one side.
     const double daa = -along + z * gz, dab = -(gy * x - gx * y) * z / ce;
     const double s2a = 2.0 * (da * daa * va + da * da * va * run.azimuth_std_slope[i] + db * dab * ve);
     const double s2b = 2.0 * (da * dab * va - db * along * ve);
-    const double pull = -weight * e - weight * inverse * (s2a * da * va + s2b * db * ve);
+    const double ca = da * va, cb = db * ve;
+    const double by_variance = (1.0 - 12.0 * t + 15.0 * t * t) * (s2a * ca + s2b * cb);
+    const double by_skew =
+        6.0 * inverse_gate_square * (1.0 - 5.0 * t) * (daa * ca * ca + 2.0 * dab * ca * cb - along * cb * cb);
+    const double pull = -weight * e - inverse / gate_variance * (by_variance + by_skew);
     const double ka = slope * va * da, kb = slope * ve * db;
     sx += pull * x - ka * y + kb * tx;
     sy += pull * y + ka * x + kb * ty;

@@ -22,7 +22,7 @@ UnknownElevation unknown_elevation(const FieldOfView& view) {
 }
 
 void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const UnknownElevation& unknown, double edge,
-                    Sightings& out) {
+                    double angle_scale, Sightings& out) {
   out.has_elevation = scan.has_elevation;
   out.ambiguity_mps = std::isfinite(scan.ambiguity_mps) && scan.ambiguity_mps > 0.1 ? scan.ambiguity_mps : 0.0;
   std::size_t n = 0;
@@ -47,11 +47,11 @@ void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const 
     out.range_rate_variance[n] = rate_std * rate_std;
     out.range_rate_mps[n] = rate;
     // The mean of a noisy angle's cosine is shorter by exp(−σ²/2).
-    const double stretch_azimuth = 1.0 + 0.5 * out.azimuth_variance[n];
+    const double stretch_azimuth = 1.0 + 0.5 * angle_scale * out.azimuth_variance[n];
     if (scan.has_elevation) {
       const double bounded = std::min(elevation_std, 0.5);
       out.elevation_variance[n] = bounded * bounded;
-      const double stretch = 1.0 + 0.5 * out.elevation_variance[n];
+      const double stretch = 1.0 + 0.5 * angle_scale * out.elevation_variance[n];
       const double ce = std::cos(elevation);
       out.x[n] = ce * ca * stretch_azimuth * stretch;
       out.y[n] = ce * sa * stretch_azimuth * stretch;

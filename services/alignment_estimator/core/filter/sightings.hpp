@@ -31,9 +31,9 @@ struct UnknownElevation {
 };
 [[nodiscard]] UnknownElevation unknown_elevation(const FieldOfView& view);
 
-/// Fills `out`. `edge`: see FilterConfig::azimuth_std_edge. Leaves out angles and range rates that nothing on a road
-/// has. No allocation.
+/// Fills `out`. `edge`: see FilterConfig::azimuth_std_edge; `angle_scale`: factor of the angles' variances as they
+/// really are. Leaves out angles and range rates that nothing on a road has. No allocation.
 void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const UnknownElevation& unknown, double edge,
-                    Sightings& out);
+                    double angle_scale, Sightings& out);
 
 }  // namespace boresight::alignment
