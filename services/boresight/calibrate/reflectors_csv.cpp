@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "services/common/estimation/median.hpp"
+
 namespace boresight::calibrate {
 
 namespace {
@@ -14,12 +16,6 @@ struct Rows {
   std::uint64_t line = 0;
   std::vector<double> range_m, azimuth_rad, elevation_rad;
 };
-
-double median(std::vector<double>& values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 }  // namespace
 
@@ -52,9 +48,9 @@ ReflectorTable read_reflectors(recording::ByteSource& source, align::Problems& p
   for (Rows& rows : reflectors) {
     alignment::reflectors::Position position;
     position.surveyed_m = rows.surveyed_m;
-    position.range_m = median(rows.range_m);
-    position.azimuth_rad = median(rows.azimuth_rad);
-    if (result.has_elevation) position.elevation_rad = median(rows.elevation_rad);
+    position.range_m = estimation::median(rows.range_m);
+    position.azimuth_rad = estimation::median(rows.azimuth_rad);
+    if (result.has_elevation) position.elevation_rad = estimation::median(rows.elevation_rad);
     position.scans = rows.range_m.size();
     result.positions.push_back(position);
     result.lines.push_back(rows.line);

@@ -56,11 +56,4 @@ double median_factor(std::size_t scans) {
   return n <= 2.0 ? 1.0 / std::sqrt(n) : std::sqrt(M_PI / 2.0 / n);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
 }  // namespace boresight::alignment::reflectors

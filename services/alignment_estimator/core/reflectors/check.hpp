@@ -19,7 +19,4 @@ namespace boresight::alignment::reflectors {
 /// Of a median of `scans` values, over that of one.
 [[nodiscard]] double median_factor(std::size_t scans);
 
-/// Middle value; the mean of the middle two of an even number. At least one value.
-[[nodiscard]] double median(std::vector<double> values);
-
 }  // namespace boresight::alignment::reflectors

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "services/alignment_estimator/core/reflectors/check.hpp"
+#include "services/common/estimation/median.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -102,7 +103,8 @@ class Fit {
     }
     if (azimuths.empty()) return;
     // What is seen too far left is seen by a sensor that is turned to its right.
-    rotation_ = nominal_ * geometry::sensor_to_vehicle(-median(azimuths), -median(elevations), 0.0);
+    rotation_ =
+        nominal_ * geometry::sensor_to_vehicle(-estimation::median(azimuths), -estimation::median(elevations), 0.0);
   }
 
   void weigh(double widen) {
@@ -115,7 +117,7 @@ class Fit {
     }
     // Median of χ² with two and with one degree of freedom.
     const double expected = config_.has_elevation ? 1.386 : 0.455;
-    scale_ = squares.empty() ? 1.0 : std::max(1.0, std::sqrt(median(squares) / expected));
+    scale_ = squares.empty() ? 1.0 : std::max(1.0, std::sqrt(estimation::median(squares) / expected));
     const double gate = kTukey * scale_ * widen;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       const double share = distance_[i] / (gate * gate);

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "services/alignment_estimator/core/reflectors/check.hpp"
+#include "services/common/estimation/median.hpp"
 #include "services/common/geometry/frames.hpp"
 
 namespace boresight::alignment::reflectors {
@@ -13,7 +14,6 @@ namespace {
 
 constexpr double kShortest_m = 5.0;
 constexpr double kTukey = 4.685;
-constexpr double kSigmaOfMad = 1.4826;
 
 /// Tukey's weight of a residual in stds.
 double tukey(double residual) {
@@ -23,11 +23,11 @@ double tukey(double residual) {
 
 /// Scatter of residuals (in stds) over 1, at least 1.
 double scatter(const std::vector<double>& residuals) {
-  std::vector<double> sizes;
-  for (const double residual : residuals) sizes.push_back(std::abs(residual));
-  return std::max(1.0, kSigmaOfMad * median(sizes));
+  std::vector<double> sizes = residuals;
+  return std::max(1.0, estimation::mad_std(sizes, 0.0));
 }
 
+/// A value with its std; a std of 0: there is none.
 struct Slope {
   double value = 0.0, std = 0.0;
 };
@@ -41,9 +41,10 @@ Slope robust_slope(const std::vector<double>& a, const std::vector<double>& b, c
       if (a[j] != a[i]) slopes.push_back((b[j] - b[i]) / (a[j] - a[i]));
     }
   }
-  double slope = median(slopes), intercept = 0.0;
+  if (slopes.empty()) return {};
+  double slope = estimation::median(slopes), intercept = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) offsets.push_back(b[i] - slope * a[i]);
-  intercept = median(offsets);
+  intercept = estimation::median(offsets);
   Slope result;
   for (int round = 0; round < 20; ++round) {
     for (std::size_t i = 0; i < a.size(); ++i) residuals[i] = (b[i] - intercept - slope * a[i]) / std[i];
@@ -57,7 +58,7 @@ Slope robust_slope(const std::vector<double>& a, const std::vector<double>& b, c
       if (believed > 0.0) full += information, full_a += information * a[i], full_aa += information * a[i] * a[i];
     }
     const double determinant = w * waa - wa * wa;
-    if (!(determinant > 0.0)) break;
+    if (!(determinant > 0.0)) return {};
     slope = (w * wab - wa * wb) / determinant;
     intercept = (wb - slope * wa) / w;
     result = {slope, std::sqrt(full / (full * full_aa - full_a * full_a))};
@@ -68,7 +69,8 @@ Slope robust_slope(const std::vector<double>& a, const std::vector<double>& b, c
 /// Robust mean with stds.
 Slope robust_mean(const std::vector<double>& values, const std::vector<double>& std) {
   std::vector<double> residuals(values.size());
-  Slope result{.value = median(values), .std = 0.0};
+  std::vector<double> sorted = values;
+  Slope result{.value = estimation::median(sorted), .std = 0.0};
   for (int round = 0; round < 20; ++round) {
     for (std::size_t i = 0; i < values.size(); ++i) residuals[i] = (values[i] - result.value) / std[i];
     const double scale = scatter(residuals);
@@ -163,6 +165,10 @@ LineResult fit_line(std::span<const Position> positions, const RadarConfig& rada
     pitch_stds.push_back(std::hypot(radar.noise.elevation_std_rad * factor, config.height_std_m / way.norm()));
   }
   const Slope slope = robust_slope(along, beside, beside_std);
+  if (!(slope.std > 0.0)) {
+    result.problem = Problem::kTooFewAgree;
+    return result;
+  }
   // The measured line is turned by minus the yaw error against the surveyed one.
   result.yaw_rad = -std::atan(slope.value);
   result.yaw_std_rad = slope.std;

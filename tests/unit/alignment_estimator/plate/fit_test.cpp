@@ -297,6 +297,17 @@ TEST(PlateFit, robust_needs_tilts_that_agree) {
   EXPECT_EQ(evaluate(run, config).failure, Failure::kTooFewTilts);
 }
 
+TEST(PlateFit, robust_does_not_choose_between_two_halves_that_saw_the_plate_elsewhere) {
+  PlateSpec spec;
+  spec.number_of_tilts = 10;
+  const Measurements halves = changed(run_of(spec, 8), [](double& tilt, double&, double& azimuth) {
+    azimuth += tilt < 0.0 ? -2.0 * kDeg : 2.0 * kDeg;
+  });
+  const PlateResult result = evaluated(halves, FitMethod::kRobust);
+  EXPECT_EQ(result.failure, Failure::kTooFewTilts);
+  EXPECT_TRUE(std::isfinite(result.yaw_rad));
+}
+
 TEST(PlateFit, quantised_values_do_not_break_the_robust_means) {
   PlateSpec spec;
   spec.pitch_rad = 1.0 * kDeg;

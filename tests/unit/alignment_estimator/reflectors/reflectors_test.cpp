@@ -331,6 +331,9 @@ TEST(Reflectors, positions_that_do_not_agree_are_no_result) {
   std::vector<Position> positions = field.seen();
   for (std::size_t i = 0; i < 7; ++i) positions[i].range_m += 5.0;
   EXPECT_EQ(fit_directions(positions, field.radar, Config{}).problem, Problem::kTooFewAgree);
+  for (Position& position : positions) position.range_m = 0.0;
+  EXPECT_EQ(fit_directions(positions, field.radar, Config{}).problem, Problem::kTooFewAgree);
+  EXPECT_EQ(fit_line(positions, field.radar, Config{}).problem, Problem::kTooFewAgree);
 }
 
 TEST(Line, needs_a_line_along_or_across) {
