@@ -42,7 +42,8 @@ svg { --paper: #ffffff; --ink: #1c232d; --faint: #5d6a7a; --line: #dfe4ea; --blu
 @media (prefers-color-scheme: dark) { svg { --paper: #14181e; --ink: #e4e8ee; --faint: #9aa5b4; --line: #323a46;
   --blue: #6ea8ff; --band: #6ea8ff40; --warn: #e5a63a; --idle: #7f8a99; } }
 .paper { fill: var(--paper); } .head { fill: var(--ink); font-size: 17px; font-weight: 600; }
-.legend { fill: var(--faint); font-size: 12px; } .chart text { fill: var(--faint); font-size: 11px; }
+.verdict { fill: var(--ink); font-size: 13px; } .legend { fill: var(--faint); font-size: 12px; }
+.chart text { fill: var(--faint); font-size: 11px; }
 .grid { stroke: var(--line); stroke-width: 1; } .frame { fill: none; stroke: var(--line); }
 .scan { fill: var(--idle); opacity: 0.45; } .used { fill: var(--blue); }
 .unused { fill: var(--paper); stroke: var(--warn); stroke-width: 2; }
@@ -146,7 +147,7 @@ std::string to_svg(const PlateRun& run) {
   }
   if (!(first <= last)) first = last = low = high = 0.0;
   const double side = 0.06 * (last - first) + 0.1, room = 0.06 * (high - low) + 0.5;
-  constexpr double kWidth = 760.0, kHeight = 420.0, kHead = 64.0;
+  constexpr double kWidth = 760.0, kHeight = 420.0, kHead = 86.0;
   const report::Axis x{first - side, last + side, "tilt, degrees (positive: toward the ground)", false};
   const report::Axis y{low - room, high + room, "amplitude, dB", false};
   report::SvgChart chart(kWidth, kHeight, x, y);
@@ -187,12 +188,13 @@ std::string to_svg(const PlateRun& run) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
       "{1:.0f}\">\n"
       "{2}<rect class=\"paper\" width=\"{0:.0f}\" height=\"{1:.0f}\"/>\n"
-      "<text class=\"head\" x=\"14\" y=\"24\">Tilting plate, {3} fit: {4}</text>\n",
+      "<text class=\"head\" x=\"14\" y=\"24\">Tilting plate, {3} fit</text>\n"
+      "<text class=\"verdict\" x=\"14\" y=\"45\">{4}</text>\n",
       kWidth + 28.0, kHead + kHeight + 14.0, kStyle, name_of(result.method), report::escape(verdict));
   double at = 14.0;
   const auto entry = [&](const std::string& sample, const char* meaning, double width) {
     text += fmt::format(
-        "<g transform=\"translate({:.0f},42)\">{}</g><text class=\"legend\" x=\"{:.0f}\" y=\"51\">{}</text>\n", at,
+        "<g transform=\"translate({:.0f},63)\">{}</g><text class=\"legend\" x=\"{:.0f}\" y=\"72\">{}</text>\n", at,
         sample, at + 30.0, meaning);
     at += width;
   };
@@ -201,6 +203,7 @@ std::string to_svg(const PlateRun& run) {
   entry(R"(<circle class="unused" cx="12" cy="5" r="4.5"/>)", "tilt left out", 125.0);
   entry(R"(<path class="fit" d="M0,5H24"/>)", "parabola", 105.0);
   entry(R"(<rect class="sigma" width="24" height="10"/><path class="maximum" d="M12,0V10"/>)", "maximum ± 2 σ", 135.0);
+  if (run.config.min_amplitude_db > y.min) entry(R"(<path class="limit" d="M0,5H24"/>)", "limit of the maximum", 150.0);
   return text + chart.finish_at(14.0, kHead) + "</svg>\n";
 }
 
