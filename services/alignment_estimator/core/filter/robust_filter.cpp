@@ -157,10 +157,11 @@ void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double 
       radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, unknown_variance,
                       start_prior(index), radar.noise.angle_variance_factor());
   if (verdict == GraduatedStart::Verdict::kFound) {
+    const StartResult found = sightings_.has_elevation ? radar.start.result() : yaw_only(index, radar.start.result());
     if (radar.phase == Phase::kSuspected) {
-      verify(index, radar.start.result(), radar.last_time_ns);
+      verify(index, found, radar.last_time_ns);
     } else {
-      adopt(index, radar.start.result());
+      adopt(index, found);
     }
     return;
   }
@@ -169,6 +170,24 @@ void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double 
     radar.start.clear();
     knocks_.clear(index);
   }
+}
+
+/// Without elevation only |pitch| shows, in the length of the velocity, where the unknown elevations show as well: once
+/// other radars know k_v, one would pass for the other. Pitch and roll stay what they were.
+StartResult RobustFilter::yaw_only(std::size_t index, const StartResult& found) const {
+  StartResult kept = found;
+  const Eigen::Matrix3d& before = state_.sensor_to_vehicle[index];
+  const double yaw = geometry::so3_log(found.sensor_to_vehicle * before.transpose()).z();
+  kept.sensor_to_vehicle = geometry::so3_exp({0.0, 0.0, yaw}) * before;
+  const Eigen::Index first = column::of_radar(index);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    kept.covariance.row(1 + i).setZero();
+    kept.covariance.col(1 + i).setZero();
+  }
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    for (Eigen::Index j = 0; j < 2; ++j) kept.covariance(1 + i, 1 + j) = state_.covariance(first + i, first + j);
+  }
+  return kept;
 }
 
 void RobustFilter::adopt(std::size_t index, const StartResult& found) {
@@ -254,8 +273,9 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
 void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns) {
   Radar& radar = radars_[index];
   const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
-  const SensorVelocity velocity = sensor_velocity(
-      state_, state_.nuisances, index, radar.config.mounting_pose.position_m, motion, nuisance_model_.pitch_share());
+  SensorVelocity velocity = sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m,
+                                            motion, nuisance_model_.pitch_share());
+  if (!sightings_.has_elevation) velocity.gradient.middleRows<2>(column::kShared).setZero();
   state_.project(index, velocity.gradient);
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;

@@ -67,6 +67,7 @@ class RobustFilter : public Method {
   void advance(std::int64_t time_ns);
   [[nodiscard]] StartPrior start_prior(std::size_t radar) const;
   void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
+  [[nodiscard]] StartResult yaw_only(std::size_t radar, const StartResult& found) const;
   void adopt(std::size_t radar, const StartResult& found);
   void verify(std::size_t radar, const StartResult& found, std::int64_t time_ns);
   void place(std::size_t radar, const StartResult& found);
