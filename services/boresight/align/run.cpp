@@ -152,6 +152,8 @@ void Run::add_scan(RadarScan& scan, double time_s) {
 void Run::observe_knocks(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s) {
   if (estimate.knock.count == radar.knocks_seen) return;
   radar.knocks_seen = estimate.knock.count;
+  // What was measured before is no longer to be explained by the mounting.
+  radar.residuals = {};
   const auto& turn = estimate.knock.rotation_vehicle_rad;
   radar.knocks.push_back(
       {origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kOrigin_ns), {turn[2], -turn[1], turn[0]}});
