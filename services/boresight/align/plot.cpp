@@ -19,7 +19,7 @@ using report::SvgChart;
 
 constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWidth = 390.0, kHeight = 190.0, kTitle = 20.0, kMargin = 14.0, kHead = 54.0;
+constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kMargin = 14.0, kHead = 54.0;
 constexpr std::size_t kColumns = 4;
 
 constexpr std::string_view kStyle = R"(<style>
@@ -74,10 +74,11 @@ class Picture {
 
  private:
   [[nodiscard]] double x(const Sample& sample) const {
-    return result_.x_is_iteration ? sample.x : sample.x - result_.start_s;
+    return result_.x_is_iteration ? sample.x / 1000.0 : sample.x - result_.start_s;
   }
   [[nodiscard]] Axis x_axis() const {
-    return {0.0, std::max(x_max_, 1.0), result_.x_is_iteration ? "iteration" : "time since the first scan, s", false};
+    return {0.0, std::max(x_max_, 1.0), result_.x_is_iteration ? "thousand iterations" : "time since the first scan, s",
+            false};
   }
 
   [[nodiscard]] std::string head() const {
@@ -109,7 +110,7 @@ class Picture {
   void shared() {
     curve({.title = "k_v",
            .unit = "",
-           .axis = "k_v",
+           .axis = " ",  // no room beside so many digits, and the title says it
            .decimals = 6,
            .smallest_span = 1e-4,
            .truth = constant(result_.true_speed_scale, 1.0),
@@ -197,8 +198,10 @@ class Picture {
       low = std::min(low, value);
       high = std::max(high, value);
     };
+    const bool ends_observable = !result_.series.empty() && curve.observable(result_.series.back());
     for (const Sample& sample : result_.series) {
       if (x(sample) < kStartShare * x_max_) continue;
+      if (ends_observable && !curve.observable(sample)) continue;
       include(curve.value(sample));
       include(curve.value(sample) - 2.0 * curve.std(sample));
       include(curve.value(sample) + 2.0 * curve.std(sample));

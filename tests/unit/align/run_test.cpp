@@ -142,7 +142,7 @@ TEST(PostFactum, SaysWhatTheDataSupportAndHowItIterated) {
   EXPECT_TRUE(testing::JsonCheck::is_valid(json));
   EXPECT_THAT(json, HasSubstr("\"iteration\":[0,100,"));
   EXPECT_THAT(json, HasSubstr("\"support\":{\"alpha\":"));
-  EXPECT_THAT(to_svg(result), HasSubstr(">iteration<"));
+  EXPECT_THAT(to_svg(result), HasSubstr(">thousand iterations<"));
   EXPECT_THAT(to_table(result), HasSubstr("beta not supported"));
 }
 
