@@ -11,9 +11,28 @@ namespace {
 
 constexpr std::int64_t kRateWindow_ns = 2'000'000'000;
 
-double std_of(const AlignmentEstimate& estimate, AlignmentParameter parameter) {
+double std_of(const std::array<float, 16>& covariance, AlignmentParameter parameter) {
   const auto i = static_cast<std::size_t>(parameter);
-  return std::sqrt(std::max(0.0F, estimate.covariance[i * kNumberOfAlignmentParameters + i]));
+  return std::sqrt(std::max(0.0F, covariance[i * kNumberOfAlignmentParameters + i]));
+}
+
+AlignmentDetails details_of(const AlignmentEstimate& e) {
+  AlignmentDetails d;
+  d.yaw = {e.vehicle_yaw_rad, std_of(e.vehicle_covariance, AlignmentParameter::kYaw),
+           e.is_observable(alignment_axis::kVehicleYaw)};
+  d.pitch = {e.vehicle_pitch_rad, std_of(e.vehicle_covariance, AlignmentParameter::kPitch),
+             e.is_observable(alignment_axis::kVehiclePitch)};
+  d.roll = {e.vehicle_roll_rad, std_of(e.vehicle_covariance, AlignmentParameter::kRoll),
+            e.is_observable(alignment_axis::kVehicleRoll)};
+  d.yaw_rate_bias = {e.yaw_rate_bias_radps, e.yaw_rate_bias_std_radps, e.is_observable(alignment_axis::kYawRateBias)};
+  d.slip = {e.slip_coefficient_radps2pm, e.slip_coefficient_std_radps2pm, e.is_observable(alignment_axis::kSlip)};
+  d.knocks = e.knock.count;
+  d.yaw_seconds_to_95_percent = e.kpis.seconds_to_95_percent[static_cast<std::size_t>(AlignmentParameter::kYaw)];
+  d.pitch_seconds_to_95_percent = e.kpis.seconds_to_95_percent[static_cast<std::size_t>(AlignmentParameter::kPitch)];
+  d.yaw_drift_radpmin = e.kpis.drift_per_minute[static_cast<std::size_t>(AlignmentParameter::kYaw)];
+  d.residual_rmse_mps = e.kpis.residual_rmse_mps;
+  d.nees = e.kpis.nees;
+  return d;
 }
 
 }  // namespace
@@ -69,14 +88,15 @@ void Accumulator::observe(const EgoMotion& ego) {
 void Accumulator::observe(const AlignmentEstimate& estimate) {
   RadarSnapshot& seen = radar(estimate.header.source_id).seen;
   seen.state = estimate.state;
-  seen.yaw = {estimate.alignment_yaw_rad, std_of(estimate, AlignmentParameter::kYaw),
+  seen.yaw = {estimate.alignment_yaw_rad, std_of(estimate.covariance, AlignmentParameter::kYaw),
               estimate.is_observable(alignment_axis::kYaw)};
-  seen.pitch = {estimate.alignment_pitch_rad, std_of(estimate, AlignmentParameter::kPitch),
+  seen.pitch = {estimate.alignment_pitch_rad, std_of(estimate.covariance, AlignmentParameter::kPitch),
                 estimate.is_observable(alignment_axis::kPitch)};
-  seen.roll = {estimate.alignment_roll_rad, std_of(estimate, AlignmentParameter::kRoll),
+  seen.roll = {estimate.alignment_roll_rad, std_of(estimate.covariance, AlignmentParameter::kRoll),
                estimate.is_observable(alignment_axis::kRoll)};
   seen.speed_scale = estimate.speed_scale;
-  seen.speed_scale_std = std_of(estimate, AlignmentParameter::kSpeedScale);
+  seen.speed_scale_std = std_of(estimate.covariance, AlignmentParameter::kSpeedScale);
+  seen.details = details_of(estimate);
 }
 
 void Accumulator::observe(const ClassifiedScan& scan) {

@@ -78,10 +78,15 @@ bool has_estimate(const RadarSnapshot& radar) {
   return radar.state == AlignmentState::kConverging || radar.state == AlignmentState::kConverged;
 }
 
-/// "   -   " where nothing is known yet; the pattern takes value and std.
+/// "-" where nothing is estimated yet, "not observable" where the drive does not tell.
 std::string angle_text(const AngleEstimate& angle, bool known) {
-  if (!known || !angle.observable) return "-";
+  if (!known) return "-";
+  if (!angle.observable) return "not observable";
   return fmt::format("{:+.2f}° ± {:.2f}°", angle.value_rad * kDegrees, angle.std_rad * kDegrees);
+}
+
+std::string seconds_text(double seconds) {
+  return std::isfinite(seconds) ? fmt::format("{:.1f} s", seconds) : "-";
 }
 
 std::string direction(const TrackSnapshot& track) {
@@ -105,6 +110,7 @@ std::string complaint(const RadarSnapshot& radar) {
   const auto add = [&text](std::uint64_t count, std::string_view what) {
     if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
+  add(radar.details.knocks, "knocks");
   add(radar.missed, "scans missed on the wire");
   add(radar.suspect, "suspect scans");
   return text;
@@ -112,8 +118,9 @@ std::string complaint(const RadarSnapshot& radar) {
 
 void put_radars(Page& page, const Snapshot& snapshot) {
   // What matters most comes first: a narrow terminal cuts the end.
-  page.put(fmt::format("{:<13}{:<32}{:<18}{:<17}{:>8}{:>5}{:>7}{:>6}  {:<12}{}", "RADAR", "HEALTH", "YAW ± σ",
-                       "SPEED SCALE ± σ", "SCANS/S", "DET", "MOVING", "GHOST", "ALIGNMENT", "PITCH ± σ"),
+  page.put(fmt::format("{:<13}{:<32}{:<18}{:<17}{:>8}{:>5}{:>7}{:>6}  {:<12}{:<18}{:<18}{:>8}{:>12}", "RADAR", "HEALTH",
+                       "YAW ± σ", "SPEED SCALE ± σ", "SCANS/S", "DET", "MOVING", "GHOST", "ALIGNMENT", "PITCH ± σ",
+                       "ROLL ± σ", "95 %", "DRIFT/MIN"),
            Ink::kDim);
   page.line();
   for (const RadarSnapshot& r : snapshot.radars) {
@@ -121,17 +128,38 @@ void put_radars(Page& page, const Snapshot& snapshot) {
     page.put(fmt::format("{:<13}", r.name), Ink::kBold);
     page.put(fmt::format("{:<32}", verdict(r)), ink_of(r));
     const bool beyond = r.extended_qualifier == ExtendedQualifier::kMisaligned;
-    page.put(fmt::format("{:<18}", angle_text(r.yaw, known)), beyond ? Ink::kBad : Ink::kPlain);
+    const AlignmentDetails& d = r.details;
+    page.put(fmt::format("{:<18}", angle_text(d.yaw, known)), beyond ? Ink::kBad : Ink::kPlain);
     page.put(fmt::format("{:<17}", known ? fmt::format("{:.4f} ± {:.4f}", r.speed_scale, r.speed_scale_std) : "-"));
     page.put(fmt::format("{:>8.1f}{:>5}{:>7}{:>6}  ", r.rate_hz, r.detections, r.moving, r.ghosts));
     page.put(fmt::format("{:<12}", name_of(r.state)));
-    page.put(angle_text(r.pitch, known));
+    page.put(fmt::format("{:<18}{:<18}", angle_text(d.pitch, known), angle_text(d.roll, known)));
+    page.put(fmt::format(
+        "{:>8}{:>12}", seconds_text(d.yaw_seconds_to_95_percent),
+        std::isfinite(d.yaw_drift_radpmin) ? fmt::format("{:+.3f}°", d.yaw_drift_radpmin * kDegrees) : "-"));
     page.line();
     if (const std::string text = complaint(r); !text.empty()) {
       page.put(fmt::format("{:<13}{}", "", text), Ink::kWarning);
       page.line();
     }
   }
+}
+
+/// What all radars together say of the ego signals.
+void put_ego(Page& page, const Snapshot& snapshot) {
+  const auto found = std::find_if(snapshot.radars.begin(), snapshot.radars.end(), has_estimate);
+  page.put("EGO      ", Ink::kDim);
+  if (found != snapshot.radars.end()) {
+    const AngleEstimate& bias = found->details.yaw_rate_bias;
+    const AngleEstimate& slip = found->details.slip;
+    page.put("yaw-rate bias " +
+             (bias.observable ? fmt::format("{:+.3f} ± {:.3f} °/s", bias.value_rad * kDegrees, bias.std_rad * kDegrees)
+                              : "not observable"));
+    page.put("   slip coefficient " + (slip.observable
+                                           ? fmt::format("{:.4f} ± {:.4f} rad per m/s²", slip.value_rad, slip.std_rad)
+                                           : "not observable"));
+  }
+  page.line();
 }
 
 void put_tracks(Page& page, const Snapshot& snapshot, std::size_t limit) {
@@ -200,6 +228,7 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
   page.line();
   page.line();
   put_radars(page, snapshot);
+  put_ego(page, snapshot);
   page.line();
   put_tracks(page, snapshot, options.tracks);
   page.line();
@@ -211,7 +240,8 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
 std::string render_line(const Snapshot& snapshot, double elapsed_s) {
   std::string text = fmt::format("{:5.0f} s  {:4.1f} m/s ", elapsed_s, snapshot.ego_speed_mps);
   for (const RadarSnapshot& r : snapshot.radars) {
-    text += fmt::format(" | {} {:.0f}/s yaw {} {}", r.name, r.rate_hz, angle_text(r.yaw, has_estimate(r)), verdict(r));
+    text += fmt::format(" | {} {:.0f}/s yaw {} {}", r.name, r.rate_hz, angle_text(r.details.yaw, has_estimate(r)),
+                        verdict(r));
   }
   return text + fmt::format(" | {} tracks | latency p50 {}", number_of_confirmed(snapshot),
                             duration_text(snapshot.latencies.back().percentile_us(0.5)));

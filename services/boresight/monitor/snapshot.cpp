@@ -66,6 +66,15 @@ RadarSnapshot read_radar(Words& words) {
   r.conditions = static_cast<std::uint32_t>(words.count());
   r.missed = words.count();
   r.suspect = words.count();
+  if (!words.more()) return r;  // a record of an earlier version
+  AlignmentDetails& d = r.details;
+  for (AngleEstimate* const angle : {&d.yaw, &d.pitch, &d.roll, &d.yaw_rate_bias, &d.slip}) *angle = words.angle();
+  d.knocks = static_cast<std::uint32_t>(words.count());
+  d.yaw_seconds_to_95_percent = words.number();
+  d.pitch_seconds_to_95_percent = words.number();
+  d.yaw_drift_radpmin = words.number();
+  d.residual_rmse_mps = words.number();
+  d.nees = words.number();
   return r;
 }
 
@@ -112,6 +121,22 @@ std::string json_number(double value) {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
+std::string axis_json(const char* name, const AngleEstimate& angle, double unit) {
+  return fmt::format(R"("{}":{{"value":{},"std":{},"observable":{}}},)", name, json_number(angle.value_rad * unit),
+                     json_number(angle.std_rad * unit), angle.observable);
+}
+
+std::string details_json(const AlignmentDetails& d) {
+  return axis_json("vehicle_yaw_deg", d.yaw, kDegrees) + axis_json("vehicle_pitch_deg", d.pitch, kDegrees) +
+         axis_json("vehicle_roll_deg", d.roll, kDegrees) + axis_json("yaw_rate_bias_degps", d.yaw_rate_bias, kDegrees) +
+         axis_json("slip_coefficient_radps2pm", d.slip, 1.0) +
+         fmt::format(R"("knocks":{},"yaw_seconds_to_95_percent":{},"pitch_seconds_to_95_percent":{},)"
+                     R"("yaw_drift_degpmin":{},"residual_rmse_mps":{},"nees":{})",
+                     d.knocks, json_number(d.yaw_seconds_to_95_percent), json_number(d.pitch_seconds_to_95_percent),
+                     json_number(d.yaw_drift_radpmin * kDegrees), json_number(d.residual_rmse_mps),
+                     json_number(d.nees));
+}
+
 }  // namespace
 
 void write_record(std::ostream& output, const Snapshot& snapshot) {
@@ -124,7 +149,11 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
     for (const AngleEstimate& angle : {r.yaw, r.pitch, r.roll}) write_angle(output, angle);
     output << ' ' << r.speed_scale << ' ' << r.speed_scale_std << ' ' << static_cast<int>(r.data_qualifier) << ' '
            << static_cast<int>(r.extended_qualifier) << ' ' << r.yaw_tolerance_rad << ' ' << r.conditions << ' '
-           << r.missed << ' ' << r.suspect << '\n';
+           << r.missed << ' ' << r.suspect;
+    const AlignmentDetails& d = r.details;
+    for (const AngleEstimate& angle : {d.yaw, d.pitch, d.roll, d.yaw_rate_bias, d.slip}) write_angle(output, angle);
+    output << ' ' << d.knocks << ' ' << d.yaw_seconds_to_95_percent << ' ' << d.pitch_seconds_to_95_percent << ' '
+           << d.yaw_drift_radpmin << ' ' << d.residual_rmse_mps << ' ' << d.nees << '\n';
   }
   for (const TrackSnapshot& t : snapshot.tracks) {
     output << "track " << t.id << ' ' << (t.confirmed ? 1 : 0) << ' ' << static_cast<int>(t.movement) << ' ' << t.x_m
@@ -184,12 +213,13 @@ std::string to_json(const Snapshot& snapshot) {
         R"({}{{"id":{},"name":"{}","scans":{},"lost":{},"rate_hz":{},"detections":{},"moving":{},"ghosts":{},)"
         R"("state":"{}","yaw_deg":{},"yaw_std_deg":{},"pitch_deg":{},"pitch_std_deg":{},"speed_scale":{},)"
         R"("speed_scale_std":{},"data_qualifier":"{}","extended_qualifier":"{}","missed":{},"suspect":{},)"
-        R"("conditions":"{}"}})",
+        R"("conditions":"{}",)",
         separator, r.id, r.name, r.scans, r.lost, json_number(r.rate_hz), r.detections, r.moving, r.ghosts,
         name_of(r.state), json_number(r.yaw.value_rad * kDegrees), json_number(r.yaw.std_rad * kDegrees),
         json_number(r.pitch.value_rad * kDegrees), json_number(r.pitch.std_rad * kDegrees), json_number(r.speed_scale),
         json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
         words_of_conditions(r.conditions));
+    text += details_json(r.details) + "}";
     separator = ",";
   }
   text += R"(],"tracks":[)";

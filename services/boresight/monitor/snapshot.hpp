@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <iosfwd>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,20 @@ struct AngleEstimate {
   bool observable = false;
 };
 
+/// What the estimator says of the vehicle by way of this radar, and of how it came there.
+struct AlignmentDetails {
+  // About the vehicle's axes; the plain yaw, pitch and roll of a radar are about its own.
+  AngleEstimate yaw, pitch, roll;
+  AngleEstimate yaw_rate_bias;  ///< rad/s
+  AngleEstimate slip;           ///< rad per m/s²
+  std::uint32_t knocks = 0;
+  double yaw_seconds_to_95_percent = std::numeric_limits<double>::quiet_NaN();
+  double pitch_seconds_to_95_percent = std::numeric_limits<double>::quiet_NaN();
+  double yaw_drift_radpmin = std::numeric_limits<double>::quiet_NaN();
+  double residual_rmse_mps = std::numeric_limits<double>::quiet_NaN();
+  double nees = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct RadarSnapshot {
   std::uint32_t id = 0;
   std::string name;
@@ -40,6 +55,7 @@ struct RadarSnapshot {
   AngleEstimate roll;
   double speed_scale = 1.0;
   double speed_scale_std = 0.0;
+  AlignmentDetails details;
   DataQualifier data_qualifier = DataQualifier::kNotAvailable;
   ExtendedQualifier extended_qualifier = ExtendedQualifier::kInitialising;
   double yaw_tolerance_rad = 0.0;

@@ -34,8 +34,16 @@ void see_crooked_radar(Accumulator& accumulator) {
   AlignmentEstimate estimate{};
   estimate.header.source_id = 2;
   estimate.state = AlignmentState::kConverged;
-  estimate.observable = alignment_axis::kYaw | alignment_axis::kSpeedScale;
-  estimate.alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate.observable = alignment_axis::kYaw | alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale |
+                        alignment_axis::kVehiclePitch | alignment_axis::kYawRateBias;
+  estimate.alignment_yaw_rad = estimate.vehicle_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate.vehicle_pitch_rad = static_cast<float>(-0.7 * kDegree);
+  estimate.yaw_rate_bias_radps = static_cast<float>(0.1 * kDegree);
+  estimate.yaw_rate_bias_std_radps = static_cast<float>(0.02 * kDegree);
+  estimate.knock.count = 1;
+  estimate.kpis.seconds_to_95_percent = {1.0F, 1.4F, std::nanf(""), std::nanf("")};
+  estimate.kpis.drift_per_minute[1] = static_cast<float>(0.004 * kDegree);
+  estimate.vehicle_covariance[5] = estimate.vehicle_covariance[10] = static_cast<float>(std::pow(0.04 * kDegree, 2));
   estimate.speed_scale = 1.03F;
   estimate.covariance[5] = static_cast<float>(std::pow(0.04 * kDegree, 2));
   accumulator.observe(estimate);
@@ -144,6 +152,10 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   EXPECT_EQ(to_json(snapshots[1]), to_json(written));
   EXPECT_THAT(to_json(written),
               ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
+  EXPECT_THAT(to_json(written),
+              ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7,"std":0.04,"observable":true})"));
+  EXPECT_THAT(to_json(written),
+              ::testing::HasSubstr(R"("knocks":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
@@ -154,13 +166,18 @@ TEST(Render, SaysWhichRadarIsCrookedAndHowSure) {
   see_crooked_radar(accumulator);
   see_tracks(accumulator);
   RenderOptions options;
-  options.width = 150;
+  options.width = 190;
   const std::string screen = render_screen(accumulator.snapshot(0), options);
   EXPECT_THAT(screen, ::testing::HasSubstr("+2.50° ± 0.04°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("AVAILABLE_REDUCED (MISALIGNED)"));
   EXPECT_THAT(screen,
               ::testing::HasSubstr(
-                  "\n             partly blocked, unsynchronised, 12 scans missed on the wire, 3 suspect scans\n"));
+                  "\n             partly blocked, unsynchronised, 1 knocks, 12 scans missed on the wire, 3 suspect "
+                  "scans\n"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("-0.70° ± 0.04°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("not observable"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("1.4 s     +0.004°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("yaw-rate bias +0.100 ± 0.020 °/s   slip coefficient not observable"));
   EXPECT_THAT(screen, ::testing::HasSubstr("1 confirmed, 1 tentative"));
   EXPECT_THAT(screen, ::testing::HasSubstr("10.0 m behind"));
   EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restarts)"));
