@@ -28,6 +28,8 @@ constexpr std::pair<const char*, void (*)(const Options&, Report&)> kGroups[] = 
     {"knock", knock},
     {"false_alarms", false_alarms},
     {"cost", cost},
+    {"plate", plate},
+    {"drive_1", drive_1},
 };
 // clang-format on
 

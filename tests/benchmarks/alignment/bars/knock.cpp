@@ -67,7 +67,9 @@ void knock(const Options& options, Report& report) {
         spec.knocks.push_back({1.0 + kKnockAt_s, seed % 4, sign * one.rotation_deg * kDegree});
         specs.push_back(spec);
       }
-      const auto runs = run_drives(specs, own_method().make, options);
+      RunOptions run_options;
+      run_options.snapshot_period_s = 0.25;
+      const auto runs = run_drives(specs, own_method().make, options, run_options);
       const Outcome outcome = outcome_of(specs, runs);
       all_delays_s.insert(all_delays_s.end(), outcome.delays_s.begin(), outcome.delays_s.end());
       std::vector<double> later;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/make_method.hpp"
 #include "services/alignment_estimator/core/published/published.hpp"
 
 namespace boresight::bench {
@@ -30,9 +30,8 @@ std::vector<NamedMethod> published_with(const PublishedConfig& config) {
 }  // namespace
 
 NamedMethod own_method() {
-  return {"boresight", [](const VehicleConfig& vehicle) {
-            return std::make_unique<alignment::RobustFilter>(vehicle, alignment::FilterConfig{});
-          }};
+  return {"boresight",
+          [](const VehicleConfig& vehicle) { return alignment::make_method(vehicle, alignment::Config{}); }};
 }
 
 std::vector<NamedMethod> published_methods() {

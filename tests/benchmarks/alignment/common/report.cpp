@@ -122,11 +122,16 @@ void Report::write_markdown(std::ostream& out) const {
   if (!bars_.empty()) all.push_back(bars_table());
   const auto line = [&](const std::vector<std::string>& row) {
     out << '|';
-    for (const std::string& cell : row) out << ' ' << cell << " |";
+    for (const std::string& cell : row) {
+      out << ' ';
+      for (const char c : cell) out << (c == '|' ? "\\|" : std::string(1, c));
+      out << " |";
+    }
     out << '\n';
   };
   for (const Table& table : all) {
     out << "<!-- begin: " << table.name << " -->\n";
+    if (table.name != "bars") out << '*' << table.caption << "*\n\n";
     line(table.header);
     out << '|';
     for (std::size_t i = 0; i < table.header.size(); ++i) out << "---|";

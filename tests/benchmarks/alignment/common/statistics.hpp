@@ -36,8 +36,8 @@ namespace boresight::bench {
 /// Of range-rate residuals in m/s, with a histogram over ±kReach_mps.
 class Moments {
  public:
-  static constexpr double kReach_mps = 1.0;
-  static constexpr std::size_t kBins = 100;
+  static constexpr double kReach_mps = 0.6;
+  static constexpr std::size_t kBins = 120;
 
   void add(double x) {
     count_ += 1.0;

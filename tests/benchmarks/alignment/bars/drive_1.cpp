@@ -1,0 +1,137 @@
+// A drive that another simulator wrote, three minutes with four radars, through every method as `boresight align` runs
+// them.
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "services/boresight/align/drive_csv.hpp"
+#include "services/boresight/align/ego_csv.hpp"
+#include "services/boresight/align/run.hpp"
+#include "services/boresight/align/truth_file.hpp"
+#include "tests/benchmarks/alignment/bars/bars.hpp"
+#include "tests/benchmarks/alignment/common/drives.hpp"
+#include "tests/benchmarks/alignment/common/parallel.hpp"
+#include "tests/simulator/alignment/drive.hpp"
+
+namespace boresight::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The table, unpacked for as long as this lives.
+class Unpacked {
+ public:
+  explicit Unpacked(const fs::path& packed) {
+    std::string name = fs::temp_directory_path() / "boresight_bench_XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder_ = name;
+    const std::string command = "xz -dc '" + packed.string() + "' > '" + table().string() + "'";
+    if (std::system(command.c_str()) != 0) {
+      fs::remove_all(folder_);
+      throw std::runtime_error("xz cannot unpack " + packed.string());
+    }
+  }
+  ~Unpacked() { fs::remove_all(folder_); }
+  Unpacked(const Unpacked&) = delete;
+  Unpacked& operator=(const Unpacked&) = delete;
+  [[nodiscard]] fs::path table() const { return folder_ / "drive.csv"; }
+
+ private:
+  fs::path folder_;
+};
+
+std::int64_t cpu_time_ns() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+align::Result align_drive(const std::string& method, const fs::path& table, const fs::path& folder) {
+  // The recording's radars are the simulator's four corner radars without stated stds.
+  const VehicleConfig vehicle = simulator::AlignmentDrive(simulator::four_corner_radars()).vehicle();
+  std::ifstream truth(folder / "truth_1.txt");
+  align::Problems problems([](const std::string& problem) { throw std::runtime_error(problem); });
+  recording::ByteSource ego_source(folder / "ego_1.csv"), drive_source(table);
+  align::EgoReader ego(ego_source, vehicle.ego, problems);
+  align::DriveReader drive(drive_source, vehicle, problems);
+  const auto scan = std::make_unique<RadarScan>();
+  EgoMotion motion{};
+  double motion_s = 0.0, scan_s = 0.0;
+  bool has_motion = ego.next(motion, motion_s);
+  align::Run::Options options;
+  options.method = method;
+  options.truth = align::read_truth(truth, "truth_1.txt");
+  options.cpu_time_ns = cpu_time_ns;
+  align::Run run(vehicle, std::move(options));
+  while (drive.next(*scan, scan_s)) {
+    for (; has_motion && motion_s <= scan_s; has_motion = ego.next(motion, motion_s)) run.add_ego(motion, motion_s);
+    run.add_scan(*scan, scan_s);
+  }
+  return run.finish();
+}
+
+/// Largest over radars of what `of` says.
+template <typename Of>
+double largest(const align::Result& result, Of&& of) {
+  double value = 0.0;
+  for (const align::RadarResult& radar : result.radars) value = std::max(value, std::abs(of(radar)));
+  return value;
+}
+
+}  // namespace
+
+void drive_1(const Options& options, Report& report) {
+  if (options.drive_data.empty()) return;
+  const fs::path folder = options.drive_data;
+  const Unpacked unpacked(folder / "drive_1.csv.xz");
+  const std::vector<std::string> methods =
+      options.quick ? std::vector<std::string>{"boresight"} : align::method_names();
+  std::vector<align::Result> results(methods.size());
+  parallel_for(methods.size(), options.jobs,
+               [&](std::size_t i) { results[i] = align_drive(methods[i], unpacked.table(), folder); });
+  Table table{"drive_1",
+              "drive_1, 180 s: errors at the end about the vehicle's axes, worst radar",
+              {"method", "k_v", "yaw °", "pitch °", "roll front / rear °", "seconds to 95 % for good, yaw / pitch",
+               "RMSE m/s", "µs a scan"},
+              {}};
+  constexpr std::size_t kYawPlace = 1, kPitchPlace = 2, kRollPlace = 3;  // as in align::Sample
+  for (const align::Result& result : results) {
+    const auto error = [&](std::size_t place) {
+      return largest(result, [&](const align::RadarResult& radar) { return radar.truth->errors[place]; });
+    };
+    const auto seconds = [&](std::size_t place) {
+      double worst = 0.0;
+      for (const align::RadarResult& radar : result.radars) {
+        // Of a way of less than half a degree, 5 % is not to be seen in the noise.
+        if (std::abs(radar.truth->mountings.front().values[place]) < 0.5 * kDegree) continue;
+        const double s = radar.truth->seconds_to_95_percent[place];
+        worst = std::isnan(s) ? std::numeric_limits<double>::infinity() : std::max(worst, s);
+      }
+      return worst;
+    };
+    const auto roll_of = [&](std::size_t first) {
+      return std::max(std::abs(result.radars[first].truth->errors[kRollPlace]),
+                      std::abs(result.radars[first + 1].truth->errors[kRollPlace])) /
+             kDegree;
+    };
+    const double speed_scale = error(0), yaw = error(kYawPlace) / kDegree, pitch = error(kPitchPlace) / kDegree;
+    table.rows.push_back(
+        {result.method, number(speed_scale), number(yaw), number(pitch),
+         number(roll_of(0)) + " / " + number(roll_of(2)),
+         number(seconds(kYawPlace)) + " / " + number(seconds(kPitchPlace)),
+         fixed(largest(result, [](const align::RadarResult& radar) { return radar.residuals.after.rmse_mps; }), 4),
+         number(largest(result, [](const align::RadarResult& radar) { return radar.cpu_us_per_scan; }))});
+    if (result.method != "boresight") continue;
+    const std::string how = "worst of four radars after 180 s of one recorded drive";
+    report.at_most("drive_1", "k_v", speed_scale, 5e-5, "", how);
+    report.at_most("drive_1", "yaw", yaw, 0.005, "°", how);
+    report.at_most("drive_1", "pitch", pitch, 0.03, "°", how);
+  }
+  report.add(std::move(table));
+}
+
+}  // namespace boresight::bench
