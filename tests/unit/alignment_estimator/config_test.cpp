@@ -1,0 +1,172 @@
+// The shipped file: every key, with the default's value.
+#include "services/alignment_estimator/config.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace boresight::alignment {
+namespace {
+
+const std::filesystem::path kShipped =
+    std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/services/alignment_estimator.toml";
+
+/// All numbers of both configurations, in one order.
+std::vector<double> numbers(const Settings& s) {
+  const FilterConfig& f = s.estimator.filter;
+  const published::PublishedConfig& p = s.estimator.published;
+  std::vector<double> all = {
+      s.estimator.publish_period_s,
+      s.estimator.kpi_window_s,
+      s.estimator.residual_gate_sigma,
+      s.memory.period_s,
+      f.min_speed_mps,
+      f.prior_speed_scale_std,
+      f.prior_rotation_std_rad,
+      f.prior_yaw_rate_bias_std_radps,
+      f.prior_slip_coefficient_std_radps2pm,
+      f.prior_pitch_per_acceleration_std_radps2pm,
+      f.rotation_drift_rad_per_sqrt_s,
+      f.speed_scale_drift_per_sqrt_s,
+      f.yaw_rate_bias_drift_radps_per_sqrt_s,
+      f.outlier_gate_sigma,
+      f.azimuth_std_edge,
+      f.speed_std_mps,
+      f.yaw_rate_std_radps,
+      f.body_pitch_std_rad,
+      f.side_slip_std_rad,
+      f.ego_correlation_s,
+      f.body_correlation_s,
+      f.nuisance_memory_s,
+      f.start_seconds,
+      f.start_detections,
+      static_cast<double>(f.start_passes),
+      f.start_scale_mps,
+      f.start_shrink,
+      f.start_inflation,
+      f.converged_yaw_std_rad,
+      f.min_seconds_to_converge,
+      f.memory_inflation,
+      f.memory_rotation_std_rad,
+      f.memory_speed_scale_std,
+      f.knock_block_s,
+      f.knock_yaw_rad,
+      f.knock_pitch_rad,
+      f.knock_sum_blocks,
+      static_cast<double>(p.road_model),
+      p.straight_yaw_rate_radps,
+      p.min_speed_mps,
+      p.least_squares_damping,
+      p.total_least_squares_rate,
+      static_cast<double>(p.nelder_mead_detections),
+      static_cast<double>(p.nelder_mead_iterations),
+      p.nelder_mead_filter_scans,
+      p.gate ? 1.0 : 0.0,
+      p.gate_sigma,
+      p.gate_floor_mps,
+      static_cast<double>(p.min_detections),
+      p.max_speed_scale_error,
+      p.max_angle_rad,
+      p.prior_speed_scale_std,
+      p.prior_angle_std_rad,
+      p.window_s,
+      p.converged_angle_rad,
+      p.converged_speed_scale,
+      static_cast<double>(p.seed),
+  };
+  for (const auto& list : {p.steepest_descent_rate, p.least_squares_rate, p.nelder_mead_edge}) {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  return all;
+}
+
+TEST(Config, TheShippedFileHasTheDefaults) {
+  const Settings shipped = read_settings(config::Reader::open(kShipped));
+  const std::vector<double> read = numbers(shipped), expected = numbers(Settings{});
+  ASSERT_EQ(read.size(), expected.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    // Angles are written in degrees, to two digits at least.
+    EXPECT_NEAR(read[i], expected[i], 0.02 * std::abs(expected[i]) + 1e-12) << "number " << i;
+  }
+  EXPECT_EQ(shipped.estimator.method, MethodName::kBoresight);
+  EXPECT_FALSE(shipped.estimator.truth.has_value());
+  EXPECT_TRUE(shipped.memory.enabled);
+  EXPECT_TRUE(shipped.memory.path.empty());
+}
+
+TEST(Config, EveryKeyOfTheShippedFileIsReadIntoItsPlace) {
+  // Each number of the file, changed a little, changes exactly one of the settings.
+  std::ifstream file(kShipped);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  const std::vector<double> before = numbers(read_settings(config::Reader::open(kShipped)));
+  std::vector<int> changes(before.size(), 0);
+  bool of_station = false;  // whose settings have tests of their own
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i].starts_with("[")) of_station = lines[i].starts_with("[station");
+    if (of_station) continue;
+    const std::size_t equals = lines[i].find(" = ");
+    if (equals == std::string::npos || lines[i].front() == '#') continue;
+    const char first = lines[i][equals + 3];
+    if (std::isdigit(static_cast<unsigned char>(first)) == 0) continue;
+    std::vector<std::string> changed = lines;
+    std::size_t end = 0;
+    const double value = std::stod(lines[i].substr(equals + 3), &end);
+    const std::string text = lines[i].substr(equals + 3, end);
+    const bool whole = text.find_first_of(".e") == std::string::npos;
+    std::ostringstream replaced;
+    replaced.precision(12);
+    if (whole) {
+      replaced << static_cast<long>(value) + 1;
+    } else {
+      replaced << std::scientific << 0.97 * value;
+    }
+    changed[i] = lines[i].substr(0, equals + 3) + replaced.str();
+    std::string all;
+    for (const std::string& line : changed) all += line + "\n";
+    const std::vector<double> after = numbers(read_settings(config::Reader::parse(all, lines[i])));
+    int different = 0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      if (after[k] == before[k]) continue;
+      ++different;
+      ++changes[k];
+    }
+    EXPECT_EQ(different, 1) << lines[i];
+  }
+  EXPECT_GT(std::count(changes.begin(), changes.end(), 1), 50);
+  EXPECT_EQ(std::count_if(changes.begin(), changes.end(), [](int n) { return n > 1; }), 0);
+}
+
+TEST(Config, ErrorsAreNamed) {
+  const auto problem = [](const char* text) -> std::string {
+    try {
+      static_cast<void>(read_settings(config::Reader::parse(text, "test.toml")));
+    } catch (const config::Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(problem(""), "");
+  EXPECT_NE(problem("method = \"best\"\n").find("method"), std::string::npos);
+  EXPECT_NE(problem("[filter]\nmin_sped_mps = 5.0\n").find("min_sped_mps"), std::string::npos);
+  EXPECT_NE(problem("[filter.knock]\nyaw_deg = -1.0\n").find("yaw_deg"), std::string::npos);
+  EXPECT_NE(problem("[published]\nnls_rate = [1.0, 2.0]\n").find("nls_rate"), std::string::npos);
+  EXPECT_NE(problem("[[truth.radar]]\nyaw_deg = 1.0\n").find("id"), std::string::npos);
+}
+
+TEST(Config, TheTruthOfASimulatedDrive) {
+  const Settings s = read_settings(config::Reader::parse(
+      "[truth]\nspeed_scale = 1.01\n[[truth.radar]]\nid = 3\nyaw_deg = 2.0\npitch_deg = -1.0\nroll_deg = 0.5\n",
+      "test.toml"));
+  ASSERT_TRUE(s.estimator.truth.has_value());
+  EXPECT_EQ(s.estimator.truth->speed_scale, 1.01);
+  ASSERT_EQ(s.estimator.truth->radars.size(), 1u);
+  EXPECT_EQ(s.estimator.truth->radars[0].id, 3u);
+  EXPECT_NEAR(s.estimator.truth->radars[0].pitch_rad, -M_PI / 180.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace boresight::alignment
