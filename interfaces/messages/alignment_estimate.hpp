@@ -62,8 +62,9 @@ static_assert(sizeof(AlignmentKnock) == 24);
 
 /// Mounting correction of the radar `header.source_id`, in two forms of the same rotation.
 /// Sensor form: actual mounting = nominal + correction, R(sensor→vehicle) = R_z(α_b+α_m)·R_y(−(β_b+β_m))·R_x(γ_b+γ_m),
-/// α yaw, β pitch (positive looks up), γ roll. Vehicle form: R(actual) = Exp(d)·R(nominal) with the rotation vector d
-/// in vehicle axes; yaw = d_z, roll = d_x, pitch = −d_y, so that a positive pitch of a radar that looks ahead is up.
+/// α yaw, β pitch (positive looks up), γ roll. Vehicle form: R(actual) = R_x(roll)·R_y(−pitch)·R_z(yaw)·R(nominal), a
+/// turn about the vehicle's axes, z first and x last: a roll that is not known leaves yaw and pitch alone. A positive
+/// pitch of a radar that looks ahead is up.
 struct AlignmentEstimate {
   static constexpr std::uint32_t kVersion = 2;
 

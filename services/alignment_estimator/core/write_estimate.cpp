@@ -15,26 +15,30 @@ void write_covariance(const Eigen::Matrix4d& covariance, std::array<float, 16>& 
 
 }  // namespace
 
-Eigen::Vector4d vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate) {
+Eigen::Vector3d vehicle_angles(const RadarConfig& radar, const Eigen::Matrix3d& sensor_to_vehicle) {
   const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
-  const Eigen::Vector3d turn = geometry::so3_log(estimate.sensor_to_vehicle * nominal.transpose());
-  return {estimate.speed_scale, turn.z(), -turn.y(), turn.x()};
+  return geometry::fixed_axes_angles(sensor_to_vehicle * nominal.transpose());
+}
+
+VehicleForm vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate) {
+  VehicleForm form;
+  form.values << estimate.speed_scale, vehicle_angles(radar, estimate.sensor_to_vehicle);
+  Eigen::Matrix4d gradient = Eigen::Matrix4d::Identity();
+  gradient.bottomRightCorner<3, 3>() = geometry::fixed_axes_gradient(form.values(2), form.values(3));
+  form.covariance = gradient * estimate.covariance * gradient.transpose();
+  return form;
 }
 
 void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, double prior_angle_std_rad,
                     AlignmentEstimate& out) {
   out.state = estimate.state;
   out.reserved = {};
-  const Eigen::Vector4d vehicle = vehicle_form(radar, estimate);
+  const VehicleForm vehicle = vehicle_form(radar, estimate);
   out.speed_scale = static_cast<float>(estimate.speed_scale);
-  out.vehicle_yaw_rad = static_cast<float>(vehicle(1));
-  out.vehicle_pitch_rad = static_cast<float>(vehicle(2));
-  out.vehicle_roll_rad = static_cast<float>(vehicle(3));
-  // (k_v, d_x, d_y, d_z) → (k_v, yaw, pitch, roll).
-  Eigen::Matrix4d to_vehicle_form = Eigen::Matrix4d::Zero();
-  to_vehicle_form(0, 0) = to_vehicle_form(1, 3) = to_vehicle_form(3, 1) = 1.0;
-  to_vehicle_form(2, 2) = -1.0;
-  write_covariance(to_vehicle_form * estimate.covariance * to_vehicle_form.transpose(), out.vehicle_covariance);
+  out.vehicle_yaw_rad = static_cast<float>(vehicle.values(1));
+  out.vehicle_pitch_rad = static_cast<float>(vehicle.values(2));
+  out.vehicle_roll_rad = static_cast<float>(vehicle.values(3));
+  write_covariance(vehicle.covariance, out.vehicle_covariance);
 
   const Eigen::Vector3d angles = geometry::euler_angles(estimate.sensor_to_vehicle);
   const MountingPose& nominal = radar.mounting_pose;

@@ -9,8 +9,15 @@
 
 namespace boresight::alignment {
 
-/// (k_v, yaw, pitch, roll) about the vehicle's axes, with the signs of the message.
-[[nodiscard]] Eigen::Vector4d vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate);
+/// (k_v, yaw, pitch, roll) about the vehicle's axes, with the signs of the message, and their covariance.
+struct VehicleForm {
+  Eigen::Vector4d values;
+  Eigen::Matrix4d covariance;
+};
+[[nodiscard]] VehicleForm vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate);
+
+/// Yaw, pitch and roll of the correction from the nominal mounting to this one.
+[[nodiscard]] Eigen::Vector3d vehicle_angles(const RadarConfig& radar, const Eigen::Matrix3d& sensor_to_vehicle);
 
 /// Writes everything but the header and the key figures. An axis of the sensor is called observable once the data say
 /// clearly more of it than `prior_angle_std_rad` did.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "services/boresight/align/json_writer.hpp"
+#include "services/common/geometry/so3.hpp"
 
 namespace boresight::align {
 
@@ -92,8 +93,10 @@ void write_radar(JsonWriter& json, const RadarResult& radar) {
     json.field(std::string(kSensorNames.at(i)) + "_std_deg", std_of(m.covariance, i + 1) * kDegrees);
   }
   write_observability(json, m);
+  const Eigen::Vector3d turn =
+      geometry::so3_log(geometry::fixed_axes_rotation(m.vehicle_yaw_rad, m.vehicle_pitch_rad, m.vehicle_roll_rad));
   json.key("rotation_vector_vehicle_rad").begin_array();
-  json.value(double{m.vehicle_roll_rad}).value(-double{m.vehicle_pitch_rad}).value(double{m.vehicle_yaw_rad});
+  json.value(turn.x()).value(turn.y()).value(turn.z());
   json.end_array().key("sensor_to_vehicle").begin_array();
   for (Eigen::Index i = 0; i < 9; ++i) json.value(radar.estimate.sensor_to_vehicle(i / 3, i % 3));
   json.end_array().key("covariance").begin_array();

@@ -76,7 +76,7 @@ void add_series(const VehicleConfig& vehicle, const post_factum::Result& found, 
     for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
       const double* const angles = &step.parameters[1 + 3 * i];
       const auto e = estimate_of(vehicle.radars[i].mounting_pose, step.parameters[0], angles[0], angles[1], angles[2]);
-      const Eigen::Vector4d form = alignment::vehicle_form(vehicle.radars[i], e);
+      const Eigen::Vector4d form = alignment::vehicle_form(vehicle.radars[i], e).values;
       Sample::Radar& radar = sample.radars.emplace_back();
       radar.state = result.radars[i].estimate.state;
       radar.observable = result.radars[i].message.observable;
@@ -123,7 +123,9 @@ void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const Res
   result.speed_scale_std = std_of(found.speed_scale);
   result.speed_scale_observable = is_supported(found.speed_scale);
   result.speed_scale_support = post_factum::to_text(found.speed_scale.support);
-  for (RadarResult& radar : result.radars) radar.stds = component_stds(*vehicle.radar(radar.id), radar.estimate);
+  for (RadarResult& radar : result.radars) {
+    radar.stds = stds_of(alignment::vehicle_form(*vehicle.radar(radar.id), radar.estimate));
+  }
   add_series(vehicle, found, result);
 }
 

@@ -50,11 +50,10 @@ std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const 
   std::vector<TruthComparison::Mounting> mountings;
   const auto known = truth.radars.find(config.id);
   if (known == truth.radars.end()) return mountings;
-  const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0);
   const auto add = [&](double from_s, const Truth::Radar& radar) {
     const Eigen::Matrix3d actual = true_mounting(radar, config.mounting_pose);
-    const Eigen::Vector3d turn = geometry::so3_log(actual * nominal.transpose());
-    mountings.push_back({from_s, actual, {truth.speed_scale.value_or(kNaN), turn.z(), -turn.y(), turn.x()}});
+    const Eigen::Vector3d angles = alignment::vehicle_angles(config, actual);
+    mountings.push_back({from_s, actual, {truth.speed_scale.value_or(kNaN), angles(0), angles(1), angles(2)}});
   };
   Truth::Radar radar = known->second;
   add(-std::numeric_limits<double>::infinity(), radar);
@@ -172,7 +171,7 @@ void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, 
       radar.seconds_to_95_percent.at(i) = kNaN;
     }
   }
-  const auto values = to_array(alignment::vehicle_form(radar.config, estimate));
+  const auto values = to_array(alignment::vehicle_form(radar.config, estimate).values);
   for (std::size_t i = 0; i < kParameters; ++i) {
     const double goal = radar.truth[radar.true_now].values.at(i);
     const bool is_there = std::abs(values.at(i) - goal) <= 0.05 * std::abs(goal - radar.way_begin.at(i));
@@ -198,8 +197,8 @@ Sample Run::sample(double time_s) {
   sample.x = time_s;
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     const alignment::RadarEstimate e = estimator_->estimate(i);
-    sample.radars.push_back({e.state, e.observable, to_array(alignment::vehicle_form(radars_[i].config, e)),
-                             component_stds(radars_[i].config, e)});
+    const alignment::VehicleForm form = alignment::vehicle_form(radars_[i].config, e);
+    sample.radars.push_back({e.state, e.observable, to_array(form.values), stds_of(form)});
     // Shared by all radars, or known to one of them: the surest counts.
     const auto is_surer = [](double std, double than) { return std > 0.0 && (than == 0.0 || std < than); };
     if (is_surer(e.yaw_rate_bias_std_radps, sample.yaw_rate_bias_std_radps)) {
@@ -248,7 +247,7 @@ Result Run::finish() {
   }
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     RadarResult& r = result.radars[i];
-    r.stds = component_stds(radars_[i].config, r.estimate);
+    r.stds = stds_of(alignment::vehicle_form(radars_[i].config, r.estimate));
     r.residuals = radars_[i].residuals.judge(r.estimate, radars_[i].config, radars_[i].nominal);
     if (!radars_[i].truth.empty()) r.truth = compare(radars_[i], r);
   }
@@ -280,10 +279,10 @@ TruthComparison Run::compare(const Radar& radar, const RadarResult& result) {
   comparison.seconds_to_95_percent = radar.seconds_to_95_percent;
   const TruthComparison::Mounting& truth = radar.truth[radar.true_now];
   const Eigen::Matrix3d& estimated = result.estimate.sensor_to_vehicle;
-  const Eigen::Vector3d turn = geometry::so3_log(estimated * truth.sensor_to_vehicle.transpose());
-  comparison.errors = {result.estimate.speed_scale - truth.values[0], turn.z(), -turn.y(), turn.x()};
-  const auto stds = turn_stds(result.estimate);
+  const auto values = to_array(alignment::vehicle_form(radar.config, result.estimate).values);
+  const std::array<double, kParameters>& stds = result.stds;
   for (std::size_t i = 0; i < kParameters; ++i) {
+    comparison.errors.at(i) = values.at(i) - truth.values.at(i);
     const double normalised = comparison.errors.at(i) / stds.at(i);
     comparison.nees.at(i) = stds.at(i) > 0.0 ? normalised * normalised : kNaN;
   }

@@ -43,6 +43,30 @@ namespace boresight::geometry {
   return {std::atan2(r(1, 0), r(0, 0)), pitch, std::atan2(r(2, 1), r(2, 2))};
 }
 
+/// C = R_x(roll)·R_y(−pitch)·R_z(yaw): a turn about fixed axes, z first and x last; pitch positive looks up.
+[[nodiscard]] inline Eigen::Matrix3d fixed_axes_rotation(double yaw_rad, double pitch_rad, double roll_rad) {
+  return (Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(-pitch_rad, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))
+      .toRotationMatrix();
+}
+
+/// Yaw, pitch and roll of such a turn. A further turn about x changes the roll alone, so that a roll that is not known
+/// leaves the other two alone.
+[[nodiscard]] inline Eigen::Vector3d fixed_axes_angles(const Eigen::Matrix3d& c) {
+  return {std::atan2(-c(0, 1), c(0, 0)), std::asin(std::clamp(-c(0, 2), -1.0, 1.0)), std::atan2(-c(1, 2), c(2, 2))};
+}
+
+/// Change of these angles by a small turn e, C ← Exp(e)·C; singular at a pitch of ±90°.
+[[nodiscard]] inline Eigen::Matrix3d fixed_axes_gradient(double pitch_rad, double roll_rad) {
+  const double cr = std::cos(roll_rad), sr = std::sin(roll_rad);
+  const double cp = std::cos(pitch_rad), tp = std::tan(pitch_rad);
+  // Inverse of e = e_x·δroll − R_x e_y·δpitch + R_x R_y(−pitch) e_z·δyaw.
+  Eigen::Matrix3d m;
+  m << 0.0, -sr / cp, cr / cp, 0.0, -cr, -sr, 1.0, -sr * tp, cr * tp;
+  return m;
+}
+
 /// Change of (yaw, pitch, roll) by a small turn d in vehicle axes, R ← Exp(d)·R; singular at a pitch of ±90°.
 [[nodiscard]] inline Eigen::Matrix3d euler_gradient(double yaw_rad, double pitch_rad) {
   const double cy = std::cos(yaw_rad), sy = std::sin(yaw_rad);

@@ -15,7 +15,7 @@ namespace {
 /// Of the turn about the vehicle's x, y, z axes, what is observable and sure; zero if that is nothing.
 Eigen::Vector3d sure_turn(const AlignmentEstimate& estimate, double max_std_rad) {
   const Eigen::Vector3d turn(estimate.vehicle_roll_rad, -estimate.vehicle_pitch_rad, estimate.vehicle_yaw_rad);
-  // Rows of the message's covariance are k_v, yaw, pitch, roll; pitch is −d_y.
+  // Rows of the message's covariance are k_v, yaw, pitch, roll; those of the turn about x, y, z are roll, −pitch, yaw.
   constexpr std::array<std::size_t, 3> kRow{3, 2, 1};
   constexpr std::array<double, 3> kSign{1.0, -1.0, 1.0};
   constexpr std::array<std::uint32_t, 3> kAxis{alignment_axis::kVehicleRoll, alignment_axis::kVehiclePitch,
@@ -61,7 +61,8 @@ Mounting mounting_of(const RadarConfig& radar, const AlignmentEstimate* estimate
   }
   const Eigen::Vector3d turn = sure_turn(*estimate, config.max_angle_std_to_apply_rad);
   if (!turn.isZero(0.0)) {
-    mounting.sensor_to_vehicle = geometry::so3_exp(turn) * mounting.sensor_to_vehicle;
+    mounting.sensor_to_vehicle =
+        geometry::fixed_axes_rotation(turn.z(), -turn.y(), turn.x()) * mounting.sensor_to_vehicle;
     mounting.alignment_sequence = estimate->header.sequence;
   }
   return mounting;

@@ -38,6 +38,30 @@ TEST(So3, EulerGradientIsThatOfFiniteDifferences) {
   }
 }
 
+TEST(So3, FixedAxesAnglesAreThoseOfTurnsOneAfterTheOther) {
+  const Eigen::Vector3d angles(0.4, -0.3, 0.2);
+  const Eigen::Matrix3d c =
+      so3_exp({angles(2), 0.0, 0.0}) * so3_exp({0.0, -angles(1), 0.0}) * so3_exp({0.0, 0.0, angles(0)});
+  EXPECT_TRUE(fixed_axes_rotation(angles(0), angles(1), angles(2)).isApprox(c, 1e-12));
+  EXPECT_TRUE(fixed_axes_angles(c).isApprox(angles, 1e-12));
+  const Eigen::Vector3d rolled = fixed_axes_angles(so3_exp({0.5, 0.0, 0.0}) * c);
+  EXPECT_TRUE(rolled.isApprox(angles + Eigen::Vector3d(0.0, 0.0, 0.5), 1e-12)) << rolled.transpose();
+}
+
+TEST(So3, FixedAxesGradientIsThatOfFiniteDifferences) {
+  const Eigen::Vector3d angles(0.4, -0.3, 0.2);
+  const Eigen::Matrix3d c =
+      so3_exp({angles(2), 0.0, 0.0}) * so3_exp({0.0, -angles(1), 0.0}) * so3_exp({0.0, 0.0, angles(0)});
+  const Eigen::Matrix3d gradient = fixed_axes_gradient(angles(1), angles(2));
+  constexpr double kStep = 1e-6;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d turn = kStep * Eigen::Vector3d::Unit(axis);
+    const Eigen::Vector3d change =
+        (fixed_axes_angles(so3_exp(turn) * c) - fixed_axes_angles(so3_exp(-turn) * c)) / (2.0 * kStep);
+    EXPECT_LT((change - gradient.col(axis)).norm(), 1e-8) << axis;
+  }
+}
+
 TEST(So3, StraightUpHasNoRollOfItsOwn) {
   const Eigen::Matrix3d r = sensor_to_vehicle(0.4, M_PI / 2, 0.0);
   const Eigen::Vector3d angles = euler_angles(r);
