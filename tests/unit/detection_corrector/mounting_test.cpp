@@ -36,7 +36,8 @@ AlignmentEstimate estimate(const RadarConfig& of, const Eigen::Matrix3d& covaria
     }
   }
   const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(of.mounting_pose, 0.0, 0.0, 0.0);
-  const Eigen::Vector3d angles = geometry::euler_angles(geometry::so3_exp(kTurn) * nominal);
+  const Eigen::Vector3d angles =
+      geometry::euler_angles(geometry::fixed_axes_rotation(kTurn.z(), -kTurn.y(), kTurn.x()) * nominal);
   e.alignment_yaw_rad = static_cast<float>(angles(0) - of.mounting_pose.yaw_rad);
   e.alignment_pitch_rad = static_cast<float>(angles(1));
   e.alignment_roll_rad = static_cast<float>(angles(2) - of.mounting_pose.roll_rad);
@@ -51,11 +52,12 @@ Eigen::Matrix3d stds(double x_deg, double y_deg, double z_deg) {
   return std.cwiseAbs2().asDiagonal();
 }
 
-/// The applied turn.
+/// The applied turn about the vehicle's x, y, z.
 Eigen::Vector3d applied(const RadarConfig& to, const AlignmentEstimate& e) {
   const Mounting mounting = mounting_of(to, &e, Config{});
-  return geometry::so3_log(mounting.sensor_to_vehicle *
-                           geometry::sensor_to_vehicle(to.mounting_pose, 0.0, 0.0, 0.0).transpose());
+  const Eigen::Vector3d angles = geometry::fixed_axes_angles(
+      mounting.sensor_to_vehicle * geometry::sensor_to_vehicle(to.mounting_pose, 0.0, 0.0, 0.0).transpose());
+  return {angles(2), -angles(1), angles(0)};
 }
 
 TEST(Mounting, AllSureIsTheWholeRotation) {
