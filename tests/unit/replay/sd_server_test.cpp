@@ -434,5 +434,18 @@ TEST_F(SdServerTest, KeepsSoManyPeersAndNoMore) {
   EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond, true, first)), 1) << "the first is forgotten";
 }
 
+TEST_F(SdServerTest, TellsNewSubscribersAndNotRenewals) {
+  receive(Client().at(kClientEvents).subscribe(kDetections, 3).subscribe(kEgo, 3).message(1));
+  ASSERT_EQ(server->new_subscribers().size(), 2u);
+  EXPECT_EQ(server->new_subscribers()[0].instance, 3);
+  EXPECT_EQ(server->new_subscribers()[0].eventgroup, kDetections);
+  EXPECT_EQ(server->new_subscribers()[0].endpoint, kClientEvents);
+  EXPECT_EQ(server->new_subscribers()[1].eventgroup, kEgo);
+  receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(2));
+  EXPECT_TRUE(server->new_subscribers().empty()) << "a renewal";
+  receive(Client().subscribe(kDetections, 3).message(3));
+  EXPECT_TRUE(server->new_subscribers().empty()) << "refused";
+}
+
 }  // namespace
 }  // namespace boresight::replay
