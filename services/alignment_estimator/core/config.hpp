@@ -14,16 +14,26 @@
 namespace boresight::alignment {
 
 /// Estimators to choose from: Boresight's own, and those of the literature (Report A §8).
-enum class MethodName : std::uint8_t { kBoresight, kSteepestDescent, kNls, kTls, kNelderMead, kAzimuth1d };
+enum class MethodName : std::uint8_t {
+  kBoresight,
+  kSteepestDescent,
+  kNls,
+  kTls,
+  kNelderMead,
+  kAzimuth1d,
+  kBoresightPlanar
+};
 
 /// As they are called in configuration and on the command line.
-inline constexpr std::array<std::pair<std::string_view, MethodName>, 6> kMethodNames{{
+inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodNames{{
     {"boresight", MethodName::kBoresight},
     {"steepest_descent", MethodName::kSteepestDescent},
     {"nls", MethodName::kNls},
     {"tls", MethodName::kTls},
     {"nelder_mead", MethodName::kNelderMead},
     {"azimuth_1d", MethodName::kAzimuth1d},
+    // Boresight's filter with the planar roll model of Report A, for reproducing its tables only.
+    {"boresight_planar", MethodName::kBoresightPlanar},
 }};
 
 /// What a simulated drive knows of itself; added to the nominal angles.

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/planar/planar_filter.hpp"
 #include "services/alignment_estimator/core/published/published.hpp"
 
 namespace boresight::alignment {
@@ -23,6 +24,12 @@ std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& 
       return make(Kind::kNelderMead);
     case MethodName::kAzimuth1d:
       return make(Kind::kAzimuth1d);
+    case MethodName::kBoresightPlanar: {
+      planar::PlanarConfig planar;
+      planar.min_speed_mps = config.min_speed_mps();
+      planar.prior_angle_std_rad = config.prior_angle_std_rad();
+      return std::make_unique<planar::PlanarFilter>(vehicle, planar);
+    }
   }
   throw std::invalid_argument("no such alignment method");
 }

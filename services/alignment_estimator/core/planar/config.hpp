@@ -1,0 +1,31 @@
+// Settings of Boresight's filter with the planar roll model of Report A; for reproducing its tables only.
+#pragma once
+
+namespace boresight::alignment::planar {
+
+struct PlanarConfig {
+  double min_speed_mps = 5.0;  ///< slower driving tells nothing (Report A §8)
+
+  // How wrong everything may be before anything was measured (1 σ).
+  double prior_speed_scale_std = 0.03;
+  double prior_angle_std_rad = 0.0698;  ///< 4°, of α, β and γ each
+
+  // Random walks. Report A's truth stands still, so these are smaller than a real mounting's.
+  double angle_drift_rad_per_sqrt_s = 1e-7;
+  double speed_scale_drift_per_sqrt_s = 5e-8;
+
+  double outlier_gate_sigma = 5.0;  ///< Tukey's constant
+
+  // Graduated start of a radar (graduated non-convexity).
+  double start_seconds = 1.0;  ///< of scans that the start is made from
+  int start_passes = 16;
+  double start_scale_mps = 2.0;  ///< added σ of the first pass; times `start_shrink` each pass, none in the last three
+  double start_shrink = 0.6;
+  double start_inflation = 2.0;  ///< of the start's covariance: errors of the motion are not modelled there
+
+  // Convergence as published.
+  double converged_yaw_std_rad = 0.00175;  ///< 0.1°
+  double min_seconds_to_converge = 5.0;
+};
+
+}  // namespace boresight::alignment::planar
