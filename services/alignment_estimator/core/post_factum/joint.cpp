@@ -26,10 +26,9 @@ void JointEquations::add(std::size_t radar, const published::NormalEquations& eq
   count += equations.count;
 }
 
-void add(const MountingPose& nominal, const Detection& detection, const Eigen::Vector4d& b,
-         published::NormalEquations& equations) {
-  const published::RangeRate predicted = published::PlanarModel(
-      nominal, b, detection.speed_mps, detection.yaw_rate_radps)(detection.azimuth_rad, detection.elevation_rad);
+void add(const Detection& detection, published::PlanarModel& model, published::NormalEquations& equations) {
+  model.move(detection.speed_mps, detection.yaw_rate_radps);
+  const published::RangeRate predicted = model(detection.azimuth_rad, detection.elevation_rad);
   equations.add(predicted.gradient, predicted.value_mps - detection.range_rate_mps);
 }
 
@@ -63,8 +62,8 @@ JointEquations equations_at(std::span<const Recording> radars, const Eigen::Vect
   JointEquations joint(radars.size());
   for (std::size_t r = 0; r < radars.size(); ++r) {
     published::NormalEquations equations;
-    const Eigen::Vector4d b = of_radar(parameters, r);
-    for (const Detection& d : radars[r].detections) add(radars[r].nominal, d, b, equations);
+    published::PlanarModel model(radars[r].nominal, of_radar(parameters, r), 0.0, 0.0);
+    for (const Detection& d : radars[r].detections) add(d, model, equations);
     joint.add(r, equations);
   }
   for (const Eigen::Index i : held) {

@@ -37,9 +37,8 @@ struct JointEquations {
   std::size_t count = 0;
 };
 
-/// Adds one detection of a radar at `b`.
-void add(const MountingPose& nominal, const Detection& detection, const Eigen::Vector4d& b,
-         published::NormalEquations& equations);
+/// Adds one detection to those of its radar's `model`, which it moves.
+void add(const Detection& detection, published::PlanarModel& model, published::NormalEquations& equations);
 
 /// V_JR·V_RR⁻¹ of the SVD of [J, ηR] (26)(27), by inverse iteration on its Gram matrix: the smallest singular value is
 /// far below the others, so that six rounds give all digits. Zero where there is no solution.

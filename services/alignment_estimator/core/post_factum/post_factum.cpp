@@ -63,9 +63,9 @@ Eigen::VectorXd iterate(std::span<const Recording> radars, Eigen::VectorXd x, co
     for (std::size_t r = 0; r < radars.size(); ++r) {
       const Recording& radar = radars[r];
       published::NormalEquations equations;
-      const Eigen::Vector4d b = of_radar(x, r);
+      published::PlanarModel model(radar.nominal, of_radar(x, r), 0.0, 0.0);
       for (std::size_t k = 0; k < config.detections_per_iteration && !radar.detections.empty(); ++k)
-        add(radar.nominal, radar.detections[draw.below(radar.detections.size())], b, equations);
+        add(radar.detections[draw.below(radar.detections.size())], model, equations);
       joint.add(r, equations);
       // A radar without data has no gradient: something in its place keeps the equations regular and it where it is.
       if (radar.detections.empty()) joint.jtj.diagonal().segment<3>(first_angle(r)).setOnes();

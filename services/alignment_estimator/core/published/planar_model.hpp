@@ -26,9 +26,17 @@ class PlanarModel {
         pitch_rad_(nominal.pitch_rad + b(2)),
         cos_roll_(std::cos(nominal.roll_rad + b(3))),
         sin_roll_(std::sin(nominal.roll_rad + b(3))),
-        speed_mps_(speed_mps),
-        forward_mps_(b(0) * speed_mps - yaw_rate_radps * nominal.position_m[1]),
-        left_mps_(yaw_rate_radps * nominal.position_m[0]) {}
+        speed_scale_(b(0)),
+        x_m_(nominal.position_m[0]),
+        y_m_(nominal.position_m[1]) {
+    move(speed_mps, yaw_rate_radps);
+  }
+  /// The same radar at another motion; cheaper than a new model.
+  void move(double speed_mps, double yaw_rate_radps) {
+    speed_mps_ = speed_mps;
+    forward_mps_ = speed_scale_ * speed_mps - yaw_rate_radps * y_m_;
+    left_mps_ = yaw_rate_radps * x_m_;
+  }
 
   /// (10)–(12) at the measured angles.
   [[nodiscard]] double value(double azimuth_rad, double elevation_rad) const {
@@ -52,8 +60,8 @@ class PlanarModel {
   }
 
  private:
-  double yaw_rad_, pitch_rad_, cos_roll_, sin_roll_, speed_mps_;
-  double forward_mps_, left_mps_;  // k_v·V − V_ωx and V_ωy
+  double yaw_rad_, pitch_rad_, cos_roll_, sin_roll_, speed_scale_, x_m_, y_m_;
+  double speed_mps_, forward_mps_, left_mps_;  // k_v·V − V_ωx and V_ωy
 };
 
 }  // namespace boresight::alignment::published

@@ -37,6 +37,7 @@ PublishedMethod::PublishedMethod(const VehicleConfig& vehicle, const PublishedCo
     : config_(config), parameters_(parameters), detections_per_scan_(detections_per_scan), draw_(config.seed) {
   radars_.resize(vehicle.radars.size());
   for (std::size_t i = 0; i < radars_.size(); ++i) {
+    radars_[i].id = vehicle.radars[i].id;
     radars_[i].nominal = vehicle.radars[i].mounting_pose;
     radars_[i].cycle_time_s = vehicle.radars[i].cycle_time_s;
   }
@@ -198,6 +199,49 @@ RadarEstimate PublishedMethod::estimate(std::size_t index) const {
     out.state = arrived ? AlignmentState::kConverged : AlignmentState::kConverging;
   }
   return out;
+}
+
+void PublishedMethod::save(Memory& memory) const {
+  memory = {};
+  memory.number_of_radars = std::min(radars_.size(), memory.radars.size());
+  memory.speed_scale = speed_scale_;
+  const std::size_t size = memory.number_of_parameters();
+  const auto set_variance = [&](std::size_t i, double variance) { memory.covariance[i * size + i] = variance; };
+  for (std::size_t r = 0; r < memory.number_of_radars; ++r) {
+    const RadarEstimate e = estimate(r);
+    const Eigen::Vector3d d = geometry::so3_log(
+        e.sensor_to_vehicle * geometry::sensor_to_vehicle(radars_[r].nominal, 0.0, 0.0, 0.0).transpose());
+    memory.radars[r] = {radars_[r].id, {d.x(), d.y(), d.z()}, 1.0, e.seconds_of_drive};
+    const double variance = e.covariance(0, 0);
+    if (r == 0 || variance < memory.covariance[0]) set_variance(0, variance);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i) + 1;
+      set_variance(Memory::kShared + 3 * r + i, e.covariance(row, row));
+    }
+  }
+}
+
+void PublishedMethod::restore(const Memory& memory) {
+  if (memory.number_of_radars != radars_.size()) return;
+  if (std::abs(memory.speed_scale - 1.0) <= config_.max_speed_scale_error) speed_scale_ = memory.speed_scale;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const Memory::Radar& known = memory.radars[r];
+    if (known.id != radars_[r].id || !turn(radars_[r], Eigen::Vector3d(known.rotation_vehicle_rad.data()))) continue;
+    radars_[r].seconds_of_drive = known.seconds_of_drive;
+  }
+}
+
+bool PublishedMethod::turn(Radar& radar, const Eigen::Vector3d& rotation_vehicle_rad) const {
+  if (!rotation_vehicle_rad.allFinite()) return false;
+  const Eigen::Matrix3d actual =
+      geometry::so3_exp(rotation_vehicle_rad) * geometry::sensor_to_vehicle(radar.nominal, 0.0, 0.0, 0.0);
+  const Eigen::Vector3d total = geometry::euler_angles(actual);
+  Eigen::Vector3d angles(geometry::wrap_angle(total(0) - radar.nominal.yaw_rad), total(1) - radar.nominal.pitch_rad,
+                         geometry::wrap_angle(total(2) - radar.nominal.roll_rad));
+  if (angles.cwiseAbs().maxCoeff() > config_.max_angle_rad) return false;
+  if (parameters_ == 2) angles.tail<2>().setZero();
+  radar.angles = angles;
+  return true;
 }
 
 }  // namespace boresight::alignment::published

@@ -49,6 +49,12 @@ class PublishedMethod : public Method {
   [[nodiscard]] RadarEstimate estimate(std::size_t radar) const final;
   void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego, std::span<double> out) const final;
 
+  /// The estimate with the covariance of estimate(); what these methods do not estimate has a variance of 0.
+  void save(Memory& memory) const final;
+  /// Starts from what was remembered of the radars whose identity is the same. The covariance starts anew: these
+  /// methods weight nothing by it.
+  void restore(const Memory& memory) final;
+
   /// (k_v, α_m, β_m, γ_m).
   [[nodiscard]] Eigen::Vector4d parameters(std::size_t radar) const;
 
@@ -63,6 +69,7 @@ class PublishedMethod : public Method {
 
  private:
   struct Radar {
+    std::uint32_t id = 0;
     MountingPose nominal;
     double cycle_time_s = 0.05;
     Eigen::Vector3d angles = Eigen::Vector3d::Zero();  // α_m, β_m, γ_m
@@ -80,6 +87,7 @@ class PublishedMethod : public Method {
   [[nodiscard]] ScanView view(const Radar& radar, const ScanDetections& scan, const EgoSample& ego) const;
   [[nodiscard]] std::size_t select(const ScanView& scan);
   [[nodiscard]] std::size_t number_of_delivering(std::int64_t now_ns) const;
+  [[nodiscard]] bool turn(Radar& radar, const Eigen::Vector3d& rotation_vehicle_rad) const;
   void move(Radar& radar, const ScanView& scan, const Eigen::Vector4d& step);
 
   PublishedConfig config_;

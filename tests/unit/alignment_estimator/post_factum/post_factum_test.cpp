@@ -82,9 +82,10 @@ TEST(PostFactum, TheStepIsTheSingularVectorOfTheStackedJacobian) {
     JointEquations joint(4);
     for (std::size_t r = 0; r < 4; ++r) {
       published::NormalEquations equations;
+      published::PlanarModel model(radars[r].nominal, of_radar(x, r), 0.0, 0.0);
       for (std::size_t i = 0; i < 256; ++i) {
         const Detection& d = radars[r].detections[i];
-        add(radars[r].nominal, d, of_radar(x, r), equations);
+        add(d, model, equations);
         const published::RangeRate p = published::PlanarModel(radars[r].nominal, of_radar(x, r), d.speed_mps,
                                                               d.yaw_rate_radps)(d.azimuth_rad, d.elevation_rad);
         const auto row = static_cast<Eigen::Index>(256 * r + i);

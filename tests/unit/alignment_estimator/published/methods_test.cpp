@@ -319,6 +319,35 @@ TEST(PublishedMethods, AStepThatDivergesStaysWithinItsBounds) {
   }
 }
 
+TEST(PublishedMethods, GoOnWhereTheLastIgnitionCycleEnded) {
+  for (const Kind kind : kAll) {
+    PlanarWorld world;
+    world.vehicle.radars[1].mounting_pose.roll_rad = M_PI;  // upside down
+    const auto first = make_published(kind, world.vehicle, as_published());
+    world.drive(*first, 1'000);
+    Memory memory;
+    first->save(memory);
+    EXPECT_EQ(memory.number_of_radars, 4u);
+    EXPECT_GT(memory.covariance[0], 0.0);
+    const auto second = make_published(kind, world.vehicle, as_published());
+    second->restore(memory);
+    for (std::size_t r = 0; r < 4; ++r) EXPECT_LT((parameters(*second, r) - parameters(*first, r)).norm(), 1e-9) << r;
+    EXPECT_EQ(second->estimate(2).state, AlignmentState::kNoData);
+    memory.radars[3].id = 9;  // another radar stands there now
+    memory.radars[2].rotation_vehicle_rad[0] = std::numeric_limits<double>::quiet_NaN();
+    memory.speed_scale = std::numeric_limits<double>::quiet_NaN();
+    const auto third = make_published(kind, world.vehicle, as_published());
+    third->restore(memory);
+    EXPECT_EQ(parameters(*third, 3), Eigen::Vector4d(1.0, 0.0, 0.0, 0.0));
+    EXPECT_EQ(parameters(*third, 2), Eigen::Vector4d(1.0, 0.0, 0.0, 0.0));
+    EXPECT_NE(parameters(*third, 1)(1), 0.0);
+    memory.number_of_radars = 3;
+    const auto fourth = make_published(kind, world.vehicle, as_published());
+    fourth->restore(memory);
+    EXPECT_EQ(parameters(*fourth, 1), Eigen::Vector4d(1.0, 0.0, 0.0, 0.0));
+  }
+}
+
 TEST(PublishedMethods, AllocateNothingInTheDataPath) {
   for (const Kind kind : kAll) {
     PlanarWorld world;
