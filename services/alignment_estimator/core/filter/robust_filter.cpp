@@ -143,7 +143,8 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
   prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3) +
                                            radar.unknown.relative_variance
                                      : square(config_.prior_speed_scale_std);
-  prior.sensor_to_vehicle = radar.nominal;
+  // Beside an estimate that is doubted, a new one begins there: what the window does not tell stays as it was.
+  prior.sensor_to_vehicle = radar.phase == Phase::kSuspected ? state_.sensor_to_vehicle[index] : radar.nominal;
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
   prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   prior.slip_radps2pm = state_.slip_radps2pm;
