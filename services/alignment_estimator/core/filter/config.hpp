@@ -35,7 +35,7 @@ struct FilterConfig {
   int start_passes = 12;
   double start_scale_mps = 2.0;  ///< σ of the first pass; times `start_shrink` each pass
   double start_shrink = 0.6;
-  double start_inflation = 4.0;  ///< of the start's covariance: errors of the motion are not modelled there
+  double start_inflation = 9.0;  ///< of the start's covariance: errors of the motion are not modelled there
 
   // Convergence as published.
   double converged_yaw_std_rad = 0.00175;  ///< 0.1°

