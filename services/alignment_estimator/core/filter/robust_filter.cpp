@@ -26,6 +26,7 @@ constexpr double kMinKnock_rad = 0.0044;
 /// A suspicion that no new start confirms or refutes within this time is dropped.
 constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
+constexpr double kEarlier_s = 3.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 
 double square(double v) {
@@ -145,7 +146,7 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
                                            radar.unknown.relative_variance
                                      : square(config_.prior_speed_scale_std);
   // Beside an estimate that is doubted, a new one begins there: what the window does not tell stays as it was.
-  prior.sensor_to_vehicle = radar.phase == Phase::kSuspected ? state_.sensor_to_vehicle[index] : radar.nominal;
+  prior.sensor_to_vehicle = radar.phase == Phase::kSuspected ? radar.before_knock : radar.nominal;
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
   prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   prior.slip_radps2pm = state_.slip_radps2pm;
@@ -227,6 +228,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kAnother;
   }
   if (!agrees) place(index, found);
+  radar.earlier.fill(state_.sensor_to_vehicle[index]);
   radar.phase = Phase::kRunning;
   radar.remembered = false;
   radar.since_start_s = 0.0;
@@ -248,7 +250,7 @@ void RobustFilter::place(std::size_t index, const StartResult& found) {
 void RobustFilter::verify(std::size_t index, const StartResult& found, std::int64_t time_ns) {
   Radar& radar = radars_[index];
   const Eigen::Index first = column::of_radar(index);
-  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
+  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_knock.transpose());
   Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) covariance(i, j) += state_.covariance(first + i, first + j);
@@ -257,13 +259,12 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
   const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
   const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;
   if (another) {
-    const Eigen::Matrix3d before = state_.sensor_to_vehicle[index];
     place(index, found);
-    radar.since_start_s = 0.0;
+    radar.since_start_s = radar.since_earlier_s = 0.0;
+    radar.earlier.fill(found.sensor_to_vehicle);
     if (!radar.drifted) {
       radar.knock.time_ns = time_ns;
       ++radar.knock.count;
-      radar.before_knock = before;
       measure_knock(index);
     }
     radar.inlier_ratio = found.inlier_ratio;
@@ -316,6 +317,11 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (strange || radar.phase != Phase::kRunning) return;
   if (!state_.update(information, score)) return;
   radar.noise.add(sums, std::exp(-elapsed_s / kNoiseMemory_s));
+  radar.since_earlier_s += elapsed_s;
+  if (radar.since_earlier_s > kEarlier_s) {
+    radar.earlier = {radar.earlier[1], state_.sensor_to_vehicle[index]};
+    radar.since_earlier_s = 0.0;
+  }
   // How large a knock was becomes clearer for a while.
   if (radar.knock.count > 0 && radar.since_start_s < kKnockMeasured_s) measure_knock(index);
   ++radar.scans_used;
@@ -331,6 +337,7 @@ void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
     radars_[r].drifted = !knocks_.collapsed(r) && own.dot(drift) > 0.4 * own.squaredNorm();
     radars_[r].phase = Phase::kSuspected;
     radars_[r].suspected_ns = time_ns;
+    radars_[r].before_knock = radars_[r].earlier[0];
     radars_[r].start.clear();
   }
 }

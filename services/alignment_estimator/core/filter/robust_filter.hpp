@@ -62,6 +62,9 @@ class RobustFilter : public Method {
     bool drifted = false;
     AlignmentKnock knock{};
     Eigen::Matrix3d before_knock = Eigen::Matrix3d::Identity();
+    /// The rotation a few seconds ago: what a knock did to the estimate before it was told is undone.
+    std::array<Eigen::Matrix3d, 2> earlier;
+    double since_earlier_s = 0.0;
     Radar(const RadarConfig& radar, const FilterConfig& filter);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
