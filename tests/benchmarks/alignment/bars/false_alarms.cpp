@@ -7,7 +7,8 @@
 //    covariance allows. Taken is the squared distance of fresh starts from the truth, without yaw-rate bias and slip,
 //    as these are known by then.
 // Of both the largest tenth are fitted by an exponential distribution, which falls more slowly than noise does, and
-// tell how often the limit is exceeded. The data of the two are not the same, so that their rates are multiplied.
+// tell how often the limit is exceeded, unless more was seen to exceed it. The data of the two are not the same, so
+// that their rates are multiplied.
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -39,7 +40,7 @@ struct Tail {
   double largest = 0.0;
   double level = 0.0;         ///< u₀, exceeded by a tenth of the values
   double mean_excess = 0.0;   ///< over u₀
-  double share_beyond = 0.0;  ///< of the values beyond 1, extrapolated
+  double share_beyond = 0.0;  ///< of the values beyond 1: extrapolated, or as seen if that is more
 
   [[nodiscard]] std::string shape() const {
     return fixed(largest, 2) + ", " + fixed(level, 2) + ", " + fixed(mean_excess, 3);
@@ -52,16 +53,18 @@ Tail tail_of(const std::vector<double>& values) {
   if (values.empty()) return tail;
   tail.largest = values.back();
   tail.level = quantile(values, 0.9);
-  double excess = 0.0, count = 0.0;
+  double excess = 0.0, count = 0.0, beyond = 0.0;
   for (const double value : values) {
+    if (value > 1.0) beyond += 1.0;
     if (value <= tail.level) continue;
     excess += value - tail.level;
     count += 1.0;
   }
   if (count == 0.0) return tail;
   tail.mean_excess = excess / count;
+  const auto all = static_cast<double>(values.size());
   tail.share_beyond =
-      count / static_cast<double>(values.size()) * std::min(1.0, std::exp(-(1.0 - tail.level) / tail.mean_excess));
+      std::max(count / all * std::min(1.0, std::exp(-(1.0 - tail.level) / tail.mean_excess)), beyond / all);
   return tail;
 }
 
@@ -184,7 +187,7 @@ void false_alarms(const Options& options, Report& report) {
   report.at_most(
       "knock", "false alarms per 1000 h of a vehicle of four radars", worst, 1.0, "",
       "the worse of clean and disturbed; extrapolated suspicions × share of new starts that would confirm one, "
-      "both from exponential tails");
+      "both from exponential tails, or as seen where that is more");
   report.add(std::move(table));
 }
 
