@@ -149,19 +149,23 @@ void published(const Options& options, Report& report) {
       table.rows.push_back({"*published:* Nelder–Mead", "6971", "", "", "", "2.99e-05", "0.0106", "0.1380", "0.0912",
                             "0.0272", "−0.0201 / 3.2126"});
     }
-    const NamedMethod own = own_method();
-    const auto runs = run_drives(specs, own.make, options, run_options);
-    const Result result = result_of(runs, duration_s);
-    table.rows.push_back(row_of(own.name, result));
-    add_curves(own, figure, runs, report);
-    if (planar_truth) report.add(histogram(own.name, result.corrected));
-    for (std::size_t p = 0; p < 4; ++p) {
-      report.at_least("published set-up",
-                      std::string(kSensorParameters[p]) + ": Nelder–Mead's bias over ours, " +
-                          (planar_truth ? "planar truth" : "truth a rotation"),
-                      nelder_mead.bias[p] / result.bias[p], 5.0, "×",
-                      "mean |bias| over the last fifth of " + fixed(duration_s, 0) + " s, " + std::to_string(seeds) +
-                          " seeds × 4 radars, both on the same drives");
+    // Planar truth is no rotation: ours is judged there with Report A's rows as well, like with like.
+    std::vector<NamedMethod> ours = {own_method()};
+    if (planar_truth) ours.push_back(own_method_with_planar_rows());
+    for (const NamedMethod& own : ours) {
+      const auto runs = run_drives(specs, own.make, options, run_options);
+      const Result result = result_of(runs, duration_s);
+      table.rows.push_back(row_of(own.name, result));
+      add_curves(own, figure, runs, report);
+      if (planar_truth) report.add(histogram(own.name, result.corrected));
+      for (std::size_t p = 0; p < 4; ++p) {
+        report.at_least("published set-up",
+                        std::string(kSensorParameters[p]) + ": Nelder–Mead's bias over that of " + own.name + ", " +
+                            (planar_truth ? "planar truth" : "truth a rotation"),
+                        nelder_mead.bias[p] / result.bias[p], 5.0, "×",
+                        "mean |bias| over the last fifth of " + fixed(duration_s, 0) + " s, " + std::to_string(seeds) +
+                            " seeds × 4 radars, both on the same drives");
+      }
     }
     report.add(std::move(table));
   }

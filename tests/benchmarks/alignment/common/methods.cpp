@@ -34,6 +34,14 @@ NamedMethod own_method() {
           [](const VehicleConfig& vehicle) { return alignment::make_method(vehicle, alignment::Config{}); }};
 }
 
+NamedMethod own_method_with_planar_rows() {
+  return {"boresight_planar", [](const VehicleConfig& vehicle) {
+            alignment::Config config;
+            config.method = alignment::MethodName::kBoresightPlanar;
+            return alignment::make_method(vehicle, config);
+          }};
+}
+
 std::vector<NamedMethod> published_methods() {
   return published_with({});
 }
