@@ -251,7 +251,9 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
   Radar& radar = radars_[index];
   const Eigen::Index first = column::of_radar(index);
   const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_knock.transpose());
-  Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>();
+  // Twice the statistical σ: what inflates a start is for the estimate that follows it, whereas two rotations are
+  // compared here, and a start that is wrong by more only begins anew.
+  Eigen::Matrix3d covariance = 4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) covariance(i, j) += state_.covariance(first + i, first + j);
   }
