@@ -1,11 +1,18 @@
 """The figures of docs/alignment.md: SVG that stands alone and follows the reader's light or dark theme."""
 import math
 
-METHODS = ["boresight", "nls", "tls", "nelder_mead", "azimuth_1d", "steepest_descent"]
-NAMES = {"boresight": "Boresight", "nls": "damped least squares", "tls": "total least squares",
+METHODS = ["boresight", "nls", "tls", "nelder_mead", "azimuth_1d", "steepest_descent", "boresight_planar"]
+NAMES = {"boresight": "Boresight", "boresight_planar": "Boresight, planar rows", "nls": "damped least squares", "tls": "total least squares",
          "nelder_mead": "Nelder–Mead", "azimuth_1d": "1-D reference", "steepest_descent": "steepest descent"}
 LIGHT = {"c0": "#1f5fbf", "c1": "#c23b4e", "c2": "#d9820f", "c3": "#2e8b57", "c4": "#7d4fa8", "c5": "#7a7a7a"}
 DARK = {"c0": "#6ea8ff", "c1": "#ff8595", "c2": "#ffb454", "c3": "#6fd09b", "c4": "#c79bf2", "c5": "#a8a8a8"}
+
+
+def css_of(method):
+    """Boresight's own stand out; what reproduces the tables only is dashed."""
+    if method == "boresight_planar":
+        return "c0 own d"
+    return f"c{METHODS.index(method)}" + (" own" if method == "boresight" else "")
 
 
 def rules(colours):
@@ -128,8 +135,7 @@ def convergence(curves, title):
     titles = {"k_v": "k_v", "α": "yaw α, °", "β": "pitch β, °", "γ": "roll γ, °"}
     parts = [text(20, 24, title, "t")]
     present = [m for m in METHODS if any(c["label"] == m for c in curves)]
-    parts.append(legend([(f"c{METHODS.index(m)}" + (" own" if m == "boresight" else ""), NAMES[m]) for m in present], 20,
-                        46, 840))
+    parts.append(legend([(css_of(m), NAMES[m]) for m in present], 20, 46, 840))
     for i, (name, panel_title) in enumerate(titles.items()):
         mine = [c for c in curves if c["panel"] == name]
         y_range = (1e-6, 2e-2) if name == "k_v" else (1e-3, 5.0)
@@ -137,15 +143,14 @@ def convergence(curves, title):
         panel = Panel((70 + 430 * (i % 2), 110 + 270 * (i // 2), 350, 200), (1, last), y_range,
                       "|error| of " + panel_title, "scans of a radar", True, True)
         for c in sorted(mine, key=lambda c: -METHODS.index(c["label"])):
-            css = f"c{METHODS.index(c['label'])}" + (" own" if c["label"] == "boresight" else "")
-            panel.line(c["points"], css)
+            panel.line(c["points"], css_of(c["label"]))
         parts += panel.parts
     return picture(880, 640, parts)
 
 
 def residuals(curves):
     order = [("uncorrected", "c5", "uncorrected"), ("nelder_mead", "c3", "Nelder–Mead"),
-             ("boresight", "c0 own", "Boresight")]
+             ("boresight", "c0 own", "Boresight"), ("boresight_planar", "c1 d", "Boresight, planar rows")]
     present = [(css, label, c) for key, css, label in order for c in curves if c["label"] == key]
     top = max(y for _, _, c in present for _, y in c["points"])
     parts = [text(20, 24, "Residual of the range rate of stationary detections, published set-up", "t"),

@@ -34,6 +34,9 @@ using simulator::RoadKind;
 constexpr double kNeeded = 1.3;
 /// Squared distance, 3 degrees of freedom, beyond which a new start confirms a suspicion (RobustFilter).
 constexpr double kConfirms = 21.1;
+/// That start's covariance counts this many times there; the estimate's, which follows from it, is start_inflation
+/// times the statistical one.
+constexpr double kConfirmInflation = 4.0;
 constexpr RoadKind kRoads[] = {RoadKind::kCity, RoadKind::kMotorway, RoadKind::kMixed};
 
 struct Tail {
@@ -113,6 +116,7 @@ Quiet drive_quietly(const std::vector<AlignmentSpec>& specs, const Options& opti
 
 /// Squared distances of fresh starts from the truth, over kConfirms; ascending.
 std::vector<double> start_distances(bool with_disturbances, std::size_t seeds, const Options& options) {
+  const alignment::FilterConfig config;
   std::vector<double> distances;
   std::mutex lock;
   parallel_for(seeds, options.jobs, [&](std::size_t i) {
@@ -129,7 +133,8 @@ std::vector<double> start_distances(bool with_disturbances, std::size_t seeds, c
         const Eigen::Matrix3d truth =
             geometry::sensor_to_vehicle(spec.radars[r].config.mounting_pose, m.yaw_rad, m.pitch_rad, m.roll_rad);
         const Eigen::Vector3d error = geometry::so3_log(e.sensor_to_vehicle * truth.transpose());
-        const Eigen::Matrix3d covariance = e.covariance.bottomRightCorner<3, 3>();
+        const Eigen::Matrix3d covariance =
+            kConfirmInflation / config.start_inflation * e.covariance.bottomRightCorner<3, 3>();
         found[r] = error.dot(covariance.llt().solve(error)) / kConfirms;
       }
     };
