@@ -94,4 +94,20 @@ void draw_truth(AlignmentSpec& spec) {
   }
 }
 
+const char* name_of(RoadKind road) {
+  switch (road) {
+    case RoadKind::kCity:
+      return "city";
+    case RoadKind::kMotorway:
+      return "motorway";
+    case RoadKind::kStraight:
+      return "straight";
+    case RoadKind::kSlow:
+      return "slow";
+    case RoadKind::kMixed:
+      break;
+  }
+  return "mixed";
+}
+
 }  // namespace boresight::simulator

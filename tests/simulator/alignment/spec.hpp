@@ -15,6 +15,7 @@
 namespace boresight::simulator {
 
 enum class RoadKind : std::uint8_t { kCity, kMotorway, kStraight, kSlow, kMixed };
+[[nodiscard]] const char* name_of(RoadKind road);
 
 /// How range rates follow from angles: the exact rotation, or the planar roll model of Report A (10)(11), for
 /// reproducing its tables.

@@ -55,22 +55,6 @@ std::string bound_text(const CramerRaoBound& bound, std::size_t radars) {
 
 }  // namespace
 
-const char* name_of(RoadKind road) {
-  switch (road) {
-    case RoadKind::kCity:
-      return "city";
-    case RoadKind::kMotorway:
-      return "motorway";
-    case RoadKind::kStraight:
-      return "straight";
-    case RoadKind::kSlow:
-      return "slow";
-    case RoadKind::kMixed:
-      break;
-  }
-  return "mixed";
-}
-
 std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive, const AlignmentResiduals& residuals,
                        const CramerRaoBound* bound) {
   const AlignmentRadar first = spec.radars.empty() ? AlignmentRadar{} : spec.radars.front();

@@ -18,6 +18,4 @@ struct AlignmentResiduals {
 [[nodiscard]] std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive,
                                      const AlignmentResiduals& residuals, const CramerRaoBound* bound);
 
-[[nodiscard]] const char* name_of(RoadKind road);
-
 }  // namespace boresight::simulator

@@ -45,30 +45,17 @@ AlignmentRadar radar_at(const AlignmentRadar& like, std::uint32_t id, double x_m
   return radar;
 }
 
-AlignmentSpec city(double duration_s, std::uint64_t seed) {
-  return clean_drive(RoadKind::kCity, duration_s, seed);
+template <RoadKind kRoad>
+AlignmentSpec clean(double duration_s, std::uint64_t seed) {
+  return clean_drive(kRoad, duration_s, seed);
 }
-AlignmentSpec motorway(double duration_s, std::uint64_t seed) {
-  return clean_drive(RoadKind::kMotorway, duration_s, seed);
-}
-AlignmentSpec mixed(double duration_s, std::uint64_t seed) {
-  return clean_drive(RoadKind::kMixed, duration_s, seed);
-}
-AlignmentSpec straight(double duration_s, std::uint64_t seed) {
-  return clean_drive(RoadKind::kStraight, duration_s, seed);
-}
-AlignmentSpec slow(double duration_s, std::uint64_t seed) {
-  return clean_drive(RoadKind::kSlow, duration_s, seed);
-}
-AlignmentSpec disturbed_city(double duration_s, std::uint64_t seed) {
-  return disturbed_drive(RoadKind::kCity, duration_s, seed);
-}
-AlignmentSpec disturbed_mixed(double duration_s, std::uint64_t seed) {
-  return disturbed_drive(RoadKind::kMixed, duration_s, seed);
+template <RoadKind kRoad>
+AlignmentSpec disturbed(double duration_s, std::uint64_t seed) {
+  return disturbed_drive(kRoad, duration_s, seed);
 }
 
 AlignmentSpec unsynchronised(double duration_s, std::uint64_t seed) {
-  AlignmentSpec spec = mixed(duration_s, seed);
+  AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   const double cycles_s[] = {0.05, 0.06, 0.07, 0.04};
   for (std::size_t r = 0; r < spec.radars.size(); ++r) {
     spec.radars[r].first_scan_s = 0.0137 * static_cast<double>(r);
@@ -80,7 +67,7 @@ AlignmentSpec unsynchronised(double duration_s, std::uint64_t seed) {
 /// Ahead, at the corners, and behind; the second on its head, the third with an ambiguity of range rates, the fourth
 /// without elevation, none of the last two with stated stds.
 AlignmentSpec mixed_radars(double duration_s, std::uint64_t seed) {
-  AlignmentSpec spec = mixed(duration_s, seed);
+  AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   const AlignmentRadar like = spec.radars[0];
   spec.radars = {radar_at(like, 1, 3.8, 0.0, 0.0), radar_at(like, 2, 3.65, -0.75, -45.0),
                  radar_at(like, 3, -0.85, 0.7, 135.0), radar_at(like, 4, -1.0, 0.0, 180.0)};
@@ -94,13 +81,13 @@ AlignmentSpec mixed_radars(double duration_s, std::uint64_t seed) {
 }
 
 AlignmentSpec one_radar(double duration_s, std::uint64_t seed) {
-  AlignmentSpec spec = mixed(duration_s, seed);
+  AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   spec.radars.resize(1);
   return spec;
 }
 
 AlignmentSpec sixteen_radars(double duration_s, std::uint64_t seed) {
-  AlignmentSpec spec = mixed(duration_s, seed);
+  AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   const AlignmentRadar like = spec.radars[0];
   spec.radars.clear();
   for (std::uint32_t i = 0; i < kMaxRadars; ++i) {
@@ -115,7 +102,7 @@ AlignmentSpec sixteen_radars(double duration_s, std::uint64_t seed) {
 
 /// Sensors whose angle noise is 1.6 times what they state.
 AlignmentSpec understated_noise(double duration_s, std::uint64_t seed) {
-  AlignmentSpec spec = mixed(duration_s, seed);
+  AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   for (AlignmentRadar& radar : spec.radars) radar.noise_scale = 1.6;
   return spec;
 }
@@ -139,13 +126,13 @@ AlignmentSpec disturbed_drive(RoadKind road, double duration_s, std::uint64_t se
 
 const std::vector<DriveKind>& drive_kinds() {
   static const std::vector<DriveKind> kinds = {
-      {"city", city},
-      {"motorway", motorway},
-      {"mixed", mixed},
-      {"straight", straight},
-      {"slow", slow},
-      {"disturbed city", disturbed_city},
-      {"disturbed mixed", disturbed_mixed},
+      {"city", clean<RoadKind::kCity>},
+      {"motorway", clean<RoadKind::kMotorway>},
+      {"mixed", clean<RoadKind::kMixed>},
+      {"straight", clean<RoadKind::kStraight>},
+      {"slow", clean<RoadKind::kSlow>},
+      {"disturbed city", disturbed<RoadKind::kCity>},
+      {"disturbed mixed", disturbed<RoadKind::kMixed>},
       {"unsynchronised", unsynchronised},
       {"mixed radars", mixed_radars},
       {"one radar", one_radar},
@@ -153,22 +140,6 @@ const std::vector<DriveKind>& drive_kinds() {
       {"understated noise", understated_noise},
   };
   return kinds;
-}
-
-const char* name_of(RoadKind road) {
-  switch (road) {
-    case RoadKind::kCity:
-      return "city";
-    case RoadKind::kMotorway:
-      return "motorway";
-    case RoadKind::kStraight:
-      return "straight";
-    case RoadKind::kSlow:
-      return "slow";
-    case RoadKind::kMixed:
-      return "mixed";
-  }
-  return "";
 }
 
 }  // namespace boresight::bench

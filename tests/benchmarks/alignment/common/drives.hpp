@@ -26,6 +26,4 @@ struct DriveKind {
 };
 [[nodiscard]] const std::vector<DriveKind>& drive_kinds();
 
-[[nodiscard]] const char* name_of(simulator::RoadKind road);
-
 }  // namespace boresight::bench

@@ -2,9 +2,11 @@
 """The worked examples of interfaces/wire/calibration_service.md, made from the document alone (no product code):
 calibration_examples.py DOCUMENT compares them and exits with 1 if one differs; with --write it puts them in."""
 import pathlib
-import re
 import struct
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+import worked_examples  # noqa: E402
 
 SERVICE, MAJOR, MINOR, INSTANCE = 0x4243, 1, 0, 1
 RESPONSE, ERROR, EVENT = 0x80, 0x81, 0x02
@@ -61,30 +63,4 @@ EXAMPLES = {
     "offer": offer(),
 }
 
-
-def dump(data):
-    return "".join(f"{at:04x}  {data[at:at + 16].hex(' ')}\n" for at in range(0, len(data), 16))
-
-
-def main():
-    write = "--write" in sys.argv
-    path = pathlib.Path([argument for argument in sys.argv[1:] if argument != "--write"][0])
-    text = path.read_text(encoding="utf-8")
-    wrong = 0
-    for name, data in EXAMPLES.items():
-        block = re.compile(rf"(<!-- example: {re.escape(name)} -->\n```\n).*?(```\n)", re.DOTALL)
-        found = block.search(text)
-        if not found:
-            sys.exit(f"{path}: no example \"{name}\"")
-        wanted = found.group(1) + dump(data) + found.group(2)
-        if found.group(0) != wanted:
-            wrong += 1
-            print(f"{path}: example \"{name}\" is not what the definition gives")
-        text = text.replace(found.group(0), wanted)
-    if write:
-        path.write_text(text, encoding="utf-8")
-    elif wrong:
-        sys.exit(1)
-
-
-main()
+worked_examples.run(EXAMPLES)
