@@ -82,15 +82,23 @@ bool Domain::replay_has_ended() {
   return result.has_value();
 }
 
-std::unique_ptr<Child> start_alone(const std::string& service) {
+fs::path shipped_configuration() {
+  return kConfig;
+}
+
+fs::path log_of_alone(const std::string& service) {
+  return kFolder / "logs" / (service + "-alone.log");
+}
+
+std::unique_ptr<Child> start_alone(const std::string& service, const fs::path& config) {
   fs::create_directories(kFolder / "logs");
-  return std::make_unique<Child>([service] {
+  return std::make_unique<Child>([service, config] {
     const std::string binary = (kBinaries / ("boresight-" + service)).string();
-    const std::string log = (kFolder / "logs" / (service + "-alone.log")).string();
+    const std::string log = log_of_alone(service).string();
     setenv("BORESIGHT_INPUT", "replay", 1);
     setenv("BORESIGHT_RUNTIME_DIR", (kFolder / "run").c_str(), 1);
     if (std::freopen(log.c_str(), "w", stderr) == nullptr) return 1;
-    execl(binary.c_str(), binary.c_str(), "--config", kConfig.c_str(), "--vehicle", "demo", nullptr);
+    execl(binary.c_str(), binary.c_str(), "--config", config.c_str(), "--vehicle", "demo", nullptr);
     return 1;
   });
 }

@@ -35,8 +35,13 @@ class Domain {
   supervisor::Supervisor supervisor_;
 };
 
-/// Starts a service of the demo vehicle outside of any supervision.
-[[nodiscard]] std::unique_ptr<Child> start_alone(const std::string& service);
+[[nodiscard]] std::filesystem::path shipped_configuration();
+
+/// Starts a service of the demo vehicle outside of any supervision, with the shipped configuration or another; it
+/// writes to log_of_alone(), which begins anew.
+[[nodiscard]] std::unique_ptr<Child> start_alone(const std::string& service,
+                                                 const std::filesystem::path& config = shipped_configuration());
+[[nodiscard]] std::filesystem::path log_of_alone(const std::string& service);
 
 /// Simulates a drive of the demo vehicle into /tmp/drive; returns its recordings, the ego signals last.
 [[nodiscard]] std::vector<std::filesystem::path> simulated_drive(double duration_s,

@@ -1,0 +1,250 @@
+// Ignition cycles of the running estimator: what it learnt is there after a SIGTERM and after a kill, and what is not
+// its own memory is reported, kept aside and not used. What a file may hold and when a writer may die are the unit
+// tests' and system_memory_killed's; here the wiring counts.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "services/alignment_estimator/core/config.hpp"
+#include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/common/runtime/node.hpp"
+#include "tests/system/harness/domain.hpp"
+
+namespace boresight {
+namespace {
+
+namespace fs = std::filesystem;
+using alignment::LoadedMemory;
+using alignment::Memory;
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr std::uint32_t kCrooked = 2;       // front_right, which the drive turns by …
+constexpr double kTrueYaw = 2.5 * kDegree;  // … this
+const std::string kService = "alignment_estimator";
+const fs::path kState = "/tmp/state";
+const fs::path kConfig = "/tmp/config";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream input(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
+}
+
+VehicleConfig vehicle() {
+  return config::read_vehicle_file(harness::shipped_configuration() / "vehicle" / "demo.toml");
+}
+
+/// The shipped configuration, but the memory is written every second.
+void write_configuration() {
+  fs::copy(harness::shipped_configuration(), kConfig,
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  const fs::path file = kConfig / "services" / (kService + ".toml");
+  std::string text = text_of(file);
+  const std::string shipped = "period_s = 30.0";
+  const std::size_t at = text.find(shipped);
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(file) << text.replace(at, shipped.size(), "period_s = 1.0");
+}
+
+/// Everything that is said of the crooked radar, and the last that is said of the estimator.
+class Witness {
+ public:
+  Witness() : process_([this] { return watch(); }) {}
+
+  /// The number of estimates so far.
+  [[nodiscard]] std::size_t size() const { return seen_->estimates; }
+  [[nodiscard]] const AlignmentEstimate& last() const { return seen_->log[size() - 1]; }
+  /// The first estimate of the process that was started when there were `from` of them.
+  [[nodiscard]] const AlignmentEstimate* first(std::size_t from) const {
+    for (std::size_t i = from; i < size(); ++i) {
+      if (seen_->log[i].header.source_sequence == 1) return &seen_->log[i];
+    }
+    return nullptr;
+  }
+  [[nodiscard]] const ServiceStatus& status() const { return seen_->status; }
+  /// As the health service reports them.
+  [[nodiscard]] std::uint64_t rejected_inputs() const { return seen_->rejected_inputs; }
+
+ private:
+  struct Seen {
+    volatile std::size_t estimates;
+    std::array<AlignmentEstimate, 1000> log;
+    ServiceStatus status;
+    volatile std::uint64_t rejected_inputs;
+  };
+  int watch() {
+    runtime::Node node(catalogue::Service::kMonitor, "-story");
+    const auto estimator = static_cast<std::uint32_t>(catalogue::Service::kAlignmentEstimator);
+    node.on<AlignmentEstimate>([this](const AlignmentEstimate& estimate) {
+      if (estimate.header.source_id != kCrooked || size() == seen_->log.size()) return;
+      seen_->log[size()] = estimate;
+      seen_->estimates = size() + 1;
+    });
+    node.on<ServiceStatus>([&](const ServiceStatus& status) {
+      if (status.header.source_id == estimator) seen_->status = status;
+    });
+    node.on<HealthReport>([&](const HealthReport& report) {
+      for (const ServiceHealth& service : report.services) {
+        if (service.service == estimator) seen_->rejected_inputs = service.rejected_inputs;
+      }
+    });
+    return node.spin();
+  }
+
+  harness::Shared<Seen> seen_;
+  harness::Child process_;
+};
+
+double yaw_std(const AlignmentEstimate& estimate) {
+  return std::sqrt(estimate.vehicle_covariance[5]);
+}
+
+class IgnitionCycles : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(kState);
+    fs::create_directories(kState);
+    ASSERT_NO_FATAL_FAILURE(write_configuration());
+    const auto recordings = harness::simulated_drive(20.0);
+    // As systemd does it.
+    ASSERT_EQ(setenv("STATE_DIRECTORY", kState.c_str(), 1), 0);
+    witness_ = std::make_unique<Witness>();
+    domain_.start();
+    domain_.replay(recordings);
+  }
+
+  /// The first estimate of a new process.
+  const AlignmentEstimate& ignition_on() {
+    const std::size_t before = witness_->size();
+    estimator_ = harness::start_alone(kService, kConfig);
+    EXPECT_TRUE(domain_.until(5.0, [&] { return witness_->first(before) != nullptr; })) << log();
+    return witness_->first(before) != nullptr ? *witness_->first(before) : witness_->last();
+  }
+  void ignition_off() {
+    EXPECT_EQ(estimator_->stop(), 0) << log();
+    EXPECT_FALSE(fs::exists(kState / "alignment.tmp"));
+  }
+  [[nodiscard]] static std::string log() { return text_of(harness::log_of_alone(kService)); }
+
+  [[nodiscard]] LoadedMemory kept() const { return alignment::load_memory(file_, alignment::identity_of(vehicle_)); }
+  /// Of the whole vehicle, seconds of drive that the kept memory has seen; 0 without one.
+  [[nodiscard]] double kept_drive_s() const {
+    if (!fs::exists(file_)) return 0.0;
+    const LoadedMemory loaded = kept();
+    EXPECT_EQ(loaded.kind, LoadedMemory::Kind::kTaken) << loaded.reason;
+    return loaded.memory.radars[kCrooked - 1].seconds_of_drive;
+  }
+
+  /// As it was remembered, with more doubt: Config's `remembered`.
+  void expect_taken_up(const AlignmentEstimate& first, const Memory& memory) const {
+    const alignment::FilterConfig config;
+    const std::size_t yaw = Memory::kShared + 3 * (kCrooked - 1) + 2;
+    const double variance = memory.covariance[yaw * memory.number_of_parameters() + yaw];
+    const double doubted = std::sqrt(config.memory_inflation * variance + std::pow(config.memory_rotation_std_rad, 2));
+    EXPECT_NEAR(first.vehicle_yaw_rad, memory.radars[kCrooked - 1].rotation_vehicle_rad[2], 1e-4);
+    EXPECT_NEAR(first.speed_scale, memory.speed_scale, 1e-6);
+    EXPECT_NEAR(yaw_std(first), doubted, 0.01 * doubted);
+    EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "or nothing was inflated";
+    EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
+    EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kCrooked - 1].seconds_of_drive, 0.1);
+    EXPECT_NE(log().find("alignment of 4 radars remembered from " + file_.string()), std::string::npos) << log();
+  }
+
+  static void expect_from_the_prior(const AlignmentEstimate& first) {
+    const alignment::FilterConfig config;
+    EXPECT_EQ(first.vehicle_yaw_rad, 0.0F);
+    EXPECT_EQ(first.speed_scale, 1.0F);
+    EXPECT_NEAR(yaw_std(first), config.prior_rotation_std_rad, 0.01 * config.prior_rotation_std_rad);
+    EXPECT_EQ(first.observable & (alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale), 0u);
+    EXPECT_LT(first.kpis.seconds_of_drive, 0.1F);
+  }
+
+  /// Puts a file there that must not be believed, and what is said of it.
+  void expect_refused(const std::string& content, const std::string& said) {
+    std::ofstream(file_, std::ios::binary) << content;
+    expect_from_the_prior(ignition_on());
+    EXPECT_FALSE(fs::exists(file_)) << "it is not in the way of the next";
+    EXPECT_EQ(text_of(kState / "alignment.rejected"), content) << "kept for who wants to know";
+    EXPECT_NE(log().find("remembered alignment is " + said + "; it is kept aside and not used"), std::string::npos)
+        << log();
+    EXPECT_TRUE(domain_.until(3.0, [&] { return witness_->rejected_inputs() == 1; })) << "health has not heard of it";
+    const ServiceStatus& status = witness_->status();
+    EXPECT_EQ(status.faults[static_cast<std::size_t>(Fault::kWireValue)], 1u);
+    EXPECT_EQ(std::string(status.last_fault.data()), "remembered alignment is " + said);
+    // It learns as on the first day, and remembers that.
+    EXPECT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > 1.0; }));
+    EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kDegree);
+    ignition_off();
+    EXPECT_EQ(text_of(kState / "alignment.rejected"), content);
+  }
+
+  /// What would put the crooked radar 5° to the other side if it were believed.
+  [[nodiscard]] static std::string wrong_memory(const VehicleConfig& of) {
+    Memory memory;
+    memory.number_of_radars = of.radars.size();
+    for (std::size_t i = 0; i < of.radars.size(); ++i) {
+      memory.radars[i].id = of.radars[i].id;
+      memory.radars[i].rotation_vehicle_rad = {0.0, 0.0, -5.0 * kDegree};
+      memory.radars[i].seconds_of_drive = 3600.0;
+    }
+    const std::size_t size = memory.number_of_parameters();
+    for (std::size_t i = 0; i < size; ++i) memory.covariance[i * size + i] = 1e-8;
+    alignment::MemoryBytes bytes;
+    const std::size_t length = alignment::encode_memory(memory, alignment::identity_of(of), bytes);
+    EXPECT_GT(length, 0u);
+    return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
+  }
+
+  const VehicleConfig vehicle_ = vehicle();
+  const fs::path file_ = kState / "alignment";
+  std::unique_ptr<Witness> witness_;
+  std::unique_ptr<harness::Child> estimator_;
+  harness::Domain domain_{"demo", {kService, "detection_corrector", "ghost_filter", "tracker"}};
+};
+
+TEST_F(IgnitionCycles, WhatWasLearntIsTakenUpWithMoreDoubt) {
+  expect_from_the_prior(ignition_on());
+  ASSERT_TRUE(domain_.until(8.0, [&] { return witness_->last().kpis.seconds_of_drive > 3.0F; }));
+  ignition_off();
+  const LoadedMemory first = kept();
+  ASSERT_EQ(first.kind, LoadedMemory::Kind::kTaken) << first.reason;
+  EXPECT_NEAR(first.memory.radars[kCrooked - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kDegree);
+  EXPECT_NEAR(first.memory.radars[kCrooked - 1].seconds_of_drive, witness_->last().kpis.seconds_of_drive, 0.3)
+      << "the file is that of the end, not of the last period";
+
+  expect_taken_up(ignition_on(), first.memory);
+  // Killed amid the drive, after it has put down more than it began with.
+  const double began_s = first.memory.radars[kCrooked - 1].seconds_of_drive;
+  ASSERT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > began_s + 1.0; }));
+  // Just after an estimate was sent, because who dies while sending leaves the bus locked (system_service_killed).
+  const std::size_t sent = witness_->size();
+  ASSERT_TRUE(domain_.until(2.0, [&] { return witness_->size() > sent; }));
+  estimator_->send(SIGKILL);
+  EXPECT_EQ(estimator_->wait_for(2.0), -SIGKILL);
+  const LoadedMemory second = kept();
+  ASSERT_EQ(second.kind, LoadedMemory::Kind::kTaken) << second.reason;
+
+  expect_taken_up(ignition_on(), second.memory);
+  ignition_off();
+  EXPECT_FALSE(fs::exists(kState / "alignment.rejected"));
+}
+
+TEST_F(IgnitionCycles, ACorruptFileIsReportedKeptAsideAndNotUsed) {
+  std::string content = wrong_memory(vehicle_);
+  content[content.size() / 2] = static_cast<char>(content[content.size() / 2] ^ 1);
+  expect_refused(content, alignment::describe(alignment::MemoryVerdict::kCorrupt));
+}
+
+TEST_F(IgnitionCycles, AnotherVehiclesFileIsReportedKeptAsideAndNotUsed) {
+  VehicleConfig other = vehicle_;
+  other.name = "another car";
+  expect_refused(wrong_memory(other), alignment::describe(alignment::MemoryVerdict::kForeign));
+}
+
+}  // namespace
+}  // namespace boresight
