@@ -90,12 +90,12 @@ void add_series(const VehicleConfig& vehicle, const post_factum::Result& found, 
 }  // namespace
 
 void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
-                       const post_factum::Config& settings, Result& result) {
+                       const post_factum::Config& settings, const post_factum::Progress& progress, Result& result) {
   std::vector<post_factum::Recording> recordings;
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     recordings.push_back(samples[i]->recording(vehicle.radars[i].mounting_pose, result.radars[i].measures_elevation));
   }
-  const post_factum::Result found = post_factum::calibrate(recordings, settings);
+  const post_factum::Result found = post_factum::calibrate(recordings, settings, progress);
   result.problem = found.problem;
   result.x_is_iteration = true;
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {

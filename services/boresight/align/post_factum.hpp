@@ -11,8 +11,9 @@
 namespace boresight::align {
 
 /// Fills k_v, the radars' estimates and messages, what the data support, and the iterations as series. `result` has the
-/// radars of the vehicle file in its order, `samples` their detections. Takes seconds.
+/// radars of the vehicle file in its order, `samples` their detections. Takes seconds, of which `progress` hears.
 void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
-                       const alignment::post_factum::Config& settings, Result& result);
+                       const alignment::post_factum::Config& settings, const alignment::post_factum::Progress& progress,
+                       Result& result);
 
 }  // namespace boresight::align

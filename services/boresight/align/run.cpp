@@ -243,7 +243,7 @@ Result Run::finish() {
   } else {
     std::vector<const ResidualSample*> samples;
     for (const Radar& radar : radars_) samples.push_back(&radar.residuals);
-    solve_post_factum(vehicle_, samples, options_.post_factum, result);
+    solve_post_factum(vehicle_, samples, options_.post_factum, options_.post_factum_progress, result);
   }
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     RadarResult& r = result.radars[i];

@@ -35,6 +35,7 @@ class Run {
     /// first. NaN: the time of what comes first.
     double origin_s = std::numeric_limits<double>::quiet_NaN();
     alignment::post_factum::Config post_factum{};
+    alignment::post_factum::Progress post_factum_progress{};  ///< called by finish()
     std::optional<Truth> truth;
     std::function<std::int64_t()> cpu_time_ns;  ///< of this thread, for the cost of a scan
   };

@@ -1,4 +1,5 @@
 // `boresight align`: an alignment method over a recorded drive, with the core that the service runs.
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -6,6 +7,7 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -81,6 +83,7 @@ class Align {
     align::Run::Options run_options;
     run_options.method = options_.method;
     run_options.cpu_time_ns = cpu_time_ns;
+    run_options.post_factum_progress = [this](auto phase, double share) { show_post_factum(phase, share); };
     if (!options_.config.empty()) {
       run_options.config = alignment::read_settings(config::Reader::open(options_.config)).estimator;
     }
@@ -164,6 +167,24 @@ class Align {
               fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(position)));
   }
 
+  void show_post_factum(alignment::post_factum::Phase phase, double share) {
+    struct Part {
+      const char* what;
+      double begin, end;  // of a bar over all phases, by what they cost on a drive of minutes
+    };
+    constexpr std::array<Part, 3> kParts{{{"finding what stands still", 0.0, 0.1},
+                                          {"iterating", 0.1, 0.9},
+                                          {"judging what the data support", 0.9, 1.0}}};
+    const Part& part = kParts.at(static_cast<std::size_t>(phase));
+    if (bar_.is_terminal()) {
+      if (bar_.is_due()) bar_.show(part.begin + (part.end - part.begin) * share, part.what);
+    } else if (phase != told_phase_) {
+      tell(fmt::format("{}, step {} of {}: {} …", options_.method, static_cast<int>(phase) + 1, kParts.size(),
+                       part.what));
+    }
+    told_phase_ = phase;
+  }
+
   /// Something that makes the result doubtful.
   void complain(const std::string& text) {
     tell(text);
@@ -171,6 +192,7 @@ class Align {
   }
 
   int report(const align::Result& result) {
+    bar_.wipe();
     provenance_.lines = problems_.lines();
     provenance_.bad_lines = problems_.bad_lines();
     if (problems_.bad_lines() > align::Problems::kShown) {
@@ -216,6 +238,7 @@ class Align {
   terminal::ProgressBar bar_;
   align::Problems problems_;
   align::Provenance provenance_;
+  std::optional<alignment::post_factum::Phase> told_phase_;
   int exit_code_ = EXIT_SUCCESS;
 };
 

@@ -21,6 +21,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
+  /// Where it is not, one may say a few words in lines instead.
+  [[nodiscard]] bool is_terminal() const { return is_terminal_; }
   /// Whether anything is to be shown now: the terminal is redrawn ten times a second at most. Cheap enough to be asked
   /// for every few hundred frames.
   [[nodiscard]] bool is_due();

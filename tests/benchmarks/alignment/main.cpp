@@ -24,6 +24,8 @@ constexpr std::pair<const char*, void (*)(const Options&, Report&)> kGroups[] = 
     {"cramer_rao", cramer_rao},
     {"time_to_95", time_to_95_percent},
     {"published", published},
+    {"published_optimum", published_optimum},
+    {"published_filter", published_filter},
     {"outliers", outliers},
     {"knock", knock},
     {"false_alarms", false_alarms},

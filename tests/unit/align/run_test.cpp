@@ -146,6 +146,24 @@ TEST(PostFactum, SaysWhatTheDataSupportAndHowItIterated) {
   EXPECT_THAT(to_table(result), HasSubstr("beta not supported"));
 }
 
+TEST_F(Align, PostFactumTellsWhereItIs) {
+  std::string one_radar;  // a quarter of the time
+  std::istringstream lines(tables_.drive);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t radar = line.find(',') + 1;
+    if (line.compare(radar, 2, "1,") == 0 || line.compare(radar, 5, "radar") == 0) one_radar += line + "\n";
+  }
+  testing::write_text(folder_ / "one_radar.csv", one_radar);
+  ASSERT_EQ(align("--drive one_radar.csv --ego ego.csv --vehicle vehicle.toml --method post_factum --json out.json"), 0)
+      << errors();
+  // No terminal: no bar, a line a step.
+  EXPECT_EQ(errors(),
+            "boresight align: post_factum, step 1 of 3: finding what stands still …\n"
+            "boresight align: post_factum, step 2 of 3: iterating …\n"
+            "boresight align: post_factum, step 3 of 3: judging what the data support …\n");
+  EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
+}
+
 TEST_F(Align, TheSeriesHasAnEntryASecondAndTheEnd) {
   ASSERT_EQ(align(kInputs + "--method azimuth_1d"), 0) << errors();
   const std::vector<double> t = numbers_of(json(), "t");

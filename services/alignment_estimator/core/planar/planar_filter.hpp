@@ -16,7 +16,8 @@ namespace boresight::alignment::planar {
 
 /// A robust recursive information filter like RobustFilter, for data that follow (10)–(12) instead of a rotation: one
 /// k_v, and α, β, γ of each radar. Errors of the speed and yaw-rate signals are white from instant to instant and
-/// shared by scans of the same one. It has no knock detector, no memory and no estimate of the angles' noise.
+/// shared by scans of the same one. It has no knock detector, no memory, no estimate of the angles' noise, and takes no
+/// calibration's seed: it starts by a search and is for reproducing tables.
 class PlanarFilter : public Method {
  public:
   PlanarFilter(const VehicleConfig& vehicle, const PlanarConfig& config);

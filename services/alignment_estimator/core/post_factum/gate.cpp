@@ -51,11 +51,13 @@ std::vector<double> residuals_of(const Recording& radar, const Eigen::Vector4d& 
 }
 
 /// k_v and the yaw of each radar; pitch and roll stay 0.
-Eigen::VectorXd robust_yaw_fit(std::span<const Recording> radars, double floor_mps) {
+Eigen::VectorXd robust_yaw_fit(std::span<const Recording> radars, double floor_mps,
+                               const std::function<void(double)>& progress) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(first_angle(radars.size()));
   x(0) = 1.0;
   const auto n = static_cast<Eigen::Index>(radars.size());
   for (int round = 0; round < kRounds; ++round) {
+    if (progress) progress(static_cast<double>(round) / kRounds);
     Eigen::MatrixXd information = 1e-9 * Eigen::MatrixXd::Identity(n + 1, n + 1);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 1);
     for (Eigen::Index r = 0; r < n; ++r) {
@@ -94,7 +96,8 @@ Eigen::VectorXd robust_yaw_fit(std::span<const Recording> radars, double floor_m
 
 }  // namespace
 
-std::vector<Recording> gated(std::span<const Recording> radars, const Config& config) {
+std::vector<Recording> gated(std::span<const Recording> radars, const Config& config,
+                             const std::function<void(double)>& progress) {
   std::vector<Recording> kept;
   for (const Recording& radar : radars) {
     Recording& own = kept.emplace_back(Recording{radar.nominal, radar.has_elevation, {}});
@@ -105,7 +108,7 @@ std::vector<Recording> gated(std::span<const Recording> radars, const Config& co
     }
   }
   if (config.gate_sigma > 0.0) {
-    const Eigen::VectorXd fit = robust_yaw_fit(kept, config.gate_floor_mps);
+    const Eigen::VectorXd fit = robust_yaw_fit(kept, config.gate_floor_mps, progress);
     for (std::size_t r = 0; r < kept.size(); ++r) {
       const std::vector<double> residuals = residuals_of(kept[r], of_radar(fit, r));
       const Centre centre = centre_of(residuals);

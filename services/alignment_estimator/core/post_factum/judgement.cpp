@@ -40,7 +40,8 @@ void fill_in(Recording& radar, const Config& config, std::uint64_t seed, const A
     d.elevation_rad = draw.uniform(mean - half, mean + half) + alternative.tilt * (d.azimuth_rad - middle);
 }
 
-std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::VectorXd& found, const Config& config) {
+std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::VectorXd& found, const Config& config,
+                             const std::function<void(double)>& progress) {
   std::vector<Recording> thin = thinned(radars, config.judgement_detections);
   std::vector<Eigen::Index> empty, empty_and_rolls;
   Eigen::VectorXd roll = Eigen::VectorXd::Zero(found.size());
@@ -52,12 +53,18 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
     }
     if (!thin[r].has_elevation) roll(first_angle(r) + 2) = config.judgement_roll_rad;
   }
+  const std::size_t draws = std::max<std::size_t>(config.judgement_draws, 2);
+  const std::size_t problems = draws + 8;  // with shift and tilt either way, two widths, two rolls
+  std::size_t solved_problems = 0;
+  const auto solve_next = [&](const Eigen::VectorXd& start, std::span<const Eigen::Index> held) {
+    if (progress) progress(static_cast<double>(solved_problems++) / static_cast<double>(problems));
+    return solve(thin, start, held);
+  };
   const auto solved = [&](std::uint64_t seed, const Alternative& alternative) {
     for (std::size_t r = 0; r < thin.size(); ++r) fill_in(thin[r], config, seed * 1000 + r, alternative);
-    return solve(thin, found, empty);
+    return solve_next(found, empty);
   };
 
-  const std::size_t draws = std::max<std::size_t>(config.judgement_draws, 2);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(found.size()), square = mean;
   for (std::size_t i = 0; i < draws; ++i) {
     const Eigen::VectorXd x = solved(config.seed + 1 + i, {}).parameters;
@@ -80,7 +87,7 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
   Eigen::VectorXd by_roll = Eigen::VectorXd::Zero(found.size());
   for (std::size_t r = 0; r < thin.size(); ++r) fill_in(thin[r], config, config.seed * 1000 + r, {.shift_rad = d});
   for (const double side : {-1.0, 1.0})
-    by_roll += side * 0.5 * solve(thin, found + side * roll, empty_and_rolls).parameters;
+    by_roll += side * 0.5 * solve_next(found + side * roll, empty_and_rolls).parameters;
 
   for (std::size_t r = 0; r < thin.size(); ++r) fill_in(thin[r], config, config.seed, {.width = 0.0});
   const std::size_t all = count(radars);

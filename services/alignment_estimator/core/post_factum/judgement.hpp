@@ -1,6 +1,7 @@
 // What of a post-factum calibration is measured and what is made up.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,8 @@ void fill_in(Recording& radar, const Config& config, std::uint64_t seed, const A
 /// Judges the parameters `found` (k_v, then α, β, γ of each radar): solves the least-squares problem to the end with
 /// other draws of the missing elevations, with alternatives to how they are made up, and with rolls held beside their
 /// estimates. Over at most `config.judgement_detections` detections of each radar, spread evenly; the std is that of
-/// all. Empty radars are kNoData.
+/// all. Empty radars are kNoData. `progress` hears the share that is done.
 [[nodiscard]] std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::VectorXd& found,
-                                           const Config& config);
+                                           const Config& config, const std::function<void(double)>& progress = {});
 
 }  // namespace boresight::alignment::post_factum

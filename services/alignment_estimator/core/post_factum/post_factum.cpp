@@ -55,17 +55,27 @@ void add_residuals(const Recording& radar, const Eigen::Vector4d& b, bool elevat
 }
 
 /// The published iteration; fills the history.
-Eigen::VectorXd iterate(std::span<const Recording> radars, Eigen::VectorXd x, const Config& config, Result& result) {
+Eigen::VectorXd iterate(std::span<const Recording> radars, Eigen::VectorXd x, const Config& config, Result& result,
+                        const std::function<void(double)>& progress) {
   published::Draw draw(config.seed);
+  // An iteration's detections lie all over a recording that no cache holds: copied in a row without a use in between,
+  // they are fetched many at a time, else one by one, which would be most of the time.
+  std::vector<Detection> drawn(config.detections_per_iteration);
   JointEquations joint(radars.size());
   for (std::size_t i = 0; i <= config.iterations; ++i) {
+    constexpr std::size_t kIterationsBetweenProgress = 256;
+    if (progress && i % kIterationsBetweenProgress == 0) {
+      progress(static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(config.iterations, 1)));
+    }
     joint.clear();
     for (std::size_t r = 0; r < radars.size(); ++r) {
       const Recording& radar = radars[r];
       published::NormalEquations equations;
       published::PlanarModel model(radar.nominal, of_radar(x, r), 0.0, 0.0);
-      for (std::size_t k = 0; k < config.detections_per_iteration && !radar.detections.empty(); ++k)
-        add(radar.detections[draw.below(radar.detections.size())], model, equations);
+      if (!radar.detections.empty()) {
+        for (Detection& d : drawn) d = radar.detections[draw.below(radar.detections.size())];
+        for (const Detection& d : drawn) add(d, model, equations);
+      }
       joint.add(r, equations);
       // A radar without data has no gradient: something in its place keeps the equations regular and it where it is.
       if (radar.detections.empty()) joint.jtj.diagonal().segment<3>(first_angle(r)).setOnes();
@@ -84,10 +94,14 @@ Eigen::VectorXd iterate(std::span<const Recording> radars, Eigen::VectorXd x, co
 
 }  // namespace
 
-Result calibrate(std::span<const Recording> recordings, const Config& config) {
+Result calibrate(std::span<const Recording> recordings, const Config& config, const Progress& progress) {
+  const auto of = [&](Phase phase) -> std::function<void(double)> {
+    if (!progress) return {};
+    return [&progress, phase](double share) { progress(phase, share); };
+  };
   Result result;
   result.radars.resize(recordings.size());
-  std::vector<Recording> radars = gated(recordings, config);
+  std::vector<Recording> radars = gated(recordings, config, of(Phase::kGate));
   bool any = false;
   for (std::size_t r = 0; r < radars.size(); ++r) {
     result.radars[r].offered = recordings[r].detections.size();
@@ -105,13 +119,13 @@ Result calibrate(std::span<const Recording> recordings, const Config& config) {
   for (std::size_t r = 0; r < radars.size(); ++r) {
     if (!radars[r].detections.empty()) start(first_angle(r) + 1) = config.start_pitch_rad;
   }
-  const Eigen::VectorXd found = iterate(radars, start, config, result);
+  const Eigen::VectorXd found = iterate(radars, start, config, result, of(Phase::kIteration));
   if (!found.allFinite()) {
     result.problem = "the iteration diverged";
     return result;
   }
 
-  const std::vector<Parameter> judged = judge(radars, found, config);
+  const std::vector<Parameter> judged = judge(radars, found, config, of(Phase::kJudgement));
   result.speed_scale = judged[0];
   // The same without what was made up: k_v and yaw alone, elevation 0.
   std::vector<Recording> flat = radars;

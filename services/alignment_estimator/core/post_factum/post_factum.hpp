@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -112,11 +113,21 @@ struct Result {
   std::vector<Step> history;
 };
 
+/// What a calibration does one after the other.
+enum class Phase : std::uint8_t {
+  kGate,       ///< finds what stands still
+  kIteration,  ///< the published one, most of the time
+  kJudgement,  ///< what the data support
+};
+/// Hears how much of a phase is done, 0 … 1 and not falling, some hundred times in all.
+using Progress = std::function<void(Phase phase, double share)>;
+
 /// All radars together for one k_v and per-radar α, β, γ, by nonlinear total least squares. Same input and seed, same
 /// output. For offline tools: allocates and takes seconds. What the data support is judged within the planar model of
 /// Report A, which is no rotation: where elevation is measured, it lets pitch and roll seem better known than they are
 /// (algorithms.md §1.4).
-[[nodiscard]] Result calibrate(std::span<const Recording> radars, const Config& config = {});
+[[nodiscard]] Result calibrate(std::span<const Recording> radars, const Config& config = {},
+                               const Progress& progress = {});
 
 /// One word or two: "supported", "follows the made-up elevation", …
 [[nodiscard]] const char* to_text(Support support);

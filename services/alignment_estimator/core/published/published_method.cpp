@@ -132,6 +132,8 @@ void PublishedMethod::process(std::size_t index, const ScanDetections& detection
   radar.count = keep * radar.count + static_cast<double>(used);
   radar.offered = keep * radar.offered + static_cast<double>(std::min(detections.count, kMaxDetections));
   radar.believed = keep * radar.believed + static_cast<double>(believed);
+  // Without elevation pitch and roll stay as seeded.
+  if (scan.parameters == 4) radar.seeded *= keep;
   move(radar, scan, step(scan));
 }
 
@@ -173,6 +175,7 @@ RadarEstimate PublishedMethod::estimate(std::size_t index) const {
   // Noise-free data would make the formal covariance vanish and the matrix singular.
   const double floored = std::max(variance, 1e-8);
   information += radar.jtj / floored;
+  information.bottomRightCorner<3, 3>() += radar.seeded;
   const Eigen::LLT<Eigen::Matrix4d> factor(information);
   Eigen::Matrix4d covariance = factor.solve(Eigen::Matrix4d::Identity());
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
@@ -184,12 +187,16 @@ RadarEstimate PublishedMethod::estimate(std::size_t index) const {
           .inverse();
   out.covariance = to_vehicle * covariance * to_vehicle.transpose();
 
-  const auto known = [&](int i) { return radar.used && out.covariance(i, i) < 0.25 * prior_std(i) * prior_std(i); };
+  const bool is_seeded = !radar.seeded.isZero();
+  const auto known = [&](int i) {
+    return (radar.used || is_seeded) && out.covariance(i, i) < 0.25 * prior_std(i) * prior_std(i);
+  };
   if (known(0)) out.observable |= alignment_axis::kSpeedScale;
   if (known(3)) out.observable |= alignment_axis::kVehicleYaw;
-  // A method or a sensor without elevation says nothing of the other two.
-  if (radar.has_elevation && known(2)) out.observable |= alignment_axis::kVehiclePitch;
-  if (radar.has_elevation && known(1)) out.observable |= alignment_axis::kVehicleRoll;
+  // A method or a sensor without elevation says nothing of the other two, but a calibration may have.
+  const bool has_pitch_and_roll = radar.has_elevation || is_seeded;
+  if (has_pitch_and_roll && known(2)) out.observable |= alignment_axis::kVehiclePitch;
+  if (has_pitch_and_roll && known(1)) out.observable |= alignment_axis::kVehicleRoll;
 
   if (radar.used) {
     constexpr std::uint32_t kNeeded = alignment_axis::kSpeedScale | alignment_axis::kVehicleYaw;
@@ -229,6 +236,25 @@ void PublishedMethod::restore(const Memory& memory) {
     if (known.id != radars_[r].id || !turn(radars_[r], Eigen::Vector3d(known.rotation_vehicle_rad.data()))) continue;
     radars_[r].seconds_of_drive = known.seconds_of_drive;
   }
+}
+
+bool PublishedMethod::seed(std::size_t index, const Eigen::Vector3d& rotation_vehicle_rad,
+                           const Eigen::Matrix3d& covariance) {
+  if (index >= radars_.size() || parameters_ != 4 || !covariance.allFinite()) return false;
+  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+  Radar& radar = radars_[index];
+  if (factor.info() != Eigen::Success || !turn(radar, rotation_vehicle_rad)) return false;
+  const Eigen::Matrix3d to_vehicle =
+      geometry::euler_gradient(radar.nominal.yaw_rad + radar.angles(0), radar.nominal.pitch_rad + radar.angles(1))
+          .inverse();
+  radar.seeded = to_vehicle.transpose() * factor.solve(to_vehicle);
+  radar.seeded = 0.5 * (radar.seeded + radar.seeded.transpose()).eval();
+  // What was measured before was measured at another mounting.
+  radar.jtj.setZero();
+  radar.jtr.setZero();
+  radar.rtr = radar.count = radar.offered = radar.believed = 0.0;
+  radar.seconds_of_drive = 0.0;
+  return true;
 }
 
 bool PublishedMethod::turn(Radar& radar, const Eigen::Vector3d& rotation_vehicle_rad) const {

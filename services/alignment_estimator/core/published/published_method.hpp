@@ -38,8 +38,8 @@ struct ScanView {
 /// here scans come one radar at a time, and each moves k_v by its own step divided by the number of radars that
 /// currently deliver. For synchronised radars that is the same but for terms of second order in the step.
 ///
-/// A radar without elevation has it taken as 0, and only k_v and α are estimated; β and γ stay 0. Range rates of a
-/// sensor with a known unambiguous interval are compared modulo it.
+/// A radar without elevation has it taken as 0, and only k_v and α are estimated; β and γ stay as they started. Range
+/// rates of a sensor with a known unambiguous interval are compared modulo it.
 class PublishedMethod : public Method {
  public:
   void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) final;
@@ -54,6 +54,10 @@ class PublishedMethod : public Method {
   /// Starts from what was remembered of the radars whose identity is the same. The covariance starts anew: these
   /// methods weight nothing by it.
   void restore(const Memory& memory) final;
+  /// Starts this radar from the calibration's angles; its covariance stands for the estimate as one more scan would and
+  /// is forgotten with the window, since the next steps weight nothing by it. Refused by a method of azimuth only,
+  /// which cannot hold the pitch that was measured.
+  bool seed(std::size_t radar, const Eigen::Vector3d& rotation_vehicle_rad, const Eigen::Matrix3d& covariance) final;
 
   /// (k_v, α_m, β_m, γ_m).
   [[nodiscard]] Eigen::Vector4d parameters(std::size_t radar) const;
@@ -83,6 +87,7 @@ class PublishedMethod : public Method {
     Eigen::Matrix4d jtj = Eigen::Matrix4d::Zero();
     Eigen::Vector4d jtr = Eigen::Vector4d::Zero();
     double rtr = 0.0, count = 0.0, offered = 0.0, believed = 0.0;
+    Eigen::Matrix3d seeded = Eigen::Matrix3d::Zero();  // information of a calibration on the angles
   };
   [[nodiscard]] ScanView view(const Radar& radar, const ScanDetections& scan, const EgoSample& ego) const;
   [[nodiscard]] std::size_t select(const ScanView& scan);

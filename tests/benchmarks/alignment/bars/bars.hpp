@@ -14,6 +14,8 @@ void degenerate(const Options& options, Report& report);
 void cramer_rao(const Options& options, Report& report);
 void time_to_95_percent(const Options& options, Report& report);
 void published(const Options& options, Report& report);
+void published_optimum(const Options& options, Report& report);
+void published_filter(const Options& options, Report& report);
 void outliers(const Options& options, Report& report);
 void knock(const Options& options, Report& report);
 void false_alarms(const Options& options, Report& report);

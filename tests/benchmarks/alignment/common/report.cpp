@@ -78,9 +78,15 @@ std::string fixed(double value, int digits) {
 }
 
 std::string Bar::limit() const {
+  if (!is_judged()) return "—";
   if (std::isinf(low)) return "≤ " + number(high);
   if (std::isinf(high)) return "≥ " + number(low);
   return number(low) + "–" + number(high);
+}
+
+const char* Bar::verdict() const {
+  if (!is_judged()) return "—";
+  return passes() ? "PASS" : "FAIL";
 }
 
 void Report::at_most(std::string group, std::string what, double figure, double bar, std::string unit,
@@ -98,13 +104,17 @@ void Report::within(std::string group, std::string what, double figure, double l
   bars_.push_back({std::move(group), std::move(what), figure, low, high, std::move(unit), std::move(how)});
 }
 
+void Report::beside(std::string group, std::string what, double figure, std::string unit, std::string how) {
+  bars_.push_back({std::move(group), std::move(what), figure, -kNone, kNone, std::move(unit), std::move(how)});
+}
+
 Table Report::bars_table() const {
   Table table{"bars", "bars", {"", "what", "figure", "bar", "", "how"}, {}};
   std::string group;
   for (const Bar& bar : bars_) {
     const std::string unit = bar.unit.empty() ? "" : " " + bar.unit;
-    table.rows.push_back({bar.group == group ? "" : bar.group, bar.what, number(bar.figure) + unit, bar.limit() + unit,
-                          bar.passes() ? "PASS" : "FAIL", bar.how});
+    table.rows.push_back({bar.group == group ? "" : bar.group, bar.what, number(bar.figure) + unit,
+                          bar.is_judged() ? bar.limit() + unit : bar.limit(), bar.verdict(), bar.how});
     group = bar.group;
   }
   return table;
@@ -113,8 +123,10 @@ Table Report::bars_table() const {
 void Report::print(std::ostream& out) const {
   for (const Table& table : tables_) print_table(table, out);
   if (!bars_.empty()) print_table(bars_table(), out);
-  const auto failed = std::count_if(bars_.begin(), bars_.end(), [](const Bar& bar) { return !bar.passes(); });
-  out << '\n' << bars_.size() << " bars, " << failed << " failed\n";
+  const auto judged = std::count_if(bars_.begin(), bars_.end(), [](const Bar& bar) { return bar.is_judged(); });
+  const auto failed =
+      std::count_if(bars_.begin(), bars_.end(), [](const Bar& bar) { return bar.is_judged() && !bar.passes(); });
+  out << '\n' << judged << " bars, " << failed << " failed\n";
 }
 
 void Report::write_markdown(std::ostream& out) const {
@@ -147,8 +159,11 @@ void Report::write_json(std::ostream& out) const {
     const Bar& bar = bars_[i];
     out << (i > 0 ? ",\n" : "\n") << "{\"group\":" << quoted(bar.group) << ",\"what\":" << quoted(bar.what)
         << ",\"figure\":" << json_number(bar.figure) << ",\"low\":" << json_number(bar.low)
-        << ",\"high\":" << json_number(bar.high) << ",\"unit\":" << quoted(bar.unit)
-        << ",\"pass\":" << (bar.passes() ? "true" : "false") << ",\"how\":" << quoted(bar.how) << '}';
+        << ",\"high\":" << json_number(bar.high) << ",\"unit\":" << quoted(bar.unit) << ",\"pass\":"
+        << (!bar.is_judged() ? "null"
+            : bar.passes()   ? "true"
+                             : "false")
+        << ",\"how\":" << quoted(bar.how) << '}';
   }
   out << "],\n\"tables\":[";
   for (std::size_t i = 0; i < tables_.size(); ++i) {

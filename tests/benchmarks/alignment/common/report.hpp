@@ -1,6 +1,7 @@
 // What the benchmark found: bars with PASS or FAIL, tables, and curves for the figures; as text, Markdown and JSON.
 #pragma once
 
+#include <cmath>
 #include <iosfwd>
 #include <string>
 #include <utility>
@@ -12,12 +13,15 @@ struct Bar {
   std::string group;
   std::string what;
   double figure = 0.0;
-  double low = 0.0;  ///< passes in low…high; infinite where there is no such limit
+  double low = 0.0;  ///< passes in low…high; infinite where there is no such limit, both where there is no bar
   double high = 0.0;
   std::string unit;
   std::string how;  ///< drives, seeds, statistic
 
+  /// False for a figure that stands there for comparison only.
+  [[nodiscard]] bool is_judged() const { return std::isfinite(low) || std::isfinite(high); }
   [[nodiscard]] bool passes() const { return figure >= low && figure <= high; }
+  [[nodiscard]] const char* verdict() const;
   [[nodiscard]] std::string limit() const;
 };
 
@@ -42,6 +46,8 @@ class Report {
   void at_least(std::string group, std::string what, double figure, double bar, std::string unit, std::string how);
   void within(std::string group, std::string what, double figure, double low, double high, std::string unit,
               std::string how);
+  /// A figure without a bar, among the bars, for comparison.
+  void beside(std::string group, std::string what, double figure, std::string unit, std::string how);
   void add(Table table) { tables_.push_back(std::move(table)); }
   void add(Curve curve) { curves_.push_back(std::move(curve)); }
 

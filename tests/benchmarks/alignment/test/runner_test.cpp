@@ -1,6 +1,8 @@
 // The benchmark's own arithmetic: a method that tells the truth must come out as one that does.
 #include "tests/benchmarks/alignment/common/runner.hpp"
 
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "services/common/geometry/frames.hpp"
@@ -103,6 +105,21 @@ TEST(Report, ABarThatIsNotANumberFails) {
   EXPECT_FALSE(bar.passes());
   const Bar good{"g", "w", 1.0, 0.7, 1.5, "", ""};
   EXPECT_TRUE(good.passes());
+}
+
+TEST(Report, AFigureForComparisonIsNotJudged) {
+  Report report;
+  report.at_most("group", "judged", 2.0, 1.0, "s", "");
+  report.beside("group", "beside", 2.0, "s", "");
+  EXPECT_STREQ(report.bars()[0].verdict(), "FAIL");
+  EXPECT_STREQ(report.bars()[1].verdict(), "—");
+  EXPECT_EQ(report.bars()[1].limit(), "—");
+  std::ostringstream text, json;
+  report.print(text);
+  EXPECT_NE(text.str().find("\n1 bars, 1 failed\n"), std::string::npos) << text.str();
+  report.write_json(json);
+  EXPECT_NE(json.str().find("\"low\":null,\"high\":null,\"unit\":\"s\",\"pass\":null"), std::string::npos)
+      << json.str();
 }
 
 TEST(Statistics, QuantilesOfValuesThatWereNeverReached) {

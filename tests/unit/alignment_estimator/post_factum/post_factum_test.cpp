@@ -1,8 +1,11 @@
 // The post-factum calibration on recordings of a planar world: what it finds, and what it says it cannot know.
 #include "services/alignment_estimator/core/post_factum/post_factum.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -225,6 +228,26 @@ TEST(PostFactum, TheSameSeedGivesTheSame) {
   EXPECT_EQ(calibrate(radars, config).radars[2].yaw.value, first);
   config.seed = 2;
   EXPECT_NE(calibrate(radars, config).radars[2].yaw.value, first);
+}
+
+TEST(PostFactum, ProgressGoesThroughThePhasesAndChangesNothing) {
+  const std::vector<Recording> radars = World{}.recordings();
+  std::vector<std::pair<Phase, double>> heard;
+  const Result result =
+      calibrate(radars, quick(), [&](Phase phase, double share) { heard.emplace_back(phase, share); });
+  ASSERT_GT(heard.size(), 10u);
+  EXPECT_LT(heard.size(), 500u);
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+  std::array<std::size_t, 3> times{};
+  for (const auto& [phase, share] : heard) {
+    ++times.at(static_cast<std::size_t>(phase));
+    EXPECT_GE(share, 0.0);
+    EXPECT_LT(share, 1.0);
+  }
+  EXPECT_GE(times[0], 3u);
+  EXPECT_EQ(times[1], quick().iterations / 256 + 1);
+  EXPECT_EQ(times[2], quick().judgement_draws + 8);
+  EXPECT_EQ(calibrate(radars, quick()).radars[1].pitch.value, result.radars[1].pitch.value);
 }
 
 TEST(PostFactum, ARadarWithoutDataIsSaidToHaveNone) {

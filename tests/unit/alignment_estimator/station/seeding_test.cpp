@@ -126,20 +126,24 @@ TEST(PlateSeed, IsRefusedWhereItCannotBeUsed) {
   EXPECT_EQ(estimator.estimate(0).covariance, before.covariance);
 }
 
-TEST(PlateSeed, IsRefusedByMethodsThatStartFromTheNominalMounting) {
+TEST(PlateSeed, IsTakenByEveryMethodThatHasThreeAngles) {
   const VehicleConfig three = vehicle();
   RotationSeed seed;
   ASSERT_TRUE(seed_from_plate(three.radars[0], 0.01, 1e-4, 0.02, 1e-4, {}, seed));
-  for (const MethodName method : {MethodName::kAzimuth1d, MethodName::kNls, MethodName::kNelderMead}) {
+  RotationSeed unknown = seed;
+  unknown.radar_id = 9;
+  for (const auto& [name, method] : kMethodNames) {
+    SCOPED_TRACE(name);
     Config config;
     config.method = method;
     Estimator estimator(three, config);
-    EXPECT_FALSE(estimator.seed(seed)) << static_cast<int>(method);
+    const bool refuses = method == MethodName::kAzimuth1d || method == MethodName::kBoresightPlanar;
+    EXPECT_EQ(estimator.seed(seed), !refuses);
+    const Eigen::Vector3d turn =
+        geometry::so3_log(estimator.estimate(0).sensor_to_vehicle * nominal(three.radars[0]).transpose());
+    EXPECT_LT((turn - (refuses ? Eigen::Vector3d::Zero() : seed.rotation_vehicle_rad)).norm(), 1e-9);
+    EXPECT_FALSE(estimator.seed(unknown)) << "a radar that the vehicle has not";
   }
-  Estimator estimator(three, {});
-  EXPECT_TRUE(estimator.seed(seed)) << "the default method";
-  seed.radar_id = 9;
-  EXPECT_FALSE(estimator.seed(seed)) << "a radar that the vehicle has not";
 }
 
 TEST(PlateSeed, IsWorthMinutesOfDriving) {
