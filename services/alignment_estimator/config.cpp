@@ -1,5 +1,9 @@
 #include "services/alignment_estimator/config.hpp"
 
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
 #include "interfaces/messages/header.hpp"
 
 namespace boresight::alignment {
@@ -105,21 +109,18 @@ published::PublishedConfig read_published(config::Reader table) {
   return c;
 }
 
-std::optional<Truth> read_truth(config::Reader root) {
-  if (!root.has("truth")) return std::nullopt;
-  config::Reader table = root.table("truth");
-  Truth truth;
-  truth.speed_scale = table.number("speed_scale", {0.5, 2.0}, truth.speed_scale);
-  for (config::Reader& entry : table.tables("radar")) {
-    Truth::Radar radar;
-    entry.require("id");
-    radar.id = static_cast<std::uint32_t>(entry.integer("id", {1, kMaxRadars}, 1));
-    radar.yaw_rad = entry.angle_deg("yaw_deg", {-45.0, 45.0}, 0.0);
-    radar.pitch_rad = entry.angle_deg("pitch_deg", {-45.0, 45.0}, 0.0);
-    radar.roll_rad = entry.angle_deg("roll_deg", {-45.0, 45.0}, 0.0);
-    truth.radars.push_back(radar);
-  }
-  return truth;
+std::optional<DriveTruth> read_truth(config::Reader& root) {
+  std::string path = root.text("truth_file", "");
+  const char* const from_environment = std::getenv("BORESIGHT_TRUTH");
+  if (from_environment != nullptr) path = from_environment;
+  if (path.empty()) return std::nullopt;
+  std::ifstream file(path);
+  DriveTruth truth = read_drive_truth(file);
+  if (truth.known() && std::isfinite(truth.speed_scale)) return truth;
+  const std::string problem = "no truth of a drive in " + path;
+  if (from_environment != nullptr) throw config::Error("$BORESIGHT_TRUTH: " + problem);
+  root.reject("truth_file", problem);
+  return std::nullopt;
 }
 
 }  // namespace

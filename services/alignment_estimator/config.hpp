@@ -23,7 +23,8 @@ struct Settings {
   station::Settings station;
 };
 
-/// Reads the document; throws config::Error.
+/// Reads the document, and the truth that it names; the environment variable BORESIGHT_TRUTH overrides `truth_file`.
+/// Throws config::Error.
 [[nodiscard]] Settings read_settings(config::Reader root);
 
 }  // namespace boresight::alignment

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/published/config.hpp"
+#include "services/common/vehicle/drive_truth.hpp"
 
 namespace boresight::alignment {
 
@@ -36,18 +36,6 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodN
     {"boresight_planar", MethodName::kBoresightPlanar},
 }};
 
-/// What a simulated drive knows of itself; added to the nominal angles.
-struct Truth {
-  struct Radar {
-    std::uint32_t id = 0;
-    double yaw_rad = 0.0;
-    double pitch_rad = 0.0;
-    double roll_rad = 0.0;
-  };
-  double speed_scale = 1.0;
-  std::vector<Radar> radars;
-};
-
 struct Config {
   MethodName method = MethodName::kBoresight;
   FilterConfig filter;                   ///< of kBoresight
@@ -55,7 +43,7 @@ struct Config {
   double publish_period_s = 0.2;
   double kpi_window_s = 20.0;        ///< time constant of the residual statistics
   double residual_gate_sigma = 4.0;  ///< key figures: residuals beyond this many stds are no inliers
-  std::optional<Truth> truth;        ///< for the NEES
+  std::optional<DriveTruth> truth;   ///< for the NEES, of simulated drives
 
   /// How crooked a radar may be before anything was measured, as the chosen method takes it.
   [[nodiscard]] double prior_angle_std_rad() const {

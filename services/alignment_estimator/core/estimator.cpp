@@ -15,15 +15,14 @@ namespace boresight::alignment {
 
 namespace {
 
-/// R(sensor→vehicle) as really mounted; none if the truth does not name the radar.
-std::optional<Eigen::Matrix3d> actual_mounting(const RadarConfig& radar, const std::optional<Truth>& truth) {
+/// R(sensor→vehicle) as really mounted; none if the truth does not name the radar with all its angles.
+std::optional<Eigen::Matrix3d> actual_mounting(const RadarConfig& radar, const std::optional<DriveTruth>& truth) {
   if (!truth) return std::nullopt;
-  for (const Truth::Radar& t : truth->radars) {
-    if (t.id == radar.id) {
-      return geometry::sensor_to_vehicle(radar.mounting_pose, t.yaw_rad, t.pitch_rad, t.roll_rad);
-    }
-  }
-  return std::nullopt;
+  const auto found = truth->radars.find(radar.id);
+  if (found == truth->radars.end()) return std::nullopt;
+  const DriveTruth::Radar& t = found->second;
+  if (!std::isfinite(t.yaw_rad + t.pitch_rad + t.roll_rad)) return std::nullopt;
+  return geometry::sensor_to_vehicle(radar.mounting_pose, t.yaw_rad, t.pitch_rad, t.roll_rad);
 }
 
 }  // namespace

@@ -68,10 +68,11 @@ void run_to_end(const supervisor::Command& command, const fs::path& log, const s
 struct Drive {
   std::string title;
   std::vector<std::string> recordings;
+  fs::path truth_file;  ///< of a simulated drive
   report::Truth truth;
 };
 
-Drive simulate(const DemoOptions& options, const fs::path& logs) {
+Drive simulate(const DemoOptions& options, const VehicleConfig& vehicle, const fs::path& logs) {
   const fs::path directory = options.output / "drive";
   supervisor::Command command;
   command.arguments = {
@@ -82,8 +83,9 @@ Drive simulate(const DemoOptions& options, const fs::path& logs) {
   }
   std::cout << "simulating a drive" << std::endl;
   run_to_end(command, logs / "simulate.log", "the simulation");
-  std::ifstream truth(directory / "truth.csv");
-  Drive drive{.title = "simulated drive", .recordings = {}, .truth = report::read_truth(truth)};
+  Drive drive{.title = "simulated drive", .recordings = {}, .truth_file = directory / "truth.csv", .truth = {}};
+  std::ifstream truth(drive.truth_file);
+  drive.truth = report::truth_of(read_drive_truth(truth), vehicle);
   if (!drive.truth.known()) throw std::runtime_error("the simulation left no truth in " + directory.string());
   for (const char* file : {"radars.pcap", "ego.candump.log"}) drive.recordings.push_back((directory / file).string());
   return drive;
@@ -157,6 +159,8 @@ std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& dri
                                            .run_directory = supervisor::unused_run_directory(),
                                            .log_directory = logs,
                                            .environment = {{"BORESIGHT_INPUT", "replay"}}};
+  // For the estimator's key figures.
+  if (!drive.truth_file.empty()) domain_options.environment.emplace_back("BORESIGHT_TRUTH", drive.truth_file.string());
   supervisor::DomainConfig config = supervisor::domain_of_catalogue(domain_options, pools);
   config.services.push_back(monitor_of(options, record));
 
@@ -233,7 +237,7 @@ int run(DemoOptions options) {
   remove_earlier_logs(logs);
   fs::remove(record);
 
-  const Drive drive = simulated ? simulate(options, logs) : recorded(options);
+  const Drive drive = simulated ? simulate(options, input.vehicle, logs) : recorded(options);
   const std::vector<supervisor::Event> events = play(options, drive, logs, record);
 
   std::ifstream recorded_snapshots(record);

@@ -28,12 +28,12 @@ int run(const ReportOptions& options) {
   report::ReportInput input;
   input.title = options.record;
   input.snapshots = monitor::read_record(record);
+  input.vehicle = options.configuration.vehicle();
   if (!options.truth.empty()) {
     std::ifstream truth(options.truth);
-    input.truth = report::read_truth(truth);
+    input.truth = report::truth_of(read_drive_truth(truth), input.vehicle);
     if (!input.truth.known()) throw std::runtime_error("no truth in " + options.truth);
   }
-  input.vehicle = options.configuration.vehicle();
   std::ofstream output(options.output);
   output << report::render_html(input);
   if (!output.flush()) throw std::runtime_error("cannot write " + options.output);

@@ -52,6 +52,8 @@ td.n, th.n { text-align: right; }
 .chart .head { fill: var(--ink); }
 .legend { color: var(--faint); font-size: 13px; } .legend i { display: inline-block; width: 22px; height: 0; margin: 0 5px 4px 14px;
   border-top: 2px solid var(--blue); vertical-align: middle; } .legend i.truth { border-top: 2px dashed var(--truth); }
+.legend i.t1 { border-color: var(--good); }
+.legend i.t2 { border-color: var(--warn); } .legend i.t3 { border-color: var(--truth); } .legend i.t4 { border-color: var(--bad); }
 .legend i.limit { border-top: 2px dotted var(--bad); } .legend i.box { height: 10px; border: 0; }
 pre { background: var(--card); padding: 12px 14px; overflow-x: auto; font-size: 12.5px; line-height: 1.45; }
 )";
@@ -109,22 +111,20 @@ std::string known_number(double value, const char* unit, int digits) {
 std::string render_details(const Summary& summary) {
   std::string text =
       "<h2>Alignment at the end</h2>\n<p class=\"faint\">Turns about the vehicle's axes. Time of driving until the "
-      "estimate stayed within 5 % of its way; NEES is 1 where σ is honest, and known for simulated drives only.</p>\n"
+      "estimate stayed within 5 % of its way.</p>\n"
       "<table><tr><th>radar</th><th class=n>yaw ± σ</th><th class=n>pitch ± σ</th><th class=n>roll ± σ</th>"
       "<th class=n>95 % of yaw</th><th class=n>of pitch</th><th class=n>yaw drift/min</th><th class=n>residual, "
-      "m/s</th>"
-      "<th class=n>NEES</th><th class=n>knocks</th></tr>\n";
+      "m/s</th><th class=n>knocks</th></tr>\n";
   for (const RadarSummary& radar : summary.radars) {
     const monitor::AlignmentDetails& d = radar.last.details;
     const bool known = yaw_text(radar.last) != "-";
     const auto angle = [known](const monitor::AngleEstimate& a) { return known ? known_angle(a) : "–"; };
     text += fmt::format(
         "<tr><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td>"
-        "<td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td></tr>\n",
+        "<td class=n>{}</td><td class=n>{}</td><td class=n>{}</td></tr>\n",
         escape(radar.last.name), angle(d.yaw), angle(d.pitch), angle(d.roll),
         known_number(d.yaw_seconds_to_95_percent, " s", 1), known_number(d.pitch_seconds_to_95_percent, " s", 1),
-        known_number(d.yaw_drift_radpmin * kDegrees, "°", 3), known_number(d.residual_rmse_mps, "", 3),
-        known_number(d.nees, "", 2), d.knocks);
+        known_number(d.yaw_drift_radpmin * kDegrees, "°", 3), known_number(d.residual_rmse_mps, "", 3), d.knocks);
   }
   text += "</table>\n";
   for (const RadarSummary& radar : summary.radars) {
@@ -138,6 +138,45 @@ std::string render_details(const Summary& summary) {
     break;
   }
   return text;
+}
+
+/// How wrong the estimates are, and whether they say so; nothing where no truth is known.
+std::string render_truth(const ReportInput& input, const TimeBase& time, const Summary& summary) {
+  std::string rows, legend;
+  double highest = 2.0;
+  for (const Snapshot& snapshot : input.snapshots) {
+    for (const RadarSnapshot& radar : snapshot.radars) {
+      if (std::isfinite(radar.details.nees)) highest = std::max(highest, std::min(10.0, radar.details.nees));
+    }
+  }
+  SvgChart chart(1080, 190, {.min = 0, .max = time.end_s(), .label = "time, s"},
+                 {.min = 0, .max = highest, .label = "NEES"});
+  chart.horizontal(1.0, "truth");
+  for (const RadarSummary& radar : summary.radars) {
+    if (!radar.true_vehicle_rad || !has_estimate(radar.last)) continue;
+    const monitor::AlignmentDetails& d = radar.last.details;
+    const std::array<double, 3>& truth = *radar.true_vehicle_rad;
+    rows += fmt::format(
+        "<tr><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td>"
+        "<td class=n>{}</td></tr>\n",
+        escape(radar.last.name), speed_scale_off_by(radar), off_by(d.yaw, truth[0]), off_by(d.pitch, truth[1]),
+        off_by(d.roll, truth[2]), known_number(d.nees, "", 2), known_number(radar.mean_nees, "", 2));
+    std::vector<Point> points;
+    for (const Snapshot& snapshot : input.snapshots) {
+      const RadarSnapshot* const seen = find_radar(snapshot, radar.last.id);
+      if (seen != nullptr) points.push_back({time.seconds(snapshot), seen->details.nees});
+    }
+    const std::uint32_t colour = radar.last.id % 5;
+    chart.line(points, fmt::format("trail t{}", colour));
+    legend += fmt::format("<i class=\"t{}\"></i>{}", colour, escape(radar.last.name));
+  }
+  if (rows.empty()) return rows;
+  return "<h2>Against the truth</h2>\n<p class=\"faint\">Estimate − truth at the end, about the vehicle's axes. NEES: "
+         "the errors of what is observable, squared and weighed by the inverse of the stated covariance, divided by "
+         "their number; 1 on average where σ is honest.</p>\n"
+         "<table><tr><th>radar</th><th class=n>speed scale</th><th class=n>yaw</th><th class=n>pitch</th>"
+         "<th class=n>roll</th><th class=n>NEES</th><th class=n>mean over the drive</th></tr>\n" +
+         rows + "</table>\n<p class=\"legend\">" + legend + "<i class=\"truth\"></i>honest</p>\n" + chart.finish();
 }
 
 std::string render_table(const Summary& summary) {
@@ -376,6 +415,7 @@ std::string render_html(const ReportInput& input) {
   text += render_verdict(input, summary);
   text += render_table(summary);
   text += render_details(summary);
+  text += render_truth(input, time, summary);
   text += render_alignment(input, time, summary);
   text += render_health(input, time, summary);
   text += render_tracks(input);

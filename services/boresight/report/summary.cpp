@@ -29,9 +29,12 @@ class Counter {
   std::uint64_t last_ = 0;
 };
 
-struct RadarCounters {
+/// What is summed up over the drive.
+struct RadarSums {
   Counter scans;
   Counter lost;
+  double nees = 0.0;
+  int known_nees = 0;
 };
 
 std::uint64_t number_of_scans(const Snapshot& snapshot) {
@@ -85,7 +88,7 @@ void add_tracks(const std::vector<Snapshot>& snapshots, Summary& summary) {
 void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summary& summary) {
   const auto first = std::find_if(snapshots.begin(), snapshots.end(), number_of_scans);
   const std::int64_t begin_ns = first == snapshots.end() ? snapshots.back().time_ns : first->time_ns;
-  std::map<std::uint32_t, RadarCounters> counters;
+  std::map<std::uint32_t, RadarSums> sums;
   std::map<std::uint32_t, RadarSummary> radars;
   std::uint64_t scans_before = 0;
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
@@ -95,8 +98,13 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
     const double t_s = static_cast<double>(snapshot.time_ns - begin_ns) * 1e-9;
     for (const RadarSnapshot& seen : snapshot.radars) {
       RadarSummary& radar = radars[seen.id];
-      counters[seen.id].scans.see(seen.scans);
-      counters[seen.id].lost.see(seen.lost);
+      RadarSums& sum = sums[seen.id];
+      sum.scans.see(seen.scans);
+      sum.lost.see(seen.lost);
+      if (goes_on && std::isfinite(seen.details.nees)) {
+        sum.nees += seen.details.nees;
+        ++sum.known_nees;
+      }
       const bool misaligned = seen.extended_qualifier == ExtendedQualifier::kMisaligned;
       if (misaligned && radar.first_misaligned_s < 0) radar.first_misaligned_s = t_s;
       if (goes_on || radar.last.scans == 0) {
@@ -108,8 +116,14 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
     scans_before = number_of_scans(snapshot);
   }
   for (auto& [id, radar] : radars) {
-    radar.last.scans = counters[id].scans.total();
-    radar.last.lost = counters[id].lost.total();
+    const RadarSums& sum = sums[id];
+    radar.last.scans = sum.scans.total();
+    radar.last.lost = sum.lost.total();
+    if (sum.known_nees > 0) radar.mean_nees = sum.nees / sum.known_nees;
+    radar.true_speed_scale = truth.speed_scale;
+    if (const auto found = truth.vehicle_rad.find(id); found != truth.vehicle_rad.end()) {
+      radar.true_vehicle_rad = found->second;
+    }
     if (const auto found = truth.yaw_rad.find(id); found != truth.yaw_rad.end()) {
       radar.true_yaw_rad = found->second;
       radar.expected_to_be_misaligned = std::abs(found->second) > radar.last.yaw_tolerance_rad;
@@ -156,16 +170,8 @@ void add_checks(const Truth& truth, Summary& summary) {
   }
 }
 
-bool has_estimate(const RadarSnapshot& radar) {
-  return radar.yaw.observable &&
-         (radar.state == AlignmentState::kConverged || radar.state == AlignmentState::kConverging);
-}
-
-std::string off_by(const RadarSummary& radar) {
-  if (!has_estimate(radar.last) || !radar.true_yaw_rad) return "-";
-  const double error_rad = radar.last.yaw.value_rad - *radar.true_yaw_rad;
-  const double sigmas = radar.last.yaw.std_rad > 0 ? std::abs(error_rad) / radar.last.yaw.std_rad : 0.0;
-  return fmt::format("{:+.2f}° ({:.1f} σ)", error_rad * kDegrees, sigmas);
+double in_sigmas(double error, double std) {
+  return std > 0.0 ? std::abs(error) / std : 0.0;
 }
 
 std::string render_radars(const Summary& summary) {
@@ -175,10 +181,29 @@ std::string render_radars(const Summary& summary) {
     const RadarSnapshot& last = radar.last;
     text +=
         fmt::format("  {:<14}{:>7}{:>6}   {:<18}{:<9}{:<18}{}\n", last.name, last.scans, last.lost, yaw_text(last),
-                    radar.true_yaw_rad ? fmt::format("{:+.2f}°", *radar.true_yaw_rad * kDegrees) : "-", off_by(radar),
+                    radar.true_yaw_rad ? fmt::format("{:+.2f}°", *radar.true_yaw_rad * kDegrees) : "-",
+                    has_estimate(last) ? off_by(last.yaw, radar.true_yaw_rad) : "-",
                     has_estimate(last) ? fmt::format("{:.4f} ± {:.4f}", last.speed_scale, last.speed_scale_std) : "-");
   }
   return text;
+}
+
+/// Every parameter against the truth, and whether σ is honest; nothing where no truth is known.
+std::string render_truth(const Summary& summary) {
+  std::string text;
+  for (const RadarSummary& radar : summary.radars) {
+    if (!radar.true_vehicle_rad || !has_estimate(radar.last)) continue;
+    const monitor::AlignmentDetails& d = radar.last.details;
+    const std::array<double, 3>& truth = *radar.true_vehicle_rad;
+    const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; };
+    text += fmt::format("  {:<14}{:<20}{:<17}{:<17}{:<17}{:>6}{:>6}\n", radar.last.name, speed_scale_off_by(radar),
+                        off_by(d.yaw, truth[0]), off_by(d.pitch, truth[1]), off_by(d.roll, truth[2]), number(d.nees),
+                        number(radar.mean_nees));
+  }
+  if (text.empty()) return text;
+  return fmt::format("  {:<14}{:<20}{:<17}{:<17}{:<17}{:>6}{:>6}\n", "off by", "speed scale", "yaw (vehicle)", "pitch",
+                     "roll", "NEES", "mean") +
+         text + "\n";
 }
 
 std::string render_faults(const Summary& summary) {
@@ -213,6 +238,24 @@ Summary summarise(const std::vector<Snapshot>& snapshots, const Truth& truth) {
   return summary;
 }
 
+bool has_estimate(const RadarSnapshot& radar) {
+  return radar.yaw.observable &&
+         (radar.state == AlignmentState::kConverged || radar.state == AlignmentState::kConverging);
+}
+
+std::string off_by(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad) {
+  if (!truth_rad) return "-";
+  if (!estimate.observable) return "not observable";
+  const double error_rad = estimate.value_rad - *truth_rad;
+  return fmt::format("{:+.3f}° ({:.1f} σ)", error_rad * kDegrees, in_sigmas(error_rad, estimate.std_rad));
+}
+
+std::string speed_scale_off_by(const RadarSummary& radar) {
+  if (!radar.true_speed_scale || !has_estimate(radar.last)) return "-";
+  const double error = radar.last.speed_scale - *radar.true_speed_scale;
+  return fmt::format("{:+.1e} ({:.1f} σ)", error, in_sigmas(error, radar.last.speed_scale_std));
+}
+
 std::string yaw_text(const RadarSnapshot& radar) {
   if (!has_estimate(radar)) return "-";
   return fmt::format("{:+.2f}° ± {:.2f}°", radar.yaw.value_rad * kDegrees, radar.yaw.std_rad * kDegrees);
@@ -237,7 +280,7 @@ std::string verdict_line(const RadarSummary& radar) {
 
 std::string render_summary(const Summary& summary) {
   std::string text = fmt::format("\nSummary of {:.0f} s of driving\n\n", summary.duration_s);
-  text += render_radars(summary) + "\n";
+  text += render_radars(summary) + "\n" + render_truth(summary);
   for (const RadarSummary& radar : summary.radars) text += "  " + verdict_line(radar) + "\n";
   text += fmt::format("\n  {:<14}{:>10}{:>10}{:>10}\n", "latency, µs", "p50", "p99", "max");
   for (std::size_t i = 0; i < monitor::kNumberOfLatencies; ++i) {

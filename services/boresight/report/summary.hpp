@@ -1,6 +1,8 @@
 // What a run has shown, judged: per radar against the truth where it is known, and whether everything worked.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,14 +16,19 @@ namespace boresight::report {
 struct Truth {
   std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
   std::optional<double> speed_scale;
-  std::map<std::uint32_t, std::uint64_t> scans;  ///< by radar id: how many the radar sent
+  std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: turned by yaw, pitch, roll about the
+                                                               ///< vehicle's axes, as AlignmentEstimate's
+  std::map<std::uint32_t, std::uint64_t> scans;                ///< by radar id: how many the radar sent
   [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
 };
 
 struct RadarSummary {
   monitor::RadarSnapshot last;  ///< while it was still sending; its counters are sums over the whole run
   std::optional<double> true_yaw_rad;
-  bool misaligned = false;  ///< health's verdict while it was still sending
+  std::optional<double> true_speed_scale;
+  std::optional<std::array<double, 3>> true_vehicle_rad;
+  double mean_nees = std::numeric_limits<double>::quiet_NaN();  ///< over the drive, where the estimator states it
+  bool misaligned = false;                                      ///< health's verdict while it was still sending
   bool expected_to_be_misaligned = false;
   double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
 };
@@ -50,6 +57,12 @@ struct Summary {
 [[nodiscard]] std::string verdict_line(const RadarSummary& radar);
 /// "+2.51° ± 0.03°", or "-" without an estimate.
 [[nodiscard]] std::string yaw_text(const monitor::RadarSnapshot& radar);
+/// Whether there is an estimate to compare with a truth.
+[[nodiscard]] bool has_estimate(const monitor::RadarSnapshot& radar);
+/// "+0.021° (0.5 σ)": estimate − truth; "not observable", or "-" where nothing is known.
+[[nodiscard]] std::string off_by(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad);
+/// Of k_v: "+1.2e-05 (0.3 σ)", or "-".
+[[nodiscard]] std::string speed_scale_off_by(const RadarSummary& radar);
 /// For the terminal, several lines.
 [[nodiscard]] std::string render_summary(const Summary& summary);
 

@@ -1,28 +1,25 @@
 #include "services/boresight/report/truth_table.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <istream>
-#include <sstream>
-#include <string>
+
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
 
 namespace boresight::report {
 
-Truth read_truth(std::istream& input) {
-  constexpr double kRadians = 3.14159265358979323846 / 180.0;
+Truth truth_of(const DriveTruth& drive, const VehicleConfig& vehicle) {
   Truth truth;
-  for (std::string line; std::getline(input, line);) {
-    std::istringstream columns(line);
-    std::array<std::string, 3> cells;  // quantity, radar, value
-    for (std::string& cell : cells) std::getline(columns, cell, ',');
-    char* end = nullptr;
-    const double value = std::strtod(cells[2].c_str(), &end);
-    if (end == cells[2].c_str() || !std::isfinite(value)) continue;
-    if (cells[0] == "speed_scale") truth.speed_scale = value;
-    const auto radar = static_cast<std::uint32_t>(std::strtoul(cells[1].c_str(), nullptr, 10));
-    if (cells[0] == "alignment_yaw") truth.yaw_rad[radar] = value * kRadians;
-    if (cells[0] == "scans" && value >= 0.0) truth.scans[radar] = static_cast<std::uint64_t>(value);
+  if (std::isfinite(drive.speed_scale)) truth.speed_scale = drive.speed_scale;
+  for (const auto& [id, radar] : drive.radars) {
+    if (radar.scans) truth.scans[id] = *radar.scans;
+    if (std::isfinite(radar.yaw_rad)) truth.yaw_rad[id] = radar.yaw_rad;
+    const RadarConfig* const config = vehicle.radar(id);
+    if (config == nullptr || !std::isfinite(radar.yaw_rad + radar.pitch_rad + radar.roll_rad)) continue;
+    const MountingPose& nominal = config->mounting_pose;
+    const Eigen::Matrix3d turn = geometry::sensor_to_vehicle(nominal, radar.yaw_rad, radar.pitch_rad, radar.roll_rad) *
+                                 geometry::sensor_to_vehicle(nominal, 0.0, 0.0, 0.0).transpose();
+    const Eigen::Vector3d angles = geometry::fixed_axes_angles(turn);
+    truth.vehicle_rad[id] = {angles(0), angles(1), angles(2)};
   }
   return truth;
 }

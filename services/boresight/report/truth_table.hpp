@@ -1,14 +1,14 @@
-// What a simulated drive says about itself: the truth.csv beside its recordings.
+// The truth of a simulated drive in the terms in which estimates are shown.
 #pragma once
 
-#include <iosfwd>
-
 #include "services/boresight/report/summary.hpp"
+#include "services/common/vehicle/drive_truth.hpp"
+#include "services/common/vehicle/vehicle.hpp"
 
 namespace boresight::report {
 
-/// Lines "quantity,radar,value,unit" with quantities speed_scale and alignment_yaw (deg); others are for other readers.
-/// What is not a number is left out, so the result may be empty (`known()` is false).
-[[nodiscard]] Truth read_truth(std::istream& input);
+/// Radars that the vehicle does not know have no angles about its axes. What is not stated is left out, so the result
+/// may be empty (`known()` is false).
+[[nodiscard]] Truth truth_of(const DriveTruth& drive, const VehicleConfig& vehicle);
 
 }  // namespace boresight::report

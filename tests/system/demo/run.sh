@@ -45,6 +45,8 @@ demo whole --duration 25 > "$out/whole.txt" 2>&1
 check "the demo ends well" [ $? -eq 0 ]
 check "it names the crooked radar" grep -q '^  front_right: MISALIGNED, yaw +2\.[0-9]*° ± ' "$out/whole.txt"
 check "it names no other" [ "$(grep -c ': MISALIGNED' "$out/whole.txt")" -eq 1 ]
+check "it states errors and NEES against the truth" \
+  grep -Eq '^  front_right +[+-][0-9.e-]+ \([0-9.]+ σ\) +[+-]0\.[0-9]+° .* [0-9]+\.[0-9]{2} +[0-9]+\.[0-9]{2}$' "$out/whole.txt"
 check "it writes a report" grep -q 'Everything worked' "$out/whole/report.html"
 check "it leaves nothing behind" nothing_left
 [ $failed -eq 0 ] || cat "$out/whole.txt"

@@ -2,11 +2,14 @@
 #include "services/alignment_estimator/config.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace boresight::alignment {
 namespace {
@@ -154,18 +157,33 @@ TEST(Config, ErrorsAreNamed) {
   EXPECT_NE(problem("[filter]\nmin_sped_mps = 5.0\n").find("min_sped_mps"), std::string::npos);
   EXPECT_NE(problem("[filter.knock]\nyaw_deg = -1.0\n").find("yaw_deg"), std::string::npos);
   EXPECT_NE(problem("[published]\nnls_rate = [1.0, 2.0]\n").find("nls_rate"), std::string::npos);
-  EXPECT_NE(problem("[[truth.radar]]\nyaw_deg = 1.0\n").find("id"), std::string::npos);
+  EXPECT_NE(
+      problem("truth_file = \"/nowhere/truth.csv\"\n").find("truth_file: no truth of a drive in /nowhere/truth.csv"),
+      std::string::npos);
 }
 
 TEST(Config, TheTruthOfASimulatedDrive) {
-  const Settings s = read_settings(config::Reader::parse(
-      "[truth]\nspeed_scale = 1.01\n[[truth.radar]]\nid = 3\nyaw_deg = 2.0\npitch_deg = -1.0\nroll_deg = 0.5\n",
-      "test.toml"));
-  ASSERT_TRUE(s.estimator.truth.has_value());
-  EXPECT_EQ(s.estimator.truth->speed_scale, 1.01);
-  ASSERT_EQ(s.estimator.truth->radars.size(), 1u);
-  EXPECT_EQ(s.estimator.truth->radars[0].id, 3u);
-  EXPECT_NEAR(s.estimator.truth->radars[0].pitch_rad, -M_PI / 180.0, 1e-12);
+  const auto write = [](const std::string& name, const char* text) {
+    const std::string file = testing::TempDir() + name + std::to_string(getpid());
+    std::ofstream(file) << text;
+    return file;
+  };
+  const std::string file = write("truth", "speed_scale,,1.01,1\nalignment_pitch,3,-1.0,deg\n");
+  const std::string other = write("other", "speed_scale,,1.02,1\nalignment_pitch,3,-1.0,deg\n");
+  const std::string incomplete = write("incomplete", "alignment_pitch,3,-1.0,deg\n");
+  const std::string text = "truth_file = \"" + file + "\"\n";
+  const auto read = [&] { return read_settings(config::Reader::parse(text, "test.toml")).estimator.truth; };
+  const auto truth = read();
+  ASSERT_TRUE(truth.has_value());
+  EXPECT_EQ(truth->speed_scale, 1.01);
+  ASSERT_EQ(truth->radars.size(), 1u);
+  EXPECT_NEAR(truth->radars.at(3).pitch_rad, -M_PI / 180.0, 1e-12);
+  ASSERT_EQ(setenv("BORESIGHT_TRUTH", other.c_str(), 1), 0);
+  EXPECT_EQ(read()->speed_scale, 1.02);
+  ASSERT_EQ(setenv("BORESIGHT_TRUTH", incomplete.c_str(), 1), 0);
+  EXPECT_THROW(static_cast<void>(read()), config::Error);
+  unsetenv("BORESIGHT_TRUTH");
+  for (const std::string& f : {file, other, incomplete}) std::remove(f.c_str());
 }
 
 }  // namespace

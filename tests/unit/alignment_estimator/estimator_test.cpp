@@ -57,6 +57,41 @@ TEST(Estimator, EachRadarHasItsOwnEstimate) {
   EXPECT_FALSE(estimator.write(3, out));
 }
 
+TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
+  SyntheticDrive left, right;
+  left.yaw_rad = 2.0 * kDegree;
+  right.mount_yaw_rad = -135.0 * kDegree;
+  Config config, wrong;
+  config.truth.emplace();
+  config.truth->speed_scale = left.speed_scale;
+  config.truth->radars[1] = {left.yaw_rad, 0.0, 0.0, {}};
+  config.truth->radars[2].yaw_rad = right.yaw_rad;  // of which pitch and roll are not stated
+  wrong.truth = config.truth;
+  wrong.truth->radars[1].yaw_rad = 1.0 * kDegree;
+  Estimator estimator(car(left, right), config), deceived(car(left, right), wrong), unknowing(car(left, right), {});
+  Synthesizer a(left, 1), b(right, 2);
+  double sum = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    a.next();
+    b.next();
+    b.scan->header.source_id = 2;
+    for (Estimator* e : {&estimator, &deceived, &unknowing}) {
+      e->add_ego_motion(motion(a.scan->header.measurement_time_ns, a.ego));
+      static_cast<void>(e->add_scan(*a.scan));
+      static_cast<void>(e->add_scan(*b.scan));
+    }
+    if (i == 0) {
+      EXPECT_TRUE(std::isnan(written(estimator, 1).kpis.nees)) << "nothing is observable yet";
+    }
+    if (i >= 100) sum += written(estimator, 1).kpis.nees / 200.0;
+  }
+  EXPECT_GT(sum, 0.05);
+  EXPECT_LT(sum, 4.0) << "one drive; its errors are those of a few draws";
+  EXPECT_GT(written(deceived, 1).kpis.nees, 100.0F);
+  EXPECT_TRUE(std::isnan(written(estimator, 2).kpis.nees));
+  EXPECT_TRUE(std::isnan(written(unknowing, 1).kpis.nees));
+}
+
 TEST(Estimator, PublishesByTheMeasurementClock) {
   const SyntheticDrive drive;
   Estimator estimator(car(drive, drive), Config{});
@@ -128,8 +163,7 @@ TEST(Estimator, EveryMethodByItsNameRunsWithKeyFiguresAndAllocatesNothing) {
   for (const auto& [name, method] : kMethodNames) {
     Config config;
     config.method = method;
-    config.truth = Truth{.speed_scale = drive.speed_scale,
-                         .radars = {{.id = 1, .yaw_rad = drive.yaw_rad, .pitch_rad = 0.0, .roll_rad = 0.0}}};
+    config.truth = DriveTruth{.speed_scale = drive.speed_scale, .radars = {{1, {drive.yaw_rad, 0.0, 0.0, {}}}}};
     Estimator estimator(car(drive, drive), config);
     Synthesizer synthesizer(drive, 7);
     AlignmentEstimate out{};

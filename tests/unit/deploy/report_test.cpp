@@ -1,8 +1,11 @@
 #include <sstream>
 
+#include <Eigen/Geometry>
+
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/svg_chart.hpp"
 #include "services/boresight/report/truth_table.hpp"
+#include "services/common/geometry/frames.hpp"
 #include "tests/unit/deploy/synthetic_drive.hpp"
 
 namespace boresight::report {
@@ -99,18 +102,71 @@ TEST(Summary, CountersThatStartAnewAreAddedUp) {
   EXPECT_EQ(summary.latencies[0].total(), 4800U);
 }
 
-TEST(TruthTable, TakesYawAndSpeedScaleAndNothingThatIsNoNumber) {
+TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
   std::istringstream table(
-      "quantity,radar,value,unit\nspeed_scale,,1.012,1\nalignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\nscans,2,"
-      "899,1\n"
-      "alignment_yaw,3,nan,deg\nalignment_yaw,4,,deg\nalignment_yaw,1\n");
-  const Truth truth = read_truth(table);
-  EXPECT_DOUBLE_EQ(truth.speed_scale.value(), 1.012);
+      "quantity,radar,value,unit\nspeed_scale,,1.012,1\n"
+      "alignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\nalignment_roll,2,-0.7,deg\nscans,2,899,1\n"
+      "alignment_yaw,3,nan,deg\nalignment_yaw,4,,deg\nalignment_yaw,1\nalignment_yaw,17,1.0,deg\n"
+      "alignment_yaw,1,0.5,deg\n");
+  const DriveTruth drive = read_drive_truth(table);
+  EXPECT_DOUBLE_EQ(drive.speed_scale, 1.012);
+  ASSERT_EQ(drive.radars.size(), 2U);
+  EXPECT_EQ(drive.radars.at(2).scans, 899u);
+  EXPECT_NEAR(drive.radars.at(2).yaw_rad, kCrooked_rad, 1e-12);
+  EXPECT_TRUE(std::isnan(drive.radars.at(1).pitch_rad));
+
+  VehicleConfig vehicle;
+  for (const std::uint32_t id : {1u, 2u}) {
+    vehicle.radars.emplace_back();
+    vehicle.radars.back().id = id;
+    vehicle.radars.back().mounting_pose = {{3.6, -0.7, 0.5}, -45.0 * kDegree, 2.0 * kDegree, 1.0 * kDegree};
+  }
+  const Truth truth = truth_of(drive, vehicle);
+  EXPECT_EQ(truth.speed_scale, 1.012);
   EXPECT_EQ(truth.scans.at(2), 899u);
-  ASSERT_EQ(truth.yaw_rad.size(), 1U);
-  EXPECT_NEAR(truth.yaw_rad.at(2), kCrooked_rad, 1e-12);
+  EXPECT_EQ(truth.yaw_rad.size(), 2U);
+  ASSERT_EQ(truth.vehicle_rad.size(), 1U) << "of radar 1 not all is stated";
+  // R(actual) = R_x(roll)·R_y(−pitch)·R_z(yaw)·R(nominal), as AlignmentEstimate defines it.
+  const auto& [yaw, pitch, roll] = truth.vehicle_rad.at(2);
+  const Eigen::Matrix3d turned = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()) *
+                                 Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
+                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                                 geometry::sensor_to_vehicle(-45.0 * kDegree, 2.0 * kDegree, 1.0 * kDegree);
+  const Eigen::Matrix3d actual = geometry::sensor_to_vehicle(-42.5 * kDegree, 2.4 * kDegree, 0.3 * kDegree);
+  EXPECT_LT((turned - actual).norm(), 1e-12);
   std::istringstream nothing("");
-  EXPECT_FALSE(read_truth(nothing).known());
+  EXPECT_FALSE(truth_of(read_drive_truth(nothing), vehicle).known());
+}
+
+TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
+  auto snapshots = synthetic_drive();
+  Truth truth = synthetic_truth();
+  truth.vehicle_rad[2] = {kCrooked_rad, 0.4 * kDegree, 0.0};
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    monitor::AlignmentDetails& d = snapshots[i].radars[1].details;
+    d.yaw = {kCrooked_rad + 0.02 * kDegree, 0.04 * kDegree, true};
+    d.pitch = {0.1 * kDegree, 0.1 * kDegree, true};
+    d.roll = {0.0, 4.0 * kDegree, false};
+    d.nees = i < 10 ? NAN : (i % 2 == 0 ? 0.5 : 1.0);
+  }
+  const Summary summary = summarise(snapshots, truth);
+  EXPECT_NEAR(summary.radars[1].mean_nees, 0.75, 0.01);
+  EXPECT_TRUE(std::isnan(summary.radars[0].mean_nees));
+  const std::string text = render_summary(summary);
+  EXPECT_THAT(
+      text,
+      ::testing::ContainsRegex(
+          "front_right +\\+2\\.0e-04 \\(0\\.4 σ\\) +\\+0\\.020° \\(0\\.5 σ\\) +-0\\.300° \\(3\\.0 σ\\) +not observable "
+          "+0\\.50 +0\\.75"));
+  const std::string page = render_html(
+      {.title = "", .snapshots = snapshots, .truth = truth, .vehicle = {}, .more_checks = {}, .events = {}});
+  EXPECT_THAT(page, ::testing::HasSubstr("Against the truth"));
+  EXPECT_THAT(page, ::testing::HasSubstr("-0.300° (3.0 σ)"));
+  EXPECT_THAT(page, ::testing::HasSubstr("0.75</td>"));
+  EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("nan")));
+  EXPECT_THAT(
+      render_html({.title = "", .snapshots = snapshots, .truth = {}, .vehicle = {}, .more_checks = {}, .events = {}}),
+      ::testing::Not(::testing::HasSubstr("Against the truth")));
 }
 
 TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
