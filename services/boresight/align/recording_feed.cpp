@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "services/boresight/align/play.hpp"
+
 namespace boresight::align {
 
 namespace {
@@ -24,8 +26,6 @@ RadarScan* RecordingFeed::begin_scan() {
 
 void RecordingFeed::publish_scan(std::uint32_t radar_id, const ingest::MeasurementTime& time) {
   ++statistics(radar_id).messages;
-  constexpr std::uint16_t kDoubtful =
-      scan_integrity::kRepeated | scan_integrity::kFrozen | scan_integrity::kStale | scan_integrity::kImpossibleCopies;
   if ((scan_->integrity & kDoubtful) != 0) {
     ++doubtful_;
     return;

@@ -15,6 +15,7 @@
 #include "services/boresight/align/drive_csv.hpp"
 #include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/align/json.hpp"
+#include "services/boresight/align/play.hpp"
 #include "services/boresight/align/plot.hpp"
 #include "services/boresight/align/recording_feed.hpp"
 #include "services/boresight/align/run.hpp"
@@ -22,9 +23,7 @@
 #include "services/boresight/align/truth_file.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
-#include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "services/ingest_gateway/core/gateway.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 
 namespace boresight {
@@ -138,21 +137,10 @@ class Align {
     align::Run run(vehicle, std::move(run_options));
     align::RecordingFeed feed(run);
     ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
-    const std::vector<std::filesystem::path> files(options_.recordings.begin(), options_.recordings.end());
-    const auto reader =
-        recording::open_recordings(files, [this](const std::string& text) { problems_.bad_line(text); });
-    recording::Frame frame;
-    for (std::uint64_t frames = 1; reader->next(frame); ++frames) {
-      // The recording's own clock is the only one, so that the result depends on nothing else.
-      gateway.take(frame, {frame.stamp_ns, 0, TimeSource::kLinkArrival});
-      problems_.good_line();
-      constexpr std::uint64_t kFramesBetweenLooks = 256;
-      if (frames % kFramesBetweenLooks == 0 && bar_.is_due()) {
-        const recording::Progress progress = reader->progress();
-        show_progress(progress.position_bytes, progress.total_bytes);
-      }
-    }
-    gateway.finish();
+    align::play({options_.recordings.begin(), options_.recordings.end()}, gateway, problems_,
+                [this](const recording::Progress& progress) {
+                  if (bar_.is_due()) show_progress(progress.position_bytes, progress.total_bytes);
+                });
     feed.finish();
     bar_.wipe();
     if (feed.rejected() > 0) {

@@ -1,4 +1,4 @@
-// `boresight calibrate`: static calibrations from recorded tables, by the core that the service runs.
+// `boresight calibrate`: static calibrations from tables and recordings, by the core that the service runs.
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -8,13 +8,16 @@
 
 #include <fmt/format.h>
 
+#include "services/boresight/align/play.hpp"
 #include "services/boresight/calibrate/plate_csv.hpp"
+#include "services/boresight/calibrate/plate_feed.hpp"
 #include "services/boresight/calibrate/plate_report.hpp"
 #include "services/boresight/calibrate/reflectors_csv.hpp"
 #include "services/boresight/calibrate/reflectors_report.hpp"
 #include "services/boresight/calibrate/state_file.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 
 namespace boresight {
 
@@ -39,6 +42,10 @@ struct Common {
 };
 
 struct PlateOptions : Common {
+  std::vector<std::string> recordings;
+  std::string tilts;
+  plate::PlateWindow window;
+  double azimuth_half_width_deg = 8.0;
   std::string method = "robust";
   plate::FitConfig fit;
   alignment::SeedConfig seed;
@@ -102,24 +109,72 @@ void print_table(const Common& options, const std::string& table) {
   if (std::fflush(stdout) != 0) throw std::runtime_error(std::string("standard output: ") + std::strerror(errno));
 }
 
+plate::Measurements read_plate_table(const std::string& file) {
+  align::Problems problems = told_problems();
+  recording::ByteSource source(file);
+  const plate::Measurements measurements = calibrate::read_plate(source, problems);
+  demand_all_lines(file, problems);
+  return measurements;
+}
+
+/// What the radar saw of the plate while it stood at the tilts of the table.
+plate::Measurements read_plate_recording(const PlateOptions& options, const VehicleConfig& vehicle,
+                                         const RadarConfig& radar) {
+  align::Problems problems = told_problems();
+  recording::ByteSource source(options.tilts);
+  const std::vector<calibrate::TiltInterval> intervals = calibrate::read_tilts(source, problems);
+  demand_all_lines(options.tilts, problems);
+  plate::PlateWindow window = options.window;
+  window.azimuth_half_width_rad = options.azimuth_half_width_deg / kDegrees;
+  calibrate::PlateFeed feed(radar.id, intervals, window);
+  ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
+  align::Problems unreadable = told_problems();
+  align::play({options.recordings.begin(), options.recordings.end()}, gateway, unreadable, [](const auto&) {});
+  if (unreadable.bad_lines() > 0) tell(fmt::format("{} frames could not be read", unreadable.bad_lines()));
+  if (feed.rejected() > 0) {
+    tell(fmt::format("{} messages were rejected; `boresight decode --check` tells why", feed.rejected()));
+  }
+  if (feed.scans() == 0) {
+    throw std::runtime_error(fmt::format("radar {} {} has no scan in the recording", radar.id, radar.name));
+  }
+  if (feed.within() == 0) {
+    throw std::runtime_error(
+        fmt::format("no scan within the times of {}: those of radar {} {} are from {:.3f} to {:.3f} s", options.tilts,
+                    radar.id, radar.name, feed.first_s(), feed.last_s()));
+  }
+  if (feed.doubtful() > 0) tell(fmt::format("{} scans of doubtful integrity were left out", feed.doubtful()));
+  if (feed.without_plate() > 0) {
+    tell(fmt::format("{} of {} scans at the tilts do not show the plate: nothing stands still {:g} … {:g} m ahead",
+                     feed.without_plate(), feed.within(), window.range_min_m, window.range_max_m));
+  }
+  return feed.measurements();
+}
+
+void check_source(const PlateOptions& options) {
+  const bool is_recorded = !options.recordings.empty();
+  if (is_recorded == !options.csv.empty()) throw UsageError("give either --csv, or --recording and --tilts");
+  if (is_recorded == options.tilts.empty()) throw UsageError("--recording and --tilts need one another");
+  if (is_recorded && options.vehicle.empty()) throw UsageError("--recording needs --vehicle and --radar");
+}
+
 int run_plate(const PlateOptions& options) {
   check(options);
+  check_source(options);
+  const bool is_recorded = !options.recordings.empty();
   VehicleConfig vehicle;
   const RadarConfig* radar = nullptr;
   if (!options.vehicle.empty()) {
-    vehicle = config::read_vehicle_file(options.vehicle, config::VehicleUse::kOffline);
+    vehicle = config::read_vehicle_file(options.vehicle,
+                                        is_recorded ? config::VehicleUse::kLive : config::VehicleUse::kOffline);
     radar = &radar_of(vehicle, options);
   }
   const auto run = std::make_unique<calibrate::PlateRun>();
   run->tool_version = BORESIGHT_VERSION;
-  run->source = options.csv;
+  run->source = is_recorded ? fmt::format("{}", fmt::join(options.recordings, ", ")) : options.csv;
   run->config = options.fit;
   run->config.method = options.method == "robust" ? plate::FitMethod::kRobust : plate::FitMethod::kPublished;
   run->config.consistency_rad = options.consistency_deg / kDegrees;
-  align::Problems problems = told_problems();
-  recording::ByteSource source(options.csv);
-  run->measurements = calibrate::read_plate(source, problems);
-  demand_all_lines(options.csv, problems);
+  run->measurements = is_recorded ? read_plate_recording(options, vehicle, *radar) : read_plate_table(options.csv);
   run->result = plate::evaluate(run->measurements, run->config);
   const plate::PlateResult& result = run->result;
   alignment::RotationSeed seed;
@@ -138,7 +193,7 @@ int run_plate(const PlateOptions& options) {
   if (!options.plot.empty()) write_file(options.plot, calibrate::to_svg(*run));
   print_table(options, calibrate::to_table(*run));
   if (!result.ok()) {
-    tell(fmt::format("{}: the run failed: {}", options.csv, plate::explain(result.failure)));
+    tell(fmt::format("{}: the run failed: {}", run->source, plate::explain(result.failure)));
     return EXIT_FAILURE;
   }
   if (run->seed) keep_seed(options, vehicle, seed);
@@ -205,12 +260,22 @@ void add_plate(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "plate", "yaw and pitch error from a tilting plate: amplitude and azimuth of scans at known tilts");
   const auto options = std::make_shared<PlateOptions>();
-  command
-      ->add_option(
-          "--csv", options->csv,
-          "a row a scan: tilt_deg (positive = toward the ground), amplitude_db, azimuth_deg; \"-\" is standard "
-          "input")
-      ->required();
+  command->add_option(
+      "--csv", options->csv,
+      "a row a scan: tilt_deg (positive = toward the ground), amplitude_db, azimuth_deg; \"-\" is standard input");
+  command->add_option("--recording", options->recordings,
+                      "instead: pcap, pcapng or candump log of the radar, as the vehicle's link has it; repeatable");
+  command->add_option("--tilts", options->tilts,
+                      "for it, a row a tilt: tilt_deg, begin_s, end_s (by the recording's stamps)");
+  command->add_option("--range-min", options->window.range_min_m, "of it: the plate is the strongest thing at rest, m")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--range-max", options->window.range_max_m, "… within these ranges, m")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--azimuth-half-width", options->azimuth_half_width_deg, "… and this about straight ahead, deg")
+      ->check(CLI::Range(0.1, 90.0))
+      ->capture_default_str();
   command->add_option("--method", options->method, "robust, or published (Report A)")
       ->check(CLI::IsMember({"robust", "published"}))
       ->capture_default_str();

@@ -8,7 +8,9 @@
 
 #include "services/alignment_estimator/core/memory/codec.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/boresight/align/play.hpp"
 #include "services/boresight/calibrate/plate_csv.hpp"
+#include "services/boresight/calibrate/plate_feed.hpp"
 #include "services/boresight/calibrate/plate_report.hpp"
 #include "services/boresight/calibrate/reflectors_csv.hpp"
 #include "services/boresight/calibrate/reflectors_report.hpp"
@@ -121,6 +123,84 @@ TEST_F(Calibrate, the_command_reports_a_plates_run) {
   EXPECT_THAT(svg, HasSubstr("</svg>"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(run("plate --method published --json - --csv " + csv).output, HasSubstr("{\"tool\""));
+}
+
+TEST_F(Calibrate, a_plates_recording_is_what_the_radar_saw_at_the_tilts) {
+  const VehicleConfig vehicle = config::read_vehicle_file(kVehicle);
+  const std::string pcap = folder_.path("plate.pcap");
+  const std::string tilts = testing::record_plate(crooked(), vehicle, 2, pcap, 3);
+  recording::ByteSource source(folder_.write("tilts.csv", tilts));
+  PlateFeed feed(2, read_tilts(source, problems_), {});
+  ingest::Gateway gateway(vehicle, feed);
+  align::play({pcap}, gateway, problems_, [](const auto&) {});
+  EXPECT_EQ(problems_.bad_lines(), 0u);
+  EXPECT_EQ(feed.rejected() + feed.doubtful() + feed.without_plate(), 0u);
+  EXPECT_EQ(feed.within(), 330u);
+  EXPECT_EQ(feed.scans(), 330u + 110u);
+  std::mt19937_64 random(3);
+  const plate::Measurements expected = simulator::simulate_plate(crooked(), random);
+  const plate::Measurements& run = feed.measurements();
+  ASSERT_EQ(run.number_of_tilts, 11u);
+  for (std::size_t i = 0; i < 11; ++i) {
+    ASSERT_EQ(run.tilts[i].scans, 30u);
+    EXPECT_NEAR(run.tilts[i].tilt_rad, expected.tilts[i].tilt_rad, 1e-12);
+    for (std::size_t k = 0; k < 30; ++k) {
+      EXPECT_NEAR(run.tilts[i].azimuth_rad[k], expected.tilts[i].azimuth_rad[k], 1e-6);
+      EXPECT_NEAR(run.tilts[i].amplitude_db[k], expected.tilts[i].amplitude_db[k], 0.51) << "it is sent in whole dB";
+    }
+  }
+}
+
+TEST_F(Calibrate, the_command_calibrates_from_a_recording) {
+  const VehicleConfig vehicle = config::read_vehicle_file(kVehicle);
+  const std::string pcap = folder_.path("plate.pcap"), state = folder_.path("state");
+  const std::string text = testing::record_plate(crooked(), vehicle, 2, pcap, 4);
+  const std::string of_radar = " --vehicle " + kVehicle + " --radar 2";
+  const std::string recording = "plate --recording " + pcap, tilts = " --tilts " + folder_.write("tilts.csv", text);
+  Outcome outcome = run(recording + tilts + of_radar + " --state " + state);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("the run is good"));
+  const alignment::LoadedMemory loaded = alignment::load_memory(state, alignment::identity_of(vehicle));
+  ASSERT_EQ(loaded.kind, alignment::LoadedMemory::Kind::kTaken) << loaded.reason;
+  EXPECT_NEAR(loaded.memory.radars[1].rotation_vehicle_rad[2] * kDegrees, 1.1, 0.1);
+  EXPECT_NEAR(loaded.memory.radars[1].rotation_vehicle_rad[0] * kDegrees, 0.8 * std::sqrt(0.5), 0.25);
+
+  outcome = run(recording + tilts + of_radar + " --range-max 3.5");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("330 of 330 scans at the tilts do not show the plate"));
+  EXPECT_THAT(outcome.output, HasSubstr("the run failed"));
+  outcome = run(recording + tilts + " --radar 4 --vehicle " + kVehicle);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("radar 4 rear_right has no scan in the recording"));
+  outcome = run(recording + of_radar + " --tilts " +
+                folder_.write("early.csv", "tilt_deg,begin_s,end_s\n-1,10,20\n0,20,30\n1,30,40\n"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("those of radar 2 front_right are from 1700000000."));
+  EXPECT_EQ(run("plate --recording " + folder_.path("absent.pcap") + tilts + of_radar).exit_code, 1);
+
+  EXPECT_EQ(run(recording + of_radar).exit_code, 2);
+  EXPECT_EQ(run(recording + tilts).exit_code, 2);
+  EXPECT_EQ(run("plate" + tilts + of_radar).exit_code, 2);
+  EXPECT_EQ(run(recording + tilts + of_radar + " --csv " + folder_.write("x.csv", "")).exit_code, 2);
+}
+
+TEST_F(Calibrate, tilts_that_cannot_be_are_told) {
+  recording::ByteSource source(folder_.write(
+      "tilts.csv", "tilt_deg,begin_s,end_s\n-1,10,20\n0,19,30\n1,30,30\n25,40,50\n2,30,40\n3,40.5,nan\n"));
+  const std::vector<TiltInterval> intervals = read_tilts(source, problems_);
+  ASSERT_EQ(intervals.size(), 2u);
+  EXPECT_NEAR(intervals[1].tilt_rad * kDegrees, 2.0, 1e-12);
+  ASSERT_EQ(told_.size(), 4u);
+  EXPECT_THAT(told_[0], HasSubstr("tilts.csv:3:"));
+  EXPECT_THAT(told_[0], HasSubstr("begins at 19.000 s, before the tilt above it ends"));
+  EXPECT_THAT(told_[1], HasSubstr("the end, 30.000 s, is not after the begin, 30.000 s"));
+  EXPECT_THAT(told_[2], HasSubstr("tilt_deg: read \"25\""));
+  EXPECT_THAT(told_[3], HasSubstr("end_s"));
+  std::string many = "tilt_deg,begin_s,end_s\n";
+  for (int i = 0; i < 12; ++i) many += fmt::format("{},{},{}\n", i, 10 * i, 10 * i + 5);
+  recording::ByteSource too_many(folder_.write("many.csv", many));
+  EXPECT_EQ(read_tilts(too_many, problems_).size(), 11u);
+  EXPECT_THAT(told_.back(), HasSubstr("at most 11 tilts"));
 }
 
 TEST_F(Calibrate, a_run_without_a_maximum_says_so_and_exits_with_one) {

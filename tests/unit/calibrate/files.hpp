@@ -5,13 +5,18 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include "services/common/geometry/frames.hpp"
+#include "services/common/vehicle/vehicle.hpp"
 #include "tests/simulator/alignment/plate.hpp"
+#include "tests/simulator/wire/ars548_encoder.hpp"
+#include "tests/simulator/wire/pcap_writer.hpp"
 
 namespace boresight::calibrate::testing {
 
@@ -55,6 +60,52 @@ inline std::string plate_table(const simulator::PlateSpec& spec, std::uint64_t s
     }
   }
   return text;
+}
+
+/// The same run as the radar sends it, beside a radar that sees the plate elsewhere, into `pcap`; returns the table of
+/// its tilts. Between them the plate moves and answers louder than it ever does at rest.
+inline std::string record_plate(const simulator::PlateSpec& spec, const VehicleConfig& vehicle, std::uint32_t radar,
+                                const std::string& pcap, std::uint64_t seed = 1) {
+  using simulator::wire::Endpoint;
+  constexpr std::int64_t kCycle_ns = 50'000'000;
+  constexpr std::size_t kScansOfMove = 10;
+  std::mt19937_64 random(seed);
+  const alignment::plate::Measurements run = simulator::simulate_plate(spec, random);
+  simulator::wire::PcapWriter writer(pcap);
+  const auto scan = std::make_unique<RadarScan>();
+  const auto list = std::make_unique<simulator::wire::Ars548List>();
+  std::int64_t time_ns = 1'700'000'000'000'000'000;
+  std::uint32_t cycle = 0;
+  const auto endpoint = [](const std::string& address, std::uint16_t port) {
+    return Endpoint{ntohl(inet_addr(address.c_str())), port};
+  };
+  const auto send = [&](const RadarConfig& sender, double amplitude_db, double azimuth_rad) {
+    simulator::fill_plate_scan(amplitude_db, azimuth_rad, time_ns, *scan);
+    scan->cycle_counter = cycle;
+    simulator::wire::encode_ars548(*scan, time_ns, *list);
+    writer.write(time_ns + 20'000'000, endpoint(sender.source.sender, sender.source.port),
+                 endpoint(sender.source.address, sender.source.port), *list);
+  };
+  const auto step = [&](double amplitude_db, double azimuth_rad) {
+    ++cycle;
+    for (const RadarConfig& each : vehicle.radars) {
+      if (each.id == radar) send(each, amplitude_db, azimuth_rad);
+      if (each.id == radar + 1) send(each, 10.0, -0.05 + 0.0001 * (cycle % 7));
+    }
+    time_ns += kCycle_ns;
+  };
+  std::string tilts = "tilt_deg,begin_s,end_s\n";
+  for (std::size_t i = 0; i < run.number_of_tilts; ++i) {
+    const alignment::plate::TiltMeasurement& tilt = run.tilts[i];
+    for (std::size_t k = 0; k < kScansOfMove; ++k) step(35.0, 0.1 + 0.001 * static_cast<double>(k));
+    const std::int64_t begin_ns = time_ns - kCycle_ns / 2;
+    for (std::size_t k = 0; k < tilt.scans; ++k) step(tilt.amplitude_db[k], tilt.azimuth_rad[k]);
+    const auto seconds = [](std::int64_t ns) {
+      return fmt::format("{}.{:03}", ns / 1'000'000'000, ns / 1'000'000 % 1000);
+    };
+    tilts += fmt::format("{},{},{}\n", tilt.tilt_rad * kDegrees, seconds(begin_ns), seconds(time_ns - kCycle_ns / 2));
+  }
+  return tilts;
 }
 
 /// Twelve reflectors along the driving direction, `beside_m` to the left, as seen without noise by a radar.
