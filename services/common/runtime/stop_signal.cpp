@@ -1,15 +1,18 @@
 #include "services/common/runtime/stop_signal.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace boresight::runtime {
 
 namespace {
 
-volatile std::sig_atomic_t stop_flag = 0;
+/// The signal may be handled on any thread, the middleware's included, so that a sig_atomic_t would not do.
+std::atomic<bool> stop_flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "or a handler may not touch it");
 
 void on_stop_signal(int) {
-  stop_flag = 1;
+  stop_flag = true;
 }
 
 }  // namespace
@@ -26,7 +29,7 @@ void install_stop_signals() {
 }
 
 bool stop_signalled() {
-  return stop_flag != 0;
+  return stop_flag;
 }
 
 }  // namespace boresight::runtime
