@@ -11,6 +11,7 @@ namespace boresight::alignment {
 
 JointState::JointState(std::size_t radars) : radars_(std::min(radars, kMaxRadars)), size_(column::of_radar(radars_)) {
   sensor_to_vehicle.fill(Eigen::Matrix3d::Identity());
+  linearised.fill(Eigen::Matrix3d::Identity());
   p_.setZero(size_, size_);
   pg_.setZero(size_, 3);
   pgx_.setZero(size_, 3);

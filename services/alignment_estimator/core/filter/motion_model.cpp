@@ -27,10 +27,10 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
                           speed * pitch);
   const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate + nuisances(3), pitch);
   const Eigen::Vector3d by_yaw_rate(-y, x - slip * speed * speed, 0.0);
-  const Eigen::Matrix3d& rotation = state.sensor_to_vehicle[radar];
-  const Eigen::Matrix3d to_sensor = std::exp(state.log_scale[radar]) * rotation.transpose();
+  const double scale = std::exp(state.log_scale[radar]);
+  const Eigen::Matrix3d to_sensor = scale * state.linearised[radar].transpose();
   SensorVelocity out;
-  out.g = to_sensor * v;
+  out.g = scale * (state.sensor_to_vehicle[radar].transpose() * v);
   Eigen::Matrix<double, 3, column::kTouched> by;
   by.col(column::kSpeedScale) = signalled * by_speed;
   by.col(column::kYawRateBias) = -by_yaw_rate;

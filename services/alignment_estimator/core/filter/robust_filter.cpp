@@ -27,6 +27,8 @@ constexpr double kMinKnock_rad = 0.0044;
 constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
 constexpr double kEarlier_s = 3.0;
+/// An axis is known with this share of the prior's σ; derivatives are as good within this angle.
+constexpr double kKnownShare = 0.2, kLinearStep_rad = 0.0035;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 
 double square(double v) {
@@ -54,7 +56,7 @@ RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& con
   state_.set_variance(column::kPitchPerAcceleration, square(config.prior_pitch_per_acceleration_std_radps2pm));
   for (std::size_t r = 0; r < count; ++r) {
     radars_.emplace_back(vehicle.radars[r], config);
-    state_.sensor_to_vehicle[r] = radars_[r].nominal;
+    state_.sensor_to_vehicle[r] = state_.linearised[r] = radars_[r].nominal;
     for (Eigen::Index i = 0; i < 3; ++i) {
       state_.set_variance(column::of_radar(r) + i, square(config.prior_rotation_std_rad));
     }
@@ -228,6 +230,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kAnother;
   }
   if (!agrees) place(index, found);
+  state_.linearised[index] = state_.sensor_to_vehicle[index];
   radar.earlier.fill(state_.sensor_to_vehicle[index]);
   radar.phase = Phase::kRunning;
   radar.remembered = false;
@@ -237,7 +240,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
 }
 
 void RobustFilter::place(std::size_t index, const StartResult& found) {
-  state_.sensor_to_vehicle[index] = found.sensor_to_vehicle;
+  state_.sensor_to_vehicle[index] = state_.linearised[index] = found.sensor_to_vehicle;
   const Eigen::Index first = column::of_radar(index);
   for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -318,6 +321,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (suspicious != 0) watch(suspicious, time_ns);
   if (strange || radar.phase != Phase::kRunning) return;
   if (!state_.update(information, score)) return;
+  linearise(index);
   radar.noise.add(sums, std::exp(-elapsed_s / kNoiseMemory_s));
   radar.since_earlier_s += elapsed_s;
   if (radar.since_earlier_s > kEarlier_s) {
@@ -328,6 +332,19 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (radar.knock.count > 0 && radar.since_start_s < kKnockMeasured_s) measure_knock(index);
   ++radar.scans_used;
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
+}
+
+/// Derivatives follow the estimate about axes that are known, and there only by steps that matter.
+void RobustFilter::linearise(std::size_t index) {
+  Eigen::Matrix3d& at = state_.linearised[index];
+  const Eigen::Vector3d off = geometry::so3_log(state_.sensor_to_vehicle[index] * at.transpose());
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index row = column::of_radar(index) + i;
+    const bool known = state_.covariance(row, row) < square(kKnownShare * config_.prior_rotation_std_rad);
+    if (known && std::abs(off(i)) > kLinearStep_rad) turn(i) = off(i);
+  }
+  if (!turn.isZero()) at = geometry::so3_exp(turn) * at;
 }
 
 void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {

@@ -77,6 +77,7 @@ class RobustFilter : public Method {
   void place(std::size_t radar, const StartResult& found);
   void measure_knock(std::size_t radar);
   void update(std::size_t radar, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns);
+  void linearise(std::size_t radar);
   void watch(std::uint32_t suspicious, std::int64_t time_ns);
   [[nodiscard]] bool any_running_but(std::size_t radar) const;
 
