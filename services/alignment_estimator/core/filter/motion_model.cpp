@@ -30,7 +30,11 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   const double scale = std::exp(state.log_scale[radar]);
   const Eigen::Matrix3d to_sensor = scale * state.linearised[radar].transpose();
   SensorVelocity out;
-  out.g = scale * (state.sensor_to_vehicle[radar].transpose() * v);
+  // What the rotation differs from there counts in proportion: the turn's second order, of what is only the prior's,
+  // would pass for a change of speed. Axes that are known are never far off.
+  const Eigen::Vector3d off =
+      geometry::so3_log(state.sensor_to_vehicle[radar] * state.linearised[radar].transpose());
+  out.g = to_sensor * (v + v.cross(off));
   Eigen::Matrix<double, 3, column::kTouched> by;
   by.col(column::kSpeedScale) = signalled * by_speed;
   by.col(column::kYawRateBias) = -by_yaw_rate;

@@ -10,7 +10,10 @@ namespace boresight::alignment {
 
 namespace {
 
-/// Where less than this share of the spread is real, the noise's own statistics decide, not the scene.
+/// What the angles' noise feigns is taken off this many times before anything counts as real: how large the noise is,
+/// is not known better, and where one azimuth is all there is no residual tells it from the noise of range rates.
+constexpr double kFeignedMargin = 2.0;
+/// Where less than this share of the spread is real then, the noise's own statistics decide, not the scene.
 constexpr double kMinRealShare = 0.1;
 
 }  // namespace
@@ -45,8 +48,8 @@ Eigen::Matrix3d Spread::support(bool has_elevation) const {
   const double least = std::max(kMinRealShare, 5.0 * std::sqrt(2.0 / std::max(inliers_, 1.0)));
   Eigen::Vector3d real;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double r = 1.0 - solver.eigenvalues()(i);
-    real(i) = r > least ? std::min(r, 1.0) : 0.0;
+    const double feigned = solver.eigenvalues()(i);
+    real(i) = 1.0 - kFeignedMargin * feigned > least ? std::min(1.0 - feigned, 1.0) : 0.0;
   }
   const Eigen::Matrix3d& axes = solver.eigenvectors();
   return l * axes * real.asDiagonal() * axes.transpose() * inverse;
