@@ -131,6 +131,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
   const Eigen::Matrix4d prior_information = normal;
   Eigen::Vector4d right = -normal * off_;
+  Eigen::Matrix<double, 3, column::kShared> cross = Eigen::Matrix<double, 3, column::kShared>::Zero();
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
     const VelocityGradient all_gradients =
         sensor_velocity(model_, model_.nuisances, 0, position_m, scans_[k].motion).gradient;
@@ -139,6 +140,9 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
     const Eigen::Matrix<double, 4, 3> supported = gradient * support;
     normal.noalias() += supported * information[k] * supported.transpose();
     right.noalias() += supported * score[k];
+    if (!last) continue;
+    const Eigen::Matrix<double, column::kShared, 3> shared = all_gradients.topRows<column::kShared>() * support;
+    cross.noalias() += supported.bottomRows<3>() * information[k] * shared.transpose();
   }
   const Eigen::LLT<Eigen::Matrix4d> solver(normal);
   Eigen::Vector4d step = solver.solve(right);
@@ -154,6 +158,11 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   result_.sensor_to_vehicle = model_.sensor_to_vehicle[0];
   const Eigen::Matrix4d believed = prior_information + (normal - prior_information) / config_.start_inflation;
   result_.covariance = believed.llt().solve(Eigen::Matrix4d::Identity());
+  const Eigen::Matrix3d rotation = normal.bottomRightCorner<3, 3>();
+  result_.by_shared = -rotation.llt().solve(cross);
+  const Eigen::Matrix3d believed_rotation = believed.bottomRightCorner<3, 3>();
+  result_.rotation_covariance = believed_rotation.llt().solve(Eigen::Matrix3d::Identity());
+  result_.seconds = seconds_;
   result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
 }
 

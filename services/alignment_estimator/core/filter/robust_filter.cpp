@@ -192,6 +192,10 @@ StartResult RobustFilter::yaw_only(std::size_t index, const StartResult& found) 
   for (Eigen::Index i = 0; i < 2; ++i) {
     for (Eigen::Index j = 0; j < 2; ++j) kept.covariance(1 + i, 1 + j) = state_.covariance(first + i, first + j);
   }
+  kept.by_shared.topRows<2>().setZero();
+  kept.rotation_covariance.topRows<2>().setZero();
+  kept.rotation_covariance.leftCols<2>().setZero();
+  kept.rotation_covariance.topLeftCorner<2, 2>() = kept.covariance.block<2, 2>(1, 1);
   return kept;
 }
 
@@ -239,13 +243,33 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   knocks_.clear(index);
 }
 
+/// The rotation is as wrong as what the search took for known: speed scale, slip and yaw-rate bias stay correlated with
+/// it, and what the car's body did in that window is in it for good.
 void RobustFilter::place(std::size_t index, const StartResult& found) {
-  state_.sensor_to_vehicle[index] = state_.linearised[index] = found.sensor_to_vehicle;
   const Eigen::Index first = column::of_radar(index);
+  const auto& by = found.by_shared;
+  const Eigen::Vector3d turn = by.col(column::kSpeedScale) * (state_.speed_scale - found.speed_scale);
+  state_.sensor_to_vehicle[index] = state_.linearised[index] =
+      geometry::so3_exp(turn) * found.sensor_to_vehicle;
   for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
+  Eigen::Matrix3d covariance = found.rotation_covariance;
+  for (Eigen::Index n = 0; n < column::kNumberOfNuisances; ++n) {
+    const auto process = static_cast<std::size_t>(n);
+    const double mean_share = std::min(1.0, 2.0 * nuisance_model_.correlation_s(process) / std::max(found.seconds, 1e-3));
+    const Eigen::Vector3d turned = by.col(column::kNuisances + n);
+    covariance += mean_share * nuisance_model_.variance(process) * turned * turned.transpose();
+  }
+  for (Eigen::Index x = 0; x < state_.size(); ++x) {
+    if (x >= first && x < first + 3) continue;
+    Eigen::Vector4d shared;
+    for (Eigen::Index c = 0; c < column::kNuisances; ++c) shared(c) = state_.covariance(c, x);
+    const Eigen::Vector3d with = by.leftCols<column::kNuisances>() * shared;
+    for (Eigen::Index i = 0; i < 3; ++i) state_.set_covariance(first + i, x, with(i));
+    if (x < column::kNuisances) covariance += with * by.col(x).transpose();
+  }
   for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      state_.set_covariance(first + i, first + j, found.covariance(1 + i, 1 + j));
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      state_.set_covariance(first + i, first + j, 0.5 * (covariance(i, j) + covariance(j, i)));
     }
   }
 }
