@@ -54,7 +54,7 @@ void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
 }
 
 void GraduatedStart::begin(const StartPrior& prior) {
-  model_.speed_scale = prior.speed_scale;
+  model_.speed_scale = model_.linearised_speed_scale = prior.speed_scale;
   model_.sensor_to_vehicle[0] = model_.linearised[0] = prior.sensor_to_vehicle;
   model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
   model_.slip_radps2pm = prior.slip_radps2pm;
@@ -150,6 +150,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   const double length = step.tail<3>().norm();
   if (length > 0.3) step *= 0.3 / length;
   model_.speed_scale += step(0);
+  model_.linearised_speed_scale = model_.speed_scale;
   model_.sensor_to_vehicle[0] = geometry::so3_exp(step.tail<3>()) * model_.sensor_to_vehicle[0];
   model_.linearised[0] = model_.sensor_to_vehicle[0];
   off_ += step;

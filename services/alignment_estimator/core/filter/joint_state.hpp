@@ -51,6 +51,7 @@ class JointState {
   /// Where a radar's derivatives are taken. Were they to follow the estimate along what is not observable, every place it
   /// comes by would lend another direction to the same information (first-estimates Jacobian).
   std::array<Eigen::Matrix3d, kMaxRadars> linearised;
+  double linearised_speed_scale = 1.0;
   std::array<double, kMaxRadars> log_scale{};
 
   [[nodiscard]] Eigen::Index size() const { return size_; }

@@ -19,12 +19,14 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
                                double pitch_share) {
   const double x = position_m[0], y = position_m[1];
   const double signalled = motion.speed_mps + nuisances(0);
-  const double speed = state.speed_scale * signalled;
+  const double speed = state.linearised_speed_scale * signalled;
   const double yaw_rate = motion.yaw_rate_radps + nuisances(1) - state.yaw_rate_bias_radps;
   const double slip = state.slip_radps2pm;
   const double pitch = nuisances(2) + state.pitch_per_acceleration_radps2pm * motion.acceleration_mps2;
-  const Eigen::Vector3d v(speed - yaw_rate * y, yaw_rate * x - slip * speed * speed * yaw_rate + speed * nuisances(3),
-                          speed * pitch);
+  const auto velocity = [&](double s) {
+    return Eigen::Vector3d(s - yaw_rate * y, yaw_rate * x - slip * s * s * yaw_rate + s * nuisances(3), s * pitch);
+  };
+  const Eigen::Vector3d v = velocity(speed);
   const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate + nuisances(3), pitch);
   const Eigen::Vector3d by_yaw_rate(-y, x - slip * speed * speed, 0.0);
   const double scale = std::exp(state.log_scale[radar]);
@@ -34,13 +36,13 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   // would pass for a change of speed. Axes that are known are never far off.
   const Eigen::Vector3d off =
       geometry::so3_log(state.sensor_to_vehicle[radar] * state.linearised[radar].transpose());
-  out.g = to_sensor * (v + v.cross(off));
+  out.g = to_sensor * (velocity(state.speed_scale * signalled) + v.cross(off));
   Eigen::Matrix<double, 3, column::kTouched> by;
   by.col(column::kSpeedScale) = signalled * by_speed;
   by.col(column::kYawRateBias) = -by_yaw_rate;
   by.col(column::kSlip) << 0.0, -speed * speed * yaw_rate, 0.0;
   by.col(column::kPitchPerAcceleration) << 0.0, 0.0, speed * motion.acceleration_mps2;
-  by.col(column::kSpeed) = state.speed_scale * by_speed;
+  by.col(column::kSpeed) = state.linearised_speed_scale * by_speed;
   by.col(column::kYawRate) = by_yaw_rate;
   by.col(column::kBodyPitch) << 0.0, 0.0, speed;
   by.col(column::kSideSlip) << 0.0, speed, 0.0;

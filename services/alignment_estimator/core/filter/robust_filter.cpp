@@ -210,7 +210,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     const bool scale_is_known = radar.remembered && state_.covariance(column::kSpeedScale, column::kSpeedScale) <
                                                         0.25 * square(config_.prior_speed_scale_std);
     if (!scale_is_known || square(difference) > 16.0 * expected) {
-      state_.speed_scale = found.speed_scale;
+      state_.speed_scale = state_.linearised_speed_scale = found.speed_scale;
       state_.set_variance(column::kSpeedScale, variance + unknown_variance);
     }
   }
@@ -368,6 +368,12 @@ void RobustFilter::linearise(std::size_t index) {
     const bool known = state_.covariance(row, row) < square(kKnownShare * config_.prior_rotation_std_rad);
     if (known && std::abs(off(i)) > kLinearStep_rad) turn(i) = off(i);
   }
+  const double scale_off = state_.speed_scale - state_.linearised_speed_scale;
+  if (state_.covariance(column::kSpeedScale, column::kSpeedScale) <
+          square(kKnownShare * config_.prior_speed_scale_std) &&
+      std::abs(scale_off) > kLinearStep_rad) {
+    state_.linearised_speed_scale = state_.speed_scale;
+  }
   if (!turn.isZero()) at = geometry::so3_exp(turn) * at;
 }
 
@@ -474,7 +480,7 @@ void RobustFilter::restore(const Memory& memory) {
   const std::size_t size = memory.number_of_parameters();
   const auto variance = [&](std::size_t i) { return memory.covariance[i * size + i]; };
   const auto usable_variance = [](double v, double prior_std) { return v > 0.0 && v < square(prior_std); };
-  state_.speed_scale = memory.speed_scale;
+  state_.speed_scale = state_.linearised_speed_scale = memory.speed_scale;
   state_.yaw_rate_bias_radps = memory.yaw_rate_bias_radps;
   state_.slip_radps2pm = memory.slip_coefficient_radps2pm;
   // Correlations are not taken over: a block of twice the variance and more bounds them.

@@ -26,6 +26,7 @@ TEST(MotionModel, EveryColumnIsTheNumericalGradient) {
     at.log_scale[1] = 0.01 * unit(random);
     at.sensor_to_vehicle[1] = geometry::so3_exp({unit(random), unit(random), 3.0 * unit(random)});
     at.linearised[1] = at.sensor_to_vehicle[1];
+    at.linearised_speed_scale = at.speed_scale;
     const ScanMotion3d motion{20.0 + 10.0 * unit(random), 0.3 + 0.1 * unit(random), unit(random)};
     const VelocityGradient gradient = sensor_velocity(at, at.nuisances, 1, position, motion, 1.0).gradient;
     const auto moved = [&](Eigen::Index column, double h) {
