@@ -28,7 +28,7 @@ constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
 constexpr double kEarlier_s = 3.0;
 /// An axis is known with this share of the prior's σ; derivatives are as good within this angle.
-constexpr double kKnownShare = 0.0, kLinearStep_rad = 5e-4;
+constexpr double kKnownShare = 0.05, kLinearStep_rad = 5e-4;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 
 double square(double v) {
