@@ -163,6 +163,8 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   result_.by_shared = -rotation.llt().solve(cross);
   const Eigen::Matrix3d believed_rotation = believed.bottomRightCorner<3, 3>();
   result_.rotation_covariance = believed_rotation.llt().solve(Eigen::Matrix3d::Identity());
+  result_.taken << model_.speed_scale, model_.yaw_rate_bias_radps, model_.slip_radps2pm,
+      model_.pitch_per_acceleration_radps2pm;
   result_.seconds = seconds_;
   result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
 }

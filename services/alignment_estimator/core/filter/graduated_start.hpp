@@ -31,6 +31,7 @@ struct StartResult {
   /// d rotation / d of what all radars share (column): by how much what the search took for true there turned the result;
   /// and the covariance of the rotation where all that is known, inflated.
   Eigen::Matrix<double, 3, column::kShared> by_shared = Eigen::Matrix<double, 3, column::kShared>::Zero();
+  Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< the first four of these columns as the search took them
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
   double seconds = 0.0;  ///< of the window
   double inlier_ratio = 0.0;

@@ -248,7 +248,9 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
 void RobustFilter::place(std::size_t index, const StartResult& found) {
   const Eigen::Index first = column::of_radar(index);
   const auto& by = found.by_shared;
-  const Eigen::Vector3d turn = by.col(column::kSpeedScale) * (state_.speed_scale - found.speed_scale);
+  const Eigen::Vector4d known(state_.speed_scale, state_.yaw_rate_bias_radps, state_.slip_radps2pm,
+                              state_.pitch_per_acceleration_radps2pm);
+  const Eigen::Vector3d turn = by.leftCols<column::kNuisances>() * (known - found.taken);
   state_.sensor_to_vehicle[index] = state_.linearised[index] =
       geometry::so3_exp(turn) * found.sensor_to_vehicle;
   for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
