@@ -58,6 +58,9 @@ void GraduatedStart::begin(const StartPrior& prior) {
   model_.sensor_to_vehicle[0] = model_.linearised[0] = prior.sensor_to_vehicle;
   model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
   model_.slip_radps2pm = prior.slip_radps2pm;
+  model_.set_variance(column::kYawRateBias, prior.yaw_rate_bias_variance);
+  model_.set_variance(column::kYawRate, prior.yaw_rate_variance);
+  model_.set_variance(column::kSlip, prior.slip_variance);
   off_.setZero();
   scale_mps_ = config_.start_scale_mps;
 }

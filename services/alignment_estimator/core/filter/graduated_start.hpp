@@ -22,6 +22,7 @@ struct StartPrior {
   double rotation_variance = 1.0;
   double yaw_rate_bias_radps = 0.0;
   double slip_radps2pm = 0.0;
+  double yaw_rate_bias_variance = 0.0, yaw_rate_variance = 0.0, slip_variance = 0.0;  ///< roll is as doubtful as these
 };
 
 struct StartResult {

@@ -152,6 +152,9 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
   prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   prior.slip_radps2pm = state_.slip_radps2pm;
+  prior.yaw_rate_bias_variance = state_.covariance(column::kYawRateBias, column::kYawRateBias);
+  prior.yaw_rate_variance = nuisance_model_.variance(1);
+  prior.slip_variance = state_.covariance(column::kSlip, column::kSlip);
   return prior;
 }
 
