@@ -238,6 +238,10 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   }
   if (!agrees) place(index, found);
   state_.linearised[index] = state_.sensor_to_vehicle[index];
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index row = column::of_radar(index) + i;
+    radar.linearised_variance(i) = state_.covariance(row, row);
+  }
   radar.earlier.fill(state_.sensor_to_vehicle[index]);
   radar.phase = Phase::kRunning;
   radar.remembered = false;
@@ -276,6 +280,7 @@ void RobustFilter::place(std::size_t index, const StartResult& found) {
     for (Eigen::Index j = 0; j <= i; ++j) {
       state_.set_covariance(first + i, first + j, 0.5 * (covariance(i, j) + covariance(j, i)));
     }
+    radars_[index].linearised_variance(i) = covariance(i, i);
   }
 }
 
@@ -363,15 +368,21 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
 }
 
-/// Derivatives follow the estimate about axes that are known, and there only by steps that matter.
+/// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others whenever
+/// the data have halved what is unknown, which noise along an unobservable direction never does.
 void RobustFilter::linearise(std::size_t index) {
   Eigen::Matrix3d& at = state_.linearised[index];
   const Eigen::Vector3d off = geometry::so3_log(state_.sensor_to_vehicle[index] * at.transpose());
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Eigen::Index row = column::of_radar(index) + i;
-    const bool known = state_.covariance(row, row) < square(kKnownShare * config_.prior_rotation_std_rad);
-    if (known && std::abs(off(i)) > kLinearStep_rad) turn(i) = off(i);
+    const double variance = state_.covariance(row, row);
+    double& before = radars_[index].linearised_variance(i);
+    const bool known = variance < square(kKnownShare * config_.prior_rotation_std_rad);
+    if ((known && std::abs(off(i)) > kLinearStep_rad) || variance < 0.25 * before) {
+      turn(i) = off(i);
+      before = variance;
+    }
   }
   const double scale_off = state_.speed_scale - state_.linearised_speed_scale;
   if (state_.covariance(column::kSpeedScale, column::kSpeedScale) <

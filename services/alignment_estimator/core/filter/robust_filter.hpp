@@ -65,6 +65,8 @@ class RobustFilter : public Method {
     /// The rotation a few seconds ago: what a knock did to the estimate before it was told is undone.
     std::array<Eigen::Matrix3d, 2> earlier;
     double since_earlier_s = 0.0;
+    /// Variances of the rotation when derivatives were last taken to where it was.
+    Eigen::Vector3d linearised_variance = Eigen::Vector3d::Zero();
     Radar(const RadarConfig& radar, const FilterConfig& filter);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
