@@ -29,8 +29,8 @@ struct StartResult {
   double speed_scale = 1.0;
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes, inflated
-  /// d rotation / d of what all radars share (column): by how much what the search took for true there turned the result;
-  /// and the covariance of the rotation where all that is known, inflated.
+  /// d rotation / d of what all radars share (column): by how much what the search took for true there turned the
+  /// result; and the covariance of the rotation where all that is known, inflated.
   Eigen::Matrix<double, 3, column::kShared> by_shared = Eigen::Matrix<double, 3, column::kShared>::Zero();
   Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< the first four of these columns as the search took them
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();

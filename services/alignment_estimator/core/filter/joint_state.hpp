@@ -48,8 +48,8 @@ class JointState {
   double pitch_per_acceleration_radps2pm = 0.0;
   Eigen::Vector4d nuisances = Eigen::Vector4d::Zero();  ///< δV, δω, θ, ψ
   std::array<Eigen::Matrix3d, kMaxRadars> sensor_to_vehicle;
-  /// Where a radar's derivatives are taken. Were they to follow the estimate along what is not observable, every place it
-  /// comes by would lend another direction to the same information (first-estimates Jacobian).
+  /// Where a radar's derivatives are taken. Were they to follow the estimate along what is not observable, every place
+  /// it comes by would lend another direction to the same information (first-estimates Jacobian).
   std::array<Eigen::Matrix3d, kMaxRadars> linearised;
   double linearised_speed_scale = 1.0;
   std::array<double, kMaxRadars> log_scale{};

@@ -34,8 +34,7 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   SensorVelocity out;
   // What the rotation differs from there counts in proportion: the turn's second order, of what is only the prior's,
   // would pass for a change of speed. Axes that are known are never far off.
-  const Eigen::Vector3d off =
-      geometry::so3_log(state.sensor_to_vehicle[radar] * state.linearised[radar].transpose());
+  const Eigen::Vector3d off = geometry::so3_log(state.sensor_to_vehicle[radar] * state.linearised[radar].transpose());
   out.g = to_sensor * (velocity(state.speed_scale * signalled) + v.cross(off));
   Eigen::Matrix<double, 3, column::kTouched> by;
   by.col(column::kSpeedScale) = signalled * by_speed;

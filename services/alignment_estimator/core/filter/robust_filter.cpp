@@ -258,13 +258,13 @@ void RobustFilter::place(std::size_t index, const StartResult& found) {
   const Eigen::Vector4d known(state_.speed_scale, state_.yaw_rate_bias_radps, state_.slip_radps2pm,
                               state_.pitch_per_acceleration_radps2pm);
   const Eigen::Vector3d turn = by.leftCols<column::kNuisances>() * (known - found.taken);
-  state_.sensor_to_vehicle[index] = state_.linearised[index] =
-      geometry::so3_exp(turn) * found.sensor_to_vehicle;
+  state_.sensor_to_vehicle[index] = state_.linearised[index] = geometry::so3_exp(turn) * found.sensor_to_vehicle;
   for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
   Eigen::Matrix3d covariance = found.rotation_covariance;
   for (Eigen::Index n = 0; n < column::kNumberOfNuisances; ++n) {
     const auto process = static_cast<std::size_t>(n);
-    const double mean_share = std::min(1.0, 2.0 * nuisance_model_.correlation_s(process) / std::max(found.seconds, 1e-3));
+    const double mean_share =
+        std::min(1.0, 2.0 * nuisance_model_.correlation_s(process) / std::max(found.seconds, 1e-3));
     const Eigen::Vector3d turned = by.col(column::kNuisances + n);
     covariance += mean_share * nuisance_model_.variance(process) * turned * turned.transpose();
   }
@@ -368,8 +368,8 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
 }
 
-/// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others whenever
-/// the data have halved what is unknown, which noise along an unobservable direction never does.
+/// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others
+/// whenever the data have halved what is unknown, which noise along an unobservable direction never does.
 void RobustFilter::linearise(std::size_t index) {
   Eigen::Matrix3d& at = state_.linearised[index];
   const Eigen::Vector3d off = geometry::so3_log(state_.sensor_to_vehicle[index] * at.transpose());
