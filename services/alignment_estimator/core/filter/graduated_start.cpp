@@ -58,9 +58,6 @@ void GraduatedStart::begin(const StartPrior& prior) {
   model_.sensor_to_vehicle[0] = model_.linearised[0] = prior.sensor_to_vehicle;
   model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
   model_.slip_radps2pm = prior.slip_radps2pm;
-  model_.set_variance(column::kYawRateBias, prior.yaw_rate_bias_variance);
-  model_.set_variance(column::kYawRate, prior.yaw_rate_variance);
-  model_.set_variance(column::kSlip, prior.slip_variance);
   off_.setZero();
   scale_mps_ = config_.start_scale_mps;
 }
@@ -128,24 +125,28 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   }
   Spread spread;
   spread.add(all, feigned, inliers_, 0.0);
-  const Eigen::Matrix3d support = spread.support(has_elevation);
+  const Support support = spread.support(has_elevation);
+  constexpr Eigen::Index kRoll = column::kShared, kPitch = kRoll + 1, kYaw = kRoll + 2;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   normal(0, 0) = 1.0 / prior.speed_scale_variance;
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
   const Eigen::Matrix4d prior_information = normal;
   Eigen::Vector4d right = -normal * off_;
-  Eigen::Matrix<double, 3, column::kShared> cross = Eigen::Matrix<double, 3, column::kShared>::Zero();
+  Eigen::Matrix<double, 4, column::kTouched> cross = Eigen::Matrix<double, 4, column::kTouched>::Zero();
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
-    const VelocityGradient all_gradients =
-        sensor_velocity(model_, model_.nuisances, 0, position_m, scans_[k].motion).gradient;
+    SensorVelocity velocity = sensor_velocity(model_, model_.nuisances, 0, position_m, scans_[k].motion);
+    velocity.seen(support, 0.0);
+    VelocityGradient known = velocity.gradient;
     Eigen::Matrix<double, 4, 3> gradient;
-    gradient << all_gradients.row(column::kSpeedScale), all_gradients.middleRows<3>(column::kShared);
-    const Eigen::Matrix<double, 4, 3> supported = gradient * support;
+    gradient << known.row(column::kSpeedScale), Eigen::RowVector3d::Zero(), known.row(kPitch), known.row(kYaw);
+    const Eigen::Matrix<double, 4, 3> supported = gradient * support.share;
     normal.noalias() += supported * information[k] * supported.transpose();
     right.noalias() += supported * score[k];
     if (!last) continue;
-    const Eigen::Matrix<double, column::kShared, 3> shared = all_gradients.topRows<column::kShared>() * support;
-    cross.noalias() += supported.bottomRows<3>() * information[k] * shared.transpose();
+    known.row(kPitch).setZero();
+    known.row(kYaw).setZero();
+    const VelocityGradient known_supported = known * support.share;
+    cross.noalias() += supported * information[k] * known_supported.transpose();
   }
   const Eigen::LLT<Eigen::Matrix4d> solver(normal);
   Eigen::Vector4d step = solver.solve(right);
@@ -163,7 +164,11 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   const Eigen::Matrix4d believed = prior_information + (normal - prior_information) / config_.start_inflation;
   result_.covariance = believed.llt().solve(Eigen::Matrix4d::Identity());
   const Eigen::Matrix3d rotation = normal.bottomRightCorner<3, 3>();
-  result_.by_shared = -rotation.llt().solve(cross);
+  result_.by_known = -rotation.llt().solve(cross.bottomRows<3>());
+  cross.col(column::kSpeedScale).setZero();
+  result_.speed_scale_by_known = -solver.solve(cross).row(0);
+  result_.searched = {false, support.directions == 3, true};
+  result_.spread = spread;
   const Eigen::Matrix3d believed_rotation = believed.bottomRightCorner<3, 3>();
   result_.rotation_covariance = believed_rotation.llt().solve(Eigen::Matrix3d::Identity());
   result_.taken << model_.speed_scale, model_.yaw_rate_bias_radps, model_.slip_radps2pm,

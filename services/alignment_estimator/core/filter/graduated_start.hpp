@@ -11,6 +11,7 @@
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/filter/motion_model.hpp"
 #include "services/alignment_estimator/core/filter/scan_sums.hpp"
+#include "services/alignment_estimator/core/filter/spread.hpp"
 
 namespace boresight::alignment {
 
@@ -22,18 +23,22 @@ struct StartPrior {
   double rotation_variance = 1.0;
   double yaw_rate_bias_radps = 0.0;
   double slip_radps2pm = 0.0;
-  double yaw_rate_bias_variance = 0.0, yaw_rate_variance = 0.0, slip_variance = 0.0;  ///< roll is as doubtful as these
 };
 
+/// Pitch and yaw about the vehicle's axes, and k_v; roll shows too little in half a second and is taken for known, and
+/// so is pitch where the directions seen do not span three dimensions.
 struct StartResult {
   double speed_scale = 1.0;
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
+  std::array<bool, 3> searched{};                        ///< axes of the vehicle
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes, inflated
-  /// d rotation / d of what all radars share (column): by how much what the search took for true there turned the
-  /// result; and the covariance of the rotation where all that is known, inflated.
-  Eigen::Matrix<double, 3, column::kShared> by_shared = Eigen::Matrix<double, 3, column::kShared>::Zero();
+  /// By how much what the search took for known (columns of VelocityGradient) turned the result, d rotation / d column,
+  /// and the covariance of the rotation were all that known, inflated. The same of k_v.
+  Eigen::Matrix<double, 3, column::kTouched> by_known = Eigen::Matrix<double, 3, column::kTouched>::Zero();
+  Eigen::Matrix<double, 1, column::kTouched> speed_scale_by_known = Eigen::Matrix<double, 1, column::kTouched>::Zero();
   Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< the first four of these columns as the search took them
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
+  Spread spread;         ///< of the window
   double seconds = 0.0;  ///< of the window
   double inlier_ratio = 0.0;
 };

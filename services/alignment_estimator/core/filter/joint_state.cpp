@@ -58,6 +58,16 @@ bool JointState::update(const Eigen::Matrix3d& information, const Eigen::Vector3
   return true;
 }
 
+void JointState::condition(Eigen::Index index, double shift, double variance) {
+  const double before = p_(index, index);
+  if (!(before > 0.0) || !(variance > 0.0) || !(variance < before) || !std::isfinite(shift)) return;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::kMax, 1>;
+  const Column gain = p_.col(index) / before;
+  p_.noalias() -= (before - variance) * gain.lazyProduct(gain.transpose());
+  p_(index, index) = variance;
+  move(shift * gain);
+}
+
 void JointState::move(const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::kMax, 1>& step) {
   speed_scale += step(column::kSpeedScale);
   yaw_rate_bias_radps += step(column::kYawRateBias);
@@ -67,7 +77,8 @@ void JointState::move(const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::
   for (std::size_t r = 0; r < radars_; ++r) {
     const Eigen::Index first = column::of_radar(r);
     sensor_to_vehicle[r] = geometry::so3_exp(step.segment<3>(first)) * sensor_to_vehicle[r];
-    log_scale[r] += step(first + 3);
+    log_scale[r] += step(first + column::kScaleOfRadar);
+    log_angle_noise[r] += step(first + column::kAngleNoise);
   }
 }
 

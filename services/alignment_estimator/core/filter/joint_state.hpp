@@ -26,8 +26,10 @@ inline constexpr Eigen::Index kShared = 8;
 inline constexpr Eigen::Index kNuisances = kSpeed;
 inline constexpr Eigen::Index kNumberOfNuisances = 4;
 /// Of each radar: rotation about the vehicle's x, y, z (left error, Exp(d)·R), logarithm of its own scale of range
-/// rates (0 unless elevation is not measured).
-inline constexpr Eigen::Index kPerRadar = 4;
+/// rates (0 unless elevation is not measured), logarithm of what the variance of its angles is over what is taken for
+/// it: noise of angles passes for a spread of angles, and how much of the spread is noise decides what g is.
+inline constexpr Eigen::Index kPerRadar = 5;
+inline constexpr Eigen::Index kScaleOfRadar = 3, kAngleNoise = 4;
 inline constexpr Eigen::Index kTouched = kShared + kPerRadar;
 inline constexpr Eigen::Index kMax = kShared + kPerRadar * static_cast<Eigen::Index>(kMaxRadars);
 [[nodiscard]] constexpr Eigen::Index of_radar(std::size_t radar) {
@@ -35,7 +37,7 @@ inline constexpr Eigen::Index kMax = kShared + kPerRadar * static_cast<Eigen::In
 }
 }  // namespace column
 
-/// d g/d(column) of one scan: the shared columns, then the radar's four.
+/// d g/d(column) of one scan: the shared columns, then the radar's five.
 using VelocityGradient = Eigen::Matrix<double, column::kTouched, 3>;
 
 class JointState {
@@ -53,6 +55,7 @@ class JointState {
   std::array<Eigen::Matrix3d, kMaxRadars> linearised;
   double linearised_speed_scale = 1.0;
   std::array<double, kMaxRadars> log_scale{};
+  std::array<double, kMaxRadars> log_angle_noise{};
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] double covariance(Eigen::Index row, Eigen::Index column) const { return p_(row, column); }
@@ -73,6 +76,9 @@ class JointState {
   /// Takes up an information and a score of g, by the last projection. False, and nothing changes, if the result were
   /// not finite or not plausible.
   [[nodiscard]] bool update(const Eigen::Matrix3d& information, const Eigen::Vector3d& score);
+  /// Takes up what others found of one column: its mean moves by `shift`, its variance shrinks to `variance` (nothing
+  /// happens if it is below already), all else moves by its correlation with it.
+  void condition(Eigen::Index index, double shift, double variance);
 
   [[nodiscard]] bool finite() const { return p_.allFinite(); }
 

@@ -62,9 +62,17 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   const double vertical = speed * (pitch_share * nuisances(2) +
                                    std::clamp(stds - 2.0, 0.0, 1.0) * by_acceleration * motion.acceleration_mps2);
   by.col(column::kShared) << 0.0, vertical, -lateral_share * lateral;
-  by.col(column::kShared + 3) = v;
+  by.col(column::kShared + column::kScaleOfRadar) = v;
+  by.col(column::kShared + column::kAngleNoise).setZero();
   out.gradient.noalias() = (to_sensor * by).transpose();
   return out;
+}
+
+void SensorVelocity::seen(const Support& support, double log_angle_noise) {
+  const Eigen::Vector3d by_noise = support.by_angle_noise * g;
+  gradient.row(column::kShared + column::kAngleNoise) = by_noise.transpose();
+  g += log_angle_noise * by_noise;
+  if (support.directions < 3) gradient.middleRows<2>(column::kShared).setZero();
 }
 
 }  // namespace boresight::alignment

@@ -33,6 +33,12 @@ class NoiseScale {
   }
   [[nodiscard]] double rate_variance_factor() const { return std::exp(log_rate_); }
   [[nodiscard]] double angle_variance_factor() const { return std::exp(log_angle_); }
+  [[nodiscard]] double log_angle_variance_factor() const { return log_angle_; }
+  /// Of the above: from the Fisher information of the sums, as far as range rates' noise does not explain the same.
+  [[nodiscard]] double log_angle_variance(double prior_variance) const {
+    const double information = angle_angle_ - rate_angle_ * rate_angle_ / (rate_rate_ + 1.0);
+    return 1.0 / (1.0 / prior_variance + 0.5 * std::max(information, 0.0));
+  }
   void set_angle_scale(double scale) {
     if (scale > 0.0 && std::isfinite(scale)) log_angle_ = std::clamp(2.0 * std::log(scale), -2.5, 2.5);
   }

@@ -10,14 +10,15 @@ namespace {
 /// Instants further apart say nothing of each other.
 constexpr double kMaxStep_s = 0.3;
 /// The first estimates count like this many instants (in units of Fisher information of ln σ²).
-constexpr double kPriorInformation = 25.0;
+constexpr double kPriorInformation = 10.0;
 constexpr double kCorrelationInformation = 60.0;
 constexpr double kRecent_s = 10.0;
 /// Stds by which the test of presence must stand out.
 constexpr double kSignificant = 2.0;
 constexpr double kMinCorrelation_s = 0.005, kMaxCorrelation_s = 1.5;
-/// A body on its springs swings at 1 to 2 Hz.
-constexpr double kMinBodyCorrelation_s = 0.2;
+/// A body on its springs swings at 1 to 2 Hz, and its dampers stop that within a swing. What lasts longer is not the
+/// body's: it is the error of a mounting.
+constexpr double kMinBodyCorrelation_s = 0.2, kMaxBodyCorrelation_s = 0.6;
 
 double square(double v) {
   return v * v;
@@ -26,19 +27,21 @@ double square(double v) {
 }  // namespace
 
 NuisanceModel::NuisanceModel(const FilterConfig& config) : config_(config) {
-  const auto process = [](double std, double correlation_s, double min_correlation_s, double min_std, double max_std) {
+  const auto process = [](double std, double correlation_s, double min_correlation_s, double max_correlation_s,
+                          double min_std, double max_std) {
     Process p{};
     p.variance = std * std;
     p.correlation_s = correlation_s;
     p.min_correlation_s = min_correlation_s;
+    p.max_correlation_s = max_correlation_s;
     p.min_variance = min_std * min_std;
     p.max_variance = max_std * max_std;
     return p;
   };
-  processes_[0] = process(config.speed_std_mps, config.ego_correlation_s, kMinCorrelation_s, 1e-3, 1.0);
-  processes_[1] = process(config.yaw_rate_std_radps, config.ego_correlation_s, kMinCorrelation_s, 5e-5, 0.1);
-  processes_[2] = process(config.body_pitch_std_rad, config.body_correlation_s, kMinBodyCorrelation_s, 1e-4, 0.05);
-  processes_[3] = process(config.side_slip_std_rad, config.body_correlation_s, kMinBodyCorrelation_s, 1e-5, 0.02);
+  processes_[0] = process(config.speed_std_mps, config.ego_correlation_s, kMinCorrelation_s, kMaxCorrelation_s, 1e-3, 1.0);
+  processes_[1] = process(config.yaw_rate_std_radps, config.ego_correlation_s, kMinCorrelation_s, kMaxCorrelation_s, 5e-5, 0.1);
+  processes_[2] = process(config.body_pitch_std_rad, config.body_correlation_s, kMinBodyCorrelation_s, kMaxBodyCorrelation_s, 1e-4, 0.05);
+  processes_[3] = process(config.side_slip_std_rad, config.body_correlation_s, kMinBodyCorrelation_s, kMaxBodyCorrelation_s, 1e-5, 0.02);
 }
 
 void NuisanceModel::state_stds(double speed_std_mps, double yaw_rate_std_radps) {
@@ -107,7 +110,7 @@ void NuisanceModel::learn(Process& p, double mean, double variance, double elaps
   const double keep = std::clamp(p.keep + std::clamp(correct, -0.05, 0.05), 0.0, 0.98);
   const double step_s = std::max(last_elapsed_s_, 1e-3);
   const double correlation = keep > 1e-3 ? -step_s / std::log(keep) : p.min_correlation_s;
-  p.correlation_s = std::clamp(correlation, p.min_correlation_s, kMaxCorrelation_s);
+  p.correlation_s = std::clamp(correlation, p.min_correlation_s, p.max_correlation_s);
   p.product -= correct * p.square;
 }
 

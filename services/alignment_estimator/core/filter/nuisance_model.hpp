@@ -32,7 +32,7 @@ class NuisanceModel {
   struct Process {
     double variance;
     double correlation_s;
-    double min_correlation_s;
+    double min_correlation_s, max_correlation_s;
     double min_variance;
     double max_variance;
     // Since the last step of the state.

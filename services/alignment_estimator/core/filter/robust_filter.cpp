@@ -28,6 +28,7 @@ constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
 constexpr double kEarlier_s = 3.0;
 /// An axis is known with this share of the prior's σ; derivatives are as good within this angle.
+constexpr double kLearntShare = 1.0 / 3.0;
 constexpr double kKnownShare = 0.05, kLinearStep_rad = 5e-4;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 
@@ -36,6 +37,11 @@ double square(double v) {
 }
 double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
+}
+
+/// Column of the joint state for one of VelocityGradient.
+Eigen::Index column_of(std::size_t radar, Eigen::Index touched) {
+  return touched < column::kShared ? touched : column::of_radar(radar) + touched - column::kShared;
 }
 
 }  // namespace
@@ -57,9 +63,8 @@ RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& con
   for (std::size_t r = 0; r < count; ++r) {
     radars_.emplace_back(vehicle.radars[r], config);
     state_.sensor_to_vehicle[r] = state_.linearised[r] = radars_[r].nominal;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      state_.set_variance(column::of_radar(r) + i, square(config.prior_rotation_std_rad));
-    }
+    reopen(r);
+    state_.set_variance(column::of_radar(r) + column::kAngleNoise, square(config.prior_angle_noise_log_std));
   }
 }
 
@@ -147,14 +152,12 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
   prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3) +
                                            radar.unknown.relative_variance
                                      : square(config_.prior_speed_scale_std);
-  // Beside an estimate that is doubted, a new one begins there: what the window does not tell stays as it was.
-  prior.sensor_to_vehicle = radar.phase == Phase::kSuspected ? radar.before_knock : radar.nominal;
+  // What the window does not tell stays as it was.
+  prior.sensor_to_vehicle =
+      radar.phase == Phase::kSuspected ? radar.before_knock : state_.sensor_to_vehicle[index];
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
   prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   prior.slip_radps2pm = state_.slip_radps2pm;
-  prior.yaw_rate_bias_variance = state_.covariance(column::kYawRateBias, column::kYawRateBias);
-  prior.yaw_rate_variance = nuisance_model_.variance(1);
-  prior.slip_variance = state_.covariance(column::kSlip, column::kSlip);
   return prior;
 }
 
@@ -165,7 +168,7 @@ void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double 
       radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, unknown_variance,
                       start_prior(index), radar.noise.angle_variance_factor());
   if (verdict == GraduatedStart::Verdict::kFound) {
-    const StartResult found = sightings_.has_elevation ? radar.start.result() : yaw_only(index, radar.start.result());
+    const StartResult& found = radar.start.result();
     if (radar.phase == Phase::kSuspected) {
       verify(index, found, radar.last_time_ns);
     } else {
@@ -180,28 +183,6 @@ void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double 
   }
 }
 
-/// Without elevation only |pitch| shows, in the length of the velocity, where the unknown elevations show as well: once
-/// other radars know k_v, one would pass for the other. Pitch and roll stay what they were.
-StartResult RobustFilter::yaw_only(std::size_t index, const StartResult& found) const {
-  StartResult kept = found;
-  const Eigen::Matrix3d& before = state_.sensor_to_vehicle[index];
-  const double yaw = geometry::so3_log(found.sensor_to_vehicle * before.transpose()).z();
-  kept.sensor_to_vehicle = geometry::so3_exp({0.0, 0.0, yaw}) * before;
-  const Eigen::Index first = column::of_radar(index);
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    kept.covariance.row(1 + i).setZero();
-    kept.covariance.col(1 + i).setZero();
-  }
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    for (Eigen::Index j = 0; j < 2; ++j) kept.covariance(1 + i, 1 + j) = state_.covariance(first + i, first + j);
-  }
-  kept.by_shared.topRows<2>().setZero();
-  kept.rotation_covariance.topRows<2>().setZero();
-  kept.rotation_covariance.leftCols<2>().setZero();
-  kept.rotation_covariance.topLeftCorner<2, 2>() = kept.covariance.block<2, 2>(1, 1);
-  return kept;
-}
-
 void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   Radar& radar = radars_[index];
   const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
@@ -213,11 +194,11 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     const bool scale_is_known = radar.remembered && state_.covariance(column::kSpeedScale, column::kSpeedScale) <
                                                         0.25 * square(config_.prior_speed_scale_std);
     if (!scale_is_known || square(difference) > 16.0 * expected) {
-      state_.speed_scale = state_.linearised_speed_scale = found.speed_scale;
-      state_.set_variance(column::kSpeedScale, variance + unknown_variance);
+      place_speed_scale(index, found);
+      state_.add_variance(column::kSpeedScale, unknown_variance);
     }
   }
-  const Eigen::Index scale = column::of_radar(index) + 3;
+  const Eigen::Index scale = column::of_radar(index) + column::kScaleOfRadar;
   if (state_.covariance(scale, scale) == 0.0 && unknown_variance > 0.0) {
     // Only the product of k_v and the radar's own scale is measured.
     state_.set_variance(scale, unknown_variance);
@@ -236,12 +217,13 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
     agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kAnother;
   }
-  if (!agrees) place(index, found);
-  state_.linearised[index] = state_.sensor_to_vehicle[index];
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Index row = column::of_radar(index) + i;
-    radar.linearised_variance(i) = state_.covariance(row, row);
+  if (!agrees) {
+    if (radar.remembered) reopen(index);
+    place(index, found);
   }
+  radar.spread = found.spread;
+  state_.linearised[index] = state_.sensor_to_vehicle[index];
+  note_linearised(index);
   radar.earlier.fill(state_.sensor_to_vehicle[index]);
   radar.phase = Phase::kRunning;
   radar.remembered = false;
@@ -250,16 +232,40 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   knocks_.clear(index);
 }
 
-/// The rotation is as wrong as what the search took for known: speed scale, slip and yaw-rate bias stay correlated with
-/// it, and what the car's body did in that window is in it for good.
+/// k_v is as wrong as what the search took for known.
+void RobustFilter::place_speed_scale(std::size_t index, const StartResult& found) {
+  state_.speed_scale = state_.linearised_speed_scale = found.speed_scale;
+  state_.set_variance(column::kSpeedScale, 0.0);
+  double variance = found.covariance(0, 0);
+  const auto& by = found.speed_scale_by_known;
+  const auto with = [&](Eigen::Index x) {
+    double sum = 0.0;
+    for (Eigen::Index c = 0; c < column::kTouched; ++c) sum += by(c) * state_.covariance(column_of(index, c), x);
+    return sum;
+  };
+  for (Eigen::Index c = 0; c < column::kTouched; ++c) variance += by(c) * with(column_of(index, c));
+  for (Eigen::Index x = 0; x < state_.size(); ++x) {
+    if (x != column::kSpeedScale) state_.set_covariance(column::kSpeedScale, x, with(x));
+  }
+  state_.set_covariance(column::kSpeedScale, column::kSpeedScale, variance);
+}
+
+/// The rotation is as wrong as what the search took for known: speed scale, slip, yaw-rate bias, roll and the angles'
+/// noise stay correlated with it, and what the car's body did in that window is in it for good. Axes that were not
+/// searched stay what they were.
 void RobustFilter::place(std::size_t index, const StartResult& found) {
   const Eigen::Index first = column::of_radar(index);
-  const auto& by = found.by_shared;
+  const auto& by = found.by_known;
   const Eigen::Vector4d known(state_.speed_scale, state_.yaw_rate_bias_radps, state_.slip_radps2pm,
                               state_.pitch_per_acceleration_radps2pm);
   const Eigen::Vector3d turn = by.leftCols<column::kNuisances>() * (known - found.taken);
   state_.sensor_to_vehicle[index] = state_.linearised[index] = geometry::so3_exp(turn) * found.sensor_to_vehicle;
-  for (Eigen::Index i = 0; i < 3; ++i) state_.set_variance(first + i, 0.0);
+  const auto searched = [&](Eigen::Index x) {
+    return x >= first && x < first + 3 && found.searched[static_cast<std::size_t>(x - first)];
+  };
+  for (Eigen::Index i = first; i < first + 3; ++i) {
+    if (searched(i)) state_.set_variance(i, 0.0);
+  }
   Eigen::Matrix3d covariance = found.rotation_covariance;
   for (Eigen::Index n = 0; n < column::kNumberOfNuisances; ++n) {
     const auto process = static_cast<std::size_t>(n);
@@ -268,19 +274,37 @@ void RobustFilter::place(std::size_t index, const StartResult& found) {
     const Eigen::Vector3d turned = by.col(column::kNuisances + n);
     covariance += mean_share * nuisance_model_.variance(process) * turned * turned.transpose();
   }
+  const auto with = [&](Eigen::Index x) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Eigen::Index c = 0; c < column::kTouched; ++c) {
+      const bool at_an_instant = c >= column::kNuisances && c < column::kShared;
+      if (!at_an_instant) sum += state_.covariance(column_of(index, c), x) * by.col(c);
+    }
+    return sum;
+  };
+  for (Eigen::Index c = 0; c < column::kTouched; ++c) {
+    const bool at_an_instant = c >= column::kNuisances && c < column::kShared;
+    if (!at_an_instant) covariance += with(column_of(index, c)) * by.col(c).transpose();
+  }
   for (Eigen::Index x = 0; x < state_.size(); ++x) {
-    if (x >= first && x < first + 3) continue;
-    Eigen::Vector4d shared;
-    for (Eigen::Index c = 0; c < column::kNuisances; ++c) shared(c) = state_.covariance(c, x);
-    const Eigen::Vector3d with = by.leftCols<column::kNuisances>() * shared;
-    for (Eigen::Index i = 0; i < 3; ++i) state_.set_covariance(first + i, x, with(i));
-    if (x < column::kNuisances) covariance += with * by.col(x).transpose();
+    if (searched(x)) continue;
+    const Eigen::Vector3d shared = with(x);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (searched(first + i)) state_.set_covariance(first + i, x, shared(i));
+    }
   }
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
+      if (!searched(first + i) || !searched(first + j)) continue;
       state_.set_covariance(first + i, first + j, 0.5 * (covariance(i, j) + covariance(j, i)));
     }
-    radars_[index].linearised_variance(i) = covariance(i, i);
+  }
+}
+
+/// Nothing of its rotation is known any more.
+void RobustFilter::reopen(std::size_t index) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    state_.set_variance(column::of_radar(index) + i, square(config_.prior_rotation_std_rad));
   }
 }
 
@@ -298,7 +322,9 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
   const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
   const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;
   if (another) {
+    reopen(index);
     place(index, found);
+    note_linearised(index);
     radar.since_start_s = radar.since_earlier_s = 0.0;
     radar.earlier.fill(found.sensor_to_vehicle);
     if (!radar.drifted) {
@@ -325,7 +351,8 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
   SensorVelocity velocity = sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m,
                                             motion, nuisance_model_.pitch_share());
-  if (!sightings_.has_elevation) velocity.gradient.middleRows<2>(column::kShared).setZero();
+  const Support support = radar.spread.support(sightings_.has_elevation);
+  velocity.seen(support, state_.log_angle_noise[index]);
   state_.project(index, velocity.gradient);
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;
@@ -339,15 +366,10 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (!strange) radar.inlier_ratio += (share - radar.inlier_ratio) * (1.0 - std::exp(-elapsed_s / kInlierMemory_s));
 
   radar.spread.add(sums.information, sums.feigned, sums.inliers, std::exp(-elapsed_s / kSpreadMemory_s));
-  const Eigen::Matrix3d support = radar.spread.support(sightings_.has_elevation);
-  if (sums.weights > 0.0) {
-    const double ratio = sums.curvature / sums.weights;
-    if (radar.curvature < 0.0) radar.curvature = 0.85;
-    radar.curvature += (ratio - radar.curvature) * std::min(1.0, elapsed_s / 5.0);
-  }
-  const double curvature = std::clamp(radar.curvature, 0.2, 1.0);
-  const Eigen::Matrix3d information = curvature * support * sums.information * support.transpose();
-  const Eigen::Vector3d score = support * sums.score;
+  radar.efficiency.add(sums, elapsed_s);
+  const Eigen::Matrix3d information =
+      radar.efficiency.of_information() * support.share * sums.information * support.share.transpose();
+  const Eigen::Vector3d score = radar.efficiency.of_score() * support.share * sums.score;
 
   const Eigen::Matrix<double, 2, 3> turn = velocity.gradient.middleRows<2>(column::kShared + 1);
   const std::uint32_t suspicious =
@@ -356,7 +378,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (strange || radar.phase != Phase::kRunning) return;
   if (!state_.update(information, score)) return;
   linearise(index);
-  radar.noise.add(sums, std::exp(-elapsed_s / kNoiseMemory_s));
+  learn_noise(index, sums, elapsed_s);
   radar.since_earlier_s += elapsed_s;
   if (radar.since_earlier_s > kEarlier_s) {
     radar.earlier = {radar.earlier[1], state_.sensor_to_vehicle[index]};
@@ -366,6 +388,23 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   if (radar.knock.count > 0 && radar.since_start_s < kKnockMeasured_s) measure_knock(index);
   ++radar.scans_used;
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
+}
+
+/// The angles' noise as the residuals show it is a measurement of that column as well.
+void RobustFilter::learn_noise(std::size_t index, const ScanSums& sums, double elapsed_s) {
+  NoiseScale& noise = radars_[index].noise;
+  const double before = noise.log_angle_variance_factor();
+  noise.add(sums, std::exp(-elapsed_s / kNoiseMemory_s));
+  const double shift = noise.log_angle_variance_factor() - before;
+  const Eigen::Index column = column::of_radar(index) + column::kAngleNoise;
+  const double variance = noise.log_angle_variance(square(config_.prior_angle_noise_log_std));
+  const double known = state_.covariance(column, column);
+  if (known < variance) {
+    state_.add_variance(column, variance - known);
+    return;
+  }
+  state_.condition(column, shift, variance);
+  state_.log_angle_noise[index] -= shift;
 }
 
 /// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others
@@ -391,6 +430,13 @@ void RobustFilter::linearise(std::size_t index) {
     state_.linearised_speed_scale = state_.speed_scale;
   }
   if (!turn.isZero()) at = geometry::so3_exp(turn) * at;
+}
+
+void RobustFilter::note_linearised(std::size_t index) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index row = column::of_radar(index) + i;
+    radars_[index].linearised_variance(i) = state_.covariance(row, row);
+  }
 }
 
 void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
@@ -423,7 +469,7 @@ RadarEstimate RobustFilter::estimate(std::size_t index) const {
   }
   // An axis counts as observable once the data say clearly more than the prior did.
   const auto learnt = [&](Eigen::Index row, double prior_std) {
-    return state_.covariance(row, row) < 0.25 * square(prior_std);
+    return state_.covariance(row, row) < square(kLearntShare * prior_std);
   };
   const bool known = radar.phase != Phase::kStarting || radar.remembered;
   if (known && learnt(rows[0], config_.prior_speed_scale_std)) out.observable |= alignment_axis::kSpeedScale;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/alignment_estimator/core/filter/efficiency.hpp"
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
 #include "services/alignment_estimator/core/filter/graduated_start.hpp"
 #include "services/alignment_estimator/core/filter/joint_state.hpp"
@@ -55,7 +56,7 @@ class RobustFilter : public Method {
     std::int64_t last_time_ns = 0;
     double seconds_of_drive = 0.0;
     double since_start_s = 0.0;
-    double curvature = -1.0;     ///< sliding E[ψ′]/E[w]
+    Efficiency efficiency;
     double inlier_ratio = -1.0;  ///< sliding
     std::uint64_t scans_used = 0, detections_used = 0;
     std::int64_t suspected_ns = 0;
@@ -73,13 +74,16 @@ class RobustFilter : public Method {
   void advance(std::int64_t time_ns);
   [[nodiscard]] StartPrior start_prior(std::size_t radar) const;
   void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
-  [[nodiscard]] StartResult yaw_only(std::size_t radar, const StartResult& found) const;
   void adopt(std::size_t radar, const StartResult& found);
   void verify(std::size_t radar, const StartResult& found, std::int64_t time_ns);
+  void place_speed_scale(std::size_t radar, const StartResult& found);
   void place(std::size_t radar, const StartResult& found);
+  void reopen(std::size_t radar);
   void measure_knock(std::size_t radar);
   void update(std::size_t radar, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns);
+  void learn_noise(std::size_t radar, const ScanSums& sums, double elapsed_s);
   void linearise(std::size_t radar);
+  void note_linearised(std::size_t radar);
   void watch(std::uint32_t suspicious, std::int64_t time_ns);
   [[nodiscard]] bool any_running_but(std::size_t radar) const;
 

@@ -86,6 +86,7 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     sums.inliers += 1.0;
     sums.weights += w;
     sums.curvature += curvature;
+    sums.squares += w * w * z2;
     if (w > 0.2) sums.standing += 1.0;
     const double inverse = 1.0 / s2, weight = w * inverse, slope = curvature * inverse;
     information.add(weight, x, y, z);

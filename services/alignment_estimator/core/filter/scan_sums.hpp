@@ -39,6 +39,7 @@ struct ScanSums {
   Eigen::Matrix3d feigned;      ///< the part of it that the angles' noise feigns
   Eigen::Vector3d score;        ///< of g, corrected for errors in variables: no expectation at the true g
   double weights = 0.0, curvature = 0.0;  ///< Σ w and Σ ψ′
+  double squares = 0.0;                   ///< Σ ψ² of normalised residuals
   double inliers = 0.0;                   ///< residuals in the gate
   double near = 0.0;                      ///< beyond, but within three times of it
   double standing = 0.0;                  ///< with weights over 0.2

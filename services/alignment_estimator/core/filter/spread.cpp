@@ -24,9 +24,10 @@ void Spread::add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& feig
   inliers_ = keep * inliers_ + inliers;
 }
 
-Eigen::Matrix3d Spread::support(bool has_elevation) const {
+Support Spread::support(bool has_elevation) const {
+  Support out;
   const double scale = information_.trace();
-  if (!(scale > 0.0) || !std::isfinite(scale)) return Eigen::Matrix3d::Zero();
+  if (!(scale > 0.0) || !std::isfinite(scale)) return out;
   Eigen::Matrix3d m = information_ / scale, f = feigned_ / scale;
   m.diagonal().array() += 1e-9;
   f.diagonal().array() += 1e-9;
@@ -38,7 +39,7 @@ Eigen::Matrix3d Spread::support(bool has_elevation) const {
     m(2, 2) = f(2, 2) = 1.0;
   }
   const Eigen::LLT<Eigen::Matrix3d> root(m);
-  if (root.info() != Eigen::Success) return Eigen::Matrix3d::Zero();
+  if (root.info() != Eigen::Success) return out;
   const Eigen::Matrix3d l = root.matrixL();
   const Eigen::Matrix3d inverse = root.matrixL().solve(Eigen::Matrix3d::Identity());
   Eigen::Matrix3d share = inverse * f * inverse.transpose();
@@ -46,13 +47,21 @@ Eigen::Matrix3d Spread::support(bool has_elevation) const {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.compute(share);
   const double least = std::max(kMinRealShare, 5.0 * std::sqrt(2.0 / std::max(inliers_, 1.0)));
-  Eigen::Vector3d real;
+  Eigen::Vector3d real = Eigen::Vector3d::Zero(), feigned_of_real = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double feigned = solver.eigenvalues()(i);
-    real(i) = 1.0 - kFeignedMargin * feigned > least ? std::min(1.0 - feigned, 1.0) : 0.0;
+    const double feigned = std::max(solver.eigenvalues()(i), 0.0);
+    if (!(1.0 - kFeignedMargin * feigned > least)) continue;
+    real(i) = 1.0 - feigned;
+    feigned_of_real(i) = feigned / real(i);
+    ++out.directions;
   }
-  const Eigen::Matrix3d& axes = solver.eigenvectors();
-  return l * axes * real.asDiagonal() * axes.transpose() * inverse;
+  const Eigen::Matrix3d axes = l * solver.eigenvectors();  // m = axes·axesᵀ
+  const Eigen::Matrix3d inverse_axes = solver.eigenvectors().transpose() * inverse;
+  out.share = axes * real.asDiagonal() * inverse_axes;
+  // The score of g is taken for −(m − f)·(g − true) + f·g − f·g; were the last f exp(δ)·f, its zero would lie off by
+  // −(m − f)⁻¹·f·g·δ.
+  out.by_angle_noise = -inverse_axes.transpose() * feigned_of_real.asDiagonal() * axes.transpose();
+  return out;
 }
 
 }  // namespace boresight::alignment

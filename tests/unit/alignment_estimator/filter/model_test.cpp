@@ -50,9 +50,11 @@ TEST(MotionModel, EveryColumnIsTheNumericalGradient) {
         case column::kSideSlip:
           to.nuisances(column - column::kNuisances) += h;
           break;
-        case column::kShared + 3:
+        case column::kShared + column::kScaleOfRadar:
           to.log_scale[1] += h;
           break;
+        case column::kShared + column::kAngleNoise:
+          break;  // acts through what is seen (SensorVelocity::seen)
         default:
           to.sensor_to_vehicle[1] =
               geometry::so3_exp(h * Eigen::Vector3d::Unit(column - column::kShared)) * to.sensor_to_vehicle[1];
@@ -153,9 +155,9 @@ TEST(Spread, NoiseOfAnglesIsNoSpreadOfAngles) {
       const ScanSums sums = sum_scan(run_of(cloud->sightings, 0.0), cloud->g, judgement);
       seen.add(sums.information, sums.feigned, sums.inliers, 1.0);
     }
-    const double vertical = (seen.support(true) * Eigen::Vector3d::UnitZ()).norm();
+    const double vertical = (seen.support(true).share * Eigen::Vector3d::UnitZ()).norm();
     EXPECT_NEAR(vertical, spread > 0.0 ? 1.0 : 0.0, 0.05);
-    EXPECT_LT((seen.support(false) * Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+    EXPECT_LT((seen.support(false).share * Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   }
 }
 
