@@ -25,6 +25,7 @@ FilterConfig read_filter(config::Reader table) {
       prior.number("slip_coefficient_std", {0.0, 0.1}, c.prior_slip_coefficient_std_radps2pm);
   c.prior_pitch_per_acceleration_std_radps2pm =
       prior.number("pitch_per_acceleration_std", {0.0, 0.1}, c.prior_pitch_per_acceleration_std_radps2pm);
+  c.prior_angle_noise_log_std = prior.number("angle_noise_log_std", {0.01, 3.0}, c.prior_angle_noise_log_std);
 
   config::Reader drift = table.table("drift");
   c.rotation_drift_rad_per_sqrt_s =

@@ -32,6 +32,7 @@ std::vector<double> numbers(const Settings& s) {
       f.prior_yaw_rate_bias_std_radps,
       f.prior_slip_coefficient_std_radps2pm,
       f.prior_pitch_per_acceleration_std_radps2pm,
+      f.prior_angle_noise_log_std,
       f.rotation_drift_rad_per_sqrt_s,
       f.speed_scale_drift_per_sqrt_s,
       f.yaw_rate_bias_drift_radps_per_sqrt_s,

@@ -24,7 +24,7 @@ struct FilterConfig {
   // begins at what these state, or at these where they state none.
   double speed_std_mps = 0.03;
   double yaw_rate_std_radps = 0.002;
-  double body_pitch_std_rad = 0.0052;
+  double body_pitch_std_rad = 0.00436;
   double side_slip_std_rad = 3e-4;
   double ego_correlation_s = 0.02;
   double body_correlation_s = 0.3;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kColumns = 8;
 /// One pass each this often, so that slow radars start as soon as fast ones.
-constexpr double kPassPeriod_s = 0.05;
+constexpr double kPassPeriod_s = 0.02;
 constexpr double kMinScale_mps = 0.02;
 /// Nothing is believed that lies further from the prior than this many of its stds.
 constexpr double kPlausibleStds = 3.5;
@@ -125,12 +125,13 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   }
   Spread spread;
   spread.add(all, feigned, inliers_, 0.0);
-  const Support support = spread.support(has_elevation);
+  const Support support = spread.support(has_elevation, prior.log_angle_noise_std);
   constexpr Eigen::Index kRoll = column::kShared, kPitch = kRoll + 1, kYaw = kRoll + 2;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   normal(0, 0) = 1.0 / prior.speed_scale_variance;
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
-  const Eigen::Matrix4d prior_information = normal;
+  // The data count less than their noise would let them, throughout: what is hardly known must not follow it.
+  const double counts = 1.0 / config_.start_inflation;
   Eigen::Vector4d right = -normal * off_;
   Eigen::Matrix<double, 4, column::kTouched> cross = Eigen::Matrix<double, 4, column::kTouched>::Zero();
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
@@ -140,13 +141,13 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
     Eigen::Matrix<double, 4, 3> gradient;
     gradient << known.row(column::kSpeedScale), Eigen::RowVector3d::Zero(), known.row(kPitch), known.row(kYaw);
     const Eigen::Matrix<double, 4, 3> supported = gradient * support.share;
-    normal.noalias() += supported * information[k] * supported.transpose();
-    right.noalias() += supported * score[k];
+    normal.noalias() += supported * (counts * information[k]) * supported.transpose();
+    right.noalias() += supported * (counts * score[k]);
     if (!last) continue;
     known.row(kPitch).setZero();
     known.row(kYaw).setZero();
     const VelocityGradient known_supported = known * support.share;
-    cross.noalias() += supported * information[k] * known_supported.transpose();
+    cross.noalias() += supported * (counts * information[k]) * known_supported.transpose();
   }
   const Eigen::LLT<Eigen::Matrix4d> solver(normal);
   Eigen::Vector4d step = solver.solve(right);
@@ -161,16 +162,14 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   if (!last) return;
   result_.speed_scale = model_.speed_scale;
   result_.sensor_to_vehicle = model_.sensor_to_vehicle[0];
-  const Eigen::Matrix4d believed = prior_information + (normal - prior_information) / config_.start_inflation;
-  result_.covariance = believed.llt().solve(Eigen::Matrix4d::Identity());
-  const Eigen::Matrix3d rotation = normal.bottomRightCorner<3, 3>();
-  result_.by_known = -rotation.llt().solve(cross.bottomRows<3>());
+  result_.covariance = solver.solve(Eigen::Matrix4d::Identity());
+  const Eigen::LLT<Eigen::Matrix3d> rotation(normal.bottomRightCorner<3, 3>());
+  result_.rotation_covariance = rotation.solve(Eigen::Matrix3d::Identity());
+  result_.by_known = -rotation.solve(cross.bottomRows<3>());
   cross.col(column::kSpeedScale).setZero();
   result_.speed_scale_by_known = -solver.solve(cross).row(0);
   result_.searched = {false, support.directions == 3, true};
   result_.spread = spread;
-  const Eigen::Matrix3d believed_rotation = believed.bottomRightCorner<3, 3>();
-  result_.rotation_covariance = believed_rotation.llt().solve(Eigen::Matrix3d::Identity());
   result_.taken << model_.speed_scale, model_.yaw_rate_bias_radps, model_.slip_radps2pm,
       model_.pitch_per_acceleration_radps2pm;
   result_.seconds = seconds_;

@@ -23,6 +23,7 @@ struct StartPrior {
   double rotation_variance = 1.0;
   double yaw_rate_bias_radps = 0.0;
   double slip_radps2pm = 0.0;
+  double log_angle_noise_std = 0.0;  ///< of column::kAngleNoise
 };
 
 /// Pitch and yaw about the vehicle's axes, and k_v; roll shows too little in half a second and is taken for known, and

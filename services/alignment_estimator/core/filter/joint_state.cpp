@@ -60,7 +60,7 @@ bool JointState::update(const Eigen::Matrix3d& information, const Eigen::Vector3
 
 void JointState::condition(Eigen::Index index, double shift, double variance) {
   const double before = p_(index, index);
-  if (!(before > 0.0) || !(variance > 0.0) || !(variance < before) || !std::isfinite(shift)) return;
+  if (!(before > 0.0) || !(variance > 0.0) || !(variance <= before) || !std::isfinite(shift)) return;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::kMax, 1>;
   const Column gain = p_.col(index) / before;
   p_.noalias() -= (before - variance) * gain.lazyProduct(gain.transpose());

@@ -76,8 +76,8 @@ class JointState {
   /// Takes up an information and a score of g, by the last projection. False, and nothing changes, if the result were
   /// not finite or not plausible.
   [[nodiscard]] bool update(const Eigen::Matrix3d& information, const Eigen::Vector3d& score);
-  /// Takes up what others found of one column: its mean moves by `shift`, its variance shrinks to `variance` (nothing
-  /// happens if it is below already), all else moves by its correlation with it.
+  /// Takes up what others found of one column: its mean moves by `shift`, its variance shrinks to `variance` (no more
+  /// than it is), all else moves by its correlation with it.
   void condition(Eigen::Index index, double shift, double variance);
 
   [[nodiscard]] bool finite() const { return p_.allFinite(); }

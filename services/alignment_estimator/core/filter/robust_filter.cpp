@@ -156,6 +156,8 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
   prior.sensor_to_vehicle =
       radar.phase == Phase::kSuspected ? radar.before_knock : state_.sensor_to_vehicle[index];
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
+  const Eigen::Index noise = column::of_radar(index) + column::kAngleNoise;
+  prior.log_angle_noise_std = std::sqrt(state_.covariance(noise, noise));
   prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   prior.slip_radps2pm = state_.slip_radps2pm;
   return prior;
@@ -351,7 +353,9 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
   SensorVelocity velocity = sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m,
                                             motion, nuisance_model_.pitch_share());
-  const Support support = radar.spread.support(sightings_.has_elevation);
+  const Eigen::Index noise = column::of_radar(index) + column::kAngleNoise;
+  const Support support =
+      radar.spread.support(sightings_.has_elevation, std::sqrt(state_.covariance(noise, noise)));
   velocity.seen(support, state_.log_angle_noise[index]);
   state_.project(index, velocity.gradient);
   Judgement judgement;
@@ -399,12 +403,9 @@ void RobustFilter::learn_noise(std::size_t index, const ScanSums& sums, double e
   const Eigen::Index column = column::of_radar(index) + column::kAngleNoise;
   const double variance = noise.log_angle_variance(square(config_.prior_angle_noise_log_std));
   const double known = state_.covariance(column, column);
-  if (known < variance) {
-    state_.add_variance(column, variance - known);
-    return;
-  }
-  state_.condition(column, shift, variance);
+  state_.condition(column, shift, std::min(variance, known));
   state_.log_angle_noise[index] -= shift;
+  if (known < variance) state_.add_variance(column, variance - known);
 }
 
 /// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others

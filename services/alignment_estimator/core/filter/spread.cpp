@@ -10,9 +10,9 @@ namespace boresight::alignment {
 
 namespace {
 
-/// What the angles' noise feigns is taken off this many times before anything counts as real: how large the noise is,
-/// is not known better, and where one azimuth is all there is no residual tells it from the noise of range rates.
-constexpr double kFeignedMargin = 2.0;
+/// What the angles' noise feigns is taken for so many of its stds larger before anything counts as real: where one
+/// azimuth is all there is, no residual tells it from the noise of range rates.
+constexpr double kDoubtfulStds = 1.0;
 /// Where less than this share of the spread is real then, the noise's own statistics decide, not the scene.
 constexpr double kMinRealShare = 0.1;
 
@@ -24,7 +24,7 @@ void Spread::add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& feig
   inliers_ = keep * inliers_ + inliers;
 }
 
-Support Spread::support(bool has_elevation) const {
+Support Spread::support(bool has_elevation, double log_noise_std) const {
   Support out;
   const double scale = information_.trace();
   if (!(scale > 0.0) || !std::isfinite(scale)) return out;
@@ -47,10 +47,11 @@ Support Spread::support(bool has_elevation) const {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.compute(share);
   const double least = std::max(kMinRealShare, 5.0 * std::sqrt(2.0 / std::max(inliers_, 1.0)));
+  const double margin = std::exp(kDoubtfulStds * log_noise_std);
   Eigen::Vector3d real = Eigen::Vector3d::Zero(), feigned_of_real = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double feigned = std::max(solver.eigenvalues()(i), 0.0);
-    if (!(1.0 - kFeignedMargin * feigned > least)) continue;
+    if (!(1.0 - margin * feigned > least)) continue;
     real(i) = 1.0 - feigned;
     feigned_of_real(i) = feigned / real(i);
     ++out.directions;

@@ -23,7 +23,8 @@ class Spread {
   /// `has_elevation`: else the third component is never supported.
   void add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& feigned, double inliers, double keep);
   void clear() { *this = {}; }
-  [[nodiscard]] Support support(bool has_elevation) const;
+  /// `log_noise_std`: σ of ln of what the angles' variance really is over what was taken for it.
+  [[nodiscard]] Support support(bool has_elevation, double log_noise_std) const;
 
  private:
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();

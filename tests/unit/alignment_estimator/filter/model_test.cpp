@@ -155,9 +155,9 @@ TEST(Spread, NoiseOfAnglesIsNoSpreadOfAngles) {
       const ScanSums sums = sum_scan(run_of(cloud->sightings, 0.0), cloud->g, judgement);
       seen.add(sums.information, sums.feigned, sums.inliers, 1.0);
     }
-    const double vertical = (seen.support(true).share * Eigen::Vector3d::UnitZ()).norm();
+    const double vertical = (seen.support(true, 0.35).share * Eigen::Vector3d::UnitZ()).norm();
     EXPECT_NEAR(vertical, spread > 0.0 ? 1.0 : 0.0, 0.05);
-    EXPECT_LT((seen.support(false).share * Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+    EXPECT_LT((seen.support(false, 0.35).share * Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   }
 }
 
