@@ -29,6 +29,7 @@ void take_detections(const RadarScan& scan, const RadarConfig& radar, ScanDetect
     const double elevation = out.has_elevation ? scan.elevation_rad[i] : 0.0F;
     if (!std::isfinite(azimuth) || !std::isfinite(range_rate) || !std::isfinite(elevation)) continue;
     const std::size_t k = out.count++;
+    out.range_m[k] = scan.range_m[i];
     out.azimuth_rad[k] = azimuth;
     out.elevation_rad[k] = elevation;
     out.range_rate_mps[k] = range_rate;

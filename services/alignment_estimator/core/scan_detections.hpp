@@ -11,7 +11,7 @@
 namespace boresight::alignment {
 
 /// The first `count` entries of each column count. Angles in the sensor frame (rad), range rate in m/s; all finite,
-/// stds positive. Large: keep one a method, never on the stack.
+/// stds positive, but for the range. Large: keep one a method, never on the stack.
 struct ScanDetections {
   std::int64_t time_ns = 0;
   std::size_t count = 0;
@@ -19,6 +19,7 @@ struct ScanDetections {
   /// Width of the unambiguous interval of range rates: a measured one may be off by any whole multiple of it; 0: no
   /// ambiguity known.
   double ambiguity_mps = 0.0;
+  std::array<double, kMaxDetections> range_m;  ///< may be anything that was sent
   std::array<double, kMaxDetections> azimuth_rad;
   std::array<double, kMaxDetections> elevation_rad;
   std::array<double, kMaxDetections> range_rate_mps;

@@ -12,7 +12,7 @@ namespace boresight::alignment {
 
 namespace {
 
-constexpr std::size_t kColumns = 8;
+constexpr std::size_t kColumns = 10;
 /// One pass each this often, so that slow radars start as soon as fast ones.
 constexpr double kPassPeriod_s = 0.02;
 constexpr double kMinScale_mps = 0.02;
@@ -44,7 +44,9 @@ void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
                                                  s.azimuth_variance.data(),
                                                  s.elevation_variance.data(),
                                                  s.range_rate_variance.data(),
-                                                 s.azimuth_std_slope.data()};
+                                                 s.azimuth_std_slope.data(),
+                                                 s.lowering.data(),
+                                                 s.lowering_variance.data()};
   for (std::size_t c = 0; c < kColumns; ++c) {
     double* const to = columns_.data() + c * kCapacity + number_of_sightings_;
     for (std::size_t i = 0; i < count; ++i) to[i] = from[c][i * stride];
@@ -58,13 +60,14 @@ void GraduatedStart::begin(const StartPrior& prior) {
   model_.sensor_to_vehicle[0] = model_.linearised[0] = prior.sensor_to_vehicle;
   model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
   model_.slip_radps2pm = prior.slip_radps2pm;
+  model_.elevation_excess[0] = prior.elevation_excess;
+  model_.lowering[0] = 0.0;
   off_.setZero();
   scale_mps_ = config_.start_scale_mps;
 }
 
 GraduatedStart::Verdict GraduatedStart::add(const Sightings& sightings, const std::array<double, 3>& position_m,
-                                            const ScanMotion3d& motion, double elapsed_s,
-                                            double other_relative_variance, const StartPrior& prior,
+                                            const ScanMotion3d& motion, double elapsed_s, const StartPrior& prior,
                                             double angle_scale) {
   store(sightings, motion);
   seconds_ += elapsed_s;
@@ -76,7 +79,7 @@ GraduatedStart::Verdict GraduatedStart::add(const Sightings& sightings, const st
   while (passes_due_ >= 1.0 && passes_ < config_.start_passes) {
     passes_due_ -= 1.0;
     ++passes_;
-    pass(position_m, other_relative_variance, prior, angle_scale, passes_ == config_.start_passes);
+    pass(position_m, prior, angle_scale, passes_ == config_.start_passes);
   }
   if (passes_ < config_.start_passes) return Verdict::kSearching;
   const Verdict verdict = judge(prior);
@@ -84,8 +87,8 @@ GraduatedStart::Verdict GraduatedStart::add(const Sightings& sightings, const st
   return verdict;
 }
 
-void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_relative_variance,
-                          const StartPrior& prior, double angle_scale, bool last) {
+void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPrior& prior, double angle_scale,
+                          bool last) {
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;
   judgement.min_std_mps = last ? 0.0 : scale_mps_;
@@ -96,6 +99,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   std::array<Eigen::Vector3d, kMaxScans> score;
   Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), feigned = Eigen::Matrix3d::Zero();
   inliers_ = near_ = standing_ = counted_ = 0.0;
+  double along = 0.0, lowered = 0.0;
   bool has_elevation = false;
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
     const Scan& scan = scans_[k];
@@ -108,9 +112,10 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
                           c + 5 * kCapacity,
                           c + 6 * kCapacity,
                           c + 7 * kCapacity,
+                          c + 8 * kCapacity,
+                          c + 9 * kCapacity,
                           scan.count,
-                          scan.ambiguity_mps,
-                          other_relative_variance};
+                          scan.ambiguity_mps};
     const ScanSums sums =
         sum_scan(run, sensor_velocity(model_, model_.nuisances, 0, position_m, scan.motion).g, judgement);
     information[k] = sums.information;
@@ -121,14 +126,18 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
     near_ += sums.near;
     standing_ += sums.standing;
     counted_ += static_cast<double>(scan.count);
+    along += sums.along;
+    lowered += sums.lowered;
     has_elevation = has_elevation || scan.has_elevation;
   }
+  model_.lowering[0] = along > 0.0 ? lowered / along : 0.0;
   Spread spread;
   spread.add(all, feigned, inliers_, 0.0);
   const Support support = spread.support(has_elevation, prior.log_angle_noise_std);
   constexpr Eigen::Index kRoll = column::kShared, kPitch = kRoll + 1, kYaw = kRoll + 2;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  normal(0, 0) = 1.0 / prior.speed_scale_variance;
+  normal(0, 0) =
+      1.0 / (prior.speed_scale_variance + model_.lowering[0] * model_.lowering[0] * prior.elevation_excess_variance);
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
   // The data count less than their noise would let them, throughout: what is hardly known must not follow it.
   const double counts = 1.0 / config_.start_inflation;
@@ -172,6 +181,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double other_
   result_.spread = spread;
   result_.taken << model_.speed_scale, model_.yaw_rate_bias_radps, model_.slip_radps2pm,
       model_.pitch_per_acceleration_radps2pm;
+  result_.lowering = model_.lowering[0];
   result_.seconds = seconds_;
   result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
 }

@@ -24,6 +24,7 @@ struct StartPrior {
   double yaw_rate_bias_radps = 0.0;
   double slip_radps2pm = 0.0;
   double log_angle_noise_std = 0.0;  ///< of column::kAngleNoise
+  double elevation_excess = 0.0, elevation_excess_variance = 0.0;  ///< where elevations are not measured
 };
 
 /// Pitch and yaw about the vehicle's axes, and k_v; roll shows too little in half a second and is taken for known, and
@@ -39,8 +40,9 @@ struct StartResult {
   Eigen::Matrix<double, 1, column::kTouched> speed_scale_by_known = Eigen::Matrix<double, 1, column::kTouched>::Zero();
   Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< the first four of these columns as the search took them
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
-  Spread spread;         ///< of the window
-  double seconds = 0.0;  ///< of the window
+  Spread spread;          ///< of the window
+  double lowering = 0.0;  ///< of range rates by elevations that are not measured, as assumed
+  double seconds = 0.0;   ///< of the window
   double inlier_ratio = 0.0;
 };
 
@@ -58,8 +60,7 @@ class GraduatedStart {
   void clear();
   /// Takes a scan into the window while there is room and makes the passes that are due.
   [[nodiscard]] Verdict add(const Sightings& sightings, const std::array<double, 3>& position_m,
-                            const ScanMotion3d& motion, double elapsed_s, double other_relative_variance,
-                            const StartPrior& prior, double angle_scale);
+                            const ScanMotion3d& motion, double elapsed_s, const StartPrior& prior, double angle_scale);
   [[nodiscard]] const StartResult& result() const { return result_; }
 
  private:
@@ -74,12 +75,11 @@ class GraduatedStart {
   };
   void store(const Sightings& sightings, const ScanMotion3d& motion);
   void begin(const StartPrior& prior);
-  void pass(const std::array<double, 3>& position_m, double other_relative_variance, const StartPrior& prior,
-            double angle_scale, bool last);
+  void pass(const std::array<double, 3>& position_m, const StartPrior& prior, double angle_scale, bool last);
   [[nodiscard]] Verdict judge(const StartPrior& prior) const;
 
   FilterConfig config_;
-  std::vector<double> columns_;  ///< eight columns of kCapacity
+  std::vector<double> columns_;  ///< ten columns of kCapacity
   std::array<Scan, kMaxScans> scans_;
   std::size_t number_of_scans_ = 0;
   std::size_t number_of_sightings_ = 0;

@@ -77,7 +77,7 @@ void JointState::move(const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::
   for (std::size_t r = 0; r < radars_; ++r) {
     const Eigen::Index first = column::of_radar(r);
     sensor_to_vehicle[r] = geometry::so3_exp(step.segment<3>(first)) * sensor_to_vehicle[r];
-    log_scale[r] += step(first + column::kScaleOfRadar);
+    elevation_excess[r] += step(first + column::kElevations);
     log_angle_noise[r] += step(first + column::kAngleNoise);
   }
 }

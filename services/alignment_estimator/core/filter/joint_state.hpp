@@ -25,11 +25,12 @@ inline constexpr Eigen::Index kSideSlip = 7;   ///< rad; by V·ψ to the left
 inline constexpr Eigen::Index kShared = 8;
 inline constexpr Eigen::Index kNuisances = kSpeed;
 inline constexpr Eigen::Index kNumberOfNuisances = 4;
-/// Of each radar: rotation about the vehicle's x, y, z (left error, Exp(d)·R), logarithm of its own scale of range
-/// rates (0 unless elevation is not measured), logarithm of what the variance of its angles is over what is taken for
-/// it: noise of angles passes for a spread of angles, and how much of the spread is noise decides what g is.
+/// Of each radar: rotation about the vehicle's x, y, z (left error, Exp(d)·R), excess of what unknown elevations take
+/// off its range rates over what is assumed of them (1: twice as much), logarithm of what the variance of its angles is
+/// over what is taken for it: noise of angles passes for a spread of angles, and how much of the spread is noise
+/// decides what g is.
 inline constexpr Eigen::Index kPerRadar = 5;
-inline constexpr Eigen::Index kScaleOfRadar = 3, kAngleNoise = 4;
+inline constexpr Eigen::Index kElevations = 3, kAngleNoise = 4;
 inline constexpr Eigen::Index kTouched = kShared + kPerRadar;
 inline constexpr Eigen::Index kMax = kShared + kPerRadar * static_cast<Eigen::Index>(kMaxRadars);
 [[nodiscard]] constexpr Eigen::Index of_radar(std::size_t radar) {
@@ -54,7 +55,9 @@ class JointState {
   /// it comes by would lend another direction to the same information (first-estimates Jacobian).
   std::array<Eigen::Matrix3d, kMaxRadars> linearised;
   double linearised_speed_scale = 1.0;
-  std::array<double, kMaxRadars> log_scale{};
+  std::array<double, kMaxRadars> elevation_excess{};
+  /// By how much elevations that a radar does not measure shorten g as assumed; 0 where it measures them.
+  std::array<double, kMaxRadars> lowering{};
   std::array<double, kMaxRadars> log_angle_noise{};
 
   [[nodiscard]] Eigen::Index size() const { return size_; }

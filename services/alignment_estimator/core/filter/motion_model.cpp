@@ -29,7 +29,7 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   const Eigen::Vector3d v = velocity(speed);
   const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate + nuisances(3), pitch);
   const Eigen::Vector3d by_yaw_rate(-y, x - slip * speed * speed, 0.0);
-  const double scale = std::exp(state.log_scale[radar]);
+  const double lowering = state.lowering[radar], scale = std::exp(-lowering * state.elevation_excess[radar]);
   const Eigen::Matrix3d to_sensor = scale * state.linearised[radar].transpose();
   SensorVelocity out;
   // What the rotation differs from there counts in proportion: the turn's second order, of what is only the prior's,
@@ -62,7 +62,7 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   const double vertical = speed * (pitch_share * nuisances(2) +
                                    std::clamp(stds - 2.0, 0.0, 1.0) * by_acceleration * motion.acceleration_mps2);
   by.col(column::kShared) << 0.0, vertical, -lateral_share * lateral;
-  by.col(column::kShared + column::kScaleOfRadar) = v;
+  by.col(column::kShared + column::kElevations) = -lowering * v;
   by.col(column::kShared + column::kAngleNoise).setZero();
   out.gradient.noalias() = (to_sensor * by).transpose();
   return out;

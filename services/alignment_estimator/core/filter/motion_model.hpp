@@ -21,9 +21,9 @@ struct ScanMotion3d {
 struct SensorVelocity {
   Eigen::Vector3d g;
   VelocityGradient gradient;
-  /// By what the radar sees: the angles' noise (Support::by_angle_noise) at ln(real/assumed variance) `log_angle_noise`;
-  /// and of reflectors in a plane, which do not tell how it is tilted, neither pitch nor roll is believed: they would
-  /// act through the tilt of the estimate, not through that of the radar.
+  /// By what the radar sees: the angles' noise (Support::by_angle_noise) at ln(real/assumed variance)
+  /// `log_angle_noise`; and of reflectors in a plane, which do not tell how it is tilted, neither pitch nor roll is
+  /// believed: they would act through the tilt of the estimate, not through that of the radar.
   void seen(const Support& support, double log_angle_noise);
 };
 /// `nuisances`: δV, δω, body pitch, side slip; those of the state at the instant of its last scan, or none.

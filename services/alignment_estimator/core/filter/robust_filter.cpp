@@ -16,7 +16,7 @@ constexpr std::size_t kMinSightings = 4;
 constexpr double kSameInstant_s = 5e-4;
 constexpr double kMaxGap_s = 1.0;
 /// Time constants of a radar's sliding statistics.
-constexpr double kSpreadMemory_s = 20.0, kNoiseMemory_s = 60.0, kInlierMemory_s = 10.0;
+constexpr double kSpreadMemory_s = 20.0, kNoiseMemory_s = 60.0, kInlierMemory_s = 10.0, kLoweringMemory_s = 10.0;
 /// A scan in which so much less than usual stands still is not used.
 constexpr double kStrangeShare = 0.4;
 /// χ² of three degrees of freedom that is passed once in 10⁴: a rotation that is another one.
@@ -27,6 +27,8 @@ constexpr double kMinKnock_rad = 0.0044;
 constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
 constexpr double kEarlier_s = 3.0;
+/// What elevations that are not measured take off range rates is anything from nothing to twice what is assumed.
+constexpr double kElevationExcessStd = 0.577;
 /// An axis is known with this share of the prior's σ; derivatives are as good within this angle.
 constexpr double kLearntShare = 1.0 / 3.0;
 constexpr double kKnownShare = 0.05, kLinearStep_rad = 5e-4;
@@ -49,7 +51,7 @@ Eigen::Index column_of(std::size_t radar, Eigen::Index touched) {
 RobustFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filter)
     : config(radar),
       nominal(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0)),
-      unknown(unknown_elevation(radar.field_of_view)),
+      unknown(radar, filter.prior_rotation_std_rad),
       start(filter) {}
 
 RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& config)
@@ -65,6 +67,14 @@ RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& con
     state_.sensor_to_vehicle[r] = state_.linearised[r] = radars_[r].nominal;
     reopen(r);
     state_.set_variance(column::of_radar(r) + column::kAngleNoise, square(config.prior_angle_noise_log_std));
+  }
+  // All radars see the same surroundings: what is higher or lower than assumed is so to all of them, and many radars
+  // without elevation know the speed no better than one.
+  for (std::size_t r = 0; r < count; ++r) {
+    for (std::size_t s = 0; s < count; ++s) {
+      state_.set_covariance(column::of_radar(r) + column::kElevations, column::of_radar(s) + column::kElevations,
+                            square(kElevationExcessStd));
+    }
   }
 }
 
@@ -149,26 +159,26 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
   // Others know the speed by now; what a radar that is alone knows of it may be as wrong as the rest of its estimate.
   const bool known = any_running_but(index);
   prior.speed_scale = known ? state_.speed_scale : 1.0;
-  prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3) +
-                                           radar.unknown.relative_variance
+  prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3)
                                      : square(config_.prior_speed_scale_std);
   // What the window does not tell stays as it was.
-  prior.sensor_to_vehicle =
-      radar.phase == Phase::kSuspected ? radar.before_knock : state_.sensor_to_vehicle[index];
+  prior.sensor_to_vehicle = radar.phase == Phase::kSuspected ? radar.before_knock : state_.sensor_to_vehicle[index];
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
   const Eigen::Index noise = column::of_radar(index) + column::kAngleNoise;
   prior.log_angle_noise_std = std::sqrt(state_.covariance(noise, noise));
   prior.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   prior.slip_radps2pm = state_.slip_radps2pm;
+  const Eigen::Index elevations = column::of_radar(index) + column::kElevations;
+  prior.elevation_excess = state_.elevation_excess[index];
+  prior.elevation_excess_variance = known ? state_.covariance(elevations, elevations) : 0.0;
   return prior;
 }
 
 void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double elapsed_s) {
   Radar& radar = radars_[index];
-  const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
   const GraduatedStart::Verdict verdict =
-      radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, unknown_variance,
-                      start_prior(index), radar.noise.angle_variance_factor());
+      radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, start_prior(index),
+                      radar.noise.angle_variance_factor());
   if (verdict == GraduatedStart::Verdict::kFound) {
     const StartResult& found = radar.start.result();
     if (radar.phase == Phase::kSuspected) {
@@ -187,24 +197,16 @@ void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double 
 
 void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   Radar& radar = radars_[index];
-  const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
   if (!any_running_but(index)) {
     const double variance = found.covariance(0, 0);
     const double difference = found.speed_scale - state_.speed_scale;
-    const double expected = variance + unknown_variance + state_.covariance(column::kSpeedScale, column::kSpeedScale);
+    const double expected = variance + state_.covariance(column::kSpeedScale, column::kSpeedScale);
     // A memory that agrees is better than the start; the prior is not, and a seed leaves k_v at it.
     const bool scale_is_known = radar.remembered && state_.covariance(column::kSpeedScale, column::kSpeedScale) <
                                                         0.25 * square(config_.prior_speed_scale_std);
     if (!scale_is_known || square(difference) > 16.0 * expected) {
       place_speed_scale(index, found);
-      state_.add_variance(column::kSpeedScale, unknown_variance);
     }
-  }
-  const Eigen::Index scale = column::of_radar(index) + column::kScaleOfRadar;
-  if (state_.covariance(scale, scale) == 0.0 && unknown_variance > 0.0) {
-    // Only the product of k_v and the radar's own scale is measured.
-    state_.set_variance(scale, unknown_variance);
-    if (!any_running_but(index)) state_.set_covariance(column::kSpeedScale, scale, -unknown_variance);
   }
   bool agrees = false;
   if (radar.remembered) {
@@ -224,6 +226,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     place(index, found);
   }
   radar.spread = found.spread;
+  state_.lowering[index] = found.lowering;
   state_.linearised[index] = state_.sensor_to_vehicle[index];
   note_linearised(index);
   radar.earlier.fill(state_.sensor_to_vehicle[index]);
@@ -350,7 +353,6 @@ void RobustFilter::measure_knock(std::size_t index) {
 
 void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns) {
   Radar& radar = radars_[index];
-  const double unknown_variance = sightings_.has_elevation ? 0.0 : radar.unknown.relative_variance;
   SensorVelocity velocity = sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m,
                                             motion, nuisance_model_.pitch_share());
   const Eigen::Index noise = column::of_radar(index) + column::kAngleNoise;
@@ -363,7 +365,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   judgement.range_rate_scale = radar.noise.rate_variance_factor();
   judgement.angle_scale = radar.noise.angle_variance_factor();
   judgement.velocity_variance = state_.velocity_covariance();
-  const ScanSums sums = sum_scan(run_of(sightings_, unknown_variance), velocity.g, judgement);
+  const ScanSums sums = sum_scan(run_of(sightings_), velocity.g, judgement);
   const auto detections = static_cast<double>(sightings_.count);
   const double share = sums.standing / detections;
   const bool strange = radar.inlier_ratio > 0.0 && share < kStrangeShare * radar.inlier_ratio;
@@ -371,6 +373,10 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
 
   radar.spread.add(sums.information, sums.feigned, sums.inliers, std::exp(-elapsed_s / kSpreadMemory_s));
   radar.efficiency.add(sums, elapsed_s);
+  if (sums.along > 0.0) {
+    double& lowering = state_.lowering[index];
+    lowering += (sums.lowered / sums.along - lowering) * (1.0 - std::exp(-elapsed_s / kLoweringMemory_s));
+  }
   const Eigen::Matrix3d information =
       radar.efficiency.of_information() * support.share * sums.information * support.share.transpose();
   const Eigen::Vector3d score = radar.efficiency.of_score() * support.share * sums.score;
@@ -505,8 +511,8 @@ void RobustFilter::predict(std::size_t index, const ScanDetections& scan, const 
   const ScanMotion3d motion{ego.speed_mps, ego.yaw_rate_radps, 0.0};
   const Eigen::Vector3d g =
       sensor_velocity(state_, Eigen::Vector4d::Zero(), index, radar.config.mounting_pose.position_m, motion).g;
-  const double mean_cosine = scan.has_elevation ? 1.0 : radar.unknown.mean_cosine;
   for (std::size_t i = 0; i < count; ++i) {
+    const double mean_cosine = scan.has_elevation ? 1.0 : 1.0 - radar.unknown.at(scan.range_m[i]).lowering;
     out[i] = -mean_cosine * geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]).dot(g);
   }
 }

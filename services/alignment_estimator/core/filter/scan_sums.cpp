@@ -34,7 +34,7 @@ double weighted_square(double gate) {
 
 }  // namespace
 
-SightingRun run_of(const Sightings& s, double other_relative_variance) {
+SightingRun run_of(const Sightings& s) {
   return {s.x.data(),
           s.y.data(),
           s.z.data(),
@@ -43,9 +43,10 @@ SightingRun run_of(const Sightings& s, double other_relative_variance) {
           s.elevation_variance.data(),
           s.range_rate_variance.data(),
           s.azimuth_std_slope.data(),
+          s.lowering.data(),
+          s.lowering_variance.data(),
           s.count,
-          s.ambiguity_mps,
-          other_relative_variance};
+          s.ambiguity_mps};
 }
 
 ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const Judgement& judgement) {
@@ -72,7 +73,7 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     const double va = judgement.angle_scale * run.azimuth_variance[i];
     const double ve = judgement.angle_scale * run.elevation_variance[i];
     const double by_rate =
-        judgement.range_rate_scale * run.range_rate_variance[i] + run.other_relative_variance * along * along;
+        judgement.range_rate_scale * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
     const double by_angle = va * da * da + ve * db * db;
     const double s2 = by_rate + by_angle;
     const double predicted = cxx * x * x + cyy * y * y + czz * z * z + cxy * x * y + cxz * x * z + cyz * y * z;
@@ -90,6 +91,8 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     if (w > 0.2) sums.standing += 1.0;
     const double inverse = 1.0 / s2, weight = w * inverse, slope = curvature * inverse;
     information.add(weight, x, y, z);
+    sums.along += weight * along * along;
+    sums.lowered += weight * along * along * run.lowering[i];
     feigned.add(weight * va, -y, x, 0.0);
     feigned.add(weight * ve, tx, ty, ce);
     // The noise of the angles is in the residual and in the gradient: E[ψ(e)·ε] = Cov(e, ε)·E[ψ′] (Stein) is taken off.

@@ -19,11 +19,12 @@ struct SightingRun {
   const double* elevation_variance;
   const double* range_rate_variance;
   const double* azimuth_std_slope;
+  const double* lowering;
+  const double* lowering_variance;
   std::size_t count;
   double ambiguity_mps;
-  double other_relative_variance;  ///< of the range rate over its square: elevation that is not measured
 };
-[[nodiscard]] SightingRun run_of(const Sightings& sightings, double other_relative_variance);
+[[nodiscard]] SightingRun run_of(const Sightings& sightings);
 
 /// How residuals are judged.
 struct Judgement {
@@ -43,6 +44,9 @@ struct ScanSums {
   double inliers = 0.0;                   ///< residuals in the gate
   double near = 0.0;                      ///< beyond, but within three times of it
   double standing = 0.0;                  ///< with weights over 0.2
+  /// Information along g itself, and how much of it comes with range rates that unknown elevations lower: their ratio
+  /// is by how much g is.
+  double along = 0.0, lowered = 0.0;
   // Scores and Fisher information of the logarithms of the two variance factors.
   double noise_score_rate = 0.0, noise_score_angle = 0.0;
   double noise_rate_rate = 0.0, noise_rate_angle = 0.0, noise_angle_angle = 0.0;

@@ -20,16 +20,30 @@ struct Sightings {
   std::array<double, kMaxDetections> elevation_variance;
   std::array<double, kMaxDetections> range_rate_variance;
   std::array<double, kMaxDetections> azimuth_std_slope;  ///< d ln σ(azimuth) / d azimuth
+  // Of elevations that are not measured: 1 − the mean of their cosine, and its variance over the square of that mean.
+  std::array<double, kMaxDetections> lowering;
+  std::array<double, kMaxDetections> lowering_variance;
 };
 
-/// An elevation that the sensor does not measure, anywhere in its field of view: mean of its cosine, and the variance
-/// of that over the square of the mean. What stands above or below the beam's axis closes in more slowly than its
-/// azimuth says.
-struct UnknownElevation {
-  double mean_cosine = 1.0;
-  double relative_variance = 0.0;
+/// What a sensor that measures no elevation may see: reflectors between the road and the clearance of what is built
+/// over it, the lower the more of them, inside its vertical field of view. What stands above or below the sensor closes
+/// in more slowly than its azimuth says, the nearer the more: far away nothing is high.
+class UnknownElevation {
+ public:
+  /// `rotation_std_rad`: how far the sensor may look up or down from where it is meant to.
+  UnknownElevation(const RadarConfig& radar, double rotation_std_rad);
+  struct Cosine {
+    double lowering;           ///< 1 − its mean
+    double relative_variance;  ///< over the square of its mean
+  };
+  /// `range_m`: what is no distance counts as next to the sensor, where all of the field of view is possible.
+  [[nodiscard]] Cosine at(double range_m) const;
+
+ private:
+  double height_m_;                                ///< of the sensor over the road
+  double highest_m_;                               ///< over the road
+  double lowest_sine_ = 0.0, highest_sine_ = 0.0;  ///< of elevations in view
 };
-[[nodiscard]] UnknownElevation unknown_elevation(const FieldOfView& view);
 
 /// Fills `out`. `edge`: see FilterConfig::azimuth_std_edge; `angle_scale`: factor of the angles' variances as they
 /// really are. Leaves out angles and range rates that nothing on a road has. No allocation.

@@ -57,8 +57,8 @@ class Bench {
     std::size_t n = 0;
     for (std::size_t i = 0; i < scan->count; ++i) {
       if (!truth[i].stationary) continue;
-      for (auto* column : {&scan->azimuth_rad, &scan->elevation_rad, &scan->range_rate_mps, &scan->azimuth_std_rad,
-                           &scan->elevation_std_rad, &scan->range_rate_std_mps}) {
+      for (auto* column : {&scan->range_m, &scan->azimuth_rad, &scan->elevation_rad, &scan->range_rate_mps,
+                           &scan->azimuth_std_rad, &scan->elevation_std_rad, &scan->range_rate_std_mps}) {
         (*column)[n] = (*column)[i];
       }
       ++n;

@@ -23,7 +23,8 @@ TEST(MotionModel, EveryColumnIsTheNumericalGradient) {
     at.slip_radps2pm = 0.005 * unit(random);
     at.pitch_per_acceleration_radps2pm = 0.003 + 0.001 * unit(random);
     at.nuisances << 0.0, 0.0, 0.005 * unit(random), 0.0;
-    at.log_scale[1] = 0.01 * unit(random);
+    at.elevation_excess[1] = unit(random);
+    at.lowering[1] = 0.02;
     at.sensor_to_vehicle[1] = geometry::so3_exp({unit(random), unit(random), 3.0 * unit(random)});
     at.linearised[1] = at.sensor_to_vehicle[1];
     at.linearised_speed_scale = at.speed_scale;
@@ -50,8 +51,8 @@ TEST(MotionModel, EveryColumnIsTheNumericalGradient) {
         case column::kSideSlip:
           to.nuisances(column - column::kNuisances) += h;
           break;
-        case column::kShared + column::kScaleOfRadar:
-          to.log_scale[1] += h;
+        case column::kShared + column::kElevations:
+          to.elevation_excess[1] += h;
           break;
         case column::kShared + column::kAngleNoise:
           break;  // acts through what is seen (SensorVelocity::seen)
