@@ -12,7 +12,7 @@ namespace boresight::alignment {
 
 namespace {
 
-constexpr std::size_t kColumns = 10;
+constexpr std::size_t kColumns = 11;
 /// One pass each this often, so that slow radars start as soon as fast ones.
 constexpr double kPassPeriod_s = 0.02;
 constexpr double kMinScale_mps = 0.02;
@@ -46,7 +46,8 @@ void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
                                                  s.range_rate_variance.data(),
                                                  s.azimuth_std_slope.data(),
                                                  s.lowering.data(),
-                                                 s.lowering_variance.data()};
+                                                 s.lowering_variance.data(),
+                                                 s.mean_sine.data()};
   for (std::size_t c = 0; c < kColumns; ++c) {
     double* const to = columns_.data() + c * kCapacity + number_of_sightings_;
     for (std::size_t i = 0; i < count; ++i) to[i] = from[c][i * stride];
@@ -99,7 +100,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPr
   std::array<Eigen::Vector3d, kMaxScans> score;
   Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), feigned = Eigen::Matrix3d::Zero();
   inliers_ = near_ = standing_ = counted_ = 0.0;
-  double along = 0.0, lowered = 0.0;
+  double along = 0.0, lowered = 0.0, raised = 0.0;
   bool has_elevation = false;
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
     const Scan& scan = scans_[k];
@@ -114,6 +115,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPr
                           c + 7 * kCapacity,
                           c + 8 * kCapacity,
                           c + 9 * kCapacity,
+                          c + 10 * kCapacity,
                           scan.count,
                           scan.ambiguity_mps};
     const ScanSums sums =
@@ -128,6 +130,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPr
     counted_ += static_cast<double>(scan.count);
     along += sums.along;
     lowered += sums.lowered;
+    raised += sums.raised;
     has_elevation = has_elevation || scan.has_elevation;
   }
   model_.lowering[0] = along > 0.0 ? lowered / along : 0.0;
@@ -182,6 +185,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPr
   result_.taken << model_.speed_scale, model_.yaw_rate_bias_radps, model_.slip_radps2pm,
       model_.pitch_per_acceleration_radps2pm;
   result_.lowering = model_.lowering[0];
+  result_.mean_sine = along > 0.0 ? raised / along : 0.0;
   result_.seconds = seconds_;
   result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
 }

@@ -40,9 +40,10 @@ struct StartResult {
   Eigen::Matrix<double, 1, column::kTouched> speed_scale_by_known = Eigen::Matrix<double, 1, column::kTouched>::Zero();
   Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< the first four of these columns as the search took them
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
-  Spread spread;          ///< of the window
-  double lowering = 0.0;  ///< of range rates by elevations that are not measured, as assumed
-  double seconds = 0.0;   ///< of the window
+  Spread spread;           ///< of the window
+  double lowering = 0.0;   ///< of range rates by elevations that are not measured, as assumed
+  double mean_sine = 0.0;  ///< of these elevations
+  double seconds = 0.0;    ///< of the window
   double inlier_ratio = 0.0;
 };
 
@@ -79,7 +80,7 @@ class GraduatedStart {
   [[nodiscard]] Verdict judge(const StartPrior& prior) const;
 
   FilterConfig config_;
-  std::vector<double> columns_;  ///< ten columns of kCapacity
+  std::vector<double> columns_;  ///< eleven columns of kCapacity
   std::array<Scan, kMaxScans> scans_;
   std::size_t number_of_scans_ = 0;
   std::size_t number_of_sightings_ = 0;

@@ -227,6 +227,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   }
   radar.spread = found.spread;
   state_.lowering[index] = found.lowering;
+  radar.mean_sine = found.mean_sine;
   state_.linearised[index] = state_.sensor_to_vehicle[index];
   note_linearised(index);
   radar.earlier.fill(state_.sensor_to_vehicle[index]);
@@ -374,8 +375,9 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   radar.spread.add(sums.information, sums.feigned, sums.inliers, std::exp(-elapsed_s / kSpreadMemory_s));
   radar.efficiency.add(sums, elapsed_s);
   if (sums.along > 0.0) {
-    double& lowering = state_.lowering[index];
-    lowering += (sums.lowered / sums.along - lowering) * (1.0 - std::exp(-elapsed_s / kLoweringMemory_s));
+    const double recent = 1.0 - std::exp(-elapsed_s / kLoweringMemory_s);
+    state_.lowering[index] += (sums.lowered / sums.along - state_.lowering[index]) * recent;
+    radar.mean_sine += (sums.raised / sums.along - radar.mean_sine) * recent;
   }
   const Eigen::Matrix3d information =
       radar.efficiency.of_information() * support.share * sums.information * support.share.transpose();
@@ -460,6 +462,22 @@ void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
   }
 }
 
+/// What is learnt of yaw is yaw as it shows: with a roll r and a pitch p (about the vehicle's axes) that are not known
+/// it differs by r·p/2 from that of the rotation, and by ε·(r·cos ψ + p·sin ψ) if what is seen at ψ from the vehicle's
+/// x axis stands at a mean elevation ε which nobody measures. Both stay the same however long the car drives.
+double RobustFilter::second_order_yaw_variance(std::size_t index) const {
+  const Eigen::Index first = column::of_radar(index);
+  const double roll = state_.covariance(first, first), pitch = state_.covariance(first + 1, first + 1);
+  const Eigen::Vector2d ahead = state_.sensor_to_vehicle[index].topLeftCorner<2, 1>();
+  const double tilt =
+      (ahead.x() * ahead.x() * roll + 2.0 * ahead.x() * ahead.y() * state_.covariance(first, first + 1) +
+       ahead.y() * ahead.y() * pitch) /
+      std::max(ahead.squaredNorm(), 1e-6);
+  // That mean is as uncertain as the lowering.
+  const double mean_square = square(radars_[index].mean_sine) * (1.0 + square(kElevationExcessStd));
+  return mean_square * std::max(tilt, 0.0) + 0.25 * roll * pitch;
+}
+
 RadarEstimate RobustFilter::estimate(std::size_t index) const {
   RadarEstimate out;
   if (index >= radars_.size()) return out;
@@ -474,6 +492,7 @@ RadarEstimate RobustFilter::estimate(std::size_t index) const {
       out.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = state_.covariance(rows[i], rows[j]);
     }
   }
+  out.covariance(3, 3) += second_order_yaw_variance(index);
   // An axis counts as observable once the data say clearly more than the prior did.
   const auto learnt = [&](Eigen::Index row, double prior_std) {
     return state_.covariance(row, row) < square(kLearntShare * prior_std);

@@ -57,6 +57,7 @@ class RobustFilter : public Method {
     double seconds_of_drive = 0.0;
     double since_start_s = 0.0;
     Efficiency efficiency;
+    double mean_sine = 0.0;      ///< sliding, of elevations that are not measured; 0 where they are
     double inlier_ratio = -1.0;  ///< sliding
     std::uint64_t scans_used = 0, detections_used = 0;
     std::int64_t suspected_ns = 0;
@@ -85,6 +86,7 @@ class RobustFilter : public Method {
   void linearise(std::size_t radar);
   void note_linearised(std::size_t radar);
   void watch(std::uint32_t suspicious, std::int64_t time_ns);
+  [[nodiscard]] double second_order_yaw_variance(std::size_t radar) const;
   [[nodiscard]] bool any_running_but(std::size_t radar) const;
 
   FilterConfig config_;

@@ -45,6 +45,7 @@ SightingRun run_of(const Sightings& s) {
           s.azimuth_std_slope.data(),
           s.lowering.data(),
           s.lowering_variance.data(),
+          s.mean_sine.data(),
           s.count,
           s.ambiguity_mps};
 }
@@ -93,6 +94,7 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     information.add(weight, x, y, z);
     sums.along += weight * along * along;
     sums.lowered += weight * along * along * run.lowering[i];
+    sums.raised += weight * along * along * run.mean_sine[i];
     feigned.add(weight * va, -y, x, 0.0);
     feigned.add(weight * ve, tx, ty, ce);
     // The noise of the angles is in the residual and in the gradient: E[ψ(e)·ε] = Cov(e, ε)·E[ψ′] (Stein) is taken off.

@@ -21,6 +21,7 @@ struct SightingRun {
   const double* azimuth_std_slope;
   const double* lowering;
   const double* lowering_variance;
+  const double* mean_sine;
   std::size_t count;
   double ambiguity_mps;
 };
@@ -44,9 +45,8 @@ struct ScanSums {
   double inliers = 0.0;                   ///< residuals in the gate
   double near = 0.0;                      ///< beyond, but within three times of it
   double standing = 0.0;                  ///< with weights over 0.2
-  /// Information along g itself, and how much of it comes with range rates that unknown elevations lower: their ratio
-  /// is by how much g is.
-  double along = 0.0, lowered = 0.0;
+  /// Σ W (u·g)², and the same times what unknown elevations take off range rates, and times the mean sine of these.
+  double along = 0.0, lowered = 0.0, raised = 0.0;
   // Scores and Fisher information of the logarithms of the two variance factors.
   double noise_score_rate = 0.0, noise_score_angle = 0.0;
   double noise_rate_rate = 0.0, noise_rate_angle = 0.0, noise_angle_angle = 0.0;

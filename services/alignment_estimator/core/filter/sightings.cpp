@@ -52,21 +52,22 @@ UnknownElevation::Cosine UnknownElevation::at(double range_m) const {
   const double own = height_m_ / highest_m_, steepness = highest_m_ / range;
   const double low = std::clamp(own + lowest_sine_ / steepness, 0.0, 1.0);
   const double high = std::clamp(own + highest_sine_ / steepness, 0.0, 1.0);
-  double square = 0.0, fourth = 0.0;
+  double mean_sine = 0.0, square = 0.0, fourth = 0.0;
   if (high - low < kNarrow) {
-    const double sine = (0.5 * (low + high) - own) * steepness;
-    square = std::min(sine * sine, 1.0);
+    mean_sine = std::clamp((0.5 * (low + high) - own) * steepness, -1.0, 1.0);
+    square = mean_sine * mean_sine;
     fourth = square * square;
   } else {
     const std::array<double, 5> below = moments(low), all = moments(high);
     std::array<double, 5> m;
     for (std::size_t n = 0; n < m.size(); ++n) m[n] = (all[n] - below[n]) / (all[0] - below[0]);
     const double s2 = steepness * steepness, o2 = own * own;
+    mean_sine = steepness * (m[1] - own);
     square = s2 * (m[2] - 2.0 * own * m[1] + o2);
     fourth = s2 * s2 * (m[4] - 4.0 * own * m[3] + 6.0 * o2 * m[2] - 4.0 * o2 * own * m[1] + o2 * o2);
   }
   const double lowering = 0.5 * square + 0.125 * fourth, mean = 1.0 - lowering;
-  return {lowering, 0.25 * std::max(0.0, fourth - square * square) / (mean * mean)};
+  return {lowering, 0.25 * std::max(0.0, fourth - square * square) / (mean * mean), mean_sine};
 }
 
 void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const UnknownElevation& unknown, double edge,
@@ -104,7 +105,7 @@ void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const 
       out.x[n] = ce * ca * stretch_azimuth * stretch;
       out.y[n] = ce * sa * stretch_azimuth * stretch;
       out.z[n] = std::sin(elevation) * stretch;
-      out.lowering[n] = out.lowering_variance[n] = 0.0;
+      out.lowering[n] = out.lowering_variance[n] = out.mean_sine[n] = 0.0;
     } else {
       const UnknownElevation::Cosine cosine = unknown.at(scan.range_m[i]);
       out.elevation_variance[n] = 0.0;
@@ -113,6 +114,7 @@ void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const 
       out.z[n] = 0.0;
       out.lowering[n] = cosine.lowering;
       out.lowering_variance[n] = cosine.relative_variance;
+      out.mean_sine[n] = cosine.mean_sine;
     }
     ++n;
   }

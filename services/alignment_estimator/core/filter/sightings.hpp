@@ -23,6 +23,7 @@ struct Sightings {
   // Of elevations that are not measured: 1 − the mean of their cosine, and its variance over the square of that mean.
   std::array<double, kMaxDetections> lowering;
   std::array<double, kMaxDetections> lowering_variance;
+  std::array<double, kMaxDetections> mean_sine;  ///< of the elevation
 };
 
 /// What a sensor that measures no elevation may see: reflectors between the road and the clearance of what is built
@@ -35,6 +36,7 @@ class UnknownElevation {
   struct Cosine {
     double lowering;           ///< 1 − its mean
     double relative_variance;  ///< over the square of its mean
+    double mean_sine;          ///< of the elevation
   };
   /// `range_m`: what is no distance counts as next to the sensor, where all of the field of view is possible.
   [[nodiscard]] Cosine at(double range_m) const;
