@@ -65,6 +65,11 @@ FilterConfig read_filter(config::Reader table) {
   c.knock_yaw_rad = knock.angle_deg("yaw_deg", {0.05, 30.0}, c.knock_yaw_rad);
   c.knock_pitch_rad = knock.angle_deg("pitch_deg", {0.05, 30.0}, c.knock_pitch_rad);
   c.knock_sum_blocks = knock.number("sum_blocks", {0.1, 100.0}, c.knock_sum_blocks);
+  c.knock_window_s = knock.number("window_s", {0.1, 60.0}, c.knock_window_s);
+  c.knock_small_stds = knock.number("small_stds", {0.1, 100.0}, c.knock_small_stds);
+  c.knock_small_sum_stds = knock.number("small_sum_stds", {0.1, 100.0}, c.knock_small_sum_stds);
+  c.knock_small_confirm_stds = knock.number("small_confirm_stds", {0.1, 100.0}, c.knock_small_confirm_stds);
+  c.knock_least_rad = knock.angle_deg("least_deg", {0.0, 30.0}, c.knock_least_rad);
   return c;
 }
 

@@ -1,0 +1,145 @@
+#include "services/alignment_estimator/core/filter/small_knock_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace boresight::alignment {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+/// Lengths of the windows about x, y, z, in units of FilterConfig::knock_window_s.
+constexpr std::array<std::int64_t, 3> kLengths{16, 1, 1};
+/// Roll shows in turns and when the body pitches, so slowly that even a whole window is hardly beyond noise. There are
+/// fewer windows to be wrong in, so that less is asked of each (shares of the configured σ).
+constexpr std::array<double, 3> kAsked{0.5, 1.0, 1.0};
+/// σ of what deviates for reasons that no model holds (a scene, a load), beside others and for a radar that is alone,
+/// to which a side slip and the body's pitch look like changes of its own.
+constexpr std::array<double, 3> kFloor_rad{0.2 * kDegree, 0.05 * kDegree, 0.02 * kDegree};
+constexpr std::array<double, 3> kAloneFloor_rad{1.0 * kDegree, 0.25 * kDegree, 0.1 * kDegree};
+/// What a window says of the axes beside the one that is looked at is not bounded by the estimate, whose std knows
+/// nothing of a change, but by what mountings can be; the turn about x, of which it says little, is.
+constexpr double kLooseStd_rad = 0.07;
+/// Another radar that knows the axis so much less (variance) is no comparison.
+constexpr double kComparable = 9.0;
+
+/// What is left of a sum after a window, so that no doubt lasts; of the sums after a suspicion that was not confirmed.
+constexpr double kKept = 0.9, kKeptUnconfirmed = 0.5;
+/// Share of its limit beyond which a sum is a doubt.
+constexpr double kDoubt = 0.5;
+
+double square(double v) {
+  return v * v;
+}
+
+}  // namespace
+
+SmallKnockDetector::SmallKnockDetector(std::size_t radars, const FilterConfig& config)
+    : config_(config), number_(std::min(radars, kMaxRadars)) {}
+
+void SmallKnockDetector::clear(std::size_t radar) {
+  radars_[radar] = {};
+}
+
+double SmallKnockDetector::sum(std::size_t radar, std::size_t axis) const {
+  const std::array<double, 2>& sums = radars_[radar].axes[axis].sums;
+  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / config_.knock_small_sum_stds;
+}
+
+double SmallKnockDetector::confirming_stds(const FilterConfig& config, std::size_t axis) {
+  return kAsked[axis] * config.knock_small_confirm_stds;
+}
+
+bool SmallKnockDetector::doubted(std::size_t radar) const {
+  const auto& axes = radars_[radar].axes;
+  return axes[1].suspected != 0 || axes[2].suspected != 0 || std::abs(sum(radar, 1)) > kDoubt ||
+         std::abs(sum(radar, 2)) > kDoubt;
+}
+
+std::uint32_t SmallKnockDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
+                                      const Eigen::Vector3d& score, const Eigen::Matrix3d& covariance) {
+  std::uint32_t changed = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    // A common grid of windows, so that radars are compared over the same time.
+    const auto length_ns = kLengths[a] * static_cast<std::int64_t>(config_.knock_window_s * 1e9);
+    const std::int64_t window = time_ns / length_ns;
+    if (window != window_[a]) {
+      close(a);
+      for (std::size_t r = 0; r < number_; ++r) {
+        if (judge(r, a)) changed |= 1u << r;
+      }
+      window_[a] = window;
+    }
+    Axis& own = radars_[radar].axes[a];
+    if (!own.active) own.covariance = covariance;
+    own.active = true;
+    own.information += information;
+    own.score += score;
+  }
+  return changed;
+}
+
+void SmallKnockDetector::close(std::size_t a) {
+  const auto i = static_cast<Eigen::Index>(a);
+  for (std::size_t r = 0; r < number_; ++r) {
+    Axis& axis = radars_[r].axes[a];
+    Eigen::Matrix3d information = axis.information;
+    information.diagonal().array() += 1.0 / square(kLooseStd_rad);
+    if (a != 0) information(0, 0) += 1.0 / (axis.covariance(0, 0) + square(kFloor_rad[0]));
+    const Eigen::Matrix3d inverse = information.inverse();
+    axis.deviation_rad = inverse.row(i).dot(axis.score);
+    axis.variance = inverse(i, i) + axis.covariance(i, i);
+    axis.known = axis.active && std::isfinite(axis.deviation_rad) && axis.variance > 0.0;
+    axis.information.setZero();
+    axis.score.setZero();
+    axis.active = false;
+  }
+}
+
+bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
+  Axis& axis = radars_[r].axes[a];
+  axis.confirmed = false;
+  axis.stds = 0.0;
+  if (!axis.known) return false;
+  std::array<const Axis*, kMaxRadars> others;
+  std::size_t count = 0;
+  for (std::size_t q = 0; q < number_; ++q) {
+    const Axis& other = radars_[q].axes[a];
+    if (q != r && other.known && other.variance < kComparable * (axis.variance + square(kFloor_rad[a]))) {
+      others[count++] = &other;
+    }
+  }
+  double own = axis.deviation_rad, variance = axis.variance;
+  if (count == 0) {
+    variance += square(kAloneFloor_rad[a]);
+  } else {
+    std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count),
+              [](const Axis* x, const Axis* y) { return x->deviation_rad < y->deviation_rad; });
+    const Axis& low = *others[(count - 1) / 2];
+    const Axis& high = *others[count / 2];
+    const Axis& middle = std::abs(low.deviation_rad) < std::abs(high.deviation_rad) ? low : high;
+    // Of two radars the one that deviates more is the one that moved.
+    const bool moved = count > 1 || std::abs(own) > std::abs(middle.deviation_rad);
+    own = moved ? own - middle.deviation_rad : 0.0;
+    variance += middle.variance + square(kFloor_rad[a]);
+  }
+  axis.stds = own / std::sqrt(variance);
+  radars_[r].own(static_cast<Eigen::Index>(a)) = own;
+  if (axis.suspected != 0) {
+    axis.confirmed = axis.suspected * axis.stds > confirming_stds(config_, a);
+    axis.suspected = 0;
+    for (double& sum : axis.sums) sum *= kKeptUnconfirmed;
+    return axis.confirmed;
+  }
+  for (std::size_t s = 0; s < 2; ++s) {
+    const double excess = (s == 0 ? axis.stds : -axis.stds) - kAsked[a] * config_.knock_small_stds;
+    // One wild window alone is no change.
+    axis.sums[s] = std::max(0.0, kKept * axis.sums[s] + std::min(excess, 0.7 * config_.knock_small_sum_stds));
+    if (axis.sums[s] > config_.knock_small_sum_stds) axis.suspected = s == 0 ? 1 : -1;
+  }
+  return false;
+}
+
+}  // namespace boresight::alignment

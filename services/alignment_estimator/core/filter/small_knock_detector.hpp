@@ -1,0 +1,71 @@
+// Finds changes of one radar's mounting that KnockDetector is too coarse for: they take longer to tell from noise.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "interfaces/messages/header.hpp"
+#include "services/alignment_estimator/core/filter/config.hpp"
+
+namespace boresight::alignment {
+
+/// Cumulative sums of each radar's own deviation from its estimate about the vehicle's x, y and z axes, in units of its
+/// own σ: that of the window's data, of the estimate, of what the others are compared by, and of what no model holds.
+/// An axis of which a window says little thus needs more windows, however small the change that is looked for. The
+/// median of the other radars is taken off, as in KnockDetector. A sum beyond its limit is a suspicion; the window
+/// after it, whose data had no part in the sum, confirms or drops it.
+class SmallKnockDetector {
+ public:
+  SmallKnockDetector(std::size_t radars, const FilterConfig& config);
+
+  /// Takes what one scan of a running radar says: information and score about the vehicle's axes at the present
+  /// estimate, and the covariance of that estimate (rad²). Returns a set of radars (bit by index) whose mounting
+  /// changed, whenever a window ends.
+  [[nodiscard]] std::uint32_t add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
+                                  const Eigen::Vector3d& score, const Eigen::Matrix3d& covariance);
+  /// Starts a radar's sums anew (new estimate).
+  void clear(std::size_t radar);
+
+  /// By how much the radar deviated in the window that confirmed the change, about x, y, z in rad; and which axes did.
+  [[nodiscard]] const Eigen::Vector3d& change(std::size_t radar) const { return radars_[radar].own; }
+  [[nodiscard]] bool changed(std::size_t radar, std::size_t axis) const { return radars_[radar].axes[axis].confirmed; }
+  /// Whether a change of yaw or pitch is so likely that the estimate should rather stand still until it is told or not.
+  [[nodiscard]] bool doubted(std::size_t radar) const;
+  /// The larger of the axis's two sums with its sign, over the limit of a suspicion; and the last window's deviation in
+  /// its own σ.
+  [[nodiscard]] double sum(std::size_t radar, std::size_t axis) const;
+  [[nodiscard]] double deviation(std::size_t radar, std::size_t axis) const { return radars_[radar].axes[axis].stds; }
+  /// Beyond how many σ the window after a suspicion confirms it.
+  [[nodiscard]] static double confirming_stds(const FilterConfig& config, std::size_t axis);
+
+ private:
+  /// What the present window of an axis holds; axes have windows of their own length.
+  struct Axis {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d score = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the estimate when the window began
+    bool active = false;
+    // Of the last window.
+    double deviation_rad = 0.0, variance = 0.0, stds = 0.0;
+    bool known = false, confirmed = false;
+    // Over windows.
+    std::array<double, 2> sums{};  // +, −
+    int suspected = 0;             // sign of a suspicion
+  };
+  struct Radar {
+    std::array<Axis, 3> axes;
+    Eigen::Vector3d own = Eigen::Vector3d::Zero();
+  };
+  void close(std::size_t axis);
+  [[nodiscard]] bool judge(std::size_t radar, std::size_t axis);
+
+  FilterConfig config_;
+  std::size_t number_;
+  std::array<std::int64_t, 3> window_{};
+  std::array<Radar, kMaxRadars> radars_;
+};
+
+}  // namespace boresight::alignment
