@@ -26,9 +26,11 @@ constexpr double kMinKnock_rad = 0.0044;
 /// A suspicion that no new start confirms or refutes within this time is dropped.
 constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
-constexpr double kEarlier_s = 3.0;
 /// What elevations that are not measured take off range rates is anything from nothing to twice what is assumed.
 constexpr double kElevationExcessStd = 0.577;
+/// Slow mean of a radar's deviation, as a share of what it is now, beyond which it has been growing.
+constexpr double kDriftShare = 0.4;
+constexpr double kEarlier_s = 5.0;
 /// An axis is known with this share of the prior's σ; derivatives are as good within this angle.
 constexpr double kLearntShare = 1.0 / 3.0;
 constexpr double kKnownShare = 0.05, kLinearStep_rad = 5e-4;
@@ -55,7 +57,11 @@ RobustFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filter)
       start(filter) {}
 
 RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& config)
-    : config_(config), state_(vehicle.radars.size()), nuisance_model_(config), knocks_(vehicle.radars.size(), config) {
+    : config_(config),
+      state_(vehicle.radars.size()),
+      nuisance_model_(config),
+      knocks_(vehicle.radars.size(), config),
+      small_knocks_(vehicle.radars.size(), config) {
   const std::size_t count = std::min(vehicle.radars.size(), kMaxRadars);
   radars_.reserve(count);
   state_.set_variance(column::kSpeedScale, square(config.prior_speed_scale_std));
@@ -147,6 +153,7 @@ void RobustFilter::process(std::size_t index, const ScanDetections& scan, const 
   }
   radar.seconds_of_drive += elapsed_s;
   radar.since_start_s += elapsed_s;
+  radar.since_change_s += elapsed_s;
   const bool sure = std::sqrt(state_.covariance(column::of_radar(index) + 2, column::of_radar(index) + 2)) <
                         config_.converged_yaw_std_rad &&
                     radar.seconds_of_drive >= config_.min_seconds_to_converge;
@@ -191,7 +198,7 @@ void RobustFilter::search(std::size_t index, const ScanMotion3d& motion, double 
   if (radar.phase == Phase::kSuspected && seconds(radar.last_time_ns - radar.suspected_ns) > kMaxSuspicion_s) {
     radar.phase = Phase::kRunning;
     radar.start.clear();
-    knocks_.clear(index);
+    forget_deviations(index);
   }
 }
 
@@ -230,12 +237,12 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   radar.mean_sine = found.mean_sine;
   state_.linearised[index] = state_.sensor_to_vehicle[index];
   note_linearised(index);
-  radar.earlier.fill(state_.sensor_to_vehicle[index]);
+  radar.earlier.fill(now(index));
   radar.phase = Phase::kRunning;
   radar.remembered = false;
   radar.since_start_s = 0.0;
   radar.inlier_ratio = found.inlier_ratio;
-  knocks_.clear(index);
+  forget_deviations(index);
 }
 
 /// k_v is as wrong as what the search took for known.
@@ -332,7 +339,7 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
     place(index, found);
     note_linearised(index);
     radar.since_start_s = radar.since_earlier_s = 0.0;
-    radar.earlier.fill(found.sensor_to_vehicle);
+    radar.earlier.fill(now(index));
     if (!radar.drifted) {
       radar.knock.time_ns = time_ns;
       ++radar.knock.count;
@@ -341,7 +348,14 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
     radar.inlier_ratio = found.inlier_ratio;
   }
   radar.phase = Phase::kRunning;
-  knocks_.clear(index);
+  forget_deviations(index);
+}
+
+RobustFilter::Radar::Earlier RobustFilter::now(std::size_t index) const {
+  const Eigen::Index first = column::of_radar(index);
+  return {state_.sensor_to_vehicle[index],
+          {state_.covariance(first, first), state_.covariance(first + 1, first + 1),
+           state_.covariance(first + 2, first + 2)}};
 }
 
 void RobustFilter::measure_knock(std::size_t index) {
@@ -383,17 +397,28 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
       radar.efficiency.of_information() * support.share * sums.information * support.share.transpose();
   const Eigen::Vector3d score = radar.efficiency.of_score() * support.share * sums.score;
 
-  const Eigen::Matrix<double, 2, 3> turn = velocity.gradient.middleRows<2>(column::kShared + 1);
+  const Eigen::Matrix3d turn = velocity.gradient.middleRows<3>(column::kShared);
+  const Eigen::Matrix3d by_turn = turn * information * turn.transpose();
+  const Eigen::Vector3d turn_score = turn * score;
+  Eigen::Matrix3d rotation_covariance;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      rotation_covariance(i, j) = state_.covariance(column::of_radar(index) + i, column::of_radar(index) + j);
+    }
+  }
   const std::uint32_t suspicious =
-      knocks_.add(index, time_ns, turn * information * turn.transpose(), turn * score, sums.standing, detections);
+      knocks_.add(index, time_ns, by_turn.bottomRightCorner<2, 2>(), turn_score.tail<2>(), sums.standing, detections);
+  const std::uint32_t changed =
+      strange ? 0 : small_knocks_.add(index, time_ns, by_turn, turn_score, rotation_covariance);
   if (suspicious != 0) watch(suspicious, time_ns);
-  if (strange || radar.phase != Phase::kRunning) return;
+  if (changed != 0) follow(changed, time_ns);
+  if (strange || radar.phase != Phase::kRunning || small_knocks_.doubted(index)) return;
   if (!state_.update(information, score)) return;
   linearise(index);
   learn_noise(index, sums, elapsed_s);
   radar.since_earlier_s += elapsed_s;
   if (radar.since_earlier_s > kEarlier_s) {
-    radar.earlier = {radar.earlier[1], state_.sensor_to_vehicle[index]};
+    radar.earlier = {radar.earlier[1], radar.earlier[2], now(index)};
     radar.since_earlier_s = 0.0;
   }
   // How large a knock was becomes clearer for a while.
@@ -448,16 +473,24 @@ void RobustFilter::note_linearised(std::size_t index) {
   }
 }
 
+void RobustFilter::forget_deviations(std::size_t index) {
+  knocks_.clear(index);
+  small_knocks_.clear(index);
+}
+
+/// What grew over a minute is a drift: followed, but not reported as a knock.
+bool RobustFilter::drifts(std::size_t index) const {
+  const Eigen::Vector2d& own = knocks_.deviation(index);
+  return !knocks_.collapsed(index) && own.dot(knocks_.drift(index)) > kDriftShare * own.squaredNorm();
+}
+
 void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if ((suspicious >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
-    // What grew over a minute is a drift: followed, but not reported as a knock.
-    const Eigen::Vector2d& own = knocks_.deviation(r);
-    const Eigen::Vector2d& drift = knocks_.drift(r);
-    radars_[r].drifted = !knocks_.collapsed(r) && own.dot(drift) > 0.4 * own.squaredNorm();
+    radars_[r].drifted = drifts(r);
     radars_[r].phase = Phase::kSuspected;
     radars_[r].suspected_ns = time_ns;
-    radars_[r].before_knock = radars_[r].earlier[0];
+    radars_[r].before_knock = radars_[r].earlier[0].sensor_to_vehicle;
     radars_[r].start.clear();
   }
 }
@@ -476,6 +509,52 @@ double RobustFilter::second_order_yaw_variance(std::size_t index) const {
   // That mean is as uncertain as the lowering.
   const double mean_square = square(radars_[index].mean_sine) * (1.0 + square(kElevationExcessStd));
   return mean_square * std::max(tilt, 0.0) + 0.25 * roll * pitch;
+}
+
+/// A small change needs no new start: from where the estimate was before, turned by what the last window showed, the
+/// data lead it on once its covariance admits the change. About an axis that was not seen to change there may be one as
+/// large that is not seen yet; but roll is seen last, and what else moved with it would have been seen long before.
+void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if ((changed >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
+    Radar& radar = radars_[r];
+    const bool tilted = small_knocks_.changed(r, 1) || small_knocks_.changed(r, 2);
+    double size_squared = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (small_knocks_.changed(r, a)) size_squared += square(small_knocks_.change(r)(static_cast<Eigen::Index>(a)));
+    }
+    // After a change a few seconds ago, what was before is no better.
+    const bool again = radar.since_change_s < static_cast<double>(radar.earlier.size()) * kEarlier_s;
+    const Radar::Earlier before = again ? now(r) : radar.earlier[0];
+    if (tilted) {
+      Eigen::Vector3d turn = geometry::so3_log(before.sensor_to_vehicle * state_.sensor_to_vehicle[r].transpose());
+      for (std::size_t a = 1; a < 3; ++a) {
+        const auto i = static_cast<Eigen::Index>(a);
+        if (small_knocks_.changed(r, a)) turn(i) = small_knocks_.change(r)(i);
+      }
+      state_.sensor_to_vehicle[r] = state_.linearised[r] = geometry::so3_exp(turn) * state_.sensor_to_vehicle[r];
+      radar.since_change_s = 0.0;
+    }
+    for (Eigen::Index i = 0; i < (tilted ? 3 : 1); ++i) {
+      const Eigen::Index row = column::of_radar(r) + i;
+      const double variance = state_.covariance(row, row);
+      const double wanted =
+          std::min(std::max(variance, before.variance(i)) + size_squared, square(config_.prior_rotation_std_rad));
+      state_.add_variance(row, std::max(0.0, wanted - variance));
+    }
+    note_linearised(r);
+    // Sudden or not does not show in roll, for which a window lasts too long.
+    if (tilted && size_squared > square(config_.knock_least_rad) && !drifts(r)) {
+      radar.before_knock = before.sensor_to_vehicle;
+      radar.since_start_s = 0.0;
+      radar.knock.time_ns = time_ns;
+      ++radar.knock.count;
+      measure_knock(r);
+    }
+    radar.earlier.fill(now(r));
+    radar.since_earlier_s = 0.0;
+    forget_deviations(r);
+  }
 }
 
 RadarEstimate RobustFilter::estimate(std::size_t index) const {

@@ -13,6 +13,7 @@
 #include "services/alignment_estimator/core/filter/knock_detector.hpp"
 #include "services/alignment_estimator/core/filter/noise_scale.hpp"
 #include "services/alignment_estimator/core/filter/nuisance_model.hpp"
+#include "services/alignment_estimator/core/filter/small_knock_detector.hpp"
 #include "services/alignment_estimator/core/filter/spread.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/common/vehicle/vehicle.hpp"
@@ -36,6 +37,7 @@ class RobustFilter : public Method {
   [[nodiscard]] const JointState& state() const { return state_; }
   [[nodiscard]] const NuisanceModel& nuisance_model() const { return nuisance_model_; }
   [[nodiscard]] const KnockDetector& knock_detector() const { return knocks_; }
+  [[nodiscard]] const SmallKnockDetector& small_knock_detector() const { return small_knocks_; }
 
  private:
   enum class Phase : std::uint8_t {
@@ -65,8 +67,13 @@ class RobustFilter : public Method {
     AlignmentKnock knock{};
     Eigen::Matrix3d before_knock = Eigen::Matrix3d::Identity();
     /// The rotation a few seconds ago: what a knock did to the estimate before it was told is undone.
-    std::array<Eigen::Matrix3d, 2> earlier;
+    struct Earlier {
+      Eigen::Matrix3d sensor_to_vehicle;
+      Eigen::Vector3d variance;
+    };
+    std::array<Earlier, 3> earlier;
     double since_earlier_s = 0.0;
+    double since_change_s = 0.0;  ///< until the rotations a few seconds ago are none from before a change
     /// Variances of the rotation when derivatives were last taken to where it was.
     Eigen::Vector3d linearised_variance = Eigen::Vector3d::Zero();
     Radar(const RadarConfig& radar, const FilterConfig& filter);
@@ -81,12 +88,16 @@ class RobustFilter : public Method {
   void place(std::size_t radar, const StartResult& found);
   void reopen(std::size_t radar);
   void measure_knock(std::size_t radar);
+  [[nodiscard]] Radar::Earlier now(std::size_t radar) const;
   void update(std::size_t radar, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns);
   void learn_noise(std::size_t radar, const ScanSums& sums, double elapsed_s);
   void linearise(std::size_t radar);
   void note_linearised(std::size_t radar);
   void watch(std::uint32_t suspicious, std::int64_t time_ns);
   [[nodiscard]] double second_order_yaw_variance(std::size_t radar) const;
+  void forget_deviations(std::size_t radar);
+  [[nodiscard]] bool drifts(std::size_t radar) const;
+  void follow(std::uint32_t changed, std::int64_t time_ns);
   [[nodiscard]] bool any_running_but(std::size_t radar) const;
 
   FilterConfig config_;
@@ -94,6 +105,7 @@ class RobustFilter : public Method {
   JointState state_;
   NuisanceModel nuisance_model_;
   KnockDetector knocks_;
+  SmallKnockDetector small_knocks_;
   EgoTrend trend_;
   Sightings sightings_;
   std::int64_t instant_ns_ = 0;
