@@ -26,7 +26,8 @@ constexpr double kMinKnock_rad = 0.0044;
 /// A suspicion that no new start confirms or refutes within this time is dropped.
 constexpr double kMaxSuspicion_s = 20.0;
 constexpr double kKnockMeasured_s = 20.0;
-/// What elevations that are not measured take off range rates is anything from nothing to twice what is assumed.
+/// What elevations that are not measured take off range rates is anything from nothing to twice what is assumed, for
+/// all radars alike; each radar's own share is as uncertain.
 constexpr double kElevationExcessStd = 0.577;
 /// Slow mean of a radar's deviation, as a share of what it is now, beyond which it has been growing.
 constexpr double kDriftShare = 0.4;
@@ -74,12 +75,12 @@ RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& con
     reopen(r);
     state_.set_variance(column::of_radar(r) + column::kAngleNoise, square(config.prior_angle_noise_log_std));
   }
-  // All radars see the same surroundings: what is higher or lower than assumed is so to all of them, and many radars
-  // without elevation know the speed no better than one.
+  // What is higher or lower than assumed is so to all radars of a vehicle: many know the speed little better than one.
+  // As much again is each radar's own: what stands on its side, and what its roll and pitch make of elevations.
   for (std::size_t r = 0; r < count; ++r) {
     for (std::size_t s = 0; s < count; ++s) {
       state_.set_covariance(column::of_radar(r) + column::kElevations, column::of_radar(s) + column::kElevations,
-                            square(kElevationExcessStd));
+                            (r == s ? 2.0 : 1.0) * square(kElevationExcessStd));
     }
   }
 }

@@ -118,7 +118,7 @@ struct Cloud {
       scan.elevation_std_rad[i] = elevation_std;
       scan.range_rate_std_mps[i] = 0.03;
     }
-    take_sightings(scan, radar, {}, 1.0, 1.0, sightings);
+    take_sightings(scan, radar, {radar, 0.0}, 1.0, 1.0, sightings);
   }
 };
 
@@ -133,7 +133,7 @@ TEST(ScanSums, ScoreHasNoExpectationAtTheTruth) {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();
   for (int i = 0; i < 400; ++i) {
     cloud->draw(random, 0.01, 0.02, 0.06);
-    const ScanSums sums = sum_scan(run_of(cloud->sightings, 0.0), cloud->g, judgement);
+    const ScanSums sums = sum_scan(run_of(cloud->sightings), cloud->g, judgement);
     information += sums.information - sums.feigned;
     score += sums.score;
   }
@@ -153,7 +153,7 @@ TEST(Spread, NoiseOfAnglesIsNoSpreadOfAngles) {
     Spread seen;
     for (int i = 0; i < 50; ++i) {
       cloud->draw(random, 0.005, 0.01, spread);
-      const ScanSums sums = sum_scan(run_of(cloud->sightings, 0.0), cloud->g, judgement);
+      const ScanSums sums = sum_scan(run_of(cloud->sightings), cloud->g, judgement);
       seen.add(sums.information, sums.feigned, sums.inliers, 1.0);
     }
     const double vertical = (seen.support(true, 0.35).share * Eigen::Vector3d::UnitZ()).norm();
@@ -169,13 +169,13 @@ TEST(ScanSums, RangeRatesAreUnfoldedToThePrediction) {
   Judgement judgement;
   judgement.velocity_variance.setZero();
   cloud->draw(random, 0.002, 0.002, 0.05);
-  const ScanSums plain = sum_scan(run_of(cloud->sightings, 0.0), cloud->g, judgement);
+  const ScanSums plain = sum_scan(run_of(cloud->sightings), cloud->g, judgement);
   cloud->sightings.ambiguity_mps = 10.0;
   for (std::size_t i = 0; i < cloud->sightings.count; ++i) {
     double& rate = cloud->sightings.range_rate_mps[i];
     rate -= 10.0 * std::floor(rate / 10.0 + 0.5);
   }
-  const ScanSums folded = sum_scan(run_of(cloud->sightings, 0.0), cloud->g, judgement);
+  const ScanSums folded = sum_scan(run_of(cloud->sightings), cloud->g, judgement);
   EXPECT_EQ(folded.inliers, plain.inliers);
   EXPECT_LT((folded.score - plain.score).norm(), 1e-6 * plain.score.norm() + 1e-6);
 }
