@@ -75,7 +75,7 @@ TEST(Observability, AnyMountingIsAsGood) {
 }
 
 TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
-  // Where in the view reflectors stand is assumed; no number of scans tells whether that is so on this road.
+  // How high reflectors stand is assumed; no number of scans tells whether that is so on this road.
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
@@ -83,10 +83,12 @@ TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
   const AlignmentEstimate measured = after(drive, 1000, 3);
   drive.measures_elevation = false;
   const AlignmentEstimate assumed = after(drive, 1000, 3);
-  EXPECT_NEAR(assumed.speed_scale, drive.speed_scale, 5e-4) << "spread over the view as assumed";
+  // Spread over the view at every range: a little higher than what stands on roads.
+  EXPECT_NEAR(assumed.speed_scale, drive.speed_scale, 2.0 * std_of(assumed, 0));
   EXPECT_LT(std_of(measured, 0), 4e-4);
-  // Standard deviation of the cosine of an angle spread evenly over ±5°, from its moments: 1/2·0.0873²·sqrt(1/5 − 1/9).
-  EXPECT_NEAR(std_of(assumed, 0), 0.00114, 1.5e-4);
+  // The cosine of ±5° lacks 1/6·0.0873² in the mean: what is not known is of that size.
+  EXPECT_GT(std_of(assumed, 0), 4e-4);
+  EXPECT_LT(std_of(assumed, 0), 1.3e-3);
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kVehiclePitch));
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kVehicleRoll));
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kPitch));
