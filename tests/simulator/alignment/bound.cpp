@@ -32,6 +32,7 @@ CramerRaoBound::CramerRaoBound(const AlignmentSpec& spec, const AlignmentDrive& 
       drive_(drive),
       parameters_(kShared + 3 * static_cast<Eigen::Index>(spec.radars.size())),
       known_(static_cast<std::size_t>(parameters_)),
+      min_speed_mps_(priors.min_speed_mps),
       information_(Eigen::MatrixXd::Zero(parameters_ + 3, parameters_ + 3)) {
   if (spec.model != MountingModel::kExact) throw std::invalid_argument("the bound is for exact rotations only");
   std::vector<double> stds(known_.size(), priors.rotation_std_rad);
@@ -81,8 +82,11 @@ void CramerRaoBound::advance_pitch(double time_s) {
 }
 
 void CramerRaoBound::add(const AlignmentEvent& event) {
-  if (event.ego != nullptr) renew_ego_errors();
-  if (event.scan == nullptr) return;
+  if (event.ego != nullptr) {
+    renew_ego_errors();
+    signalled_mps_ = static_cast<double>(event.ego->speed_mps);
+  }
+  if (event.scan == nullptr || std::abs(signalled_mps_) < min_speed_mps_) return;
   advance_pitch(event.time_s);
   const AlignmentRadar& radar = spec_.radars[event.radar];
   const std::array<double, 3>& position = radar.config.mounting_pose.position_m;

@@ -17,6 +17,7 @@ struct BoundPriors {
   double rotation_std_rad = 3.0 * M_PI / 180.0;  ///< about each axis of the vehicle, of every radar
   double yaw_rate_bias_std_radps = 0.0;
   double slip_coefficient_std_radps2pm = 0.0;
+  double min_speed_mps = 0.0;  ///< signalled; slower scans do not count, as estimators leave them out (Report A §8)
 };
 
 /// Sums the information of a drive's stationary detections at the truth, each with the variance
@@ -50,7 +51,9 @@ class CramerRaoBound {
   AlignmentSpec spec_;
   const AlignmentDrive& drive_;
   Eigen::Index parameters_;
-  std::vector<bool> known_;      ///< of the parameters
+  std::vector<bool> known_;  ///< of the parameters
+  double min_speed_mps_;
+  double signalled_mps_ = 0.0;
   Eigen::MatrixXd information_;  ///< of the parameters, then the errors of speed and yaw rate, then body pitch
   double pitch_time_s_ = 0.0;
 };

@@ -298,6 +298,33 @@ TEST(CramerRaoBound, DisturbancesAndMissingElevationCost) {
   EXPECT_LT(blind.z(), 0.02 * kDegree);
 }
 
+TEST(CramerRaoBound, SlowScansCountOnlyIfTheyMay) {
+  AlignmentSpec spec = four_corner_radars();
+  spec.duration_s = 20.0;
+  spec.road = RoadKind::kCity;
+  BoundPriors priors;
+  AlignmentDrive drive(spec);
+  CramerRaoBound all(spec, drive, priors), by_hand(spec, drive, priors);
+  priors.min_speed_mps = 9.0;
+  CramerRaoBound fast(spec, drive, priors);
+  AlignmentEvent event;
+  double signalled_mps = 0.0;
+  std::size_t scans = 0, slow = 0;
+  while (drive.next(event)) {
+    if (event.ego != nullptr) signalled_mps = static_cast<double>(event.ego->speed_mps);
+    const bool is_slow = event.scan != nullptr && signalled_mps < priors.min_speed_mps;
+    scans += event.scan != nullptr ? 1 : 0;
+    slow += is_slow ? 1 : 0;
+    fast.add(event);
+    all.add(event);
+    if (!is_slow) by_hand.add(event);
+  }
+  ASSERT_GT(slow, scans / 10);
+  ASSERT_LT(slow, scans);
+  EXPECT_EQ(fast.covariance(), by_hand.covariance());
+  EXPECT_GT(fast.rotation_std_rad(0).x(), 1.05 * all.rotation_std_rad(0).x());
+}
+
 TEST(CramerRaoBound, RefusesTheModelThatIsNoRotation) {
   const AlignmentSpec spec = published_setup();
   const AlignmentDrive drive(spec);
