@@ -12,9 +12,12 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 /// Lengths of the windows about x, y, z, in units of FilterConfig::knock_window_s.
 constexpr std::array<std::int64_t, 3> kLengths{16, 1, 1};
-/// Roll shows in turns and when the body pitches, so slowly that even a whole window is hardly beyond noise. There are
-/// fewer windows to be wrong in, so that less is asked of each (shares of the configured σ).
-constexpr std::array<double, 3> kAsked{0.5, 1.0, 1.0};
+/// Roll shows only in turns and when the body pitches: windows are joined, up to so many, until they know it this well.
+constexpr std::array<int, 3> kMostJoined{8, 1, 1};
+constexpr double kJoinedUntil_rad = 0.8 * kDegree;
+/// Even then it is hardly beyond noise; there are fewer windows to be wrong in, so that less is asked of each (shares
+/// of the configured σ).
+constexpr std::array<double, 3> kAsked{0.6, 1.0, 1.0};
 /// σ of what deviates for reasons that no model holds (a scene, a load), beside others and for a radar that is alone,
 /// to which a side slip and the body's pitch look like changes of its own.
 constexpr std::array<double, 3> kFloor_rad{0.2 * kDegree, 0.05 * kDegree, 0.02 * kDegree};
@@ -24,6 +27,9 @@ constexpr std::array<double, 3> kAloneFloor_rad{1.0 * kDegree, 0.25 * kDegree, 0
 constexpr double kLooseStd_rad = 0.07;
 /// Another radar that knows the axis so much less (variance) is no comparison.
 constexpr double kComparable = 9.0;
+
+/// A median of three or more has at most this share of the variance of one.
+constexpr double kMedianShare = 0.5;
 
 /// What is left of a sum after a window, so that no doubt lasts; of the sums after a suspicion that was not confirmed.
 constexpr double kKept = 0.9, kKeptUnconfirmed = 0.5;
@@ -45,7 +51,7 @@ void SmallKnockDetector::clear(std::size_t radar) {
 
 double SmallKnockDetector::sum(std::size_t radar, std::size_t axis) const {
   const std::array<double, 2>& sums = radars_[radar].axes[axis].sums;
-  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / config_.knock_small_sum_stds;
+  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kAsked[axis] * config_.knock_small_sum_stds);
 }
 
 double SmallKnockDetector::confirming_stds(const FilterConfig& config, std::size_t axis) {
@@ -92,8 +98,12 @@ void SmallKnockDetector::close(std::size_t a) {
     axis.deviation_rad = inverse.row(i).dot(axis.score);
     axis.variance = inverse(i, i) + axis.covariance(i, i);
     axis.known = axis.active && std::isfinite(axis.deviation_rad) && axis.variance > 0.0;
+    ++axis.joined;
+    axis.ended = !axis.known || axis.joined >= kMostJoined[a] || inverse(i, i) < square(kJoinedUntil_rad);
+    if (!axis.ended) continue;
     axis.information.setZero();
     axis.score.setZero();
+    axis.joined = 0;
     axis.active = false;
   }
 }
@@ -101,6 +111,7 @@ void SmallKnockDetector::close(std::size_t a) {
 bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
   Axis& axis = radars_[r].axes[a];
   axis.confirmed = false;
+  if (!axis.ended) return false;
   axis.stds = 0.0;
   if (!axis.known) return false;
   std::array<const Axis*, kMaxRadars> others;
@@ -123,7 +134,7 @@ bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
     // Of two radars the one that deviates more is the one that moved.
     const bool moved = count > 1 || std::abs(own) > std::abs(middle.deviation_rad);
     own = moved ? own - middle.deviation_rad : 0.0;
-    variance += middle.variance + square(kFloor_rad[a]);
+    variance += (count > 2 ? kMedianShare : 1.0) * middle.variance + square(kFloor_rad[a]);
   }
   axis.stds = own / std::sqrt(variance);
   radars_[r].own(static_cast<Eigen::Index>(a)) = own;
@@ -133,11 +144,12 @@ bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
     for (double& sum : axis.sums) sum *= kKeptUnconfirmed;
     return axis.confirmed;
   }
+  const double limit = kAsked[a] * config_.knock_small_sum_stds;
   for (std::size_t s = 0; s < 2; ++s) {
     const double excess = (s == 0 ? axis.stds : -axis.stds) - kAsked[a] * config_.knock_small_stds;
     // One wild window alone is no change.
-    axis.sums[s] = std::max(0.0, kKept * axis.sums[s] + std::min(excess, 0.7 * config_.knock_small_sum_stds));
-    if (axis.sums[s] > config_.knock_small_sum_stds) axis.suspected = s == 0 ? 1 : -1;
+    axis.sums[s] = std::max(0.0, kKept * axis.sums[s] + std::min(excess, 0.7 * limit));
+    if (axis.sums[s] > limit) axis.suspected = s == 0 ? 1 : -1;
   }
   return false;
 }

@@ -47,10 +47,11 @@ class SmallKnockDetector {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d score = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the estimate when the window began
+    int joined = 0;
     bool active = false;
     // Of the last window.
     double deviation_rad = 0.0, variance = 0.0, stds = 0.0;
-    bool known = false, confirmed = false;
+    bool known = false, ended = false, confirmed = false;
     // Over windows.
     std::array<double, 2> sums{};  // +, −
     int suspected = 0;             // sign of a suspicion
