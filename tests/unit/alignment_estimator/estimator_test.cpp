@@ -87,7 +87,7 @@ TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
   }
   EXPECT_GT(sum, 0.05);
   EXPECT_LT(sum, 4.0) << "one drive; its errors are those of a few draws";
-  EXPECT_GT(written(deceived, 1).kpis.nees, 100.0F);
+  EXPECT_GT(written(deceived, 1).kpis.nees, 10.0F);
   EXPECT_TRUE(std::isnan(written(estimator, 2).kpis.nees));
   EXPECT_TRUE(std::isnan(written(unknowing, 1).kpis.nees));
 }
