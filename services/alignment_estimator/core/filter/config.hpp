@@ -17,7 +17,7 @@ struct FilterConfig {
   double speed_scale_drift_per_sqrt_s = 1e-6;                ///< tyres
   double yaw_rate_bias_drift_radps_per_sqrt_s = 1e-6;        ///< gyro
   double outlier_gate_sigma = 5.0;                           ///< Tukey's constant
-  double prior_angle_noise_log_std = 0.7;        ///< of ln σ²: stated or configured σ is right to a factor of 1.4
+  double prior_angle_noise_log_std = 0.7;  ///< of ln σ²: stated or configured σ is right to a factor of 1.4
   double azimuth_std_edge = 0.35;  ///< a configured azimuth σ holds ahead and grows as 1/max(cos α, this); 1: does not
 
   // Errors of the motion that all radars share at an instant: where their on-line estimates begin. σ of the ego signals

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/alignment_estimator/core/filter/small_maths.hpp"
+
 namespace boresight::alignment {
 
 namespace {
@@ -10,10 +12,6 @@ namespace {
 constexpr double kWindow_s = 0.4;
 constexpr double kMaxHeld_s = 0.1;
 constexpr double kMaxAcceleration_mps2 = 15.0, kMaxYawAcceleration_radps2 = 5.0;
-
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
 
 }  // namespace
 

@@ -23,7 +23,7 @@ struct StartPrior {
   double rotation_variance = 1.0;
   double yaw_rate_bias_radps = 0.0;
   double slip_radps2pm = 0.0;
-  double log_angle_noise_std = 0.0;  ///< of column::kAngleNoise
+  double log_angle_noise_std = 0.0;                                ///< of column::kAngleNoise
   double elevation_excess = 0.0, elevation_excess_variance = 0.0;  ///< where elevations are not measured
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/alignment_estimator/core/filter/small_maths.hpp"
+
 namespace boresight::alignment {
 
 namespace {
@@ -20,10 +22,6 @@ constexpr double kMinCorrelation_s = 0.005, kMaxCorrelation_s = 1.5;
 /// body's: it is the error of a mounting.
 constexpr double kMinBodyCorrelation_s = 0.2, kMaxBodyCorrelation_s = 0.6;
 
-double square(double v) {
-  return v * v;
-}
-
 }  // namespace
 
 NuisanceModel::NuisanceModel(const FilterConfig& config) : config_(config) {
@@ -38,10 +36,14 @@ NuisanceModel::NuisanceModel(const FilterConfig& config) : config_(config) {
     p.max_variance = max_std * max_std;
     return p;
   };
-  processes_[0] = process(config.speed_std_mps, config.ego_correlation_s, kMinCorrelation_s, kMaxCorrelation_s, 1e-3, 1.0);
-  processes_[1] = process(config.yaw_rate_std_radps, config.ego_correlation_s, kMinCorrelation_s, kMaxCorrelation_s, 5e-5, 0.1);
-  processes_[2] = process(config.body_pitch_std_rad, config.body_correlation_s, kMinBodyCorrelation_s, kMaxBodyCorrelation_s, 1e-4, 0.05);
-  processes_[3] = process(config.side_slip_std_rad, config.body_correlation_s, kMinBodyCorrelation_s, kMaxBodyCorrelation_s, 1e-5, 0.02);
+  processes_[0] =
+      process(config.speed_std_mps, config.ego_correlation_s, kMinCorrelation_s, kMaxCorrelation_s, 1e-3, 1.0);
+  processes_[1] =
+      process(config.yaw_rate_std_radps, config.ego_correlation_s, kMinCorrelation_s, kMaxCorrelation_s, 5e-5, 0.1);
+  processes_[2] = process(config.body_pitch_std_rad, config.body_correlation_s, kMinBodyCorrelation_s,
+                          kMaxBodyCorrelation_s, 1e-4, 0.05);
+  processes_[3] = process(config.side_slip_std_rad, config.body_correlation_s, kMinBodyCorrelation_s,
+                          kMaxBodyCorrelation_s, 1e-5, 0.02);
 }
 
 void NuisanceModel::state_stds(double speed_std_mps, double yaw_rate_std_radps) {

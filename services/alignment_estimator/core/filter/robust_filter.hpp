@@ -40,6 +40,9 @@ class RobustFilter : public Method {
   [[nodiscard]] const SmallKnockDetector& small_knock_detector() const { return small_knocks_; }
 
  private:
+  /// χ² of three degrees of freedom that is passed once in 10⁴: a rotation that is another one.
+  static constexpr double kAnother = 21.1;
+  static constexpr double kEarlier_s = 5.0;  ///< apart are the rotations of Radar::earlier
   enum class Phase : std::uint8_t {
     kStarting,   ///< searching; the estimate is the prior, or what was remembered
     kRunning,    //

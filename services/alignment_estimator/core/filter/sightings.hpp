@@ -26,6 +26,10 @@ struct Sightings {
   std::array<double, kMaxDetections> mean_sine;  ///< of the elevation
 };
 
+/// What elevations that are not measured take off range rates is anything from nothing to twice what is assumed, for
+/// all radars alike; each radar's own share is as uncertain.
+inline constexpr double kElevationExcessStd = 0.577;
+
 /// What a sensor that measures no elevation may see: reflectors between the road and the clearance of what is built
 /// over it, the lower the more of them, inside its vertical field of view. What stands above or below the sensor closes
 /// in more slowly than its azimuth says, the nearer the more: far away nothing is high.

@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "services/alignment_estimator/core/filter/small_maths.hpp"
+
 namespace boresight::alignment {
 
 namespace {
@@ -35,10 +37,6 @@ constexpr double kMedianShare = 0.5;
 constexpr double kKept = 0.9, kKeptUnconfirmed = 0.5;
 /// Share of its limit beyond which a sum is a doubt.
 constexpr double kDoubt = 0.5;
-
-double square(double v) {
-  return v * v;
-}
 
 }  // namespace
 

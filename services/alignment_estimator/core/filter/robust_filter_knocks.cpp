@@ -1,0 +1,134 @@
+// What is done about a change of a mounting: suspicion, confirmation by a new start, or following a small one.
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+
+#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/filter/small_maths.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+/// A rotation that is confirmed as a knock is at least this large.
+constexpr double kMinKnock_rad = 0.0044;
+/// Slow mean of a radar's deviation, as a share of what it is now, beyond which it has been growing.
+constexpr double kDriftShare = 0.4;
+
+}  // namespace
+
+RobustFilter::Radar::Earlier RobustFilter::now(std::size_t index) const {
+  const Eigen::Index first = column::of_radar(index);
+  return {state_.sensor_to_vehicle[index],
+          {state_.covariance(first, first), state_.covariance(first + 1, first + 1),
+           state_.covariance(first + 2, first + 2)}};
+}
+
+void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if ((suspicious >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
+    radars_[r].drifted = drifts(r);
+    radars_[r].phase = Phase::kSuspected;
+    radars_[r].suspected_ns = time_ns;
+    radars_[r].before_knock = radars_[r].earlier[0].sensor_to_vehicle;
+    radars_[r].start.clear();
+  }
+}
+
+void RobustFilter::verify(std::size_t index, const StartResult& found, std::int64_t time_ns) {
+  Radar& radar = radars_[index];
+  const Eigen::Index first = column::of_radar(index);
+  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_knock.transpose());
+  // Twice the statistical σ: what inflates a start is for the estimate that follows it, whereas two rotations are
+  // compared here, and a start that is wrong by more only begins anew.
+  Eigen::Matrix3d covariance = 4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) covariance(i, j) += state_.covariance(first + i, first + j);
+  }
+  const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
+  const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
+  const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;
+  if (another) {
+    reopen(index);
+    place(index, found);
+    note_linearised(index);
+    radar.since_start_s = radar.since_earlier_s = 0.0;
+    radar.earlier.fill(now(index));
+    if (!radar.drifted) {
+      radar.knock.time_ns = time_ns;
+      ++radar.knock.count;
+      measure_knock(index);
+    }
+    radar.inlier_ratio = found.inlier_ratio;
+  }
+  radar.phase = Phase::kRunning;
+  forget_deviations(index);
+}
+
+/// A small change needs no new start: from where the estimate was before, turned by what the last window showed, the
+/// data lead it on once its covariance admits the change. About an axis that was not seen to change there may be one as
+/// large that is not seen yet; but roll is seen last, and what else moved with it would have been seen long before.
+void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if ((changed >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
+    Radar& radar = radars_[r];
+    const bool tilted = small_knocks_.changed(r, 1) || small_knocks_.changed(r, 2);
+    double size_squared = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (small_knocks_.changed(r, a)) size_squared += square(small_knocks_.change(r)(static_cast<Eigen::Index>(a)));
+    }
+    // After a change a few seconds ago, what was before is no better.
+    const bool again = radar.since_change_s < static_cast<double>(radar.earlier.size()) * kEarlier_s;
+    const Radar::Earlier before = again ? now(r) : radar.earlier[0];
+    if (tilted) {
+      Eigen::Vector3d turn = geometry::so3_log(before.sensor_to_vehicle * state_.sensor_to_vehicle[r].transpose());
+      for (std::size_t a = 1; a < 3; ++a) {
+        const auto i = static_cast<Eigen::Index>(a);
+        if (small_knocks_.changed(r, a)) turn(i) = small_knocks_.change(r)(i);
+      }
+      state_.sensor_to_vehicle[r] = state_.linearised[r] = geometry::so3_exp(turn) * state_.sensor_to_vehicle[r];
+      radar.since_change_s = 0.0;
+    }
+    for (Eigen::Index i = 0; i < (tilted ? 3 : 1); ++i) {
+      const Eigen::Index row = column::of_radar(r) + i;
+      const double variance = state_.covariance(row, row);
+      const double wanted =
+          std::min(std::max(variance, before.variance(i)) + size_squared, square(config_.prior_rotation_std_rad));
+      state_.add_variance(row, std::max(0.0, wanted - variance));
+    }
+    note_linearised(r);
+    // Sudden or not does not show in roll, for which a window lasts too long.
+    if (tilted && size_squared > square(config_.knock_least_rad) && !drifts(r)) {
+      radar.before_knock = before.sensor_to_vehicle;
+      radar.since_start_s = 0.0;
+      radar.knock.time_ns = time_ns;
+      ++radar.knock.count;
+      measure_knock(r);
+    }
+    radar.earlier.fill(now(r));
+    radar.since_earlier_s = 0.0;
+    forget_deviations(r);
+  }
+}
+
+void RobustFilter::measure_knock(std::size_t index) {
+  Radar& radar = radars_[index];
+  const Eigen::Vector3d turn = geometry::so3_log(state_.sensor_to_vehicle[index] * radar.before_knock.transpose());
+  for (std::size_t i = 0; i < 3; ++i) {
+    radar.knock.rotation_vehicle_rad[i] = static_cast<float>(turn(static_cast<Eigen::Index>(i)));
+  }
+}
+
+/// What grew over a minute is a drift: followed, but not reported as a knock.
+bool RobustFilter::drifts(std::size_t index) const {
+  const Eigen::Vector2d& own = knocks_.deviation(index);
+  return !knocks_.collapsed(index) && own.dot(knocks_.drift(index)) > kDriftShare * own.squaredNorm();
+}
+
+void RobustFilter::forget_deviations(std::size_t index) {
+  knocks_.clear(index);
+  small_knocks_.clear(index);
+}
+
+}  // namespace boresight::alignment

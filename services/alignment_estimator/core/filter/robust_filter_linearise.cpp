@@ -1,0 +1,48 @@
+// Where derivatives are taken (first-estimates Jacobian; Huang, Mourikis and Roumeliotis 2010).
+#include <cmath>
+
+#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/filter/small_maths.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+constexpr double kKnownShare = 0.05, kLinearStep_rad = 5e-4;
+
+}  // namespace
+
+/// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others
+/// whenever the data have halved what is unknown, which noise along an unobservable direction never does.
+void RobustFilter::linearise(std::size_t index) {
+  Eigen::Matrix3d& at = state_.linearised[index];
+  const Eigen::Vector3d off = geometry::so3_log(state_.sensor_to_vehicle[index] * at.transpose());
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index row = column::of_radar(index) + i;
+    const double variance = state_.covariance(row, row);
+    double& before = radars_[index].linearised_variance(i);
+    const bool known = variance < square(kKnownShare * config_.prior_rotation_std_rad);
+    if ((known && std::abs(off(i)) > kLinearStep_rad) || variance < 0.25 * before) {
+      turn(i) = off(i);
+      before = variance;
+    }
+  }
+  const double scale_off = state_.speed_scale - state_.linearised_speed_scale;
+  if (state_.covariance(column::kSpeedScale, column::kSpeedScale) <
+          square(kKnownShare * config_.prior_speed_scale_std) &&
+      std::abs(scale_off) > kLinearStep_rad) {
+    state_.linearised_speed_scale = state_.speed_scale;
+  }
+  if (!turn.isZero()) at = geometry::so3_exp(turn) * at;
+}
+
+void RobustFilter::note_linearised(std::size_t index) {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index row = column::of_radar(index) + i;
+    radars_[index].linearised_variance(i) = state_.covariance(row, row);
+  }
+}
+
+}  // namespace boresight::alignment
