@@ -74,7 +74,8 @@ TEST_F(RealDrive, NeitherPriorNorStartDecide) {
   EXPECT_NEAR(changed([](auto& c) { c.filter.prior_speed_scale_std = 0.1; }), as_it_is.speed_scale, 5e-4);
   EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 1.0; }), as_it_is.speed_scale, 5e-4);
   EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 4.0; }), as_it_is.speed_scale, 5e-4);
-  // The gate does matter, since what passes it is not Gaussian: by what one per mille of the speed and a half is, from 2 to 8 stds.
+  // The gate does matter, since what passes it is not Gaussian: by what one per mille of the speed and a half is, from
+  // 2 to 8 stds.
   EXPECT_NEAR(changed([](auto& c) { c.filter.outlier_gate_sigma = 2.0; }), as_it_is.speed_scale, 1.5e-3);
   EXPECT_NEAR(changed([](auto& c) { c.filter.outlier_gate_sigma = 8.0; }), as_it_is.speed_scale, 1.5e-3);
 }
