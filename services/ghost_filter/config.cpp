@@ -2,8 +2,10 @@
 
 namespace boresight::ghosts {
 
-Config read_config(config::Reader root) {
-  Config c;
+namespace {
+
+published::Config read_published(config::Reader root) {
+  published::Config c;
   config::Reader reflectors = root.table("reflectors");
   c.memory_s = reflectors.number("memory_s", {0.05, 5.0}, c.memory_s);
   c.update_period_s = reflectors.number("update_period_s", {0.0, 1.0}, c.update_period_s);
@@ -21,6 +23,15 @@ Config read_config(config::Reader root) {
   c.type1_margin_m = tests.number("type1_margin_m", {0.0, 20.0}, c.type1_margin_m);
   c.ellipse_margin_m = tests.number("ellipse_margin_m", {0.0, 20.0}, c.ellipse_margin_m);
   c.tracks_max_age_s = tests.number("tracks_max_age_s", {0.05, 10.0}, c.tracks_max_age_s);
+  return c;
+}
+
+}  // namespace
+
+Config read_config(config::Reader root) {
+  Config c;
+  c.method = root.choice<MethodName>("method", {{"published", MethodName::kPublished}}, c.method);
+  c.published = read_published(root.table("published"));
   root.finish();
   return c;
 }

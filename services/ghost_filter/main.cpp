@@ -1,19 +1,19 @@
 // boresight-ghost_filter: corrected scans and the previous step's tracks in, classified scans out.
 #include "services/common/runtime/service_main.hpp"
 #include "services/ghost_filter/config.hpp"
-#include "services/ghost_filter/core/ghost_filter.hpp"
+#include "services/ghost_filter/core/method.hpp"
 
 using namespace boresight;
 
 namespace {
 
 int run(runtime::Node& node, const ghosts::Config& config) {
-  ghosts::GhostFilter filter(config);
+  const std::unique_ptr<ghosts::Method> method = ghosts::make_method(config);
   runtime::Publisher<ClassifiedScan> classified(node);
-  node.on<TrackList>([&](const TrackList& tracks) { filter.add_tracks(tracks); });
+  node.on<TrackList>([&](const TrackList& tracks) { method->add_tracks(tracks); });
   node.on<CorrectedScan>([&](const CorrectedScan& scan) {
     classified.publish_from(scan.header, Stage::kGhostFilter, [&](ClassifiedScan& out) {
-      filter.classify(scan, out);
+      method->classify(scan, out);
       if ((out.flags & (pipeline_flag::kNoTracks | pipeline_flag::kTracksStale)) != 0) {
         node.fault(Fault::kSideInputMissing, "scan without tracks of the previous step: no type-1 test");
       }

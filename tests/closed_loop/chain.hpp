@@ -5,7 +5,7 @@
 
 #include "services/alignment_estimator/core/estimator.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
-#include "services/ghost_filter/core/ghost_filter.hpp"
+#include "services/ghost_filter/core/method.hpp"
 #include "services/tracker/core/tracker.hpp"
 #include "tests/simulator/drive.hpp"
 
@@ -17,7 +17,7 @@ class Chain {
       : vehicle_(vehicle),
         estimator_(vehicle, {}),
         corrector_(vehicle, {}),
-        ghost_filter_(ghosts::Config{}),
+        ghost_filter_(ghosts::make_method({})),
         tracker_(vehicle, tracking::Config{}) {}
 
   /// Takes one event; true if it was a scan, whose results are then in the members below.
@@ -38,10 +38,10 @@ class Chain {
     }
     corrected->header = classified->header = tracks->header = event.scan->header;
     corrector_.correct(*event.scan, *corrected);
-    ghost_filter_.classify(*corrected, *classified);
+    ghost_filter_->classify(*corrected, *classified);
     tracker_.step(*classified);
     tracker_.write(*tracks);
-    ghost_filter_.add_tracks(*tracks);
+    ghost_filter_->add_tracks(*tracks);
     return true;
   }
 
@@ -53,7 +53,7 @@ class Chain {
   VehicleConfig vehicle_;
   alignment::Estimator estimator_;
   corrector::Corrector corrector_;
-  ghosts::GhostFilter ghost_filter_;
+  std::unique_ptr<ghosts::Method> ghost_filter_;
   tracking::Tracker tracker_;
   std::uint64_t estimates_ = 0;
 };

@@ -1,34 +1,17 @@
-#include "services/ghost_filter/core/ghost_filter.hpp"
+#include "services/ghost_filter/core/published/filter.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "services/common/geometry/ego_step.hpp"
+#include "services/ghost_filter/core/pass_on.hpp"
 
-namespace boresight::ghosts {
+namespace boresight::ghosts::published {
 
 namespace {
 
 constexpr float kGhost = 0.95F;
 constexpr float kReal = 0.05F;
-
-void copy_columns(const CorrectedScan& scan, std::size_t count, ClassifiedScan& out) {
-  const auto copy = [count](const DetectionColumn<float>& from, DetectionColumn<float>& to) {
-    std::memcpy(to.data(), from.data(), count * sizeof(float));
-  };
-  copy(scan.x_vehicle_m, out.x_vehicle_m);
-  copy(scan.y_vehicle_m, out.y_vehicle_m);
-  copy(scan.z_vehicle_m, out.z_vehicle_m);
-  copy(scan.range_m, out.range_m);
-  copy(scan.azimuth_vehicle_rad, out.azimuth_vehicle_rad);
-  copy(scan.range_rate_over_ground_mps, out.range_rate_over_ground_mps);
-  copy(scan.rcs_dbsm, out.rcs_dbsm);
-  copy(scan.range_std_m, out.range_std_m);
-  copy(scan.azimuth_std_rad, out.azimuth_std_rad);
-  copy(scan.range_rate_std_mps, out.range_rate_std_mps);
-  std::memcpy(out.detection_flags.data(), scan.detection_flags.data(), count * sizeof(std::uint16_t));
-}
 
 Eigen::Vector2d point(const std::array<float, 2>& p) {
   return {p[0], p[1]};
@@ -36,10 +19,9 @@ Eigen::Vector2d point(const std::array<float, 2>& p) {
 
 }  // namespace
 
-GhostFilter::GhostFilter(const Config& config)
-    : config_(config), finder_(config), tracks_(std::make_unique<TrackList>()) {}
+Filter::Filter(const Config& config) : config_(config), finder_(config), tracks_(std::make_unique<TrackList>()) {}
 
-void GhostFilter::add_tracks(const TrackList& tracks) {
+void Filter::add_tracks(const TrackList& tracks) {
   // Only what is used: the whole capacity would be copied for a handful of tracks.
   tracks_->header = tracks.header;
   tracks_->number_of_tracks = std::min<std::uint32_t>(tracks.number_of_tracks, kMaxTracks);
@@ -47,7 +29,7 @@ void GhostFilter::add_tracks(const TrackList& tracks) {
   has_tracks_ = true;
 }
 
-void GhostFilter::predict_tracks(const CorrectedScan& scan) {
+void Filter::predict_tracks(const CorrectedScan& scan) {
   number_of_ellipses_ = 0;
   const double elapsed_s =
       static_cast<double>(scan.header.measurement_time_ns - tracks_->header.measurement_time_ns) * 1e-9;
@@ -66,14 +48,10 @@ void GhostFilter::predict_tracks(const CorrectedScan& scan) {
   }
 }
 
-GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const {
+Filter::Verdict Filter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const {
   const Eigen::Vector2d sight = position - sensor;
   const double range = sight.norm();
   if (range < 1e-3) return {Provenance::kMoving, kReal};
-  // A detection of an object that is tracked already is that object.
-  for (std::size_t i = 0; i < number_of_ellipses_; ++i) {
-    if (geometry::contains(ellipses_[i], position)) return {Provenance::kMoving, kReal};
-  }
   for (std::size_t i = 0; i < number_of_segments_; ++i) {
     const ReflectorSegment& segment = segments_[i];
     const auto share =
@@ -87,7 +65,7 @@ GhostFilter::Verdict GhostFilter::judge_moving(const Eigen::Vector2d& sensor, co
   return {Provenance::kMoving, kReal};
 }
 
-void GhostFilter::update_segments(const CorrectedScan& scan, std::size_t count) {
+void Filter::update_segments(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   map_.advance(time_ns, scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, config_.memory_s);
   for (std::size_t i = 0; i < count; ++i) {
@@ -118,15 +96,8 @@ void GhostFilter::update_segments(const CorrectedScan& scan, std::size_t count) 
   segments_time_ns_ = time_ns;
 }
 
-void GhostFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
-  const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
-  out.number_of_valid_detections = static_cast<std::uint32_t>(count);
-  out.fields = scan.fields;
-  out.flags = scan.flags;
-  out.geometry = scan.geometry;
-  out.reserved = {};
-  copy_columns(scan, count, out);
-
+void Filter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+  const std::size_t count = pass_on(scan, out);
   update_segments(scan, count);
   std::copy_n(segments_.begin(), number_of_segments_, out.reflector_segments.begin());
   out.number_of_reflector_segments = static_cast<std::uint32_t>(number_of_segments_);
@@ -156,4 +127,4 @@ void GhostFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
 }
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace boresight::ghosts {
+namespace boresight::ghosts::published {
 
 class StationaryMap {
  public:
@@ -27,4 +27,4 @@ class StationaryMap {
   std::int64_t now_ns_ = 0;
 };
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published

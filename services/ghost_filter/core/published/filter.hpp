@@ -1,4 +1,6 @@
-// Which detections are real: the published two tests (Report B §2) on reflector segments and predicted tracks.
+// The published method (Report B), the baseline that others are compared with: a moving detection whose line of sight
+// crosses a reflector segment is a type-2 ghost, one whose line of sight crosses a predicted track a type-1 ghost. It
+// asks for no mirrored object, knows no clutter, and does not spare what is tracked behind a rail.
 #pragma once
 
 #include <memory>
@@ -7,21 +9,19 @@
 #include "interfaces/messages/corrected_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
 #include "services/common/geometry/segment.hpp"
-#include "services/ghost_filter/core/config.hpp"
-#include "services/ghost_filter/core/reflectors.hpp"
-#include "services/ghost_filter/core/stationary_map.hpp"
+#include "services/ghost_filter/core/method.hpp"
+#include "services/ghost_filter/core/published/config.hpp"
+#include "services/ghost_filter/core/published/reflectors.hpp"
+#include "services/ghost_filter/core/published/stationary_map.hpp"
 
-namespace boresight::ghosts {
+namespace boresight::ghosts::published {
 
-class GhostFilter {
+class Filter final : public Method {
  public:
-  explicit GhostFilter(const Config& config);
+  explicit Filter(const Config& config);
 
-  /// The tracks of the previous step.
-  void add_tracks(const TrackList& tracks);
-
-  /// Writes everything of `out` but the header.
-  void classify(const CorrectedScan& scan, ClassifiedScan& out);
+  void add_tracks(const TrackList& tracks) override;
+  void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
 
  private:
   struct Verdict {
@@ -45,4 +45,4 @@ class GhostFilter {
   std::size_t number_of_ellipses_ = 0;
 };
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published

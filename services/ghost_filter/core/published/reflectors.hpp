@@ -10,10 +10,10 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/common/geometry/dbscan.hpp"
-#include "services/ghost_filter/core/cell_means.hpp"
-#include "services/ghost_filter/core/config.hpp"
+#include "services/ghost_filter/core/published/cell_means.hpp"
+#include "services/ghost_filter/core/published/config.hpp"
 
-namespace boresight::ghosts {
+namespace boresight::ghosts::published {
 
 class ReflectorFinder {
  public:
@@ -37,4 +37,4 @@ class ReflectorFinder {
   std::size_t number_of_segments_ = 0;
 };
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published

@@ -1,11 +1,11 @@
-#include "services/ghost_filter/core/reflectors.hpp"
+#include "services/ghost_filter/core/published/reflectors.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/ghost_filter/core/stationary_map.hpp"
+#include "services/ghost_filter/core/published/stationary_map.hpp"
 
-namespace boresight::ghosts {
+namespace boresight::ghosts::published {
 
 namespace {
 
@@ -116,4 +116,4 @@ void ReflectorFinder::add(const ReflectorSegment& segment) {
   if (length_of(*shortest) < length_of(segment)) *shortest = segment;
 }
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published

@@ -1,8 +1,8 @@
-#include "services/ghost_filter/core/stationary_map.hpp"
+#include "services/ghost_filter/core/published/stationary_map.hpp"
 
 #include "services/common/geometry/ego_step.hpp"
 
-namespace boresight::ghosts {
+namespace boresight::ghosts::published {
 
 StationaryMap::StationaryMap() {
   points_.reserve(kCapacity);
@@ -39,4 +39,4 @@ void StationaryMap::add(const Eigen::Vector2d& position_m) {
   times_ns_.push_back(now_ns_);
 }
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published
