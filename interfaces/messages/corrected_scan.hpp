@@ -54,7 +54,11 @@ struct CorrectedScan {
   std::uint32_t cycle_counter;       ///< of the RadarScan
   std::uint64_t alignment_sequence;  ///< header.sequence of the estimate used; 0 if none
   ScanGeometry geometry;
-  std::uint64_t reserved;
+  /// Of the turn by which `geometry.sensor_to_vehicle` may be wrong, about the vehicle's axes: xx, xy, xz, yy, yz, zz
+  /// in rad². Common to all detections of the radar, on top of their own stds.
+  std::array<float, 6> mounting_covariance_rad2;
+  float speed_scale_std;  ///< by which `geometry.speed_scale` may be wrong
+  std::array<std::uint32_t, 4> reserved;
 
   DetectionColumn<float> x_vehicle_m;
   DetectionColumn<float> y_vehicle_m;

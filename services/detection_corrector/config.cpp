@@ -25,9 +25,15 @@ Config read_config(config::Reader root) {
   c.rcs_near_dbsm = rcs.number("near_dbsm", {-100.0, 100.0}, c.rcs_near_dbsm);
   c.rcs_slope_db_per_decade = rcs.number("slope_db_per_decade", {-100.0, 100.0}, c.rcs_slope_db_per_decade);
   config::Reader moving = root.table("moving");
-  c.moving_base_mps = moving.number("base_mps", {0.0, 10.0}, c.moving_base_mps);
-  c.moving_per_speed = moving.number("per_speed", {0.0, 1.0}, c.moving_per_speed);
-  c.moving_sigma = moving.number("sigma", {0.0, 20.0}, c.moving_sigma);
+  c.moving_sigma = moving.number("sigma", {0.5, 20.0}, c.moving_sigma);
+  c.body_motion_std_mps = moving.number("body_motion_std_mps", {0.0, 10.0}, c.body_motion_std_mps);
+  c.azimuth_std_edge = moving.number("azimuth_std_edge", {0.01, 1.0}, c.azimuth_std_edge);
+  config::Reader unknown = root.table("unknown");
+  c.unknown_rotation_std_rad = unknown.angle_deg("rotation_std_deg", {0.0, 20.0}, c.unknown_rotation_std_rad);
+  c.unknown_speed_scale_std = unknown.number("speed_scale_std", {0.0, 0.5}, c.unknown_speed_scale_std);
+  c.unknown_yaw_rate_bias_std_radps =
+      unknown.angle_deg("yaw_rate_bias_std_deg", {0.0, 10.0}, c.unknown_yaw_rate_bias_std_radps);
+  c.unknown_slip_std_radps2pm = unknown.number("slip_std", {0.0, 0.1}, c.unknown_slip_std_radps2pm);
   config::Reader side = root.table("side_inputs");
   c.max_angle_std_to_apply_rad = side.angle_deg("max_angle_std_deg", {0.001, 10.0}, c.max_angle_std_to_apply_rad);
   c.max_speed_scale_std_to_apply = side.number("max_speed_scale_std", {1e-5, 1.0}, c.max_speed_scale_std_to_apply);

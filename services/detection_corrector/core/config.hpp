@@ -13,13 +13,21 @@ struct Config {
   /// must reflect more to be real than what is far, since multipath and noise are near (Report D).
   double rcs_near_dbsm = -25.0;
   double rcs_slope_db_per_decade = 0.0;
-  /// Moving if |range rate over ground| exceeds base + per_speed · |v| + sigma · std of the prediction.
-  double moving_base_mps = 0.25;
-  double moving_per_speed = 0.01;
-  double moving_sigma = 3.0;
+  /// Moving if |range rate over ground| exceeds this many stds of what stands still would have.
+  double moving_sigma = 4.0;
+  /// What no input's std holds: heave, pitching and rolling of the body, age of the ego motion, as range rate.
+  double body_motion_std_mps = 0.06;
+  /// An azimuth std that the sensor does not state grows as 1/max(cos azimuth, this): an antenna's aperture shrinks
+  /// with the cosine. As the alignment estimator has it.
+  double azimuth_std_edge = 0.35;
   /// An angle of the estimate is applied once its std is below this.
   double max_angle_std_to_apply_rad = 0.00873;  // 0.5°
   double max_speed_scale_std_to_apply = 0.02;
+  /// How wrong mounting, speed signal and motion may be of which no estimate says anything, 1 sigma.
+  double unknown_rotation_std_rad = 0.01745;  // 1°
+  double unknown_speed_scale_std = 0.01;
+  double unknown_yaw_rate_bias_std_radps = 0.0035;  // 0.2°/s
+  double unknown_slip_std_radps2pm = 0.003;         // of the rear axle, rad per m/s²
   double alignment_max_age_s = 2.0;
   double ego_max_age_s = 0.2;
 };

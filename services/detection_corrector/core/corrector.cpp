@@ -6,26 +6,36 @@
 #include <Eigen/Core>
 
 #include "services/common/geometry/frames.hpp"
+#include "services/detection_corrector/core/ego_velocity.hpp"
+#include "services/detection_corrector/core/stationary_test.hpp"
 
 namespace boresight::corrector {
 
 namespace {
 
-void write_geometry(const RadarConfig& radar, const Mounting& mounting, const EgoSample& ego, ScanGeometry& out) {
-  const Eigen::Vector3d velocity = geometry::sensor_velocity(mounting.speed_scale, ego.speed_mps, ego.yaw_rate_radps,
-                                                             radar.mounting_pose.position_m);
+/// Without compensation the vehicle's motion is written as none.
+void write_geometry(const RadarConfig& radar, const Mounting& mounting, const EgoSample& ego,
+                    const EgoVelocity& velocity, CorrectedScan& scan) {
+  ScanGeometry& out = scan.geometry;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     out.sensor_position_vehicle_m[k] = static_cast<float>(radar.mounting_pose.position_m[k]);
-    out.sensor_velocity_vehicle_mps[k] = static_cast<float>(velocity(i));
+    out.sensor_velocity_vehicle_mps[k] = static_cast<float>(velocity.sensor_mps(i));
   }
   Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(out.sensor_to_vehicle.data()) =
       mounting.sensor_to_vehicle.cast<float>();
   out.speed_scale = static_cast<float>(mounting.speed_scale);
-  out.ego_speed_mps = static_cast<float>(mounting.speed_scale * ego.speed_mps);
+  out.ego_speed_mps = static_cast<float>(velocity.speed_mps);
   out.ego_speed_std_mps = static_cast<float>(ego.speed_std_mps);
-  out.ego_yaw_rate_radps = static_cast<float>(ego.yaw_rate_radps);
+  out.ego_yaw_rate_radps = static_cast<float>(velocity.yaw_rate_radps);
   out.ego_yaw_rate_std_radps = static_cast<float>(ego.yaw_rate_std_radps);
+  std::size_t next = 0;
+  for (Eigen::Index row = 1; row < 4; ++row) {
+    for (Eigen::Index column = row; column < 4; ++column) {
+      scan.mounting_covariance_rad2[next++] = static_cast<float>(mounting.covariance(row, column));
+    }
+  }
+  scan.speed_scale_std = static_cast<float>(std::sqrt(mounting.covariance(0, 0)));
 }
 
 bool is_inside(const Eigen::Vector3d& position, const Config& config) {
@@ -43,7 +53,11 @@ float known_or(bool stated, float value, double fallback) {
 }  // namespace
 
 Corrector::Corrector(const VehicleConfig& vehicle, const Config& config)
-    : vehicle_(vehicle), config_(config), ego_(static_cast<std::int64_t>(config.ego_max_age_s * 1e9)) {}
+    : vehicle_(vehicle), config_(config), ego_(static_cast<std::int64_t>(config.ego_max_age_s * 1e9)) {
+  for (const RadarConfig& radar : vehicle_.radars) {
+    unknown_elevations_.emplace_back(radar, config_.unknown_rotation_std_rad);
+  }
+}
 
 bool Corrector::add_alignment(const AlignmentEstimate& estimate) {
   const std::uint32_t id = estimate.header.source_id;
@@ -62,9 +76,11 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
   out.fields = scan.fields;
   out.flags = 0;
   out.cycle_counter = scan.cycle_counter;
-  out.reserved = 0;
+  out.reserved = {};
   out.alignment_sequence = 0;
   out.geometry = {};
+  out.mounting_covariance_rad2 = {};
+  out.speed_scale_std = 0.0F;
   if (radar == nullptr) return;
 
   const std::int64_t time_ns = scan.header.measurement_time_ns;
@@ -82,19 +98,17 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
   if (!ego.valid) out.flags |= pipeline_flag::kNoEgoMotion;
   if (ego.valid && ego.stale) out.flags |= pipeline_flag::kEgoMotionStale;
   if (!scan.has(scan_field::kElevation)) out.flags |= pipeline_flag::kNoElevation;
-  write_geometry(*radar, mounting, compensates ? ego : EgoSample{}, out.geometry);
+  const EgoVelocity motion = compensates ? ego_velocity(ego, vehicle_.ego, radar->mounting_pose, mounting)
+                                         : EgoVelocity{0.0, 0.0, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
+  write_geometry(*radar, mounting, compensates ? ego : EgoSample{}, motion, out);
 
   const bool has_elevation = scan.has(scan_field::kElevation);
   const bool has_stds = scan.has(scan_field::kStds);
   const bool has_rcs = scan.has(scan_field::kRcs);
   const Eigen::Matrix3d& rotation = mounting.sensor_to_vehicle;
   const Eigen::Vector3d origin(radar->mounting_pose.position_m.data());
-  const Eigen::Vector3d velocity = compensates
-                                       ? geometry::sensor_velocity(mounting.speed_scale, ego.speed_mps,
-                                                                   ego.yaw_rate_radps, radar->mounting_pose.position_m)
-                                       : Eigen::Vector3d::Zero();
-  const double threshold_mps =
-      config_.moving_base_mps + config_.moving_per_speed * std::abs(mounting.speed_scale * ego.speed_mps);
+  const UnknownElevation& unknown = unknown_elevations_[static_cast<std::size_t>(radar - vehicle_.radars.data())];
+  const StationaryTest stationary(motion, mounting, has_elevation ? nullptr : &unknown, config_);
 
   for (std::size_t i = 0; i < count; ++i) {
     const float elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
@@ -111,7 +125,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
     const double ce = std::cos(finite ? elevation : 0.0F), se = std::sin(finite ? elevation : 0.0F);
     const Eigen::Vector3d direction = rotation * Eigen::Vector3d(ce * ca, ce * sa, se);
     const Eigen::Vector3d position = origin + range * direction;
-    const double over_ground = range_rate - geometry::stationary_range_rate(direction, velocity);
+    const double over_ground = range_rate - geometry::stationary_range_rate(direction, motion.sensor_mps);
 
     out.x_vehicle_m[i] = static_cast<float>(position.x());
     out.y_vehicle_m[i] = static_cast<float>(position.y());
@@ -140,15 +154,20 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
     }
     // An aliased range rate is never believed: it says neither moving nor stationary.
     if (compensates && (flags & (corrected_flag::kInvalid | corrected_flag::kAmbiguous)) == 0) {
-      // How wrong the prediction may be because of the noise of angles and range rate.
-      const double by_azimuth =
-          velocity.dot(rotation * Eigen::Vector3d(-ce * sa, ce * ca, 0.0)) * static_cast<double>(azimuth_std);
-      const double by_elevation =
-          velocity.dot(rotation * Eigen::Vector3d(-se * ca, -se * sa, ce)) * static_cast<double>(elevation_std);
-      const double std_mps = std::sqrt(by_azimuth * by_azimuth + by_elevation * by_elevation +
-                                       static_cast<double>(range_rate_std * range_rate_std));
-      const bool moving = std::abs(over_ground) > threshold_mps + config_.moving_sigma * std_mps;
-      flags |= moving ? corrected_flag::kMoving : corrected_flag::kStationary;
+      // An azimuth std that the sensor does not state is that of its boresight.
+      const bool states_azimuth = has_stds && azimuth_std == scan.azimuth_std_rad[i];
+      const double widening = states_azimuth ? 1.0 : 1.0 / std::max(ca, config_.azimuth_std_edge);
+      const Sight sight{direction,
+                        ca,
+                        sa,
+                        ce,
+                        se,
+                        range,
+                        over_ground,
+                        widening * static_cast<double>(azimuth_std),
+                        static_cast<double>(elevation_std),
+                        static_cast<double>(range_rate_std)};
+      flags |= stationary.passes(sight) ? corrected_flag::kStationary : corrected_flag::kMoving;
     }
     out.detection_flags[i] = flags;
   }

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "interfaces/messages/alignment_estimate.hpp"
 #include "interfaces/messages/corrected_scan.hpp"
 #include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/estimation/ego_history.hpp"
+#include "services/common/estimation/unknown_elevation.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/detection_corrector/core/config.hpp"
 #include "services/detection_corrector/core/mounting.hpp"
@@ -39,6 +41,7 @@ class Corrector {
   VehicleConfig vehicle_;
   Config config_;
   EgoHistory ego_;
+  std::vector<UnknownElevation> unknown_elevations_;  // of the vehicle's radars, in their order
   std::array<Latest, kMaxRadars + 1> alignment_{};
 };
 

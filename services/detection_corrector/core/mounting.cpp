@@ -12,58 +12,108 @@ namespace boresight::corrector {
 
 namespace {
 
-/// Of the turn about the vehicle's x, y, z axes, what is observable and sure; zero if that is nothing.
-Eigen::Vector3d sure_turn(const AlignmentEstimate& estimate, double max_std_rad) {
-  const Eigen::Vector3d turn(estimate.vehicle_roll_rad, -estimate.vehicle_pitch_rad, estimate.vehicle_yaw_rad);
-  // Rows of the message's covariance are k_v, yaw, pitch, roll; those of the turn about x, y, z are roll, −pitch, yaw.
-  constexpr std::array<std::size_t, 3> kRow{3, 2, 1};
-  constexpr std::array<double, 3> kSign{1.0, -1.0, 1.0};
-  constexpr std::array<std::uint32_t, 3> kAxis{alignment_axis::kVehicleRoll, alignment_axis::kVehiclePitch,
-                                               alignment_axis::kVehicleYaw};
-  Eigen::Matrix3d covariance;
-  for (Eigen::Index r = 0; r < 3; ++r) {
-    for (Eigen::Index c = 0; c < 3; ++c) {
+constexpr std::size_t kSize = kNumberOfAlignmentParameters;
+
+/// Errors k_v and turn about the vehicle's x, y, z; those of the message are k_v, yaw, pitch, roll, of which the turn's
+/// x, y, z are roll, −pitch, yaw.
+Eigen::Matrix4d covariance_of(const AlignmentEstimate& estimate) {
+  constexpr std::array<std::size_t, kSize> kRow{0, 3, 2, 1};
+  constexpr std::array<double, kSize> kSign{1.0, 1.0, -1.0, 1.0};
+  Eigen::Matrix4d covariance;
+  for (Eigen::Index r = 0; r < 4; ++r) {
+    for (Eigen::Index c = 0; c < 4; ++c) {
       const auto i = static_cast<std::size_t>(r), k = static_cast<std::size_t>(c);
-      covariance(r, c) =
-          kSign[i] * kSign[k] * estimate.vehicle_covariance[kRow[i] * kNumberOfAlignmentParameters + kRow[k]];
+      covariance(r, c) = kSign[i] * kSign[k] * estimate.vehicle_covariance[kRow[i] * kSize + kRow[k]];
     }
   }
-  if (!turn.allFinite() || !covariance.allFinite() || covariance.diagonal().minCoeff() < 0.0) {
-    return Eigen::Vector3d::Zero();
-  }
+  return covariance;
+}
+
+/// Splits the turn along the principal axes of `covariance`: what is observable and sure is applied, the rest is left
+/// and widens the covariance, since the truth lies about the estimate and not about what is applied.
+struct Split {
+  Eigen::Vector3d applied = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
+};
+Split split(const Eigen::Vector3d& turn, Eigen::Matrix3d covariance, const AlignmentEstimate& estimate,
+            double max_std_rad) {
+  constexpr std::array<std::uint32_t, 3> kAxis{alignment_axis::kVehicleRoll, alignment_axis::kVehiclePitch,
+                                               alignment_axis::kVehicleYaw};
   // An axis that is not observable may be off by anything, whatever its row says.
   constexpr double kAnything = 10.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) covariance(i, i) += kAnything;
   }
+  Split out;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(covariance);
-  if (parts.info() != Eigen::Success) return Eigen::Vector3d::Zero();
-  Eigen::Vector3d sure = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    if (parts.eigenvalues()(i) > max_std_rad * max_std_rad) continue;
-    sure += parts.eigenvectors().col(i) * parts.eigenvectors().col(i).dot(turn);
+  if (parts.info() == Eigen::Success) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (parts.eigenvalues()(i) > max_std_rad * max_std_rad) continue;
+      out.applied += parts.eigenvectors().col(i) * parts.eigenvectors().col(i).dot(turn);
+    }
   }
-  return sure;
+  Eigen::Vector3d rest = turn - out.applied;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) rest(i) = 0.0;  // a prior's value says nothing
+  }
+  out.left = rest * rest.transpose();
+  return out;
+}
+
+/// Applies what the estimate says of yaw-rate bias and slip, where it says anything.
+void add_motion(const AlignmentEstimate& estimate, Mounting& mounting) {
+  const auto known = [&](std::uint32_t axis, float value, float std) {
+    return estimate.is_observable(axis) && std::isfinite(value) && std::isfinite(std) && std >= 0.0F;
+  };
+  if (known(alignment_axis::kYawRateBias, estimate.yaw_rate_bias_radps, estimate.yaw_rate_bias_std_radps)) {
+    mounting.yaw_rate_bias_radps = estimate.yaw_rate_bias_radps;
+    mounting.yaw_rate_bias_variance = std::pow(estimate.yaw_rate_bias_std_radps, 2);
+  }
+  if (known(alignment_axis::kSlip, estimate.slip_coefficient_radps2pm, estimate.slip_coefficient_std_radps2pm)) {
+    mounting.slip_coefficient_radps2pm = estimate.slip_coefficient_radps2pm;
+    mounting.slip_variance = std::pow(estimate.slip_coefficient_std_radps2pm, 2);
+  }
 }
 
 }  // namespace
 
 Mounting mounting_of(const RadarConfig& radar, const AlignmentEstimate* estimate, const Config& config) {
+  const auto square = [](double x) { return x * x; };
   Mounting mounting;
   mounting.sensor_to_vehicle = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
+  const double rotation_variance = square(config.unknown_rotation_std_rad);
+  mounting.covariance =
+      Eigen::Vector4d(square(config.unknown_speed_scale_std), rotation_variance, rotation_variance, rotation_variance)
+          .asDiagonal();
+  mounting.yaw_rate_bias_variance = square(config.unknown_yaw_rate_bias_std_radps);
+  mounting.slip_variance = square(config.unknown_slip_std_radps2pm);
   if (estimate == nullptr) return mounting;
-  const double scale_variance = estimate->covariance[0];
-  const double max_std = config.max_speed_scale_std_to_apply;
-  if (estimate->is_observable(alignment_axis::kSpeedScale) && std::isfinite(estimate->speed_scale) &&
-      scale_variance >= 0.0 && scale_variance <= max_std * max_std) {
+
+  const Eigen::Vector3d turn(estimate->vehicle_roll_rad, -estimate->vehicle_pitch_rad, estimate->vehicle_yaw_rad);
+  const Eigen::Matrix4d covariance = covariance_of(*estimate);
+  if (!turn.allFinite() || !std::isfinite(estimate->speed_scale) || !covariance.allFinite() ||
+      covariance.diagonal().minCoeff() < 0.0) {
+    return mounting;
+  }
+  mounting.covariance = covariance;
+  if (estimate->is_observable(alignment_axis::kSpeedScale) &&
+      covariance(0, 0) <= square(config.max_speed_scale_std_to_apply)) {
     mounting.speed_scale = estimate->speed_scale;
     mounting.alignment_sequence = estimate->header.sequence;
+  } else {
+    mounting.covariance(0, 0) += square(estimate->speed_scale - 1.0);
   }
-  const Eigen::Vector3d turn = sure_turn(*estimate, config.max_angle_std_to_apply_rad);
-  if (!turn.isZero(0.0)) {
+  const Split parts = split(turn, covariance.bottomRightCorner<3, 3>(), *estimate, config.max_angle_std_to_apply_rad);
+  mounting.covariance.bottomRightCorner<3, 3>() += parts.left;
+  if (!parts.applied.isZero(0.0)) {
     mounting.sensor_to_vehicle =
-        geometry::fixed_axes_rotation(turn.z(), -turn.y(), turn.x()) * mounting.sensor_to_vehicle;
+        geometry::fixed_axes_rotation(parts.applied.z(), -parts.applied.y(), parts.applied.x()) *
+        mounting.sensor_to_vehicle;
     mounting.alignment_sequence = estimate->header.sequence;
+  }
+  add_motion(*estimate, mounting);
+  if (std::isfinite(estimate->angle_noise_scale) && estimate->angle_noise_scale > 0.0F) {
+    mounting.angle_noise_scale = estimate->angle_noise_scale;
   }
   return mounting;
 }

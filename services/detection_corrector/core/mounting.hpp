@@ -1,4 +1,4 @@
-// The mounting of a radar as far as it is known: nominal, plus what the alignment estimate is sure of.
+// The mounting of a radar and what else the alignment estimate knows, as far as it is sure, and how wrong that may be.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,14 @@ namespace boresight::corrector {
 struct Mounting {
   Eigen::Matrix3d sensor_to_vehicle;
   double speed_scale = 1.0;
+  double yaw_rate_bias_radps = 0.0;        ///< signalled = true + bias
+  double slip_coefficient_radps2pm = 0.0;  ///< c of V_y = −c·V·(V·ω)
+  double angle_noise_scale = 1.0;          ///< of the angles' stds, as they really are
+  /// Of errors that are left: k_v, then the turn about the vehicle's x, y, z (left error, Exp(θ)·R); 1 and rad. What is
+  /// estimated but not applied is in it as it would have been applied: E[θθᵀ] about the nominal mounting.
+  Eigen::Matrix4d covariance;
+  double yaw_rate_bias_variance = 0.0;
+  double slip_variance = 0.0;
   std::uint64_t alignment_sequence = 0;  ///< 0: nothing applied
 };
 

@@ -146,26 +146,46 @@ TEST_F(CorrectorTest, WhatStandsStillHasNoRangeRateOverGround) {
   }
 }
 
-TEST_F(CorrectorTest, MovingThresholdGrowsWithSpeedAndNoise) {
+TEST_F(CorrectorTest, MovingThresholdByHand) {
+  // Straight ahead at 10 m/s with k_v known to 0.001, ego speed to 0.03 and range rates to 0.03 m/s: angles do not
+  // count.
   const Config config;
-  const double threshold_10 = config.moving_base_mps + config.moving_per_speed * 10.0 + config.moving_sigma * 0.03;
+  const double std = std::sqrt(0.03 * 0.03 + 0.03 * 0.03 + 0.01 * 0.01 + std::pow(config.body_motion_std_mps, 2));
+  const double threshold = config.moving_sigma * std;
   Corrector corrector(one_radar(), config);
+  ASSERT_TRUE(corrector.add_alignment(estimate(0.0, 1.0)));
   corrector.add_ego_motion(ego(10.0F, 0.0F));
-  add(50.0, 0.0, 0.0, -10.0 + threshold_10 - 0.02);
-  add(50.0, 0.0, 0.0, -10.0 + threshold_10 + 0.02);
-  add(50.0, 0.0, 0.0, -10.0 - threshold_10 - 0.02);
-  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold_10 + 0.02);  // here the azimuth's noise counts as well
+  add(50.0, 0.0, 0.0, -10.0 + threshold - 0.01);
+  add(50.0, 0.0, 0.0, -10.0 + threshold + 0.01);
+  add(50.0, 0.0, 0.0, -10.0 - threshold - 0.01);
+  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold + 0.01);  // here the azimuth's noise counts as well
   corrector.correct(*scan_, *out_);
   EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kMoving);
   EXPECT_TRUE(out_->detection_flags[2] & corrected_flag::kMoving);
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kStationary);
-  Corrector faster(one_radar(), config);
-  faster.add_ego_motion(ego(30.0F, 0.0F));
-  scan_->number_of_valid_detections = 0;
-  add(50.0, 0.0, 0.0, -30.0 + threshold_10 + 0.02);
-  faster.correct(*scan_, *out_);
-  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
+  // The covariance of what is left of the mounting goes on.
+  EXPECT_NEAR(out_->speed_scale_std, 1e-3, 1e-6);
+  EXPECT_NEAR(out_->mounting_covariance_rad2[5], 1e-7, 1e-9);
+  EXPECT_NEAR(out_->mounting_covariance_rad2[3], 0.005, 1e-6);
+}
+
+TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreTakenOut) {
+  Corrector corrector(one_radar(), Config{});
+  AlignmentEstimate e = estimate(0.0, 1.0);
+  e.observable |= alignment_axis::kYawRateBias | alignment_axis::kSlip;
+  e.yaw_rate_bias_radps = 0.02F;
+  e.slip_coefficient_radps2pm = 0.004F;
+  e.yaw_rate_bias_std_radps = e.slip_coefficient_std_radps2pm = 1e-4F;
+  ASSERT_TRUE(corrector.add_alignment(e));
+  corrector.add_ego_motion(ego(20.0F, 0.22F));
+  // True yaw rate 0.2 rad/s: the sensor moves by 20 + 0.2·0.7 ahead and 0.2·3.6 − 0.004·400·0.2 to the left.
+  add(50.0, 0.0, 0.0, -20.14);
+  add(50.0, 90.0 * kDegree, 0.0, -0.4);
+  corrector.correct(*scan_, *out_);
+  EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-4);
+  EXPECT_NEAR(out_->range_rate_over_ground_mps[1], 0.0, 1e-4);
+  EXPECT_NEAR(out_->geometry.ego_yaw_rate_radps, 0.2, 1e-6);
 }
 
 TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {

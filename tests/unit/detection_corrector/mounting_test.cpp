@@ -110,6 +110,23 @@ TEST(Mounting, WithoutAnEstimateItIsTheNominalOne) {
   EXPECT_EQ(mounting.sensor_to_vehicle, geometry::sensor_to_vehicle(r.mounting_pose, 0.0, 0.0, 0.0));
   EXPECT_EQ(mounting.alignment_sequence, 0u);
   EXPECT_EQ(mounting.speed_scale, 1.0);
+  EXPECT_NEAR(mounting.covariance(3, 3), std::pow(Config{}.unknown_rotation_std_rad, 2), 1e-12);
+}
+
+TEST(Mounting, WhatIsLeftOutWidensTheCovariance) {
+  // About x it is unsure: the truth lies 1.5° ± 4° from the nominal mounting there, and as it is known elsewhere.
+  const RadarConfig r = radar(45.0);
+  AlignmentEstimate e = estimate(r, stds(4.0, 0.1, 0.02), kAll);
+  e.vehicle_covariance[0] = 4e-4F;
+  e.observable |= alignment_axis::kSpeedScale;
+  Config config;
+  config.max_speed_scale_std_to_apply = 0.01;  // 0.02 is not sure enough: 1.01 is not applied
+  const Mounting mounting = mounting_of(r, &e, config);
+  EXPECT_NEAR(mounting.covariance(1, 1), (16.0 + 2.25) * kDegree * kDegree, 1e-6);
+  EXPECT_NEAR(mounting.covariance(2, 2), 0.01 * kDegree * kDegree, 1e-7);
+  EXPECT_NEAR(mounting.covariance(3, 3), 0.0004 * kDegree * kDegree, 1e-9);
+  EXPECT_NEAR(mounting.covariance(0, 0), 4e-4 + 1e-4, 1e-7);
+  EXPECT_EQ(mounting.speed_scale, 1.0);
 }
 
 }  // namespace

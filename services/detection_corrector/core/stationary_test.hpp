@@ -1,0 +1,71 @@
+// Whether what a detection says of its motion is what something that stands still could have said.
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "services/common/estimation/unknown_elevation.hpp"
+#include "services/detection_corrector/core/config.hpp"
+#include "services/detection_corrector/core/ego_velocity.hpp"
+#include "services/detection_corrector/core/mounting.hpp"
+
+namespace boresight::corrector {
+
+/// A detection as the test needs it.
+struct Sight {
+  Eigen::Vector3d direction;                                      ///< unit vector, vehicle axes
+  double cos_azimuth, sin_azimuth, cos_elevation, sin_elevation;  ///< in the sensor's frame
+  double range_m;
+  double range_rate_over_ground_mps;
+  double azimuth_std_rad, elevation_std_rad, range_rate_std_mps;
+};
+
+/// For the detections of one scan. The threshold is `moving_sigma` stds of the range rate over ground of what stands
+/// still: of the range rate, of the angles by the derivative of (R u)·v_s, of motion and mounting, and of the body's
+/// motion; no constant beside it.
+class StationaryTest {
+ public:
+  /// `unknown`: of a radar that measures no elevation, else nullptr.
+  StationaryTest(const EgoVelocity& motion, const Mounting& mounting, const UnknownElevation* unknown,
+                 const Config& config)
+      : velocity_mps_(motion.sensor_mps),
+        velocity_sensor_mps_(mounting.sensor_to_vehicle.transpose() * motion.sensor_mps),
+        covariance_(motion.covariance),
+        unknown_(unknown),
+        angle_variance_factor_(mounting.angle_noise_scale * mounting.angle_noise_scale),
+        floor_(config.body_motion_std_mps * config.body_motion_std_mps),
+        sigma_squared_(config.moving_sigma * config.moving_sigma) {}
+
+  [[nodiscard]] bool passes(const Sight& s) const {
+    const Eigen::Vector3d& v = velocity_sensor_mps_;
+    const double by_azimuth = s.cos_elevation * (s.cos_azimuth * v.y() - s.sin_azimuth * v.x()) * s.azimuth_std_rad;
+    const double by_elevation =
+        (s.cos_elevation * v.z() - s.sin_elevation * (s.cos_azimuth * v.x() + s.sin_azimuth * v.y())) *
+        s.elevation_std_rad;
+    double variance = angle_variance_factor_ * (by_azimuth * by_azimuth + by_elevation * by_elevation) +
+                      s.range_rate_std_mps * s.range_rate_std_mps + s.direction.dot(covariance_ * s.direction) + floor_;
+    double residual = s.range_rate_over_ground_mps;
+    if (unknown_ != nullptr) {
+      // What stands above or below the sensor closes in more slowly than its azimuth says: by a share that is anything
+      // from nothing to twice the expected one, of all radars and of this one.
+      const UnknownElevation::Cosine cosine = unknown_->at(s.range_m);
+      const double closing = s.direction.dot(velocity_mps_);
+      const double excess_std = M_SQRT2 * kElevationExcessStd * cosine.lowering;
+      residual -= cosine.lowering * closing;
+      variance += closing * closing * (cosine.relative_variance + excess_std * excess_std);
+    }
+    return residual * residual <= sigma_squared_ * variance;
+  }
+
+ private:
+  Eigen::Vector3d velocity_mps_;         // of the sensor over ground, vehicle axes
+  Eigen::Vector3d velocity_sensor_mps_;  // the same in the sensor's frame
+  Eigen::Matrix3d covariance_;
+  const UnknownElevation* unknown_;
+  double angle_variance_factor_;
+  double floor_;
+  double sigma_squared_;
+};
+
+}  // namespace boresight::corrector
