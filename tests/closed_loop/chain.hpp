@@ -13,11 +13,11 @@ namespace boresight::closed_loop {
 
 class Chain {
  public:
-  explicit Chain(const VehicleConfig& vehicle)
+  explicit Chain(const VehicleConfig& vehicle, const ghosts::Config& ghosts = {})
       : vehicle_(vehicle),
         estimator_(vehicle, {}),
         corrector_(vehicle, {}),
-        ghost_filter_(ghosts::make_method({})),
+        ghost_filter_(ghosts::make_method(ghosts)),
         tracker_(vehicle, tracking::Config{}) {}
 
   /// Takes one event; true if it was a scan, whose results are then in the members below.

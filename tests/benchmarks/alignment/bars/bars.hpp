@@ -1,8 +1,8 @@
 // The groups of bars, each in a file of its name.
 #pragma once
 
-#include "tests/benchmarks/alignment/common/options.hpp"
-#include "tests/benchmarks/alignment/common/report.hpp"
+#include "tests/benchmarks/common/options.hpp"
+#include "tests/benchmarks/common/report.hpp"
 
 namespace boresight::bench {
 

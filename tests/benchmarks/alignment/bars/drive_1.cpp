@@ -13,7 +13,7 @@
 #include "services/boresight/align/truth_file.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
-#include "tests/benchmarks/alignment/common/parallel.hpp"
+#include "tests/benchmarks/common/parallel.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
@@ -85,8 +85,8 @@ double largest(const align::Result& result, Of&& of) {
 }  // namespace
 
 void drive_1(const Options& options, Report& report) {
-  if (options.drive_data.empty()) return;
-  const fs::path folder = options.drive_data;
+  if (options.data_folder.empty()) return;
+  const fs::path folder = options.data_folder;
   const Unpacked unpacked(folder / "drive_1.csv.xz");
   const std::vector<std::string> methods =
       options.quick ? std::vector<std::string>{"boresight"} : align::method_names();

@@ -9,8 +9,8 @@
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
-#include "tests/benchmarks/alignment/common/parallel.hpp"
 #include "tests/benchmarks/alignment/common/published_result.hpp"
+#include "tests/benchmarks/common/parallel.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {

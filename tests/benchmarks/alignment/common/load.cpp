@@ -4,7 +4,7 @@
 
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
-#include "tests/benchmarks/alignment/common/statistics.hpp"
+#include "tests/benchmarks/common/statistics.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "tests/benchmarks/alignment/common/options.hpp"
-#include "tests/benchmarks/alignment/common/parallel.hpp"
 #include "tests/benchmarks/alignment/common/runner.hpp"
+#include "tests/benchmarks/common/options.hpp"
+#include "tests/benchmarks/common/parallel.hpp"
 
 namespace boresight::bench {
 

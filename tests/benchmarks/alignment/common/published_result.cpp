@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/benchmarks/alignment/common/drives.hpp"
-#include "tests/benchmarks/alignment/common/report.hpp"
+#include "tests/benchmarks/common/report.hpp"
 
 namespace boresight::bench {
 

@@ -11,7 +11,8 @@
 
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/benchmarks/alignment/common/statistics.hpp"
+#include "tests/benchmarks/alignment/common/moments.hpp"
+#include "tests/benchmarks/common/statistics.hpp"
 #include "tests/simulator/alignment/spec.hpp"
 
 namespace boresight::bench {

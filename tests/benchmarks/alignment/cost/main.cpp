@@ -6,7 +6,7 @@
 
 #include "tests/benchmarks/alignment/common/load.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
-#include "tests/benchmarks/alignment/common/statistics.hpp"
+#include "tests/benchmarks/common/statistics.hpp"
 
 namespace {
 

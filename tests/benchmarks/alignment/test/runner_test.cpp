@@ -8,7 +8,7 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
-#include "tests/benchmarks/alignment/common/report.hpp"
+#include "tests/benchmarks/common/report.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {

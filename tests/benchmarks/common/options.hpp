@@ -1,4 +1,4 @@
-// How much of the benchmark is run.
+// How much of a benchmark is run.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 namespace boresight::bench {
 
 struct Options {
-  bool quick = false;      ///< two seeds and short drives: whether it runs, not how good it is
-  std::string only;        ///< group of bars; empty: all
-  std::size_t jobs = 2;    ///< threads
-  std::string drive_data;  ///< folder of drive_1; empty: left out
+  bool quick = false;       ///< two seeds and short drives: whether it runs, not how good it is
+  std::string only;         ///< group of bars; empty: all
+  std::size_t jobs = 2;     ///< threads
+  std::string data_folder;  ///< of recordings that a group of bars needs; empty: such groups are left out
 
   [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
     return quick ? std::min<std::size_t>(wanted, 2) : wanted;

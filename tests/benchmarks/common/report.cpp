@@ -1,4 +1,4 @@
-#include "tests/benchmarks/alignment/common/report.hpp"
+#include "tests/benchmarks/common/report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the benchmark found: bars with PASS or FAIL, tables, and curves for the figures; as text, Markdown and JSON.
+// What a benchmark found: bars with PASS or FAIL, tables, and curves for the figures; as text, Markdown and JSON.
 #pragma once
 
 #include <cmath>

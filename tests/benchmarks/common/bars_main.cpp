@@ -1,0 +1,63 @@
+#include "tests/benchmarks/common/bars_main.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace boresight::bench {
+
+namespace {
+
+bool write(const std::string& path, const Report& report, void (Report::*writer)(std::ostream&) const) {
+  if (path.empty()) return true;
+  std::ofstream out(path);
+  (report.*writer)(out);
+  out.flush();
+  if (!out) std::fprintf(stderr, "cannot write %s\n", path.c_str());
+  return static_cast<bool>(out);
+}
+
+int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGroup> groups) {
+  Options options;
+  std::string json, markdown;
+  CLI::App app{std::string(program.about) + " Exit code 0 whatever passes, 1 on an error."};
+  std::vector<std::string> names;
+  for (const BarGroup& group : groups) names.emplace_back(group.name);
+  app.add_flag("--quick", options.quick, "two seeds and short drives: shows that it runs, not how good it is");
+  app.add_option("--only", options.only, "one group of bars")->check(CLI::IsMember(names));
+  app.add_option("--jobs", options.jobs, "threads")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--json", json, "file for bars, tables and curves");
+  app.add_option("--markdown", markdown,
+                 "file for the tables, between the marks that " + std::string(program.document) + " has");
+  if (program.data_option != nullptr) {
+    app.add_option(program.data_option, options.data_folder, program.data_about)->check(CLI::ExistingDirectory);
+  }
+  CLI11_PARSE(app, argc, argv);
+
+  Report report;
+  for (const BarGroup& group : groups) {
+    if (!options.wants(group.name)) continue;
+    std::fprintf(stderr, "%s\n", group.name);
+    group.run(options, report);
+  }
+  report.print(std::cout);
+  return write(json, report, &Report::write_json) && write(markdown, report, &Report::write_markdown) ? 0 : 1;
+}
+
+}  // namespace
+
+int bars_main(int argc, char** argv, const BarsProgram& program, std::span<const BarGroup> groups) {
+  try {
+    return run(argc, argv, program, groups);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace boresight::bench

@@ -1,0 +1,93 @@
+// Report B's scene: the published method comes out as published, which shows that the scene is not easier than the
+// original, and the product's own method is better.
+#include <algorithm>
+#include <vector>
+
+#include "tests/benchmarks/ghosts/bars/bars.hpp"
+#include "tests/benchmarks/ghosts/common/methods.hpp"
+#include "tests/benchmarks/ghosts/common/tables.hpp"
+#include "tests/simulator/scenario.hpp"
+
+namespace boresight::bench {
+
+namespace {
+
+constexpr const char* kScenario = "highway_multipath";
+constexpr double kDuration_s = 11.4;  // 114 steps of 0.1 s
+
+/// Report B's table: count, and percent of the right label, with GGIW-PMBM.
+struct Published {
+  Provenance truth;
+  double count;
+  double right_percent;
+};
+constexpr Published kPublished[] = {{Provenance::kMoving, 1968.0, 97.71},
+                                    {Provenance::kStationary, 27064.0, 92.16},
+                                    {Provenance::kGhostType1, 833.0, 74.35},
+                                    {Provenance::kGhostType2, 3153.0, 93.82}};
+constexpr double kPublishedClutter = 130.0, kPublishedClutterNotMoving = 75.38;
+
+void judge_counts(const std::vector<Outcome>& outcomes, const std::string& how, Report& report) {
+  for (const Published& p : kPublished) {
+    report.within("scene", std::string("detections: ") + name_of(p.truth), median_count(outcomes, p.truth),
+                  0.8 * p.count, 1.2 * p.count, "", how + "; Report B: " + fixed(p.count, 0) + " ± 20 %");
+  }
+  report.within("scene", "detections: clutter", median_count(outcomes, Provenance::kClutter), 0.8 * kPublishedClutter,
+                1.2 * kPublishedClutter, "", how + "; Report B: 130 ± 20 %");
+}
+
+void judge_published(const std::vector<Outcome>& outcomes, const std::string& how, Report& report) {
+  for (const Published& p : kPublished) {
+    report.within("published", std::string(name_of(p.truth)) + " told right",
+                  median_percent(outcomes, p.truth, p.truth), p.right_percent - 5.0,
+                  std::min(100.0, p.right_percent + 5.0), "%",
+                  how + "; Report B: " + fixed(p.right_percent, 2) + " ± 5");
+  }
+  report.within("published", "clutter not moving",
+                100.0 - median_percent(outcomes, Provenance::kClutter, Provenance::kMoving),
+                kPublishedClutterNotMoving - 5.0, kPublishedClutterNotMoving + 5.0, "%", how + "; Report B: 75.38 ± 5");
+}
+
+void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Report& report) {
+  const auto right = [&](Provenance truth, double bar) {
+    report.at_least("highway", std::string(name_of(truth)) + " told right", median_percent(outcomes, truth, truth), bar,
+                    "%", how);
+  };
+  const auto ghost = [&](Provenance truth, double bar) {
+    report.at_least("highway", std::string(name_of(truth)) + " told to be a ghost",
+                    median_percent_ghost(outcomes, truth), bar, "%", how);
+  };
+  right(Provenance::kMoving, 99.0);
+  right(Provenance::kStationary, 99.0);
+  ghost(Provenance::kGhostType1, 95.0);
+  right(Provenance::kGhostType1, 90.0);
+  ghost(Provenance::kGhostType2, 99.0);
+  right(Provenance::kGhostType2, 97.0);
+  report.at_least("highway", "clutter not moving",
+                  100.0 - median_percent(outcomes, Provenance::kClutter, Provenance::kMoving), 90.0, "%", how);
+  judge_tracks("highway", outcomes, true, how, report);
+}
+
+}  // namespace
+
+void highway(const Options& options, Report& report) {
+  const std::vector<std::string> known = simulator::scenario_names();
+  if (std::find(known.begin(), known.end(), kScenario) == known.end()) return;
+  const std::size_t seeds = options.seeds(20);
+  const double duration_s = options.seconds(kDuration_s);
+  const std::string how = "median over " + std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";
+  const std::vector<NamedGhostMethod> methods = ghost_methods();
+  for (const NamedGhostMethod& method : methods) {
+    const std::vector<Outcome> outcomes = run_ghost_drives(kScenario, method.config, seeds, duration_s, options);
+    report.add(confusion_table("highway_" + method.name,
+                               "highway_multipath, " + method.name + ": % of each truth, " + how, outcomes));
+    if (&method == &methods.front()) {
+      judge_counts(outcomes, how, report);
+      judge_published(outcomes, how, report);
+      judge_tracks("published", outcomes, false, how, report);
+    }
+    if (&method == &methods.back()) judge_own(outcomes, how, report);
+  }
+}
+
+}  // namespace boresight::bench

@@ -1,0 +1,39 @@
+// What detections are in truth beside what they were told to be.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "interfaces/messages/classified_scan.hpp"
+
+namespace boresight::bench {
+
+inline constexpr std::array<Provenance, 5> kTruths = {Provenance::kMoving, Provenance::kStationary,
+                                                      Provenance::kGhostType1, Provenance::kGhostType2,
+                                                      Provenance::kClutter};
+[[nodiscard]] const char* name_of(Provenance provenance);
+
+class Confusion {
+ public:
+  /// `rejected`: the corrector left it out (invalid, weak, outside of the region); it is counted apart.
+  void add(Provenance truth, Provenance label, bool rejected);
+
+  /// That were not rejected.
+  [[nodiscard]] std::uint64_t count(Provenance truth) const;
+  [[nodiscard]] std::uint64_t rejected(Provenance truth) const { return rejected_[index(truth)]; }
+  /// Percent of those of one truth that were not rejected; NaN if there are none.
+  [[nodiscard]] double percent(Provenance truth, Provenance label) const;
+  /// Told to be a ghost of either type.
+  [[nodiscard]] double percent_ghost(Provenance truth) const {
+    return percent(truth, Provenance::kGhostType1) + percent(truth, Provenance::kGhostType2);
+  }
+
+ private:
+  static constexpr std::size_t kSize = 6;
+  static std::size_t index(Provenance provenance);
+  std::array<std::array<std::uint64_t, kSize>, kSize> counts_{};
+  std::array<std::uint64_t, kSize> rejected_{};
+};
+
+}  // namespace boresight::bench

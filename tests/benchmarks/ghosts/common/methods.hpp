@@ -1,0 +1,25 @@
+// The methods that are compared, by name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/ghost_filter/core/config.hpp"
+
+namespace boresight::bench {
+
+struct NamedGhostMethod {
+  std::string name;
+  ghosts::Config config;
+};
+
+/// All that the configuration offers; the product's default is the last.
+[[nodiscard]] inline std::vector<NamedGhostMethod> ghost_methods() {
+  std::vector<NamedGhostMethod> methods;
+  ghosts::Config published;
+  published.method = ghosts::MethodName::kPublished;
+  methods.push_back({"published", published});
+  return methods;
+}
+
+}  // namespace boresight::bench

@@ -1,0 +1,16 @@
+// boresight-bench-ghosts_bars: how well ghosts are told, by the published method and by the product's own, and what it
+// costs, each figure with its bar. See README.md.
+#include "tests/benchmarks/common/bars_main.hpp"
+#include "tests/benchmarks/ghosts/bars/bars.hpp"
+
+using namespace boresight::bench;
+
+namespace {
+
+constexpr BarGroup kGroups[] = {{"highway", highway}, {"scenarios", scenarios}, {"cost", cost}};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return bars_main(argc, argv, {"Each bar of the ghost filter with its figure.", "docs/ghosts.md"}, kGroups);
+}
