@@ -7,15 +7,10 @@
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/vehicle/vehicle.hpp"
+#include "tests/simulator/detection_truth.hpp"
 #include "tests/simulator/world.hpp"
 
 namespace boresight::simulator {
-
-/// Where a simulated detection comes from.
-struct DetectionTruth {
-  Provenance provenance = Provenance::kUnknown;
-  std::uint32_t object_id = 0;  ///< of the vehicle, also for its ghosts; 0 for the stationary world and clutter
-};
 
 class RadarModel {
  public:
