@@ -99,7 +99,8 @@ TEST(Detection, WhatFallsIntoOneCellIsOneDetectionAtTheCentroidOfThePowers) {
   e.scene.scatterers[1].position_m = {50.1, 4.5, kHeight_m};  // another azimuth
   EXPECT_EQ(measure(e).count(), 2u);
   e.scene.scatterers.pop_back();
-  e.add_body(4, {50.2, 0.5, kHeight_m}, {3.0, 0.0, 0.0}, 20.0);  // another range rate
+  Body& body = e.add_body(4, {50.4, 0.5, kHeight_m}, {3.0, 0.0, 0.0}, 20.0);  // another range rate
+  body.length_m = body.width_m = 0.2;
   EXPECT_EQ(measure(e).count(), 2u);
   e.scene.centres[0].velocity_mps.x() = e.scene.bodies[0].velocity_mps.x() = 0.2;
   const Measured strongest = measure(e);
@@ -127,8 +128,8 @@ TEST(Detection, TheStrongestComeFirstAndTheRestIsCounted) {
                          2.0 * radar::pattern_db(azimuth, all.scan->elevation_rad[i], e.config.field_of_view);
     ASSERT_LT(power, before + 1.01);  // the stated RCS is rounded
     before = power;
-    if (i < 25) ASSERT_EQ(few.scan->range_m[i], all.scan->range_m[i]);
   }
+  for (std::size_t i = 0; i < 25; ++i) ASSERT_EQ(few.scan->range_m[i], all.scan->range_m[i]);
   e.effects.sensitivity.max_detections = 5000;
   for (int i = 0; i < 1500; ++i) e.scene.scatterers.push_back({{20.0 + 0.1 * i, 10.0, kHeight_m}, 0.0});
   const Measured full = measure(e);

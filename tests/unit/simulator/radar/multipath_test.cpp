@@ -168,7 +168,7 @@ TEST(Multipath, TwoRailsMakeThePathsByBoth) {
 /// A truck that drives and turns; its right side (y = −1.25 in its axes) mirrors.
 struct TruckExample : Bench {
   TruckExample() {
-    Body& truck = add_body(5, {20.0, 6.0, 2.0}, {22.0, -0.5, 0.0});
+    Body& truck = add_body(5, {20.0, 6.0, 2.0}, {22.0, -1.5, 0.0});
     truck.kind = BodyKind::kTruck;
     truck.length_m = 16.0;
     truck.width_m = 2.5;
@@ -177,13 +177,13 @@ struct TruckExample : Bench {
     truck.heading_rad = -0.05;
     truck.yaw_rate_radps = 0.2;
     truck.number_of_centres = 0;
-    scene.surfaces.push_back({side_end(0.0, -8.0), side_end(0.0, 8.0), 0.5, 3.5, 2.0, {22.0, -0.5}, 5, true});
+    scene.surfaces.push_back({side_end(0.0, -8.0), side_end(0.0, 8.0), 0.5, 3.5, 2.0, {22.0, -1.5}, 5, true});
     add_body(9, {32.0, -1.0, 0.8}, {15.0, 1.0, 0.0});
   }
   static Eigen::Vector2d side_end(double t_s, double along) {
     const double heading = -0.05 + 0.2 * t_s;
     const Eigen::Vector2d forward(std::cos(heading), std::sin(heading)), left(-forward.y(), forward.x());
-    return Eigen::Vector2d(20.0 + 22.0 * t_s, 6.0 - 0.5 * t_s) + along * forward - 1.25 * left;
+    return Eigen::Vector2d(20.0 + 22.0 * t_s, 6.0 - 1.5 * t_s) + along * forward - 1.25 * left;
   }
   /// Shortest way from sensor over the truck's side to the target, by golden section: Fermat's principle.
   static double shortest(double t_s) {
@@ -246,10 +246,14 @@ TEST(Multipath, ATurnedWorldSeesTheSameGeometry) {
   e.scene.centres[0].velocity_mps.head<2>() = turn * Eigen::Vector2d(e.scene.centres[0].velocity_mps.head<2>());
   const Measured a = measure(RailExample()), b = measure(e);
   ASSERT_EQ(a.count(), b.count());
-  for (std::size_t i = 0; i < a.count(); ++i) {
-    EXPECT_NEAR(a.scan->range_m[i], b.scan->range_m[i], 1e-4);
-    EXPECT_NEAR(a.scan->azimuth_rad[i], b.scan->azimuth_rad[i], 1e-5);
-    EXPECT_NEAR(a.scan->range_rate_mps[i], b.scan->range_rate_mps[i], 1e-4);
+  for (const auto& [provenance, bounces] : {std::pair{Provenance::kMoving, 0u},
+                                            {Provenance::kGhostType1, 1u},
+                                            {Provenance::kGhostType2, 1u},
+                                            {Provenance::kGhostType2, 2u}}) {
+    const std::size_t i = a.of(provenance, bounces).at(0), k = b.of(provenance, bounces).at(0);
+    EXPECT_NEAR(a.scan->range_m[i], b.scan->range_m[k], 1e-4);
+    EXPECT_NEAR(a.scan->azimuth_rad[i], b.scan->azimuth_rad[k], 1e-5);
+    EXPECT_NEAR(a.scan->range_rate_mps[i], b.scan->range_rate_mps[k], 1e-4);
   }
 }
 
