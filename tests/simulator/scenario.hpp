@@ -98,6 +98,7 @@ struct ScatterSpec {
   double top_min_m = 1.0, top_max_m = 9.0;
   double spacing_m = 1.7;  ///< of a column's points, upwards
   double rcs_min_dbsm = -5.0, rcs_max_dbsm = 10.0;
+  double heading_rad = 0.0;  ///< of parked cars on the left side, relative to the road; mirrored on the right one
 };
 
 // ---------------------------------------------------------------- bodies
