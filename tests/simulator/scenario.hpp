@@ -119,6 +119,7 @@ struct BodySpec {
 
 struct Scenario {
   std::string name;
+  std::string about;
   std::string vehicle;       ///< name of the vehicle file it is meant for; may be empty
   double duration_s = 45.0;  ///< how long it makes sense
   RoadSpec road;

@@ -85,7 +85,7 @@ Motion body_motion(const BodySpec& body, const Road& road, double t_s) {
     m.speed_mps = against ? -p.speed_mps : p.speed_mps;
     m.acceleration_mps2 = against ? -p.acceleration_mps2 : p.acceleration_mps2;
   }
-  m.travelled_m = p.travelled_m;
+  m.travelled_m = against ? -p.travelled_m : p.travelled_m;
   return m;
 }
 

@@ -15,7 +15,7 @@ struct Motion {
   double arc_m;      ///< road position; of what crosses, where it began
   double lateral_m;  ///< off the road's line
   double arc_speed_mps;
-  double travelled_m;  ///< since the drive began, signed as the speed
+  double travelled_m;  ///< since the drive began, along the heading
   Eigen::Vector2d position_m;
   double heading_rad;
   double speed_mps;  ///< along the heading
