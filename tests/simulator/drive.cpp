@@ -44,11 +44,11 @@ const Event* Drive::next() {
   if (due == nullptr) {
     const EgoState state = ego(ego_t);
     Stream noise(seed_, "ego", ego_index_++);
-    const double on = scenario_.noise ? 1.0 : 0.0;
-    event_.ego.speed_mps = state.speed_mps / scenario_.speed_scale + on * 0.02 * noise.gaussian();
+    const double on = scenario_.effects.noise ? 1.0 : 0.0;
+    event_.ego.speed_mps = state.speed_mps / scenario_.effects.speed_scale + on * 0.02 * noise.gaussian();
     event_.ego.yaw_rate_radps = state.yaw_rate_radps + on * 0.001 * noise.gaussian();
     event_.ego.steering_angle_rad =
-        kSteeringRatio * std::atan(kWheelbase_m * state.yaw_rate_radps / std::max(1.0, state.speed_mps));
+        kSteeringRatio * std::atan(kWheelbase_m * state.yaw_rate_radps / std::max(1.0, std::abs(state.speed_mps)));
     return &event_;
   }
   due->model.measure(world_, event_.t_s, due->cycle, *scan_, truth_);

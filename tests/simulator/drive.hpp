@@ -10,7 +10,7 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "tests/simulator/radar_model.hpp"
-#include "tests/simulator/scenario.hpp"
+#include "tests/simulator/scenario_file.hpp"
 #include "tests/simulator/world.hpp"
 
 namespace boresight::simulator {
@@ -44,7 +44,7 @@ class Drive {
 
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] EgoState ego(double t_s) const { return ego_state(scenario_, world_.road(), t_s); }
+  [[nodiscard]] EgoState ego(double t_s) const { return world_.ego(t_s); }
 
  private:
   struct Radar {

@@ -13,6 +13,31 @@ namespace {
 
 constexpr std::size_t kMaxPerScan = 300;
 constexpr double kUnambiguous_mps = 80.0;
+constexpr double kGhostProbability = 0.15;
+
+/// A vehicle at an instant, world frame.
+struct VehicleState {
+  std::uint32_t id;
+  double arc_m, lateral_m, arc_speed_mps;
+  Eigen::Vector2d position_m;
+  double heading_rad;
+  Eigen::Vector2d velocity_mps;
+  double yaw_rate_radps;
+  double length_m, width_m;
+};
+
+VehicleState on_road(const Road& road, double arc_m, double lateral_m, double arc_speed_mps) {
+  const Motion m = along_road(road, arc_m, arc_speed_mps, 0.0, {{0.0, lateral_m}}, arc_speed_mps < 0.0);
+  return {0,   arc_m, lateral_m, arc_speed_mps, m.position_m, m.heading_rad, m.velocity_mps(), m.yaw_rate_radps,
+          0.0, 0.0};
+}
+
+VehicleState vehicle_at(const World& world, std::size_t index, double t_s) {
+  const Body b = world.body(index, t_s);
+  const Motion m = world.motion(index, t_s);
+  return {b.id,          m.arc_m,        m.lateral_m,      m.arc_speed_mps, b.position_m,
+          b.heading_rad, b.velocity_mps, b.yaw_rate_radps, b.length_m,      b.width_m};
+}
 
 Eigen::Vector3d lift(const Eigen::Vector2d& p, double z) {
   return {p.x(), p.y(), z};
@@ -53,7 +78,8 @@ struct RadarModel::Target {
 };
 
 /// The sensor in the world at the instant of a scan.
-struct RadarModel::Scene {
+struct RadarModel::Instant {
+  simulator::Scene scene;
   double t_s;
   EgoState ego;
   Eigen::Vector3d position;  // of the sensor
@@ -65,14 +91,14 @@ struct RadarModel::Scene {
 
 RadarModel::RadarModel(const RadarConfig& radar, const Scenario& scenario, std::uint64_t seed)
     : radar_(radar), scenario_(scenario), seed_(seed) {
-  const Misalignment& m = scenario.misalignment[radar.id];
+  const Misalignment& m = scenario.effects.misalignment[radar.id];
   actual_ = geometry::sensor_to_vehicle(radar.mounting_pose, m.yaw_rad, m.pitch_rad, m.roll_rad);
 }
 
-void RadarModel::add_stationary(const World& world, const Scene& scene, std::vector<Target>& targets) const {
+void RadarModel::add_stationary(const Instant& scene, std::vector<Target>& targets) const {
   const double reach = radar_.field_of_view.range_max_m;
-  const auto [first, last] = world.points(scene.ego.arc_m - reach, scene.ego.arc_m + reach);
-  for (const StationaryPoint* p = first; p != last; ++p) {
+  for (const Scatterer& scatterer : scene.scene.scatterers) {
+    const Scatterer* const p = &scatterer;
     const Eigen::Vector3d sight = p->position_m - scene.position;
     const double range = sight.norm();
     if (range > reach || range < 0.5) continue;
@@ -87,15 +113,17 @@ void RadarModel::add_stationary(const World& world, const Scene& scene, std::vec
   }
 }
 
-void RadarModel::add_ghosts(const World& world, const Scene& scene, const VehicleState& vehicle, double lateral_m,
+void RadarModel::add_ghosts(const World& world, const Instant& scene, std::size_t index,
                             const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
                             std::vector<Target>& targets) const {
   const Eigen::Vector3d sight = position - scene.position;
-  for (const double rail : {scenario_.rail_left_m, scenario_.rail_right_m}) {
+  const VehicleState& vehicle = scene.vehicles[index];
+  for (const StructureSpec& structure : scenario_.structures) {
+    const double rail = structure.lateral_m;
     // Type 2: the three-bounce path by the rail sees the target's mirror image, which travels along the road as the
     // target does.
-    const double mirrored_lateral = 2.0 * rail - lateral_m;
-    const double arc_speed = scenario_.vehicles[vehicle.id - 1].speed_mps;
+    const double mirrored_lateral = 2.0 * rail - vehicle.lateral_m;
+    const double arc_speed = vehicle.arc_speed_mps;
     const VehicleState mirror = on_road(world.road(), vehicle.arc_m, mirrored_lateral, arc_speed);
     const Eigen::Vector3d mirror_sight = lift(mirror.position_m, position.z()) - scene.position;
     const double mirror_range = mirror_sight.norm();
@@ -117,7 +145,7 @@ void RadarModel::add_ghosts(const World& world, const Scene& scene, const Vehicl
   }
 }
 
-void RadarModel::add_vehicles(const World& world, const Scene& scene, std::vector<Target>& targets) const {
+void RadarModel::add_vehicles(const World& world, const Instant& scene, std::vector<Target>& targets) const {
   for (const VehicleState& v : scene.vehicles) {
     if ((v.position_m - scene.ego.position_m).norm() > radar_.field_of_view.range_max_m + 10.0) continue;
     const double c = std::cos(v.heading_rad), s = std::sin(v.heading_rad);
@@ -148,8 +176,8 @@ void RadarModel::add_vehicles(const World& world, const Scene& scene, std::vecto
       targets.push_back({direction, range, direction.dot(velocity - scene.velocity), 8.0, {Provenance::kMoving, v.id}});
       Stream ghost(seed_, "ghost", (static_cast<std::uint64_t>(radar_.id) << 32) | scene.cycle,
                    (static_cast<std::uint64_t>(v.id) << 8) | outline_index);
-      if (ghost.uniform() < scenario_.ghost_probability) {
-        add_ghosts(world, scene, v, scenario_.vehicles[v.id - 1].lateral_m, position, velocity, targets);
+      if (ghost.uniform() < kGhostProbability) {
+        add_ghosts(world, scene, static_cast<std::size_t>(&v - scene.vehicles.data()), position, velocity, targets);
       }
     }
   }
@@ -157,10 +185,11 @@ void RadarModel::add_vehicles(const World& world, const Scene& scene, std::vecto
 
 void RadarModel::measure(const World& world, double t_s, std::uint32_t cycle, RadarScan& scan,
                          std::vector<DetectionTruth>& truth) const {
-  Scene scene;
+  Instant scene;
+  world.at(t_s, radar_.field_of_view.range_max_m, scene.scene);
   scene.t_s = t_s;
   scene.cycle = cycle;
-  scene.ego = ego_state(scenario_, world.road(), t_s);
+  scene.ego = world.ego(t_s);
   const double c = std::cos(scene.ego.heading_rad), s = std::sin(scene.ego.heading_rad);
   scene.vehicle_to_world << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
   const Eigen::Vector3d mount(radar_.mounting_pose.position_m.data());
@@ -168,11 +197,13 @@ void RadarModel::measure(const World& world, double t_s, std::uint32_t cycle, Ra
   scene.velocity =
       scene.vehicle_to_world *
       geometry::sensor_velocity(1.0, scene.ego.speed_mps, scene.ego.yaw_rate_radps, radar_.mounting_pose.position_m);
-  for (std::size_t i = 0; i < world.number_of_vehicles(); ++i) scene.vehicles.push_back(world.vehicle(i, t_s));
+  for (std::size_t i = 0; i < world.number_of_bodies(); ++i) {
+    scene.vehicles.push_back(vehicle_at(world, i, t_s));
+  }
 
   std::vector<Target> targets;
   add_vehicles(world, scene, targets);
-  add_stationary(world, scene, targets);
+  add_stationary(scene, targets);
 
   const std::uint64_t cycle_index = (static_cast<std::uint64_t>(radar_.id) << 32) | cycle;
   const FieldOfView& view = radar_.field_of_view;
@@ -198,7 +229,7 @@ void RadarModel::measure(const World& world, double t_s, std::uint32_t cycle, Ra
     ++count;
   };
 
-  const double on = scenario_.noise ? 1.0 : 0.0;
+  const double on = scenario_.effects.noise ? 1.0 : 0.0;
   std::uint64_t index = 0;
   for (const Target& target : targets) {
     Stream stream(seed_, "detection", cycle_index, index++);
@@ -222,7 +253,7 @@ void RadarModel::measure(const World& world, double t_s, std::uint32_t cycle, Ra
         target.range_rate_mps + on * noise.range_rate_std_mps * stream.gaussian(), rcs, target.truth, noise);
   }
   Stream clutter(seed_, "clutter", cycle_index);
-  const unsigned false_detections = clutter.poisson(scenario_.clutter_per_scan);
+  const unsigned false_detections = clutter.poisson(scenario_.effects.clutter_per_scan);
   for (unsigned i = 0; i < false_detections; ++i) {
     const double range = clutter.uniform(1.0, view.range_max_m);
     const double azimuth = clutter.uniform(view.azimuth_min_rad, view.azimuth_max_rad);

@@ -28,12 +28,11 @@ class RadarModel {
 
  private:
   struct Target;
-  struct Scene;
-  void add_stationary(const World& world, const Scene& scene, std::vector<Target>& targets) const;
-  void add_vehicles(const World& world, const Scene& scene, std::vector<Target>& targets) const;
-  void add_ghosts(const World& world, const Scene& scene, const VehicleState& vehicle, double lateral_m,
-                  const Eigen::Vector3d& target_position, const Eigen::Vector3d& target_velocity,
-                  std::vector<Target>& targets) const;
+  struct Instant;
+  void add_stationary(const Instant& scene, std::vector<Target>& targets) const;
+  void add_vehicles(const World& world, const Instant& scene, std::vector<Target>& targets) const;
+  void add_ghosts(const World& world, const Instant& scene, std::size_t index, const Eigen::Vector3d& target_position,
+                  const Eigen::Vector3d& target_velocity, std::vector<Target>& targets) const;
   RadarConfig radar_;
   Scenario scenario_;
   std::uint64_t seed_;
