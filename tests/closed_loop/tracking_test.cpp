@@ -44,8 +44,9 @@ std::vector<Object> objects_at(const simulator::Drive& drive, double t_s) {
   to_vehicle << std::cos(ego.heading_rad), std::sin(ego.heading_rad), -std::sin(ego.heading_rad),
       std::cos(ego.heading_rad);
   std::vector<Object> objects;
-  for (std::size_t i = 0; i < drive.world().number_of_vehicles(); ++i) {
-    const simulator::VehicleState v = drive.world().vehicle(i, t_s);
+  for (std::size_t i = 0; i < drive.world().number_of_bodies(); ++i) {
+    const simulator::Body v = drive.world().body(i, t_s);
+    if (v.parked) continue;
     objects.push_back({i, to_vehicle * (v.position_m - ego.position_m), to_vehicle * v.velocity_mps});
   }
   return objects;

@@ -98,6 +98,7 @@ struct ScatterSpec {
   double top_min_m = 1.0, top_max_m = 9.0;
   double spacing_m = 1.7;  ///< of a column's points, upwards
   double rcs_min_dbsm = -5.0, rcs_max_dbsm = 10.0;
+  double heading_rad = 0.0;  ///< of parked cars on the left side, relative to the road; mirrored on the right one
 };
 
 // ---------------------------------------------------------------- bodies
@@ -118,6 +119,7 @@ struct BodySpec {
 
 struct Scenario {
   std::string name;
+  std::string about;
   std::string vehicle;       ///< name of the vehicle file it is meant for; may be empty
   double duration_s = 45.0;  ///< how long it makes sense
   RoadSpec road;
