@@ -1,4 +1,4 @@
-// The simulated vehicles as the ego vehicle would have them on its list.
+// The simulated bodies that are not parked, as the ego vehicle would have them on its list.
 #pragma once
 
 #include <cmath>
@@ -34,10 +34,11 @@ struct Object {
   to_vehicle << std::cos(ego.heading_rad), std::sin(ego.heading_rad), -std::sin(ego.heading_rad),
       std::cos(ego.heading_rad);
   std::vector<Object> objects;
-  for (std::size_t i = 0; i < drive.world().number_of_vehicles(); ++i) {
-    const simulator::VehicleState v = drive.world().vehicle(i, t_s);
-    objects.push_back({v.id, to_vehicle * (v.position_m - ego.position_m), to_vehicle * v.velocity_mps,
-                       v.heading_rad - ego.heading_rad, v.length_m, v.width_m});
+  for (std::size_t i = 0; i < drive.world().number_of_bodies(); ++i) {
+    const simulator::Body b = drive.world().body(i, t_s);
+    if (b.parked) continue;
+    objects.push_back({b.id, to_vehicle * (b.position_m - ego.position_m), to_vehicle * b.velocity_mps,
+                       b.heading_rad - ego.heading_rad, b.length_m, b.width_m});
   }
   return objects;
 }

@@ -9,8 +9,8 @@
 #include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/radar_model.hpp"
-#include "tests/simulator/scenario.hpp"
+#include "tests/simulator/radar/radar_sensor.hpp"
+#include "tests/simulator/scenario_file.hpp"
 #include "tests/simulator/world.hpp"
 
 namespace boresight::simulator {
@@ -44,12 +44,12 @@ class Drive {
 
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] EgoState ego(double t_s) const { return ego_state(scenario_, world_.road(), t_s); }
+  [[nodiscard]] EgoState ego(double t_s) const { return world_.ego(t_s); }
 
  private:
   struct Radar {
     RadarConfig config;
-    RadarModel model;
+    RadarSensor sensor;
     double phase_s;
     std::uint32_t cycle;
   };
@@ -61,6 +61,7 @@ class Drive {
   std::vector<Radar> radars_;
   std::uint64_t ego_index_ = 0;
   std::uint64_t sequence_ = 0;
+  Scene scene_;
   std::unique_ptr<RadarScan> scan_;
   std::vector<DetectionTruth> truth_;
   Event event_;

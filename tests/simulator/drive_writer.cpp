@@ -38,6 +38,22 @@ const char* name_of(Provenance provenance) {
   return "unknown";
 }
 
+const char* name_of(BodyKind kind) {
+  switch (kind) {
+    case BodyKind::kCar:
+      return "car";
+    case BodyKind::kVan:
+      return "van";
+    case BodyKind::kTruck:
+      return "truck";
+    case BodyKind::kPedestrian:
+      return "pedestrian";
+    case BodyKind::kCyclist:
+      return "cyclist";
+  }
+  return "unknown";
+}
+
 wire::Endpoint endpoint(const std::string& address, std::uint16_t port) {
   in_addr ip{};
   if (inet_pton(AF_INET, address.c_str(), &ip) != 1) {
@@ -52,9 +68,9 @@ void write_truth(const std::filesystem::path& file, const Scenario& scenario, co
                  const ScanCounts& scans) {
   constexpr double kDegrees = 180.0 / M_PI;
   const TextFile out(file);
-  std::fprintf(out.get(), "quantity,radar,value,unit\nspeed_scale,,%.6f,1\n", scenario.speed_scale);
+  std::fprintf(out.get(), "quantity,radar,value,unit\nspeed_scale,,%.6f,1\n", scenario.effects.speed_scale);
   for (const RadarConfig& radar : vehicle.radars) {
-    const Misalignment& m = scenario.misalignment[radar.id];
+    const Misalignment& m = scenario.effects.misalignment[radar.id];
     std::fprintf(out.get(), "alignment_yaw,%u,%.6f,deg\nalignment_pitch,%u,%.6f,deg\nalignment_roll,%u,%.6f,deg\n",
                  radar.id, m.yaw_rad * kDegrees, radar.id, m.pitch_rad * kDegrees, radar.id, m.roll_rad * kDegrees);
     std::fprintf(out.get(), "scans,%u,%zu,1\n", radar.id, scans[radar.id]);
@@ -67,14 +83,14 @@ void write_objects(std::FILE* out, const Drive& drive, double t_s) {
   const double c = std::cos(ego.heading_rad), s = std::sin(ego.heading_rad);
   Eigen::Matrix2d to_vehicle;
   to_vehicle << c, s, -s, c;
-  for (std::size_t i = 0; i < drive.world().number_of_vehicles(); ++i) {
-    const VehicleState v = drive.world().vehicle(i, t_s);
-    const Eigen::Vector2d position = to_vehicle * (v.position_m - ego.position_m);
+  for (std::size_t i = 0; i < drive.world().number_of_bodies(); ++i) {
+    const Body b = drive.world().body(i, t_s);
+    const Eigen::Vector2d position = to_vehicle * (b.position_m - ego.position_m);
     if (position.norm() > 150.0) continue;
-    const Eigen::Vector2d velocity = to_vehicle * v.velocity_mps;
-    std::fprintf(out, "%.4f,%u,%.3f,%.3f,%.5f,%.3f,%.3f,%.2f,%.2f\n", t_s, v.id, position.x(), position.y(),
-                 std::remainder(v.heading_rad - ego.heading_rad, 2.0 * M_PI), velocity.x(), velocity.y(), v.length_m,
-                 v.width_m);
+    const Eigen::Vector2d velocity = to_vehicle * b.velocity_mps;
+    std::fprintf(out, "%.4f,%u,%.3f,%.3f,%.5f,%.3f,%.3f,%.2f,%.2f,%.2f,%s,%d\n", t_s, b.id, position.x(), position.y(),
+                 std::remainder(b.heading_rad - ego.heading_rad, 2.0 * M_PI), velocity.x(), velocity.y(), b.length_m,
+                 b.width_m, b.height_m, name_of(b.kind), b.parked ? 1 : 0);
   }
 }
 
@@ -98,8 +114,10 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
   wire::PcapWriter pcap(files.radars);
   const TextFile ego_log(files.ego), detections(files.detections), objects(files.objects);
   std::fputs("t_s,radar,scan,index,provenance,object\n", detections.get());
-  std::fputs("t_s,object,x_vehicle_m,y_vehicle_m,heading_rad,vx_over_ground_mps,vy_over_ground_mps,length_m,width_m\n",
-             objects.get());
+  std::fputs(
+      "t_s,object,x_vehicle_m,y_vehicle_m,heading_rad,vx_over_ground_mps,vy_over_ground_mps,length_m,width_m,"
+      "height_m,kind,parked\n",
+      objects.get());
   Drive drive(scenario, vehicle, seed, duration_s);
   const auto list = std::make_unique<wire::Ars548List>();
   double next_objects_s = 0.0;

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/scenario.hpp"
+#include "tests/simulator/scenario_file.hpp"
 
 namespace boresight::simulator {
 
@@ -15,7 +15,7 @@ struct DriveFiles {
   std::filesystem::path ego;         ///< ego.candump.log
   std::filesystem::path truth;       ///< truth.csv: what is true of the whole drive
   std::filesystem::path detections;  ///< truth_detections.csv: provenance of each detection
-  std::filesystem::path objects;     ///< truth_objects.csv: vehicles in the ego vehicle's frame, ten times a second
+  std::filesystem::path objects;     ///< truth_objects.csv: bodies in the ego vehicle's frame, ten times a second
   std::uint64_t scans = 0;
   std::uint64_t number_of_detections = 0;
 };

@@ -1,4 +1,4 @@
-// The road as a curve, and the ego vehicle's drive along it.
+// The road as a curve.
 #pragma once
 
 #include <vector>
@@ -9,19 +9,21 @@
 
 namespace boresight::simulator {
 
-/// A point of the road: position and heading of its centre line at an arc length.
+/// A point of the road: position and heading of its line at an arc length.
 struct RoadPoint {
   Eigen::Vector2d position_m;
   double heading_rad;
   double curvature_per_m;
+  double curvature_slope_per_m2;  ///< along the arc
 };
 
-/// Centre line of the ego lane by arc length, precomputed from `begin_m` to `end_m`.
+/// Line of the road by arc length, precomputed from `begin_m` ≤ 0 to `end_m`; arc 0 is the world's origin and goes
+/// along its x axis. Beyond, the curvature of the end goes on.
 class Road {
  public:
-  Road(double begin_m, double end_m, double curvature);
+  Road(const RoadSpec& spec, double begin_m, double end_m);
   [[nodiscard]] RoadPoint at(double arc_m) const;
-  /// World position left of the centre line by `lateral_m`.
+  /// World position left of the line by `lateral_m`.
   [[nodiscard]] Eigen::Vector2d place(double arc_m, double lateral_m) const;
 
  private:
@@ -29,18 +31,7 @@ class Road {
   std::vector<RoadPoint> points_;
 };
 
-/// The ego vehicle's rear axle: it follows the centre line without slip.
-struct EgoState {
-  double arc_m;
-  Eigen::Vector2d position_m;
-  double heading_rad;
-  double speed_mps;
-  double yaw_rate_radps;
-};
-
-/// Arc length and speed at time t for a speed that swings about its mean.
-[[nodiscard]] double ego_arc_m(const Scenario& scenario, double t_s);
-[[nodiscard]] double ego_speed_mps(const Scenario& scenario, double t_s);
-[[nodiscard]] EgoState ego_state(const Scenario& scenario, const Road& road, double t_s);
+/// Curvature that the specification asks for at an arc length.
+[[nodiscard]] double curvature_at(const RoadSpec& spec, double arc_m);
 
 }  // namespace boresight::simulator

@@ -1,52 +1,133 @@
-// What a drive is made of.
+// What a drive is made of, as plain data. Places are given along the road: `…_m` from its origin, where the ego vehicle
+// starts unless told otherwise, and `lateral_m` to the left of the road's line.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "interfaces/messages/header.hpp"
+#include "tests/simulator/radar_effects.hpp"
+#include "tests/simulator/scene.hpp"
 
 namespace boresight::simulator {
 
-/// Angles by which a radar is crooked, radians: actual = nominal + these.
-struct Misalignment {
-  double yaw_rad = 0.0;
-  double pitch_rad = 0.0;
-  double roll_rad = 0.0;
+/// A value at a place or an instant; between knots values change smoothly, before the first and after the last they
+/// stay.
+struct Knot {
+  double at = 0.0;
+  double value = 0.0;
+};
+using Knots = std::vector<Knot>;
+
+// ---------------------------------------------------------------- road
+
+struct RoadSegment {
+  double length_m = 0.0;
+  double curvature_per_m = 0.0;  ///< positive: to the left
 };
 
-/// A vehicle that follows the road at a constant speed and lateral offset.
-struct VehicleSpec {
-  double start_m = 0.0;    ///< along the road, relative to the ego vehicle at the start
-  double lateral_m = 0.0;  ///< left of the ego lane's centre
-  double speed_mps = 0.0;  ///< negative: oncoming
-  double length_m = 4.5;
-  double width_m = 1.9;
+/// Adds amplitude · sin(arc / length): a winding road.
+struct RoadWave {
+  double curvature_per_m = 0.0;
+  double length_m = 1.0;
 };
+
+/// Segments from the origin on; straight before the first, the last goes on for ever. The curvature changes linearly
+/// (a clothoid) over `transition_m` about each border, over less where a segment is shorter.
+struct RoadSpec {
+  std::vector<RoadSegment> segments;
+  double transition_m = 40.0;
+  std::vector<RoadWave> waves;
+};
+
+// ---------------------------------------------------------------- ego vehicle
+
+/// Follows the road at a lateral offset. Its box, for what its own body hides from its radars.
+struct EgoSpec {
+  double start_m = 0.0;
+  Knots speed_mps{{0.0, 15.0}};  ///< along the road, by time; negative: backwards
+  double swing_mps = 0.0;        ///< the speed swings about that by swing · sin(2π t / period)
+  double swing_period_s = 37.0;
+  Knots lateral_m{{0.0, 0.0}};  ///< by road position
+  double length_m = 4.7;
+  double width_m = 1.9;
+  double height_m = 1.5;
+  double rear_overhang_m = 1.0;  ///< rear axle to rear end
+};
+
+// ---------------------------------------------------------------- structures
+
+enum class StructureKind : std::uint8_t { kGuardRail, kWall, kNoiseBarrier, kTunnel, kFacade, kPillars };
+
+struct Gap {
+  double from_m = 0.0, to_m = 0.0;
+};
+
+/// A thing that mirrors. It runs along the road from `from_m` to `to_m`; with `heading_rad` ≠ 0 it runs straight
+/// instead from (from_m, lateral_m) over to_m − from_m metres in that direction, relative to the road there.
+struct StructureSpec {
+  StructureKind kind = StructureKind::kGuardRail;
+  double from_m = 0.0, to_m = 0.0;
+  double lateral_m = 0.0;
+  double heading_rad = 0.0;
+  double width_m = 0.0;  ///< tunnel: from the left wall, at lateral_m, to the right one; pillars: their side
+  double low_m = 0.4, high_m = 0.8;  ///< edges of the mirror; a tunnel's ceiling is at high_m
+  double loss_db = 3.0;              ///< of power, per bounce
+  bool opaque = true;
+  double spacing_m = 2.0;     ///< of the scatterers: posts, facets, pillars
+  double roughness_m = 0.05;  ///< standard deviation of the scatterers across it
+  double rcs_min_dbsm = -8.0, rcs_max_dbsm = 2.0;
+  std::vector<Gap> gaps;     ///< road positions (or metres from its beginning, with a heading)
+  double gap_every_m = 0.0;  ///< and regular ones: 0 none
+  double gap_length_m = 0.0;
+};
+
+// ---------------------------------------------------------------- scatter
+
+enum class ScatterKind : std::uint8_t { kColumns, kVegetation, kKerb, kParkedCars };
+
+/// What stands about. Columns (poles, trees): points above each other. Vegetation: points anywhere between the road and
+/// `top_max_m`. Kerb: low points in a line. Parked cars: bodies along the road.
+struct ScatterSpec {
+  ScatterKind kind = ScatterKind::kColumns;
+  double from_m = 0.0, to_m = 0.0;
+  double lateral_min_m = 0.0, lateral_max_m = 0.0;
+  bool both_sides = true;  ///< drawn with either sign of the lateral offset; else as given
+  double per_m = 0.2;      ///< mean number per metre of road
+  double top_min_m = 1.0, top_max_m = 9.0;
+  double spacing_m = 1.7;  ///< of a column's points, upwards
+  double rcs_min_dbsm = -5.0, rcs_max_dbsm = 10.0;
+  double heading_rad = 0.0;  ///< of parked cars on the left side, relative to the road; mirrored on the right one
+};
+
+// ---------------------------------------------------------------- bodies
+
+/// A body that follows the road, or with `heading_rad` ≠ 0 crosses it straight from (start_m, lateral_m.front()) in
+/// that direction relative to the road there. Sizes of 0 are those of its kind.
+struct BodySpec {
+  BodyKind kind = BodyKind::kCar;
+  double start_m = 0.0;
+  Knots lateral_m{{0.0, 0.0}};  ///< by road position
+  Knots speed_mps{{0.0, 0.0}};  ///< along the road, by time; negative: oncoming
+  double heading_rad = 0.0;
+  bool parked = false;
+  double length_m = 0.0, width_m = 0.0, height_m = 0.0;
+};
+
+// ----------------------------------------------------------------
 
 struct Scenario {
   std::string name;
-  double speed_scale = 1.0;                                 ///< k_v: true speed = k_v · signalled speed
-  std::array<Misalignment, kMaxRadars + 1> misalignment{};  ///< by radar id
-  double mean_speed_mps = 15.0;
-  double speed_swing_mps = 6.0;
-  double curvature = 1.0;  ///< 0: straight road, 1: winding
-  double rail_left_m = 7.5;
-  double rail_right_m = -7.5;
-  double roadside_density = 1.0;
-  std::vector<VehicleSpec> vehicles;
-  double ghost_probability = 0.15;  ///< of a vehicle's reflection having a ghost of either type
-  double clutter_per_scan = 1.5;
-  bool noise = true;
+  std::string about;
+  std::string vehicle;       ///< name of the vehicle file it is meant for; may be empty
+  double duration_s = 45.0;  ///< how long it makes sense
+  RoadSpec road;
+  EgoSpec ego;
+  std::vector<StructureSpec> structures;
+  std::vector<ScatterSpec> scatter;
+  std::vector<BodySpec> bodies;
+  RadarEffects effects;
 };
-
-/// One of scenario_names(); throws std::invalid_argument that lists them otherwise.
-///   demo_drive      winding road, front_right (radar 2) crooked by 2.5° yaw, speed signal 1.2 % low
-///   aligned_drive   the same world with nothing crooked: for false alarms
-///   straight_rail   straight road between rails, nothing crooked
-[[nodiscard]] Scenario scenario(std::string_view name);
-[[nodiscard]] std::vector<std::string> scenario_names();
 
 }  // namespace boresight::simulator

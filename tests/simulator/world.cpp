@@ -4,77 +4,132 @@
 #include <cmath>
 
 #include "tests/simulator/random.hpp"
+#include "tests/simulator/world/knots.hpp"
 
 namespace boresight::simulator {
 
 namespace {
 
-constexpr double kMargin_m = 1500.0;  // room for traffic that starts or ends far from the ego vehicle
+// Room for traffic that starts or ends far from the ego vehicle; beyond, roads go on without a table.
+constexpr double kMargin_m = 1500.0;
+// What is `reach` away is at most so many times that far along the road: a right-angled turn makes √2.
+constexpr double kDetour = 1.5;
+// The longest stretch of a mirror from its middle, and of what leads off the road.
+constexpr double kHalfMirror_m = 60.0;
+constexpr double kSideLoss_db = 4.0;  // of a vehicle's flank: less plane than a wall
+
+Gap widened(Gap extent, double by_m) {
+  return {extent.from_m - by_m, extent.to_m + by_m};
+}
+
+double distance_m(const Eigen::Vector2d& p, const MirrorSurface& s) {
+  const Eigen::Vector2d along = s.to_m - s.from_m;
+  const double share = std::clamp((p - s.from_m).dot(along) / std::max(1e-9, along.squaredNorm()), 0.0, 1.0);
+  return (s.from_m + share * along - p).norm();
+}
+
+template <typename Placed>
+void sort_by_arc(std::vector<Placed>& placed) {
+  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.arc_m < b.arc_m; });
+}
+
+/// Those with from ≤ arc < to, of a sorted list.
+template <typename Placed, typename Visit>
+void for_arcs(const std::vector<Placed>& placed, Gap arcs, const Visit& visit) {
+  const auto before = [](const Placed& p, double arc) { return p.arc_m < arc; };
+  const auto last = std::lower_bound(placed.begin(), placed.end(), arcs.to_m, before);
+  for (auto p = std::lower_bound(placed.begin(), last, arcs.from_m, before); p != last; ++p) visit(*p);
+}
 
 }  // namespace
 
 World::World(const Scenario& scenario, std::uint64_t seed, double duration_s)
-    : scenario_(scenario), road_(-kMargin_m, ego_arc_m(scenario, duration_s) + kMargin_m, scenario.curvature) {
-  add_roadside(seed, -200.0, ego_arc_m(scenario, duration_s) + 200.0);
-}
-
-void World::add_roadside(std::uint64_t seed, double begin_m, double end_m) {
-  const auto add = [&](double arc, double lateral, double height, double rcs) {
-    const Eigen::Vector2d p = road_.place(arc, lateral);
-    points_.push_back({arc, {p.x(), p.y(), height}, rcs});
-  };
-  constexpr double kSpacing_m = 2.0;
-  std::uint64_t index = 0;
-  for (double arc = begin_m; arc < end_m; arc += kSpacing_m, ++index) {
-    Stream rail(seed, "rail", index);
-    add(arc + rail.uniform(-0.3, 0.3), scenario_.rail_left_m + 0.05 * rail.gaussian(), rail.uniform(0.3, 0.8),
-        rail.uniform(-8.0, 2.0));
-    add(arc + rail.uniform(-0.3, 0.3), scenario_.rail_right_m + 0.05 * rail.gaussian(), rail.uniform(0.3, 0.8),
-        rail.uniform(-8.0, 2.0));
-    Stream roadside(seed, "roadside", index);
-    // Poles, trees and walls: several points above each other, which give the spread in elevation.
-    const unsigned columns = roadside.poisson(0.45 * scenario_.roadside_density);
-    for (unsigned c = 0; c < columns; ++c) {
-      const double side = roadside.uniform() < 0.5 ? -1.0 : 1.0;
-      const double lateral = side * roadside.uniform(10.0, 40.0);
-      const double top = roadside.uniform(1.0, 9.0);
-      for (double height = 0.4; height < top; height += 1.7) {
-        add(arc + roadside.uniform(-1.0, 1.0), lateral + 0.3 * roadside.gaussian(), height,
-            roadside.uniform(-5.0, 10.0));
-      }
-    }
+    : ego_(scenario.ego),
+      road_(scenario.road, std::min(0.0, ego_extent(scenario.ego, duration_s).from_m) - kMargin_m,
+            std::max(0.0, ego_extent(scenario.ego, duration_s).to_m) + kMargin_m) {
+  const Gap extent = widened(ego_extent(scenario.ego, duration_s), kDetour * kSight_m);
+  for (std::size_t i = 0; i < scenario.structures.size(); ++i) {
+    add_structure(scenario.structures[i], i, road_, extent, seed, roadside_);
   }
-  std::stable_sort(points_.begin(), points_.end(),
-                   [](const StationaryPoint& a, const StationaryPoint& b) { return a.arc_m < b.arc_m; });
+  for (std::size_t i = 0; i < scenario.scatter.size(); ++i) {
+    add_scatter(scenario.scatter[i], i, road_, extent, seed, roadside_);
+  }
+  sort_by_arc(roadside_.surfaces);
+  sort_by_arc(roadside_.scatterers);
+  for (const BodySpec& spec : scenario.bodies) add_actor(spec, seed);
+  for (std::size_t i = 0; i < scenario.scatter.size(); ++i) {
+    for (const BodySpec& spec : parked_cars(scenario.scatter[i], i, extent, seed)) add_actor(spec, seed);
+  }
 }
 
-std::pair<const StationaryPoint*, const StationaryPoint*> World::points(double begin_m, double end_m) const {
-  const auto before = [](const StationaryPoint& p, double arc) { return p.arc_m < arc; };
-  const auto first = std::lower_bound(points_.begin(), points_.end(), begin_m, before);
-  const auto last = std::lower_bound(first, points_.end(), end_m, before);
-  return {points_.data() + (first - points_.begin()), points_.data() + (last - points_.begin())};
+void World::add_actor(const BodySpec& spec, std::uint64_t seed) {
+  Actor actor{spec, Stream(seed, "gait", actors_.size()).uniform(), {}};
+  if (actor.spec.parked) actor.spec.speed_mps.clear();
+  const Dimensions usual = dimensions_of(spec.kind);
+  Body& body = actor.body;
+  body.id = static_cast<std::uint32_t>(actors_.size() + 1);
+  body.kind = spec.kind;
+  body.parked = spec.parked;
+  body.length_m = spec.length_m > 0.0 ? spec.length_m : usual.length_m;
+  body.width_m = spec.width_m > 0.0 ? spec.width_m : usual.width_m;
+  body.height_m = spec.height_m > 0.0 ? spec.height_m : usual.height_m;
+  body.clearance_m = usual.clearance_m;
+  body = placed(actor, body_motion(actor.spec, road_, 0.0));
+  actors_.push_back(std::move(actor));
 }
 
-VehicleState on_road(const Road& road, double arc_m, double lateral_m, double arc_speed_mps) {
-  const RoadPoint p = road.at(arc_m);
-  const Eigen::Vector2d tangent(std::cos(p.heading_rad), std::sin(p.heading_rad));
-  VehicleState state{};
-  state.arc_m = arc_m;
-  state.position_m = road.place(arc_m, lateral_m);
-  // A parallel curve to the left of a left-hand bend is shorter.
-  state.velocity_mps = arc_speed_mps * (1.0 - p.curvature_per_m * lateral_m) * tangent;
-  state.heading_rad = arc_speed_mps < 0.0 ? p.heading_rad + M_PI : p.heading_rad;
-  state.yaw_rate_radps = arc_speed_mps * p.curvature_per_m;
-  return state;
+Body World::placed(const Actor& actor, const Motion& motion) const {
+  Body body = actor.body;
+  body.position_m = motion.position_m;
+  body.heading_rad = motion.heading_rad;
+  body.velocity_mps = motion.velocity_mps();
+  body.yaw_rate_radps = motion.yaw_rate_radps;
+  return body;
 }
 
-VehicleState World::vehicle(std::size_t index, double t_s) const {
-  const VehicleSpec& spec = scenario_.vehicles[index];
-  VehicleState state = on_road(road_, spec.start_m + spec.speed_mps * t_s, spec.lateral_m, spec.speed_mps);
-  state.id = static_cast<std::uint32_t>(index + 1);
-  state.length_m = spec.length_m;
-  state.width_m = spec.width_m;
-  return state;
+EgoState World::ego(double t_s) const {
+  const Motion m = ego_motion(ego_, road_, t_s);
+  return {{m.position_m, m.heading_rad, m.speed_mps, m.acceleration_mps2, m.yaw_rate_radps}, m.arc_m};
+}
+
+Motion World::motion(std::size_t index, double t_s) const {
+  return body_motion(actors_[index].spec, road_, t_s);
+}
+
+Body World::body(std::size_t index, double t_s) const {
+  return placed(actors_[index], motion(index, t_s));
+}
+
+void World::at(double t_s, double reach_m, Scene& scene) const {
+  const EgoState ego = this->ego(t_s);
+  scene.t_s = t_s;
+  scene.ego = ego;
+  scene.bodies.clear();
+  scene.centres.clear();
+  scene.surfaces.clear();
+  scene.scatterers.clear();
+  for (const Actor& actor : actors_) {
+    // Parked bodies are where they are; only the rest need their place worked out.
+    if (actor.spec.parked) {
+      const double gap_m = (actor.body.position_m - ego.position_m).norm() - 0.5 * actor.body.length_m;
+      if (gap_m > reach_m) continue;
+    }
+    const Motion motion = actor.spec.parked ? Motion{} : body_motion(actor.spec, road_, t_s);
+    Body body = actor.spec.parked ? actor.body : placed(actor, motion);
+    if ((body.position_m - ego.position_m).norm() - 0.5 * body.length_m > reach_m) continue;
+    add_centres(body, motion.travelled_m, motion.speed_mps, actor.phase, scene.centres);
+    add_sides(body, kSideLoss_db, scene.surfaces);
+    scene.bodies.push_back(body);
+  }
+  const Gap arcs = widened({ego.arc_m, ego.arc_m}, kDetour * reach_m + kHalfMirror_m);
+  for_arcs(roadside_.surfaces, arcs, [&](const PlacedSurface& p) {
+    if (distance_m(ego.position_m, p.surface) <= reach_m) scene.surfaces.push_back(p.surface);
+  });
+  for_arcs(roadside_.scatterers, arcs, [&](const PlacedScatterer& p) {
+    if ((p.scatterer.position_m.head<2>() - ego.position_m).norm() <= reach_m) {
+      scene.scatterers.push_back(p.scatterer);
+    }
+  });
 }
 
 }  // namespace boresight::simulator

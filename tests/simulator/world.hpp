@@ -1,4 +1,4 @@
-// What reflects: the stationary roadside and the vehicles.
+// The world of a scenario: where everything is at an instant.
 #pragma once
 
 #include <cstdint>
@@ -8,45 +8,50 @@
 
 #include "tests/simulator/road.hpp"
 #include "tests/simulator/scenario.hpp"
+#include "tests/simulator/scene.hpp"
+#include "tests/simulator/world/motion.hpp"
+#include "tests/simulator/world/reflections.hpp"
+#include "tests/simulator/world/structures.hpp"
 
 namespace boresight::simulator {
 
-struct StationaryPoint {
-  double arc_m;  ///< for finding neighbours; points are sorted by it
-  Eigen::Vector3d position_m;
-  double rcs_dbsm;
-};
-
-/// A vehicle at an instant, world frame.
-struct VehicleState {
-  std::uint32_t id;
+/// The ego vehicle's rear axle, and where on the road that is.
+struct EgoState : EgoPose {
   double arc_m;
-  Eigen::Vector2d position_m;  ///< centre
-  double heading_rad;
-  Eigen::Vector2d velocity_mps;
-  double yaw_rate_radps;
-  double length_m;
-  double width_m;
 };
 
 class World {
  public:
+  /// Builds what stands within kSight_m of the ego vehicle until `duration_s`. What stands where depends on the seed
+  /// only, not on the duration.
+  static constexpr double kSight_m = 300.0;
   World(const Scenario& scenario, std::uint64_t seed, double duration_s);
 
+  /// What is within `reach_m` (≤ kSight_m) of the ego vehicle's origin at `t_s`: bodies and mirrors by their nearest
+  /// point. Buffers are kept: once they have grown to the busiest place there is no allocation.
+  void at(double t_s, double reach_m, Scene& scene) const;
+
+  [[nodiscard]] EgoState ego(double t_s) const;
   [[nodiscard]] const Road& road() const { return road_; }
-  /// Stationary points with begin ≤ arc < end.
-  [[nodiscard]] std::pair<const StationaryPoint*, const StationaryPoint*> points(double begin_m, double end_m) const;
-  [[nodiscard]] VehicleState vehicle(std::size_t index, double t_s) const;
-  [[nodiscard]] std::size_t number_of_vehicles() const { return scenario_.vehicles.size(); }
+
+  /// Of all bodies, parked ones last. Body::id is the index + 1.
+  [[nodiscard]] std::size_t number_of_bodies() const { return actors_.size(); }
+  /// Without its centres.
+  [[nodiscard]] Body body(std::size_t index, double t_s) const;
+  [[nodiscard]] Motion motion(std::size_t index, double t_s) const;
 
  private:
-  void add_roadside(std::uint64_t seed, double begin_m, double end_m);
-  Scenario scenario_;
+  struct Actor {
+    BodySpec spec;
+    GaitPhase phase;
+    Body body;  ///< of what is parked: at its place
+  };
+  void add_actor(const BodySpec& spec, std::uint64_t seed);
+  [[nodiscard]] Body placed(const Actor& actor, const Motion& motion) const;
+  EgoSpec ego_;
   Road road_;
-  std::vector<StationaryPoint> points_;
+  Roadside roadside_;
+  std::vector<Actor> actors_;
 };
-
-/// A vehicle-like pose on the road at a lateral offset, moving along it at `arc_speed_mps`.
-[[nodiscard]] VehicleState on_road(const Road& road, double arc_m, double lateral_m, double arc_speed_mps);
 
 }  // namespace boresight::simulator

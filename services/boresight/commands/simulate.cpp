@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -16,12 +17,15 @@ namespace boresight {
 
 namespace {
 
+constexpr double kAlignmentDrive_s = 45.0;
+
 struct Options {
   std::string scenario = "demo_drive";
   std::string vehicle;
   std::string out;
   std::uint64_t seed = 1;
-  double duration_s = 45.0;
+  std::string config = "/etc/boresight";
+  double duration_s = 0.0;  ///< 0: as the scenario says, or kAlignmentDrive_s
   AlignmentDriveOptions alignment;
 };
 
@@ -41,32 +45,50 @@ class Stopwatch {
 
 int simulate_alignment(const Options& options) {
   const Stopwatch watch;
+  const double duration_s = options.duration_s > 0.0 ? options.duration_s : kAlignmentDrive_s;
   std::optional<VehicleConfig> vehicle;
   if (!options.vehicle.empty()) vehicle = config::read_vehicle_file(options.vehicle);
   const simulator::AlignmentSpec spec =
-      alignment_spec(options.alignment, vehicle ? &*vehicle : nullptr, options.seed, options.duration_s);
+      alignment_spec(options.alignment, vehicle ? &*vehicle : nullptr, options.seed, duration_s);
   terminal::ProgressBar bar("simulating");
   const simulator::AlignmentFiles files = simulator::write_alignment_drive(spec, options.out, [&bar](double share) {
     if (bar.is_due()) bar.show(share);
   });
   bar.wipe();
-  watch.tell(options.duration_s, files.scans, files.detections);
+  watch.tell(duration_s, files.scans, files.detections);
   for (const auto& file : {files.drive, files.ego, files.vehicle, files.truth}) std::printf("  %s\n", file.c_str());
   return EXIT_SUCCESS;
+}
+
+std::string shipped_names() {
+  std::string names;
+  for (const std::string& name : simulator::scenario_names()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+/// The vehicle that was asked for, or the one the scenario is meant for.
+VehicleConfig vehicle_of(const Options& options, const simulator::Scenario& scenario) {
+  if (!options.vehicle.empty()) return config::read_vehicle_file(options.vehicle);
+  const auto file = std::filesystem::path(options.config) / "vehicle" / (scenario.vehicle + ".toml");
+  if (scenario.vehicle.empty() || !std::filesystem::exists(file)) {
+    throw config::Error("no vehicle file " + file.string() + "; name one by --vehicle, or its folder by --config");
+  }
+  return config::read_vehicle_file(file);
 }
 
 int simulate(const Options& options) {
   if (!options.alignment.road.empty()) return simulate_alignment(options);
   const Stopwatch watch;
+  const simulator::Scenario scenario = simulator::scenario(options.scenario);
+  const VehicleConfig vehicle = vehicle_of(options, scenario);
+  const double duration_s = options.duration_s > 0.0 ? options.duration_s : scenario.duration_s;
   terminal::ProgressBar bar("simulating");
-  const VehicleConfig vehicle = config::read_vehicle_file(options.vehicle);
   const simulator::DriveFiles files =
-      simulator::write_drive(simulator::scenario(options.scenario), vehicle, options.seed, options.duration_s,
-                             options.out, [&bar](double share) {
-                               if (bar.is_due()) bar.show(share);
-                             });
+      simulator::write_drive(scenario, vehicle, options.seed, duration_s, options.out, [&bar](double share) {
+        if (bar.is_due()) bar.show(share);
+      });
   bar.wipe();
-  watch.tell(options.duration_s, files.scans, files.number_of_detections);
+  watch.tell(duration_s, files.scans, files.number_of_detections);
   for (const auto& file : {files.radars, files.ego, files.truth, files.detections, files.objects}) {
     std::printf("  %s\n", file.c_str());
   }
@@ -78,20 +100,24 @@ int simulate(const Options& options) {
 void add_simulate_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand("simulate", "simulate a drive and write it as recordings with truth");
-  CLI::Option* const scenario = command->add_option("--scenario", options->scenario, "what to drive")
-                                    ->check(CLI::IsMember(simulator::scenario_names()))
+  CLI::Option* const scenario = command
+                                    ->add_option("--scenario", options->scenario,
+                                                 "what to drive: a scenario file (TOML), or one of " + shipped_names())
                                     ->capture_default_str();
-  command->add_option("--vehicle", options->vehicle,
-                      "vehicle file (TOML); for an alignment drive four corner radars if not given");
+  command->add_option(
+      "--vehicle", options->vehicle,
+      "vehicle file (TOML); else the one the scenario names, or four corner radars for an alignment drive");
+  command->add_option("--config", options->config, "folder of vehicle/, where the scenario's vehicle is looked for")
+      ->capture_default_str();
   command->add_option("--out", options->out, "folder for the recordings and the truth")->required();
   command->add_option("--seed", options->seed, "another seed is another drive")->capture_default_str();
-  command->add_option("--duration", options->duration_s, "seconds")
-      ->check(CLI::Range(0.1, 36000.0))
-      ->capture_default_str();
+  command
+      ->add_option("--duration", options->duration_s,
+                   "seconds; else as long as the scenario, or 45 s of an alignment drive")
+      ->check(CLI::Range(0.1, 36000.0));
   CLI::Option* const alignment = add_alignment_drive_options(*command, options->alignment);
   alignment->excludes(scenario);
   command->callback([options, &exit_code] {
-    if (options->alignment.road.empty() && options->vehicle.empty()) throw CLI::RequiredError("--vehicle");
     try {
       exit_code = simulate(*options);
     } catch (const std::exception& error) {

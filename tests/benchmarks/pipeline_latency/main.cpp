@@ -8,7 +8,7 @@
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
-#include "tests/simulator/scenario.hpp"
+#include "tests/simulator/scenario_file.hpp"
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/simulator/wire/pcap_writer.hpp"
 #include "tests/system/harness/domain.hpp"
@@ -75,7 +75,7 @@ void print(const char* what, const std::vector<double>& ns) {
 int run(double seconds) {
   const simulator::Scenario scenario = simulator::scenario("straight_rail");
   const auto ego = harness::simulated_drive(seconds, scenario.name).back();
-  const auto load = write_load(seconds, scenario.mean_speed_mps);
+  const auto load = write_load(seconds, scenario.ego.speed_mps.front().value);
   const std::vector<std::size_t> chunks = {sizeof(RadarScan), sizeof(CorrectedScan), sizeof(ClassifiedScan)};
 
   std::vector<double> total, ipc;

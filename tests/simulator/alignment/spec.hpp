@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/scenario.hpp"
+#include "tests/simulator/radar_effects.hpp"
 
 namespace boresight::simulator {
 

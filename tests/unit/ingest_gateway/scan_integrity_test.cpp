@@ -146,8 +146,8 @@ TEST(ScanJudge, CrookedByEightDegreesAndFivePercentIsNoContradiction) {
   for (const double yaw_deg : {-8.0, 8.0}) {
     for (const double speed_scale : {0.96, 1.04}) {
       simulator::Scenario scenario = simulator::scenario("demo_drive");
-      scenario.speed_scale = speed_scale;
-      for (auto& misalignment : scenario.misalignment) misalignment.yaw_rad = yaw_deg * M_PI / 180.0;
+      scenario.effects.speed_scale = speed_scale;
+      for (auto& misalignment : scenario.effects.misalignment) misalignment.yaw_rad = yaw_deg * M_PI / 180.0;
       for (const auto& [id, judge] : drive(scenario, 6, 30.0, nullptr)) {
         EXPECT_EQ(judge->counters().by_bit[5], 0u) << yaw_deg << ' ' << speed_scale << " radar " << id;
       }

@@ -65,8 +65,8 @@ TEST(Simulator, ARadarSeesTheSameWhateverTheOthersSee) {
 
 TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
   Scenario quiet = scenario("demo_drive");
-  quiet.noise = false;
-  quiet.clutter_per_scan = 0.0;
+  quiet.effects.noise = false;
+  quiet.effects.clutter_per_scan = 0.0;
   const VehicleConfig vehicle = demo();
   Drive drive(quiet, vehicle, 1, 3.0);
   std::size_t compared = 0;
@@ -74,7 +74,7 @@ TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
     if (event->scan == nullptr) continue;
     const RadarScan& scan = *event->scan;
     const RadarConfig& radar = *vehicle.radar(scan.header.source_id);
-    const Misalignment& m = quiet.misalignment[radar.id];
+    const Misalignment& m = quiet.effects.misalignment[radar.id];
     const EgoState ego = drive.ego(event->t_s);
     const Eigen::Matrix3d rotation =
         geometry::sensor_to_vehicle(radar.mounting_pose, m.yaw_rad, m.pitch_rad, m.roll_rad);
@@ -92,12 +92,12 @@ TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
 
 TEST(Simulator, TheSpeedSignalIsWrongByTheScaleOnly) {
   Scenario quiet = scenario("demo_drive");
-  quiet.noise = false;
+  quiet.effects.noise = false;
   Drive drive(quiet, demo(), 1, 3.0);
   while (const Event* event = drive.next()) {
     if (event->scan != nullptr) continue;
     const EgoState ego = drive.ego(event->t_s);
-    ASSERT_NEAR(event->ego.speed_mps * quiet.speed_scale, ego.speed_mps, 1e-9);
+    ASSERT_NEAR(event->ego.speed_mps * quiet.effects.speed_scale, ego.speed_mps, 1e-9);
     ASSERT_NEAR(event->ego.yaw_rate_radps, ego.yaw_rate_radps, 1e-9);
   }
 }

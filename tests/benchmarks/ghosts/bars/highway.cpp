@@ -6,7 +6,6 @@
 #include "tests/benchmarks/ghosts/bars/bars.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
-#include "tests/simulator/scenario.hpp"
 
 namespace boresight::bench {
 
@@ -71,8 +70,6 @@ void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Rep
 }  // namespace
 
 void highway(const Options& options, Report& report) {
-  const std::vector<std::string> known = simulator::scenario_names();
-  if (std::find(known.begin(), known.end(), kScenario) == known.end()) return;
   const std::size_t seeds = options.seeds(20);
   const double duration_s = options.seconds(kDuration_s);
   const std::string how = "median over " + std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";

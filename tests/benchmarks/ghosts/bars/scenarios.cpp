@@ -2,7 +2,7 @@
 #include "tests/benchmarks/ghosts/bars/bars.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
-#include "tests/simulator/scenario.hpp"
+#include "tests/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
 

@@ -9,6 +9,7 @@
 #include "tests/benchmarks/common/statistics.hpp"
 #include "tests/closed_loop/chain.hpp"
 #include "tests/closed_loop/objects.hpp"
+#include "tests/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
 
@@ -107,16 +108,18 @@ class LostObjects {
   std::map<std::uint32_t, Second> seconds_;
 };
 
-VehicleConfig vehicle_of_demo() {
-  return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
+/// The vehicle that a scenario is meant for.
+VehicleConfig vehicle_of(const simulator::Scenario& scenario) {
+  const std::string name = scenario.vehicle.empty() ? "demo" : scenario.vehicle;
+  return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle" / (name + ".toml"));
 }
 
 }  // namespace
 
-Outcome run_ghost_drive(const std::string& scenario, const ghosts::Config& config, std::uint64_t seed,
-                        double duration_s) {
-  const VehicleConfig vehicle = vehicle_of_demo();
-  simulator::Drive drive(simulator::scenario(scenario), vehicle, seed, duration_s);
+Outcome run_ghost_drive(const std::string& name, const ghosts::Config& config, std::uint64_t seed, double duration_s) {
+  const simulator::Scenario scenario = simulator::scenario(name);
+  const VehicleConfig vehicle = vehicle_of(scenario);
+  simulator::Drive drive(scenario, vehicle, seed, std::min(duration_s, scenario.duration_s));
   Chain chain(vehicle, config);
   Outcome out;
   GhostTracks ghost_tracks;

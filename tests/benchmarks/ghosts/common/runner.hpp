@@ -21,7 +21,8 @@ struct Outcome {
   std::size_t object_seconds = 0, lost_object_seconds = 0;
 };
 
-[[nodiscard]] Outcome run_ghost_drive(const std::string& scenario, const ghosts::Config& config, std::uint64_t seed,
+/// `name`: of a scenario or its file; at most as long as that makes sense.
+[[nodiscard]] Outcome run_ghost_drive(const std::string& name, const ghosts::Config& config, std::uint64_t seed,
                                       double duration_s);
 
 /// Seeds 1 … `seeds`, spread over threads.

@@ -1,0 +1,16 @@
+// The files of config/scenarios/ as they were when the program was built.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace boresight::simulator {
+
+struct ShippedScenario {
+  std::string_view name;  ///< of the file without ".toml"
+  std::string_view text;
+};
+/// Sorted by name. Generated, see tests/simulator/CMakeLists.txt.
+[[nodiscard]] std::span<const ShippedScenario> shipped_scenarios();
+
+}  // namespace boresight::simulator

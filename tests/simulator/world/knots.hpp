@@ -1,0 +1,21 @@
+// Values that change smoothly between knots.
+#pragma once
+
+#include "tests/simulator/scenario.hpp"
+
+namespace boresight::simulator {
+
+struct Smooth {
+  double value = 0.0;
+  double slope = 0.0;      ///< first derivative
+  double curvature = 0.0;  ///< second derivative
+};
+
+/// At `x`: between two knots by the quintic step, whose first and second derivative vanish at both ends; before the
+/// first and after the last knot constant. Knots are sorted by `at`; of none the value is 0.
+[[nodiscard]] Smooth smooth(const Knots& knots, double x);
+
+/// Integral of it from 0 to `x`, which may be negative.
+[[nodiscard]] double integral(const Knots& knots, double x);
+
+}  // namespace boresight::simulator
