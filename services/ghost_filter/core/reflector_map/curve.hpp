@@ -2,9 +2,9 @@
 // that may be zero. Distances are exact for both, so that a least-squares fit of them is total least squares.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <algorithm>
 #include <optional>
 
 #include <Eigen/Core>
@@ -50,8 +50,7 @@ struct Curve {
   /// After the change that a fit found: shift along the normal, turn, and change of curvature.
   [[nodiscard]] Curve changed(const Eigen::Vector3d& change) const {
     const double c = std::cos(change(1)), s = std::sin(change(1));
-    return {origin_m + change(0) * normal(), (c * tangent + s * normal()).normalized(),
-            curvature_per_m + change(2)};
+    return {origin_m + change(0) * normal(), (c * tangent + s * normal()).normalized(), curvature_per_m + change(2)};
   }
 
   /// Distances along a ray (unit `direction`) at which it crosses the curve, the nearer one first; those that do not

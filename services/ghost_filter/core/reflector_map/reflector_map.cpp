@@ -9,12 +9,12 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kBehind_m = 160.0;       // what lies farther from the vehicle is forgotten
+constexpr double kBehind_m = 160.0;  // what lies farther from the vehicle is forgotten
 constexpr double kBirthLogOdds = 0.0;
 constexpr double kSeenLogOdds = 0.7, kUnseenLogOdds = -0.08;
 constexpr double kSurest = 5.0, kDead = -2.0;
-constexpr double kGate = 3.0;             // standard deviations
-constexpr double kScatter_m = 0.15;       // of a rail's reflections about its middle line
+constexpr double kGate = 3.0;        // standard deviations
+constexpr double kScatter_m = 0.15;  // of a rail's reflections about its middle line
 
 }  // namespace
 
@@ -164,8 +164,8 @@ void ReflectorMap::drop_dead(const Eigen::Vector2d& vehicle_m) {
     for (std::size_t k = i + 1; k < reflectors_.size(); ++k) {
       if (reflectors_[i].log_odds < kDead || reflectors_[k].log_odds < kDead) continue;
       if (!repeats(reflectors_[i], reflectors_[k])) continue;
-      const bool first_longer = reflectors_[i].end_m() - reflectors_[i].begin_m() >=
-                                reflectors_[k].end_m() - reflectors_[k].begin_m();
+      const bool first_longer =
+          reflectors_[i].end_m() - reflectors_[i].begin_m() >= reflectors_[k].end_m() - reflectors_[k].begin_m();
       reflectors_[first_longer ? k : i].log_odds = kDead - 1.0;
     }
   }

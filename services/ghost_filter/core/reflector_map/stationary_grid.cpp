@@ -35,8 +35,7 @@ void StationaryGrid::forget(std::int64_t oldest_ns) {
     if (cell.last_ns < oldest_ns) continue;
     const Eigen::Vector2d p = cell.mean_m();
     // The mean of a cell's points lies in the cell; rounding at its edge may move it into one that is taken.
-    static_cast<void>(
-        table_.at(geometry::grid_cell(p.x(), p.y(), cell_m_), static_cast<std::uint32_t>(kept)));
+    static_cast<void>(table_.at(geometry::grid_cell(p.x(), p.y(), cell_m_), static_cast<std::uint32_t>(kept)));
     cell.claimed_by = kUnclaimed;
     cells_[kept++] = cell;
   }
