@@ -1,6 +1,7 @@
 #include "services/ghost_filter/core/classify/judge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace boresight::ghosts {
@@ -10,6 +11,12 @@ namespace {
 constexpr std::size_t kWaysPerTarget = 12;
 constexpr double kSpeedAlong_mps = 20.0, kSpeedAcross_mps = 1.5, kSpeedAnyway_mps = 10.0;
 constexpr double kAlongShare = 0.75;
+
+/// How much larger than its track's box a vehicle may be, on each side, and how likely that is.
+struct Growth {
+  double share, length_m, width_m;
+};
+constexpr std::array<Growth, 3> kGrowths{{{0.7, 0.0, 0.0}, {0.22, 2.5, 0.5}, {0.08, 7.0, 0.6}}};
 
 double gaussian(double residual, double variance) {
   const double square = residual * residual / variance;
@@ -108,7 +115,14 @@ double Judge::of_objects(const Measured& m, std::uint32_t but_object) const {
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (i == but_object || o.own) continue;
-    const double place = at_box(o, m.position_m, covariance);
+    // The box of a young track, or of one that shows its rear only, is shorter than the vehicle.
+    double place = 0.0;
+    for (const Growth& growth : kGrowths) {
+      Object grown = o;
+      grown.half_length_m += growth.length_m;
+      grown.half_width_m += growth.width_m;
+      place += growth.share * at_box(grown, m.position_m, covariance);
+    }
     if (place <= 0.0) continue;
     const double variance = m.direction.dot(o.velocity_covariance * m.direction) + square(m.rate_std_mps) +
                             square(config_.range_rate_slack_mps);
