@@ -1,6 +1,7 @@
 // The cores one after the other, as the processes are.
 #pragma once
 
+#include <chrono>
 #include <memory>
 
 #include "services/alignment_estimator/core/estimator.hpp"
@@ -38,7 +39,9 @@ class Chain {
     }
     corrected->header = classified->header = tracks->header = event.scan->header;
     corrector_.correct(*event.scan, *corrected);
+    const auto begin = std::chrono::steady_clock::now();
     ghost_filter_->classify(*corrected, *classified);
+    ghost_filter_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     tracker_.step(*classified);
     tracker_.write(*tracks);
     ghost_filter_->add_tracks(*tracks);
@@ -48,6 +51,7 @@ class Chain {
   std::unique_ptr<CorrectedScan> corrected = std::make_unique<CorrectedScan>();
   std::unique_ptr<ClassifiedScan> classified = std::make_unique<ClassifiedScan>();
   std::unique_ptr<TrackList> tracks = std::make_unique<TrackList>();
+  double ghost_filter_us = 0.0;  ///< that the ghost filter took
 
  private:
   VehicleConfig vehicle_;

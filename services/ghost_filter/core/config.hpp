@@ -3,16 +3,19 @@
 
 #include <cstdint>
 
+#include "services/ghost_filter/core/classify/filter_config.hpp"
 #include "services/ghost_filter/core/published/config.hpp"
 
 namespace boresight::ghosts {
 
 enum class MethodName : std::uint8_t {
+  kMirror,     ///< mirror consistency: the product's own
   kPublished,  ///< Report B: the baseline
 };
 
 struct Config {
   MethodName method = MethodName::kPublished;
+  MirrorConfig mirror;
   published::Config published;
 };
 

@@ -1,0 +1,27 @@
+// Settings of the classification by mirror consistency.
+#pragma once
+
+namespace boresight::ghosts {
+
+/// Densities are expected numbers of detections in a scan for each square metre and each m/s of range rate.
+struct ClassConfig {
+  double decision_probability = 0.5;  ///< from here on a detection is called a ghost (or clutter)
+  double memory_s = 0.2;              ///< moving detections of this time can be what a ghost mirrors
+  double new_object_density = 4e-6;   ///< of real moving objects that nothing announces
+  double clutter_density = 2e-6;
+  double lone_ghost_density = 1e-6;    ///< of type-2 ghosts behind a reflector whose object is not seen
+  double hidden_ghost_density = 4e-6;  ///< of type-1 ghosts behind an object by a reflector that is not known
+  double type1_per_object = 0.3;       ///< expected detections by one reflector
+  double type2_per_object = 0.5;
+  double real_per_object = 4.0;
+  double stationary_image_density = 2e-5;  ///< images of the stationary world: for each m², at the range rate they have
+  double extent_std_m = 1.3;               ///< of a reflection from another place of the same object
+  double range_rate_slack_mps = 0.3;       ///< wheels, turning, bodies that are not rigid
+  double margin_m = 1.0;                   ///< a ghost lies at least this far behind its mirror or object
+  double min_mirror_length_m = 6.0;        ///< of a vehicle whose sides are mirrors
+  double unaligned_std_rad = 0.02;         ///< of the mounting's yaw while no alignment is applied
+  double aligned_std_rad = 0.002;
+  double ego_front_m = 4.0, ego_rear_m = -1.0, ego_half_width_m = 0.95;  ///< the own body, seen in mirrors
+};
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,288 @@
+#include "services/ghost_filter/core/classify/mirror_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "interfaces/messages/radar_scan.hpp"
+#include "services/common/geometry/ego_step.hpp"
+#include "services/ghost_filter/core/pass_on.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr std::size_t kMaxVehicleSides = 32;
+constexpr double kTrackDensity = 2.5e-5;  // of real tracks, for each m² and m/s
+constexpr double kChordSag_m = 0.2;       // an arc is published as chords that leave it by this at most
+
+bool is_usable(const CorrectedScan& scan, std::size_t i) {
+  return (scan.detection_flags[i] & corrected_flag::kRejected) == 0 && std::isfinite(scan.x_vehicle_m[i]) &&
+         std::isfinite(scan.y_vehicle_m[i]) && std::isfinite(scan.range_rate_over_ground_mps[i]);
+}
+
+double positive_or(float value, double fallback) {
+  return std::isfinite(value) && value > 0.0F ? static_cast<double>(value) : fallback;
+}
+
+Eigen::Matrix2d block(const Track& track, std::size_t at) {
+  const auto c = [&](std::size_t row, std::size_t column) {
+    return static_cast<double>(track.covariance[(at + row) * kTrackStateSize + at + column]);
+  };
+  Eigen::Matrix2d m;
+  m << c(0, 0), c(0, 1), c(1, 0), c(1, 1);
+  return m.allFinite() ? m : Eigen::Matrix2d::Identity();
+}
+
+}  // namespace
+
+MirrorFilter::MirrorFilter(const MirrorConfig& config)
+    : config_(config), map_(config.map), judge_(config.classes), tracks_(std::make_unique<TrackList>()) {
+  mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
+  objects_.reserve(Judge::kMaxObjects);
+}
+
+void MirrorFilter::add_tracks(const TrackList& tracks) {
+  tracks_->header = tracks.header;
+  tracks_->number_of_tracks = std::min<std::uint32_t>(tracks.number_of_tracks, kMaxTracks);
+  std::copy_n(tracks.tracks.begin(), tracks_->number_of_tracks, tracks_->tracks.begin());
+  has_tracks_ = true;
+  images_before_ = images_;
+  for (std::size_t i = 0; i < kMaxTracks; ++i) {
+    const std::uint32_t id = i < tracks_->number_of_tracks ? tracks_->tracks[i].tracking_id : 0;
+    const auto before = std::find_if(images_before_.begin(), images_before_.end(),
+                                     [id](const Image& image) { return image.tracking_id == id; });
+    images_[i] = id != 0 && before != images_before_.end() ? *before : Image{id, -1.0};
+  }
+}
+
+void MirrorFilter::predict_objects(const CorrectedScan& scan) {
+  objects_.clear();
+  const ClassConfig& c = config_.classes;
+  const double elapsed_s =
+      static_cast<double>(scan.header.measurement_time_ns - tracks_->header.measurement_time_ns) * 1e-9;
+  if (has_tracks_ && std::abs(elapsed_s) <= config_.tracks_max_age_s) {
+    const geometry::EgoStep step =
+        geometry::ego_step(scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, elapsed_s);
+    for (std::uint32_t i = 0; i < tracks_->number_of_tracks; ++i) {
+      const Track& track = tracks_->tracks[i];
+      const Eigen::Vector2d position(track.position_vehicle_m[0], track.position_vehicle_m[1]);
+      const Eigen::Vector2d velocity(track.velocity_over_ground_mps[0], track.velocity_over_ground_mps[1]);
+      if (track.status != TrackStatus::kConfirmed || !position.allFinite() || !velocity.allFinite() ||
+          !std::isfinite(track.heading_rad)) {
+        continue;
+      }
+      Object o;
+      o.position_m = step.move_point(position + elapsed_s * velocity);
+      o.axis = step.rotate(
+          {std::cos(static_cast<double>(track.heading_rad)), std::sin(static_cast<double>(track.heading_rad))});
+      o.half_length_m = 0.5 * positive_or(track.length_m, 4.0);
+      o.half_width_m = 0.5 * positive_or(track.width_m, 1.8);
+      o.velocity_mps = step.rotate(velocity);
+      const Eigen::Matrix2d of_velocity = block(track, 2) + 4.0 * elapsed_s * elapsed_s * Eigen::Matrix2d::Identity();
+      o.position_covariance =
+          step.to_new * (block(track, 0) + elapsed_s * elapsed_s * of_velocity) * step.to_new.transpose();
+      o.velocity_covariance = step.to_new * of_velocity * step.to_new.transpose();
+      const double existence = std::isfinite(track.existence_probability)
+                                   ? std::clamp(static_cast<double>(track.existence_probability), 0.5, 1.0)
+                                   : 0.5;
+      o.weight = existence / (1.0 + std::exp(2.0 * images_[i].log_odds));
+      track_of_object_[objects_.size()] = i;
+      objects_.push_back(o);
+    }
+  }
+  Object own;
+  own.own = true;
+  own.weight = 1.0;
+  own.position_m = {0.5 * (c.ego_front_m + c.ego_rear_m), 0.0};
+  own.half_length_m = 0.5 * (c.ego_front_m - c.ego_rear_m);
+  own.half_width_m = c.ego_half_width_m;
+  own.velocity_mps = {scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps * own.position_m.x()};
+  own.velocity_covariance = 0.04 * Eigen::Matrix2d::Identity();
+  objects_.push_back(own);
+}
+
+void MirrorFilter::place_mirrors() {
+  mirrors_.clear();
+  for (const Reflector& r : map_.reflectors()) {
+    Mirror m;
+    m.curve = {odometry_.point_to_vehicle(r.curve.origin_m), odometry_.vector_to_vehicle(r.curve.tangent),
+               r.curve.curvature_per_m};
+    m.covariance = r.covariance;
+    m.covariance(0, 0) += 0.03 * 0.03;  // a rail is not a line
+    m.begin_m = r.begin_m();
+    m.end_m = r.end_m();
+    m.existence = r.existence();
+    m.occupancy = &r.occupancy;
+    m.arc_shift_m = r.arc_shift_m;
+    mirrors_.push_back(m);
+  }
+  // The sides of large vehicles that the sensor can see.
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const Object& o = objects_[i];
+    if (o.own || o.weight < 0.5 || 2.0 * o.half_length_m < config_.classes.min_mirror_length_m) continue;
+    const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
+    const double side = left.dot(sensor_m_ - o.position_m);
+    if (std::abs(side) <= o.half_width_m || mirrors_.size() == mirrors_.capacity()) continue;
+    Mirror m;
+    m.curve = {o.position_m + std::copysign(o.half_width_m, side) * left, o.axis, 0.0};
+    m.covariance = Eigen::Vector3d(0.2 * 0.2 + left.dot(o.position_covariance * left), 0.04 * 0.04, 0.0).asDiagonal();
+    m.begin_m = -o.half_length_m;
+    m.end_m = o.half_length_m;
+    m.existence = 0.8 * o.weight;
+    m.velocity_mps = o.velocity_mps;
+    m.body = i;
+    mirrors_.push_back(m);
+  }
+}
+
+Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i, double mounting_std_rad) const {
+  Measured m;
+  m.position_m = {scan.x_vehicle_m[i], scan.y_vehicle_m[i]};
+  const Eigen::Vector2d sight = m.position_m - sensor_m_;
+  m.range_m = std::max(0.1, sight.norm());
+  m.direction = sight / m.range_m;
+  m.rate_mps = scan.range_rate_over_ground_mps[i];
+  m.range_std_m = positive_or(scan.range_std_m[i], 0.15);
+  m.azimuth_std_rad = std::hypot(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad);
+  m.rate_std_mps = positive_or(scan.range_rate_std_mps[i], 0.05);
+  const double across = m.direction.x() * sensor_velocity_mps_.y() - m.direction.y() * sensor_velocity_mps_.x();
+  m.still_std_mps = std::sqrt(m.rate_std_mps * m.rate_std_mps + 0.06 * 0.06 + ego_speed_std_mps_ * ego_speed_std_mps_ +
+                              across * across * m.azimuth_std_rad * m.azimuth_std_rad);
+  m.rcs_dbsm = (scan.fields & scan_field::kRcs) != 0 ? static_cast<double>(scan.rcs_dbsm[i])
+                                                     : std::numeric_limits<double>::quiet_NaN();
+  return m;
+}
+
+void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count, double mounting_std_rad) {
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
+  movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
+    const Measured m = measured(scan, i, mounting_std_rad);
+    // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
+    const double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
+    const double across = m.range_m * m.azimuth_std_rad;
+    movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
+                 m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i)});
+  }
+}
+
+void MirrorFilter::judge_tracks() {
+  for (std::uint32_t k = 0; k + 1 < objects_.size(); ++k) {
+    const Object& o = objects_[k];
+    Measured m;
+    m.position_m = o.position_m;
+    const Eigen::Vector2d sight = o.position_m - sensor_m_;
+    m.range_m = sight.norm();
+    if (m.range_m < 1.0) continue;
+    m.direction = sight / m.range_m;
+    m.rate_mps = m.direction.dot(o.velocity_mps);
+    const Eigen::Vector2d across(-m.direction.y(), m.direction.x());
+    m.range_std_m = 0.5 + std::sqrt(std::max(0.0, m.direction.dot(o.position_covariance * m.direction)));
+    m.azimuth_std_rad = (0.4 + std::sqrt(std::max(0.0, across.dot(o.position_covariance * across)))) / m.range_m;
+    m.rate_std_mps = 0.3 + std::sqrt(std::max(0.0, m.direction.dot(o.velocity_covariance * m.direction)));
+    m.still_std_mps = m.rate_std_mps;
+    m.rcs_dbsm = std::numeric_limits<double>::quiet_NaN();
+    const Densities d = judge_.weigh(m, kNobody, k);
+    const double score = std::clamp(std::log((d.type1 + d.type2 + 1e-12) / kTrackDensity), -3.0, 3.0);
+    double& log_odds = images_[track_of_object_[k]].log_odds;
+    log_odds += 0.1 * (score - log_odds);
+  }
+}
+
+void MirrorFilter::write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const {
+  const double sum = densities.sum();
+  if (!(sum > 0.0)) {
+    out.provenance[i] = Provenance::kClutter;
+    out.ghost_probability[i] = 0.5F;
+    return;
+  }
+  const double unreal = densities.type1 + densities.type2 + densities.clutter;
+  out.ghost_probability[i] = static_cast<float>(unreal / sum);
+  if (unreal < config_.classes.decision_probability * sum) {
+    out.provenance[i] = densities.moving >= densities.stationary ? Provenance::kMoving : Provenance::kStationary;
+  } else if (densities.clutter > densities.type1 + densities.type2) {
+    out.provenance[i] = Provenance::kClutter;
+  } else {
+    out.provenance[i] = densities.type1 > densities.type2 ? Provenance::kGhostType1 : Provenance::kGhostType2;
+  }
+}
+
+void MirrorFilter::write_segments(ClassifiedScan& out) const {
+  std::uint32_t written = 0;
+  for (const Reflector& r : map_.reflectors()) {
+    if (r.log_odds <= 0.0) continue;
+    const auto write = [&](double begin, double end) {
+      const double longest = std::abs(r.curve.curvature_per_m) < 1e-5
+                                 ? end - begin
+                                 : std::sqrt(8.0 * kChordSag_m / std::abs(r.curve.curvature_per_m));
+      const int pieces = std::clamp(static_cast<int>(std::ceil((end - begin) / std::max(1.0, longest))), 1, 16);
+      for (int k = 0; k < pieces && written < kMaxReflectorSegments; ++k) {
+        const auto at = [&](int n) -> std::array<float, 2> {
+          const double arc = begin + (end - begin) * n / pieces;
+          const Eigen::Vector2f p = odometry_.point_to_vehicle(r.curve.at(arc)).cast<float>();
+          return {p.x(), p.y()};
+        };
+        out.reflector_segments[written++] = {at(k), at(k + 1), static_cast<float>(r.residual_m), r.detections};
+      }
+    };
+    // Each stretch without an opening is a segment of its own.
+    const Occupancy& o = r.occupancy;
+    std::int32_t begin = o.first();
+    for (std::int32_t bin = o.first(); bin <= o.last() + 1; ++bin) {
+      if (bin <= o.last() && !o.is_open(bin)) continue;
+      if (bin > begin) write(begin * o.bin_m() - r.arc_shift_m, bin * o.bin_m() - r.arc_shift_m);
+      begin = bin + 1;
+    }
+  }
+  out.number_of_reflector_segments = written;
+}
+
+void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+  const std::size_t count = pass_on(scan, out);
+  const ScanGeometry& g = scan.geometry;
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
+  if (!has_tracks_) {
+    out.flags |= pipeline_flag::kNoTracks;
+  } else if (std::abs(static_cast<double>(time_ns - tracks_->header.measurement_time_ns)) * 1e-9 >
+             config_.tracks_max_age_s) {
+    out.flags |= pipeline_flag::kTracksStale;
+  }
+  sensor_m_ = {g.sensor_position_vehicle_m[0], g.sensor_position_vehicle_m[1]};
+  sensor_velocity_mps_ = {g.sensor_velocity_vehicle_mps[0], g.sensor_velocity_vehicle_mps[1]};
+  ego_speed_std_mps_ = positive_or(g.ego_speed_std_mps, 0.05);
+  const double mounting_std_rad = (scan.flags & pipeline_flag::kNoAlignment) != 0 ? config_.classes.unaligned_std_rad
+                                                                                  : config_.classes.aligned_std_rad;
+  if (!odometry_.advance(time_ns, g.ego_speed_mps, g.ego_yaw_rate_radps)) {
+    map_.clear();
+    movers_.clear();
+  }
+  predict_objects(scan);
+  place_mirrors();
+  judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &odometry_, &movers_, &map_.grid()});
+  gather_movers(scan, count, mounting_std_rad);
+  judge_tracks();
+
+  for (std::size_t i = 0; i < count; ++i) {
+    out.provenance[i] = Provenance::kUnknown;
+    out.ghost_probability[i] = 0.0F;
+    if (!is_usable(scan, i)) continue;
+    const bool moving = (scan.detection_flags[i] & corrected_flag::kMoving) != 0;
+    if (!moving && (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
+    const Measured m = measured(scan, i, mounting_std_rad);
+    write_verdict(moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m), i, out);
+  }
+
+  // What is stationary beyond doubt shapes the map, after the scan was judged by what was known before.
+  for (std::size_t i = 0; i < count; ++i) {
+    if (out.provenance[i] != Provenance::kStationary) continue;
+    const Measured m = measured(scan, i, 0.0);
+    const double across = m.range_m * m.azimuth_std_rad;
+    map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
+  }
+  map_.update(odometry_, positive_or(g.ego_speed_std_mps, 0.05), positive_or(g.ego_yaw_rate_std_radps, 0.002));
+  write_segments(out);
+}
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,55 @@
+// The product's own method: what is a ghost must mirror something real, in place and range rate.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "services/ghost_filter/core/classify/filter_config.hpp"
+#include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/recent_movers.hpp"
+#include "services/ghost_filter/core/method.hpp"
+#include "services/ghost_filter/core/mirror/mirror.hpp"
+#include "services/ghost_filter/core/reflector_map/odometry.hpp"
+#include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
+
+namespace boresight::ghosts {
+
+class MirrorFilter final : public Method {
+ public:
+  explicit MirrorFilter(const MirrorConfig& config);
+
+  void add_tracks(const TrackList& tracks) override;
+  /// `ghost_probability` is the probability that a detection is no direct reflection: a ghost or clutter.
+  void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
+
+ private:
+  /// How much a track looks like the image of something else, over time.
+  struct Image {
+    std::uint32_t tracking_id = 0;
+    double log_odds = 0.0;
+  };
+  void predict_objects(const CorrectedScan& scan);
+  void place_mirrors();
+  void gather_movers(const CorrectedScan& scan, std::size_t count, double mounting_std_rad);
+  void judge_tracks();
+  void write_segments(ClassifiedScan& out) const;
+  [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i, double mounting_std_rad) const;
+  void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
+  MirrorConfig config_;
+  Odometry odometry_;
+  ReflectorMap map_;
+  RecentMovers movers_;
+  Judge judge_;
+  std::vector<Mirror> mirrors_;
+  std::vector<Object> objects_;  // the own vehicle is the last
+  std::array<std::uint32_t, kMaxTracks> track_of_object_{};
+  std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
+  std::array<Image, kMaxTracks> images_{}, images_before_{};
+  bool has_tracks_ = false;
+  Eigen::Vector2d sensor_m_{0.0, 0.0}, sensor_velocity_mps_{0.0, 0.0};
+  double ego_speed_std_mps_ = 0.0;
+};
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,102 @@
+#include "services/ghost_filter/core/mirror/mirror.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr double kLeastSine = 0.02;  // a ray that grazes at less than a degree is not followed
+
+double there(const Mirror& mirror, double arc_m, double arc_std_m) {
+  if (mirror.occupancy != nullptr) {
+    return mirror.existence * mirror.occupancy->probability(arc_m + mirror.arc_shift_m, arc_std_m);
+  }
+  const double slack = arc_std_m + 0.3;
+  // Share of a Gaussian that lies between the ends, by the logistic approximation of its distribution.
+  const auto below = [slack](double x) { return 1.0 / (1.0 + std::exp(-1.7 * std::clamp(x / slack, -20.0, 20.0))); };
+  return mirror.existence * std::max(0.0, below(arc_m - mirror.begin_m) - below(arc_m - mirror.end_m));
+}
+
+double variance_at(const Mirror& mirror, double arc_m) {
+  const Eigen::Vector3d row(1.0, arc_m, 0.5 * arc_m * arc_m);
+  return std::max(0.0, row.dot(mirror.covariance * row));
+}
+
+}  // namespace
+
+std::optional<Turn> turn_at(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& direction,
+                            double farthest_m, double azimuth_std_rad) {
+  for (const double distance : mirror.curve.crossings(sensor_m, direction)) {
+    if (distance < 0.2 || distance > farthest_m) continue;
+    const Eigen::Vector2d point = sensor_m + distance * direction;
+    const double arc = mirror.curve.arc(point);
+    // The other half of a circle has the same crossings.
+    if (arc < mirror.begin_m - 10.0 || arc > mirror.end_m + 10.0) continue;
+    const Eigen::Vector2d tangent = mirror.curve.tangent_at(arc);
+    Eigen::Vector2d normal(-tangent.y(), tangent.x());
+    double sine = -direction.dot(normal);
+    if (sine < 0.0) {
+      normal = -normal;
+      sine = -sine;
+    }
+    if (sine < kLeastSine) continue;
+    const double arc_std = distance * azimuth_std_rad / sine;
+    const double probability = there(mirror, arc, arc_std);
+    if (probability < 0.01) continue;
+    const double angle_variance =
+        mirror.covariance(1, 1) + arc * (2.0 * mirror.covariance(1, 2) + arc * mirror.covariance(2, 2));
+    return Turn{distance,
+                point,
+                direction + 2.0 * sine * normal,
+                normal,
+                probability,
+                std::sqrt(variance_at(mirror, arc)),
+                std::sqrt(std::max(0.0, angle_variance)),
+                std::abs(mirror.curve.curvature_per_m) / sine};
+  }
+  return std::nullopt;
+}
+
+double rest_of_three_bounces(const Turn& turn, double range_m) {
+  return range_m - turn.distance_m;
+}
+
+double rest_of_two_bounces(const Turn& turn, const Eigen::Vector2d& sensor_m, double range_m) {
+  // |W + s·d − S| = L − s with L = 2r − |W−S|.
+  const double length = 2.0 * range_m - turn.distance_m;
+  const Eigen::Vector2d back = turn.point_m - sensor_m;
+  const double denominator = 2.0 * (length + back.dot(turn.direction));
+  return denominator < 1e-6 ? -1.0 : (length * length - back.squaredNorm()) / denominator;
+}
+
+std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
+                                const Eigen::Vector2d& target_m) {
+  const double sensor_side = mirror.curve.distance(sensor_m);
+  const double target_side = mirror.curve.distance(target_m);
+  if (sensor_side * target_side <= 0.0) return std::nullopt;
+  // On a straight mirror W divides the way in the ratio of the distances; on a bent one that is where one begins.
+  double arc = mirror.curve.arc(sensor_m);
+  arc += (mirror.curve.arc(target_m) - arc) * sensor_side / (sensor_side + target_side);
+  Eigen::Vector2d point, tangent;
+  for (int round = 0;; ++round) {
+    point = mirror.curve.at(arc);
+    tangent = mirror.curve.tangent_at(arc);
+    if (round == 2 || mirror.curve.curvature_per_m == 0.0) break;
+    const Eigen::Vector2d a = sensor_m - point, b = target_m - point;
+    const double step = tangent.dot(a) * std::abs(target_side) + tangent.dot(b) * std::abs(sensor_side);
+    arc += step / (std::abs(sensor_side) + std::abs(target_side));
+  }
+  if (arc < mirror.begin_m - 5.0 || arc > mirror.end_m + 5.0) return std::nullopt;
+  const Eigen::Vector2d out = point - sensor_m, on = target_m - point;
+  const double first = out.norm(), second = on.norm();
+  if (first < 0.2 || second < 0.2) return std::nullopt;
+  const double probability = there(mirror, arc, 0.5);
+  if (probability < 0.01) return std::nullopt;
+  const Eigen::Vector2d u = out / first, d = on / second;
+  const double sine = std::abs(u.x() * tangent.y() - u.y() * tangent.x());
+  return Detour{first + second, u, d, probability, 2.0 * sine * std::sqrt(variance_at(mirror, arc))};
+}
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,76 @@
+// A straight line or an arc in the plane, in one parametrisation: through `origin_m` along `tangent`, with a curvature
+// that may be zero. Distances are exact for both, so that a least-squares fit of them is total least squares.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Core>
+
+namespace boresight::ghosts {
+
+struct Curve {
+  Eigen::Vector2d origin_m{0.0, 0.0};
+  Eigen::Vector2d tangent{1.0, 0.0};  ///< unit
+  double curvature_per_m = 0.0;       ///< positive: bends to the left of the tangent
+
+  [[nodiscard]] Eigen::Vector2d normal() const { return {-tangent.y(), tangent.x()}; }
+  /// Along the tangent and across it, from the origin.
+  [[nodiscard]] Eigen::Vector2d local(const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d q = p - origin_m;
+    return {q.dot(tangent), tangent.x() * q.y() - tangent.y() * q.x()};
+  }
+  /// Signed distance of a point given in local coordinates, positive on the left. Pratt's form, which has no pole at
+  /// curvature 0.
+  [[nodiscard]] double distance_of_local(const Eigen::Vector2d& q) const {
+    const double a = q.y() - 0.5 * curvature_per_m * q.squaredNorm();
+    return 2.0 * a / (1.0 + std::sqrt(std::max(0.0, 1.0 - 2.0 * curvature_per_m * a)));
+  }
+  [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return distance_of_local(local(p)); }
+  /// Arc length from the origin of the foot of a point given in local coordinates.
+  [[nodiscard]] double arc_of_local(const Eigen::Vector2d& q) const {
+    if (std::abs(curvature_per_m) < 1e-6) return q.x();
+    return std::atan2(curvature_per_m * q.x(), 1.0 - curvature_per_m * q.y()) / curvature_per_m;
+  }
+  [[nodiscard]] double arc(const Eigen::Vector2d& p) const { return arc_of_local(local(p)); }
+  [[nodiscard]] Eigen::Vector2d at(double arc_m) const {
+    const double angle = curvature_per_m * arc_m;
+    const double half = 0.5 * angle;
+    const double chord = arc_m * (std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
+    return origin_m + chord * (std::cos(half) * tangent + std::sin(half) * normal());
+  }
+  [[nodiscard]] Eigen::Vector2d tangent_at(double arc_m) const {
+    const double angle = curvature_per_m * arc_m;
+    return std::cos(angle) * tangent + std::sin(angle) * normal();
+  }
+  /// The same curve with its origin moved along it.
+  [[nodiscard]] Curve moved(double arc_m) const { return {at(arc_m), tangent_at(arc_m), curvature_per_m}; }
+  /// After the change that a fit found: shift along the normal, turn, and change of curvature.
+  [[nodiscard]] Curve changed(const Eigen::Vector3d& change) const {
+    const double c = std::cos(change(1)), s = std::sin(change(1));
+    return {origin_m + change(0) * normal(), (c * tangent + s * normal()).normalized(), curvature_per_m + change(2)};
+  }
+
+  /// Distances along a ray (unit `direction`) at which it crosses the curve, the nearer one first; those that do not
+  /// exist or lie behind are negative.
+  [[nodiscard]] std::array<double, 2> crossings(const Eigen::Vector2d& from, const Eigen::Vector2d& direction) const {
+    const Eigen::Vector2d q = local(from);
+    const Eigen::Vector2d d(direction.dot(tangent), tangent.x() * direction.y() - tangent.y() * direction.x());
+    const double a = -0.5 * curvature_per_m;
+    const double b = d.y() - curvature_per_m * q.dot(d);
+    const double c = q.y() - 0.5 * curvature_per_m * q.squaredNorm();
+    const double discriminant = b * b - 4.0 * a * c;
+    std::array<double, 2> found{-1.0, -1.0};
+    if (discriminant < 0.0 || (a == 0.0 && b == 0.0)) return found;
+    // The two forms of the root that do not cancel: one holds for a straight line, too.
+    const double h = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+    if (h != 0.0) found[0] = c / h;
+    if (a != 0.0) found[1] = h / a;
+    if (found[0] < 0.0 || (found[1] >= 0.0 && found[1] < found[0])) std::swap(found[0], found[1]);
+    return found;
+  }
+};
+
+}  // namespace boresight::ghosts

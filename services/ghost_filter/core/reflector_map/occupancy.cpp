@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cmath>
+
+#include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+constexpr float kUnseen = -1.0F;
+constexpr float kHit = 1.2F;
+/// A rail reflects at its posts, of which a scan shows a part only: a miss says far less than a hit.
+constexpr float kMiss = -0.12F;
+constexpr float kSurest = 4.0F, kLeastSure = -3.0F;
+}  // namespace
+
+void Occupancy::reset(double begin_m, double end_m, double bin_m) {
+  bin_m_ = bin_m;
+  first_ = bin_of(begin_m);
+  last_ = std::min(bin_of(end_m), first_ + kBins - 1);
+  log_odds_.fill(kUnseen);
+  hit_.fill(false);
+}
+
+std::int32_t Occupancy::bin_of(double arc_m) const {
+  return static_cast<std::int32_t>(std::floor(std::clamp(arc_m, -1e6, 1e6) / bin_m_));
+}
+
+bool Occupancy::extend(double arc_m) {
+  const std::int32_t bin = bin_of(arc_m);
+  if (std::max(last_, bin) - std::min(first_, bin) >= kBins) return false;
+  while (last_ < bin) {
+    log_odds_[index(++last_)] = kUnseen;
+    hit_[index(last_)] = false;
+  }
+  while (first_ > bin) {
+    log_odds_[index(--first_)] = kUnseen;
+    hit_[index(first_)] = false;
+  }
+  return true;
+}
+
+void Occupancy::hit(double arc_m) {
+  const std::int32_t bin = bin_of(arc_m);
+  if (bin >= first_ && bin <= last_) hit_[index(bin)] = true;
+}
+
+void Occupancy::settle() {
+  std::int32_t from = last_ + 1, to = first_ - 1;
+  for (std::int32_t bin = first_; bin <= last_; ++bin) {
+    if (!hit_[index(bin)]) continue;
+    from = std::min(from, bin);
+    to = bin;
+  }
+  for (std::int32_t bin = from; bin <= to; ++bin) {
+    float& odds = log_odds_[index(bin)];
+    odds = std::clamp(odds + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurest);
+    hit_[index(bin)] = false;
+  }
+}
+
+void Occupancy::keep(double begin_m, double end_m) {
+  first_ = std::max(first_, bin_of(begin_m));
+  last_ = std::min(last_, bin_of(end_m));
+}
+
+double Occupancy::probability(double arc_m, double std_m) const {
+  const std::int32_t middle = bin_of(arc_m);
+  const std::int32_t reach = std::min(4, static_cast<std::int32_t>(std::lround(std::min(std_m / bin_m_, 4.0))));
+  double sum = 0.0;
+  for (std::int32_t bin = middle - reach; bin <= middle + reach; ++bin) {
+    if (bin < first_ || bin > last_) continue;
+    sum += 1.0 / (1.0 + std::exp(-static_cast<double>(log_odds_[index(bin)])));
+  }
+  return sum / (2 * reach + 1);
+}
+
+}  // namespace boresight::ghosts
