@@ -13,12 +13,15 @@ struct NamedGhostMethod {
   ghosts::Config config;
 };
 
-/// All that the configuration offers; the product's default is the last.
+/// All that the configuration offers; the product's own, which the bars are for, is the last.
 [[nodiscard]] inline std::vector<NamedGhostMethod> ghost_methods() {
   std::vector<NamedGhostMethod> methods;
   ghosts::Config published;
   published.method = ghosts::MethodName::kPublished;
   methods.push_back({"published", published});
+  ghosts::Config mirror;
+  mirror.method = ghosts::MethodName::kMirror;
+  methods.push_back({"mirror", mirror});
   return methods;
 }
 
