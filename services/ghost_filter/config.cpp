@@ -30,7 +30,8 @@ published::Config read_published(config::Reader root) {
 
 Config read_config(config::Reader root) {
   Config c;
-  c.method = root.choice<MethodName>("method", {{"published", MethodName::kPublished}}, c.method);
+  c.method = root.choice<MethodName>("method", {{"mirror", MethodName::kMirror}, {"published", MethodName::kPublished}},
+                                     c.method);
   c.published = read_published(root.table("published"));
   root.finish();
   return c;

@@ -8,6 +8,7 @@ namespace boresight::bench {
 
 void highway(const Options& options, Report& report);
 void scenarios(const Options& options, Report& report);
+void ablation(const Options& options, Report& report);
 void cost(const Options& options, Report& report);
 
 }  // namespace boresight::bench

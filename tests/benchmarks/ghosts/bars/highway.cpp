@@ -71,7 +71,7 @@ void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Rep
 
 void highway(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(20);
-  const double duration_s = options.seconds(kDuration_s);
+  const double duration_s = drive_seconds(options, kDuration_s);
   const std::string how = "median over " + std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";
   const std::vector<NamedGhostMethod> methods = ghost_methods();
   for (const NamedGhostMethod& method : methods) {

@@ -8,7 +8,7 @@ namespace boresight::bench {
 
 void scenarios(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(20);
-  const double duration_s = options.seconds(20.0);
+  const double duration_s = drive_seconds(options, 20.0);
   const std::string how = std::to_string(seeds) + " seeds of " + fixed(duration_s, 0) + " s";
   const std::vector<NamedGhostMethod> methods = ghost_methods();
   Table table{"scenarios",
@@ -23,16 +23,12 @@ void scenarios(const Options& options, Report& report) {
       const double moving = median_percent(outcomes, Provenance::kMoving, Provenance::kMoving);
       const double type1 = median_percent_ghost(outcomes, Provenance::kGhostType1);
       const double type2 = median_percent_ghost(outcomes, Provenance::kGhostType2);
-      std::size_t tracks = 0, lost = 0;
-      for (const Outcome& o : outcomes) {
-        tracks += o.long_ghost_tracks;
-        lost += o.lost_object_seconds;
-      }
+      const TrackFaults faults = track_faults(outcomes);
       table.rows.push_back({scenario, method.name, fixed(moving, 2),
                             fixed(median_percent(outcomes, Provenance::kStationary, Provenance::kStationary), 2),
                             fixed(type1, 2), fixed(type2, 2),
                             fixed(100.0 - median_percent(outcomes, Provenance::kClutter, Provenance::kMoving), 2),
-                            std::to_string(tracks), std::to_string(lost)});
+                            std::to_string(faults.ghost_tracks), std::to_string(faults.lost_object_seconds)});
       if (&method != &methods.back()) continue;
       report.at_least(scenario, "moving told to be moving", moving, 97.0, "%", how);
       // A scenario without ghosts of a type has no figure to judge.

@@ -1,6 +1,7 @@
 // One method on one simulated drive, through corrector, ghost filter and tracker, judged by the truth.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ struct Outcome {
 /// Seeds 1 … `seeds`, spread over threads.
 [[nodiscard]] std::vector<Outcome> run_ghost_drives(const std::string& scenario, const ghosts::Config& config,
                                                     std::size_t seeds, double duration_s, const Options& options);
+
+/// Of a drive: --quick shows that it runs.
+[[nodiscard]] inline double drive_seconds(const Options& options, double wanted) {
+  return options.quick ? std::min(wanted, 2.0) : wanted;
+}
 
 /// Medians over drives.
 [[nodiscard]] double median_percent(const std::vector<Outcome>& outcomes, Provenance truth, Provenance label);

@@ -25,23 +25,32 @@ Table confusion_table(const std::string& name, const std::string& caption, const
   return table;
 }
 
+TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
+  TrackFaults sum;
+  for (const Outcome& o : outcomes) {
+    sum.ghost_tracks += o.long_ghost_tracks;
+    sum.longest_ghost_track_scans = std::max(sum.longest_ghost_track_scans, o.longest_ghost_track_scans);
+    sum.object_seconds += o.object_seconds;
+    sum.lost_object_seconds += o.lost_object_seconds;
+  }
+  return sum;
+}
+
 void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes, bool judged, const std::string& how,
                   Report& report) {
-  std::size_t ghosts = 0, longest = 0, seconds = 0, lost = 0;
-  for (const Outcome& o : outcomes) {
-    ghosts += o.long_ghost_tracks;
-    longest = std::max(longest, o.longest_ghost_track_scans);
-    seconds += o.object_seconds;
-    lost += o.lost_object_seconds;
-  }
-  const std::string ghost_how = how + "; sum of all drives, the longest has " + std::to_string(longest) + " scans";
-  const std::string lost_how = how + "; sum of all drives, of " + std::to_string(seconds);
+  const TrackFaults faults = track_faults(outcomes);
+  const std::string what_tracks = "ghost tracks of over five scans",
+                    what_lost = "seconds of objects lost to the filter";
+  const std::string how_tracks =
+      how + "; sum of all drives, the longest has " + std::to_string(faults.longest_ghost_track_scans) + " scans";
+  const std::string how_lost = how + "; sum of all drives, of " + std::to_string(faults.object_seconds);
+  const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_object_seconds);
   if (judged) {
-    report.at_most(group, "ghost tracks of over five scans", static_cast<double>(ghosts), 0.0, "", ghost_how);
-    report.at_most(group, "seconds of objects lost to the filter", static_cast<double>(lost), 0.0, "", lost_how);
+    report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);
+    report.at_most(group, what_lost, lost, 0.0, "", how_lost);
   } else {
-    report.beside(group, "ghost tracks of over five scans", static_cast<double>(ghosts), "", ghost_how);
-    report.beside(group, "seconds of objects lost to the filter", static_cast<double>(lost), "", lost_how);
+    report.beside(group, what_tracks, tracks, "", how_tracks);
+    report.beside(group, what_lost, lost, "", how_lost);
   }
 }
 
