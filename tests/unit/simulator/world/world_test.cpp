@@ -105,7 +105,6 @@ TEST_P(Shipped, NobodyDrivesThroughAnybodyOrAnything) {
         {0, box(scene.ego.position_m + (0.5 * e.length_m - e.rear_overhang_m) * ahead, scene.ego.heading_rad,
                 e.length_m, e.width_m)}};
     for (const Body& b : scene.bodies) {
-      // In the demo's world, as it always was, traffic behind the ego vehicle knows nothing of its braking.
       boxes.emplace_back(b.id, box(b.position_m, b.heading_rad, b.length_m, b.width_m));
     }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
