@@ -110,6 +110,8 @@ struct BodySpec {
   double start_m = 0.0;
   Knots lateral_m{{0.0, 0.0}};  ///< by road position
   Knots speed_mps{{0.0, 0.0}};  ///< along the road, by time; negative: oncoming
+  double swing_mps = 0.0;       ///< as the ego vehicle's
+  double swing_period_s = 37.0;
   double heading_rad = 0.0;
   bool parked = false;
   double length_m = 0.0, width_m = 0.0, height_m = 0.0;
