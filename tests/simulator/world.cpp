@@ -64,7 +64,10 @@ World::World(const Scenario& scenario, std::uint64_t seed, double duration_s)
 
 void World::add_actor(const BodySpec& spec, std::uint64_t seed) {
   Actor actor{spec, Stream(seed, "gait", actors_.size()).uniform(), {}};
-  if (actor.spec.parked) actor.spec.speed_mps.clear();
+  if (actor.spec.parked) {
+    actor.spec.speed_mps.clear();
+    actor.spec.swing_mps = 0.0;
+  }
   const Dimensions usual = dimensions_of(spec.kind);
   Body& body = actor.body;
   body.id = static_cast<std::uint32_t>(actors_.size() + 1);

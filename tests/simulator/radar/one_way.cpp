@@ -27,6 +27,7 @@ void measure(const std::array<Corner, N>& corners, OneWay& path) {
     const double length = leg.norm();
     const Eigen::Vector3d direction = leg / length;
     if (i == 1) path.direction = direction;
+    path.incidence = -direction;
     path.length_m += length;
     path.rate_mps += direction.dot(corners[i].velocity - corners[i - 1].velocity);
   }

@@ -16,6 +16,7 @@ namespace boresight::simulator::radar {
 
 struct OneWay {
   Eigen::Vector3d direction;  ///< unit, world: where the path leaves the sensor
+  Eigen::Vector3d incidence;  ///< unit, world: where it comes from, seen from the target
   double length_m;
   double rate_mps;  ///< exact time derivative of the length
   double loss_db;   ///< besides the spreading; negative where the ground adds

@@ -55,8 +55,7 @@ void RadarSensor::add(const radar::Target& target, bool with_mirrors, double emb
   paths_.clear();
   propagation_.direct(target, embedded_m, paths_);
   if (with_mirrors) propagation_.mirrored(target, paths_);
-  const unsigned bounces = std::max(1u, effects_.multipath.max_bounces);
-  radar::combine(target, paths_, bounces - 1, antenna_, world_to_sensor, echoes_);
+  radar::combine(target, paths_, effects_.multipath, antenna_, world_to_sensor, echoes_);
 }
 
 void RadarSensor::add_bodies(const Scene& scene, const Eigen::Matrix3d& world_to_sensor) {

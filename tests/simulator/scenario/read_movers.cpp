@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "tests/simulator/scenario/reading.hpp"
 
@@ -46,6 +47,16 @@ Knots read_lateral(Reader& reader) {
   return read_knots(reader, "lateral_m", "lateral", "at_m", kRoad_m, kLateral_m, {{0.0, 0.0}});
 }
 
+/// Of an EgoSpec or a BodySpec, whose speed is known.
+template <typename Mover>
+void read_swing(Reader& reader, Mover& mover) {
+  mover.swing_mps = reader.number("swing_mps", {0.0, 40.0}, mover.swing_mps);
+  mover.swing_period_s = reader.number("swing_period_s", {1.0, 1000.0}, mover.swing_period_s);
+  const bool exceeds = std::any_of(mover.speed_mps.begin(), mover.speed_mps.end(),
+                                   [&](const Knot& k) { return std::abs(k.value) < mover.swing_mps; });
+  if (mover.swing_mps > 0.0 && exceeds) reader.reject("swing_mps", "must not exceed the speed");
+}
+
 }  // namespace
 
 RoadSpec read_road(Reader reader) {
@@ -69,11 +80,7 @@ EgoSpec read_ego(Reader reader) {
   EgoSpec ego;
   ego.start_m = reader.number("start_m", kRoad_m, ego.start_m);
   ego.speed_mps = read_speed(reader, ego.speed_mps);
-  ego.swing_mps = reader.number("swing_mps", {0.0, 40.0}, ego.swing_mps);
-  ego.swing_period_s = reader.number("swing_period_s", {1.0, 1000.0}, ego.swing_period_s);
-  const bool stays_ahead =
-      std::all_of(ego.speed_mps.begin(), ego.speed_mps.end(), [&](const Knot& k) { return k.value >= ego.swing_mps; });
-  if (ego.swing_mps > 0.0 && !stays_ahead) reader.reject("swing_mps", "must not exceed the speed");
+  read_swing(reader, ego);
   ego.lateral_m = read_lateral(reader);
   ego.length_m = reader.number("length_m", {0.5, 30.0}, ego.length_m);
   ego.width_m = reader.number("width_m", {0.3, 4.0}, ego.width_m);
@@ -96,6 +103,7 @@ void read_body(Reader reader, std::vector<BodySpec>& bodies) {
   body.start_m = reader.number("start_m", kRoad_m, body.start_m);
   body.lateral_m = read_lateral(reader);
   body.speed_mps = read_speed(reader, body.speed_mps);
+  read_swing(reader, body);
   body.heading_rad = reader.angle_deg("heading_deg", {-180.0, 180.0}, body.heading_rad);
   body.parked = reader.boolean("parked", body.parked);
   if (body.parked && (reader.has("speed_mps") || reader.has("speed"))) reader.reject("parked", "with a speed");

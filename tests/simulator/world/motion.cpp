@@ -12,18 +12,13 @@ struct Progress {
   double travelled_m, speed_mps, acceleration_mps2;
 };
 
-Progress progress(const Knots& speed, double t_s) {
-  const Smooth v = smooth(speed, t_s);
-  return {integral(speed, t_s), v.value, v.slope};
-}
-
-Progress ego_progress(const EgoSpec& ego, double t_s) {
-  Progress p = progress(ego.speed_mps, t_s);
-  const double w = 2.0 * M_PI / ego.swing_period_s;
-  p.travelled_m += ego.swing_mps / w * (1.0 - std::cos(w * t_s));
-  p.speed_mps += ego.swing_mps * std::sin(w * t_s);
-  p.acceleration_mps2 += ego.swing_mps * w * std::cos(w * t_s);
-  return p;
+/// Of an EgoSpec or a BodySpec.
+template <typename Mover>
+Progress progress(const Mover& mover, double t_s) {
+  const Smooth v = smooth(mover.speed_mps, t_s);
+  const double w = 2.0 * M_PI / mover.swing_period_s;
+  return {integral(mover.speed_mps, t_s) + mover.swing_mps / w * (1.0 - std::cos(w * t_s)),
+          v.value + mover.swing_mps * std::sin(w * t_s), v.slope + mover.swing_mps * w * std::cos(w * t_s)};
 }
 
 bool is_oncoming(const Knots& speed) {
@@ -62,14 +57,14 @@ Motion along_road(const Road& road, double arc_m, double arc_speed_mps, double a
 }
 
 Motion ego_motion(const EgoSpec& ego, const Road& road, double t_s) {
-  const Progress p = ego_progress(ego, t_s);
+  const Progress p = progress(ego, t_s);
   Motion m = along_road(road, ego.start_m + p.travelled_m, p.speed_mps, p.acceleration_mps2, ego.lateral_m, false);
   m.travelled_m = p.travelled_m;
   return m;
 }
 
 Motion body_motion(const BodySpec& body, const Road& road, double t_s) {
-  const Progress p = progress(body.speed_mps, t_s);
+  const Progress p = progress(body, t_s);
   const bool against = is_oncoming(body.speed_mps);
   Motion m{};
   if (body.heading_rad == 0.0) {
@@ -93,7 +88,7 @@ Gap ego_extent(const EgoSpec& ego, double duration_s) {
   Gap extent{ego.start_m, ego.start_m};
   constexpr double kStep_s = 0.1;
   for (double t = 0.0; t < duration_s + kStep_s; t += kStep_s) {
-    const double arc = ego.start_m + ego_progress(ego, t).travelled_m;
+    const double arc = ego.start_m + progress(ego, t).travelled_m;
     extent = {std::min(extent.from_m, arc), std::max(extent.to_m, arc)};
   }
   return extent;

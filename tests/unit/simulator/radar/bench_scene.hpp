@@ -25,6 +25,7 @@ struct Bench {
     effects.noise = false;
     effects.clutter_per_scan = 0.0;
     effects.multipath.ground_bounce = false;
+    effects.multipath.extra_loss_db = 0.0;
     effects.resolution = {0.0, 0.0, 0.0};
     effects.sensitivity.threshold_db = -160.0;  // everything is detected
     effects.sensitivity.max_probability = 1.0;

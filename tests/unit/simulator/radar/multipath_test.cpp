@@ -66,9 +66,30 @@ TEST(Multipath, EveryBounceCostsTheSurfacesLossAndTheDetourItsSpreading) {
   }
   // The image is as bright as a target of 10 dBsm there, less twice the 3 dB: the sensor knows the spreading.
   EXPECT_FLOAT_EQ(cheap.scan->rcs_dbsm[cheap.of(Provenance::kGhostType2, 2)[0]], 4.0F);
+  e.effects.multipath.extra_loss_db = 2.0;
+  const Measured extra = measure(e);
+  EXPECT_FLOAT_EQ(dear.scan->rcs_dbsm[dear.of(Provenance::kGhostType2, 2)[0]] -
+                      extra.scan->rcs_dbsm[extra.of(Provenance::kGhostType2, 2)[0]],
+                  4.0F);
   EXPECT_DOUBLE_EQ(radar::radar_equation_db(10.0, 10.0, 10.0), 10.0);
   EXPECT_NEAR(radar::radar_equation_db(0.0, 20.0, 20.0), -12.04, 0.01);
   EXPECT_NEAR(radar::radar_equation_db(0.0, 10.0, 20.0), -6.02, 0.01);
+}
+
+TEST(Multipath, ACornerSendsBackToWhereItWasLitFrom) {
+  RailExample e;
+  const auto rcs = [](const Measured& m, Provenance provenance, unsigned bounces) {
+    return m.scan->rcs_dbsm[m.of(provenance, bounces)[0]];
+  };
+  e.effects.multipath.bistatic_rad = 0.0;
+  const Measured everywhere = measure(e);
+  // Between the ways out and back at the target: atan(1/30) + atan(7/30) = 0.2625.
+  e.effects.multipath.bistatic_rad = 0.13125;
+  const Measured corner = measure(e);
+  EXPECT_NEAR(rcs(everywhere, Provenance::kGhostType1, 1) - rcs(corner, Provenance::kGhostType1, 1), 12.0, 1.01);
+  EXPECT_NEAR(rcs(everywhere, Provenance::kGhostType2, 1) - rcs(corner, Provenance::kGhostType2, 1), 12.0, 1.01);
+  EXPECT_FLOAT_EQ(rcs(everywhere, Provenance::kGhostType2, 2), rcs(corner, Provenance::kGhostType2, 2));
+  EXPECT_FLOAT_EQ(rcs(everywhere, Provenance::kMoving, 0), rcs(corner, Provenance::kMoving, 0));
 }
 
 TEST(Multipath, ThereIsNoGhostThroughAGapInTheRail) {
@@ -120,7 +141,8 @@ TEST(Multipath, FewerBouncesMakeFewerGhosts) {
   EXPECT_THAT(m.of(Provenance::kGhostType2, 2), SizeIs(0));
   e.effects.multipath.max_bounces = 1;
   EXPECT_EQ(measure(e).count(), 1u);
-  e.effects.multipath = {false, 3, false, 0.0, false};
+  e.effects.multipath.max_bounces = 3;
+  e.effects.multipath.on = false;
   EXPECT_EQ(measure(e).count(), 1u);
 }
 
