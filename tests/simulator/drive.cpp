@@ -1,5 +1,6 @@
 #include "tests/simulator/drive.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/simulator/random.hpp"
@@ -10,6 +11,16 @@ namespace {
 
 constexpr double kWheelbase_m = 2.8;
 constexpr double kSteeringRatio = 15.0;
+constexpr double kReserve_m = 10.0;  // from the rear axle to a radar, and a vehicle's length
+
+radar::EgoBody body_of(const EgoSpec& ego) {
+  radar::EgoBody body;
+  body.rear_m = -ego.rear_overhang_m;
+  body.front_m = ego.length_m - ego.rear_overhang_m;
+  body.half_width_m = 0.5 * ego.width_m;
+  body.height_m = ego.height_m;
+  return body;
+}
 
 }  // namespace
 
@@ -23,7 +34,7 @@ Drive::Drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64
     const RadarConfig& radar = vehicle.radars[i];
     // Unsynchronised: each radar starts its cycle at another phase.
     const double phase = radar.cycle_time_s * static_cast<double>(i) / static_cast<double>(vehicle.radars.size());
-    radars_.push_back({radar, RadarModel(radar, scenario, seed), 0.02 + phase, 0});
+    radars_.push_back({radar, RadarSensor(radar, scenario.effects, body_of(scenario.ego), seed), 0.02 + phase, 0});
   }
 }
 
@@ -51,7 +62,8 @@ const Event* Drive::next() {
         kSteeringRatio * std::atan(kWheelbase_m * state.yaw_rate_radps / std::max(1.0, std::abs(state.speed_mps)));
     return &event_;
   }
-  due->model.measure(world_, event_.t_s, due->cycle, *scan_, truth_);
+  world_.at(event_.t_s, std::min(World::kSight_m, due->config.field_of_view.range_max_m + kReserve_m), scene_);
+  due->sensor.measure(scene_, due->cycle, *scan_, truth_);
   scan_->header = {};
   scan_->header.version = RadarScan::kVersion;
   scan_->header.source_id = due->config.id;

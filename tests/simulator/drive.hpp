@@ -9,7 +9,7 @@
 #include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/radar_model.hpp"
+#include "tests/simulator/radar/radar_sensor.hpp"
 #include "tests/simulator/scenario_file.hpp"
 #include "tests/simulator/world.hpp"
 
@@ -49,7 +49,7 @@ class Drive {
  private:
   struct Radar {
     RadarConfig config;
-    RadarModel model;
+    RadarSensor sensor;
     double phase_s;
     std::uint32_t cycle;
   };
@@ -61,6 +61,7 @@ class Drive {
   std::vector<Radar> radars_;
   std::uint64_t ego_index_ = 0;
   std::uint64_t sequence_ = 0;
+  Scene scene_;
   std::unique_ptr<RadarScan> scan_;
   std::vector<DetectionTruth> truth_;
   Event event_;

@@ -48,7 +48,13 @@ struct MultipathSpec {
   bool on = true;
   std::uint32_t max_bounces = 3;  ///< on anything, the target included: 2 and 3 make ghosts
   bool ground_bounce = true;      ///< fades direct paths by height and adds images below the road
-  double extra_loss_db = 0.0;     ///< per mirror bounce, on top of the surface's own
+  /// Per mirror bounce, on top of the surface's own: what its unevenness scatters elsewhere. The default gives Report B's
+  /// numbers of ghosts in highway_multipath.
+  double extra_loss_db = 8.0;
+  /// A corner sends waves back to where they came from: 3 dB less at this angle between the ways out and back at the
+  /// target, at most 18 dB; 0: as much to everywhere.
+  double bistatic_rad = 0.12;
+  bool of_stationary = false;  ///< also of what stands; by a standing mirror such a ghost looks as real as a wall
 };
 
 /// What falls into one cell is one detection, the strongest with the centroid of all. 0: no cell in that quantity.

@@ -73,7 +73,7 @@ struct StructureSpec {
   double heading_rad = 0.0;
   double width_m = 0.0;  ///< tunnel: from the left wall, at lateral_m, to the right one; pillars: their side
   double low_m = 0.4, high_m = 0.8;  ///< edges of the mirror; a tunnel's ceiling is at high_m
-  double loss_db = 3.0;              ///< of power, per bounce
+  double loss_db = 5.5;              ///< of power, per bounce
   bool opaque = true;
   double spacing_m = 2.0;     ///< of the scatterers: posts, facets, pillars
   double roughness_m = 0.05;  ///< standard deviation of the scatterers across it

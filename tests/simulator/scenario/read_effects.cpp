@@ -52,6 +52,8 @@ MultipathSpec read_multipath(Reader reader) {
   m.on = reader.boolean("on", m.on);
   m.max_bounces = static_cast<std::uint32_t>(reader.integer("max_bounces", {1, 3}, m.max_bounces));
   m.ground_bounce = reader.boolean("ground_bounce", m.ground_bounce);
+  m.bistatic_rad = reader.angle_deg("bistatic_deg", {0.0, 180.0}, m.bistatic_rad);
+  m.of_stationary = reader.boolean("of_stationary", m.of_stationary);
   m.extra_loss_db = reader.number("extra_loss_db", {-30.0, 60.0}, m.extra_loss_db);
   return m;
 }

@@ -1,0 +1,63 @@
+// Dirt, snow or ice that builds up on a radar, and what the sensor says of it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interfaces/messages/service_status.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+#include "tests/simulator/radar_effects.hpp"
+
+namespace boresight::simulator::radar {
+
+/// Blockage at an instant, within azimuths of the sensor's frame.
+struct Dirt {
+  double azimuth_min_rad, azimuth_max_rad;
+  double loss_db;  ///< two ways
+};
+
+/// Two-way loss at `t_s`: linear from 0 at `begin_s` to all of it at `full_s`; a `full_s` that is not later is a jump.
+[[nodiscard]] inline double built_up_db(const RadarBlockage& blockage, double t_s) {
+  if (t_s < blockage.begin_s) return 0.0;
+  const double span = blockage.full_s - blockage.begin_s;
+  return blockage.loss_db * (span > 0.0 ? std::min(1.0, (t_s - blockage.begin_s) / span) : 1.0);
+}
+
+inline void dirt_at(std::span<const RadarBlockage> blockages, std::uint32_t radar, double t_s,
+                    std::vector<Dirt>& dirt) {
+  dirt.clear();
+  for (const RadarBlockage& b : blockages) {
+    if (b.radar != radar) continue;
+    const double loss = built_up_db(b, t_s);
+    if (loss > 0.0) dirt.push_back({b.azimuth_min_rad, b.azimuth_max_rad, loss});
+  }
+}
+
+/// Two-way loss in a direction; layers add up.
+[[nodiscard]] inline double loss_db(std::span<const Dirt> dirt, double azimuth_rad) {
+  double loss = 0.0;
+  for (const Dirt& d : dirt) {
+    if (azimuth_rad >= d.azimuth_min_rad && azimuth_rad <= d.azimuth_max_rad) loss += d.loss_db;
+  }
+  return loss;
+}
+
+/// What the sensor states: source_condition bits. It measures its cover's loss itself, and says "partly blocked" where
+/// a tenth of the view or more loses 3 dB (a sixth of its range), "blocked" where nine tenths lose 15 dB or more (over
+/// half of it).
+[[nodiscard]] inline std::uint32_t stated_condition(std::span<const Dirt> dirt, const FieldOfView& view) {
+  constexpr int kSamples = 64;
+  int reduced = 0, blind = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double part = (i + 0.5) / kSamples;
+    const double loss = loss_db(dirt, view.azimuth_min_rad + part * (view.azimuth_max_rad - view.azimuth_min_rad));
+    reduced += loss >= 3.0 ? 1 : 0;
+    blind += loss >= 15.0 ? 1 : 0;
+  }
+  if (10 * blind >= 9 * kSamples) return source_condition::kBlocked;
+  return 10 * reduced >= kSamples ? source_condition::kPartlyBlocked : 0;
+}
+
+}  // namespace boresight::simulator::radar

@@ -1,0 +1,16 @@
+// Doppler ambiguity: the radar samples the phase chirp by chirp and cannot tell range rates apart that differ by the
+// width of its unambiguous interval.
+#pragma once
+
+#include <cmath>
+
+namespace boresight::simulator::radar {
+
+/// Into [−limit, limit); 0: the radar resolves the ambiguity, nothing folds.
+[[nodiscard]] inline double fold(double range_rate_mps, double limit_mps) {
+  if (limit_mps <= 0.0) return range_rate_mps;
+  const double width = 2.0 * limit_mps;
+  return range_rate_mps - width * std::floor((range_rate_mps + limit_mps) / width);
+}
+
+}  // namespace boresight::simulator::radar

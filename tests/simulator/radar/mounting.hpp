@@ -1,0 +1,31 @@
+// How a radar is really mounted at a time: crooked from the start, and knocked since.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "services/common/geometry/frames.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+#include "tests/simulator/radar_effects.hpp"
+
+namespace boresight::simulator::radar {
+
+/// Misalignment at `t_s`; knocks add up from their times on.
+[[nodiscard]] inline Misalignment misalignment_at(const RadarEffects& effects, std::uint32_t radar, double t_s) {
+  Misalignment m = radar < effects.misalignment.size() ? effects.misalignment[radar] : Misalignment{};
+  for (const RadarKnock& knock : effects.knocks) {
+    if (knock.radar != radar || t_s < knock.time_s) continue;
+    m.yaw_rad += knock.by.yaw_rad;
+    m.pitch_rad += knock.by.pitch_rad;
+    m.roll_rad += knock.by.roll_rad;
+  }
+  return m;
+}
+
+/// R(sensor→vehicle) as really mounted.
+[[nodiscard]] inline Eigen::Matrix3d actual_mounting(const MountingPose& nominal, const RadarEffects& effects,
+                                                     std::uint32_t radar, double t_s) {
+  const Misalignment m = misalignment_at(effects, radar, t_s);
+  return geometry::sensor_to_vehicle(nominal, m.yaw_rad, m.pitch_rad, m.roll_rad);
+}
+
+}  // namespace boresight::simulator::radar

@@ -1,0 +1,23 @@
+// A spot that reflects back, of a body or of the stationary world.
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace boresight::simulator::radar {
+
+struct Target {
+  Eigen::Vector3d position_m, velocity_mps;
+  Eigen::Vector3d facing;  ///< half-space in which it is seen; zero: from everywhere
+  double rcs_dbsm;
+  std::uint32_t body_id;  ///< 0: a scatterer
+  bool moving;
+  std::uint64_t key;  ///< of its random draws
+
+  [[nodiscard]] bool seen_from(const Eigen::Vector3d& place_m) const {
+    return facing.isZero() || facing.dot(place_m - position_m) > 0.0;
+  }
+};
+
+}  // namespace boresight::simulator::radar
