@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "services/boresight/commands/alignment_drive_options.hpp"
 #include "services/boresight/commands/commands.hpp"
@@ -122,7 +123,9 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       exit_code = simulate(*options);
     } catch (const std::exception& error) {
       std::fprintf(stderr, "boresight simulate: %s\n", error.what());
-      exit_code = dynamic_cast<const config::Error*>(&error) != nullptr ? 2 : EXIT_FAILURE;
+      const bool wrong_input = dynamic_cast<const config::Error*>(&error) != nullptr ||
+                               dynamic_cast<const std::invalid_argument*>(&error) != nullptr;
+      exit_code = wrong_input ? 2 : EXIT_FAILURE;
     }
   });
 }
