@@ -9,9 +9,10 @@ struct ClassConfig {
   double memory_s = 0.2;              ///< moving detections of this time can be what a ghost mirrors
   double new_object_density = 4e-6;   ///< of real moving objects that nothing announces
   double clutter_density = 2e-6;
-  double lone_ghost_density = 1e-6;    ///< of type-2 ghosts behind a reflector whose object is not seen
-  double hidden_ghost_density = 4e-5;  ///< for each m²: of type-1 ghosts behind an object by a reflector that is not known
-  double type1_per_object = 0.3;       ///< expected detections by one reflector
+  double lone_ghost_density = 1e-6;  ///< of type-2 ghosts behind a reflector whose object is not seen
+  double hidden_ghost_density =
+      4e-5;                       ///< for each m²: of type-1 ghosts behind an object by a reflector that is not known
+  double type1_per_object = 0.3;  ///< expected detections by one reflector
   double type2_per_object = 0.5;
   double real_per_object = 4.0;
   double stationary_image_density = 2e-5;  ///< images of the stationary world: for each m², at the range rate they have

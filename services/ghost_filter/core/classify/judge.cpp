@@ -321,7 +321,8 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
   densities.moving = of_objects(m, but_object) +
                      config_.new_object_density * (company ? 5.0 : 0.4) * (1.0 - 0.7 * behind) * (hidden ? 0.5 : 1.0);
   // Clutter is weak: thermal noise just over the threshold.
-  const double weak = std::isfinite(m.rcs_dbsm) ? 0.1 + 1.9 / (1.0 + std::exp((m.rcs_dbsm - config_.weak_rcs_dbsm) / 4.0)) : 1.0;
+  const double weak =
+      std::isfinite(m.rcs_dbsm) ? 0.1 + 1.9 / (1.0 + std::exp((m.rcs_dbsm - config_.weak_rcs_dbsm) / 4.0)) : 1.0;
   densities.clutter = config_.clutter_density * weak * (company ? 0.1 : 1.0);
   // Each bounce costs power, so that ghosts are weaker than vehicles; never so surely that this alone decides.
   if (std::isfinite(m.rcs_dbsm)) {
