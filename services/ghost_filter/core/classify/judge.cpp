@@ -17,7 +17,7 @@ constexpr double kHiddenRate_mps = 5.0;  // by which a type-1 ghost's range rate
 struct Growth {
   double share, length_m, width_m;
 };
-constexpr std::array<Growth, 3> kGrowths{{{0.7, 0.0, 0.0}, {0.22, 2.5, 0.5}, {0.08, 7.0, 0.6}}};
+constexpr std::array<Growth, 3> kGrowths{{{0.85, 0.0, 0.0}, {0.12, 2.5, 0.5}, {0.03, 7.0, 0.6}}};
 
 double gaussian(double residual, double variance) {
   const double square = residual * residual / variance;
