@@ -9,12 +9,15 @@ struct ClassConfig {
   double memory_s = 0.2;              ///< moving detections of this time can be what a ghost mirrors
   double new_object_density = 4e-6;   ///< of real moving objects that nothing announces
   double clutter_density = 2e-6;
-  double lone_ghost_density = 1e-6;    ///< of type-2 ghosts behind a reflector whose object is not seen
-  double hidden_ghost_density = 4e-6;  ///< of type-1 ghosts behind an object by a reflector that is not known
-  double type1_per_object = 0.3;       ///< expected detections by one reflector
+  double lone_ghost_density = 1e-6;  ///< of type-2 ghosts behind a reflector whose object is not seen
+  double hidden_ghost_density =
+      4e-5;                       ///< for each m²: of type-1 ghosts behind an object by a reflector that is not known
+  double type1_per_object = 0.3;  ///< expected detections by one reflector
   double type2_per_object = 0.5;
   double real_per_object = 4.0;
   double stationary_image_density = 2e-5;  ///< images of the stationary world: for each m², at the range rate they have
+  double weak_rcs_dbsm = -7.0;             ///< under this a detection is rather no vehicle's
+  double strong_rcs_dbsm = 2.0;            ///< above this it is rather no ghost
   double extent_std_m = 1.3;               ///< of a reflection from another place of the same object
   double range_rate_slack_mps = 0.3;       ///< wheels, turning, bodies that are not rigid
   double margin_m = 1.0;                   ///< a ghost lies at least this far behind its mirror or object

@@ -11,12 +11,13 @@ namespace {
 constexpr std::size_t kWaysPerTarget = 12;
 constexpr double kSpeedAlong_mps = 20.0, kSpeedAcross_mps = 1.5, kSpeedAnyway_mps = 10.0;
 constexpr double kAlongShare = 0.75;
+constexpr double kHiddenRate_mps = 5.0;  // by which a type-1 ghost's range rate differs from its object's
 
 /// How much larger than its track's box a vehicle may be, on each side, and how likely that is.
 struct Growth {
   double share, length_m, width_m;
 };
-constexpr std::array<Growth, 3> kGrowths{{{0.7, 0.0, 0.0}, {0.22, 2.5, 0.5}, {0.08, 7.0, 0.6}}};
+constexpr std::array<Growth, 3> kGrowths{{{0.85, 0.0, 0.0}, {0.12, 2.5, 0.5}, {0.03, 7.0, 0.6}}};
 
 double gaussian(double residual, double variance) {
   const double square = residual * residual / variance;
@@ -269,7 +270,8 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (beside > half_width + 2.0 * blur + 0.3 || m.range_m < depth + half_depth + config_.margin_m) continue;
     hidden = true;
     const double width = 2.0 * (half_width + blur) * m.range_m / depth;
-    density += o.weight * config_.hidden_ghost_density;
+    density += o.weight * config_.hidden_ghost_density *
+               gaussian(m.rate_mps - m.direction.dot(o.velocity_mps), square(kHiddenRate_mps));
     density +=
         o.weight * by_mirrors(i, o.position_m, std::hypot(config_.extent_std_m, 0.5 * half_depth), width,
                               [&](const Eigen::Vector2d& q, double known, const Mirror&, const Eigen::Vector2d&) {
@@ -317,10 +319,18 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
   if (but_object != kNobody) return densities;
   const bool company = has_company(m, index);
   densities.moving = of_objects(m, but_object) +
-                     config_.new_object_density * (company ? 5.0 : 0.4) * (1.0 - 0.7 * behind) * (hidden ? 0.3 : 1.0);
+                     config_.new_object_density * (company ? 5.0 : 0.4) * (1.0 - 0.7 * behind) * (hidden ? 0.5 : 1.0);
   // Clutter is weak: thermal noise just over the threshold.
-  const double weak = std::isfinite(m.rcs_dbsm) ? 0.1 + 1.9 / (1.0 + std::exp((m.rcs_dbsm + 8.0) / 4.0)) : 1.0;
+  const double weak =
+      std::isfinite(m.rcs_dbsm) ? 0.1 + 1.9 / (1.0 + std::exp((m.rcs_dbsm - config_.weak_rcs_dbsm) / 4.0)) : 1.0;
   densities.clutter = config_.clutter_density * weak * (company ? 0.1 : 1.0);
+  // Each bounce costs power, so that ghosts are weaker than vehicles; never so surely that this alone decides.
+  if (std::isfinite(m.rcs_dbsm)) {
+    densities.moving *= 0.15 + 1.0 / (1.0 + std::exp((config_.weak_rcs_dbsm - m.rcs_dbsm) / 4.0));
+    const double ghostly = 0.15 + 1.0 / (1.0 + std::exp((m.rcs_dbsm - config_.strong_rcs_dbsm) / 4.0));
+    densities.type1 *= ghostly;
+    densities.type2 *= ghostly;
+  }
   densities.stationary = of_stationary(m);
   return densities;
 }

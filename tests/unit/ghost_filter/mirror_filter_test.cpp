@@ -1,0 +1,428 @@
+// The mirror method in small scenes whose ghosts are exact by the image method.
+#include "services/ghost_filter/core/classify/mirror_filter.hpp"
+
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "interfaces/messages/radar_scan.hpp"
+#include "services/common/runtime/allocation_counter.hpp"
+
+namespace boresight::ghosts {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+using Eigen::Vector2d;
+
+/// A plane mirror: a point on it, its direction, its velocity.
+struct Plane {
+  Vector2d point, tangent, velocity{0.0, 0.0};
+  [[nodiscard]] Vector2d normal() const { return {-tangent.y(), tangent.x()}; }
+  [[nodiscard]] Vector2d image(const Vector2d& p) const { return p - 2.0 * normal().dot(p - point) * normal(); }
+  [[nodiscard]] Vector2d image_velocity(const Vector2d& v) const {
+    return v - 2.0 * normal().dot(v - velocity) * normal();
+  }
+};
+
+/// The vehicle drives straight; vehicle frame and world frame have the same axes, apart by the way driven.
+class MirrorFilterTest : public testing::Test {
+ protected:
+  MirrorFilterTest() {
+    std::memset(static_cast<void*>(out_.get()), 0xCD, sizeof(ClassifiedScan));
+    std::memset(static_cast<void*>(scan_.get()), 0, sizeof(CorrectedScan));
+    std::memset(static_cast<void*>(tracks_.get()), 0, sizeof(TrackList));
+  }
+  void begin() {
+    scan_->header.source_id = 1;
+    scan_->header.measurement_time_ns = start_ + static_cast<std::int64_t>(t_s_ * 1e9);
+    scan_->fields = scan_field::kRcs;
+    scan_->number_of_valid_detections = 0;
+    scan_->geometry.sensor_position_vehicle_m = {3.6F, 0.0F, 0.5F};
+    scan_->geometry.sensor_velocity_vehicle_mps = {static_cast<float>(speed_mps_), 0.0F, 0.0F};
+    scan_->geometry.ego_speed_mps = static_cast<float>(speed_mps_);
+    scan_->geometry.ego_speed_std_mps = 0.03F;
+    scan_->geometry.ego_yaw_rate_std_radps = 0.002F;
+  }
+  [[nodiscard]] Vector2d sensor() const { return {3.6, 0.0}; }
+  [[nodiscard]] Vector2d sensor_velocity() const { return {speed_mps_, 0.0}; }
+
+  /// What is measured in `direction` at `range` with a range rate that is as measured, not over ground.
+  std::uint32_t add(const Vector2d& direction, double range, double range_rate, double rcs, std::uint16_t flags) {
+    const std::uint32_t i = scan_->number_of_valid_detections++;
+    std::normal_distribution<double> noise;
+    const double azimuth = std::atan2(direction.y(), direction.x()) + 0.004 * noise(random_);
+    const double seen_at = range + 0.1 * noise(random_);
+    scan_->x_vehicle_m[i] = static_cast<float>(sensor().x() + seen_at * std::cos(azimuth));
+    scan_->y_vehicle_m[i] = static_cast<float>(sensor().y() + seen_at * std::sin(azimuth));
+    scan_->range_m[i] = static_cast<float>(seen_at);
+    scan_->range_rate_over_ground_mps[i] =
+        static_cast<float>(range_rate + 0.05 * noise(random_) + direction.dot(sensor_velocity()));
+    scan_->rcs_dbsm[i] = static_cast<float>(rcs);
+    scan_->range_std_m[i] = 0.1F;
+    scan_->azimuth_std_rad[i] = 0.004F;
+    scan_->range_rate_std_mps[i] = 0.05F;
+    scan_->detection_flags[i] = flags;
+    return i;
+  }
+  std::uint32_t direct(const Vector2d& p, const Vector2d& v, double rcs = 8.0) {
+    const Vector2d sight = p - sensor();
+    return add(sight.normalized(), sight.norm(), sight.normalized().dot(v - sensor_velocity()), rcs,
+               corrected_flag::kMoving);
+  }
+  std::uint32_t still(const Vector2d& p) {
+    const Vector2d sight = p - sensor();
+    return add(sight.normalized(), sight.norm(), -sight.normalized().dot(sensor_velocity()), 0.0,
+               corrected_flag::kStationary);
+  }
+  std::uint32_t by_three_bounces(const Vector2d& p, const Vector2d& v, const Plane& plane) {
+    const Vector2d sight = plane.image(p) - sensor();
+    return add(sight.normalized(), sight.norm(), sight.normalized().dot(plane.image_velocity(v) - sensor_velocity()),
+               -8.0, corrected_flag::kMoving);
+  }
+  /// Of two bounces: in the direction of the target (type 1) or of its image (type 2).
+  std::uint32_t by_two_bounces(const Vector2d& p, const Vector2d& v, const Plane& plane, bool type1) {
+    const Vector2d direct_sight = p - sensor(), image_sight = plane.image(p) - sensor();
+    const double rate = 0.5 * (direct_sight.normalized().dot(v - sensor_velocity()) +
+                               image_sight.normalized().dot(plane.image_velocity(v) - sensor_velocity()));
+    return add((type1 ? direct_sight : image_sight).normalized(), 0.5 * (direct_sight.norm() + image_sight.norm()),
+               rate, -8.0, corrected_flag::kMoving);
+  }
+  /// The rail's posts every two metres along y = `y`, of which a scan shows some.
+  void rail(
+      double y, const std::function<bool(double)>& is_there = [](double) { return true; }) {
+    std::uniform_real_distribution<double> chance;
+    std::normal_distribution<double> noise(0.0, 0.04);
+    const double driven = t_s_ * speed_mps_;
+    for (double world = std::ceil((driven - 40.0) / 2.0) * 2.0; world < driven + 80.0; world += 2.0) {
+      if (!is_there(world) || chance(random_) > 0.5) continue;
+      still({world - driven, y + noise(random_)});
+    }
+  }
+  void track(const Vector2d& p, const Vector2d& v, double length = 4.5, double width = 1.8) {
+    Track& t = tracks_->tracks[tracks_->number_of_tracks++];
+    t = {};
+    t.tracking_id = tracks_->number_of_tracks;
+    t.status = TrackStatus::kConfirmed;
+    t.existence_probability = 0.99F;
+    t.position_vehicle_m = {static_cast<float>(p.x()), static_cast<float>(p.y()), 0.5F};
+    t.velocity_over_ground_mps = {static_cast<float>(v.x()), static_cast<float>(v.y())};
+    t.heading_rad = static_cast<float>(std::atan2(v.y(), v.x()));
+    t.length_m = static_cast<float>(length);
+    t.width_m = static_cast<float>(width);
+    for (std::size_t k = 0; k < kTrackStateSize; ++k) t.covariance[k * kTrackStateSize + k] = 0.1F;
+  }
+  void hand_over_tracks() {
+    tracks_->header.measurement_time_ns = start_ + static_cast<std::int64_t>(t_s_ * 1e9);
+    filter_->add_tracks(*tracks_);
+    tracks_->number_of_tracks = 0;
+  }
+  void classify() { filter_->classify(*scan_, *out_); }
+  /// `seconds` of scans of what `fill` adds, 20 a second; the last one is left to be looked at.
+  void drive(double seconds, const std::function<void()>& fill) {
+    for (int k = 0; k < static_cast<int>(seconds * 20.0); ++k) {
+      t_s_ += 0.05;
+      begin();
+      fill();
+      classify();
+    }
+  }
+  [[nodiscard]] Provenance label(std::uint32_t i) const { return out_->provenance[i]; }
+
+  std::unique_ptr<MirrorFilter> filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
+  std::mt19937 random_{1};
+  std::unique_ptr<CorrectedScan> scan_ = std::make_unique<CorrectedScan>();
+  std::unique_ptr<ClassifiedScan> out_ = std::make_unique<ClassifiedScan>();
+  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
+  std::int64_t start_ = 1'000'000 * kMillisecond;
+  double t_s_ = 0.0;
+  double speed_mps_ = 20.0;
+};
+
+constexpr double kRail = -7.0;
+const Plane kRailPlane{{0.0, kRail}, {1.0, 0.0}};
+
+TEST_F(MirrorFilterTest, ARailBecomesOneLineThatFollowsTheVehicle) {
+  drive(2.0, [&] { rail(kRail); });
+  ASSERT_GE(out_->number_of_reflector_segments, 1u);
+  double from = 1e9, to = -1e9, covered = 0.0;
+  for (std::size_t i = 0; i < out_->number_of_reflector_segments; ++i) {
+    const ReflectorSegment& s = out_->reflector_segments[i];
+    EXPECT_NEAR(s.start_vehicle_m[1], kRail, 0.15);
+    EXPECT_NEAR(s.end_vehicle_m[1], kRail, 0.15);
+    from = std::min({from, static_cast<double>(s.start_vehicle_m[0]), static_cast<double>(s.end_vehicle_m[0])});
+    to = std::max({to, static_cast<double>(s.start_vehicle_m[0]), static_cast<double>(s.end_vehicle_m[0])});
+    covered += std::abs(static_cast<double>(s.end_vehicle_m[0] - s.start_vehicle_m[0]));
+  }
+  EXPECT_LT(from, -30.0);
+  EXPECT_GT(to, 70.0);
+  EXPECT_GT(covered, 90.0) << "few holes";
+  EXPECT_LT(covered, to - from + 1.0) << "and nothing twice";
+}
+
+TEST_F(MirrorFilterTest, WithoutTracksTheImageOfADetectedCarIsAType2GhostByTwoAndByThreeBounces) {
+  std::uint32_t car = 0, three = 0, two = 0;
+  std::size_t threes = 0, twos = 0, cars = 0, scans = 0;
+  for (int k = 0; k < 60; ++k) {
+    drive(0.05, [&] {
+      const Vector2d p(20.0 + 5.0 * t_s_, -1.0), v(25.0, 0.0);
+      rail(kRail);
+      car = direct(p, v);
+      direct(p + Vector2d(1.0, 0.6), v);
+      three = by_three_bounces(p, v, kRailPlane);
+      two = by_two_bounces(p, v, kRailPlane, false);
+    });
+    if (t_s_ < 1.0) continue;
+    ++scans;
+    cars += label(car) == Provenance::kMoving ? 1U : 0U;
+    threes += label(three) == Provenance::kGhostType2 ? 1U : 0U;
+    twos += label(two) == Provenance::kGhostType2 ? 1U : 0U;
+  }
+  EXPECT_TRUE(out_->flags & pipeline_flag::kNoTracks);
+  EXPECT_GE(cars, scans - 1);
+  EXPECT_GE(threes, scans - 1);
+  EXPECT_GE(twos, scans - 1);
+}
+
+TEST_F(MirrorFilterTest, ARealCarSeenAboveTheRailSurvivesWhileAGhostBesideItDoesNot) {
+  // On the other side of the rail, slower, with nothing where its mirror image would be.
+  std::size_t real = 0, ghosts = 0, scans = 0;
+  for (int k = 0; k < 60; ++k) {
+    std::uint32_t beyond = 0, again = 0, ghost = 0;
+    drive(0.05, [&] {
+      const Vector2d p(20.0 + 5.0 * t_s_, -1.0), v(25.0, 0.0);
+      const Vector2d q(45.0 - 8.0 * t_s_, -11.0), w(12.0, 0.0);
+      rail(kRail);
+      direct(p, v);
+      beyond = direct(q, w);
+      again = direct(q + Vector2d(-2.0, 0.5), w);
+      ghost = by_three_bounces(p, v, kRailPlane);
+    });
+    if (t_s_ < 1.0) continue;
+    ++scans;
+    real += (label(beyond) == Provenance::kMoving ? 1U : 0U) + (label(again) == Provenance::kMoving ? 1U : 0U);
+    ghosts += label(ghost) == Provenance::kGhostType2 ? 1U : 0U;
+  }
+  EXPECT_GE(real, 2 * scans * 97 / 100);
+  EXPECT_GE(ghosts, scans - 1);
+}
+
+TEST_F(MirrorFilterTest, TheRangeRateMustBeTheImages) {
+  // At the place of an image, but it moves otherwise than the image would.
+  std::uint32_t wrong = 0, right = 0;
+  drive(2.0, [&] {
+    const Vector2d p(20.0 + 5.0 * t_s_, -1.0), v(25.0, 0.0);
+    rail(kRail);
+    direct(p, v);
+    right = by_three_bounces(p, v, kRailPlane);
+    wrong = direct(kRailPlane.image(p) + Vector2d(0.5, 0.0), {10.0, 0.0});
+    direct(kRailPlane.image(p) + Vector2d(1.5, 0.5), {10.0, 0.0});
+  });
+  EXPECT_EQ(label(right), Provenance::kGhostType2);
+  EXPECT_EQ(label(wrong), Provenance::kMoving);
+}
+
+TEST_F(MirrorFilterTest, APassageInTheRailStaysOpen) {
+  const auto open = [](double world) { return world < 80.0 || world > 100.0; };
+  drive(2.0, [&] { rail(kRail, open); });
+  const double driven = t_s_ * speed_mps_;
+  for (std::size_t i = 0; i < out_->number_of_reflector_segments; ++i) {
+    const ReflectorSegment& s = out_->reflector_segments[i];
+    const double from = std::min(s.start_vehicle_m[0], s.end_vehicle_m[0]) + driven;
+    const double to = std::max(s.start_vehicle_m[0], s.end_vehicle_m[0]) + driven;
+    EXPECT_TRUE(to < 83.0 || from > 97.0) << from << " … " << to;
+  }
+  EXPECT_GE(out_->number_of_reflector_segments, 2u);
+  // Through it one sees what is there, even where a car would be mirrored if the rail went on.
+  std::uint32_t through = 0;
+  drive(0.05, [&] {
+    const double gap = 90.0 - t_s_ * speed_mps_;  // of the passage's middle, vehicle frame
+    const Vector2d direction = (Vector2d(gap, kRail) - sensor()).normalized();
+    const Vector2d place = sensor() + 1.3 * (Vector2d(gap, kRail) - sensor()).norm() * direction;
+    rail(kRail, open);
+    direct(kRailPlane.image(place), {15.0, 0.0});
+    through = direct(place, {15.0, 0.0});
+    direct(place + Vector2d(0.8, 0.4), {15.0, 0.0});
+  });
+  EXPECT_EQ(label(through), Provenance::kMoving);
+}
+
+TEST_F(MirrorFilterTest, InTheDirectionOfATrackAtTheLengthOfADetourIsAType1Ghost) {
+  std::size_t ghosts = 0, cars = 0, beside = 0, scans = 0;
+  for (int k = 0; k < 60; ++k) {
+    std::uint32_t car = 0, ghost = 0, other = 0;
+    drive(0.05, [&] {
+      const Vector2d p(11.0, 2.0), v(24.0, 0.0);
+      track(p, v);
+      hand_over_tracks();
+      rail(kRail);
+      car = direct(p + Vector2d(-2.0, 0.0), v);
+      ghost = by_two_bounces(p + Vector2d(-2.0, 0.0), v, kRailPlane, true);
+      other = direct({40.0, 6.0}, {20.0, 0.0});
+      direct({41.0, 6.5}, {20.0, 0.0});
+    });
+    if (t_s_ < 1.0) continue;
+    ++scans;
+    cars += label(car) == Provenance::kMoving ? 1U : 0U;
+    ghosts += label(ghost) == Provenance::kGhostType1 ? 1U : 0U;
+    beside += label(other) == Provenance::kMoving ? 1U : 0U;
+  }
+  EXPECT_GE(cars, scans - 1);
+  EXPECT_GE(beside, scans - 1);
+  EXPECT_GE(ghosts, scans * 9 / 10);
+}
+
+TEST_F(MirrorFilterTest, TheSideOfATruckMirrorsAndMovesItself) {
+  std::size_t ghosts = 0, cars = 0, scans = 0;
+  for (int k = 0; k < 60; ++k) {
+    std::uint32_t car = 0, ghost = 0;
+    drive(0.05, [&] {
+      // The truck's left side is at y = −2.
+      const Vector2d truck(12.0, -3.25), truck_v(21.0, 0.0), p(22.0, 1.5), v(26.0, 0.5);
+      track(truck, truck_v, 16.0, 2.5);
+      track(p, v);
+      hand_over_tracks();
+      car = direct(p + Vector2d(-2.0, 0.0), v);
+      ghost = by_three_bounces(p + Vector2d(-2.0, 0.0), v, {{12.0, -2.0}, {1.0, 0.0}, truck_v});
+    });
+    if (t_s_ < 0.5) continue;
+    ++scans;
+    cars += label(car) == Provenance::kMoving ? 1U : 0U;
+    ghosts += label(ghost) == Provenance::kGhostType2 ? 1U : 0U;
+  }
+  EXPECT_GE(cars, scans - 1);
+  EXPECT_GE(ghosts, scans * 9 / 10);
+}
+
+TEST_F(MirrorFilterTest, AnArcMirrorsAsItsTangentAtTheReflectionDoes) {
+  // A wall bends to the left, radius 90 m, about a vehicle that stands; the ghost by Fermat's principle.
+  speed_mps_ = 0.0;
+  const Vector2d centre(0.0, 83.0);
+  const double radius = 90.0;
+  const auto on_wall = [&](double angle) {
+    return Vector2d(centre + radius * Vector2d(std::sin(angle), -std::cos(angle)));
+  };
+  const Vector2d p(25.0, 1.0), v(12.0, 3.0);
+  double best = 1e9, at = 0.0;
+  for (double angle = -0.2; angle < 0.6; angle += 1e-5) {
+    const double length = (on_wall(angle) - sensor()).norm() + (on_wall(angle) - p).norm();
+    // Inside a circle the way over the near wall is the shortest one as well, as long as it bends less than the sight.
+    if (length < best) {
+      best = length;
+      at = angle;
+    }
+  }
+  const Plane tangent{on_wall(at), {std::cos(at), std::sin(at)}};
+  std::uint32_t ghost = 0, car = 0;
+  std::bernoulli_distribution seen(0.6);
+  drive(1.5, [&] {
+    for (double angle = -0.3; angle < 0.75; angle += 0.02) {
+      if (seen(random_)) still(on_wall(angle));
+    }
+    car = direct(p, v);
+    ghost = by_three_bounces(p, v, tangent);
+  });
+  EXPECT_EQ(label(car), Provenance::kMoving);
+  EXPECT_EQ(label(ghost), Provenance::kGhostType2);
+  for (std::size_t i = 0; i < out_->number_of_reflector_segments; ++i) {
+    for (const auto& end : {out_->reflector_segments[i].start_vehicle_m, out_->reflector_segments[i].end_vehicle_m}) {
+      EXPECT_NEAR((Vector2d(end[0], end[1]) - centre).norm(), radius, 0.5);
+    }
+  }
+  EXPECT_GE(out_->number_of_reflector_segments, 2u);
+}
+
+TEST_F(MirrorFilterTest, AMisalignedRadarsGhostsAreFoundWhileTheFlagSaysSo) {
+  // Everything is turned by 1.2°, the rail as well; the range rates are not.
+  const Eigen::Rotation2Dd turn(1.2 * M_PI / 180.0);
+  const auto judge = [&](bool says_so) {
+    filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
+    std::size_t ghosts = 0;
+    t_s_ = 0.0;
+    for (int k = 0; k < 40; ++k) {
+      std::uint32_t ghost = 0;
+      drive(0.05, [&] {
+        const Vector2d p(20.0, -1.0), v(25.0, 0.0);
+        scan_->flags = says_so ? pipeline_flag::kNoAlignment : 0U;
+        rail(kRail);
+        direct(p, v);
+        ghost = by_three_bounces(p, v, kRailPlane);
+        for (std::size_t i = 0; i < scan_->number_of_valid_detections; ++i) {
+          const Vector2d q = sensor() + turn * (Vector2d(scan_->x_vehicle_m[i], scan_->y_vehicle_m[i]) - sensor());
+          scan_->x_vehicle_m[i] = static_cast<float>(q.x());
+          scan_->y_vehicle_m[i] = static_cast<float>(q.y());
+        }
+      });
+      if (t_s_ > 1.0) ghosts += label(ghost) == Provenance::kGhostType2 ? 1U : 0U;
+    }
+    return ghosts;
+  };
+  EXPECT_GE(judge(true), 19u);
+}
+
+TEST_F(MirrorFilterTest, AWeakDetectionAllAloneIsClutter) {
+  std::uint32_t alone = 0;
+  drive(1.0, [&] {
+    rail(kRail);
+    if (t_s_ > 0.99) alone = direct({40.0, 15.0}, {-20.0, 9.0}, -18.0);
+  });
+  EXPECT_EQ(label(alone), Provenance::kClutter);
+  EXPECT_GT(out_->ghost_probability[alone], 0.5F);
+}
+
+TEST_F(MirrorFilterTest, WhatCrossesTheLineOfSightOfATrackMovesThoughItLooksStill) {
+  std::uint32_t crossing = 0, post = 0;
+  drive(0.5, [&] {
+    track({20.0, 0.0}, {0.0, 8.0});
+    hand_over_tracks();
+    crossing = still({19.2, 0.2});
+    post = still({30.0, 6.0});
+  });
+  EXPECT_EQ(label(crossing), Provenance::kMoving);
+  EXPECT_EQ(label(post), Provenance::kStationary);
+}
+
+TEST_F(MirrorFilterTest, RejectedUndecidedAndNotFiniteAreUnknown) {
+  begin();
+  const auto rejected = direct({20.0, 0.0}, {5.0, 0.0});
+  scan_->detection_flags[rejected] |= corrected_flag::kOutsideRegion;
+  const auto undecided = direct({20.0, 0.0}, {5.0, 0.0});
+  scan_->detection_flags[undecided] = corrected_flag::kAmbiguous;
+  const auto broken = direct({20.0, 0.0}, {5.0, 0.0});
+  scan_->y_vehicle_m[broken] = std::numeric_limits<float>::quiet_NaN();
+  classify();
+  for (const auto i : {rejected, undecided, broken}) {
+    EXPECT_EQ(label(i), Provenance::kUnknown);
+    EXPECT_EQ(out_->ghost_probability[i], 0.0F);
+  }
+  EXPECT_EQ(out_->number_of_valid_detections, 3u);
+}
+
+TEST_F(MirrorFilterTest, FullScansForAMinuteStayWithinBoundsAndAllocateNothing) {
+  std::uniform_real_distribution<float> place(-80.0F, 80.0F);
+  const std::uint64_t before = runtime::counted_allocations();
+  {
+    const runtime::CountAllocations counting;
+    for (int round = 0; round < 160; ++round) {
+      t_s_ += 0.0125;
+      begin();
+      scan_->number_of_valid_detections = kMaxDetections;
+      for (std::size_t i = 0; i < kMaxDetections; ++i) {
+        scan_->x_vehicle_m[i] = place(random_);
+        scan_->y_vehicle_m[i] = i % 3 == 0 ? static_cast<float>(kRail) : place(random_);
+        scan_->range_rate_over_ground_mps[i] = i % 5 == 0 ? place(random_) : 0.0F;
+        scan_->detection_flags[i] = i % 5 == 0 ? corrected_flag::kMoving : corrected_flag::kStationary;
+      }
+      classify();
+      ASSERT_LE(out_->number_of_reflector_segments, kMaxReflectorSegments);
+    }
+  }
+  EXPECT_EQ(runtime::counted_allocations(), before);
+}
+
+}  // namespace
+}  // namespace boresight::ghosts
