@@ -56,7 +56,7 @@ struct CorrectedScan {
   ScanGeometry geometry;
   /// Of the turn by which `geometry.sensor_to_vehicle` may be wrong, about the vehicle's axes: xx, xy, xz, yy, yz, zz
   /// in rad². Common to all detections of the radar, on top of their own stds.
-  std::array<float, 6> mounting_covariance_rad2;
+  std::array<float, 6> mounting_covariance;
   float speed_scale_std;  ///< by which `geometry.speed_scale` may be wrong
   std::array<std::uint32_t, 4> reserved;
 

@@ -32,7 +32,7 @@ void write_geometry(const RadarConfig& radar, const Mounting& mounting, const Eg
   std::size_t next = 0;
   for (Eigen::Index row = 1; row < 4; ++row) {
     for (Eigen::Index column = row; column < 4; ++column) {
-      scan.mounting_covariance_rad2[next++] = static_cast<float>(mounting.covariance(row, column));
+      scan.mounting_covariance[next++] = static_cast<float>(mounting.covariance(row, column));
     }
   }
   scan.speed_scale_std = static_cast<float>(std::sqrt(mounting.covariance(0, 0)));
@@ -79,7 +79,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
   out.reserved = {};
   out.alignment_sequence = 0;
   out.geometry = {};
-  out.mounting_covariance_rad2 = {};
+  out.mounting_covariance = {};
   out.speed_scale_std = 0.0F;
   if (radar == nullptr) return;
 

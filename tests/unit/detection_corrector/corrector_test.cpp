@@ -166,8 +166,8 @@ TEST_F(CorrectorTest, MovingThresholdByHand) {
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kStationary);
   // The covariance of what is left of the mounting goes on.
   EXPECT_NEAR(out_->speed_scale_std, 1e-3, 1e-6);
-  EXPECT_NEAR(out_->mounting_covariance_rad2[5], 1e-7, 1e-9);
-  EXPECT_NEAR(out_->mounting_covariance_rad2[3], 0.005, 1e-6);
+  EXPECT_NEAR(out_->mounting_covariance[5], 1e-7, 1e-9);
+  EXPECT_NEAR(out_->mounting_covariance[3], 0.005, 1e-6);
 }
 
 TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreTakenOut) {

@@ -52,7 +52,7 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
   scan.header.source_id = static_cast<std::uint32_t>(radar + 1);
   scan.fields = scan_field::kElevation | scan_field::kRcs | scan_field::kStds;
   scan.alignment_sequence = 1;
-  scan.mounting_covariance_rad2 = {1e-6F, 0.0F, 0.0F, 1e-6F, 0.0F, 1e-7F};
+  scan.mounting_covariance = {1e-6F, 0.0F, 0.0F, 1e-6F, 0.0F, 1e-7F};
   const double angle = 2.0 * M_PI * (static_cast<double>(radar) + 0.5) / static_cast<double>(radars_);
   const double ahead = std::cos(angle) >= 0.0 ? 1.0 : -1.0;
   const Eigen::Vector2d sensor(ahead > 0.0 ? 3.6 : -0.9, std::sin(angle) >= 0.0 ? 0.7 : -0.7);

@@ -1,0 +1,42 @@
+"""Rewrites a document between its marks with the tables that a benchmark's --markdown wrote."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+REGION = re.compile(r"<!-- begin: ([\w ]+) -->\n(.*?)<!-- end: \1 -->", re.DOTALL)
+
+
+def read_results(folder):
+    """Curves by figure, the tables as Markdown by name, and the rows of the table of bars in order."""
+    curves, regions = [], {}
+    for file in sorted(folder.rglob("bars.json")):
+        curves += json.loads(file.read_text())["curves"]
+        for name, body in REGION.findall(file.with_suffix(".md").read_text()):
+            if name == "bars" and name in regions:
+                body = regions[name] + "".join(body.splitlines(keepends=True)[2:])
+            regions[name] = body
+    return curves, regions
+
+
+def machine():
+    model = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
+    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
+                            check=False).stdout.strip()
+    return f"Commit {commit or 'unknown'}; times on {model.group(1) if model else 'an unknown processor'}.\n"
+
+
+def rewrite(document, regions):
+    """Says on stderr which tables have no place and which places have no table."""
+    regions = {**regions, "measured": machine()}
+    text = document.read_text()
+    marks = {name for name, _ in REGION.findall(text)}
+    where = document.relative_to(ROOT)
+    for name in sorted(set(regions) - marks):
+        print(f"{where} has no place for the table '{name}'", file=sys.stderr)
+    for name in sorted(marks - set(regions)):
+        print(f"left as it was, not measured: '{name}'", file=sys.stderr)
+    document.write_text(REGION.sub(
+        lambda found: f"<!-- begin: {found[1]} -->\n{regions.get(found[1], found[2])}<!-- end: {found[1]} -->", text))
