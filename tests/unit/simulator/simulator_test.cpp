@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "interfaces/messages/service_status.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
@@ -67,6 +68,8 @@ TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
   Scenario quiet = scenario("demo_drive");
   quiet.effects.noise = false;
   quiet.effects.clutter_per_scan = 0.0;
+  quiet.effects.resolution = {0.0, 0.0, 0.0};     // a centroid lies between points
+  quiet.effects.multipath.ground_bounce = false;  // which bends the apparent elevation
   const VehicleConfig vehicle = demo();
   Drive drive(quiet, vehicle, 1, 3.0);
   std::size_t compared = 0;
@@ -115,6 +118,51 @@ TEST(Simulator, TruthNamesEveryKindOfDetection) {
     EXPECT_GT(kinds[static_cast<std::size_t>(p)], 50u) << static_cast<int>(p);
   }
   EXPECT_EQ(kinds[static_cast<std::size_t>(Provenance::kUnknown)], 0u);
+}
+
+TEST(Simulator, HighwayMultipathHasReportBsNumbersOfDetections) {
+  const Scenario highway = scenario("highway_multipath");
+  const VehicleConfig vehicle =
+      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/report_b.toml");
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Drive drive(highway, vehicle, seed, highway.duration_s);
+    std::array<double, 6> counts{};
+    while (const Event* event = drive.next()) {
+      if (event->scan == nullptr) continue;
+      for (const DetectionTruth& truth : *event->truth) ++counts[static_cast<std::size_t>(truth.provenance)];
+    }
+    // algorithms.md §2, rows of the table; within 20 %.
+    for (const auto& [provenance, published] : {std::pair{Provenance::kMoving, 1968.0},
+                                                {Provenance::kStationary, 27064.0},
+                                                {Provenance::kGhostType1, 833.0},
+                                                {Provenance::kGhostType2, 3153.0},
+                                                {Provenance::kClutter, 130.0}}) {
+      EXPECT_NEAR(counts[static_cast<std::size_t>(provenance)], published, 0.2 * published)
+          << "seed " << seed << ", provenance " << static_cast<int>(provenance);
+    }
+  }
+}
+
+TEST(Simulator, ABlockedRadarSaysSoAndSeesLess) {
+  Scenario blocked = scenario("straight_rail");
+  blocked.effects.blockages = {{1, 1.0, 2.0, 40.0, -3.2, 3.2}};
+  Drive drive(blocked, demo(), 1, 3.0);
+  std::size_t before = 0, after = 0;
+  while (const Event* event = drive.next()) {
+    if (event->scan == nullptr) continue;
+    if (event->scan->header.source_id != 1) {
+      EXPECT_EQ(event->condition, 0u);
+      continue;
+    }
+    if (event->t_s < 1.0) {
+      EXPECT_EQ(event->condition, 0u);
+      before += event->scan->number_of_valid_detections;
+    } else if (event->t_s > 2.0) {
+      EXPECT_EQ(event->condition, source_condition::kBlocked);
+      after += event->scan->number_of_valid_detections;
+    }
+  }
+  EXPECT_LT(4 * after, before);
 }
 
 TEST(Simulator, TheWireFormatHoldsEveryScan) {
