@@ -120,29 +120,6 @@ TEST(Simulator, TruthNamesEveryKindOfDetection) {
   EXPECT_EQ(kinds[static_cast<std::size_t>(Provenance::kUnknown)], 0u);
 }
 
-TEST(Simulator, HighwayMultipathHasReportBsNumbersOfDetections) {
-  const Scenario highway = scenario("highway_multipath");
-  const VehicleConfig vehicle =
-      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/report_b.toml");
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    Drive drive(highway, vehicle, seed, highway.duration_s);
-    std::array<double, 6> counts{};
-    while (const Event* event = drive.next()) {
-      if (event->scan == nullptr) continue;
-      for (const DetectionTruth& truth : *event->truth) ++counts[static_cast<std::size_t>(truth.provenance)];
-    }
-    // algorithms.md §2, rows of the table; within 20 %.
-    for (const auto& [provenance, published] : {std::pair{Provenance::kMoving, 1968.0},
-                                                {Provenance::kStationary, 27064.0},
-                                                {Provenance::kGhostType1, 833.0},
-                                                {Provenance::kGhostType2, 3153.0},
-                                                {Provenance::kClutter, 130.0}}) {
-      EXPECT_NEAR(counts[static_cast<std::size_t>(provenance)], published, 0.2 * published)
-          << "seed " << seed << ", provenance " << static_cast<int>(provenance);
-    }
-  }
-}
-
 TEST(Simulator, ABlockedRadarSaysSoAndSeesLess) {
   Scenario blocked = scenario("straight_rail");
   blocked.effects.blockages = {{1, 1.0, 2.0, 40.0, -3.2, 3.2}};
