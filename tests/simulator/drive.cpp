@@ -73,6 +73,7 @@ const Event* Drive::next() {
   scan_->header.time_source = TimeSource::kSensorSynchronised;
   event_.scan = scan_.get();
   event_.truth = &truth_;
+  event_.condition = due->sensor.condition(event_.t_s);
   return &event_;
 }
 

@@ -29,6 +29,7 @@ struct Event {
   EgoSignals ego{};
   const RadarScan* scan = nullptr;  ///< nullptr: ego signals; header: source_id, sequences, measurement time
   const std::vector<DetectionTruth>* truth = nullptr;
+  std::uint32_t condition = 0;  ///< of the scan's radar, as it says itself: source_condition bits
 };
 
 class Drive {

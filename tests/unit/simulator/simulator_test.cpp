@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "interfaces/messages/service_status.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
@@ -67,6 +68,8 @@ TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
   Scenario quiet = scenario("demo_drive");
   quiet.effects.noise = false;
   quiet.effects.clutter_per_scan = 0.0;
+  quiet.effects.resolution = {0.0, 0.0, 0.0};     // a centroid lies between points
+  quiet.effects.multipath.ground_bounce = false;  // which bends the apparent elevation
   const VehicleConfig vehicle = demo();
   Drive drive(quiet, vehicle, 1, 3.0);
   std::size_t compared = 0;
@@ -115,6 +118,28 @@ TEST(Simulator, TruthNamesEveryKindOfDetection) {
     EXPECT_GT(kinds[static_cast<std::size_t>(p)], 50u) << static_cast<int>(p);
   }
   EXPECT_EQ(kinds[static_cast<std::size_t>(Provenance::kUnknown)], 0u);
+}
+
+TEST(Simulator, ABlockedRadarSaysSoAndSeesLess) {
+  Scenario blocked = scenario("straight_rail");
+  blocked.effects.blockages = {{1, 1.0, 2.0, 40.0, -3.2, 3.2}};
+  Drive drive(blocked, demo(), 1, 3.0);
+  std::size_t before = 0, after = 0;
+  while (const Event* event = drive.next()) {
+    if (event->scan == nullptr) continue;
+    if (event->scan->header.source_id != 1) {
+      EXPECT_EQ(event->condition, 0u);
+      continue;
+    }
+    if (event->t_s < 1.0) {
+      EXPECT_EQ(event->condition, 0u);
+      before += event->scan->number_of_valid_detections;
+    } else if (event->t_s > 2.0) {
+      EXPECT_EQ(event->condition, source_condition::kBlocked);
+      after += event->scan->number_of_valid_detections;
+    }
+  }
+  EXPECT_LT(4 * after, before);
 }
 
 TEST(Simulator, TheWireFormatHoldsEveryScan) {
