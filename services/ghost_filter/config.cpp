@@ -26,12 +26,66 @@ published::Config read_published(config::Reader root) {
   return c;
 }
 
+MapConfig read_map(config::Reader reader) {
+  MapConfig c;
+  c.memory_s = reader.number("memory_s", {0.1, 10.0}, c.memory_s);
+  c.update_period_s = reader.number("update_period_s", {0.0, 1.0}, c.update_period_s);
+  c.cell_m = reader.number("cell_m", {0.1, 5.0}, c.cell_m);
+  c.cluster_radius_m = reader.number("cluster_radius_m", {0.1, 20.0}, c.cluster_radius_m);
+  c.cluster_min_cells = static_cast<std::size_t>(
+      reader.integer("cluster_min_cells", {1, 1000}, static_cast<std::int64_t>(c.cluster_min_cells)));
+  c.tolerance_m = reader.number("tolerance_m", {0.02, 3.0}, c.tolerance_m);
+  c.min_cells =
+      static_cast<std::size_t>(reader.integer("min_cells", {1, 1000}, static_cast<std::int64_t>(c.min_cells)));
+  c.min_length_m = reader.number("min_length_m", {0.5, 100.0}, c.min_length_m);
+  c.max_gap_m = reader.number("max_gap_m", {0.5, 50.0}, c.max_gap_m);
+  c.min_purity = reader.number("min_purity", {0.0, 1.0}, c.min_purity);
+  c.max_curvature_per_m = reader.number("max_curvature_per_m", {0.0, 0.5}, c.max_curvature_per_m);
+  c.bin_m = reader.number("bin_m", {0.2, 20.0}, c.bin_m);
+  return c;
+}
+
+ClassConfig read_classes(config::Reader reader) {
+  ClassConfig c;
+  c.decision_probability = reader.number("decision_probability", {0.01, 0.99}, c.decision_probability);
+  c.memory_s = reader.number("memory_s", {0.0, 2.0}, c.memory_s);
+  c.new_object_density = reader.number("new_object_density", {1e-12, 1.0}, c.new_object_density);
+  c.clutter_density = reader.number("clutter_density", {0.0, 1.0}, c.clutter_density);
+  c.lone_ghost_density = reader.number("lone_ghost_density", {0.0, 1.0}, c.lone_ghost_density);
+  c.hidden_ghost_density = reader.number("hidden_ghost_density", {0.0, 1.0}, c.hidden_ghost_density);
+  c.type1_per_object = reader.number("type1_per_object", {0.0, 100.0}, c.type1_per_object);
+  c.type2_per_object = reader.number("type2_per_object", {0.0, 100.0}, c.type2_per_object);
+  c.real_per_object = reader.number("real_per_object", {0.01, 100.0}, c.real_per_object);
+  c.stationary_image_density = reader.number("stationary_image_density", {0.0, 1.0}, c.stationary_image_density);
+  c.weak_rcs_dbsm = reader.number("weak_rcs_dbsm", {-60.0, 60.0}, c.weak_rcs_dbsm);
+  c.strong_rcs_dbsm = reader.number("strong_rcs_dbsm", {-60.0, 60.0}, c.strong_rcs_dbsm);
+  c.extent_std_m = reader.number("extent_std_m", {0.1, 10.0}, c.extent_std_m);
+  c.range_rate_slack_mps = reader.number("range_rate_slack_mps", {0.0, 10.0}, c.range_rate_slack_mps);
+  c.margin_m = reader.number("margin_m", {0.0, 20.0}, c.margin_m);
+  c.min_mirror_length_m = reader.number("min_mirror_length_m", {1.0, 100.0}, c.min_mirror_length_m);
+  c.unaligned_std_rad = reader.number("unaligned_std_rad", {0.0, 0.2}, c.unaligned_std_rad);
+  c.aligned_std_rad = reader.number("aligned_std_rad", {0.0, 0.2}, c.aligned_std_rad);
+  c.ego_front_m = reader.number("ego_front_m", {0.0, 20.0}, c.ego_front_m);
+  c.ego_rear_m = reader.number("ego_rear_m", {-20.0, 0.0}, c.ego_rear_m);
+  c.ego_half_width_m = reader.number("ego_half_width_m", {0.1, 3.0}, c.ego_half_width_m);
+  return c;
+}
+
+MirrorConfig read_mirror(config::Reader root) {
+  MirrorConfig c;
+  c.tracks_max_age_s = root.number("tracks_max_age_s", {0.05, 10.0}, c.tracks_max_age_s);
+  c.map = read_map(root.table("map"));
+  c.classes = read_classes(root.table("classes"));
+  return c;
+}
+
 }  // namespace
 
 Config read_config(config::Reader root) {
   Config c;
   c.method = root.choice<MethodName>("method", {{"mirror", MethodName::kMirror}, {"published", MethodName::kPublished}},
                                      c.method);
+  c.mirror = read_mirror(root.table("mirror"));
   c.published = read_published(root.table("published"));
   root.finish();
   return c;

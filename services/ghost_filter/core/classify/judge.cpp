@@ -27,7 +27,8 @@ double gaussian(double residual, double variance) {
 /// Density of what an object reflects at a place: even over its box, blurred.
 double at_box(const Object& object, const Eigen::Vector2d& place_m, const Eigen::Matrix2d& covariance) {
   const Eigen::Vector2d q = place_m - object.position_m;
-  const double reach = object.half_length_m + object.half_width_m + 25.0;
+  const double reach = object.half_length_m + object.half_width_m +
+                       7.1 * std::sqrt(covariance.trace() + object.position_covariance.trace());
   if (q.squaredNorm() > reach * reach) return 0.0;
   Eigen::Matrix2d axes;  // rows: the box's axes
   axes << object.axis.x(), object.axis.y(), -object.axis.y(), object.axis.x();
@@ -116,6 +117,7 @@ double Judge::of_objects(const Measured& m, std::uint32_t but_object) const {
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (i == but_object || o.own) continue;
+    if ((o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) continue;
     // The box of a young track, or of one that shows its rear only, is shorter than the vehicle.
     double place = 0.0;
     for (const Growth& growth : kGrowths) {
@@ -214,6 +216,7 @@ double Judge::type2(const Measured& m, const Mirror& mirror, const Turn& turn, s
       const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
       const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
       const Eigen::Vector2d residual = s_.odometry->vector_to_vehicle(moved - in_frame);
+      if (mover.weight < 0.1 && most > 0.0) return;
       const double loose = square(config_.extent_std_m) + mover.variance_m2 + square(8.0 * elapsed_s);
       const double there = at_point(residual, covariance + loose * Eigen::Matrix2d::Identity());
       if (there <= 0.0) return;

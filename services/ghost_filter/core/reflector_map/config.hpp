@@ -6,8 +6,8 @@
 namespace boresight::ghosts {
 
 struct MapConfig {
-  double memory_s = 1.0;          ///< a cell that was not hit for this long is forgotten
-  double update_period_s = 0.05;  ///< reflectors are fitted and searched this often
+  double memory_s = 1.0;         ///< a cell that was not hit for this long is forgotten
+  double update_period_s = 0.1;  ///< reflectors are fitted and searched this often
   double cell_m = 0.5;
   std::size_t capacity = 8192;    ///< cells
   double cluster_radius_m = 3.0;  ///< DBSCAN of the cells that no reflector claims

@@ -31,18 +31,25 @@ struct Curve {
   [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return distance_of_local(local(p)); }
   /// Arc length from the origin of the foot of a point given in local coordinates.
   [[nodiscard]] double arc_of_local(const Eigen::Vector2d& q) const {
-    if (std::abs(curvature_per_m) < 1e-6) return q.x();
+    if (std::abs(curvature_per_m) * q.squaredNorm() < 1e-6 * std::abs(q.x()) + 1e-9) return q.x();
     return std::atan2(curvature_per_m * q.x(), 1.0 - curvature_per_m * q.y()) / curvature_per_m;
   }
   [[nodiscard]] double arc(const Eigen::Vector2d& p) const { return arc_of_local(local(p)); }
   [[nodiscard]] Eigen::Vector2d at(double arc_m) const {
     const double angle = curvature_per_m * arc_m;
+    if (std::abs(angle) < 0.05) {  // the usual case, to 1e-6 of the arc length
+      return origin_m +
+             arc_m * ((1.0 - angle * angle / 6.0) * tangent + 0.5 * angle * (1.0 - angle * angle / 12.0) * normal());
+    }
     const double half = 0.5 * angle;
     const double chord = arc_m * (std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
     return origin_m + chord * (std::cos(half) * tangent + std::sin(half) * normal());
   }
   [[nodiscard]] Eigen::Vector2d tangent_at(double arc_m) const {
     const double angle = curvature_per_m * arc_m;
+    if (std::abs(angle) < 0.02) {
+      return (1.0 - 0.5 * angle * angle) * tangent + angle * (1.0 - angle * angle / 6.0) * normal();
+    }
     return std::cos(angle) * tangent + std::sin(angle) * normal();
   }
   /// The same curve with its origin moved along it.

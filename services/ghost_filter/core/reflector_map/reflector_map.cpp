@@ -72,7 +72,7 @@ void ReflectorMap::claim(std::uint32_t index) {
   claimed_.clear();
   Reflector& r = reflectors_[index];
   const std::span<StationaryGrid::Cell> cells = grid_.cells();
-  const double step = 0.7 * config_.cell_m;
+  const double step = config_.cell_m;
   const auto look = [&](double arc) {
     const Eigen::Vector2d p = r.curve.at(arc);
     const Eigen::Vector2d tangent = r.curve.tangent_at(arc);
