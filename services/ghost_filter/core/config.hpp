@@ -14,7 +14,7 @@ enum class MethodName : std::uint8_t {
 };
 
 struct Config {
-  MethodName method = MethodName::kMirror;
+  MethodName method = MethodName::kPublished;
   MirrorConfig mirror;
   published::Config published;
 };
