@@ -57,6 +57,7 @@ void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
 }
 
 void GraduatedStart::begin(const StartPrior& prior) {
+  prior_ = prior;
   model_.speed_scale = model_.linearised_speed_scale = prior.speed_scale;
   model_.sensor_to_vehicle[0] = model_.linearised[0] = prior.sensor_to_vehicle;
   model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
@@ -80,16 +81,15 @@ GraduatedStart::Verdict GraduatedStart::add(const Sightings& sightings, const st
   while (passes_due_ >= 1.0 && passes_ < config_.start_passes) {
     passes_due_ -= 1.0;
     ++passes_;
-    pass(position_m, prior, angle_scale, passes_ == config_.start_passes);
+    pass(position_m, angle_scale, passes_ == config_.start_passes);
   }
   if (passes_ < config_.start_passes) return Verdict::kSearching;
-  const Verdict verdict = judge(prior);
+  const Verdict verdict = judge();
   clear();
   return verdict;
 }
 
-void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPrior& prior, double angle_scale,
-                          bool last) {
+void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_scale, bool last) {
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;
   judgement.min_std_mps = last ? 0.0 : scale_mps_;
@@ -136,12 +136,12 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPr
   model_.lowering[0] = along > 0.0 ? lowered / along : 0.0;
   Spread spread;
   spread.add(all, feigned, inliers_, 0.0);
-  const Support support = spread.support(has_elevation, prior.log_angle_noise_std);
+  const Support support = spread.support(has_elevation, prior_.log_angle_noise_std);
   constexpr Eigen::Index kRoll = column::kShared, kPitch = kRoll + 1, kYaw = kRoll + 2;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   normal(0, 0) =
-      1.0 / (prior.speed_scale_variance + model_.lowering[0] * model_.lowering[0] * prior.elevation_excess_variance);
-  normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior.rotation_variance);
+      1.0 / (prior_.speed_scale_variance + model_.lowering[0] * model_.lowering[0] * prior_.elevation_excess_variance);
+  normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior_.rotation_variance);
   // The data count less than their noise would let them, throughout: what is hardly known must not follow it.
   const double counts = 1.0 / config_.start_inflation;
   Eigen::Vector4d right = -normal * off_;
@@ -190,13 +190,13 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, const StartPr
   result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
 }
 
-GraduatedStart::Verdict GraduatedStart::judge(const StartPrior& prior) const {
+GraduatedStart::Verdict GraduatedStart::judge() const {
   // The gate must hold clearly more than its neighbourhood, twice as wide, lets expect of a background: five stds of
   // the counts, and most of what it holds.
   const double excess = inliers_ - 0.5 * near_;
   const bool stands_out = excess > 0.5 * inliers_ && excess * excess > 25.0 * (inliers_ + 0.25 * near_);
-  const double rotation_limit = kPlausibleStds * std::sqrt(prior.rotation_variance);
-  const bool plausible = std::abs(off_(0)) < kPlausibleStds * std::sqrt(prior.speed_scale_variance) &&
+  const double rotation_limit = kPlausibleStds * std::sqrt(prior_.rotation_variance);
+  const bool plausible = std::abs(off_(0)) < kPlausibleStds * std::sqrt(prior_.speed_scale_variance) &&
                          off_.tail<3>().cwiseAbs().maxCoeff() < rotation_limit && result_.covariance.allFinite();
   return stands_out && plausible ? Verdict::kFound : Verdict::kNothing;
 }

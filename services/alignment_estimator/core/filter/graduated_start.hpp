@@ -59,7 +59,8 @@ class GraduatedStart {
 
   /// Empties the window.
   void clear();
-  /// Takes a scan into the window while there is room and makes the passes that are due.
+  /// Takes a scan into the window while there is room and makes the passes that are due. The prior is that of the
+  /// first pass: what other radars find meanwhile is taken over with the result.
   [[nodiscard]] Verdict add(const Sightings& sightings, const std::array<double, 3>& position_m,
                             const ScanMotion3d& motion, double elapsed_s, const StartPrior& prior, double angle_scale);
   [[nodiscard]] const StartResult& result() const { return result_; }
@@ -76,8 +77,8 @@ class GraduatedStart {
   };
   void store(const Sightings& sightings, const ScanMotion3d& motion);
   void begin(const StartPrior& prior);
-  void pass(const std::array<double, 3>& position_m, const StartPrior& prior, double angle_scale, bool last);
-  [[nodiscard]] Verdict judge(const StartPrior& prior) const;
+  void pass(const std::array<double, 3>& position_m, double angle_scale, bool last);
+  [[nodiscard]] Verdict judge() const;
 
   FilterConfig config_;
   std::vector<double> columns_;  ///< eleven columns of kCapacity
@@ -88,6 +89,7 @@ class GraduatedStart {
   int passes_ = 0;
   double passes_due_ = 0.0;
   double scale_mps_ = 0.0;
+  StartPrior prior_;
   Eigen::Vector4d off_ = Eigen::Vector4d::Zero();
   double inliers_ = 0.0, near_ = 0.0, standing_ = 0.0, counted_ = 0.0;
   StartResult result_;

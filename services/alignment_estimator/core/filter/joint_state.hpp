@@ -62,6 +62,11 @@ class JointState {
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] double covariance(Eigen::Index row, Eigen::Index column) const { return p_(row, column); }
+  /// Of a radar's turn about the vehicle's axes, rad².
+  [[nodiscard]] Eigen::Matrix3d rotation_covariance(std::size_t radar) const {
+    const Eigen::Index first = column::of_radar(radar);
+    return p_.block<3, 3>(first, first);
+  }
   /// Sets a diagonal entry and cuts the column's correlations.
   void set_variance(Eigen::Index index, double variance);
   void set_covariance(Eigen::Index row, Eigen::Index column, double value) {

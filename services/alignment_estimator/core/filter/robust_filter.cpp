@@ -165,18 +165,14 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   const Eigen::Matrix3d turn = velocity.gradient.middleRows<3>(column::kShared);
   const Eigen::Matrix3d by_turn = turn * information * turn.transpose();
   const Eigen::Vector3d turn_score = turn * score;
-  Eigen::Matrix3d rotation_covariance;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      rotation_covariance(i, j) = state_.covariance(column::of_radar(index) + i, column::of_radar(index) + j);
-    }
-  }
   const std::uint32_t suspicious =
       knocks_.add(index, time_ns, by_turn.bottomRightCorner<2, 2>(), turn_score.tail<2>(), sums.standing, detections);
   const std::uint32_t changed =
-      strange ? 0 : small_knocks_.add(index, time_ns, by_turn, turn_score, rotation_covariance);
+      strange ? 0 : small_knocks_.add(index, time_ns, by_turn, turn_score, state_.rotation_covariance(index));
   if (suspicious != 0) watch(suspicious, time_ns);
   if (changed != 0) follow(changed, time_ns);
+  // What this scan says was said of the rotation before a change.
+  if ((changed >> index & 1u) != 0) return;
   if (strange || radar.phase != Phase::kRunning || small_knocks_.doubted(index)) return;
   if (!state_.update(information, score)) return;
   linearise(index);

@@ -19,10 +19,7 @@ constexpr double kDriftShare = 0.4;
 }  // namespace
 
 RobustFilter::Radar::Earlier RobustFilter::now(std::size_t index) const {
-  const Eigen::Index first = column::of_radar(index);
-  return {state_.sensor_to_vehicle[index],
-          {state_.covariance(first, first), state_.covariance(first + 1, first + 1),
-           state_.covariance(first + 2, first + 2)}};
+  return {state_.sensor_to_vehicle[index], state_.rotation_covariance(index).diagonal()};
 }
 
 void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
@@ -38,14 +35,11 @@ void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
 
 void RobustFilter::verify(std::size_t index, const StartResult& found, std::int64_t time_ns) {
   Radar& radar = radars_[index];
-  const Eigen::Index first = column::of_radar(index);
   const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_knock.transpose());
   // Twice the statistical σ: what inflates a start is for the estimate that follows it, whereas two rotations are
   // compared here, and a start that is wrong by more only begins anew.
-  Eigen::Matrix3d covariance = 4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) covariance(i, j) += state_.covariance(first + i, first + j);
-  }
+  const Eigen::Matrix3d covariance =
+      4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>() + state_.rotation_covariance(index);
   const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
   const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
   const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;

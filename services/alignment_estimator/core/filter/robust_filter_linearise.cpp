@@ -39,10 +39,7 @@ void RobustFilter::linearise(std::size_t index) {
 }
 
 void RobustFilter::note_linearised(std::size_t index) {
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Index row = column::of_radar(index) + i;
-    radars_[index].linearised_variance(i) = state_.covariance(row, row);
-  }
+  radars_[index].linearised_variance = state_.rotation_covariance(index).diagonal();
 }
 
 }  // namespace boresight::alignment

@@ -81,12 +81,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   if (radar.remembered) {
     const Eigen::Vector3d off =
         geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
-    Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>();
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      for (Eigen::Index j = 0; j < 3; ++j) {
-        covariance(i, j) += state_.covariance(column::of_radar(index) + i, column::of_radar(index) + j);
-      }
-    }
+    const Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>() + state_.rotation_covariance(index);
     const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
     agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kAnother;
   }
