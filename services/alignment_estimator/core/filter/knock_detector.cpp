@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "services/alignment_estimator/core/filter/common_mode.hpp"
+
 namespace boresight::alignment {
 
 namespace {
@@ -88,19 +90,12 @@ void KnockDetector::close(Radar& radar) const {
 }
 
 double KnockDetector::common(std::size_t radar, Eigen::Index axis) const {
-  std::array<double, kMaxRadars> others;
+  std::array<Deviation, kMaxRadars> others;
   std::size_t count = 0;
   for (std::size_t r = 0; r < number_; ++r) {
-    if (r != radar && radars_[r].known[static_cast<std::size_t>(axis)]) others[count++] = radars_[r].deviation(axis);
+    if (r != radar && radars_[r].known[static_cast<std::size_t>(axis)]) others[count++] = {radars_[r].deviation(axis)};
   }
-  if (count == 0) return 0.0;
-  std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count));
-  const double low = others[(count - 1) / 2], high = others[count / 2];
-  const double middle = std::abs(low) < std::abs(high) ? low : high;
-  // Of two radars the one that deviates more is the one that moved.
-  const double own = radars_[radar].deviation(axis);
-  if (count == 1 && std::abs(own) < std::abs(middle)) return own;
-  return middle;
+  return common_mode({others.data(), count}, radars_[radar].deviation(axis)).value_rad;
 }
 
 std::uint32_t KnockDetector::judge() {

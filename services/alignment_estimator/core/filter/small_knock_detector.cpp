@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "services/alignment_estimator/core/filter/common_mode.hpp"
 #include "services/alignment_estimator/core/filter/small_maths.hpp"
 
 namespace boresight::alignment {
@@ -112,28 +113,18 @@ bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
   if (!axis.ended) return false;
   axis.stds = 0.0;
   if (!axis.known) return false;
-  std::array<const Axis*, kMaxRadars> others;
+  std::array<Deviation, kMaxRadars> others;
   std::size_t count = 0;
   for (std::size_t q = 0; q < number_; ++q) {
     const Axis& other = radars_[q].axes[a];
     if (q != r && other.known && other.variance < kComparable * (axis.variance + square(kFloor_rad[a]))) {
-      others[count++] = &other;
+      others[count++] = {other.deviation_rad, other.variance};
     }
   }
-  double own = axis.deviation_rad, variance = axis.variance;
-  if (count == 0) {
-    variance += square(kAloneFloor_rad[a]);
-  } else {
-    std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count),
-              [](const Axis* x, const Axis* y) { return x->deviation_rad < y->deviation_rad; });
-    const Axis& low = *others[(count - 1) / 2];
-    const Axis& high = *others[count / 2];
-    const Axis& middle = std::abs(low.deviation_rad) < std::abs(high.deviation_rad) ? low : high;
-    // Of two radars the one that deviates more is the one that moved.
-    const bool moved = count > 1 || std::abs(own) > std::abs(middle.deviation_rad);
-    own = moved ? own - middle.deviation_rad : 0.0;
-    variance += (count > 2 ? kMedianShare : 1.0) * middle.variance + square(kFloor_rad[a]);
-  }
+  const Deviation common = common_mode({others.data(), count}, axis.deviation_rad);
+  const double own = axis.deviation_rad - common.value_rad;
+  const double variance = axis.variance + (count > 2 ? kMedianShare : 1.0) * common.variance +
+                          square(count == 0 ? kAloneFloor_rad[a] : kFloor_rad[a]);
   axis.stds = own / std::sqrt(variance);
   radars_[r].own(static_cast<Eigen::Index>(a)) = own;
   if (axis.suspected != 0) {

@@ -1,0 +1,68 @@
+// The parts of the page, each HTML, and what they share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "services/boresight/report/html_report.hpp"
+#include "services/boresight/report/summary.hpp"
+#include "services/boresight/report/svg_chart.hpp"
+
+namespace boresight::report {
+
+using monitor::RadarSnapshot;
+using monitor::Snapshot;
+
+inline constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+/// Seconds since the first snapshot with a scan.
+class TimeBase {
+ public:
+  explicit TimeBase(const std::vector<Snapshot>& snapshots) {
+    for (const Snapshot& snapshot : snapshots) {
+      if (begin_ns_ == 0) begin_ns_ = snapshot.time_ns;
+      const bool any = std::any_of(snapshot.radars.begin(), snapshot.radars.end(), [](auto& r) { return r.scans > 0; });
+      if (!any) continue;
+      begin_ns_ = snapshot.time_ns;
+      break;
+    }
+    if (!snapshots.empty()) end_s_ = std::max(1.0, seconds(snapshots.back()));
+  }
+  [[nodiscard]] double seconds(const Snapshot& s) const { return static_cast<double>(s.time_ns - begin_ns_) * 1e-9; }
+  [[nodiscard]] double end_s() const { return end_s_; }
+
+ private:
+  std::int64_t begin_ns_ = 0;
+  double end_s_ = 1.0;
+};
+
+/// Null if the snapshot has no such radar.
+[[nodiscard]] inline const RadarSnapshot* find_radar(const Snapshot& snapshot, std::uint32_t id) {
+  for (const RadarSnapshot& radar : snapshot.radars) {
+    if (radar.id == id) return &radar;
+  }
+  return nullptr;
+}
+
+/// A dash if it is not known.
+[[nodiscard]] inline std::string known_number(double value, const char* unit, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}{}", value, digits, unit) : "–";
+}
+
+[[nodiscard]] std::string render_verdict(const ReportInput& input, const Summary& summary);
+[[nodiscard]] std::string render_table(const Summary& summary);
+/// About the vehicle's axes, with the key figures.
+[[nodiscard]] std::string render_details(const Summary& summary);
+/// Nothing where no truth is known.
+[[nodiscard]] std::string render_truth(const ReportInput& input, const TimeBase& time, const Summary& summary);
+[[nodiscard]] std::string render_alignment(const ReportInput& input, const TimeBase& time, const Summary& summary);
+[[nodiscard]] std::string render_health(const ReportInput& input, const TimeBase& time, const Summary& summary);
+[[nodiscard]] std::string render_tracks(const ReportInput& input);
+[[nodiscard]] std::string render_latencies(const Summary& summary);
+
+}  // namespace boresight::report
