@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <utility>
 
 #include "services/alignment_estimator/core/estimator.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
@@ -12,19 +13,15 @@
 
 namespace boresight::closed_loop {
 
-class Chain {
+/// What goes before the ghost filter: alignment and correction.
+class Front {
  public:
-  explicit Chain(const VehicleConfig& vehicle, const ghosts::Config& ghosts = {})
-      : vehicle_(vehicle),
-        estimator_(vehicle, {}),
-        corrector_(vehicle, {}),
-        ghost_filter_(ghosts::make_method(ghosts)),
-        tracker_(vehicle, tracking::Config{}) {}
+  explicit Front(const VehicleConfig& vehicle) : ego_(vehicle.ego), estimator_(vehicle, {}), corrector_(vehicle, {}) {}
 
-  /// Takes one event; true if it was a scan, whose results are then in the members below.
+  /// Takes one event; true if it was a scan, which is then in `corrected`.
   bool take(const simulator::Event& event) {
     if (event.scan == nullptr) {
-      const EgoMotion motion = simulator::to_message(event, vehicle_.ego);
+      const EgoMotion motion = simulator::to_message(event, ego_);
       estimator_.add_ego_motion(motion);
       corrector_.add_ego_motion(motion);
       return false;
@@ -37,29 +34,56 @@ class Chain {
       estimate.header.measurement_time_ns = event.scan->header.measurement_time_ns;
       corrector_.add_alignment(estimate);
     }
-    corrected->header = classified->header = tracks->header = event.scan->header;
+    corrected->header = event.scan->header;
     corrector_.correct(*event.scan, *corrected);
-    const auto begin = std::chrono::steady_clock::now();
-    ghost_filter_->classify(*corrected, *classified);
-    ghost_filter_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
-    tracker_.step(*classified);
-    tracker_.write(*tracks);
-    ghost_filter_->add_tracks(*tracks);
     return true;
   }
 
   std::unique_ptr<CorrectedScan> corrected = std::make_unique<CorrectedScan>();
+
+ private:
+  EgoConfig ego_;
+  alignment::Estimator estimator_;
+  corrector::Corrector corrector_;
+  std::uint64_t estimates_ = 0;
+};
+
+/// Ghost filter and tracker, which feeds it back.
+class Back {
+ public:
+  Back(const VehicleConfig& vehicle, std::unique_ptr<ghosts::Method> method)
+      : method_(std::move(method)), tracker_(vehicle, tracking::Config{}) {}
+
+  void take(const CorrectedScan& corrected) {
+    classified->header = tracks->header = corrected.header;
+    const auto begin = std::chrono::steady_clock::now();
+    method_->classify(corrected, *classified);
+    ghost_filter_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    tracker_.step(*classified);
+    tracker_.write(*tracks);
+    method_->add_tracks(*tracks);
+  }
+
   std::unique_ptr<ClassifiedScan> classified = std::make_unique<ClassifiedScan>();
   std::unique_ptr<TrackList> tracks = std::make_unique<TrackList>();
   double ghost_filter_us = 0.0;  ///< that the ghost filter took
 
  private:
-  VehicleConfig vehicle_;
-  alignment::Estimator estimator_;
-  corrector::Corrector corrector_;
-  std::unique_ptr<ghosts::Method> ghost_filter_;
+  std::unique_ptr<ghosts::Method> method_;
   tracking::Tracker tracker_;
-  std::uint64_t estimates_ = 0;
+};
+
+class Chain : public Front, public Back {
+ public:
+  explicit Chain(const VehicleConfig& vehicle, const ghosts::Config& ghosts = {})
+      : Front(vehicle), Back(vehicle, ghosts::make_method(ghosts)) {}
+
+  /// Takes one event; true if it was a scan, whose results are then in the members.
+  bool take(const simulator::Event& event) {
+    if (!Front::take(event)) return false;
+    Back::take(*corrected);
+    return true;
+  }
 };
 
 }  // namespace boresight::closed_loop

@@ -37,6 +37,9 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
   if (program.data_option != nullptr) {
     app.add_option(program.data_option, options.data_folder, program.data_about)->check(CLI::ExistingDirectory);
   }
+  if (program.first_seed_about != nullptr) {
+    app.add_option("--first-seed", options.first_seed, program.first_seed_about)->capture_default_str();
+  }
   CLI11_PARSE(app, argc, argv);
 
   Report report;

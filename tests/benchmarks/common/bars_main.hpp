@@ -18,6 +18,7 @@ struct BarsProgram {
   const char* document;               ///< whose tables --markdown writes
   const char* data_option = nullptr;  ///< option for Options::data_folder; nullptr: there is none
   const char* data_about = nullptr;
+  const char* first_seed_about = nullptr;  ///< of --first-seed; nullptr: there is no such option
 };
 
 /// For main(): exit code 0 whatever passes, 1 on an error.

@@ -3,15 +3,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace boresight::bench {
 
 struct Options {
-  bool quick = false;       ///< two seeds and short drives: whether it runs, not how good it is
-  std::string only;         ///< group of bars; empty: all
-  std::size_t jobs = 2;     ///< threads
-  std::string data_folder;  ///< of recordings that a group of bars needs; empty: such groups are left out
+  bool quick = false;            ///< two seeds and short drives: whether it runs, not how good it is
+  std::string only;              ///< group of bars; empty: all
+  std::size_t jobs = 2;          ///< threads
+  std::uint64_t first_seed = 1;  ///< of benchmarks whose bars are for fixed seeds: others are for tuning
+  std::string data_folder;       ///< of recordings that a group of bars needs; empty: such groups are left out
 
   [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
     return quick ? std::min<std::size_t>(wanted, 2) : wanted;

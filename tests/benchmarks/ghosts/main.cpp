@@ -12,5 +12,9 @@ constexpr BarGroup kGroups[] = {{"highway", highway}, {"scenarios", scenarios}, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return bars_main(argc, argv, {"Each bar of the ghost filter with its figure.", "docs/ghosts.md"}, kGroups);
+  return bars_main(argc, argv,
+                   {.about = "Each bar of the ghost filter with its figure.",
+                    .document = "docs/ghosts.md",
+                    .first_seed_about = "seeds from here on; the bars are for 1 on, so tune on others, such as 101"},
+                   kGroups);
 }

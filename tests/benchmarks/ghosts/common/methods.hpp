@@ -25,4 +25,10 @@ struct NamedGhostMethod {
   return methods;
 }
 
+[[nodiscard]] inline std::vector<ghosts::Config> configs_of(const std::vector<NamedGhostMethod>& methods) {
+  std::vector<ghosts::Config> configs;
+  for (const NamedGhostMethod& method : methods) configs.push_back(method.config);
+  return configs;
+}
+
 }  // namespace boresight::bench

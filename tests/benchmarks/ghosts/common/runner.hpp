@@ -1,43 +1,56 @@
-// One method on one simulated drive, through corrector, ghost filter and tracker, judged by the truth.
+// Methods on a simulated drive, through corrector, ghost filter and tracker, judged by the truth.
 #pragma once
 
-#include <algorithm>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "services/ghost_filter/core/config.hpp"
 #include "tests/benchmarks/common/options.hpp"
 #include "tests/benchmarks/ghosts/common/confusion.hpp"
+#include "tests/benchmarks/ghosts/common/lost_objects.hpp"
+#include "tests/benchmarks/ghosts/common/reliability.hpp"
+#include "tests/closed_loop/objects.hpp"
+#include "tests/simulator/drive.hpp"
 
 namespace boresight::bench {
 
+/// What one method made of one drive, from its first scan on.
 struct Outcome {
   Confusion confusion;
+  Reliability reliability;  ///< of ghost_probability, of detections that the corrector found moving
+  LostObjects lost;
   std::uint64_t scans = 0;
-  /// Confirmed tracks that were measured in more than five scans far from every object and where ghosts were.
-  std::size_t long_ghost_tracks = 0;
-  std::size_t longest_ghost_track_scans = 0;
-  /// Seconds (whole ones) of objects in which most of their own moving detections were told to be ghosts or clutter,
-  /// and no confirmed track was there for most of it.
-  std::size_t object_seconds = 0, lost_object_seconds = 0;
+  std::size_t long_ghost_tracks = 0, longest_ghost_track_scans = 0;
+  std::size_t long_other_tracks = 0;  ///< of clutter or the stationary world
 };
 
-/// `name`: of a scenario or its file; at most as long as that makes sense.
-[[nodiscard]] Outcome run_ghost_drive(const std::string& name, const ghosts::Config& config, std::uint64_t seed,
-                                      double duration_s);
+/// One scan with what a method made of it.
+struct Observed {
+  const simulator::Drive& drive;
+  const simulator::Event& event;
+  const std::vector<closed_loop::Object>& objects;  ///< at the scan's time
+  const ClassifiedScan& scan;
+  const TrackList& tracks;  ///< after the scan
+  std::size_t method;       ///< which of those that were given
+};
+using Observer = std::function<void(const Observed&)>;
 
-/// Seeds 1 … `seeds`, spread over threads.
-[[nodiscard]] std::vector<Outcome> run_ghost_drives(const std::string& scenario, const ghosts::Config& config,
-                                                    std::size_t seeds, double duration_s, const Options& options);
+/// All methods on the same drive, each with a tracker of its own: one outcome a method. `name`: of a scenario or its
+/// file; at most as long as that makes sense. `observe` is called for each scan and method, if given.
+[[nodiscard]] std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const ghosts::Config> methods,
+                                                   std::uint64_t seed, double duration_s, const Observer& observe = {});
+
+/// Seeds from options.first_seed on, spread over threads; by method, then seed.
+[[nodiscard]] std::vector<std::vector<Outcome>> run_ghost_drives(const std::string& scenario,
+                                                                 std::span<const ghosts::Config> methods,
+                                                                 std::size_t seeds, double duration_s,
+                                                                 const Options& options);
 
 /// Of a drive: --quick shows that it runs.
 [[nodiscard]] inline double drive_seconds(const Options& options, double wanted) {
   return options.quick ? std::min(wanted, 2.0) : wanted;
 }
-
-/// Medians over drives.
-[[nodiscard]] double median_percent(const std::vector<Outcome>& outcomes, Provenance truth, Provenance label);
-[[nodiscard]] double median_percent_ghost(const std::vector<Outcome>& outcomes, Provenance truth);
-[[nodiscard]] double median_count(const std::vector<Outcome>& outcomes, Provenance truth);
 
 }  // namespace boresight::bench

@@ -1,0 +1,40 @@
+#include "tests/benchmarks/ghosts/common/false_tracks.hpp"
+
+#include <algorithm>
+
+namespace boresight::bench {
+
+void FalseTracks::add(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
+                      const TrackList& tracks, const Matching& matching) {
+  for (std::size_t k = 0; k < matching.object_of_track.size(); ++k) {
+    const Track& track = tracks.tracks[k];
+    if (matching.object_of_track[k] != kNone || track.number_of_detections == 0) continue;
+    const closed_loop::Object box{track.tracking_id, place_of(track), {0.0, 0.0},
+                                  track.heading_rad, track.length_m,  track.width_m};
+    std::size_t ghosts = 0, moving = 0, others = 0;
+    for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+      // What the tracker never got made no track.
+      if (scan.provenance[i] != Provenance::kMoving) continue;
+      if (box.distance_m({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}) > kEvidence_m) continue;
+      const Provenance is = truth[i].provenance;
+      ++(is == Provenance::kGhostType1 || is == Provenance::kGhostType2 ? ghosts
+         : is == Provenance::kMoving                                    ? moving
+                                                                        : others);
+    }
+    if (2 * ghosts > ghosts + moving + others) ++scans_[track.tracking_id].on_ghosts;
+    if (2 * others > ghosts + moving + others) ++scans_[track.tracking_id].on_others;
+  }
+}
+
+std::size_t FalseTracks::number_of_long(std::size_t Scans::*what) const {
+  return static_cast<std::size_t>(std::count_if(
+      scans_.begin(), scans_.end(), [what](const auto& entry) { return entry.second.*what > kLong_scans; }));
+}
+
+std::size_t FalseTracks::longest_ghost_track_scans() const {
+  std::size_t longest = 0;
+  for (const auto& [id, scans] : scans_) longest = std::max(longest, scans.on_ghosts);
+  return longest;
+}
+
+}  // namespace boresight::bench

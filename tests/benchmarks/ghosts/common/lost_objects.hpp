@@ -1,0 +1,34 @@
+// Objects that a filter takes away: those which the same tracker has when it is given perfect labels.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "tests/benchmarks/ghosts/common/matching.hpp"
+
+namespace boresight::bench {
+
+/// In how many of the scans of a second each object had a confirmed track.
+class TrackedObjects {
+ public:
+  struct Second {
+    std::size_t scans = 0, tracked = 0;
+    [[nodiscard]] double share() const { return static_cast<double>(tracked) / static_cast<double>(scans); }
+  };
+  void add(const Matching& matching, const std::vector<closed_loop::Object>& objects);
+  void clear() { seconds_.clear(); }
+  [[nodiscard]] const std::map<std::uint32_t, Second>& seconds() const { return seconds_; }
+
+ private:
+  std::map<std::uint32_t, Second> seconds_;
+};
+
+struct LostObjects {
+  static constexpr double kHasIt = 0.9, kHasItNot = 0.5;  ///< shares of the scans of a second
+  std::size_t object_seconds = 0;                         ///< in which perfect labels have the object all through
+  std::size_t lost_seconds = 0;                           ///< of these: the filter's labels have it for less than half
+  void add_second(const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
+};
+
+}  // namespace boresight::bench

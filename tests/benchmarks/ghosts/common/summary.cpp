@@ -1,0 +1,61 @@
+#include "tests/benchmarks/ghosts/common/summary.hpp"
+
+#include <algorithm>
+
+#include "tests/benchmarks/common/statistics.hpp"
+
+namespace boresight::bench {
+
+namespace {
+
+template <typename Of>
+Percent over_seeds(const std::vector<Outcome>& outcomes, Provenance truth, Of&& of) {
+  std::vector<double> values;
+  for (const Outcome& o : outcomes) {
+    if (o.confusion.count(truth) > 0) values.push_back(of(o.confusion));
+  }
+  return {median(values), quantile(values, 0.0)};
+}
+
+}  // namespace
+
+Percent percent_told(const std::vector<Outcome>& outcomes, Provenance truth, Provenance label) {
+  return over_seeds(outcomes, truth, [&](const Confusion& c) { return c.percent(truth, label); });
+}
+
+Percent percent_told_ghost(const std::vector<Outcome>& outcomes, Provenance truth) {
+  return over_seeds(outcomes, truth, [&](const Confusion& c) { return c.percent_ghost(truth); });
+}
+
+Percent percent_not_moving(const std::vector<Outcome>& outcomes, Provenance truth) {
+  return over_seeds(outcomes, truth, [&](const Confusion& c) { return 100.0 - c.percent(truth, Provenance::kMoving); });
+}
+
+Percent percent_left_out(const std::vector<Outcome>& outcomes, Provenance truth) {
+  return over_seeds(outcomes, truth, [&](const Confusion& c) {
+    const auto left_out = static_cast<double>(c.rejected(truth));
+    return 100.0 * left_out / (left_out + static_cast<double>(c.count(truth)));
+  });
+}
+
+double median_count(const std::vector<Outcome>& outcomes, Provenance truth) {
+  std::vector<double> values;
+  for (const Outcome& o : outcomes) {
+    values.push_back(static_cast<double>(o.confusion.count(truth) + o.confusion.rejected(truth)));
+  }
+  return median(values);
+}
+
+TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
+  TrackFaults sum;
+  for (const Outcome& o : outcomes) {
+    sum.ghost_tracks += o.long_ghost_tracks;
+    sum.longest_ghost_track_scans = std::max(sum.longest_ghost_track_scans, o.longest_ghost_track_scans);
+    sum.other_tracks += o.long_other_tracks;
+    sum.object_seconds += o.lost.object_seconds;
+    sum.lost_seconds += o.lost.lost_seconds;
+  }
+  return sum;
+}
+
+}  // namespace boresight::bench

@@ -1,0 +1,30 @@
+// Statistics over the drives of many seeds.
+#pragma once
+
+#include <vector>
+
+#include "tests/benchmarks/ghosts/common/runner.hpp"
+
+namespace boresight::bench {
+
+/// Over seeds; those without any detection of the truth have no part in it. NaN if none has.
+struct Percent {
+  double median = 0.0, worst = 0.0;  ///< worst: the lowest
+};
+[[nodiscard]] Percent percent_told(const std::vector<Outcome>& outcomes, Provenance truth, Provenance label);
+[[nodiscard]] Percent percent_told_ghost(const std::vector<Outcome>& outcomes, Provenance truth);
+/// Told to be anything but moving.
+[[nodiscard]] Percent percent_not_moving(const std::vector<Outcome>& outcomes, Provenance truth);
+/// Of all detections of the truth, that the corrector left out before the filter.
+[[nodiscard]] Percent percent_left_out(const std::vector<Outcome>& outcomes, Provenance truth);
+/// Median number of detections, those left out included.
+[[nodiscard]] double median_count(const std::vector<Outcome>& outcomes, Provenance truth);
+
+/// Sums over drives.
+struct TrackFaults {
+  std::size_t ghost_tracks = 0, longest_ghost_track_scans = 0, other_tracks = 0;
+  std::size_t object_seconds = 0, lost_seconds = 0;
+};
+[[nodiscard]] TrackFaults track_faults(const std::vector<Outcome>& outcomes);
+
+}  // namespace boresight::bench

@@ -1,0 +1,24 @@
+#include "tests/benchmarks/ghosts/common/truth_method.hpp"
+
+#include "services/ghost_filter/core/pass_on.hpp"
+
+namespace boresight::bench {
+
+void TruthMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+  const std::size_t count = ghosts::pass_on(scan, out);
+  out.number_of_reflector_segments = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.provenance[i] = Provenance::kUnknown;
+    out.ghost_probability[i] = 0.0f;
+    if ((scan.detection_flags[i] & corrected_flag::kRejected) != 0) continue;
+    if ((scan.detection_flags[i] & corrected_flag::kMoving) == 0) {
+      out.provenance[i] = Provenance::kStationary;
+      continue;
+    }
+    out.provenance[i] = (*truth_)[i].provenance;
+    const bool is_direct = out.provenance[i] == Provenance::kMoving || out.provenance[i] == Provenance::kStationary;
+    out.ghost_probability[i] = is_direct ? 0.0f : 1.0f;
+  }
+}
+
+}  // namespace boresight::bench

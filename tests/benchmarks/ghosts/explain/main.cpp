@@ -1,0 +1,96 @@
+// boresight-bench-ghosts_explain: what was told wrong, detection by detection, with all that is known of it.
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "services/ghost_filter/config.hpp"
+#include "tests/benchmarks/ghosts/common/tables.hpp"
+#include "tests/benchmarks/ghosts/explain/explained.hpp"
+#include "tests/simulator/scenario_file.hpp"
+
+using namespace boresight;
+using namespace boresight::bench;
+
+namespace {
+
+struct Arguments {
+  std::string scenario = "highway_multipath", method = "mirror", config_file, csv_file;
+  std::uint64_t seed = 101;
+  std::size_t seeds = 1;
+  double duration_s = 20.0;
+  bool all = false;
+};
+
+ghosts::Config config_of(const Arguments& arguments) {
+  ghosts::Config config;
+  if (!arguments.config_file.empty()) config = ghosts::read_config(config::Reader::open(arguments.config_file));
+  config.method = arguments.method == "mirror" ? ghosts::MethodName::kMirror : ghosts::MethodName::kPublished;
+  return config;
+}
+
+void run(const Arguments& arguments) {
+  const ghosts::Config config = config_of(arguments);
+  std::ofstream csv;
+  if (!arguments.csv_file.empty()) {
+    csv.open(arguments.csv_file);
+    csv << csv_header();
+  }
+  Summary summary;
+  Report report;
+  std::vector<Outcome> outcomes;
+  for (std::uint64_t seed = arguments.seed; seed < arguments.seed + arguments.seeds; ++seed) {
+    Explainer explainer(seed);
+    const Observer observe = [&](const Observed& observed) {
+      for (const Explained& row : explainer.explain(observed)) {
+        summary.add(row);
+        const bool is_wrong = !row.rejected && row.truth.provenance != row.label;
+        if (csv.is_open() && (is_wrong || arguments.all)) write_csv(row, csv);
+      }
+    };
+    outcomes.push_back(run_ghost_drive(arguments.scenario, {&config, 1}, seed, arguments.duration_s, observe).front());
+  }
+  csv.flush();
+  if (!csv) throw std::runtime_error("cannot write " + arguments.csv_file);
+  const std::string how = std::to_string(arguments.seeds) + " seeds from " + std::to_string(arguments.seed) + " on";
+  report.add(confusion_table("", arguments.scenario + ", " + arguments.method + ": % of each truth, " + how, outcomes));
+  judge_tracks(arguments.scenario, outcomes, false, how, report);
+  report.print(std::cout);
+  std::cout
+      << "\ndetections by distance from the box of their object, which the filter had as a confirmed track or not; "
+         "of what has no object: from the nearest\n";
+  summary.print(std::cout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"What the ghost filter tells wrong on a simulated drive."};
+  app.add_option("scenario", arguments.scenario, "name, or a scenario file")->capture_default_str();
+  app.add_option("--method", arguments.method, "how ghosts are told")
+      ->check(CLI::IsMember({"mirror", "published"}))
+      ->capture_default_str();
+  app.add_option("--config", arguments.config_file,
+                 "file like config/services/ghost_filter.toml; its method is not used")
+      ->check(CLI::ExistingFile);
+  app.add_option("--seed", arguments.seed, "the first; the bars are for 1 to 20, so look at others")
+      ->capture_default_str();
+  app.add_option("--seeds", arguments.seeds, "how many")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--duration", arguments.duration_s, "s, at most what the scenario has")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  app.add_option("--csv", arguments.csv_file, "file with a row for each detection that was told wrong");
+  app.add_flag("--all", arguments.all, "rows of those told right and of those left out as well");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,37 @@
+#include "tests/benchmarks/ghosts/common/runner.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/benchmarks/ghosts/common/methods.hpp"
+
+namespace boresight::bench {
+namespace {
+
+TEST(GhostRunner, ADriveIsTheSameWhateverTheThreads) {
+  Options one, two;
+  one.jobs = 1;
+  const std::vector<ghosts::Config> configs = configs_of(ghost_methods());
+  const auto a = run_ghost_drives("straight_rail", {configs.data(), 1}, 2, 3.0, one).front();
+  const auto b = run_ghost_drives("straight_rail", {configs.data(), 1}, 2, 3.0, two).front();
+  // Another method on the same drive changes nothing of the first.
+  const auto c = run_ghost_drives("straight_rail", configs, 2, 3.0, one).front();
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(a[i].scans, 200u);
+    for (const Provenance truth : kTruths) {
+      EXPECT_GT(a[i].confusion.count(truth), 0u) << name_of(truth);
+      for (const Provenance label : kTruths) {
+        EXPECT_EQ(a[i].confusion.percent(truth, label), b[i].confusion.percent(truth, label));
+        EXPECT_EQ(a[i].confusion.percent(truth, label), c[i].confusion.percent(truth, label));
+      }
+    }
+    EXPECT_GT(a[i].lost.object_seconds, 2u);
+    EXPECT_GT(a[i].reliability.count(), 100u);
+  }
+  EXPECT_NE(a[0].confusion.count(Provenance::kStationary), a[1].confusion.count(Provenance::kStationary));
+  one.first_seed = 2;
+  const auto second = run_ghost_drives("straight_rail", {configs.data(), 1}, 1, 3.0, one).front();
+  EXPECT_EQ(second[0].confusion.count(Provenance::kStationary), a[1].confusion.count(Provenance::kStationary));
+}
+
+}  // namespace
+}  // namespace boresight::bench
