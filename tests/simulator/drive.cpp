@@ -13,7 +13,9 @@ constexpr double kWheelbase_m = 2.8;
 constexpr double kSteeringRatio = 15.0;
 constexpr double kReserve_m = 10.0;  // from the rear axle to a radar, and a vehicle's length
 
-radar::EgoBody body_of(const EgoSpec& ego) {
+}  // namespace
+
+radar::EgoBody ego_body(const EgoSpec& ego) {
   radar::EgoBody body;
   body.rear_m = -ego.rear_overhang_m;
   body.front_m = ego.length_m - ego.rear_overhang_m;
@@ -21,8 +23,6 @@ radar::EgoBody body_of(const EgoSpec& ego) {
   body.height_m = ego.height_m;
   return body;
 }
-
-}  // namespace
 
 Drive::Drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64_t seed, double duration_s)
     : scenario_(scenario),
@@ -34,7 +34,7 @@ Drive::Drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64
     const RadarConfig& radar = vehicle.radars[i];
     // Unsynchronised: each radar starts its cycle at another phase.
     const double phase = radar.cycle_time_s * static_cast<double>(i) / static_cast<double>(vehicle.radars.size());
-    radars_.push_back({radar, RadarSensor(radar, scenario.effects, body_of(scenario.ego), seed), 0.02 + phase, 0});
+    radars_.push_back({radar, RadarSensor(radar, scenario.effects, ego_body(scenario.ego), seed), 0.02 + phase, 0});
   }
 }
 

@@ -46,6 +46,8 @@ class Drive {
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] EgoState ego(double t_s) const { return world_.ego(t_s); }
+  /// What the radar of the last scan was shown.
+  [[nodiscard]] const Scene& scene() const { return scene_; }
 
  private:
   struct Radar {
@@ -67,6 +69,9 @@ class Drive {
   std::vector<DetectionTruth> truth_;
   Event event_;
 };
+
+/// What the ego vehicle's own body hides from its radars.
+[[nodiscard]] radar::EgoBody ego_body(const EgoSpec& ego);
 
 /// Ego signals as the message the gateway would make of them.
 [[nodiscard]] EgoMotion to_message(const Event& event, const EgoConfig& config);

@@ -1,7 +1,6 @@
 #include "tests/simulator/drive_writer.hpp"
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "tests/simulator/drive.hpp"
 #include "tests/simulator/text_file.hpp"
+#include "tests/simulator/truth_tables.hpp"
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/simulator/wire/pcap_writer.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
@@ -19,141 +19,133 @@ namespace boresight::simulator {
 namespace {
 
 constexpr std::int64_t kRadarLatency_ns = 20'000'000;  // from measurement to the last fragment on the wire
-
-const char* name_of(Provenance provenance) {
-  switch (provenance) {
-    case Provenance::kMoving:
-      return "moving";
-    case Provenance::kStationary:
-      return "stationary";
-    case Provenance::kGhostType1:
-      return "ghost_type_1";
-    case Provenance::kGhostType2:
-      return "ghost_type_2";
-    case Provenance::kClutter:
-      return "clutter";
-    case Provenance::kUnknown:
-      return "unknown";
-  }
-  return "unknown";
-}
-
-const char* name_of(BodyKind kind) {
-  switch (kind) {
-    case BodyKind::kCar:
-      return "car";
-    case BodyKind::kVan:
-      return "van";
-    case BodyKind::kTruck:
-      return "truck";
-    case BodyKind::kPedestrian:
-      return "pedestrian";
-    case BodyKind::kCyclist:
-      return "cyclist";
-  }
-  return "unknown";
-}
+constexpr std::int64_t kStatusPeriod_ns = 1'000'000'000;
+constexpr double kObjectsPeriod_s = 0.1;
 
 wire::Endpoint endpoint(const std::string& address, std::uint16_t port) {
   in_addr ip{};
   if (inet_pton(AF_INET, address.c_str(), &ip) != 1) {
-    throw std::invalid_argument("the simulator needs a sender address for each radar");
+    throw std::invalid_argument("the simulator needs a sender and an address (IPv4) for each radar");
   }
   return {ntohl(ip.s_addr), port};
 }
 
-using ScanCounts = std::array<std::size_t, kMaxRadars + 1>;  // by radar id
+/// A radar that the vehicle has not would be disturbed in vain.
+void expect_radar(const VehicleConfig& vehicle, std::uint32_t id, const std::string& what) {
+  if (vehicle.radar(id) != nullptr) return;
+  std::string known;
+  for (const RadarConfig& radar : vehicle.radars) known += (known.empty() ? "" : ", ") + std::to_string(radar.id);
+  throw std::invalid_argument("radars." + what + " of the scenario names radar " + std::to_string(id) +
+                              ", but the vehicle " + vehicle.name + " has " + (known.empty() ? "none" : known));
+}
 
-void write_truth(const std::filesystem::path& file, const Scenario& scenario, const VehicleConfig& vehicle,
-                 const ScanCounts& scans) {
-  constexpr double kDegrees = 180.0 / M_PI;
-  const TextFile out(file);
-  std::fprintf(out.get(), "quantity,radar,value,unit\nspeed_scale,,%.6f,1\n", scenario.effects.speed_scale);
+void check(const Scenario& scenario, const VehicleConfig& vehicle) {
+  if (vehicle.radars.empty()) throw std::invalid_argument("the vehicle " + vehicle.name + " has no radar");
   for (const RadarConfig& radar : vehicle.radars) {
-    const Misalignment& m = scenario.effects.misalignment[radar.id];
-    std::fprintf(out.get(), "alignment_yaw,%u,%.6f,deg\nalignment_pitch,%u,%.6f,deg\nalignment_roll,%u,%.6f,deg\n",
-                 radar.id, m.yaw_rad * kDegrees, radar.id, m.pitch_rad * kDegrees, radar.id, m.roll_rad * kDegrees);
-    std::fprintf(out.get(), "scans,%u,%zu,1\n", radar.id, scans[radar.id]);
+    if (radar.profile != RadarProfile::kArs548) {
+      throw std::invalid_argument("the simulator speaks the ARS548 profile only; radar " + radar.name + " has another");
+    }
+    if (radar.e2e.required) {
+      throw std::invalid_argument("the simulator writes no end-to-end protection, which radar " + radar.name +
+                                  " requires");
+    }
+    static_cast<void>(endpoint(radar.source.sender, radar.source.port));
+    static_cast<void>(endpoint(radar.source.address, radar.source.port));
   }
-  out.finish();
+  if (vehicle.ego.profile != EgoProfile::kToyota) {
+    throw std::invalid_argument("the simulator speaks the Toyota profile of ego signals only; vehicle " + vehicle.name +
+                                " has another");
+  }
+  const RadarEffects& e = scenario.effects;
+  for (std::uint32_t id = 1; id < e.misalignment.size(); ++id) {
+    const Misalignment& m = e.misalignment[id];
+    if (m.yaw_rad != 0.0 || m.pitch_rad != 0.0 || m.roll_rad != 0.0) expect_radar(vehicle, id, "misalignment");
+  }
+  for (const RadarKnock& knock : e.knocks) expect_radar(vehicle, knock.radar, "knock");
+  for (const RadarBlockage& blockage : e.blockages) expect_radar(vehicle, blockage.radar, "blockage");
+  for (const RadarInterference& i : e.interference) {
+    if (i.radar != 0) expect_radar(vehicle, i.radar, "interference");
+  }
 }
 
-void write_objects(std::FILE* out, const Drive& drive, double t_s) {
-  const EgoState ego = drive.ego(t_s);
-  const double c = std::cos(ego.heading_rad), s = std::sin(ego.heading_rad);
-  Eigen::Matrix2d to_vehicle;
-  to_vehicle << c, s, -s, c;
-  for (std::size_t i = 0; i < drive.world().number_of_bodies(); ++i) {
-    const Body b = drive.world().body(i, t_s);
-    const Eigen::Vector2d position = to_vehicle * (b.position_m - ego.position_m);
-    if (position.norm() > 150.0) continue;
-    const Eigen::Vector2d velocity = to_vehicle * b.velocity_mps;
-    std::fprintf(out, "%.4f,%u,%.3f,%.3f,%.5f,%.3f,%.3f,%.2f,%.2f,%.2f,%s,%d\n", t_s, b.id, position.x(), position.y(),
-                 std::remainder(b.heading_rad - ego.heading_rad, 2.0 * M_PI), velocity.x(), velocity.y(), b.length_m,
-                 b.width_m, b.height_m, name_of(b.kind), b.parked ? 1 : 0);
+void write_ego(const Event& event, const std::string& interface, std::FILE* log) {
+  for (const wire::CanFrame& frame : wire::encode_ego(event.ego)) {
+    std::fprintf(log, "(%lld.%06lld) %s %03X#", static_cast<long long>(event.time_ns / 1'000'000'000),
+                 static_cast<long long>(event.time_ns % 1'000'000'000 / 1000), interface.c_str(), frame.id);
+    for (const std::uint8_t byte : frame.bytes) std::fprintf(log, "%02X", byte);
+    std::fputc('\n', log);
   }
 }
+
+/// The radars' side of the network.
+class RadarLog {
+ public:
+  explicit RadarLog(const std::filesystem::path& file) : pcap_(file) {}
+
+  /// A detection list; and after it a status message when the radar has something new to say of itself, and once a
+  /// second anyway.
+  void add(const Event& event, const RadarConfig& radar) {
+    const wire::Endpoint from = endpoint(radar.source.sender, radar.source.port);
+    const wire::Endpoint to = endpoint(radar.source.address, radar.source.port);
+    const std::int64_t sent_ns = event.time_ns + kRadarLatency_ns;
+    wire::encode_ars548(*event.scan, event.time_ns, *list_);
+    pcap_.write(sent_ns, from, to, *list_);
+    Said& said = said_.at(radar.id);
+    if (said.at_ns != 0 && said.condition == event.condition && sent_ns < said.at_ns + kStatusPeriod_ns) return;
+    said = {sent_ns, event.condition};
+    pcap_.write(sent_ns, from, to, wire::encode_ars548_status(event.condition));
+  }
+  /// Throws std::runtime_error if anything of it is lost, as on a full disk.
+  void finish() { pcap_.finish(); }
+
+ private:
+  struct Said {
+    std::int64_t at_ns = 0;
+    std::uint32_t condition = 0;
+  };
+  wire::PcapWriter pcap_;
+  std::unique_ptr<wire::Ars548List> list_ = std::make_unique<wire::Ars548List>();
+  std::array<Said, kMaxRadars + 1> said_{};  // by radar id
+};
 
 }  // namespace
 
 DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64_t seed, double duration_s,
                        const std::filesystem::path& folder, const std::function<void(double)>& progress) {
-  for (const RadarConfig& radar : vehicle.radars) {
-    if (radar.profile != RadarProfile::kArs548) {
-      throw std::invalid_argument("the simulator speaks the ARS548 profile only; radar " + radar.name + " has another");
-    }
-  }
+  check(scenario, vehicle);
+  Drive drive(scenario, vehicle, seed, duration_s);
   std::filesystem::create_directories(folder);
   DriveFiles files{folder / "radars.pcap",
                    folder / "ego.candump.log",
                    folder / "truth.csv",
                    folder / "truth_detections.csv",
                    folder / "truth_objects.csv",
+                   folder / "truth_sensors.csv",
+                   folder / "truth_visibility.csv",
                    0,
                    0};
-  wire::PcapWriter pcap(files.radars);
-  const TextFile ego_log(files.ego), detections(files.detections), objects(files.objects);
-  std::fputs("t_s,radar,scan,index,provenance,object\n", detections.get());
-  std::fputs(
-      "t_s,object,x_vehicle_m,y_vehicle_m,heading_rad,vx_over_ground_mps,vy_over_ground_mps,length_m,width_m,"
-      "height_m,kind,parked\n",
-      objects.get());
-  Drive drive(scenario, vehicle, seed, duration_s);
-  const auto list = std::make_unique<wire::Ars548List>();
+  RadarLog radars(files.radars);
+  const TextFile ego(files.ego);
+  TruthTables truth(folder, scenario, vehicle);
   double next_objects_s = 0.0;
-  ScanCounts scans{};
   while (const Event* event = drive.next()) {
     if (event->scan == nullptr) {
       if (event->t_s >= next_objects_s) {
-        write_objects(objects.get(), drive, event->t_s);
-        next_objects_s += 0.1;
+        truth.add_objects(drive, event->t_s);
+        next_objects_s += kObjectsPeriod_s;
         progress(event->t_s / duration_s);
       }
-      for (const wire::CanFrame& frame : wire::encode_ego(event->ego)) {
-        std::fprintf(ego_log.get(), "(%lld.%06lld) %s %03X#", static_cast<long long>(event->time_ns / 1'000'000'000),
-                     static_cast<long long>(event->time_ns % 1'000'000'000 / 1000),
-                     vehicle.ego.source.interface.c_str(), frame.id);
-        for (const std::uint8_t byte : frame.bytes) std::fprintf(ego_log.get(), "%02X", byte);
-        std::fputc('\n', ego_log.get());
-      }
+      write_ego(*event, vehicle.ego.source.interface, ego.get());
       continue;
     }
-    const RadarConfig& radar = *vehicle.radar(event->scan->header.source_id);
-    wire::encode_ars548(*event->scan, event->time_ns, *list);
-    pcap.write(event->time_ns + kRadarLatency_ns, endpoint(radar.source.sender, radar.source.port),
-               endpoint(radar.source.address, radar.source.port), *list);
-    for (std::size_t i = 0; i < event->truth->size(); ++i) {
-      const DetectionTruth& truth = (*event->truth)[i];
-      std::fprintf(detections.get(), "%.6f,%u,%llu,%zu,%s,%u\n", event->t_s, radar.id,
-                   static_cast<unsigned long long>(event->scan->header.source_sequence), i, name_of(truth.provenance),
-                   truth.object_id);
-    }
+    radars.add(*event, *vehicle.radar(event->scan->header.source_id));
+    truth.add_scan(drive, *event);
     ++files.scans;
-    ++scans[radar.id];
     files.number_of_detections += event->truth->size();
   }
-  for (const TextFile* file : {&ego_log, &detections, &objects}) file->finish();
-  write_truth(files.truth, scenario, vehicle, scans);
+  radars.finish();
+  ego.finish();
+  truth.finish();
   progress(1.0);
   return files;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "tests/simulator/random.hpp"
 #include "tests/simulator/world/knots.hpp"
@@ -41,6 +43,24 @@ void for_arcs(const std::vector<Placed>& placed, Gap arcs, const Visit& visit) {
   for (auto p = std::lower_bound(placed.begin(), last, arcs.from_m, before); p != last; ++p) visit(*p);
 }
 
+/// A typing error of a spacing must not eat all memory.
+void expect_moderate(const Scenario& scenario, Gap extent) {
+  double sum = 0.0;
+  const auto add = [&](const char* what, std::size_t index, double parts) {
+    sum += parts;
+    if (sum <= World::kMostParts) return;
+    throw std::invalid_argument("scenario " + scenario.name + ": " + what + "[" + std::to_string(index) +
+                                "] has some " + std::to_string(static_cast<long long>(parts)) +
+                                " points along the ego vehicle's way; with all before it at most " +
+                                std::to_string(static_cast<long long>(World::kMostParts)) +
+                                " are allowed: space them wider, or drive shorter");
+  };
+  for (std::size_t i = 0; i < scenario.structures.size(); ++i) {
+    add("structure", i, most_parts(scenario.structures[i], extent));
+  }
+  for (std::size_t i = 0; i < scenario.scatter.size(); ++i) add("scatter", i, most_parts(scenario.scatter[i], extent));
+}
+
 }  // namespace
 
 World::World(const Scenario& scenario, std::uint64_t seed, double duration_s)
@@ -48,6 +68,7 @@ World::World(const Scenario& scenario, std::uint64_t seed, double duration_s)
       road_(scenario.road, std::min(0.0, ego_extent(scenario.ego, duration_s).from_m) - kMargin_m,
             std::max(0.0, ego_extent(scenario.ego, duration_s).to_m) + kMargin_m) {
   const Gap extent = widened(ego_extent(scenario.ego, duration_s), kDetour * kSight_m);
+  expect_moderate(scenario, extent);
   for (std::size_t i = 0; i < scenario.structures.size(); ++i) {
     add_structure(scenario.structures[i], i, road_, extent, seed, roadside_);
   }
@@ -56,21 +77,24 @@ World::World(const Scenario& scenario, std::uint64_t seed, double duration_s)
   }
   sort_by_arc(roadside_.surfaces);
   sort_by_arc(roadside_.scatterers);
-  for (const BodySpec& spec : scenario.bodies) add_actor(spec, seed);
+  for (const BodySpec& spec : scenario.bodies) add_actor(spec, static_cast<std::uint32_t>(actors_.size() + 1), seed);
   for (std::size_t i = 0; i < scenario.scatter.size(); ++i) {
-    for (const BodySpec& spec : parked_cars(scenario.scatter[i], i, extent, seed)) add_actor(spec, seed);
+    const auto first = static_cast<std::uint32_t>(i + 1) * kParkedIds;
+    for (const ParkedCar& car : parked_cars(scenario.scatter[i], i, extent, seed)) {
+      add_actor(car.spec, first + car.place, seed);
+    }
   }
 }
 
-void World::add_actor(const BodySpec& spec, std::uint64_t seed) {
-  Actor actor{spec, Stream(seed, "gait", actors_.size()).uniform(), {}};
+void World::add_actor(const BodySpec& spec, std::uint32_t id, std::uint64_t seed) {
+  Actor actor{spec, Stream(seed, "gait", id - 1).uniform(), {}};
   if (actor.spec.parked) {
     actor.spec.speed_mps.clear();
     actor.spec.swing_mps = 0.0;
   }
   const Dimensions usual = dimensions_of(spec.kind);
   Body& body = actor.body;
-  body.id = static_cast<std::uint32_t>(actors_.size() + 1);
+  body.id = id;
   body.kind = spec.kind;
   body.parked = spec.parked;
   body.length_m = spec.length_m > 0.0 ? spec.length_m : usual.length_m;

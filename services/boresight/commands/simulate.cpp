@@ -1,4 +1,5 @@
 // `boresight simulate`: a drive with truth, as recordings.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -6,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "services/boresight/commands/alignment_drive_options.hpp"
 #include "services/boresight/commands/commands.hpp"
@@ -27,8 +29,22 @@ struct Options {
   std::uint64_t seed = 1;
   std::string config = "/etc/boresight";
   double duration_s = 0.0;  ///< 0: as the scenario says, or kAlignmentDrive_s
+  bool list = false;
   AlignmentDriveOptions alignment;
 };
+
+/// What a range lets pass: comparisons with "not a number" are false.
+const CLI::Validator kFinite(
+    [](std::string& text) {
+      return text.find_first_not_of("0123456789.+-eE") == std::string::npos ? std::string() : text + " is not a number";
+    },
+    "", "finite");
+/// A sign would wrap round.
+const CLI::Validator kUnsigned(
+    [](std::string& text) {
+      return text.find('-') == std::string::npos ? std::string() : "must not be negative, but is " + text;
+    },
+    "", "unsigned");
 
 /// Tells how fast a drive was simulated.
 class Stopwatch {
@@ -61,6 +77,18 @@ int simulate_alignment(const Options& options) {
   return EXIT_SUCCESS;
 }
 
+/// The shipped scenarios with what they show.
+int list() {
+  std::size_t width = 0;
+  for (const std::string& name : simulator::scenario_names()) width = std::max(width, name.size());
+  for (const std::string& name : simulator::scenario_names()) {
+    const simulator::Scenario s = simulator::scenario(name);
+    std::printf("%-*s  %3.0f s, vehicle %s: %s\n", static_cast<int>(width), name.c_str(), s.duration_s,
+                s.vehicle.c_str(), s.about.c_str());
+  }
+  return EXIT_SUCCESS;
+}
+
 std::string shipped_names() {
   std::string names;
   for (const std::string& name : simulator::scenario_names()) names += (names.empty() ? "" : ", ") + name;
@@ -78,6 +106,9 @@ VehicleConfig vehicle_of(const Options& options, const simulator::Scenario& scen
 }
 
 int simulate(const Options& options) {
+  if (options.list) return list();
+  if (options.out.empty())
+    throw std::invalid_argument("--out is required: the folder for the recordings and the truth");
   if (!options.alignment.road.empty()) return simulate_alignment(options);
   const Stopwatch watch;
   const simulator::Scenario scenario = simulator::scenario(options.scenario);
@@ -90,7 +121,8 @@ int simulate(const Options& options) {
       });
   bar.wipe();
   watch.tell(duration_s, files.scans, files.number_of_detections);
-  for (const auto& file : {files.radars, files.ego, files.truth, files.detections, files.objects}) {
+  for (const auto& file :
+       {files.radars, files.ego, files.truth, files.detections, files.objects, files.sensors, files.visibility}) {
     std::printf("  %s\n", file.c_str());
   }
   return EXIT_SUCCESS;
@@ -110,12 +142,20 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "vehicle file (TOML); else the one the scenario names, or four corner radars for an alignment drive");
   command->add_option("--config", options->config, "folder of vehicle/, where the scenario's vehicle is looked for")
       ->capture_default_str();
-  command->add_option("--out", options->out, "folder for the recordings and the truth")->required();
-  command->add_option("--seed", options->seed, "another seed is another drive")->capture_default_str();
+  CLI::Option* const out = command->add_option(
+      "--out", options->out,
+      "folder for the recordings and the truth, made if absent; files of an earlier run in it are replaced");
+  command->add_flag("--list", options->list, "tells the shipped scenarios and what each of them shows")
+      ->excludes(scenario)
+      ->excludes(out);
+  command->add_option("--seed", options->seed, "another seed is another drive")
+      ->capture_default_str()
+      ->check(kUnsigned);
   command
       ->add_option("--duration", options->duration_s,
                    "seconds; else as long as the scenario, or 45 s of an alignment drive")
-      ->check(CLI::Range(0.1, 36000.0));
+      ->check(CLI::Range(0.1, 36000.0))
+      ->check(kFinite);
   CLI::Option* const alignment = add_alignment_drive_options(*command, options->alignment);
   alignment->excludes(scenario);
   command->callback([options, &exit_code] {

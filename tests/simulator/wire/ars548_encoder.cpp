@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interfaces/messages/service_status.hpp"
 #include "tests/simulator/wire/byte_writer.hpp"
 
 namespace boresight::simulator::wire {
@@ -35,6 +36,19 @@ void encode_ars548(const RadarScan& scan, std::int64_t epoch_ns, Ars548List& byt
   put_f32(bytes, 35301, scan.range_rate_min_mps);
   put_f32(bytes, 35305, scan.range_rate_max_mps);
   put_u32(bytes, 35309, count);
+}
+
+Ars548Status encode_ars548_status(std::uint32_t condition) {
+  Ars548Status bytes{};    // 0: inputs are received, voltage and temperature are in range
+  put_u16(bytes, 2, 380);  // method: sensor status
+  put_u32(bytes, 4, static_cast<std::uint32_t>(bytes.size() - 8));  // length of what follows
+  bytes[16] = 1;                                                    // synchronised
+  bytes[80] = 1;                                                    // in operation
+  // Low half: 0 blind, 2 medium, 4 no blockage; high half: self-test passed.
+  const bool blind = (condition & source_condition::kBlocked) != 0;
+  const bool reduced = (condition & source_condition::kPartlyBlocked) != 0;
+  bytes[83] = static_cast<std::uint8_t>(0x10 | (blind ? 0 : reduced ? 2 : 4));
+  return bytes;
 }
 
 }  // namespace boresight::simulator::wire

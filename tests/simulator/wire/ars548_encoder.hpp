@@ -12,7 +12,14 @@ namespace boresight::simulator::wire {
 inline constexpr std::size_t kArs548ListBytes = 35336;
 using Ars548List = std::array<std::uint8_t, kArs548ListBytes>;
 
+inline constexpr std::size_t kArs548StatusBytes = 84;
+using Ars548Status = std::array<std::uint8_t, kArs548StatusBytes>;
+
 /// Encodes at most 800 detections; the sensor's clock reads `epoch_ns` and is synchronised.
 void encode_ars548(const RadarScan& scan, std::int64_t epoch_ns, Ars548List& bytes);
+
+/// The status message of a synchronised radar in operation that gets the vehicle's motion and is blocked as
+/// `condition`'s bits (source_condition::kBlocked, kPartlyBlocked) say.
+[[nodiscard]] Ars548Status encode_ars548_status(std::uint32_t condition);
 
 }  // namespace boresight::simulator::wire

@@ -1,6 +1,7 @@
 #include "tests/simulator/wire/pcap_writer.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <stdexcept>
 #include <vector>
 
@@ -24,7 +25,8 @@ std::uint16_t ones_complement(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 PcapWriter::PcapWriter(const std::filesystem::path& file, std::size_t mtu)
-    : pcap_(pcap_open_dead_with_tstamp_precision(DLT_EN10MB, 262144, PCAP_TSTAMP_PRECISION_NANO)),
+    : name_(file),
+      pcap_(pcap_open_dead_with_tstamp_precision(DLT_EN10MB, 262144, PCAP_TSTAMP_PRECISION_NANO)),
       dumper_(pcap_dump_open(pcap_, file.c_str())),
       mtu_(mtu) {
   if (dumper_ != nullptr) return;
@@ -36,6 +38,12 @@ PcapWriter::PcapWriter(const std::filesystem::path& file, std::size_t mtu)
 PcapWriter::~PcapWriter() {
   pcap_dump_close(dumper_);
   pcap_close(pcap_);
+}
+
+void PcapWriter::finish() {
+  if (pcap_dump_flush(dumper_) != 0 || std::ferror(pcap_dump_file(dumper_)) != 0) {
+    throw std::runtime_error(name_.string() + ": cannot be written to its end");
+  }
 }
 
 void PcapWriter::write(std::int64_t stamp_ns, const Endpoint& source, const Endpoint& destination,

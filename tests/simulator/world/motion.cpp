@@ -40,7 +40,8 @@ Motion along_road(const Road& road, double arc_m, double arc_speed_mps, double a
   // left-hand bend is shorter.
   const double g = 1.0 - p.curvature_per_m * l.value;
   const double g_slope = -p.curvature_slope_per_m2 * l.value - p.curvature_per_m * l.slope;
-  const double h = std::hypot(g, l.slope);
+  // At the centre of the bend the path has no direction; all stays finite there.
+  const double h = std::max(1e-6, std::hypot(g, l.slope));
   const double h_slope = (g * g_slope + l.slope * l.curvature) / h;
   const double turn = p.curvature_per_m + (l.curvature * g - l.slope * g_slope) / (h * h);
   const double sign = against ? -1.0 : 1.0;

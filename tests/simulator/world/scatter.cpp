@@ -23,7 +23,7 @@ void for_cells(const ScatterSpec& spec, std::uint64_t index, Gap extent, std::ui
     const double at = spec.from_m + static_cast<double>(cell) * cell_m;
     if (at + cell_m > to_m) return;
     Stream draw(seed, "scatter", index, cell);
-    visit(at, draw);
+    visit(at, draw, cell);
   }
 }
 
@@ -42,7 +42,7 @@ void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road,
     roadside.scatterers.push_back(
         {arc, {{p.x(), p.y(), height_m}, draw.uniform(spec.rcs_min_dbsm, spec.rcs_max_dbsm)}});
   };
-  for_cells(spec, index, extent, seed, kCell_m, [&](double at, Stream& draw) {
+  for_cells(spec, index, extent, seed, kCell_m, [&](double at, Stream& draw, std::uint64_t) {
     const unsigned count = draw.poisson(spec.per_m * kCell_m);
     for (unsigned i = 0; i < count; ++i) {
       const double lateral_m = lateral(spec, draw);
@@ -68,14 +68,14 @@ void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road,
   });
 }
 
-std::vector<BodySpec> parked_cars(const ScatterSpec& spec, std::uint64_t index, Gap extent, std::uint64_t seed) {
-  std::vector<BodySpec> cars;
+std::vector<ParkedCar> parked_cars(const ScatterSpec& spec, std::uint64_t index, Gap extent, std::uint64_t seed) {
+  std::vector<ParkedCar> cars;
   if (spec.kind != ScatterKind::kParkedCars) return cars;
   // One place each, with room to get out of it; `per_m` decides which of them are taken.
   const Dimensions size = dimensions_of(BodyKind::kCar);
   const bool crosswise = spec.heading_rad != 0.0;
   const double place_m = crosswise ? size.width_m + 0.7 : size.length_m + 1.2;
-  for_cells(spec, index, extent, seed, place_m, [&](double at, Stream& draw) {
+  for_cells(spec, index, extent, seed, place_m, [&](double at, Stream& draw, std::uint64_t cell) {
     for (const double side : {1.0, -1.0}) {
       const bool taken = draw.uniform() < spec.per_m * place_m;
       const double lateral_m = side * draw.uniform(spec.lateral_min_m, spec.lateral_max_m);
@@ -88,10 +88,18 @@ std::vector<BodySpec> parked_cars(const ScatterSpec& spec, std::uint64_t index, 
       car.lateral_m = {{0.0, lateral_m}};
       car.heading_rad = side * spec.heading_rad;
       car.parked = true;
-      cars.push_back(car);
+      cars.push_back({car, static_cast<std::uint32_t>(2 * cell + (side > 0.0 ? 0 : 1))});
     }
   });
   return cars;
+}
+
+double most_parts(const ScatterSpec& spec, Gap extent) {
+  const double length_m = std::max(0.0, std::min(spec.to_m, extent.to_m) - std::max(spec.from_m, extent.from_m));
+  const bool columns = spec.kind == ScatterKind::kColumns;
+  const double each = columns ? 1.0 + std::max(0.0, spec.top_max_m - kLowest_m) / spec.spacing_m : 1.0;
+  const double sides = spec.kind == ScatterKind::kParkedCars && spec.both_sides ? 2.0 : 1.0;
+  return length_m * spec.per_m * each * sides;
 }
 
 }  // namespace boresight::simulator

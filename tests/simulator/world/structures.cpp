@@ -10,7 +10,7 @@ namespace boresight::simulator {
 namespace {
 
 constexpr double kSagitta_m = 0.02;  // of a curved mirror over the chord that stands for it
-constexpr double kLongestChord_m = 25.0;
+constexpr double kShortestChord_m = 1.0, kLongestChord_m = 25.0;
 
 /// The line a structure stands on: along the road, or straight off it.
 class Line {
@@ -35,7 +35,7 @@ class Line {
       const double k = road_.at(at_m + ahead_m).curvature_per_m;
       curvature = std::max(curvature, std::abs(k / std::max(0.1, 1.0 - k * lateral_m_)));
     }
-    return std::clamp(std::sqrt(8.0 * kSagitta_m / std::max(1e-9, curvature)), 1.0, kLongestChord_m);
+    return std::clamp(std::sqrt(8.0 * kSagitta_m / std::max(1e-9, curvature)), kShortestChord_m, kLongestChord_m);
   }
 
  private:
@@ -154,6 +154,15 @@ void add_structure(const StructureSpec& spec, std::uint64_t index, const Road& r
     add_spots(spec, right, stretch, seed, 2 * index + 1, roadside);
     add_ceiling(spec, line, stretch, seed, index, roadside);
   }
+}
+
+double most_parts(const StructureSpec& spec, Gap extent) {
+  const double length_m = spec.heading_rad != 0.0
+                              ? spec.to_m - spec.from_m
+                              : std::max(0.0, std::min(spec.to_m, extent.to_m) - std::max(spec.from_m, extent.from_m));
+  if (spec.kind == StructureKind::kPillars) return 8.0 * length_m / spec.spacing_m;
+  const double lines = spec.kind == StructureKind::kTunnel ? 3.0 : 1.0;
+  return lines * length_m * (1.0 / spec.spacing_m + 1.0 / kShortestChord_m);
 }
 
 }  // namespace boresight::simulator

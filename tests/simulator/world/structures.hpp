@@ -32,8 +32,18 @@ void add_structure(const StructureSpec& spec, std::uint64_t index, const Road& r
 void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road, Gap extent, std::uint64_t seed,
                  Roadside& roadside);
 
+/// A car that stands in one of a scatter's places.
+struct ParkedCar {
+  BodySpec spec;
+  std::uint32_t place;  ///< its number, which depends on nothing but where it is
+};
+
 /// The parked cars of a scatter.
-[[nodiscard]] std::vector<BodySpec> parked_cars(const ScatterSpec& spec, std::uint64_t index, Gap extent,
-                                                std::uint64_t seed);
+[[nodiscard]] std::vector<ParkedCar> parked_cars(const ScatterSpec& spec, std::uint64_t index, Gap extent,
+                                                 std::uint64_t seed);
+
+/// How many points, mirrors and cars at most the seed may draw of it within `extent`.
+[[nodiscard]] double most_parts(const StructureSpec& spec, Gap extent);
+[[nodiscard]] double most_parts(const ScatterSpec& spec, Gap extent);
 
 }  // namespace boresight::simulator

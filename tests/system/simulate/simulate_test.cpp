@@ -1,4 +1,4 @@
-// `boresight simulate --alignment-drive`: what was asked for is in the files, and what cannot be asked for is refused.
+// `boresight simulate`: what was asked for is in the files, and what cannot be asked for is refused.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -65,7 +65,54 @@ TEST(Simulate, AnAlignmentDriveOfAVehicleFileHasItsRadars) {
   EXPECT_THAT(truth, testing::Not(HasSubstr("k_v 1.010000")));
 }
 
+TEST(Simulate, AScenarioLeavesRecordingsAndTruth) {
+  const std::string demo = " --config " BORESIGHT_SOURCE_DIR "/config";
+  ASSERT_EQ(simulate("--scenario tunnel --seed 3 --duration 1 --out /tmp/s/deep/er" + demo), 0) << errors();
+  EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr("simulated 1.0 s in "));
+  EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr(" times real time): 79 scans, "));
+  for (const char* file : {"radars.pcap", "ego.candump.log", "truth.csv", "truth_detections.csv", "truth_objects.csv",
+                           "truth_sensors.csv", "truth_visibility.csv"}) {
+    EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr(std::string("  /tmp/s/deep/er/") + file + "\n"));
+    EXPECT_FALSE(text_of(std::filesystem::path("/tmp/s/deep/er") / file).empty()) << file;
+  }
+  // A file of one's own, with the vehicle it names, over what an earlier run left.
+  std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\nduration_s = 0.5\n";
+  ASSERT_EQ(simulate("--scenario /tmp/own.toml --out /tmp/s/deep/er" + demo), 0) << errors();
+  EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr("simulated 0.5 s in "));
+  EXPECT_EQ(simulate("--list"), 0);
+  EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr("\ntunnel "));
+  EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr("a tube of two lanes"));
+}
+
+TEST(Simulate, AWrongScenarioIsNamedWithItsLine) {
+  const std::string demo = " --out /tmp/wrong --config " BORESIGHT_SOURCE_DIR "/config";
+  EXPECT_EQ(simulate("--scenario nowhere" + demo), 2);
+  EXPECT_THAT(errors(), HasSubstr("known: aligned_drive, "));
+  EXPECT_EQ(simulate("--scenario ./nowhere.toml" + demo), 2);
+  EXPECT_THAT(errors(), HasSubstr("./nowhere.toml: cannot be read"));
+  std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\n[ego]\nspeed_mps = 200.0\ncolour = 1\n";
+  EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
+  EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:4: ego.speed_mps: 200 is out of range; allowed: -80 … 80"));
+  EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:5: ego.colour: unknown key"));
+  std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\n[radars]\nknock = [{radar = 9}]\n";
+  EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
+  EXPECT_THAT(errors(), HasSubstr("names radar 9, but the vehicle demo has 1, 2, 3, 4"));
+  std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"submarine\"\n";
+  EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
+  EXPECT_THAT(errors(), HasSubstr("/vehicle/submarine.toml; name one by --vehicle"));
+  EXPECT_FALSE(std::filesystem::exists("/tmp/wrong"));
+}
+
 TEST(Simulate, WhatMakesNoSenseIsRefused) {
+  EXPECT_EQ(simulate(""), 2);
+  EXPECT_THAT(errors(), HasSubstr("--out is required"));
+  for (const char* arguments :
+       {"--out /tmp/a --duration 0", "--out /tmp/a --duration -1", "--out /tmp/a --duration nan",
+        "--out /tmp/a --duration inf", "--out /tmp/a --seed -1", "--out /tmp/a --seed 1.5", "--list --scenario tunnel",
+        "--list --out /tmp/a", "--out /tmp/a --fast"}) {
+    EXPECT_EQ(simulate(arguments), 2) << arguments;
+    EXPECT_FALSE(errors().empty()) << arguments;
+  }
   EXPECT_EQ(simulate("--out /tmp/a"), 2);
   EXPECT_THAT(errors(), HasSubstr("--vehicle"));
   EXPECT_EQ(simulate("--alignment-drive moon --out /tmp/a"), 2);

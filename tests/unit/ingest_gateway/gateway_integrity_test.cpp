@@ -54,7 +54,7 @@ class GatewayIntegrity : public testing::Test {
   static void TearDownTestSuite() { fs::remove_all(folder()); }
   static fs::path folder() { return fs::temp_directory_path() / ("boresight-integrity-" + std::to_string(::getpid())); }
 
-  /// The drive through a gateway; `copies(n)` says how often the n-th datagram arrives.
+  /// The drive through a gateway; `copies(n)` says how often the n-th detection list arrives.
   template <typename Copies>
   static std::unique_ptr<Verdicts> drive(const Copies& copies) {
     auto verdicts = std::make_unique<Verdicts>();
@@ -62,9 +62,11 @@ class GatewayIntegrity : public testing::Test {
     const auto reader = recording::open_recordings({files_.ego, files_.radars},
                                                    [](const std::string& problem) { ADD_FAILURE() << problem; });
     recording::Frame frame;
-    int datagrams = 0;
+    int lists = 0;
     while (reader->next(frame)) {
-      const int times = frame.kind == recording::FrameKind::kUdp ? copies(datagrams++) : 1;
+      // The radars' status messages are UDP as well, and short.
+      const bool is_list = frame.kind == recording::FrameKind::kUdp && frame.payload.size() > 1000;
+      const int times = is_list ? copies(lists++) : 1;
       for (int i = 0; i < times; ++i) {
         // A copy comes 20 ms later: not in one burst with what it repeats.
         gateway.take(frame, {frame.stamp_ns + i * 20'000'000, 0, TimeSource::kLinkArrival});

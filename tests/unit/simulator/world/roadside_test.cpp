@@ -213,10 +213,10 @@ TEST(Scatter, ParkedCarsDoNotTouch) {
       const auto cars = parked_cars(spec, 0, kAll, 4);
       EXPECT_NEAR(static_cast<double>(cars.size()), both ? 300.0 : 150.0, 60.0);
       for (std::size_t i = 0; i < cars.size(); ++i) {
-        EXPECT_TRUE(cars[i].parked);
+        EXPECT_TRUE(cars[i].spec.parked);
         for (std::size_t k = 0; k < i; ++k) {
-          if (cars[i].lateral_m[0].value * cars[k].lateral_m[0].value < 0.0) continue;
-          EXPECT_GT(std::abs(cars[i].start_m - cars[k].start_m), heading == 0.0 ? 5.0 : 2.0);
+          if (cars[i].spec.lateral_m[0].value * cars[k].spec.lateral_m[0].value < 0.0) continue;
+          EXPECT_GT(std::abs(cars[i].spec.start_m - cars[k].spec.start_m), heading == 0.0 ? 5.0 : 2.0);
         }
       }
     }

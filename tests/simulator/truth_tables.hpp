@@ -1,0 +1,44 @@
+// What is true of a drive, as CSV tables beside its recordings. Columns: tests/simulator/README.md.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "services/common/vehicle/vehicle.hpp"
+#include "tests/simulator/drive.hpp"
+#include "tests/simulator/sight.hpp"
+#include "tests/simulator/text_file.hpp"
+
+namespace boresight::simulator {
+
+class TruthTables {
+ public:
+  /// Throws std::runtime_error where a file cannot be written; `folder` must exist.
+  TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle);
+
+  /// Every body within 150 m at that time.
+  void add_objects(const Drive& drive, double t_s);
+  /// A scan that `drive` has just handed out: its detections, its radar's state, what the radar could see.
+  void add_scan(const Drive& drive, const Event& event);
+  /// Writes what is true of the whole drive; throws std::runtime_error if anything was lost on the way.
+  void finish();
+
+ private:
+  struct Radar {
+    const RadarConfig* config;
+    Sight sight;
+    std::size_t scans = 0;
+  };
+  void add_detections(const Event& event);
+  void add_sensor(const Event& event, const RadarConfig& radar);
+  void add_visibility(const Drive& drive, const Event& event, Radar& radar);
+
+  RadarEffects effects_;
+  std::vector<Radar> radars_;
+  std::filesystem::path folder_;
+  TextFile detections_, objects_, sensors_, visibility_;
+  std::vector<BodySight> sights_;
+};
+
+}  // namespace boresight::simulator
