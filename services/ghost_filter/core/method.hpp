@@ -1,6 +1,7 @@
 // What every method of telling ghosts from what is real has in common.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "interfaces/messages/classified_scan.hpp"
@@ -22,6 +23,9 @@ class Method {
 
   /// Writes everything of `out` but the header. Scans come in the order of their measurement, of all radars mixed.
   virtual void classify(const CorrectedScan& scan, ClassifiedScan& out) = 0;
+
+  /// Points of the stationary world that are accumulated at present.
+  [[nodiscard]] virtual std::size_t map_points() const = 0;
 };
 
 /// The method that the configuration names; what it needs is allocated here, and never later.

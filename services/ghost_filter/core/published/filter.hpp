@@ -22,6 +22,7 @@ class Filter final : public Method {
 
   void add_tracks(const TrackList& tracks) override;
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
+  [[nodiscard]] std::size_t map_points() const override { return map_.points().size(); }
 
  private:
   struct Verdict {

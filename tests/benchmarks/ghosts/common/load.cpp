@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
-#include <Eigen/Core>
+#include <time.h>
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
@@ -18,32 +17,76 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 50'000'000;
 constexpr double kSpeed_mps = 25.0, kRail_m = 7.5;
-constexpr std::array<std::array<double, 2>, 6> kVehicles = {
-    {{25.0, 0.0}, {50.0, 3.5}, {-20.0, 0.0}, {12.0, -3.5}, {80.0, -3.5}, {-45.0, 3.5}}};
+constexpr double kRoad_m = 100.0;         // of world, which repeats: kCycles periods at kSpeed_mps
+constexpr std::size_t kMovingOf100 = 13;  // ghosts among them: Report B has 12 % moving, half of them real
+/// Places of the standing world per kRoad_m in the condition. Noise and the angles of view spread each of them
+/// over several points of the map.
+constexpr double kPlaces = 890.0;
+constexpr double kAzimuthStd_rad = 0.003, kRangeStd_m = 0.1;
+
+double seconds(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 }  // namespace
 
 GhostLoad::GhostLoad(std::size_t radars, std::size_t detections)
     : radars_(radars), detections_(std::min(detections, kMaxDetections)) {
+  // A larger load sees a larger area, in which as much stands on each square metre.
+  const double scale = std::sqrt(static_cast<double>(radars_ * detections_) / 1200.0);
+  reach_m_ = 100.0 * scale;
+  half_width_m_ = 40.0 * scale;
+  build_world();
+  for (double x = -reach_m_ + 6.0; x < reach_m_; x += 24.0) {
+    if (std::abs(x) > 10.0) vehicles_.emplace_back(x, 3.5 * (static_cast<int>(std::floor(x / 24.0)) % 2));
+  }
   for (std::size_t cycle = 0; cycle < kCycles; ++cycle) {
     for (std::size_t radar = 0; radar < radars_; ++radar) {
       scans_.push_back(std::make_unique<CorrectedScan>());
       fill(*scans_.back(), cycle, radar);
     }
   }
-  for (const auto& [x, y] : kVehicles) {
+  for (const Eigen::Vector2d& vehicle : vehicles_) {
+    if (tracks_.number_of_tracks == kMaxTracks) break;
     Track& track = tracks_.tracks[tracks_.number_of_tracks++];
     track.tracking_id = tracks_.number_of_tracks;
     track.status = TrackStatus::kConfirmed;
     track.movement = MovementState::kMoving;
     track.existence_probability = 0.99F;
-    track.position_vehicle_m = {static_cast<float>(x), static_cast<float>(y), 0.6F};
+    track.position_vehicle_m = {static_cast<float>(vehicle.x()), static_cast<float>(vehicle.y()), 0.6F};
     track.velocity_over_ground_mps = {static_cast<float>(kSpeed_mps), 0.0F};
     track.length_m = 4.5F;
     track.width_m = 1.9F;
     for (std::size_t i = 0; i < kTrackStateSize; ++i) track.covariance[i * kTrackStateSize + i] = 0.1F;
   }
   tracks_.number_of_confirmed_tracks = tracks_.number_of_tracks;
+}
+
+void GhostLoad::build_world() {
+  simulator::Stream random(7, "load world");
+  for (double x = 0.0; x < kRoad_m; x += 1.0) {
+    world_.emplace_back(x, kRail_m);
+    world_.emplace_back(x, -kRail_m);
+  }
+  for (double x = 20.0; x < 60.0; x += 0.5) world_.emplace_back(x, 14.0);
+  for (double x = 5.0; x < 35.0; x += 6.0) {
+    for (double along = 0.0; along < 4.5; along += 0.9) {
+      world_.emplace_back(x + along, -11.0);
+      world_.emplace_back(x + along, -12.8);
+    }
+  }
+  for (double x = 0.0; x < kRoad_m; x += 25.0) world_.emplace_back(x, 9.0);
+  // Bushes: dense clumps beyond all this.
+  const auto places = static_cast<std::size_t>(kPlaces * half_width_m_ / 40.0);
+  while (world_.size() < places) {
+    const Eigen::Vector2d middle(random.uniform(0.0, kRoad_m),
+                                 (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(18.0, half_width_m_));
+    for (int leaf = 0; leaf < 12; ++leaf) {
+      world_.push_back(middle + Eigen::Vector2d(1.2 * random.gaussian(), 1.2 * random.gaussian()));
+    }
+  }
 }
 
 void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) const {
@@ -61,24 +104,35 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
   scan.geometry.sensor_to_vehicle = {1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F};
   scan.geometry.speed_scale = 1.0F;
   scan.geometry.ego_speed_mps = static_cast<float>(kSpeed_mps);
+  scan.geometry.ego_speed_std_mps = 0.03F;
+  scan.geometry.ego_yaw_rate_std_radps = 0.002F;
   scan.number_of_valid_detections = static_cast<std::uint32_t>(detections_);
-  const double reach_m = 100.0 * std::sqrt(static_cast<double>(radars_) / 4.0);
+  const double driven_m = kSpeed_mps * 1e-9 *
+                          (static_cast<double>(cycle) * kPeriod_ns +
+                           static_cast<double>(radar) * kPeriod_ns / static_cast<double>(radars_));
   for (std::size_t i = 0; i < detections_; ++i) {
     Eigen::Vector2d p;
     double along_mps = 0.0;
-    if (i % 20 < 17) {
-      const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
-      const bool rail = random.uniform() < 0.5;
-      p = {ahead * random.uniform(2.0, reach_m),
-           side * (rail ? kRail_m + 0.1 * random.gaussian() : random.uniform(kRail_m + 2.0, 40.0))};
+    if (i % 100 >= kMovingOf100) {
+      // Any of the repetitions in view: those in front of the vehicle, or behind it.
+      const double low = ahead > 0.0 ? 0.0 : -reach_m_;
+      const double repetitions = std::ceil(reach_m_ / kRoad_m);
+      do {
+        const Eigen::Vector2d& place = world_[random.next() % world_.size()];
+        const double first = low + std::fmod(place.x() - driven_m - low + 1e4 * kRoad_m, kRoad_m);
+        p = {first + kRoad_m * std::floor(random.uniform() * repetitions), place.y()};
+      } while (p.x() > low + reach_m_);
     } else {
-      const auto& [x, y] = kVehicles[random.next() % kVehicles.size()];
+      p = vehicles_[random.next() % vehicles_.size()];
+      p += Eigen::Vector2d(random.uniform(-2.2, 2.2), random.uniform(-0.9, 0.9));
       const double kind = random.uniform();
-      p = {x + random.uniform(-2.2, 2.2), y + random.uniform(-0.9, 0.9)};
       if (kind > 0.5) p.y() = (kind > 0.75 ? 2.0 : -2.0) * kRail_m - p.y();
       along_mps = kSpeed_mps;
     }
-    const Eigen::Vector2d sight = p - sensor;
+    Eigen::Vector2d sight = p - sensor;
+    sight += kRangeStd_m * random.gaussian() * sight.normalized() +
+             kAzimuthStd_rad * random.gaussian() * Eigen::Vector2d(-sight.y(), sight.x());
+    p = sensor + sight;
     scan.x_vehicle_m[i] = static_cast<float>(p.x());
     scan.y_vehicle_m[i] = static_cast<float>(p.y());
     scan.z_vehicle_m[i] = 0.5F;
@@ -88,8 +142,8 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
     scan.range_rate_over_ground_mps[i] = static_cast<float>(over_ground + 0.05 * random.gaussian());
     scan.range_rate_mps[i] = static_cast<float>(over_ground - kSpeed_mps * sight.x() / sight.norm());
     scan.rcs_dbsm[i] = static_cast<float>(random.uniform(-10.0, 10.0));
-    scan.range_std_m[i] = 0.1F;
-    scan.azimuth_std_rad[i] = 0.005F;
+    scan.range_std_m[i] = static_cast<float>(kRangeStd_m);
+    scan.azimuth_std_rad[i] = static_cast<float>(kAzimuthStd_rad);
     scan.elevation_std_rad[i] = 0.01F;
     scan.range_rate_std_mps[i] = 0.05F;
     scan.existence_probability[i] = 1.0F;
@@ -97,41 +151,45 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
   }
 }
 
-std::size_t GhostLoad::give_cycle(ghosts::Method& method) {
-  const std::size_t cycle = cycle_ % kCycles;
-  for (std::size_t radar = 0; radar < radars_; ++radar) {
-    CorrectedScan& scan = *scans_[cycle * radars_ + radar];
-    scan.header.sequence = scan.header.source_sequence = cycle_ + 1;
-    scan.header.measurement_time_ns =
-        1'000'000'000 + static_cast<std::int64_t>(cycle_) * kPeriod_ns +
-        static_cast<std::int64_t>(radar) * kPeriod_ns / static_cast<std::int64_t>(radars_);
-    method.classify(scan, *out_);
-    tracks_.header.measurement_time_ns = scan.header.measurement_time_ns;
-    method.add_tracks(tracks_);
-  }
-  ++cycle_;
-  return radars_ * detections_;
+const CorrectedScan& GhostLoad::next_scan(std::size_t radar) {
+  CorrectedScan& scan = *scans_[(cycle_ % kCycles) * radars_ + radar];
+  scan.header.sequence = scan.header.source_sequence = cycle_ + 1;
+  scan.header.measurement_time_ns = 1'000'000'000 + static_cast<std::int64_t>(cycle_) * kPeriod_ns +
+                                    static_cast<std::int64_t>(radar) * kPeriod_ns / static_cast<std::int64_t>(radars_);
+  tracks_.header.measurement_time_ns = scan.header.measurement_time_ns;
+  return scan;
 }
 
 void GhostLoad::warm_up(ghosts::Method& method) {
-  for (int i = 0; i < 30; ++i) give_cycle(method);
+  for (int i = 0; i < 40; ++i) give_cycle(method, [](std::size_t) {});
 }
 
 GhostCost measure_ghost_cycles(GhostLoad& load, ghosts::Method& method, std::size_t cycles) {
-  using Clock = std::chrono::steady_clock;
   load.warm_up(method);
-  std::vector<double> us(cycles);
+  std::vector<double> us;
+  us.reserve(cycles * load.scans_in_cycle());
+  GhostCost cost{};
   const std::uint64_t before = runtime::counted_allocations();
+  const double wall_s = seconds(CLOCK_MONOTONIC);
   {
     const runtime::CountAllocations counting;
-    for (double& each : us) {
-      const auto begin = Clock::now();
-      load.give_cycle(method);
-      each = 1e6 * std::chrono::duration<double>(Clock::now() - begin).count();
+    for (std::size_t i = 0; i < cycles; ++i) {
+      double begin_s = seconds(CLOCK_THREAD_CPUTIME_ID);
+      load.give_cycle(method, [&](std::size_t) {
+        us.push_back(1e6 * (seconds(CLOCK_THREAD_CPUTIME_ID) - begin_s));
+        begin_s = seconds(CLOCK_THREAD_CPUTIME_ID);
+      });
+      cost.map_points += static_cast<double>(method.map_points()) / static_cast<double>(cycles);
     }
   }
-  const double cycle_us = median(us);
-  return {cycle_us / static_cast<double>(load.scans_in_cycle()), cycle_us, runtime::counted_allocations() - before};
+  const auto scans = static_cast<double>(us.size());
+  cost.wall_mean_us = 1e6 * (seconds(CLOCK_MONOTONIC) - wall_s) / scans;
+  cost.allocations = runtime::counted_allocations() - before;
+  for (const double each : us) cost.mean_us += each / scans;
+  cost.mean_cycle_us = cost.mean_us * static_cast<double>(load.scans_in_cycle());
+  cost.p99_us = quantile(us, 0.99);
+  cost.max_us = quantile(us, 1.0);
+  return cost;
 }
 
 }  // namespace boresight::bench
