@@ -6,11 +6,16 @@ namespace {
 
 published::Config read_published(config::Reader root) {
   published::Config c;
+  config::Reader stationary = root.table("stationary");
+  c.max_range_rate_mps = stationary.number("max_range_rate_mps", {0.0, 20.0}, c.max_range_rate_mps);
+  c.min_expected_range_rate_mps =
+      stationary.number("min_expected_range_rate_mps", {0.0, 20.0}, c.min_expected_range_rate_mps);
   config::Reader reflectors = root.table("reflectors");
   c.memory_s = reflectors.number("memory_s", {0.05, 5.0}, c.memory_s);
   c.update_period_s = reflectors.number("update_period_s", {0.0, 1.0}, c.update_period_s);
   c.cell_m = reflectors.number("cell_m", {0.05, 10.0}, c.cell_m);
-  c.cluster_radius_m = reflectors.number("cluster_radius_m", {0.1, 20.0}, c.cluster_radius_m);
+  c.cluster_length_m = reflectors.number("cluster_length_m", {0.1, 20.0}, c.cluster_length_m);
+  c.cluster_width_m = reflectors.number("cluster_width_m", {0.1, 20.0}, c.cluster_width_m);
   const auto count = [&](std::string_view key, std::size_t fallback) {
     return static_cast<std::size_t>(reflectors.integer(key, {1, 1000}, static_cast<std::int64_t>(fallback)));
   };

@@ -2,56 +2,85 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace boresight::simulator::radar {
 
 namespace {
 
-std::int64_t index(double value, double size) {
-  return static_cast<std::int64_t>(std::floor(value / (size > 0.0 ? size : 1e-6)));
+double size_of(double cell) {
+  return cell > 0.0 ? cell : 1e-6;
 }
+
+/// The centroid by power of what is one detection.
+class Centroid {
+ public:
+  void add(const Echo& e) {
+    const double power = std::pow(10.0, 0.1 * e.power_db);
+    power_ += power;
+    range_ += power * e.range_m;
+    azimuth_ += power * e.azimuth_rad;
+    elevation_ += power * e.elevation_rad;
+    rate_ += power * e.range_rate_mps;
+  }
+  void write(Echo& e) const {
+    e.range_m = range_ / power_;
+    e.azimuth_rad = azimuth_ / power_;
+    e.elevation_rad = elevation_ / power_;
+    e.range_rate_mps = rate_ / power_;
+    e.power_db = 10.0 * std::log10(power_);
+  }
+
+ private:
+  double power_ = 0.0, range_ = 0.0, azimuth_ = 0.0, elevation_ = 0.0, rate_ = 0.0;
+};
 
 }  // namespace
 
-CellIndex cell_of(const ResolutionCell& cell, double range_m, double azimuth_rad, double range_rate_mps) {
-  return {index(range_m, cell.range_m), index(azimuth_rad, cell.azimuth_rad),
-          index(range_rate_mps, cell.range_rate_mps)};
+bool resolved(const ResolutionCell& cell, const Echo& a, const Echo& b) {
+  return std::abs(a.range_m - b.range_m) >= size_of(cell.range_m) ||
+         std::abs(a.azimuth_rad - b.azimuth_rad) >= size_of(cell.azimuth_rad) ||
+         std::abs(a.range_rate_mps - b.range_rate_mps) >= size_of(cell.range_rate_mps);
+}
+
+Echo Cells::take(std::size_t strongest, const std::vector<Echo>& echoes) {
+  Echo merged = echoes[strongest];
+  taken_[strongest] = 1;
+  const double reach = size_of(cell_.range_m);
+  Centroid centroid;
+  bool alone = true;
+  const auto try_one = [&](std::size_t i) {
+    if (std::abs(echoes[i].range_m - echoes[strongest].range_m) >= reach) return false;
+    if (taken_[i] != 0 || resolved(cell_, echoes[i], echoes[strongest])) return true;
+    if (alone) centroid.add(echoes[strongest]);
+    alone = false;
+    centroid.add(echoes[i]);
+    taken_[i] = 1;
+    return true;
+  };
+  for (std::size_t i = strongest + 1; i < echoes.size() && try_one(i); ++i) {
+  }
+  for (std::size_t i = strongest; i > 0 && try_one(i - 1); --i) {
+  }
+  if (!alone) centroid.write(merged);
+  return merged;
 }
 
 void Cells::merge(std::vector<Echo>& echoes) {
-  entries_.clear();
-  for (const Echo& e : echoes) {
-    entries_.push_back(
-        {cell_of(cell_, e.range_m, e.azimuth_rad, e.range_rate_mps), std::pow(10.0, 0.1 * e.power_db), e});
-  }
-  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    if (a.cell != b.cell) return a.cell < b.cell;
-    return a.power != b.power ? a.power > b.power : a.echo.key < b.echo.key;
+  std::sort(echoes.begin(), echoes.end(), [](const Echo& a, const Echo& b) {
+    return a.range_m != b.range_m ? a.range_m < b.range_m : a.key < b.key;
   });
-  echoes.clear();
-  for (std::size_t begin = 0; begin < entries_.size();) {
-    std::size_t end = begin + 1;
-    while (end < entries_.size() && entries_[end].cell == entries_[begin].cell) ++end;
-    Echo merged = entries_[begin].echo;
-    if (end - begin > 1) {
-      double power = 0.0, range = 0.0, azimuth = 0.0, elevation = 0.0, rate = 0.0;
-      for (std::size_t i = begin; i < end; ++i) {
-        const Entry& e = entries_[i];
-        power += e.power;
-        range += e.power * e.echo.range_m;
-        azimuth += e.power * e.echo.azimuth_rad;
-        elevation += e.power * e.echo.elevation_rad;
-        rate += e.power * e.echo.range_rate_mps;
-      }
-      merged.range_m = range / power;
-      merged.azimuth_rad = azimuth / power;
-      merged.elevation_rad = elevation / power;
-      merged.range_rate_mps = rate / power;
-      merged.power_db = 10.0 * std::log10(power);
-    }
-    echoes.push_back(merged);
-    begin = end;
+  by_power_.resize(echoes.size());
+  std::iota(by_power_.begin(), by_power_.end(), 0u);
+  std::sort(by_power_.begin(), by_power_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return echoes[a].power_db != echoes[b].power_db ? echoes[a].power_db > echoes[b].power_db : a < b;
+  });
+  taken_.assign(echoes.size(), 0);
+  merged_.clear();
+  for (const std::uint32_t i : by_power_) {
+    if (taken_[i] == 0) merged_.push_back(take(i, echoes));
   }
+  echoes.swap(merged_);
 }
 
 }  // namespace boresight::simulator::radar

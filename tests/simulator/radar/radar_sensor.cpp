@@ -127,15 +127,13 @@ void RadarSensor::add_false_detections(std::uint64_t cycle_key, double interfere
                    false_echoes_);
   radar::add_false(interference, interference_per_scan, kInterferenceExcess_db, threshold, rate_max,
                    config_.field_of_view, false_echoes_);
-  // A cell holds one detection: what is real stays.
-  const auto cell = [&](const radar::Echo& e) {
-    return radar::cell_of(effects_.resolution, e.range_m, e.azimuth_rad, e.range_rate_mps);
-  };
-  occupied_.clear();
-  for (const radar::Echo& e : echoes_) occupied_.push_back(cell(e));
-  std::sort(occupied_.begin(), occupied_.end());
+  // Within a cell there is one detection: what is real stays.
+  const std::size_t real = echoes_.size();
   for (const radar::Echo& e : false_echoes_) {
-    if (!std::binary_search(occupied_.begin(), occupied_.end(), cell(e))) echoes_.push_back(e);
+    const auto end = echoes_.begin() + static_cast<std::ptrdiff_t>(real);
+    if (std::all_of(echoes_.begin(), end, [&](const auto& r) { return radar::resolved(effects_.resolution, e, r); })) {
+      echoes_.push_back(e);
+    }
   }
 }
 

@@ -51,7 +51,6 @@ class RadarSensor {
   radar::Cells cells_;
   std::vector<radar::OneWay> paths_;
   std::vector<radar::Echo> echoes_, false_echoes_;
-  std::vector<radar::CellIndex> occupied_;
 };
 
 }  // namespace boresight::simulator

@@ -21,10 +21,13 @@ std::vector<double> numbers(const Config& config) {
   const published::Config& c = config.published;
   const MapConfig& m = config.mirror.map;
   const ClassConfig& k = config.mirror.classes;
-  return {c.memory_s,
+  return {c.max_range_rate_mps,
+          c.min_expected_range_rate_mps,
+          c.memory_s,
           c.update_period_s,
           c.cell_m,
-          c.cluster_radius_m,
+          c.cluster_length_m,
+          c.cluster_width_m,
           static_cast<double>(c.cluster_min_points),
           c.min_segment_length_m,
           static_cast<double>(c.min_segment_points),

@@ -35,6 +35,8 @@ class PublishedMethod : public testing::Test {
     scan_->y_vehicle_m[i] = static_cast<float>(y);
     scan_->range_m[i] = static_cast<float>(std::hypot(x - 3.6, y));
     scan_->range_rate_over_ground_mps[i] = static_cast<float>(range_rate);
+    const double ahead = (x - 3.6) / std::hypot(x - 3.6, y);
+    scan_->range_rate_mps[i] = static_cast<float>(range_rate - scan_->geometry.ego_speed_mps * ahead);
     scan_->detection_flags[i] = flags;
     return i;
   }
@@ -85,14 +87,14 @@ TEST_F(PublishedMethod, ARailBecomesASegmentAtItsPlace) {
 }
 
 TEST_F(PublishedMethod, ACurvedRailIsFollowedByPieces) {
-  for (double a = 0.0; a < 1.2; a += 0.02) {
-    add(60.0 * std::sin(a), -7.0 - 60.0 * (1.0 - std::cos(a)), corrected_flag::kStationary);
+  for (double a = 0.0; a < 0.4; a += 0.004) {
+    add(150.0 * std::sin(a), -7.0 - 150.0 * (1.0 - std::cos(a)), corrected_flag::kStationary);
   }
   classify();
-  EXPECT_GE(out_->number_of_reflector_segments, 3u);
+  EXPECT_GE(out_->number_of_reflector_segments, 2u);
   for (std::size_t i = 0; i < out_->number_of_reflector_segments; ++i) {
     for (const auto& end : {out_->reflector_segments[i].start_vehicle_m, out_->reflector_segments[i].end_vehicle_m}) {
-      EXPECT_NEAR(std::hypot(end[0], end[1] + 67.0), 60.0, 1.0);
+      EXPECT_NEAR(std::hypot(end[0], end[1] + 157.0), 150.0, 1.0);
     }
   }
 }
@@ -101,17 +103,41 @@ TEST_F(PublishedMethod, BehindARailIsAType2Ghost) {
   add_rail();
   const auto ghost = add(30.0, -14.0, corrected_flag::kMoving, 8.0);
   const auto in_front = add(30.0, -3.5, corrected_flag::kMoving, 8.0);
-  const auto at_it = add(30.0, -7.2, corrected_flag::kMoving, 8.0);  // closer to the rail than the margin
   const auto beyond_its_end = add(110.0, -14.0, corrected_flag::kMoving, 8.0);
   classify();
   EXPECT_EQ(out_->provenance[ghost], Provenance::kGhostType2);
   EXPECT_GT(out_->ghost_probability[ghost], 0.5F);
   EXPECT_EQ(out_->provenance[in_front], Provenance::kMoving);
   EXPECT_LT(out_->ghost_probability[in_front], 0.5F);
-  EXPECT_EQ(out_->provenance[at_it], Provenance::kMoving);
   // The line of sight to it crosses y = −7 at x ≈ 57: still the rail.
   EXPECT_EQ(out_->provenance[beyond_its_end], Provenance::kGhostType2);
   EXPECT_EQ(out_->provenance[0], Provenance::kStationary);
+}
+
+TEST_F(PublishedMethod, WhatStandsIsToldByAConstantWhateverTheCorrectorSays) {
+  begin(20.0);
+  const auto slow = add(30.0, 3.0, corrected_flag::kMoving, 1.9);
+  const auto fast = add(30.0, -3.0, corrected_flag::kStationary, -2.1);
+  const auto not_a_number = add(40.0, 3.0, corrected_flag::kStationary, std::numeric_limits<double>::quiet_NaN());
+  classify();
+  EXPECT_EQ(out_->provenance[slow], Provenance::kStationary);
+  EXPECT_EQ(out_->provenance[fast], Provenance::kMoving);
+  EXPECT_EQ(out_->provenance[not_a_number], Provenance::kMoving);
+}
+
+TEST_F(PublishedMethod, AbeamWhatStandsIsNotToldFromWhatMoves) {
+  // A standing thing whose range rate is 1.6 m/s as the vehicle passes, and one at 2.4 m/s.
+  begin(20.0);
+  const auto abeam = add(3.6 + 0.8, 10.0, corrected_flag::kStationary);
+  const auto ahead = add(3.6 + 1.2, 10.0, corrected_flag::kStationary);
+  classify();
+  EXPECT_EQ(out_->provenance[abeam], Provenance::kMoving);
+  EXPECT_EQ(out_->provenance[ahead], Provenance::kStationary);
+  // At walking pace the sector does not grow to the whole view.
+  begin(1.5);
+  const auto same = add(3.6 + 2.0, 10.0, corrected_flag::kStationary);
+  classify();
+  EXPECT_EQ(out_->provenance[same], Provenance::kStationary);
 }
 
 TEST_F(PublishedMethod, ThroughAGapInTheRailOneSeesWhatIsThere) {
@@ -170,11 +196,11 @@ TEST_F(PublishedMethod, WithoutTracksItSaysSoAndTestsType2Only) {
 }
 
 TEST_F(PublishedMethod, ReflectorsAreRememberedAndMoveWithTheVehicle) {
-  // The rail is seen by one radar only, once; 200 ms later, 3 m farther on, another radar's scan has the ghost.
+  // The rail is seen by one radar only, once; 100 ms later, 1.5 m farther on, another radar's scan has the ghost.
   begin(15.0);
   add_rail();
   classify();
-  now_ += 150 * kMillisecond;
+  now_ += 50 * kMillisecond;
   begin(15.0);
   const auto ghost = add(27.0, -14.0, corrected_flag::kMoving, 8.0);
   classify();
@@ -184,7 +210,7 @@ TEST_F(PublishedMethod, ReflectorsAreRememberedAndMoveWithTheVehicle) {
     begin_m = std::min({begin_m, static_cast<double>(out_->reflector_segments[i].start_vehicle_m[0]),
                         static_cast<double>(out_->reflector_segments[i].end_vehicle_m[0])});
   }
-  EXPECT_NEAR(begin_m, 5.0 - 0.2 * 15.0, 1.0);
+  EXPECT_NEAR(begin_m, 5.0 - 0.1 * 15.0, 0.75);
   now_ += 1000 * kMillisecond;
   begin(15.0);
   const auto later = add(27.0, -14.0, corrected_flag::kMoving, 8.0);
@@ -208,7 +234,7 @@ TEST_F(PublishedMethod, BetweenTwoSearchesTheSegmentsMoveOn) {
 TEST_F(PublishedMethod, RejectedAndUndecidedDetectionsAreUnknown) {
   const auto rejected = add(20.0, 0.0, corrected_flag::kMoving | corrected_flag::kOutsideRegion);
   const auto undecided = add(20.0, 0.0, corrected_flag::kAmbiguous);
-  const auto not_a_number = add(std::numeric_limits<double>::quiet_NaN(), 0.0, corrected_flag::kMoving);
+  const auto not_a_number = add(std::numeric_limits<double>::quiet_NaN(), 0.0, corrected_flag::kMoving, 8.0);
   classify();
   EXPECT_EQ(out_->provenance[rejected], Provenance::kUnknown);
   EXPECT_EQ(out_->provenance[undecided], Provenance::kUnknown);
@@ -240,7 +266,7 @@ TEST_F(PublishedMethod, FullScansForAMinuteStayWithinBoundsAndAllocateNothing) {
     for (int round = 0; round < 240; ++round) {
       begin(15.0);
       for (std::size_t i = 0; i < kMaxDetections; ++i) {
-        add(place(random_), place(random_), i % 5 == 0 ? corrected_flag::kMoving : corrected_flag::kStationary);
+        add(place(random_), place(random_), corrected_flag::kMoving, i % 5 == 0 ? 8.0 : 0.0);
       }
       filter_.classify(*scan_, *out_);
       now_ += 12 * kMillisecond;

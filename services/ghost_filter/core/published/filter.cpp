@@ -12,6 +12,9 @@ namespace {
 
 constexpr float kGhost = 0.95F;
 constexpr float kReal = 0.05F;
+/// What is not told by its speed lies within about this angle (rad) of right angles to the drive at most. Report B's
+/// scene is faster; at walking pace its constant would make everything move.
+constexpr double kAbeam = 0.15;
 
 Eigen::Vector2d point(const std::array<float, 2>& p) {
   return {p[0], p[1]};
@@ -48,6 +51,20 @@ void Filter::predict_tracks(const CorrectedScan& scan) {
   }
 }
 
+bool Filter::takes_part(const CorrectedScan& scan, std::size_t i) const {
+  // Without ego motion the corrector says neither.
+  const std::uint16_t flags = scan.detection_flags[i];
+  return (flags & corrected_flag::kRejected) == 0 &&
+         (flags & (corrected_flag::kMoving | corrected_flag::kStationary)) != 0;
+}
+
+bool Filter::is_stationary(const CorrectedScan& scan, std::size_t i) const {
+  const double over_ground = scan.range_rate_over_ground_mps[i];
+  const double expected = static_cast<double>(scan.range_rate_mps[i]) - over_ground;
+  const double least = std::min(config_.min_expected_range_rate_mps, kAbeam * std::abs(scan.geometry.ego_speed_mps));
+  return std::abs(over_ground) < config_.max_range_rate_mps && std::abs(expected) >= least;
+}
+
 Filter::Verdict Filter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const {
   const Eigen::Vector2d sight = position - sensor;
   const double range = sight.norm();
@@ -60,7 +77,8 @@ Filter::Verdict Filter::judge_moving(const Eigen::Vector2d& sensor, const Eigen:
   }
   for (std::size_t i = 0; i < number_of_ellipses_; ++i) {
     const auto stretch = geometry::stretch_within(ellipses_[i], sensor, sight / range);
-    if (stretch && range > stretch->leave_m + config_.type1_margin_m) return {Provenance::kGhostType1, kGhost};
+    if (stretch && stretch->enter_m > 0.0 && range > stretch->leave_m + config_.type1_margin_m)
+      return {Provenance::kGhostType1, kGhost};
   }
   return {Provenance::kMoving, kReal};
 }
@@ -69,9 +87,7 @@ void Filter::update_segments(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   map_.advance(time_ns, scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, config_.memory_s);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t flags = scan.detection_flags[i];
-    if ((flags & corrected_flag::kStationary) == 0 || (flags & corrected_flag::kRejected) != 0) continue;
-    map_.add({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
+    if (takes_part(scan, i) && is_stationary(scan, i)) map_.add({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
   }
   const std::int64_t age_ns = time_ns - found_ns_;
   if (age_ns < 0 || static_cast<double>(age_ns) * 1e-9 >= config_.update_period_s) {
@@ -112,15 +128,11 @@ void Filter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
 
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
-  const auto is = [&](std::size_t i, std::uint16_t flag) { return (scan.detection_flags[i] & flag) != 0; };
   for (std::size_t i = 0; i < count; ++i) {
     Verdict verdict{Provenance::kUnknown, 0.0F};
-    if (!is(i, corrected_flag::kRejected)) {
-      if (is(i, corrected_flag::kMoving)) {
-        verdict = judge_moving(sensor, {scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
-      } else if (is(i, corrected_flag::kStationary)) {
-        verdict = {Provenance::kStationary, 0.0F};
-      }
+    if (takes_part(scan, i)) {
+      verdict = is_stationary(scan, i) ? Verdict{Provenance::kStationary, 0.0F}
+                                       : judge_moving(sensor, {scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
     }
     out.provenance[i] = verdict.provenance;
     out.ghost_probability[i] = verdict.ghost_probability;

@@ -57,8 +57,10 @@ std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::V
   number_of_segments_ = 0;
   const std::span<const CellMean> means = cell_means_.find(points, config_.cell_m);
   positions_.clear();
-  for (const CellMean& mean : means) positions_.push_back(mean.position_m);
-  const std::size_t clusters = dbscan_.cluster(positions_, config_.cluster_radius_m, config_.cluster_min_points);
+  // An ellipse along the vehicle's axes, which a road's rails follow, as a circle in a plane that is stretched across.
+  const double stretch = config_.cluster_length_m / config_.cluster_width_m;
+  for (const CellMean& mean : means) positions_.push_back({mean.position_m.x(), stretch * mean.position_m.y()});
+  const std::size_t clusters = dbscan_.cluster(positions_, config_.cluster_length_m, config_.cluster_min_points);
   const auto labels = dbscan_.labels();
   // Counting sort by cluster: two passes, no comparison, no allocation.
   cluster_begin_.assign(clusters + 1, 0);

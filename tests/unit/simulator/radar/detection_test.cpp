@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
+#include "tests/simulator/radar/cells.hpp"
 #include "tests/simulator/radar/detector.hpp"
 #include "tests/simulator/radar/doppler.hpp"
 #include "tests/simulator/radar/measurement_noise.hpp"
@@ -85,27 +87,83 @@ TEST(Detection, RangeRatesFoldIntoTheUnambiguousInterval) {
   EXPECT_FALSE(resolved.scan->has(scan_field::kAmbiguity));
 }
 
-TEST(Detection, WhatFallsIntoOneCellIsOneDetectionAtTheCentroidOfThePowers) {
+radar::Echo echo(double range_m, double azimuth_rad, double range_rate_mps, double power_db, std::uint64_t key) {
+  radar::Echo e{};
+  e.range_m = range_m;
+  e.azimuth_rad = azimuth_rad;
+  e.range_rate_mps = range_rate_mps;
+  e.power_db = power_db;
+  e.key = key;
+  return e;
+}
+
+TEST(Detection, WhatIsNearerThanACellIsOneDetectionAtTheCentroidOfThePowers) {
   Bench e;
   e.effects.resolution = {1.0, 0.05, 0.5};
   // The stronger by 10·log10(3) dB, where range hardly matters: the centroid is a quarter of the way to the weaker.
   const double stronger = 10.0 * std::log10(3.0);
-  e.scene.scatterers = {{{50.2, 0.5, kHeight_m}, stronger}, {{50.6, 0.5, kHeight_m}, 0.0}};
+  e.scene.scatterers = {{{50.7, 0.5, kHeight_m}, stronger}, {{51.1, 0.5, kHeight_m}, 0.0}};
   const Measured one = measure(e);
-  ASSERT_EQ(one.count(), 1u);
-  EXPECT_NEAR(one.scan->range_m[0], 50.3, 0.01);
-  e.scene.scatterers[1].position_m.x() = 51.6;  // another cell
+  ASSERT_EQ(one.count(), 1u) << "whatever lies between them: there is no grid";
+  EXPECT_NEAR(one.scan->range_m[0], 50.8, 0.01);
+  e.scene.scatterers[1].position_m.x() = 51.75;  // a cell farther
   EXPECT_EQ(measure(e).count(), 2u);
-  e.scene.scatterers[1].position_m = {50.1, 4.5, kHeight_m};  // another azimuth
+  e.scene.scatterers[1].position_m = {50.6, 4.5, kHeight_m};  // another azimuth
   EXPECT_EQ(measure(e).count(), 2u);
   e.scene.scatterers.pop_back();
-  Body& body = e.add_body(4, {50.4, 0.5, kHeight_m}, {3.0, 0.0, 0.0}, 20.0);  // another range rate
+  Body& body = e.add_body(4, {50.9, 0.5, kHeight_m}, {3.0, 0.0, 0.0}, 20.0);  // another range rate
   body.length_m = body.width_m = 0.2;
   EXPECT_EQ(measure(e).count(), 2u);
   e.scene.centres[0].velocity_mps.x() = e.scene.bodies[0].velocity_mps.x() = 0.2;
   const Measured strongest = measure(e);
   ASSERT_EQ(strongest.count(), 1u);
   EXPECT_EQ(strongest.truth[0].provenance, Provenance::kMoving);
+}
+
+TEST(Detection, TheStrongestTakesWhatIsWithinACellOfItAndNoMore) {
+  radar::Cells cells({1.0, 0.05, 0.5});
+  // The middle one is the strongest: it takes both. The first is: it takes the second, and the third is left.
+  std::vector<radar::Echo> echoes = {echo(10.0, 0.0, 0.0, -20.0, 1), echo(10.8, 0.0, 0.0, 0.0, 2),
+                                     echo(11.6, 0.0, 0.0, -20.0, 3)};
+  cells.merge(echoes);
+  ASSERT_EQ(echoes.size(), 1u);
+  EXPECT_EQ(echoes[0].key, 2u);
+  EXPECT_NEAR(echoes[0].range_m, 10.8, 1e-9);
+  EXPECT_NEAR(echoes[0].power_db, 10.0 * std::log10(1.02), 1e-9);
+  echoes = {echo(11.6, 0.0, 0.0, -20.0, 3), echo(10.8, 0.0, 0.0, -10.0, 2), echo(10.0, 0.0, 0.0, 0.0, 1)};
+  cells.merge(echoes);
+  ASSERT_EQ(echoes.size(), 2u);
+  EXPECT_EQ(echoes[0].key, 1u);
+  EXPECT_EQ(echoes[1].key, 3u);
+}
+
+TEST(Detection, CellsDoTheSameAsLookingAtAllPairsInAnyOrder) {
+  const ResolutionCell cell{2.5, 0.07, 0.5};
+  Stream stream(11, "test");
+  std::vector<radar::Echo> echoes;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    echoes.push_back(echo(stream.uniform(1.0, 75.0), stream.uniform(-1.3, 1.3), stream.uniform(-15.0, 15.0),
+                          stream.uniform(-40.0, 0.0), i));
+  }
+  // By the definition: from the strongest down, each takes all that is left within a cell.
+  std::vector<radar::Echo> left = echoes;
+  std::sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.power_db > b.power_db; });
+  std::vector<std::uint64_t> wanted;
+  while (!left.empty()) {
+    const radar::Echo strongest = left.front();
+    wanted.push_back(strongest.key);
+    std::erase_if(left, [&](const auto& e) { return !radar::resolved(cell, strongest, e); });
+  }
+  ASSERT_LT(wanted.size(), 980u);
+  radar::Cells cells(cell);
+  for (int order = 0; order < 3; ++order) {
+    std::vector<radar::Echo> merged = echoes;
+    if (order == 1) std::reverse(merged.begin(), merged.end());
+    if (order == 2) std::rotate(merged.begin(), merged.begin() + 333, merged.end());
+    cells.merge(merged);
+    ASSERT_EQ(merged.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) ASSERT_EQ(merged[i].key, wanted[i]);
+  }
 }
 
 TEST(Detection, TheStrongestComeFirstAndTheRestIsCounted) {
