@@ -33,10 +33,10 @@ constexpr Variant kVariants[] = {
 void ablation(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(5);
   const double duration_s = drive_seconds(options, 11.4);
-  std::vector<ghosts::Config> configs;
+  std::vector<NamedGhostMethod> methods;
   for (const Variant& variant : kVariants) {
-    configs.push_back(ghost_methods().back().config);
-    variant.change(configs.back().mirror);
+    methods.push_back(ghost_methods().back());
+    variant.change(methods.back().config.mirror);
   }
   for (const std::string scenario : {"highway_multipath", "truck_overtaking", "curve_with_rail"}) {
     Table table{"ablation_" + scenario,
@@ -45,8 +45,8 @@ void ablation(const Options& options, Report& report) {
                 {"", "moving", "type 1 a ghost", "type 1 right", "type 2 a ghost", "type 2 right", "clutter not moving",
                  "ghost tracks", "lost object seconds"},
                 {}};
-    const auto outcomes = run_ghost_drives(scenario, configs, seeds, duration_s, options);
-    for (std::size_t v = 0; v < configs.size(); ++v) {
+    const auto outcomes = run_ghost_drives(scenario, methods, seeds, duration_s, options);
+    for (std::size_t v = 0; v < methods.size(); ++v) {
       const std::vector<Outcome>& mine = outcomes[v];
       const auto right = [&](Provenance truth) { return fixed(percent_told(mine, truth, truth).median, 2); };
       const auto ghost = [&](Provenance truth) { return fixed(percent_told_ghost(mine, truth).median, 2); };

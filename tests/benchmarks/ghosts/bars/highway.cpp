@@ -74,7 +74,7 @@ void highway(const Options& options, Report& report) {
   const double duration_s = drive_seconds(options, kDuration_s);
   const std::string how = "median over " + std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";
   const std::vector<NamedGhostMethod> methods = ghost_methods();
-  const auto outcomes = run_ghost_drives(kScenario, configs_of(methods), seeds, duration_s, options);
+  const auto outcomes = run_ghost_drives(kScenario, methods, seeds, duration_s, options);
   for (std::size_t m = 0; m < methods.size(); ++m) {
     report.add(confusion_table("highway_" + methods[m].name,
                                "highway_multipath, " + methods[m].name + ": % of each truth, " + how, outcomes[m]));

@@ -36,7 +36,7 @@ void scenarios(const Options& options, Report& report) {
               {}};
   for (const std::string& scenario : simulator::scenario_names()) {
     if (scenario == "highway_multipath") continue;  // has bars of its own
-    const auto outcomes = run_ghost_drives(scenario, configs_of(methods), seeds, duration_s, options);
+    const auto outcomes = run_ghost_drives(scenario, methods, seeds, duration_s, options);
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const std::vector<Outcome>& mine = outcomes[m];
       const TrackFaults faults = track_faults(mine);

@@ -11,6 +11,7 @@ namespace boresight::bench {
 struct NamedGhostMethod {
   std::string name;
   ghosts::Config config;
+  bool gets_tracks = true;  ///< false: as when the tracker is not there; it tracks all the same, for the record
 };
 
 /// All that the configuration offers; the product's own, which the bars are for, is the last.
@@ -23,12 +24,6 @@ struct NamedGhostMethod {
   mirror.method = ghosts::MethodName::kMirror;
   methods.push_back({"mirror", mirror});
   return methods;
-}
-
-[[nodiscard]] inline std::vector<ghosts::Config> configs_of(const std::vector<NamedGhostMethod>& methods) {
-  std::vector<ghosts::Config> configs;
-  for (const NamedGhostMethod& method : methods) configs.push_back(method.config);
-  return configs;
 }
 
 }  // namespace boresight::bench

@@ -19,9 +19,26 @@ using closed_loop::Back;
 using closed_loop::Object;
 using simulator::DetectionTruth;
 
+/// A method that nobody tells of tracks.
+class WithoutTracks final : public ghosts::Method {
+ public:
+  explicit WithoutTracks(const ghosts::Config& config) : method_(ghosts::make_method(config)) {}
+  void add_tracks(const TrackList&) override {}
+  void classify(const CorrectedScan& scan, ClassifiedScan& out) override { method_->classify(scan, out); }
+  [[nodiscard]] std::size_t map_points() const override { return method_->map_points(); }
+
+ private:
+  std::unique_ptr<ghosts::Method> method_;
+};
+
+std::unique_ptr<ghosts::Method> made(const NamedGhostMethod& method) {
+  if (method.gets_tracks) return ghosts::make_method(method.config);
+  return std::make_unique<WithoutTracks>(method.config);
+}
+
 /// One method with its tracker, and what is counted of them.
 struct Lane {
-  Lane(const VehicleConfig& vehicle, const ghosts::Config& config) : back(vehicle, ghosts::make_method(config)) {}
+  Lane(const VehicleConfig& vehicle, const NamedGhostMethod& method) : back(vehicle, made(method)) {}
   Back back;
   FalseTracks false_tracks;
   TrackedObjects tracked;
@@ -52,7 +69,7 @@ VehicleConfig vehicle_of(const simulator::Scenario& scenario) {
 
 }  // namespace
 
-std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const ghosts::Config> methods,
+std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const NamedGhostMethod> methods,
                                      std::uint64_t seed, double duration_s, const Observer& observe) {
   const simulator::Scenario scenario = simulator::scenario(name);
   const VehicleConfig vehicle = vehicle_of(scenario);
@@ -64,7 +81,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const gh
   Back perfect(vehicle, std::move(knowing));
   TrackedObjects tracked_perfectly;
   std::vector<std::unique_ptr<Lane>> lanes;
-  for (const ghosts::Config& method : methods) lanes.push_back(std::make_unique<Lane>(vehicle, method));
+  for (const NamedGhostMethod& method : methods) lanes.push_back(std::make_unique<Lane>(vehicle, method));
   double second_ends_s = 1.0;
   while (const simulator::Event* event = drive.next()) {
     if (!front.take(*event)) continue;
@@ -101,8 +118,9 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const gh
   return outcomes;
 }
 
-std::vector<std::vector<Outcome>> run_ghost_drives(const std::string& scenario, std::span<const ghosts::Config> methods,
-                                                   std::size_t seeds, double duration_s, const Options& options) {
+std::vector<std::vector<Outcome>> run_ghost_drives(const std::string& scenario,
+                                                   std::span<const NamedGhostMethod> methods, std::size_t seeds,
+                                                   double duration_s, const Options& options) {
   std::vector<std::vector<Outcome>> outcomes(methods.size(), std::vector<Outcome>(seeds));
   parallel_for(seeds, options.jobs, [&](std::size_t i) {
     const std::vector<Outcome> of_seed = run_ghost_drive(scenario, methods, options.first_seed + i, duration_s);

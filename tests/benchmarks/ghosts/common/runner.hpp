@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "services/ghost_filter/core/config.hpp"
 #include "tests/benchmarks/common/options.hpp"
 #include "tests/benchmarks/ghosts/common/confusion.hpp"
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
+#include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/reliability.hpp"
 #include "tests/closed_loop/objects.hpp"
 #include "tests/simulator/drive.hpp"
@@ -39,12 +39,12 @@ using Observer = std::function<void(const Observed&)>;
 
 /// All methods on the same drive, each with a tracker of its own: one outcome a method. `name`: of a scenario or its
 /// file; at most as long as that makes sense. `observe` is called for each scan and method, if given.
-[[nodiscard]] std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const ghosts::Config> methods,
+[[nodiscard]] std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const NamedGhostMethod> methods,
                                                    std::uint64_t seed, double duration_s, const Observer& observe = {});
 
 /// Seeds from options.first_seed on, spread over threads; by method, then seed.
 [[nodiscard]] std::vector<std::vector<Outcome>> run_ghost_drives(const std::string& scenario,
-                                                                 std::span<const ghosts::Config> methods,
+                                                                 std::span<const NamedGhostMethod> methods,
                                                                  std::size_t seeds, double duration_s,
                                                                  const Options& options);
 

@@ -15,6 +15,7 @@ class TruthMethod final : public ghosts::Method {
   void add_tracks(const TrackList&) override {}
   /// What the corrector calls stationary stays stationary: to say otherwise is not the filter's to do.
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
+  [[nodiscard]] std::size_t map_points() const override { return 0; }
 
  private:
   const std::vector<simulator::DetectionTruth>* truth_ = nullptr;

@@ -25,15 +25,15 @@ struct Arguments {
   bool all = false;
 };
 
-ghosts::Config config_of(const Arguments& arguments) {
+NamedGhostMethod method_of(const Arguments& arguments) {
   ghosts::Config config;
   if (!arguments.config_file.empty()) config = ghosts::read_config(config::Reader::open(arguments.config_file));
   config.method = arguments.method == "mirror" ? ghosts::MethodName::kMirror : ghosts::MethodName::kPublished;
-  return config;
+  return {arguments.method, config};
 }
 
 void run(const Arguments& arguments) {
-  const ghosts::Config config = config_of(arguments);
+  const NamedGhostMethod method = method_of(arguments);
   std::ofstream csv;
   if (!arguments.csv_file.empty()) {
     csv.open(arguments.csv_file);
@@ -51,7 +51,7 @@ void run(const Arguments& arguments) {
         if (csv.is_open() && (is_wrong || arguments.all)) write_csv(row, csv);
       }
     };
-    outcomes.push_back(run_ghost_drive(arguments.scenario, {&config, 1}, seed, arguments.duration_s, observe).front());
+    outcomes.push_back(run_ghost_drive(arguments.scenario, {&method, 1}, seed, arguments.duration_s, observe).front());
   }
   csv.flush();
   if (!csv) throw std::runtime_error("cannot write " + arguments.csv_file);

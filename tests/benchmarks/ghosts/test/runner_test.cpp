@@ -10,11 +10,11 @@ namespace {
 TEST(GhostRunner, ADriveIsTheSameWhateverTheThreads) {
   Options one, two;
   one.jobs = 1;
-  const std::vector<ghosts::Config> configs = configs_of(ghost_methods());
-  const auto a = run_ghost_drives("straight_rail", {configs.data(), 1}, 2, 3.0, one).front();
-  const auto b = run_ghost_drives("straight_rail", {configs.data(), 1}, 2, 3.0, two).front();
+  const std::vector<NamedGhostMethod> methods = ghost_methods();
+  const auto a = run_ghost_drives("straight_rail", {methods.data(), 1}, 2, 3.0, one).front();
+  const auto b = run_ghost_drives("straight_rail", {methods.data(), 1}, 2, 3.0, two).front();
   // Another method on the same drive changes nothing of the first.
-  const auto c = run_ghost_drives("straight_rail", configs, 2, 3.0, one).front();
+  const auto c = run_ghost_drives("straight_rail", methods, 2, 3.0, one).front();
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_GT(a[i].scans, 200u);
     for (const Provenance truth : kTruths) {
@@ -29,7 +29,7 @@ TEST(GhostRunner, ADriveIsTheSameWhateverTheThreads) {
   }
   EXPECT_NE(a[0].confusion.count(Provenance::kStationary), a[1].confusion.count(Provenance::kStationary));
   one.first_seed = 2;
-  const auto second = run_ghost_drives("straight_rail", {configs.data(), 1}, 1, 3.0, one).front();
+  const auto second = run_ghost_drives("straight_rail", {methods.data(), 1}, 1, 3.0, one).front();
   EXPECT_EQ(second[0].confusion.count(Provenance::kStationary), a[1].confusion.count(Provenance::kStationary));
 }
 
