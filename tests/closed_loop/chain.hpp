@@ -1,7 +1,6 @@
 // The cores one after the other, as the processes are.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -56,9 +55,7 @@ class Back {
 
   void take(const CorrectedScan& corrected) {
     classified->header = tracks->header = corrected.header;
-    const auto begin = std::chrono::steady_clock::now();
     method_->classify(corrected, *classified);
-    ghost_filter_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
     tracker_.step(*classified);
     tracker_.write(*tracks);
     method_->add_tracks(*tracks);
@@ -66,7 +63,6 @@ class Back {
 
   std::unique_ptr<ClassifiedScan> classified = std::make_unique<ClassifiedScan>();
   std::unique_ptr<TrackList> tracks = std::make_unique<TrackList>();
-  double ghost_filter_us = 0.0;  ///< that the ghost filter took
 
  private:
   std::unique_ptr<ghosts::Method> method_;
