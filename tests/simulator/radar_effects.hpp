@@ -14,6 +14,7 @@ struct Misalignment {
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
   double roll_rad = 0.0;
+  [[nodiscard]] bool operator==(const Misalignment&) const = default;
 };
 
 /// From `time_s` on the radar is crooked by `by` more.
@@ -21,6 +22,7 @@ struct RadarKnock {
   std::uint32_t radar = 0;
   double time_s = 0.0;
   Misalignment by{};
+  [[nodiscard]] bool operator==(const RadarKnock&) const = default;
 };
 
 /// Dirt, snow or ice on a radar: its two-way loss grows linearly from 0 at `begin_s` to `loss_db` at `full_s` and
@@ -32,6 +34,7 @@ struct RadarBlockage {
   double loss_db = 0.0;
   double azimuth_min_rad = -3.2;
   double azimuth_max_rad = 3.2;
+  [[nodiscard]] bool operator==(const RadarBlockage&) const = default;
 };
 
 /// Another radar transmits into this one: the noise floor rises, and false detections appear.
@@ -41,6 +44,7 @@ struct RadarInterference {
   double duration_s = 0.0;
   double noise_rise_db = 0.0;
   double detections_per_scan = 0.0;  ///< mean number of false ones, besides the clutter
+  [[nodiscard]] bool operator==(const RadarInterference&) const = default;
 };
 
 /// Paths by way of mirrors.
@@ -55,6 +59,7 @@ struct MultipathSpec {
   /// target, at most 18 dB; 0: as much to everywhere.
   double bistatic_rad = 0.12;
   bool of_stationary = false;  ///< also of what stands; by a standing mirror such a ghost looks as real as a wall
+  [[nodiscard]] bool operator==(const MultipathSpec&) const = default;
 };
 
 /// What falls into one cell is one detection, the strongest with the centroid of all. 0: no cell in that quantity.
@@ -62,6 +67,7 @@ struct ResolutionCell {
   double range_m = 0.4;
   double azimuth_rad = 0.035;
   double range_rate_mps = 0.15;
+  [[nodiscard]] bool operator==(const ResolutionCell&) const = default;
 };
 
 /// Detection probability: 0.5 where the power over that of a 0 dBsm reflector at 10 m equals `threshold_db`, falling
@@ -71,6 +77,7 @@ struct SensitivitySpec {
   double max_probability = 0.95;
   double rcs_fluctuation_db = 3.0;  ///< standard deviation from scan to scan
   std::uint32_t max_detections = 300;
+  [[nodiscard]] bool operator==(const SensitivitySpec&) const = default;
 };
 
 struct RadarEffects {
@@ -85,6 +92,7 @@ struct RadarEffects {
   ResolutionCell resolution{};
   SensitivitySpec sensitivity{};
   double unambiguous_mps = 80.0;  ///< range rates fold into ± this; 0: they do not fold
+  [[nodiscard]] bool operator==(const RadarEffects&) const = default;
 };
 
 }  // namespace boresight::simulator

@@ -17,6 +17,7 @@ namespace boresight::simulator {
 struct Knot {
   double at = 0.0;
   double value = 0.0;
+  [[nodiscard]] bool operator==(const Knot&) const = default;
 };
 using Knots = std::vector<Knot>;
 
@@ -25,12 +26,14 @@ using Knots = std::vector<Knot>;
 struct RoadSegment {
   double length_m = 0.0;
   double curvature_per_m = 0.0;  ///< positive: to the left
+  [[nodiscard]] bool operator==(const RoadSegment&) const = default;
 };
 
 /// Adds amplitude · sin(arc / length): a winding road.
 struct RoadWave {
   double curvature_per_m = 0.0;
   double length_m = 1.0;
+  [[nodiscard]] bool operator==(const RoadWave&) const = default;
 };
 
 /// Segments from the origin on; straight before the first, the last goes on for ever. The curvature changes linearly
@@ -39,6 +42,7 @@ struct RoadSpec {
   std::vector<RoadSegment> segments;
   double transition_m = 40.0;
   std::vector<RoadWave> waves;
+  [[nodiscard]] bool operator==(const RoadSpec&) const = default;
 };
 
 // ---------------------------------------------------------------- ego vehicle
@@ -54,6 +58,7 @@ struct EgoSpec {
   double width_m = 1.9;
   double height_m = 1.5;
   double rear_overhang_m = 1.0;  ///< rear axle to rear end
+  [[nodiscard]] bool operator==(const EgoSpec&) const = default;
 };
 
 // ---------------------------------------------------------------- structures
@@ -62,6 +67,7 @@ enum class StructureKind : std::uint8_t { kGuardRail, kWall, kNoiseBarrier, kTun
 
 struct Gap {
   double from_m = 0.0, to_m = 0.0;
+  [[nodiscard]] bool operator==(const Gap&) const = default;
 };
 
 /// A thing that mirrors. It runs along the road from `from_m` to `to_m`; with `heading_rad` ≠ 0 it runs straight
@@ -81,6 +87,7 @@ struct StructureSpec {
   std::vector<Gap> gaps;     ///< road positions (or metres from its beginning, with a heading)
   double gap_every_m = 0.0;  ///< and regular ones: 0 none
   double gap_length_m = 0.0;
+  [[nodiscard]] bool operator==(const StructureSpec&) const = default;
 };
 
 // ---------------------------------------------------------------- scatter
@@ -99,6 +106,7 @@ struct ScatterSpec {
   double spacing_m = 1.7;  ///< of a column's points, upwards
   double rcs_min_dbsm = -5.0, rcs_max_dbsm = 10.0;
   double heading_rad = 0.0;  ///< of parked cars on the left side, relative to the road; mirrored on the right one
+  [[nodiscard]] bool operator==(const ScatterSpec&) const = default;
 };
 
 // ---------------------------------------------------------------- bodies
@@ -115,6 +123,7 @@ struct BodySpec {
   double heading_rad = 0.0;
   bool parked = false;
   double length_m = 0.0, width_m = 0.0, height_m = 0.0;
+  [[nodiscard]] bool operator==(const BodySpec&) const = default;
 };
 
 // ----------------------------------------------------------------
@@ -130,6 +139,7 @@ struct Scenario {
   std::vector<ScatterSpec> scatter;
   std::vector<BodySpec> bodies;
   RadarEffects effects;
+  [[nodiscard]] bool operator==(const Scenario&) const = default;
 };
 
 }  // namespace boresight::simulator

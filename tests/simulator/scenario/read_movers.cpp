@@ -17,16 +17,17 @@ constexpr Range kLateral_m{-200.0, 200.0};
 /// `constant`.
 Knots read_knots(Reader& reader, std::string_view constant, std::string_view list, std::string_view at, Range places,
                  Range values, Knots fallback) {
+  // Both are asked for in any case, so that both are known keys.
+  const double everywhere = reader.number(constant, values, fallback.front().value);
+  std::vector<Reader> tables = reader.tables(list);
   if (!reader.has(list)) {
-    if (!reader.has(constant) && fallback.size() != 1) return fallback;
-    return {{0.0, reader.number(constant, values, fallback.front().value)}};
+    if (!reader.has(constant)) return fallback;
+    return {{0.0, everywhere}};
   }
   if (reader.has(constant))
     reader.reject(constant, std::string("stands beside ") + std::string(list) + ": one of both");
-  // Named as known, so that a file with both gets one message.
-  static_cast<void>(reader.number(constant, values, 0.0));
   Knots knots;
-  for (Reader& r : reader.tables(list)) {
+  for (Reader& r : tables) {
     r.require(at);
     r.require(constant);
     knots.push_back({r.number(at, places, 0.0), r.number(constant, values, 0.0)});
