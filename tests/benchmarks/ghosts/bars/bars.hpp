@@ -9,6 +9,7 @@ namespace boresight::bench {
 void highway(const Options& options, Report& report);
 void scenarios(const Options& options, Report& report);
 void ablation(const Options& options, Report& report);
+void plan(const Options& options, Report& report);
 void cost(const Options& options, Report& report);
 
 }  // namespace boresight::bench

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/benchmarks/ghosts/bars/bars.hpp"
+#include "tests/benchmarks/ghosts/common/curves.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
 
@@ -67,12 +68,38 @@ void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Rep
   judge_tracks("highway", outcomes, true, how, report);
 }
 
+void compare(const std::vector<NamedGhostMethod>& methods, const std::vector<std::vector<Outcome>>& outcomes,
+             Report& report) {
+  const auto add = [&](const std::string& what, double published, double bar, auto&& percent) {
+    add_comparison("highway_multipath", what, "Report B", published, report);
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      add_comparison("highway_multipath", what, methods[m].name, percent(outcomes[m]), report);
+    }
+    add_comparison("highway_multipath", what, "bar", bar, report);
+  };
+  const auto right = [](Provenance truth) {
+    return [truth](const std::vector<Outcome>& of) { return percent_told(of, truth, truth).median; };
+  };
+  const auto ghost = [](Provenance truth) {
+    return [truth](const std::vector<Outcome>& of) { return percent_told_ghost(of, truth).median; };
+  };
+  add("moving → moving", 97.71, 99.0, right(Provenance::kMoving));
+  add("stationary → stationary", 92.16, 99.0, right(Provenance::kStationary));
+  add("type 1 → ghost", 76.27, 95.0, ghost(Provenance::kGhostType1));
+  add("type 1 → type 1", 74.35, 90.0, right(Provenance::kGhostType1));
+  add("type 2 → ghost", 95.31, 99.0, ghost(Provenance::kGhostType2));
+  add("type 2 → type 2", 93.82, 97.0, right(Provenance::kGhostType2));
+  add("clutter → not moving", kPublishedClutterNotMoving, 90.0,
+      [](const std::vector<Outcome>& of) { return percent_not_moving(of, Provenance::kClutter).median; });
+}
+
 }  // namespace
 
 void highway(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(20);
   const double duration_s = drive_seconds(options, kDuration_s);
-  const std::string how = "median over " + std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";
+  const std::string how_many = std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";
+  const std::string how = "median over " + how_many;
   const std::vector<NamedGhostMethod> methods = ghost_methods();
   const auto outcomes = run_ghost_drives(kScenario, methods, seeds, duration_s, options);
   for (std::size_t m = 0; m < methods.size(); ++m) {
@@ -83,6 +110,8 @@ void highway(const Options& options, Report& report) {
   judge_published(outcomes.front(), how, report);
   judge_tracks("published", outcomes.front(), false, how, report);
   judge_own(outcomes.back(), how, report);
+  compare(methods, outcomes, report);
+  add_reliability("reliability_highway", "highway_multipath", how_many, methods, outcomes, report);
 }
 
 }  // namespace boresight::bench

@@ -46,14 +46,20 @@ double median_count(const std::vector<Outcome>& outcomes, Provenance truth) {
   return median(values);
 }
 
+TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
+  ghost_tracks += other.ghost_tracks;
+  longest_ghost_track_scans = std::max(longest_ghost_track_scans, other.longest_ghost_track_scans);
+  other_tracks += other.other_tracks;
+  object_seconds += other.object_seconds;
+  lost_seconds += other.lost_seconds;
+  return *this;
+}
+
 TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
   TrackFaults sum;
   for (const Outcome& o : outcomes) {
-    sum.ghost_tracks += o.long_ghost_tracks;
-    sum.longest_ghost_track_scans = std::max(sum.longest_ghost_track_scans, o.longest_ghost_track_scans);
-    sum.other_tracks += o.long_other_tracks;
-    sum.object_seconds += o.lost.object_seconds;
-    sum.lost_seconds += o.lost.lost_seconds;
+    sum += {o.long_ghost_tracks, o.longest_ghost_track_scans, o.long_other_tracks, o.lost.object_seconds,
+            o.lost.lost_seconds};
   }
   return sum;
 }

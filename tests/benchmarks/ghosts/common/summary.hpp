@@ -24,6 +24,7 @@ struct Percent {
 struct TrackFaults {
   std::size_t ghost_tracks = 0, longest_ghost_track_scans = 0, other_tracks = 0;
   std::size_t object_seconds = 0, lost_seconds = 0;
+  TrackFaults& operator+=(const TrackFaults& other);
 };
 [[nodiscard]] TrackFaults track_faults(const std::vector<Outcome>& outcomes);
 

@@ -24,7 +24,7 @@ TEST(GhostRunner, ADriveIsTheSameWhateverTheThreads) {
         EXPECT_EQ(a[i].confusion.percent(truth, label), c[i].confusion.percent(truth, label));
       }
     }
-    EXPECT_GT(a[i].lost.object_seconds, 2u);
+    EXPECT_GT(a[i].lost.object_seconds, 0u);
     EXPECT_GT(a[i].reliability.count(), 100u);
   }
   EXPECT_NE(a[0].confusion.count(Provenance::kStationary), a[1].confusion.count(Provenance::kStationary));

@@ -1,0 +1,133 @@
+"""The figures of docs/ghosts.md."""
+from svg import Panel, legend, of_figure, picture, text
+
+COLOURS = {"moving": "c0", "stationary": "c5", "type 1": "c1", "type 2": "c2", "clutter": "c4", "unknown": "c5"}
+REACH = {"x": (-75.0, 75.0), "y": (-32.0, 32.0)}  # m
+
+
+def dot(panel, point, css, radius):
+    return f'<circle class="f{css}" cx="{panel.x(point[0]):.1f}" cy="{panel.y(point[1]):.1f}" r="{radius}"/>'
+
+
+def inside(point):
+    return all(low <= value <= high for value, (low, high) in zip(point, REACH.values()))
+
+
+def clipped(points):
+    """The part of a straight line that lies in the picture, or nothing."""
+    (x0, y0), (x1, y1) = points
+    begin, end = 0.0, 1.0
+    for start, way, (low, high) in ((x0, x1 - x0, REACH["x"]), (y0, y1 - y0, REACH["y"])):
+        if abs(way) < 1e-9:
+            if not low <= start <= high:
+                return []
+            continue
+        enter, leave = sorted(((low - start) / way, (high - start) / way))
+        begin, end = max(begin, enter), min(end, leave)
+    if begin >= end:
+        return []
+    return [(x0 + s * (x1 - x0), y0 + s * (y1 - y0)) for s in (begin, end)]
+
+
+def marks(panel, points, css, is_told):
+    """Where a detection was told wrong it has a ring."""
+    parts = []
+    for point in filter(inside, map(tuple, points)):
+        parts.append(dot(panel, point, css, 1.6 if css == "c5" else 2.8))
+        if not is_told:
+            parts.append(f'<circle class="l a" cx="{panel.x(point[0]):.1f}" cy="{panel.y(point[1]):.1f}" r="5"/>')
+    return parts
+
+
+def plan(curves):
+    """From above: what detections are, and what each method told them to be."""
+    views = [("truth", "mirror", "What they are, with the true mirrors (dashed)"),
+             ("mirror", "mirror", "What the mirror method tells them to be, with its reflectors; ringed: wrong"),
+             ("published", "published", "What the published method tells them to be, with its reflectors; ringed: wrong")]
+    parts = [text(20, 24, "One cycle of four radars of highway_multipath from above, m; the own vehicle at 0, driving to the right", "t"),
+             legend([(COLOURS[k] + " own", k) for k in ("moving", "stationary", "type 1", "type 2", "clutter")], 20, 46, 840)]
+    top = 90
+    for view, method, title in views:
+        panel = Panel((50, top, 820, 350), REACH["x"], REACH["y"], title)
+        mine = [c for c in curves if c["panel"].split("|")[0] == method]
+        for c in mine:
+            line = clipped(c["points"]) if c["label"] in ("mirror", "reflector") else []
+            if line and c["label"] == ("mirror" if view == "truth" else "reflector"):
+                panel.line(line, "c3 d own" if view == "truth" else "c3 own")
+            if c["label"] == "object" and all(map(inside, c["points"])):
+                panel.line(c["points"], "a")
+        panel.line([(-1.0, -0.9), (3.8, -0.9), (3.8, 0.9), (-1.0, 0.9), (-1.0, -0.9)], "a own")
+        for c in mine:
+            truth = c["panel"].partition("|")[2]
+            if truth:
+                told = c["label"]
+                panel.parts += marks(panel, c["points"], COLOURS[truth if view == "truth" else told],
+                                     view == "truth" or truth == told)
+        parts += panel.parts
+        top += 410
+    return picture(890, top - 20, parts)
+
+
+WHO = {"Report B": "c5", "published": "c2", "mirror": "c0"}
+NAMES = {"Report B": "published method, as printed in Report B", "published": "published method, here", "mirror": "mirror method"}
+
+
+def compare(curves):
+    """Bars side by side: a group for each truth and label, and each scenario; a red mark is what is asked."""
+    groups = {}
+    for c in curves:
+        scenario, what = c["panel"].split("|")
+        groups.setdefault(scenario, {}).setdefault(what, {})[c["label"]] = c["points"][0][1]
+    order = sorted(groups, key=lambda name: (name != "highway_multipath", name))
+    parts = [text(20, 24, "Told as they should be, %, median over 20 drives; red: what is asked of the mirror method", "t"),
+             legend([(css + " own", NAMES[who]) for who, css in WHO.items()], 20, 46, 840)]
+    top = 90
+    for scenario in order:
+        rows = groups[scenario]
+        height = sum(12 * sum(who in values for who in WHO) + 10 for values in rows.values())
+        panel = Panel((190, top, 640, height), (0.0, 100.0), (0.0, 1.0), scenario)
+        panel.parts = [p for p in panel.parts if 'text-anchor="end"' not in p]
+        y = top + 5
+        for what, values in rows.items():
+            first = y
+            for who, css in WHO.items():
+                if who not in values:
+                    continue
+                if values[who] is not None:
+                    panel.parts.append(f'<rect class="f{css}" x="190" y="{y}" width="{panel.x(values[who]) - 190:.1f}" height="10"/>'
+                                       + text(870, y + 9, f"{values[who]:.1f}", "s", "end"))
+                y += 12
+            panel.parts.append(text(182, (first + y) / 2 + 3, what, "", "end"))
+            if values.get("bar") is not None:
+                panel.parts.append(f'<path class="bar" d="M{panel.x(values["bar"]):.1f} {first}V{y - 2}"/>')
+            y += 10
+        parts += panel.parts
+        top += height + 55
+    return picture(890, top - 20, parts)
+
+
+def reliability(curves):
+    """Of what was told with a probability: how often it was so. On the diagonal the probability is one."""
+    parts = [text(20, 24, "Of detections with this ghost_probability, % that were a ghost or clutter", "t"),
+             legend([("c2", NAMES["published"]), ("c0 own", NAMES["mirror"]), ("bar", "as told")], 20, 46, 840)]
+    for i, name in enumerate(dict.fromkeys(c["panel"] for c in curves)):
+        panel = Panel((70 + 420 * i, 90, 340, 340), (0.0, 100.0), (0.0, 100.0), name, "ghost_probability, %")
+        panel.parts.append(f'<path class="bar" d="M{panel.x(0)} {panel.y(0)}L{panel.x(100)} {panel.y(100)}"/>')
+        for c in curves:
+            if c["panel"] != name:
+                continue
+            css = WHO[c["label"]]
+            if c["label"] == "mirror":
+                panel.line(c["points"], css + " own")
+            panel.parts += [dot(panel, p, css, 3.2) for p in c["points"]]
+        parts += panel.parts
+    return picture(890, 480, parts)
+
+
+def draw_all(curves, folder):
+    """Draws those of which there are curves."""
+    folder.mkdir(exist_ok=True)
+    for name, draw in {"plan": plan, "compare": compare, "reliability": reliability}.items():
+        mine = of_figure(curves, name)
+        if mine:
+            (folder / f"ghosts_{name}.svg").write_text(draw(mine))
