@@ -112,6 +112,26 @@ TEST(Effects, AddingOneChangesNoOther) {
   EXPECT_TRUE(std::includes(with_mirrors.begin(), with_mirrors.end(), direct.begin(), direct.end()));
 }
 
+TEST(Effects, WithinACellOfWhatIsRealThereIsNoClutter) {
+  Bench e;
+  e.effects.clutter_per_scan = 20.0;
+  e.scene.scatterers = {{{100.0, 0.0, kHeight_m}, 10.0}};
+  ASSERT_GT(measure(e).of(Provenance::kClutter), 5u);
+  // Cells half the view wide, the range's and the range rate's wider than all there is.
+  e.effects.resolution = {300.0, 0.65, 200.0};
+  std::size_t beyond = 0;
+  for (std::uint32_t cycle = 0; cycle < 50; ++cycle) {
+    const Measured m = measure(e, cycle);
+    ASSERT_EQ(m.of(Provenance::kStationary), 1u);
+    for (std::size_t i = 0; i < m.count(); ++i) {
+      if (m.truth[i].provenance != Provenance::kClutter) continue;
+      ASSERT_GE(std::abs(m.scan->azimuth_rad[i]), 0.65 - 1e-6);
+      ++beyond;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(beyond), 500.0, 80.0);
+}
+
 TEST(Effects, ClutterIsPoissonWithItsMean) {
   Bench e;
   e.effects.clutter_per_scan = 2.5;
