@@ -19,10 +19,13 @@ struct Variant {
 /// Each switches one idea off and leaves the rest as it is.
 constexpr Variant kVariants[] = {
     {"as it is", [](NamedGhostMethod&) {}},
-    {"without tracks", [](NamedGhostMethod& m) { m.gets_tracks = false; }},
+    {"what stands still by a constant of 2 m/s", [](NamedGhostMethod& m) { m.change.stationary_below_mps = 2.0; }},
+    {"without tracks", [](NamedGhostMethod& m) { m.change.gets_tracks = false; }},
+    {"the tracker gets labels, not probabilities", [](NamedGhostMethod& m) { m.change.tells_probabilities = false; }},
     {"reflectors of 0.1 s instead of accumulated ones",
      [](NamedGhostMethod& m) { m.config.mirror.map.memory_s = 0.1; }},
-    {"straight reflectors only", [](NamedGhostMethod& m) { m.config.mirror.map.max_curvature_per_m = 1e-4; }},
+    {"no reflector with a radius under 1 km",
+     [](NamedGhostMethod& m) { m.config.mirror.map.max_curvature_per_m = 1e-3; }},
     {"reflectors without openings", [](NamedGhostMethod& m) { m.config.mirror.map.bin_m = 200.0; }},
     {"vehicles are no mirrors", [](NamedGhostMethod& m) { m.config.mirror.classes.min_mirror_length_m = 1e9; }},
     {"type 2: to be behind a reflector is proof",

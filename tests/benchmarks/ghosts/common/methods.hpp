@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "services/ghost_filter/core/config.hpp"
+#include "tests/benchmarks/ghosts/common/changed_method.hpp"
 
 namespace boresight::bench {
 
 struct NamedGhostMethod {
   std::string name;
   ghosts::Config config;
-  bool gets_tracks = true;  ///< false: as when the tracker is not there; it tracks all the same, for the record
+  Change change{};
 };
 
 /// All that the configuration offers; the product's own, which the bars are for, is the last.
@@ -19,10 +20,10 @@ struct NamedGhostMethod {
   std::vector<NamedGhostMethod> methods;
   ghosts::Config published;
   published.method = ghosts::MethodName::kPublished;
-  methods.push_back({"published", published});
+  methods.push_back({"published", published, {}});
   ghosts::Config mirror;
   mirror.method = ghosts::MethodName::kMirror;
-  methods.push_back({"mirror", mirror});
+  methods.push_back({"mirror", mirror, {}});
   return methods;
 }
 

@@ -6,6 +6,7 @@
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
+#include "tests/benchmarks/ghosts/common/changed_method.hpp"
 #include "tests/benchmarks/ghosts/common/false_tracks.hpp"
 #include "tests/benchmarks/ghosts/common/truth_method.hpp"
 #include "tests/closed_loop/chain.hpp"
@@ -19,26 +20,10 @@ using closed_loop::Back;
 using closed_loop::Object;
 using simulator::DetectionTruth;
 
-/// A method that nobody tells of tracks.
-class WithoutTracks final : public ghosts::Method {
- public:
-  explicit WithoutTracks(const ghosts::Config& config) : method_(ghosts::make_method(config)) {}
-  void add_tracks(const TrackList&) override {}
-  void classify(const CorrectedScan& scan, ClassifiedScan& out) override { method_->classify(scan, out); }
-  [[nodiscard]] std::size_t map_points() const override { return method_->map_points(); }
-
- private:
-  std::unique_ptr<ghosts::Method> method_;
-};
-
-std::unique_ptr<ghosts::Method> made(const NamedGhostMethod& method) {
-  if (method.gets_tracks) return ghosts::make_method(method.config);
-  return std::make_unique<WithoutTracks>(method.config);
-}
-
 /// One method with its tracker, and what is counted of them.
 struct Lane {
-  Lane(const VehicleConfig& vehicle, const NamedGhostMethod& method) : back(vehicle, made(method)) {}
+  Lane(const VehicleConfig& vehicle, const NamedGhostMethod& method)
+      : back(vehicle, std::make_unique<ChangedMethod>(method.config, method.change)) {}
   Back back;
   FalseTracks false_tracks;
   TrackedObjects tracked;

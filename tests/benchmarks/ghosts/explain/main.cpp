@@ -29,7 +29,7 @@ NamedGhostMethod method_of(const Arguments& arguments) {
   ghosts::Config config;
   if (!arguments.config_file.empty()) config = ghosts::read_config(config::Reader::open(arguments.config_file));
   config.method = arguments.method == "mirror" ? ghosts::MethodName::kMirror : ghosts::MethodName::kPublished;
-  return {arguments.method, config};
+  return {arguments.method, config, {}};
 }
 
 void run(const Arguments& arguments) {

@@ -1,0 +1,36 @@
+#include "tests/benchmarks/ghosts/common/changed_method.hpp"
+
+#include <cmath>
+
+namespace boresight::bench {
+
+ChangedMethod::ChangedMethod(const ghosts::Config& config, const Change& change)
+    : change_(change), method_(ghosts::make_method(config)) {}
+
+void ChangedMethod::add_tracks(const TrackList& tracks) {
+  if (change_.gets_tracks) method_->add_tracks(tracks);
+}
+
+void ChangedMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+  constexpr std::uint16_t kTold = corrected_flag::kMoving | corrected_flag::kStationary;
+  if (change_.stationary_below_mps) {
+    *scan_ = scan;
+    for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+      std::uint16_t& flags = scan_->detection_flags[i];
+      if ((flags & kTold) == 0) continue;
+      const bool moves =
+          std::abs(static_cast<double>(scan.range_rate_over_ground_mps[i])) >= *change_.stationary_below_mps;
+      flags = static_cast<std::uint16_t>((flags & ~kTold) |
+                                         (moves ? corrected_flag::kMoving : corrected_flag::kStationary));
+    }
+  }
+  method_->classify(change_.stationary_below_mps ? *scan_ : scan, out);
+  if (change_.tells_probabilities) return;
+  for (std::size_t i = 0; i < out.number_of_valid_detections; ++i) {
+    const Provenance told = out.provenance[i];
+    const bool direct = told == Provenance::kMoving || told == Provenance::kStationary;
+    out.ghost_probability[i] = direct ? 0.0F : 1.0F;
+  }
+}
+
+}  // namespace boresight::bench
