@@ -52,8 +52,8 @@ struct MultipathSpec {
   bool on = true;
   std::uint32_t max_bounces = 3;  ///< on anything, the target included: 2 and 3 make ghosts
   bool ground_bounce = true;      ///< fades direct paths by height and adds images below the road
-  /// Per mirror bounce, on top of the surface's own: what its unevenness scatters elsewhere. The default gives Report B's
-  /// numbers of ghosts in highway_multipath.
+  /// Per mirror bounce, on top of the surface's own: what its unevenness scatters elsewhere. The default gives Report
+  /// B's numbers of ghosts in highway_multipath.
   double extra_loss_db = 8.0;
   /// A corner sends waves back to where they came from: 3 dB less at this angle between the ways out and back at the
   /// target, at most 18 dB; 0: as much to everywhere.

@@ -55,10 +55,19 @@ struct MirrorSurface {
   bool opaque;            ///< hides what is behind, within its heights; a rail on posts does as well
 };
 
+/// Which table of its scenario something that stands comes from.
+struct Origin {
+  enum class Kind : std::uint8_t { kNone, kStructure, kScatter };
+  Kind kind = Kind::kNone;
+  std::uint32_t index = 0;  ///< of the [[structure]] or [[scatter]], from 0 as in messages about the file
+  [[nodiscard]] bool operator==(const Origin&) const = default;
+};
+
 /// A stationary point reflector: post, kerb, leaf, facet of a wall.
 struct Scatterer {
   Eigen::Vector3d position_m;
   double rcs_dbsm;
+  Origin origin{};
 };
 
 /// Buffers are reused from instant to instant.

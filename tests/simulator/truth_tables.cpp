@@ -57,6 +57,20 @@ const char* name_of_condition(std::uint32_t condition) {
   return (condition & source_condition::kPartlyBlocked) != 0 ? "partly_blocked" : "clear";
 }
 
+/// Where in the scenario its source is written.
+std::string name_of(const DetectionTruth& truth) {
+  if (truth.object_id != 0) return "body";
+  switch (truth.origin.kind) {
+    case Origin::Kind::kStructure:
+      return "structure[" + std::to_string(truth.origin.index) + "]";
+    case Origin::Kind::kScatter:
+      return "scatter[" + std::to_string(truth.origin.index) + "]";
+    case Origin::Kind::kNone:
+      break;
+  }
+  return "none";
+}
+
 struct View {
   double most_db = 0.0;  // two-way loss where it is largest
   double mean_db = 0.0;  // over the azimuths of the view
@@ -109,7 +123,7 @@ TruthTables::TruthTables(const std::filesystem::path& folder, const Scenario& sc
   for (const RadarConfig& radar : vehicle.radars) {
     radars_.push_back({&radar, Sight(radar, effects_, ego_body(scenario.ego))});
   }
-  std::fputs("t_s,radar,scan,index,provenance,object,bounces,mirror\n", detections_.get());
+  std::fputs("t_s,radar,scan,index,provenance,object,bounces,mirror,source\n", detections_.get());
   std::fputs(
       "t_s,object,x_vehicle_m,y_vehicle_m,heading_rad,vx_over_ground_mps,vy_over_ground_mps,length_m,width_m,"
       "height_m,kind,parked\n",
@@ -141,8 +155,9 @@ void TruthTables::add_objects(const Drive& drive, double t_s) {
 void TruthTables::add_detections(const Event& event) {
   for (std::size_t i = 0; i < event.truth->size(); ++i) {
     const DetectionTruth& truth = (*event.truth)[i];
-    std::fprintf(detections_.get(), "%.6f,%u,%llu,%zu,%s,%u,%u,%u\n", event.t_s, event.scan->header.source_id,
-                 scan_number(event), i, name_of(truth.provenance), truth.object_id, truth.bounces, truth.mirror_body);
+    std::fprintf(detections_.get(), "%.6f,%u,%llu,%zu,%s,%u,%u,%u,%s\n", event.t_s, event.scan->header.source_id,
+                 scan_number(event), i, name_of(truth.provenance), truth.object_id, truth.bounces, truth.mirror_body,
+                 name_of(truth).c_str());
   }
 }
 

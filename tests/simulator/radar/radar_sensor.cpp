@@ -89,7 +89,7 @@ void RadarSensor::add_scatterers(const Scene& scene, const Eigen::Matrix3d& worl
     if (!effects_.multipath.of_stationary && (azimuth < fov.azimuth_min_rad || azimuth > fov.azimuth_max_rad)) continue;
     if (effects_.multipath.of_stationary) propagation_.choose(s.position_m, 0.0);
     add({s.position_m, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), s.rcs_dbsm, 0, false,
-         radar::key_of(s.position_m)},
+         radar::key_of(s.position_m), s.origin},
         effects_.multipath.of_stationary, kEmbedded_m, world_to_sensor);
   }
 }

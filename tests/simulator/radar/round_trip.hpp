@@ -45,6 +45,7 @@ struct Echo {
 [[nodiscard]] inline DetectionTruth truth_of(const Target& target, const OneWay& out, const OneWay& back) {
   DetectionTruth truth;
   truth.object_id = target.body_id;
+  truth.origin = target.origin;
   truth.bounces = static_cast<std::uint8_t>(out.mirrors + back.mirrors);
   if (back.mirrors > 0) {
     truth.provenance = Provenance::kGhostType2;

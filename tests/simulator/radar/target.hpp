@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "tests/simulator/scene.hpp"
+
 namespace boresight::simulator::radar {
 
 struct Target {
@@ -14,6 +16,7 @@ struct Target {
   std::uint32_t body_id;  ///< 0: a scatterer
   bool moving;
   std::uint64_t key;  ///< of its random draws
+  Origin origin{};    ///< of a scatterer
 
   [[nodiscard]] bool seen_from(const Eigen::Vector3d& place_m) const {
     return facing.isZero() || facing.dot(place_m - position_m) > 0.0;

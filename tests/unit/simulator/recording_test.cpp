@@ -249,6 +249,16 @@ TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
       ASSERT_EQ(row.at("object"), std::to_string(truth.object_id));
       ASSERT_EQ(row.at("bounces"), std::to_string(truth.bounces));
       ASSERT_EQ(row.at("mirror"), std::to_string(truth.mirror_body));
+      const std::string& source = row.at("source");
+      const bool false_one = truth.provenance == Provenance::kClutter;
+      ASSERT_EQ(source == "body", truth.object_id != 0);
+      ASSERT_EQ(source == "none", false_one);
+      if (truth.object_id == 0 && !false_one) {
+        ASSERT_EQ(truth.provenance, Provenance::kStationary);
+        const bool structure = truth.origin.kind == Origin::Kind::kStructure;
+        ASSERT_EQ(source, (structure ? "structure[" : "scatter[") + std::to_string(truth.origin.index) + "]");
+        ASSERT_LT(truth.origin.index, structure ? drive.scenario().structures.size() : drive.scenario().scatter.size());
+      }
       ++kinds[truth.provenance];
     }
   }

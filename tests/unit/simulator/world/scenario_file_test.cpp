@@ -148,7 +148,7 @@ TEST(ScenarioFile, RefusesWhatContradictsItself) {
 TEST(ScenarioFile, ShippedOnesAreFoundByNameAndOwnOnesByPath) {
   const auto names = scenario_names();
   for (const char* name : {"demo_drive", "aligned_drive", "straight_rail", "highway_multipath", "tunnel", "city_canyon",
-                           "parking_garage", "truck_overtaking", "curve_with_rail"}) {
+                           "parking_garage", "truck_overtaking", "curve_with_rail", "junction", "motorway_braking"}) {
     EXPECT_THAT(names, Contains(name));
   }
   for (const std::string& name : names) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -124,6 +125,48 @@ TEST_P(Shipped, NobodyDrivesThroughAnybodyOrAnything) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(scenario_names()));
+
+TEST(World, WhatStandsTellsWhichTableOfTheScenarioItComesFrom) {
+  const Scenario s = scenario("city_canyon");
+  const World world(s, 1, 2.0);
+  Scene scene;
+  world.at(0.5, 100.0, scene);
+  std::size_t kerbs = 0, right_facades = 0;
+  for (const Scatterer& p : scene.scatterers) {
+    ASSERT_NE(p.origin.kind, Origin::Kind::kNone);
+    if (p.origin == Origin{Origin::Kind::kScatter, 0}) {  // the kerb: low, 5.3 … 5.4 m off the road's line
+      ++kerbs;
+      EXPECT_LT(p.position_m.z(), 0.2);
+      EXPECT_NEAR(std::abs(p.position_m.y()), 5.35, 0.06);
+    }
+    if (p.origin == Origin{Origin::Kind::kStructure, 1}) {  // the facade on the right
+      ++right_facades;
+      EXPECT_NEAR(p.position_m.y(), -7.5, 1.0);
+    }
+  }
+  EXPECT_GT(kerbs, 50u);
+  EXPECT_GT(right_facades, 50u);
+}
+
+TEST(World, ParkedCarsKeepTheirNumbersWhateverElseThereIs) {
+  Scenario s = scenario("city_canyon");
+  const World alone(s, 1, 5.0);
+  s.bodies.push_back(s.bodies.front());
+  const World more(s, 1, s.duration_s);
+  std::map<std::uint32_t, Eigen::Vector2d> places;
+  for (std::size_t i = 0; i < more.number_of_bodies(); ++i) {
+    const Body body = more.body(i, 0.0);
+    EXPECT_TRUE(places.emplace(body.id, body.position_m).second) << body.id;
+    EXPECT_EQ(body.id >= World::kParkedIds, i >= s.bodies.size());
+  }
+  std::size_t parked = 0;
+  for (std::size_t i = s.bodies.size() - 1; i < alone.number_of_bodies(); ++i, ++parked) {
+    const Body body = alone.body(i, 0.0);
+    ASSERT_TRUE(places.contains(body.id));
+    EXPECT_EQ(places[body.id], body.position_m);
+  }
+  EXPECT_GT(parked, 10u);
+}
 
 TEST(World, MoreOfOneThingChangesNoOther) {
   Scenario s = scenario("aligned_drive");
