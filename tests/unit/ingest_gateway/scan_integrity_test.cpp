@@ -97,8 +97,8 @@ class SimulatedDrive : public testing::TestWithParam<std::string> {};
 
 TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
   // Crooked radars, a wrong speed signal, traffic, ghosts and clutter are sound data.
-  for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 1, 60.0, nullptr)) {
-    EXPECT_GT(judge->counters().scans, 1000u);
+  for (const auto& [id, judge] : drive(simulator::scenario(GetParam()), 1, 30.0, nullptr)) {
+    EXPECT_GT(judge->counters().scans, 500u);
     EXPECT_EQ(judge->counters().lost_scans, 0u);
     for (const std::uint64_t accused : judge->counters().by_bit) EXPECT_EQ(accused, 0u) << "radar " << id;
   }
