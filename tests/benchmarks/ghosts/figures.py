@@ -72,37 +72,51 @@ WHO = {"Report B": "c5", "published": "c2", "mirror": "c0"}
 NAMES = {"Report B": "published method, as printed in Report B", "published": "published method, here", "mirror": "mirror method"}
 
 
+def compare_panel(box, title, rows):
+    """Bars side by side for each row."""
+    left, top, width, height = box
+    panel = Panel(box, (0.0, 100.0), (0.0, 1.0), title)
+    # Rows are names, not numbers.
+    panel.parts = [p for p in panel.parts if 'text-anchor="end"' not in p]
+    y = top + 5
+    for what, values in rows.items():
+        first = y
+        for who, css in WHO.items():
+            if who not in values:
+                continue
+            panel.parts.append(f'<rect class="f{css}" x="{left}" y="{y}" width="{panel.x(values[who]) - left:.1f}" height="10"/>'
+                               + text(left + width + 36, y + 9, f"{values[who]:.1f}", "s", "end"))
+            y += 12
+        panel.parts.append(text(left - 8, (first + y) / 2 + 3, what, "", "end"))
+        panel.parts.append(f'<path class="bar" d="M{panel.x(values["bar"]):.1f} {first}V{y - 2}"/>')
+        y += 10
+    return panel.parts
+
+
 def compare(curves):
-    """Bars side by side: a group for each truth and label, and each scenario; a red mark is what is asked."""
+    """A panel for each scenario, a group of bars for each truth and label; a red mark is what is asked."""
     groups = {}
     for c in curves:
         scenario, what = c["panel"].split("|")
-        groups.setdefault(scenario, {}).setdefault(what, {})[c["label"]] = c["points"][0][1]
-    order = sorted(groups, key=lambda name: (name != "highway_multipath", name))
-    parts = [text(20, 24, "Told as they should be, %, median over 20 drives; red: what is asked of the mirror method", "t"),
+        percent = c["points"][0][1]
+        if percent is not None:
+            groups.setdefault(scenario, {}).setdefault(what, {})[c["label"]] = percent
+    # Of what does not occur there is only the bar.
+    groups = {name: {what: v for what, v in rows.items() if "mirror" in v} for name, rows in groups.items()}
+    parts = [text(20, 24, "Told as they should be, %, median over drives; red: what is asked of the mirror method", "t"),
              legend([(css + " own", NAMES[who]) for who, css in WHO.items()], 20, 46, 840)]
+    heights = {name: sum(12 * sum(who in v for who in WHO) + 10 for v in rows.values()) for name, rows in groups.items()}
     top = 90
-    for scenario in order:
-        rows = groups[scenario]
-        height = sum(12 * sum(who in values for who in WHO) + 10 for values in rows.values())
-        panel = Panel((190, top, 640, height), (0.0, 100.0), (0.0, 1.0), scenario)
-        panel.parts = [p for p in panel.parts if 'text-anchor="end"' not in p]
-        y = top + 5
-        for what, values in rows.items():
-            first = y
-            for who, css in WHO.items():
-                if who not in values:
-                    continue
-                if values[who] is not None:
-                    panel.parts.append(f'<rect class="f{css}" x="190" y="{y}" width="{panel.x(values[who]) - 190:.1f}" height="10"/>'
-                                       + text(870, y + 9, f"{values[who]:.1f}", "s", "end"))
-                y += 12
-            panel.parts.append(text(182, (first + y) / 2 + 3, what, "", "end"))
-            if values.get("bar") is not None:
-                panel.parts.append(f'<path class="bar" d="M{panel.x(values["bar"]):.1f} {first}V{y - 2}"/>')
-            y += 10
-        parts += panel.parts
+    if "highway_multipath" in groups:
+        height = heights["highway_multipath"]
+        parts += compare_panel((190, top, 640, height), "highway_multipath", groups["highway_multipath"])
         top += height + 55
+    others = sorted(name for name in groups if name != "highway_multipath")
+    for i in range(0, len(others), 2):
+        pair = others[i:i + 2]
+        for column, name in enumerate(pair):
+            parts += compare_panel((125 + 440 * column, top, 265, heights[name]), name, groups[name])
+        top += max(heights[name] for name in pair) + 55
     return picture(890, top - 20, parts)
 
 

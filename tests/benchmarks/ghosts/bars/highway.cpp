@@ -66,6 +66,9 @@ void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Rep
   ghost(Provenance::kGhostType2, 99.0);
   right(Provenance::kGhostType2, 97.0);
   judge_percent("highway", "clutter not moving", percent_not_moving(outcomes, Provenance::kClutter), 90.0, how, report);
+  report.beside("highway", "of type 1 over 0.5 m from their object: told to be a ghost",
+                percent_apart_told(outcomes).median, "%",
+                how + "; these are " + fixed(percent_apart(outcomes).median, 1) + " % of type 1");
   report.beside("highway", "moving left out by the corrector", percent_left_out(outcomes, Provenance::kMoving).median,
                 "%", how);
   judge_tracks("highway", outcomes, true, how, report);

@@ -26,6 +26,10 @@ void judge(const std::string& scenario, const std::vector<Outcome>& outcomes, co
     // A scenario without ghosts of a type has no figure to judge.
     if (std::isnan(ghost.median)) continue;
     judge_percent(scenario, std::string(name_of(type)) + " told to be a ghost", ghost, 90.0, how, report);
+    if (type != Provenance::kGhostType1) continue;
+    report.beside(scenario, "of type 1 over 0.5 m from their object: told to be a ghost",
+                  percent_apart_told(outcomes).median, "%",
+                  how + "; these are " + fixed(percent_apart(outcomes).median, 1) + " % of type 1");
   }
   judge_tracks(scenario, outcomes, true, how, report);
 }
@@ -52,11 +56,14 @@ void scenarios(const Options& options, Report& report) {
   const double duration_s = drive_seconds(options, 20.0);
   const std::string how = std::to_string(seeds) + " seeds of " + fixed(duration_s, 0) + " s";
   const std::vector<NamedGhostMethod> methods = ghost_methods();
-  Table table{"scenarios",
-              "all scenarios, medians over " + how + ": % of moving told to be moving, % of ghosts told to be ghosts",
-              {"scenario", "method", "moving", "stationary", "type 1", "type 2", "clutter not moving",
-               "moving left out", "ghost tracks", "other false tracks", "lost object seconds"},
-              {}};
+  Table table{
+      "scenarios",
+      "all scenarios, medians over " + how +
+          ": % of moving told to be moving, % of ghosts told to be ghosts; "
+          "type 1 apart: % of type 1 that lie over 0.5 m from their object's box, and of these told to be ghosts",
+      {"scenario", "method", "moving", "stationary", "type 1", "type 1 apart", "of these", "type 2",
+       "clutter not moving", "moving left out", "ghost tracks", "other false tracks", "lost object seconds"},
+      {}};
   std::vector<std::vector<Outcome>> together(methods.size());
   for (const std::string& scenario : simulator::scenario_names()) {
     if (scenario == "highway_multipath") continue;  // has bars of its own
@@ -68,6 +75,7 @@ void scenarios(const Options& options, Report& report) {
                             fixed(percent_told(mine, Provenance::kMoving, Provenance::kMoving).median, 2),
                             fixed(percent_told(mine, Provenance::kStationary, Provenance::kStationary).median, 2),
                             fixed(percent_told_ghost(mine, Provenance::kGhostType1).median, 2),
+                            fixed(percent_apart(mine).median, 1), fixed(percent_apart_told(mine).median, 2),
                             fixed(percent_told_ghost(mine, Provenance::kGhostType2).median, 2),
                             fixed(percent_not_moving(mine, Provenance::kClutter).median, 2),
                             fixed(percent_left_out(mine, Provenance::kMoving).median, 2),

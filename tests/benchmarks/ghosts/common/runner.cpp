@@ -42,6 +42,22 @@ void count_detections(const ClassifiedScan& scan, const std::vector<DetectionTru
   }
 }
 
+void count_apart(const ClassifiedScan& scan, const std::vector<DetectionTruth>& truth,
+                 const std::vector<Object>& objects, ApartGhosts& out) {
+  for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+    if (truth[i].provenance != Provenance::kGhostType1) continue;
+    if ((scan.detection_flags[i] & corrected_flag::kRejected) != 0) continue;
+    const auto object =
+        std::find_if(objects.begin(), objects.end(), [&](const Object& o) { return o.id == truth[i].object_id; });
+    ++out.all;
+    if (object == objects.end()) continue;
+    if (object->distance_m({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}) <= ApartGhosts::kApart_m) continue;
+    ++out.apart;
+    const Provenance told = scan.provenance[i];
+    out.apart_told += told == Provenance::kGhostType1 || told == Provenance::kGhostType2 ? 1 : 0;
+  }
+}
+
 Matching match_confirmed(const Back& back, const std::vector<Object>& objects) {
   return match(*back.tracks, back.tracks->number_of_confirmed_tracks, objects);
 }
@@ -87,6 +103,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
       Lane& lane = *lanes[m];
       lane.back.take(*front.corrected);
       count_detections(*lane.back.classified, truth, lane.out);
+      count_apart(*lane.back.classified, truth, objects, lane.out.type1);
       const Matching matching = match_confirmed(lane.back, objects);
       lane.false_tracks.add(*lane.back.classified, truth, *lane.back.tracks, matching);
       lane.tracked.add(matching, objects);

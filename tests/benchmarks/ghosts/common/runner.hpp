@@ -16,9 +16,17 @@
 
 namespace boresight::bench {
 
+/// Type-1 ghosts farther than kApart_m from the box of their object. The others lie where a part of the object itself
+/// could: no test of places can tell them.
+struct ApartGhosts {
+  static constexpr double kApart_m = 0.5;
+  std::uint64_t all = 0, apart = 0, apart_told = 0;  ///< not left out; of these apart; of these told to be a ghost
+};
+
 /// What one method made of one drive, from its first scan on.
 struct Outcome {
   Confusion confusion;
+  ApartGhosts type1;
   Reliability reliability;  ///< of ghost_probability, of detections that the corrector found moving
   LostObjects lost;
   std::uint64_t scans = 0;

@@ -1,6 +1,7 @@
 #include "tests/benchmarks/ghosts/common/summary.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "tests/benchmarks/common/statistics.hpp"
 
@@ -13,6 +14,16 @@ Percent over_seeds(const std::vector<Outcome>& outcomes, Provenance truth, Of&& 
   std::vector<double> values;
   for (const Outcome& o : outcomes) {
     if (o.confusion.count(truth) > 0) values.push_back(of(o.confusion));
+  }
+  return {median(values), quantile(values, 0.0)};
+}
+
+template <typename Of>
+Percent shares(const std::vector<Outcome>& outcomes, Of&& of) {
+  std::vector<double> values;
+  for (const Outcome& o : outcomes) {
+    const auto [some, all] = of(o.type1);
+    if (all > 0) values.push_back(100.0 * static_cast<double>(some) / static_cast<double>(all));
   }
   return {median(values), quantile(values, 0.0)};
 }
@@ -36,6 +47,14 @@ Percent percent_left_out(const std::vector<Outcome>& outcomes, Provenance truth)
     const auto left_out = static_cast<double>(c.rejected(truth));
     return 100.0 * left_out / (left_out + static_cast<double>(c.count(truth)));
   });
+}
+
+Percent percent_apart(const std::vector<Outcome>& outcomes) {
+  return shares(outcomes, [](const ApartGhosts& g) { return std::pair{g.apart, g.all}; });
+}
+
+Percent percent_apart_told(const std::vector<Outcome>& outcomes) {
+  return shares(outcomes, [](const ApartGhosts& g) { return std::pair{g.apart_told, g.apart}; });
 }
 
 double median_count(const std::vector<Outcome>& outcomes, Provenance truth) {

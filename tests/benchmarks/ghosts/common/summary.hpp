@@ -17,6 +17,9 @@ struct Percent {
 [[nodiscard]] Percent percent_not_moving(const std::vector<Outcome>& outcomes, Provenance truth);
 /// Of all detections of the truth, that the corrector left out before the filter.
 [[nodiscard]] Percent percent_left_out(const std::vector<Outcome>& outcomes, Provenance truth);
+/// Of the type-1 ghosts, those apart from their object's box; and of those, told to be ghosts of either type.
+[[nodiscard]] Percent percent_apart(const std::vector<Outcome>& outcomes);
+[[nodiscard]] Percent percent_apart_told(const std::vector<Outcome>& outcomes);
 /// Median number of detections, those left out included.
 [[nodiscard]] double median_count(const std::vector<Outcome>& outcomes, Provenance truth);
 
