@@ -35,6 +35,7 @@ MapConfig read_map(config::Reader reader) {
   MapConfig c;
   c.memory_s = reader.number("memory_s", {0.1, 10.0}, c.memory_s);
   c.update_period_s = reader.number("update_period_s", {0.0, 1.0}, c.update_period_s);
+  c.search_period_s = reader.number("search_period_s", {0.0, 5.0}, c.search_period_s);
   c.cell_m = reader.number("cell_m", {0.1, 5.0}, c.cell_m);
   c.cluster_radius_m = reader.number("cluster_radius_m", {0.1, 20.0}, c.cluster_radius_m);
   c.cluster_min_cells = static_cast<std::size_t>(

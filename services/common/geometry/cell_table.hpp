@@ -42,6 +42,19 @@ class CellTable {
     if (slot.round != round_) slot = {round_, fresh, cell};
     return slot.value;
   }
+  /// Forgets one cell, if it had a number.
+  void erase(GridCell cell) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t hole = find_slot(cell);
+    if (slots_[hole].round != round_) return;
+    // What was displaced by it moves up, so that searches find no hole before their goal (Knuth 6.4, algorithm R).
+    for (std::size_t at = (hole + 1) & mask; slots_[at].round == round_; at = (at + 1) & mask) {
+      if (((at - home(slots_[at].cell)) & mask) < ((at - hole) & mask)) continue;
+      slots_[hole] = slots_[at];
+      hole = at;
+    }
+    slots_[hole].round = 0;
+  }
   /// Nullptr for a cell without a number.
   [[nodiscard]] const std::uint32_t* find(GridCell cell) const {
     const Slot& slot = slots_[find_slot(cell)];
@@ -54,12 +67,15 @@ class CellTable {
     std::uint32_t value = 0;
     GridCell cell{};
   };
-  [[nodiscard]] std::size_t find_slot(GridCell cell) const {
+  [[nodiscard]] std::size_t home(GridCell cell) const {
     // Fibonacci hashing of both halves: neighbouring cells land far apart.
     const std::uint64_t key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(cell.column)) << 32 |
                               static_cast<std::uint32_t>(cell.row);
+    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32) & (slots_.size() - 1);
+  }
+  [[nodiscard]] std::size_t find_slot(GridCell cell) const {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t at = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32) & mask;
+    std::size_t at = home(cell);
     while (slots_[at].round == round_ && slots_[at].cell != cell) at = (at + 1) & mask;
     return at;
   }

@@ -42,5 +42,35 @@ TEST(CellTable, IsAMapThatForgetsAtOnce) {
   }
 }
 
+TEST(CellTable, ForgetsSingleCells) {
+  std::mt19937 random(2);
+  // Few places for many cells: as full as it gets, with long runs of displaced cells.
+  std::uniform_int_distribution<std::int32_t> place(0, 24);
+  constexpr std::size_t kCapacity = 256;
+  CellTable table(kCapacity);
+  std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> reference;
+  for (std::uint32_t step = 0; step < 20000; ++step) {
+    const GridCell cell{place(random), place(random)};
+    if (reference.size() == kCapacity || random() % 2 == 0) {
+      table.erase(cell);
+      reference.erase({cell.column, cell.row});
+    } else {
+      const auto expected = reference.try_emplace({cell.column, cell.row}, step).first->second;
+      ASSERT_EQ(table.at(cell, step), expected) << "step " << step;
+    }
+    if (step % 97 != 0) continue;
+    for (std::int32_t column = 0; column <= 24; ++column) {
+      for (std::int32_t row = 0; row <= 24; ++row) {
+        const auto known = reference.find({column, row});
+        const std::uint32_t* const found = table.find({column, row});
+        ASSERT_EQ(found != nullptr, known != reference.end()) << "step " << step;
+        if (found != nullptr) {
+          ASSERT_EQ(*found, known->second);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace boresight::geometry

@@ -39,6 +39,7 @@ std::vector<double> numbers(const Config& config) {
           config.mirror.tracks_max_age_s,
           m.memory_s,
           m.update_period_s,
+          m.search_period_s,
           m.cell_m,
           m.cluster_radius_m,
           static_cast<double>(m.cluster_min_cells),

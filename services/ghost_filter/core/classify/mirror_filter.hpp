@@ -23,7 +23,7 @@ class MirrorFilter final : public Method {
   void add_tracks(const TrackList& tracks) override;
   /// `ghost_probability` is the probability that a detection is no direct reflection: a ghost or clutter.
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
-  [[nodiscard]] std::size_t map_points() const override { return map_.grid().cells().size(); }
+  [[nodiscard]] std::size_t map_points() const override { return map_.grid().size(); }
 
  private:
   /// How much a track looks like the image of something else, over time.

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include <Eigen/Core>
 
 namespace boresight::ghosts {
 
 struct Curve {
+  static constexpr double kSmall_rad = 0.5;  ///< below this the series are good to 1e-7, and far cheaper
   Eigen::Vector2d origin_m{0.0, 0.0};
   Eigen::Vector2d tangent{1.0, 0.0};  ///< unit
   double curvature_per_m = 0.0;       ///< positive: bends to the left of the tangent
@@ -31,24 +31,30 @@ struct Curve {
   [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return distance_of_local(local(p)); }
   /// Arc length from the origin of the foot of a point given in local coordinates.
   [[nodiscard]] double arc_of_local(const Eigen::Vector2d& q) const {
-    if (std::abs(curvature_per_m) * q.squaredNorm() < 1e-6 * std::abs(q.x()) + 1e-9) return q.x();
+    const double ahead = q.x() / (1.0 - curvature_per_m * q.y());
+    const double tangent_of = curvature_per_m * ahead, square = tangent_of * tangent_of;
+    // The usual case, to 1e-6 of the arc length.
+    if (square < 0.04 && ahead * q.x() >= 0.0)
+      return ahead * (1.0 - square * (1.0 / 3.0 - square * (0.2 - square / 7.0)));
     return std::atan2(curvature_per_m * q.x(), 1.0 - curvature_per_m * q.y()) / curvature_per_m;
   }
   [[nodiscard]] double arc(const Eigen::Vector2d& p) const { return arc_of_local(local(p)); }
   [[nodiscard]] Eigen::Vector2d at(double arc_m) const {
     const double angle = curvature_per_m * arc_m;
-    if (std::abs(angle) < 0.05) {  // the usual case, to 1e-6 of the arc length
-      return origin_m +
-             arc_m * ((1.0 - angle * angle / 6.0) * tangent + 0.5 * angle * (1.0 - angle * angle / 12.0) * normal());
+    if (std::abs(angle) < kSmall_rad) {
+      const double square = angle * angle;
+      return origin_m + arc_m * ((1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))) * tangent +
+                                 0.5 * angle * (1.0 - square / 12.0 * (1.0 - square / 30.0)) * normal());
     }
     const double half = 0.5 * angle;
-    const double chord = arc_m * (std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
-    return origin_m + chord * (std::cos(half) * tangent + std::sin(half) * normal());
+    return origin_m + arc_m * std::sin(half) / half * (std::cos(half) * tangent + std::sin(half) * normal());
   }
   [[nodiscard]] Eigen::Vector2d tangent_at(double arc_m) const {
     const double angle = curvature_per_m * arc_m;
-    if (std::abs(angle) < 0.02) {
-      return (1.0 - 0.5 * angle * angle) * tangent + angle * (1.0 - angle * angle / 6.0) * normal();
+    if (std::abs(angle) < kSmall_rad) {
+      const double square = angle * angle;
+      return (1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0))) * tangent +
+             angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))) * normal();
     }
     return std::cos(angle) * tangent + std::sin(angle) * normal();
   }

@@ -8,7 +8,8 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr int kDraws = 24;
+constexpr int kDraws = 32;
+constexpr int kRounds = 4;           // of fitting and choosing the points anew
 constexpr double kScatter_m = 0.15;  // of a rail's reflections about the rail, when nothing better is known
 
 /// Straight unless the points say otherwise.
@@ -62,7 +63,7 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
   std::optional<Curve> best;
   std::size_t most = config_.min_cells - 1;
   for (int k = 0; k < kDraws; ++k) {
-    const std::optional<Curve> candidate = draw(points, k % 3 == 2);
+    const std::optional<Curve> candidate = draw(points, k % 2 == 1);
     if (!candidate) continue;
     std::size_t inliers = 0;
     for (const Eigen::Vector2d& p : points) inliers += on(*candidate, p) ? 1U : 0U;
@@ -73,7 +74,7 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
   if (!best) return std::nullopt;
 
   FoundCurve found{*best, Eigen::Matrix3d::Zero(), 0.0, 0.0, 0.0};
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     // First of all its points, then of those of its longest stretch without a gap.
     arcs_m_.clear();
     for (const Eigen::Vector2d& p : points) {

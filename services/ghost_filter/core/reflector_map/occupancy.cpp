@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
+#include "services/ghost_filter/core/reflector_map/reflector.hpp"
 
 namespace boresight::ghosts {
 
@@ -11,13 +11,23 @@ constexpr float kHit = 1.2F;
 /// A rail reflects at its posts, of which a scan shows a part only: a miss says far less than a hit.
 constexpr float kMiss = -0.12F;
 constexpr float kSurest = 4.0F, kLeastSure = -3.0F;
+
+float to_probability(float log_odds) {
+  return 1.0F / (1.0F + std::exp(-log_odds));
+}
 }  // namespace
+
+void Occupancy::set(std::int32_t bin, float log_odds) {
+  log_odds_[index(bin)] = log_odds;
+  probability_[index(bin)] = to_probability(log_odds);
+}
 
 void Occupancy::reset(double begin_m, double end_m, double bin_m) {
   bin_m_ = bin_m;
   first_ = bin_of(begin_m);
   last_ = std::min(bin_of(end_m), first_ + kBins - 1);
   log_odds_.fill(kUnseen);
+  probability_.fill(to_probability(kUnseen));
   hit_.fill(false);
 }
 
@@ -29,11 +39,11 @@ bool Occupancy::extend(double arc_m) {
   const std::int32_t bin = bin_of(arc_m);
   if (std::max(last_, bin) - std::min(first_, bin) >= kBins) return false;
   while (last_ < bin) {
-    log_odds_[index(++last_)] = kUnseen;
+    set(++last_, kUnseen);
     hit_[index(last_)] = false;
   }
   while (first_ > bin) {
-    log_odds_[index(--first_)] = kUnseen;
+    set(--first_, kUnseen);
     hit_[index(first_)] = false;
   }
   return true;
@@ -52,10 +62,16 @@ void Occupancy::settle() {
     to = bin;
   }
   for (std::int32_t bin = from; bin <= to; ++bin) {
-    float& odds = log_odds_[index(bin)];
-    odds = std::clamp(odds + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurest);
+    set(bin, std::clamp(log_odds_[index(bin)] + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurest));
     hit_[index(bin)] = false;
   }
+}
+
+void Occupancy::join(double arc_m, const Occupancy& other, double other_arc_m) {
+  const std::int32_t theirs = other.bin_of(other_arc_m);
+  if (theirs < other.first_ || theirs > other.last_ || !extend(arc_m)) return;
+  const std::int32_t bin = bin_of(arc_m);
+  set(bin, std::max(log_odds_[index(bin)], other.log_odds_[index(theirs)]));
 }
 
 void Occupancy::keep(double begin_m, double end_m) {
@@ -69,7 +85,7 @@ double Occupancy::probability(double arc_m, double std_m) const {
   double sum = 0.0;
   for (std::int32_t bin = middle - reach; bin <= middle + reach; ++bin) {
     if (bin < first_ || bin > last_) continue;
-    sum += 1.0 / (1.0 + std::exp(-static_cast<double>(log_odds_[index(bin)])));
+    sum += static_cast<double>(probability_[index(bin)]);
   }
   return sum / (2 * reach + 1);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/ghost_filter/core/reflector_map/curve_fit.hpp"
+#include "services/ghost_filter/core/reflector_map/joining.hpp"
 
 namespace boresight::ghosts {
 
@@ -11,17 +11,22 @@ namespace {
 
 constexpr double kBehind_m = 160.0;  // what lies farther from the vehicle is forgotten
 constexpr double kBirthLogOdds = 0.0;
-constexpr double kSeenLogOdds = 0.7, kUnseenLogOdds = -0.08;
+constexpr double kSeenLogOdds = 0.7, kUnseenLogOdds = -0.08, kImpureLogOdds = -0.7;
 constexpr double kSurest = 5.0, kDead = -2.0;
-constexpr double kGate = 3.0;        // standard deviations
-constexpr double kScatter_m = 0.15;  // of a rail's reflections about its middle line
+constexpr double kGate = 3.0;         // standard deviations
+constexpr double kMostSlack_m = 0.5;  // by which the gate of an uncertain curve is wider than the tolerance
+constexpr double kScatter_m = 0.15;   // of a rail's reflections about its middle line
+constexpr double kBeside = 4.0;       // what lies off the line, but within so many tolerances, speaks against it
+/// Share of the purity of a new reflector that a known one must show; a rough rock face has no more.
+constexpr double kStillPure = 0.5;
+/// Errors of a radar's azimuth in one place, and a post's depth, are common to many detections: they count for less.
+constexpr double kInCommon = 4.0;
 
 }  // namespace
 
 ReflectorMap::ReflectorMap(const MapConfig& config)
     : config_(config), grid_(config.capacity, config.cell_m), curves_(config), dbscan_(config.capacity) {
   reflectors_.reserve(kMaxReflectorSegments);
-  claimed_.reserve(config.capacity);
   free_.reserve(config.capacity);
   sorted_.reserve(config.capacity);
   cluster_begin_.reserve(config.capacity + 2);
@@ -30,153 +35,169 @@ ReflectorMap::ReflectorMap(const MapConfig& config)
 void ReflectorMap::clear() {
   grid_.clear();
   reflectors_.clear();
-  updated_ns_ = 0;
+  index_.clear();
+  next_reflector_ = next_tile_ = 0;
+  updated_ns_ = indexed_ns_ = 0;
+}
+
+Reflector* ReflectorMap::reflector_of(const Eigen::Vector2d& position_m, double variance_m2, double& arc_m) {
+  Reflector* best = nullptr;
+  double least = config_.tolerance_m + kMostSlack_m;
+  index_.visit(position_m, [&](std::uint32_t number) {
+    Reflector& r = reflectors_[number];
+    const Eigen::Vector2d q = r.curve.local(position_m);
+    const double distance = std::abs(r.curve.distance_of_local(q));
+    if (distance >= kBeside * config_.tolerance_m) return;
+    const double arc = r.curve.arc_of_local(q);
+    const double begin = r.begin_m(), end = r.end_m();
+    if (arc < begin - config_.max_gap_m || arc > end + config_.max_gap_m) return;
+    const bool is_within = arc >= begin && arc <= end;
+    const bool is_on = distance <= config_.tolerance_m + std::min(kMostSlack_m, std::sqrt(variance_m2));
+    if (is_within) ++(is_on ? r.evidence.on : r.evidence.beside);
+    // An end is continued by what lies on its line as well as it was measured; along it, as well as the line is known.
+    if (!is_on &&
+        (!is_within || distance > config_.tolerance_m + std::sqrt(variance_m2 + kGate * kGate * r.variance_at(arc)))) {
+      return;
+    }
+    if (distance >= least) return;
+    best = &r;
+    least = distance;
+    arc_m = arc;
+  });
+  return best;
+}
+
+void ReflectorMap::add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns) {
+  if (!position_m.allFinite() || !(variance_m2 >= 0.0)) return;
+  double arc = 0.0;
+  Reflector* const r = reflector_of(position_m, variance_m2, arc);
+  if (r != nullptr && r->occupancy.extend(arc + r->arc_shift_m)) {
+    const Eigen::Vector2d q = r->curve.local(position_m);
+    r->evidence.add_local(q, r->curve.distance_of_local(q), kInCommon * (kScatter_m * kScatter_m + variance_m2));
+    r->occupancy.hit(arc + r->arc_shift_m);
+  }
+  grid_.add(position_m, time_ns, r != nullptr);
 }
 
 void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps) {
-  const double elapsed_s = static_cast<double>(odometry.now_ns() - updated_ns_) * 1e-9;
-  if (elapsed_s >= 0.0 && elapsed_s < config_.update_period_s) return;
-  updated_ns_ = odometry.now_ns();
-  grid_.forget(odometry.now_ns() - static_cast<std::int64_t>(config_.memory_s * 1e9));
-  predict(std::clamp(elapsed_s, 0.0, 1.0), speed_std_mps, yaw_rate_std_radps, odometry.position_m());
-  for (std::uint32_t i = 0; i < reflectors_.size(); ++i) {
-    claim(i);
-    refine(i);
-  }
-  drop_dead(odometry.position_m());
-  search();
-  grid_.settle();
+  now_ns_ = odometry.now_ns();
+  const double elapsed_s = std::clamp(static_cast<double>(now_ns_ - updated_ns_) * 1e-9, 0.0, 1.0);
+  updated_ns_ = std::max(updated_ns_, now_ns_);
+  refine_due(odometry, elapsed_s, {speed_std_mps, yaw_rate_std_radps});
+  visit_tiles(now_ns_, elapsed_s);
+  if (!index_is_due_ && static_cast<double>(now_ns_ - indexed_ns_) * 1e-9 < config_.update_period_s) return;
+  index_.build(reflectors_, config_.max_gap_m);
+  indexed_ns_ = now_ns_;
+  index_is_due_ = false;
 }
 
-void ReflectorMap::predict(double elapsed_s, double speed_std_mps, double yaw_rate_std_radps,
-                           const Eigen::Vector2d& vehicle_m) {
-  for (Reflector& r : reflectors_) {
-    // The origin follows the vehicle, so that the parameters are about what is near.
-    const double arc = std::clamp(r.curve.arc(vehicle_m), r.begin_m(), r.end_m());
-    if (std::abs(arc) > 5.0) {
-      r.curve = r.curve.moved(arc);
-      r.arc_shift_m += arc;
-      r.covariance = moved_covariance(r.covariance, arc);
+void ReflectorMap::refine_due(const Odometry& odometry, double elapsed_s, const DriftStds& stds) {
+  const double share = std::min(1.0, elapsed_s / std::max(1e-3, config_.update_period_s));
+  const auto most = static_cast<std::size_t>(std::ceil(share * static_cast<double>(reflectors_.size())));
+  for (std::size_t k = 0; k < most && !reflectors_.empty(); ++k) {
+    if (next_reflector_ >= reflectors_.size()) next_reflector_ = 0;
+    Reflector& r = reflectors_[next_reflector_];
+    refine(r, odometry, stds);
+    if (r.log_odds >= kDead && !unite(r)) {
+      ++next_reflector_;
+      continue;
     }
-    // The frame drifts as the ego motion is wrong: it turns about the vehicle and slides along its way.
-    const double distance = (r.curve.origin_m - vehicle_m).norm();
-    const double turn = yaw_rate_std_radps * elapsed_s;
-    const double slide = speed_std_mps * elapsed_s + turn * distance + 0.02 * elapsed_s;
-    r.covariance(0, 0) += slide * slide;
-    r.covariance(1, 1) += turn * turn + 1e-6 * elapsed_s;
-    r.covariance(2, 2) += 1e-8 * elapsed_s;
+    // The last one takes the place of what is dead, so that it comes next; numbers change.
+    std::erase_if(reflectors_, [](const Reflector& each) { return each.log_odds < kDead; });
+    index_.clear();
+    index_is_due_ = true;
   }
 }
 
-void ReflectorMap::claim(std::uint32_t index) {
-  claimed_.clear();
-  Reflector& r = reflectors_[index];
-  const std::span<StationaryGrid::Cell> cells = grid_.cells();
-  const double step = config_.cell_m;
-  const auto look = [&](double arc) {
-    const Eigen::Vector2d p = r.curve.at(arc);
-    const Eigen::Vector2d tangent = r.curve.tangent_at(arc);
-    const Eigen::Vector2d across(-tangent.y(), tangent.x());
-    const double variance = r.covariance(0, 0) + arc * (2.0 * r.covariance(0, 1) + arc * r.covariance(1, 1));
-    const double gate = config_.tolerance_m + std::min(0.5, kGate * std::sqrt(std::max(0.0, variance)));
-    bool any = false;
-    for (int k = -1; k <= 1; ++k) {
-      const std::uint32_t at = grid_.index_at(p + k * config_.cell_m * across);
-      if (at == StationaryGrid::kUnclaimed) continue;
-      any = any || cells[at].claimed_by == index;
-      if (cells[at].claimed_by != StationaryGrid::kUnclaimed) continue;
-      if (std::abs(r.curve.distance(cells[at].mean_m())) > gate) continue;
-      cells[at].claimed_by = index;
-      claimed_.push_back(at);
-      any = true;
-    }
-    return any;
-  };
-  const double begin = r.begin_m(), end = r.end_m();
-  for (double arc = begin; arc <= end; arc += step) look(arc);
-  // And beyond its ends as far as there is something, so that it grows as the vehicle drives along it.
-  for (const double sign : {-1.0, 1.0}) {
-    double last = sign < 0.0 ? begin : end;
-    for (double arc = last + sign * step; std::abs(arc - last) <= config_.max_gap_m; arc += sign * step) {
-      if (!look(arc)) continue;
-      if (!r.occupancy.extend(arc + r.arc_shift_m)) break;
-      last = arc;
-    }
-  }
-}
+void ReflectorMap::refine(Reflector& r, const Odometry& odometry, const DriftStds& stds) {
+  const double elapsed_s = std::clamp(static_cast<double>(now_ns_ - r.refined_ns) * 1e-9, 0.0, 1.0);
+  r.refined_ns = now_ns_;
+  // The frame drifts as the ego motion is wrong: it turns about the vehicle and slides along its way.
+  const double distance = (r.curve.origin_m - odometry.position_m()).norm();
+  const double turn = stds.yaw_rate_radps * elapsed_s;
+  const double slide = stds.speed_mps * elapsed_s + turn * distance + 0.02 * elapsed_s;
+  r.covariance(0, 0) += slide * slide;
+  r.covariance(1, 1) += turn * turn + 1e-6 * elapsed_s;
+  r.covariance(2, 2) += 1e-8 * elapsed_s;
 
-void ReflectorMap::refine(std::uint32_t index) {
-  Reflector& r = reflectors_[index];
-  const std::span<const StationaryGrid::Cell> cells = grid_.cells();
-  std::size_t fresh = 0;
-  double square = 0.0;
-  CurveFit fit(r.curve, r.covariance.inverse());
-  for (const std::uint32_t at : claimed_) {
-    const StationaryGrid::Cell& cell = cells[at];
-    if (cell.fresh_count == 0) continue;
-    const Eigen::Vector2d p = cell.fresh_mean_m();
-    const double noise = cell.fresh_variance_m2 / (static_cast<double>(cell.fresh_count) * cell.fresh_count);
-    // Half of the noise is common to what one radar measures in one place: it does not average out.
-    fit.add(p, 4.0 * (kScatter_m * kScatter_m + noise));
-    const double distance = r.curve.distance(p);
-    square += distance * distance;
-    r.occupancy.hit(r.curve.arc(p) + r.arc_shift_m);
-    r.detections += cell.fresh_count;
-    ++fresh;
-  }
+  const Evidence evidence = r.evidence;
+  r.evidence = {};
+  r.detections += evidence.points;
   r.occupancy.settle();
-  if (fresh < 3) {
+  if (evidence.points < 3) {
     r.log_odds += kUnseenLogOdds;
-    return;
+  } else {
+    const bool is_pure = evidence.on >= kStillPure * config_.min_purity * (evidence.on + evidence.beside);
+    r.log_odds = std::min(kSurest, r.log_odds + (is_pure ? kSeenLogOdds : kImpureLogOdds));
+    r.residual_m += 0.1 * (std::sqrt(evidence.squares_m2 / evidence.points) - r.residual_m);
+    CurveFit fit(r.curve, r.covariance.inverse());
+    fit.add(evidence);
+    r.curve = fit.solve();
+    r.covariance = fit.covariance();
   }
-  r.log_odds = std::min(kSurest, r.log_odds + kSeenLogOdds);
-  r.residual_m += 0.1 * (std::sqrt(square / static_cast<double>(fresh)) - r.residual_m);
-  const Curve changed = fit.solve();
-  if (!changed.origin_m.allFinite() || !changed.tangent.allFinite() ||
-      std::abs(changed.curvature_per_m) > config_.max_curvature_per_m) {
+  if (!r.curve.origin_m.allFinite() || !r.curve.tangent.allFinite() || !r.covariance.allFinite() ||
+      std::abs(r.curve.curvature_per_m) > config_.max_curvature_per_m) {
     r.log_odds = kDead - 1.0;
     return;
   }
-  r.curve = changed;
-  r.covariance = fit.covariance();
+  const double beside = r.curve.arc(odometry.position_m());
+  r.occupancy.keep(beside + r.arc_shift_m - kBehind_m, beside + r.arc_shift_m + kBehind_m);
+  if (r.occupancy.last() < r.occupancy.first()) {
+    r.log_odds = kDead - 1.0;
+    return;
+  }
+  // The origin follows the vehicle, so that the parameters are about what is near.
+  const double arc = std::clamp(beside, r.begin_m(), r.end_m());
+  if (std::abs(arc) > 5.0) {
+    r.curve = r.curve.moved(arc);
+    r.arc_shift_m += arc;
+    r.covariance = moved_covariance(r.covariance, arc);
+  }
 }
 
-bool ReflectorMap::repeats(const Reflector& a, const Reflector& b) const {
-  // The shorter one's ends and middle lie on the longer one.
-  const Reflector& longer = a.end_m() - a.begin_m() >= b.end_m() - b.begin_m() ? a : b;
-  const Reflector& shorter = &longer == &a ? b : a;
-  for (const double share : {0.0, 0.5, 1.0}) {
-    const Eigen::Vector2d p = shorter.curve.at(shorter.begin_m() + share * (shorter.end_m() - shorter.begin_m()));
-    const double arc = longer.curve.arc(p);
-    if (arc < longer.begin_m() - config_.bin_m || arc > longer.end_m() + config_.bin_m) return false;
-    if (std::abs(longer.curve.distance(p)) > 2.0 * config_.tolerance_m) return false;
+bool ReflectorMap::unite(Reflector& r) {
+  for (Reflector& other : reflectors_) {
+    if (&other == &r || other.log_odds < kDead) continue;
+    Reflector& longer = other.length_m() > r.length_m() ? other : r;
+    Reflector& shorter = &longer == &r ? other : r;
+    if (!runs_along(longer, shorter, config_) || !join(longer, shorter)) continue;
+    shorter.log_odds = kDead - 1.0;
+    return true;
   }
-  return true;
+  return false;
 }
 
-void ReflectorMap::drop_dead(const Eigen::Vector2d& vehicle_m) {
-  for (Reflector& r : reflectors_) {
-    const double arc = r.curve.arc(vehicle_m) + r.arc_shift_m;
-    r.occupancy.keep(arc - kBehind_m, arc + kBehind_m);
-    if (r.occupancy.last() < r.occupancy.first()) r.log_odds = kDead - 1.0;
+void ReflectorMap::visit_tiles(std::int64_t now_ns, double elapsed_s) {
+  const double share = std::min(1.0, elapsed_s / std::max(1e-3, config_.search_period_s));
+  const auto most = static_cast<std::size_t>(std::ceil(share * static_cast<double>(grid_.tiles().size())));
+  const std::int64_t oldest_ns = now_ns - static_cast<std::int64_t>(config_.memory_s * 1e9);
+  for (std::size_t k = 0; k < most && !grid_.tiles().empty(); ++k) {
+    if (next_tile_ >= grid_.tiles().size()) next_tile_ = 0;
+    if (!grid_.forget(next_tile_, oldest_ns)) continue;
+    StationaryGrid::Tile& tile = grid_.tiles()[next_tile_++];
+    // As long as little is new, what was not found will not be found.
+    if (tile.news == 0 || 8 * tile.news < tile.cells) continue;
+    tile.news = 0;
+    search(tile);
   }
-  for (std::size_t i = 0; i < reflectors_.size(); ++i) {
-    for (std::size_t k = i + 1; k < reflectors_.size(); ++k) {
-      if (reflectors_[i].log_odds < kDead || reflectors_[k].log_odds < kDead) continue;
-      if (!repeats(reflectors_[i], reflectors_[k])) continue;
-      const bool first_longer =
-          reflectors_[i].end_m() - reflectors_[i].begin_m() >= reflectors_[k].end_m() - reflectors_[k].begin_m();
-      reflectors_[first_longer ? k : i].log_odds = kDead - 1.0;
+}
+
+void ReflectorMap::search(const StationaryGrid::Tile& tile) {
+  // With a margin, so that what stands across a border is seen whole.
+  const double width = StationaryGrid::kTileCells * grid_.cell_m(), margin = 0.25 * width;
+  const Eigen::Array2d low(tile.place.column * width - margin, tile.place.row * width - margin);
+  const Eigen::Array2d high = low + width + 2.0 * margin;
+  free_.clear();
+  for (std::int32_t column = tile.place.column - 1; column <= tile.place.column + 1; ++column) {
+    for (std::int32_t row = tile.place.row - 1; row <= tile.place.row + 1; ++row) {
+      grid_.visit_tile({column, row}, [&](const StationaryGrid::Cell& cell) {
+        if (cell.claimed) return;
+        const Eigen::Vector2d p = cell.mean_m();
+        if ((p.array() >= low).all() && (p.array() <= high).all()) free_.push_back(p);
+      });
     }
   }
-  std::erase_if(reflectors_, [](const Reflector& r) { return r.log_odds < kDead; });
-}
-
-void ReflectorMap::search() {
-  free_.clear();
-  for (const StationaryGrid::Cell& cell : grid_.cells()) {
-    if (cell.claimed_by == StationaryGrid::kUnclaimed) free_.push_back(cell.mean_m());
-  }
+  points_searched_ += free_.size();
   if (free_.size() < config_.min_cells) return;
   const std::size_t clusters = dbscan_.cluster(free_, config_.cluster_radius_m, config_.cluster_min_cells);
   const auto labels = dbscan_.labels();
@@ -227,16 +248,26 @@ void ReflectorMap::search_part(std::span<Eigen::Vector2d> points, int depth) {
 }
 
 void ReflectorMap::take(const FoundCurve& found, std::span<const Eigen::Vector2d> points) {
-  Reflector r{found.curve, found.covariance, 0.0, {}, kBirthLogOdds, found.residual_m, 0};
+  Reflector r{.curve = found.curve,
+              .covariance = found.covariance,
+              .arc_shift_m = 0.0,
+              .occupancy = {},
+              .log_odds = kBirthLogOdds,
+              .residual_m = found.residual_m,
+              .detections = static_cast<std::uint32_t>(points.size()),
+              .id = ++births_,
+              .refined_ns = now_ns_};
   r.occupancy.reset(found.begin_m, found.end_m, config_.bin_m);
-  for (const Eigen::Vector2d& p : points) r.occupancy.hit(r.curve.arc(p));
-  r.detections = static_cast<std::uint32_t>(points.size());
+  for (const Eigen::Vector2d& p : points) {
+    r.occupancy.hit(r.curve.arc(p));
+    grid_.claim(p);
+  }
   r.occupancy.settle();
   reflectors_.push_back(r);
-  for (std::size_t i = 0; i + 1 < reflectors_.size(); ++i) {
-    if (!repeats(reflectors_[i], reflectors_.back())) continue;
-    reflectors_.pop_back();
-    return;
+  index_is_due_ = true;
+  if (unite(reflectors_.back())) {
+    std::erase_if(reflectors_, [](const Reflector& each) { return each.log_odds < kDead; });
+    index_.clear();
   }
 }
 

@@ -1,8 +1,9 @@
-// Reflectors (rails, walls) tracked over time: where they run, how surely they exist, where along them they are open.
+// Reflectors (rails, walls) tracked over time. What there is to do is spread over the scans: each takes in its own
+// detections, and a share of the reflectors and of the plane's tiles comes round with it.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,54 +12,17 @@
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/common/geometry/dbscan.hpp"
 #include "services/ghost_filter/core/reflector_map/config.hpp"
-#include "services/ghost_filter/core/reflector_map/curve.hpp"
 #include "services/ghost_filter/core/reflector_map/curve_search.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
+#include "services/ghost_filter/core/reflector_map/reflector.hpp"
+#include "services/ghost_filter/core/reflector_map/reflector_index.hpp"
 #include "services/ghost_filter/core/reflector_map/stationary_grid.hpp"
 
 namespace boresight::ghosts {
 
-/// Where along a reflector something was seen, as log-odds for each stretch of `bin_m`: a gap stays open.
-class Occupancy {
- public:
-  static constexpr std::int32_t kBins = 128;
-  void reset(double begin_m, double end_m, double bin_m);
-  /// Makes room for a place; false if the reflector would become longer than there are bins.
-  bool extend(double arc_m);
-  void hit(double arc_m);
-  /// Of the bins between those that were hit since the last call, those that were not become less likely.
-  void settle();
-  /// Forgets the bins before and after.
-  void keep(double begin_m, double end_m);
-  /// Probability that the reflector is there, averaged over ± `std_m` about a place.
-  [[nodiscard]] double probability(double arc_m, double std_m) const;
-  [[nodiscard]] double begin_m() const { return first_ * bin_m_; }
-  [[nodiscard]] double end_m() const { return (last_ + 1) * bin_m_; }
-  [[nodiscard]] std::int32_t first() const { return first_; }
-  [[nodiscard]] std::int32_t last() const { return last_; }
-  [[nodiscard]] bool is_open(std::int32_t bin) const { return log_odds_[index(bin)] < 0.0F; }
-  [[nodiscard]] double bin_m() const { return bin_m_; }
-
- private:
-  [[nodiscard]] std::int32_t bin_of(double arc_m) const;
-  [[nodiscard]] static std::size_t index(std::int32_t bin) { return static_cast<std::uint32_t>(bin) % kBins; }
-  double bin_m_ = 1.0;
-  std::int32_t first_ = 0, last_ = -1;
-  std::array<float, kBins> log_odds_{};
-  std::array<bool, kBins> hit_{};
-};
-
-struct Reflector {
-  Curve curve;  ///< in the odometry frame
-  Eigen::Matrix3d covariance;
-  double arc_shift_m;  ///< arc length of the curve's origin in the occupancy's count
-  Occupancy occupancy;
-  double log_odds;    ///< that it exists
-  double residual_m;  ///< scatter of its detections across it
-  std::uint32_t detections;
-  [[nodiscard]] double begin_m() const { return occupancy.begin_m() - arc_shift_m; }
-  [[nodiscard]] double end_m() const { return occupancy.end_m() - arc_shift_m; }
-  [[nodiscard]] double existence() const { return 1.0 / (1.0 + std::exp(-log_odds)); }
+/// Stds of the ego motion by which the odometry went on.
+struct DriftStds {
+  double speed_mps, yaw_rate_radps;
 };
 
 class ReflectorMap {
@@ -66,35 +30,44 @@ class ReflectorMap {
   explicit ReflectorMap(const MapConfig& config);
 
   void clear();
-  /// A stationary detection in the odometry frame.
-  void add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns) {
-    grid_.add(position_m, variance_m2, time_ns);
-  }
-  /// Fits the known reflectors to what is new and searches for further ones, if that is due. The stds are of the ego
-  /// motion by which the odometry went on.
+  /// A stationary detection in the odometry frame, with the variance of its place. It tells of the reflector that it
+  /// lies on, if one is known. Not finite: ignored.
+  void add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns);
+  /// After the detections of a scan: fits the reflectors that are due to what is new about them, forgets what is old in
+  /// the tiles that are due and looks for new reflectors there.
   void update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps);
 
   [[nodiscard]] std::span<const Reflector> reflectors() const { return reflectors_; }
   [[nodiscard]] const StationaryGrid& grid() const { return grid_; }
+  /// Reflectors that were found so far.
+  [[nodiscard]] std::uint32_t births() const { return births_; }
+  /// Points that were looked at to find them: the measure of what that costs.
+  [[nodiscard]] std::uint64_t points_searched() const { return points_searched_; }
 
  private:
-  void predict(double elapsed_s, double speed_std_mps, double yaw_rate_std_radps, const Eigen::Vector2d& vehicle_m);
-  void claim(std::uint32_t index);
-  void refine(std::uint32_t index);
-  void search();
+  /// The one that a detection lies on, and where along it.
+  [[nodiscard]] Reflector* reflector_of(const Eigen::Vector2d& position_m, double variance_m2, double& arc_m);
+  void refine_due(const Odometry& odometry, double elapsed_s, const DriftStds& stds);
+  void refine(Reflector& r, const Odometry& odometry, const DriftStds& stds);
+  /// Whether it and another one were one; what is not needed any more is dead then.
+  bool unite(Reflector& r);
+  void visit_tiles(std::int64_t now_ns, double elapsed_s);
+  void search(const StationaryGrid::Tile& tile);
   void search_part(std::span<Eigen::Vector2d> points, int depth);
   void take(const FoundCurve& found, std::span<const Eigen::Vector2d> points);
-  [[nodiscard]] bool repeats(const Reflector& a, const Reflector& b) const;
-  void drop_dead(const Eigen::Vector2d& vehicle_m);
   MapConfig config_;
   StationaryGrid grid_;
   CurveSearch curves_;
   geometry::Dbscan dbscan_;
+  ReflectorIndex index_;
   std::vector<Reflector> reflectors_;
-  std::vector<std::uint32_t> claimed_;
   std::vector<Eigen::Vector2d> free_, sorted_;
   std::vector<std::uint32_t> cluster_begin_;
-  std::int64_t updated_ns_ = 0;
+  std::size_t next_reflector_ = 0, next_tile_ = 0;
+  std::int64_t updated_ns_ = 0, indexed_ns_ = 0, now_ns_ = 0;
+  bool index_is_due_ = true;
+  std::uint32_t births_ = 0;
+  std::uint64_t points_searched_ = 0;
 };
 
 }  // namespace boresight::ghosts

@@ -2,57 +2,91 @@
 
 namespace boresight::ghosts {
 
+namespace {
+
+geometry::GridCell tile_of(geometry::GridCell cell) {
+  const auto divided = [](std::int32_t i) {
+    return (i >= 0 ? i : i - (StationaryGrid::kTileCells - 1)) / StationaryGrid::kTileCells;
+  };
+  return {divided(cell.column), divided(cell.row)};
+}
+
+}  // namespace
+
 StationaryGrid::StationaryGrid(std::size_t capacity, double cell_m)
-    : capacity_(capacity), cell_m_(cell_m), table_(capacity) {
-  cells_.reserve(capacity);
+    : cell_m_(cell_m), table_(capacity), tile_table_(capacity), cells_(capacity) {
+  unused_.reserve(capacity);
+  tiles_.reserve(capacity);
+  clear();
 }
 
 void StationaryGrid::clear() {
-  cells_.clear();
   table_.clear();
+  tile_table_.clear();
+  tiles_.clear();
+  unused_.clear();
+  for (std::size_t i = cells_.size(); i-- > 0;) unused_.push_back(static_cast<std::uint32_t>(i));
 }
 
-void StationaryGrid::add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns) {
+void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed) {
   if (!position_m.allFinite()) return;
   const geometry::GridCell at = geometry::grid_cell(position_m.x(), position_m.y(), cell_m_);
-  if (cells_.size() == capacity_ && table_.find(at) == nullptr) return;
-  const auto fresh = static_cast<std::uint32_t>(cells_.size());
-  const std::uint32_t index = table_.at(at, fresh);
-  if (index == fresh) cells_.emplace_back();
+  const std::uint32_t* const known = table_.find(at);
+  std::uint32_t index;
+  if (known != nullptr) {
+    index = *known;
+  } else {
+    if (unused_.empty()) return;
+    index = unused_.back();
+    unused_.pop_back();
+    table_.at(at, index) = index;
+    const geometry::GridCell place = tile_of(at);
+    const auto last = static_cast<std::uint32_t>(tiles_.size());
+    const std::uint32_t number = tile_table_.at(place, last);
+    if (number == last) tiles_.push_back({.place = place});
+    Tile& tile = tiles_[number];
+    cells_[index] = {.next = tile.first, .place = at};
+    tile.first = index;
+    ++tile.cells;
+    ++tile.news;
+  }
   Cell& cell = cells_[index];
   cell.sum_m += position_m;
-  cell.fresh_sum_m += position_m;
-  cell.fresh_variance_m2 += variance_m2;
   ++cell.count;
-  ++cell.fresh_count;
   cell.last_ns = time_ns;
+  cell.claimed = claimed;
 }
 
-void StationaryGrid::forget(std::int64_t oldest_ns) {
-  table_.clear();
-  std::size_t kept = 0;
-  for (Cell& cell : cells_) {
-    if (cell.last_ns < oldest_ns) continue;
-    const Eigen::Vector2d p = cell.mean_m();
-    // The mean of a cell's points lies in the cell; rounding at its edge may move it into one that is taken.
-    static_cast<void>(table_.at(geometry::grid_cell(p.x(), p.y(), cell_m_), static_cast<std::uint32_t>(kept)));
-    cell.claimed_by = kUnclaimed;
-    cells_[kept++] = cell;
+bool StationaryGrid::forget(std::size_t number, std::int64_t oldest_ns) {
+  Tile& tile = tiles_[number];
+  for (std::uint32_t* link = &tile.first; *link != kUnclaimed;) {
+    Cell& cell = cells_[*link];
+    if (cell.last_ns >= oldest_ns) {
+      link = &cell.next;
+      continue;
+    }
+    table_.erase(cell.place);
+    unused_.push_back(*link);
+    *link = cell.next;
+    cell.count = 0;
+    --tile.cells;
   }
-  cells_.resize(kept);
-}
-
-void StationaryGrid::settle() {
-  for (Cell& cell : cells_) {
-    cell.fresh_sum_m.setZero();
-    cell.fresh_variance_m2 = 0.0;
-    cell.fresh_count = 0;
-  }
+  if (tile.first != kUnclaimed) return true;
+  tile_table_.erase(tile.place);
+  tile = tiles_.back();
+  tiles_.pop_back();
+  if (number < tiles_.size()) tile_table_.at(tile.place, 0) = static_cast<std::uint32_t>(number);
+  return false;
 }
 
 std::uint32_t StationaryGrid::index_at(const Eigen::Vector2d& position_m) const {
   const std::uint32_t* const found = table_.find(geometry::grid_cell(position_m.x(), position_m.y(), cell_m_));
   return found == nullptr ? kUnclaimed : *found;
+}
+
+void StationaryGrid::claim(const Eigen::Vector2d& position_m) {
+  const std::uint32_t index = index_at(position_m);
+  if (index != kUnclaimed) cells_[index].claimed = true;
 }
 
 }  // namespace boresight::ghosts

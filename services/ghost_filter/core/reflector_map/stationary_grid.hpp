@@ -1,4 +1,5 @@
-// The stationary detections of the recent past of all radars, one mean for each cell of a grid that stands still.
+// The stationary detections of the recent past of all radars, one mean for each cell of a grid that stands still. Cells
+// hang together by tiles of the plane, so that what is done about them can be done tile by tile, over many scans.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +15,22 @@ namespace boresight::ghosts {
 
 class StationaryGrid {
  public:
-  static constexpr std::uint32_t kUnclaimed = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kUnclaimed = std::numeric_limits<std::uint32_t>::max();  ///< no cell
+  static constexpr std::int32_t kTileCells = 32;                                          ///< across a tile
   struct Cell {
     Eigen::Vector2d sum_m{0.0, 0.0};
-    Eigen::Vector2d fresh_sum_m{0.0, 0.0};  ///< of the detections since the reflectors were last updated
-    double fresh_variance_m2 = 0.0;         ///< sum of their position variances
-    std::uint32_t count = 0;
-    std::uint32_t fresh_count = 0;
     std::int64_t last_ns = 0;
-    std::uint32_t claimed_by = kUnclaimed;  ///< reflector of this update
+    std::uint32_t count = 0;  ///< 0: not in use
+    std::uint32_t next = kUnclaimed;
+    geometry::GridCell place{};
+    bool claimed = false;  ///< its last detection belongs to a known reflector
     [[nodiscard]] Eigen::Vector2d mean_m() const { return sum_m / count; }
-    [[nodiscard]] Eigen::Vector2d fresh_mean_m() const { return fresh_sum_m / fresh_count; }
+  };
+  struct Tile {
+    geometry::GridCell place{};
+    std::uint32_t first = kUnclaimed;  ///< cell
+    std::uint32_t cells = 0;
+    std::uint32_t news = 0;  ///< cells that were begun since the tile was searched
   };
 
   /// Room for `capacity` cells; points in further ones are dropped until the oldest are forgotten.
@@ -32,23 +38,35 @@ class StationaryGrid {
 
   void clear();
   /// A detection that looks stationary; not finite: ignored.
-  void add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns);
-  /// Forgets the cells last hit before `oldest_ns`, and who claimed the others.
-  void forget(std::int64_t oldest_ns);
-  /// What is fresh now is not at the next update.
-  void settle();
+  void add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed);
+  /// Of the tile with that number, forgets the cells last hit before `oldest_ns`. If nothing is left the tile goes,
+  /// too: the last one has its number then, and false is returned.
+  bool forget(std::size_t tile, std::int64_t oldest_ns);
 
   [[nodiscard]] double cell_m() const { return cell_m_; }
+  [[nodiscard]] std::size_t size() const { return cells_.size() - unused_.size(); }
+  /// With those not in use.
   [[nodiscard]] std::span<const Cell> cells() const { return cells_; }
-  [[nodiscard]] std::span<Cell> cells() { return cells_; }
+  [[nodiscard]] std::span<Tile> tiles() { return tiles_; }
+  /// Calls `visit(cell)` for the cells of the tile at a place, if there is one.
+  template <typename Visit>
+  void visit_tile(geometry::GridCell place, const Visit& visit) {
+    const std::uint32_t* const tile = tile_table_.find(place);
+    for (std::uint32_t i = tile == nullptr ? kUnclaimed : tiles_[*tile].first; i != kUnclaimed; i = cells_[i].next) {
+      visit(cells_[i]);
+    }
+  }
   /// Index of the cell at a position, or kUnclaimed.
   [[nodiscard]] std::uint32_t index_at(const Eigen::Vector2d& position_m) const;
+  /// Says of the cell at a position that it belongs to a reflector.
+  void claim(const Eigen::Vector2d& position_m);
 
  private:
-  std::size_t capacity_;
   double cell_m_;
-  geometry::CellTable table_;
+  geometry::CellTable table_, tile_table_;
   std::vector<Cell> cells_;
+  std::vector<std::uint32_t> unused_;
+  std::vector<Tile> tiles_;
 };
 
 }  // namespace boresight::ghosts

@@ -1,0 +1,51 @@
+#include "services/ghost_filter/core/classify/mirror_fan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::ghosts {
+
+std::size_t MirrorFan::sector_of(const Eigen::Vector2d& direction) {
+  // Round the square |x| + |y| = 1 instead of the circle: as good an order of directions, without an arc tangent.
+  const double size = std::abs(direction.x()) + std::abs(direction.y());
+  const double y = size > 0.0 ? direction.y() / size : 0.0;
+  const double round = direction.x() >= 0.0 ? 1.0 + y : 3.0 - y;  // 0 … 4 from −y by +x
+  return static_cast<std::size_t>(round * (kSectors / 4.0)) % kSectors;
+}
+
+void MirrorFan::enter(std::size_t mirror, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  // The shorter way round, and a sector more on either side: pieces of arcs are taken for straight.
+  const bool left = from.x() * to.y() - from.y() * to.x() >= 0.0;
+  const std::size_t first = sector_of(left ? from : to), last = sector_of(left ? to : from);
+  const std::size_t number = (last + kSectors - first) % kSectors + 3;
+  for (std::size_t k = 0; k < std::min(number, kSectors); ++k) {
+    sectors_[(first + kSectors - 1 + k) % kSectors][mirror / 64] |= std::uint64_t{1} << (mirror % 64);
+  }
+}
+
+void MirrorFan::build(std::span<const Mirror> mirrors, const Eigen::Vector2d& sensor_m) {
+  mirrors_ = mirrors.first(std::min(mirrors.size(), kMaxMirrors));
+  sectors_.fill({});
+  for (std::size_t i = 0; i < mirrors_.size(); ++i) {
+    const Mirror& m = mirrors_[i];
+    const double begin = m.begin_m - kBeyond_m, length = m.end_m - m.begin_m + 2.0 * kBeyond_m;
+    const double turned = std::abs(m.curve.curvature_per_m) * length;
+    const int pieces = std::clamp(static_cast<int>(std::ceil(10.0 * turned)), 1, 64);
+    // How far a piece of an arc leaves its chord; nearer to it than this the sides are not told apart.
+    const double sag = turned * length / (8.0 * pieces * pieces);
+    const double near_m = std::max(0.5, 20.0 * sag);
+    const double arc = m.curve.arc(sensor_m);
+    if (std::abs(m.curve.distance(sensor_m)) < near_m && arc > begin - near_m && arc < begin + length + near_m) {
+      for (Bits& bits : sectors_) bits[i / 64] |= std::uint64_t{1} << (i % 64);
+      continue;
+    }
+    Eigen::Vector2d from = m.curve.at(begin) - sensor_m;
+    for (int k = 1; k <= pieces; ++k) {
+      const Eigen::Vector2d to = m.curve.at(begin + length * k / pieces) - sensor_m;
+      enter(i, from, to);
+      from = to;
+    }
+  }
+}
+
+}  // namespace boresight::ghosts
