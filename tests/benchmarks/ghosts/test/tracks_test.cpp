@@ -30,7 +30,7 @@ class Tracks : public testing::Test {
     scan_->x_vehicle_m[i] = x;
     scan_->y_vehicle_m[i] = y;
     scan_->provenance[i] = label;
-    truth_.push_back({truth, 0, 0, 0});
+    truth_.push_back({.provenance = truth});
   }
   [[nodiscard]] Matching matched() const { return match(*tracks_, tracks_->number_of_confirmed_tracks, objects_); }
   void add_scans(int count) {
