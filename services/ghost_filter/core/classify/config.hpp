@@ -12,18 +12,18 @@ struct ClassConfig {
   double lone_ghost_density = 1e-6;  ///< of type-2 ghosts behind a reflector whose object is not seen
   double hidden_ghost_density =
       4e-5;                       ///< for each m²: of type-1 ghosts behind an object by a reflector that is not known
-  double type1_per_object = 0.3;  ///< expected detections by one reflector
-  double type2_per_object = 0.5;
-  double real_per_object = 4.0;
+  double type1_per_object = 0.6;  ///< expected detections by one reflector
+  double type2_per_object = 1.0;
+  double real_per_object = 3.0;
+  double tentative_weight = 0.1;     ///< of an object whose track is not confirmed yet
+  double wheel_share = 0.25;         ///< of an object's detections that are of wheels or limbs, at other range rates
+  double wheel_ghost_share = 0.005;  ///< of its ghosts
+  double strength_doubt = 0.02;      ///< share of cases in which a detection's strength tells nothing
   double stationary_image_density = 2e-5;  ///< images of the stationary world: for each m², at the range rate they have
-  double weak_rcs_dbsm = -7.0;             ///< under this a detection is rather no vehicle's
-  double strong_rcs_dbsm = 2.0;            ///< above this it is rather no ghost
   double extent_std_m = 1.3;               ///< of a reflection from another place of the same object
-  double range_rate_slack_mps = 0.3;       ///< wheels, turning, bodies that are not rigid
-  double margin_m = 1.0;                   ///< a ghost lies at least this far behind its mirror or object
-  double min_mirror_length_m = 6.0;        ///< of a vehicle whose sides are mirrors
-  double unaligned_std_rad = 0.02;         ///< of the mounting's yaw while no alignment is applied
-  double aligned_std_rad = 0.002;
+  double range_rate_slack_mps = 0.3;       ///< turning, bodies that are not rigid
+  double margin_m = 1.0;                   ///< a ghost of an unknown path lies at least this far behind its object
+  double min_mirror_length_m = 5.0;        ///< of a vehicle whose sides are mirrors
   double ego_front_m = 4.0, ego_rear_m = -1.0, ego_half_width_m = 0.95;  ///< the own body, seen in mirrors
 };
 

@@ -1,4 +1,5 @@
-// How likely each origin of a detection is: expected densities of detections at its place with its range rate.
+// How likely each origin of a detection is: expected densities of detections at its place with its range rate and
+// strength.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +9,13 @@
 #include <Eigen/Core>
 
 #include "services/ghost_filter/core/classify/config.hpp"
+#include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
 
 namespace boresight::ghosts {
-
-/// A tracked vehicle, or the own one, predicted to the scan; vehicle frame and axes.
-struct Object {
-  Eigen::Vector2d position_m{0.0, 0.0};  ///< centre
-  Eigen::Vector2d axis{1.0, 0.0};        ///< of its length, unit
-  double half_length_m = 0.0, half_width_m = 0.0;
-  Eigen::Vector2d velocity_mps{0.0, 0.0};  ///< over ground
-  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();
-  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
-  double weight = 0.0;  ///< probability that it exists and is no image itself
-  bool own = false;     ///< the own vehicle: seen only in mirrors
-};
 
 /// A detection, in the plane.
 struct Measured {
@@ -36,9 +26,12 @@ struct Measured {
   double rcs_dbsm;       ///< NaN: not measured
 };
 
-/// Expected number of detections for each m² and m/s.
+/// Expected number of detections for each m², m/s and dB.
 struct Densities {
   double moving = 0.0, stationary = 0.0, type1 = 0.0, type2 = 0.0, clutter = 0.0;
+  std::uint32_t object = kNobody;  ///< the one whose body makes most of `moving`
+  double of_body = 0.0;            ///< that part
+  double of_tracks = 0.0;          ///< part of `moving` that is of tracked objects
   [[nodiscard]] double sum() const { return moving + stationary + type1 + type2 + clutter; }
 };
 
@@ -65,29 +58,55 @@ class Judge {
   [[nodiscard]] Densities weigh_still(const Measured& measured);
   /// Whether there is a mirror in front of the detection, as probability.
   [[nodiscard]] double behind_mirror(const Measured& measured) const;
+  /// Whether the detection lies on a tracked object and has not the range rate of its body.
+  [[nodiscard]] bool is_of_wheel(const Measured& measured) const;
 
  private:
-  struct Way {
-    Detour detour;
-    std::uint32_t mirror;
+  /// A mirror that the line of sight crosses.
+  struct Crossing {
+    const Mirror* mirror;
+    Turn turn;
+    double beyond;  ///< probability that the detection lies behind it, if it is there
   };
-  struct Ways {
-    std::uint32_t begin = 0, count = 0;
-    bool known = false;
+  /// What would have to be where for a detection to be a ghost of it: something at `place_m` whose velocity v makes
+  /// the range rate over ground q·v + known.
+  struct Target {
+    Eigen::Vector2d place_m;
+    Eigen::Matrix2d covariance;
+    Eigen::Vector2d q;
+    double known_mps, noise_variance;
+    Eigen::Vector2d lit_from_m, seen_from_m;
+    double stretch;                      ///< square metres at the target for each one at the detection
+    double turn_variance;                ///< of the direction to it, rad²
+    const Mirror* mirror;                ///< the last one
+    std::uint32_t other_body = kNobody;  ///< of another mirror on the way
+    bool of_own = false;                 ///< the own vehicle may be the target
   };
-  /// The detours to an object (slot = its number) or a detection of the scan (slot = kMaxObjects + its number).
-  [[nodiscard]] std::span<const Way> ways_to(std::size_t slot, const Eigen::Vector2d& target_m);
-  [[nodiscard]] double of_objects(const Measured& measured, std::uint32_t but_object) const;
+  void cross(const Measured& measured, std::uint32_t but_object);
+  /// Expected density of ghosts, if every object has one, of tracked objects and of what was detected lately.
+  [[nodiscard]] double ghosts_of(const Target& target, const Measured& measured, std::uint32_t but_object,
+                                 std::uint32_t but_index) const;
+  /// `surely_moving`: only of those whose speed is beyond doubt.
+  void of_objects(const Measured& measured, bool surely_moving, Densities& densities) const;
+  /// The same of objects that are not tracked (yet) but were detected, in this scan or just before.
+  [[nodiscard]] double of_movers(const Measured& measured, std::uint32_t index) const;
   [[nodiscard]] bool is_known_still(const Measured& measured) const;
   [[nodiscard]] double of_stationary(const Measured& measured) const;
-  [[nodiscard]] double type2(const Measured& measured, const Mirror& mirror, const Turn& turn,
+  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object) const;
+  [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
+  [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
                              std::uint32_t but_object) const;
-  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object, bool& hidden);
+  /// Those whose way out is by another mirror.
+  [[nodiscard]] double type2_of_two(const Measured& measured, const Crossing& crossing, std::uint32_t index,
+                                    std::uint32_t but_object) const;
+  [[nodiscard]] Target target_of(const Measured& measured, const Crossing& crossing, double rest_m,
+                                 double metres_per_m) const;
+  [[nodiscard]] double image_of_stationary(const Target& target, const Measured& measured) const;
   [[nodiscard]] bool has_company(const Measured& measured, std::uint32_t index) const;
+  [[nodiscard]] double rate_variance(const Measured& m) const;
   ClassConfig config_;
   Surroundings s_{};
-  std::vector<Ways> slots_;
-  std::vector<Way> ways_;
+  std::vector<Crossing> crossings_;
 };
 
 }  // namespace boresight::ghosts

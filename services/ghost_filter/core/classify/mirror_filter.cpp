@@ -13,8 +13,11 @@ namespace boresight::ghosts {
 namespace {
 
 constexpr std::size_t kMaxVehicleSides = 32;
-constexpr double kTrackDensity = 2.5e-5;  // of real tracks, for each m² and m/s
-constexpr double kChordSag_m = 0.2;       // an arc is published as chords that leave it by this at most
+constexpr double kTrackDensity =
+    5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
+constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
+constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
+constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
 
 bool is_usable(const CorrectedScan& scan, std::size_t i) {
   return (scan.detection_flags[i] & corrected_flag::kRejected) == 0 && std::isfinite(scan.x_vehicle_m[i]) &&
@@ -52,7 +55,7 @@ void MirrorFilter::add_tracks(const TrackList& tracks) {
     const std::uint32_t id = i < tracks_->number_of_tracks ? tracks_->tracks[i].tracking_id : 0;
     const auto before = std::find_if(images_before_.begin(), images_before_.end(),
                                      [id](const Image& image) { return image.tracking_id == id; });
-    images_[i] = id != 0 && before != images_before_.end() ? *before : Image{id, -1.0};
+    images_[i] = id != 0 && before != images_before_.end() ? *before : Image{.tracking_id = id, .log_odds = -1.0};
   }
 }
 
@@ -68,7 +71,7 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
       const Track& track = tracks_->tracks[i];
       const Eigen::Vector2d position(track.position_vehicle_m[0], track.position_vehicle_m[1]);
       const Eigen::Vector2d velocity(track.velocity_over_ground_mps[0], track.velocity_over_ground_mps[1]);
-      if (track.status != TrackStatus::kConfirmed || !position.allFinite() || !velocity.allFinite() ||
+      if (track.tracking_id == 0 || !position.allFinite() || !velocity.allFinite() ||
           !std::isfinite(track.heading_rad)) {
         continue;
       }
@@ -87,6 +90,9 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
                                    ? std::clamp(static_cast<double>(track.existence_probability), 0.5, 1.0)
                                    : 0.5;
       o.weight = existence / (1.0 + std::exp(2.0 * images_[i].log_odds));
+      if (track.status != TrackStatus::kConfirmed) o.weight *= c.tentative_weight;
+      o.rcs_dbsm = images_[i].rcs_dbsm;
+      o.rcs_std_db = images_[i].rcs_std_db;
       track_of_object_[objects_.size()] = i;
       objects_.push_back(o);
     }
@@ -122,21 +128,26 @@ void MirrorFilter::place_mirrors() {
     const Object& o = objects_[i];
     if (o.own || o.weight < 0.5 || 2.0 * o.half_length_m < config_.classes.min_mirror_length_m) continue;
     const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
-    const double side = left.dot(sensor_m_ - o.position_m);
-    if (std::abs(side) <= o.half_width_m || mirrors_.size() == mirrors_.capacity()) continue;
-    Mirror m;
-    m.curve = {o.position_m + std::copysign(o.half_width_m, side) * left, o.axis, 0.0};
-    m.covariance = Eigen::Vector3d(0.2 * 0.2 + left.dot(o.position_covariance * left), 0.04 * 0.04, 0.0).asDiagonal();
-    m.begin_m = -o.half_length_m;
-    m.end_m = o.half_length_m;
-    m.existence = 0.8 * o.weight;
-    m.velocity_mps = o.velocity_mps;
-    m.body = i;
-    mirrors_.push_back(m);
+    const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth) {
+      const double side = across.dot(sensor_m_ - o.position_m);
+      if (std::abs(side) <= depth || mirrors_.size() == mirrors_.capacity()) return;
+      Mirror m;
+      m.curve = {o.position_m + std::copysign(depth, side) * across, along, 0.0};
+      m.covariance =
+          Eigen::Vector3d(0.2 * 0.2 + across.dot(o.position_covariance * across), 0.04 * 0.04, 0.0).asDiagonal();
+      m.begin_m = -half;
+      m.end_m = half;
+      m.existence = 0.8 * o.weight;
+      m.velocity_mps = o.velocity_mps;
+      m.body = i;
+      mirrors_.push_back(m);
+    };
+    add_side(o.axis, o.half_length_m, left, o.half_width_m);
+    add_side(left, o.half_width_m, o.axis, o.half_length_m);
   }
 }
 
-Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i, double mounting_std_rad) const {
+Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const {
   Measured m;
   m.position_m = {scan.x_vehicle_m[i], scan.y_vehicle_m[i]};
   const Eigen::Vector2d sight = m.position_m - sensor_m_;
@@ -144,9 +155,10 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i, double
   m.direction = sight / m.range_m;
   m.rate_mps = scan.range_rate_over_ground_mps[i];
   m.range_std_m = positive_or(scan.range_std_m[i], 0.15);
-  m.azimuth_std_rad = std::hypot(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad);
-  m.rate_std_mps = positive_or(scan.range_rate_std_mps[i], 0.05);
+  m.azimuth_std_rad = std::hypot(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad_);
   const double across = m.direction.x() * sensor_velocity_mps_.y() - m.direction.y() * sensor_velocity_mps_.x();
+  // A crooked radar takes the own motion out wrongly.
+  m.rate_std_mps = std::hypot(positive_or(scan.range_rate_std_mps[i], 0.05), across * mounting_std_rad_);
   m.still_std_mps = std::sqrt(m.rate_std_mps * m.rate_std_mps + 0.06 * 0.06 + ego_speed_std_mps_ * ego_speed_std_mps_ +
                               across * across * m.azimuth_std_rad * m.azimuth_std_rad);
   m.rcs_dbsm = (scan.fields & scan_field::kRcs) != 0 ? static_cast<double>(scan.rcs_dbsm[i])
@@ -154,17 +166,20 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i, double
   return m;
 }
 
-void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count, double mounting_std_rad) {
+void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9));
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
-    const Measured m = measured(scan, i, mounting_std_rad);
+    const Measured m = measured(scan, i);
     // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
-    const double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
+    double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
+    // Wheels are too weak to be seen in mirrors.
+    if (judge_.is_of_wheel(m)) weight *= 0.05;
     const double across = m.range_m * m.azimuth_std_rad;
     movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
-                 m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i)});
+                 m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i),
+                 m.rcs_dbsm});
   }
 }
 
@@ -186,9 +201,21 @@ void MirrorFilter::judge_tracks() {
     m.rcs_dbsm = std::numeric_limits<double>::quiet_NaN();
     const Densities d = judge_.weigh(m, kNobody, k);
     const double score = std::clamp(std::log((d.type1 + d.type2 + 1e-12) / kTrackDensity), -3.0, 3.0);
-    double& log_odds = images_[track_of_object_[k]].log_odds;
-    log_odds += 0.1 * (score - log_odds);
+    Image& image = images_[track_of_object_[k]];
+    ++image.judgements;
+    image.log_odds += std::max(kSlowest, 1.0 / (1.0 + image.judgements)) * (score - image.log_odds);
   }
+}
+
+void MirrorFilter::learn_strength(const Densities& densities, const Measured& m) {
+  if (!std::isfinite(m.rcs_dbsm) || densities.of_body < 0.5 * densities.sum()) return;
+  Image& image = images_[track_of_object_[densities.object]];
+  // As a Kalman filter of a constant would, but it never ceases to learn: the aspect changes.
+  constexpr double kLeastStd_db = 1.0;
+  const double variance = image.rcs_std_db * image.rcs_std_db;
+  const double gain = variance / (variance + kBodyStrength.std_db * kBodyStrength.std_db);
+  image.rcs_dbsm += gain * (m.rcs_dbsm - image.rcs_dbsm);
+  image.rcs_std_db = std::max(kLeastStd_db, std::sqrt((1.0 - gain) * variance));
 }
 
 void MirrorFilter::write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const {
@@ -251,9 +278,9 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
   sensor_m_ = {g.sensor_position_vehicle_m[0], g.sensor_position_vehicle_m[1]};
   sensor_velocity_mps_ = {g.sensor_velocity_vehicle_mps[0], g.sensor_velocity_vehicle_mps[1]};
-  ego_speed_std_mps_ = positive_or(g.ego_speed_std_mps, 0.05);
-  const double mounting_std_rad = (scan.flags & pipeline_flag::kNoAlignment) != 0 ? config_.classes.unaligned_std_rad
-                                                                                  : config_.classes.aligned_std_rad;
+  ego_speed_std_mps_ = std::hypot(positive_or(g.ego_speed_std_mps, 0.05),
+                                  positive_or(scan.speed_scale_std, 0.0) * static_cast<double>(g.ego_speed_mps));
+  mounting_std_rad_ = std::sqrt(positive_or(scan.mounting_covariance[5], 0.0));
   if (!odometry_.advance(time_ns, g.ego_speed_mps, g.ego_yaw_rate_radps)) {
     map_.clear();
     movers_.clear();
@@ -261,23 +288,31 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   predict_objects(scan);
   place_mirrors();
   judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &odometry_, &movers_, &map_.grid()});
-  gather_movers(scan, count, mounting_std_rad);
+  gather_movers(scan, count);
   judge_tracks();
 
+  std::size_t mover = movers_.earlier();
   for (std::size_t i = 0; i < count; ++i) {
     out.provenance[i] = Provenance::kUnknown;
     out.ghost_probability[i] = 0.0F;
     if (!is_usable(scan, i)) continue;
     const bool moving = (scan.detection_flags[i] & corrected_flag::kMoving) != 0;
     if (!moving && (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
-    const Measured m = measured(scan, i, mounting_std_rad);
-    write_verdict(moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m), i, out);
+    const Measured m = measured(scan, i);
+    const Densities d = moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m);
+    write_verdict(d, i, out);
+    learn_strength(d, m);
+    if (moving && mover < movers_.size() && movers_[mover].index == i) {
+      // Where there is a track, that tells the next scans more than single detections.
+      const bool tracked = d.of_tracks > kTrackTells * d.sum();
+      movers_.set_weight(mover++, tracked ? 0.0 : d.moving / std::max(d.sum(), 1e-300));
+    }
   }
 
   // What is stationary beyond doubt shapes the map, after the scan was judged by what was known before.
   for (std::size_t i = 0; i < count; ++i) {
     if (out.provenance[i] != Provenance::kStationary) continue;
-    const Measured m = measured(scan, i, 0.0);
+    const Measured m = measured(scan, i);
     const double across = m.range_m * m.azimuth_std_rad;
     map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
   }

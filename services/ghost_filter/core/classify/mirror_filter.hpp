@@ -26,17 +26,20 @@ class MirrorFilter final : public Method {
   [[nodiscard]] std::size_t map_points() const override { return map_.grid().size(); }
 
  private:
-  /// How much a track looks like the image of something else, over time.
+  /// How much a track looks like the image of something else, over time, and how strongly it reflects.
   struct Image {
     std::uint32_t tracking_id = 0;
     double log_odds = 0.0;
+    std::uint32_t judgements = 0;
+    double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, as far as they were heard
   };
   void predict_objects(const CorrectedScan& scan);
   void place_mirrors();
-  void gather_movers(const CorrectedScan& scan, std::size_t count, double mounting_std_rad);
+  void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
+  void learn_strength(const Densities& densities, const Measured& measured);
   void write_segments(ClassifiedScan& out) const;
-  [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i, double mounting_std_rad) const;
+  [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i) const;
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
   MirrorConfig config_;
   Odometry odometry_;
@@ -50,7 +53,7 @@ class MirrorFilter final : public Method {
   std::array<Image, kMaxTracks> images_{}, images_before_{};
   bool has_tracks_ = false;
   Eigen::Vector2d sensor_m_{0.0, 0.0}, sensor_velocity_mps_{0.0, 0.0};
-  double ego_speed_std_mps_ = 0.0;
+  double ego_speed_std_mps_ = 0.0, mounting_std_rad_ = 0.0;
 };
 
 }  // namespace boresight::ghosts

@@ -20,7 +20,7 @@ void RecentMovers::link(std::uint32_t i) {
 }
 
 void RecentMovers::forget(std::int64_t oldest_ns) {
-  std::erase_if(movers_, [oldest_ns](const Mover& m) { return m.time_ns < oldest_ns; });
+  std::erase_if(movers_, [oldest_ns](const Mover& m) { return m.time_ns < oldest_ns || m.weight < kLeastWeight; });
   earlier_ = movers_.size();
   first_in_cell_.clear();
   for (std::uint32_t i = 0; i < movers_.size(); ++i) link(i);

@@ -16,9 +16,10 @@ struct Mover {
   Eigen::Vector2d direction;  ///< of its line of sight, unit
   double rate_mps;            ///< over ground
   double variance_m2;         ///< of its position
-  double weight;              ///< of being real, not a ghost itself
+  double weight;              ///< of being real, not a ghost itself, and of something that is not tracked
   std::int64_t time_ns;
   std::uint32_t index;  ///< in its scan
+  double rcs_dbsm;      ///< NaN: not measured
 };
 
 class RecentMovers {
@@ -26,9 +27,12 @@ class RecentMovers {
   static constexpr std::size_t kCapacity = 8192;
   RecentMovers();
   void clear();
-  /// Forgets what is older. To be called before the scan's own are added; they are the last ones then.
+  /// Forgets what is older, and what weighs next to nothing. To be called before the scan's own are added; they are the
+  /// last ones then.
   void forget(std::int64_t oldest_ns);
   void add(const Mover& mover);
+  /// What the verdict on one was, for the scans to come.
+  void set_weight(std::size_t i, double weight) { movers_[i].weight = weight; }
   /// Number of those of earlier scans: those from here on are of the present one.
   [[nodiscard]] std::size_t earlier() const { return earlier_; }
   [[nodiscard]] const Mover& operator[](std::size_t i) const { return movers_[i]; }
@@ -47,6 +51,7 @@ class RecentMovers {
     }
   }
   static constexpr double kCell_m = 4.0;
+  static constexpr double kLeastWeight = 0.02;
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;

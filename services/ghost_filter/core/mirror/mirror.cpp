@@ -96,7 +96,38 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
   if (probability < 0.01) return std::nullopt;
   const Eigen::Vector2d u = out / first, d = on / second;
   const double sine = std::abs(u.x() * tangent.y() - u.y() * tangent.x());
-  return Detour{first + second, u, d, probability, 2.0 * sine * std::sqrt(variance_at(mirror, arc))};
+  return Detour{first + second,
+                point,
+                {-tangent.y(), tangent.x()},
+                u,
+                d,
+                probability,
+                2.0 * sine * std::sqrt(variance_at(mirror, arc))};
+}
+
+std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
+                            const Eigen::Vector2d& direction, double length_m, double least_m) {
+  // By the sensor's image in the mirror's tangent the way is straight: |T − from| + |T − image| = length.
+  const bool bent = mirror.curve.curvature_per_m != 0.0;
+  double arc = mirror.curve.arc(sensor_m);
+  if (bent) arc = 0.5 * (arc + mirror.curve.arc(from_m + 0.5 * length_m * direction));
+  Eigen::Vector2d point = mirror.curve.at(arc), tangent = mirror.curve.tangent_at(arc);
+  for (int round = 0;; ++round) {
+    const Eigen::Vector2d normal(-tangent.y(), tangent.x());
+    const Eigen::Vector2d image = sensor_m - 2.0 * normal.dot(sensor_m - point) * normal;
+    const Eigen::Vector2d back = from_m - image;
+    const double denominator = 2.0 * (length_m + back.dot(direction));
+    if (denominator < 1e-6) return std::nullopt;
+    const double rest = (length_m * length_m - back.squaredNorm()) / denominator;
+    if (rest < least_m || rest > length_m) return std::nullopt;
+    const std::optional<Detour> detour = detour_to(mirror, sensor_m, from_m + rest * direction);
+    if (!detour) return std::nullopt;
+    if (!bent || round == 2) {
+      return Meeting{rest, 1.0 / std::max(0.02, 1.0 + direction.dot(detour->arrival)), *detour};
+    }
+    point = detour->point_m;
+    tangent = {detour->normal.y(), -detour->normal.x()};
+  }
 }
 
 }  // namespace boresight::ghosts

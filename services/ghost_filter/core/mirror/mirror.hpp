@@ -56,12 +56,26 @@ struct Turn {
 /// The way from the sensor by a mirror to a known place.
 struct Detour {
   double length_m;            ///< ℓ'
+  Eigen::Vector2d point_m;    ///< W
+  Eigen::Vector2d normal;     ///< of the mirror at W, unit
   Eigen::Vector2d departure;  ///< u, unit
   Eigen::Vector2d arrival;    ///< d, unit
-  double probability;
+  double probability;         ///< that there is something at W
   double length_std_m;
 };
 [[nodiscard]] std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
                                               const Eigen::Vector2d& target_m);
+
+/// Where on a ray something would have to be that is reached by way of the mirror.
+struct Meeting {
+  double rest_m;        ///< from the ray's begin
+  double metres_per_m;  ///< by which it lies farther if the whole way is longer by one metre
+  Detour detour;        ///< to it
+};
+/// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
+/// mirror to T have the sum `length_m`. Nothing if it is not there or less than `least_m` along.
+[[nodiscard]] std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
+                                          const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                          double length_m, double least_m);
 
 }  // namespace boresight::ghosts

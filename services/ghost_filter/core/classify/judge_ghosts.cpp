@@ -1,0 +1,223 @@
+// Ghosts: a detection is one as far as there is something real where it would have to be, moving as it would have to.
+#include <algorithm>
+#include <cmath>
+
+#include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/normal.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr double kSpeedAlong_mps = 20.0, kSpeedAcross_mps = 1.5, kSpeedAnyway_mps = 10.0;
+constexpr double kAlongShare = 0.75;
+constexpr double kHiddenRate_mps = 5.0;  // by which a type-1 ghost's range rate differs from its object's
+constexpr double kLeastRest_m = 0.3;     // behind a mirror
+constexpr double kLeastChance = 0.05;    // of two mirrors being there: less is not followed
+// Of one object's type-2 ghosts by one mirror, shares by the way out: by the same mirror, directly, by another mirror.
+constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
+constexpr double kAround_m = 2.0;        // of a track's box
+constexpr double kFluctuation_db = 4.0;  // of one reflection from scan to scan
+constexpr double kSame = 0.4;            // share of ghosts whose very reflection was detected directly, too
+
+/// Density of `value` as q·v, of a velocity v of which one component is measured, e·v = rate: most go along the mirror
+/// (rails and walls follow the road), the others anywhere.
+double rate_density(double value, const Eigen::Vector2d& q, const Eigen::Vector2d& e, double rate, double rate_variance,
+                    const Eigen::Vector2d& along, double variance) {
+  const Eigen::Vector2d across(-along.y(), along.x());
+  const auto given = [&](double var_along, double var_across) {
+    const double qa = q.dot(along), qc = q.dot(across), ea = e.dot(along), ec = e.dot(across);
+    const double qe = qa * ea * var_along + qc * ec * var_across;
+    const double ee = ea * ea * var_along + ec * ec * var_across + rate_variance;
+    const double qq = qa * qa * var_along + qc * qc * var_across;
+    return gaussian(value - qe / ee * rate, std::max(0.0, qq - qe * qe / ee) + variance);
+  };
+  return kAlongShare * given(square(kSpeedAlong_mps), square(kSpeedAcross_mps)) +
+         (1.0 - kAlongShare) * given(square(kSpeedAnyway_mps), square(kSpeedAnyway_mps));
+}
+
+}  // namespace
+
+double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t but_object,
+                        std::uint32_t but_index) const {
+  double of_tracks = 0.0;
+  const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
+  const double doubt = config_.strength_doubt;
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+    const Object& o = s_.objects[i];
+    if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) continue;
+    const Reflections there = reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
+    if (there.wheel <= 0.0) continue;
+    const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
+    const RateDensity rates = rates_at(o, m.rate_mps - target.known_mps, target.q, noise);
+    of_tracks += o.weight *
+                 ((1.0 - config_.wheel_ghost_share) * there.body * rates.body +
+                  config_.wheel_ghost_share * there.wheel * rates.wheel) *
+                 likelihood(kGhostStrength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
+  }
+  // Objects that are not tracked (yet) have been detected at least; and what was detected is known better than a box.
+  // Several detections are of one object.
+  double of_movers = 0.0;
+  const std::int64_t now_ns = s_.odometry->now_ns();
+  const std::size_t own = s_.movers->earlier();
+  const Eigen::Vector2d in_frame = s_.odometry->point_to_frame(target.place_m);
+  const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
+  s_.movers->near(in_frame, [&](const Mover& mover, std::uint32_t number) {
+    if (number >= own && mover.index == but_index) return;
+    const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
+    const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
+    const Eigen::Vector2d residual = s_.odometry->vector_to_vehicle(moved - in_frame);
+    // Of a track that is judged itself, what was detected of it tells nothing.
+    if (but_object != kNobody && is_on(s_.objects[but_object], target.place_m + residual, kAround_m)) return;
+    const double sure = mover.variance_m2 + square(8.0 * elapsed_s);
+    if (residual.squaredNorm() > 16.0 * (target.covariance.trace() + sure + square(config_.extent_std_m))) return;
+    const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
+    const double there =
+        kSame * gaussian(residual, target.covariance + (sure + square(0.2)) * eye) +
+        (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
+    if (there <= 0.0) return;
+    const double fits = rate_density(
+        m.rate_mps - target.known_mps, target.q, s_.odometry->vector_to_vehicle(mover.direction), mover.rate_mps,
+        square(config_.range_rate_slack_mps), along, target.noise_variance + target.turn_variance * square(15.0));
+    const bool heard = std::isfinite(mover.rcs_dbsm);
+    const double above_db = m.rcs_dbsm - (heard ? mover.rcs_dbsm : kUsualRcs_dbsm);
+    of_movers =
+        std::max(of_movers, mover.weight * there * fits *
+                                likelihood(kGhostStrength, above_db, heard ? kFluctuation_db : kUsualRcsStd_db, doubt));
+  });
+  return (of_tracks + of_movers) * target.stretch;
+}
+
+Judge::Target Judge::target_of(const Measured& m, const Crossing& crossing, double rest_m, double metres_per_m) const {
+  const Turn& turn = crossing.turn;
+  const Eigen::Vector2d& d = turn.direction;
+  const double far = turn.distance_m + rest_m;
+  const double focus = 1.0 + 2.0 * rest_m * turn.distance_m * turn.focus_per_m / far;
+  Target t{};
+  t.place_m = turn.point_m + rest_m * d;
+  t.covariance =
+      outer(d, square(metres_per_m * m.range_std_m)) +
+      outer(left_of(d), square(m.azimuth_std_rad * far * focus) + square(2.0 * rest_m * turn.angle_std_rad)) +
+      outer(turn.normal, square(2.0 * turn.offset_std_m));
+  t.noise_variance = rate_variance(m);
+  t.lit_from_m = t.seen_from_m = turn.point_m;
+  t.stretch = metres_per_m * far * focus / m.range_m;
+  t.turn_variance = square(m.azimuth_std_rad) + square(2.0 * turn.angle_std_rad);
+  t.mirror = crossing.mirror;
+  t.other_body = kNobody;
+  return t;
+}
+
+double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) const {
+  const Turn& turn = crossing.turn;
+  const Eigen::Vector2d& d = turn.direction;
+  const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
+  double density = config_.lone_ghost_density *
+                   likelihood(kGhostStrength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+  if (const double rest = rest_of_three_bounces(turn, m.range_m); rest > kLeastRest_m) {
+    Target t = target_of(m, crossing, rest, 1.0);
+    t.q = d;
+    t.known_mps = carried;
+    t.of_own = true;
+    density += kSameWay * config_.type2_per_object * ghosts_of(t, m, but_object, index);
+  }
+  if (const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m); rest > kLeastRest_m) {
+    const Eigen::Vector2d e = (turn.point_m + rest * d - s_.sensor_m).normalized();
+    Target t = target_of(m, crossing, rest, 2.0 / std::max(0.02, 1.0 + d.dot(e)));
+    t.q = 0.5 * (d + e);
+    t.known_mps = 0.5 * (carried + (m.direction - e).dot(s_.sensor_velocity_mps));
+    t.lit_from_m = s_.sensor_m;
+    density += kDirectly * config_.type2_per_object * ghosts_of(t, m, but_object, index) + image_of_stationary(t, m);
+  }
+  return turn.probability * crossing.beyond * density;
+}
+
+double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uint32_t index,
+                           std::uint32_t but_object) const {
+  const Turn& turn = crossing.turn;
+  const Eigen::Vector2d& d = turn.direction;
+  const double sure = turn.probability * crossing.beyond;
+  if (sure < kLeastChance) return 0.0;
+  const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
+  double density = 0.0;
+  for (const Mirror& other : s_.mirrors) {
+    if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
+        sure * other.existence < kLeastChance)
+      continue;
+    const auto met = meet(other, s_.sensor_m, turn.point_m, d, 2.0 * m.range_m - turn.distance_m, kLeastRest_m);
+    if (!met || sure * met->detour.probability < kLeastChance) continue;
+    const Eigen::Vector2d& u = met->detour.departure;
+    const Eigen::Vector2d& e = met->detour.arrival;
+    Target t = target_of(m, crossing, met->rest_m, 2.0 * met->metres_per_m);
+    t.covariance += outer(d, square(met->metres_per_m * met->detour.length_std_m));
+    t.q = 0.5 * (d + e);
+    t.known_mps = 0.5 * (carried + (u - e).dot(other.velocity_mps) + (m.direction - u).dot(s_.sensor_velocity_mps));
+    t.lit_from_m = met->detour.point_m;
+    t.other_body = other.body;
+    density = std::max(density, met->detour.probability * ghosts_of(t, m, but_object, index));
+  }
+  return kOtherMirror * config_.type2_per_object * sure * density;
+}
+
+double Judge::image_of_stationary(const Target& t, const Measured& m) const {
+  // What stands still has no range rate of its own: by two bounces it seems to have one, which is known.
+  const Eigen::Vector2d sight = t.place_m - s_.sensor_m;
+  const double across = left_of(sight.normalized()).dot(t.covariance * left_of(sight.normalized()));
+  const double turn_variance = std::min(0.25, across / std::max(1.0, sight.squaredNorm()));
+  const double variance = t.noise_variance + 0.25 * turn_variance * s_.sensor_velocity_mps.squaredNorm();
+  const bool stands = s_.stationary->index_at(s_.odometry->point_to_frame(t.place_m)) != StationaryGrid::kUnclaimed;
+  return (stands ? 1.0 : 0.02) * config_.stationary_image_density * gaussian(m.rate_mps - t.known_mps, variance) *
+         likelihood(kGhostStrength, m.rcs_dbsm - kUsualRcs_dbsm, 10.0, config_.strength_doubt);
+}
+
+double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object) const {
+  double density = 0.0;
+  for (const Mirror& mirror : s_.mirrors) {
+    if (but_object != kNobody && mirror.body == but_object) continue;
+    const auto met = meet(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
+    if (!met || met->rest_m > m.range_m - 0.3) continue;
+    const Eigen::Vector2d& u = met->detour.departure;
+    const Eigen::Vector2d& d = met->detour.arrival;
+    Target t{};
+    t.other_body = kNobody;
+    t.place_m = s_.sensor_m + met->rest_m * m.direction;
+    t.covariance = outer(m.direction, square(2.0 * met->metres_per_m * m.range_std_m) +
+                                          square(met->metres_per_m * met->detour.length_std_m)) +
+                   outer(left_of(m.direction), square(met->rest_m * m.azimuth_std_rad));
+    t.q = 0.5 * (m.direction + d);
+    t.known_mps = 0.5 * ((m.direction - u).dot(s_.sensor_velocity_mps) + (u - d).dot(mirror.velocity_mps));
+    t.noise_variance = rate_variance(m);
+    t.lit_from_m = met->detour.point_m;
+    t.seen_from_m = s_.sensor_m;
+    t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
+    t.turn_variance = square(m.azimuth_std_rad);
+    t.mirror = &mirror;
+    density =
+        std::max(density, met->detour.probability * config_.type1_per_object * ghosts_of(t, m, but_object, index));
+  }
+  return density;
+}
+
+double Judge::hidden(const Measured& m, std::uint32_t but_object, bool& is_hidden) const {
+  double density = 0.0;
+  is_hidden = false;
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+    const Object& o = s_.objects[i];
+    if (i == but_object || o.own || o.weight < 0.05) continue;
+    const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
+    const double depth = sight.dot(m.direction), beside = std::abs(sight.dot(left_of(m.direction)));
+    if (depth < 1.0 || depth > m.range_m) continue;
+    const double along = std::abs(o.axis.dot(m.direction)), across = std::abs(o.axis.dot(left_of(m.direction)));
+    const double half_depth = o.half_length_m * along + o.half_width_m * across;
+    const double half_width = o.half_length_m * across + o.half_width_m * along;
+    const double blur = depth * m.azimuth_std_rad;
+    if (beside > half_width + 2.0 * blur + 0.3 || m.range_m < depth + half_depth + config_.margin_m) continue;
+    is_hidden = true;
+    density += o.weight * config_.hidden_ghost_density *
+               gaussian(m.rate_mps - m.direction.dot(o.velocity_mps), square(kHiddenRate_mps)) *
+               likelihood(kGhostStrength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, config_.strength_doubt);
+  }
+  return density;
+}
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,102 @@
+// Direct reflections of tracked objects.
+#include <array>
+#include <cmath>
+
+#include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/normal.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+
+/// How much larger than its track's box a vehicle may be, on each side, and how likely that is: the box of a young
+/// track, or of one that shows its rear only, is shorter than the vehicle.
+struct Growth {
+  double share, length_m, width_m;
+};
+constexpr std::array<Growth, 3> kGrowths{{{0.85, 0.0, 0.0}, {0.12, 2.5, 0.5}, {0.03, 7.0, 0.6}}};
+
+/// Slower than this it may as well stand.
+constexpr double kSlow_mps = 0.5;
+
+/// Vehicles do not reach through rails, but are seen above them.
+constexpr double kSeenThrough = 0.03;
+
+}  // namespace
+
+void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densities) const {
+  const Eigen::Matrix2d covariance = outer(m.direction, square(m.range_std_m) + square(0.2)) +
+                                     outer(left_of(m.direction), square(m.range_m * m.azimuth_std_rad) + square(0.2));
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+    const Object& o = s_.objects[i];
+    if (o.own) continue;
+    if (surely_moving && o.velocity_mps.squaredNorm() < square(kSlow_mps) + 2.0 * o.velocity_covariance.trace())
+      continue;
+    if ((o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) continue;
+    Reflections place{0.0, 0.0};
+    for (const Growth& growth : kGrowths) {
+      Object grown = o;
+      grown.half_length_m += growth.length_m;
+      grown.half_width_m += growth.width_m;
+      const Reflections there = reflections_at(grown, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
+      place.body += growth.share * there.body;
+      place.wheel += growth.share * there.wheel;
+    }
+    if (place.wheel <= 0.0) continue;
+    double seen = 1.0;
+    for (const Crossing& crossing : crossings_) {
+      const double sensor_side = crossing.mirror->curve.distance(s_.sensor_m);
+      if (crossing.mirror->body == i || crossing.mirror->curve.distance(o.position_m) * sensor_side <= 0.0) continue;
+      seen *= 1.0 - (1.0 - kSeenThrough) * crossing.turn.probability * crossing.beyond;
+    }
+    const RateDensity rates = rates_at(o, m.rate_mps, m.direction, rate_variance(m));
+    const double above_db = m.rcs_dbsm - o.rcs_dbsm, doubt = config_.strength_doubt;
+    const double all = o.weight * config_.real_per_object * seen;
+    const double of_body = all * (1.0 - config_.wheel_share) * place.body * rates.body *
+                           likelihood(kBodyStrength, above_db, o.rcs_std_db, doubt);
+    densities.moving += of_body + all * config_.wheel_share * place.wheel * rates.wheel *
+                                      likelihood(kWheelStrength, above_db, o.rcs_std_db, doubt);
+    densities.of_tracks = densities.moving;
+    if (of_body > densities.of_body) {
+      densities.of_body = of_body;
+      densities.object = i;
+    }
+  }
+}
+
+bool Judge::is_of_wheel(const Measured& m) const {
+  constexpr double kAround_m = 1.0, kOff = 4.0;
+  for (const Object& o : s_.objects) {
+    if (o.own || o.weight < 0.5) continue;
+    if (!is_on(o, m.position_m, kAround_m)) continue;
+    const double variance = rate_variance(m) + m.direction.dot(o.velocity_covariance * m.direction);
+    return square(m.rate_mps - m.direction.dot(o.velocity_mps)) > square(kOff) * variance;
+  }
+  return false;
+}
+
+double Judge::of_movers(const Measured& m, std::uint32_t index) const {
+  double most = 0.0;
+  const Eigen::Vector2d place = s_.odometry->point_to_frame(m.position_m);
+  const Eigen::Vector2d direction = s_.odometry->vector_to_frame(m.direction);
+  const std::int64_t now_ns = s_.odometry->now_ns();
+  const std::size_t own = s_.movers->earlier();
+  const double blur = square(m.range_std_m) + square(m.range_m * m.azimuth_std_rad) + square(config_.extent_std_m);
+  s_.movers->near(place, [&](const Mover& mover, std::uint32_t number) {
+    if (number >= own && mover.index == index) return;
+    const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
+    const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
+    const double variance = blur + mover.variance_m2 + square(8.0 * elapsed_s);
+    const double chi2 = (moved - place).squaredNorm() / variance;
+    if (chi2 > 16.0) return;
+    // The same velocity shows another range rate from another direction: by the speed across, which is not known.
+    const double turn = 1.0 - square(direction.dot(mover.direction));
+    const double noise = rate_variance(m) + square(m.rate_std_mps) + square(15.0) * std::max(0.0, turn);
+    most = std::max(most, mover.weight * std::exp(-0.5 * chi2) / (2.0 * M_PI * variance) *
+                              gaussian(m.rate_mps - mover.rate_mps, noise));
+  });
+  return config_.real_per_object * (1.0 - config_.wheel_share) * most *
+         likelihood(kBodyStrength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+}
+
+}  // namespace boresight::ghosts

@@ -1,0 +1,32 @@
+// What the strength of a detection tells: each bounce costs power, so that a ghost is weaker than its object.
+#pragma once
+
+#include <cmath>
+
+namespace boresight::ghosts {
+
+/// How strong detections of one origin are, relative to what a body reflects directly; densities for each dB.
+struct Strength {
+  double mean_db, std_db;
+};
+
+/// Of a part of the body, of a wheel or a limb (small, and seen from the side), of a ghost; of clutter and of a new
+/// object, beside the usual.
+inline constexpr Strength kBodyStrength{0.0, 6.0}, kWheelStrength{-13.0, 7.0}, kGhostStrength{-22.0, 8.0},
+    kClutterStrength{-18.0, 9.0}, kNewStrength{-5.0, 10.0};
+
+/// What a body reflects if nothing is known of it: from a pedestrian to a truck.
+inline constexpr double kUsualRcs_dbsm = 5.0, kUsualRcsStd_db = 5.0;
+
+/// Likelihood of the strength `above_db` of the body's. Losses of reflectors, aspects and dirt are known so badly that
+/// strength is one argument among others: `doubt` is the share of cases in which it tells nothing.
+[[nodiscard]] inline double likelihood(const Strength& strength, double above_db, double more_std_db, double doubt) {
+  if (!std::isfinite(above_db)) return 1.0;
+  constexpr double kSpread_db = 60.0;
+  const double variance = strength.std_db * strength.std_db + more_std_db * more_std_db;
+  const double residual = above_db - strength.mean_db;
+  return doubt / kSpread_db +
+         (1.0 - doubt) * std::exp(-0.5 * residual * residual / variance) / std::sqrt(2.0 * M_PI * variance);
+}
+
+}  // namespace boresight::ghosts
