@@ -4,7 +4,7 @@
 
 namespace boresight::bench {
 
-void FalseTracks::add(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
+void FalseTracks::add(double t_s, const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
                       const TrackList& tracks, const Matching& matching) {
   for (std::size_t k = 0; k < matching.object_of_track.size(); ++k) {
     const Track& track = tracks.tracks[k];
@@ -21,20 +21,35 @@ void FalseTracks::add(const ClassifiedScan& scan, const std::vector<simulator::D
          : is == Provenance::kMoving                                    ? moving
                                                                         : others);
     }
-    if (2 * ghosts > ghosts + moving + others) ++scans_[track.tracking_id].on_ghosts;
-    if (2 * others > ghosts + moving + others) ++scans_[track.tracking_id].on_others;
+    if (2 * ghosts > ghosts + moving + others) {
+      GhostTrack& its =
+          on_ghosts_.try_emplace(track.tracking_id, GhostTrack{track.tracking_id, 0, t_s, t_s, 0.0, 0.0}).first->second;
+      ++its.scans;
+      its.until_s = t_s;
+      its.x_vehicle_m = track.position_vehicle_m[0];
+      its.y_vehicle_m = track.position_vehicle_m[1];
+    }
+    if (2 * others > ghosts + moving + others) ++on_others_[track.tracking_id];
   }
 }
 
-std::size_t FalseTracks::number_of_long(std::size_t Scans::*what) const {
-  return static_cast<std::size_t>(std::count_if(
-      scans_.begin(), scans_.end(), [what](const auto& entry) { return entry.second.*what > kLong_scans; }));
+std::vector<GhostTrack> FalseTracks::long_ghost_tracks() const {
+  std::vector<GhostTrack> tracks;
+  for (const auto& [id, track] : on_ghosts_) {
+    if (track.scans > kLong_scans) tracks.push_back(track);
+  }
+  return tracks;
 }
 
 std::size_t FalseTracks::longest_ghost_track_scans() const {
   std::size_t longest = 0;
-  for (const auto& [id, scans] : scans_) longest = std::max(longest, scans.on_ghosts);
+  for (const auto& [id, track] : on_ghosts_) longest = std::max(longest, track.scans);
   return longest;
+}
+
+std::size_t FalseTracks::long_other_tracks() const {
+  return static_cast<std::size_t>(std::count_if(on_others_.begin(), on_others_.end(),
+                                                [](const auto& entry) { return entry.second > kLong_scans; }));
 }
 
 }  // namespace boresight::bench

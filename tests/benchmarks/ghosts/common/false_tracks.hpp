@@ -12,6 +12,14 @@
 
 namespace boresight::bench {
 
+/// A confirmed track that lived on ghosts, where and when it did so last.
+struct GhostTrack {
+  std::uint32_t tracking_id;
+  std::size_t scans;
+  double since_s, until_s;
+  double x_vehicle_m, y_vehicle_m;
+};
+
 class FalseTracks {
  public:
   static constexpr std::size_t kLong_scans = 5;
@@ -19,21 +27,18 @@ class FalseTracks {
   /// A track counts as living on ghosts in a scan in which it is confirmed, has detections, is no object's
   /// (matching.hpp), and most of what lies within kEvidence_m of its box and was told to be moving is a ghost in truth.
   static constexpr double kEvidence_m = 2.0;
-  void add(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth, const TrackList& tracks,
-           const Matching& matching);
+  void add(double t_s, const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
+           const TrackList& tracks, const Matching& matching);
 
   /// That lived on ghosts for more than kLong_scans scans, in a row or not.
-  [[nodiscard]] std::size_t long_ghost_tracks() const { return number_of_long(&Scans::on_ghosts); }
+  [[nodiscard]] std::vector<GhostTrack> long_ghost_tracks() const;
   [[nodiscard]] std::size_t longest_ghost_track_scans() const;
-  /// The same of what is neither a ghost nor moving: clutter, or the stationary world.
-  [[nodiscard]] std::size_t long_other_tracks() const { return number_of_long(&Scans::on_others); }
+  /// The number of those of what is neither a ghost nor moving: clutter, or the stationary world.
+  [[nodiscard]] std::size_t long_other_tracks() const;
 
  private:
-  struct Scans {
-    std::size_t on_ghosts = 0, on_others = 0;
-  };
-  [[nodiscard]] std::size_t number_of_long(std::size_t Scans::*what) const;
-  std::map<std::uint32_t, Scans> scans_;  // by track
+  std::map<std::uint32_t, GhostTrack> on_ghosts_;
+  std::map<std::uint32_t, std::size_t> on_others_;  // scans
 };
 
 }  // namespace boresight::bench

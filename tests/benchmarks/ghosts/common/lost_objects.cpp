@@ -10,11 +10,12 @@ void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop
   }
 }
 
-void LostObjects::add_second(const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter) {
+void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_labels,
+                             const TrackedObjects& with_filter) {
   for (const auto& [id, second] : with_perfect_labels.seconds()) {
     if (second.share() < kHasIt) continue;
     ++object_seconds;
-    lost_seconds += with_filter.seconds().at(id).share() < kHasItNot ? 1 : 0;
+    if (with_filter.seconds().at(id).share() < kHasItNot) lost.push_back({until_s, id});
   }
 }
 

@@ -24,11 +24,17 @@ class TrackedObjects {
   std::map<std::uint32_t, Second> seconds_;
 };
 
+/// A second of an object's.
+struct LostSecond {
+  double until_s;
+  std::uint32_t object_id;
+};
+
 struct LostObjects {
   static constexpr double kHasIt = 0.9, kHasItNot = 0.5;  ///< shares of the scans of a second
   std::size_t object_seconds = 0;                         ///< in which perfect labels have the object all through
-  std::size_t lost_seconds = 0;                           ///< of these: the filter's labels have it for less than half
-  void add_second(const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
+  std::vector<LostSecond> lost;                           ///< of these: the filter's labels have it for less than half
+  void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 
 }  // namespace boresight::bench

@@ -7,7 +7,6 @@
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
 #include "tests/benchmarks/ghosts/common/changed_method.hpp"
-#include "tests/benchmarks/ghosts/common/false_tracks.hpp"
 #include "tests/benchmarks/ghosts/common/truth_method.hpp"
 #include "tests/closed_loop/chain.hpp"
 #include "tests/simulator/scenario_file.hpp"
@@ -88,7 +87,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
     if (!front.take(*event)) continue;
     if (event->t_s > second_ends_s) {
       for (const auto& lane : lanes) {
-        lane->out.lost.add_second(tracked_perfectly, lane->tracked);
+        lane->out.lost.add_second(second_ends_s, tracked_perfectly, lane->tracked);
         lane->tracked.clear();
       }
       tracked_perfectly.clear();
@@ -105,7 +104,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
       count_detections(*lane.back.classified, truth, lane.out);
       count_apart(*lane.back.classified, truth, objects, lane.out.type1);
       const Matching matching = match_confirmed(lane.back, objects);
-      lane.false_tracks.add(*lane.back.classified, truth, *lane.back.tracks, matching);
+      lane.false_tracks.add(event->t_s, *lane.back.classified, truth, *lane.back.tracks, matching);
       lane.tracked.add(matching, objects);
       if (observe) observe({drive, *event, objects, *lane.back.classified, *lane.back.tracks, m});
     }

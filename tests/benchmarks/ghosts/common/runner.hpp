@@ -8,6 +8,7 @@
 
 #include "tests/benchmarks/common/options.hpp"
 #include "tests/benchmarks/ghosts/common/confusion.hpp"
+#include "tests/benchmarks/ghosts/common/false_tracks.hpp"
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/reliability.hpp"
@@ -30,7 +31,8 @@ struct Outcome {
   Reliability reliability;  ///< of ghost_probability, of detections that the corrector found moving
   LostObjects lost;
   std::uint64_t scans = 0;
-  std::size_t long_ghost_tracks = 0, longest_ghost_track_scans = 0;
+  std::vector<GhostTrack> long_ghost_tracks;
+  std::size_t longest_ghost_track_scans = 0;
   std::size_t long_other_tracks = 0;  ///< of clutter or the stationary world
 };
 

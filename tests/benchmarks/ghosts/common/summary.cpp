@@ -77,8 +77,8 @@ TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
 TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
   TrackFaults sum;
   for (const Outcome& o : outcomes) {
-    sum += {o.long_ghost_tracks, o.longest_ghost_track_scans, o.long_other_tracks, o.lost.object_seconds,
-            o.lost.lost_seconds};
+    sum += {o.long_ghost_tracks.size(), o.longest_ghost_track_scans, o.long_other_tracks, o.lost.object_seconds,
+            o.lost.lost.size()};
   }
   return sum;
 }

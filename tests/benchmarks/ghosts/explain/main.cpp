@@ -32,6 +32,21 @@ NamedGhostMethod method_of(const Arguments& arguments) {
   return {arguments.method, config, {}};
 }
 
+void print_faults(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
+  for (const Outcome& outcome : outcomes) {
+    for (const GhostTrack& track : outcome.long_ghost_tracks) {
+      std::printf("seed %llu: ghost track %u, %zu scans in %.2f–%.2f s, at the end at (%.1f, %.1f)\n",
+                  static_cast<unsigned long long>(seed), track.tracking_id, track.scans, track.since_s, track.until_s,
+                  track.x_vehicle_m, track.y_vehicle_m);
+    }
+    for (const LostSecond& lost : outcome.lost.lost) {
+      std::printf("seed %llu: object %u lost in the second before %.0f s\n", static_cast<unsigned long long>(seed),
+                  lost.object_id, lost.until_s);
+    }
+    ++seed;
+  }
+}
+
 void run(const Arguments& arguments) {
   const NamedGhostMethod method = method_of(arguments);
   std::ofstream csv;
@@ -63,6 +78,8 @@ void run(const Arguments& arguments) {
       << "\ndetections by distance from the box of their object, which the filter had as a confirmed track or not; "
          "of what has no object: from the nearest\n";
   summary.print(std::cout);
+  std::cout << std::endl;
+  print_faults(outcomes, arguments.seed);
 }
 
 }  // namespace

@@ -30,11 +30,11 @@ class Tracks : public testing::Test {
     scan_->x_vehicle_m[i] = x;
     scan_->y_vehicle_m[i] = y;
     scan_->provenance[i] = label;
-    truth_.push_back({.provenance = truth});
+    truth_.emplace_back().provenance = truth;
   }
   [[nodiscard]] Matching matched() const { return match(*tracks_, tracks_->number_of_confirmed_tracks, objects_); }
   void add_scans(int count) {
-    for (int i = 0; i < count; ++i) false_tracks_.add(*scan_, truth_, *tracks_, matched());
+    for (int i = 0; i < count; ++i) false_tracks_.add(0.1 * i, *scan_, truth_, *tracks_, matched());
   }
   std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
   std::unique_ptr<ClassifiedScan> scan_ = std::make_unique<ClassifiedScan>();
@@ -63,9 +63,10 @@ TEST_F(Tracks, LiveOnGhostsEvenCloseToTheirObject) {
   add_detection(26.0f, 0.0f, Provenance::kMoving, Provenance::kGhostType1);
   add_detection(26.0f, 0.5f, Provenance::kMoving, Provenance::kMoving);
   add_scans(5);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks(), 0u);
+  EXPECT_EQ(false_tracks_.long_ghost_tracks().size(), 0u);
   add_scans(1);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks(), 1u);
+  ASSERT_EQ(false_tracks_.long_ghost_tracks().size(), 1u);
+  EXPECT_EQ(false_tracks_.long_ghost_tracks().front().tracking_id, 8u);
   EXPECT_EQ(false_tracks_.longest_ghost_track_scans(), 6u);
   EXPECT_EQ(false_tracks_.long_other_tracks(), 0u);
 }
@@ -74,10 +75,10 @@ TEST_F(Tracks, OfGhostsThatWereToldAreNotMadeOfThem) {
   add_track(8, 25.0f, 0.0f);
   add_detection(25.0f, 0.0f, Provenance::kGhostType2, Provenance::kGhostType2);
   add_scans(10);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks(), 0u);
+  EXPECT_EQ(false_tracks_.long_ghost_tracks().size(), 0u);
   add_detection(25.0f, 0.5f, Provenance::kMoving, Provenance::kClutter);
   add_scans(6);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks(), 0u);
+  EXPECT_EQ(false_tracks_.long_ghost_tracks().size(), 0u);
   EXPECT_EQ(false_tracks_.long_other_tracks(), 1u);
 }
 
@@ -92,13 +93,13 @@ TEST_F(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
     if (scan >= 4) add_track(7, 20.0f, 0.0f);
     perfect.add(matched(), objects_);
   }
-  lost.add_second(perfect, filter);
+  lost.add_second(1.0, perfect, filter);
   // The second car has no track with perfect labels either.
   EXPECT_EQ(lost.object_seconds, 1u);
-  EXPECT_EQ(lost.lost_seconds, 1u);
-  lost.add_second(perfect, perfect);
+  EXPECT_EQ(lost.lost.size(), 1u);
+  lost.add_second(1.0, perfect, perfect);
   EXPECT_EQ(lost.object_seconds, 2u);
-  EXPECT_EQ(lost.lost_seconds, 1u);
+  EXPECT_EQ(lost.lost.size(), 1u);
 }
 
 }  // namespace
