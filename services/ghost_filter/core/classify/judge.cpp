@@ -45,7 +45,7 @@ void Judge::cross(const Measured& m, std::uint32_t but_object) {
 
 bool Judge::is_known_still(const Measured& m) const {
   const std::uint32_t at = s_.stationary->index_at(s_.odometry->point_to_frame(m.position_m));
-  return at != StationaryGrid::kUnclaimed && s_.stationary->cells()[at].count >= 2;
+  return at != StationaryGrid::kUnclaimed && s_.stationary->cells()[at].count >= 3;  // one is the detection itself
 }
 
 double Judge::of_stationary(const Measured& m) const {

@@ -46,7 +46,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) continue;
-    const Reflections there = reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
+    const Reflections there = reflections_of_grown(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
     if (there.wheel <= 0.0) continue;
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
     const RateDensity rates = rates_at(o, m.rate_mps - target.known_mps, target.q, noise);

@@ -1,5 +1,4 @@
 // Direct reflections of tracked objects.
-#include <array>
 #include <cmath>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
@@ -9,15 +8,13 @@ namespace boresight::ghosts {
 
 namespace {
 
-/// How much larger than its track's box a vehicle may be, on each side, and how likely that is: the box of a young
-/// track, or of one that shows its rear only, is shorter than the vehicle.
-struct Growth {
-  double share, length_m, width_m;
-};
-constexpr std::array<Growth, 3> kGrowths{{{0.85, 0.0, 0.0}, {0.12, 2.5, 0.5}, {0.03, 7.0, 0.6}}};
-
 /// Slower than this it may as well stand.
 constexpr double kSlow_mps = 0.5;
+bool moves_surely(const Object& o) {
+  const double speed2 = o.velocity_mps.squaredNorm();
+  if (speed2 < square(kSlow_mps)) return false;
+  return speed2 > 4.0 * o.velocity_mps.dot(o.velocity_covariance * o.velocity_mps) / speed2;
+}
 
 /// Vehicles do not reach through rails, but are seen above them.
 constexpr double kSeenThrough = 0.03;
@@ -30,18 +27,9 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (o.own) continue;
-    if (surely_moving && o.velocity_mps.squaredNorm() < square(kSlow_mps) + 2.0 * o.velocity_covariance.trace())
-      continue;
+    if (surely_moving && !moves_surely(o)) continue;
     if ((o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) continue;
-    Reflections place{0.0, 0.0};
-    for (const Growth& growth : kGrowths) {
-      Object grown = o;
-      grown.half_length_m += growth.length_m;
-      grown.half_width_m += growth.width_m;
-      const Reflections there = reflections_at(grown, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
-      place.body += growth.share * there.body;
-      place.wheel += growth.share * there.wheel;
-    }
+    const Reflections place = reflections_of_grown(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
     if (place.wheel <= 0.0) continue;
     double seen = 1.0;
     for (const Crossing& crossing : crossings_) {

@@ -16,6 +16,11 @@ constexpr std::size_t kMaxVehicleSides = 32;
 constexpr double kTrackDensity =
     5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
+constexpr double kSurest = 3.0;      // log-odds
+constexpr double kHeard_db = 3.0;    // a track's strength is known if its std is less
+/// Mean strength of tracks, of images and of objects from a pedestrian to a truck, beside the usual.
+constexpr Strength kImageStrength{-20.0, 8.0}, kObjectStrength{-2.0, 9.0};
+constexpr double kImageDoubt = 0.1;
 constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
 constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
 
@@ -166,6 +171,19 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
   return m;
 }
 
+void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
+  // The scan itself counts: without it the first ghosts would come before any reflector.
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
+    const Measured m = measured(scan, i);
+    const double across = m.range_m * m.azimuth_std_rad;
+    map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across,
+             scan.header.measurement_time_ns);
+  }
+  map_.update(odometry_, positive_or(scan.geometry.ego_speed_std_mps, 0.05),
+              positive_or(scan.geometry.ego_yaw_rate_std_radps, 0.002));
+}
+
 void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9));
@@ -200,8 +218,15 @@ void MirrorFilter::judge_tracks() {
     m.still_std_mps = m.rate_std_mps;
     m.rcs_dbsm = std::numeric_limits<double>::quiet_NaN();
     const Densities d = judge_.weigh(m, kNobody, k);
-    const double score = std::clamp(std::log((d.type1 + d.type2 + 1e-12) / kTrackDensity), -3.0, 3.0);
     Image& image = images_[track_of_object_[k]];
+    // An image is weak itself.
+    const double weakness =
+        image.rcs_std_db < kHeard_db
+            ? likelihood(kImageStrength, image.rcs_dbsm - kUsualRcs_dbsm, image.rcs_std_db, kImageDoubt) /
+                  likelihood(kObjectStrength, image.rcs_dbsm - kUsualRcs_dbsm, image.rcs_std_db, kImageDoubt)
+            : 1.0;
+    const double score =
+        std::clamp(std::log((d.type1 + d.type2 + 1e-12) * weakness / kTrackDensity), -kSurest, kSurest);
     ++image.judgements;
     image.log_odds += std::max(kSlowest, 1.0 / (1.0 + image.judgements)) * (score - image.log_odds);
   }
@@ -285,6 +310,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     map_.clear();
     movers_.clear();
   }
+  update_map(scan, count);
   predict_objects(scan);
   place_mirrors();
   judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &odometry_, &movers_, &map_.grid()});
@@ -308,15 +334,6 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
       movers_.set_weight(mover++, tracked ? 0.0 : d.moving / std::max(d.sum(), 1e-300));
     }
   }
-
-  // What is stationary beyond doubt shapes the map, after the scan was judged by what was known before.
-  for (std::size_t i = 0; i < count; ++i) {
-    if (out.provenance[i] != Provenance::kStationary) continue;
-    const Measured m = measured(scan, i);
-    const double across = m.range_m * m.azimuth_std_rad;
-    map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
-  }
-  map_.update(odometry_, positive_or(g.ego_speed_std_mps, 0.05), positive_or(g.ego_yaw_rate_std_radps, 0.002));
   write_segments(out);
 }
 

@@ -33,6 +33,7 @@ class MirrorFilter final : public Method {
     std::uint32_t judgements = 0;
     double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, as far as they were heard
   };
+  void update_map(const CorrectedScan& scan, std::size_t count);
   void predict_objects(const CorrectedScan& scan);
   void place_mirrors();
   void gather_movers(const CorrectedScan& scan, std::size_t count);

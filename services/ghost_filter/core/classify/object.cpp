@@ -13,6 +13,12 @@ namespace {
 constexpr double kWithin = 0.12;  // share of a body's reflections that come from anywhere in the box
 constexpr double kEdge = 0.15;    // of a face that only one of the two ends of the path sees, beside one that both see
 
+/// How much larger than its track's box a vehicle may be, on each side, and how likely that is.
+struct Growth {
+  double share, length_m, width_m;
+};
+constexpr std::array<Growth, 3> kGrowths{{{0.8, 0.0, 0.0}, {0.15, 2.5, 0.5}, {0.05, 7.0, 1.5}}};
+
 /// Which end of an axis looks to a place: −1, 0 (beside the box, within its extent), +1.
 int side(double coordinate, double half) {
   return coordinate > half ? 1 : coordinate < -half ? -1 : 0;
@@ -51,6 +57,21 @@ Reflections reflections_at(const Object& object, const Eigen::Vector2d& place_m,
     }
   }
   return {weights > 0.0 ? kWithin * anywhere + (1.0 - kWithin) * sum / weights : anywhere, anywhere};
+}
+
+Reflections reflections_of_grown(const Object& object, const Eigen::Vector2d& place_m,
+                                 const Eigen::Matrix2d& covariance, const Eigen::Vector2d& seen_from_m,
+                                 const Eigen::Vector2d& lit_from_m) {
+  Reflections sum{0.0, 0.0};
+  Object grown = object;
+  for (const Growth& growth : kGrowths) {
+    grown.half_length_m = object.half_length_m + growth.length_m;
+    grown.half_width_m = object.half_width_m + growth.width_m;
+    const Reflections there = reflections_at(grown, place_m, covariance, seen_from_m, lit_from_m);
+    sum.body += growth.share * there.body;
+    sum.wheel += growth.share * there.wheel;
+  }
+  return sum;
 }
 
 RateDensity rates_at(const Object& object, double rate_mps, const Eigen::Vector2d& q, double noise_variance) {

@@ -39,6 +39,11 @@ struct Reflections {
                                          const Eigen::Matrix2d& covariance, const Eigen::Vector2d& seen_from_m,
                                          const Eigen::Vector2d& lit_from_m);
 
+/// The same of a box that may be shorter than the vehicle: that of a young track, or of one that shows one face only.
+[[nodiscard]] Reflections reflections_of_grown(const Object& object, const Eigen::Vector2d& place_m,
+                                               const Eigen::Matrix2d& covariance, const Eigen::Vector2d& seen_from_m,
+                                               const Eigen::Vector2d& lit_from_m);
+
 /// Density of a range rate over ground, given as q·v + known, for a part that goes with the body and for one that
 /// turns (a wheel's rim, a leg: its speed is anything between nothing and twice the body's).
 struct RateDensity {
