@@ -62,8 +62,8 @@ struct MultipathSpec {
   [[nodiscard]] bool operator==(const MultipathSpec&) const = default;
 };
 
-/// What is nearer than this to a stronger echo in all three is one detection with it, at the centroid of all. 0: no cell
-/// in that quantity.
+/// What is nearer than this to a stronger echo in all three is one detection with it, at the centroid of all. 0: no
+/// cell in that quantity.
 struct ResolutionCell {
   double range_m = 0.4;
   double azimuth_rad = 0.035;

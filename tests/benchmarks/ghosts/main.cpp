@@ -7,7 +7,8 @@ using namespace boresight::bench;
 
 namespace {
 
-constexpr BarGroup kGroups[] = {{"highway", highway}, {"scenarios", scenarios}, {"ablation", ablation}, {"plan", plan}, {"cost", cost}};
+constexpr BarGroup kGroups[] = {
+    {"highway", highway}, {"scenarios", scenarios}, {"ablation", ablation}, {"plan", plan}, {"cost", cost}};
 
 }  // namespace
 

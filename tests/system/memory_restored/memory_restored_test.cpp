@@ -12,6 +12,8 @@
 
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/common/runtime/node.hpp"
 #include "tests/system/harness/domain.hpp"
@@ -146,7 +148,9 @@ class IgnitionCycles : public testing::Test {
     const std::size_t yaw = Memory::kShared + 3 * (kCrooked - 1) + 2;
     const double variance = memory.covariance[yaw * memory.number_of_parameters() + yaw];
     const double doubted = std::sqrt(config.memory_inflation * variance + std::pow(config.memory_rotation_std_rad, 2));
-    EXPECT_NEAR(first.vehicle_yaw_rad, memory.radars[kCrooked - 1].rotation_vehicle_rad[2], 1e-4);
+    // The memory has a rotation vector, the message angles about fixed axes: roll and pitch make a difference of 2e-4.
+    const Eigen::Vector3d remembered(memory.radars[kCrooked - 1].rotation_vehicle_rad.data());
+    EXPECT_NEAR(first.vehicle_yaw_rad, geometry::fixed_axes_angles(geometry::so3_exp(remembered))(0), 1e-4);
     EXPECT_NEAR(first.speed_scale, memory.speed_scale, 1e-6);
     EXPECT_NEAR(yaw_std(first), doubted, 0.01 * doubted);
     EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "or nothing was inflated";
