@@ -33,12 +33,18 @@ Config read_config(config::Reader root) {
   config::Reader life = root.table("life");
   c.confirm_hits = count(life, "confirm_hits", c.confirm_hits);
   c.confirm_window = count(life, "confirm_window", c.confirm_window);
+  c.confirm_evidence = life.number("confirm_evidence", {0.0, 32.0}, c.confirm_evidence);
+  c.confirm_age_s = life.number("confirm_age_s", {0.0, 5.0}, c.confirm_age_s);
+  c.start_realness = life.number("start_realness", {0.0, 1.0}, c.start_realness);
   c.delete_misses = count(life, "delete_misses", c.delete_misses);
   c.delete_window = count(life, "delete_window", c.delete_window);
   c.coast_s = life.number("coast_s", {0.05, 10.0}, c.coast_s);
   c.blind_range_rate_mps = life.number("blind_range_rate_mps", {0.0, 10.0}, c.blind_range_rate_mps);
   c.stopped_speed_mps = life.number("stopped_speed_mps", {0.0, 5.0}, c.stopped_speed_mps);
   if (c.confirm_hits > c.confirm_window) life.reject("confirm_hits", "must not exceed confirm_window");
+  if (c.confirm_evidence > static_cast<double>(c.confirm_window)) {
+    life.reject("confirm_evidence", "must not exceed confirm_window");
+  }
   if (c.delete_misses > c.delete_window) life.reject("delete_misses", "must not exceed delete_window");
   root.finish();
   return c;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "services/common/geometry/frames.hpp"
 
@@ -25,13 +26,18 @@ void Judge::end_stay(Stay& stay, double t_s) {
 }
 
 void Judge::judge_tracks(double t_s, const TrackList& tracks, const std::vector<Object>& objects) {
+  std::set<std::uint32_t> taken;
   for (std::size_t k = 0; k < tracks.number_of_confirmed_tracks; ++k) {
     const Track& track = tracks.tracks[k];
     Life& life = lives_.try_emplace(track.tracking_id, Life{t_s}).first->second;
     ++life.scans;
-    const bool real = std::any_of(objects.begin(), objects.end(),
-                                  [&](const Object& o) { return o.distance_m(position_of(track)) < kNear_m; });
-    if (real) continue;
+    const auto distance = [&](const Object& o) { return o.distance_m(position_of(track)); };
+    const auto nearest = std::min_element(objects.begin(), objects.end(),
+                                          [&](const Object& a, const Object& b) { return distance(a) < distance(b); });
+    if (nearest != objects.end() && distance(*nearest) < kNear_m) {
+      figures_.twice += taken.insert(nearest->id).second ? 0 : 1;
+      continue;
+    }
     ++life.false_scans;
     ++(life.born_s < kAligned_s ? figures_.early_false_scans : figures_.false_scans);
   }
@@ -47,11 +53,9 @@ void Judge::judge_object(double t_s, const Object& object, const TrackList& trac
   }
   if (stay.since_s < 0.0) stay.since_s = t_s;
   const Track* best = nullptr;
-  std::size_t near = 0;
   for (std::size_t k = 0; k < tracks.number_of_confirmed_tracks; ++k) {
     const Track& track = tracks.tracks[k];
     if (object.distance_m(position_of(track)) > kNear_m) continue;
-    ++near;
     const auto distance = [&](const Track& t) { return (position_of(t) - object.position_m).norm(); };
     if (best == nullptr || distance(track) < distance(*best)) best = &track;
   }
@@ -60,7 +64,6 @@ void Judge::judge_object(double t_s, const Object& object, const TrackList& trac
   ++figures_.chances;
   if (best == nullptr) return;
   ++figures_.found;
-  figures_.twice += near - 1;
   const Eigen::Vector2d error = position_of(*best) - object.position_m;
   const Eigen::Vector2d forward(std::cos(object.heading_rad), std::sin(object.heading_rad)),
       left(-forward.y(), forward.x());

@@ -14,7 +14,7 @@ enum class MethodName : std::uint8_t {
 };
 
 struct Config {
-  MethodName method = MethodName::kPublished;
+  MethodName method = MethodName::kMirror;
   MirrorConfig mirror;
   published::Config published;
 };

@@ -5,9 +5,21 @@
 
 namespace boresight::tracking {
 
+namespace {
+
+/// What the ghost filter is sure of is not told by it with more certainty than this.
+constexpr double kLeastReal = 0.01;
+
+double realness_of(const ClassifiedScan& scan, std::size_t i) {
+  return std::clamp(1.0 - static_cast<double>(scan.ghost_probability[i]), kLeastReal, 1.0);
+}
+
+}  // namespace
+
 Clusterer::Clusterer(const Config& config) : config_(config), dbscan_(kMaxDetections) {
   points_.reserve(kMaxDetections);
   index_.reserve(kMaxDetections);
+  members_.reserve(kMaxDetections);
   clusters_.reserve(geometry::Assignment::kCapacity);
 }
 
@@ -22,66 +34,105 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan) {
     const Eigen::Vector2d p(scan.x_vehicle_m[i], scan.y_vehicle_m[i]);
     const bool finite = std::isfinite(scan.range_rate_over_ground_mps[i]) && std::isfinite(scan.range_m[i]) &&
                         std::isfinite(scan.range_std_m[i]) && std::isfinite(scan.azimuth_std_rad[i]) &&
-                        std::isfinite(scan.range_rate_std_mps[i]) && std::isfinite(scan.z_vehicle_m[i]);
+                        std::isfinite(scan.range_rate_std_mps[i]) && std::isfinite(scan.z_vehicle_m[i]) &&
+                        std::isfinite(scan.ghost_probability[i]);
     if (!p.allFinite() || !finite) continue;
     points_.push_back(p);
     index_.push_back(static_cast<std::uint32_t>(i));
   }
   const std::size_t found = dbscan_.cluster(points_, config_.cluster_radius_m, config_.cluster_min_points);
   const auto labels = dbscan_.labels();
-  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   for (std::size_t c = 0; c < found; ++c) {
-    if (clusters_.size() == clusters_.capacity()) {
-      dropped_ += static_cast<std::uint32_t>(found - c);
-      break;
-    }
-    // The median range rate is what the body does; ghosts and wheels in the same place do otherwise.
-    std::array<float, 64> rates;
-    std::size_t rates_size = 0;
-    for (std::size_t k = 0; k < labels.size() && rates_size < rates.size(); ++k) {
-      if (labels[k] == static_cast<std::int32_t>(c)) rates[rates_size++] = scan.range_rate_over_ground_mps[index_[k]];
-    }
-    const auto middle = rates.begin() + static_cast<std::ptrdiff_t>(rates_size / 2);
-    std::nth_element(rates.begin(), middle, rates.begin() + static_cast<std::ptrdiff_t>(rates_size));
-    const double median = *middle;
-
-    Cluster cluster{};
-    cluster.position_m.setZero();
-    cluster.z_min_m = 1e9;
-    cluster.z_max_m = -1e9;
-    double range_variance = 0.0, cross_variance = 0.0, rate_variance = 0.0;
-    std::uint32_t n = 0;
+    members_.clear();
     for (std::size_t k = 0; k < labels.size(); ++k) {
-      if (labels[k] != static_cast<std::int32_t>(c)) continue;
-      const std::size_t i = index_[k];
-      const double rate = scan.range_rate_over_ground_mps[i];
-      if (std::abs(rate - median) > config_.cluster_max_range_rate_spread_mps) continue;
-      cluster.position_m += points_[k];
-      cluster.range_rate_over_ground_mps += rate;
-      const double across = static_cast<double>(scan.range_m[i] * scan.azimuth_std_rad[i]);
-      range_variance += static_cast<double>(scan.range_std_m[i] * scan.range_std_m[i]);
-      cross_variance += across * across;
-      rate_variance += static_cast<double>(scan.range_rate_std_mps[i] * scan.range_rate_std_mps[i]);
-      cluster.z_min_m = std::min(cluster.z_min_m, static_cast<double>(scan.z_vehicle_m[i]));
-      cluster.z_max_m = std::max(cluster.z_max_m, static_cast<double>(scan.z_vehicle_m[i]));
-      if (n < cluster.outline.size()) cluster.outline[n] = points_[k];
-      ++n;
+      if (labels[k] == static_cast<std::int32_t>(c)) members_.push_back(static_cast<std::uint32_t>(k));
     }
-    const double count_of_cluster = n;
-    cluster.number_of_detections = n;
-    cluster.position_m /= count_of_cluster;
-    cluster.range_rate_over_ground_mps /= count_of_cluster;
-    const Eigen::Vector2d sight = cluster.position_m - sensor;
-    if (sight.squaredNorm() < 1e-6) continue;
-    cluster.line_of_sight = sight.normalized();
-    const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
-    const double centre_variance = config_.centre_std_m * config_.centre_std_m;
-    const double square = count_of_cluster * count_of_cluster;
-    cluster.covariance_m2 = (range_variance / square + centre_variance) * u * u.transpose() +
-                            (cross_variance / square + centre_variance) * v * v.transpose();
-    cluster.range_rate_variance = rate_variance / square + config_.range_rate_std_mps * config_.range_rate_std_mps;
-    clusters_.push_back(cluster);
+    split(scan);
   }
+  return clusters_;
+}
+
+void Clusterer::split(const ClassifiedScan& scan) {
+  // Where two vehicles pass each other, one place has two motions; a third and a fourth may be wheels and ghosts.
+  constexpr int kMostMotions = 4;
+  const auto rate_of = [&](std::uint32_t k) { return static_cast<double>(scan.range_rate_over_ground_mps[index_[k]]); };
+  std::span<std::uint32_t> rest = members_;
+  for (int motion = 0; motion < kMostMotions && !rest.empty(); ++motion) {
+    // The median range rate is what the body with the most detections does.
+    const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
+    std::nth_element(rest.begin(), middle, rest.end(), [&](auto a, auto b) { return rate_of(a) < rate_of(b); });
+    const double median = rate_of(*middle);
+    const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) {
+      return std::abs(rate_of(k) - median) <= config_.cluster_max_range_rate_spread_mps;
+    });
+    const auto own = static_cast<std::size_t>(others - rest.begin());
+    if (clusters_.size() == clusters_.capacity()) {
+      ++dropped_;
+    } else {
+      add(scan, rest.first(own));
+    }
+    rest = rest.subspan(own);
+  }
+}
+
+void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> members) {
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
+  Cluster cluster{};
+  cluster.position_m.setZero();
+  cluster.z_min_m = 1e9;
+  cluster.z_max_m = -1e9;
+  double range_variance = 0.0, cross_variance = 0.0, rate_variance = 0.0;
+  double sum = 0.0, square = 0.0;
+  for (const std::uint32_t k : members) {
+    const std::size_t i = index_[k];
+    const double real = realness_of(scan, i);
+    sum += real;
+    square += real * real;
+    cluster.position_m += real * points_[k];
+    cluster.range_rate_over_ground_mps += real * static_cast<double>(scan.range_rate_over_ground_mps[i]);
+    const double across = static_cast<double>(scan.range_m[i] * scan.azimuth_std_rad[i]);
+    range_variance += real * real * static_cast<double>(scan.range_std_m[i] * scan.range_std_m[i]);
+    cross_variance += real * real * across * across;
+    rate_variance += real * real * static_cast<double>(scan.range_rate_std_mps[i] * scan.range_rate_std_mps[i]);
+    cluster.z_min_m = std::min(cluster.z_min_m, static_cast<double>(scan.z_vehicle_m[i]));
+    cluster.z_max_m = std::max(cluster.z_max_m, static_cast<double>(scan.z_vehicle_m[i]));
+    // A ghost beside an object shall not make it longer.
+    if (real >= 0.5 && cluster.number_on_outline < cluster.outline.size()) {
+      cluster.outline[cluster.number_on_outline++] = points_[k];
+    }
+    ++cluster.number_of_detections;
+  }
+  cluster.realness = square / sum;
+  cluster.weight = sum;
+  cluster.position_m /= sum;
+  cluster.range_rate_over_ground_mps /= sum;
+  const Eigen::Vector2d sight = cluster.position_m - sensor;
+  if (sight.squaredNorm() < 1e-6) return;
+  cluster.line_of_sight = sight.normalized();
+  const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
+  const double centre_variance = config_.centre_std_m * config_.centre_std_m;
+  cluster.covariance_m2 = (range_variance / (sum * sum) + centre_variance) * u * u.transpose() +
+                          (cross_variance / (sum * sum) + centre_variance) * v * v.transpose();
+  cluster.range_rate_variance = rate_variance / (sum * sum) + config_.range_rate_std_mps * config_.range_rate_std_mps;
+  clusters_.push_back(cluster);
+}
+
+std::span<const Cluster> Clusterer::join(std::size_t first, std::size_t second) {
+  Cluster& into = clusters_[first];
+  const Cluster& part = clusters_[second];
+  const double weight = into.weight + part.weight, share = part.weight / weight;
+  into.position_m += share * (part.position_m - into.position_m);
+  into.range_rate_over_ground_mps += share * (part.range_rate_over_ground_mps - into.range_rate_over_ground_mps);
+  into.realness += share * (part.realness - into.realness);
+  into.line_of_sight = (into.line_of_sight + share * (part.line_of_sight - into.line_of_sight)).normalized();
+  into.weight = weight;
+  into.z_min_m = std::min(into.z_min_m, part.z_min_m);
+  into.z_max_m = std::max(into.z_max_m, part.z_max_m);
+  into.number_of_detections += part.number_of_detections;
+  for (std::uint32_t k = 0; k < part.number_on_outline && into.number_on_outline < into.outline.size(); ++k) {
+    into.outline[into.number_on_outline++] = part.outline[k];
+  }
+  clusters_.erase(clusters_.begin() + static_cast<std::ptrdiff_t>(second));
   return clusters_;
 }
 

@@ -16,28 +16,40 @@
 namespace boresight::tracking {
 
 struct Cluster {
-  Eigen::Vector2d position_m;     ///< mean of the detections, vehicle frame
+  Eigen::Vector2d position_m;     ///< mean of the detections, each as real as it is, vehicle frame
   Eigen::Matrix2d covariance_m2;  ///< of that mean by the sensor's noise
   double range_rate_over_ground_mps;
   double range_rate_variance;     ///< of the mean, m²/s²
   Eigen::Vector2d line_of_sight;  ///< unit vector from the sensor
   double z_min_m, z_max_m;
+  double realness;  ///< probability that it is no ghost: 1 − `ghost_probability`, of those detections that count most
   std::uint32_t number_of_detections;
-  std::array<Eigen::Vector2d, 16> outline;  ///< up to 16 of the detections, for the extent
+  double weight;                            ///< sum of that probability over the detections
+  std::array<Eigen::Vector2d, 24> outline;  ///< up to 24 of the detections that are rather real, for the extent
+  std::uint32_t number_on_outline;
 };
 
 class Clusterer {
  public:
   explicit Clusterer(const Config& config);
-  /// Groups the detections of provenance kMoving. At most Assignment::kCapacity clusters; further ones are counted.
-  [[nodiscard]] std::span<const Cluster> find(const ClassifiedScan& scan);
+  /// Groups the detections of provenance kMoving, by place and then by range rate. At most Assignment::kCapacity
+  /// clusters; further ones are counted.
+  std::span<const Cluster> find(const ClassifiedScan& scan);
+  /// Makes one cluster of two, which takes the place of the first; those behind the second move up.
+  std::span<const Cluster> join(std::size_t first, std::size_t second);
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 
  private:
+  /// Clusters of `members_`, by range rate.
+  void split(const ClassifiedScan& scan);
+  /// One cluster, of points by index.
+  void add(const ClassifiedScan& scan, std::span<const std::uint32_t> members);
+
   Config config_;
   geometry::Dbscan dbscan_;
   std::vector<Eigen::Vector2d> points_;
-  std::vector<std::uint32_t> index_;  // detection of each point
+  std::vector<std::uint32_t> index_;    // detection of each point
+  std::vector<std::uint32_t> members_;  // points of one place
   std::vector<Cluster> clusters_;
   std::uint32_t dropped_ = 0;
 };

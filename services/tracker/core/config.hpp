@@ -8,7 +8,7 @@ namespace boresight::tracking {
 struct Config {
   double cluster_radius_m = 3.5;
   std::size_t cluster_min_points = 1;
-  double cluster_max_range_rate_spread_mps = 4.0;  ///< a detection that moves otherwise than its cluster is left out
+  double cluster_max_range_rate_spread_mps = 4.0;  ///< a detection that moves otherwise belongs to another cluster
   double gate_chi2 = 16.0;            ///< Mahalanobis distance² of position and range rate (3 degrees of freedom)
   double jerk_std_mps3 = 3.0;         ///< process noise: how fast the acceleration changes
   double centre_std_m = 1.0;          ///< how far the mean of the visible detections is from where the box says it is
@@ -21,6 +21,9 @@ struct Config {
   double duplicate_speed_mps = 5.0;
   std::size_t confirm_hits = 4;       ///< m …
   std::size_t confirm_window = 6;     ///< … of n scans that could see the object
+  double confirm_evidence = 3.0;      ///< and as many of those hits are real, by what the ghost filter says of them
+  double confirm_age_s = 0.15;        ///< and this long after the first: several radars at one instant are one look
+  double start_realness = 0.2;        ///< what is less likely real starts no track
   std::size_t delete_misses = 8;      ///< k …
   std::size_t delete_window = 10;     ///< … of t scans
   double coast_s = 1.0;               ///< longest prediction without a detection

@@ -56,7 +56,8 @@ struct Extent {
       const double course_rad = std::atan2(velocity_mps.y(), velocity_mps.x());
       heading_rad = geometry::wrap_angle(heading_rad + kCourseGain * geometry::wrap_angle(course_rad - heading_rad));
     }
-    const std::size_t n = std::min<std::size_t>(cluster.number_of_detections, cluster.outline.size());
+    const std::size_t n = std::min<std::size_t>(cluster.number_on_outline, cluster.outline.size());
+    if (n == 0) return;
     Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
     for (std::size_t i = 0; i < n; ++i) {
       const Eigen::Vector2d p = to_body(cluster.outline[i]);
@@ -64,15 +65,34 @@ struct Extent {
       high = high.cwiseMax(p);
     }
     const VisibleFaces faces = visible_faces(centre_m, sensor_m);
-    follow(length_m, high.x() - low.x(), faces.side != 0.0, 0.5, 20.0);
-    follow(width_m, high.y() - low.y(), faces.end != 0.0, 0.5, 4.0);
-    if (has_elevation) follow(height_m, cluster.z_max_m, true, 0.0, 5.0);
+    // Few detections say little of how long a side is, and a side that is seen at a slant shows little of itself.
+    const double said = static_cast<double>(n) / static_cast<double>(n + 3);
+    const Eigen::Vector2d sight = to_body(centre_m - sensor_m).normalized();
+    follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * sight.y() * sight.y(), 0.5, kLongest_m);
+    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), 0.5, 4.0);
+    if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
   }
 
   [[nodiscard]] ObjectClass object_class() const {
     if (length_m > 6.5) return ObjectClass::kTruck;
     if (length_m > 2.6) return ObjectClass::kCar;
     return length_m > 1.4 ? ObjectClass::kTwoWheeler : ObjectClass::kUnknown;
+  }
+
+  /// Whether the other box lies before or behind this one, in its track, at most `gap_m` away.
+  [[nodiscard]] bool in_file(const Eigen::Vector2d& centre_m, const Extent& other,
+                             const Eigen::Vector2d& other_centre_m, double gap_m) const {
+    const Eigen::Vector2d at = to_body(other_centre_m - centre_m).cwiseAbs();
+    return at.x() < 0.5 * (length_m + other.length_m) + gap_m && at.y() < 0.5 * std::min(width_m, other.width_m);
+  }
+
+  /// Makes the box reach as far as another one's middle, as what else that one is may be no more than the length of a
+  /// car that it was born with; returns where this one's centre is then.
+  [[nodiscard]] Eigen::Vector2d lengthen(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& other_centre_m) {
+    const double at = to_body(other_centre_m - centre_m).x();
+    const double low = std::min(-0.5 * length_m, at), high = std::max(0.5 * length_m, at);
+    length_m = std::min(high - low, kLongest_m);
+    return centre_m + 0.5 * (low + high) * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
   }
 
   /// Whether a point lies in the box, made larger by a margin on every side.
@@ -82,13 +102,14 @@ struct Extent {
   }
 
  private:
+  static constexpr double kLongest_m = 20.0;
   [[nodiscard]] Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
     const double c = std::cos(heading_rad), s = std::sin(heading_rad);
     return {c * v.x() + s * v.y(), -s * v.x() + c * v.y()};
   }
-  static void follow(double& value, double seen, bool visible, double low, double high) {
-    if (seen <= value && !visible) return;
-    const double gain = seen > value ? 0.3 : 0.02;
+  /// `shown`: how much of it was to be seen, 0 … 1.
+  static void follow(double& value, double seen, double shown, double low, double high) {
+    const double gain = seen > value ? 0.3 : 0.02 * shown;
     value = std::clamp(value + gain * (seen - value), low, high);
   }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "services/common/geometry/ego_step.hpp"
 #include "services/common/geometry/frames.hpp"
@@ -54,13 +55,14 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
 
   predict_all(elapsed_s, scan.geometry);
   const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
-  const std::span<const Cluster> clusters = clusterer_.find(scan);
+  const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan));
   result.dropped_clusters = clusterer_.dropped();
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   assign(clusters, sensor, has_elevation);
   judge(scan);
   for (std::size_t c = 0; c < clusters.size(); ++c) {
-    if (!cluster_used_[c]) start_track(clusters[c], sensor, has_elevation);
+    if (cluster_used_[c] || clusters[c].realness < config_.start_realness) continue;
+    start_track(clusters[c], sensor, has_elevation);
   }
   remove_duplicates();
   result.dropped_tracks = dropped_tracks_;
@@ -79,6 +81,29 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   }
 }
 
+std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) {
+  // A long vehicle reflects at its ends and little between: what lies in its box and moves with it is one thing.
+  constexpr double kMargin_m = 0.5;
+  for (const Entry& track : tracks_) {
+    if (!track.confirmed) continue;
+    const auto is_part = [&](const Cluster& cluster) {
+      const double rate = cluster.line_of_sight.dot(track.state.mean.segment<2>(2));
+      return track.extent.contains(track.state.mean.head<2>(), cluster.position_m, kMargin_m) &&
+             std::abs(cluster.range_rate_over_ground_mps - rate) < config_.cluster_max_range_rate_spread_mps;
+    };
+    std::size_t first = 0;
+    while (first < clusters.size() && !is_part(clusters[first])) ++first;
+    for (std::size_t c = first + 1; c < clusters.size();) {
+      if (is_part(clusters[c])) {
+        clusters = clusterer_.join(first, c);
+      } else {
+        ++c;
+      }
+    }
+  }
+  return clusters;
+}
+
 void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation) {
   cluster_used_.fill(false);
   assignment_.reset(tracks_.size(), clusters.size(), config_.gate_chi2);
@@ -89,7 +114,8 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
       if (d.squared >= config_.gate_chi2) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
-      assignment_.set(t, c, d.squared + preference);
+      // Twice the negative logarithm of being real, as d² is of the place: what may be a ghost comes second.
+      assignment_.set(t, c, d.squared + preference - 2.0 * std::log(clusters[c].realness));
     }
   }
   assignment_.solve();
@@ -98,11 +124,15 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     if (column < 0) continue;
     const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
     Entry& track = tracks_[t];
-    if (!update(track.state, measurement_of(cluster, visible_mean_[t]))) continue;
+    // What may be a ghost moves the track by as little as it is likely real.
+    PositionRate measurement = measurement_of(cluster, visible_mean_[t]);
+    measurement.covariance /= cluster.realness;
+    if (!update(track.state, measurement)) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
     track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
     track.since_update_s = 0.0;
     track.detections = cluster.number_of_detections;
+    track.realness = cluster.realness;
   }
   // What lies within a confirmed track's box is another part of that object and no object of its own.
   for (std::size_t c = 0; c < clusters.size(); ++c) {
@@ -136,6 +166,7 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   track.state.mean.head<2>() = cluster.position_m - track.extent.visible_mean(cluster.position_m, sensor);
   track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
   track.history = 1;
+  track.evidence[0] = static_cast<float>(cluster.realness);
   track.seen_scans = 1;
   track.detections = cluster.number_of_detections;
   tracks_.push_back(track);
@@ -175,28 +206,49 @@ void Tracker::judge(const ClassifiedScan& scan) {
     const bool hit = track.detections > 0;
     if (!hit && !can_see(scan.geometry, scan.header.source_id, track)) continue;
     track.history = track.history << 1 | (hit ? 1u : 0u);
+    std::shift_right(track.evidence.begin(), track.evidence.end(), 1);
+    track.evidence[0] = hit ? static_cast<float>(track.realness) : 0.0F;
     track.seen_scans = std::min<std::uint32_t>(track.seen_scans + 1, 32);
-    track.existence = hit ? track.existence + kHitGain * (0.999 - track.existence)
+    track.existence = hit ? track.existence + kHitGain * track.realness * (0.999 - track.existence)
                           : track.existence * (1.0 - kDetection) / (1.0 - kDetection * track.existence);
     const std::uint32_t recent = track.history & window_mask(config_.confirm_window);
-    if (std::popcount(recent) >= static_cast<int>(config_.confirm_hits)) track.confirmed = true;
+    const auto window = track.evidence.begin() + static_cast<std::ptrdiff_t>(config_.confirm_window);
+    const double evidence = std::accumulate(track.evidence.begin(), window, 0.0);
+    const bool often = std::popcount(recent) >= static_cast<int>(config_.confirm_hits);
+    const bool long_enough = track.age_s > config_.confirm_age_s - 1e-6;
+    if (often && long_enough && evidence >= config_.confirm_evidence) track.confirmed = true;
   }
   std::erase_if(tracks_, [this](const Entry& track) { return is_dead(track); });
 }
 
-void Tracker::remove_duplicates() {
-  // Two tracks on one object have the same place and velocity; the older one, or the confirmed one, stays.
+bool Tracker::are_one(const Entry& a, const Entry& b) const {
+  const Eigen::Vector2d p = a.state.mean.head<2>(), q = b.state.mean.head<2>();
+  // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.
+  if (a.extent.contains(p, q, 0.0) || b.extent.contains(q, p, 0.0)) return true;
+  const Eigen::Vector2d velocity = a.state.mean.segment<2>(2);
+  if ((velocity - b.state.mean.segment<2>(2)).norm() > config_.duplicate_speed_mps) return false;
   const double margin_m = config_.duplicate_margin_m;
+  if (a.extent.contains(p, q, margin_m) || b.extent.contains(q, p, margin_m)) return true;
+  // Both ends of a long vehicle: nobody follows so closely.
+  constexpr double kSmallestHeadway_s = 0.3;
+  return a.extent.in_file(p, b.extent, q, kSmallestHeadway_s * velocity.norm());
+}
+
+void Tracker::remove_duplicates() {
+  // The older one, or the confirmed one, stays.
   for (std::size_t a = 0; a < tracks_.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks_.size();) {
-      const Entry &first = tracks_[a], &second = tracks_[b];
-      const Eigen::Vector2d p = first.state.mean.head<2>(), q = second.state.mean.head<2>();
-      const bool one_place = first.extent.contains(p, q, margin_m) || second.extent.contains(q, p, margin_m);
-      if (!one_place || (first.state.mean - second.state.mean).segment<2>(2).norm() > config_.duplicate_speed_mps) {
+      if (!are_one(tracks_[a], tracks_[b])) {
         ++b;
         continue;
       }
       if (tracks_[b].confirmed && !tracks_[a].confirmed) std::swap(tracks_[a], tracks_[b]);
+      Entry& kept = tracks_[a];
+      const Entry& gone = tracks_[b];
+      const double speed_mps = (kept.state.mean - gone.state.mean).segment<2>(2).norm();
+      if (gone.confirmed && speed_mps <= config_.duplicate_speed_mps) {
+        kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), gone.state.mean.head<2>());
+      }
       tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(b));
     }
   }

@@ -35,6 +35,7 @@ class Tracker {
   void write(TrackList& out) const;
 
  private:
+  static constexpr std::size_t kLongestWindow = 32;
   struct Entry {
     std::uint32_t id = 0;
     bool confirmed = false;
@@ -42,15 +43,19 @@ class Tracker {
     Extent extent;
     std::uint32_t history = 0;  // one bit for each scan that could see the object, the latest lowest; 1: detected
     std::uint32_t seen_scans = 0;
+    std::array<float, kLongestWindow> evidence{};  // how real each of those scans' detections were, the latest first
     double existence = 0.5;
     double age_s = 0.0;
     double since_update_s = 0.0;
     std::uint32_t detections = 0;  // in the last scan
+    double realness = 0.0;         // of those
   };
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
+  std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
   void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
   void judge(const ClassifiedScan& scan);
+  [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;
   void remove_duplicates();
   [[nodiscard]] bool can_see(const ScanGeometry& geometry, std::uint32_t radar_id, const Entry& track) const;
   [[nodiscard]] bool is_dead(const Entry& track) const;

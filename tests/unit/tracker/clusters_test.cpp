@@ -10,17 +10,50 @@ TEST(Clusterer, GroupsWhatIsNearAndMovesAlike) {
   Scene scene;
   scene.begin(kMillisecond);
   for (const double x : {20.0, 21.5, 23.0}) scene.add({x, 0.0}, {10.0, 0.0});
-  scene.add({21.0, 0.5}, {25.0, 0.0});  // in the same place, but moves otherwise: a ghost, or a wheel
+  scene.add({21.0, 0.5}, {25.0, 0.0});  // in the same place, but moves otherwise
   scene.add({60.0, 10.0}, {-8.0, 0.0});
   scene.add({30.0, 5.0}, {0.0, 0.0}, Provenance::kStationary);
   scene.add({31.0, 5.0}, {9.0, 0.0}, Provenance::kGhostType2);
   Clusterer clusterer(Config{});
   const auto clusters = clusterer.find(*scene.scan);
-  ASSERT_EQ(clusters.size(), 2u);
+  ASSERT_EQ(clusters.size(), 3u);
   EXPECT_EQ(clusters[0].number_of_detections, 3u);
   EXPECT_NEAR(clusters[0].position_m.x(), 21.5, 1e-5);
   EXPECT_NEAR(clusters[0].range_rate_over_ground_mps, 10.0, 1e-4);
   EXPECT_EQ(clusters[1].number_of_detections, 1u);
+  EXPECT_NEAR(clusters[1].range_rate_over_ground_mps, 25.0, 0.1);
+  EXPECT_EQ(clusters[2].number_of_detections, 1u);
+}
+
+TEST(Clusterer, EachDetectionCountsAsMuchAsItIsReal) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  scene.add({20.0, 0.0}, {10.0, 0.0});
+  scene.add({23.0, 0.0}, {12.0, 0.0}, Provenance::kMoving, 0.75);
+  scene.add({60.0, 0.0}, {10.0, 0.0}, Provenance::kMoving, 0.9);
+  Clusterer clusterer(Config{});
+  const auto clusters = clusterer.find(*scene.scan);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_NEAR(clusters[0].position_m.x(), 20.6, 1e-5);
+  EXPECT_NEAR(clusters[0].range_rate_over_ground_mps, 10.4, 1e-4);
+  EXPECT_NEAR(clusters[0].realness, (1.0 + 0.25 * 0.25) / 1.25, 1e-6);
+  EXPECT_EQ(clusters[0].number_on_outline, 1u) << "a likely ghost makes no object longer";
+  EXPECT_NEAR(clusters[1].realness, 0.1, 1e-6);
+}
+
+TEST(Clusterer, JoinsTwoPartsByTheirWeight) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  for (const double x : {20.0, 20.0, 20.0, 28.0}) scene.add({x, 0.0}, {10.0, 0.0});
+  scene.add({60.0, 0.0}, {10.0, 0.0});
+  Clusterer clusterer(Config{});
+  ASSERT_EQ(clusterer.find(*scene.scan).size(), 3u);
+  const auto clusters = clusterer.join(0, 1);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_NEAR(clusters[0].position_m.x(), 22.0, 1e-5);
+  EXPECT_EQ(clusters[0].number_of_detections, 4u);
+  EXPECT_EQ(clusters[0].number_on_outline, 4u);
+  EXPECT_EQ(clusters[1].position_m.x(), 60.0);
 }
 
 TEST(Clusterer, UncertaintyIsLargestAcrossTheLineOfSight) {
@@ -49,9 +82,9 @@ TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
   scene.add({21.0, 0.0}, {10.0, 0.0});
   scene.scan->x_vehicle_m[1] = std::numeric_limits<float>::quiet_NaN();
   scene.scan->range_rate_over_ground_mps[2] = std::numeric_limits<float>::infinity();
-  for (int i = 0; i < 3; ++i) scene.add({21.0, 0.5}, {10.0, 0.0});
+  for (int i = 0; i < 4; ++i) scene.add({21.0, 0.5}, {10.0, 0.0});
   scene.scan->range_std_m[3] = scene.scan->azimuth_std_rad[4] = scene.scan->range_rate_std_mps[5] =
-      std::numeric_limits<float>::quiet_NaN();
+      scene.scan->ghost_probability[6] = std::numeric_limits<float>::quiet_NaN();
   Clusterer clusterer(Config{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);
@@ -97,7 +130,7 @@ TEST(Extent, TurnsWithTheObject) {
 TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
   Extent extent;
   Cluster cluster{};
-  cluster.number_of_detections = 2;
+  cluster.number_of_detections = cluster.number_on_outline = 2;
   cluster.outline[0] = {20.0, -0.9};
   cluster.outline[1] = {20.0, 0.9};
   for (int i = 0; i < 300; ++i) extent.update(cluster, {22.0, 0.0}, {10.0, 0.0}, {0.0, 0.0}, true);
@@ -107,6 +140,24 @@ TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
   for (int i = 0; i < 20; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
   EXPECT_NEAR(extent.length_m, 8.0, 0.05);
   EXPECT_EQ(extent.object_class(), ObjectClass::kTruck);
+  cluster.outline[1] = {22.0, -0.9};
+  for (int i = 0; i < 20; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
+  EXPECT_GT(extent.length_m, 7.0) << "a few scans that show a part of it";
+  for (int i = 0; i < 2000; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
+  EXPECT_NEAR(extent.length_m, 2.0, 0.1);
+}
+
+TEST(Extent, LengthensToReachAnother) {
+  Extent rear{.heading_rad = M_PI / 2, .length_m = 4.0, .width_m = 2.0};
+  const Extent front{.heading_rad = M_PI / 2, .length_m = 3.0, .width_m = 2.0};
+  const Eigen::Vector2d centre(5.0, 10.0), ahead(5.3, 15.0);
+  EXPECT_TRUE(rear.in_file(centre, front, ahead, 2.0));
+  EXPECT_FALSE(rear.in_file(centre, front, ahead, 1.0));
+  EXPECT_FALSE(rear.in_file(centre, front, {6.5, 15.0}, 2.0)) << "beside its track";
+  const Eigen::Vector2d moved = rear.lengthen(centre, ahead);
+  EXPECT_NEAR(rear.length_m, 7.0, 1e-12);
+  EXPECT_NEAR(moved.y(), 11.5, 1e-12);
+  EXPECT_NEAR(moved.x(), 5.0, 1e-12);
 }
 
 }  // namespace

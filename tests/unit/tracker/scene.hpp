@@ -52,7 +52,7 @@ class Scene {
     scan->geometry.speed_scale = 1.0F;
   }
   void add(const Eigen::Vector2d& position_m, const Eigen::Vector2d& velocity_mps,
-           Provenance provenance = Provenance::kMoving) {
+           Provenance provenance = Provenance::kMoving, double ghost_probability = 0.0) {
     const std::uint32_t i = scan->number_of_valid_detections++;
     const Eigen::Vector2d sight = position_m - Eigen::Vector2d(3.6, 0.0);
     scan->x_vehicle_m[i] = static_cast<float>(position_m.x());
@@ -65,6 +65,7 @@ class Scene {
     scan->azimuth_std_rad[i] = 0.005F;
     scan->range_rate_std_mps[i] = 0.05F;
     scan->provenance[i] = provenance;
+    scan->ghost_probability[i] = static_cast<float>(ghost_probability);
   }
   std::unique_ptr<ClassifiedScan> scan = std::make_unique<ClassifiedScan>();
 };

@@ -1,3 +1,4 @@
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -47,6 +48,108 @@ TEST_F(TrackerTest, WhatCannotBeConfirmedAnyMoreIsGivenUp) {
   step({30.0, 0.0}, {8.0, 0.0});
   for (int i = 0; i < 3; ++i) step({}, {}, false);
   EXPECT_EQ(list().number_of_tracks, 0u);
+}
+
+/// Scans until the object is confirmed, whose detections may be ghosts with that probability; 0: never.
+int scans_to_confirm(double ghost_probability) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 40; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.add({30.0 + 0.4 * i, 0.0}, {8.0, 0.0}, Provenance::kMoving, ghost_probability);
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (list->number_of_confirmed_tracks > 0) return i + 1;
+    EXPECT_EQ(list->number_of_tracks, ghost_probability > 0.8 ? 0u : 1u);
+  }
+  return 0;
+}
+
+TEST(TrackerBirth, NeedsEvidenceThatIsReal) {
+  EXPECT_EQ(scans_to_confirm(0.0), 4);
+  EXPECT_EQ(scans_to_confirm(0.05), 4);
+  EXPECT_EQ(scans_to_confirm(0.3), 5);
+  EXPECT_EQ(scans_to_confirm(0.5), 6);
+  EXPECT_EQ(scans_to_confirm(0.6), 0) << "too doubtful for ever";
+  EXPECT_EQ(scans_to_confirm(0.9), 0) << "not even tentative";
+}
+
+TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 8; ++i) {
+    scene.begin((1000 + i) * kMillisecond, 1u + static_cast<unsigned>(i) % 2u);
+    scene.add({15.0, 9.0}, {5.0, 4.0});
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    EXPECT_EQ(list->number_of_confirmed_tracks, 0u);
+  }
+  EXPECT_EQ(list->number_of_tracks, 1u);
+}
+
+/// How far a last detection, beside the track by 1.5 m, moves it.
+double moved_by(double ghost_probability) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  double before = 0.0;
+  for (int i = 0; i <= 40; ++i) {
+    tracker.write(*list);
+    before = list->tracks[0].position_vehicle_m[1];
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.add({30.0 + 0.4 * i, i < 40 ? 0.0 : 1.5}, {8.0, 0.0}, Provenance::kMoving, i < 40 ? 0.0 : ghost_probability);
+    tracker.step(*scene.scan);
+  }
+  tracker.write(*list);
+  EXPECT_EQ(list->number_of_tracks, 1u);
+  return static_cast<double>(list->tracks[0].position_vehicle_m[1]) - before;
+}
+
+TEST(TrackerUpdate, WhatMayBeAGhostHardlyMovesATrack) {
+  EXPECT_GT(moved_by(0.0), 0.1);
+  EXPECT_GT(moved_by(0.9), 0.0);
+  EXPECT_LT(moved_by(0.9), 0.2 * moved_by(0.0));
+}
+
+TEST_F(TrackerTest, VehiclesThatPassEachOtherKeepTheirNames) {
+  // In adjacent lanes: for some scans their detections are one cluster by place.
+  std::map<bool, std::set<std::uint32_t>> names;  // by whether it comes towards us
+  for (int i = 0; i < 80; ++i) {
+    const double t = 0.05 * i;
+    scene_.begin(now_);
+    for (const double part : {-0.7, 0.7}) {
+      scene_.add({25.0 + 12.0 * t, part}, {12.0, 0.0});
+      scene_.add({95.0 - 14.0 * t, 3.2 + part}, {-14.0, 0.0});
+    }
+    tracker_.step(*scene_.scan);
+    now_ += 50 * kMillisecond;
+    if (i < 20) continue;
+    EXPECT_EQ(list().number_of_confirmed_tracks, 2u) << i;
+    for (std::size_t k = 0; k < list_->number_of_confirmed_tracks; ++k) {
+      names[list_->tracks[k].velocity_over_ground_mps[0] < 0.0F].insert(list_->tracks[k].tracking_id);
+    }
+  }
+  EXPECT_EQ(names[false].size(), 1u);
+  EXPECT_EQ(names[true].size(), 1u);
+}
+
+TEST_F(TrackerTest, BothEndsOfALongVehicleAreOneTrack) {
+  // 12 m long, seen from the side; it reflects at its ends and in the middle, farther apart than a cluster reaches.
+  for (int i = 0; i < 60; ++i) {
+    const double x = 15.0 + 0.05 * 12.0 * i;
+    scene_.begin(now_);
+    for (const double end : {0.0, 0.8, 5.5, 6.5, 11.0, 12.0}) scene_.add({x + end, 6.0}, {12.0, 0.0});
+    tracker_.step(*scene_.scan);
+    now_ += 50 * kMillisecond;
+  }
+  ASSERT_EQ(list().number_of_confirmed_tracks, 1u);
+  EXPECT_EQ(list().number_of_tracks, 1u);
+  // Each end was taken for a car of its own at first; what is too long shrinks slowly.
+  EXPECT_NEAR(list().tracks[0].length_m, 12.0, 3.5);
+  EXPECT_NEAR(list().tracks[0].position_vehicle_m[0], 15.0 + 0.05 * 12.0 * 59 + 6.0, 2.0);
+  EXPECT_EQ(list().tracks[0].object_class, ObjectClass::kTruck);
 }
 
 TEST_F(TrackerTest, EstimatesPlaceVelocityAndBox) {
