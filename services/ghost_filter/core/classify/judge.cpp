@@ -21,6 +21,7 @@ Judge::Judge(const ClassConfig& config) : config_(config) {
 
 void Judge::begin(const Surroundings& surroundings) {
   s_ = surroundings;
+  fan_.build(s_.mirrors, s_.sensor_m);
   crossings_.clear();
 }
 
@@ -30,17 +31,17 @@ double Judge::rate_variance(const Measured& m) const {
 
 void Judge::cross(const Measured& m, std::uint32_t but_object) {
   crossings_.clear();
-  for (const Mirror& mirror : s_.mirrors) {
-    if (mirror.body != kNobody && mirror.body == but_object) continue;
+  fan_.visit(m.direction, [&](const Mirror& mirror) {
+    if (mirror.body != kNobody && mirror.body == but_object) return;
     const auto turn = turn_at(mirror, s_.sensor_m, m.direction, m.range_m + 2.0 * m.range_std_m, m.azimuth_std_rad);
-    if (!turn || crossings_.size() == crossings_.capacity()) continue;
+    if (!turn || crossings_.size() == crossings_.capacity()) return;
     // How far behind the mirror it lies, across it.
     const double sine = -m.direction.dot(turn->normal), cosine = m.direction.dot(left_of(turn->normal));
     const double depth = (m.range_m - turn->distance_m) * sine;
     const double std = std::sqrt(square(sine * m.range_std_m) + square(cosine * m.range_m * m.azimuth_std_rad) +
                                  square(turn->offset_std_m) + square(0.1));
     crossings_.push_back({&mirror, *turn, below(depth / std)});
-  }
+  });
 }
 
 bool Judge::is_known_still(const Measured& m) const {
@@ -73,10 +74,10 @@ bool Judge::has_company(const Measured& m, std::uint32_t index) const {
 
 double Judge::behind_mirror(const Measured& m) const {
   double most = 0.0;
-  for (const Mirror& mirror : s_.mirrors) {
+  fan_.visit(m.direction, [&](const Mirror& mirror) {
     const auto turn = turn_at(mirror, s_.sensor_m, m.direction, m.range_m - config_.margin_m, m.azimuth_std_rad);
     if (turn) most = std::max(most, turn->probability);
-  }
+  });
   return most;
 }
 

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "services/ghost_filter/core/classify/config.hpp"
+#include "services/ghost_filter/core/classify/mirror_fan.hpp"
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
@@ -106,6 +107,7 @@ class Judge {
   [[nodiscard]] double rate_variance(const Measured& m) const;
   ClassConfig config_;
   Surroundings s_{};
+  MirrorFan fan_;
   std::vector<Crossing> crossings_;
 };
 

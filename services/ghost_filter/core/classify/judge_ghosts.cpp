@@ -62,6 +62,10 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   const std::size_t own = s_.movers->earlier();
   const Eigen::Vector2d in_frame = s_.odometry->point_to_frame(target.place_m);
   const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
+  const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
+  const double most_of_strength =
+      std::isfinite(m.rcs_dbsm) ? likelihood(kGhostStrength, kGhostStrength.mean_db, 0.0, doubt) : 1.0;
+  const double most_of_rest = most_of_strength / std::sqrt(2.0 * M_PI * rate_noise);
   s_.movers->near(in_frame, [&](const Mover& mover, std::uint32_t number) {
     if (number >= own && mover.index == but_index) return;
     const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
@@ -75,10 +79,11 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     const double there =
         kSame * gaussian(residual, target.covariance + (sure + square(0.2)) * eye) +
         (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
-    if (there <= 0.0) return;
-    const double fits = rate_density(
-        m.rate_mps - target.known_mps, target.q, s_.odometry->vector_to_vehicle(mover.direction), mover.rate_mps,
-        square(config_.range_rate_slack_mps), along, target.noise_variance + target.turn_variance * square(15.0));
+    // Even the best range rate and strength would not make it the likeliest.
+    if (mover.weight * there * most_of_rest <= of_movers) return;
+    const double fits =
+        rate_density(m.rate_mps - target.known_mps, target.q, s_.odometry->vector_to_vehicle(mover.direction),
+                     mover.rate_mps, square(config_.range_rate_slack_mps), along, rate_noise);
     const bool heard = std::isfinite(mover.rcs_dbsm);
     const double above_db = m.rcs_dbsm - (heard ? mover.rcs_dbsm : kUsualRcs_dbsm);
     of_movers =
@@ -173,9 +178,9 @@ double Judge::image_of_stationary(const Target& t, const Measured& m) const {
 double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object) const {
   double density = 0.0;
   for (const Mirror& mirror : s_.mirrors) {
-    if (but_object != kNobody && mirror.body == but_object) continue;
+    if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
     const auto met = meet(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
-    if (!met || met->rest_m > m.range_m - 0.3) continue;
+    if (!met || met->rest_m > m.range_m - 0.3 || met->detour.probability < kLeastChance) continue;
     const Eigen::Vector2d& u = met->detour.departure;
     const Eigen::Vector2d& d = met->detour.arrival;
     Target t{};

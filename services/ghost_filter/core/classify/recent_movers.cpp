@@ -1,8 +1,15 @@
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace boresight::ghosts {
 
-RecentMovers::RecentMovers() : first_in_cell_(kCapacity), next_in_cell_(kCapacity, kNone) {
+namespace {
+constexpr double kSame_m = 1.0, kSame_mps = 1.0;
+}  // namespace
+
+RecentMovers::RecentMovers() : first_in_cell_(kCapacity), newest_(kCapacity), next_in_cell_(kCapacity, kNone) {
   movers_.reserve(kCapacity);
 }
 
@@ -20,7 +27,22 @@ void RecentMovers::link(std::uint32_t i) {
 }
 
 void RecentMovers::forget(std::int64_t oldest_ns) {
-  std::erase_if(movers_, [oldest_ns](const Mover& m) { return m.time_ns < oldest_ns || m.weight < kLeastWeight; });
+  newest_.clear();
+  const std::int64_t now_ns = movers_.empty() ? 0 : movers_.back().time_ns;
+  std::size_t kept = movers_.size();
+  for (std::size_t i = movers_.size(); i-- > 0;) {
+    const Mover& m = movers_[i];
+    if (m.time_ns < oldest_ns) continue;
+    const double elapsed_s = static_cast<double>(now_ns - m.time_ns) * 1e-9;
+    const Eigen::Vector2d p = m.position_m + elapsed_s * m.rate_mps * m.direction;
+    geometry::GridCell place = geometry::grid_cell(p.x(), p.y(), kSame_m);
+    // Range rates of up to 64 m/s apart are told apart.
+    const auto rate = static_cast<std::int32_t>(std::lround(std::clamp(m.rate_mps, -500.0, 500.0) / kSame_mps));
+    place.row = place.row * 64 + (rate & 63);
+    const auto number = static_cast<std::uint32_t>(i);
+    if (newest_.at(place, number) == number) movers_[--kept] = m;
+  }
+  movers_.erase(movers_.begin(), movers_.begin() + static_cast<std::ptrdiff_t>(kept));
   earlier_ = movers_.size();
   first_in_cell_.clear();
   for (std::uint32_t i = 0; i < movers_.size(); ++i) link(i);

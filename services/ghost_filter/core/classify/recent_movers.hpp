@@ -58,7 +58,7 @@ class RecentMovers {
   void link(std::uint32_t i);
   std::vector<Mover> movers_;
   std::size_t earlier_ = 0;
-  geometry::CellTable first_in_cell_;
+  geometry::CellTable first_in_cell_, newest_;
   std::vector<std::uint32_t> next_in_cell_;
 };
 

@@ -19,6 +19,12 @@ double there(const Mirror& mirror, double arc_m, double arc_std_m) {
   return mirror.existence * std::max(0.0, below(arc_m - mirror.begin_m) - below(arc_m - mirror.end_m));
 }
 
+/// Over ways of this length it turns so little that where a wave turns need not be sought: by Fermat's principle an
+/// error of that changes no length.
+bool is_as_good_as_straight(const Mirror& mirror, double length_m) {
+  return std::abs(mirror.curve.curvature_per_m) * length_m < 0.03;
+}
+
 double variance_at(const Mirror& mirror, double arc_m) {
   const Eigen::Vector3d row(1.0, arc_m, 0.5 * arc_m * arc_m);
   return std::max(0.0, row.dot(mirror.covariance * row));
@@ -78,12 +84,16 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
   if (sensor_side * target_side <= 0.0) return std::nullopt;
   // On a straight mirror W divides the way in the ratio of the distances; on a bent one that is where one begins.
   double arc = mirror.curve.arc(sensor_m);
+  const double across = std::abs(mirror.curve.arc(target_m) - arc);
   arc += (mirror.curve.arc(target_m) - arc) * sensor_side / (sensor_side + target_side);
+  // Most mirrors are passed by far: no need to know by how much.
+  const double slack = 15.0 + 0.3 * std::abs(mirror.curve.curvature_per_m) * arc * arc;
+  if (arc < mirror.begin_m - slack || arc > mirror.end_m + slack) return std::nullopt;
   Eigen::Vector2d point, tangent;
   for (int round = 0;; ++round) {
     point = mirror.curve.at(arc);
     tangent = mirror.curve.tangent_at(arc);
-    if (round == 2 || mirror.curve.curvature_per_m == 0.0) break;
+    if (round == 2 || is_as_good_as_straight(mirror, std::abs(sensor_side) + std::abs(target_side) + across)) break;
     const Eigen::Vector2d a = sensor_m - point, b = target_m - point;
     const double step = tangent.dot(a) * std::abs(target_side) + tangent.dot(b) * std::abs(sensor_side);
     arc += step / (std::abs(sensor_side) + std::abs(target_side));
@@ -107,8 +117,13 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
 
 std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
                             const Eigen::Vector2d& direction, double length_m, double least_m) {
+  // The way out and the way on to the ray's begin are no shorter than to the nearest point of the mirror and from
+  // there.
+  const double size = std::max(-mirror.begin_m, mirror.end_m) + 15.0;
+  const double reach = 0.5 * (length_m + (from_m - sensor_m).norm()) + size;
+  if ((mirror.curve.origin_m - sensor_m).squaredNorm() > reach * reach) return std::nullopt;
   // By the sensor's image in the mirror's tangent the way is straight: |T − from| + |T − image| = length.
-  const bool bent = mirror.curve.curvature_per_m != 0.0;
+  const bool bent = !is_as_good_as_straight(mirror, length_m);
   double arc = mirror.curve.arc(sensor_m);
   if (bent) arc = 0.5 * (arc + mirror.curve.arc(from_m + 0.5 * length_m * direction));
   Eigen::Vector2d point = mirror.curve.at(arc), tangent = mirror.curve.tangent_at(arc);

@@ -9,7 +9,8 @@ namespace boresight::ghosts {
 namespace {
 
 constexpr int kDraws = 32;
-constexpr int kRounds = 4;           // of fitting and choosing the points anew
+constexpr int kRounds = 4;  // of fitting and choosing the points anew
+constexpr double kShortArc_m = 15.0, kShortArcTurn_rad = 0.12;
 constexpr double kScatter_m = 0.15;  // of a rail's reflections about the rail, when nothing better is known
 
 /// Straight unless the points say otherwise.
@@ -105,7 +106,10 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
     found.covariance = fit.covariance();
   }
   if (found.end_m - found.begin_m < config_.min_length_m) return std::nullopt;
-  if (std::abs(found.curve.curvature_per_m) > config_.max_curvature_per_m) return std::nullopt;
+  const double curvature = std::abs(found.curve.curvature_per_m), length = found.end_m - found.begin_m;
+  if (curvature > config_.max_curvature_per_m) return std::nullopt;
+  // Through any bush there is some short arc: one that bends must be long.
+  if (length < kShortArc_m && curvature * length > kShortArcTurn_rad) return std::nullopt;
 
   std::size_t near = 0;
   double square = 0.0;

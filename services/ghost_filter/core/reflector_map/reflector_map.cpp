@@ -9,16 +9,16 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kBehind_m = 160.0;  // what lies farther from the vehicle is forgotten
+constexpr double kBehind_m = 130.0;  // what lies farther from the vehicle is forgotten
 constexpr double kBirthLogOdds = 0.0;
-constexpr double kSeenLogOdds = 0.7, kUnseenLogOdds = -0.08, kImpureLogOdds = -0.7;
+constexpr double kSeenLogOdds = 0.7, kUnseenLogOdds = -0.12, kImpureLogOdds = -0.7;
 constexpr double kSurest = 5.0, kDead = -2.0;
 constexpr double kGate = 3.0;         // standard deviations
 constexpr double kMostSlack_m = 0.5;  // by which the gate of an uncertain curve is wider than the tolerance
 constexpr double kScatter_m = 0.15;   // of a rail's reflections about its middle line
 constexpr double kBeside = 4.0;       // what lies off the line, but within so many tolerances, speaks against it
-/// Share of the purity of a new reflector that a known one must show; a rough rock face has no more.
-constexpr double kStillPure = 0.5;
+/// Share of the purity of a new reflector that a known one must show.
+constexpr double kStillPure = 0.6;
 /// Errors of a radar's azimuth in one place, and a post's depth, are common to many detections: they count for less.
 constexpr double kInCommon = 4.0;
 
@@ -53,7 +53,10 @@ Reflector* ReflectorMap::reflector_of(const Eigen::Vector2d& position_m, double 
     if (arc < begin - config_.max_gap_m || arc > end + config_.max_gap_m) return;
     const bool is_within = arc >= begin && arc <= end;
     const bool is_on = distance <= config_.tolerance_m + std::min(kMostSlack_m, std::sqrt(variance_m2));
-    if (is_within) ++(is_on ? r.evidence.on : r.evidence.beside);
+    // What is measured too badly to tell whether it lies beside tells nothing of that.
+    if (is_within && variance_m2 < config_.tolerance_m * config_.tolerance_m) {
+      ++(is_on ? r.evidence.on : r.evidence.beside);
+    }
     // An end is continued by what lies on its line as well as it was measured; along it, as well as the line is known.
     if (!is_on &&
         (!is_within || distance > config_.tolerance_m + std::sqrt(variance_m2 + kGate * kGate * r.variance_at(arc)))) {
