@@ -1,5 +1,6 @@
 #include "tests/simulator/world/reflections.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -168,9 +169,13 @@ void add_sides(const Body& body, double loss_db, std::vector<MirrorSurface>& sur
   const Eigen::Vector2d across = 0.5 * body.width_m * Eigen::Vector2d(-ahead.y(), ahead.x());
   const std::array<Eigen::Vector2d, 4> corners = {body.position_m + along + across, body.position_m - along + across,
                                                   body.position_m - along - across, body.position_m + along - across};
+  // Guards against driving under a truck hang at most 0.55 m above the road (UN regulations 58 and 73): its flanks
+  // mirror at the height of radars and cars, though waves get through below its body.
+  constexpr double kGuard_m = 0.5;
+  const double low_m = std::min(body.clearance_m, kGuard_m);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    surfaces.push_back({corners[i], corners[(i + 1) % corners.size()], body.clearance_m, body.height_m, loss_db,
-                        body.velocity_mps, body.id, true});
+    surfaces.push_back({corners[i], corners[(i + 1) % corners.size()], low_m, body.height_m, loss_db, body.velocity_mps,
+                        body.id, true});
   }
 }
 

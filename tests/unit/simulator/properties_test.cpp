@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -307,6 +307,92 @@ TEST_P(Shipped, IsFasterThanRealTime) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(scenario_names()));
+
+/// What the ego vehicle does in a scenario.
+struct Course {
+  double fastest_mps = -1e9, slowest_mps = 1e9, hardest_braking_mps2 = 0.0, turned_rad = 0.0;
+  double stood_s = 0.0;  // between driving and driving
+};
+
+Course course_of(const std::string& name) {
+  const Scenario s = scenario(name);
+  const World world(s, 1, s.duration_s);
+  Course c;
+  double standing_s = 0.0;
+  constexpr double kStep_s = 0.01;
+  for (double t = 0.0; t < s.duration_s; t += kStep_s) {
+    const EgoState ego = world.ego(t);
+    c.fastest_mps = std::max(c.fastest_mps, ego.speed_mps);
+    c.slowest_mps = std::min(c.slowest_mps, ego.speed_mps);
+    c.hardest_braking_mps2 = std::max(c.hardest_braking_mps2, -ego.acceleration_mps2);
+    c.turned_rad += ego.yaw_rate_radps * kStep_s;
+    if (std::abs(ego.speed_mps) < 0.05) {
+      standing_s += kStep_s;
+    } else {
+      c.stood_s += std::exchange(standing_s, 0.0);
+    }
+  }
+  return c;
+}
+
+TEST(ShippedScenarios, ShowTheWaysOfDrivingThatTheirNamesSay) {
+  for (const char* motorway : {"highway_multipath", "truck_overtaking"}) {
+    const Course c = course_of(motorway);
+    EXPECT_GT(c.slowest_mps, 14.0) << motorway;
+    EXPECT_LT(std::abs(c.turned_rad), 0.5) << motorway;
+  }
+  const Course street = course_of("city_canyon"), junction = course_of("junction"),
+               braking = course_of("motorway_braking"), garage = course_of("parking_garage"),
+               bends = course_of("curve_with_rail");
+  EXPECT_NEAR(street.turned_rad, 0.5 * M_PI, 0.02) << "turns left";
+  EXPECT_GT(street.stood_s, 3.0);
+  EXPECT_GT(junction.stood_s, 5.0);
+  EXPECT_GT(junction.fastest_mps, 11.0);
+  EXPECT_GT(braking.fastest_mps, 29.0);
+  EXPECT_GT(braking.hardest_braking_mps2, 7.0);
+  EXPECT_LT(braking.hardest_braking_mps2, 9.0);
+  EXPECT_GT(braking.stood_s, 4.0);
+  EXPECT_NEAR(garage.turned_rad, -0.5 * M_PI, 0.15) << "turns right";
+  EXPECT_LT(garage.slowest_mps, -1.0) << "backs";
+  EXPECT_GT(bends.turned_rad, -0.5);
+  EXPECT_GT(bends.hardest_braking_mps2, 3.0);
+}
+
+/// A car on the right that drives a little faster than the ego vehicle, and one thing on the left.
+std::map<std::pair<Provenance, unsigned>, std::size_t> ghosts_by(const std::string& thing, bool of_body) {
+  const Scenario s = read_scenario(
+      config::Reader::parse("name = \"x\"\nvehicle = \"demo\"\n[[body]]\nkind = \"car\"\nstart_m = 4.0\nlateral_m = "
+                            "-3.5\nspeed_mps = 19.0\n" +
+                                thing + "[radars]\nsensitivity = {threshold_db = -60.0, max_detections = 800}\n",
+                            "x.toml"));
+  std::map<std::pair<Provenance, unsigned>, std::size_t> ghosts;
+  for (const Row& r : drive(s, 4.0, 4.0).rows) {
+    if (r.bounces == 0 || r.object != 1) continue;
+    EXPECT_EQ(r.mirror, of_body ? 2u : 0u);
+    ++ghosts[{r.provenance, r.bounces}];
+  }
+  return ghosts;
+}
+
+TEST(Reflectors, EachMakesGhostsOfBothTypesByTwoAndThreeBounces) {
+  const auto expect_all = [](const std::string& name, std::map<std::pair<Provenance, unsigned>, std::size_t> ghosts) {
+    EXPECT_GT((ghosts[{Provenance::kGhostType1, 1}]), 5u) << name;
+    EXPECT_GT((ghosts[{Provenance::kGhostType2, 1}]), 5u) << name;
+    EXPECT_GT((ghosts[{Provenance::kGhostType2, 2}]), 5u) << name;
+  };
+  for (const char* kind : {"guard_rail", "wall", "noise_barrier", "tunnel", "facade", "pillars"}) {
+    const std::string structure =
+        std::string("[[structure]]\nkind = \"") + kind + "\"\nfrom_m = -200.0\nto_m = 400.0\nlateral_m = 4.5\n";
+    expect_all(kind, ghosts_by(structure + (std::string(kind) == "tunnel" ? "width_m = 12.0\n" : ""), false));
+  }
+  for (const char* kind : {"truck", "van"}) {
+    expect_all(kind, ghosts_by(std::string("[[body]]\nkind = \"") + kind +
+                                   "\"\nstart_m = 4.0\nlateral_m = 3.5\nspeed_mps = 16.0\n",
+                               true));
+  }
+  const auto none = ghosts_by("[[body]]\nkind = \"car\"\nstart_m = 4.0\nlateral_m = 3.5\nspeed_mps = 16.0\n", true);
+  EXPECT_TRUE(none.empty()) << "cars do not mirror";
+}
 
 }  // namespace
 }  // namespace boresight::simulator
