@@ -123,6 +123,7 @@ struct BodySpec {
   double heading_rad = 0.0;
   bool parked = false;
   double length_m = 0.0, width_m = 0.0, height_m = 0.0;
+  double flank_low_m = 0.0;  ///< lower edge of flanks that mirror
   [[nodiscard]] bool operator==(const BodySpec&) const = default;
 };
 

@@ -41,6 +41,7 @@ struct Body {
   double yaw_rate_radps;
   double length_m, width_m, height_m;
   double clearance_m;                             ///< between road and underbody: where a radar sees through below
+  double flank_low_m;                             ///< lower edge of the flanks, of what mirrors
   std::uint32_t first_centre, number_of_centres;  ///< in Scene::centres
 };
 

@@ -101,6 +101,7 @@ void World::add_actor(const BodySpec& spec, std::uint32_t id, std::uint64_t seed
   body.width_m = spec.width_m > 0.0 ? spec.width_m : usual.width_m;
   body.height_m = spec.height_m > 0.0 ? spec.height_m : usual.height_m;
   body.clearance_m = usual.clearance_m;
+  body.flank_low_m = spec.flank_low_m > 0.0 ? spec.flank_low_m : usual.flank_low_m;
   body = placed(actor, body_motion(actor.spec, road_, 0.0));
   actors_.push_back(std::move(actor));
 }

@@ -111,6 +111,7 @@ void read_body(Reader reader, std::vector<BodySpec>& bodies) {
   body.length_m = reader.number("length_m", {0.1, 30.0}, body.length_m);
   body.width_m = reader.number("width_m", {0.1, 5.0}, body.width_m);
   body.height_m = reader.number("height_m", {0.1, 5.0}, body.height_m);
+  body.flank_low_m = reader.number("flank_low_m", {0.05, 5.0}, body.flank_low_m);
   Reader repeat = reader.table("repeat");
   const auto count = repeat.integer("count", {1, 1000}, 1);
   const double every_m = repeat.number("every_m", {-1e4, 1e4}, 0.0);

@@ -1,6 +1,5 @@
 #include "tests/simulator/world/reflections.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -129,9 +128,11 @@ Dimensions dimensions_of(BodyKind kind) {
     case BodyKind::kCar:
       return {4.5, 1.9, 1.5, 0.2};
     case BodyKind::kVan:
-      return {5.5, 2.0, 2.4, 0.25};
+      return {5.5, 2.0, 2.4, 0.25, 0.25};
     case BodyKind::kTruck:
-      return {12.0, 2.5, 3.8, 0.8};
+      // Guards against driving under it hang at most 0.55 m above the road (UN regulations 58 and 73): its flanks
+      // mirror at the height of radars and cars, though waves get through below its body.
+      return {12.0, 2.5, 3.8, 0.8, 0.5};
     case BodyKind::kPedestrian:
       return {0.5, 0.5, 1.75, 0.0};
     case BodyKind::kCyclist:
@@ -169,13 +170,9 @@ void add_sides(const Body& body, double loss_db, std::vector<MirrorSurface>& sur
   const Eigen::Vector2d across = 0.5 * body.width_m * Eigen::Vector2d(-ahead.y(), ahead.x());
   const std::array<Eigen::Vector2d, 4> corners = {body.position_m + along + across, body.position_m - along + across,
                                                   body.position_m - along - across, body.position_m + along - across};
-  // Guards against driving under a truck hang at most 0.55 m above the road (UN regulations 58 and 73): its flanks
-  // mirror at the height of radars and cars, though waves get through below its body.
-  constexpr double kGuard_m = 0.5;
-  const double low_m = std::min(body.clearance_m, kGuard_m);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    surfaces.push_back({corners[i], corners[(i + 1) % corners.size()], low_m, body.height_m, loss_db, body.velocity_mps,
-                        body.id, true});
+    surfaces.push_back({corners[i], corners[(i + 1) % corners.size()], body.flank_low_m, body.height_m, loss_db,
+                        body.velocity_mps, body.id, true});
   }
 }
 

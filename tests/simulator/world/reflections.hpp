@@ -11,6 +11,7 @@ namespace boresight::simulator {
 
 struct Dimensions {
   double length_m, width_m, height_m, clearance_m;
+  double flank_low_m = 0.0;  ///< of what mirrors
 };
 [[nodiscard]] Dimensions dimensions_of(BodyKind kind);
 

@@ -61,6 +61,7 @@ TEST(Sides, OnlyLargeVehiclesMirrorAndByAllFour) {
   body.width_m = 2.5;
   body.height_m = 3.8;
   body.clearance_m = 0.8;
+  body.flank_low_m = 0.5;
   body.velocity_mps = {3.0, 1.0};
   std::vector<MirrorSurface> sides;
   add_sides(body, 4.0, sides);
@@ -70,7 +71,7 @@ TEST(Sides, OnlyLargeVehiclesMirrorAndByAllFour) {
     around_m += (s.to_m - s.from_m).norm();
     EXPECT_EQ(s.body_id, 7u);
     EXPECT_EQ(s.velocity_mps, body.velocity_mps);
-    EXPECT_EQ(s.low_m, 0.5) << "its guards, at the height of radars and cars";
+    EXPECT_EQ(s.low_m, 0.5) << "its guards, not its clearance";
     EXPECT_EQ(s.high_m, 3.8);
   }
   EXPECT_NEAR(around_m, 29.0, 1e-9);

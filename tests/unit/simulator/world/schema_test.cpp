@@ -247,6 +247,7 @@ TEST(Schema, DefaultsAreThoseOfTheReader) {
     EXPECT_EQ(std::stod(sizes[1][k]), size.length_m);
     EXPECT_EQ(std::stod(sizes[2][k]), size.width_m);
     EXPECT_EQ(std::stod(sizes[3][k]), size.height_m);
+    EXPECT_EQ(std::stod(sizes[4][k]), size.flank_low_m);
   }
 }
 
