@@ -39,6 +39,12 @@ constexpr Variant kVariants[] = {
     {"type 1: not by path lengths", [](NamedGhostMethod& m) { m.config.mirror.classes.type1_per_object = kNever; }},
     {"no images of the stationary world",
      [](NamedGhostMethod& m) { m.config.mirror.classes.stationary_image_density = kNever; }},
+    {"strength (RCS) tells nothing", [](NamedGhostMethod& m) { m.config.mirror.classes.strength_doubt = 1.0; }},
+    {"no wheels and limbs of other range rates",
+     [](NamedGhostMethod& m) {
+       m.config.mirror.classes.wheel_share = m.config.mirror.classes.wheel_ghost_share = 0.0;
+     }},
+    {"confirmed tracks only", [](NamedGhostMethod& m) { m.config.mirror.classes.tentative_weight = 0.0; }},
     {"no class for clutter", [](NamedGhostMethod& m) { m.config.mirror.classes.clutter_density = kNever; }},
 };
 
