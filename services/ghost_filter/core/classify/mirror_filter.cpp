@@ -233,7 +233,8 @@ void MirrorFilter::judge_tracks() {
 }
 
 void MirrorFilter::learn_strength(const Densities& densities, const Measured& m) {
-  if (!std::isfinite(m.rcs_dbsm) || densities.of_body < 0.5 * densities.sum()) return;
+  // Written so that nothing, and what is not a number, teaches nothing: there is no object then.
+  if (!std::isfinite(m.rcs_dbsm) || !(densities.of_body > 0.5 * densities.sum())) return;
   Image& image = images_[track_of_object_[densities.object]];
   // As a Kalman filter of a constant would, but it never ceases to learn: the aspect changes.
   constexpr double kLeastStd_db = 1.0;

@@ -71,8 +71,8 @@ std::string change(double from, double to) {
 }  // namespace
 
 void ablation(const Options& options, Report& report) {
-  const std::size_t seeds = options.seeds(5);
-  const double duration_s = drive_seconds(options, 11.4);
+  const std::size_t seeds = options.seeds(3);
+  const double duration_s = drive_seconds(options, 8.0);
   const std::string how = std::to_string(seeds) + " seeds of " + fixed(duration_s, 1) + " s";
   std::vector<NamedGhostMethod> variants;
   Table table{
