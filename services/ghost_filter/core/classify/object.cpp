@@ -63,6 +63,10 @@ Reflections reflections_of_grown(const Object& object, const Eigen::Vector2d& pl
                                  const Eigen::Matrix2d& covariance, const Eigen::Vector2d& seen_from_m,
                                  const Eigen::Vector2d& lit_from_m) {
   Reflections sum{0.0, 0.0};
+  // Nearly all objects are far away: told without a root, by (a + b)² ≤ 2 a² + 2 b².
+  const double size = object.half_length_m + object.half_width_m + kGrowths.back().length_m + kGrowths.back().width_m;
+  const double spread = covariance.trace() + object.position_covariance.trace();
+  if ((place_m - object.position_m).squaredNorm() > 2.0 * (size * size + 7.1 * 7.1 * spread)) return sum;
   Object grown = object;
   for (const Growth& growth : kGrowths) {
     grown.half_length_m = object.half_length_m + growth.length_m;

@@ -30,6 +30,25 @@ double variance_at(const Mirror& mirror, double arc_m) {
   return std::max(0.0, row.dot(mirror.covariance * row));
 }
 
+/// Whether meet() would find the wave to turn beyond the mirror's ends, or on its other side: as if it were straight,
+/// and with a margin for its being bent. Most mirrors are told so without a root or an arc.
+bool is_met_far_beside(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
+                       const Eigen::Vector2d& direction, double length_m) {
+  const Eigen::Vector2d& tangent = mirror.curve.tangent;
+  const Eigen::Vector2d sensor = mirror.curve.local(sensor_m), from = mirror.curve.local(from_m);
+  const Eigen::Vector2d along(direction.dot(tangent), tangent.x() * direction.y() - tangent.y() * direction.x());
+  const Eigen::Vector2d back(from.x() - sensor.x(), from.y() + sensor.y());  // from the sensor's image
+  const double denominator = 2.0 * (length_m + back.dot(along));
+  if (denominator < 1e-6) return false;
+  const Eigen::Vector2d target = from + (length_m * length_m - back.squaredNorm()) / denominator * along;
+  const double bend = std::abs(mirror.curve.curvature_per_m);
+  const double sag = 1.0 + bend * (sensor.x() * sensor.x() + target.x() * target.x());
+  if (sensor.y() * target.y() <= 0.0) return std::min(std::abs(sensor.y()), std::abs(target.y())) > sag;
+  const double turns = sensor.x() + (target.x() - sensor.x()) * sensor.y() / (sensor.y() + target.y());
+  const double slack = 10.0 + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + sag;
+  return turns < mirror.begin_m - slack || turns > mirror.end_m + slack;
+}
+
 }  // namespace
 
 std::optional<Turn> turn_at(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& direction,
@@ -122,6 +141,7 @@ std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_
   const double size = std::max(-mirror.begin_m, mirror.end_m) + 15.0;
   const double reach = 0.5 * (length_m + (from_m - sensor_m).norm()) + size;
   if ((mirror.curve.origin_m - sensor_m).squaredNorm() > reach * reach) return std::nullopt;
+  if (is_met_far_beside(mirror, sensor_m, from_m, direction, length_m)) return std::nullopt;
   // By the sensor's image in the mirror's tangent the way is straight: |T − from| + |T − image| = length.
   const bool bent = !is_as_good_as_straight(mirror, length_m);
   double arc = mirror.curve.arc(sensor_m);
