@@ -59,8 +59,12 @@ class Judge {
   [[nodiscard]] Densities weigh_still(const Measured& measured);
   /// Whether there is a mirror in front of the detection, as probability.
   [[nodiscard]] double behind_mirror(const Measured& measured) const;
-  /// Whether the detection lies on a tracked object and has not the range rate of its body.
-  [[nodiscard]] bool is_of_wheel(const Measured& measured) const;
+  /// The tracked object that a detection lies on, and whether it has another range rate than its body.
+  struct Owner {
+    std::uint32_t object = kNobody;
+    bool is_wheel = false;
+  };
+  [[nodiscard]] Owner owner_of(const Measured& measured) const;
 
  private:
   /// A mirror that the line of sight crosses.

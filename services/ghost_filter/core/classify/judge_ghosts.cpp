@@ -13,7 +13,7 @@ constexpr double kSpeedAlong_mps = 20.0, kSpeedAcross_mps = 1.5, kSpeedAnyway_mp
 constexpr double kAlongShare = 0.75;
 constexpr double kHiddenRate_mps = 5.0;  // by which a type-1 ghost's range rate differs from its object's
 constexpr double kLeastRest_m = 0.3;     // behind a mirror
-constexpr double kLeastChance = 0.05;    // of two mirrors being there: less is not followed
+constexpr double kLeastChance = 0.05;    // of mirrors being there: less is not followed
 // Of one object's type-2 ghosts by one mirror, shares by the way out: by the same mirror, directly, by another mirror.
 constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
 constexpr double kAround_m = 2.0;        // of a track's box
@@ -46,7 +46,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) continue;
-    const Reflections there = reflections_of_grown(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
+    const Reflections there = reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
     if (there.wheel <= 0.0) continue;
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
     const RateDensity rates = rates_at(o, m.rate_mps - target.known_mps, target.q, noise);
@@ -79,11 +79,15 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     const double there =
         kSame * gaussian(residual, target.covariance + (sure + square(0.2)) * eye) +
         (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
+    const bool owned = number >= own && mover.object != kNobody;
+    if (owned && (mover.object == target.mirror->body || mover.object == target.other_body)) return;
     // Even the best range rate and strength would not make it the likeliest.
     if (mover.weight * there * most_of_rest <= of_movers) return;
+    // A track knows the velocity, a single detection one component of it.
     const double fits =
-        rate_density(m.rate_mps - target.known_mps, target.q, s_.odometry->vector_to_vehicle(mover.direction),
-                     mover.rate_mps, square(config_.range_rate_slack_mps), along, rate_noise);
+        owned ? rates_at(s_.objects[mover.object], m.rate_mps - target.known_mps, target.q, rate_noise).body
+              : rate_density(m.rate_mps - target.known_mps, target.q, s_.odometry->vector_to_vehicle(mover.direction),
+                             mover.rate_mps, square(config_.range_rate_slack_mps), along, rate_noise);
     const bool heard = std::isfinite(mover.rcs_dbsm);
     const double above_db = m.rcs_dbsm - (heard ? mover.rcs_dbsm : kUsualRcs_dbsm);
     of_movers =
@@ -147,7 +151,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   double density = 0.0;
   for (const Mirror& other : s_.mirrors) {
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
-        sure * other.existence < kLeastChance)
+        sure * other.existence < kLeastChance || other.least_range_m > m.range_m)
       continue;
     const auto met = meet(other, s_.sensor_m, turn.point_m, d, 2.0 * m.range_m - turn.distance_m, kLeastRest_m);
     if (!met || sure * met->detour.probability < kLeastChance) continue;
@@ -179,6 +183,8 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
   double density = 0.0;
   for (const Mirror& mirror : s_.mirrors) {
     if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
+    // The way out and back is no shorter than to the mirror and back.
+    if (mirror.least_range_m > m.range_m) continue;
     const auto met = meet(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
     if (!met || met->rest_m > m.range_m - 0.3 || met->detour.probability < kLeastChance) continue;
     const Eigen::Vector2d& u = met->detour.departure;

@@ -8,14 +8,6 @@ namespace boresight::ghosts {
 
 namespace {
 
-/// Slower than this it may as well stand.
-constexpr double kSlow_mps = 0.5;
-bool moves_surely(const Object& o) {
-  const double speed2 = o.velocity_mps.squaredNorm();
-  if (speed2 < square(kSlow_mps)) return false;
-  return speed2 > 4.0 * o.velocity_mps.dot(o.velocity_covariance * o.velocity_mps) / speed2;
-}
-
 /// Vehicles do not reach through rails, but are seen above them.
 constexpr double kSeenThrough = 0.03;
 
@@ -29,7 +21,7 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
     if (o.own) continue;
     if (surely_moving && !moves_surely(o)) continue;
     if ((o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) continue;
-    const Reflections place = reflections_of_grown(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
+    const Reflections place = reflections_at(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
     if (place.wheel <= 0.0) continue;
     double seen = 1.0;
     for (const Crossing& crossing : crossings_) {
@@ -52,15 +44,17 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
   }
 }
 
-bool Judge::is_of_wheel(const Measured& m) const {
+Judge::Owner Judge::owner_of(const Measured& m) const {
   constexpr double kAround_m = 1.0, kOff = 4.0;
-  for (const Object& o : s_.objects) {
-    if (o.own || o.weight < 0.5) continue;
-    if (!is_on(o, m.position_m, kAround_m)) continue;
+  Owner owner;
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+    const Object& o = s_.objects[i];
+    if (o.own || o.weight < 0.5 || !is_on(o, m.position_m, kAround_m)) continue;
     const double variance = rate_variance(m) + m.direction.dot(o.velocity_covariance * m.direction);
-    return square(m.rate_mps - m.direction.dot(o.velocity_mps)) > square(kOff) * variance;
+    owner = {i, square(m.rate_mps - m.direction.dot(o.velocity_mps)) > square(kOff) * variance};
+    if (!owner.is_wheel) break;
   }
-  return false;
+  return owner;
 }
 
 double Judge::of_movers(const Measured& m, std::uint32_t index) const {

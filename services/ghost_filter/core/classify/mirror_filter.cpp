@@ -150,6 +150,7 @@ void MirrorFilter::place_mirrors() {
     add_side(o.axis, o.half_length_m, left, o.half_width_m);
     add_side(left, o.half_width_m, o.axis, o.half_length_m);
   }
+  for (Mirror& m : mirrors_) m.least_range_m = std::abs(m.curve.distance(sensor_m_));
 }
 
 Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const {
@@ -172,13 +173,19 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
 }
 
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
+  const std::int64_t time_ns = scan.header.measurement_time_ns;
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
     const Measured m = measured(scan, i);
+    // What a moving object shows without a range rate is no part of the map.
+    if (std::any_of(objects_.begin(), objects_.end(), [&](const Object& o) {
+          return o.weight > 0.5 && moves_surely(o) && is_on(o, m.position_m, 0.5);
+        })) {
+      continue;
+    }
     const double across = m.range_m * m.azimuth_std_rad;
-    map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across,
-             scan.header.measurement_time_ns);
+    map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
   }
   map_.update(odometry_, positive_or(scan.geometry.ego_speed_std_mps, 0.05),
               positive_or(scan.geometry.ego_yaw_rate_std_radps, 0.002));
@@ -193,11 +200,12 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
     // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
     double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
     // Wheels are too weak to be seen in mirrors.
-    if (judge_.is_of_wheel(m)) weight *= 0.05;
+    const Judge::Owner owner = judge_.owner_of(m);
+    if (owner.is_wheel) weight *= 0.05;
     const double across = m.range_m * m.azimuth_std_rad;
     movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
                  m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i),
-                 m.rcs_dbsm});
+                 m.rcs_dbsm, owner.object});
   }
 }
 
@@ -311,8 +319,8 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     map_.clear();
     movers_.clear();
   }
-  update_map(scan, count);
   predict_objects(scan);
+  update_map(scan, count);
   place_mirrors();
   judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &odometry_, &movers_, &map_.grid()});
   gather_movers(scan, count);

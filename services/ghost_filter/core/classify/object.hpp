@@ -29,20 +29,19 @@ struct Object {
          std::abs(object.axis.x() * q.y() - object.axis.y() * q.x()) <= object.half_width_m + around_m;
 }
 
+/// Whether the object's speed is beyond doubt.
+[[nodiscard]] bool moves_surely(const Object& object);
+
 /// Densities for each m² of an object's reflections at a place, the number of each kind being 1.
 struct Reflections {
   double body;   ///< from the faces that look to where the wave comes from and goes to, a little from the others' edges
   double wheel;  ///< from anywhere in the box
 };
+/// A vehicle may be larger than its track's box: a young track's, or one's that shows one face only.
 /// At a place that is known with `covariance`, seen from and lit from (the last and the first corner of the path).
 [[nodiscard]] Reflections reflections_at(const Object& object, const Eigen::Vector2d& place_m,
                                          const Eigen::Matrix2d& covariance, const Eigen::Vector2d& seen_from_m,
                                          const Eigen::Vector2d& lit_from_m);
-
-/// The same of a box that may be shorter than the vehicle: that of a young track, or of one that shows one face only.
-[[nodiscard]] Reflections reflections_of_grown(const Object& object, const Eigen::Vector2d& place_m,
-                                               const Eigen::Matrix2d& covariance, const Eigen::Vector2d& seen_from_m,
-                                               const Eigen::Vector2d& lit_from_m);
 
 /// Density of a range rate over ground, given as q·v + known, for a part that goes with the body and for one that
 /// turns (a wheel's rim, a leg: its speed is anything between nothing and twice the body's).

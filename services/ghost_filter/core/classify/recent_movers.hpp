@@ -18,8 +18,9 @@ struct Mover {
   double variance_m2;         ///< of its position
   double weight;              ///< of being real, not a ghost itself, and of something that is not tracked
   std::int64_t time_ns;
-  std::uint32_t index;  ///< in its scan
-  double rcs_dbsm;      ///< NaN: not measured
+  std::uint32_t index;   ///< in its scan
+  double rcs_dbsm;       ///< NaN: not measured
+  std::uint32_t object;  ///< tracked object that it is of; counts in its own scan only
 };
 
 class RecentMovers {

@@ -30,6 +30,7 @@ struct Mirror {
   const Occupancy* occupancy = nullptr;    ///< nullptr: solid from end to end
   double arc_shift_m = 0.0;                ///< arc length of the curve's origin in the occupancy's count
   std::uint32_t body = kNobody;            ///< object whose side it is
+  double least_range_m = 0.0;              ///< of what is seen by it: its distance from the sensor
 };
 
 /// Where a ray meets a mirror.
