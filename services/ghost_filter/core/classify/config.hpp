@@ -13,7 +13,7 @@ struct ClassConfig {
   double hidden_ghost_density =
       4e-5;                       ///< for each m²: of type-1 ghosts behind an object by a reflector that is not known
   double type1_per_object = 0.6;  ///< expected detections by one reflector
-  double type2_per_object = 2.0;
+  double type2_per_object = 4.0;
   double real_per_object = 3.0;
   double tentative_weight = 0.1;     ///< of an object whose track is not confirmed yet
   double wheel_share = 0.25;         ///< of an object's detections that are of wheels or limbs, at other range rates
