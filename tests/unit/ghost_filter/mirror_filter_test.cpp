@@ -338,7 +338,7 @@ TEST_F(MirrorFilterTest, AnArcMirrorsAsItsTangentAtTheReflectionDoes) {
 
 TEST_F(MirrorFilterTest, AMisalignedRadarsGhostsAreFoundBecauseItsMountingIsUncertain) {
   // The radar is crooked by 3.5°: everything is turned, the rail as well, and the own motion is taken out wrongly.
-  speed_mps_ = 35.0;
+  speed_mps_ = 50.0;
   const Eigen::Rotation2Dd turn(3.5 * M_PI / 180.0);
   const auto ghosts_found = [&](double yaw_std) {
     filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
@@ -347,7 +347,7 @@ TEST_F(MirrorFilterTest, AMisalignedRadarsGhostsAreFoundBecauseItsMountingIsUnce
     for (int k = 0; k < 40; ++k) {
       std::uint32_t ghost = 0;
       drive(0.05, [&] {
-        const Vector2d p(12.0, -1.0), v(36.0, 0.0);
+        const Vector2d p(12.0, -1.0), v(51.0, 0.0);
         scan_->mounting_covariance[5] = static_cast<float>(yaw_std * yaw_std);
         rail(kRail);
         direct(p, v);
@@ -365,7 +365,7 @@ TEST_F(MirrorFilterTest, AMisalignedRadarsGhostsAreFoundBecauseItsMountingIsUnce
     }
     return ghosts;
   };
-  EXPECT_GE(ghosts_found(0.06), 19u);
+  EXPECT_GE(ghosts_found(0.06), 17u) << "of 20";
   EXPECT_LE(ghosts_found(0.001), 10u) << "as sure of its mounting as an aligned radar";
 }
 
