@@ -9,6 +9,10 @@ namespace boresight::ghosts {
 
 namespace {
 
+/// Ways over two mirrors, the least likely ghosts, are what costs most where mirrors are many: so many are followed for
+/// a detection, and for all of a scan.
+constexpr std::size_t kMostPairs = 32, kMostPairsOfScan = 2048;
+
 /// Chances that something else was detected at a moving detection's place, moved on, in the scans before: of a vehicle
 /// that nothing announces, and of clutter.
 constexpr double kCompanyOfNew = 0.8, kCompanyOfClutter = 0.02;
@@ -23,6 +27,7 @@ void Judge::begin(const Surroundings& surroundings) {
   s_ = surroundings;
   fan_.build(s_.mirrors, s_.sensor_m);
   crossings_.clear();
+  pairs_left_of_scan_ = kMostPairsOfScan;
 }
 
 double Judge::rate_variance(const Measured& m) const {
@@ -84,6 +89,8 @@ double Judge::behind_mirror(const Measured& m) const {
 Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but_object) {
   Densities densities;
   cross(m, but_object);
+  const std::size_t most = std::min(kMostPairs, pairs_left_of_scan_);
+  pairs_left_ = most;
   double behind = 0.0;
   for (const Crossing& crossing : crossings_) {
     behind = std::max(behind, crossing.turn.probability * crossing.beyond);
@@ -92,6 +99,7 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
     densities.type2 =
         std::max(densities.type2, type2(m, crossing, index, but_object) + type2_of_two(m, crossing, index, but_object));
   }
+  pairs_left_of_scan_ -= most - pairs_left_;
   bool is_hidden = false;
   densities.type1 = type1(m, index, but_object) + hidden(m, but_object, is_hidden);
   if (but_object != kNobody) return densities;

@@ -103,7 +103,7 @@ class Judge {
                              std::uint32_t but_object) const;
   /// Those whose way out is by another mirror.
   [[nodiscard]] double type2_of_two(const Measured& measured, const Crossing& crossing, std::uint32_t index,
-                                    std::uint32_t but_object) const;
+                                    std::uint32_t but_object);
   [[nodiscard]] Target target_of(const Measured& measured, const Crossing& crossing, double rest_m,
                                  double metres_per_m) const;
   [[nodiscard]] double image_of_stationary(const Target& target, const Measured& measured) const;
@@ -113,6 +113,8 @@ class Judge {
   Surroundings s_{};
   MirrorFan fan_;
   std::vector<Crossing> crossings_;
+  /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
+  std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
 };
 
 }  // namespace boresight::ghosts

@@ -141,8 +141,7 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
   return turn.probability * crossing.beyond * density;
 }
 
-double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uint32_t index,
-                           std::uint32_t but_object) const {
+double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) {
   const Turn& turn = crossing.turn;
   const Eigen::Vector2d& d = turn.direction;
   const double sure = turn.probability * crossing.beyond;
@@ -155,6 +154,8 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
       continue;
     const auto met = meet(other, s_.sensor_m, turn.point_m, d, 2.0 * m.range_m - turn.distance_m, kLeastRest_m);
     if (!met || sure * met->detour.probability < kLeastChance) continue;
+    if (pairs_left_ == 0) break;
+    --pairs_left_;
     const Eigen::Vector2d& u = met->detour.departure;
     const Eigen::Vector2d& e = met->detour.arrival;
     Target t = target_of(m, crossing, met->rest_m, 2.0 * met->metres_per_m);

@@ -12,6 +12,7 @@ namespace boresight::ghosts {
 
 namespace {
 
+constexpr std::size_t kJudgedAtOnce = 16;  // tracks in a scan
 constexpr std::size_t kMaxVehicleSides = 32;
 constexpr double kTrackDensity =
     5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
@@ -210,7 +211,13 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
 }
 
 void MirrorFilter::judge_tracks() {
-  for (std::uint32_t k = 0; k + 1 < objects_.size(); ++k) {
+  // In turns where there are many, so that a crowd does not cost its square.
+  const std::size_t tracks = objects_.size() - 1;
+  const std::size_t first = tracks > kJudgedAtOnce ? turn_ % tracks : 0;
+  const std::size_t judged = std::min(tracks, kJudgedAtOnce);
+  turn_ = first + judged;
+  for (std::size_t i = 0; i < judged; ++i) {
+    const auto k = static_cast<std::uint32_t>((first + i) % tracks);
     const Object& o = objects_[k];
     Measured m;
     m.position_m = o.position_m;

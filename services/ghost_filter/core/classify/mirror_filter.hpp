@@ -52,6 +52,7 @@ class MirrorFilter final : public Method {
   std::array<std::uint32_t, kMaxTracks> track_of_object_{};
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   std::array<Image, kMaxTracks> images_{}, images_before_{};
+  std::size_t turn_ = 0;  // the track that is judged next
   bool has_tracks_ = false;
   Eigen::Vector2d sensor_m_{0.0, 0.0}, sensor_velocity_mps_{0.0, 0.0};
   double ego_speed_std_mps_ = 0.0, mounting_std_rad_ = 0.0;
