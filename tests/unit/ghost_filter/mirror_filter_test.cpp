@@ -85,12 +85,13 @@ class MirrorFilterTest : public testing::Test {
                -8.0, corrected_flag::kMoving);
   }
   /// Of two bounces: in the direction of the target (type 1) or of its image (type 2).
-  std::uint32_t by_two_bounces(const Vector2d& p, const Vector2d& v, const Plane& plane, bool type1) {
+  std::uint32_t by_two_bounces(const Vector2d& p, const Vector2d& v, const Plane& plane, bool type1,
+                               double rcs = -8.0) {
     const Vector2d direct_sight = p - sensor(), image_sight = plane.image(p) - sensor();
     const double rate = 0.5 * (direct_sight.normalized().dot(v - sensor_velocity()) +
                                image_sight.normalized().dot(plane.image_velocity(v) - sensor_velocity()));
     return add((type1 ? direct_sight : image_sight).normalized(), 0.5 * (direct_sight.norm() + image_sight.norm()),
-               rate, -8.0, corrected_flag::kMoving);
+               rate, rcs, corrected_flag::kMoving);
   }
   /// The rail's posts every two metres along y = `y`, of which a scan shows some.
   void rail(
@@ -261,7 +262,8 @@ TEST_F(MirrorFilterTest, InTheDirectionOfATrackAtTheLengthOfADetourIsAType1Ghost
       hand_over_tracks();
       rail(kRail);
       car = direct(p + Vector2d(-2.0, 0.0), v);
-      ghost = by_two_bounces(p + Vector2d(-2.0, 0.0), v, kRailPlane, true);
+      // The ways out and back are far apart at the car: little comes back.
+      ghost = by_two_bounces(p + Vector2d(-2.0, 0.0), v, kRailPlane, true, -16.0);
       other = direct({40.0, 6.0}, {20.0, 0.0});
       direct({41.0, 6.5}, {20.0, 0.0});
     });
@@ -451,6 +453,15 @@ TEST_F(MirrorFilterTest, FullScansForAMinuteStayWithinBoundsAndAllocateNothing) 
     }
   }
   EXPECT_EQ(runtime::counted_allocations(), before);
+}
+
+TEST(GhostStrength, FallsWithEachBounceAndWithTheAngleAtTheObject) {
+  const double ahead = strength_of_ghost(1, std::cos(0.03)).mean_db;
+  EXPECT_LT(strength_of_ghost(1, std::cos(0.12)).mean_db, ahead - 2.5);
+  EXPECT_LT(strength_of_ghost(1, std::cos(0.5)).mean_db, ahead - 12.0);
+  EXPECT_LT(strength_of_ghost(2, 1.0).mean_db, ahead - 10.0);
+  // From far aside it does not matter how far.
+  EXPECT_DOUBLE_EQ(strength_of_ghost(1, -1.0).mean_db, strength_of_ghost(1, 0.0).mean_db);
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ class Judge {
     Eigen::Vector2d q;
     double known_mps, noise_variance;
     Eigen::Vector2d lit_from_m, seen_from_m;
+    Strength strength;                   ///< beside what it reflects directly
     double stretch;                      ///< square metres at the target for each one at the detection
     double turn_variance;                ///< of the direction to it, rad²
     const Mirror* mirror;                ///< the last one

@@ -53,7 +53,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     of_tracks += o.weight *
                  ((1.0 - config_.wheel_ghost_share) * there.body * rates.body +
                   config_.wheel_ghost_share * there.wheel * rates.wheel) *
-                 likelihood(kGhostStrength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
+                 likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
   }
   // Objects that are not tracked (yet) have been detected at least; and what was detected is known better than a box.
   // Several detections are of one object.
@@ -64,7 +64,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
   const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
   const double most_of_strength =
-      std::isfinite(m.rcs_dbsm) ? likelihood(kGhostStrength, kGhostStrength.mean_db, 0.0, doubt) : 1.0;
+      std::isfinite(m.rcs_dbsm) ? likelihood(target.strength, target.strength.mean_db, 0.0, doubt) : 1.0;
   const double most_of_rest = most_of_strength / std::sqrt(2.0 * M_PI * rate_noise);
   s_.movers->near(in_frame, [&](const Mover& mover, std::uint32_t number) {
     if (number >= own && mover.index == but_index) return;
@@ -90,9 +90,9 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
                              mover.rate_mps, square(config_.range_rate_slack_mps), along, rate_noise);
     const bool heard = std::isfinite(mover.rcs_dbsm);
     const double above_db = m.rcs_dbsm - (heard ? mover.rcs_dbsm : kUsualRcs_dbsm);
-    of_movers =
-        std::max(of_movers, mover.weight * there * fits *
-                                likelihood(kGhostStrength, above_db, heard ? kFluctuation_db : kUsualRcsStd_db, doubt));
+    of_movers = std::max(of_movers,
+                         mover.weight * there * fits *
+                             likelihood(target.strength, above_db, heard ? kFluctuation_db : kUsualRcsStd_db, doubt));
   });
   return (of_tracks + of_movers) * target.stretch;
 }
@@ -128,6 +128,7 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     t.q = d;
     t.known_mps = carried;
     t.of_own = true;
+    t.strength = strength_of_ghost(2, 1.0);
     density += kSameWay * config_.type2_per_object * ghosts_of(t, m, but_object, index);
   }
   if (const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m); rest > kLeastRest_m) {
@@ -136,6 +137,7 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     t.q = 0.5 * (d + e);
     t.known_mps = 0.5 * (carried + (m.direction - e).dot(s_.sensor_velocity_mps));
     t.lit_from_m = s_.sensor_m;
+    t.strength = strength_of_ghost(1, d.dot(e));
     density += kDirectly * config_.type2_per_object * ghosts_of(t, m, but_object, index) + image_of_stationary(t, m);
   }
   return turn.probability * crossing.beyond * density;
@@ -163,6 +165,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
     t.q = 0.5 * (d + e);
     t.known_mps = 0.5 * (carried + (u - e).dot(other.velocity_mps) + (m.direction - u).dot(s_.sensor_velocity_mps));
     t.lit_from_m = met->detour.point_m;
+    t.strength = strength_of_ghost(2, d.dot(e));
     t.other_body = other.body;
     density = std::max(density, met->detour.probability * ghosts_of(t, m, but_object, index));
   }
@@ -201,6 +204,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     t.noise_variance = rate_variance(m);
     t.lit_from_m = met->detour.point_m;
     t.seen_from_m = s_.sensor_m;
+    t.strength = strength_of_ghost(1, m.direction.dot(d));
     t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
     t.turn_variance = square(m.azimuth_std_rad);
     t.mirror = &mirror;
