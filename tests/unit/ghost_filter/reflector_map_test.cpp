@@ -163,6 +163,23 @@ TEST(ReflectorMap, ForgetsWhatIsNotThereAnyMore) {
   EXPECT_EQ(drive.map.grid().size(), 0U);
 }
 
+TEST(ReflectorMap, WhatWasDrivenThroughIsNoReflectorHoweverOftenItIsHeard) {
+  Drive drive(5);
+  drive.add({40.0, -6.0}, {40.0, 6.0}, 0.8);  // hangs above the road
+  drive.add({-40.0, 6.5}, {120.0, 6.5}, 1.5);
+  drive.run(0.8);
+  const Eigen::Vector2d hanging(40.0, 0.5), wall(42.0, 6.5);
+  ASSERT_GT(drive.probability(hanging), 0.5);
+  ASSERT_GT(drive.probability(wall), 0.5);
+  // One vehicle goes along the lane, the other one seems to touch the wall.
+  drive.map.drive_over({38.0, 0.0}, {42.5, 0.0});
+  drive.map.drive_over({40.0, 6.3}, {44.5, 6.7});
+  EXPECT_LT(drive.probability(hanging), 0.05);
+  drive.run(0.5);
+  EXPECT_LT(drive.probability(hanging), 0.05);
+  EXPECT_GT(drive.probability(wall), 0.5);
+}
+
 TEST(ReflectorMap, KnowsHowSureItIs) {
   // The offset beside the vehicle, over seeds: its error squared by its variance. What detections have in common is
   // allowed for, here they have nothing: so it may be too careful, but not too sure.

@@ -18,6 +18,7 @@ constexpr double kTrackDensity =
     5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
 constexpr double kSurest = 3.0;      // log-odds
+constexpr double kNoImage = 0.95;    // weight of an object that surely is where it seems to be
 constexpr double kHeard_db = 3.0;    // a track's strength is known if its std is less
 /// Mean strength of tracks, of images and of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kImageStrength{-20.0, 8.0}, kObjectStrength{-2.0, 9.0};
@@ -187,6 +188,11 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
     }
     const double across = m.range_m * m.azimuth_std_rad;
     map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
+  }
+  for (const Object& o : objects_) {
+    if (o.weight < kNoImage || !moves_surely(o)) continue;
+    const Eigen::Vector2d reach = o.half_length_m * o.axis;
+    map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));
   }
   map_.update(odometry_, positive_or(scan.geometry.ego_speed_std_mps, 0.05),
               positive_or(scan.geometry.ego_yaw_rate_std_radps, 0.002));

@@ -10,7 +10,7 @@ constexpr float kUnseen = -1.0F;
 constexpr float kHit = 1.2F;
 /// A rail reflects at its posts, of which a scan shows a part only: a miss says far less than a hit.
 constexpr float kMiss = -0.12F;
-constexpr float kSurest = 4.0F, kLeastSure = -3.0F;
+constexpr float kSurest = 4.0F, kLeastSure = -3.0F, kDriven = -5.0F;
 
 float to_probability(float log_odds) {
   return 1.0F / (1.0F + std::exp(-log_odds));
@@ -18,6 +18,7 @@ float to_probability(float log_odds) {
 }  // namespace
 
 void Occupancy::set(std::int32_t bin, float log_odds) {
+  if (driven_[index(bin)]) log_odds = kDriven;
   log_odds_[index(bin)] = log_odds;
   probability_[index(bin)] = to_probability(log_odds);
 }
@@ -29,6 +30,7 @@ void Occupancy::reset(double begin_m, double end_m, double bin_m) {
   log_odds_.fill(kUnseen);
   probability_.fill(to_probability(kUnseen));
   hit_.fill(false);
+  driven_.fill(false);
 }
 
 std::int32_t Occupancy::bin_of(double arc_m) const {
@@ -39,12 +41,14 @@ bool Occupancy::extend(double arc_m) {
   const std::int32_t bin = bin_of(arc_m);
   if (std::max(last_, bin) - std::min(first_, bin) >= kBins) return false;
   while (last_ < bin) {
-    set(++last_, kUnseen);
-    hit_[index(last_)] = false;
+    ++last_;
+    hit_[index(last_)] = driven_[index(last_)] = false;
+    set(last_, kUnseen);
   }
   while (first_ > bin) {
-    set(--first_, kUnseen);
-    hit_[index(first_)] = false;
+    --first_;
+    hit_[index(first_)] = driven_[index(first_)] = false;
+    set(first_, kUnseen);
   }
   return true;
 }
@@ -67,10 +71,19 @@ void Occupancy::settle() {
   }
 }
 
+void Occupancy::open(double arc_m, double around_m) {
+  const std::int32_t to = std::min(last_, bin_of(arc_m + around_m));
+  for (std::int32_t bin = std::max(first_, bin_of(arc_m - around_m)); bin <= to; ++bin) {
+    driven_[index(bin)] = true;
+    set(bin, kDriven);
+  }
+}
+
 void Occupancy::join(double arc_m, const Occupancy& other, double other_arc_m) {
   const std::int32_t theirs = other.bin_of(other_arc_m);
   if (theirs < other.first_ || theirs > other.last_ || !extend(arc_m)) return;
   const std::int32_t bin = bin_of(arc_m);
+  driven_[index(bin)] = driven_[index(bin)] || other.driven_[index(theirs)];
   set(bin, std::max(log_odds_[index(bin)], other.log_odds_[index(theirs)]));
 }
 

@@ -23,6 +23,9 @@ class Occupancy {
   void hit(double arc_m);
   /// Of the bins between those that were hit since the last call, those that were not become less likely.
   void settle();
+  /// Something drove through at this place: there is nothing, ever, within `around_m`, whatever is heard from there
+  /// (what hangs above the road, say).
+  void open(double arc_m, double around_m);
   /// Takes over what another one that runs along the same line knows of a place; see extend().
   void join(double arc_m, const Occupancy& other, double other_arc_m);
   /// Forgets the bins before and after.
@@ -45,6 +48,7 @@ class Occupancy {
   std::array<float, kBins> log_odds_{};
   std::array<float, kBins> probability_{};  // the same, as it is asked for far more often than it changes
   std::array<bool, kBins> hit_{};
+  std::array<bool, kBins> driven_{};  // through
 };
 
 struct Reflector {

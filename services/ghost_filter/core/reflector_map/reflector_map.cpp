@@ -94,6 +94,19 @@ void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double
   index_is_due_ = false;
 }
 
+void ReflectorMap::drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+  constexpr double kLane_m = 4.0;
+  constexpr double kAcross = 0.5;  // sine: what drives along a wall may seem to touch it
+  for (Reflector& r : reflectors_) {
+    const Eigen::Vector2d from = r.curve.local(from_m), to = r.curve.local(to_m);
+    if ((from.x() > r.end_m() && to.x() > r.end_m()) || (from.x() < r.begin_m() && to.x() < r.begin_m())) continue;
+    const double before = r.curve.distance_of_local(from), behind = r.curve.distance_of_local(to);
+    if (before * behind >= 0.0 || std::abs(before - behind) < kAcross * (to - from).norm()) continue;
+    const Eigen::Vector2d at = from + before / (before - behind) * (to - from);
+    r.occupancy.open(r.curve.arc_of_local(at) + r.arc_shift_m, kLane_m);
+  }
+}
+
 void ReflectorMap::refine_due(const Odometry& odometry, double elapsed_s, const DriftStds& stds) {
   const double share = std::min(1.0, elapsed_s / std::max(1e-3, config_.update_period_s));
   const auto most = static_cast<std::size_t>(std::ceil(share * static_cast<double>(reflectors_.size())));

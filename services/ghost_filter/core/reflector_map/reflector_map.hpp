@@ -37,6 +37,10 @@ class ReflectorMap {
   /// the tiles that are due and looks for new reflectors there.
   void update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps);
 
+  /// Something that is no image drives where the way between these two places (odometry frame) is: what crosses it is
+  /// no reflector there.
+  void drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
+
   [[nodiscard]] std::span<const Reflector> reflectors() const { return reflectors_; }
   [[nodiscard]] const StationaryGrid& grid() const { return grid_; }
   /// Reflectors that were found so far.
