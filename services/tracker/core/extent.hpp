@@ -98,6 +98,13 @@ struct Extent {
     return centre_m + 0.5 * (low + high) * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
   }
 
+  /// Whether the sensor stands well beside the box's track and sees how long the box is. Else what lies behind its near
+  /// end in the line of sight is a type-1 ghost of that as likely as its other end.
+  [[nodiscard]] bool shows_side(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
+    constexpr double kBesides_m = 1.0;
+    return std::abs(to_body(sensor_m - centre_m).y()) > 0.5 * width_m + kBesides_m;
+  }
+
   /// Whether a point lies in the box, made larger by a margin on every side.
   [[nodiscard]] bool contains(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& point_m, double margin_m) const {
     const Eigen::Vector2d at = to_body(point_m - centre_m);

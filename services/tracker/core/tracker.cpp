@@ -64,7 +64,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
     if (cluster_used_[c] || clusters[c].realness < config_.start_realness) continue;
     start_track(clusters[c], sensor, has_elevation);
   }
-  remove_duplicates();
+  remove_duplicates(sensor);
   result.dropped_tracks = dropped_tracks_;
   return result;
 }
@@ -221,7 +221,7 @@ void Tracker::judge(const ClassifiedScan& scan) {
   std::erase_if(tracks_, [this](const Entry& track) { return is_dead(track); });
 }
 
-bool Tracker::are_one(const Entry& a, const Entry& b) const {
+bool Tracker::are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sensor) const {
   const Eigen::Vector2d p = a.state.mean.head<2>(), q = b.state.mean.head<2>();
   // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.
   if (a.extent.contains(p, q, 0.0) || b.extent.contains(q, p, 0.0)) return true;
@@ -229,16 +229,17 @@ bool Tracker::are_one(const Entry& a, const Entry& b) const {
   if ((velocity - b.state.mean.segment<2>(2)).norm() > config_.duplicate_speed_mps) return false;
   const double margin_m = config_.duplicate_margin_m;
   if (a.extent.contains(p, q, margin_m) || b.extent.contains(q, p, margin_m)) return true;
+  if (!a.extent.shows_side(p, sensor)) return false;
   // Both ends of a long vehicle: nobody follows so closely.
   constexpr double kSmallestHeadway_s = 0.3;
   return a.extent.in_file(p, b.extent, q, kSmallestHeadway_s * velocity.norm());
 }
 
-void Tracker::remove_duplicates() {
+void Tracker::remove_duplicates(const Eigen::Vector2d& sensor) {
   // The older one, or the confirmed one, stays.
   for (std::size_t a = 0; a < tracks_.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks_.size();) {
-      if (!are_one(tracks_[a], tracks_[b])) {
+      if (!are_one(tracks_[a], tracks_[b], sensor)) {
         ++b;
         continue;
       }
@@ -246,7 +247,8 @@ void Tracker::remove_duplicates() {
       Entry& kept = tracks_[a];
       const Entry& gone = tracks_[b];
       const double speed_mps = (kept.state.mean - gone.state.mean).segment<2>(2).norm();
-      if (gone.confirmed && speed_mps <= config_.duplicate_speed_mps) {
+      const bool shows_side = kept.extent.shows_side(kept.state.mean.head<2>(), sensor);
+      if (gone.confirmed && shows_side && speed_mps <= config_.duplicate_speed_mps) {
         kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), gone.state.mean.head<2>());
       }
       tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(b));

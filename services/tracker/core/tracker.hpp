@@ -55,8 +55,8 @@ class Tracker {
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
   void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
   void judge(const ClassifiedScan& scan);
-  [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;
-  void remove_duplicates();
+  [[nodiscard]] bool are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sensor) const;
+  void remove_duplicates(const Eigen::Vector2d& sensor);
   [[nodiscard]] bool can_see(const ScanGeometry& geometry, std::uint32_t radar_id, const Entry& track) const;
   [[nodiscard]] bool is_dead(const Entry& track) const;
 

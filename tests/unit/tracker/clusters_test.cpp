@@ -147,6 +147,15 @@ TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
   EXPECT_NEAR(extent.length_m, 2.0, 0.1);
 }
 
+TEST(Extent, ShowsItsSideToWhoStandsBesideItsTrack) {
+  const Extent box{.heading_rad = M_PI / 2, .length_m = 4.0, .width_m = 2.0};
+  const Eigen::Vector2d centre(5.0, 10.0);
+  EXPECT_FALSE(box.shows_side(centre, {5.0, -30.0}));
+  EXPECT_FALSE(box.shows_side(centre, {6.9, -30.0})) << "its own lane";
+  EXPECT_TRUE(box.shows_side(centre, {7.1, -30.0}));
+  EXPECT_TRUE(box.shows_side(centre, {2.9, 10.0}));
+}
+
 TEST(Extent, LengthensToReachAnother) {
   Extent rear{.heading_rad = M_PI / 2, .length_m = 4.0, .width_m = 2.0};
   const Extent front{.heading_rad = M_PI / 2, .length_m = 3.0, .width_m = 2.0};
