@@ -18,10 +18,13 @@ constexpr std::size_t kLeastTested = 1500, kLeastTestedTracks = 3000, kLeastScan
 /// Contradicted if another scale of speed (or its opposite) has so much support, and so many times that of the true
 /// one. Oncoming and preceding traffic has support of its own, but beside more of the road, or less of itself.
 constexpr double kOtherShare = 0.08, kOtherToEgo = 3.0;
+/// Or if most detections fit the opposite speed and so many more than fit the true one: folded into a narrow interval,
+/// both are alike where twice the speed is near a multiple of it.
+constexpr double kOppositeShare = 0.5, kOppositeBeyondEgo = 0.10;
 /// Contradicted if so few more are stationary than if range rates were dealt out at random …
 constexpr double kBeyondChance = 0.10;
 /// … where that makes a difference, as it does not for a radar that looks straight ahead …
-constexpr double kMostAlike = 0.60;
+constexpr double kMostAlike = 0.80;
 /// … or if as good as nothing stands still, twice in a row …
 constexpr double kNothing = 0.03;
 /// … provided that the radar reports more than a few tracks, which may all be of traffic for a long time.
@@ -55,6 +58,7 @@ bool EgoContradiction::judge(const RadarScan& scan, std::int64_t measurement_tim
 
 void EgoContradiction::add(const RangeRateConsensus::Support& support) {
   ++pool_.scans;
+  pool_.reported += support.reported;
   pool_.tested += support.tested;
   pool_.by_ego += support.by_ego;
   pool_.by_chance += support.by_chance;
@@ -63,7 +67,7 @@ void EgoContradiction::add(const RangeRateConsensus::Support& support) {
 }
 
 bool EgoContradiction::is_dense() const {
-  return pool_.tested > kDenseRadar * pool_.scans;
+  return pool_.reported > kDenseRadar * pool_.scans;
 }
 
 bool EgoContradiction::contradicts() {
@@ -73,6 +77,8 @@ bool EgoContradiction::contradicts() {
   const bool nothing_before = nothing_stood_still_;
   nothing_stood_still_ = is_dense() && by_ego < kNothing * tested;
   if (other > kOtherShare * tested && other > kOtherToEgo * by_ego) return true;
+  const auto opposite = static_cast<double>(pool_.by_other[RangeRateConsensus::kOpposite]);
+  if (opposite > kOppositeShare * tested && opposite - by_ego > kOppositeBeyondEgo * tested) return true;
   const double beyond_chance = by_ego - static_cast<double>(pool_.by_chance);
   const bool tells_chance = is_dense() && distinct > (1.0 - kMostAlike) * tested;
   if (tells_chance && beyond_chance < kBeyondChance * distinct) return true;

@@ -23,7 +23,7 @@ class EgoContradiction {
 
  private:
   struct Pool {
-    std::size_t scans = 0, tested = 0, by_ego = 0, by_chance = 0, alike = 0;
+    std::size_t scans = 0, reported = 0, tested = 0, by_ego = 0, by_chance = 0, alike = 0;
     std::array<std::size_t, RangeRateConsensus::kOtherScales> by_other{};
   };
   void add(const RangeRateConsensus::Support& support);

@@ -17,8 +17,9 @@ constexpr float kTolerance_mps = 0.3F;
 /// Where the predicted range rate is nearly zero whatever the speed, it tells nothing of the speed.
 constexpr float kLeastShareOfSpeed = 0.3F;
 constexpr std::size_t kLeastTested = 6;
-/// With that much support nobody asks for more.
-constexpr double kEnough = 0.6;
+/// With that much support nobody asks for more. In a tube most range rates are alike, so that even dealt out at random
+/// two thirds of them fit.
+constexpr double kEnough = 0.85;
 
 }  // namespace
 
@@ -54,6 +55,7 @@ RangeRateConsensus::Support RangeRateConsensus::test(const RadarScan& scan, cons
   const std::size_t tested = select(scan, vehicle_to_sensor_ * velocity.cast<float>());
   if (tested < kLeastTested) return support;
   support.tested = tested;
+  support.reported = reported_;
   const auto enough = static_cast<std::size_t>(kEnough * static_cast<double>(tested));
   last_best_ = best(tested, enough, support.by_ego);
   if (support.by_ego > enough) return support;
@@ -71,12 +73,14 @@ std::size_t RangeRateConsensus::select(const RadarScan& scan, const Eigen::Vecto
   const float speed_mps = velocity_mps.norm();
   const std::size_t step = (count + kMaxTested - 1) / kMaxTested;
   std::size_t tested = 0;
+  reported_ = 0;
   for (std::size_t i = 0; i < count && tested < kMaxTested; i += step) {
     const float azimuth = scan.azimuth_rad[i], rate = scan.range_rate_mps[i];
     const float elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
     if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) continue;
     if (ambiguity_mps_ == 0.0F && (scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) continue;
     if (!(std::abs(azimuth) <= 4.0F && std::abs(elevation) <= 2.0F && std::abs(rate) <= 1000.0F)) continue;
+    ++reported_;
     const float level = std::cos(elevation), x = level * std::cos(azimuth), y = level * std::sin(azimuth);
     const float along = x * velocity_mps.x() + y * velocity_mps.y();
     const float across = y * velocity_mps.x() - x * velocity_mps.y();

@@ -27,8 +27,9 @@ class RangeRateConsensus {
 
   /// Numbers of detections.
   struct Support {
-    std::size_t tested = 0;  ///< whose range rate tells something; 0: the scan cannot be tested
-    std::size_t by_ego = 0;  ///< of these, stationary for the best velocity near the vehicle's
+    std::size_t reported = 0;  ///< that a radar of this kind reports, whether their range rate tells something or not
+    std::size_t tested = 0;    ///< whose range rate tells something; 0: the scan cannot be tested
+    std::size_t by_ego = 0;    ///< of these, stationary for the best velocity near the vehicle's
     // The others are 0 if enough are stationary.
     std::size_t by_chance = 0;  ///< the same if each range rate belonged to another detection
     std::size_t alike = 0;      ///< whose predicted range rate is that of the detection they were confused with
@@ -57,6 +58,7 @@ class RangeRateConsensus {
   std::array<Candidate, kCandidates> candidates_;  // from the nominal one outwards
   std::array<Candidate, kOtherScales> others_;
   std::size_t last_best_ = 0;
+  std::size_t reported_ = 0;
   float ambiguity_mps_ = 0.0F;  // width of the unambiguous interval, 0 if unknown
   // Of the tested detections: range rate, its change with `along` and `across`, and what it may be off by.
   alignas(64) std::array<float, kMaxTested> rate_, by_along_, by_across_, tolerance_;
