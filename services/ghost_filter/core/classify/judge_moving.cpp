@@ -64,6 +64,8 @@ double Judge::of_movers(const Measured& m, std::uint32_t index) const {
   const std::int64_t now_ns = s_.odometry->now_ns();
   const std::size_t own = s_.movers->earlier();
   const double blur = square(m.range_std_m) + square(m.range_m * m.azimuth_std_rad) + square(config_.extent_std_m);
+  const double most_of_strength =
+      std::isfinite(m.rcs_dbsm) ? likelihood(kBodyStrength, 0.0, 0.0, config_.strength_doubt) : 1.0;
   s_.movers->near(place, [&](const Mover& mover, std::uint32_t number) {
     if (number >= own && mover.index == index) return;
     const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
@@ -74,11 +76,17 @@ double Judge::of_movers(const Measured& m, std::uint32_t index) const {
     // The same velocity shows another range rate from another direction: by the speed across, which is not known.
     const double turn = 1.0 - square(direction.dot(mover.direction));
     const double noise = rate_variance(m) + square(m.rate_std_mps) + square(15.0) * std::max(0.0, turn);
-    most = std::max(most, mover.weight * fast_exp(-0.5 * chi2) / (2.0 * M_PI * variance) *
-                              gaussian(m.rate_mps - mover.rate_mps, noise));
+    // Even the best strength would not make it the likeliest.
+    const double here =
+        mover.weight * fast_exp(-0.5 * chi2) / (2.0 * M_PI * variance) * gaussian(m.rate_mps - mover.rate_mps, noise);
+    if (here * most_of_strength <= most) return;
+    // Of how strong it may be a track knows more than what is usual.
+    const bool owned = number >= own && mover.object != kNobody;
+    const double rcs_dbsm = owned ? s_.objects[mover.object].rcs_dbsm : kUsualRcs_dbsm;
+    const double rcs_std_db = owned ? s_.objects[mover.object].rcs_std_db : kUsualRcsStd_db;
+    most = std::max(most, here * likelihood(kBodyStrength, m.rcs_dbsm - rcs_dbsm, rcs_std_db, config_.strength_doubt));
   });
-  return config_.real_per_object * (1.0 - config_.wheel_share) * most *
-         likelihood(kBodyStrength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+  return config_.real_per_object * (1.0 - config_.wheel_share) * most;
 }
 
 }  // namespace boresight::ghosts
