@@ -21,7 +21,6 @@ constexpr double kCompanyOfNew = 0.8, kCompanyOfClutter = 0.02;
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
-  touches_.reserve(Sources::kMax);
 }
 
 void Judge::begin(const Surroundings& surroundings) {
@@ -29,10 +28,6 @@ void Judge::begin(const Surroundings& surroundings) {
   fan_.build(s_.mirrors, s_.sensor_m);
   crossings_.clear();
   pairs_left_of_scan_ = kMostPairsOfScan;
-}
-
-void Judge::find_sources() {
-  sources_.build(s_.mirrors, s_.objects, *s_.movers, *s_.odometry, s_.sensor_m, config_.extent_std_m, kLeastChance);
 }
 
 double Judge::rate_variance(const Measured& m) const {
@@ -101,7 +96,8 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
     behind = std::max(behind, crossing.turn.probability * crossing.beyond);
     // By different mirrors a ghost would be elsewhere: one fits, or two found for one that is there. So the best
     // counts.
-    densities.type2 = std::max(densities.type2, type2(m, crossing, index, but_object, true));
+    densities.type2 =
+        std::max(densities.type2, type2(m, crossing, index, but_object) + type2_of_two(m, crossing, index, but_object));
   }
   pairs_left_of_scan_ -= most - pairs_left_;
   bool is_hidden = false;
@@ -129,7 +125,7 @@ Densities Judge::weigh_still(const Measured& m) {
   densities.stationary = of_stationary(m);
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {
-    densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody, false));
+    densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody));
   }
   return densities;
 }

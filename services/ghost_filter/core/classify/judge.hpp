@@ -12,7 +12,6 @@
 #include "services/ghost_filter/core/classify/mirror_fan.hpp"
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
-#include "services/ghost_filter/core/classify/sources.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
@@ -50,13 +49,10 @@ struct Surroundings {
 class Judge {
  public:
   static constexpr std::size_t kMaxObjects = 129;
-  static constexpr double kLeastChance = 0.05;  ///< of mirrors being there: less is not followed
   explicit Judge(const ClassConfig& config);
 
   /// For a new scan; what is in `surroundings` is only referred to.
   void begin(const Surroundings& surroundings);
-  /// When all of the scan's movers are there, before anything is weighed.
-  void find_sources();
   /// `index` of the detection in the scan; `but_object`: is not considered, nor what is near to the detection.
   [[nodiscard]] Densities weigh(const Measured& measured, std::uint32_t index, std::uint32_t but_object = kNobody);
   /// As weigh(), but only what a detection that looks stationary can be: that, or of an object that is tracked.
@@ -91,9 +87,6 @@ class Judge {
     const Mirror* mirror;                ///< the last one
     std::uint32_t other_body = kNobody;  ///< of another mirror on the way
     bool of_own = false;                 ///< the own vehicle may be the target
-    Eigen::Vector2d towards;             ///< direction of the ray to it
-    double along_m;                      ///< on that ray
-    std::span<const Touch> near;         ///< what is near the ray
   };
   void cross(const Measured& measured, std::uint32_t but_object);
   /// Expected density of ghosts, if every object has one, of tracked objects and of what was detected lately.
@@ -105,16 +98,13 @@ class Judge {
   [[nodiscard]] double of_movers(const Measured& measured, std::uint32_t index) const;
   [[nodiscard]] bool is_known_still(const Measured& measured) const;
   [[nodiscard]] double of_stationary(const Measured& measured) const;
-  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object);
+  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
-  /// By a mirror that the line of sight crosses, the way out by the same, by none, or (`of_two`) by another one.
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
-                             std::uint32_t but_object, bool of_two);
+                             std::uint32_t but_object) const;
   /// Those whose way out is by another mirror.
   [[nodiscard]] double type2_of_two(const Measured& measured, const Crossing& crossing, std::uint32_t index,
                                     std::uint32_t but_object);
-  /// What the line of sight becomes behind a mirror.
-  [[nodiscard]] Ray ray_of(const Measured& measured, const Crossing& crossing) const;
   [[nodiscard]] Target target_of(const Measured& measured, const Crossing& crossing, double rest_m,
                                  double metres_per_m) const;
   [[nodiscard]] double image_of_stationary(const Target& target, const Measured& measured) const;
@@ -126,8 +116,6 @@ class Judge {
   std::vector<Crossing> crossings_;
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
-  Sources sources_;
-  std::vector<Touch> touches_;  // of the ray that is followed
 };
 
 }  // namespace boresight::ghosts

@@ -13,8 +13,7 @@ constexpr double kSpeedAlong_mps = 20.0, kSpeedAcross_mps = 1.5, kSpeedAnyway_mp
 constexpr double kAlongShare = 0.75;
 constexpr double kHiddenRate_mps = 5.0;  // by which a type-1 ghost's range rate differs from its object's
 constexpr double kLeastRest_m = 0.3;     // behind a mirror
-constexpr double kNothingNew = 0.03;     // beside what a track explains
-constexpr double kSigmas = 5.5;          // beyond, a place counts for nothing
+constexpr double kLeastChance = 0.05;    // of mirrors being there: less is not followed
 // Of one object's type-2 ghosts by one mirror, shares by the way out: by the same mirror, directly, by another mirror.
 constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
 constexpr double kAround_m = 2.0;        // of a track's box
@@ -37,35 +36,14 @@ double rate_density(double value, const Eigen::Vector2d& q, const Eigen::Vector2
          (1.0 - kAlongShare) * given(square(kSpeedAnyway_mps), square(kSpeedAnyway_mps));
 }
 
-/// By how much the length of a way may be wrong, noise and the mirrors' uncertainty together.
-double way_slack(const Measured& m) {
-  return 2.0 + 2.0 * kSigmas * m.range_std_m;
-}
-
-template <typename Visit>
-void for_each(const MirrorBits& bits, const Visit& visit) {
-  for (std::size_t word = 0; word < bits.size(); ++word) {
-    for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
-      visit(64 * word + static_cast<std::size_t>(std::countr_zero(left)));
-    }
-  }
-}
-
 }  // namespace
 
 double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t but_object,
                         std::uint32_t but_index) const {
-  if (target.near.empty()) return 0.0;
   double of_tracks = 0.0;
   const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
   const double doubt = config_.strength_doubt;
-  const double reach_m = kSigmas * std::sqrt(std::max(0.0, target.towards.dot(blurred * target.towards)));
-  const auto is_there = [&](const Touch& touch) {
-    return std::abs(target.along_m - touch.along_m) <= touch.reach_m + reach_m;
-  };
-  for (const Touch& touch : target.near) {
-    const std::uint32_t i = touch.source;
-    if (i >= s_.objects.size() || !is_there(touch)) continue;
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) continue;
     const Reflections there = reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
@@ -80,29 +58,27 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   // Objects that are not tracked (yet) have been detected at least; and what was detected is known better than a box.
   // Several detections are of one object.
   double of_movers = 0.0;
+  const std::int64_t now_ns = s_.odometry->now_ns();
   const std::size_t own = s_.movers->earlier();
+  const Eigen::Vector2d in_frame = s_.odometry->point_to_frame(target.place_m);
   const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
   const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
   const double most_of_strength =
       std::isfinite(m.rcs_dbsm) ? likelihood(target.strength, target.strength.mean_db, 0.0, doubt) : 1.0;
   const double most_of_rest = most_of_strength / std::sqrt(2.0 * M_PI * rate_noise);
-  const double most_of_all = most_of_rest / (2.0 * M_PI * std::sqrt(blurred.determinant()));
-  const auto look_at = [&](std::uint32_t number) {
-    const Mover& mover = (*s_.movers)[number];
-    if (mover.weight <= 0.0 || (number >= own && mover.index == but_index)) return;
-    const Spot& spot = sources_.spot(number);
-    const Eigen::Vector2d residual = spot.place_m - target.place_m;
-    const double sure = spot.variance_m2;
-    if (residual.squaredNorm() > 16.0 * (target.covariance.trace() + sure + square(config_.extent_std_m))) return;
-    // Even at the likeliest place, range rate and strength it would not be the likeliest, or tell nothing new.
-    if (mover.weight * most_of_all <= std::max(of_movers, kNothingNew * of_tracks)) return;
+  s_.movers->near(in_frame, [&](const Mover& mover, std::uint32_t number) {
+    if (number >= own && mover.index == but_index) return;
+    const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
+    const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
+    const Eigen::Vector2d residual = s_.odometry->vector_to_vehicle(moved - in_frame);
     // Of a track that is judged itself, what was detected of it tells nothing.
     if (but_object != kNobody && is_on(s_.objects[but_object], target.place_m + residual, kAround_m)) return;
+    const double sure = mover.variance_m2 + square(8.0 * elapsed_s);
+    if (residual.squaredNorm() > 16.0 * (target.covariance.trace() + sure + square(config_.extent_std_m))) return;
     const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
-    double there = (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
-    if (residual.squaredNorm() <= 16.0 * (target.covariance.trace() + sure + square(0.2))) {
-      there += kSame * gaussian(residual, target.covariance + (sure + square(0.2)) * eye);
-    }
+    const double there =
+        kSame * gaussian(residual, target.covariance + (sure + square(0.2)) * eye) +
+        (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
     const bool owned = number >= own && mover.object != kNobody;
     if (owned && (mover.object == target.mirror->body || mover.object == target.other_body)) return;
     // Even the best range rate and strength would not make it the likeliest.
@@ -117,10 +93,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     of_movers = std::max(of_movers,
                          mover.weight * there * fits *
                              likelihood(target.strength, above_db, heard ? kFluctuation_db : kUsualRcsStd_db, doubt));
-  };
-  for (const Touch& touch : target.near) {
-    if (touch.source >= s_.objects.size() && is_there(touch)) sources_.visit_movers(touch.source, look_at);
-  }
+  });
   return (of_tracks + of_movers) * target.stretch;
 }
 
@@ -141,24 +114,11 @@ Judge::Target Judge::target_of(const Measured& m, const Crossing& crossing, doub
   t.turn_variance = square(m.azimuth_std_rad) + square(2.0 * turn.angle_std_rad);
   t.mirror = crossing.mirror;
   t.other_body = kNobody;
-  t.towards = d;
-  t.along_m = rest_m;
-  t.near = touches_;
   return t;
 }
 
-Ray Judge::ray_of(const Measured& m, const Crossing& crossing) const {
+double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) const {
   const Turn& turn = crossing.turn;
-  const double turned = 1.0 + 2.0 * turn.distance_m * turn.focus_per_m;
-  return {turn.point_m, turn.direction, 2.0 * m.range_m - turn.distance_m,
-          m.azimuth_std_rad * turn.distance_m + 2.0 * turn.offset_std_m + 0.2,
-          m.azimuth_std_rad * turned + 2.0 * turn.angle_std_rad};
-}
-
-double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object,
-                    bool of_two) {
-  const Turn& turn = crossing.turn;
-  sources_.touched(ray_of(m, crossing), static_cast<std::uint32_t>(crossing.mirror - s_.mirrors.data()), touches_);
   const Eigen::Vector2d& d = turn.direction;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   double density = config_.lone_ghost_density *
@@ -180,8 +140,7 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     t.strength = strength_of_ghost(1, d.dot(e));
     density += kDirectly * config_.type2_per_object * ghosts_of(t, m, but_object, index) + image_of_stationary(t, m);
   }
-  density *= turn.probability * crossing.beyond;
-  return of_two ? density + type2_of_two(m, crossing, index, but_object) : density;
+  return turn.probability * crossing.beyond * density;
 }
 
 double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) {
@@ -191,15 +150,13 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   if (sure < kLeastChance) return 0.0;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   double density = 0.0;
-  const double length_m = 2.0 * m.range_m - turn.distance_m;
-  const std::uint32_t own = static_cast<std::uint32_t>(s_.objects.size()) - 1;
-  for_each(sources_.ways(ray_of(m, crossing), touches_, length_m, way_slack(m), own), [&](std::size_t number) {
-    const Mirror& other = s_.mirrors[number];
+  for (const Mirror& other : s_.mirrors) {
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
         sure * other.existence < kLeastChance || other.least_range_m > m.range_m)
-      return;
-    const auto met = meet(other, s_.sensor_m, turn.point_m, d, length_m, kLeastRest_m);
-    if (!met || sure * met->detour.probability < kLeastChance || pairs_left_ == 0) return;
+      continue;
+    const auto met = meet(other, s_.sensor_m, turn.point_m, d, 2.0 * m.range_m - turn.distance_m, kLeastRest_m);
+    if (!met || sure * met->detour.probability < kLeastChance) continue;
+    if (pairs_left_ == 0) break;
     --pairs_left_;
     const Eigen::Vector2d& u = met->detour.departure;
     const Eigen::Vector2d& e = met->detour.arrival;
@@ -211,7 +168,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
     t.strength = strength_of_ghost(2, d.dot(e));
     t.other_body = other.body;
     density = std::max(density, met->detour.probability * ghosts_of(t, m, but_object, index));
-  });
+  }
   return kOtherMirror * config_.type2_per_object * sure * density;
 }
 
@@ -226,18 +183,14 @@ double Judge::image_of_stationary(const Target& t, const Measured& m) const {
          likelihood(kGhostStrength, m.rcs_dbsm - kUsualRcs_dbsm, 10.0, config_.strength_doubt);
 }
 
-double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object) {
+double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object) const {
   double density = 0.0;
-  const Ray ray{s_.sensor_m, m.direction, m.range_m, 0.2, m.azimuth_std_rad};
-  const std::uint32_t own = static_cast<std::uint32_t>(s_.objects.size()) - 1;
-  sources_.touched(ray, Sources::kAny, touches_);
-  for_each(sources_.ways(ray, touches_, 2.0 * m.range_m, way_slack(m), own), [&](std::size_t number) {
-    const Mirror& mirror = s_.mirrors[number];
-    if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) return;
+  for (const Mirror& mirror : s_.mirrors) {
+    if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
     // The way out and back is no shorter than to the mirror and back.
-    if (mirror.least_range_m > m.range_m) return;
+    if (mirror.least_range_m > m.range_m) continue;
     const auto met = meet(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
-    if (!met || met->rest_m > m.range_m - 0.3 || met->detour.probability < kLeastChance) return;
+    if (!met || met->rest_m > m.range_m - 0.3 || met->detour.probability < kLeastChance) continue;
     const Eigen::Vector2d& u = met->detour.departure;
     const Eigen::Vector2d& d = met->detour.arrival;
     Target t{};
@@ -255,12 +208,9 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
     t.turn_variance = square(m.azimuth_std_rad);
     t.mirror = &mirror;
-    t.towards = m.direction;
-    t.along_m = met->rest_m;
-    t.near = touches_;
     density =
         std::max(density, met->detour.probability * config_.type1_per_object * ghosts_of(t, m, but_object, index));
-  });
+  }
   return density;
 }
 

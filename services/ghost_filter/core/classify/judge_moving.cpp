@@ -19,7 +19,7 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
     if (o.own) continue;
-    if (surely_moving && !o.moves) continue;
+    if (surely_moving && !moves_surely(o)) continue;
     if ((o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) continue;
     const Reflections place = reflections_at(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
     if (place.wheel <= 0.0) continue;
@@ -78,7 +78,7 @@ double Judge::of_movers(const Measured& m, std::uint32_t index) const {
     const double noise = rate_variance(m) + square(m.rate_std_mps) + square(15.0) * std::max(0.0, turn);
     // Even the best strength would not make it the likeliest.
     const double here =
-        mover.weight * fast_exp(-0.5 * chi2) / (2.0 * M_PI * variance) * gaussian(m.rate_mps - mover.rate_mps, noise);
+        mover.weight * std::exp(-0.5 * chi2) / (2.0 * M_PI * variance) * gaussian(m.rate_mps - mover.rate_mps, noise);
     if (here * most_of_strength <= most) return;
     // Of how strong it may be a track knows more than what is usual.
     const bool owned = number >= own && mover.object != kNobody;

@@ -29,12 +29,11 @@ class MirrorFan {
     }
   }
   static constexpr double kBeyond_m = 10.0;
-  static constexpr std::size_t kSectors = 128;
-  /// Sectors of directions, in their order round the circle.
-  [[nodiscard]] static std::size_t sector_of(const Eigen::Vector2d& direction);
 
  private:
+  static constexpr std::size_t kSectors = 128;
   using Bits = std::array<std::uint64_t, kMaxMirrors / 64>;
+  [[nodiscard]] static std::size_t sector_of(const Eigen::Vector2d& direction);
   void enter(std::size_t mirror, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
   std::span<const Mirror> mirrors_;
   std::array<Bits, kSectors> sectors_{};

@@ -35,11 +35,6 @@ double positive_or(float value, double fallback) {
   return std::isfinite(value) && value > 0.0F ? static_cast<double>(value) : fallback;
 }
 
-/// Without the care of std::hypot about what is near to the ends of the number range.
-double root_of_squares(double a, double b) {
-  return std::sqrt(a * a + b * b);
-}
-
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
   const auto c = [&](std::size_t row, std::size_t column) {
     return static_cast<double>(track.covariance[(at + row) * kTrackStateSize + at + column]);
@@ -55,7 +50,6 @@ MirrorFilter::MirrorFilter(const MirrorConfig& config)
     : config_(config), map_(config.map), judge_(config.classes), tracks_(std::make_unique<TrackList>()) {
   mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
   objects_.reserve(Judge::kMaxObjects);
-  measured_.resize(kMaxDetections);
 }
 
 void MirrorFilter::add_tracks(const TrackList& tracks) {
@@ -106,7 +100,6 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
       if (track.status != TrackStatus::kConfirmed) o.weight *= c.tentative_weight;
       o.rcs_dbsm = images_[i].rcs_dbsm;
       o.rcs_std_db = images_[i].rcs_std_db;
-      o.moves = moves_surely(o);
       track_of_object_[objects_.size()] = i;
       objects_.push_back(o);
     }
@@ -119,7 +112,6 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
   own.half_width_m = c.ego_half_width_m;
   own.velocity_mps = {scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps * own.position_m.x()};
   own.velocity_covariance = 0.04 * Eigen::Matrix2d::Identity();
-  own.moves = moves_surely(own);
   objects_.push_back(own);
 }
 
@@ -171,10 +163,10 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
   m.direction = sight / m.range_m;
   m.rate_mps = scan.range_rate_over_ground_mps[i];
   m.range_std_m = positive_or(scan.range_std_m[i], 0.15);
-  m.azimuth_std_rad = root_of_squares(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad_);
+  m.azimuth_std_rad = std::hypot(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad_);
   const double across = m.direction.x() * sensor_velocity_mps_.y() - m.direction.y() * sensor_velocity_mps_.x();
   // A crooked radar takes the own motion out wrongly.
-  m.rate_std_mps = root_of_squares(positive_or(scan.range_rate_std_mps[i], 0.05), across * mounting_std_rad_);
+  m.rate_std_mps = std::hypot(positive_or(scan.range_rate_std_mps[i], 0.05), across * mounting_std_rad_);
   m.still_std_mps = std::sqrt(m.rate_std_mps * m.rate_std_mps + 0.06 * 0.06 + ego_speed_std_mps_ * ego_speed_std_mps_ +
                               across * across * m.azimuth_std_rad * m.azimuth_std_rad);
   m.rcs_dbsm = (scan.fields & scan_field::kRcs) != 0 ? static_cast<double>(scan.rcs_dbsm[i])
@@ -182,21 +174,16 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
   return m;
 }
 
-void MirrorFilter::measure(const CorrectedScan& scan, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is_usable(scan, i)) measured_[i] = measured(scan, i);
-  }
-}
-
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
-    const Measured& m = measured_[i];
+    const Measured m = measured(scan, i);
     // What a moving object shows without a range rate is no part of the map.
-    if (std::any_of(objects_.begin(), objects_.end(),
-                    [&](const Object& o) { return o.weight > 0.5 && o.moves && is_on(o, m.position_m, 0.5); })) {
+    if (std::any_of(objects_.begin(), objects_.end(), [&](const Object& o) {
+          return o.weight > 0.5 && moves_surely(o) && is_on(o, m.position_m, 0.5);
+        })) {
       continue;
     }
     const double across = m.range_m * m.azimuth_std_rad;
@@ -216,7 +203,7 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9));
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
-    const Measured& m = measured_[i];
+    const Measured m = measured(scan, i);
     // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
     double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
     // Wheels are too weak to be seen in mirrors.
@@ -345,13 +332,11 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     map_.clear();
     movers_.clear();
   }
-  measure(scan, count);
   predict_objects(scan);
   update_map(scan, count);
   place_mirrors();
   judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &odometry_, &movers_, &map_.grid()});
   gather_movers(scan, count);
-  judge_.find_sources();
   judge_tracks();
 
   std::size_t mover = movers_.earlier();
@@ -361,7 +346,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     if (!is_usable(scan, i)) continue;
     const bool moving = (scan.detection_flags[i] & corrected_flag::kMoving) != 0;
     if (!moving && (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
-    const Measured& m = measured_[i];
+    const Measured m = measured(scan, i);
     const Densities d = moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m);
     write_verdict(d, i, out);
     learn_strength(d, m);

@@ -41,7 +41,6 @@ class MirrorFilter final : public Method {
   void learn_strength(const Densities& densities, const Measured& measured);
   void write_segments(ClassifiedScan& out) const;
   [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i) const;
-  void measure(const CorrectedScan& scan, std::size_t count);
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
   MirrorConfig config_;
   Odometry odometry_;
@@ -49,8 +48,7 @@ class MirrorFilter final : public Method {
   RecentMovers movers_;
   Judge judge_;
   std::vector<Mirror> mirrors_;
-  std::vector<Measured> measured_;  // of the scan's usable detections
-  std::vector<Object> objects_;     // the own vehicle is the last
+  std::vector<Object> objects_;  // the own vehicle is the last
   std::array<std::uint32_t, kMaxTracks> track_of_object_{};
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   std::array<Image, kMaxTracks> images_{}, images_before_{};

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include <Eigen/Core>
 
@@ -14,26 +12,15 @@ namespace boresight::ghosts {
   return x * x;
 }
 
-/// eˣ to 3e-6 of its value, 0 below −700; a third of the cost of the library's, of which a scan needs ten thousand.
-[[nodiscard]] inline double fast_exp(double x) {
-  if (!(x > -700.0)) return x < 0.0 ? 0.0 : x;
-  const double y = std::min(x, 700.0) * M_LOG2E;
-  const auto whole = static_cast<std::int64_t>(y + 1024.0) - 1024;  // y + 1024 is positive: rounded down
-  // 2^f for f in [0, 1) by the series about the middle.
-  const double f = (y - static_cast<double>(whole) - 0.5) * M_LN2;
-  const double part = 1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0)))));
-  return part * M_SQRT2 * std::bit_cast<double>(static_cast<std::uint64_t>(whole + 1023) << 52);
-}
-
 /// 0 beyond seven standard deviations.
 [[nodiscard]] inline double gaussian(double residual, double variance) {
   const double chi2 = residual * residual / variance;
-  return chi2 > 50.0 ? 0.0 : fast_exp(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);
+  return chi2 > 50.0 ? 0.0 : std::exp(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);
 }
 
 /// Standard normal distribution function, by the logistic approximation (to 0.01).
 [[nodiscard]] inline double below(double x) {
-  return 1.0 / (1.0 + fast_exp(-1.702 * std::clamp(x, -20.0, 20.0)));
+  return 1.0 / (1.0 + std::exp(-1.702 * std::clamp(x, -20.0, 20.0)));
 }
 
 [[nodiscard]] inline double gaussian(const Eigen::Vector2d& residual, const Eigen::Matrix2d& covariance) {
@@ -42,7 +29,7 @@ namespace boresight::ghosts {
   const double chi2 = (covariance(1, 1) * square(residual.x()) - 2.0 * covariance(0, 1) * residual.x() * residual.y() +
                        covariance(0, 0) * square(residual.y())) /
                       determinant;
-  return chi2 > 50.0 ? 0.0 : fast_exp(-0.5 * chi2) / (2.0 * M_PI * std::sqrt(determinant));
+  return chi2 > 50.0 ? 0.0 : std::exp(-0.5 * chi2) / (2.0 * M_PI * std::sqrt(determinant));
 }
 
 /// Density at `q` of what lies evenly on the segment from (−half, 0) to (half, 0), blurred by a normal distribution.

@@ -19,7 +19,7 @@ constexpr double kSlow_mps = 0.5;  // what is slower may as well stand
 struct Growth {
   double share, length_m, width_m;
 };
-constexpr std::array<Growth, 3> kGrowths{{{0.8, 0.0, 0.0}, {0.15, 2.5, 0.5}, {0.05, kMostLonger_m, kMostWider_m}}};
+constexpr std::array<Growth, 3> kGrowths{{{0.8, 0.0, 0.0}, {0.15, 2.5, 0.5}, {0.05, 7.0, 1.5}}};
 
 /// Which end of an axis looks to a place: −1, 0 (beside the box, within its extent), +1.
 int side(double coordinate, double half) {

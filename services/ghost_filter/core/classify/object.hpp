@@ -19,7 +19,6 @@ struct Object {
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
   double weight = 0.0;  ///< probability that it exists and is no image itself
   bool own = false;     ///< the own vehicle: seen only in mirrors
-  bool moves = false;   ///< see moves_surely()
   double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, on average
 };
 
@@ -32,9 +31,6 @@ struct Object {
 
 /// Whether the object's speed is beyond doubt.
 [[nodiscard]] bool moves_surely(const Object& object);
-
-/// How much larger than its track's box a vehicle may be at most, on each side.
-inline constexpr double kMostLonger_m = 7.0, kMostWider_m = 1.5;
 
 /// Densities for each m² of an object's reflections at a place, the number of each kind being 1.
 struct Reflections {

@@ -52,7 +52,7 @@ class RecentMovers {
     }
   }
   static constexpr double kCell_m = 4.0;
-  static constexpr double kLeastWeight = 0.002;  ///< what weighs less has no ghosts
+  static constexpr double kLeastWeight = 0.02;
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
