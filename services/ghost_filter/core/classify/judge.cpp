@@ -104,6 +104,7 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
   densities.type1 = type1(m, index, but_object) + hidden(m, but_object, is_hidden);
   if (but_object != kNobody) return densities;
   of_objects(m, false, densities);
+  densities.type2 += densities.of_images;
   const bool company = has_company(m, index);
   const double above_db = m.rcs_dbsm - kUsualRcs_dbsm;
   densities.moving += of_movers(m, index) * (1.0 - 0.7 * behind);

@@ -30,9 +30,10 @@ struct Measured {
 /// Expected number of detections for each m², m/s and dB.
 struct Densities {
   double moving = 0.0, stationary = 0.0, type1 = 0.0, type2 = 0.0, clutter = 0.0;
-  std::uint32_t object = kNobody;  ///< the one whose body makes most of `moving`
-  double of_body = 0.0;            ///< that part
+  std::uint32_t object = kNobody;  ///< the one whose body, or image, it most likely is of
+  double of_body = 0.0;            ///< its part, if a mirror between did not hide it
   double of_tracks = 0.0;          ///< part of `moving` that is of tracked objects
+  double of_images = 0.0;          ///< part of `type2` that is of tracks that are images themselves
   [[nodiscard]] double sum() const { return moving + stationary + type1 + type2 + clutter; }
 };
 
@@ -63,6 +64,7 @@ class Judge {
   struct Owner {
     std::uint32_t object = kNobody;
     bool is_wheel = false;
+    double real = 1.0;  ///< probability that no image is tracked here
   };
   [[nodiscard]] Owner owner_of(const Measured& measured) const;
 

@@ -1,4 +1,5 @@
 // Direct reflections of tracked objects.
+#include <algorithm>
 #include <cmath>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
@@ -32,13 +33,16 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
     const RateDensity rates = rates_at(o, m.rate_mps, m.direction, rate_variance(m));
     const double above_db = m.rcs_dbsm - o.rcs_dbsm, doubt = config_.strength_doubt;
     const double all = o.weight * config_.real_per_object * seen;
-    const double of_body = all * (1.0 - config_.wheel_share) * place.body * rates.body *
-                           likelihood(kBodyStrength, above_db, o.rcs_std_db, doubt);
-    densities.moving += of_body + all * config_.wheel_share * place.wheel * rates.wheel *
-                                      likelihood(kWheelStrength, above_db, o.rcs_std_db, doubt);
+    const double of_whole = config_.real_per_object * (1.0 - config_.wheel_share) * place.body * rates.body *
+                            likelihood(kBodyStrength, above_db, o.rcs_std_db, doubt);
+    densities.moving += o.weight * seen * of_whole + all * config_.wheel_share * place.wheel * rates.wheel *
+                                                         likelihood(kWheelStrength, above_db, o.rcs_std_db, doubt);
     densities.of_tracks = densities.moving;
-    if (of_body > densities.of_body) {
-      densities.of_body = of_body;
+    // The detections of an image are where it is tracked, as those of an object are.
+    densities.of_images += o.image * of_whole;
+    // Whether it is one or the other, its strength is learnt: that tells which.
+    if (const double of_either = (o.weight + o.image) * of_whole; of_either > densities.of_body) {
+      densities.of_body = of_either;
       densities.object = i;
     }
   }
@@ -47,13 +51,21 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
 Judge::Owner Judge::owner_of(const Measured& m) const {
   constexpr double kAround_m = 1.0, kOff = 4.0;
   Owner owner;
+  double real = 1.0;
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
-    if (o.own || o.weight < 0.5 || !is_on(o, m.position_m, kAround_m)) continue;
+    const bool is_image = o.image > o.weight;
+    if (o.own || (o.weight < 0.5 && !is_image) || !is_on(o, m.position_m, kAround_m)) continue;
     const double variance = rate_variance(m) + m.direction.dot(o.velocity_covariance * m.direction);
-    owner = {i, square(m.rate_mps - m.direction.dot(o.velocity_mps)) > square(kOff) * variance};
+    const bool is_off = square(m.rate_mps - m.direction.dot(o.velocity_mps)) > square(kOff) * variance;
+    if (is_image) {
+      if (!is_off) real = std::min(real, o.weight / (o.weight + o.image));
+      continue;
+    }
+    owner = {i, is_off};
     if (!owner.is_wheel) break;
   }
+  if (owner.object == kNobody) owner.real = real;
   return owner;
 }
 

@@ -28,7 +28,7 @@ class MirrorFan {
       }
     }
   }
-  static constexpr double kBeyond_m = 10.0;
+  static constexpr double kBeyond_m = 40.0;
 
  private:
   static constexpr std::size_t kSectors = 128;

@@ -6,6 +6,7 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/geometry/ego_step.hpp"
+#include "services/ghost_filter/core/classify/normal.hpp"
 #include "services/ghost_filter/core/pass_on.hpp"
 
 namespace boresight::ghosts {
@@ -20,11 +21,18 @@ constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which
 constexpr double kSurest = 3.0;      // log-odds
 constexpr double kNoImage = 0.95;    // weight of an object that surely is where it seems to be
 constexpr double kHeard_db = 3.0;    // a track's strength is known if its std is less
-/// Mean strength of tracks, of images and of objects from a pedestrian to a truck, beside the usual.
-constexpr Strength kImageStrength{-20.0, 8.0}, kObjectStrength{-2.0, 9.0};
-constexpr double kImageDoubt = 0.1;
-constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
-constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
+/// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
+constexpr Strength kObjectStrength{-2.0, 9.0};
+constexpr double kObjectDoubt = 0.1;
+constexpr double kLengthStd_m = 0.45, kLeastLong = 0.05;  // of a track's length; less is no mirror
+constexpr double kSlowest = 0.1;                        // share of a new judgement of a track in what is thought of it
+constexpr double kChordSag_m = 0.2;                     // an arc is published as chords that leave it by this at most
+
+/// In a jam all have about the same speed: to fit one's range rate by chance is easier.
+double track_density(double speed_mps) {
+  constexpr double kOrdinary_mps = 10.0, kSlow_mps = 2.0;
+  return kTrackDensity * std::max(1.0, kOrdinary_mps / std::max(kSlow_mps, speed_mps));
+}
 
 bool is_usable(const CorrectedScan& scan, std::size_t i) {
   return (scan.detection_flags[i] & corrected_flag::kRejected) == 0 && std::isfinite(scan.x_vehicle_m[i]) &&
@@ -96,8 +104,9 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
       const double existence = std::isfinite(track.existence_probability)
                                    ? std::clamp(static_cast<double>(track.existence_probability), 0.5, 1.0)
                                    : 0.5;
-      o.weight = existence / (1.0 + std::exp(2.0 * images_[i].log_odds));
-      if (track.status != TrackStatus::kConfirmed) o.weight *= c.tentative_weight;
+      const double existing = track.status == TrackStatus::kConfirmed ? existence : existence * c.tentative_weight;
+      o.weight = existing / (1.0 + std::exp(2.0 * images_[i].log_odds));
+      o.image = existing - o.weight;
       o.rcs_dbsm = images_[i].rcs_dbsm;
       o.rcs_std_db = images_[i].rcs_std_db;
       track_of_object_[objects_.size()] = i;
@@ -133,7 +142,9 @@ void MirrorFilter::place_mirrors() {
   // The sides of large vehicles that the sensor can see.
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const Object& o = objects_[i];
-    if (o.own || o.weight < 0.5 || 2.0 * o.half_length_m < config_.classes.min_mirror_length_m) continue;
+    // How long a vehicle is shows late: a van's track may still have the length of a car.
+    const double is_long = below((2.0 * o.half_length_m - config_.classes.min_mirror_length_m) / kLengthStd_m);
+    if (o.own || o.weight < 0.5 || is_long < kLeastLong) continue;
     const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
     const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth) {
       const double side = across.dot(sensor_m_ - o.position_m);
@@ -144,7 +155,7 @@ void MirrorFilter::place_mirrors() {
           Eigen::Vector3d(0.2 * 0.2 + across.dot(o.position_covariance * across), 0.04 * 0.04, 0.0).asDiagonal();
       m.begin_m = -half;
       m.end_m = half;
-      m.existence = 0.8 * o.weight;
+      m.existence = 0.8 * o.weight * is_long;
       m.velocity_mps = o.velocity_mps;
       m.body = i;
       mirrors_.push_back(m);
@@ -209,6 +220,7 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
     // Wheels are too weak to be seen in mirrors.
     const Judge::Owner owner = judge_.owner_of(m);
     if (owner.is_wheel) weight *= 0.05;
+    weight *= owner.real;
     const double across = m.range_m * m.azimuth_std_rad;
     movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
                  m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i),
@@ -237,17 +249,15 @@ void MirrorFilter::judge_tracks() {
     m.azimuth_std_rad = (0.4 + std::sqrt(std::max(0.0, across.dot(o.position_covariance * across)))) / m.range_m;
     m.rate_std_mps = 0.3 + std::sqrt(std::max(0.0, m.direction.dot(o.velocity_covariance * m.direction)));
     m.still_std_mps = m.rate_std_mps;
-    m.rcs_dbsm = std::numeric_limits<double>::quiet_NaN();
-    const Densities d = judge_.weigh(m, kNobody, k);
     Image& image = images_[track_of_object_[k]];
-    // An image is weak itself.
-    const double weakness =
-        image.rcs_std_db < kHeard_db
-            ? likelihood(kImageStrength, image.rcs_dbsm - kUsualRcs_dbsm, image.rcs_std_db, kImageDoubt) /
-                  likelihood(kObjectStrength, image.rcs_dbsm - kUsualRcs_dbsm, image.rcs_std_db, kImageDoubt)
-            : 1.0;
-    const double score =
-        std::clamp(std::log((d.type1 + d.type2 + 1e-12) * weakness / kTrackDensity), -kSurest, kSurest);
+    // An image is weaker than what is mirrored.
+    const bool heard = image.rcs_std_db < kHeard_db;
+    m.rcs_dbsm = heard ? image.rcs_dbsm : std::numeric_limits<double>::quiet_NaN();
+    const Densities d = judge_.weigh(m, kNobody, k);
+    const double strength =
+        heard ? likelihood(kObjectStrength, image.rcs_dbsm - kUsualRcs_dbsm, image.rcs_std_db, kObjectDoubt) : 1.0;
+    const double score = std::clamp(
+        std::log((d.type1 + d.type2 + 1e-12) / (strength * track_density(o.velocity_mps.norm()))), -kSurest, kSurest);
     ++image.judgements;
     image.log_odds += std::max(kSlowest, 1.0 / (1.0 + image.judgements)) * (score - image.log_odds);
   }
@@ -353,7 +363,9 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     if (moving && mover < movers_.size() && movers_[mover].index == i) {
       // Where there is a track, that tells the next scans more than single detections.
       const bool tracked = d.of_tracks > kTrackTells * d.sum();
-      movers_.set_weight(mover++, tracked ? 0.0 : d.moving / std::max(d.sum(), 1e-300));
+      constexpr double kOfNoTrack = 1e-6;
+      const double of_real = (d.of_tracks + kOfNoTrack) / (d.of_tracks + d.of_images + kOfNoTrack);
+      movers_.set_weight(mover++, tracked ? 0.0 : of_real * d.moving / std::max(d.sum(), 1e-300));
     }
   }
   write_segments(out);

@@ -18,6 +18,7 @@ struct Object {
   Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
   double weight = 0.0;  ///< probability that it exists and is no image itself
+  double image = 0.0;   ///< that it exists and is an image
   bool own = false;     ///< the own vehicle: seen only in mirrors
   double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, on average
 };

@@ -7,11 +7,21 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kLeastSine = 0.02;  // a ray that grazes at less than a degree is not followed
+constexpr double kBeyondEnd_m = 40.0;  // as far a mirror may go on unseen
+constexpr double kLeastSine = 0.02;    // a ray that grazes at less than a degree is not followed
+
+/// A rail or a wall may go on where vehicles hide it, or where it was not looked for yet.
+double goes_on(const Mirror& mirror, double arc_m) {
+  constexpr double kLong_m = 20.0, kAtTheEnd = 0.2;
+  const double beyond_m = std::max(mirror.begin_m - arc_m, arc_m - mirror.end_m);
+  if (beyond_m <= 0.0 || beyond_m >= kBeyondEnd_m || mirror.end_m - mirror.begin_m < kLong_m) return 0.0;
+  return kAtTheEnd * (1.0 - beyond_m / kBeyondEnd_m);
+}
 
 double there(const Mirror& mirror, double arc_m, double arc_std_m) {
   if (mirror.occupancy != nullptr) {
-    return mirror.existence * mirror.occupancy->probability(arc_m + mirror.arc_shift_m, arc_std_m);
+    const double seen = mirror.occupancy->probability(arc_m + mirror.arc_shift_m, arc_std_m);
+    return mirror.existence * std::max(seen, goes_on(mirror, arc_m));
   }
   const double slack = arc_std_m + 0.3;
   // Share of a Gaussian that lies between the ends, by the logistic approximation of its distribution.
@@ -45,7 +55,7 @@ bool is_met_far_beside(const Mirror& mirror, const Eigen::Vector2d& sensor_m, co
   const double sag = 1.0 + bend * (sensor.x() * sensor.x() + target.x() * target.x());
   if (sensor.y() * target.y() <= 0.0) return std::min(std::abs(sensor.y()), std::abs(target.y())) > sag;
   const double turns = sensor.x() + (target.x() - sensor.x()) * sensor.y() / (sensor.y() + target.y());
-  const double slack = 10.0 + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + sag;
+  const double slack = kBeyondEnd_m + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + sag;
   return turns < mirror.begin_m - slack || turns > mirror.end_m + slack;
 }
 
@@ -58,7 +68,7 @@ std::optional<Turn> turn_at(const Mirror& mirror, const Eigen::Vector2d& sensor_
     const Eigen::Vector2d point = sensor_m + distance * direction;
     const double arc = mirror.curve.arc(point);
     // The other half of a circle has the same crossings.
-    if (arc < mirror.begin_m - 10.0 || arc > mirror.end_m + 10.0) continue;
+    if (arc < mirror.begin_m - kBeyondEnd_m || arc > mirror.end_m + kBeyondEnd_m) continue;
     const Eigen::Vector2d tangent = mirror.curve.tangent_at(arc);
     Eigen::Vector2d normal(-tangent.y(), tangent.x());
     double sine = -direction.dot(normal);
@@ -106,7 +116,7 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
   const double across = std::abs(mirror.curve.arc(target_m) - arc);
   arc += (mirror.curve.arc(target_m) - arc) * sensor_side / (sensor_side + target_side);
   // Most mirrors are passed by far: no need to know by how much.
-  const double slack = 15.0 + 0.3 * std::abs(mirror.curve.curvature_per_m) * arc * arc;
+  const double slack = 5.0 + kBeyondEnd_m + 0.3 * std::abs(mirror.curve.curvature_per_m) * arc * arc;
   if (arc < mirror.begin_m - slack || arc > mirror.end_m + slack) return std::nullopt;
   Eigen::Vector2d point, tangent;
   for (int round = 0;; ++round) {
