@@ -29,6 +29,7 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
   std::vector<std::string> names;
   for (const BarGroup& group : groups) names.emplace_back(group.name);
   app.add_flag("--quick", options.quick, "two seeds and short drives: shows that it runs, not how good it is");
+  app.add_option("--most-seeds", options.most_seeds, "no more seeds than these, for a quick look");
   app.add_option("--only", options.only, "one group of bars")->check(CLI::IsMember(names));
   app.add_option("--jobs", options.jobs, "threads")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--json", json, "file for bars, tables and curves");

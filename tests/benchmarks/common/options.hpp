@@ -12,11 +12,13 @@ struct Options {
   bool quick = false;            ///< two seeds and short drives: whether it runs, not how good it is
   std::string only;              ///< group of bars; empty: all
   std::size_t jobs = 2;          ///< threads
+  std::size_t most_seeds = 0;    ///< 0: as many as a bar asks for
   std::uint64_t first_seed = 1;  ///< of benchmarks whose bars are for fixed seeds: others are for tuning
   std::string data_folder;       ///< of recordings that a group of bars needs; empty: such groups are left out
 
   [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
-    return quick ? std::min<std::size_t>(wanted, 2) : wanted;
+    const std::size_t most = quick ? 2 : most_seeds != 0 ? most_seeds : wanted;
+    return std::min(wanted, most);
   }
   [[nodiscard]] double seconds(double wanted) const { return quick ? std::min(wanted, 12.0) : wanted; }
   [[nodiscard]] bool wants(const std::string& group) const { return only.empty() || only == group; }
