@@ -47,10 +47,11 @@ double length_of(const ReflectorSegment& s) {
 }  // namespace
 
 ReflectorFinder::ReflectorFinder(const Config& config)
-    : config_(config), cell_means_(StationaryMap::kCapacity), dbscan_(StationaryMap::kCapacity) {
+    : config_(config),
+      cell_means_(StationaryMap::kCapacity),
+      dbscan_(StationaryMap::kCapacity),
+      clusters_(StationaryMap::kCapacity) {
   positions_.reserve(StationaryMap::kCapacity);
-  sorted_.reserve(StationaryMap::kCapacity);
-  cluster_begin_.reserve(StationaryMap::kCapacity + 2);
 }
 
 std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::Vector2d> points) {
@@ -61,38 +62,22 @@ std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::V
   const double stretch = config_.cluster_length_m / config_.cluster_width_m;
   for (const CellMean& mean : means) positions_.push_back({mean.position_m.x(), stretch * mean.position_m.y()});
   const std::size_t clusters = dbscan_.cluster(positions_, config_.cluster_length_m, config_.cluster_min_points);
-  const auto labels = dbscan_.labels();
-  // Counting sort by cluster: two passes, no comparison, no allocation.
-  cluster_begin_.assign(clusters + 1, 0);
-  for (const std::int32_t label : labels) {
-    if (label >= 0) ++cluster_begin_[static_cast<std::size_t>(label) + 1];
-  }
-  for (std::size_t c = 1; c <= clusters; ++c) cluster_begin_[c] += cluster_begin_[c - 1];
-  sorted_.resize(cluster_begin_[clusters]);
-  for (std::size_t i = labels.size(); i-- > 0;) {
-    if (labels[i] >= 0) sorted_[--cluster_begin_[static_cast<std::size_t>(labels[i]) + 1]] = means[i];
-  }
-  // Each cluster's begin has moved into the next one's slot.
-  for (std::size_t c = 0; c < clusters; ++c) {
-    const std::size_t begin = cluster_begin_[c + 1];
-    const std::size_t end = c + 2 <= clusters ? cluster_begin_[c + 2] : sorted_.size();
-    fit(begin, end, 0);
-  }
+  clusters_.sort(means, dbscan_.labels(), clusters);
+  for (std::size_t c = 0; c < clusters_.size(); ++c) fit(clusters_[c], 0);
   return {segments_.data(), number_of_segments_};
 }
 
-void ReflectorFinder::fit(std::size_t begin, std::size_t end, int depth) {
-  if (end - begin < config_.min_segment_points) return;
-  const std::span<CellMean> points(sorted_.data() + begin, end - begin);
+void ReflectorFinder::fit(std::span<CellMean> points, int depth) {
+  if (points.size() < config_.min_segment_points) return;
   const Line line = fit_line(points);
   const auto along = [&](const CellMean& p) { return line.direction.dot(p.position_m - line.centre); };
   if (line.residual_m > config_.max_segment_residual_m) {
     if (depth == kMaxDepth) return;
     const auto middle = std::partition(points.begin(), points.end(), [&](const auto& p) { return along(p) < 0.0; });
-    const std::size_t split = begin + static_cast<std::size_t>(middle - points.begin());
-    if (split == begin || split == end) return;
-    fit(begin, split, depth + 1);
-    fit(split, end, depth + 1);
+    const auto split = static_cast<std::size_t>(middle - points.begin());
+    if (split == 0 || split == points.size()) return;
+    fit(points.first(split), depth + 1);
+    fit(points.subspan(split), depth + 1);
     return;
   }
   double first = along(points.front()), last = first;

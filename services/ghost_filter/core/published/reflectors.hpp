@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "interfaces/messages/classified_scan.hpp"
+#include "services/common/geometry/cluster_runs.hpp"
 #include "services/common/geometry/dbscan.hpp"
 #include "services/ghost_filter/core/published/cell_means.hpp"
 #include "services/ghost_filter/core/published/config.hpp"
@@ -25,14 +26,13 @@ class ReflectorFinder {
   [[nodiscard]] std::span<const ReflectorSegment> find(std::span<const Eigen::Vector2d> points);
 
  private:
-  void fit(std::size_t begin, std::size_t end, int depth);
+  void fit(std::span<CellMean> points, int depth);
   void add(const ReflectorSegment& segment);
   Config config_;
   CellMeans cell_means_;
   geometry::Dbscan dbscan_;
   std::vector<Eigen::Vector2d> positions_;  // of the cells' means
-  std::vector<CellMean> sorted_;            // ordered by cluster
-  std::vector<std::uint32_t> cluster_begin_;
+  geometry::ClusterRuns<CellMean> clusters_;
   std::array<ReflectorSegment, kMaxReflectorSegments> segments_;
   std::size_t number_of_segments_ = 0;
 };

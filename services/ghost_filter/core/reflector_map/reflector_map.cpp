@@ -25,11 +25,13 @@ constexpr double kInCommon = 4.0;
 }  // namespace
 
 ReflectorMap::ReflectorMap(const MapConfig& config)
-    : config_(config), grid_(config.capacity, config.cell_m), curves_(config), dbscan_(config.capacity) {
+    : config_(config),
+      grid_(config.capacity, config.cell_m),
+      curves_(config),
+      dbscan_(config.capacity),
+      clusters_(config.capacity) {
   reflectors_.reserve(kMaxReflectorSegments);
   free_.reserve(config.capacity);
-  sorted_.reserve(config.capacity);
-  cluster_begin_.reserve(config.capacity + 2);
 }
 
 void ReflectorMap::clear() {
@@ -216,23 +218,8 @@ void ReflectorMap::search(const StationaryGrid::Tile& tile) {
   points_searched_ += free_.size();
   if (free_.size() < config_.min_cells) return;
   const std::size_t clusters = dbscan_.cluster(free_, config_.cluster_radius_m, config_.cluster_min_cells);
-  const auto labels = dbscan_.labels();
-  // Counting sort by cluster.
-  cluster_begin_.assign(clusters + 1, 0);
-  for (const std::int32_t label : labels) {
-    if (label >= 0) ++cluster_begin_[static_cast<std::size_t>(label) + 1];
-  }
-  for (std::size_t c = 1; c <= clusters; ++c) cluster_begin_[c] += cluster_begin_[c - 1];
-  sorted_.resize(cluster_begin_[clusters]);
-  for (std::size_t i = labels.size(); i-- > 0;) {
-    if (labels[i] >= 0) sorted_[--cluster_begin_[static_cast<std::size_t>(labels[i]) + 1]] = free_[i];
-  }
-  // Each cluster's begin has moved into the next one's slot.
-  for (std::size_t c = 0; c < clusters; ++c) {
-    const std::size_t begin = cluster_begin_[c + 1];
-    const std::size_t end = c + 2 <= clusters ? cluster_begin_[c + 2] : sorted_.size();
-    search_part({sorted_.data() + begin, end - begin}, 0);
-  }
+  clusters_.sort(free_, dbscan_.labels(), clusters);
+  for (std::size_t c = 0; c < clusters_.size(); ++c) search_part(clusters_[c], 0);
 }
 
 void ReflectorMap::search_part(std::span<Eigen::Vector2d> points, int depth) {

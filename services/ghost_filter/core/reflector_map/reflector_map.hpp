@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "interfaces/messages/classified_scan.hpp"
+#include "services/common/geometry/cluster_runs.hpp"
 #include "services/common/geometry/dbscan.hpp"
 #include "services/ghost_filter/core/reflector_map/config.hpp"
 #include "services/ghost_filter/core/reflector_map/curve_search.hpp"
@@ -63,10 +64,10 @@ class ReflectorMap {
   StationaryGrid grid_;
   CurveSearch curves_;
   geometry::Dbscan dbscan_;
+  geometry::ClusterRuns<Eigen::Vector2d> clusters_;
   ReflectorIndex index_;
   std::vector<Reflector> reflectors_;
-  std::vector<Eigen::Vector2d> free_, sorted_;
-  std::vector<std::uint32_t> cluster_begin_;
+  std::vector<Eigen::Vector2d> free_;
   std::size_t next_reflector_ = 0, next_tile_ = 0;
   std::int64_t updated_ns_ = 0, indexed_ns_ = 0, now_ns_ = 0;
   bool index_is_due_ = true;
