@@ -25,8 +25,8 @@ constexpr double kHeard_db = 3.0;    // a track's strength is known if its std i
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
 constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
-constexpr double kSlowest = 0.1;                        // share of a new judgement of a track in what is thought of it
-constexpr double kChordSag_m = 0.2;                     // an arc is published as chords that leave it by this at most
+constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
+constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
 double track_density(double speed_mps) {
