@@ -28,6 +28,17 @@ void Judge::begin(const Surroundings& surroundings) {
   fan_.build(s_.mirrors, s_.sensor_m);
   crossings_.clear();
   pairs_left_of_scan_ = kMostPairsOfScan;
+  sources_.clear();
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+    const Object& o = s_.objects[i];
+    sources_.enter_object(i, o.position_m, most_extent(o).array() + reach_of(o.position_covariance.diagonal()));
+  }
+}
+
+void Judge::know_movers() {
+  s_.movers->visit_weighing([&](const MovedMover& mover) {
+    sources_.enter_mover(mover.position_m, kFarMover * std::sqrt(mover.variance_m2 + square(config_.extent_std_m)));
+  });
 }
 
 double Judge::rate_variance(const Measured& m) const {

@@ -12,6 +12,7 @@
 #include "services/ghost_filter/core/classify/mirror_fan.hpp"
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
+#include "services/ghost_filter/core/classify/source_map.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
@@ -54,6 +55,8 @@ class Judge {
 
   /// For a new scan; what is in `surroundings` is only referred to.
   void begin(const Surroundings& surroundings);
+  /// When all movers of the scan are known, before anything is weighed.
+  void know_movers();
   /// `index` of the detection in the scan; `but_object`: is not considered, nor what is near to the detection.
   [[nodiscard]] Densities weigh(const Measured& measured, std::uint32_t index, std::uint32_t but_object = kNobody);
   /// As weigh(), but only what a detection that looks stationary can be: that, or of an object that is tracked.
@@ -115,6 +118,7 @@ class Judge {
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;
+  SourceMap sources_;
   std::vector<Crossing> crossings_;
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;

@@ -43,51 +43,54 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   double of_tracks = 0.0;
   const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
   const double doubt = config_.strength_doubt;
-  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+  const SourceMap::Bits sources = sources_.about(target.place_m, reach_of(blurred.diagonal()));
+  SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
-    if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) continue;
+    if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
     const Reflections there = reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
-    if (there.wheel <= 0.0) continue;
+    if (there.wheel <= 0.0) return;
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
     const RateDensity rates = rates_at(o, m.rate_mps - target.known_mps, target.q, noise);
     of_tracks += o.weight *
                  ((1.0 - config_.wheel_ghost_share) * there.body * rates.body +
                   config_.wheel_ghost_share * there.wheel * rates.wheel) *
                  likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
-  }
+  });
+  if (!SourceMap::has_movers(sources)) return of_tracks * target.stretch;
   // Objects that are not tracked (yet) have been detected at least; and what was detected is known better than a box.
   // Several detections are of one object.
   double of_movers = 0.0;
-  const std::int64_t now_ns = s_.odometry->now_ns();
   const std::size_t own = s_.movers->earlier();
-  const Eigen::Vector2d in_frame = s_.odometry->point_to_frame(target.place_m);
   const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
   const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
   const double most_of_strength =
       std::isfinite(m.rcs_dbsm) ? likelihood(target.strength, target.strength.mean_db, 0.0, doubt) : 1.0;
   const double most_of_rest = most_of_strength / std::sqrt(2.0 * M_PI * rate_noise);
-  s_.movers->near(in_frame, [&](const Mover& mover, std::uint32_t number) {
+  const double spread = target.covariance.trace();
+  s_.movers->weighing_near(s_.odometry->point_to_frame(target.place_m), [&](const Mover& mover, const MovedMover& moved,
+                                                                            std::uint32_t number) {
     if (number >= own && mover.index == but_index) return;
-    const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
-    const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
-    const Eigen::Vector2d residual = s_.odometry->vector_to_vehicle(moved - in_frame);
+    const Eigen::Vector2d residual = moved.position_m - target.place_m;
+    const double sure = moved.variance_m2;
+    if (residual.squaredNorm() > square(kFarMover) * (spread + sure + square(config_.extent_std_m))) return;
     // Of a track that is judged itself, what was detected of it tells nothing.
-    if (but_object != kNobody && is_on(s_.objects[but_object], target.place_m + residual, kAround_m)) return;
-    const double sure = mover.variance_m2 + square(8.0 * elapsed_s);
-    if (residual.squaredNorm() > 16.0 * (target.covariance.trace() + sure + square(config_.extent_std_m))) return;
-    const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
-    const double there =
-        kSame * gaussian(residual, target.covariance + (sure + square(0.2)) * eye) +
-        (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
+    if (but_object != kNobody && is_on(s_.objects[but_object], moved.position_m, kAround_m)) return;
     const bool owned = number >= own && mover.object != kNobody;
     if (owned && (mover.object == target.mirror->body || mover.object == target.other_body)) return;
-    // Even the best range rate and strength would not make it the likeliest.
+    // Even at the very place, with the best range rate and strength, it would not be the likeliest.
+    const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d same = target.covariance + (sure + square(0.2)) * eye;
+    if (mover.weight * most_of_rest <= of_movers * 2.0 * M_PI * std::sqrt(same.determinant())) return;
+    const double there =
+        kSame * gaussian(residual, same) +
+        (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
+    // Even the best range rate and strength would not.
     if (mover.weight * there * most_of_rest <= of_movers) return;
     // A track knows the velocity, a single detection one component of it.
     const double fits =
         owned ? rates_at(s_.objects[mover.object], m.rate_mps - target.known_mps, target.q, rate_noise).body
-              : rate_density(m.rate_mps - target.known_mps, target.q, s_.odometry->vector_to_vehicle(mover.direction),
-                             mover.rate_mps, square(config_.range_rate_slack_mps), along, rate_noise);
+              : rate_density(m.rate_mps - target.known_mps, target.q, moved.direction, mover.rate_mps,
+                             square(config_.range_rate_slack_mps), along, rate_noise);
     const bool heard = std::isfinite(mover.rcs_dbsm);
     const double above_db = m.rcs_dbsm - (heard ? mover.rcs_dbsm : kUsualRcs_dbsm);
     of_movers = std::max(of_movers,

@@ -17,13 +17,12 @@ constexpr double kSeenThrough = 0.03;
 void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densities) const {
   const Eigen::Matrix2d covariance = outer(m.direction, square(m.range_std_m) + square(0.2)) +
                                      outer(left_of(m.direction), square(m.range_m * m.azimuth_std_rad) + square(0.2));
-  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+  const auto judge = [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
-    if (o.own) continue;
-    if (surely_moving && !moves_surely(o)) continue;
-    if ((o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) continue;
+    if (o.own || (o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) return;
+    if (surely_moving && !moves_surely(o)) return;
     const Reflections place = reflections_at(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
-    if (place.wheel <= 0.0) continue;
+    if (place.wheel <= 0.0) return;
     double seen = 1.0;
     for (const Crossing& crossing : crossings_) {
       const double sensor_side = crossing.mirror->curve.distance(s_.sensor_m);
@@ -45,7 +44,9 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
       densities.of_body = of_either;
       densities.object = i;
     }
-  }
+  };
+  SourceMap::visit_objects(sources_.about(m.position_m, reach_of(covariance.diagonal())),
+                           static_cast<std::uint32_t>(s_.objects.size()), judge);
 }
 
 Judge::Owner Judge::owner_of(const Measured& m) const {

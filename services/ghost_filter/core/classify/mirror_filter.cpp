@@ -211,7 +211,7 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
 
 void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
-  movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9));
+  movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9), odometry_);
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
     const Measured m = measured(scan, i);
@@ -224,8 +224,10 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
     const double across = m.range_m * m.azimuth_std_rad;
     movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
                  m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i),
-                 m.rcs_dbsm, owner.object});
+                 m.rcs_dbsm, owner.object},
+                odometry_);
   }
+  judge_.know_movers();
 }
 
 void MirrorFilter::judge_tracks() {

@@ -12,10 +12,18 @@ namespace boresight::ghosts {
   return x * x;
 }
 
+/// In standard deviations, squared: farther out densities are taken for nothing.
+inline constexpr double kFarthest2 = 50.0;
+
+/// As far along x or y a density with these variances along them is something.
+[[nodiscard]] inline double reach_of(const Eigen::Vector2d& variances) {
+  return std::sqrt(kFarthest2 * std::max(variances.x(), variances.y()));
+}
+
 /// 0 beyond seven standard deviations.
 [[nodiscard]] inline double gaussian(double residual, double variance) {
   const double chi2 = residual * residual / variance;
-  return chi2 > 50.0 ? 0.0 : std::exp(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);
+  return chi2 > kFarthest2 ? 0.0 : std::exp(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);
 }
 
 /// Standard normal distribution function, by the logistic approximation (to 0.01).
@@ -29,7 +37,7 @@ namespace boresight::ghosts {
   const double chi2 = (covariance(1, 1) * square(residual.x()) - 2.0 * covariance(0, 1) * residual.x() * residual.y() +
                        covariance(0, 0) * square(residual.y())) /
                       determinant;
-  return chi2 > 50.0 ? 0.0 : std::exp(-0.5 * chi2) / (2.0 * M_PI * std::sqrt(determinant));
+  return chi2 > kFarthest2 ? 0.0 : std::exp(-0.5 * chi2) / (2.0 * M_PI * std::sqrt(determinant));
 }
 
 /// Density at `q` of what lies evenly on the segment from (−half, 0) to (half, 0), blurred by a normal distribution.

@@ -34,6 +34,9 @@ struct InBox {
 
 Reflections reflections_of(const InBox& in, const Eigen::Vector2d& half) {
   const Eigen::Vector2d residual = in.place - in.place.cwiseMax(-half).cwiseMin(half);
+  // Too far along one axis is too far.
+  if (square(residual.x()) > kFarthest2 * in.s(0, 0) || square(residual.y()) > kFarthest2 * in.s(1, 1))
+    return {0.0, 0.0};
   const double blur = 2.0 * M_PI * std::sqrt(std::max(1e-9, in.s(0, 0) * in.s(1, 1) - square(in.s(0, 1))));
   const double anywhere = gaussian(residual, in.s) * blur / (blur + 4.0 * half.x() * half.y());
   if (anywhere <= 0.0) return {0.0, 0.0};  // no face is nearer than the box
@@ -55,14 +58,17 @@ Reflections reflections_of(const InBox& in, const Eigen::Vector2d& half) {
 
 }  // namespace
 
+Eigen::Vector2d most_extent(const Object& object) {
+  const Eigen::Vector2d axis = object.axis.cwiseAbs();
+  const double length = object.half_length_m + kGrowths.back().length_m;
+  const double width = object.half_width_m + kGrowths.back().width_m;
+  return {axis.x() * length + axis.y() * width, axis.y() * length + axis.x() * width};
+}
+
 Reflections reflections_at(const Object& object, const Eigen::Vector2d& place_m, const Eigen::Matrix2d& covariance,
                            const Eigen::Vector2d& seen_from_m, const Eigen::Vector2d& lit_from_m) {
   const Eigen::Vector2d q = place_m - object.position_m;
-  const double reach2 = 51.0 * (covariance.trace() + object.position_covariance.trace());
-  const Eigen::Vector2d most(object.half_length_m + kGrowths.back().length_m,
-                             object.half_width_m + kGrowths.back().width_m);
-  if (q.squaredNorm() > 2.0 * (most.squaredNorm() + reach2)) return {0.0, 0.0};  // (a + b)² ≤ 2 (a² + b²)
-  Eigen::Matrix2d axes;                                                          // rows: the box's axes
+  Eigen::Matrix2d axes;  // rows: the box's axes
   axes << object.axis.x(), object.axis.y(), -object.axis.y(), object.axis.x();
   const InBox in{axes * q, axes * (seen_from_m - object.position_m), axes * (lit_from_m - object.position_m),
                  axes * (covariance + object.position_covariance) * axes.transpose()};

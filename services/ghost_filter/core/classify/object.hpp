@@ -30,6 +30,9 @@ struct Object {
          std::abs(object.axis.x() * q.y() - object.axis.y() * q.x()) <= object.half_width_m + around_m;
 }
 
+/// Half the extent along x and y of all that may belong to it, were it as large as can be.
+[[nodiscard]] Eigen::Vector2d most_extent(const Object& object);
+
 /// Whether the object's speed is beyond doubt.
 [[nodiscard]] bool moves_surely(const Object& object);
 

@@ -7,26 +7,38 @@ namespace boresight::ghosts {
 
 namespace {
 constexpr double kSame_m = 1.0, kSame_mps = 1.0;
+constexpr double kAcross_mps = 8.0;  // the part of a mover's velocity that its range rate does not show
 }  // namespace
 
-RecentMovers::RecentMovers() : first_in_cell_(kCapacity), newest_(kCapacity), next_in_cell_(kCapacity, kNone) {
+RecentMovers::RecentMovers() : moved_(kCapacity), newest_(kCapacity) {
   movers_.reserve(kCapacity);
 }
 
 void RecentMovers::clear() {
   movers_.clear();
-  first_in_cell_.clear();
+  all_.first.clear();
+  weighing_.first.clear();
   earlier_ = 0;
 }
 
-void RecentMovers::link(std::uint32_t i) {
-  const Eigen::Vector2d& p = movers_[i].position_m;
-  std::uint32_t& first = first_in_cell_.at(geometry::grid_cell(p.x(), p.y(), kCell_m), kNone);
-  next_in_cell_[i] = first;
-  first = i;
+void RecentMovers::Chains::link(const Eigen::Vector2d& position_m, std::uint32_t i) {
+  std::uint32_t& head = first.at(geometry::grid_cell(position_m.x(), position_m.y(), kCell_m), kNone);
+  next[i] = head;
+  head = i;
 }
 
-void RecentMovers::forget(std::int64_t oldest_ns) {
+void RecentMovers::enter(std::uint32_t i, const Odometry& odometry) {
+  const Mover& m = movers_[i];
+  all_.link(m.position_m, i);
+  if (!(m.weight > 0.0)) return;
+  weighing_.link(m.position_m, i);
+  const double elapsed_s = static_cast<double>(odometry.now_ns() - m.time_ns) * 1e-9;
+  const double across_m = kAcross_mps * elapsed_s;
+  moved_[i] = {odometry.point_to_vehicle(m.position_m + elapsed_s * m.rate_mps * m.direction),
+               odometry.vector_to_vehicle(m.direction), m.variance_m2 + across_m * across_m};
+}
+
+void RecentMovers::forget(std::int64_t oldest_ns, const Odometry& odometry) {
   newest_.clear();
   const std::int64_t now_ns = movers_.empty() ? 0 : movers_.back().time_ns;
   std::size_t kept = movers_.size();
@@ -44,14 +56,15 @@ void RecentMovers::forget(std::int64_t oldest_ns) {
   }
   movers_.erase(movers_.begin(), movers_.begin() + static_cast<std::ptrdiff_t>(kept));
   earlier_ = movers_.size();
-  first_in_cell_.clear();
-  for (std::uint32_t i = 0; i < movers_.size(); ++i) link(i);
+  all_.first.clear();
+  weighing_.first.clear();
+  for (std::uint32_t i = 0; i < movers_.size(); ++i) enter(i, odometry);
 }
 
-void RecentMovers::add(const Mover& mover) {
+void RecentMovers::add(const Mover& mover, const Odometry& odometry) {
   if (movers_.size() == kCapacity) return;
   movers_.push_back(mover);
-  link(static_cast<std::uint32_t>(movers_.size() - 1));
+  enter(static_cast<std::uint32_t>(movers_.size() - 1), odometry);
 }
 
 }  // namespace boresight::ghosts

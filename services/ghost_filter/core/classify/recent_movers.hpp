@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "services/common/geometry/cell_table.hpp"
+#include "services/ghost_filter/core/reflector_map/odometry.hpp"
 
 namespace boresight::ghosts {
 
@@ -23,44 +24,74 @@ struct Mover {
   std::uint32_t object;  ///< tracked object that it is of; counts in its own scan only
 };
 
+/// The same at the instant of the scan, vehicle frame and axes.
+struct MovedMover {
+  Eigen::Vector2d position_m, direction;
+  double variance_m2;  ///< of its position, with what it may have gone otherwise
+};
+
+/// Standard deviations beyond which a mover is taken not to be at a place.
+inline constexpr double kFarMover = 4.0;
+
 class RecentMovers {
  public:
   static constexpr std::size_t kCapacity = 8192;
   RecentMovers();
   void clear();
-  /// Forgets what is older, and what weighs next to nothing. To be called before the scan's own are added; they are the
-  /// last ones then.
-  void forget(std::int64_t oldest_ns);
-  void add(const Mover& mover);
+  /// Forgets what is older. To be called before the scan's own are added; they are the last ones then. Where they are
+  /// is told as of `odometry`.
+  void forget(std::int64_t oldest_ns, const Odometry& odometry);
+  void add(const Mover& mover, const Odometry& odometry);
   /// What the verdict on one was, for the scans to come.
   void set_weight(std::size_t i, double weight) { movers_[i].weight = weight; }
   /// Number of those of earlier scans: those from here on are of the present one.
   [[nodiscard]] std::size_t earlier() const { return earlier_; }
   [[nodiscard]] const Mover& operator[](std::size_t i) const { return movers_[i]; }
   [[nodiscard]] std::size_t size() const { return movers_.size(); }
-  /// Calls `visit(mover, number)` for those in the cells about a position: within kCell_m at least.
+  /// Calls `visit(mover, number)` for those in the cells about a position in the odometry frame: within kCell_m at
+  /// least.
   template <typename Visit>
   void near(const Eigen::Vector2d& position_m, const Visit& visit) const {
-    const geometry::GridCell at = geometry::grid_cell(position_m.x(), position_m.y(), kCell_m);
-    for (std::int32_t column = at.column - 1; column <= at.column + 1; ++column) {
-      for (std::int32_t row = at.row - 1; row <= at.row + 1; ++row) {
-        const std::uint32_t* const first = first_in_cell_.find({column, row});
-        for (std::uint32_t i = first == nullptr ? kNone : *first; i != kNone; i = next_in_cell_[i]) {
-          visit(movers_[i], i);
-        }
-      }
+    all_.near(position_m, [&](std::uint32_t i) { visit(movers_[i], i); });
+  }
+  /// Calls `visit(mover, moved, number)` for those of them that weigh something.
+  template <typename Visit>
+  void weighing_near(const Eigen::Vector2d& position_m, const Visit& visit) const {
+    weighing_.near(position_m, [&](std::uint32_t i) { visit(movers_[i], moved_[i], i); });
+  }
+  /// Calls `visit(moved)` for all that weigh something.
+  template <typename Visit>
+  void visit_weighing(const Visit& visit) const {
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      if (movers_[i].weight > 0.0) visit(moved_[i]);
     }
   }
   static constexpr double kCell_m = 4.0;
-  static constexpr double kLeastWeight = 0.02;
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  void link(std::uint32_t i);
+  /// Numbers by cell.
+  struct Chains {
+    geometry::CellTable first{kCapacity};
+    std::vector<std::uint32_t> next = std::vector<std::uint32_t>(kCapacity, kNone);
+    void link(const Eigen::Vector2d& position_m, std::uint32_t i);
+    template <typename Visit>
+    void near(const Eigen::Vector2d& position_m, const Visit& visit) const {
+      const geometry::GridCell at = geometry::grid_cell(position_m.x(), position_m.y(), kCell_m);
+      for (std::int32_t column = at.column - 1; column <= at.column + 1; ++column) {
+        for (std::int32_t row = at.row - 1; row <= at.row + 1; ++row) {
+          const std::uint32_t* const head = first.find({column, row});
+          for (std::uint32_t i = head == nullptr ? kNone : *head; i != kNone; i = next[i]) visit(i);
+        }
+      }
+    }
+  };
+  void enter(std::uint32_t i, const Odometry& odometry);
   std::vector<Mover> movers_;
+  std::vector<MovedMover> moved_;  // of those that weigh something
   std::size_t earlier_ = 0;
-  geometry::CellTable first_in_cell_, newest_;
-  std::vector<std::uint32_t> next_in_cell_;
+  Chains all_, weighing_;
+  geometry::CellTable newest_;
 };
 
 }  // namespace boresight::ghosts
