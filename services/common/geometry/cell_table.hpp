@@ -16,11 +16,15 @@ struct GridCell {
   [[nodiscard]] bool operator==(const GridCell&) const = default;
 };
 
-/// The cell of a position in a grid of `size_m`; positions beyond 1000 km are taken to be there.
+/// The cell of a position in a grid of `size_m`; positions beyond 1000 km are taken to be there, and so is what is not
+/// a number.
 [[nodiscard]] inline GridCell grid_cell(double x_m, double y_m, double size_m) {
   static constexpr double kFarthest_m = 1e6;
   const auto index = [size_m](double v) {
-    return static_cast<std::int32_t>(std::floor(std::clamp(v, -kFarthest_m, kFarthest_m) / size_m));
+    // In this order of the arguments what is not a number becomes the other one.
+    const double cells = std::min(kFarthest_m, std::max(-kFarthest_m, v)) / size_m;
+    const auto towards_zero = static_cast<std::int32_t>(cells);  // std::floor costs twice as much
+    return towards_zero - (cells < towards_zero ? 1 : 0);
   };
   return {index(x_m), index(y_m)};
 }

@@ -1,70 +1,122 @@
 #include "services/common/geometry/dbscan.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace boresight::geometry {
 
 namespace {
+
 constexpr std::int32_t kUnvisited = -2;
-constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+/// Buckets on a side of the square for so many points: two for each point at least, as most cells of a cloud have
+/// neighbours that are empty.
+std::int32_t side_for(std::size_t points) {
+  std::int32_t side = 4;  // three neighbouring cells are different buckets
+  while (static_cast<std::size_t>(side) * static_cast<std::size_t>(side) < 2 * points) side *= 2;
+  return side;
+}
+
+std::size_t buckets_for(std::size_t points) {
+  const auto side = static_cast<std::size_t>(side_for(points));
+  return side * side;
+}
+
 }  // namespace
 
-Dbscan::Dbscan(std::size_t capacity) : first_in_cell_(capacity), next_in_cell_(capacity), labels_(capacity) {
-  neighbours_.reserve(capacity);
+Dbscan::Dbscan(std::size_t capacity)
+    : bucket_begin_(buckets_for(capacity) + 1),
+      free_end_(buckets_for(capacity)),
+      cells_(capacity),
+      entries_(capacity),
+      labels_(capacity) {
   stack_.reserve(capacity);
 }
 
-void Dbscan::fill_grid() {
-  first_in_cell_.clear();
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    std::uint32_t& first = first_in_cell_.at(grid_cell(points_[i].x(), points_[i].y(), radius_m_), kNone);
-    next_in_cell_[i] = first;
-    first = i;
+void Dbscan::fill_buckets() {
+  // The plane's cells repeat over the square of buckets like tiles on a floor: that needs no hashing, neighbours stay
+  // neighbours, and what is far away in the same bucket the distance tells apart.
+  side_ = side_for(count_);
+  const std::size_t buckets = buckets_for(count_);
+  std::fill_n(bucket_begin_.begin(), buckets + 1, 0U);
+  const std::int32_t mask = side_ - 1;
+  const auto bucket_of = [&](const GridCell& cell) {
+    return static_cast<std::size_t>((cell.column & mask) * side_ + (cell.row & mask));
+  };
+  for (std::size_t i = 0; i < count_; ++i) {
+    cells_[i] = grid_cell(points_[i].x(), points_[i].y(), radius_m_);
+    ++bucket_begin_[bucket_of(cells_[i])];
   }
+  // Each bucket's end, which its points then push down to its begin.
+  for (std::size_t b = 1; b <= buckets; ++b) bucket_begin_[b] += bucket_begin_[b - 1];
+  for (std::size_t i = 0; i < count_; ++i) {
+    entries_[--bucket_begin_[bucket_of(cells_[i])]] = {points_[i], static_cast<std::uint32_t>(i)};
+  }
+  std::copy_n(bucket_begin_.begin() + 1, buckets, free_end_.begin());
 }
 
-std::span<const std::uint32_t> Dbscan::neighbours_of(std::size_t point) {
-  neighbours_.clear();
-  const Eigen::Vector2d& p = points_[point];
-  const GridCell cell = grid_cell(p.x(), p.y(), radius_m_);
+bool Dbscan::is_core(std::size_t point, std::size_t min_points) const {
+  const Eigen::Vector2d p = points_[point];
   const double square = radius_m_ * radius_m_;
-  for (std::int32_t column = cell.column - 1; column <= cell.column + 1; ++column) {
-    for (std::int32_t row = cell.row - 1; row <= cell.row + 1; ++row) {
-      const std::uint32_t* const first = first_in_cell_.find({column, row});
-      for (std::uint32_t i = first == nullptr ? kNone : *first; i != kNone; i = next_in_cell_[i]) {
-        if ((points_[i] - p).squaredNorm() <= square) neighbours_.push_back(i);
+  std::size_t found = 0;
+  const std::int32_t mask = side_ - 1;
+  for (const std::int32_t beside : {0, -1, 1}) {
+    for (const std::int32_t above : {0, -1, 1}) {
+      const auto bucket = static_cast<std::size_t>(((cells_[point].column + beside) & mask) * side_ +
+                                                   ((cells_[point].row + above) & mask));
+      const std::uint32_t end = bucket_begin_[bucket + 1];
+      for (std::uint32_t k = bucket_begin_[bucket]; k < end; ++k) {
+        if ((entries_[k].position - p).squaredNorm() > square) continue;
+        if (++found >= min_points) return true;
       }
     }
   }
-  return neighbours_;
+  return found >= min_points;
+}
+
+void Dbscan::take_around(std::size_t core, std::int32_t cluster) {
+  const Eigen::Vector2d p = points_[core];
+  const double square = radius_m_ * radius_m_;
+  const std::int32_t mask = side_ - 1;
+  for (const std::int32_t beside : {-1, 0, 1}) {
+    for (const std::int32_t above : {-1, 0, 1}) {
+      const auto bucket = static_cast<std::size_t>(((cells_[core].column + beside) & mask) * side_ +
+                                                   ((cells_[core].row + above) & mask));
+      std::uint32_t& end = free_end_[bucket];
+      for (std::uint32_t k = bucket_begin_[bucket]; k < end;) {
+        if ((entries_[k].position - p).squaredNorm() > square) {
+          ++k;
+          continue;
+        }
+        const std::uint32_t point = entries_[k].point;
+        if (labels_[point] == kUnvisited) stack_.push_back(point);  // noise is no core
+        labels_[point] = cluster;
+        // It need not be met again: in a dense cloud that is nearly all of the work.
+        std::swap(entries_[k], entries_[--end]);
+      }
+    }
+  }
 }
 
 std::size_t Dbscan::cluster(std::span<const Eigen::Vector2d> points, double radius_m, std::size_t min_points) {
   points_ = points;
   radius_m_ = radius_m;
   count_ = std::min(points.size(), labels_.size());
-  fill_grid();
+  fill_buckets();
   std::fill_n(labels_.begin(), count_, kUnvisited);
   std::int32_t clusters = 0;
   for (std::size_t seed = 0; seed < count_; ++seed) {
     if (labels_[seed] != kUnvisited) continue;
-    if (neighbours_of(seed).size() < min_points) {
+    if (!is_core(seed, min_points)) {
       labels_[seed] = kNoise;
       continue;
     }
-    labels_[seed] = clusters;
     stack_.clear();
-    stack_.push_back(static_cast<std::uint32_t>(seed));
+    take_around(seed, clusters);
     while (!stack_.empty()) {
       const std::uint32_t point = stack_.back();
       stack_.pop_back();
-      const std::span<const std::uint32_t> neighbours = neighbours_of(point);
-      if (neighbours.size() < min_points) continue;  // reached, but not a core: does not reach further
-      for (const std::uint32_t neighbour : neighbours) {
-        std::int32_t& label = labels_[neighbour];
-        if (label == kUnvisited) stack_.push_back(neighbour);
-        if (label == kUnvisited || label == kNoise) label = clusters;
-      }
+      if (is_core(point, min_points)) take_around(point, clusters);  // others are reached, but do not reach further
     }
     ++clusters;
   }

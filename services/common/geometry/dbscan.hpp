@@ -1,4 +1,5 @@
-// Density-based clusters of points in the plane (Ester et al. 1996), with a grid so that the cost grows linearly.
+// Density-based clusters of points in the plane (Ester et al. 1996). Points are put together by the cells of a grid, so
+// that the cost grows linearly.
 #pragma once
 
 #include <cstdint>
@@ -27,18 +28,27 @@ class Dbscan {
   [[nodiscard]] std::span<const std::int32_t> labels() const { return {labels_.data(), count_}; }
 
  private:
-  void fill_grid();
-  /// Points within the radius of a point, itself included; valid until the next call.
-  [[nodiscard]] std::span<const std::uint32_t> neighbours_of(std::size_t point);
+  void fill_buckets();
+  /// Whether a point has at least `min_points` within the radius, itself included.
+  [[nodiscard]] bool is_core(std::size_t point, std::size_t min_points) const;
+  /// Of the points within the radius of a core, gives those of no cluster to this one.
+  void take_around(std::size_t core, std::int32_t cluster);
 
+  /// A point in the order of the buckets.
+  struct Entry {
+    Eigen::Vector2d position;
+    std::uint32_t point;
+  };
   std::span<const Eigen::Vector2d> points_;
   double radius_m_ = 1.0;
   std::size_t count_ = 0;
-  CellTable first_in_cell_;  // cells of the radius' size; the other points of a cell hang on the first
-  std::vector<std::uint32_t> next_in_cell_;
+  std::int32_t side_ = 0;  // of the square of buckets
+  /// In entries_: a bucket's begin, and the end of those in it that belong to no cluster yet.
+  std::vector<std::uint32_t> bucket_begin_, free_end_;
+  std::vector<GridCell> cells_;  // of the points, of the radius' size
+  std::vector<Entry> entries_;
   std::vector<std::int32_t> labels_;
-  std::vector<std::uint32_t> neighbours_;
-  std::vector<std::uint32_t> stack_;
+  std::vector<std::uint32_t> stack_;  // reached, but not looked at yet
 };
 
 }  // namespace boresight::geometry

@@ -1,5 +1,7 @@
 #include "services/common/geometry/cell_table.hpp"
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -14,6 +16,13 @@ TEST(GridCell, BordersBelongToTheCellAbove) {
   EXPECT_EQ(grid_cell(2.0, -2.0, 2.0), (GridCell{1, -1}));
   EXPECT_EQ(grid_cell(1e30, -1e30, 1.0), (GridCell{1'000'000, -1'000'000}))
       << "what is far is somewhere, not undefined";
+  EXPECT_EQ(grid_cell(std::numeric_limits<double>::quiet_NaN(), 3.0, 2.0), (GridCell{-500'000, 1}));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-1000.0, 1000.0);
+  for (int i = 0; i < 1000; ++i) {
+    const double x = place(random), size = 0.1 + 0.01 * i;
+    ASSERT_EQ(grid_cell(0.0, x, size).row, static_cast<std::int32_t>(std::floor(x / size))) << x << ", " << size;
+  }
 }
 
 TEST(CellTable, IsAMapThatForgetsAtOnce) {

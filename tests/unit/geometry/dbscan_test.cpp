@@ -108,6 +108,28 @@ TEST(Dbscan, DoesNotDependOnWhereTheGridLies) {
   }
 }
 
+TEST(Dbscan, TellsApartWhatIsFarAwayInTheSameBucket) {
+  // Clumps at all powers of two of the radius in both directions, wherever the square of buckets ends.
+  Dbscan dbscan(512);
+  const Points clump = cloud(6, 12, 0.3);
+  Points points;
+  for (std::int32_t i = 1; i <= 12; ++i) {
+    const double far = 1.5 * (1 << i);
+    for (const auto& p : clump) {
+      points.push_back(p + Eigen::Vector2d(far, 0.0));
+      points.push_back(p + Eigen::Vector2d(0.0, -far));
+    }
+  }
+  for (std::size_t count : {std::size_t{40}, std::size_t{100}, points.size()}) {
+    const std::span<const Eigen::Vector2d> some = std::span(points).first(count);
+    const Reference reference({some.begin(), some.end()}, 1.5, 3);
+    ASSERT_EQ(dbscan.cluster(some, 1.5, 3), static_cast<std::size_t>(reference.number)) << count;
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(dbscan.labels()[i] == Dbscan::kNoise, reference.reachable[i].empty()) << count << ", point " << i;
+    }
+  }
+}
+
 TEST(Dbscan, NothingAndMoreThanItsCapacity) {
   Dbscan dbscan(16);
   EXPECT_EQ(dbscan.cluster({}, 1.0, 3), 0u);

@@ -25,8 +25,9 @@ constexpr double kHeard_db = 3.0;    // a track's strength is known if its std i
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
 constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
-constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
-constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
+constexpr double kSlowest = 0.1;       // share of a new judgement of a track in what is thought of it
+constexpr double kAroundBody_m = 0.5;  // what seems to stand there is of the body
+constexpr double kChordSag_m = 0.2;    // an arc is published as chords that leave it by this at most
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
 double track_density(double speed_mps) {
@@ -41,6 +42,11 @@ bool is_usable(const CorrectedScan& scan, std::size_t i) {
 
 double positive_or(float value, double fallback) {
   return std::isfinite(value) && value > 0.0F ? static_cast<double>(value) : fallback;
+}
+
+/// std::hypot costs ten times as much, for ranges of numbers that floats do not have.
+double root_of_squares(double a, double b) {
+  return std::sqrt(a * a + b * b);
 }
 
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
@@ -58,6 +64,8 @@ MirrorFilter::MirrorFilter(const MirrorConfig& config)
     : config_(config), map_(config.map), judge_(config.classes), tracks_(std::make_unique<TrackList>()) {
   mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
   objects_.reserve(Judge::kMaxObjects);
+  surely_moving_.reserve(Judge::kMaxObjects);
+  measured_.resize(kMaxDetections);
 }
 
 void MirrorFilter::add_tracks(const TrackList& tracks) {
@@ -174,10 +182,10 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
   m.direction = sight / m.range_m;
   m.rate_mps = scan.range_rate_over_ground_mps[i];
   m.range_std_m = positive_or(scan.range_std_m[i], 0.15);
-  m.azimuth_std_rad = std::hypot(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad_);
+  m.azimuth_std_rad = root_of_squares(positive_or(scan.azimuth_std_rad[i], 0.005), mounting_std_rad_);
   const double across = m.direction.x() * sensor_velocity_mps_.y() - m.direction.y() * sensor_velocity_mps_.x();
   // A crooked radar takes the own motion out wrongly.
-  m.rate_std_mps = std::hypot(positive_or(scan.range_rate_std_mps[i], 0.05), across * mounting_std_rad_);
+  m.rate_std_mps = root_of_squares(positive_or(scan.range_rate_std_mps[i], 0.05), across * mounting_std_rad_);
   m.still_std_mps = std::sqrt(m.rate_std_mps * m.rate_std_mps + 0.06 * 0.06 + ego_speed_std_mps_ * ego_speed_std_mps_ +
                               across * across * m.azimuth_std_rad * m.azimuth_std_rad);
   m.rcs_dbsm = (scan.fields & scan_field::kRcs) != 0 ? static_cast<double>(scan.rcs_dbsm[i])
@@ -187,21 +195,30 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
 
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
+  surely_moving_.clear();
+  for (std::uint32_t k = 0; k < objects_.size(); ++k) {
+    const Object& o = objects_[k];
+    if (o.weight <= 0.5 || !moves_surely(o)) continue;
+    const double length = o.half_length_m + kAroundBody_m, width = o.half_width_m + kAroundBody_m;
+    surely_moving_.push_back({o.position_m, length * length + width * width, k});
+  }
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
-    const Measured m = measured(scan, i);
+    const Measured& m = measured_[i];
     // What a moving object shows without a range rate is no part of the map.
-    if (std::any_of(objects_.begin(), objects_.end(), [&](const Object& o) {
-          return o.weight > 0.5 && moves_surely(o) && is_on(o, m.position_m, 0.5);
+    if (std::any_of(surely_moving_.begin(), surely_moving_.end(), [&](const Body& body) {
+          return (m.position_m - body.position_m).squaredNorm() <= body.reach2_m2 &&
+                 is_on(objects_[body.object], m.position_m, kAroundBody_m);
         })) {
       continue;
     }
     const double across = m.range_m * m.azimuth_std_rad;
     map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
   }
-  for (const Object& o : objects_) {
-    if (o.weight < kNoImage || !moves_surely(o)) continue;
+  for (const Body& body : surely_moving_) {
+    const Object& o = objects_[body.object];
+    if (o.weight < kNoImage) continue;
     const Eigen::Vector2d reach = o.half_length_m * o.axis;
     map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));
   }
@@ -214,7 +231,7 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9), odometry_);
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
-    const Measured m = measured(scan, i);
+    const Measured& m = measured_[i];
     // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
     double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
     // Wheels are too weak to be seen in mirrors.
@@ -344,6 +361,9 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     map_.clear();
     movers_.clear();
   }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_usable(scan, i)) measured_[i] = measured(scan, i);
+  }
   predict_objects(scan);
   update_map(scan, count);
   place_mirrors();
@@ -358,7 +378,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     if (!is_usable(scan, i)) continue;
     const bool moving = (scan.detection_flags[i] & corrected_flag::kMoving) != 0;
     if (!moving && (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
-    const Measured m = measured(scan, i);
+    const Measured& m = measured_[i];
     const Densities d = moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m);
     write_verdict(d, i, out);
     learn_strength(d, m);

@@ -29,6 +29,12 @@ struct Curve {
     return 2.0 * a / (1.0 + std::sqrt(std::max(0.0, 1.0 - 2.0 * curvature_per_m * a)));
   }
   [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return distance_of_local(local(p)); }
+  /// Whether a point given in local coordinates lies nearer to the curve than `most_m`, which is less than its radius.
+  /// It takes no root and no division: a = d − curvature·d²/2 grows with the distance d.
+  [[nodiscard]] bool is_within(const Eigen::Vector2d& q, double most_m) const {
+    const double a = q.y() - 0.5 * curvature_per_m * q.squaredNorm();
+    return std::abs(a + 0.5 * curvature_per_m * most_m * most_m) < most_m;
+  }
   /// Arc length from the origin of the foot of a point given in local coordinates.
   [[nodiscard]] double arc_of_local(const Eigen::Vector2d& q) const {
     const double ahead = q.x() / (1.0 - curvature_per_m * q.y());

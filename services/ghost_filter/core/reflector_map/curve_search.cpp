@@ -59,7 +59,7 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
   if (points.size() > kMaxPoints) points = points.first(kMaxPoints);
   if (points.size() < config_.min_cells) return std::nullopt;
   const auto on = [&](const Curve& curve, const Eigen::Vector2d& p) {
-    return std::abs(curve.distance(p)) < config_.tolerance_m;
+    return curve.is_within(curve.local(p), config_.tolerance_m);
   };
   std::optional<Curve> best;
   std::size_t most = config_.min_cells - 1;
@@ -99,8 +99,9 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
     found.end_m -= middle;
     CurveFit fit(found.curve, weak_information());
     for (const Eigen::Vector2d& p : points) {
+      if (!on(found.curve, p)) continue;
       const double arc = found.curve.arc(p);
-      if (on(found.curve, p) && arc >= found.begin_m && arc <= found.end_m) fit.add(p, kScatter_m * kScatter_m);
+      if (arc >= found.begin_m && arc <= found.end_m) fit.add(p, kScatter_m * kScatter_m);
     }
     found.curve = fit.solve();
     found.covariance = fit.covariance();
@@ -114,13 +115,16 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
   std::size_t near = 0;
   double square = 0.0;
   const auto belongs = [&](const Eigen::Vector2d& p) {
+    if (!on(found.curve, p)) return false;
     const double arc = found.curve.arc(p);
-    return on(found.curve, p) && arc >= found.begin_m - 0.5 && arc <= found.end_m + 0.5;
+    return arc >= found.begin_m - 0.5 && arc <= found.end_m + 0.5;
   };
   for (const Eigen::Vector2d& p : points) {
-    const double arc = found.curve.arc(p), distance = found.curve.distance(p);
+    const Eigen::Vector2d q = found.curve.local(p);
+    if (!found.curve.is_within(q, 4.0 * config_.tolerance_m)) continue;
+    const double arc = found.curve.arc_of_local(q), distance = found.curve.distance_of_local(q);
     if (arc < found.begin_m - 0.5 || arc > found.end_m + 0.5) continue;
-    if (std::abs(distance) < 4.0 * config_.tolerance_m) ++near;
+    ++near;
     if (std::abs(distance) < config_.tolerance_m) square += distance * distance;
   }
   const auto rest = std::partition(points.begin(), points.end(), [&](const auto& p) { return !belongs(p); });

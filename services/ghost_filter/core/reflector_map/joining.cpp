@@ -15,6 +15,13 @@ constexpr double kTurn_rad = 0.1;
 
 bool runs_along(const Reflector& longer, const Reflector& shorter, const MapConfig& config) {
   const double begin = longer.begin_m() - config.max_gap_m, end = longer.end_m() + config.max_gap_m;
+  const double half = 0.5 * shorter.length_m();
+  // However they bend, neither reaches farther from its origin than along itself. That tells those apart that are far
+  // from each other, nearly all in a large map; the rest is for the others.
+  const double farthest_m = std::max(-longer.begin_m(), longer.end_m()) +
+                            std::max(-shorter.begin_m(), shorter.end_m()) + 2.0 * half + config.max_gap_m +
+                            config.tolerance_m + kMostSlack_m;
+  if ((longer.curve.origin_m - shorter.curve.origin_m).squaredNorm() > farthest_m * farthest_m) return false;
   const auto apart = [&](double arc) {
     const Eigen::Vector2d p = shorter.curve.at(arc);
     const double there = longer.curve.arc(p);
@@ -25,10 +32,10 @@ bool runs_along(const Reflector& longer, const Reflector& shorter, const MapConf
   // The middle first: it tells nearly all pairs apart.
   const double middle = 0.5 * (shorter.begin_m() + shorter.end_m());
   const Eigen::Vector2d there = shorter.curve.at(middle);
-  const double half = 0.5 * shorter.length_m();
   const double arc = longer.curve.arc(there);
   if (arc + half < begin || arc - half > end) return false;
-  if (apart(middle) > config.tolerance_m + 0.05 * half) return false;
+  const double apart_there = config.tolerance_m + 0.05 * half;
+  if (std::abs(longer.curve.distance(there)) > apart_there + kMostSlack_m || apart(middle) > apart_there) return false;
   const double first = longer.curve.arc(shorter.curve.at(shorter.begin_m()));
   const double last = longer.curve.arc(shorter.curve.at(shorter.end_m()));
   if (std::max(first, last) < begin || std::min(first, last) > end) return false;

@@ -11,9 +11,9 @@ void ReflectorIndex::clear() {
   entries_.clear();
 }
 
-void ReflectorIndex::enter(const Eigen::Vector2d& position_m, std::uint32_t reflector) {
+void ReflectorIndex::enter(geometry::GridCell cell, std::uint32_t reflector) {
   if (entries_.size() == kCapacity) return;
-  std::uint32_t& first = cells_.at(geometry::grid_cell(position_m.x(), position_m.y(), kCell_m), kNone);
+  std::uint32_t& first = cells_.at(cell, kNone);
   // A cell's entries of one reflector follow each other.
   if (first != kNone && entries_[first].reflector == reflector) return;
   entries_.push_back({reflector, first});
@@ -27,12 +27,21 @@ void ReflectorIndex::build(std::span<const Reflector> reflectors, double beyond_
   static_assert(2.0 * kHalf_m < kCell_m && kBeside_m * kBeside_m + 0.25 * kStep_m * kStep_m <= kHalf_m * kHalf_m);
   for (std::uint32_t i = 0; i < reflectors.size(); ++i) {
     const Reflector& r = reflectors[i];
-    const double end = r.end_m() + beyond_m;
-    for (double arc = r.begin_m() - beyond_m; arc < end + kStep_m; arc += kStep_m) {
+    const double begin = r.begin_m() - beyond_m, end = r.end_m() + beyond_m;
+    geometry::GridCell low_before{}, high_before{};
+    for (double arc = begin; arc < end + kStep_m; arc += kStep_m) {
       const Eigen::Vector2d p = r.curve.at(arc);
-      for (const double x : {-kHalf_m, kHalf_m}) {
-        for (const double y : {-kHalf_m, kHalf_m}) enter(p + Eigen::Vector2d(x, y), i);
-      }
+      const geometry::GridCell low = geometry::grid_cell(p.x() - kHalf_m, p.y() - kHalf_m, kCell_m);
+      const geometry::GridCell high = geometry::grid_cell(p.x() + kHalf_m, p.y() + kHalf_m, kCell_m);
+      // Along a road most steps stay in the cells of the one before.
+      if (arc > begin && low == low_before && high == high_before) continue;
+      low_before = low;
+      high_before = high;
+      enter(low, i);
+      if (high.row != low.row) enter({low.column, high.row}, i);
+      if (high.column == low.column) continue;
+      enter({high.column, low.row}, i);
+      if (high.row != low.row) enter(high, i);
     }
   }
 }

@@ -38,7 +38,7 @@ class ReflectorIndex {
   struct Entry {
     std::uint32_t reflector, next;
   };
-  void enter(const Eigen::Vector2d& position_m, std::uint32_t reflector);
+  void enter(geometry::GridCell cell, std::uint32_t reflector);
   geometry::CellTable cells_;
   std::vector<Entry> entries_;
 };
