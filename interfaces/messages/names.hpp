@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/service_status.hpp"
 #include "interfaces/messages/track_list.hpp"
@@ -59,6 +60,10 @@ template <typename Enum, std::size_t N>
 [[nodiscard]] constexpr std::string_view name_of(MovementState movement) {
   constexpr std::array<std::string_view, 4> kNames = {"unknown", "moving", "stationary", "stopped"};
   return detail::word_of(kNames, movement);
+}
+[[nodiscard]] constexpr std::string_view name_of(Provenance provenance) {
+  constexpr std::array<std::string_view, 6> kNames = {"unknown", "moving", "stationary", "type 1", "type 2", "clutter"};
+  return detail::word_of(kNames, provenance);
 }
 [[nodiscard]] constexpr std::string_view name_of(Fault fault) {
   constexpr std::array<std::string_view, kNumberOfFaults> kNames = {"input lost",

@@ -7,26 +7,11 @@
 #include <Eigen/Core>
 
 #include "tests/simulator/drive.hpp"
+#include "tests/simulator/judge/object.hpp"
 
 namespace boresight::closed_loop {
 
-/// In the vehicle's frame and axes; velocity over ground.
-struct Object {
-  std::uint32_t id;
-  Eigen::Vector2d position_m;  ///< centre
-  Eigen::Vector2d velocity_mps;
-  double heading_rad;
-  double length_m, width_m;
-
-  /// Distance of a point from the object's box, 0 inside.
-  [[nodiscard]] double distance_m(const Eigen::Vector2d& point) const {
-    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
-    const Eigen::Vector2d d = point - position_m;
-    const Eigen::Vector2d beyond(std::abs(c * d.x() + s * d.y()) - 0.5 * length_m,
-                                 std::abs(-s * d.x() + c * d.y()) - 0.5 * width_m);
-    return beyond.cwiseMax(0.0).norm();
-  }
-};
+using judge::Object;
 
 [[nodiscard]] inline std::vector<Object> objects_at(const simulator::Drive& drive, double t_s) {
   const simulator::EgoState ego = drive.ego(t_s);

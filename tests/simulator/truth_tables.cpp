@@ -7,6 +7,7 @@
 #include <string>
 
 #include "interfaces/messages/service_status.hpp"
+#include "tests/simulator/judge/truth_files.hpp"
 #include "tests/simulator/radar/blockage.hpp"
 #include "tests/simulator/radar/false_echoes.hpp"
 #include "tests/simulator/radar/mounting.hpp"
@@ -17,24 +18,6 @@ namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kObjectReach_m = 150.0;
-
-const char* name_of(Provenance provenance) {
-  switch (provenance) {
-    case Provenance::kMoving:
-      return "moving";
-    case Provenance::kStationary:
-      return "stationary";
-    case Provenance::kGhostType1:
-      return "ghost_type_1";
-    case Provenance::kGhostType2:
-      return "ghost_type_2";
-    case Provenance::kClutter:
-      return "clutter";
-    case Provenance::kUnknown:
-      return "unknown";
-  }
-  return "unknown";
-}
 
 const char* name_of(BodyKind kind) {
   switch (kind) {
@@ -156,8 +139,8 @@ void TruthTables::add_detections(const Event& event) {
   for (std::size_t i = 0; i < event.truth->size(); ++i) {
     const DetectionTruth& truth = (*event.truth)[i];
     std::fprintf(detections_.get(), "%.6f,%u,%llu,%zu,%s,%u,%u,%u,%s\n", event.t_s, event.scan->header.source_id,
-                 scan_number(event), i, name_of(truth.provenance), truth.object_id, truth.bounces, truth.mirror_body,
-                 name_of(truth).c_str());
+                 scan_number(event), i, judge::table_word(truth.provenance).data(), truth.object_id, truth.bounces,
+                 truth.mirror_body, name_of(truth).c_str());
   }
 }
 

@@ -31,7 +31,7 @@ void judge_counts(const std::vector<Outcome>& outcomes, const std::string& how, 
   const auto judge = [&](Provenance truth, double published) {
     const double count = median_count(outcomes, truth);
     const double left_out = 0.01 * percent_left_out(outcomes, truth).median * count;
-    report.within("scene", std::string("detections: ") + name_of(truth), count, 0.8 * published, 1.2 * published, "",
+    report.within("scene", "detections: " + std::string(name_of(truth)), count, 0.8 * published, 1.2 * published, "",
                   how + "; Report B: " + fixed(published, 0) + " ± 20 %; of these the corrector leaves out " +
                       fixed(left_out, 0));
   };

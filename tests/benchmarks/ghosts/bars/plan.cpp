@@ -49,7 +49,8 @@ class PlanView {
         if (o.id == truth.object_id) world += (kEnd_s - observed.event.t_s) * now.axes_to_world(o.velocity_mps);
       }
       const Eigen::Vector2d at = end.from_world(world);
-      points_[name_of(truth.provenance)][name_of(scan.provenance[i])].emplace_back(at.x(), at.y());
+      points_[std::string(name_of(truth.provenance))][std::string(name_of(scan.provenance[i]))].emplace_back(at.x(),
+                                                                                                             at.y());
     }
     reflectors_.clear();
     for (std::size_t k = 0; k < scan.number_of_reflector_segments; ++k) {

@@ -5,9 +5,14 @@
 #include <map>
 #include <vector>
 
-#include "tests/benchmarks/ghosts/common/matching.hpp"
+#include "tests/closed_loop/objects.hpp"
+#include "tests/simulator/judge/matching.hpp"
 
 namespace boresight::bench {
+
+using judge::kNone;
+using judge::match;
+using judge::Matching;
 
 /// In how many of the scans of a second each object had a confirmed track.
 class TrackedObjects {

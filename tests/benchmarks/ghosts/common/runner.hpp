@@ -6,16 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "interfaces/messages/names.hpp"
 #include "tests/benchmarks/common/options.hpp"
-#include "tests/benchmarks/ghosts/common/confusion.hpp"
-#include "tests/benchmarks/ghosts/common/false_tracks.hpp"
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/reliability.hpp"
 #include "tests/closed_loop/objects.hpp"
 #include "tests/simulator/drive.hpp"
+#include "tests/simulator/judge/confusion.hpp"
+#include "tests/simulator/judge/false_tracks.hpp"
 
 namespace boresight::bench {
+
+using judge::Confusion;
+using judge::FalseTracks;
+using judge::GhostTrack;
+using judge::kTruths;
 
 /// Type-1 ghosts farther than kApart_m from the box of their object. The others lie where a part of the object itself
 /// could: no test of places can tell them.

@@ -7,7 +7,8 @@ Table confusion_table(const std::string& name, const std::string& caption, const
   for (const Provenance label : kTruths) table.header.emplace_back(name_of(label));
   table.header.insert(table.header.end(), {"not told", "ghost, either", "left out"});
   for (const Provenance truth : kTruths) {
-    std::vector<std::string> row = {name_of(truth) + (" (" + fixed(median_count(outcomes, truth), 0) + ")")};
+    std::vector<std::string> row = {std::string(name_of(truth)) +
+                                    (" (" + fixed(median_count(outcomes, truth), 0) + ")")};
     for (const Provenance label : kTruths) row.push_back(fixed(percent_told(outcomes, truth, label).median, 2));
     row.push_back(fixed(percent_told(outcomes, truth, Provenance::kUnknown).median, 2));
     row.push_back(fixed(percent_told_ghost(outcomes, truth).median, 2));

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <ostream>
 
-#include "tests/benchmarks/ghosts/common/matching.hpp"
+#include "tests/simulator/judge/matching.hpp"
 
 namespace boresight::bench {
 
@@ -48,11 +48,11 @@ const char* csv_header() {
 void write_csv(const Explained& row, std::ostream& out) {
   char text[320];
   std::snprintf(text, sizeof text, "%llu,%.4f,%u,%s,%u,%u,%u,%s,%d,%d,%.4f,%.2f,%.2f,%.2f,%.2f,%.2f,%.1f,%.2f,%s\n",
-                static_cast<unsigned long long>(row.seed), row.t_s, row.radar, name_of(row.truth.provenance),
-                row.truth.object_id, row.truth.bounces, row.truth.mirror_body, name_of(row.label), row.rejected ? 1 : 0,
-                row.found_moving ? 1 : 0, row.ghost_probability, row.x_vehicle_m, row.y_vehicle_m, row.range_m,
-                row.azimuth_vehicle_rad * 180.0 / std::numbers::pi, row.range_rate_over_ground_mps, row.rcs_dbsm,
-                row.object_distance_m, name_of(row.object_track));
+                static_cast<unsigned long long>(row.seed), row.t_s, row.radar, name_of(row.truth.provenance).data(),
+                row.truth.object_id, row.truth.bounces, row.truth.mirror_body, name_of(row.label).data(),
+                row.rejected ? 1 : 0, row.found_moving ? 1 : 0, row.ghost_probability, row.x_vehicle_m, row.y_vehicle_m,
+                row.range_m, row.azimuth_vehicle_rad * 180.0 / std::numbers::pi, row.range_rate_over_ground_mps,
+                row.rcs_dbsm, row.object_distance_m, name_of(row.object_track));
   out << text;
 }
 
@@ -110,8 +110,8 @@ void Summary::print(std::ostream& out) const {
   out << "    farther\n";
   for (const auto& [key, bins] : counts_) {
     const auto& [truth, label, is_tracked] = key;
-    std::snprintf(cell, sizeof cell, "%-11s %-11s %-8s %9llu", bench::name_of(truth), bench::name_of(label),
-                  is_tracked ? "yes" : "no",
+    std::snprintf(cell, sizeof cell, "%-11s %-11s %-8s %9llu", boresight::name_of(truth).data(),
+                  boresight::name_of(label).data(), is_tracked ? "yes" : "no",
                   static_cast<unsigned long long>(std::accumulate(bins.begin(), bins.end(), std::uint64_t{0})));
     out << cell;
     for (const std::uint64_t count : bins) {

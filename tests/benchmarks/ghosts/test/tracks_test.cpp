@@ -1,9 +1,8 @@
-// What counts as a ghost's track and as a lost object.
+// What counts as a lost object.
 #include <memory>
 
 #include <gtest/gtest.h>
 
-#include "tests/benchmarks/ghosts/common/false_tracks.hpp"
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
 
 namespace boresight::bench {
@@ -11,93 +10,23 @@ namespace {
 
 using closed_loop::Object;
 
-class Tracks : public testing::Test {
- protected:
-  static Object car(std::uint32_t id, double x, double y) { return {id, {x, y}, {0.0, 0.0}, 0.0, 4.5, 1.8}; }
-  void add_track(std::uint32_t id, float x, float y) {
-    Track& track = tracks_->tracks[tracks_->number_of_tracks++];
-    track = {};
-    track.tracking_id = id;
-    track.status = TrackStatus::kConfirmed;
-    track.position_vehicle_m = {x, y, 0.0f};
-    track.length_m = 4.0f;
-    track.width_m = 1.8f;
-    track.number_of_detections = 1;
-    tracks_->number_of_confirmed_tracks = tracks_->number_of_tracks;
-  }
-  void add_detection(float x, float y, Provenance label, Provenance truth) {
-    const std::size_t i = scan_->number_of_valid_detections++;
-    scan_->x_vehicle_m[i] = x;
-    scan_->y_vehicle_m[i] = y;
-    scan_->provenance[i] = label;
-    truth_.emplace_back().provenance = truth;
-  }
-  [[nodiscard]] Matching matched() const { return match(*tracks_, tracks_->number_of_confirmed_tracks, objects_); }
-  void add_scans(int count) {
-    for (int i = 0; i < count; ++i) false_tracks_.add(0.1 * i, *scan_, truth_, *tracks_, matched());
-  }
-  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
-  std::unique_ptr<ClassifiedScan> scan_ = std::make_unique<ClassifiedScan>();
-  std::vector<simulator::DetectionTruth> truth_;
-  std::vector<Object> objects_;
-  FalseTracks false_tracks_;
-};
-
-TEST_F(Tracks, BelongToTheNearestObjectAndToOneOnly) {
-  objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6), car(3, 60.0, 0.0)};
-  add_track(7, 20.5f, 3.0f);
-  add_track(8, 57.0f, 0.3f);
-  add_track(9, 64.0f, 0.0f);
-  const Matching m = matched();
-  // The car beside it has no track because another's is near.
-  EXPECT_EQ(m.track_of_object, (std::vector<std::size_t>{kNone, 0, 1}));
-  EXPECT_EQ(m.object_of_track, (std::vector<std::size_t>{1, 2, kNone}));
-}
-
-TEST_F(Tracks, LiveOnGhostsEvenCloseToTheirObject) {
-  objects_ = {car(1, 20.0, 0.0)};
-  add_track(7, 20.0f, 0.0f);
-  add_track(8, 25.2f, 0.0f);
-  add_detection(18.0f, 0.0f, Provenance::kMoving, Provenance::kMoving);
-  add_detection(25.0f, 0.0f, Provenance::kMoving, Provenance::kGhostType1);
-  add_detection(26.0f, 0.0f, Provenance::kMoving, Provenance::kGhostType1);
-  add_detection(26.0f, 0.5f, Provenance::kMoving, Provenance::kMoving);
-  add_scans(5);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks().size(), 0u);
-  add_scans(1);
-  ASSERT_EQ(false_tracks_.long_ghost_tracks().size(), 1u);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks().front().tracking_id, 8u);
-  EXPECT_EQ(false_tracks_.longest_ghost_track_scans(), 6u);
-  EXPECT_EQ(false_tracks_.long_other_tracks(), 0u);
-}
-
-TEST_F(Tracks, OfGhostsThatWereToldAreNotMadeOfThem) {
-  add_track(8, 25.0f, 0.0f);
-  add_detection(25.0f, 0.0f, Provenance::kGhostType2, Provenance::kGhostType2);
-  add_scans(10);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks().size(), 0u);
-  add_detection(25.0f, 0.5f, Provenance::kMoving, Provenance::kClutter);
-  add_scans(6);
-  EXPECT_EQ(false_tracks_.long_ghost_tracks().size(), 0u);
-  EXPECT_EQ(false_tracks_.long_other_tracks(), 1u);
-}
-
-TEST_F(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
-  objects_ = {car(1, 20.0, 0.0), car(2, 60.0, 0.0)};
-  TrackedObjects perfect, filter;
+TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
+  const std::vector<Object> objects = {{1, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8},
+                                       {2, {60.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
+  // Never the second car, and the first in `share` of ten scans.
+  const auto second_with = [&objects](int share) {
+    const auto tracks = std::make_unique<TrackList>();
+    tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
+    TrackedObjects tracked;
+    for (int scan = 0; scan < 10; ++scan) tracked.add(match(*tracks, scan < share ? 1 : 0, objects), objects);
+    return tracked;
+  };
   LostObjects lost;
-  for (int scan = 0; scan < 10; ++scan) {
-    tracks_->number_of_tracks = tracks_->number_of_confirmed_tracks = 0;
-    if (scan < 4) add_track(7, 20.0f, 0.0f);
-    filter.add(matched(), objects_);
-    if (scan >= 4) add_track(7, 20.0f, 0.0f);
-    perfect.add(matched(), objects_);
-  }
-  lost.add_second(1.0, perfect, filter);
+  lost.add_second(1.0, second_with(10), second_with(4));
   // The second car has no track with perfect labels either.
   EXPECT_EQ(lost.object_seconds, 1u);
   EXPECT_EQ(lost.lost.size(), 1u);
-  lost.add_second(1.0, perfect, perfect);
+  lost.add_second(1.0, second_with(10), second_with(10));
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
 }

@@ -1,11 +1,11 @@
-#include "tests/benchmarks/ghosts/common/matching.hpp"
+#include "tests/simulator/judge/matching.hpp"
 
 #include <algorithm>
 #include <tuple>
 
-namespace boresight::bench {
+namespace boresight::judge {
 
-Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<closed_loop::Object>& objects) {
+Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<Object>& objects) {
   Matching out{std::vector<std::size_t>(objects.size(), kNone), std::vector<std::size_t>(number_of_tracks, kNone)};
   // A long vehicle's track may lie at either of its ends, so the box comes first; inside of it the middle decides.
   std::vector<std::tuple<double, double, std::size_t, std::size_t>> pairs;
@@ -25,4 +25,4 @@ Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std:
   return out;
 }
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge

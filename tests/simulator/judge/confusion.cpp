@@ -1,27 +1,9 @@
-#include "tests/benchmarks/ghosts/common/confusion.hpp"
+#include "tests/simulator/judge/confusion.hpp"
 
 #include <limits>
 #include <numeric>
 
-namespace boresight::bench {
-
-const char* name_of(Provenance provenance) {
-  switch (provenance) {
-    case Provenance::kMoving:
-      return "moving";
-    case Provenance::kStationary:
-      return "stationary";
-    case Provenance::kGhostType1:
-      return "type 1";
-    case Provenance::kGhostType2:
-      return "type 2";
-    case Provenance::kClutter:
-      return "clutter";
-    case Provenance::kUnknown:
-      break;
-  }
-  return "unknown";
-}
+namespace boresight::judge {
 
 std::size_t Confusion::index(Provenance provenance) {
   const auto value = static_cast<std::size_t>(provenance);
@@ -47,4 +29,4 @@ double Confusion::percent(Provenance truth, Provenance label) const {
   return 100.0 * static_cast<double>(counts_[index(truth)][index(label)]) / static_cast<double>(all);
 }
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge

@@ -1,10 +1,10 @@
-#include "tests/benchmarks/ghosts/common/confusion.hpp"
+#include "tests/simulator/judge/confusion.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace boresight::bench {
+namespace boresight::judge {
 namespace {
 
 TEST(Confusion, CountsByTruthAndLeavesOutWhatTheCorrectorRejected) {
@@ -21,4 +21,4 @@ TEST(Confusion, CountsByTruthAndLeavesOutWhatTheCorrectorRejected) {
 }
 
 }  // namespace
-}  // namespace boresight::bench
+}  // namespace boresight::judge

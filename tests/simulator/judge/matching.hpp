@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 
 #include "interfaces/messages/track_list.hpp"
-#include "tests/closed_loop/objects.hpp"
+#include "tests/simulator/judge/object.hpp"
 
-namespace boresight::bench {
+namespace boresight::judge {
 
 /// Farther than this from an object's box a track cannot be the object's.
 inline constexpr double kNear_m = 3.0;
@@ -22,11 +22,10 @@ struct Matching {
 
 /// The first `number_of_tracks` of the list (the confirmed ones come first) with the objects, nearest pairs first: one
 /// vehicle's track is not its neighbour's as well, and a second track beside a vehicle is nobody's.
-[[nodiscard]] Matching match(const TrackList& tracks, std::size_t number_of_tracks,
-                             const std::vector<closed_loop::Object>& objects);
+[[nodiscard]] Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<Object>& objects);
 
 [[nodiscard]] inline Eigen::Vector2d place_of(const Track& track) {
   return {track.position_vehicle_m[0], track.position_vehicle_m[1]};
 }
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge

@@ -7,10 +7,10 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
-#include "tests/benchmarks/ghosts/common/matching.hpp"
 #include "tests/simulator/detection_truth.hpp"
+#include "tests/simulator/judge/matching.hpp"
 
-namespace boresight::bench {
+namespace boresight::judge {
 
 /// A confirmed track that lived on ghosts, where and when it did so last.
 struct GhostTrack {
@@ -41,4 +41,4 @@ class FalseTracks {
   std::map<std::uint32_t, std::size_t> on_others_;  // scans
 };
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge

@@ -7,12 +7,11 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 
-namespace boresight::bench {
+namespace boresight::judge {
 
 inline constexpr std::array<Provenance, 5> kTruths = {Provenance::kMoving, Provenance::kStationary,
                                                       Provenance::kGhostType1, Provenance::kGhostType2,
                                                       Provenance::kClutter};
-[[nodiscard]] const char* name_of(Provenance provenance);
 
 class Confusion {
  public:
@@ -21,6 +20,9 @@ class Confusion {
 
   /// That were not rejected.
   [[nodiscard]] std::uint64_t count(Provenance truth) const;
+  [[nodiscard]] std::uint64_t count(Provenance truth, Provenance label) const {
+    return counts_[index(truth)][index(label)];
+  }
   [[nodiscard]] std::uint64_t rejected(Provenance truth) const { return rejected_[index(truth)]; }
   /// Percent of those of one truth that were not rejected; NaN if there are none.
   [[nodiscard]] double percent(Provenance truth, Provenance label) const;
@@ -36,4 +38,4 @@ class Confusion {
   std::array<std::uint64_t, kSize> rejected_{};
 };
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge

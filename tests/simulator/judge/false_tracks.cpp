@@ -1,16 +1,15 @@
-#include "tests/benchmarks/ghosts/common/false_tracks.hpp"
+#include "tests/simulator/judge/false_tracks.hpp"
 
 #include <algorithm>
 
-namespace boresight::bench {
+namespace boresight::judge {
 
 void FalseTracks::add(double t_s, const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
                       const TrackList& tracks, const Matching& matching) {
   for (std::size_t k = 0; k < matching.object_of_track.size(); ++k) {
     const Track& track = tracks.tracks[k];
     if (matching.object_of_track[k] != kNone || track.number_of_detections == 0) continue;
-    const closed_loop::Object box{track.tracking_id, place_of(track), {0.0, 0.0},
-                                  track.heading_rad, track.length_m,  track.width_m};
+    const Object box{track.tracking_id, place_of(track), {0.0, 0.0}, track.heading_rad, track.length_m, track.width_m};
     std::size_t ghosts = 0, moving = 0, others = 0;
     for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
       // What the tracker never got made no track.
@@ -52,4 +51,4 @@ std::size_t FalseTracks::long_other_tracks() const {
                                                 [](const auto& entry) { return entry.second > kLong_scans; }));
 }
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge
