@@ -14,6 +14,7 @@
 #include "deploy/roudi/pools.hpp"
 #include "deploy/supervisor/domain.hpp"
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/detection_truths.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
 #include "services/common/runtime/clock.hpp"
@@ -101,7 +102,12 @@ Drive recorded(const DemoOptions& options) {
   return drive;
 }
 
-supervisor::ProcessSpec monitor_of(const DemoOptions& options, const fs::path& record) {
+/// What the monitor writes of the run.
+struct Records {
+  fs::path snapshots, scans;
+};
+
+supervisor::ProcessSpec monitor_of(const DemoOptions& options, const Records& records) {
   supervisor::ProcessSpec spec;
   spec.name = "monitor";
   spec.command.arguments = {own_program().string(),
@@ -111,7 +117,9 @@ supervisor::ProcessSpec monitor_of(const DemoOptions& options, const fs::path& r
                             "--vehicle",
                             options.configuration.vehicle_name,
                             "--record",
-                            record.string()};
+                            records.snapshots.string(),
+                            "--record-scans",
+                            records.scans.string()};
   spec.role = supervisor::Role::kSpectator;
   spec.shares_terminal = true;
   return spec;
@@ -146,7 +154,7 @@ void throw_if_refused(const supervisor::Supervisor& domain, const fs::path& logs
 
 /// Plays the drive through a fresh domain; returns the supervisor's events. Whatever happens, the domain is gone after.
 std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& drive, const fs::path& logs,
-                                    const fs::path& record) {
+                                    const Records& records) {
   const auto segments = roudi::single_segment();
   if (const auto shortage = supervisor::shared_memory_shortage(roudi::total_bytes(segments), "/dev/shm")) {
     throw std::runtime_error(*shortage);
@@ -162,7 +170,7 @@ std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& dri
   // For the estimator's key figures.
   if (!drive.truth_file.empty()) domain_options.environment.emplace_back("BORESIGHT_TRUTH", drive.truth_file.string());
   supervisor::DomainConfig config = supervisor::domain_of_catalogue(domain_options, pools);
-  config.services.push_back(monitor_of(options, record));
+  config.services.push_back(monitor_of(options, records));
 
   std::cout << "starting RouDi and " << catalogue::kNumberOfSupervisedServices << " services; their output is in "
             << logs.string() << std::endl;
@@ -232,20 +240,24 @@ int run(DemoOptions options) {
   options.configuration.directory = fs::absolute(options.configuration.directory);
   options.output = fs::absolute(options.output);
   const fs::path logs = options.output / "logs";
-  const fs::path record = options.output / "record.txt";
+  const Records records{options.output / "record.txt", options.output / "scans.txt"};
   fs::create_directories(logs);
   remove_earlier_logs(logs);
-  fs::remove(record);
+  fs::remove(records.snapshots);
+  fs::remove(records.scans);
 
   const Drive drive = simulated ? simulate(options, input.vehicle, logs) : recorded(options);
-  const std::vector<supervisor::Event> events = play(options, drive, logs, record);
+  const std::vector<supervisor::Event> events = play(options, drive, logs, records);
 
-  std::ifstream recorded_snapshots(record);
+  std::ifstream recorded_snapshots(records.snapshots), recorded_scans(records.scans);
   input.title = drive.title + ", vehicle " + input.vehicle.name;
   input.snapshots = monitor::read_record(recorded_snapshots);
   input.truth = drive.truth;
   input.events = event_lines(events);
-  input.more_checks = {check_of(events)};
+  const auto truths = drive.truth_file.empty() ? std::nullopt : detection_truths_beside(drive.truth_file);
+  input.ghosts = report::find_ghosts(recorded_scans, truths ? &*truths : nullptr);
+  input.more_checks = report::ghost_checks(input.ghosts);
+  input.more_checks.push_back(check_of(events));
   report::Summary summary = report::summarise(input.snapshots, input.truth);
   summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
   const fs::path page = options.output / "report.html";

@@ -15,6 +15,7 @@
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
+#include "services/boresight/monitor/scan_record.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/log.hpp"
@@ -34,6 +35,7 @@ struct MonitorOptions {
   runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
   bool json = false;
   std::string record_file;
+  std::string scans_file;
   double duration_s = 0.0;
 };
 
@@ -61,11 +63,14 @@ int run(const MonitorOptions& options) {
   runtime::log::initialise("boresight-monitor");
   const VehicleConfig vehicle = options.configuration.vehicle();
   monitor::Accumulator accumulator(vehicle);
-  std::ofstream record;
-  if (!options.record_file.empty()) {
-    record.open(options.record_file, std::ios::app);
-    if (!record) throw std::runtime_error("cannot write " + options.record_file);
-  }
+  std::ofstream record, scans;
+  const auto open = [](std::ofstream& file, const std::string& path) {
+    if (path.empty()) return;
+    file.open(path, std::ios::app);
+    if (!file) throw std::runtime_error("cannot write " + path);
+  };
+  open(record, options.record_file);
+  open(scans, options.scans_file);
 
   runtime::Node node(catalogue::Service::kMonitor, "-" + std::to_string(getpid()));
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { accumulator.observe(m); });
@@ -73,8 +78,14 @@ int run(const MonitorOptions& options) {
   node.on<ServiceStatus>([&](const ServiceStatus& m) { accumulator.observe(m); });
   node.on<EgoMotion>([&](const EgoMotion& m) { accumulator.observe(m); });
   node.on<RadarScan>([&](const RadarScan& m) { accumulator.observe(m, runtime::monotonic_now_ns()); });
-  node.on<ClassifiedScan>([&](const ClassifiedScan& m) { accumulator.observe(m); });
-  node.on<TrackList>([&](const TrackList& m) { accumulator.observe(m); });
+  node.on<ClassifiedScan>([&](const ClassifiedScan& m) {
+    accumulator.observe(m);
+    if (scans.is_open()) monitor::write_scan(scans, m);
+  });
+  node.on<TrackList>([&](const TrackList& m) {
+    accumulator.observe(m);
+    if (scans.is_open()) monitor::write_tracks(scans, m);
+  });
 
   const std::int64_t begin_ns = runtime::monotonic_now_ns();
   const auto elapsed_s = [begin_ns] { return static_cast<double>(runtime::monotonic_now_ns() - begin_ns) * 1e-9; };
@@ -118,6 +129,10 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
       ->envname("BORESIGHT_VEHICLE");
   command->add_flag("--json", options->json, "one line of JSON a second instead of a picture");
   command->add_option("--record", options->record_file, "append what is seen to this file, for `boresight report`");
+  command->add_option(
+      "--record-scans", options->scans_file,
+      "append every classified scan and track list to this file, for `boresight report --scans`; some 10 "
+      "MB a minute");
   command->add_option("--duration", options->duration_s, "seconds after which to stop; 0 is never")
       ->check(CLI::NonNegativeNumber);
   command->callback([options, &exit_code] {

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/detection_truths.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
 #include "services/common/runtime/options.hpp"
@@ -19,6 +20,7 @@ struct ReportOptions {
   runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
   std::string record;
   std::string truth;
+  std::string scans;
   std::string output = "report.html";
 };
 
@@ -34,10 +36,18 @@ int run(const ReportOptions& options) {
     input.truth = report::truth_of(read_drive_truth(truth), input.vehicle);
     if (!input.truth.known()) throw std::runtime_error("no truth in " + options.truth);
   }
+  if (!options.scans.empty()) {
+    std::ifstream scans(options.scans);
+    if (!scans) throw std::runtime_error("cannot read " + options.scans);
+    const auto truths = options.truth.empty() ? std::nullopt : detection_truths_beside(options.truth);
+    input.ghosts = report::find_ghosts(scans, truths ? &*truths : nullptr);
+    input.more_checks = report::ghost_checks(input.ghosts);
+  }
   std::ofstream output(options.output);
   output << report::render_html(input);
   if (!output.flush()) throw std::runtime_error("cannot write " + options.output);
-  const report::Summary summary = report::summarise(input.snapshots, input.truth);
+  report::Summary summary = report::summarise(input.snapshots, input.truth);
+  summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
   std::cout << report::render_summary(summary) << "\nreport: " << options.output << '\n';
   return summary.all_passed() ? 0 : 1;
 }
@@ -53,7 +63,9 @@ void add_report_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--vehicle", options->configuration.vehicle_name, "vehicle file to use, without .toml")
       ->envname("BORESIGHT_VEHICLE");
-  command->add_option("--truth", options->truth, "truth.csv of a simulated drive");
+  command->add_option("--truth", options->truth,
+                      "truth.csv of a simulated drive; the tables beside it are the truth of scans and tracks");
+  command->add_option("--scans", options->scans, "what `boresight monitor --record-scans` has recorded beside it");
   command->add_option("--out", options->output, "page to write")->capture_default_str();
   command->callback([options, &exit_code] {
     try {

@@ -103,10 +103,18 @@ void Accumulator::observe(const ClassifiedScan& scan) {
   RadarSnapshot& seen = radar(scan.header.source_id).seen;
   seen.moving = 0;
   seen.ghosts = 0;
+  ++seen.labels.scans;
+  if ((scan.flags & (pipeline_flag::kNoTracks | pipeline_flag::kTracksStale)) != 0) ++seen.labels.scans_without_tracks;
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
   for (std::size_t i = 0; i < count; ++i) {
     if (scan.provenance[i] == Provenance::kMoving) ++seen.moving;
     if (scan.provenance[i] == Provenance::kGhostType1 || scan.provenance[i] == Provenance::kGhostType2) ++seen.ghosts;
+    const auto label = static_cast<std::size_t>(scan.provenance[i]);
+    if ((scan.detection_flags[i] & corrected_flag::kRejected) != 0) {
+      ++seen.labels.left_out;
+    } else {
+      ++seen.labels.told[label < seen.labels.told.size() ? label : 0];
+    }
   }
 }
 

@@ -75,6 +75,11 @@ RadarSnapshot read_radar(Words& words) {
   d.yaw_drift_radpmin = words.number();
   d.residual_rmse_mps = words.number();
   d.nees = words.number();
+  if (!words.more()) return r;  // the same
+  for (std::uint64_t& told : r.labels.told) told = words.count();
+  r.labels.left_out = words.count();
+  r.labels.scans = words.count();
+  r.labels.scans_without_tracks = words.count();
   return r;
 }
 
@@ -137,6 +142,15 @@ std::string details_json(const AlignmentDetails& d) {
                      json_number(d.nees));
 }
 
+/// Sums since the monitor began.
+std::string labels_json(const LabelCounts& labels) {
+  const auto& told = labels.told;
+  return fmt::format(R"("told":{{"unknown":{},"moving":{},"stationary":{},"ghost_type_1":{},"ghost_type_2":{},)"
+                     R"("clutter":{},"left_out":{}}},"classified_scans":{},"classified_without_tracks":{})",
+                     told[0], told[1], told[2], told[3], told[4], told[5], labels.left_out, labels.scans,
+                     labels.scans_without_tracks);
+}
+
 }  // namespace
 
 void write_record(std::ostream& output, const Snapshot& snapshot) {
@@ -153,7 +167,9 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
     const AlignmentDetails& d = r.details;
     for (const AngleEstimate& angle : {d.yaw, d.pitch, d.roll, d.yaw_rate_bias, d.slip}) write_angle(output, angle);
     output << ' ' << d.knocks << ' ' << d.yaw_seconds_to_95_percent << ' ' << d.pitch_seconds_to_95_percent << ' '
-           << d.yaw_drift_radpmin << ' ' << d.residual_rmse_mps << ' ' << d.nees << '\n';
+           << d.yaw_drift_radpmin << ' ' << d.residual_rmse_mps << ' ' << d.nees;
+    for (const std::uint64_t told : r.labels.told) output << ' ' << told;
+    output << ' ' << r.labels.left_out << ' ' << r.labels.scans << ' ' << r.labels.scans_without_tracks << '\n';
   }
   for (const TrackSnapshot& t : snapshot.tracks) {
     output << "track " << t.id << ' ' << (t.confirmed ? 1 : 0) << ' ' << static_cast<int>(t.movement) << ' ' << t.x_m
@@ -219,7 +235,7 @@ std::string to_json(const Snapshot& snapshot) {
         json_number(r.pitch.value_rad * kDegrees), json_number(r.pitch.std_rad * kDegrees), json_number(r.speed_scale),
         json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
         words_of_conditions(r.conditions));
-    text += details_json(r.details) + "}";
+    text += details_json(r.details) + "," + labels_json(r.labels) + "}";
     separator = ",";
   }
   text += R"(],"tracks":[)";

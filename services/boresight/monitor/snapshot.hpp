@@ -12,6 +12,7 @@
 
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/names.hpp"
 #include "interfaces/messages/service_status.hpp"
@@ -40,6 +41,22 @@ struct AlignmentDetails {
   double nees = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// What the ghost filter told detections to be, of all its scans that the onlooker received.
+struct LabelCounts {
+  std::array<std::uint64_t, 6> told{};  ///< by Provenance
+  std::uint64_t left_out = 0;           ///< by the corrector before; not among those told
+  std::uint64_t scans = 0;
+  std::uint64_t scans_without_tracks = 0;  ///< the filter had none of the tracker's, or too old ones
+
+  [[nodiscard]] std::uint64_t of(Provenance label) const { return told[static_cast<std::size_t>(label)]; }
+  /// Those left out included.
+  [[nodiscard]] std::uint64_t detections() const {
+    std::uint64_t sum = left_out;
+    for (const std::uint64_t count : told) sum += count;
+    return sum;
+  }
+};
+
 struct RadarSnapshot {
   std::uint32_t id = 0;
   std::string name;
@@ -62,6 +79,7 @@ struct RadarSnapshot {
   std::uint32_t conditions = 0;  ///< source_condition bits, as the sensor says; this and the next two by way of health
   std::uint64_t missed = 0;      ///< sent by the sensor, never complete at the gateway
   std::uint64_t suspect = 0;     ///< with an integrity verdict against them
+  LabelCounts labels;
 };
 
 struct TrackSnapshot {

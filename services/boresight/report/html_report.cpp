@@ -24,6 +24,9 @@ std::string render_html(const ReportInput& input) {
   text += render_truth(input, time, summary);
   text += render_alignment(input, time, summary);
   text += render_health(input, time, summary);
+  text += render_labels(input, time, summary);
+  text += render_confusion(input, time);
+  text += render_plan_views(input, time);
   text += render_tracks(input);
   text += render_latencies(summary);
   if (!input.events.empty()) {

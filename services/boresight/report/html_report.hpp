@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "services/boresight/monitor/snapshot.hpp"
+#include "services/boresight/report/ghost_findings.hpp"
 #include "services/boresight/report/summary.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -16,6 +17,7 @@ struct ReportInput {
   Truth truth;
   VehicleConfig vehicle;            ///< for mounting positions and fields of view in the top view
   std::vector<Check> more_checks;   ///< besides those of summarise()
+  GhostFindings ghosts;             ///< of the record of scans, where there is one
   std::vector<std::string> events;  ///< what the supervisor has to tell
 };
 

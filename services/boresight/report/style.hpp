@@ -5,10 +5,11 @@ namespace boresight::report {
 
 inline constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --paper: #ffffff; --ink: #1c2430; --faint: #5c6675; --line: #d9dee6; --card: #f6f8fa;
-  --blue: #2563b8; --band: #2563b826; --good: #2e8b57; --warn: #c98500; --bad: #c93a3a; --idle: #b9c1cc; --truth: #8a3fb0; }
+  --blue: #2563b8; --band: #2563b826; --good: #2e8b57; --warn: #c98500; --bad: #c93a3a; --idle: #b9c1cc; --truth: #8a3fb0;
+  --moving: #0072b2; --type1: #d98200; --type2: #b8478f; --clutter: #00805f; --still: #8b95a3; }
 @media (prefers-color-scheme: dark) { :root { --paper: #14181e; --ink: #e4e8ee; --faint: #9aa5b4; --line: #323a46;
   --card: #1b2129; --blue: #6ea8ff; --band: #6ea8ff2e; --good: #4cc38a; --warn: #e5a63a; --bad: #f26d6d; --idle: #4a5462;
-  --truth: #c893ee; } }
+  --truth: #c893ee; --moving: #56b4e9; --type1: #f0ae2e; --type2: #e58bc0; --clutter: #2fc79a; --still: #76818f; } }
 body { background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; margin: 0 auto;
   max-width: 1080px; padding: 28px 24px 60px; }
 h1 { font-size: 26px; margin: 0; } h2 { font-size: 18px; margin: 38px 0 6px; } p { margin: 4px 0 12px; }
@@ -35,6 +36,20 @@ td.n, th.n { text-align: right; }
 .chart .trail { stroke-width: 1.6; opacity: 0.75; } .chart .t0 { stroke: var(--blue); } .chart .t1 { stroke: var(--good); }
 .chart .t2 { stroke: var(--warn); } .chart .t3 { stroke: var(--truth); } .chart .t4 { stroke: var(--bad); }
 .chart .head { fill: var(--ink); }
+.chart .l1 { fill: var(--moving); } .chart .l3 { fill: var(--type1); } .chart .l4 { fill: var(--type2); }
+.chart .l5, .chart .l2, .chart .l0, .chart .lx { fill: none; stroke-width: 1.6; }
+.chart .l5 { stroke: var(--clutter); } .chart .l2 { stroke: var(--still); } .chart .l0 { stroke: var(--ink); }
+.chart .lx { stroke: var(--still); stroke-width: 1; }
+.chart .area5 { fill: var(--clutter); }
+.chart .wrong { fill: none; stroke: var(--ink); stroke-width: 1.3; }
+.chart .segment { stroke: var(--ink); stroke-width: 2.5; opacity: 0.55; }
+.chart .box { fill: none; stroke: var(--ink); stroke-width: 1.4; }
+.chart .truebox { fill: var(--band); stroke: var(--truth); stroke-width: 1.2; stroke-dasharray: 4 3; }
+.chart .sensor { fill: var(--bad); stroke: var(--paper); stroke-width: 1; }
+.chart.key { display: inline-block; width: 14px; height: 14px; margin: 0 5px 0 14px; vertical-align: -2px; }
+td.heat { background: color-mix(in srgb, var(--heat) calc(var(--share) * 55%), transparent); }
+td.right { --heat: var(--moving); } td.wrong { --heat: var(--type1); }
+td.heat { padding-right: 8px; }
 .legend { color: var(--faint); font-size: 13px; } .legend i { display: inline-block; width: 22px; height: 0; margin: 0 5px 4px 14px;
   border-top: 2px solid var(--blue); vertical-align: middle; } .legend i.truth { border-top: 2px dashed var(--truth); }
 .legend i.t1 { border-color: var(--good); }

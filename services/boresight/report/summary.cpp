@@ -33,9 +33,34 @@ class Counter {
 struct RadarSums {
   Counter scans;
   Counter lost;
+  std::array<Counter, 6> told;
+  Counter left_out, classified, without_tracks;
   double nees = 0.0;
   int known_nees = 0;
 };
+
+void see_labels(const monitor::LabelCounts& labels, RadarSums& sums) {
+  for (std::size_t i = 0; i < labels.told.size(); ++i) sums.told[i].see(labels.told[i]);
+  sums.left_out.see(labels.left_out);
+  sums.classified.see(labels.scans);
+  sums.without_tracks.see(labels.scans_without_tracks);
+}
+
+monitor::LabelCounts labels_of(const RadarSums& sums) {
+  monitor::LabelCounts labels;
+  for (std::size_t i = 0; i < labels.told.size(); ++i) labels.told[i] = sums.told[i].total();
+  labels.left_out = sums.left_out.total();
+  labels.scans = sums.classified.total();
+  labels.scans_without_tracks = sums.without_tracks.total();
+  return labels;
+}
+
+void add_labels(const monitor::LabelCounts& labels, monitor::LabelCounts& sum) {
+  for (std::size_t i = 0; i < labels.told.size(); ++i) sum.told[i] += labels.told[i];
+  sum.left_out += labels.left_out;
+  sum.scans += labels.scans;
+  sum.scans_without_tracks += labels.scans_without_tracks;
+}
 
 std::uint64_t number_of_scans(const Snapshot& snapshot) {
   std::uint64_t scans = 0;
@@ -101,6 +126,7 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
       RadarSums& sum = sums[seen.id];
       sum.scans.see(seen.scans);
       sum.lost.see(seen.lost);
+      see_labels(seen.labels, sum);
       if (goes_on && std::isfinite(seen.details.nees)) {
         sum.nees += seen.details.nees;
         ++sum.known_nees;
@@ -119,6 +145,8 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
     const RadarSums& sum = sums[id];
     radar.last.scans = sum.scans.total();
     radar.last.lost = sum.lost.total();
+    radar.last.labels = labels_of(sum);
+    add_labels(radar.last.labels, summary.labels);
     if (sum.known_nees > 0) radar.mean_nees = sum.nees / sum.known_nees;
     radar.true_speed_scale = truth.speed_scale;
     if (const auto found = truth.vehicle_rad.find(id); found != truth.vehicle_rad.end()) {
@@ -278,6 +306,24 @@ std::string verdict_line(const RadarSummary& radar) {
                      within ? "within" : "not surely beyond", tolerance_deg);
 }
 
+std::string labels_text(const monitor::LabelCounts& labels) {
+  const std::uint64_t all = labels.detections();
+  if (all == 0) return {};
+  std::string text;
+  const auto put = [&text, all](std::string_view what, std::uint64_t count) {
+    text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", what,
+                        100.0 * static_cast<double>(count) / static_cast<double>(all));
+  };
+  for (const Provenance label : {Provenance::kMoving, Provenance::kStationary, Provenance::kGhostType1,
+                                 Provenance::kGhostType2, Provenance::kClutter}) {
+    const bool ghost = label == Provenance::kGhostType1 || label == Provenance::kGhostType2;
+    put((ghost ? "ghost " : "") + std::string(name_of(label)), labels.of(label));
+  }
+  if (labels.of(Provenance::kUnknown) > 0) put("nothing", labels.of(Provenance::kUnknown));
+  if (labels.left_out > 0) put("left out by the corrector", labels.left_out);
+  return text;
+}
+
 std::string render_summary(const Summary& summary) {
   std::string text = fmt::format("\nSummary of {:.0f} s of driving\n\n", summary.duration_s);
   text += render_radars(summary) + "\n" + render_truth(summary);
@@ -287,6 +333,12 @@ std::string render_summary(const Summary& summary) {
     const auto& h = summary.latencies[i];
     text += fmt::format("  {:<14}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
                         h.percentile_us(0.99), h.max_us());
+  }
+  const std::string labels = labels_text(summary.labels);
+  if (!labels.empty()) {
+    text += fmt::format("\n  {} detections told to be: {}\n", summary.labels.detections(), labels);
+    text += fmt::format("  told without tracks: {} of {} scans\n", summary.labels.scans_without_tracks,
+                        summary.labels.scans);
   }
   text += "\n" + render_faults(summary) + "\n";
   for (const Check& check : summary.checks) {

@@ -42,6 +42,7 @@ struct Check {
 struct Summary {
   double duration_s = 0.0;  ///< from the first to the last scan seen
   std::vector<RadarSummary> radars;
+  monitor::LabelCounts labels;  ///< of all radars
   std::size_t most_confirmed_tracks = 0;
   std::size_t distinct_confirmed_tracks = 0;
   std::vector<monitor::ServiceSnapshot> services;
@@ -63,6 +64,8 @@ struct Summary {
 [[nodiscard]] std::string off_by(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad);
 /// Of k_v: "+1.2e-05 (0.3 σ)", or "-".
 [[nodiscard]] std::string speed_scale_off_by(const RadarSummary& radar);
+/// Shares of all detections: "moving 8.1 %, stationary 84.0 %, …"; empty where the ghost filter told nothing.
+[[nodiscard]] std::string labels_text(const monitor::LabelCounts& labels);
 /// For the terminal, several lines.
 [[nodiscard]] std::string render_summary(const Summary& summary);
 

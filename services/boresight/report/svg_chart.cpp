@@ -33,6 +33,27 @@ std::string tick_text(double value, const std::vector<double>& ticks) {
   return fmt::format("{:.{}f}", value, std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9))));
 }
 
+std::string path_of(SvgChart::Shape shape, double x, double y, double r) {
+  switch (shape) {
+    case SvgChart::Shape::kCircle:
+      return fmt::format("M{:.1f},{:.1f}a{r:.1f},{r:.1f} 0 1 0 {d:.1f},0a{r:.1f},{r:.1f} 0 1 0 -{d:.1f},0Z", x - r, y,
+                         fmt::arg("r", r), fmt::arg("d", 2.0 * r));
+    case SvgChart::Shape::kSquare:
+      return fmt::format("M{:.1f},{:.1f}h{d:.1f}v{d:.1f}h-{d:.1f}Z", x - r, y - r, fmt::arg("d", 2.0 * r));
+    case SvgChart::Shape::kTriangle:
+      return fmt::format("M{:.1f},{:.1f}L{:.1f},{:.1f}H{:.1f}Z", x, y - 1.2 * r, x + 1.1 * r, y + 0.9 * r, x - 1.1 * r);
+    case SvgChart::Shape::kDiamond:
+      return fmt::format("M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z", x, y - 1.3 * r, x + 1.3 * r, y, x,
+                         y + 1.3 * r, x - 1.3 * r, y);
+    case SvgChart::Shape::kCross:
+      return fmt::format("M{0:.1f},{1:.1f}L{2:.1f},{3:.1f}M{0:.1f},{3:.1f}L{2:.1f},{1:.1f}", x - r, y - r, x + r,
+                         y + r);
+    case SvgChart::Shape::kDash:
+      return fmt::format("M{:.1f},{:.1f}h{:.1f}", x - r, y, 2.0 * r);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string escape(const std::string& text) {
@@ -116,6 +137,28 @@ void SvgChart::dot(Point at, double radius_px, const std::string& css_class, con
   if (!is_finite(at)) return;
   body_ += fmt::format("<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"><title>{}</title></circle>\n",
                        css_class, px(at.x), py(at.y), radius_px, escape(tooltip));
+}
+
+void SvgChart::polygon(const std::vector<Point>& corners, const std::string& css_class, const std::string& tooltip) {
+  std::string path;
+  for (const Point& p : corners) {
+    if (!is_finite(p)) return;
+    path += fmt::format("{}{:.1f},{:.1f}", path.empty() ? "M" : "L", px(p.x), py(p.y));
+  }
+  body_ += fmt::format("<path class=\"{}\" d=\"{}Z\"><title>{}</title></path>\n", css_class, path, escape(tooltip));
+}
+
+void SvgChart::symbol(Point at, Shape shape, double radius_px, const std::string& css_class,
+                      const std::string& tooltip) {
+  if (!is_finite(at)) return;
+  body_ += fmt::format("<path class=\"{}\" d=\"{}\">", css_class, path_of(shape, px(at.x), py(at.y), radius_px));
+  body_ += (tooltip.empty() ? "" : "<title>" + escape(tooltip) + "</title>") + "</path>\n";
+}
+
+std::string SvgChart::key(Shape shape, const std::string& css_class) {
+  return fmt::format(
+      "<svg class=\"chart key\" viewBox=\"0 0 14 14\" aria-hidden=\"true\"><path class=\"{}\" d=\"{}\"/></svg>",
+      css_class, path_of(shape, 7.0, 7.0, 4.0));
 }
 
 void SvgChart::text(Point at, const std::string& text, const std::string& css_class) {

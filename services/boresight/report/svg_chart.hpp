@@ -32,11 +32,18 @@ class SvgChart {
   void vertical(double x, const std::string& css_class, const std::string& label);
   void rectangle(Point from, Point to, const std::string& css_class, const std::string& tooltip = {});
   void dot(Point at, double radius_px, const std::string& css_class, const std::string& tooltip = {});
+  /// A closed outline.
+  void polygon(const std::vector<Point>& corners, const std::string& css_class, const std::string& tooltip = {});
+  /// In a shape of its own for each kind, so that colour is not needed to tell them apart.
+  enum class Shape { kCircle, kSquare, kTriangle, kDiamond, kCross, kDash };
+  void symbol(Point at, Shape shape, double radius_px, const std::string& css_class, const std::string& tooltip = {});
   void text(Point at, const std::string& text, const std::string& css_class);
   [[nodiscard]] std::string finish() const;
   /// As a part of a larger picture, with its corner at (x, y).
   [[nodiscard]] std::string finish_at(double x, double y) const;
 
+  /// A symbol as a picture of its own, for a legend in running text.
+  [[nodiscard]] static std::string key(Shape shape, const std::string& css_class);
   /// Round numbers that divide [min, max] in about `count` steps.
   [[nodiscard]] static std::vector<double> ticks(double min, double max, int count);
 

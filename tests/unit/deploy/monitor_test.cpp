@@ -109,6 +109,34 @@ TEST(Accumulator, UnknownRadarGetsARow) {
   EXPECT_EQ(accumulator.snapshot(1).radars.at(2).name, "radar_9");
 }
 
+void see_labels(Accumulator& accumulator, std::uint32_t radar, std::uint32_t flags) {
+  const auto scan = std::make_unique<ClassifiedScan>();
+  scan->header.source_id = radar;
+  scan->flags = flags;
+  scan->number_of_valid_detections = 5;
+  scan->provenance[0] = scan->provenance[1] = Provenance::kMoving;
+  scan->provenance[2] = Provenance::kGhostType2;
+  scan->provenance[3] = Provenance::kClutter;
+  scan->detection_flags[4] = corrected_flag::kWeak;
+  accumulator.observe(*scan);
+}
+
+TEST(Accumulator, SumsWhatDetectionsWereToldToBe) {
+  Accumulator accumulator(vehicle());
+  see_labels(accumulator, 2, pipeline_flag::kNoTracks);
+  see_labels(accumulator, 2, 0);
+  const LabelCounts labels = accumulator.snapshot(0).radars[1].labels;
+  EXPECT_EQ(labels.of(Provenance::kMoving), 4u);
+  EXPECT_EQ(labels.of(Provenance::kGhostType2), 2u);
+  EXPECT_EQ(labels.of(Provenance::kClutter), 2u);
+  EXPECT_EQ(labels.of(Provenance::kUnknown), 0u);
+  EXPECT_EQ(labels.left_out, 2u);
+  EXPECT_EQ(labels.detections(), 10u);
+  EXPECT_EQ(labels.scans, 2u);
+  EXPECT_EQ(labels.scans_without_tracks, 1u);
+  EXPECT_EQ(accumulator.snapshot(0).radars[0].labels.scans, 0u);
+}
+
 TEST(Accumulator, MeasuresStagesAndTheWholeWayFromTheStamps) {
   Accumulator accumulator(vehicle());
   see_tracks(accumulator);
@@ -135,6 +163,7 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   see_scan(accumulator, 2, 1, 0);
   see_crooked_radar(accumulator);
   see_tracks(accumulator);
+  see_labels(accumulator, 2, pipeline_flag::kNoTracks);
   ServiceStatus status{};
   status.header.source_id = 4;
   status.inputs = 12;
@@ -156,6 +185,9 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
               ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7,"std":0.04,"observable":true})"));
   EXPECT_THAT(to_json(written),
               ::testing::HasSubstr(R"("knocks":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
+  EXPECT_THAT(to_json(written),
+              ::testing::HasSubstr(R"("told":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
+                                   R"("clutter":1,"left_out":1},"classified_scans":1,"classified_without_tracks":1})"));
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);

@@ -102,6 +102,29 @@ TEST(Summary, CountersThatStartAnewAreAddedUp) {
   EXPECT_EQ(summary.latencies[0].total(), 4800U);
 }
 
+TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheOnlooker) {
+  auto snapshots = synthetic_drive();
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    for (auto& radar : snapshots[i].radars) {
+      const std::uint64_t n = i < 60 ? i : i - 60;  // it began anew
+      radar.labels.told = {0, 10 * n, 80 * n, n, 3 * n, n};
+      radar.labels.left_out = 5 * n;
+      radar.labels.scans = n;
+    }
+  }
+  const Summary summary = summarise(snapshots, {});
+  EXPECT_EQ(summary.radars[0].last.labels.of(Provenance::kMoving), 1180u);
+  EXPECT_EQ(summary.labels.scans, 4u * 118u);
+  EXPECT_EQ(labels_text(summary.labels),
+            "moving 10.0 %, stationary 80.0 %, ghost type 1 1.0 %, ghost type 2 3.0 %, clutter 1.0 %, left out by the "
+            "corrector 5.0 %");
+  EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("47200 detections told to be: moving 10.0 %"));
+  const std::string page = render_html(
+      {.title = "", .snapshots = snapshots, .truth = {}, .vehicle = {}, .more_checks = {}, .ghosts = {}, .events = {}});
+  EXPECT_THAT(page, ::testing::HasSubstr("<td class=n title=\"4720\">10.00 %</td>"));
+  EXPECT_THAT(page, ::testing::HasSubstr("of all detections, %"));
+}
+
 TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
   std::istringstream table(
       "quantity,radar,value,unit\nspeed_scale,,1.012,1\n"
@@ -158,15 +181,25 @@ TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
       ::testing::ContainsRegex(
           "front_right +\\+2\\.0e-04 \\(0\\.4 σ\\) +\\+0\\.020° \\(0\\.5 σ\\) +-0\\.300° \\(3\\.0 σ\\) +not observable "
           "+0\\.50 +0\\.75"));
-  const std::string page = render_html(
-      {.title = "", .snapshots = snapshots, .truth = truth, .vehicle = {}, .more_checks = {}, .events = {}});
+  const std::string page = render_html({.title = "",
+                                        .snapshots = snapshots,
+                                        .truth = truth,
+                                        .vehicle = {},
+                                        .more_checks = {},
+                                        .ghosts = {},
+                                        .events = {}});
   EXPECT_THAT(page, ::testing::HasSubstr("Against the truth"));
   EXPECT_THAT(page, ::testing::HasSubstr("-0.300° (3.0 σ)"));
   EXPECT_THAT(page, ::testing::HasSubstr("0.75</td>"));
   EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("nan")));
-  EXPECT_THAT(
-      render_html({.title = "", .snapshots = snapshots, .truth = {}, .vehicle = {}, .more_checks = {}, .events = {}}),
-      ::testing::Not(::testing::HasSubstr("Against the truth")));
+  EXPECT_THAT(render_html({.title = "",
+                           .snapshots = snapshots,
+                           .truth = {},
+                           .vehicle = {},
+                           .more_checks = {},
+                           .ghosts = {},
+                           .events = {}}),
+              ::testing::Not(::testing::HasSubstr("Against the truth")));
 }
 
 TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
@@ -175,6 +208,7 @@ TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
                                         .truth = synthetic_truth(),
                                         .vehicle = {},
                                         .more_checks = {},
+                                        .ghosts = {},
                                         .events = {"0.1 spawned roudi"}});
   EXPECT_THAT(page, ::testing::HasSubstr("a &lt;drive&gt;"));
   for (const char* name : {"front_left", "front_right", "rear_left", "rear_right"}) {
@@ -193,6 +227,7 @@ TEST(HtmlReport, SurvivesARunWithoutAnyData) {
                            .truth = {},
                            .vehicle = {},
                            .more_checks = {},
+                           .ghosts = {},
                            .events = {}}),
               ::testing::HasSubstr("No scan reached the tracker."));
 }

@@ -33,7 +33,8 @@ class TimeBase {
     }
     if (!snapshots.empty()) end_s_ = std::max(1.0, seconds(snapshots.back()));
   }
-  [[nodiscard]] double seconds(const Snapshot& s) const { return static_cast<double>(s.time_ns - begin_ns_) * 1e-9; }
+  [[nodiscard]] double seconds(std::int64_t time_ns) const { return static_cast<double>(time_ns - begin_ns_) * 1e-9; }
+  [[nodiscard]] double seconds(const Snapshot& s) const { return seconds(s.time_ns); }
   [[nodiscard]] double end_s() const { return end_s_; }
 
  private:
@@ -62,6 +63,12 @@ class TimeBase {
 [[nodiscard]] std::string render_truth(const ReportInput& input, const TimeBase& time, const Summary& summary);
 [[nodiscard]] std::string render_alignment(const ReportInput& input, const TimeBase& time, const Summary& summary);
 [[nodiscard]] std::string render_health(const ReportInput& input, const TimeBase& time, const Summary& summary);
+/// What the ghost filter told detections to be, in total and over time.
+[[nodiscard]] std::string render_labels(const ReportInput& input, const TimeBase& time, const Summary& summary);
+/// The same beside the truth, and tracks of ghosts; what is missing for it where something is.
+[[nodiscard]] std::string render_confusion(const ReportInput& input, const TimeBase& time);
+/// Scans seen from above.
+[[nodiscard]] std::string render_plan_views(const ReportInput& input, const TimeBase& time);
 [[nodiscard]] std::string render_tracks(const ReportInput& input);
 [[nodiscard]] std::string render_latencies(const Summary& summary);
 

@@ -1,0 +1,257 @@
+#include "services/boresight/report/ghost_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <istream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "interfaces/messages/names.hpp"
+#include "services/boresight/monitor/scan_record.hpp"
+#include "tests/simulator/judge/matching.hpp"
+
+namespace boresight::report {
+
+namespace {
+
+using Line = monitor::ScanRecordReader::Line;
+
+/// A scan of the record is a scan of the truth if their times agree this well: far less than any radar's cycle, far
+/// more than the gateway's mapping of a sensor's clock onto this ECU's wavers.
+constexpr double kSameTime_s = 0.01;
+constexpr std::int64_t kView_ns = 100'000'000;  // scans that are shown together: two cycles of 50 ms
+
+struct SeenScan {
+  std::uint32_t radar;
+  std::int64_t time_ns;
+  std::size_t detections;
+};
+
+/// The scan of the truth at that time with as many detections, or null.
+const judge::TrueScan* scan_at(const judge::TrueScans& truth, std::uint32_t radar, double t_s, std::size_t detections) {
+  const auto of_radar = truth.find(radar);
+  if (of_radar == truth.end()) return nullptr;
+  const std::vector<judge::TrueScan>& scans = of_radar->second;
+  auto found = std::lower_bound(scans.begin(), scans.end(), t_s - kSameTime_s,
+                                [](const judge::TrueScan& scan, double time) { return scan.t_s < time; });
+  for (; found != scans.end() && found->t_s <= t_s + kSameTime_s; ++found) {
+    if (found->detections.size() == detections) return &*found;
+  }
+  return nullptr;
+}
+
+/// What to take from this ECU's stamps to have the seconds of the drive: of all places in the truth where the first
+/// scan could belong, the one where most of the others find theirs as well. The stamps say nothing of where a replay
+/// began, and sequence numbers would be off by every scan that was lost on the way.
+std::optional<std::int64_t> beginning(const std::vector<SeenScan>& seen, const judge::TrueScans& truth) {
+  if (seen.empty()) return std::nullopt;
+  const auto of_radar = truth.find(seen.front().radar);
+  if (of_radar == truth.end()) return std::nullopt;
+  constexpr std::size_t kTried = 400;  // of the scans: enough to tell one place from every other
+  const std::size_t step = std::max<std::size_t>(1, seen.size() / kTried);
+  std::int64_t best_ns = 0;
+  std::size_t most = 0;
+  for (const judge::TrueScan& first : of_radar->second) {
+    if (first.detections.size() != seen.front().detections) continue;
+    const std::int64_t begin_ns = seen.front().time_ns - static_cast<std::int64_t>(first.t_s * 1e9);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < seen.size(); i += step) {
+      const double t_s = static_cast<double>(seen[i].time_ns - begin_ns) * 1e-9;
+      found += scan_at(truth, seen[i].radar, t_s, seen[i].detections) != nullptr ? 1 : 0;
+    }
+    if (found > most) {
+      most = found;
+      best_ns = begin_ns;
+    }
+  }
+  if (most == 0) return std::nullopt;
+  return best_ns;
+}
+
+bool is_ghost(Provenance provenance) {
+  return provenance == Provenance::kGhostType1 || provenance == Provenance::kGhostType2;
+}
+
+/// One scan with its truth, as long as it may be wanted.
+struct Recent {
+  std::unique_ptr<ClassifiedScan> scan;
+  const judge::TrueScan* truth;
+  std::size_t ghosts = 0;
+  std::size_t mistakes = 0;
+};
+
+class Finder {
+ public:
+  Finder(const DetectionTruths* truth, std::optional<std::int64_t> begin_ns) : truth_(truth), begin_ns_(begin_ns) {
+    if (truth_ != nullptr) out_.confusion.emplace();
+  }
+  void take(const ClassifiedScan& scan) {
+    ++out_.scans;
+    const std::size_t count = scan.number_of_valid_detections;
+    Recent recent{std::make_unique<ClassifiedScan>(scan), nullptr};
+    if (truth_ != nullptr && begin_ns_) {
+      recent.truth = scan_at(truth_->scans, scan.header.source_id, seconds(scan.header.measurement_time_ns), count);
+    }
+    if (truth_ != nullptr && count > 0) ++(recent.truth != nullptr ? out_.compared_scans : out_.unknown_scans);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool left_out = (scan.detection_flags[i] & corrected_flag::kRejected) != 0;
+      if (is_ghost(scan.provenance[i])) ++recent.ghosts;
+      if (recent.truth == nullptr) continue;
+      const Provenance is = recent.truth->detections[i].provenance;
+      out_.confusion->add(is, scan.provenance[i], left_out);
+      if (!left_out && is != scan.provenance[i]) ++recent.mistakes;
+    }
+    std::deque<Recent>& of_radar = recent_[scan.header.source_id];
+    of_radar.push_front(std::move(recent));
+    if (of_radar.size() > kKept) of_radar.pop_back();
+    look(scan.header.measurement_time_ns);
+  }
+  void take(const TrackList& list) {
+    ++out_.track_lists;
+    *tracks_ = list;
+    for (const Recent& recent : recent_[list.header.source_id]) {
+      const std::int64_t time_ns = recent.scan->header.measurement_time_ns;
+      if (time_ns != list.header.measurement_time_ns || recent.truth == nullptr) continue;
+      const judge::Matching matching =
+          judge::match(list, list.number_of_confirmed_tracks, truth_->objects.at(seconds(time_ns)));
+      false_tracks_.add(static_cast<double>(time_ns) * 1e-9, *recent.scan, recent.truth->detections, list, matching);
+    }
+  }
+  [[nodiscard]] GhostFindings finish() {
+    out_.ghost_tracks = false_tracks_.long_ghost_tracks();
+    out_.other_false_tracks = false_tracks_.long_other_tracks();
+    return std::move(out_);
+  }
+
+ private:
+  static constexpr std::size_t kKept = 4;  // scans of a radar that a track list may come after
+  [[nodiscard]] double seconds(std::int64_t time_ns) const { return static_cast<double>(time_ns - *begin_ns_) * 1e-9; }
+  /// The latest scan of each radar that is young enough.
+  [[nodiscard]] std::vector<const Recent*> together(std::int64_t now_ns) const {
+    std::vector<const Recent*> scans;
+    for (const auto& [radar, of_radar] : recent_) {
+      if (!of_radar.empty() && std::abs(now_ns - of_radar.front().scan->header.measurement_time_ns) < kView_ns) {
+        scans.push_back(&of_radar.front());
+      }
+    }
+    return scans;
+  }
+  void look(std::int64_t now_ns) {
+    const std::vector<const Recent*> scans = together(now_ns);
+    std::size_t ghosts = 0, mistakes = 0;
+    for (const Recent* recent : scans) {
+      ghosts += recent->ghosts;
+      mistakes += recent->mistakes;
+    }
+    if (ghosts > most_ghosts_) {
+      most_ghosts_ = ghosts;
+      out_.most_ghosts = view(scans);
+    }
+    if (mistakes > most_mistakes_) {
+      most_mistakes_ = mistakes;
+      out_.most_mistakes = view(scans);
+    }
+  }
+  [[nodiscard]] PlanView view(const std::vector<const Recent*>& scans) const {
+    PlanView view;
+    const ClassifiedScan* latest = scans.front()->scan.get();
+    for (const Recent* recent : scans) {
+      if (recent->scan->header.measurement_time_ns > latest->header.measurement_time_ns) latest = recent->scan.get();
+    }
+    view.time_ns = latest->header.measurement_time_ns;
+    const auto age_s = [&view](const MessageHeader& header) {
+      return static_cast<double>(view.time_ns - header.measurement_time_ns) * 1e-9;
+    };
+    for (const Recent* recent : scans) {
+      const ClassifiedScan& scan = *recent->scan;
+      const std::uint32_t radar = scan.header.source_id;
+      const auto& sensor = scan.geometry.sensor_position_vehicle_m;
+      view.sensors.push_back({radar, sensor[0], sensor[1], age_s(scan.header)});
+      for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
+        view.detections.push_back(
+            {radar, scan.x_vehicle_m[i], scan.y_vehicle_m[i], scan.range_rate_over_ground_mps[i],
+             scan.ghost_probability[i], scan.provenance[i], (scan.detection_flags[i] & corrected_flag::kRejected) != 0,
+             recent->truth == nullptr ? std::optional<Provenance>() : recent->truth->detections[i].provenance});
+      }
+    }
+    view.segments.assign(latest->reflector_segments.begin(),
+                         latest->reflector_segments.begin() + latest->number_of_reflector_segments);
+    view.tracks_age_s = age_s(tracks_->header);
+    for (std::size_t k = 0; k < tracks_->number_of_confirmed_tracks; ++k) {
+      const Track& t = tracks_->tracks[k];
+      view.tracks.push_back(
+          {t.tracking_id, t.position_vehicle_m[0], t.position_vehicle_m[1], t.heading_rad, t.length_m, t.width_m});
+    }
+    if (truth_ != nullptr && begin_ns_) view.objects = truth_->objects.at(seconds(view.time_ns));
+    return view;
+  }
+
+  const DetectionTruths* truth_;
+  std::optional<std::int64_t> begin_ns_;
+  GhostFindings out_;
+  std::map<std::uint32_t, std::deque<Recent>> recent_;  // by radar, latest first
+  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
+  judge::FalseTracks false_tracks_;
+  std::size_t most_ghosts_ = 0, most_mistakes_ = 0;
+};
+
+}  // namespace
+
+GhostFindings find_ghosts(std::istream& record, const DetectionTruths* truth) {
+  const auto scan = std::make_unique<ClassifiedScan>();
+  const auto tracks = std::make_unique<TrackList>();
+  std::optional<std::int64_t> begin_ns;
+  if (truth != nullptr) {
+    std::vector<SeenScan> seen;
+    monitor::ScanRecordReader reader(record);
+    for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
+      if (line != Line::kScan || scan->number_of_valid_detections == 0) continue;
+      seen.push_back({scan->header.source_id, scan->header.measurement_time_ns, scan->number_of_valid_detections});
+    }
+    begin_ns = beginning(seen, truth->scans);
+    record.clear();
+    record.seekg(0);
+  }
+  Finder finder(truth, begin_ns);
+  monitor::ScanRecordReader reader(record);
+  for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
+    if (line == Line::kScan) finder.take(*scan);
+    if (line == Line::kTracks) finder.take(*tracks);
+  }
+  return finder.finish();
+}
+
+std::vector<Check> ghost_checks(const GhostFindings& findings) {
+  std::vector<Check> checks;
+  if (!findings.confusion) return checks;
+  const judge::Confusion& c = *findings.confusion;
+  const std::uint64_t scans = findings.compared_scans + findings.unknown_scans;
+  const double compared =
+      scans == 0 ? 0.0 : 100.0 * static_cast<double>(findings.compared_scans) / static_cast<double>(scans);
+  checks.push_back({fmt::format("{} of {} recorded scans were found in the truth (at least {:.0f} %)",
+                                findings.compared_scans, scans, GhostBars::kScansCompared_percent),
+                    compared >= GhostBars::kScansCompared_percent});
+  const double moving = c.percent(Provenance::kMoving, Provenance::kMoving);
+  if (c.count(Provenance::kMoving) > 0) {
+    checks.push_back(
+        {fmt::format("of {} detections of moving objects {:.1f} % were told to be moving (at least {:.0f} %)",
+                     c.count(Provenance::kMoving), moving, GhostBars::kMovingToldMoving_percent),
+         moving >= GhostBars::kMovingToldMoving_percent});
+  }
+  for (const Provenance type : {Provenance::kGhostType1, Provenance::kGhostType2}) {
+    if (c.count(type) == 0) continue;
+    checks.push_back(
+        {fmt::format("of {} ghosts of {} {:.1f} % were told to be ghosts (at least {:.0f} %)", c.count(type),
+                     name_of(type), c.percent_ghost(type), GhostBars::kGhostsToldGhosts_percent),
+         c.percent_ghost(type) >= GhostBars::kGhostsToldGhosts_percent});
+  }
+  const std::size_t tracks = findings.ghost_tracks.size();
+  checks.push_back(
+      {fmt::format("no track lived on ghosts for more than {} scans ({} did)", judge::FalseTracks::kLong_scans, tracks),
+       tracks == 0});
+  return checks;
+}
+
+}  // namespace boresight::report

@@ -1,0 +1,81 @@
+// What the ghost filter and the tracker of a run made of every detection, from the record of their messages; judged
+// where the drive's truth is known.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interfaces/messages/classified_scan.hpp"
+#include "interfaces/messages/track_list.hpp"
+#include "services/boresight/report/summary.hpp"
+#include "tests/simulator/judge/confusion.hpp"
+#include "tests/simulator/judge/false_tracks.hpp"
+#include "tests/simulator/judge/truth_files.hpp"
+
+namespace boresight::report {
+
+/// The truth of every detection of a simulated drive.
+struct DetectionTruths {
+  judge::TrueScans scans;
+  judge::TrueObjects objects;
+};
+
+/// What was published at one instant: the latest scan of each radar, the latest track list.
+struct PlanView {
+  struct Detection {
+    std::uint32_t radar;
+    float x_m, y_m;  ///< vehicle frame at its scan's time
+    float range_rate_over_ground_mps;
+    float ghost_probability;
+    Provenance told;
+    bool left_out;  ///< by the corrector
+    std::optional<Provenance> truth;
+  };
+  struct Sensor {
+    std::uint32_t radar;
+    float x_m, y_m;
+    double age_s;  ///< how much older its scan is than the latest
+  };
+  struct Box {
+    std::uint32_t tracking_id;
+    float x_m, y_m, heading_rad, length_m, width_m;
+  };
+  std::int64_t time_ns = 0;  ///< of measurement, of the latest scan
+  std::vector<Detection> detections;
+  std::vector<Sensor> sensors;
+  std::vector<ReflectorSegment> segments;  ///< of the latest scan
+  std::vector<Box> tracks;                 ///< confirmed ones
+  double tracks_age_s = 0.0;               ///< how much older their list is than the latest scan
+  std::vector<judge::Object> objects;      ///< in truth; empty where it is not known
+};
+
+struct GhostFindings {
+  std::uint64_t scans = 0;        ///< in the record; 0: there is none
+  std::uint64_t track_lists = 0;  ///< the same
+  PlanView most_ghosts;           ///< where most detections were told to be ghosts; no detections where none ever was
+  // With truth only:
+  std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that could be found in the truth
+  std::uint64_t compared_scans = 0;           ///< of the scans that hold detections
+  std::uint64_t unknown_scans = 0;  ///< the others of these: no scan of that time and number of detections in the truth
+  std::vector<judge::GhostTrack> ghost_tracks;  ///< times are CLOCK_MONOTONIC
+  std::size_t other_false_tracks = 0;           ///< of clutter, or of the stationary world
+  PlanView most_mistakes;                       ///< where most labels differ from the truth
+};
+
+/// `record` as monitor::write_scan and write_tracks wrote it; it is read twice. Null: nothing is known of the truth.
+[[nodiscard]] GhostFindings find_ghosts(std::istream& record, const DetectionTruths* truth);
+
+/// What a filter must reach on a drive with truth: the bars of the ghost filter's scenarios (docs/ghosts.md).
+struct GhostBars {
+  static constexpr double kMovingToldMoving_percent = 97.0;
+  static constexpr double kGhostsToldGhosts_percent = 90.0;  ///< of each type
+  static constexpr double kScansCompared_percent = 99.0;
+};
+/// Empty where no truth is known.
+[[nodiscard]] std::vector<Check> ghost_checks(const GhostFindings& findings);
+
+}  // namespace boresight::report

@@ -1,0 +1,137 @@
+// Scans seen from above, as they were published.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "services/boresight/report/sections/label_style.hpp"
+#include "services/boresight/report/sections/sections.hpp"
+
+namespace boresight::report {
+
+namespace {
+
+constexpr double kSymbol_px = 3.2;
+
+std::vector<Point> corners(double x, double y, double heading_rad, double length_m, double width_m) {
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  std::vector<Point> points;
+  for (const auto& [along, across] : {Point{0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}, {0.5, -0.5}}) {
+    points.push_back(
+        {x + c * along * length_m - s * across * width_m, y + s * along * length_m + c * across * width_m});
+  }
+  return points;
+}
+
+/// What is shown: all that is not stationary, with some of what is around it.
+struct Extent {
+  double back_m = -25.0, ahead_m = 35.0, right_m = -12.0, left_m = 12.0;
+  void take(double x, double y) {
+    constexpr double kAlong_m = 150.0, kAcross_m = 45.0, kMargin_m = 4.0;  // farther off is cut
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    ahead_m = std::max(ahead_m, std::min(x + kMargin_m, kAlong_m));
+    back_m = std::min(back_m, std::max(x - kMargin_m, -kAlong_m));
+    left_m = std::max(left_m, std::min(y + kMargin_m, kAcross_m));
+    right_m = std::min(right_m, std::max(y - kMargin_m, -kAcross_m));
+  }
+};
+
+std::string tooltip(const PlanView::Detection& d) {
+  std::string text = fmt::format("radar {}: {}", d.radar, d.left_out ? "left out" : style_of(d.told).words);
+  if (d.truth) text += fmt::format(", in truth {}", style_of(*d.truth).words);
+  return text + fmt::format("; {:.1f} m ahead, {:.1f} m left, {:+.1f} m/s over ground, ghost probability {:.2f}", d.x_m,
+                            d.y_m, d.range_rate_over_ground_mps, d.ghost_probability);
+}
+
+std::string draw(const PlanView& view) {
+  Extent extent;
+  for (const PlanView::Detection& d : view.detections) {
+    if (!d.left_out && d.told != Provenance::kStationary) extent.take(d.x_m, d.y_m);
+  }
+  for (const PlanView::Box& box : view.tracks) extent.take(box.x_m, box.y_m);
+  // The same scale along both axes; the margins of the chart are 64 px across and 46 px down.
+  const double px_per_m = (1080.0 - 64.0) / (extent.ahead_m - extent.back_m);
+  SvgChart chart(1080, 46.0 + (extent.left_m - extent.right_m) * px_per_m,
+                 {.min = extent.back_m, .max = extent.ahead_m, .label = "ahead, m"},
+                 {.min = extent.right_m, .max = extent.left_m, .label = "left, m"});
+  for (const judge::Object& o : view.objects) {
+    chart.polygon(corners(o.position_m.x(), o.position_m.y(), o.heading_rad, o.length_m, o.width_m), "truebox",
+                  fmt::format("object {} in truth", o.id));
+  }
+  for (const ReflectorSegment& s : view.segments) {
+    chart.line({{s.start_vehicle_m[0], s.start_vehicle_m[1]}, {s.end_vehicle_m[0], s.end_vehicle_m[1]}}, "segment");
+  }
+  chart.rectangle({-1.0, -0.9}, {3.7, 0.9}, "car", "the vehicle");
+  // What stands below what matters.
+  for (const bool still : {true, false}) {
+    for (const PlanView::Detection& d : view.detections) {
+      const bool is_still = d.left_out || d.told == Provenance::kStationary;
+      if (is_still != still) continue;
+      const LabelStyle& style = style_of(d.told);
+      const auto shape = d.left_out ? SvgChart::Shape::kSquare : style.shape;
+      chart.symbol({d.x_m, d.y_m}, shape, still ? 2.0 : kSymbol_px, d.left_out ? "lx" : style.css, tooltip(d));
+      if (!d.left_out && d.truth && *d.truth != d.told) {
+        chart.symbol({d.x_m, d.y_m}, SvgChart::Shape::kCircle, 2.2 * kSymbol_px, "wrong", tooltip(d));
+      }
+    }
+  }
+  for (const PlanView::Box& box : view.tracks) {
+    chart.polygon(corners(box.x_m, box.y_m, box.heading_rad, box.length_m, box.width_m), "box",
+                  fmt::format("track #{}", box.tracking_id));
+  }
+  for (const PlanView::Sensor& sensor : view.sensors) {
+    chart.symbol(
+        {sensor.x_m, sensor.y_m}, SvgChart::Shape::kTriangle, 4.5, "sensor",
+        fmt::format("radar {}, its scan is {:.0f} ms older than the latest", sensor.radar, 1e3 * sensor.age_s));
+  }
+  return chart.finish();
+}
+
+std::string render(const std::string& what, const PlanView& view, const TimeBase& time) {
+  std::size_t wrong = 0, ghosts = 0, compared = 0;
+  double oldest_s = 0.0;
+  for (const PlanView::Detection& d : view.detections) {
+    if (d.left_out) continue;
+    ghosts += d.told == Provenance::kGhostType1 || d.told == Provenance::kGhostType2 ? 1 : 0;
+    if (d.truth) ++compared;
+    if (d.truth && *d.truth != d.told) ++wrong;
+  }
+  for (const PlanView::Sensor& sensor : view.sensors) oldest_s = std::max(oldest_s, sensor.age_s);
+  std::string text = fmt::format(
+      "<h3>{}: at {:.2f} s</h3>\n<p class=\"faint\">{} scans, up to {:.0f} ms apart, {} detections, {} told to be "
+      "ghosts",
+      what, time.seconds(view.time_ns), view.sensors.size(), 1e3 * oldest_s, view.detections.size(), ghosts);
+  if (compared > 0) text += fmt::format("; {} of {} labels differ from the truth", wrong, compared);
+  return text +
+         fmt::format(". {} confirmed tracks, from {:.0f} ms before.</p>\n", view.tracks.size(),
+                     1e3 * view.tracks_age_s) +
+         draw(view);
+}
+
+}  // namespace
+
+std::string render_plan_views(const ReportInput& input, const TimeBase& time) {
+  const GhostFindings& ghosts = input.ghosts;
+  if (ghosts.scans == 0) return {};  // which the section before tells
+  std::string text =
+      "<h2>Ghost filter: scans from above</h2>\n<p class=\"faint\">The latest scan of each radar in the vehicle's "
+      "frame "
+      "of its own time, as published; nothing is moved to a common time. Hover over a symbol for its figures.</p>\n"
+      "<p class=\"legend\">";
+  for (const LabelStyle& style : kLabelStyles) text += key_of(style);
+  text += SvgChart::key(SvgChart::Shape::kSquare, "lx") + "left out by the corrector" +
+          SvgChart::key(SvgChart::Shape::kDash, "segment") + "reflector" +
+          SvgChart::key(SvgChart::Shape::kSquare, "box") + "confirmed track" +
+          SvgChart::key(SvgChart::Shape::kTriangle, "sensor") + "radar";
+  if (ghosts.confusion) {
+    text += SvgChart::key(SvgChart::Shape::kCircle, "wrong") + "label differs from the truth" +
+            SvgChart::key(SvgChart::Shape::kSquare, "truebox") + "object in truth";
+  }
+  text += "</p>\n";
+  if (ghosts.most_ghosts.detections.empty()) return text + "<p>No detection was told to be a ghost.</p>\n";
+  text += render("Most ghosts told", ghosts.most_ghosts, time);
+  if (!ghosts.most_mistakes.detections.empty()) text += render("Most labels wrong", ghosts.most_mistakes, time);
+  return text;
+}
+
+}  // namespace boresight::report

@@ -1,0 +1,114 @@
+#include "services/boresight/monitor/scan_record.hpp"
+
+#include <memory>
+#include <sstream>
+
+namespace boresight::monitor {
+namespace {
+
+using Line = ScanRecordReader::Line;
+
+class ScanRecord : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    scan_->header = {};
+    scan_->header.source_id = 3;
+    scan_->header.source_sequence = 17;
+    scan_->header.measurement_time_ns = 123'456'789'012'345;
+    scan_->flags = pipeline_flag::kNoTracks;
+    scan_->geometry.sensor_position_vehicle_m = {3.6F, -0.7F, 0.5F};
+    scan_->number_of_valid_detections = 7;
+    for (std::size_t i = 0; i < 7; ++i) {
+      scan_->x_vehicle_m[i] = 10.25F * static_cast<float>(i);
+      scan_->y_vehicle_m[i] = -1.5F;
+      scan_->range_rate_over_ground_mps[i] = -3.25F;
+      scan_->ghost_probability[i] = 0.125F;
+      scan_->provenance[i] = static_cast<Provenance>(std::min<std::size_t>(i, 5));
+    }
+    scan_->provenance[6] = Provenance::kUnknown;
+    scan_->detection_flags[6] = corrected_flag::kOutsideRegion;
+    scan_->x_vehicle_m[6] = NAN;
+    scan_->number_of_reflector_segments = 1;
+    scan_->reflector_segments[0] = {{1.0F, 2.0F}, {3.0F, 4.5F}, 0.1F, 9};
+    tracks_->header.source_id = 3;
+    tracks_->header.measurement_time_ns = 123'456'789'012'345;
+    tracks_->number_of_tracks = 2;
+    tracks_->tracks[0].tracking_id = 7;
+    Track& second = tracks_->tracks[1];
+    second.tracking_id = 8;
+    second.status = TrackStatus::kConfirmed;
+    second.movement = MovementState::kStopped;
+    second.position_vehicle_m = {30.0F, -2.5F, 0.0F};
+    second.heading_rad = 1.5F;
+    second.length_m = 4.5F;
+    second.width_m = 2.0F;
+    second.number_of_detections = 6;
+  }
+  std::unique_ptr<ClassifiedScan> scan_ = std::make_unique<ClassifiedScan>();
+  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
+  std::unique_ptr<ClassifiedScan> read_scan_ = std::make_unique<ClassifiedScan>();
+  std::unique_ptr<TrackList> read_tracks_ = std::make_unique<TrackList>();
+};
+
+TEST_F(ScanRecord, IsReadAsItWasWritten) {
+  std::stringstream record;
+  write_scan(record, *scan_);
+  write_tracks(record, *tracks_);
+  ScanRecordReader reader(record);
+  ASSERT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
+  EXPECT_EQ(read_scan_->header.source_id, 3u);
+  EXPECT_EQ(read_scan_->header.source_sequence, 17u);
+  EXPECT_EQ(read_scan_->header.measurement_time_ns, 123'456'789'012'345);
+  EXPECT_EQ(read_scan_->flags, pipeline_flag::kNoTracks);
+  EXPECT_EQ(read_scan_->geometry.sensor_position_vehicle_m, scan_->geometry.sensor_position_vehicle_m);
+  ASSERT_EQ(read_scan_->number_of_valid_detections, 7u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(read_scan_->x_vehicle_m[i], scan_->x_vehicle_m[i]);
+    EXPECT_EQ(read_scan_->y_vehicle_m[i], scan_->y_vehicle_m[i]);
+    EXPECT_EQ(read_scan_->range_rate_over_ground_mps[i], -3.25F);
+    EXPECT_EQ(read_scan_->ghost_probability[i], 0.125F);
+    EXPECT_EQ(read_scan_->provenance[i], scan_->provenance[i]);
+    EXPECT_EQ(read_scan_->detection_flags[i], 0u);
+  }
+  EXPECT_TRUE(std::isnan(read_scan_->x_vehicle_m[6]));
+  EXPECT_EQ(read_scan_->detection_flags[6] & corrected_flag::kRejected, corrected_flag::kWeak);
+  ASSERT_EQ(read_scan_->number_of_reflector_segments, 1u);
+  EXPECT_EQ(read_scan_->reflector_segments[0].end_vehicle_m[1], 4.5F);
+  ASSERT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kTracks);
+  ASSERT_EQ(read_tracks_->number_of_confirmed_tracks, 1u) << "tentative ones are not recorded";
+  const Track& track = read_tracks_->tracks[0];
+  EXPECT_EQ(track.tracking_id, 8u);
+  EXPECT_EQ(track.movement, MovementState::kStopped);
+  EXPECT_EQ(track.position_vehicle_m, tracks_->tracks[1].position_vehicle_m);
+  EXPECT_EQ(track.heading_rad, 1.5F);
+  EXPECT_EQ(track.length_m, 4.5F);
+  EXPECT_EQ(track.number_of_detections, 6u);
+  EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd);
+}
+
+TEST_F(ScanRecord, CutAnywhereGivesWhatIsWhole) {
+  std::stringstream record;
+  write_scan(record, *scan_);
+  const std::size_t first = record.str().size();
+  write_scan(record, *scan_);
+  const std::string whole = record.str();
+  for (std::size_t length = first; length < whole.size() - 1; ++length) {
+    std::istringstream cut(whole.substr(0, length));
+    ScanRecordReader reader(cut);
+    EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
+    EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd) << "cut after " << length;
+  }
+}
+
+TEST_F(ScanRecord, WhatNoMonitorWritesIsPassedOver) {
+  std::istringstream record(
+      "scan 1 1 1 0 0 0 0 4000000000 .\nscan 1 1 1 0 0 0 0 1 q 0 0 0 0 0 .\nscan 1 1 1 0 0 0 0 0 65 .\n"
+      "tracks 1 1 1 129 .\nsomething else\n\nscan 1 1 1 0 0 0 0 0 0 .\n");
+  ScanRecordReader reader(record);
+  EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
+  EXPECT_EQ(read_scan_->number_of_valid_detections, 0u);
+  EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd);
+}
+
+}  // namespace
+}  // namespace boresight::monitor
