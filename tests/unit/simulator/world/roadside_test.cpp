@@ -91,14 +91,19 @@ StructureSpec rail() {
 
 constexpr Gap kAll{-1000.0, 1000.0};
 
+Roadside roadside_of(const StructureSpec& spec, const Road& road = Road({}, -300.0, 700.0)) {
+  Roadside roadside;
+  add_structure(spec, 0, road, kAll, 1, roadside);
+  return roadside;
+}
+
 TEST(Structures, ARailFollowsItsLineWithinCentimetresAndOpensAtItsGaps) {
   const Road road({{{100.0, 0.0}, {150.0, 0.01}, {200.0, -0.005}}, 30.0, {}}, -300.0, 700.0);
   StructureSpec spec = rail();
   spec.gaps = {{120.0, 126.0}, {380.0, 500.0}};
   spec.gap_every_m = 100.0;
   spec.gap_length_m = 3.0;
-  Roadside roadside;
-  add_structure(spec, 0, road, kAll, 1, roadside);
+  const Roadside roadside = roadside_of(spec, road);
   const auto distance_m = [&](const Eigen::Vector2d& p) {
     double nearest = 1e9;
     for (const PlacedSurface& s : roadside.surfaces) {
@@ -137,23 +142,20 @@ TEST(Structures, AWallOffTheRoadIsStraight) {
   spec.from_m = 20.0;
   spec.to_m = 60.0;
   spec.heading_rad = -0.5 * M_PI;
-  Roadside roadside;
-  add_structure(spec, 0, road, kAll, 1, roadside);
+  const Roadside roadside = roadside_of(spec, road);
   ASSERT_EQ(roadside.surfaces.size(), 2u);
   EXPECT_NEAR(roadside.surfaces.back().surface.to_m.y(), -44.0, 1e-9);
   EXPECT_NEAR(roadside.surfaces.back().surface.to_m.x(), 20.0, 1e-9);
 }
 
 TEST(Structures, ATunnelHasTwoWallsAndACeiling) {
-  const Road road({}, -300.0, 700.0);
   StructureSpec spec = rail();
   spec.kind = StructureKind::kTunnel;
   spec.low_m = 0.0;
   spec.high_m = 5.0;
   spec.width_m = 9.0;
   spec.lateral_m = 4.0;
-  Roadside roadside;
-  add_structure(spec, 0, road, kAll, 1, roadside);
+  const Roadside roadside = roadside_of(spec);
   for (const PlacedSurface& s : roadside.surfaces) {
     EXPECT_TRUE(std::abs(s.surface.from_m.y() - 4.0) < 1e-9 || std::abs(s.surface.from_m.y() + 5.0) < 1e-9);
   }
@@ -167,15 +169,13 @@ TEST(Structures, ATunnelHasTwoWallsAndACeiling) {
 }
 
 TEST(Structures, PillarsAreSquare) {
-  const Road road({}, -300.0, 700.0);
   StructureSpec spec = rail();
   spec.kind = StructureKind::kPillars;
   spec.from_m = 0.0;
   spec.to_m = 29.0;
   spec.spacing_m = 10.0;
   spec.width_m = 0.6;
-  Roadside roadside;
-  add_structure(spec, 0, road, kAll, 1, roadside);
+  const Roadside roadside = roadside_of(spec);
   EXPECT_EQ(roadside.surfaces.size(), 12u);
   for (const PlacedSurface& s : roadside.surfaces) {
     EXPECT_NEAR((s.surface.to_m - s.surface.from_m).norm(), 0.6, 1e-9);
