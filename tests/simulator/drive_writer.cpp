@@ -1,5 +1,6 @@
 #include "tests/simulator/drive_writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <stdexcept>
@@ -31,12 +32,16 @@ wire::Endpoint endpoint(const std::string& address, std::uint16_t port) {
 }
 
 /// A radar that the vehicle has not would be disturbed in vain.
-void expect_radar(const VehicleConfig& vehicle, std::uint32_t id, const std::string& what) {
+void expect_radar(const VehicleConfig& vehicle, const RadarEffects& effects, std::uint32_t id,
+                  const std::string& what) {
   if (vehicle.radar(id) != nullptr) return;
+  const auto named =
+      std::find_if(effects.named.begin(), effects.named.end(), [id](const NamedRadar& n) { return n.id == id; });
+  const std::string place = named == effects.named.end() ? "radars." + what + ".radar" : named->place;
   std::string known;
   for (const RadarConfig& radar : vehicle.radars) known += (known.empty() ? "" : ", ") + std::to_string(radar.id);
-  throw std::invalid_argument("radars." + what + " of the scenario names radar " + std::to_string(id) +
-                              ", but the vehicle " + vehicle.name + " has " + (known.empty() ? "none" : known));
+  throw std::invalid_argument(place + ": " + std::to_string(id) + " is no radar of the vehicle " + vehicle.name +
+                              "; allowed: " + (known.empty() ? "none" : known));
 }
 
 void check(const Scenario& scenario, const VehicleConfig& vehicle) {
@@ -59,12 +64,12 @@ void check(const Scenario& scenario, const VehicleConfig& vehicle) {
   const RadarEffects& e = scenario.effects;
   for (std::uint32_t id = 1; id < e.misalignment.size(); ++id) {
     const Misalignment& m = e.misalignment[id];
-    if (m.yaw_rad != 0.0 || m.pitch_rad != 0.0 || m.roll_rad != 0.0) expect_radar(vehicle, id, "misalignment");
+    if (m.yaw_rad != 0.0 || m.pitch_rad != 0.0 || m.roll_rad != 0.0) expect_radar(vehicle, e, id, "misalignment");
   }
-  for (const RadarKnock& knock : e.knocks) expect_radar(vehicle, knock.radar, "knock");
-  for (const RadarBlockage& blockage : e.blockages) expect_radar(vehicle, blockage.radar, "blockage");
+  for (const RadarKnock& knock : e.knocks) expect_radar(vehicle, e, knock.radar, "knock");
+  for (const RadarBlockage& blockage : e.blockages) expect_radar(vehicle, e, blockage.radar, "blockage");
   for (const RadarInterference& i : e.interference) {
-    if (i.radar != 0) expect_radar(vehicle, i.radar, "interference");
+    if (i.radar != 0) expect_radar(vehicle, e, i.radar, "interference");
   }
 }
 

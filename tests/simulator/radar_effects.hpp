@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "interfaces/messages/header.hpp"
@@ -81,6 +82,13 @@ struct SensitivitySpec {
   [[nodiscard]] bool operator==(const SensitivitySpec&) const = default;
 };
 
+/// A radar that a scenario file names, and where it does so: "my.toml:7: radars.knock[0].radar".
+struct NamedRadar {
+  std::uint32_t id = 0;
+  std::string place;
+  [[nodiscard]] bool operator==(const NamedRadar& other) const { return id == other.id; }
+};
+
 struct RadarEffects {
   double speed_scale = 1.0;                                 ///< k_v: true speed = k_v · signalled speed
   bool noise = true;                                        ///< of measurements, ego signals and RCS
@@ -93,6 +101,7 @@ struct RadarEffects {
   ResolutionCell resolution{};
   SensitivitySpec sensitivity{};
   double unambiguous_mps = 80.0;  ///< range rates fold into ± this; 0: they do not fold
+  std::vector<NamedRadar> named;  ///< in the order of the file; for errors, as the vehicle is not known before
   [[nodiscard]] bool operator==(const RadarEffects&) const = default;
 };
 

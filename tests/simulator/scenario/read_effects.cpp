@@ -12,9 +12,11 @@ constexpr Range kTime_s{0.0, 36000.0};
 constexpr Range kLoss_db{0.0, 60.0};
 constexpr Range kPerScan{0.0, 200.0};
 
-std::uint32_t read_radar(Reader& reader, bool all_allowed = false) {
+std::uint32_t read_radar(Reader& reader, RadarEffects& effects, bool all_allowed = false) {
   if (!all_allowed) reader.require("radar");
-  return static_cast<std::uint32_t>(reader.integer("radar", {all_allowed ? 0.0 : 1.0, kMaxRadars}, 0));
+  const auto id = static_cast<std::uint32_t>(reader.integer("radar", {all_allowed ? 0.0 : 1.0, kMaxRadars}, 0));
+  effects.named.push_back({id, reader.place("radar")});
+  return id;
 }
 
 Misalignment read_angles(Reader& reader) {
@@ -23,9 +25,9 @@ Misalignment read_angles(Reader& reader) {
           reader.angle_deg("roll_deg", kAngle_deg, 0.0)};
 }
 
-RadarBlockage read_blockage(Reader reader) {
+RadarBlockage read_blockage(Reader reader, RadarEffects& effects) {
   RadarBlockage b;
-  b.radar = read_radar(reader);
+  b.radar = read_radar(reader, effects);
   b.begin_s = reader.number("begin_s", kTime_s, b.begin_s);
   b.full_s = reader.number("full_s", kTime_s, b.begin_s);
   b.loss_db = reader.number("loss_db", kLoss_db, b.loss_db);
@@ -37,9 +39,9 @@ RadarBlockage read_blockage(Reader reader) {
   return b;
 }
 
-RadarInterference read_interference(Reader reader) {
+RadarInterference read_interference(Reader reader, RadarEffects& effects) {
   RadarInterference i;
-  i.radar = read_radar(reader, true);
+  i.radar = read_radar(reader, effects, true);
   i.begin_s = reader.number("begin_s", kTime_s, i.begin_s);
   i.duration_s = reader.number("duration_s", kTime_s, i.duration_s);
   i.noise_rise_db = reader.number("noise_rise_db", kLoss_db, i.noise_rise_db);
@@ -84,18 +86,18 @@ RadarEffects read_effects(Reader reader) {
   e.clutter_per_scan = reader.number("clutter_per_scan", kPerScan, e.clutter_per_scan);
   e.unambiguous_mps = reader.number("unambiguous_mps", {0.0, 200.0}, e.unambiguous_mps);
   for (Reader& r : reader.tables("misalignment")) {
-    const std::uint32_t radar = read_radar(r);
+    const std::uint32_t radar = read_radar(r, e);
     e.misalignment[radar] = read_angles(r);
   }
   for (Reader& r : reader.tables("knock")) {
     RadarKnock knock;
-    knock.radar = read_radar(r);
+    knock.radar = read_radar(r, e);
     knock.time_s = r.number("time_s", kTime_s, 0.0);
     knock.by = read_angles(r);
     e.knocks.push_back(knock);
   }
-  for (Reader& r : reader.tables("blockage")) e.blockages.push_back(read_blockage(r));
-  for (Reader& r : reader.tables("interference")) e.interference.push_back(read_interference(r));
+  for (Reader& r : reader.tables("blockage")) e.blockages.push_back(read_blockage(r, e));
+  for (Reader& r : reader.tables("interference")) e.interference.push_back(read_interference(r, e));
   e.multipath = read_multipath(reader.table("multipath"));
   e.resolution = read_resolution(reader.table("resolution"));
   e.sensitivity = read_sensitivity(reader.table("sensitivity"));

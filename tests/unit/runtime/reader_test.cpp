@@ -84,6 +84,26 @@ TEST(Reader, MissingRequiredKeyNamesTheTablesLine) {
   EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:3: t.id: is missing");
 }
 
+TEST(Reader, MissingRequiredKeySaysWhatIsAllowed) {
+  Reader root = Reader::parse("\n[t]\n", "x.toml");
+  Reader t = root.table("t");
+  for (const char* key : {"n", "i", "c"}) t.require(key);
+  static_cast<void>(t.number("n", {0.5, 2}, 1));
+  static_cast<void>(t.number("n", {0.5, 2}, 1));
+  static_cast<void>(t.integer("i", {1, 16}, 1));
+  static_cast<void>(t.choice<int>("c", {{"red", 1}, {"blue", 2}}, 1));
+  EXPECT_EQ(error_of([&] { root.finish(); }),
+            "x.toml:2: t.n: is missing; allowed: 0.5 … 2\nx.toml:2: t.i: is missing; allowed: 1 … 16\n"
+            "x.toml:2: t.c: is missing; must be one of \"red\", \"blue\"");
+}
+
+TEST(Reader, TellsThePlaceOfAKey) {
+  Reader root = Reader::parse("[[r]]\n[[r]]\nn = 1\n", "x.toml");
+  std::vector<Reader> readers = root.tables("r");
+  EXPECT_EQ(readers[1].place("n"), "x.toml:3: r[1].n");
+  EXPECT_EQ(readers[0].place("n"), "x.toml:1: r[0].n") << "the table's, where the key is absent";
+}
+
 TEST(Reader, ElementsOfATableListAreNumbered) {
   Reader root = Reader::parse("[[r]]\nn = 1\n[[r]]\nn = 99\n", "x.toml");
   for (Reader& r : root.tables("r")) static_cast<void>(r.integer("n", {0, 9}, 0));

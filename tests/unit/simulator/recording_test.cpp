@@ -365,7 +365,7 @@ TEST(DriveWriter, RefusesWhatItCannotWrite) {
   };
   Scenario s = scenario("tunnel");
   s.effects.knocks = {{9, 1.0, {}}};
-  EXPECT_EQ(problem(s, demo()), "radars.knock of the scenario names radar 9, but the vehicle demo has 1, 2, 3, 4");
+  EXPECT_EQ(problem(s, demo()), "radars.knock.radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4");
   VehicleConfig other = demo();
   other.radars[1].profile = RadarProfile::kArs408;
   EXPECT_NE(problem(scenario("tunnel"), other).find("front_right"), std::string::npos);

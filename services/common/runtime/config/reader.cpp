@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -67,6 +68,7 @@ struct Reader::Node {
   std::string path;                    // "radar[1].source", empty at the root
   std::uint32_t line = 1;
   std::set<std::string, std::less<>> known;
+  std::map<std::string, std::size_t, std::less<>> missing;  // required keys that are absent: index of their error
 
   [[nodiscard]] std::string key_path(std::string_view key) const {
     if (path.empty()) return std::string(key);
@@ -79,6 +81,12 @@ struct Reader::Node {
   }
   void expect(const toml::node& node, std::string_view key, std::string_view wanted) const {
     note(node.source().begin.line, key, fmt::format("must be {}, but is {}", wanted, type_name(node.type())));
+  }
+  /// Of a required key that is absent, as soon as it is known.
+  void say_what_is_allowed(std::string_view key, std::string_view allowed);
+  [[nodiscard]] std::uint32_t line_of(std::string_view key) const {
+    const toml::node* found = table == nullptr || key.empty() ? nullptr : table->get(key);
+    return found == nullptr ? line : found->source().begin.line;
   }
   /// A node for a table below this one.
   [[nodiscard]] Node& add_child(std::string child_path, std::uint32_t child_line) const;
@@ -93,6 +101,13 @@ struct Reader::Node::Document {
 
 void Reader::Node::note(std::uint32_t at_line, std::string_view key, std::string_view problem) const {
   document->errors.emplace_back(at_line, fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem));
+}
+
+void Reader::Node::say_what_is_allowed(std::string_view key, std::string_view allowed) {
+  const auto found = missing.find(key);
+  if (found == missing.end()) return;
+  document->errors[found->second].second += fmt::format("; {}", allowed);
+  missing.erase(found);
 }
 
 Reader::Node& Reader::Node::add_child(std::string child_path, std::uint32_t child_line) const {
@@ -139,7 +154,10 @@ Reader Reader::open(const std::filesystem::path& file) {
 
 double Reader::number(std::string_view key, Range allowed, double fallback) {
   const toml::node* node = node_->find(key);
-  if (node == nullptr) return fallback;
+  if (node == nullptr) {
+    node_->say_what_is_allowed(key, "allowed: " + describe(allowed));
+    return fallback;
+  }
   if (!node->is_number()) {
     node_->expect(*node, key, fmt::format("a number ({})", describe(allowed)));
     return fallback;
@@ -154,7 +172,10 @@ double Reader::number(std::string_view key, Range allowed, double fallback) {
 
 std::int64_t Reader::integer(std::string_view key, Range allowed, std::int64_t fallback) {
   const toml::node* node = node_->find(key);
-  if (node == nullptr) return fallback;
+  if (node == nullptr) {
+    node_->say_what_is_allowed(key, "allowed: " + describe(allowed));
+    return fallback;
+  }
   if (!node->is_integer()) {
     node_->expect(*node, key, fmt::format("an integer ({})", describe(allowed)));
     return fallback;
@@ -257,8 +278,11 @@ std::vector<std::string> Reader::texts(std::string_view key, std::vector<std::st
 
 int Reader::choice_index(std::string_view key, const std::vector<std::string_view>& words) {
   const toml::node* node = node_->find(key);
-  if (node == nullptr) return -1;
   const std::string wanted = fmt::format("one of \"{}\"", fmt::join(words, "\", \""));
+  if (node == nullptr) {
+    node_->say_what_is_allowed(key, "must be " + wanted);
+    return -1;
+  }
   if (!node->is_string()) {
     node_->expect(*node, key, wanted);
     return -1;
@@ -283,7 +307,9 @@ bool Reader::has(std::string_view key) const {
 
 void Reader::require(std::string_view key) {
   node_->known.emplace(key);
-  if (!has(key)) node_->note(node_->line, key, "is missing");
+  if (has(key)) return;
+  node_->missing.emplace(key, node_->document->errors.size());
+  node_->note(node_->line, key, "is missing");
 }
 
 Reader Reader::table(std::string_view key) {
@@ -317,11 +343,11 @@ std::vector<Reader> Reader::tables(std::string_view key) {
 }
 
 void Reader::reject(std::string_view key, std::string_view problem) {
-  std::uint32_t line = node_->line;
-  if (node_->table != nullptr && !key.empty()) {
-    if (const toml::node* found = node_->table->get(key)) line = found->source().begin.line;
-  }
-  node_->note(line, key, problem);
+  node_->note(node_->line_of(key), key, problem);
+}
+
+std::string Reader::place(std::string_view key) const {
+  return fmt::format("{}:{}: {}", node_->document->file, node_->line_of(key), node_->key_path(key));
 }
 
 void Reader::finish() {

@@ -60,7 +60,7 @@ class Reader {
   [[nodiscard]] double angle_deg(std::string_view key, Range allowed_deg, double fallback_rad);
 
   [[nodiscard]] bool has(std::string_view key) const;
-  /// Notes an error if the key is absent.
+  /// Notes an error if the key is absent; what is allowed is told if a getter asks for it afterwards.
   void require(std::string_view key);
   /// Sub-table; an empty one if absent.
   [[nodiscard]] Reader table(std::string_view key);
@@ -69,6 +69,8 @@ class Reader {
 
   /// Notes an error at this key (or at the table, with an empty key), for checks across keys.
   void reject(std::string_view key, std::string_view problem);
+  /// "file:line: key" as in errors, for those that are found only when the file was read.
+  [[nodiscard]] std::string place(std::string_view key) const;
   /// Call on the root after everything was read: unknown keys of every table visited are errors; throws Error if
   /// anything was noted.
   void finish();
