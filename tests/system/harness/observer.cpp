@@ -127,6 +127,11 @@ int Observer::observe(const std::string& name, double pause_s) {
     note(TopicId::kClassifiedScan, scan.header, [&](Sample& s) {
       s.count = scan.number_of_valid_detections;
       s.flags = scan.flags;
+      s.segments = scan.number_of_reflector_segments;
+      for (std::size_t i = 0; i < std::min<std::size_t>(s.count, kMaxDetections); ++i) {
+        const auto label = static_cast<std::size_t>(scan.provenance[i]);
+        if (label < s.labels.size()) ++s.labels[label];
+      }
       s.correspondence = compare(corrected_scans.find(scan.header), scan);
     });
   });
