@@ -40,6 +40,7 @@ constexpr Variant kVariants[] = {
     {"no images of the stationary world",
      [](NamedGhostMethod& m) { m.config.mirror.classes.stationary_image_density = kNever; }},
     {"strength (RCS) tells nothing", [](NamedGhostMethod& m) { m.config.mirror.classes.strength_doubt = 1.0; }},
+    {"radars that measure no RCS", [](NamedGhostMethod& m) { m.change.gets_rcs = false; }},
     {"no wheels and limbs of other range rates",
      [](NamedGhostMethod& m) {
        m.config.mirror.classes.wheel_share = m.config.mirror.classes.wheel_ghost_share = 0.0;

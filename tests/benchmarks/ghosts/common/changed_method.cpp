@@ -11,10 +11,12 @@ void ChangedMethod::add_tracks(const TrackList& tracks) {
   if (change_.gets_tracks) method_->add_tracks(tracks);
 }
 
-void ChangedMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+const CorrectedScan& ChangedMethod::changed(const CorrectedScan& scan) {
   constexpr std::uint16_t kTold = corrected_flag::kMoving | corrected_flag::kStationary;
+  if (change_.gets_rcs && !change_.stationary_below_mps) return scan;
+  *scan_ = scan;
+  if (!change_.gets_rcs) scan_->fields &= ~scan_field::kRcs;
   if (change_.stationary_below_mps) {
-    *scan_ = scan;
     for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
       std::uint16_t& flags = scan_->detection_flags[i];
       if ((flags & kTold) == 0) continue;
@@ -24,7 +26,11 @@ void ChangedMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
                                          (moves ? corrected_flag::kMoving : corrected_flag::kStationary));
     }
   }
-  method_->classify(change_.stationary_below_mps ? *scan_ : scan, out);
+  return *scan_;
+}
+
+void ChangedMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
+  method_->classify(changed(scan), out);
   if (change_.tells_probabilities) return;
   for (std::size_t i = 0; i < out.number_of_valid_detections; ++i) {
     const Provenance told = out.provenance[i];

@@ -32,6 +32,18 @@ TEST_F(ChangedMethodTest, TellsByAConstantWhatStandsStill) {
   EXPECT_EQ(scan_->detection_flags[0], corrected_flag::kMoving);
 }
 
+TEST_F(ChangedMethodTest, WithoutRcsItsFigureChangesNothing) {
+  scan_->fields = scan_field::kRcs;
+  const auto told_at = [&](bool gets_rcs, float rcs_dbsm) {
+    scan_->rcs_dbsm[1] = rcs_dbsm;
+    ChangedMethod(config_, {.gets_rcs = gets_rcs}).classify(*scan_, *out_);
+    return out_->ghost_probability[1];
+  };
+  EXPECT_NE(told_at(true, 5.0f), told_at(true, -30.0f));
+  EXPECT_EQ(told_at(false, 5.0f), told_at(false, -30.0f));
+  EXPECT_EQ(scan_->fields, scan_field::kRcs);
+}
+
 TEST_F(ChangedMethodTest, TellsTheTrackerLabelsOnly) {
   ChangedMethod(config_, {}).classify(*scan_, *out_);
   EXPECT_GT(out_->ghost_probability[1], 0.0f);
