@@ -210,7 +210,7 @@ report::Check check_of(const std::vector<supervisor::Event>& events) {
   const auto count = std::count_if(events.begin(), events.end(), [](const supervisor::Event& event) {
     return event.kind == supervisor::EventKind::kExited && event.process != "replay";
   });
-  return {fmt::format("no process ended by itself ({} did)", count), count == 0};
+  return {fmt::format("no process ended by itself ({} did)", count), count == 0, false};
 }
 
 std::vector<std::string> event_lines(const std::vector<supervisor::Event>& events) {

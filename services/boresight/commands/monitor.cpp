@@ -131,7 +131,7 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
   command->add_option("--record", options->record_file, "append what is seen to this file, for `boresight report`");
   command->add_option(
       "--record-scans", options->scans_file,
-      "append every classified scan and track list to this file, for `boresight report --scans`; some 10 "
+      "append every classified scan and track list to this file, for `boresight report --scans`; some 20 "
       "MB a minute");
   command->add_option("--duration", options->duration_s, "seconds after which to stop; 0 is never")
       ->check(CLI::NonNegativeNumber);

@@ -1,5 +1,5 @@
 // Every scan as the ghost filter told it and every track list, as lines of text: what `boresight monitor
-// --record-scans` writes and a report is drawn from. About 10 MB a minute for four radars of 100 detections at 20 Hz.
+// --record-scans` writes and a report is drawn from. About 20 MB a minute for four radars of 100 detections at 20 Hz.
 #pragma once
 
 #include <iosfwd>

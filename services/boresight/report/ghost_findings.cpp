@@ -232,25 +232,25 @@ std::vector<Check> ghost_checks(const GhostFindings& findings) {
       scans == 0 ? 0.0 : 100.0 * static_cast<double>(findings.compared_scans) / static_cast<double>(scans);
   checks.push_back({fmt::format("{} of {} recorded scans were found in the truth (at least {:.0f} %)",
                                 findings.compared_scans, scans, GhostBars::kScansCompared_percent),
-                    compared >= GhostBars::kScansCompared_percent});
+                    compared >= GhostBars::kScansCompared_percent, false});
   const double moving = c.percent(Provenance::kMoving, Provenance::kMoving);
   if (c.count(Provenance::kMoving) > 0) {
     checks.push_back(
         {fmt::format("of {} detections of moving objects {:.1f} % were told to be moving (at least {:.0f} %)",
                      c.count(Provenance::kMoving), moving, GhostBars::kMovingToldMoving_percent),
-         moving >= GhostBars::kMovingToldMoving_percent});
+         moving >= GhostBars::kMovingToldMoving_percent, true});
   }
   for (const Provenance type : {Provenance::kGhostType1, Provenance::kGhostType2}) {
     if (c.count(type) == 0) continue;
     checks.push_back(
         {fmt::format("of {} ghosts of {} {:.1f} % were told to be ghosts (at least {:.0f} %)", c.count(type),
                      name_of(type), c.percent_ghost(type), GhostBars::kGhostsToldGhosts_percent),
-         c.percent_ghost(type) >= GhostBars::kGhostsToldGhosts_percent});
+         c.percent_ghost(type) >= GhostBars::kGhostsToldGhosts_percent, true});
   }
   const std::size_t tracks = findings.ghost_tracks.size();
   checks.push_back(
       {fmt::format("no track lived on ghosts for more than {} scans ({} did)", judge::FalseTracks::kLong_scans, tracks),
-       tracks == 0});
+       tracks == 0, true});
   return checks;
 }
 

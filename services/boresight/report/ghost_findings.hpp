@@ -75,7 +75,8 @@ struct GhostBars {
   static constexpr double kGhostsToldGhosts_percent = 90.0;  ///< of each type
   static constexpr double kScansCompared_percent = 99.0;
 };
-/// Empty where no truth is known.
+/// That the scans are those of the truth is a check; the bars are aims, as one drive may miss what the median of many
+/// reaches. Empty where no truth is known.
 [[nodiscard]] std::vector<Check> ghost_checks(const GhostFindings& findings);
 
 }  // namespace boresight::report

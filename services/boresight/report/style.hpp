@@ -15,7 +15,7 @@ body { background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, "D
 h1 { font-size: 26px; margin: 0; } h2 { font-size: 18px; margin: 38px 0 6px; } p { margin: 4px 0 12px; }
 .faint { color: var(--faint); }
 .verdict { border-left: 5px solid var(--good); background: var(--card); padding: 10px 16px; margin: 18px 0; }
-.verdict.bad { border-color: var(--bad); }
+.verdict.bad { border-color: var(--bad); color: inherit; font-weight: inherit; }
 .verdict b { font-size: 17px; } .verdict ul { margin: 6px 0 0; padding-left: 20px; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th { text-align: left; color: var(--faint); font-weight: 500; font-size: 13px; }

@@ -173,7 +173,9 @@ void add_checks(const Truth& truth, Summary& summary) {
     lost_inputs += service.faults[static_cast<std::size_t>(Fault::kInputLost)];
     restarts += service.restarts;
   }
-  const auto check = [&summary](std::string what, bool passed) { summary.checks.push_back({std::move(what), passed}); };
+  const auto check = [&summary](std::string what, bool passed) {
+    summary.checks.push_back({std::move(what), passed, false});
+  };
   check("every radar delivered scans", all_heard);
   check(fmt::format("no scan was lost ({} to the monitor, {} inputs to services)", lost, lost_inputs),
         lost + lost_inputs == 0);
@@ -249,13 +251,23 @@ std::string render_faults(const Summary& summary) {
 }  // namespace
 
 bool Summary::all_passed() const {
-  return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed; });
+  return std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passed || check.aim; });
+}
+
+std::size_t Summary::missed_aims() const {
+  return static_cast<std::size_t>(
+      std::count_if(checks.begin(), checks.end(), [](const Check& check) { return check.aim && !check.passed; }));
+}
+
+const char* word_of(const Check& check) {
+  if (check.passed) return "ok";
+  return check.aim ? "MISSED" : "FAILED";
 }
 
 Summary summarise(const std::vector<Snapshot>& snapshots, const Truth& truth) {
   Summary summary;
   if (snapshots.empty()) {
-    summary.checks.push_back({"the system was seen running", false});
+    summary.checks.push_back({"the system was seen running", false, false});
     return summary;
   }
   add_radars(snapshots, truth, summary);
@@ -342,7 +354,7 @@ std::string render_summary(const Summary& summary) {
   }
   text += "\n" + render_faults(summary) + "\n";
   for (const Check& check : summary.checks) {
-    text += fmt::format("  [{}] {}\n", check.passed ? "ok" : "FAILED", check.what);
+    text += fmt::format("  [{}] {}\n", word_of(check), check.what);
   }
   return text;
 }

@@ -33,11 +33,14 @@ struct RadarSummary {
   double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
 };
 
-/// One thing that had to be true.
+/// One thing that had to be true; or that is aimed at, which is told when it is missed and fails nothing.
 struct Check {
   std::string what;
   bool passed;
+  bool aim = false;
 };
+/// "ok", "FAILED", or "MISSED" of an aim.
+[[nodiscard]] const char* word_of(const Check& check);
 
 struct Summary {
   double duration_s = 0.0;  ///< from the first to the last scan seen
@@ -48,7 +51,9 @@ struct Summary {
   std::vector<monitor::ServiceSnapshot> services;
   std::array<LatencyHistogram, monitor::kNumberOfLatencies> latencies;
   std::vector<Check> checks;
+  /// But for aims.
   [[nodiscard]] bool all_passed() const;
+  [[nodiscard]] std::size_t missed_aims() const;
 };
 
 /// `snapshots` in the order of time; counters may start anew where the onlooker was restarted.

@@ -48,6 +48,8 @@ std::string path_of(SvgChart::Shape shape, double x, double y, double r) {
     case SvgChart::Shape::kCross:
       return fmt::format("M{0:.1f},{1:.1f}L{2:.1f},{3:.1f}M{0:.1f},{3:.1f}L{2:.1f},{1:.1f}", x - r, y - r, x + r,
                          y + r);
+    case SvgChart::Shape::kBox:
+      return fmt::format("M{:.1f},{:.1f}h{:.1f}v{:.1f}h-{:.1f}Z", x - 1.5 * r, y - 0.8 * r, 3.0 * r, 1.6 * r, 3.0 * r);
     case SvgChart::Shape::kDash:
       return fmt::format("M{:.1f},{:.1f}h{:.1f}", x - r, y, 2.0 * r);
   }

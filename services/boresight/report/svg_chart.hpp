@@ -35,7 +35,7 @@ class SvgChart {
   /// A closed outline.
   void polygon(const std::vector<Point>& corners, const std::string& css_class, const std::string& tooltip = {});
   /// In a shape of its own for each kind, so that colour is not needed to tell them apart.
-  enum class Shape { kCircle, kSquare, kTriangle, kDiamond, kCross, kDash };
+  enum class Shape { kCircle, kSquare, kTriangle, kDiamond, kCross, kDash, kBox };
   void symbol(Point at, Shape shape, double radius_px, const std::string& css_class, const std::string& tooltip = {});
   void text(Point at, const std::string& text, const std::string& css_class);
   [[nodiscard]] std::string finish() const;

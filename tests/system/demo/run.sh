@@ -47,6 +47,15 @@ check "it names the crooked radar" grep -q '^  front_right: MISALIGNED, yaw +2\.
 check "it names no other" [ "$(grep -c ': MISALIGNED' "$out/whole.txt")" -eq 1 ]
 check "it states errors and NEES against the truth" \
   grep -Eq '^  front_right +[+-][0-9.e-]+ \([0-9.]+ σ\) +[+-]0\.[0-9]+° .* [0-9]+\.[0-9]{2} +[0-9]+\.[0-9]{2}$' "$out/whole.txt"
+for what in '[0-9]+ detections of moving objects [0-9.]+ % were told to be moving' \
+            '[0-9]+ ghosts of type 1 [0-9.]+ % were told to be ghosts' \
+            '[0-9]+ ghosts of type 2 [0-9.]+ % were told to be ghosts'; do
+  check "it judges the ghost filter by the truth: of $what" grep -Eq "^  \[ok\] of $what" "$out/whole.txt"
+done
+check "every scan of the run is found in the truth" grep -Eq '^  \[ok\] ([0-9]+) of \1 recorded scans were found' "$out/whole.txt"
+check "it says how many tracks lived on ghosts" grep -Eq '^  \[(ok|MISSED)\] no track lived on ghosts' "$out/whole.txt"
+check "its page shows labels, truth, and scans from above" \
+  [ "$(grep -Ec 'told to be</h2>|against the truth</h2>|Most ghosts told: at' "$out/whole/report.html")" -eq 3 ]
 check "it writes a report" grep -q 'Everything worked' "$out/whole/report.html"
 check "it leaves nothing behind" nothing_left
 [ $failed -eq 0 ] || cat "$out/whole.txt"

@@ -88,7 +88,7 @@ class Drive {
 };
 
 const Check& check_about(const std::vector<Check>& checks, const std::string& part) {
-  static const Check none{"", false};
+  static const Check none{"", false, false};
   for (const Check& check : checks) {
     if (check.what.find(part) != std::string::npos) return check;
   }

@@ -102,6 +102,20 @@ TEST(Summary, CountersThatStartAnewAreAddedUp) {
   EXPECT_EQ(summary.latencies[0].total(), 4800U);
 }
 
+TEST(Summary, AnAimThatIsMissedIsToldAndFailsNothing) {
+  Summary summary = summarise(synthetic_drive(), synthetic_truth());
+  summary.checks.push_back({"an aim", false, true});
+  EXPECT_TRUE(summary.all_passed());
+  EXPECT_EQ(summary.missed_aims(), 1u);
+  EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("  [MISSED] an aim\n"));
+  ReportInput input;
+  input.snapshots = synthetic_drive();
+  input.more_checks = {{"an aim", false, true}};
+  EXPECT_THAT(render_html(input), ::testing::HasSubstr("missed:</span> an aim"));
+  summary.checks.push_back({"a check", false, false});
+  EXPECT_FALSE(summary.all_passed());
+}
+
 TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheOnlooker) {
   auto snapshots = synthetic_drive();
   for (std::size_t i = 0; i < snapshots.size(); ++i) {

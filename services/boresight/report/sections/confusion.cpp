@@ -10,7 +10,8 @@ namespace {
 
 std::string render_matrix(const judge::Confusion& confusion) {
   std::string text = "<table><tr><th>in truth</th><th class=n>detections</th>";
-  for (const LabelStyle& style : kLabelStyles) text += fmt::format("<th class=n>told {}</th>", style.words);
+  for (const LabelStyle& style : kLabelStyles)
+    text += fmt::format("<th class=n>{}{}</th>", style.label == Provenance::kUnknown ? "" : "told ", style.words);
   text += "<th class=n>ghost, either</th><th class=n>left out before</th></tr>\n";
   for (const Provenance truth : judge::kTruths) {
     const std::uint64_t count = confusion.count(truth);

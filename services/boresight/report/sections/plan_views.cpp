@@ -120,12 +120,11 @@ std::string render_plan_views(const ReportInput& input, const TimeBase& time) {
       "<p class=\"legend\">";
   for (const LabelStyle& style : kLabelStyles) text += key_of(style);
   text += SvgChart::key(SvgChart::Shape::kSquare, "lx") + "left out by the corrector" +
-          SvgChart::key(SvgChart::Shape::kDash, "segment") + "reflector" +
-          SvgChart::key(SvgChart::Shape::kSquare, "box") + "confirmed track" +
-          SvgChart::key(SvgChart::Shape::kTriangle, "sensor") + "radar";
+          SvgChart::key(SvgChart::Shape::kDash, "segment") + "reflector" + SvgChart::key(SvgChart::Shape::kBox, "box") +
+          "confirmed track" + SvgChart::key(SvgChart::Shape::kTriangle, "sensor") + "radar";
   if (ghosts.confusion) {
     text += SvgChart::key(SvgChart::Shape::kCircle, "wrong") + "label differs from the truth" +
-            SvgChart::key(SvgChart::Shape::kSquare, "truebox") + "object in truth";
+            SvgChart::key(SvgChart::Shape::kBox, "truebox") + "object in truth";
   }
   text += "</p>\n";
   if (ghosts.most_ghosts.detections.empty()) return text + "<p>No detection was told to be a ghost.</p>\n";

@@ -6,11 +6,15 @@
 namespace boresight::report {
 
 std::string render_verdict(const ReportInput& input, const Summary& summary) {
-  std::string text = fmt::format("<div class=\"verdict{}\"><b>{}</b><ul>\n", summary.all_passed() ? "" : " bad",
+  const std::size_t missed = summary.missed_aims();
+  std::string text = fmt::format("<div class=\"verdict{}\"><b>{}</b>", summary.all_passed() ? "" : " bad",
                                  summary.all_passed() ? "Everything worked." : "Not everything worked.");
+  if (missed > 0) text += fmt::format(" <span class=\"warn\">{} of what is aimed at was missed.</span>", missed);
+  text += "<ul>\n";
   for (const Check& check : summary.checks) {
-    text += fmt::format("<li><span class=\"{}\">{}</span> {}</li>\n", check.passed ? "good" : "bad",
-                        check.passed ? "✓" : "✗", escape(check.what));
+    text +=
+        fmt::format("<li><span class=\"{}\">{}</span> {}</li>\n", check.passed ? "good" : (check.aim ? "warn" : "bad"),
+                    check.passed ? "✓" : (check.aim ? "missed:" : "✗"), escape(check.what));
   }
   text += "</ul></div>\n";
   if (!input.truth.known()) text += "<p class=\"faint\">No truth is known for this drive.</p>\n";
