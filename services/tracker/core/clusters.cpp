@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interfaces/messages/radar_scan.hpp"
+
 namespace boresight::tracking {
 
 namespace {
@@ -79,6 +81,7 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   Cluster cluster{};
   cluster.position_m.setZero();
+  const bool has_rcs = (scan.fields & scan_field::kRcs) != 0;
   cluster.z_min_m = 1e9;
   cluster.z_max_m = -1e9;
   double range_variance = 0.0, cross_variance = 0.0, rate_variance = 0.0;
@@ -96,6 +99,8 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
     rate_variance += real * real * static_cast<double>(scan.range_rate_std_mps[i] * scan.range_rate_std_mps[i]);
     cluster.z_min_m = std::min(cluster.z_min_m, static_cast<double>(scan.z_vehicle_m[i]));
     cluster.z_max_m = std::max(cluster.z_max_m, static_cast<double>(scan.z_vehicle_m[i]));
+    // fmax: the other one where one is no number.
+    if (has_rcs) cluster.strongest_dbsm = std::fmax(cluster.strongest_dbsm, static_cast<double>(scan.rcs_dbsm[i]));
     // A ghost beside an object shall not make it longer.
     if (real >= 0.5 && cluster.number_on_outline < cluster.outline.size()) {
       cluster.outline[cluster.number_on_outline++] = points_[k];
@@ -110,9 +115,8 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
   if (sight.squaredNorm() < 1e-6) return;
   cluster.line_of_sight = sight.normalized();
   const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
-  const double centre_variance = config_.centre_std_m * config_.centre_std_m;
-  cluster.covariance_m2 = (range_variance / (sum * sum) + centre_variance) * u * u.transpose() +
-                          (cross_variance / (sum * sum) + centre_variance) * v * v.transpose();
+  cluster.covariance_m2 =
+      range_variance / (sum * sum) * u * u.transpose() + cross_variance / (sum * sum) * v * v.transpose();
   cluster.range_rate_variance = rate_variance / (sum * sum) + config_.range_rate_std_mps * config_.range_rate_std_mps;
   clusters_.push_back(cluster);
 }
@@ -126,6 +130,7 @@ std::span<const Cluster> Clusterer::join(std::size_t first, std::size_t second) 
   into.realness += share * (part.realness - into.realness);
   into.line_of_sight = (into.line_of_sight + share * (part.line_of_sight - into.line_of_sight)).normalized();
   into.weight = weight;
+  into.strongest_dbsm = std::fmax(into.strongest_dbsm, part.strongest_dbsm);
   into.z_min_m = std::min(into.z_min_m, part.z_min_m);
   into.z_max_m = std::max(into.z_max_m, part.z_max_m);
   into.number_of_detections += part.number_of_detections;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct Cluster {
   Eigen::Vector2d line_of_sight;  ///< unit vector from the sensor
   double z_min_m, z_max_m;
   double realness;  ///< probability that it is no ghost: 1 − `ghost_probability`, of those detections that count most
+  double strongest_dbsm =
+      std::numeric_limits<double>::quiet_NaN();  ///< RCS of the strongest detection; NaN: the sensor measures none
   std::uint32_t number_of_detections;
   double weight;                            ///< sum of that probability over the detections
   std::array<Eigen::Vector2d, 24> outline;  ///< up to 24 of the detections that are rather real, for the extent

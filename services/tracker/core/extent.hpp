@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -21,10 +22,16 @@ struct VisibleFaces {
 /// Box along the heading. A side that is seen grows quickly to what is seen and shrinks slowly, as one scan sees only
 /// some of its reflections; a side that is not seen stays as it is, at the start that of a car.
 struct Extent {
+  static constexpr double kCarLength_m = 4.5, kCarWidth_m = 1.8;
   double heading_rad = 0.0;
-  double length_m = 4.5;
-  double width_m = 1.8;
+  double length_m = kCarLength_m;
+  double width_m = kCarWidth_m;
   double height_m = 0.0;
+  double strongest_dbsm = std::numeric_limits<double>::quiet_NaN();  ///< mean of the scans' strongest detections
+
+  /// A person's or a cycle's. A vehicle's corners and plates reflect far more than people and cycles do (some 10 dBsm
+  /// beside some -5), so that strength tells sizes apart long before the detections do. Without RCS all are vehicles.
+  bool is_small = false;
 
   [[nodiscard]] VisibleFaces visible_faces(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
     const Eigen::Vector2d at = to_body(sensor_m - centre_m);
@@ -58,6 +65,7 @@ struct Extent {
     }
     const std::size_t n = std::min<std::size_t>(cluster.number_on_outline, cluster.outline.size());
     if (n == 0) return;
+    hear(cluster.strongest_dbsm, velocity_mps.norm());
     Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
     for (std::size_t i = 0; i < n; ++i) {
       const Eigen::Vector2d p = to_body(cluster.outline[i]);
@@ -68,9 +76,30 @@ struct Extent {
     // Few detections say little of how long a side is, and a side that is seen at a slant shows little of itself.
     const double said = static_cast<double>(n) / static_cast<double>(n + 3);
     const Eigen::Vector2d sight = to_body(centre_m - sensor_m).normalized();
-    follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * sight.y() * sight.y(), 0.5, kLongest_m);
-    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), 0.5, 4.0);
+    follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * sight.y() * sight.y(), kSmallest_m,
+           kLongest_m);
+    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), kSmallest_m, 4.0);
     if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
+  }
+
+  /// As strong as `dbsm` and at that speed: as long as a person or a cycle would be so, the box is no larger than what
+  /// was seen of it.
+  void hear(double dbsm, double speed_mps) {
+    constexpr double kGain = 0.2, kFastestCycle_mps = 9.0;
+    if (!std::isfinite(dbsm)) return;
+    const bool is_first = !std::isfinite(strongest_dbsm);
+    strongest_dbsm = is_first ? dbsm : strongest_dbsm + kGain * (dbsm - strongest_dbsm);
+    const bool may_be_small =
+        strongest_dbsm < kLeastOfVehicle_dbsm && strongest_dbsm > kLeastOfPerson_dbsm && speed_mps < kFastestCycle_mps;
+    if (is_first && may_be_small) {
+      is_small = true;
+      length_m = kSmallLength_m;
+      width_m = kSmallWidth_m;
+    } else if (is_small && !may_be_small) {
+      is_small = false;
+      length_m = std::max(length_m, kCarLength_m);
+      width_m = std::max(width_m, kCarWidth_m);
+    }
   }
 
   [[nodiscard]] ObjectClass object_class() const {
@@ -112,7 +141,10 @@ struct Extent {
   }
 
  private:
-  static constexpr double kLongest_m = 20.0;
+  static constexpr double kLongest_m = 20.0, kSmallest_m = 0.5;
+  static constexpr double kSmallLength_m = 1.2, kSmallWidth_m = 0.7;  // between a person and a cycle
+  static constexpr double kLeastOfVehicle_dbsm = 3.0;
+  static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger
   [[nodiscard]] Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
     const double c = std::cos(heading_rad), s = std::sin(heading_rad);
     return {c * v.x() + s * v.y(), -s * v.x() + c * v.y()};

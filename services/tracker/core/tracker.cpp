@@ -12,12 +12,17 @@ namespace boresight::tracking {
 
 namespace {
 
-/// The cluster as a measurement of the centre of the box that it would be the visible part of.
-PositionRate measurement_of(const Cluster& cluster, const Eigen::Vector2d& visible_mean_m) {
+/// The cluster as a measurement of the centre of the box that it would be the visible part of. How far the mean of what
+/// is seen may be from where the box says it is goes with its size.
+PositionRate measurement_of(const Cluster& cluster, const Extent& extent, const Eigen::Vector2d& visible_mean_m,
+                            double centre_std_m) {
+  constexpr double kLeast = 0.25;  // of a person who walks
+  const double share = extent.is_small ? std::clamp(extent.length_m / Extent::kCarLength_m, kLeast, 1.0) : 1.0;
   PositionRate m;
   m.value << cluster.position_m - visible_mean_m, cluster.range_rate_over_ground_mps;
   m.covariance.setZero();
-  m.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2;
+  m.covariance.topLeftCorner<2, 2>() =
+      cluster.covariance_m2 + share * share * centre_std_m * centre_std_m * Eigen::Matrix2d::Identity();
   m.covariance(2, 2) = cluster.range_rate_variance;
   m.line_of_sight = cluster.line_of_sight;
   return m;
@@ -110,7 +115,8 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     visible_mean_[t] = tracks_[t].extent.visible_mean(tracks_[t].state.mean.head<2>(), sensor);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      const Distance d = distance(tracks_[t].state, measurement_of(clusters[c], visible_mean_[t]));
+      const Distance d = distance(
+          tracks_[t].state, measurement_of(clusters[c], tracks_[t].extent, visible_mean_[t], config_.centre_std_m));
       if (d.squared >= config_.gate_chi2) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
@@ -125,7 +131,7 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
     Entry& track = tracks_[t];
     // What may be a ghost moves the track by as little as it is likely real.
-    PositionRate measurement = measurement_of(cluster, visible_mean_[t]);
+    PositionRate measurement = measurement_of(cluster, track.extent, visible_mean_[t], config_.centre_std_m);
     measurement.covariance /= cluster.realness;
     if (!update(track.state, measurement)) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
@@ -153,7 +159,8 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   track.id = next_id_++;
   track.state.mean.segment<2>(2) = cluster.range_rate_over_ground_mps * cluster.line_of_sight;
   track.state.covariance.setZero();
-  const double centre = config_.start_position_std_m * config_.start_position_std_m;
+  const double centre =
+      config_.start_position_std_m * config_.start_position_std_m + config_.centre_std_m * config_.centre_std_m;
   track.state.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2 + centre * Eigen::Matrix2d::Identity();
   // The range rate says the speed along the line of sight; across it nothing is known.
   const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
@@ -163,6 +170,7 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   const double acceleration = config_.start_acceleration_std_mps2 * config_.start_acceleration_std_mps2;
   track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
   track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
+  if (cluster.number_on_outline > 0) track.extent.hear(cluster.strongest_dbsm, track.state.mean.segment<2>(2).norm());
   track.state.mean.head<2>() = cluster.position_m - track.extent.visible_mean(cluster.position_m, sensor);
   track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
   track.history = 1;

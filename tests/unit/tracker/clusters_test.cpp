@@ -61,17 +61,30 @@ TEST(Clusterer, UncertaintyIsLargestAcrossTheLineOfSight) {
   scene.begin(kMillisecond);
   scene.add({63.6, 60.0}, {10.0, 0.0});
   scene.scan->azimuth_std_rad[0] = 0.03F;
-  Config config;
-  config.centre_std_m = 0.1;
-  Clusterer clusterer(config);
+  Clusterer clusterer(Config{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);
   const Eigen::Vector2d u = clusters[0].line_of_sight, v(-u.y(), u.x());
   EXPECT_NEAR(u.x(), std::sqrt(0.5), 1e-5);
   const double range = 60.0 * std::sqrt(2.0);
-  EXPECT_NEAR(u.dot(clusters[0].covariance_m2 * u), 0.15 * 0.15 + 0.01, 1e-5);
-  EXPECT_NEAR(v.dot(clusters[0].covariance_m2 * v), std::pow(0.03 * range, 2) + 0.01, 1e-3);
+  EXPECT_NEAR(u.dot(clusters[0].covariance_m2 * u), 0.15 * 0.15, 1e-5);
+  EXPECT_NEAR(v.dot(clusters[0].covariance_m2 * v), std::pow(0.03 * range, 2), 1e-3);
   EXPECT_NEAR(u.dot(clusters[0].covariance_m2 * v), 0.0, 1e-6);
+}
+
+TEST(Clusterer, IsAsStrongAsItsStrongestDetection) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  scene.add({20.0, 0.0}, {1.0, 0.0});
+  scene.add({20.5, 0.0}, {1.0, 0.0});
+  Clusterer clusterer(Config{});
+  EXPECT_TRUE(std::isnan(clusterer.find(*scene.scan)[0].strongest_dbsm)) << "the sensor measures none";
+  scene.scan->fields |= scan_field::kRcs;
+  scene.scan->rcs_dbsm[0] = std::numeric_limits<float>::quiet_NaN();
+  scene.scan->rcs_dbsm[1] = -7.0F;
+  EXPECT_EQ(clusterer.find(*scene.scan)[0].strongest_dbsm, -7.0);
+  scene.scan->rcs_dbsm[0] = 4.0F;
+  EXPECT_EQ(clusterer.find(*scene.scan)[0].strongest_dbsm, 4.0);
 }
 
 TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
@@ -145,6 +158,28 @@ TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
   EXPECT_GT(extent.length_m, 7.0) << "a few scans that show a part of it";
   for (int i = 0; i < 2000; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
   EXPECT_NEAR(extent.length_m, 2.0, 0.1);
+}
+
+TEST(Extent, IsAPersonsAsLongAsItReflectsAndMovesAsOne) {
+  Extent person;
+  person.hear(-6.0, 1.4);
+  EXPECT_LT(person.length_m, 2.0);
+  EXPECT_LT(person.width_m, 1.0);
+  for (int i = 0; i < 5; ++i) person.hear(-14.0, 1.4);
+  EXPECT_TRUE(person.is_small) << "limbs only";
+  person.hear(5.0, 1.4);
+  EXPECT_TRUE(person.is_small) << "one strong echo";
+  for (int i = 0; i < 20; ++i) person.hear(10.0, 1.4);
+  EXPECT_FALSE(person.is_small) << "a car that showed its wheels first";
+  EXPECT_EQ(person.length_m, 4.5);
+  EXPECT_EQ(person.width_m, 1.8);
+
+  for (const auto& [dbsm, speed_mps] : {std::pair{8.0, 1.4}, std::pair{-6.0, 12.0}, std::pair{-20.0, 1.4},
+                                        std::pair{std::numeric_limits<double>::quiet_NaN(), 1.4}}) {
+    Extent vehicle;
+    vehicle.hear(dbsm, speed_mps);
+    EXPECT_EQ(vehicle.length_m, 4.5) << dbsm << " dBsm, " << speed_mps << " m/s";
+  }
 }
 
 TEST(Extent, ShowsItsSideToWhoStandsBesideItsTrack) {

@@ -209,6 +209,29 @@ TEST_F(TrackerTest, EstimatesPlaceVelocityAndBox) {
   EXPECT_GT(track.existence_probability, 0.95F);
 }
 
+TEST_F(TrackerTest, KnowsWhereAPersonGoesWhoCrossesTheLineOfSight) {
+  // Hardly a range rate: the velocity shows by the place only, which is as sure as a person is small.
+  const auto walk = [&](double rcs_dbsm) {
+    Tracker tracker(two_radars(), Config{});
+    const Eigen::Vector2d v(0.0, 1.3);
+    for (int k = 0; k < 40; ++k) {
+      scene_.begin(now_ + k * 50 * kMillisecond);
+      scene_.add(Eigen::Vector2d(15.0, -4.0) + 0.05 * k * v, v);
+      scene_.scan->fields |= scan_field::kRcs;
+      scene_.scan->rcs_dbsm[0] = static_cast<float>(rcs_dbsm);
+      tracker.step(*scene_.scan);
+    }
+    tracker.write(*list_);
+    return list_->tracks[0];
+  };
+  const Track person = walk(-6.0), car = walk(10.0);
+  EXPECT_LT(person.length_m, 1.5F);
+  EXPECT_NEAR(person.velocity_over_ground_mps[1], 1.3, 0.3);
+  EXPECT_NEAR(person.position_vehicle_m[1], -1.465, 0.3);
+  const std::size_t across = 3 * kTrackStateSize + 3;
+  EXPECT_LT(person.covariance[across], 0.5F * car.covariance[across]);
+}
+
 TEST_F(TrackerTest, OutputHasNothingOfTheStaleChunk) {
   for (int i = 0; i < 6; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
   const Track& t = list().tracks[0];

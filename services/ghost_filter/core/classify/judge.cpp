@@ -60,13 +60,19 @@ void Judge::cross(const Measured& m, std::uint32_t but_object) {
   });
 }
 
-bool Judge::is_known_still(const Measured& m) const {
+const StationaryGrid::Cell* Judge::known_still(const Measured& m) const {
   const std::uint32_t at = s_.stationary->index_at(s_.odometry->point_to_frame(m.position_m));
-  return at != StationaryGrid::kUnclaimed && s_.stationary->cells()[at].count >= 3;  // one is the detection itself
+  if (at == StationaryGrid::kUnclaimed || s_.stationary->cells()[at].count < 3) return nullptr;  // one is it itself
+  return &s_.stationary->cells()[at];
 }
 
-double Judge::of_stationary(const Measured& m) const {
-  const bool known = is_known_still(m);
+bool Judge::was_before(const StationaryGrid::Cell& cell, const Measured& m, const Object& o) const {
+  constexpr double kAround_m = 0.5;
+  const double elapsed_s = static_cast<double>(s_.odometry->now_ns() - cell.first_ns) * 1e-9;
+  return elapsed_s > o.age_s || !is_on(o, m.position_m + elapsed_s * o.velocity_mps, kAround_m);
+}
+
+double Judge::of_stationary(const Measured& m, bool known) const {
   // The tail of the errors is fatter than Gaussian.
   const double fit =
       0.95 * gaussian(m.rate_mps, square(m.still_std_mps)) + 0.05 * gaussian(m.rate_mps, square(2.5 * m.still_std_mps));
@@ -124,7 +130,7 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
                       likelihood(kNewStrength, above_db, 0.0, config_.strength_doubt);
   densities.clutter = config_.clutter_density * (company ? kCompanyOfClutter : 1.0 - kCompanyOfClutter) *
                       likelihood(kClutterStrength, above_db, 0.0, config_.strength_doubt);
-  densities.stationary = of_stationary(m);
+  densities.stationary = of_stationary(m, known_still(m) != nullptr);
   return densities;
 }
 
@@ -132,9 +138,12 @@ Densities Judge::weigh_still(const Measured& m) {
   Densities densities;
   crossings_.clear();
   // Where something is known to stand, and where it fits what stands best, nothing else needs to be asked for.
-  if (std::abs(m.rate_mps) > m.still_std_mps && !is_known_still(m)) cross(m, kNobody);
+  const StationaryGrid::Cell* const cell = known_still(m);
+  if (std::abs(m.rate_mps) > m.still_std_mps && cell == nullptr) cross(m, kNobody);
   of_objects(m, true, densities);
-  densities.stationary = of_stationary(m);
+  const bool is_known =
+      cell != nullptr && (densities.nearest == kNobody || was_before(*cell, m, s_.objects[densities.nearest]));
+  densities.stationary = of_stationary(m, is_known);
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {
     densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody));

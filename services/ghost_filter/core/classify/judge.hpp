@@ -31,10 +31,11 @@ struct Measured {
 /// Expected number of detections for each m², m/s and dB.
 struct Densities {
   double moving = 0.0, stationary = 0.0, type1 = 0.0, type2 = 0.0, clutter = 0.0;
-  std::uint32_t object = kNobody;  ///< the one whose body, or image, it most likely is of
-  double of_body = 0.0;            ///< its part, if a mirror between did not hide it
-  double of_tracks = 0.0;          ///< part of `moving` that is of tracked objects
-  double of_images = 0.0;          ///< part of `type2` that is of tracks that are images themselves
+  std::uint32_t object = kNobody;   ///< the one whose body, or image, it most likely is of
+  std::uint32_t nearest = kNobody;  ///< the one that contributes most to `moving`
+  double of_body = 0.0;             ///< its part, if a mirror between did not hide it
+  double of_tracks = 0.0;           ///< part of `moving` that is of tracked objects
+  double of_images = 0.0;           ///< part of `type2` that is of tracks that are images themselves
   [[nodiscard]] double sum() const { return moving + stationary + type1 + type2 + clutter; }
 };
 
@@ -97,12 +98,15 @@ class Judge {
   /// Expected density of ghosts, if every object has one, of tracked objects and of what was detected lately.
   [[nodiscard]] double ghosts_of(const Target& target, const Measured& measured, std::uint32_t but_object,
                                  std::uint32_t but_index) const;
-  /// `surely_moving`: only of those whose speed is beyond doubt.
-  void of_objects(const Measured& measured, bool surely_moving, Densities& densities) const;
+  /// `looks_still`: of those that move, as likely as they do.
+  void of_objects(const Measured& measured, bool looks_still, Densities& densities) const;
   /// The same of objects that are not tracked (yet) but were detected, in this scan or just before.
   [[nodiscard]] double of_movers(const Measured& measured, std::uint32_t index) const;
-  [[nodiscard]] bool is_known_still(const Measured& measured) const;
-  [[nodiscard]] double of_stationary(const Measured& measured) const;
+  /// The cell of the map in which something was detected before, or nullptr.
+  [[nodiscard]] const StationaryGrid::Cell* known_still(const Measured& measured) const;
+  /// Whether something was detected there before the object came: what has been there only since then may be of it.
+  [[nodiscard]] bool was_before(const StationaryGrid::Cell& cell, const Measured& measured, const Object& object) const;
+  [[nodiscard]] double of_stationary(const Measured& measured, bool is_known) const;
   [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,

@@ -11,16 +11,19 @@ namespace {
 
 /// Vehicles do not reach through rails, but are seen above them.
 constexpr double kSeenThrough = 0.03;
+/// Of what as likely stands, and of what is hardly known to be there, nothing looks stationary that is not.
+constexpr double kLeastMoving = 0.6, kLeastThere = 0.5;
 
 }  // namespace
 
-void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densities) const {
+void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities) const {
+  double most = 0.0;
   const Eigen::Matrix2d covariance = outer(m.direction, square(m.range_std_m) + square(0.2)) +
                                      outer(left_of(m.direction), square(m.range_m * m.azimuth_std_rad) + square(0.2));
   const auto judge = [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (o.own || (o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) return;
-    if (surely_moving && !moves_surely(o)) return;
+    if (looks_still && (o.moving < kLeastMoving || o.weight < kLeastThere)) return;
     const Reflections place = reflections_at(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
     if (place.wheel <= 0.0) return;
     double seen = 1.0;
@@ -31,11 +34,17 @@ void Judge::of_objects(const Measured& m, bool surely_moving, Densities& densiti
     }
     const RateDensity rates = rates_at(o, m.rate_mps, m.direction, rate_variance(m));
     const double above_db = m.rcs_dbsm - o.rcs_dbsm, doubt = config_.strength_doubt;
-    const double all = o.weight * config_.real_per_object * seen;
+    const double weight = o.weight * (looks_still ? o.moving : 1.0);
+    const double all = weight * config_.real_per_object * seen;
     const double of_whole = config_.real_per_object * (1.0 - config_.wheel_share) * place.body * rates.body *
                             likelihood(kBodyStrength, above_db, o.rcs_std_db, doubt);
-    densities.moving += o.weight * seen * of_whole + all * config_.wheel_share * place.wheel * rates.wheel *
+    const double of_all = weight * seen * of_whole + all * config_.wheel_share * place.wheel * rates.wheel *
                                                          likelihood(kWheelStrength, above_db, o.rcs_std_db, doubt);
+    densities.moving += of_all;
+    if (of_all > most) {
+      most = of_all;
+      densities.nearest = i;
+    }
     densities.of_tracks = densities.moving;
     // The detections of an image are where it is tracked, as those of an object are.
     densities.of_images += o.image * of_whole;

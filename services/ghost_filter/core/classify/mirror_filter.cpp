@@ -20,6 +20,7 @@ constexpr double kTrackDensity =
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
 constexpr double kSurest = 3.0;      // log-odds
 constexpr double kNoImage = 0.95;    // weight of an object that surely is where it seems to be
+constexpr double kMoves = 0.8;       // probability from which on what an object shows is no part of the map
 constexpr double kHeard_db = 3.0;    // a track's strength is known if its std is less
 /// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kObjectStrength{-2.0, 9.0};
@@ -64,7 +65,7 @@ MirrorFilter::MirrorFilter(const MirrorConfig& config)
     : config_(config), map_(config.map), judge_(config.classes), tracks_(std::make_unique<TrackList>()) {
   mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
   objects_.reserve(Judge::kMaxObjects);
-  surely_moving_.reserve(Judge::kMaxObjects);
+  moving_.reserve(Judge::kMaxObjects);
   measured_.resize(kMaxDetections);
 }
 
@@ -117,6 +118,8 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
       o.image = existing - o.weight;
       o.rcs_dbsm = images_[i].rcs_dbsm;
       o.rcs_std_db = images_[i].rcs_std_db;
+      o.moving = moving_of(o);
+      o.age_s = track.age_s;
       track_of_object_[objects_.size()] = i;
       objects_.push_back(o);
     }
@@ -195,19 +198,19 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
 
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
-  surely_moving_.clear();
+  moving_.clear();
   for (std::uint32_t k = 0; k < objects_.size(); ++k) {
     const Object& o = objects_[k];
-    if (o.weight <= 0.5 || !moves_surely(o)) continue;
+    if (o.weight <= 0.5 || o.moving < kMoves) continue;
     const double length = o.half_length_m + kAroundBody_m, width = o.half_width_m + kAroundBody_m;
-    surely_moving_.push_back({o.position_m, length * length + width * width, k});
+    moving_.push_back({o.position_m, length * length + width * width, k});
   }
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
     const Measured& m = measured_[i];
     // What a moving object shows without a range rate is no part of the map.
-    if (std::any_of(surely_moving_.begin(), surely_moving_.end(), [&](const Body& body) {
+    if (std::any_of(moving_.begin(), moving_.end(), [&](const Body& body) {
           return (m.position_m - body.position_m).squaredNorm() <= body.reach2_m2 &&
                  is_on(objects_[body.object], m.position_m, kAroundBody_m);
         })) {
@@ -216,9 +219,9 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
     const double across = m.range_m * m.azimuth_std_rad;
     map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
   }
-  for (const Body& body : surely_moving_) {
+  for (const Body& body : moving_) {
     const Object& o = objects_[body.object];
-    if (o.weight < kNoImage) continue;
+    if (o.weight < kNoImage || o.moving < 1.0) continue;
     const Eigen::Vector2d reach = o.half_length_m * o.axis;
     map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));
   }

@@ -55,7 +55,7 @@ class MirrorFilter final : public Method {
   Judge judge_;
   std::vector<Mirror> mirrors_;
   std::vector<Object> objects_;  // the own vehicle is the last
-  std::vector<Body> surely_moving_;
+  std::vector<Body> moving_;
   std::vector<Measured> measured_;  // the scan's usable detections, at their places
   std::array<std::uint32_t, kMaxTracks> track_of_object_{};
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call

@@ -91,6 +91,14 @@ bool moves_surely(const Object& object) {
   return p(1, 1) * square(v.x()) - 2.0 * p(0, 1) * v.x() * v.y() + p(0, 0) * square(v.y()) > 9.0 * determinant;
 }
 
+double moving_of(const Object& object) {
+  if (moves_surely(object)) return 1.0;
+  const double speed_mps = object.velocity_mps.norm();
+  if (speed_mps <= kSlow_mps) return 0.0;
+  const Eigen::Vector2d course = object.velocity_mps / speed_mps;
+  return below((speed_mps - kSlow_mps) / std::sqrt(std::max(1e-9, course.dot(object.velocity_covariance * course))));
+}
+
 RateDensity rates_at(const Object& object, double rate_mps, const Eigen::Vector2d& q, double noise_variance) {
   const double mean = q.dot(object.velocity_mps);
   const double variance = noise_variance + q.dot(object.velocity_covariance * q);

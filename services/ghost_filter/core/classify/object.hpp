@@ -19,6 +19,8 @@ struct Object {
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
   double weight = 0.0;  ///< probability that it exists and is no image itself
   double image = 0.0;   ///< that it exists and is an image
+  double moving = 1.0;  ///< probability that it does not just stand
+  double age_s = 1e9;   ///< since it was first tracked
   bool own = false;     ///< the own vehicle: seen only in mirrors
   double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, on average
 };
@@ -35,6 +37,8 @@ struct Object {
 
 /// Whether the object's speed is beyond doubt.
 [[nodiscard]] bool moves_surely(const Object& object);
+/// Probability that the object moves, by its velocity and what is not known of that.
+[[nodiscard]] double moving_of(const Object& object);
 
 /// Densities for each m² of an object's reflections at a place, the number of each kind being 1.
 struct Reflections {

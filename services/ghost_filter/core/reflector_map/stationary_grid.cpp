@@ -45,7 +45,7 @@ void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns
     const std::uint32_t number = tile_table_.at(place, last);
     if (number == last) tiles_.push_back({.place = place});
     Tile& tile = tiles_[number];
-    cells_[index] = {.next = tile.first, .place = at};
+    cells_[index] = {.first_ns = time_ns, .next = tile.first, .place = at};
     tile.first = index;
     ++tile.cells;
     ++tile.news;

@@ -19,6 +19,7 @@ class StationaryGrid {
   static constexpr std::int32_t kTileCells = 32;                                          ///< across a tile
   struct Cell {
     Eigen::Vector2d sum_m{0.0, 0.0};
+    std::int64_t first_ns = 0;  ///< since when something was detected here again and again
     std::int64_t last_ns = 0;
     std::uint32_t count = 0;  ///< 0: not in use
     std::uint32_t next = kUnclaimed;
