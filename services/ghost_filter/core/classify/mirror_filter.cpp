@@ -20,15 +20,13 @@ constexpr double kTrackDensity =
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
 constexpr double kSurest = 3.0;      // log-odds
 constexpr double kNoImage = 0.95;    // weight of an object that surely is where it seems to be
-constexpr double kMoves = 0.8;       // probability from which on what an object shows is no part of the map
 constexpr double kHeard_db = 3.0;    // a track's strength is known if its std is less
 /// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
 constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
-constexpr double kSlowest = 0.1;       // share of a new judgement of a track in what is thought of it
-constexpr double kAroundBody_m = 0.5;  // what seems to stand there is of the body
-constexpr double kChordSag_m = 0.2;    // an arc is published as chords that leave it by this at most
+constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
+constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
 double track_density(double speed_mps) {
@@ -62,10 +60,13 @@ Eigen::Matrix2d block(const Track& track, std::size_t at) {
 }  // namespace
 
 MirrorFilter::MirrorFilter(const MirrorConfig& config)
-    : config_(config), map_(config.map), judge_(config.classes), tracks_(std::make_unique<TrackList>()) {
+    : config_(config),
+      map_(config.map),
+      judge_(config.classes),
+      bodies_(Judge::kMaxObjects),
+      tracks_(std::make_unique<TrackList>()) {
   mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
   objects_.reserve(Judge::kMaxObjects);
-  moving_.reserve(Judge::kMaxObjects);
   measured_.resize(kMaxDetections);
 }
 
@@ -198,29 +199,18 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
 
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
-  moving_.clear();
-  for (std::uint32_t k = 0; k < objects_.size(); ++k) {
-    const Object& o = objects_[k];
-    if (o.weight <= 0.5 || o.moving < kMoves) continue;
-    const double length = o.half_length_m + kAroundBody_m, width = o.half_width_m + kAroundBody_m;
-    moving_.push_back({o.position_m, length * length + width * width, k});
-  }
+  bodies_.find(objects_);
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
     const Measured& m = measured_[i];
     // What a moving object shows without a range rate is no part of the map.
-    if (std::any_of(moving_.begin(), moving_.end(), [&](const Body& body) {
-          return (m.position_m - body.position_m).squaredNorm() <= body.reach2_m2 &&
-                 is_on(objects_[body.object], m.position_m, kAroundBody_m);
-        })) {
-      continue;
-    }
+    if (bodies_.any_at(m.position_m)) continue;
     const double across = m.range_m * m.azimuth_std_rad;
     map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
   }
-  for (const Body& body : moving_) {
-    const Object& o = objects_[body.object];
+  for (const std::uint32_t number : bodies_.numbers()) {
+    const Object& o = objects_[number];
     if (o.weight < kNoImage || o.moving < 1.0) continue;
     const Eigen::Vector2d reach = o.half_length_m * o.axis;
     map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));

@@ -8,6 +8,7 @@
 
 #include "services/ghost_filter/core/classify/filter_config.hpp"
 #include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/moving_bodies.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/method.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
@@ -33,12 +34,6 @@ class MirrorFilter final : public Method {
     std::uint32_t judgements = 0;
     double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, as far as they were heard
   };
-  /// An object that surely moves and is no image.
-  struct Body {
-    Eigen::Vector2d position_m;
-    double reach2_m2;  ///< squared distance of its box's corners, to see at a glance what lies elsewhere
-    std::uint32_t object;
-  };
   void update_map(const CorrectedScan& scan, std::size_t count);
   void predict_objects(const CorrectedScan& scan);
   void place_mirrors();
@@ -55,7 +50,7 @@ class MirrorFilter final : public Method {
   Judge judge_;
   std::vector<Mirror> mirrors_;
   std::vector<Object> objects_;  // the own vehicle is the last
-  std::vector<Body> moving_;
+  MovingBodies bodies_;
   std::vector<Measured> measured_;  // the scan's usable detections, at their places
   std::array<std::uint32_t, kMaxTracks> track_of_object_{};
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call

@@ -61,13 +61,13 @@ std::optional<FoundCurve> CurveSearch::find(std::span<Eigen::Vector2d> points, s
   const auto on = [&](const Curve& curve, const Eigen::Vector2d& p) {
     return curve.is_within(curve.local(p), config_.tolerance_m);
   };
+  inliers_.set(points);
   std::optional<Curve> best;
   std::size_t most = config_.min_cells - 1;
   for (int k = 0; k < kDraws; ++k) {
     const std::optional<Curve> candidate = draw(points, k % 2 == 1);
     if (!candidate) continue;
-    std::size_t inliers = 0;
-    for (const Eigen::Vector2d& p : points) inliers += on(*candidate, p) ? 1U : 0U;
+    const std::size_t inliers = inliers_.count(*candidate, config_.tolerance_m);
     if (inliers <= most) continue;
     most = inliers;
     best = candidate;

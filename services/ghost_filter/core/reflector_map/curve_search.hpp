@@ -10,6 +10,7 @@
 
 #include "services/ghost_filter/core/reflector_map/config.hpp"
 #include "services/ghost_filter/core/reflector_map/curve.hpp"
+#include "services/ghost_filter/core/reflector_map/inliers.hpp"
 
 namespace boresight::ghosts {
 
@@ -35,6 +36,7 @@ class CurveSearch {
   [[nodiscard]] std::size_t random(std::size_t below);
   MapConfig config_;
   std::uint64_t state_ = 0x9E3779B97F4A7C15ULL;
+  Inliers<kMaxPoints> inliers_;
   std::vector<double> arcs_m_;
 };
 

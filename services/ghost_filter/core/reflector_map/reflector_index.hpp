@@ -19,6 +19,8 @@ class ReflectorIndex {
   ReflectorIndex();
   /// Enters all, and as far beyond their ends as `beyond_m`. What finds no room any more is not entered.
   void build(std::span<const Reflector> reflectors, double beyond_m);
+  /// Enters one more.
+  void add(const Reflector& reflector, std::uint32_t number, double beyond_m);
   void clear();
   /// Calls `visit(number)` for each reflector that runs past the place, and for some that run a few metres away.
   template <typename Visit>

@@ -99,7 +99,11 @@ void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double
 void ReflectorMap::drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   constexpr double kLane_m = 4.0;
   constexpr double kAcross = 0.5;  // sine: what drives along a wall may seem to touch it
+  const double way_m = (to_m - from_m).norm();
   for (Reflector& r : reflectors_) {
+    // What is farther away than both reach does not cross.
+    const double reach_m = std::max(-r.begin_m(), r.end_m()) + way_m + 2.0 * kLane_m;
+    if ((r.curve.origin_m - from_m).squaredNorm() > reach_m * reach_m) continue;
     const Eigen::Vector2d from = r.curve.local(from_m), to = r.curve.local(to_m);
     if ((from.x() > r.end_m() && to.x() > r.end_m()) || (from.x() < r.begin_m() && to.x() < r.begin_m())) continue;
     const double before = r.curve.distance_of_local(from), behind = r.curve.distance_of_local(to);
@@ -267,11 +271,13 @@ void ReflectorMap::take(const FoundCurve& found, std::span<const Eigen::Vector2d
   }
   r.occupancy.settle();
   reflectors_.push_back(r);
-  index_is_due_ = true;
-  if (unite(reflectors_.back())) {
-    std::erase_if(reflectors_, [](const Reflector& each) { return each.log_odds < kDead; });
-    index_.clear();
+  if (!unite(reflectors_.back())) {
+    index_.add(r, static_cast<std::uint32_t>(reflectors_.size() - 1), config_.max_gap_m);
+    return;
   }
+  std::erase_if(reflectors_, [](const Reflector& each) { return each.log_odds < kDead; });
+  index_.clear();
+  index_is_due_ = true;
 }
 
 }  // namespace boresight::ghosts
