@@ -89,6 +89,8 @@ class Finder {
   }
   void take(const ClassifiedScan& scan) {
     ++out_.scans;
+    const std::int64_t time_ns = scan.header.measurement_time_ns;
+    out_.first_scan_ns = out_.scans == 1 ? time_ns : std::min(out_.first_scan_ns, time_ns);
     const std::size_t count = scan.number_of_valid_detections;
     Recent recent{std::make_unique<ClassifiedScan>(scan), nullptr};
     if (truth_ != nullptr && begin_ns_) {
@@ -106,7 +108,7 @@ class Finder {
     std::deque<Recent>& of_radar = recent_[scan.header.source_id];
     of_radar.push_front(std::move(recent));
     if (of_radar.size() > kKept) of_radar.pop_back();
-    look(scan.header.measurement_time_ns);
+    look(time_ns);
   }
   void take(const TrackList& list) {
     ++out_.track_lists;
@@ -149,7 +151,8 @@ class Finder {
       most_ghosts_ = ghosts;
       out_.most_ghosts = view(scans);
     }
-    if (mistakes > most_mistakes_) {
+    const bool settled = static_cast<double>(now_ns - out_.first_scan_ns) * 1e-9 >= GhostFindings::kFirstMoments_s;
+    if (settled && mistakes > most_mistakes_) {
       most_mistakes_ = mistakes;
       out_.most_mistakes = view(scans);
     }

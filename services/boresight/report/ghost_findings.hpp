@@ -54,16 +54,20 @@ struct PlanView {
 };
 
 struct GhostFindings {
-  std::uint64_t scans = 0;        ///< in the record; 0: there is none
-  std::uint64_t track_lists = 0;  ///< the same
-  PlanView most_ghosts;           ///< where most detections were told to be ghosts; no detections where none ever was
+  std::uint64_t scans = 0;         ///< in the record; 0: there is none
+  std::uint64_t track_lists = 0;   ///< the same
+  std::int64_t first_scan_ns = 0;  ///< of measurement, of the earliest
+  PlanView most_ghosts;            ///< where most detections were told to be ghosts; no detections where none ever was
   // With truth only:
   std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that could be found in the truth
   std::uint64_t compared_scans = 0;           ///< of the scans that hold detections
   std::uint64_t unknown_scans = 0;  ///< the others of these: no scan of that time and number of detections in the truth
   std::vector<judge::GhostTrack> ghost_tracks;  ///< times are CLOCK_MONOTONIC
   std::size_t other_false_tracks = 0;           ///< of clutter, or of the stationary world
-  PlanView most_mistakes;                       ///< where most labels differ from the truth
+  /// Where most labels differ from the truth. It is always the first moments of a drive, when neither mirrors nor
+  /// tracks are known, so that those are passed over here (and nowhere else).
+  PlanView most_mistakes;
+  static constexpr double kFirstMoments_s = 2.0;
 };
 
 /// `record` as monitor::write_scan and write_tracks wrote it; it is read twice. Null: nothing is known of the truth.

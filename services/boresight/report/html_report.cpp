@@ -10,7 +10,7 @@ namespace boresight::report {
 std::string render_html(const ReportInput& input) {
   Summary summary = summarise(input.snapshots, input.truth);
   summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
-  const TimeBase time(input.snapshots);
+  const TimeBase time(input.snapshots, input.ghosts);
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Boresight report</title>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><style>";

@@ -71,10 +71,11 @@ class Drive {
     monitor::write_tracks(record, list);
   }
   /// All scans but those that were lost; the ghost told to be moving in the first `mistakes` of each radar.
-  void publish_all(int mistakes, int lost_until = 7) {
-    for (int k = lost_until; k < kScans; ++k) {
+  void publish_all(int mistakes) {
+    constexpr int kLost = 7;
+    for (int k = kLost; k < kScans; ++k) {
       for (std::uint32_t radar : {1u, 2u}) {
-        publish(radar, k, k < lost_until + mistakes ? Provenance::kMoving : Provenance::kGhostType2);
+        publish(radar, k, k < kLost + mistakes ? Provenance::kMoving : Provenance::kGhostType2);
       }
     }
   }
@@ -123,6 +124,8 @@ TEST(GhostFindings, MistakesAndTracksOfGhostsAreCountedAndFail) {
   EXPECT_EQ(found.ghost_tracks[0].scans, 120u);
   EXPECT_NEAR(found.ghost_tracks[0].since_s, static_cast<double>(Drive::time_ns(1, 7)) * 1e-9, 1e-4);
   EXPECT_EQ(found.most_mistakes.detections.at(1).truth, Provenance::kGhostType2);
+  EXPECT_EQ(found.first_scan_ns, Drive::time_ns(1, 7));
+  EXPECT_GE(found.most_mistakes.time_ns, found.first_scan_ns + 2'000'000'000) << "not of the first moments";
   EXPECT_EQ(found.most_mistakes.objects.size(), 1u);
   const std::vector<Check> checks = ghost_checks(found);
   const Check& ghosts = check_about(checks, "ghosts of type 2");
@@ -167,7 +170,7 @@ TEST(GhostPage, ShowsMatrixTracksAndViews) {
   EXPECT_THAT(page, HasSubstr("title=\"120\">15.27 %</td>"));
   EXPECT_THAT(page, HasSubstr("<td>#5</td><td class=n>120</td>"));
   EXPECT_THAT(page, HasSubstr("Most ghosts told: at "));
-  EXPECT_THAT(page, HasSubstr("Most labels wrong: at "));
+  EXPECT_THAT(page, HasSubstr("Most labels wrong after the first 2 s: at "));
   EXPECT_THAT(page, HasSubstr("radar 1: ghost type 2, in truth ghost type 2; 20.0 m ahead, 9.0 m left"));
   EXPECT_THAT(page, HasSubstr("object 1 in truth"));
   EXPECT_THAT(page, HasSubstr("track #5"));

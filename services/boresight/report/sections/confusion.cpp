@@ -9,7 +9,7 @@ namespace boresight::report {
 namespace {
 
 std::string render_matrix(const judge::Confusion& confusion) {
-  std::string text = "<table><tr><th>in truth</th><th class=n>detections</th>";
+  std::string text = "<div class=\"wide\"><table><tr><th>in truth</th><th class=n>detections</th>";
   for (const LabelStyle& style : kLabelStyles)
     text += fmt::format("<th class=n>{}{}</th>", style.label == Provenance::kUnknown ? "" : "told ", style.words);
   text += "<th class=n>ghost, either</th><th class=n>left out before</th></tr>\n";
@@ -29,7 +29,7 @@ std::string render_matrix(const judge::Confusion& confusion) {
     text += fmt::format("<td class=n>{}</td><td class=n>{}</td></tr>\n",
                         known_number(confusion.percent_ghost(truth), " %", 2), confusion.rejected(truth));
   }
-  return text + "</table>\n";
+  return text + "</table></div>\n";
 }
 
 std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& time) {

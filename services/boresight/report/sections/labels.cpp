@@ -79,11 +79,11 @@ std::string render_labels(const ReportInput& input, const TimeBase& time, const 
       "weak "
       "or outside of the region; no stage after it uses these.</p>\n";
   if (summary.labels.detections() == 0) return text + "<p>No scan of the ghost filter was seen.</p>\n";
-  text += "<table><tr><th>radar</th><th class=n>detections</th>";
+  text += "<div class=\"wide\"><table><tr><th>radar</th><th class=n>detections</th>";
   for (const LabelStyle& style : kLabelStyles) text += fmt::format("<th class=n>{}</th>", style.words);
   text += "<th class=n>left out</th><th class=n>scans told without tracks</th></tr>\n";
   for (const RadarSummary& radar : summary.radars) text += row(escape(radar.last.name), radar.last.labels);
-  return text + row("<b>all</b>", summary.labels) + "</table>\n" + render_shares(input, time);
+  return text + row("<b>all</b>", summary.labels) + "</table></div>\n" + render_shares(input, time);
 }
 
 }  // namespace boresight::report

@@ -129,7 +129,9 @@ std::string render_plan_views(const ReportInput& input, const TimeBase& time) {
   text += "</p>\n";
   if (ghosts.most_ghosts.detections.empty()) return text + "<p>No detection was told to be a ghost.</p>\n";
   text += render("Most ghosts told", ghosts.most_ghosts, time);
-  if (!ghosts.most_mistakes.detections.empty()) text += render("Most labels wrong", ghosts.most_mistakes, time);
+  if (!ghosts.most_mistakes.detections.empty())
+    text += render(fmt::format("Most labels wrong after the first {:.0f} s", GhostFindings::kFirstMoments_s),
+                   ghosts.most_mistakes, time);
   return text;
 }
 

@@ -20,10 +20,10 @@ using monitor::Snapshot;
 
 inline constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
-/// Seconds since the first snapshot with a scan.
+/// Seconds since the first scan, as far as it is known: of the record of scans, else of the first snapshot with one.
 class TimeBase {
  public:
-  explicit TimeBase(const std::vector<Snapshot>& snapshots) {
+  TimeBase(const std::vector<Snapshot>& snapshots, const GhostFindings& ghosts) {
     for (const Snapshot& snapshot : snapshots) {
       if (begin_ns_ == 0) begin_ns_ = snapshot.time_ns;
       const bool any = std::any_of(snapshot.radars.begin(), snapshot.radars.end(), [](auto& r) { return r.scans > 0; });
@@ -31,6 +31,7 @@ class TimeBase {
       begin_ns_ = snapshot.time_ns;
       break;
     }
+    if (ghosts.scans > 0) begin_ns_ = ghosts.first_scan_ns;
     if (!snapshots.empty()) end_s_ = std::max(1.0, seconds(snapshots.back()));
   }
   [[nodiscard]] double seconds(std::int64_t time_ns) const { return static_cast<double>(time_ns - begin_ns_) * 1e-9; }

@@ -9,7 +9,8 @@ std::string render_verdict(const ReportInput& input, const Summary& summary) {
   const std::size_t missed = summary.missed_aims();
   std::string text = fmt::format("<div class=\"verdict{}\"><b>{}</b>", summary.all_passed() ? "" : " bad",
                                  summary.all_passed() ? "Everything worked." : "Not everything worked.");
-  if (missed > 0) text += fmt::format(" <span class=\"warn\">{} of what is aimed at was missed.</span>", missed);
+  if (missed > 0)
+    text += fmt::format(" <span class=\"warn\">{} {} missed.</span>", missed, missed == 1 ? "aim was" : "aims were");
   text += "<ul>\n";
   for (const Check& check : summary.checks) {
     text +=
