@@ -75,6 +75,20 @@ TEST(Simulate, AScenarioLeavesRecordingsAndTruth) {
     EXPECT_THAT(text_of("/tmp/simulate.out"), HasSubstr(std::string("  /tmp/s/deep/er/") + file + "\n"));
     EXPECT_FALSE(text_of(std::filesystem::path("/tmp/s/deep/er") / file).empty()) << file;
   }
+  // Every column is explained where the table is.
+  const std::string readme = text_of(BORESIGHT_SOURCE_DIR "/tests/simulator/README.md");
+  for (const std::string table : {"detections", "objects", "sensors", "visibility"}) {
+    const std::size_t row = readme.find("\n| " + table + " |");
+    ASSERT_NE(row, std::string::npos) << table;
+    const std::string explained = readme.substr(row + 1, readme.find('\n', row + 1) - row - 1);
+    std::ifstream file("/tmp/s/deep/er/truth_" + table + ".csv");
+    std::string header;
+    std::getline(file, header);
+    std::istringstream columns(header);
+    for (std::string column; std::getline(columns, column, ',');) {
+      EXPECT_THAT(explained, testing::ContainsRegex("[`, ]" + column + "[`,]")) << table;
+    }
+  }
   // A file of one's own, with the vehicle it names, over what an earlier run left.
   std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\nduration_s = 0.5\n";
   ASSERT_EQ(simulate("--scenario /tmp/own.toml --out /tmp/s/deep/er" + demo), 0) << errors();

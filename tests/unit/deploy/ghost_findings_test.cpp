@@ -177,6 +177,19 @@ TEST(GhostPage, ShowsMatrixTracksAndViews) {
   EXPECT_THAT(page, Not(HasSubstr("nan")));
 }
 
+TEST(GhostPage, SaysWhatIsFartherOffThanItDraws) {
+  ReportInput input;
+  input.ghosts.scans = 1;
+  input.ghosts.most_ghosts.detections = {{1, 20.0F, 0.0F, 5.0F, 0.1F, Provenance::kMoving, false, std::nullopt},
+                                         {1, 250.0F, 0.0F, 5.0F, 0.9F, Provenance::kGhostType2, false, std::nullopt},
+                                         {1, NAN, 0.0F, 5.0F, 0.9F, Provenance::kGhostType2, false, std::nullopt},
+                                         {1, 300.0F, 0.0F, 0.0F, 0.0F, Provenance::kStationary, false, std::nullopt}};
+  const std::string page = render_html(input);
+  EXPECT_THAT(page,
+              HasSubstr("detections: 4, 2 of them told to be ghosts; 2 of what does not stand still lie farther"));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+}
+
 TEST(GhostPage, SaysWhatIsMissing) {
   EXPECT_THAT(render_html({}), HasSubstr("Scans were not recorded, so there is nothing to compare"));
   EXPECT_THAT(render_html({}), HasSubstr("No scan of the ghost filter was seen."));

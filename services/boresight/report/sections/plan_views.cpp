@@ -26,8 +26,11 @@ std::vector<Point> corners(double x, double y, double heading_rad, double length
 /// What is shown: all that is not stationary, with some of what is around it.
 struct Extent {
   double back_m = -25.0, ahead_m = 35.0, right_m = -12.0, left_m = 12.0;
+  [[nodiscard]] bool shows(double x, double y) const {
+    return x >= back_m && x <= ahead_m && y >= right_m && y <= left_m;
+  }
   void take(double x, double y) {
-    constexpr double kAlong_m = 150.0, kAcross_m = 45.0, kMargin_m = 4.0;  // farther off is cut
+    constexpr double kAlong_m = 200.0, kAcross_m = 45.0, kMargin_m = 4.0;  // farther off is cut
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ahead_m = std::max(ahead_m, std::min(x + kMargin_m, kAlong_m));
     back_m = std::min(back_m, std::max(x - kMargin_m, -kAlong_m));
@@ -43,12 +46,21 @@ std::string tooltip(const PlanView::Detection& d) {
                             d.y_m, d.range_rate_over_ground_mps, d.ghost_probability);
 }
 
-std::string draw(const PlanView& view) {
+/// What matters most; the rest is drawn small, and where there is room.
+bool stands_out(const PlanView::Detection& d) {
+  return !d.left_out && d.told != Provenance::kStationary;
+}
+
+Extent extent_of(const PlanView& view) {
   Extent extent;
   for (const PlanView::Detection& d : view.detections) {
-    if (!d.left_out && d.told != Provenance::kStationary) extent.take(d.x_m, d.y_m);
+    if (stands_out(d)) extent.take(d.x_m, d.y_m);
   }
   for (const PlanView::Box& box : view.tracks) extent.take(box.x_m, box.y_m);
+  return extent;
+}
+
+std::string draw(const PlanView& view, const Extent& extent) {
   // The same scale along both axes; the margins of the chart are 64 px across and 46 px down.
   const double px_per_m = (1080.0 - 64.0) / (extent.ahead_m - extent.back_m);
   SvgChart chart(1080, 46.0 + (extent.left_m - extent.right_m) * px_per_m,
@@ -65,8 +77,7 @@ std::string draw(const PlanView& view) {
   // What stands below what matters.
   for (const bool still : {true, false}) {
     for (const PlanView::Detection& d : view.detections) {
-      const bool is_still = d.left_out || d.told == Provenance::kStationary;
-      if (is_still != still) continue;
+      if (stands_out(d) == still) continue;
       const LabelStyle& style = style_of(d.told);
       const auto shape = d.left_out ? SvgChart::Shape::kSquare : style.shape;
       chart.symbol({d.x_m, d.y_m}, shape, still ? 2.0 : kSymbol_px, d.left_out ? "lx" : style.css, tooltip(d));
@@ -88,24 +99,27 @@ std::string draw(const PlanView& view) {
 }
 
 std::string render(const std::string& what, const PlanView& view, const TimeBase& time) {
-  std::size_t wrong = 0, ghosts = 0, compared = 0;
+  const Extent extent = extent_of(view);
+  std::size_t wrong = 0, ghosts = 0, compared = 0, outside = 0;
   double oldest_s = 0.0;
   for (const PlanView::Detection& d : view.detections) {
     if (d.left_out) continue;
     ghosts += d.told == Provenance::kGhostType1 || d.told == Provenance::kGhostType2 ? 1 : 0;
+    outside += stands_out(d) && !extent.shows(d.x_m, d.y_m) ? 1 : 0;
     if (d.truth) ++compared;
     if (d.truth && *d.truth != d.told) ++wrong;
   }
   for (const PlanView::Sensor& sensor : view.sensors) oldest_s = std::max(oldest_s, sensor.age_s);
   std::string text = fmt::format(
-      "<h3>{}: at {:.2f} s</h3>\n<p class=\"faint\">{} scans, up to {:.0f} ms apart, {} detections, {} told to be "
-      "ghosts",
+      "<h3>{}: at {:.2f} s</h3>\n<p class=\"faint\">Scans: {}, up to {:.0f} ms apart; detections: {}, {} of them "
+      "told to be ghosts",
       what, time.seconds(view.time_ns), view.sensors.size(), 1e3 * oldest_s, view.detections.size(), ghosts);
   if (compared > 0) text += fmt::format("; {} of {} labels differ from the truth", wrong, compared);
+  if (outside > 0) text += fmt::format("; {} of what does not stand still lie farther off than is drawn", outside);
   return text +
-         fmt::format(". {} confirmed tracks, from {:.0f} ms before.</p>\n", view.tracks.size(),
+         fmt::format(". Confirmed tracks: {}, from {:.0f} ms before.</p>\n", view.tracks.size(),
                      1e3 * view.tracks_age_s) +
-         draw(view);
+         draw(view, extent);
 }
 
 }  // namespace
