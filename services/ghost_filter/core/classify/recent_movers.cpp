@@ -16,15 +16,9 @@ RecentMovers::RecentMovers() : moved_(kCapacity), newest_(kCapacity) {
 
 void RecentMovers::clear() {
   movers_.clear();
-  all_.first.clear();
-  weighing_.first.clear();
+  all_.clear();
+  weighing_.clear();
   earlier_ = 0;
-}
-
-void RecentMovers::Chains::link(const Eigen::Vector2d& position_m, std::uint32_t i) {
-  std::uint32_t& head = first.at(geometry::grid_cell(position_m.x(), position_m.y(), kCell_m), kNone);
-  next[i] = head;
-  head = i;
 }
 
 void RecentMovers::enter(std::uint32_t i, const Odometry& odometry) {
@@ -56,8 +50,8 @@ void RecentMovers::forget(std::int64_t oldest_ns, const Odometry& odometry) {
   }
   movers_.erase(movers_.begin(), movers_.begin() + static_cast<std::ptrdiff_t>(kept));
   earlier_ = movers_.size();
-  all_.first.clear();
-  weighing_.first.clear();
+  all_.clear();
+  weighing_.clear();
   for (std::uint32_t i = 0; i < movers_.size(); ++i) enter(i, odometry);
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "services/common/geometry/cell_chains.hpp"
 #include "services/common/geometry/cell_table.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
 
@@ -48,8 +49,8 @@ class RecentMovers {
   [[nodiscard]] std::size_t earlier() const { return earlier_; }
   [[nodiscard]] const Mover& operator[](std::size_t i) const { return movers_[i]; }
   [[nodiscard]] std::size_t size() const { return movers_.size(); }
-  /// Calls `visit(mover, number)` for those in the cells about a position in the odometry frame: within kCell_m at
-  /// least.
+  /// Calls `visit(mover, number)` for those in the cells about a position in the odometry frame, within kCell_m at
+  /// least, and for some that are far away.
   template <typename Visit>
   void near(const Eigen::Vector2d& position_m, const Visit& visit) const {
     all_.near(position_m, [&](std::uint32_t i) { visit(movers_[i], i); });
@@ -69,28 +70,11 @@ class RecentMovers {
   static constexpr double kCell_m = 4.0;
 
  private:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  /// Numbers by cell.
-  struct Chains {
-    geometry::CellTable first{kCapacity};
-    std::vector<std::uint32_t> next = std::vector<std::uint32_t>(kCapacity, kNone);
-    void link(const Eigen::Vector2d& position_m, std::uint32_t i);
-    template <typename Visit>
-    void near(const Eigen::Vector2d& position_m, const Visit& visit) const {
-      const geometry::GridCell at = geometry::grid_cell(position_m.x(), position_m.y(), kCell_m);
-      for (std::int32_t column = at.column - 1; column <= at.column + 1; ++column) {
-        for (std::int32_t row = at.row - 1; row <= at.row + 1; ++row) {
-          const std::uint32_t* const head = first.find({column, row});
-          for (std::uint32_t i = head == nullptr ? kNone : *head; i != kNone; i = next[i]) visit(i);
-        }
-      }
-    }
-  };
   void enter(std::uint32_t i, const Odometry& odometry);
   std::vector<Mover> movers_;
   std::vector<MovedMover> moved_;  // of those that weigh something
   std::size_t earlier_ = 0;
-  Chains all_, weighing_;
+  geometry::CellChains all_{kCapacity, kCell_m}, weighing_{kCapacity, kCell_m};
   geometry::CellTable newest_;
 };
 
