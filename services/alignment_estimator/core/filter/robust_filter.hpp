@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "services/alignment_estimator/core/filter/common_pitch.hpp"
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/filter/efficiency.hpp"
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
@@ -107,6 +108,7 @@ class RobustFilter : public Method {
   std::vector<Radar> radars_;
   JointState state_;
   NuisanceModel nuisance_model_;
+  CommonPitch common_pitch_;
   KnockDetector knocks_;
   SmallKnockDetector small_knocks_;
   EgoTrend trend_;
