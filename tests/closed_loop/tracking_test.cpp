@@ -56,8 +56,8 @@ TEST_P(Tracking, FindsEveryVehicleSoonAndMakesUpLittle) {
     EXPECT_LT(figures.worst_delay_s, 0.5);
     EXPECT_LE(figures.switches, 2 * figures.stays);
     EXPECT_LT(figures.twice_tracks(), 0.12);
-    EXPECT_LT(figures.false_tracks(), 0.3);
-    EXPECT_LE(figures.false_ids, 8u);
+    EXPECT_LT(figures.false_tracks(), 0.2);
+    EXPECT_LE(figures.false_ids, 6u);
     EXPECT_LE(figures.early_false_ids, 2u);
     EXPECT_LE(figures.ids, 3 * figures.stays);
   }

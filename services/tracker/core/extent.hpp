@@ -48,8 +48,7 @@ struct Extent {
     const double end_share = std::abs(faces.end) * width_m, side_share = std::abs(faces.side) * length_m;
     if (end_share + side_share <= 0.0) return {0.0, 0.0};
     const Eigen::Vector2d body(0.5 * faces.end * length_m * end_share, 0.5 * faces.side * width_m * side_share);
-    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
-    return Eigen::Vector2d(c * body.x() - s * body.y(), s * body.x() + c * body.y()) / (end_share + side_share);
+    return from_body(body) / (end_share + side_share);
   }
 
   /// `velocity` over ground in vehicle axes sets the heading if it is fast enough to have a direction.
@@ -134,6 +133,22 @@ struct Extent {
     return std::abs(to_body(sensor_m - centre_m).y()) > 0.5 * width_m + kBesides_m;
   }
 
+  /// The shortest way along the box's axes by which it comes off a rectangle of the vehicle's axes, which it overlaps;
+  /// else nothing.
+  [[nodiscard]] Eigen::Vector2d way_off(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& middle_m,
+                                        const Eigen::Vector2d& half_m) const {
+    const Eigen::Vector2d at = to_body(centre_m - middle_m);
+    const double c = std::abs(std::cos(heading_rad)), s = std::abs(std::sin(heading_rad));
+    const Eigen::Vector2d reach(0.5 * length_m + c * half_m.x() + s * half_m.y(),
+                                0.5 * width_m + s * half_m.x() + c * half_m.y());
+    const Eigen::Vector2d depth = reach - at.cwiseAbs();
+    if (depth.minCoeff() <= 0.0) return {0.0, 0.0};
+    const int axis = depth.x() < depth.y() ? 0 : 1;
+    Eigen::Vector2d shift(0.0, 0.0);
+    shift(axis) = std::copysign(depth(axis), at(axis));
+    return from_body(shift);
+  }
+
   /// Whether a point lies in the box, made larger by a margin on every side.
   [[nodiscard]] bool contains(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& point_m, double margin_m) const {
     const Eigen::Vector2d at = to_body(point_m - centre_m);
@@ -148,6 +163,10 @@ struct Extent {
   [[nodiscard]] Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
     const double c = std::cos(heading_rad), s = std::sin(heading_rad);
     return {c * v.x() + s * v.y(), -s * v.x() + c * v.y()};
+  }
+  [[nodiscard]] Eigen::Vector2d from_body(const Eigen::Vector2d& v) const {
+    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
   }
   /// `shown`: how much of it was to be seen, 0 … 1.
   static void follow(double& value, double seen, double shown, double low, double high) {

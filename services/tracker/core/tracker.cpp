@@ -37,6 +37,11 @@ std::uint32_t window_mask(std::size_t scans) {
 Tracker::Tracker(const VehicleConfig& vehicle, const Config& config)
     : vehicle_(vehicle), config_(config), clusterer_(config) {
   tracks_.reserve(kMaxTracks);
+  for (const RadarConfig& radar : vehicle_.radars) {
+    const Eigen::Vector2d at(radar.mounting_pose.position_m[0], radar.mounting_pose.position_m[1]);
+    radars_low_m_ = radars_low_m_.cwiseMin(at);
+    radars_high_m_ = radars_high_m_.cwiseMax(at);
+  }
 }
 
 StepResult Tracker::step(const ClassifiedScan& scan) {
@@ -64,6 +69,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   result.dropped_clusters = clusterer_.dropped();
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   assign(clusters, sensor, has_elevation);
+  push_off(scan.geometry.ego_speed_mps);
   judge(scan);
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     if (cluster_used_[c] || clusters[c].realness < config_.start_realness) continue;
@@ -150,6 +156,24 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
   }
 }
 
+void Tracker::push_off(double ego_speed_mps) {
+  if (radars_low_m_.x() >= radars_high_m_.x() || radars_low_m_.y() >= radars_high_m_.y()) return;
+  const Eigen::Vector2d middle = 0.5 * (radars_low_m_ + radars_high_m_);
+  const Eigen::Vector2d half = 0.5 * (radars_high_m_ - radars_low_m_);
+  for (Entry& track : tracks_) {
+    Vector6d& mean = track.state.mean;
+    const Eigen::Vector2d away = track.extent.way_off(mean.head<2>(), middle, half);
+    const double depth = away.norm();
+    if (depth < 1e-3) continue;
+    const Eigen::Vector2d normal = away / depth;
+    mean.head<2>() += away;
+    // Nor does it come any nearer.
+    const Eigen::Vector2d relative = mean.segment<2>(2) - Eigen::Vector2d(ego_speed_mps, 0.0);
+    mean.segment<2>(2) -= std::min(0.0, normal.dot(relative)) * normal;
+    mean.tail<2>() -= std::min(0.0, normal.dot(mean.tail<2>())) * normal;
+  }
+}
+
 void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation) {
   if (tracks_.size() == tracks_.capacity()) {
     ++dropped_tracks_;
@@ -231,10 +255,14 @@ void Tracker::judge(const ClassifiedScan& scan) {
 
 bool Tracker::are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sensor) const {
   const Eigen::Vector2d p = a.state.mean.head<2>(), q = b.state.mean.head<2>();
+  const Eigen::Vector2d velocity = a.state.mean.segment<2>(2);
+  const double apart_mps = (velocity - b.state.mean.segment<2>(2)).norm();
+  // Two that have both long been tracked, each at a speed of its own, are two, wherever ghosts draw them.
+  constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5;
+  if (a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s && apart_mps > kOwnSpeed_mps) return false;
   // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.
   if (a.extent.contains(p, q, 0.0) || b.extent.contains(q, p, 0.0)) return true;
-  const Eigen::Vector2d velocity = a.state.mean.segment<2>(2);
-  if ((velocity - b.state.mean.segment<2>(2)).norm() > config_.duplicate_speed_mps) return false;
+  if (apart_mps > config_.duplicate_speed_mps) return false;
   const double margin_m = config_.duplicate_margin_m;
   if (a.extent.contains(p, q, margin_m) || b.extent.contains(q, p, margin_m)) return true;
   if (!a.extent.shows_side(p, sensor)) return false;

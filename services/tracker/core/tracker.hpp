@@ -53,6 +53,8 @@ class Tracker {
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
+  /// Nothing is where the own vehicle is: moves tracks that drift there back beside it, their velocity, too.
+  void push_off(double ego_speed_mps);
   void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
   void judge(const ClassifiedScan& scan);
   [[nodiscard]] bool are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sensor) const;
@@ -67,6 +69,7 @@ class Tracker {
   std::vector<Entry> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
   std::array<Eigen::Vector2d, kMaxTracks> visible_mean_;
+  Eigen::Vector2d radars_low_m_{1e9, 1e9}, radars_high_m_{-1e9, -1e9};  // what lies between them is the own body
   std::uint32_t next_id_ = 1;
   std::int64_t time_ns_ = 0;
   std::uint32_t flags_ = 0;

@@ -1,0 +1,92 @@
+// What tracks may not do, whatever the detections say: ghosts draw them through each other and the own vehicle.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/tracker/scene.hpp"
+
+namespace boresight::tracking {
+namespace {
+
+/// Radars on all four corners.
+VehicleConfig four_corners() {
+  VehicleConfig vehicle;
+  std::uint32_t id = 0;
+  for (const double x : {3.6, -0.8}) {
+    for (const double y : {0.75, -0.75}) {
+      RadarConfig radar;
+      radar.id = ++id;
+      radar.mounting_pose = {{x, y, 0.5}, 0.0, 0.0, 0.0};
+      radar.field_of_view.azimuth_min_rad = -M_PI;
+      radar.field_of_view.azimuth_max_rad = M_PI;
+      vehicle.radars.push_back(radar);
+    }
+  }
+  return vehicle;
+}
+
+TEST(Extent, TellsTheShortestWayOffTheOwnVehicle) {
+  const Extent truck{.heading_rad = 0.0, .length_m = 16.0, .width_m = 2.5};
+  const Eigen::Vector2d middle(1.4, 0.0), half(2.2, 0.75);
+  EXPECT_EQ(truck.way_off({2.0, -3.0}, middle, half), Eigen::Vector2d(0.0, 0.0));
+  EXPECT_LT((truck.way_off({2.0, -1.5}, middle, half) - Eigen::Vector2d(0.0, -0.5)).norm(), 1e-12);
+  EXPECT_LT((truck.way_off({11.4, -0.2}, middle, half) - Eigen::Vector2d(0.2, 0.0)).norm(), 1e-12) << "ahead";
+  const Extent crossing{.heading_rad = 0.5 * M_PI, .length_m = 16.0, .width_m = 2.5};
+  EXPECT_LT((crossing.way_off({4.6, 3.0}, middle, half) - Eigen::Vector2d(0.25, 0.0)).norm(), 1e-12);
+}
+
+TEST(TrackerOwnVehicle, NothingIsTrackedThroughIt) {
+  // A car drives beside; ghosts on the own side of it that the filter does not tell draw its track over.
+  Tracker tracker(four_corners(), Config{});
+  Scene scene;
+  TrackList list;
+  std::int64_t now = 1'000'000 * kMillisecond;
+  for (int i = 0; i < 140; ++i) {
+    scene.begin(now);
+    scene.scan->geometry.ego_speed_mps = 15.0F;
+    const double y = -2.9 + 0.03 * std::clamp(i - 40, 0, 83);
+    for (const double part : {-1.0, 0.0, 1.0}) scene.add({1.0 + part, y}, {15.0, 0.0});
+    tracker.step(*scene.scan);
+    now += 50 * kMillisecond;
+    tracker.write(list);
+    for (std::size_t k = 0; k < list.number_of_tracks; ++k) {
+      const Track& t = list.tracks[k];
+      const Extent box{.heading_rad = t.heading_rad, .length_m = t.length_m, .width_m = t.width_m};
+      const Eigen::Vector2d centre(t.position_vehicle_m[0], t.position_vehicle_m[1]);
+      // A track that begins in this scan is moved in the next one.
+      if (t.age_s < 0.01F) continue;
+      EXPECT_LT(box.way_off(centre, {1.4, 0.0}, {2.2, 0.75}).norm(), 0.1) << "after " << 0.05 * i << " s";
+    }
+  }
+  EXPECT_GE(list.number_of_confirmed_tracks, 1u);
+}
+
+TEST(TrackerDuplicates, TwoThatWereLongTrackedAtTheirOwnSpeedsStayTwo) {
+  // One overtakes the other after three seconds, so closely, by what is seen of both, that it passes through its box.
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  TrackList list;
+  std::int64_t now = 1'000'000 * kMillisecond;
+  std::set<std::uint32_t> ids;
+  for (int i = 0; i < 85; ++i) {
+    scene.begin(now);
+    const double t = 0.05 * i, slow = 36.0 + 5.0 * t, fast = 15.0 + 12.0 * t;
+    for (const double part : {-0.6, 0.0, 0.6}) {
+      scene.add({slow, part}, {5.0, 0.0});
+      scene.add({fast, 0.3 + part}, {12.0, 0.0});
+    }
+    tracker.step(*scene.scan);
+    now += 50 * kMillisecond;
+    tracker.write(list);
+    for (std::size_t k = 0; k < list.number_of_confirmed_tracks; ++k) ids.insert(list.tracks[k].tracking_id);
+    if (i > 20) {
+      EXPECT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << t << " s";
+    }
+  }
+  EXPECT_EQ(ids.size(), 2u);
+}
+
+}  // namespace
+}  // namespace boresight::tracking
