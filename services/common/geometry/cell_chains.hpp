@@ -3,9 +3,9 @@
 // told apart by whoever looks at distances anyway.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,8 +21,7 @@ class CellChains {
   CellChains(std::size_t capacity, double cell_m)
       : cell_m_(cell_m), first_(static_cast<std::size_t>(kSide) * kSide, kNone), next_(capacity, kNone) {}
 
-  /// All bits of kNone are set: as bytes it takes a tenth of the time.
-  void clear() { std::memset(first_.data(), 0xFF, first_.size() * sizeof(first_[0])); }
+  void clear() { std::fill(first_.begin(), first_.end(), kNone); }
   /// Enters a number at its place; numbers beyond the capacity are not entered. Once for each number after clear().
   void link(const Eigen::Vector2d& position_m, std::uint32_t number) {
     if (number >= next_.size()) return;
