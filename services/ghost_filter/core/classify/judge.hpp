@@ -116,6 +116,9 @@ class Judge {
                                     std::uint32_t but_object);
   [[nodiscard]] Target target_of(const Measured& measured, const Crossing& crossing, double rest_m,
                                  double metres_per_m) const;
+  /// Whether there may be something that is reflected where a way leads along the ray; the variance across it is m².
+  [[nodiscard]] bool may_be_at(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, const Approach& way,
+                               const Measured& measured, double variance_across) const;
   [[nodiscard]] double image_of_stationary(const Target& target, const Measured& measured) const;
   [[nodiscard]] bool has_company(const Measured& measured, std::uint32_t index) const;
   [[nodiscard]] double rate_variance(const Measured& m) const;

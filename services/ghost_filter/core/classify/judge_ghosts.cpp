@@ -88,7 +88,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     if (mover.weight * there * most_of_rest <= of_movers) return;
     // A track knows the velocity, a single detection one component of it.
     const double fits =
-        owned ? rates_at(s_.objects[mover.object], m.rate_mps - target.known_mps, target.q, rate_noise).body
+        owned ? body_rate_at(s_.objects[mover.object], m.rate_mps - target.known_mps, target.q, rate_noise)
               : rate_density(m.rate_mps - target.known_mps, target.q, moved.direction, mover.rate_mps,
                              square(config_.range_rate_slack_mps), along, rate_noise);
     const bool heard = std::isfinite(mover.rcs_dbsm);
@@ -118,6 +118,14 @@ Judge::Target Judge::target_of(const Measured& m, const Crossing& crossing, doub
   t.mirror = crossing.mirror;
   t.other_body = kNobody;
   return t;
+}
+
+bool Judge::may_be_at(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, const Approach& way,
+                      const Measured& m, double variance_across) const {
+  constexpr double kMargin = 1.2, kMargin_m = 0.5;  // the way's uncertainty is not the approach's
+  const double along = square(way.metres_per_m) * (square(2.0 * m.range_std_m) + square(way.length_std_m));
+  const double blur = reach_of(Eigen::Vector2d::Constant(along + variance_across + square(0.2)));
+  return sources_.about(from_m + way.rest_m * direction, kMargin * blur + kMargin_m + way.error_m) != 0;
 }
 
 double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) const {
@@ -157,7 +165,14 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
         sure * other.existence < kLeastChance || other.least_range_m > m.range_m)
       continue;
-    const auto met = meet(other, s_.sensor_m, turn.point_m, d, 2.0 * m.range_m - turn.distance_m, kLeastRest_m);
+    const double length = 2.0 * m.range_m - turn.distance_m;
+    const auto way = approach(other, s_.sensor_m, turn.point_m, d, length);
+    if (!way) continue;
+    const double far = turn.distance_m + way->rest_m;
+    const double across = m.azimuth_std_rad * (far + 2.0 * std::abs(way->rest_m) * turn.distance_m * turn.focus_per_m);
+    const double by_mirror = square(2.0 * way->rest_m * turn.angle_std_rad) + square(2.0 * turn.offset_std_m);
+    if (!may_be_at(turn.point_m, d, *way, m, square(across) + by_mirror)) continue;
+    const auto met = meet(other, s_.sensor_m, turn.point_m, d, length, kLeastRest_m);
     if (!met || sure * met->detour.probability < kLeastChance) continue;
     if (pairs_left_ == 0) break;
     --pairs_left_;
@@ -192,6 +207,8 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
     // The way out and back is no shorter than to the mirror and back.
     if (mirror.least_range_m > m.range_m) continue;
+    const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
+    if (!way || !may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))) continue;
     const auto met = meet(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
     if (!met || met->rest_m > m.range_m - 0.3 || met->detour.probability < kLeastChance) continue;
     const Eigen::Vector2d& u = met->detour.departure;

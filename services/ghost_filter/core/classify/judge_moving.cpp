@@ -99,8 +99,8 @@ double Judge::of_movers(const Measured& m, std::uint32_t index) const {
     const double turn = 1.0 - square(direction.dot(mover.direction));
     const double noise = rate_variance(m) + square(m.rate_std_mps) + square(15.0) * std::max(0.0, turn);
     // Even the best strength would not make it the likeliest.
-    const double here =
-        mover.weight * std::exp(-0.5 * chi2) / (2.0 * M_PI * variance) * gaussian(m.rate_mps - mover.rate_mps, noise);
+    const double here = mover.weight * exponential(-0.5 * chi2) / (2.0 * M_PI * variance) *
+                        gaussian(m.rate_mps - mover.rate_mps, noise);
     if (here * most_of_strength <= most) return;
     // Of how strong it may be a track knows more than what is usual.
     const bool owned = number >= own && mover.object != kNobody;

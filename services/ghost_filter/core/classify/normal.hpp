@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "services/ghost_filter/core/classify/exponential.hpp"
+
 namespace boresight::ghosts {
 
 [[nodiscard]] inline double square(double x) {
@@ -23,12 +25,12 @@ inline constexpr double kFarthest2 = 50.0;
 /// 0 beyond seven standard deviations.
 [[nodiscard]] inline double gaussian(double residual, double variance) {
   const double chi2 = residual * residual / variance;
-  return chi2 > kFarthest2 ? 0.0 : std::exp(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);
+  return chi2 > kFarthest2 ? 0.0 : exponential(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);
 }
 
 /// Standard normal distribution function, by the logistic approximation (to 0.01).
 [[nodiscard]] inline double below(double x) {
-  return 1.0 / (1.0 + std::exp(-1.702 * std::clamp(x, -20.0, 20.0)));
+  return 1.0 / (1.0 + exponential(-1.702 * std::clamp(x, -20.0, 20.0)));
 }
 
 [[nodiscard]] inline double gaussian(const Eigen::Vector2d& residual, const Eigen::Matrix2d& covariance) {
@@ -37,17 +39,7 @@ inline constexpr double kFarthest2 = 50.0;
   const double chi2 = (covariance(1, 1) * square(residual.x()) - 2.0 * covariance(0, 1) * residual.x() * residual.y() +
                        covariance(0, 0) * square(residual.y())) /
                       determinant;
-  return chi2 > kFarthest2 ? 0.0 : std::exp(-0.5 * chi2) / (2.0 * M_PI * std::sqrt(determinant));
-}
-
-/// Density at `q` of what lies evenly on the segment from (−half, 0) to (half, 0), blurred by a normal distribution.
-[[nodiscard]] inline double on_segment(const Eigen::Vector2d& q, double half, const Eigen::Matrix2d& covariance) {
-  const double across = gaussian(q.y(), covariance(1, 1));
-  if (across <= 0.0) return 0.0;
-  const double slope = covariance(0, 1) / covariance(1, 1);
-  const double along = q.x() - slope * q.y();
-  const double std = std::sqrt(std::max(1e-6, covariance(0, 0) - slope * covariance(0, 1)));
-  return across * std::max(0.0, below((along + half) / std) - below((along - half) / std)) / std::max(0.1, 2.0 * half);
+  return chi2 > kFarthest2 ? 0.0 : exponential(-0.5 * chi2) / (2.0 * M_PI * std::sqrt(determinant));
 }
 
 /// v vᵀ, scaled.

@@ -26,35 +26,67 @@ int side(double coordinate, double half) {
   return coordinate > half ? 1 : coordinate < -half ? -1 : 0;
 }
 
-/// Everything in the box's axes: the place from the box's centre with covariance `s`, and the path's ends.
-struct InBox {
-  Eigen::Vector2d place, from, lit;
-  Eigen::Matrix2d s;
+/// A normal distribution across a face, along which it is cut off at the ends.
+struct AcrossFace {
+  double variance, norm, slope, per_std_along;
+  AcrossFace(double across, double along, double both)
+      : variance(across),
+        norm(1.0 / std::sqrt(2.0 * M_PI * across)),
+        slope(both / across),
+        per_std_along(1.0 / std::sqrt(std::max(1e-6, along - both * both / across))) {}
+  /// Density at a place (along, across) of what lies evenly on the face from −half to half.
+  [[nodiscard]] double density(double along, double away, double half) const {
+    const double chi2 = away * away / variance;
+    if (chi2 > kFarthest2) return 0.0;
+    const double middle = along - slope * away;
+    const double share = below((middle + half) * per_std_along) - below((middle - half) * per_std_along);
+    return norm * exponential(-0.5 * chi2) * std::max(0.0, share) / std::max(0.1, 2.0 * half);
+  }
 };
 
-Reflections reflections_of(const InBox& in, const Eigen::Vector2d& half) {
-  const Eigen::Vector2d residual = in.place - in.place.cwiseMax(-half).cwiseMin(half);
-  // Too far along one axis is too far.
-  if (square(residual.x()) > kFarthest2 * in.s(0, 0) || square(residual.y()) > kFarthest2 * in.s(1, 1))
-    return {0.0, 0.0};
-  const double blur = 2.0 * M_PI * std::sqrt(std::max(1e-9, in.s(0, 0) * in.s(1, 1) - square(in.s(0, 1))));
-  const double anywhere = gaussian(residual, in.s) * blur / (blur + 4.0 * half.x() * half.y());
-  if (anywhere <= 0.0) return {0.0, 0.0};  // no face is nearer than the box
-  double sum = 0.0, weights = 0.0;
-  for (int axis = 0; axis < 2; ++axis) {
-    const int seen = side(in.from(axis), half(axis)), shone = side(in.lit(axis), half(axis));
-    for (const int end : {-1, 1}) {
-      const double weight = seen == end && shone == end ? 1.0 : seen == end || shone == end ? kEdge : 0.0;
-      if (weight <= 0.0) continue;
-      weights += weight;
-      const Eigen::Vector2d on(in.place(1 - axis), in.place(axis) - end * half(axis));
-      Eigen::Matrix2d turned;
-      turned << in.s(1 - axis, 1 - axis), in.s(0, 1), in.s(0, 1), in.s(axis, axis);
-      sum += weight * on_segment(on, half(1 - axis), turned);
+/// Everything in the box's axes: the place from the box's centre with its covariance, and the path's ends.
+struct InBox {
+  Eigen::Vector2d place, from, lit;
+  double xx, xy, yy;
+};
+
+class Faces {
+ public:
+  explicit Faces(const InBox& in)
+      : in_(in),
+        per_determinant_(1.0 / std::max(1e-12, in.xx * in.yy - in.xy * in.xy)),
+        blur_(2.0 * M_PI / std::sqrt(per_determinant_)),
+        across_{{{in.xx, in.yy, in.xy}, {in.yy, in.xx, in.xy}}} {}
+
+  [[nodiscard]] Reflections of_box(const Eigen::Vector2d& half) const {
+    const double x = beyond(in_.place.x(), half.x()), y = beyond(in_.place.y(), half.y());
+    // Too far along one axis is too far.
+    if (x * x > kFarthest2 * in_.xx || y * y > kFarthest2 * in_.yy) return {0.0, 0.0};
+    const double chi2 = (in_.yy * x * x - 2.0 * in_.xy * x * y + in_.xx * y * y) * per_determinant_;
+    if (chi2 > kFarthest2) return {0.0, 0.0};  // no face is nearer than the box
+    const double anywhere = exponential(-0.5 * chi2) / (blur_ + 4.0 * half.x() * half.y());
+    double sum = 0.0, weights = 0.0;
+    for (int axis = 0; axis < 2; ++axis) {
+      const int seen = side(in_.from(axis), half(axis)), shone = side(in_.lit(axis), half(axis));
+      for (const int end : {-1, 1}) {
+        const double weight = seen == end && shone == end ? 1.0 : seen == end || shone == end ? kEdge : 0.0;
+        if (weight <= 0.0) continue;
+        weights += weight;
+        sum += weight * across_[static_cast<std::size_t>(axis)].density(
+                            in_.place(1 - axis), in_.place(axis) - end * half(axis), half(1 - axis));
+      }
     }
+    return {weights > 0.0 ? kWithin * anywhere + (1.0 - kWithin) * sum / weights : anywhere, anywhere};
   }
-  return {weights > 0.0 ? kWithin * anywhere + (1.0 - kWithin) * sum / weights : anywhere, anywhere};
-}
+
+ private:
+  [[nodiscard]] static double beyond(double coordinate, double half) {
+    return coordinate - std::clamp(coordinate, -half, half);
+  }
+  const InBox& in_;
+  double per_determinant_, blur_;
+  std::array<AcrossFace, 2> across_;  // the faces at the ends of x, and of y
+};
 
 }  // namespace
 
@@ -68,14 +100,33 @@ Eigen::Vector2d most_extent(const Object& object) {
 Reflections reflections_at(const Object& object, const Eigen::Vector2d& place_m, const Eigen::Matrix2d& covariance,
                            const Eigen::Vector2d& seen_from_m, const Eigen::Vector2d& lit_from_m) {
   const Eigen::Vector2d q = place_m - object.position_m;
-  Eigen::Matrix2d axes;  // rows: the box's axes
-  axes << object.axis.x(), object.axis.y(), -object.axis.y(), object.axis.x();
-  const InBox in{axes * q, axes * (seen_from_m - object.position_m), axes * (lit_from_m - object.position_m),
-                 axes * (covariance + object.position_covariance) * axes.transpose()};
+  const double most_x = object.half_length_m + kGrowths.back().length_m;
+  const double most_y = object.half_width_m + kGrowths.back().width_m;
+  const double c = object.axis.x(), s = object.axis.y();
+  const double xx = covariance(0, 0) + object.position_covariance(0, 0);
+  const double yy = covariance(1, 1) + object.position_covariance(1, 1);
+  const double xy = covariance(0, 1) + object.position_covariance(0, 1);
+  const auto turned = [c, s](const Eigen::Vector2d& v) {
+    return Eigen::Vector2d(c * v.x() + s * v.y(), c * v.y() - s * v.x());
+  };
+  InBox in;
+  in.place = turned(q);
+  in.xx = c * c * xx + 2.0 * c * s * xy + s * s * yy;
+  in.yy = s * s * xx - 2.0 * c * s * xy + c * c * yy;
+  const auto is_far = [](double beyond, double variance) {
+    return beyond > 0.0 && beyond * beyond > kFarthest2 * variance;
+  };
+  if (is_far(std::abs(in.place.x()) - most_x, in.xx) || is_far(std::abs(in.place.y()) - most_y, in.yy)) {
+    return {0.0, 0.0};
+  }
+  in.xy = c * s * (yy - xx) + (c * c - s * s) * xy;
+  in.from = turned(seen_from_m - object.position_m);
+  in.lit = turned(lit_from_m - object.position_m);
+  const Faces faces(in);
   Reflections sum{0.0, 0.0};
   for (const Growth& growth : kGrowths) {
     const Reflections there =
-        reflections_of(in, {object.half_length_m + growth.length_m, object.half_width_m + growth.width_m});
+        faces.of_box({object.half_length_m + growth.length_m, object.half_width_m + growth.width_m});
     sum.body += growth.share * there.body;
     sum.wheel += growth.share * there.wheel;
   }
@@ -97,6 +148,10 @@ double moving_of(const Object& object) {
   if (speed_mps <= kSlow_mps) return 0.0;
   const Eigen::Vector2d course = object.velocity_mps / speed_mps;
   return below((speed_mps - kSlow_mps) / std::sqrt(std::max(1e-9, course.dot(object.velocity_covariance * course))));
+}
+
+double body_rate_at(const Object& object, double rate_mps, const Eigen::Vector2d& q, double noise_variance) {
+  return gaussian(rate_mps - q.dot(object.velocity_mps), noise_variance + q.dot(object.velocity_covariance * q));
 }
 
 RateDensity rates_at(const Object& object, double rate_mps, const Eigen::Vector2d& q, double noise_variance) {

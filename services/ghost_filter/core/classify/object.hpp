@@ -58,5 +58,7 @@ struct RateDensity {
 };
 [[nodiscard]] RateDensity rates_at(const Object& object, double rate_mps, const Eigen::Vector2d& q,
                                    double noise_variance);
+[[nodiscard]] double body_rate_at(const Object& object, double rate_mps, const Eigen::Vector2d& q,
+                                  double noise_variance);
 
 }  // namespace boresight::ghosts

@@ -24,7 +24,7 @@ void RecentMovers::clear() {
 void RecentMovers::enter(std::uint32_t i, const Odometry& odometry) {
   const Mover& m = movers_[i];
   all_.link(m.position_m, i);
-  if (!(m.weight > 0.0)) return;
+  if (!(m.weight > kLeastWeight)) return;
   weighing_.link(m.position_m, i);
   const double elapsed_s = static_cast<double>(odometry.now_ns() - m.time_ns) * 1e-9;
   const double across_m = kAcross_mps * elapsed_s;

@@ -64,10 +64,11 @@ class RecentMovers {
   template <typename Visit>
   void visit_weighing(const Visit& visit) const {
     for (std::size_t i = 0; i < movers_.size(); ++i) {
-      if (movers_[i].weight > 0.0) visit(moved_[i]);
+      if (movers_[i].weight > kLeastWeight) visit(moved_[i]);
     }
   }
   static constexpr double kCell_m = 4.0;
+  static constexpr double kLeastWeight = 1e-4;  ///< less cannot make a difference
 
  private:
   void enter(std::uint32_t i, const Odometry& odometry);

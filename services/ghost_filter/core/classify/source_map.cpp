@@ -5,17 +5,11 @@
 
 namespace boresight::ghosts {
 
-namespace {
-constexpr std::size_t index_of(std::size_t level, std::int32_t column, std::int32_t row, std::int32_t cells) {
-  return (level * static_cast<std::size_t>(cells) + static_cast<std::size_t>(row)) * static_cast<std::size_t>(cells) +
-         static_cast<std::size_t>(column);
-}
-}  // namespace
-
-SourceMap::SourceMap() : bits_(kReaches_m.size() * kCells * kCells, 0) {}
+SourceMap::SourceMap() : objects_(kReaches_m.size() * kCells * kCells, 0), movers_(kReaches_m.size() * kCells, 0) {}
 
 void SourceMap::clear() {
-  std::fill(bits_.begin(), bits_.end(), Bits{0});
+  std::fill(objects_.begin(), objects_.end(), Bits{0});
+  std::fill(movers_.begin(), movers_.end(), Bits{0});
 }
 
 std::int32_t SourceMap::cell_of(double coordinate_m) {
@@ -23,27 +17,33 @@ std::int32_t SourceMap::cell_of(double coordinate_m) {
   return static_cast<std::int32_t>(std::clamp(coordinate_m / kCell_m + kHalf, 0.0, kCells - 1.0));
 }
 
-void SourceMap::enter(Bits bit, const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m) {
-  if (!centre_m.allFinite() || !half_m.allFinite()) {
-    for (Bits& bits : bits_) bits |= bit;
-    return;
-  }
-  for (std::size_t level = 0; level < kReaches_m.size(); ++level) {
-    const Eigen::Vector2d half = half_m.array() + kReaches_m[level];
-    const std::int32_t left = cell_of(centre_m.x() - half.x()), right = cell_of(centre_m.x() + half.x());
-    const std::int32_t top = cell_of(centre_m.y() + half.y());
-    for (std::int32_t row = cell_of(centre_m.y() - half.y()); row <= top; ++row) {
-      for (std::int32_t column = left; column <= right; ++column) bits_[index_of(level, column, row, kCells)] |= bit;
-    }
-  }
+SourceMap::Cells SourceMap::cells_of(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m) {
+  if (!centre_m.allFinite() || !half_m.allFinite()) return {0, kCells - 1, 0, kCells - 1};
+  const Eigen::Vector2d low = centre_m - half_m, high = centre_m + half_m;
+  return {cell_of(low.x()), cell_of(high.x()), cell_of(low.y()), cell_of(high.y())};
 }
 
 void SourceMap::enter_object(std::uint32_t index, const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m) {
-  enter(Bits{1} << (index % kObjectBits), centre_m, half_m);
+  const Bits bit = Bits{1} << (index % kObjectBits);
+  Bits* row = objects_.data();
+  for (const double reach : kReaches_m) {
+    const Cells cells = cells_of(centre_m, half_m.array() + reach);
+    for (std::int32_t k = cells.bottom; k <= cells.top; ++k) {
+      for (std::int32_t column = cells.left; column <= cells.right; ++column) row[k * kCells + column] |= bit;
+    }
+    row += kCells * kCells;
+  }
 }
 
 void SourceMap::enter_mover(const Eigen::Vector2d& place_m, double reach_m) {
-  enter(kMovers, place_m, {reach_m, reach_m});
+  static_assert(kCells < 64);
+  Bits* row = movers_.data();
+  for (const double reach : kReaches_m) {
+    const Cells cells = cells_of(place_m, Eigen::Vector2d::Constant(reach_m + reach));
+    const Bits columns = (Bits{2} << cells.right) - (Bits{1} << cells.left);
+    for (std::int32_t k = cells.bottom; k <= cells.top; ++k) row[k] |= columns;
+    row += kCells;
+  }
 }
 
 SourceMap::Bits SourceMap::about(const Eigen::Vector2d& place_m, double reach_m) const {
@@ -51,7 +51,9 @@ SourceMap::Bits SourceMap::about(const Eigen::Vector2d& place_m, double reach_m)
   // Written so that what is not a number has no level.
   while (level < kReaches_m.size() && !(reach_m <= kReaches_m[level])) ++level;
   if (level == kReaches_m.size() || !place_m.allFinite()) return kAll;
-  return bits_[index_of(level, cell_of(place_m.x()), cell_of(place_m.y()), kCells)];
+  const std::size_t row = level * kCells + static_cast<std::size_t>(cell_of(place_m.y()));
+  const auto column = static_cast<std::size_t>(cell_of(place_m.x()));
+  return objects_[row * kCells + column] | (movers_[row] >> column) << kObjectBits;
 }
 
 }  // namespace boresight::ghosts

@@ -36,12 +36,16 @@ class SourceMap {
   static constexpr std::uint32_t kObjectBits = 63;
   static constexpr Bits kMovers = Bits{1} << kObjectBits;
   static constexpr double kCell_m = 8.0;
-  static constexpr std::int32_t kCells = 64;  // across; what is beyond is taken to be in the cells at the edge
+  static constexpr std::int32_t kCells = 48;  // across; what is beyond is taken to be in the cells at the edge
   /// Each reach asked for has a grid of its own, in which all are entered as much larger.
-  static constexpr std::array<double, 3> kReaches_m{4.0, 9.0, 20.0};
+  static constexpr std::array<double, 4> kReaches_m{2.5, 5.0, 10.0, 20.0};
+  struct Cells {
+    std::int32_t left, right, bottom, top;
+  };
   [[nodiscard]] static std::int32_t cell_of(double coordinate_m);
-  void enter(Bits bit, const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m);
-  std::vector<Bits> bits_;
+  [[nodiscard]] static Cells cells_of(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m);
+  std::vector<Bits> objects_;  // by reach, row, column
+  std::vector<Bits> movers_;   // by reach and row: a bit for each column
 };
 
 }  // namespace boresight::ghosts

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/ghost_filter/core/classify/exponential.hpp"
+
 namespace boresight::ghosts {
 
 /// How strong detections of one origin are, relative to what a body reflects directly; densities for each dB.
@@ -39,7 +41,7 @@ inline constexpr double kUsualRcs_dbsm = 5.0, kUsualRcsStd_db = 5.0;
   const double variance = strength.std_db * strength.std_db + more_std_db * more_std_db;
   const double residual = above_db - strength.mean_db;
   return doubt / kSpread_db +
-         (1.0 - doubt) * std::exp(-0.5 * residual * residual / variance) / std::sqrt(2.0 * M_PI * variance);
+         (1.0 - doubt) * exponential(-0.5 * residual * residual / variance) / std::sqrt(2.0 * M_PI * variance);
 }
 
 }  // namespace boresight::ghosts

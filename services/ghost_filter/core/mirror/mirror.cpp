@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kBeyondEnd_m = 40.0;  // as far a mirror may go on unseen
-constexpr double kLeastSine = 0.02;    // a ray that grazes at less than a degree is not followed
+constexpr double kBeyondEnd_m = 40.0;    // as far a mirror may go on unseen
+constexpr double kBeyondDetour_m = 5.0;  // the same of a detour's
+constexpr double kLeastSine = 0.02;      // a ray that grazes at less than a degree is not followed
 
 /// A rail or a wall may go on where vehicles hide it, or where it was not looked for yet.
 double goes_on(const Mirror& mirror, double arc_m) {
@@ -38,25 +40,6 @@ bool is_as_good_as_straight(const Mirror& mirror, double length_m) {
 double variance_at(const Mirror& mirror, double arc_m) {
   const Eigen::Vector3d row(1.0, arc_m, 0.5 * arc_m * arc_m);
   return std::max(0.0, row.dot(mirror.covariance * row));
-}
-
-/// Whether meet() would find the wave to turn beyond the mirror's ends, or on its other side: as if it were straight,
-/// and with a margin for its being bent. Most mirrors are told so without a root or an arc.
-bool is_met_far_beside(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
-                       const Eigen::Vector2d& direction, double length_m) {
-  const Eigen::Vector2d& tangent = mirror.curve.tangent;
-  const Eigen::Vector2d sensor = mirror.curve.local(sensor_m), from = mirror.curve.local(from_m);
-  const Eigen::Vector2d along(direction.dot(tangent), tangent.x() * direction.y() - tangent.y() * direction.x());
-  const Eigen::Vector2d back(from.x() - sensor.x(), from.y() + sensor.y());  // from the sensor's image
-  const double denominator = 2.0 * (length_m + back.dot(along));
-  if (denominator < 1e-6) return false;
-  const Eigen::Vector2d target = from + (length_m * length_m - back.squaredNorm()) / denominator * along;
-  const double bend = std::abs(mirror.curve.curvature_per_m);
-  const double sag = 1.0 + bend * (sensor.x() * sensor.x() + target.x() * target.x());
-  if (sensor.y() * target.y() <= 0.0) return std::min(std::abs(sensor.y()), std::abs(target.y())) > sag;
-  const double turns = sensor.x() + (target.x() - sensor.x()) * sensor.y() / (sensor.y() + target.y());
-  const double slack = kBeyondEnd_m + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + sag;
-  return turns < mirror.begin_m - slack || turns > mirror.end_m + slack;
 }
 
 }  // namespace
@@ -116,7 +99,7 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
   const double across = std::abs(mirror.curve.arc(target_m) - arc);
   arc += (mirror.curve.arc(target_m) - arc) * sensor_side / (sensor_side + target_side);
   // Most mirrors are passed by far: no need to know by how much.
-  const double slack = 5.0 + kBeyondEnd_m + 0.3 * std::abs(mirror.curve.curvature_per_m) * arc * arc;
+  const double slack = 2.0 * kBeyondDetour_m + 0.3 * std::abs(mirror.curve.curvature_per_m) * arc * arc;
   if (arc < mirror.begin_m - slack || arc > mirror.end_m + slack) return std::nullopt;
   Eigen::Vector2d point, tangent;
   for (int round = 0;; ++round) {
@@ -127,7 +110,7 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
     const double step = tangent.dot(a) * std::abs(target_side) + tangent.dot(b) * std::abs(sensor_side);
     arc += step / (std::abs(sensor_side) + std::abs(target_side));
   }
-  if (arc < mirror.begin_m - 5.0 || arc > mirror.end_m + 5.0) return std::nullopt;
+  if (arc < mirror.begin_m - kBeyondDetour_m || arc > mirror.end_m + kBeyondDetour_m) return std::nullopt;
   const Eigen::Vector2d out = point - sensor_m, on = target_m - point;
   const double first = out.norm(), second = on.norm();
   if (first < 0.2 || second < 0.2) return std::nullopt;
@@ -144,14 +127,48 @@ std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sen
                 2.0 * sine * std::sqrt(variance_at(mirror, arc))};
 }
 
-std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
-                            const Eigen::Vector2d& direction, double length_m, double least_m) {
+std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
+                                 const Eigen::Vector2d& direction, double length_m) {
+  constexpr double kMostBent_rad = 0.2;    // from the origin to where the wave turns
+  constexpr double kMostMetresPerM = 5.0;  // else what is found hangs on little
   // The way out and the way on to the ray's begin are no shorter than to the nearest point of the mirror and from
   // there.
   const double size = std::max(-mirror.begin_m, mirror.end_m) + 15.0;
   const double reach = 0.5 * (length_m + (from_m - sensor_m).norm()) + size;
   if ((mirror.curve.origin_m - sensor_m).squaredNorm() > reach * reach) return std::nullopt;
-  if (is_met_far_beside(mirror, sensor_m, from_m, direction, length_m)) return std::nullopt;
+  const Eigen::Vector2d& tangent = mirror.curve.tangent;
+  const Eigen::Vector2d sensor = mirror.curve.local(sensor_m), from = mirror.curve.local(from_m);
+  const Eigen::Vector2d along(direction.dot(tangent), tangent.x() * direction.y() - tangent.y() * direction.x());
+  const Eigen::Vector2d back(from.x() - sensor.x(), from.y() + sensor.y());  // from the sensor's image
+  Approach way{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity()};
+  const double denominator = 2.0 * (length_m + back.dot(along));
+  if (denominator < 1e-6) return way;
+  way.rest_m = (length_m * length_m - back.squaredNorm()) / denominator;
+  const Eigen::Vector2d target = from + way.rest_m * along;
+  const double bend = std::abs(mirror.curve.curvature_per_m);
+  const double sag = 1.0 + bend * (sensor.x() * sensor.x() + target.x() * target.x());
+  if (sensor.y() * target.y() <= 0.0) {
+    if (std::min(std::abs(sensor.y()), std::abs(target.y())) > sag) return std::nullopt;
+    return way;
+  }
+  const double turns = sensor.x() + (target.x() - sensor.x()) * sensor.y() / (sensor.y() + target.y());
+  const double slack = kBeyondDetour_m + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + sag;
+  if (turns < mirror.begin_m - slack || turns > mirror.end_m + slack) return std::nullopt;
+  const double second = length_m - way.rest_m;  // from the sensor's image to the target
+  const double opening = second + along.dot(target - Eigen::Vector2d(sensor.x(), -sensor.y()));
+  const double reached = std::abs(turns) + 5.0;
+  if (second <= 0.0 || kMostMetresPerM * opening < second || bend * reached > kMostBent_rad) return way;
+  way.metres_per_m = second / opening;
+  way.length_std_m = 2.0 * std::abs(sensor.y() + target.y()) / second * std::sqrt(variance_at(mirror, turns));
+  // At that place a bent mirror is half of this away from the straight one, and a way over it so much longer or
+  // shorter; some more, as the wave turns elsewhere. meet() may take it for straight beside the sensor.
+  const double beside = turns - sensor.x();
+  way.error_m = bend * (4.0 * reached * reached + beside * beside) * way.metres_per_m;
+  return way;
+}
+
+std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
+                            const Eigen::Vector2d& direction, double length_m, double least_m) {
   // By the sensor's image in the mirror's tangent the way is straight: |T − from| + |T − image| = length.
   const bool bent = !is_as_good_as_straight(mirror, length_m);
   double arc = mirror.curve.arc(sensor_m);

@@ -73,6 +73,17 @@ struct Meeting {
   double metres_per_m;  ///< by which it lies farther if the whole way is longer by one metre
   Detour detour;        ///< to it
 };
+/// Where meet() would find it, were the mirror straight: what is known of most ways without following them.
+struct Approach {
+  double rest_m, metres_per_m;
+  double length_std_m;  ///< of the way by the mirror
+  double error_m;       ///< as far off `rest_m` may be; infinite where that is not known
+};
+/// Nothing if the wave would turn beyond the mirror's ends, or on its other side, however the mirror may be bent.
+[[nodiscard]] std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
+                                               const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                               double length_m);
+
 /// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
 /// mirror to T have the sum `length_m`. Nothing if it is not there or less than `least_m` along.
 [[nodiscard]] std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
