@@ -17,6 +17,15 @@ constexpr std::size_t kMostPairs = 32, kMostPairsOfScan = 2048;
 /// that nothing announces, and of clutter.
 constexpr double kCompanyOfNew = 0.8, kCompanyOfClutter = 0.02;
 
+/// Detections of what stands, expected for each m² in a scan: anywhere, for each that was there before, and where
+/// enough were for it to be beyond doubt. One is the detection itself.
+constexpr double kStillAnywhere = 0.01, kStillForEach = 0.01, kStillKnown = 0.3;
+constexpr std::uint32_t kOftenEnough = 30;
+
+/// Images of what is so slow look as if they stood, from many directions; of others only when they cross the line of
+/// sight.
+constexpr double kSlow_mps = 3.0, kLeastSlow = 0.3;
+
 }  // namespace
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
@@ -28,6 +37,9 @@ void Judge::begin(const Surroundings& surroundings) {
   fan_.build(s_.mirrors, s_.sensor_m);
   crossings_.clear();
   pairs_left_of_scan_ = kMostPairsOfScan;
+  has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
+    return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
+  });
   sources_.clear();
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
@@ -72,11 +84,14 @@ bool Judge::was_before(const StationaryGrid::Cell& cell, const Measured& m, cons
   return elapsed_s > o.age_s || !is_on(o, m.position_m + elapsed_s * o.velocity_mps, kAround_m);
 }
 
-double Judge::of_stationary(const Measured& m, bool known) const {
+double Judge::of_stationary(const Measured& m, std::uint32_t seen) const {
+  // Where it was detected before, what stands is detected again; an image that creeps is detected there for a while,
+  // too, so that often tells more than once.
+  const double expected = std::clamp(kStillForEach * seen, kStillAnywhere, kStillKnown);
   // The tail of the errors is fatter than Gaussian.
   const double fit =
       0.95 * gaussian(m.rate_mps, square(m.still_std_mps)) + 0.05 * gaussian(m.rate_mps, square(2.5 * m.still_std_mps));
-  return (known ? 0.3 : 0.01) * fit * likelihood({-5.0, 15.0}, m.rcs_dbsm, 0.0, 0.3);
+  return expected * fit * likelihood({-5.0, 15.0}, m.rcs_dbsm, 0.0, 0.3);
 }
 
 bool Judge::has_company(const Measured& m, std::uint32_t index) const {
@@ -130,7 +145,8 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
                       likelihood(kNewStrength, above_db, 0.0, config_.strength_doubt);
   densities.clutter = config_.clutter_density * (company ? kCompanyOfClutter : 1.0 - kCompanyOfClutter) *
                       likelihood(kClutterStrength, above_db, 0.0, config_.strength_doubt);
-  densities.stationary = of_stationary(m, known_still(m) != nullptr);
+  const StationaryGrid::Cell* const cell = known_still(m);
+  densities.stationary = of_stationary(m, cell == nullptr ? 1 : cell->count);
   return densities;
 }
 
@@ -139,11 +155,13 @@ Densities Judge::weigh_still(const Measured& m) {
   crossings_.clear();
   // Where something is known to stand, and where it fits what stands best, nothing else needs to be asked for.
   const StationaryGrid::Cell* const cell = known_still(m);
-  if (std::abs(m.rate_mps) > m.still_std_mps && cell == nullptr) cross(m, kNobody);
+  std::uint32_t seen = cell == nullptr ? 1 : cell->count;
+  const bool like_slow = has_slow_ && seen < kOftenEnough;
+  if (like_slow || (std::abs(m.rate_mps) > m.still_std_mps && cell == nullptr)) cross(m, kNobody);
   of_objects(m, true, densities);
-  const bool is_known =
-      cell != nullptr && (densities.nearest == kNobody || was_before(*cell, m, s_.objects[densities.nearest]));
-  densities.stationary = of_stationary(m, is_known);
+  if (densities.nearest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.nearest])) seen = 1;
+  densities.stationary = of_stationary(m, seen);
+  if (like_slow) densities.type1 = type1(m, kNobody, kNobody);
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {
     densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody));

@@ -106,7 +106,8 @@ class Judge {
   [[nodiscard]] const StationaryGrid::Cell* known_still(const Measured& measured) const;
   /// Whether something was detected there before the object came: what has been there only since then may be of it.
   [[nodiscard]] bool was_before(const StationaryGrid::Cell& cell, const Measured& measured, const Object& object) const;
-  [[nodiscard]] double of_stationary(const Measured& measured, bool is_known) const;
+  /// `seen`: how often something was detected there, this time included.
+  [[nodiscard]] double of_stationary(const Measured& measured, std::uint32_t seen) const;
   [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
@@ -127,6 +128,7 @@ class Judge {
   MirrorFan fan_;
   SourceMap sources_;
   std::vector<Crossing> crossings_;
+  bool has_slow_ = false;  ///< a tracked object whose images may look as if they stood
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
 };
