@@ -257,9 +257,13 @@ bool Tracker::are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sen
   const Eigen::Vector2d p = a.state.mean.head<2>(), q = b.state.mean.head<2>();
   const Eigen::Vector2d velocity = a.state.mean.segment<2>(2);
   const double apart_mps = (velocity - b.state.mean.segment<2>(2)).norm();
-  // Two that have both long been tracked, each at a speed of its own, are two, wherever ghosts draw them.
-  constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5;
-  if (a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s && apart_mps > kOwnSpeed_mps) return false;
+  // Two vehicles that have both long been tracked, each at a speed of its own, are two, wherever ghosts draw them. The
+  // limbs of who walks have their own speeds, too, but no vehicle's length.
+  constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5, kVehicle_m = 2.5;
+  if (a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s && apart_mps > kOwnSpeed_mps &&
+      std::min(a.extent.length_m, b.extent.length_m) > kVehicle_m) {
+    return false;
+  }
   // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.
   if (a.extent.contains(p, q, 0.0) || b.extent.contains(q, p, 0.0)) return true;
   if (apart_mps > config_.duplicate_speed_mps) return false;
