@@ -27,7 +27,7 @@ struct SensorVelocity {
   void seen(const Support& support, double log_angle_noise);
 };
 /// `nuisances`: δV, δω, body pitch, side slip; those of the state at the instant of its last scan, or none.
-/// `pitch_share`: CommonPitch::share.
+/// `pitch_share`: NuisanceModel::pitch_share.
 [[nodiscard]] SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& nuisances,
                                              std::size_t radar, const std::array<double, 3>& position_m,
                                              const ScanMotion3d& motion, double pitch_share = 0.0);

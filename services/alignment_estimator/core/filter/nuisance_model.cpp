@@ -14,6 +14,9 @@ constexpr double kMaxStep_s = 0.3;
 /// The first estimates count like this many instants (in units of Fisher information of ln σ²).
 constexpr double kPriorInformation = 10.0;
 constexpr double kCorrelationInformation = 60.0;
+constexpr double kRecent_s = 10.0;
+/// Stds by which the test of presence must stand out.
+constexpr double kSignificant = 2.0;
 constexpr double kMinCorrelation_s = 0.005, kMaxCorrelation_s = 1.5;
 /// A body on its springs swings at 1 to 2 Hz, and its dampers stop that within a swing. What lasts longer is not the
 /// body's: it is the error of a mounting.
@@ -57,6 +60,13 @@ void NuisanceModel::reset(JointState& state) {
   state.nuisances.setZero();
 }
 
+double NuisanceModel::pitch_share() const {
+  const Process& pitch = processes_[2];
+  if (!(pitch.presence_variance > 0.0)) return 0.0;
+  const double stds = pitch.presence / std::sqrt(pitch.presence_variance);
+  return std::clamp(stds / kSignificant - 1.0, 0.0, 1.0);
+}
+
 void NuisanceModel::step(JointState& state, double elapsed_s) {
   const double elapsed = std::abs(elapsed_s);
   for (std::size_t i = 0; i < processes_.size(); ++i) {
@@ -85,6 +95,11 @@ void NuisanceModel::learn(Process& p, double mean, double variance, double elaps
   const double fade = std::exp(-elapsed_s / config_.nuisance_memory_s);
   p.score = fade * p.score + gain * (normalised - 1.0);
   p.fisher = fade * p.fisher + gain * gain;
+  const double raw = p.predicted_mean + moved / gain;
+  const double inverse_noise = gain / (p.predicted_variance * (1.0 - gain) + 1e-12 * p.predicted_variance);
+  const double recent = std::exp(-elapsed_s / kRecent_s);
+  p.presence = recent * p.presence + (std::min(raw * raw * inverse_noise, 25.0) - 1.0) * inverse_noise;
+  p.presence_variance = recent * recent * p.presence_variance + 2.0 * inverse_noise * inverse_noise;
   const double weight = gain / p.predicted_variance;  // inverse variance of the innovation
   p.product = fade * p.product + weight * (moved / gain) * p.previous_mean;
   p.square = fade * p.square + weight * p.previous_mean * p.previous_mean;

@@ -24,6 +24,8 @@ class NuisanceModel {
   void reset(JointState& state);
 
   [[nodiscard]] double variance(std::size_t i) const { return processes_[i].variance; }
+  /// 1 if the body is known to pitch, 0 if what is estimated of it may as well be noise, and between.
+  [[nodiscard]] double pitch_share() const;
   [[nodiscard]] double correlation_s(std::size_t i) const { return processes_[i].correlation_s; }
 
  private:
@@ -36,6 +38,8 @@ class NuisanceModel {
     // Since the last step of the state.
     double predicted_mean = 0.0, predicted_variance = 0.0, previous_mean = 0.0, keep = 0.0;
     bool armed = false;
+    // Sliding sums of a test whether there is such an error at all.
+    double presence = 0.0, presence_variance = 0.0;
     // Sliding sums: score and information of ln variance and of the correlation.
     double score = 0.0, fisher = 0.0, product = 0.0, square = 0.0;
   };

@@ -135,7 +135,7 @@ void RobustFilter::process(std::size_t index, const ScanDetections& scan, const 
 void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns) {
   Radar& radar = radars_[index];
   SensorVelocity velocity = sensor_velocity(state_, state_.nuisances, index, radar.config.mounting_pose.position_m,
-                                            motion, common_pitch_.share());
+                                            motion, nuisance_model_.pitch_share());
   const Eigen::Index noise = column::of_radar(index) + column::kAngleNoise;
   const Support support = radar.spread.support(sightings_.has_elevation, std::sqrt(state_.covariance(noise, noise)));
   velocity.seen(support, state_.log_angle_noise[index]);
@@ -174,10 +174,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   // What this scan says was said of the rotation before a change.
   if ((changed >> index & 1u) != 0) return;
   if (strange || radar.phase != Phase::kRunning || small_knocks_.doubted(index)) return;
-  const double pitch = state_.nuisances(2), pitch_variance = state_.covariance(column::kBodyPitch, column::kBodyPitch);
   if (!state_.update(information, score)) return;
-  common_pitch_.add(index, time_ns, pitch, pitch_variance, state_.nuisances(2),
-                    state_.covariance(column::kBodyPitch, column::kBodyPitch));
   linearise(index);
   learn_noise(index, sums, elapsed_s);
   radar.since_earlier_s += elapsed_s;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/alignment_estimator/core/filter/common_pitch.hpp"
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/filter/efficiency.hpp"
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
@@ -108,7 +107,6 @@ class RobustFilter : public Method {
   std::vector<Radar> radars_;
   JointState state_;
   NuisanceModel nuisance_model_;
-  CommonPitch common_pitch_;
   KnockDetector knocks_;
   SmallKnockDetector small_knocks_;
   EgoTrend trend_;
