@@ -7,6 +7,7 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/geometry/ego_step.hpp"
 #include "services/ghost_filter/core/classify/normal.hpp"
+#include "services/ghost_filter/core/classify/segments.hpp"
 #include "services/ghost_filter/core/pass_on.hpp"
 
 namespace boresight::ghosts {
@@ -25,8 +26,7 @@ constexpr double kHeard_db = 3.0;    // a track's strength is known if its std i
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
 constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
-constexpr double kSlowest = 0.1;     // share of a new judgement of a track in what is thought of it
-constexpr double kChordSag_m = 0.2;  // an arc is published as chords that leave it by this at most
+constexpr double kSlowest = 0.1;  // share of a new judgement of a track in what is thought of it
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
 double track_density(double speed_mps) {
@@ -305,36 +305,6 @@ void MirrorFilter::write_verdict(const Densities& densities, std::size_t i, Clas
   }
 }
 
-void MirrorFilter::write_segments(ClassifiedScan& out) const {
-  std::uint32_t written = 0;
-  for (const Reflector& r : map_.reflectors()) {
-    if (r.log_odds <= 0.0) continue;
-    const auto write = [&](double begin, double end) {
-      const double longest = std::abs(r.curve.curvature_per_m) < 1e-5
-                                 ? end - begin
-                                 : std::sqrt(8.0 * kChordSag_m / std::abs(r.curve.curvature_per_m));
-      const int pieces = std::clamp(static_cast<int>(std::ceil((end - begin) / std::max(1.0, longest))), 1, 16);
-      for (int k = 0; k < pieces && written < kMaxReflectorSegments; ++k) {
-        const auto at = [&](int n) -> std::array<float, 2> {
-          const double arc = begin + (end - begin) * n / pieces;
-          const Eigen::Vector2f p = odometry_.point_to_vehicle(r.curve.at(arc)).cast<float>();
-          return {p.x(), p.y()};
-        };
-        out.reflector_segments[written++] = {at(k), at(k + 1), static_cast<float>(r.residual_m), r.detections};
-      }
-    };
-    // Each stretch without an opening is a segment of its own.
-    const Occupancy& o = r.occupancy;
-    std::int32_t begin = o.first();
-    for (std::int32_t bin = o.first(); bin <= o.last() + 1; ++bin) {
-      if (bin <= o.last() && !o.is_open(bin)) continue;
-      if (bin > begin) write(begin * o.bin_m() - r.arc_shift_m, bin * o.bin_m() - r.arc_shift_m);
-      begin = bin + 1;
-    }
-  }
-  out.number_of_reflector_segments = written;
-}
-
 void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   const std::size_t count = pass_on(scan, out);
   const ScanGeometry& g = scan.geometry;
@@ -383,7 +353,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
       movers_.set_weight(mover++, tracked ? 0.0 : of_real * d.moving / std::max(d.sum(), 1e-300));
     }
   }
-  write_segments(out);
+  write_segments(map_.reflectors(), odometry_, out);
 }
 
 }  // namespace boresight::ghosts

@@ -40,7 +40,6 @@ class MirrorFilter final : public Method {
   void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
   void learn_strength(const Densities& densities, const Measured& measured);
-  void write_segments(ClassifiedScan& out) const;
   [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i) const;
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
   MirrorConfig config_;
