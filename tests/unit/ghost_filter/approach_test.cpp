@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/ghost_filter/core/classify/exponential.hpp"
+#include "services/ghost_filter/core/density/exponential.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 
 namespace boresight::ghosts {

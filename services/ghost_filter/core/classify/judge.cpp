@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/ghost_filter/core/classify/normal.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 
@@ -40,17 +40,10 @@ void Judge::begin(const Surroundings& surroundings) {
   has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
     return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
   });
-  sources_.clear();
-  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
-    const Object& o = s_.objects[i];
-    sources_.enter_object(i, o.position_m, most_extent(o).array() + reach_of(o.position_covariance.diagonal()));
-  }
 }
 
-void Judge::know_movers() {
-  s_.movers->visit_weighing([&](const MovedMover& mover) {
-    sources_.enter_mover(mover.position_m, kFarMover * std::sqrt(mover.variance_m2 + square(config_.extent_std_m)));
-  });
+double Judge::reach_of_mover(const MovedMover& mover) const {
+  return kFarMover * std::sqrt(mover.variance_m2 + square(config_.extent_std_m));
 }
 
 double Judge::rate_variance(const Measured& m) const {
@@ -159,7 +152,8 @@ Densities Judge::weigh_still(const Measured& m) {
   const bool like_slow = has_slow_ && seen < kOftenEnough;
   if (like_slow || (std::abs(m.rate_mps) > m.still_std_mps && cell == nullptr)) cross(m, kNobody);
   of_objects(m, true, densities);
-  if (densities.nearest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.nearest])) seen = 1;
+  if (densities.likeliest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.likeliest]))
+    seen = 1;
   densities.stationary = of_stationary(m, seen);
   if (like_slow) densities.type1 = type1(m, kNobody, kNobody);
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.

@@ -31,11 +31,11 @@ struct Measured {
 /// Expected number of detections for each m², m/s and dB.
 struct Densities {
   double moving = 0.0, stationary = 0.0, type1 = 0.0, type2 = 0.0, clutter = 0.0;
-  std::uint32_t object = kNobody;   ///< the one whose body, or image, it most likely is of
-  std::uint32_t nearest = kNobody;  ///< the one that contributes most to `moving`
-  double of_body = 0.0;             ///< its part, if a mirror between did not hide it
-  double of_tracks = 0.0;           ///< part of `moving` that is of tracked objects
-  double of_images = 0.0;           ///< part of `type2` that is of tracks that are images themselves
+  std::uint32_t object = kNobody;     ///< the one whose body, or image, it most likely is of
+  std::uint32_t likeliest = kNobody;  ///< the one that contributes most to `moving`
+  double of_body = 0.0;               ///< its part, if a mirror between did not hide it
+  double of_tracks = 0.0;             ///< part of `moving` that is of tracked objects
+  double of_images = 0.0;             ///< part of `type2` that is of tracks that are images themselves
   [[nodiscard]] double sum() const { return moving + stationary + type1 + type2 + clutter; }
 };
 
@@ -44,6 +44,7 @@ struct Surroundings {
   Eigen::Vector2d sensor_m, sensor_velocity_mps;
   std::span<const Mirror> mirrors;
   std::span<const Object> objects;
+  const SourceMap* sources;  ///< and where they are; weigh() needs the movers entered as well
   const Odometry* odometry;
   const RecentMovers* movers;  ///< of the scan itself, too
   const StationaryGrid* stationary;
@@ -56,8 +57,8 @@ class Judge {
 
   /// For a new scan; what is in `surroundings` is only referred to.
   void begin(const Surroundings& surroundings);
-  /// When all movers of the scan are known, before anything is weighed.
-  void know_movers();
+  /// As far from a mover as something may be that it is taken for, but for what that is known worse.
+  [[nodiscard]] double reach_of_mover(const MovedMover& mover) const;
   /// `index` of the detection in the scan; `but_object`: is not considered, nor what is near to the detection.
   [[nodiscard]] Densities weigh(const Measured& measured, std::uint32_t index, std::uint32_t but_object = kNobody);
   /// As weigh(), but only what a detection that looks stationary can be: that, or of an object that is tracked.
@@ -126,7 +127,6 @@ class Judge {
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;
-  SourceMap sources_;
   std::vector<Crossing> crossings_;
   bool has_slow_ = false;  ///< a tracked object whose images may look as if they stood
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
-#include "services/ghost_filter/core/classify/normal.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 
@@ -43,7 +43,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   double of_tracks = 0.0;
   const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
   const double doubt = config_.strength_doubt;
-  const SourceMap::Bits sources = sources_.about(target.place_m, reach_of(blurred.diagonal()));
+  const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_of(blurred.diagonal()));
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
@@ -125,7 +125,7 @@ bool Judge::may_be_at(const Eigen::Vector2d& from_m, const Eigen::Vector2d& dire
   constexpr double kMargin = 1.2, kMargin_m = 0.5;  // the way's uncertainty is not the approach's
   const double along = square(way.metres_per_m) * (square(2.0 * m.range_std_m) + square(way.length_std_m));
   const double blur = reach_of(Eigen::Vector2d::Constant(along + variance_across + square(0.2)));
-  return sources_.about(from_m + way.rest_m * direction, kMargin * blur + kMargin_m + way.error_m) != 0;
+  return s_.sources->about(from_m + way.rest_m * direction, kMargin * blur + kMargin_m + way.error_m) != 0;
 }
 
 double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) const {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
-#include "services/ghost_filter/core/classify/normal.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 
@@ -43,9 +43,8 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
     densities.moving += of_all;
     if (of_all > most) {
       most = of_all;
-      densities.nearest = i;
+      densities.likeliest = i;
     }
-    densities.of_tracks = densities.moving;
     // The detections of an image are where it is tracked, as those of an object are.
     densities.of_images += o.image * of_whole;
     // Whether it is one or the other, its strength is learnt: that tells which.
@@ -54,8 +53,9 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
       densities.object = i;
     }
   };
-  SourceMap::visit_objects(sources_.about(m.position_m, reach_of(covariance.diagonal())),
+  SourceMap::visit_objects(s_.sources->about(m.position_m, reach_of(covariance.diagonal())),
                            static_cast<std::uint32_t>(s_.objects.size()), judge);
+  densities.of_tracks = densities.moving;
 }
 
 Judge::Owner Judge::owner_of(const Measured& m) const {

@@ -6,8 +6,8 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/geometry/ego_step.hpp"
-#include "services/ghost_filter/core/classify/normal.hpp"
 #include "services/ghost_filter/core/classify/segments.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
 #include "services/ghost_filter/core/pass_on.hpp"
 
 namespace boresight::ghosts {
@@ -21,7 +21,10 @@ constexpr double kTrackDensity =
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
 constexpr double kSurest = 3.0;      // log-odds
 constexpr double kNoImage = 0.95;    // weight of an object that surely is where it seems to be
-constexpr double kHeard_db = 3.0;    // a track's strength is known if its std is less
+constexpr double kRather = 0.5;      // weight from which on an object is rather there than an image
+constexpr double kMoves = 0.8;       // probability from which on what an object shows is no part of the map
+constexpr double kAroundBody_m = 0.5;  // what seems to be so near to a body is of it
+constexpr double kHeard_db = 3.0;      // a track's strength is known if its std is less
 /// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
@@ -60,11 +63,7 @@ Eigen::Matrix2d block(const Track& track, std::size_t at) {
 }  // namespace
 
 MirrorFilter::MirrorFilter(const MirrorConfig& config)
-    : config_(config),
-      map_(config.map),
-      judge_(config.classes),
-      bodies_(Judge::kMaxObjects),
-      tracks_(std::make_unique<TrackList>()) {
+    : config_(config), map_(config.map), judge_(config.classes), tracks_(std::make_unique<TrackList>()) {
   mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
   objects_.reserve(Judge::kMaxObjects);
   measured_.resize(kMaxDetections);
@@ -134,6 +133,11 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
   own.velocity_mps = {scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps * own.position_m.x()};
   own.velocity_covariance = 0.04 * Eigen::Matrix2d::Identity();
   objects_.push_back(own);
+  sources_.clear();
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const Object& o = objects_[i];
+    sources_.enter_object(i, o.position_m, most_extent(o).array() + reach_of(o.position_covariance.diagonal()));
+  }
 }
 
 void MirrorFilter::place_mirrors() {
@@ -197,20 +201,28 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
   return m;
 }
 
+bool MirrorFilter::is_on_moving(const Eigen::Vector2d& place_m) const {
+  bool found = false;
+  SourceMap::visit_objects(
+      sources_.about(place_m, 0.0), static_cast<std::uint32_t>(objects_.size()), [&](std::uint32_t i) {
+        const Object& o = objects_[i];
+        found = found || (o.weight > kRather && o.moving >= kMoves && is_on(o, place_m, kAroundBody_m));
+      });
+  return found;
+}
+
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
-  bodies_.find(objects_);
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
     const Measured& m = measured_[i];
     // What a moving object shows without a range rate is no part of the map.
-    if (bodies_.any_at(m.position_m)) continue;
+    if (is_on_moving(m.position_m)) continue;
     const double across = m.range_m * m.azimuth_std_rad;
     map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
   }
-  for (const std::uint32_t number : bodies_.numbers()) {
-    const Object& o = objects_[number];
+  for (const Object& o : objects_) {
     if (o.weight < kNoImage || o.moving < 1.0) continue;
     const Eigen::Vector2d reach = o.half_length_m * o.axis;
     map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));
@@ -237,7 +249,8 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
                  m.rcs_dbsm, owner.object},
                 odometry_);
   }
-  judge_.know_movers();
+  movers_.visit_weighing(
+      [&](const MovedMover& mover) { sources_.enter_mover(mover.position_m, judge_.reach_of_mover(mover)); });
 }
 
 void MirrorFilter::judge_tracks() {
@@ -330,7 +343,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   predict_objects(scan);
   update_map(scan, count);
   place_mirrors();
-  judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &odometry_, &movers_, &map_.grid()});
+  judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &sources_, &odometry_, &movers_, &map_.grid()});
   gather_movers(scan, count);
   judge_tracks();
 

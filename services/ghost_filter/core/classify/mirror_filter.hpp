@@ -8,8 +8,8 @@
 
 #include "services/ghost_filter/core/classify/filter_config.hpp"
 #include "services/ghost_filter/core/classify/judge.hpp"
-#include "services/ghost_filter/core/classify/moving_bodies.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
+#include "services/ghost_filter/core/classify/source_map.hpp"
 #include "services/ghost_filter/core/method.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
@@ -36,6 +36,7 @@ class MirrorFilter final : public Method {
   };
   void update_map(const CorrectedScan& scan, std::size_t count);
   void predict_objects(const CorrectedScan& scan);
+  [[nodiscard]] bool is_on_moving(const Eigen::Vector2d& place_m) const;
   void place_mirrors();
   void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
@@ -48,8 +49,8 @@ class MirrorFilter final : public Method {
   RecentMovers movers_;
   Judge judge_;
   std::vector<Mirror> mirrors_;
-  std::vector<Object> objects_;  // the own vehicle is the last
-  MovingBodies bodies_;
+  std::vector<Object> objects_;     // the own vehicle is the last
+  SourceMap sources_;               // these, and the movers
   std::vector<Measured> measured_;  // the scan's usable detections, at their places
   std::array<std::uint32_t, kMaxTracks> track_of_object_{};
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "services/ghost_filter/core/classify/normal.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/ghost_filter/core/classify/exponential.hpp"
+#include "services/ghost_filter/core/density/exponential.hpp"
 
 namespace boresight::ghosts {
 

@@ -4,20 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "services/ghost_filter/core/density/normal.hpp"
+
 namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kBeyondEnd_m = 40.0;    // as far a mirror may go on unseen
-constexpr double kBeyondDetour_m = 5.0;  // the same of a detour's
+constexpr double kBeyondDetour_m = 5.0;  // as far a mirror on a detour may go on unseen
 constexpr double kLeastSine = 0.02;      // a ray that grazes at less than a degree is not followed
 
 /// A rail or a wall may go on where vehicles hide it, or where it was not looked for yet.
 double goes_on(const Mirror& mirror, double arc_m) {
   constexpr double kLong_m = 20.0, kAtTheEnd = 0.2;
   const double beyond_m = std::max(mirror.begin_m - arc_m, arc_m - mirror.end_m);
-  if (beyond_m <= 0.0 || beyond_m >= kBeyondEnd_m || mirror.end_m - mirror.begin_m < kLong_m) return 0.0;
-  return kAtTheEnd * (1.0 - beyond_m / kBeyondEnd_m);
+  if (beyond_m <= 0.0 || beyond_m >= kMirrorGoesOn_m || mirror.end_m - mirror.begin_m < kLong_m) return 0.0;
+  return kAtTheEnd * (1.0 - beyond_m / kMirrorGoesOn_m);
 }
 
 double there(const Mirror& mirror, double arc_m, double arc_std_m) {
@@ -26,9 +27,8 @@ double there(const Mirror& mirror, double arc_m, double arc_std_m) {
     return mirror.existence * std::max(seen, goes_on(mirror, arc_m));
   }
   const double slack = arc_std_m + 0.3;
-  // Share of a Gaussian that lies between the ends, by the logistic approximation of its distribution.
-  const auto below = [slack](double x) { return 1.0 / (1.0 + std::exp(-1.7 * std::clamp(x / slack, -20.0, 20.0))); };
-  return mirror.existence * std::max(0.0, below(arc_m - mirror.begin_m) - below(arc_m - mirror.end_m));
+  const double between = below((arc_m - mirror.begin_m) / slack) - below((arc_m - mirror.end_m) / slack);
+  return mirror.existence * std::max(0.0, between);
 }
 
 /// Over ways of this length it turns so little that where a wave turns need not be sought: by Fermat's principle an
@@ -51,7 +51,7 @@ std::optional<Turn> turn_at(const Mirror& mirror, const Eigen::Vector2d& sensor_
     const Eigen::Vector2d point = sensor_m + distance * direction;
     const double arc = mirror.curve.arc(point);
     // The other half of a circle has the same crossings.
-    if (arc < mirror.begin_m - kBeyondEnd_m || arc > mirror.end_m + kBeyondEnd_m) continue;
+    if (arc < mirror.begin_m - kMirrorGoesOn_m || arc > mirror.end_m + kMirrorGoesOn_m) continue;
     const Eigen::Vector2d tangent = mirror.curve.tangent_at(arc);
     Eigen::Vector2d normal(-tangent.y(), tangent.x());
     double sine = -direction.dot(normal);

@@ -20,6 +20,9 @@ namespace boresight::ghosts {
 
 inline constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
+/// As far beyond its ends a long mirror may go on unseen.
+inline constexpr double kMirrorGoesOn_m = 40.0;
+
 /// A reflector in the vehicle frame of the scan.
 struct Mirror {
   Curve curve;

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "services/ghost_filter/core/classify/exponential.hpp"
+#include "services/ghost_filter/core/density/exponential.hpp"
 
 namespace boresight::ghosts {
 
