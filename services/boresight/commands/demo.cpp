@@ -255,7 +255,7 @@ int run(DemoOptions options) {
   input.truth = drive.truth;
   input.events = event_lines(events);
   const auto truths = drive.truth_file.empty() ? std::nullopt : detection_truths_beside(drive.truth_file);
-  input.ghosts = report::find_ghosts(recorded_scans, truths ? &*truths : nullptr);
+  input.ghosts = report::find_ghosts(recorded_scans, records.scans.string(), truths ? &*truths : nullptr);
   input.more_checks = report::ghost_checks(input.ghosts);
   input.more_checks.push_back(check_of(events));
   report::Summary summary = report::summarise(input.snapshots, input.truth);

@@ -40,7 +40,7 @@ int run(const ReportOptions& options) {
     std::ifstream scans(options.scans);
     if (!scans) throw std::runtime_error("cannot read " + options.scans);
     const auto truths = options.truth.empty() ? std::nullopt : detection_truths_beside(options.truth);
-    input.ghosts = report::find_ghosts(scans, truths ? &*truths : nullptr);
+    input.ghosts = report::find_ghosts(scans, options.scans, truths ? &*truths : nullptr);
     input.more_checks = report::ghost_checks(input.ghosts);
   }
   std::ofstream output(options.output);

@@ -4,8 +4,10 @@
 #include <charconv>
 #include <istream>
 #include <iterator>
+#include <limits>
 #include <ostream>
 #include <string_view>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -25,86 +27,137 @@ char letter_of(const ClassifiedScan& scan, std::size_t i) {
   return index < kLetters.size() ? kLetters[index] : kLetters[0];
 }
 
-/// The words of a line; `ok` turns false at the first that is missing or no number.
+/// As an error shows it: what a damaged file holds may be long, and no text.
+std::string quoted(std::string_view word) {
+  constexpr std::size_t kMost = 24;
+  std::string text(word.substr(0, kMost));
+  for (char& c : text) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return "'" + text + (word.size() > kMost ? "…'" : "'");
+}
+
+template <typename T>
+std::string allowed_numbers(T most = std::numeric_limits<T>::max()) {
+  if constexpr (std::is_floating_point_v<T>) return "a number";
+  return fmt::format("a whole number from {} to {}", std::numeric_limits<T>::min(), most);
+}
+
+template <typename T>
+bool parse(std::string_view word, T& value) {
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+  return result.ec == std::errc() && result.ptr == word.data() + word.size();
+}
+
+/// The words of a line, up to the first that is missing or not allowed.
 class Words {
  public:
   explicit Words(std::string_view line) : rest_(line) {}
+  [[nodiscard]] bool ok() const { return error_.empty(); }
+  [[nodiscard]] const std::string& error() const { return error_; }
+  /// The fields that follow belong to this one of a list; it counts from 0, errors from 1.
+  void item(std::string_view what, std::size_t index) {
+    item_ = what;
+    index_ = index;
+  }
+  void no_item() { item_ = {}; }
   [[nodiscard]] std::string_view word() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size()));
     const std::size_t end = std::min(rest_.find(' '), rest_.size());
     const std::string_view word = rest_.substr(0, end);
     rest_.remove_prefix(end);
-    ok = ok && !word.empty();
     return word;
   }
   template <typename T>
-  void read(T& value) {
+  void read(std::string_view field, T& value) {
     const std::string_view text = word();
-    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-    ok = ok && result.ec == std::errc() && result.ptr == text.data() + text.size();
+    if (!parse(text, value)) refuse(field, text, allowed_numbers<T>());
   }
-  /// At most `limit`.
-  [[nodiscard]] std::uint32_t count(std::size_t limit) {
+  /// 0 where it is not allowed.
+  [[nodiscard]] std::uint32_t at_most(std::string_view field, std::size_t most) {
+    const std::string_view text = word();
     std::uint32_t value = 0;
-    read(value);
-    ok = ok && value <= limit;
-    return ok ? value : 0;
+    if (parse(text, value) && value <= most) return value;
+    refuse(field, text, allowed_numbers(most));
+    return 0;
   }
-  bool ok = true;
+  void refuse(std::string_view field, std::string_view word, std::string_view allowed) {
+    if (!ok()) return;
+    const std::string whose = item_.empty() ? std::string(field) : fmt::format("{} of {} {}", field, item_, index_ + 1);
+    error_ = word.empty() ? fmt::format("ends before {}", whose)
+                          : fmt::format("{} is {}, allowed: {}", whose, quoted(word), allowed);
+  }
+  /// Nothing but what closes a line is left.
+  void close() {
+    no_item();
+    const std::string_view last = word();
+    if (last != "." || !rest_.empty()) refuse("its end", last == "." ? rest_ : last, "'.'");
+  }
 
  private:
-  std::string_view rest_;
+  std::string_view rest_, item_;
+  std::size_t index_ = 0;
+  std::string error_;
 };
 
-bool read_scan(Words& words, ClassifiedScan& scan) {
-  scan = {};
-  words.read(scan.header.source_id);
-  words.read(scan.header.source_sequence);
-  words.read(scan.header.measurement_time_ns);
-  words.read(scan.flags);
-  for (float& coordinate : scan.geometry.sensor_position_vehicle_m) words.read(coordinate);
-  scan.number_of_valid_detections = words.count(kMaxDetections);
-  for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
-    const std::string_view letter = words.word();
-    const std::size_t index = kLetters.find(letter);
-    if (letter.size() != 1 || (index == std::string_view::npos && letter[0] != kRejected)) return false;
-    scan.provenance[i] = index == std::string_view::npos ? Provenance::kUnknown : static_cast<Provenance>(index);
-    scan.detection_flags[i] = letter[0] == kRejected ? corrected_flag::kWeak : std::uint16_t{0};
-    words.read(scan.x_vehicle_m[i]);
-    words.read(scan.y_vehicle_m[i]);
-    words.read(scan.range_rate_over_ground_mps[i]);
-    words.read(scan.ghost_probability[i]);
-  }
-  scan.number_of_reflector_segments = words.count(kMaxReflectorSegments);
-  for (std::size_t i = 0; i < scan.number_of_reflector_segments; ++i) {
-    ReflectorSegment& segment = scan.reflector_segments[i];
-    for (float& coordinate : segment.start_vehicle_m) words.read(coordinate);
-    for (float& coordinate : segment.end_vehicle_m) words.read(coordinate);
-  }
-  return words.word() == "." && words.ok;
+void read_header(Words& words, MessageHeader& header) {
+  words.read("source id", header.source_id);
+  words.read("source sequence", header.source_sequence);
+  words.read("measurement time", header.measurement_time_ns);
 }
 
-bool read_tracks(Words& words, TrackList& list) {
-  list = {};
-  words.read(list.header.source_id);
-  words.read(list.header.source_sequence);
-  words.read(list.header.measurement_time_ns);
-  list.number_of_tracks = list.number_of_confirmed_tracks = words.count(kMaxTracks);
-  for (std::size_t i = 0; i < list.number_of_tracks; ++i) {
-    Track& track = list.tracks[i];
-    track.status = TrackStatus::kConfirmed;
-    std::uint32_t movement = 0;
-    words.read(track.tracking_id);
-    words.read(movement);
-    track.movement = static_cast<MovementState>(std::min(movement, 3u));
-    words.read(track.position_vehicle_m[0]);
-    words.read(track.position_vehicle_m[1]);
-    words.read(track.heading_rad);
-    words.read(track.length_m);
-    words.read(track.width_m);
-    words.read(track.number_of_detections);
+void read_scan(Words& words, ClassifiedScan& scan) {
+  scan = {};
+  read_header(words, scan.header);
+  words.read("flags", scan.flags);
+  for (float& coordinate : scan.geometry.sensor_position_vehicle_m) words.read("place of the sensor", coordinate);
+  scan.number_of_valid_detections = words.at_most("number of detections", kMaxDetections);
+  for (std::size_t i = 0; i < scan.number_of_valid_detections && words.ok(); ++i) {
+    words.item("detection", i);
+    const std::string_view letter = words.word();
+    const std::size_t index = kLetters.find(letter);
+    const bool rejected = letter == std::string_view(&kRejected, 1);
+    if (letter.size() != 1 || (index == std::string_view::npos && !rejected)) {
+      words.refuse("label", letter, fmt::format("a letter of {}{}", kLetters, kRejected));
+      return;
+    }
+    scan.provenance[i] = rejected ? Provenance::kUnknown : static_cast<Provenance>(index);
+    scan.detection_flags[i] = rejected ? corrected_flag::kWeak : std::uint16_t{0};
+    words.read("x", scan.x_vehicle_m[i]);
+    words.read("y", scan.y_vehicle_m[i]);
+    words.read("range rate over ground", scan.range_rate_over_ground_mps[i]);
+    words.read("ghost probability", scan.ghost_probability[i]);
   }
-  return words.word() == "." && words.ok;
+  words.no_item();
+  scan.number_of_reflector_segments = words.at_most("number of reflector segments", kMaxReflectorSegments);
+  for (std::size_t i = 0; i < scan.number_of_reflector_segments && words.ok(); ++i) {
+    ReflectorSegment& segment = scan.reflector_segments[i];
+    words.item("reflector segment", i);
+    for (float& coordinate : segment.start_vehicle_m) words.read("start", coordinate);
+    for (float& coordinate : segment.end_vehicle_m) words.read("end", coordinate);
+  }
+  words.close();
+}
+
+void read_tracks(Words& words, TrackList& list) {
+  list = {};
+  read_header(words, list.header);
+  list.number_of_tracks = list.number_of_confirmed_tracks = words.at_most("number of tracks", kMaxTracks);
+  for (std::size_t i = 0; i < list.number_of_tracks && words.ok(); ++i) {
+    Track& track = list.tracks[i];
+    words.item("track", i);
+    track.status = TrackStatus::kConfirmed;
+    words.read("id", track.tracking_id);
+    track.movement =
+        static_cast<MovementState>(words.at_most("movement", static_cast<std::size_t>(MovementState::kStopped)));
+    words.read("x", track.position_vehicle_m[0]);
+    words.read("y", track.position_vehicle_m[1]);
+    words.read("heading", track.heading_rad);
+    words.read("length", track.length_m);
+    words.read("width", track.width_m);
+    words.read("number of detections", track.number_of_detections);
+  }
+  words.close();
 }
 
 }  // namespace
@@ -148,10 +201,19 @@ void write_tracks(std::ostream& output, const TrackList& list) {
 
 ScanRecordReader::Line ScanRecordReader::next(ClassifiedScan& scan, TrackList& tracks) {
   while (std::getline(input_, line_)) {
+    ++number_;
     Words words(line_);
-    const std::string_view tag = words.word();
-    if (tag == "scan" && read_scan(words, scan)) return Line::kScan;
-    if (tag == "tracks" && read_tracks(words, tracks)) return Line::kTracks;
+    const std::string_view kind = words.word();
+    if (kind == "scan") {
+      read_scan(words, scan);
+      if (words.ok()) return Line::kScan;
+    } else if (kind == "tracks") {
+      read_tracks(words, tracks);
+      if (words.ok()) return Line::kTracks;
+    } else {
+      words.refuse("kind of line", kind, "scan or tracks");
+    }
+    if (damaged_.count++ == 0) damaged_.first = fmt::format("{}:{}: {}", name_, number_, words.error());
   }
   return Line::kEnd;
 }

@@ -2,8 +2,10 @@
 // --record-scans` writes and a report is drawn from. About 20 MB a minute for four radars of 100 detections at 20 Hz.
 #pragma once
 
+#include <cstdint>
 #include <iosfwd>
 #include <string>
+#include <utility>
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
@@ -16,19 +18,31 @@ void write_scan(std::ostream& output, const ClassifiedScan& scan);
 /// Of the confirmed tracks: box, movement, number of detections.
 void write_tracks(std::ostream& output, const TrackList& list);
 
+/// Lines of a record that are no whole scan or track list. Nothing of them is used, and they are told, since what they
+/// held is missing from everything that is drawn from the record.
+struct DamagedLines {
+  std::uint64_t count = 0;
+  std::string first;  ///< "scans.txt:17: y of detection 3 is '1.x', allowed: a number"
+};
+
 /// Reads a record back, line by line.
 class ScanRecordReader {
  public:
   enum class Line { kScan, kTracks, kEnd };
-  /// Both are read from until next() says that the end is reached.
-  explicit ScanRecordReader(std::istream& input) : input_(input) {}
-  /// What is on the next line that is complete; other lines are passed over. What the record does not hold of a message
+  /// `input` is read from until next() says that the end is reached; `name` is what errors call it.
+  ScanRecordReader(std::istream& input, std::string name) : input_(input), name_(std::move(name)) {}
+  /// What is on the next line that is whole; others are counted as damaged. What the record does not hold of a message
   /// is 0; of what the corrector rejected the flag kWeak is set, whatever the reason was.
   [[nodiscard]] Line next(ClassifiedScan& scan, TrackList& tracks);
+  /// Of the lines read so far.
+  [[nodiscard]] const DamagedLines& damaged() const { return damaged_; }
 
  private:
   std::istream& input_;
+  std::string name_;
   std::string line_;
+  std::uint64_t number_ = 0;  // of line_, from 1
+  DamagedLines damaged_;
 };
 
 }  // namespace boresight::monitor

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/names.hpp"
-#include "services/boresight/monitor/scan_record.hpp"
 #include "tests/simulator/judge/matching.hpp"
 
 namespace boresight::report {
@@ -202,13 +201,13 @@ class Finder {
 
 }  // namespace
 
-GhostFindings find_ghosts(std::istream& record, const DetectionTruths* truth) {
+GhostFindings find_ghosts(std::istream& record, const std::string& name, const DetectionTruths* truth) {
   const auto scan = std::make_unique<ClassifiedScan>();
   const auto tracks = std::make_unique<TrackList>();
   std::optional<std::int64_t> begin_ns;
   if (truth != nullptr) {
     std::vector<SeenScan> seen;
-    monitor::ScanRecordReader reader(record);
+    monitor::ScanRecordReader reader(record, name);
     for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
       if (line != Line::kScan || scan->number_of_valid_detections == 0) continue;
       seen.push_back({scan->header.source_id, scan->header.measurement_time_ns, scan->number_of_valid_detections});
@@ -218,16 +217,24 @@ GhostFindings find_ghosts(std::istream& record, const DetectionTruths* truth) {
     record.seekg(0);
   }
   Finder finder(truth, begin_ns);
-  monitor::ScanRecordReader reader(record);
+  monitor::ScanRecordReader reader(record, name);
   for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
     if (line == Line::kScan) finder.take(*scan);
     if (line == Line::kTracks) finder.take(*tracks);
   }
-  return finder.finish();
+  GhostFindings findings = finder.finish();
+  findings.damaged = reader.damaged();
+  return findings;
 }
 
 std::vector<Check> ghost_checks(const GhostFindings& findings) {
   std::vector<Check> checks;
+  const std::uint64_t damaged = findings.damaged.count;
+  if (findings.scans + findings.track_lists + damaged > 0) {
+    std::string what = fmt::format("every line of the record of scans could be read ({} could not", damaged);
+    if (damaged > 0) what += fmt::format("; {}{}", damaged > 1 ? "the first: " : "", findings.damaged.first);
+    checks.push_back({what + ")", damaged == 0, false});
+  }
   if (!findings.confusion) return checks;
   const judge::Confusion& c = *findings.confusion;
   const std::uint64_t scans = findings.compared_scans + findings.unknown_scans;

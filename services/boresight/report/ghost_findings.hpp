@@ -11,6 +11,7 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
+#include "services/boresight/monitor/scan_record.hpp"
 #include "services/boresight/report/summary.hpp"
 #include "tests/simulator/judge/confusion.hpp"
 #include "tests/simulator/judge/false_tracks.hpp"
@@ -57,6 +58,7 @@ struct GhostFindings {
   std::uint64_t scans = 0;         ///< in the record; 0: there is none
   std::uint64_t track_lists = 0;   ///< the same
   std::int64_t first_scan_ns = 0;  ///< of measurement, of the earliest
+  monitor::DamagedLines damaged;   ///< what they held is in nothing below
   PlanView most_ghosts;            ///< where most detections were told to be ghosts; no detections where none ever was
   // With truth only:
   std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that could be found in the truth
@@ -70,8 +72,9 @@ struct GhostFindings {
   static constexpr double kFirstMoments_s = 2.0;
 };
 
-/// `record` as monitor::write_scan and write_tracks wrote it; it is read twice. Null: nothing is known of the truth.
-[[nodiscard]] GhostFindings find_ghosts(std::istream& record, const DetectionTruths* truth);
+/// `record` as monitor::write_scan and write_tracks wrote it; it is read twice. `name` is what errors call it. Null:
+/// nothing is known of the truth.
+[[nodiscard]] GhostFindings find_ghosts(std::istream& record, const std::string& name, const DetectionTruths* truth);
 
 /// What a filter must reach on a drive with truth: the bars of the ghost filter's scenarios (docs/ghosts.md).
 struct GhostBars {
@@ -79,8 +82,8 @@ struct GhostBars {
   static constexpr double kGhostsToldGhosts_percent = 90.0;  ///< of each type
   static constexpr double kScansCompared_percent = 99.0;
 };
-/// That the scans are those of the truth is a check; the bars are aims, as one drive may miss what the median of many
-/// reaches. Empty where no truth is known.
+/// That the record is whole and that its scans are those of the truth are checks; the bars are aims, as one drive may
+/// miss what the median of many reaches. Without truth only the first; empty where nothing was recorded.
 [[nodiscard]] std::vector<Check> ghost_checks(const GhostFindings& findings);
 
 }  // namespace boresight::report

@@ -100,7 +100,7 @@ const Check& check_about(const std::vector<Check>& checks, const std::string& pa
 TEST(GhostFindings, AreFoundInTheTruthWhenTheFirstScansAreMissingAndClocksDiffer) {
   Drive drive;
   drive.publish_all(0);
-  const GhostFindings found = find_ghosts(drive.record, &drive.truth);
+  const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
   EXPECT_EQ(found.scans, 2u * 393u);
   EXPECT_EQ(found.track_lists, 2u * 393u);
   EXPECT_EQ(found.compared_scans, 2u * 393u);
@@ -117,7 +117,7 @@ TEST(GhostFindings, AreFoundInTheTruthWhenTheFirstScansAreMissingAndClocksDiffer
 TEST(GhostFindings, MistakesAndTracksOfGhostsAreCountedAndFail) {
   Drive drive;
   drive.publish_all(60);
-  const GhostFindings found = find_ghosts(drive.record, &drive.truth);
+  const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
   EXPECT_EQ(found.confusion->count(Provenance::kGhostType2, Provenance::kMoving), 120u);
   ASSERT_EQ(found.ghost_tracks.size(), 1u);
   EXPECT_EQ(found.ghost_tracks[0].tracking_id, 5u);
@@ -141,7 +141,7 @@ TEST(GhostFindings, ScansThatTheTruthHasNotAreNotJudged) {
   Drive drive;
   drive.publish_all(0);
   for (auto& scan : drive.truth.scans[2]) scan.detections.emplace_back();
-  const GhostFindings found = find_ghosts(drive.record, &drive.truth);
+  const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
   EXPECT_EQ(found.unknown_scans, 393u);
   EXPECT_EQ(found.confusion->count(Provenance::kMoving), 393u);
   EXPECT_FALSE(check_about(ghost_checks(found), "found in the truth").passed);
@@ -150,9 +150,10 @@ TEST(GhostFindings, ScansThatTheTruthHasNotAreNotJudged) {
 TEST(GhostFindings, WithoutTruthThereAreViewsAndNoVerdict) {
   Drive drive;
   drive.publish_all(60);
-  const GhostFindings found = find_ghosts(drive.record, nullptr);
+  const GhostFindings found = find_ghosts(drive.record, "scans.txt", nullptr);
   EXPECT_FALSE(found.confusion);
-  EXPECT_TRUE(ghost_checks(found).empty());
+  ASSERT_EQ(ghost_checks(found).size(), 1u) << "that the record could be read";
+  EXPECT_TRUE(ghost_checks(found)[0].passed);
   ASSERT_EQ(found.most_ghosts.sensors.size(), 2u);
   EXPECT_FALSE(found.most_ghosts.detections.at(1).truth);
   EXPECT_EQ(found.most_ghosts.detections.at(1).told, Provenance::kGhostType2);
@@ -161,11 +162,46 @@ TEST(GhostFindings, WithoutTruthThereAreViewsAndNoVerdict) {
   EXPECT_TRUE(found.most_ghosts.objects.empty());
 }
 
+TEST(GhostFindings, LinesThatCannotBeReadAreToldWithFileAndLine) {
+  Drive drive;
+  drive.publish_all(0);
+  const std::string whole = drive.record.str();
+  // Of the first scan the y of its second detection, and the end of the last track list.
+  std::string text = whole.substr(0, whole.size() - 20);
+  const std::size_t at = text.find(" 9.00 ");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 6, " 9<0 ");
+  std::istringstream record(text);
+  const GhostFindings found = find_ghosts(record, "out/scans.txt", &drive.truth);
+  EXPECT_EQ(found.damaged.count, 2u);
+  EXPECT_EQ(found.damaged.first, "out/scans.txt:1: y of detection 2 is '9<0', allowed: a number");
+  EXPECT_EQ(found.scans, 785u) << "nothing else is lost";
+  EXPECT_EQ(found.track_lists, 785u);
+  const std::vector<Check> checks = ghost_checks(found);
+  const Check& check = check_about(checks, "could be read");
+  EXPECT_FALSE(check.passed);
+  EXPECT_FALSE(check.aim);
+  EXPECT_EQ(check.what,
+            "every line of the record of scans could be read (2 could not; the first: out/scans.txt:1: y of detection "
+            "2 is '9<0', allowed: a number)");
+  ReportInput input;
+  input.ghosts = found;
+  EXPECT_THAT(render_html(input), HasSubstr("2 lines of the record of scans could not be read"));
+  EXPECT_THAT(render_html(input), HasSubstr("The first: <code>out/scans.txt:1: y of detection 2 is '9&lt;0'"));
+
+  std::istringstream nothing_whole("scan 1\n");
+  input.ghosts = find_ghosts(nothing_whole, "scans.txt", nullptr);
+  EXPECT_FALSE(check_about(ghost_checks(input.ghosts), "could be read").passed);
+  EXPECT_THAT(render_html(input), HasSubstr("A line of the record of scans could not be read"));
+  EXPECT_THAT(render_html(input), HasSubstr("scans.txt:1: ends before source sequence"));
+  EXPECT_THAT(render_html(input), Not(HasSubstr("Scans were not recorded")));
+}
+
 TEST(GhostPage, ShowsMatrixTracksAndViews) {
   Drive drive;
   drive.publish_all(60);
   ReportInput input;
-  input.ghosts = find_ghosts(drive.record, &drive.truth);
+  input.ghosts = find_ghosts(drive.record, "scans.txt", &drive.truth);
   const std::string page = render_html(input);
   EXPECT_THAT(page, HasSubstr("title=\"120\">15.27 %</td>"));
   EXPECT_THAT(page, HasSubstr("<td>#5</td><td class=n>120</td>"));
@@ -196,7 +232,7 @@ TEST(GhostPage, SaysWhatIsMissing) {
   Drive drive;
   drive.publish_all(0);
   ReportInput input;
-  input.ghosts = find_ghosts(drive.record, nullptr);
+  input.ghosts = find_ghosts(drive.record, "scans.txt", nullptr);
   const std::string page = render_html(input);
   EXPECT_THAT(page, HasSubstr("No truth is known of this drive's detections"));
   EXPECT_THAT(page, Not(HasSubstr("differs from the truth")));

@@ -54,7 +54,7 @@ TEST_F(ScanRecord, IsReadAsItWasWritten) {
   std::stringstream record;
   write_scan(record, *scan_);
   write_tracks(record, *tracks_);
-  ScanRecordReader reader(record);
+  ScanRecordReader reader(record, "scans.txt");
   ASSERT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
   EXPECT_EQ(read_scan_->header.source_id, 3u);
   EXPECT_EQ(read_scan_->header.source_sequence, 17u);
@@ -94,20 +94,59 @@ TEST_F(ScanRecord, CutAnywhereGivesWhatIsWhole) {
   const std::string whole = record.str();
   for (std::size_t length = first; length < whole.size() - 1; ++length) {
     std::istringstream cut(whole.substr(0, length));
-    ScanRecordReader reader(cut);
+    ScanRecordReader reader(cut, "scans.txt");
     EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
     EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd) << "cut after " << length;
+    EXPECT_EQ(reader.damaged().count, length == first ? 0u : 1u) << "cut after " << length;
   }
 }
 
-TEST_F(ScanRecord, WhatNoMonitorWritesIsPassedOver) {
+TEST_F(ScanRecord, WhatNoMonitorWritesIsCountedAndNothingElseIsLost) {
   std::istringstream record(
-      "scan 1 1 1 0 0 0 0 4000000000 .\nscan 1 1 1 0 0 0 0 1 q 0 0 0 0 0 .\nscan 1 1 1 0 0 0 0 0 65 .\n"
-      "tracks 1 1 1 129 .\nsomething else\n\nscan 1 1 1 0 0 0 0 0 0 .\n");
-  ScanRecordReader reader(record);
+      "scan 1 1 1 0 0 0 0 4000000000 .\nscan 1 1 1 0 0 0 0 0 0 .\nscan 1 1 1 0 0 0 0 1 q 0 0 0 0 0 .\n\n"
+      "scan 1 1 1 0 0 0 0 0 0 .\n");
+  ScanRecordReader reader(record, "scans.txt");
+  EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
+  EXPECT_EQ(reader.damaged().count, 1u);
   EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kScan);
   EXPECT_EQ(read_scan_->number_of_valid_detections, 0u);
   EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd);
+  EXPECT_EQ(reader.damaged().count, 3u);
+  EXPECT_EQ(reader.damaged().first,
+            "scans.txt:1: number of detections is '4000000000', allowed: a whole number from 0 to 1024")
+      << "the first is kept";
+}
+
+TEST_F(ScanRecord, ADamagedLineIsToldWithFieldAndWhatIsAllowed) {
+  struct {
+    const char* line;
+    const char* why;
+  } const cases[] = {
+      {"", "ends before kind of line"},
+      {"something else", "kind of line is 'something', allowed: scan or tracks"},
+      {"scan", "ends before source id"},
+      {"scan -1 1 1 0 0 0 0 0 0 .", "source id is '-1', allowed: a whole number from 0 to 4294967295"},
+      {"scan 1 1 1 0 0 north 0 0 0 .", "place of the sensor is 'north', allowed: a number"},
+      {"scan 1 1 1 0 0 0 0 2 m 0 0 0 0 q 0 0 0 0 0 .", "label of detection 2 is 'q', allowed: a letter of ums12cx"},
+      {"scan 1 1 1 0 0 0 0 2 m 0 0 0 0 u 0", "ends before y of detection 2"},
+      {"scan 1 1 1 0 0 0 0 1 ms 0 0 0 0 0 .", "label of detection 1 is 'ms', allowed: a letter of ums12cx"},
+      {"scan 1 1 1 0 0 0 0 0 65 .", "number of reflector segments is '65', allowed: a whole number from 0 to 64"},
+      {"scan 1 1 1 0 0 0 0 0 1 0 0 0 1e .", "end of reflector segment 1 is '1e', allowed: a number"},
+      {"scan 1 1 1 0 0 0 0 0 0 0.", "its end is '0.', allowed: '.'"},
+      {"scan 1 1 1 0 0 0 0 0 0", "ends before its end"},
+      {"scan 1 1 1 0 0 0 0 0 0 . x", "its end is ' x', allowed: '.'"},
+      {"tracks 1 1 1 129 .", "number of tracks is '129', allowed: a whole number from 0 to 128"},
+      {"tracks 1 1 1 1 8 4 0 0 0 4 2 6 .", "movement of track 1 is '4', allowed: a whole number from 0 to 3"},
+      {"\x1b[2J\xff scan", "kind of line is '?[2J?', allowed: scan or tracks"},
+      {"scans-of-a-radar-which-no-one-knows 1", "kind of line is 'scans-of-a-radar-which-n…', allowed: scan or tracks"},
+  };
+  for (const auto& [line, why] : cases) {
+    std::istringstream record(std::string(line) + "\n");
+    ScanRecordReader reader(record, "r");
+    EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd) << line;
+    EXPECT_EQ(reader.damaged().count, 1u) << line;
+    EXPECT_EQ(reader.damaged().first, std::string("r:1: ") + why);
+  }
 }
 
 }  // namespace

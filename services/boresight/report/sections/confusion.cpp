@@ -64,6 +64,16 @@ std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& tim
 std::string render_confusion(const ReportInput& input, const TimeBase& time) {
   const GhostFindings& ghosts = input.ghosts;
   std::string text = "<h2>Ghost filter: against the truth</h2>\n";
+  if (ghosts.damaged.count > 0) {
+    const bool one = ghosts.damaged.count == 1;
+    text += fmt::format(
+        "<p><span class=\"bad\">{} of the record of scans could not be read</span>; what {} held is missing here and "
+        "in "
+        "the views. {}: <code>{}</code></p>\n",
+        one ? "A line" : fmt::format("{} lines", ghosts.damaged.count), one ? "it" : "they",
+        one ? "It is" : "The first", escape(ghosts.damaged.first));
+    if (ghosts.scans == 0) return text + "<p>No other line holds a scan.</p>\n";
+  }
   if (ghosts.scans == 0) {
     return text +
            "<p>Scans were not recorded, so there is nothing to compare, and no view of them. <code>boresight monitor "
