@@ -73,4 +73,13 @@ bool update(KinematicState& state, const PositionRate& m) {
   return true;
 }
 
+void come_to_rest(KinematicState& state) {
+  constexpr double kStill_mps = 0.3;  // moves by less than what is told from standing
+  const Eigen::Matrix2d s = state.covariance.block<2, 2>(2, 2) + kStill_mps * kStill_mps * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix<double, 6, 2> gain = state.covariance.middleCols<2>(2) * s.inverse();
+  state.mean -= gain * state.mean.segment<2>(2);
+  state.covariance -= gain * s * gain.transpose();
+  symmetrise(state.covariance);
+}
+
 }  // namespace boresight::tracking

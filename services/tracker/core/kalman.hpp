@@ -35,6 +35,9 @@ struct Distance {
 };
 [[nodiscard]] Distance distance(const KinematicState& state, const PositionRate& measurement);
 
+/// What seems to stand has no velocity, as far as a radar that calls it stationary can tell.
+void come_to_rest(KinematicState& state);
+
 /// Update in Joseph form, symmetrised. A singular innovation covariance leaves the state alone and returns false.
 bool update(KinematicState& state, const PositionRate& measurement);
 

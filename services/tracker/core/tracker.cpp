@@ -28,6 +28,23 @@ PositionRate measurement_of(const Cluster& cluster, const Extent& extent, const 
   return m;
 }
 
+constexpr double kSlow_mps = 0.7;  // a vehicle that is about to stand
+
+/// Rails and walls stand, too.
+bool is_of_reflector(const ClassifiedScan& scan, const Eigen::Vector2d& place_m) {
+  constexpr double kNear_m = 0.7;
+  const std::size_t count = std::min<std::size_t>(scan.number_of_reflector_segments, kMaxReflectorSegments);
+  return std::any_of(scan.reflector_segments.begin(),
+                     scan.reflector_segments.begin() + static_cast<std::ptrdiff_t>(count),
+                     [&](const ReflectorSegment& segment) {
+                       const Eigen::Vector2d from(segment.start_vehicle_m[0], segment.start_vehicle_m[1]),
+                           to(segment.end_vehicle_m[0], segment.end_vehicle_m[1]);
+                       const Eigen::Vector2d along = to - from;
+                       const double share = (place_m - from).dot(along) / std::max(1e-6, along.squaredNorm());
+                       return (place_m - from - std::clamp(share, 0.0, 1.0) * along).norm() < kNear_m;
+                     });
+}
+
 std::uint32_t window_mask(std::size_t scans) {
   return scans >= 32 ? ~0u : (1u << scans) - 1u;
 }
@@ -70,6 +87,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   assign(clusters, sensor, has_elevation);
   push_off(scan.geometry.ego_speed_mps);
+  keep_stopped(scan);
   judge(scan);
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     if (cluster_used_[c] || clusters[c].realness < config_.start_realness) continue;
@@ -142,6 +160,7 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     if (!update(track.state, measurement)) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
     track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
+    track.slow = track.state.mean.segment<2>(2).norm() < kSlow_mps;
     track.since_update_s = 0.0;
     track.detections = cluster.number_of_detections;
     track.realness = cluster.realness;
@@ -171,6 +190,27 @@ void Tracker::push_off(double ego_speed_mps) {
     const Eigen::Vector2d relative = mean.segment<2>(2) - Eigen::Vector2d(ego_speed_mps, 0.0);
     mean.segment<2>(2) -= std::min(0.0, normal.dot(relative)) * normal;
     mean.tail<2>() -= std::min(0.0, normal.dot(mean.tail<2>())) * normal;
+  }
+}
+
+void Tracker::keep_stopped(const ClassifiedScan& scan) {
+  // What has come to a stand is no longer detected as moving, but it is where it was. Ghosts' tracks, too, come to rest
+  // on what stands somewhere, but do not live so long before.
+  constexpr double kLongEnough_s = 5.0, kSure = 0.9;
+  const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
+  for (Entry& track : tracks_) {
+    if (!track.confirmed || !track.slow || track.detections > 0 || track.age_s < kLongEnough_s ||
+        track.existence < kSure) {
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (scan.provenance[i] != Provenance::kStationary) continue;
+      const Eigen::Vector2d place(scan.x_vehicle_m[i], scan.y_vehicle_m[i]);
+      if (!track.extent.contains(track.state.mean.head<2>(), place, 0.0) || is_of_reflector(scan, place)) continue;
+      come_to_rest(track.state);
+      track.since_update_s = 0.0;
+      break;
+    }
   }
 }
 

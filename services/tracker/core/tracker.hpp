@@ -49,12 +49,15 @@ class Tracker {
     double since_update_s = 0.0;
     std::uint32_t detections = 0;  // in the last scan
     double realness = 0.0;         // of those
+    bool slow = false;             // when it was detected last
   };
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
   /// Nothing is where the own vehicle is: moves tracks that drift there back beside it, their velocity, too.
   void push_off(double ego_speed_mps);
+  /// Keeps what came to a stand, of which the scans see only what stands.
+  void keep_stopped(const ClassifiedScan& scan);
   void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
   void judge(const ClassifiedScan& scan);
   [[nodiscard]] bool are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sensor) const;

@@ -88,5 +88,26 @@ TEST(TrackerDuplicates, TwoThatWereLongTrackedAtTheirOwnSpeedsStayTwo) {
   EXPECT_EQ(ids.size(), 2u);
 }
 
+TEST(TrackerDuplicates, LimbsThatWereLongTrackedAtTheirOwnSpeedsAreOne) {
+  // As small and weak as limbs are, and at speeds of their own; in the end they are in one place.
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  TrackList list;
+  for (int i = 0; i < 55; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    scene.scan->rcs_dbsm[0] = scene.scan->rcs_dbsm[1] = -8.0F;
+    const double t = 0.05 * i;
+    scene.add({20.0 + 2.2 * t, 0.0}, {2.2, 0.0});
+    scene.add({32.0 - 2.2 * t, 0.0}, {-2.2, 0.0});
+    tracker.step(*scene.scan);
+    tracker.write(list);
+    if (i == 42) {
+      ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "apart, tracked for over two seconds";
+    }
+  }
+  EXPECT_EQ(list.number_of_confirmed_tracks, 1u) << "nobody walks through another";
+}
+
 }  // namespace
 }  // namespace boresight::tracking
