@@ -66,6 +66,8 @@ void print_table(const Table& table, std::ostream& out) {
 std::string number(double value) {
   if (std::isnan(value)) return "—";
   if (std::isinf(value)) return "never";
+  // Whole, as 1.81e+03 is hard to read.
+  if (std::abs(value) >= 999.5 && std::abs(value) < 1e7) return fixed(value, 0);
   return formatted("%.3g", value);
 }
 

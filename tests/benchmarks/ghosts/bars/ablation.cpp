@@ -80,7 +80,9 @@ void ablation(const Options& options, Report& report) {
       "ablation",
       "the mirror method without one of its ideas, medians over " + how +
           ": moving told to be moving / type 1 told to be a ghost / type 2 told to be a ghost, %, and by how many "
-          "points that changes; last: clutter told to be moving on highway_multipath, sums over all scenarios",
+          "points that changes; last columns: of clutter in highway_multipath, % told to be moving; and sums over "
+          "these "
+          "scenarios",
       {"", "clutter moving, %", "ghost tracks", "other false tracks", "lost object seconds"},
       {}};
   std::vector<TrackFaults> faults;
