@@ -173,6 +173,36 @@ TEST_F(MirrorFilterTest, TheSideOfATruckMirrorsAndMovesItself) {
   EXPECT_GE(ghosts, scans * 9 / 10);
 }
 
+TEST_F(MirrorFilterTest, TheRearOfAVehicleAheadMayMirrorThoughItsLengthIsNotSeen) {
+  for (const double length : {4.5, 1.8}) {
+    std::size_t ghosts = 0, scans = 0;
+    filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
+    for (int k = 0; k < 60; ++k) {
+      // Now and then, so that no image before tells what it is.
+      const bool is_seen = k % 6 == 5;
+      std::uint32_t ghost = 0;
+      drive(0.05, [&] {
+        // The way back from its rear to the vehicle behind passes beside the own vehicle.
+        const Vector2d ahead(15.0, 0.0), ahead_v(10.0, 0.0), behind(-15.0, 2.5), v(12.0, 0.0);
+        track(ahead, ahead_v, length);
+        track(behind, v);
+        hand_over_tracks();
+        direct(ahead + Vector2d(-0.5 * length, 0.0), ahead_v);
+        const Plane rear{ahead - Vector2d(0.5 * length, 0.0), {0.0, 1.0}, ahead_v};
+        if (is_seen) ghost = by_three_bounces(behind + Vector2d(2.25, 0.0), v, rear);
+      });
+      if (!is_seen) continue;
+      ++scans;
+      ghosts += label(ghost) == Provenance::kGhostType2 ? 1U : 0U;
+    }
+    if (length > 3.0) {
+      EXPECT_GE(ghosts, scans * 9 / 10);
+    } else {
+      EXPECT_EQ(ghosts, 0U) << "a cycle does not mirror";
+    }
+  }
+}
+
 TEST_F(MirrorFilterTest, AnArcMirrorsAsItsTangentAtTheReflectionDoes) {
   // A wall bends to the left, radius 90 m, about a vehicle that stands; the ghost by Fermat's principle.
   speed_mps_ = 0.0;

@@ -29,6 +29,10 @@ constexpr double kHeard_db = 3.0;      // a track's strength is known if its std
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
 constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
+constexpr double kVans = 0.2;                             // share of vehicles whose ends mirror: vans, trucks
+constexpr double kLeastVehicle_m = 3.0;                   // what is shorter has no end that mirrors
+/// Where only the end is seen, cosine of the angle to the axis, the length is not; farther away few rays meet an end.
+constexpr double kAlongAxis = 0.97, kFarEnd_m = 25.0;
 constexpr double kSlowest = 0.1;  // share of a new judgement of a track in what is thought of it
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
@@ -160,9 +164,15 @@ void MirrorFilter::place_mirrors() {
     const Object& o = objects_[i];
     // How long a vehicle is shows late: a van's track may still have the length of a car.
     const double is_long = below((2.0 * o.half_length_m - config_.classes.min_mirror_length_m) / kLengthStd_m);
-    if (o.own || o.weight < 0.5 || is_long < kLeastLong) continue;
+    // From behind or from ahead it is not seen at all: what may be a van is one as often as vans are.
+    const Eigen::Vector2d sight = o.position_m - sensor_m_;
+    const bool may_be_van = 2.0 * o.half_length_m > kLeastVehicle_m && sight.squaredNorm() < kFarEnd_m * kFarEnd_m &&
+                            std::abs(sight.dot(o.axis)) > kAlongAxis * sight.norm();
+    const double has_end = may_be_van ? std::max(is_long, kVans) : is_long < kLeastLong ? 0.0 : is_long;
+    if (o.own || o.weight < 0.5 || has_end <= 0.0) continue;
     const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
-    const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth) {
+    const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth,
+                              double is_mirror) {
       const double side = across.dot(sensor_m_ - o.position_m);
       if (std::abs(side) <= depth || mirrors_.size() == mirrors_.capacity()) return;
       Mirror m;
@@ -171,13 +181,13 @@ void MirrorFilter::place_mirrors() {
           Eigen::Vector3d(0.2 * 0.2 + across.dot(o.position_covariance * across), 0.04 * 0.04, 0.0).asDiagonal();
       m.begin_m = -half;
       m.end_m = half;
-      m.existence = 0.8 * o.weight * is_long;
+      m.existence = 0.8 * o.weight * is_mirror;
       m.velocity_mps = o.velocity_mps;
       m.body = i;
       mirrors_.push_back(m);
     };
-    add_side(o.axis, o.half_length_m, left, o.half_width_m);
-    add_side(left, o.half_width_m, o.axis, o.half_length_m);
+    if (is_long >= kLeastLong) add_side(o.axis, o.half_length_m, left, o.half_width_m, is_long);
+    add_side(left, o.half_width_m, o.axis, o.half_length_m, has_end);
   }
   for (Mirror& m : mirrors_) m.least_range_m = std::abs(m.curve.distance(sensor_m_));
 }
