@@ -114,6 +114,12 @@ int run(const MonitorOptions& options) {
   const int exit_code = node.spin();
   if (screen) show();
   if (record.is_open()) monitor::write_record(record, snapshot());
+  const auto check_written = [](std::ofstream& file, const std::string& path) {
+    if (file.is_open() && !file.flush())
+      throw std::runtime_error("cannot write " + path + ": what it holds is not whole");
+  };
+  check_written(record, options.record_file);
+  check_written(scans, options.scans_file);
   return exit_code;
 }
 
