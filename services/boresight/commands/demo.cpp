@@ -251,12 +251,14 @@ int run(DemoOptions options) {
 
   std::ifstream recorded_snapshots(records.snapshots), recorded_scans(records.scans);
   input.title = drive.title + ", vehicle " + input.vehicle.name;
-  input.snapshots = monitor::read_record(recorded_snapshots);
+  monitor::DamagedLines damaged;
+  input.snapshots = monitor::read_record(recorded_snapshots, records.snapshots.string(), damaged);
   input.truth = drive.truth;
   input.events = event_lines(events);
   const auto truths = drive.truth_file.empty() ? std::nullopt : detection_truths_beside(drive.truth_file);
   input.ghosts = report::find_ghosts(recorded_scans, records.scans.string(), truths ? &*truths : nullptr);
   input.more_checks = report::ghost_checks(input.ghosts);
+  input.more_checks.push_back(report::record_check("record", damaged));
   input.more_checks.push_back(check_of(events));
   report::Summary summary = report::summarise(input.snapshots, input.truth);
   summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());

@@ -29,7 +29,9 @@ int run(const ReportOptions& options) {
   if (!record) throw std::runtime_error("cannot read " + options.record);
   report::ReportInput input;
   input.title = options.record;
-  input.snapshots = monitor::read_record(record);
+  monitor::DamagedLines damaged;
+  input.snapshots = monitor::read_record(record, options.record, damaged);
+  input.more_checks.push_back(report::record_check("record", damaged));
   input.vehicle = options.configuration.vehicle();
   if (!options.truth.empty()) {
     std::ifstream truth(options.truth);
@@ -41,7 +43,8 @@ int run(const ReportOptions& options) {
     if (!scans) throw std::runtime_error("cannot read " + options.scans);
     const auto truths = options.truth.empty() ? std::nullopt : detection_truths_beside(options.truth);
     input.ghosts = report::find_ghosts(scans, options.scans, truths ? &*truths : nullptr);
-    input.more_checks = report::ghost_checks(input.ghosts);
+    const std::vector<report::Check> checks = report::ghost_checks(input.ghosts);
+    input.more_checks.insert(input.more_checks.end(), checks.begin(), checks.end());
   }
   std::ofstream output(options.output);
   output << report::render_html(input);

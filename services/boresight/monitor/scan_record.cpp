@@ -27,16 +27,6 @@ char letter_of(const ClassifiedScan& scan, std::size_t i) {
   return index < kLetters.size() ? kLetters[index] : kLetters[0];
 }
 
-/// As an error shows it: what a damaged file holds may be long, and no text.
-std::string quoted(std::string_view word) {
-  constexpr std::size_t kMost = 24;
-  std::string text(word.substr(0, kMost));
-  for (char& c : text) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return "'" + text + (word.size() > kMost ? "…'" : "'");
-}
-
 template <typename T>
 std::string allowed_numbers(T most = std::numeric_limits<T>::max()) {
   if constexpr (std::is_floating_point_v<T>) return "a number";
@@ -213,7 +203,7 @@ ScanRecordReader::Line ScanRecordReader::next(ClassifiedScan& scan, TrackList& t
     } else {
       words.refuse("kind of line", kind, "scan or tracks");
     }
-    if (damaged_.count++ == 0) damaged_.first = fmt::format("{}:{}: {}", name_, number_, words.error());
+    damaged_.add(name_, number_, words.error());
   }
   return Line::kEnd;
 }

@@ -9,6 +9,7 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
+#include "services/boresight/monitor/damaged_lines.hpp"
 
 namespace boresight::monitor {
 
@@ -17,13 +18,6 @@ namespace boresight::monitor {
 void write_scan(std::ostream& output, const ClassifiedScan& scan);
 /// Of the confirmed tracks: box, movement, number of detections.
 void write_tracks(std::ostream& output, const TrackList& list);
-
-/// Lines of a record that are no whole scan or track list. Nothing of them is used, and they are told, since what they
-/// held is missing from everything that is drawn from the record.
-struct DamagedLines {
-  std::uint64_t count = 0;
-  std::string first;  ///< "scans.txt:17: y of detection 3 is '1.x', allowed: a number"
-};
 
 /// Reads a record back, line by line.
 class ScanRecordReader {

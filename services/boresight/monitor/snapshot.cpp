@@ -1,5 +1,6 @@
 #include "services/boresight/monitor/snapshot.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <istream>
@@ -12,17 +13,40 @@ namespace boresight::monitor {
 
 namespace {
 
-/// The words of one line; a missing word reads as 0.
+/// The words of one line; one that is missing or not what was asked for reads as 0, and the first such is told.
 class Words {
  public:
   explicit Words(const std::string& line) : input_(line) {}
   std::string text() {
     std::string word;
     input_ >> word;
+    ++index_;
+    if (word.empty()) refuse(word, {});
     return word;
   }
-  double number() { return std::strtod(text().c_str(), nullptr); }  // also "nan"
-  std::uint64_t count() { return std::strtoull(text().c_str(), nullptr, 10); }
+  double number() {  // also "nan"
+    const std::string word = text();
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (end == word.c_str() + word.size()) return value;
+    refuse(word, "a number");
+    return 0.0;
+  }
+  std::uint64_t count() {
+    const std::string word = text();
+    std::uint64_t value = 0;
+    const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (result.ec == std::errc() && result.ptr == word.data() + word.size()) return value;
+    refuse(word, "a whole number from 0 to 18446744073709551615");
+    return 0;
+  }
+  void refuse(const std::string& word, std::string_view allowed) {
+    if (!ok()) return;
+    error_ = word.empty() ? fmt::format("ends before word {}", index_)
+                          : fmt::format("word {} is {}, allowed: {}", index_, quoted(word), allowed);
+  }
+  [[nodiscard]] bool ok() const { return error_.empty(); }
+  [[nodiscard]] const std::string& error() const { return error_; }
   template <typename Enum>
   Enum value() {
     return static_cast<Enum>(count());
@@ -38,6 +62,8 @@ class Words {
 
  private:
   std::istringstream input_;
+  std::size_t index_ = 0;  // of the last word, from 1
+  std::string error_;
 };
 
 void write_angle(std::ostream& output, const AngleEstimate& angle) {
@@ -192,31 +218,49 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
   output << "end\n";
 }
 
-std::vector<Snapshot> read_record(std::istream& input) {
+std::vector<Snapshot> read_record(std::istream& input, const std::string& name, DamagedLines& damaged) {
   std::vector<Snapshot> snapshots;
   Snapshot current;
-  bool open = false;
+  bool open = false;    // a snapshot has begun, and all its lines so far were read
+  bool spoilt = false;  // it had a line that could not be read, and is left out
+  std::uint64_t number = 0;
   for (std::string line; std::getline(input, line);) {
+    ++number;
     Words words(line);
     const std::string tag = words.text();
     if (tag == "snapshot") {
+      if (open) damaged.add(name, number, "the snapshot before has no end");
       current = Snapshot();
       open = true;
+      spoilt = false;
       current.time_ns = static_cast<std::int64_t>(words.count());
       current.ego_speed_mps = words.number();
       current.ego_yaw_rate_radps = words.number();
       current.track_lists = words.count();
+    } else if (!open && !spoilt) {
+      words.refuse(tag, "snapshot");
+    } else if (tag == "radar") {
+      current.radars.push_back(read_radar(words));
+    } else if (tag == "track") {
+      current.tracks.push_back(read_track(words));
+    } else if (tag == "service") {
+      current.services.push_back(read_service(words));
+    } else if (tag == "latency") {
+      read_latency(words, current);
+    } else if (tag != "end") {
+      words.refuse(tag, "snapshot, radar, track, service, latency or end");
     }
-    if (!open) continue;
-    if (tag == "radar") current.radars.push_back(read_radar(words));
-    if (tag == "track") current.tracks.push_back(read_track(words));
-    if (tag == "service") current.services.push_back(read_service(words));
-    if (tag == "latency") read_latency(words, current);
-    if (tag == "end") {
-      snapshots.push_back(current);
+    if (!words.ok()) {
+      damaged.add(name, number, words.error());
       open = false;
+      spoilt = true;
+    }
+    if (tag == "end") {
+      if (open) snapshots.push_back(current);
+      open = spoilt = false;
     }
   }
+  if (open) damaged.add(name, number, "the snapshot has no end");
   return snapshots;
 }
 

@@ -17,6 +17,7 @@
 #include "interfaces/messages/names.hpp"
 #include "interfaces/messages/service_status.hpp"
 #include "interfaces/messages/track_list.hpp"
+#include "services/boresight/monitor/damaged_lines.hpp"
 #include "services/common/estimation/latency_histogram.hpp"
 
 namespace boresight::monitor {
@@ -123,8 +124,9 @@ struct Snapshot {
 /// Appends one snapshot to a record: lines of words, closed by a line "end", so that a record that was cut off in the
 /// middle of a snapshot is still readable.
 void write_record(std::ostream& output, const Snapshot& snapshot);
-/// Reads complete snapshots; stops silently at an incomplete one, skips what it does not understand.
-[[nodiscard]] std::vector<Snapshot> read_record(std::istream& input);
+/// Reads the snapshots that are whole. One with a line that is damaged, or without its end, is left out and counted.
+/// `name` is what errors call the record.
+[[nodiscard]] std::vector<Snapshot> read_record(std::istream& input, const std::string& name, DamagedLines& damaged);
 
 /// One line of JSON.
 [[nodiscard]] std::string to_json(const Snapshot& snapshot);

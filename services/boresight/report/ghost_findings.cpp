@@ -229,11 +229,8 @@ GhostFindings find_ghosts(std::istream& record, const std::string& name, const D
 
 std::vector<Check> ghost_checks(const GhostFindings& findings) {
   std::vector<Check> checks;
-  const std::uint64_t damaged = findings.damaged.count;
-  if (findings.scans + findings.track_lists + damaged > 0) {
-    std::string what = fmt::format("every line of the record of scans could be read ({} could not", damaged);
-    if (damaged > 0) what += fmt::format("; {}{}", damaged > 1 ? "the first: " : "", findings.damaged.first);
-    checks.push_back({what + ")", damaged == 0, false});
+  if (findings.scans + findings.track_lists + findings.damaged.count > 0) {
+    checks.push_back(record_check("record of scans", findings.damaged));
   }
   if (!findings.confusion) return checks;
   const judge::Confusion& c = *findings.confusion;

@@ -259,6 +259,12 @@ std::size_t Summary::missed_aims() const {
       std::count_if(checks.begin(), checks.end(), [](const Check& check) { return check.aim && !check.passed; }));
 }
 
+Check record_check(const std::string& record, const monitor::DamagedLines& damaged) {
+  std::string what = fmt::format("every line of the {} could be read ({} could not", record, damaged.count);
+  if (damaged.count > 0) what += fmt::format("; {}{}", damaged.count > 1 ? "the first: " : "", damaged.first);
+  return {what + ")", damaged.count == 0, false};
+}
+
 const char* word_of(const Check& check) {
   if (check.passed) return "ok";
   return check.aim ? "MISSED" : "FAILED";

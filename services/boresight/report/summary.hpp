@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "services/boresight/monitor/damaged_lines.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
 
 namespace boresight::report {
@@ -39,6 +40,8 @@ struct Check {
   bool passed;
   bool aim = false;
 };
+/// That every line of a record ("record of scans") was whole.
+[[nodiscard]] Check record_check(const std::string& record, const monitor::DamagedLines& damaged);
 /// "ok", "FAILED", or "MISSED" of an aim.
 [[nodiscard]] const char* word_of(const Check& check);
 

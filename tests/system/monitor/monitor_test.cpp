@@ -67,7 +67,9 @@ TEST(Monitor, RecordsWhatCanBeReadBackAndSaysWhatItCouldNotWrite) {
   EXPECT_GT(scans, 200u) << "of some 240";
   EXPECT_EQ(lists, scans);
   std::ifstream snapshots("/tmp/record.txt");
-  EXPECT_GT(monitor::read_record(snapshots).size(), 5u);
+  monitor::DamagedLines damaged;
+  EXPECT_GT(monitor::read_record(snapshots, "record.txt", damaged).size(), 5u);
+  EXPECT_EQ(damaged.count, 0u) << damaged.first;
 }
 
 }  // namespace

@@ -175,8 +175,11 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   write_record(record, written);
   const std::string whole = record.str();
   std::istringstream cut(whole.substr(0, whole.size() - 20));
-  EXPECT_EQ(read_record(cut).size(), 1U);
-  const auto snapshots = read_record(record);
+  DamagedLines of_cut, of_whole;
+  EXPECT_EQ(read_record(cut, "cut", of_cut).size(), 1U);
+  EXPECT_GE(of_cut.count, 1U);
+  const auto snapshots = read_record(record, "whole", of_whole);
+  EXPECT_EQ(of_whole.count, 0U) << of_whole.first;
   ASSERT_EQ(snapshots.size(), 2U);
   EXPECT_EQ(to_json(snapshots[1]), to_json(written));
   EXPECT_THAT(to_json(written),
@@ -191,6 +194,36 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
+}
+
+TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
+  std::ostringstream one;
+  write_record(one, Snapshot());
+  const std::string whole = one.str();
+  const std::string head = "snapshot 1 2.5 0 0\n";
+  const struct {
+    std::string text;
+    const char* first;
+  } cases[] = {
+      {"snapshot soon 2.5 0 0\ntrack 1\nend\n", "r:1: word 2 is 'soon', allowed: a whole number from 0 to "},
+      {head + "track 1 1 0 4 fast 0 0 0\nend\n", "r:2: word 6 is 'fast', allowed: a number"},
+      {head + "track 1 1 0\nend\n", "r:2: ends before word 5"},
+      {head + "truck 1\nend\n", "r:2: word 1 is 'truck', allowed: snapshot, radar, track, service, latency or end"},
+      {head, "r:2: the snapshot before has no end"},
+      {"end\n", "r:1: word 1 is 'end', allowed: snapshot"},
+      {"track 1 1 0 4 0 0 0 0\n", "r:1: word 1 is 'track', allowed: snapshot"},
+  };
+  for (const auto& c : cases) {
+    std::istringstream record(c.text + whole);
+    DamagedLines damaged;
+    EXPECT_EQ(read_record(record, "r", damaged).size(), 1U) << "nothing else is lost: " << c.text;
+    EXPECT_GE(damaged.count, 1U) << c.text;
+    EXPECT_THAT(damaged.first, ::testing::StartsWith(c.first));
+  }
+  std::istringstream record(whole + head);
+  DamagedLines damaged;
+  EXPECT_EQ(read_record(record, "r", damaged).size(), 1U);
+  EXPECT_THAT(damaged.first, ::testing::EndsWith(": the snapshot has no end"));
 }
 
 TEST(Render, SaysWhichRadarIsCrookedAndHowSure) {
