@@ -64,7 +64,6 @@ ClassConfig read_classes(config::Reader reader) {
   c.real_per_object = reader.number("real_per_object", {0.01, 100.0}, c.real_per_object);
   c.tentative_weight = reader.number("tentative_weight", {0.0, 1.0}, c.tentative_weight);
   c.wheel_share = reader.number("wheel_share", {0.0, 1.0}, c.wheel_share);
-  c.wheel_ghost_share = reader.number("wheel_ghost_share", {0.0, 1.0}, c.wheel_ghost_share);
   c.strength_doubt = reader.number("strength_doubt", {0.0, 1.0}, c.strength_doubt);
   c.stationary_image_density = reader.number("stationary_image_density", {0.0, 1.0}, c.stationary_image_density);
   c.extent_std_m = reader.number("extent_std_m", {0.1, 10.0}, c.extent_std_m);

@@ -57,7 +57,6 @@ std::vector<double> numbers(const Config& config) {
           k.real_per_object,
           k.tentative_weight,
           k.wheel_share,
-          k.wheel_ghost_share,
           k.strength_doubt,
           k.stationary_image_density,
           k.extent_std_m,

@@ -15,10 +15,9 @@ struct ClassConfig {
   double type1_per_object = 0.6;  ///< expected detections by one reflector
   double type2_per_object = 4.0;
   double real_per_object = 3.0;
-  double tentative_weight = 0.1;     ///< of an object whose track is not confirmed yet
-  double wheel_share = 0.5;          ///< of an object's detections that are of wheels or limbs, at other range rates
-  double wheel_ghost_share = 0.005;  ///< of its ghosts
-  double strength_doubt = 0.02;      ///< share of cases in which a detection's strength tells nothing
+  double tentative_weight = 0.1;  ///< of an object whose track is not confirmed yet
+  double wheel_share = 0.5;       ///< of an object's detections that are of wheels or limbs, at other range rates
+  double strength_doubt = 0.02;   ///< share of cases in which a detection's strength tells nothing
   double stationary_image_density = 2e-5;  ///< images of the stationary world: for each m², at the range rate they have
   double extent_std_m = 1.3;               ///< of a reflection from another place of the same object
   double range_rate_slack_mps = 0.3;       ///< turning, bodies that are not rigid

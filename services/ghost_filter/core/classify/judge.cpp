@@ -26,6 +26,9 @@ constexpr std::uint32_t kOftenEnough = 30;
 /// sight.
 constexpr double kSlow_mps = 3.0, kLeastSlow = 0.3;
 
+/// What is so much less likely than all else cannot change a verdict.
+constexpr double kNegligible = 1e-3;
+
 }  // namespace
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
@@ -111,25 +114,44 @@ double Judge::behind_mirror(const Measured& m) const {
   return most;
 }
 
-Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but_object) {
+Densities Judge::weigh(const Measured& m, std::uint32_t index) {
   Densities densities;
-  cross(m, but_object);
+  cross(m, kNobody);
+  bool is_hidden = false;
+  const double of_hidden = hidden(m, kNobody, is_hidden);
+  real(m, index, is_hidden, densities);
+  ghosts(m, index, kNobody, kNegligible * densities.sum(), densities);
+  densities.type1 += of_hidden;
+  densities.type2 += densities.of_images;
+  return densities;
+}
+
+double Judge::images(const Measured& m, std::uint32_t object, double least) {
+  Densities densities;
+  cross(m, object);
+  ghosts(m, kNobody, object, least, densities);
+  bool is_hidden = false;
+  return densities.type1 + densities.type2 + hidden(m, object, is_hidden);
+}
+
+void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least,
+                   Densities& densities) {
   const std::size_t most = std::min(kMostPairs, pairs_left_of_scan_);
   pairs_left_ = most;
-  double behind = 0.0;
   for (const Crossing& crossing : crossings_) {
-    behind = std::max(behind, crossing.turn.probability * crossing.beyond);
     // By different mirrors a ghost would be elsewhere: one fits, or two found for one that is there. So the best
     // counts.
-    densities.type2 =
-        std::max(densities.type2, type2(m, crossing, index, but_object) + type2_of_two(m, crossing, index, but_object));
+    densities.type2 = std::max(densities.type2, type2(m, crossing, index, but_object, least) +
+                                                    type2_of_two(m, crossing, index, but_object, least));
   }
   pairs_left_of_scan_ -= most - pairs_left_;
-  bool is_hidden = false;
-  densities.type1 = type1(m, index, but_object) + hidden(m, but_object, is_hidden);
-  if (but_object != kNobody) return densities;
+  densities.type1 = type1(m, index, but_object, least);
+}
+
+void Judge::real(const Measured& m, std::uint32_t index, bool is_hidden, Densities& densities) const {
+  double behind = 0.0;
+  for (const Crossing& crossing : crossings_) behind = std::max(behind, crossing.turn.probability * crossing.beyond);
   of_objects(m, false, densities);
-  densities.type2 += densities.of_images;
   const bool company = has_company(m, index);
   const double above_db = m.rcs_dbsm - kUsualRcs_dbsm;
   densities.moving += of_movers(m, index) * (1.0 - 0.7 * behind);
@@ -140,7 +162,6 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index, std::uint32_t but
                       likelihood(kClutterStrength, above_db, 0.0, config_.strength_doubt);
   const StationaryGrid::Cell* const cell = known_still(m);
   densities.stationary = of_stationary(m, cell == nullptr ? 1 : cell->count);
-  return densities;
 }
 
 Densities Judge::weigh_still(const Measured& m) {
@@ -155,10 +176,11 @@ Densities Judge::weigh_still(const Measured& m) {
   if (densities.likeliest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.likeliest]))
     seen = 1;
   densities.stationary = of_stationary(m, seen);
-  if (like_slow) densities.type1 = type1(m, kNobody, kNobody);
+  const double least = kNegligible * densities.sum();
+  if (like_slow) densities.type1 = type1(m, kNobody, kNobody, least);
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {
-    densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody));
+    densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody, least));
   }
   return densities;
 }

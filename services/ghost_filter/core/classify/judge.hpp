@@ -13,6 +13,7 @@
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/classify/source_map.hpp"
+#include "services/ghost_filter/core/mirror/meeting.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
@@ -59,8 +60,11 @@ class Judge {
   void begin(const Surroundings& surroundings);
   /// As far from a mover as something may be that it is taken for, but for what that is known worse.
   [[nodiscard]] double reach_of_mover(const MovedMover& mover) const;
-  /// `index` of the detection in the scan; `but_object`: is not considered, nor what is near to the detection.
-  [[nodiscard]] Densities weigh(const Measured& measured, std::uint32_t index, std::uint32_t but_object = kNobody);
+  /// `index` of the detection in the scan.
+  [[nodiscard]] Densities weigh(const Measured& measured, std::uint32_t index);
+  /// Expected density of ghosts where an object is, which is not considered itself, nor what is detected of it. What
+  /// is less than `least` need not be told.
+  [[nodiscard]] double images(const Measured& measured, std::uint32_t object, double least);
   /// As weigh(), but only what a detection that looks stationary can be: that, or of an object that is tracked.
   [[nodiscard]] Densities weigh_still(const Measured& measured);
   /// Whether there is a mirror in front of the detection, as probability.
@@ -97,8 +101,14 @@ class Judge {
   };
   void cross(const Measured& measured, std::uint32_t but_object);
   /// Expected density of ghosts, if every object has one, of tracked objects and of what was detected lately.
+  /// Of less than `least` it may tell nothing.
   [[nodiscard]] double ghosts_of(const Target& target, const Measured& measured, std::uint32_t but_object,
-                                 std::uint32_t but_index) const;
+                                 std::uint32_t but_index, double least) const;
+  /// Both types, of what is known; needs the crossings.
+  void ghosts(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least,
+              Densities& densities);
+  /// All that is no ghost; needs the crossings.
+  void real(const Measured& measured, std::uint32_t index, bool is_hidden, Densities& densities) const;
   /// `looks_still`: of those that move, as likely as they do.
   void of_objects(const Measured& measured, bool looks_still, Densities& densities) const;
   /// The same of objects that are not tracked (yet) but were detected, in this scan or just before.
@@ -109,13 +119,14 @@ class Judge {
   [[nodiscard]] bool was_before(const StationaryGrid::Cell& cell, const Measured& measured, const Object& object) const;
   /// `seen`: how often something was detected there, this time included.
   [[nodiscard]] double of_stationary(const Measured& measured, std::uint32_t seen) const;
-  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object) const;
+  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object,
+                             double least) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
-                             std::uint32_t but_object) const;
+                             std::uint32_t but_object, double least) const;
   /// Those whose way out is by another mirror.
   [[nodiscard]] double type2_of_two(const Measured& measured, const Crossing& crossing, std::uint32_t index,
-                                    std::uint32_t but_object);
+                                    std::uint32_t but_object, double least);
   [[nodiscard]] Target target_of(const Measured& measured, const Crossing& crossing, double rest_m,
                                  double metres_per_m) const;
   /// Whether there may be something that is reflected where a way leads along the ray; the variance across it is m².

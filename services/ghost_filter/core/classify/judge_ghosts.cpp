@@ -38,28 +38,32 @@ double rate_density(double value, const Eigen::Vector2d& q, const Eigen::Vector2
 
 }  // namespace
 
-double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t but_object,
-                        std::uint32_t but_index) const {
+double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t but_object, std::uint32_t but_index,
+                        double least) const {
   double of_tracks = 0.0;
+  least /= target.stretch;
   const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
   const double doubt = config_.strength_doubt;
-  const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_of(blurred.diagonal()));
+  // However an object reflects: blurred, it is nowhere denser than this.
+  const double densest = 1.0 / (2.0 * M_PI * std::sqrt(blurred.determinant()));
+  const double reach_m = reach_of(blurred.diagonal());
+  const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_m);
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
-    const Reflections there = reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m);
-    if (there.wheel <= 0.0) return;
+    if ((o.position_m - target.place_m).squaredNorm() > square(1.5 * reach_m + o.reach_m)) return;
+    // Wheels are too weak to be seen in mirrors: what has another range rate than the body is no image of it.
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
-    const RateDensity rates = rates_at(o, m.rate_mps - target.known_mps, target.q, noise);
-    of_tracks += o.weight *
-                 ((1.0 - config_.wheel_ghost_share) * there.body * rates.body +
-                  config_.wheel_ghost_share * there.wheel * rates.wheel) *
-                 likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
+    const double rate = body_rate_at(o, m.rate_mps - target.known_mps, target.q, noise);
+    if (o.weight * rate * densest <= least) return;
+    const double anywhere = o.weight * rate * likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
+    if (anywhere * densest <= least) return;
+    of_tracks += anywhere * reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m).body;
   });
   if (!SourceMap::has_movers(sources)) return of_tracks * target.stretch;
   // Objects that are not tracked (yet) have been detected at least; and what was detected is known better than a box.
   // Several detections are of one object.
-  double of_movers = 0.0;
+  double of_movers = least;
   const std::size_t own = s_.movers->earlier();
   const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
   const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
@@ -97,7 +101,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
                          mover.weight * there * fits *
                              likelihood(target.strength, above_db, heard ? kFluctuation_db : kUsualRcsStd_db, doubt));
   });
-  return (of_tracks + of_movers) * target.stretch;
+  return (of_tracks + (of_movers > least ? of_movers : 0.0)) * target.stretch;
 }
 
 Judge::Target Judge::target_of(const Measured& m, const Crossing& crossing, double rest_m, double metres_per_m) const {
@@ -128,8 +132,11 @@ bool Judge::may_be_at(const Eigen::Vector2d& from_m, const Eigen::Vector2d& dire
   return s_.sources->about(from_m + way.rest_m * direction, kMargin * blur + kMargin_m + way.error_m) != 0;
 }
 
-double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) const {
+double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object,
+                    double least) const {
   const Turn& turn = crossing.turn;
+  const double sure = turn.probability * crossing.beyond;
+  if (!(sure > 0.0)) return 0.0;
   const Eigen::Vector2d& d = turn.direction;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   double density = config_.lone_ghost_density *
@@ -140,7 +147,8 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     t.known_mps = carried;
     t.of_own = true;
     t.strength = strength_of_ghost(2, 1.0);
-    density += kSameWay * config_.type2_per_object * ghosts_of(t, m, but_object, index);
+    const double share = kSameWay * config_.type2_per_object;
+    density += share * ghosts_of(t, m, but_object, index, least / (share * sure));
   }
   if (const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m); rest > kLeastRest_m) {
     const Eigen::Vector2d e = (turn.point_m + rest * d - s_.sensor_m).normalized();
@@ -149,17 +157,20 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     t.known_mps = 0.5 * (carried + (m.direction - e).dot(s_.sensor_velocity_mps));
     t.lit_from_m = s_.sensor_m;
     t.strength = strength_of_ghost(1, d.dot(e));
-    density += kDirectly * config_.type2_per_object * ghosts_of(t, m, but_object, index) + image_of_stationary(t, m);
+    const double share = kDirectly * config_.type2_per_object;
+    density += share * ghosts_of(t, m, but_object, index, least / (share * sure)) + image_of_stationary(t, m);
   }
-  return turn.probability * crossing.beyond * density;
+  return sure * density;
 }
 
-double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object) {
+double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object,
+                           double least) {
   const Turn& turn = crossing.turn;
   const Eigen::Vector2d& d = turn.direction;
   const double sure = turn.probability * crossing.beyond;
   if (sure < kLeastChance) return 0.0;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
+  const double share = kOtherMirror * config_.type2_per_object * sure;
   double density = 0.0;
   for (const Mirror& other : s_.mirrors) {
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
@@ -172,22 +183,23 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
     const double across = m.azimuth_std_rad * (far + 2.0 * std::abs(way->rest_m) * turn.distance_m * turn.focus_per_m);
     const double by_mirror = square(2.0 * way->rest_m * turn.angle_std_rad) + square(2.0 * turn.offset_std_m);
     if (!may_be_at(turn.point_m, d, *way, m, square(across) + by_mirror)) continue;
-    const auto met = meet(other, s_.sensor_m, turn.point_m, d, length, kLeastRest_m);
-    if (!met || sure * met->detour.probability < kLeastChance) continue;
+    const auto met = meet(other, way->arc_m, s_.sensor_m, turn.point_m, d, length, kLeastRest_m);
+    if (!met || sure * met->probability < kLeastChance) continue;
     if (pairs_left_ == 0) break;
     --pairs_left_;
-    const Eigen::Vector2d& u = met->detour.departure;
-    const Eigen::Vector2d& e = met->detour.arrival;
+    const Eigen::Vector2d& u = met->departure;
+    const Eigen::Vector2d& e = met->arrival;
     Target t = target_of(m, crossing, met->rest_m, 2.0 * met->metres_per_m);
-    t.covariance += outer(d, square(met->metres_per_m * met->detour.length_std_m));
+    t.covariance += outer(d, square(met->metres_per_m * met->length_std_m));
     t.q = 0.5 * (d + e);
     t.known_mps = 0.5 * (carried + (u - e).dot(other.velocity_mps) + (m.direction - u).dot(s_.sensor_velocity_mps));
-    t.lit_from_m = met->detour.point_m;
+    t.lit_from_m = met->point_m;
     t.strength = strength_of_ghost(2, d.dot(e));
     t.other_body = other.body;
-    density = std::max(density, met->detour.probability * ghosts_of(t, m, but_object, index));
+    const double more = std::max(density, least / share) / met->probability;
+    density = std::max(density, met->probability * ghosts_of(t, m, but_object, index, more));
   }
-  return kOtherMirror * config_.type2_per_object * sure * density;
+  return share * density;
 }
 
 double Judge::image_of_stationary(const Target& t, const Measured& m) const {
@@ -201,7 +213,7 @@ double Judge::image_of_stationary(const Target& t, const Measured& m) const {
          likelihood(kGhostStrength, m.rcs_dbsm - kUsualRcs_dbsm, 10.0, config_.strength_doubt);
 }
 
-double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object) const {
+double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least) const {
   double density = 0.0;
   for (const Mirror& mirror : s_.mirrors) {
     if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
@@ -209,27 +221,27 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (mirror.least_range_m > m.range_m) continue;
     const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
     if (!way || !may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))) continue;
-    const auto met = meet(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
-    if (!met || met->rest_m > m.range_m - 0.3 || met->detour.probability < kLeastChance) continue;
-    const Eigen::Vector2d& u = met->detour.departure;
-    const Eigen::Vector2d& d = met->detour.arrival;
+    const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
+    if (!met || met->rest_m > m.range_m - 0.3 || met->probability < kLeastChance) continue;
+    const Eigen::Vector2d& u = met->departure;
+    const Eigen::Vector2d& d = met->arrival;
     Target t{};
     t.other_body = kNobody;
     t.place_m = s_.sensor_m + met->rest_m * m.direction;
     t.covariance = outer(m.direction, square(2.0 * met->metres_per_m * m.range_std_m) +
-                                          square(met->metres_per_m * met->detour.length_std_m)) +
+                                          square(met->metres_per_m * met->length_std_m)) +
                    outer(left_of(m.direction), square(met->rest_m * m.azimuth_std_rad));
     t.q = 0.5 * (m.direction + d);
     t.known_mps = 0.5 * ((m.direction - u).dot(s_.sensor_velocity_mps) + (u - d).dot(mirror.velocity_mps));
     t.noise_variance = rate_variance(m);
-    t.lit_from_m = met->detour.point_m;
+    t.lit_from_m = met->point_m;
     t.seen_from_m = s_.sensor_m;
     t.strength = strength_of_ghost(1, m.direction.dot(d));
     t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
     t.turn_variance = square(m.azimuth_std_rad);
     t.mirror = &mirror;
-    density =
-        std::max(density, met->detour.probability * config_.type1_per_object * ghosts_of(t, m, but_object, index));
+    const double share = met->probability * config_.type1_per_object;
+    density = std::max(density, share * ghosts_of(t, m, but_object, index, std::max(density, least) / share));
   }
   return density;
 }

@@ -28,7 +28,8 @@ void MirrorFan::build(std::span<const Mirror> mirrors, const Eigen::Vector2d& se
   sectors_.fill({});
   for (std::size_t i = 0; i < mirrors_.size(); ++i) {
     const Mirror& m = mirrors_[i];
-    const double begin = m.begin_m - kMirrorGoesOn_m, length = m.end_m - m.begin_m + 2.0 * kMirrorGoesOn_m;
+    const double beyond_m = most_beyond_m(m);
+    const double begin = m.begin_m - beyond_m, length = m.end_m - m.begin_m + 2.0 * beyond_m;
     const double turned = std::abs(m.curve.curvature_per_m) * length;
     const int pieces = std::clamp(static_cast<int>(std::ceil(10.0 * turned)), 1, 64);
     // How far a piece of an arc leaves its chord; nearer to it than this the sides are not told apart.

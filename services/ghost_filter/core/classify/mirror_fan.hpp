@@ -17,7 +17,7 @@ class MirrorFan {
   static constexpr std::size_t kMaxMirrors = 192;
   /// The mirrors beyond kMaxMirrors are not entered. They must outlive what is asked.
   void build(std::span<const Mirror> mirrors, const Eigen::Vector2d& sensor_m);
-  /// Calls `visit(mirror)`, in their order, for all that have a point up to kMirrorGoesOn_m beyond their ends in this
+  /// Calls `visit(mirror)`, in their order, for all that have a point up to most_beyond_m() beyond their ends in this
   /// direction (not zero), and for a few more.
   template <typename Visit>
   void visit(const Eigen::Vector2d& direction, const Visit& visit) const {

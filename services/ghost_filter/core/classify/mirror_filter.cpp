@@ -20,11 +20,12 @@ constexpr double kTrackDensity =
     5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
 constexpr double kSurest = 3.0;      // log-odds
-constexpr double kNoImage = 0.95;    // weight of an object that surely is where it seems to be
-constexpr double kRather = 0.5;      // weight from which on an object is rather there than an image
-constexpr double kMoves = 0.8;       // probability from which on what an object shows is no part of the map
-constexpr double kAroundBody_m = 0.5;  // what seems to be so near to a body is of it
-constexpr double kHeard_db = 3.0;      // a track's strength is known if its std is less
+constexpr double kTrackNegligible = 0.01;  // ratio of densities; less than exp(-kSurest) anyway
+constexpr double kNoImage = 0.95;          // weight of an object that surely is where it seems to be
+constexpr double kRather = 0.5;            // weight from which on an object is rather there than an image
+constexpr double kMoves = 0.8;             // probability from which on what an object shows is no part of the map
+constexpr double kAroundBody_m = 0.5;      // what seems to be so near to a body is of it
+constexpr double kHeard_db = 3.0;          // a track's strength is known if its std is less
 /// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
@@ -139,8 +140,10 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
   objects_.push_back(own);
   sources_.clear();
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-    const Object& o = objects_[i];
-    sources_.enter_object(i, o.position_m, most_extent(o).array() + reach_of(o.position_covariance.diagonal()));
+    Object& o = objects_[i];
+    const Eigen::Vector2d extent = most_extent(o).array() + reach_of(o.position_covariance.diagonal());
+    o.reach_m = extent.norm();
+    sources_.enter_object(i, o.position_m, extent);
   }
 }
 
@@ -288,11 +291,11 @@ void MirrorFilter::judge_tracks() {
     // An image is weaker than what is mirrored.
     const bool heard = image.rcs_std_db < kHeard_db;
     m.rcs_dbsm = heard ? image.rcs_dbsm : std::numeric_limits<double>::quiet_NaN();
-    const Densities d = judge_.weigh(m, kNobody, k);
     const double strength =
         heard ? likelihood(kObjectStrength, image.rcs_dbsm - kUsualRcs_dbsm, image.rcs_std_db, kObjectDoubt) : 1.0;
-    const double score = std::clamp(
-        std::log((d.type1 + d.type2 + 1e-12) / (strength * track_density(o.velocity_mps.norm()))), -kSurest, kSurest);
+    const double real = strength * track_density(o.velocity_mps.norm());
+    const double image_density = judge_.images(m, k, kTrackNegligible * real);
+    const double score = std::clamp(std::log((image_density + 1e-12) / real), -kSurest, kSurest);
     ++image.judgements;
     image.log_odds += std::max(kSlowest, 1.0 / (1.0 + image.judgements)) * (score - image.log_odds);
   }

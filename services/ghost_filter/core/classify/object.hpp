@@ -17,11 +17,12 @@ struct Object {
   Eigen::Vector2d velocity_mps{0.0, 0.0};  ///< over ground
   Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
-  double weight = 0.0;  ///< probability that it exists and is no image itself
-  double image = 0.0;   ///< that it exists and is an image
-  double moving = 1.0;  ///< probability that it does not just stand
-  double age_s = 1e9;   ///< since it was first tracked
-  bool own = false;     ///< the own vehicle: seen only in mirrors
+  double weight = 0.0;   ///< probability that it exists and is no image itself
+  double image = 0.0;    ///< that it exists and is an image
+  double moving = 1.0;   ///< probability that it does not just stand
+  double age_s = 1e9;    ///< since it was first tracked
+  bool own = false;      ///< the own vehicle: seen only in mirrors
+  double reach_m = 1e9;  ///< from its centre: farther away nothing is of it, as well as it is known where it is
   double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, on average
 };
 

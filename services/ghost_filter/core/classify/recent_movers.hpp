@@ -68,7 +68,8 @@ class RecentMovers {
     }
   }
   static constexpr double kCell_m = 4.0;
-  static constexpr double kLeastWeight = 1e-4;  ///< less cannot make a difference
+  static constexpr double kLeastWeight =
+      0.02;  ///< of what most likely is a ghost itself, nothing else is seen to be one
 
  private:
   void enter(std::uint32_t i, const Odometry& odometry);

@@ -20,9 +20,6 @@ namespace boresight::ghosts {
 
 inline constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
-/// As far beyond its ends a long mirror may go on unseen.
-inline constexpr double kMirrorGoesOn_m = 40.0;
-
 /// A reflector in the vehicle frame of the scan.
 struct Mirror {
   Curve curve;
@@ -35,6 +32,18 @@ struct Mirror {
   std::uint32_t body = kNobody;            ///< object whose side it is
   double least_range_m = 0.0;              ///< of what is seen by it: its distance from the sensor
 };
+
+/// A rail or a wall: long enough that it may go on where vehicles hide it, or where it was not looked for yet.
+[[nodiscard]] inline bool is_long(const Mirror& mirror) {
+  constexpr double kLong_m = 20.0;
+  return mirror.occupancy != nullptr && mirror.end_m - mirror.begin_m >= kLong_m;
+}
+/// How far beyond the mirror's ends chance_at() may be something.
+[[nodiscard]] double most_beyond_m(const Mirror& mirror);
+/// Probability that there is something at an arc length known so well.
+[[nodiscard]] double chance_at(const Mirror& mirror, double arc_m, double arc_std_m);
+/// Of the mirror, across it.
+[[nodiscard]] double offset_variance_at(const Mirror& mirror, double arc_m);
 
 /// Where a ray meets a mirror.
 struct Turn {
@@ -56,41 +65,5 @@ struct Turn {
 /// Length behind W of the path whose way there and back is twice `range_m`; negative: impossible.
 [[nodiscard]] double rest_of_three_bounces(const Turn& turn, double range_m);
 [[nodiscard]] double rest_of_two_bounces(const Turn& turn, const Eigen::Vector2d& sensor_m, double range_m);
-
-/// The way from the sensor by a mirror to a known place.
-struct Detour {
-  double length_m;            ///< ℓ'
-  Eigen::Vector2d point_m;    ///< W
-  Eigen::Vector2d normal;     ///< of the mirror at W, unit
-  Eigen::Vector2d departure;  ///< u, unit
-  Eigen::Vector2d arrival;    ///< d, unit
-  double probability;         ///< that there is something at W
-  double length_std_m;
-};
-[[nodiscard]] std::optional<Detour> detour_to(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
-                                              const Eigen::Vector2d& target_m);
-
-/// Where on a ray something would have to be that is reached by way of the mirror.
-struct Meeting {
-  double rest_m;        ///< from the ray's begin
-  double metres_per_m;  ///< by which it lies farther if the whole way is longer by one metre
-  Detour detour;        ///< to it
-};
-/// Where meet() would find it, were the mirror straight: what is known of most ways without following them.
-struct Approach {
-  double rest_m, metres_per_m;
-  double length_std_m;  ///< of the way by the mirror
-  double error_m;       ///< as far off `rest_m` may be; infinite where that is not known
-};
-/// Nothing if the wave would turn beyond the mirror's ends, or on its other side, however the mirror may be bent.
-[[nodiscard]] std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
-                                               const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
-                                               double length_m);
-
-/// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
-/// mirror to T have the sum `length_m`. Nothing if it is not there or less than `least_m` along.
-[[nodiscard]] std::optional<Meeting> meet(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
-                                          const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
-                                          double length_m, double least_m);
 
 }  // namespace boresight::ghosts

@@ -18,10 +18,7 @@ struct Curve {
 
   [[nodiscard]] Eigen::Vector2d normal() const { return {-tangent.y(), tangent.x()}; }
   /// Along the tangent and across it, from the origin.
-  [[nodiscard]] Eigen::Vector2d local(const Eigen::Vector2d& p) const {
-    const Eigen::Vector2d q = p - origin_m;
-    return {q.dot(tangent), tangent.x() * q.y() - tangent.y() * q.x()};
-  }
+  [[nodiscard]] Eigen::Vector2d local(const Eigen::Vector2d& p) const { return to_local(p - origin_m); }
   /// Signed distance of a point given in local coordinates, positive on the left. Pratt's form, which has no pole at
   /// curvature 0.
   [[nodiscard]] double distance_of_local(const Eigen::Vector2d& q) const {
@@ -45,25 +42,35 @@ struct Curve {
     return std::atan2(curvature_per_m * q.x(), 1.0 - curvature_per_m * q.y()) / curvature_per_m;
   }
   [[nodiscard]] double arc(const Eigen::Vector2d& p) const { return arc_of_local(local(p)); }
-  [[nodiscard]] Eigen::Vector2d at(double arc_m) const {
+  /// Along the tangent and across it; the unit tangent there in the same axes.
+  [[nodiscard]] Eigen::Vector2d local_at(double arc_m) const {
     const double angle = curvature_per_m * arc_m;
     if (std::abs(angle) < kSmall_rad) {
       const double square = angle * angle;
-      return origin_m + arc_m * ((1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))) * tangent +
-                                 0.5 * angle * (1.0 - square / 12.0 * (1.0 - square / 30.0)) * normal());
+      return {arc_m * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))),
+              arc_m * 0.5 * angle * (1.0 - square / 12.0 * (1.0 - square / 30.0))};
     }
-    const double half = 0.5 * angle;
-    return origin_m + arc_m * std::sin(half) / half * (std::cos(half) * tangent + std::sin(half) * normal());
+    const double half = 0.5 * angle, chord_m = arc_m * std::sin(half) / half;
+    return {chord_m * std::cos(half), chord_m * std::sin(half)};
   }
-  [[nodiscard]] Eigen::Vector2d tangent_at(double arc_m) const {
+  [[nodiscard]] Eigen::Vector2d local_tangent_at(double arc_m) const {
     const double angle = curvature_per_m * arc_m;
     if (std::abs(angle) < kSmall_rad) {
       const double square = angle * angle;
-      return (1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0))) * tangent +
-             angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))) * normal();
+      return {1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0)),
+              angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))};
     }
-    return std::cos(angle) * tangent + std::sin(angle) * normal();
+    return {std::cos(angle), std::sin(angle)};
   }
+  /// A vector in local axes, and one given in them.
+  [[nodiscard]] Eigen::Vector2d to_local(const Eigen::Vector2d& v) const {
+    return {v.dot(tangent), tangent.x() * v.y() - tangent.y() * v.x()};
+  }
+  [[nodiscard]] Eigen::Vector2d from_local(const Eigen::Vector2d& v) const {
+    return {v.x() * tangent.x() - v.y() * tangent.y(), v.x() * tangent.y() + v.y() * tangent.x()};
+  }
+  [[nodiscard]] Eigen::Vector2d at(double arc_m) const { return origin_m + from_local(local_at(arc_m)); }
+  [[nodiscard]] Eigen::Vector2d tangent_at(double arc_m) const { return from_local(local_tangent_at(arc_m)); }
   /// The same curve with its origin moved along it.
   [[nodiscard]] Curve moved(double arc_m) const { return {at(arc_m), tangent_at(arc_m), curvature_per_m}; }
   /// After the change that a fit found: shift along the normal, turn, and change of curvature.
@@ -76,7 +83,7 @@ struct Curve {
   /// exist or lie behind are negative.
   [[nodiscard]] std::array<double, 2> crossings(const Eigen::Vector2d& from, const Eigen::Vector2d& direction) const {
     const Eigen::Vector2d q = local(from);
-    const Eigen::Vector2d d(direction.dot(tangent), tangent.x() * direction.y() - tangent.y() * direction.x());
+    const Eigen::Vector2d d = to_local(direction);
     const double a = -0.5 * curvature_per_m;
     const double b = d.y() - curvature_per_m * q.dot(d);
     const double c = q.y() - 0.5 * curvature_per_m * q.squaredNorm();

@@ -94,7 +94,7 @@ void Occupancy::keep(double begin_m, double end_m) {
 
 double Occupancy::probability(double arc_m, double std_m) const {
   const std::int32_t middle = bin_of(arc_m);
-  const std::int32_t reach = std::min(4, static_cast<std::int32_t>(std::lround(std::min(std_m / bin_m_, 4.0))));
+  const auto reach = static_cast<std::int32_t>(std::lround(std::min(std_m / bin_m_, double{kMostBlur})));
   double sum = 0.0;
   for (std::int32_t bin = middle - reach; bin <= middle + reach; ++bin) {
     if (bin < first_ || bin > last_) continue;

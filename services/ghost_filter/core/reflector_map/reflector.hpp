@@ -17,6 +17,7 @@ namespace boresight::ghosts {
 class Occupancy {
  public:
   static constexpr std::int32_t kBins = 128;
+  static constexpr std::int32_t kMostBlur = 4;  ///< bins to either side over which a probability is averaged
   void reset(double begin_m, double end_m, double bin_m);
   /// Makes room for a place; false if the reflector would become longer than there are bins.
   bool extend(double arc_m);
@@ -32,6 +33,8 @@ class Occupancy {
   void keep(double begin_m, double end_m);
   /// Probability that the reflector is there, averaged over ± `std_m` about a place.
   [[nodiscard]] double probability(double arc_m, double std_m) const;
+  /// As far beyond its ends that may be something.
+  [[nodiscard]] double most_blur_m() const { return kMostBlur * bin_m_; }
   [[nodiscard]] double begin_m() const { return first_ * bin_m_; }
   [[nodiscard]] double end_m() const { return (last_ + 1) * bin_m_; }
   [[nodiscard]] std::int32_t first() const { return first_; }

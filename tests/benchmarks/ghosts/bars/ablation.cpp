@@ -42,9 +42,7 @@ constexpr Variant kVariants[] = {
     {"strength (RCS) tells nothing", [](NamedGhostMethod& m) { m.config.mirror.classes.strength_doubt = 1.0; }},
     {"radars that measure no RCS", [](NamedGhostMethod& m) { m.change.gets_rcs = false; }},
     {"no wheels and limbs of other range rates",
-     [](NamedGhostMethod& m) {
-       m.config.mirror.classes.wheel_share = m.config.mirror.classes.wheel_ghost_share = 0.0;
-     }},
+     [](NamedGhostMethod& m) { m.config.mirror.classes.wheel_share = 0.0; }},
     {"confirmed tracks only", [](NamedGhostMethod& m) { m.config.mirror.classes.tentative_weight = 0.0; }},
     {"no class for clutter", [](NamedGhostMethod& m) { m.config.mirror.classes.clutter_density = kNever; }},
 };

@@ -1,0 +1,111 @@
+#include "services/ghost_filter/core/mirror/meeting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr double kBeyond_m = 5.0;       // as far the mirror of a way by it may go on unseen
+constexpr double kLeastWay_m = 0.2;     // to a mirror, and from it
+constexpr double kLeastChance = 0.01;   // of there being something where the wave turns
+constexpr double kMostError_m = 0.005;  // of a way's length: far less than a range is known by
+constexpr int kRounds = 4;
+
+double beyond_m(const Mirror& mirror) {
+  return is_long(mirror) || mirror.occupancy == nullptr ? kBeyond_m : 0.0;
+}
+
+}  // namespace
+
+std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
+                                 const Eigen::Vector2d& direction, double length_m) {
+  constexpr double kMostBent_rad = 0.2;    // from the origin to where the wave turns
+  constexpr double kMostMetresPerM = 5.0;  // else what is found hangs on little
+  // The way out and the way on to the ray's begin are no shorter than to the nearest point of the mirror and from
+  // there.
+  const double size = std::max(-mirror.begin_m, mirror.end_m) + 15.0;
+  const double reach = 0.5 * (length_m + (from_m - sensor_m).norm()) + size;
+  if ((mirror.curve.origin_m - sensor_m).squaredNorm() > reach * reach) return std::nullopt;
+  const Eigen::Vector2d sensor = mirror.curve.local(sensor_m), from = mirror.curve.local(from_m);
+  const Eigen::Vector2d along = mirror.curve.to_local(direction);
+  const Eigen::Vector2d back(from.x() - sensor.x(), from.y() + sensor.y());  // from the sensor's image
+  Approach way{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity(), 0.0};
+  const double denominator = 2.0 * (length_m + back.dot(along));
+  if (denominator < 1e-6) return way;
+  way.rest_m = (length_m * length_m - back.squaredNorm()) / denominator;
+  const Eigen::Vector2d target = from + way.rest_m * along;
+  const double bend = std::abs(mirror.curve.curvature_per_m);
+  const double sag = 1.0 + bend * (sensor.x() * sensor.x() + target.x() * target.x());
+  const double share = std::abs(sensor.y()) / std::max(1e-9, std::abs(sensor.y()) + std::abs(target.y()));
+  way.arc_m = sensor.x() + (target.x() - sensor.x()) * share;
+  if (sensor.y() * target.y() <= 0.0) {
+    if (std::min(std::abs(sensor.y()), std::abs(target.y())) > sag) return std::nullopt;
+    return way;
+  }
+  const double turns = way.arc_m;
+  const double slack = beyond_m(mirror) + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + 2.0 * sag;
+  if (turns < mirror.begin_m - slack || turns > mirror.end_m + slack) return std::nullopt;
+  const double second = length_m - way.rest_m;  // from the sensor's image to the target
+  const double opening = second + along.dot(target - Eigen::Vector2d(sensor.x(), -sensor.y()));
+  const double reached = std::abs(turns) + 5.0;
+  if (second <= 0.0 || kMostMetresPerM * opening < second || bend * reached > kMostBent_rad) return way;
+  way.metres_per_m = second / opening;
+  way.length_std_m = 2.0 * std::abs(sensor.y() + target.y()) / second * std::sqrt(offset_variance_at(mirror, turns));
+  // At that place a bent mirror is half of this away from the straight one, and a way over it so much longer or
+  // shorter; some more, as the wave turns elsewhere.
+  const double beside = turns - sensor.x();
+  way.error_m = bend * (4.0 * reached * reached + beside * beside) * way.metres_per_m;
+  return way;
+}
+
+std::optional<Meeting> meet(const Mirror& mirror, double near_arc_m, const Eigen::Vector2d& sensor_m,
+                            const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m,
+                            double least_m) {
+  const Curve& curve = mirror.curve;
+  const Eigen::Vector2d sensor = curve.local(sensor_m), from = curve.local(from_m), along = curve.to_local(direction);
+  const double low = mirror.begin_m - beyond_m(mirror), high = mirror.end_m + beyond_m(mirror);
+  double arc = std::clamp(near_arc_m, low, high);
+  for (int round = 0;; ++round) {
+    // Were the wave to turn here, T would be where the length is right; the angles to both sides tell where it turns.
+    const Eigen::Vector2d point = curve.local_at(arc), tangent = curve.local_tangent_at(arc);
+    const Eigen::Vector2d out = point - sensor, back = from - point;
+    const double first = out.norm(), left = length_m - first;
+    const double opening = left + back.dot(along);
+    if (!(first > kLeastWay_m && opening > 1e-6)) return std::nullopt;
+    const double rest = 0.5 * (left * left - back.squaredNorm()) / opening;
+    const double second = left - rest;
+    if (!(second > kLeastWay_m)) return std::nullopt;
+    const Eigen::Vector2d u = out / first, d = (back + rest * along) / second;
+    const double departing = u.dot(tangent), arriving = d.dot(tangent);
+    const double sine_of_departure = tangent.x() * u.y() - tangent.y() * u.x();
+    const double sine_of_arrival = tangent.x() * d.y() - tangent.y() * d.x();
+    // Newton's method for departing = arriving; it is exact where T does not move, as at the end by Fermat's principle.
+    const double straight = -(1.0 - departing * departing) / first - (1.0 - arriving * arriving) / second;
+    const double bent = straight + curve.curvature_per_m * (sine_of_arrival - sine_of_departure);
+    const double slope = bent < 0.2 * straight ? bent : straight;
+    const double step = (departing - arriving) / std::min(-1e-9, slope);
+    if (0.5 * std::abs(slope) * step * step > kMostError_m) {
+      const double next = std::clamp(arc + step, low, high);
+      if (round == kRounds || next == arc) return std::nullopt;
+      arc = next;
+      continue;
+    }
+    // Both on the same side of the mirror.
+    if (!(sine_of_departure * sine_of_arrival < 0.0) || rest < least_m) return std::nullopt;
+    const double probability = chance_at(mirror, arc, 0.5);
+    if (probability < kLeastChance) return std::nullopt;
+    const Eigen::Vector2d arrival = curve.from_local(d);
+    return Meeting{rest,
+                   1.0 / std::max(0.02, 1.0 + direction.dot(arrival)),
+                   curve.origin_m + curve.from_local(point),
+                   curve.from_local(u),
+                   arrival,
+                   probability,
+                   2.0 * std::abs(sine_of_departure) * std::sqrt(offset_variance_at(mirror, arc))};
+  }
+}
+
+}  // namespace boresight::ghosts

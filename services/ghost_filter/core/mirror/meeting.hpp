@@ -1,0 +1,41 @@
+// Where something would have to be that is reached by way of a mirror.
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "services/ghost_filter/core/mirror/mirror.hpp"
+
+namespace boresight::ghosts {
+
+/// Where meet() would find it, were the mirror straight: what is known of most ways without following them.
+struct Approach {
+  double rest_m, metres_per_m;
+  double length_std_m;  ///< of the way by the mirror
+  double error_m;       ///< as far off `rest_m` may be; infinite where that is not known
+  double arc_m;         ///< where on the mirror the wave would turn
+};
+/// Nothing if the wave would turn beyond the mirror's ends, or on its other side, however the mirror may be bent.
+[[nodiscard]] std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
+                                               const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                               double length_m);
+
+/// A place T on a ray, and the way from the sensor by a mirror to it.
+struct Meeting {
+  double rest_m;              ///< from the ray's begin to T
+  double metres_per_m;        ///< by which T lies farther if the whole way is longer by one metre
+  Eigen::Vector2d point_m;    ///< W, where the wave turns
+  Eigen::Vector2d departure;  ///< u: from the sensor to W, unit
+  Eigen::Vector2d arrival;    ///< d: from W to T, unit
+  double probability;         ///< that there is something at W
+  double length_std_m;        ///< of the way by the mirror
+};
+/// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
+/// mirror to T have the sum `length_m`, found from `near_arc_m` on. Nothing if there is none, or less than `least_m`
+/// along.
+[[nodiscard]] std::optional<Meeting> meet(const Mirror& mirror, double near_arc_m, const Eigen::Vector2d& sensor_m,
+                                          const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                          double length_m, double least_m);
+
+}  // namespace boresight::ghosts
