@@ -22,10 +22,11 @@ Clusterer::Clusterer(const Config& config) : config_(config), dbscan_(kMaxDetect
   points_.reserve(kMaxDetections);
   index_.reserve(kMaxDetections);
   members_.reserve(kMaxDetections);
+  whose_.resize(kMaxDetections);
   clusters_.reserve(geometry::Assignment::kCapacity);
 }
 
-std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan) {
+std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m) {
   points_.clear();
   index_.clear();
   clusters_.clear();
@@ -49,16 +50,37 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan) {
     for (std::size_t k = 0; k < labels.size(); ++k) {
       if (labels[k] == static_cast<std::int32_t>(c)) members_.push_back(static_cast<std::uint32_t>(k));
     }
-    split(scan);
+    part(scan, people_m);
   }
   return clusters_;
 }
 
-void Clusterer::split(const ClassifiedScan& scan) {
+void Clusterer::part(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m) {
+  constexpr double kReach_m = 1.5;  // of a person and what is not known of where they are
+  std::span<std::uint32_t> rest = members_;
+  for (const std::uint32_t k : rest) {
+    double best_m2 = kReach_m * kReach_m;
+    whose_[k] = people_m.size();
+    for (std::size_t p = 0; p < people_m.size(); ++p) {
+      const double distance_m2 = (people_m[p] - points_[k]).squaredNorm();
+      if (distance_m2 >= best_m2) continue;
+      best_m2 = distance_m2;
+      whose_[k] = p;
+    }
+  }
+  for (std::size_t p = 0; p < people_m.size() && !rest.empty(); ++p) {
+    const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) { return whose_[k] == p; });
+    const auto own = static_cast<std::size_t>(others - rest.begin());
+    split(scan, rest.first(own));
+    rest = rest.subspan(own);
+  }
+  split(scan, rest);
+}
+
+void Clusterer::split(const ClassifiedScan& scan, std::span<std::uint32_t> rest) {
   // Where two vehicles pass each other, one place has two motions; a third and a fourth may be wheels and ghosts.
   constexpr int kMostMotions = 4;
   const auto rate_of = [&](std::uint32_t k) { return static_cast<double>(scan.range_rate_over_ground_mps[index_[k]]); };
-  std::span<std::uint32_t> rest = members_;
   for (int motion = 0; motion < kMostMotions && !rest.empty(); ++motion) {
     // The median range rate is what the body with the most detections does.
     const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);

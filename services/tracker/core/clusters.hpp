@@ -36,15 +36,18 @@ class Clusterer {
  public:
   explicit Clusterer(const Config& config);
   /// Groups the detections of provenance kMoving, by place and then by range rate. At most Assignment::kCapacity
-  /// clusters; further ones are counted.
-  std::span<const Cluster> find(const ClassifiedScan& scan);
+  /// clusters; further ones are counted. Where people and cycles are known to be closer to each other than a cluster's
+  /// radius, each detection is of the nearest of them.
+  std::span<const Cluster> find(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m = {});
   /// Makes one cluster of two, which takes the place of the first; those behind the second move up.
   std::span<const Cluster> join(std::size_t first, std::size_t second);
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 
  private:
-  /// Clusters of `members_`, by range rate.
-  void split(const ClassifiedScan& scan);
+  /// Clusters of the points of one place, by range rate.
+  void split(const ClassifiedScan& scan, std::span<std::uint32_t> rest);
+  /// The same of `members_`, but of each of those people apart who are among them.
+  void part(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m);
   /// One cluster, of points by index.
   void add(const ClassifiedScan& scan, std::span<const std::uint32_t> members);
 
@@ -53,6 +56,7 @@ class Clusterer {
   std::vector<Eigen::Vector2d> points_;
   std::vector<std::uint32_t> index_;    // detection of each point
   std::vector<std::uint32_t> members_;  // points of one place
+  std::vector<std::size_t> whose_;      // person that each point is nearest to
   std::vector<Cluster> clusters_;
   std::uint32_t dropped_ = 0;
 };

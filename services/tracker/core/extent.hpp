@@ -76,8 +76,9 @@ struct Extent {
     const double said = static_cast<double>(n) / static_cast<double>(n + 3);
     const Eigen::Vector2d sight = to_body(centre_m - sensor_m).normalized();
     follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * sight.y() * sight.y(), kSmallest_m,
-           kLongest_m);
-    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), kSmallest_m, 4.0);
+           is_small ? kCycleLength_m : kLongest_m);
+    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), kSmallest_m,
+           is_small ? kCycleWidth_m : kWidest_m);
     if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
   }
 
@@ -157,6 +158,7 @@ struct Extent {
 
  private:
   static constexpr double kLongest_m = 20.0, kSmallest_m = 0.5;
+  static constexpr double kWidest_m = 4.0, kCycleLength_m = 2.0, kCycleWidth_m = 1.0;
   static constexpr double kSmallLength_m = 1.2, kSmallWidth_m = 0.7;  // between a person and a cycle
   static constexpr double kLeastOfVehicle_dbsm = 3.0;
   static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger

@@ -82,7 +82,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
 
   predict_all(elapsed_s, scan.geometry);
   const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
-  const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan));
+  const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan, people()));
   result.dropped_clusters = clusterer_.dropped();
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   assign(clusters, sensor, has_elevation);
@@ -108,6 +108,14 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
     track.since_update_s += elapsed_s;
     track.detections = 0;
   }
+}
+
+std::span<const Eigen::Vector2d> Tracker::people() {
+  std::size_t count = 0;
+  for (const Entry& track : tracks_) {
+    if (track.confirmed && track.extent.is_small) people_[count++] = track.state.mean.head<2>();
+  }
+  return {people_.data(), count};
 }
 
 std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) {

@@ -52,6 +52,8 @@ class Tracker {
     bool slow = false;             // when it was detected last
   };
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
+  /// Where confirmed people and cycles are.
+  std::span<const Eigen::Vector2d> people();
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
   /// Nothing is where the own vehicle is: moves tracks that drift there back beside it, their velocity, too.
@@ -71,7 +73,7 @@ class Tracker {
   geometry::Assignment assignment_;
   std::vector<Entry> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
-  std::array<Eigen::Vector2d, kMaxTracks> visible_mean_;
+  std::array<Eigen::Vector2d, kMaxTracks> visible_mean_, people_;
   Eigen::Vector2d radars_low_m_{1e9, 1e9}, radars_high_m_{-1e9, -1e9};  // what lies between them is the own body
   std::uint32_t next_id_ = 1;
   std::int64_t time_ns_ = 0;

@@ -87,6 +87,21 @@ TEST(Clusterer, IsAsStrongAsItsStrongestDetection) {
   EXPECT_EQ(clusterer.find(*scene.scan)[0].strongest_dbsm, 4.0);
 }
 
+TEST(Clusterer, WhatIsSeenOfPeopleWhoPassEachOtherIsOfTheNearest) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  for (const double y : {-0.1, 0.1, 0.9, 1.1}) scene.add({12.0, y}, {0.0, 1.3});
+  scene.add({14.0, 0.5}, {0.0, 1.3});
+  Clusterer clusterer(Config{});
+  EXPECT_EQ(clusterer.find(*scene.scan).size(), 1u);
+  const std::array<Eigen::Vector2d, 2> people{{{12.0, 0.0}, {12.0, 1.0}}};
+  const auto clusters = clusterer.find(*scene.scan, people);
+  ASSERT_EQ(clusters.size(), 3u);
+  EXPECT_NEAR(clusters[0].position_m.y(), 0.0, 1e-6);
+  EXPECT_NEAR(clusters[1].position_m.y(), 1.0, 1e-6);
+  EXPECT_NEAR(clusters[2].position_m.x(), 14.0, 1e-6) << "nobody's";
+}
+
 TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
   Scene scene;
   scene.begin(kMillisecond);
@@ -167,6 +182,12 @@ TEST(Extent, IsAPersonsAsLongAsItReflectsAndMovesAsOne) {
   EXPECT_LT(person.width_m, 1.0);
   for (int i = 0; i < 5; ++i) person.hear(-14.0, 1.4);
   EXPECT_TRUE(person.is_small) << "limbs only";
+  Cluster two{};
+  two.number_of_detections = two.number_on_outline = 2;
+  two.outline[0] = {10.0, -2.0};
+  two.outline[1] = {10.0, 2.0};
+  for (int i = 0; i < 20; ++i) person.update(two, {10.0, 0.0}, {0.0, 1.4}, {0.0, 0.0}, false);
+  EXPECT_LE(person.length_m, 2.0) << "no longer than a cycle, whoever is beside";
   person.hear(5.0, 1.4);
   EXPECT_TRUE(person.is_small) << "one strong echo";
   for (int i = 0; i < 20; ++i) person.hear(10.0, 1.4);

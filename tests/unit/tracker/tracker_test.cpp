@@ -232,6 +232,33 @@ TEST_F(TrackerTest, KnowsWhereAPersonGoesWhoCrossesTheLineOfSight) {
   EXPECT_LT(person.covariance[across], 0.5F * car.covariance[across]);
 }
 
+TEST_F(TrackerTest, PeopleWhoComeTogetherAndWalkAbreastKeepTheirNames) {
+  // In the end nearer to each other than a cluster's radius.
+  const auto place = [](int k, double sign) {
+    return Eigen::Vector2d(12.0 + 0.05 * k, sign * std::max(0.8, 2.5 - 0.03 * k));
+  };
+  std::map<double, std::set<std::uint32_t>> names;
+  for (int k = 0; k < 120; ++k) {
+    scene_.begin(now_ + k * 50 * kMillisecond);
+    for (const double sign : {-1.0, 1.0}) scene_.add(place(k, sign), (place(k + 1, sign) - place(k, sign)) / 0.05);
+    scene_.scan->fields |= scan_field::kRcs;
+    scene_.scan->rcs_dbsm[0] = scene_.scan->rcs_dbsm[1] = -6.0F;
+    tracker_.step(*scene_.scan);
+    if (k < 20) continue;
+    const TrackList& tracks = list();
+    for (const double sign : {-1.0, 1.0}) {
+      for (std::size_t t = 0; t < tracks.number_of_confirmed_tracks; ++t) {
+        const Eigen::Vector2d at(tracks.tracks[t].position_vehicle_m[0], tracks.tracks[t].position_vehicle_m[1]);
+        if ((at - place(k, sign)).norm() < 0.5) names[sign].insert(tracks.tracks[t].tracking_id);
+      }
+    }
+  }
+  EXPECT_EQ(list().number_of_confirmed_tracks, 2u);
+  EXPECT_EQ(names[-1.0].size(), 1u);
+  EXPECT_EQ(names[1.0].size(), 1u);
+  EXPECT_NE(names[-1.0], names[1.0]);
+}
+
 TEST_F(TrackerTest, OutputHasNothingOfTheStaleChunk) {
   for (int i = 0; i < 6; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
   const Track& t = list().tracks[0];
