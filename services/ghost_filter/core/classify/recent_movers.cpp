@@ -6,7 +6,7 @@
 namespace boresight::ghosts {
 
 namespace {
-constexpr double kSame_m = 1.0, kSame_mps = 1.0;
+constexpr double kSame_m = 2.0, kSame_mps = 1.0;
 constexpr double kAcross_mps = 8.0;  // the part of a mover's velocity that its range rate does not show
 }  // namespace
 
