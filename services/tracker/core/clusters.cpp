@@ -104,6 +104,7 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
   Cluster cluster{};
   cluster.position_m.setZero();
   const bool has_rcs = (scan.fields & scan_field::kRcs) != 0;
+  cluster.mean_sight.setZero();
   cluster.z_min_m = 1e9;
   cluster.z_max_m = -1e9;
   double range_variance = 0.0, cross_variance = 0.0, rate_variance = 0.0;
@@ -114,6 +115,7 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
     sum += real;
     square += real * real;
     cluster.position_m += real * points_[k];
+    cluster.mean_sight += real * (points_[k] - sensor).normalized();
     cluster.range_rate_over_ground_mps += real * static_cast<double>(scan.range_rate_over_ground_mps[i]);
     const double across = static_cast<double>(scan.range_m[i] * scan.azimuth_std_rad[i]);
     range_variance += real * real * static_cast<double>(scan.range_std_m[i] * scan.range_std_m[i]);
@@ -132,6 +134,7 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
   cluster.realness = square / sum;
   cluster.weight = sum;
   cluster.position_m /= sum;
+  cluster.mean_sight /= sum;
   cluster.range_rate_over_ground_mps /= sum;
   const Eigen::Vector2d sight = cluster.position_m - sensor;
   if (sight.squaredNorm() < 1e-6) return;
@@ -150,6 +153,7 @@ std::span<const Cluster> Clusterer::join(std::size_t first, std::size_t second) 
   into.position_m += share * (part.position_m - into.position_m);
   into.range_rate_over_ground_mps += share * (part.range_rate_over_ground_mps - into.range_rate_over_ground_mps);
   into.realness += share * (part.realness - into.realness);
+  into.mean_sight += share * (part.mean_sight - into.mean_sight);
   into.line_of_sight = (into.line_of_sight + share * (part.line_of_sight - into.line_of_sight)).normalized();
   into.weight = weight;
   into.strongest_dbsm = std::fmax(into.strongest_dbsm, part.strongest_dbsm);

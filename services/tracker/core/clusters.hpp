@@ -22,6 +22,9 @@ struct Cluster {
   double range_rate_over_ground_mps;
   double range_rate_variance;     ///< of the mean, m²/s²
   Eigen::Vector2d line_of_sight;  ///< unit vector from the sensor
+  /// Mean of the detections' own lines of sight: of a body with velocity v the mean range rate is this times v. Nearby,
+  /// a long body is seen under many angles, of which the middle one tells little.
+  Eigen::Vector2d mean_sight;
   double z_min_m, z_max_m;
   double realness;  ///< probability that it is no ghost: 1 − `ghost_probability`, of those detections that count most
   double strongest_dbsm =

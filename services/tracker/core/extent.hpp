@@ -51,17 +51,17 @@ struct Extent {
     return from_body(body) / (end_share + side_share);
   }
 
-  /// `velocity` over ground in vehicle axes sets the heading if it is fast enough to have a direction.
+  /// The course, or what is known of the heading, turns the box.
+  void follow_heading(double wanted_rad) {
+    // The velocity across the line of sight is noisy, and where the centre is taken to be depends on the box's heading:
+    // that follows over some ten updates, or one would excite the other.
+    constexpr double kGain = 0.1;
+    heading_rad = geometry::wrap_angle(heading_rad + kGain * geometry::wrap_angle(wanted_rad - heading_rad));
+  }
+
+  /// What is seen now sets the size; `velocity` over ground tells what it may be.
   void update(const Cluster& cluster, const Eigen::Vector2d& centre_m, const Eigen::Vector2d& velocity_mps,
               const Eigen::Vector2d& sensor_m, bool has_elevation) {
-    constexpr double kMinSpeed_mps = 1.0;
-    // The velocity across the line of sight is noisy, and where the centre is taken to be depends on the heading: it
-    // follows the course over some ten updates, or one would excite the other.
-    constexpr double kCourseGain = 0.1;
-    if (velocity_mps.norm() > kMinSpeed_mps) {
-      const double course_rad = std::atan2(velocity_mps.y(), velocity_mps.x());
-      heading_rad = geometry::wrap_angle(heading_rad + kCourseGain * geometry::wrap_angle(course_rad - heading_rad));
-    }
     const std::size_t n = std::min<std::size_t>(cluster.number_on_outline, cluster.outline.size());
     if (n == 0) return;
     hear(cluster.strongest_dbsm, velocity_mps.norm());
@@ -82,20 +82,26 @@ struct Extent {
     if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
   }
 
+  /// Whether a person or a cycle would be as strong and as fast.
+  [[nodiscard]] bool may_be_small(double speed_mps) const {
+    constexpr double kFastestCycle_mps = 9.0;
+    return strongest_dbsm < kLeastOfVehicle_dbsm && strongest_dbsm > kLeastOfPerson_dbsm &&
+           speed_mps < kFastestCycle_mps;
+  }
+
   /// As strong as `dbsm` and at that speed: as long as a person or a cycle would be so, the box is no larger than what
   /// was seen of it.
   void hear(double dbsm, double speed_mps) {
-    constexpr double kGain = 0.2, kFastestCycle_mps = 9.0;
+    constexpr double kGain = 0.2;
     if (!std::isfinite(dbsm)) return;
     const bool is_first = !std::isfinite(strongest_dbsm);
     strongest_dbsm = is_first ? dbsm : strongest_dbsm + kGain * (dbsm - strongest_dbsm);
-    const bool may_be_small =
-        strongest_dbsm < kLeastOfVehicle_dbsm && strongest_dbsm > kLeastOfPerson_dbsm && speed_mps < kFastestCycle_mps;
-    if (is_first && may_be_small) {
+    const bool small = may_be_small(speed_mps);
+    if (is_first && small) {
       is_small = true;
       length_m = kSmallLength_m;
       width_m = kSmallWidth_m;
-    } else if (is_small && !may_be_small) {
+    } else if (is_small && !small) {
       is_small = false;
       length_m = std::max(length_m, kCarLength_m);
       width_m = std::max(width_m, kCarWidth_m);

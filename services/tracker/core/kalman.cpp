@@ -4,6 +4,8 @@
 
 #include <Eigen/LU>
 
+#include "services/common/geometry/frames.hpp"
+
 namespace boresight::tracking {
 
 namespace {
@@ -48,6 +50,7 @@ void predict(KinematicState& state, double dt, double jerk_std_mps3, const geome
   state.mean.head<2>() -= ego.translation_m;
   state.mean = turn * state.mean;
   const Matrix6d whole = turn * f;
+  state.heading.with_rest = whole * state.heading.with_rest;
   state.covariance = whole * state.covariance * whole.transpose() + turn * q * turn.transpose();
   symmetrise(state.covariance);
 }
@@ -65,8 +68,16 @@ bool update(KinematicState& state, const PositionRate& m) {
   const Matrix36d h = measurement_matrix(m);
   const Eigen::Matrix3d s = h * state.covariance * h.transpose() + m.covariance;
   if (!(s.determinant() > 0.0)) return false;
-  const Eigen::Matrix<double, 6, 3> gain = state.covariance * h.transpose() * s.inverse();
-  state.mean += gain * (m.value - h * state.mean);
+  const Eigen::Matrix3d s_inverse = s.inverse();
+  const Eigen::Matrix<double, 6, 3> gain = state.covariance * h.transpose() * s_inverse;
+  const Eigen::Vector3d innovation = m.value - h * state.mean;
+  if (state.heading.known) {
+    const Eigen::Vector3d with_measured = h * state.heading.with_rest, heading_gain = s_inverse * with_measured;
+    state.heading.rad = geometry::wrap_angle(state.heading.rad + heading_gain.dot(innovation));
+    state.heading.with_rest -= gain * with_measured;
+    state.heading.variance -= heading_gain.dot(with_measured);
+  }
+  state.mean += gain * innovation;
   const Matrix6d rest = Matrix6d::Identity() - gain * h;
   state.covariance = rest * state.covariance * rest.transpose() + gain * m.covariance * gain.transpose();
   symmetrise(state.covariance);
@@ -77,7 +88,10 @@ void come_to_rest(KinematicState& state) {
   constexpr double kStill_mps = 0.3;  // moves by less than what is told from standing
   const Eigen::Matrix2d s = state.covariance.block<2, 2>(2, 2) + kStill_mps * kStill_mps * Eigen::Matrix2d::Identity();
   const Eigen::Matrix<double, 6, 2> gain = state.covariance.middleCols<2>(2) * s.inverse();
-  state.mean -= gain * state.mean.segment<2>(2);
+  const Eigen::Vector2d velocity = state.mean.segment<2>(2);
+  // The heading stays: which way it stands is not known any better.
+  state.heading.with_rest -= gain * state.heading.with_rest.segment<2>(2);
+  state.mean -= gain * velocity;
   state.covariance -= gain * s * gain.transpose();
   symmetrise(state.covariance);
 }

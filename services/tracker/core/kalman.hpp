@@ -11,20 +11,29 @@ namespace boresight::tracking {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/// Seventh state of what is known to be a vehicle that drives (heading.hpp).
+struct Heading {
+  bool known = false;
+  double rad = 0.0;  ///< vehicle axes
+  double variance = 0.0;
+  Vector6d with_rest = Vector6d::Zero();  ///< covariance with the other states
+};
+
 struct KinematicState {
   Vector6d mean = Vector6d::Zero();
   Matrix6d covariance = Matrix6d::Identity();
+  Heading heading;
 };
 
 /// Position (m) and range rate over ground (m/s) along a line of sight, and their covariance: rows x, y, ṙ.
 struct PositionRate {
   Eigen::Vector3d value;
   Eigen::Matrix3d covariance;
-  Eigen::Vector2d line_of_sight;  ///< unit vector from the sensor
+  Eigen::Vector2d line_of_sight;  ///< from the sensor: unit vector, or the mean of several
 };
 
 /// Predicts over `elapsed_s` ≥ 0 with white jerk of spectral density jerk_std², then moves the state to the new
-/// vehicle frame.
+/// vehicle frame; all but the heading (predict_heading).
 void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego);
 
 /// Squared Mahalanobis distance of a measurement from the prediction, and the logarithm of the determinant of the

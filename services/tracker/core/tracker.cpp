@@ -7,6 +7,7 @@
 
 #include "services/common/geometry/ego_step.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/tracker/core/heading.hpp"
 
 namespace boresight::tracking {
 
@@ -24,7 +25,7 @@ PositionRate measurement_of(const Cluster& cluster, const Extent& extent, const 
   m.covariance.topLeftCorner<2, 2>() =
       cluster.covariance_m2 + share * share * centre_std_m * centre_std_m * Eigen::Matrix2d::Identity();
   m.covariance(2, 2) = cluster.range_rate_variance;
-  m.line_of_sight = cluster.line_of_sight;
+  m.line_of_sight = cluster.mean_sight;
   return m;
 }
 
@@ -103,6 +104,7 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   const double turn = static_cast<double>(geometry.ego_yaw_rate_radps) * elapsed_s;
   for (Entry& track : tracks_) {
     predict(track.state, elapsed_s, config_.jerk_std_mps3, ego);
+    if (track.state.heading.known) predict_heading(track.state, elapsed_s, turn);
     track.extent.heading_rad = geometry::wrap_angle(track.extent.heading_rad - turn);
     track.age_s += elapsed_s;
     track.since_update_s += elapsed_s;
@@ -124,7 +126,7 @@ std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) 
   for (const Entry& track : tracks_) {
     if (!track.confirmed) continue;
     const auto is_part = [&](const Cluster& cluster) {
-      const double rate = cluster.line_of_sight.dot(track.state.mean.segment<2>(2));
+      const double rate = cluster.mean_sight.dot(track.state.mean.segment<2>(2));
       return track.extent.contains(track.state.mean.head<2>(), cluster.position_m, kMargin_m) &&
              std::abs(cluster.range_rate_over_ground_mps - rate) < config_.cluster_max_range_rate_spread_mps;
     };
@@ -167,7 +169,7 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     measurement.covariance /= cluster.realness;
     if (!update(track.state, measurement)) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
-    track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
+    update_extent(track, cluster, sensor, has_elevation);
     track.slow = track.state.mean.segment<2>(2).norm() < kSlow_mps;
     track.since_update_s = 0.0;
     track.detections = cluster.number_of_detections;
@@ -181,6 +183,28 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
           track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, config_.part_margin_m);
     }
   }
+}
+
+void Tracker::update_extent(Entry& track, const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation) {
+  const Eigen::Vector2d velocity = track.state.mean.segment<2>(2);
+  constexpr double kLeastCourse_mps = 1.0;
+  // People turn as they like: theirs is but the course. Some are in vehicles' boxes, as ghosts made them look strong.
+  if (track.extent.is_small || track.extent.may_be_small(velocity.norm())) {
+    track.state.heading = {};
+  } else if (track.state.heading.known) {
+    hold_to_heading(track.state);
+  } else {
+    begin_heading(track.state);
+    const auto turn = turn_of_flank(cluster, track.extent.heading_rad);
+    if (!track.state.heading.known && turn) begin_heading(track.state, track.extent.heading_rad, *turn);
+  }
+  if (track.state.heading.known) {
+    if (const auto turn = turn_of_flank(cluster, track.state.heading.rad)) measure_heading(track.state, *turn);
+    track.extent.follow_heading(track.state.heading.rad);
+  } else if (velocity.norm() > kLeastCourse_mps) {
+    track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));
+  }
+  track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
 }
 
 void Tracker::push_off(double ego_speed_mps) {
@@ -268,7 +292,8 @@ bool Tracker::can_see(const ScanGeometry& geometry, std::uint32_t radar_id, cons
 }
 
 bool Tracker::is_dead(const Entry& track) const {
-  if (track.since_update_s > config_.coast_s || !track.state.mean.allFinite() || !track.state.covariance.allFinite()) {
+  if (track.since_update_s > config_.coast_s || !track.state.mean.allFinite() || !track.state.covariance.allFinite() ||
+      !std::isfinite(track.state.heading.rad)) {
     return true;
   }
   const std::uint32_t seen = window_mask(track.seen_scans);

@@ -56,6 +56,8 @@ class Tracker {
   std::span<const Eigen::Vector2d> people();
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
+  /// Heading and size of a track that the cluster has just updated.
+  static void update_extent(Entry& track, const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
   /// Nothing is where the own vehicle is: moves tracks that drift there back beside it, their velocity, too.
   void push_off(double ego_speed_mps);
   /// Keeps what came to a stand, of which the scans see only what stands.

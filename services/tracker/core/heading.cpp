@@ -1,0 +1,100 @@
+#include "services/tracker/core/heading.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/common/geometry/frames.hpp"
+
+namespace boresight::tracking {
+
+void begin_heading(KinematicState& state) {
+  // Errors of the places that a new track was made of stay for a while: the course is not so sure as the filter has it.
+  constexpr double kMinSpeed_mps = 0.5, kKnown_rad = 0.25, kMore_rad = 0.1;
+  const Eigen::Vector2d v = state.mean.segment<2>(2);
+  const double speed2 = v.squaredNorm();
+  if (!(speed2 > kMinSpeed_mps * kMinSpeed_mps)) return;
+  const Eigen::Vector2d by_velocity(-v.y() / speed2, v.x() / speed2);
+  const double variance = by_velocity.dot(state.covariance.block<2, 2>(2, 2) * by_velocity);
+  if (!(variance < kKnown_rad * kKnown_rad)) return;
+  state.heading.known = true;
+  state.heading.rad = std::atan2(v.y(), v.x());
+  state.heading.with_rest = state.covariance.middleCols<2>(2) * by_velocity;
+  state.heading.variance = variance + kMore_rad * kMore_rad;
+}
+
+void begin_heading(KinematicState& state, double box_heading_rad, const Turn& turn) {
+  const double rad = box_heading_rad + turn.difference_rad;
+  // Nobody drives along a flank that lies across the course.
+  if (Eigen::Vector2d(std::cos(rad), std::sin(rad)).dot(state.mean.segment<2>(2)) <= 0.0) return;
+  state.heading = {};
+  state.heading.known = true;
+  state.heading.rad = geometry::wrap_angle(rad);
+  state.heading.variance = turn.variance;
+}
+
+void predict_heading(KinematicState& state, double elapsed_s, double turned_rad) {
+  // A turn lasts about a second. 0.1/m is the curvature of a turn at a crossing, a circle of 10 m; at speed
+  // the acceleration across bounds it.
+  constexpr double kCurvature_per_m = 0.1, kAcross_mps2 = 3.0, kLasts_s = 1.0;
+  const double speed = state.mean.segment<2>(2).norm();
+  const double turn_radps = std::min(kCurvature_per_m * speed, kAcross_mps2 / std::max(0.1, speed));
+  state.heading.rad = geometry::wrap_angle(state.heading.rad - turned_rad);
+  state.heading.variance += turn_radps * turn_radps * kLasts_s * elapsed_s;
+}
+
+void hold_to_heading(KinematicState& state) {
+  constexpr double kSlip_mps = 0.3, kSlipShare = 0.03;
+  const double c = std::cos(state.heading.rad), s = std::sin(state.heading.rad);
+  const Eigen::Vector2d across(-s, c), v = state.mean.segment<2>(2);
+  // Derivative of the velocity across by the heading.
+  const double by_heading = -(c * v.x() + s * v.y());
+  const Vector6d rest = state.covariance.middleCols<2>(2) * across + by_heading * state.heading.with_rest;
+  const double own = across.dot(state.heading.with_rest.segment<2>(2)) + by_heading * state.heading.variance;
+  const double slip_mps = kSlip_mps + kSlipShare * v.norm();
+  const double sum = across.dot(rest.segment<2>(2)) + by_heading * own + slip_mps * slip_mps;
+  if (!(sum > 0.0)) return;
+  const double innovation = -across.dot(v);
+  state.mean += rest / sum * innovation;
+  state.heading.rad = geometry::wrap_angle(state.heading.rad + own / sum * innovation);
+  state.covariance -= rest * rest.transpose() / sum;
+  state.heading.with_rest -= rest * own / sum;
+  state.heading.variance -= own * own / sum;
+}
+
+void measure_heading(KinematicState& state, const Turn& turn) {
+  const double sum = state.heading.variance + turn.variance;
+  if (!(sum > 0.0)) return;
+  const Vector6d rest = state.heading.with_rest;
+  state.mean += rest / sum * turn.difference_rad;
+  state.covariance -= rest * rest.transpose() / sum;
+  state.heading.rad = geometry::wrap_angle(state.heading.rad + state.heading.variance / sum * turn.difference_rad);
+  state.heading.with_rest *= turn.variance / sum;
+  state.heading.variance *= turn.variance / sum;
+}
+
+std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad) {
+  constexpr double kLeast_m = 5.0, kMost_rad = 0.5;
+  constexpr double kMostOff_m = 0.2;  // more is no flank, but an end as well, or another vehicle, or a ghost behind it
+  constexpr double kRough_m = 0.25;   // reflections lie beside the flank by so much
+  const std::size_t n = std::min<std::size_t>(cluster.number_on_outline, cluster.outline.size());
+  if (n < 3) return std::nullopt;
+  Eigen::Vector2d mean(0.0, 0.0);
+  for (std::size_t i = 0; i < n; ++i) mean += cluster.outline[i] / static_cast<double>(n);
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector2d d = cluster.outline[i] - mean, off(c * d.x() + s * d.y(), c * d.y() - s * d.x());
+    spread += off * off.transpose() / static_cast<double>(n);
+  }
+  // The line's turn against the heading, by its principal axis; what is no line has no direction.
+  const double difference = spread(0, 0) - spread(1, 1), turn = 0.5 * std::atan2(2.0 * spread(0, 1), difference);
+  const double half = 0.5 * std::hypot(difference, 2.0 * spread(0, 1)), middle = 0.5 * spread.trace();
+  // Points spread evenly over a length have its square over twelve for a variance.
+  const double length2 = 12.0 * (middle + half), off2 = std::max(0.0, middle - half);
+  if (length2 < kLeast_m * kLeast_m || off2 > kMostOff_m * kMostOff_m || std::abs(turn) > kMost_rad) {
+    return std::nullopt;
+  }
+  return Turn{turn, 12.0 * (off2 + kRough_m * kRough_m) / (length2 * static_cast<double>(n))};
+}
+
+}  // namespace boresight::tracking

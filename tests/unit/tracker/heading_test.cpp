@@ -1,0 +1,158 @@
+// The heading as a part of a vehicle's state.
+#include "services/tracker/core/heading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/tracker/scene.hpp"
+
+namespace boresight::tracking {
+namespace {
+
+KinematicState moving_at(const Eigen::Vector2d& velocity, double speed_std) {
+  KinematicState s;
+  s.mean.segment<2>(2) = velocity;
+  s.covariance.block<2, 2>(2, 2) *= speed_std * speed_std;
+  return s;
+}
+
+TEST(Heading, BeginsAsTheCourseOnceThatIsKnown) {
+  KinematicState unsure = moving_at({3.0, 4.0}, 2.0), standing = moving_at({0.1, 0.0}, 0.01);
+  begin_heading(unsure);
+  EXPECT_FALSE(unsure.heading.known);
+  begin_heading(standing);
+  EXPECT_FALSE(standing.heading.known);
+  KinematicState s = moving_at({3.0, 4.0}, 0.5);
+  begin_heading(s);
+  ASSERT_TRUE(s.heading.known);
+  EXPECT_NEAR(s.heading.rad, std::atan2(4.0, 3.0), 1e-12);
+  EXPECT_NEAR(s.heading.variance, 0.01 + 0.01, 1e-12) << "0.5 of 5 m/s, and some more";
+}
+
+/// A range rate measured abeam, and the place hardly.
+PositionRate rate_across(const KinematicState& state, double rate_mps) {
+  PositionRate m;
+  m.value << state.mean(0), state.mean(1), rate_mps;
+  m.covariance = Eigen::Vector3d(1e4, 1e4, 0.01).asDiagonal();
+  m.line_of_sight = {0.0, 1.0};
+  return m;
+}
+
+TEST(Heading, TurnsWithTheVelocityAndTheVelocityWithIt) {
+  KinematicState s = moving_at({10.0, 0.0}, 1.0);
+  begin_heading(s);
+  ASSERT_TRUE(update(s, rate_across(s, 0.5)));
+  EXPECT_NEAR(s.heading.rad, 0.05, 0.005) << "0.5 of 10 m/s";
+  const double across_mps = s.mean(3);
+  measure_heading(s, {0.05, 1e-6});
+  EXPECT_GT(s.mean(3), across_mps);
+  KinematicState slipping = moving_at({10.0, 1.0}, 1.0);
+  slipping.heading.known = true;
+  slipping.heading.variance = 1e-4;
+  hold_to_heading(slipping);
+  EXPECT_LT(std::abs(slipping.mean(3)), 0.45) << "it does not go so far beside its heading";
+  EXPECT_LT(slipping.covariance(3, 3), 0.5);
+}
+
+TEST(Heading, StaysOfWhoCreeps) {
+  KinematicState creeping = moving_at({1.0, 0.0}, 0.1), driving = moving_at({10.0, 0.0}, 0.1);
+  for (KinematicState* s : {&creeping, &driving}) {
+    begin_heading(*s);
+    const double before = s->heading.variance;
+    predict_heading(*s, 0.05, 0.2);
+    EXPECT_NEAR(s->heading.rad, -0.2, 1e-12) << "the vehicle frame has turned";
+    s->heading.variance -= before;
+  }
+  EXPECT_LT(creeping.heading.variance, 0.2 * driving.heading.variance);
+}
+
+TEST(Heading, ComingToRestDoesNotTurn) {
+  KinematicState s = moving_at({1.0, 0.4}, 0.1);
+  begin_heading(s);
+  const double before = s.heading.rad;
+  come_to_rest(s);
+  EXPECT_EQ(s.heading.rad, before);
+}
+
+Cluster line_of(int number, double length_m, double angle_rad) {
+  Cluster cluster{};
+  const Eigen::Vector2d along(std::cos(angle_rad), std::sin(angle_rad));
+  for (int i = 0; i < number; ++i) {
+    cluster.outline[cluster.number_on_outline++] = Eigen::Vector2d(20.0, -5.0) + length_m * i / (number - 1) * along;
+  }
+  cluster.position_m = Eigen::Vector2d(20.0, -5.0) + 0.5 * length_m * along;
+  return cluster;
+}
+
+TEST(Heading, LiesAlongTheFlankOfALongVehicle) {
+  const auto truck = turn_of_flank(line_of(5, 12.0, 0.0), 0.3);
+  ASSERT_TRUE(truck);
+  EXPECT_NEAR(truck->difference_rad, -0.3, 1e-9);
+  EXPECT_LT(truck->variance, 0.01);
+  EXPECT_FALSE(turn_of_flank(line_of(5, 3.0, 0.0), 0.3)) << "too short";
+  EXPECT_FALSE(turn_of_flank(line_of(2, 12.0, 0.0), 0.3)) << "two points make no line";
+  EXPECT_FALSE(turn_of_flank(line_of(5, 12.0, 0.0), 1.0)) << "rather its end";
+  Cluster bent = line_of(5, 8.0, 0.0);
+  bent.outline[4] += Eigen::Vector2d(0.0, -2.5);
+  bent.outline[3] += Eigen::Vector2d(0.0, -2.5);
+  EXPECT_FALSE(turn_of_flank(bent, 0.3)) << "no line";
+}
+
+TEST(RangeRate, OfALongBodyNearbyIsThatOfTheMeanOfItsDirections) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  const Eigen::Vector2d velocity(1.2, 0.0);
+  for (const double x : {3.0, 5.0, 7.0, 9.0}) scene.add({x, -2.0}, velocity);
+  Clusterer clusterer{Config{}};
+  const auto clusters = clusterer.find(*scene.scan);
+  ASSERT_EQ(clusters.size(), 1u);
+  EXPECT_NEAR(clusters[0].mean_sight.dot(velocity), clusters[0].range_rate_over_ground_mps, 1e-6);
+  EXPECT_GT(std::abs(clusters[0].line_of_sight.dot(velocity) - clusters[0].range_rate_over_ground_mps), 0.1);
+}
+
+TEST(Heading, BeginsAlongAFlankIfTheCourseIsNotKnown) {
+  KinematicState s = moving_at({1.0, 0.5}, 2.0);
+  begin_heading(s, 0.3, {-0.3, 0.004});
+  ASSERT_TRUE(s.heading.known);
+  EXPECT_NEAR(s.heading.rad, 0.0, 1e-12);
+  EXPECT_EQ(s.heading.variance, 0.004);
+  KinematicState across = moving_at({-0.1, 1.0}, 2.0);
+  begin_heading(across, 0.3, {-0.3, 0.004});
+  EXPECT_FALSE(across.heading.known) << "it goes the other way";
+}
+
+/// A truck creeps ahead, its flank seen from the lane beside.
+TEST(Creeping, TrucksKeepTheirHeading) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  std::bernoulli_distribution seen(0.8);
+  const Eigen::Vector2d velocity(1.2, 0.0);
+  double square = 0.0, worst = 0.0;
+  int scans = 0;
+  for (int i = 0; i < 160; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    const double rear_m = 14.0 + 0.05 * i * velocity.x();
+    for (const double along : {0.0, 2.1, 5.2, 8.3, 11.4, 14.5}) {
+      if (seen(random)) scene.add({rear_m + along + noise(random), -3.0 + noise(random)}, velocity);
+    }
+    tracker.step(*scene.scan);
+    if (i < 60) continue;
+    tracker.write(*list);
+    ASSERT_GE(list->number_of_confirmed_tracks, 1u);
+    const double heading = static_cast<double>(list->tracks[0].heading_rad);
+    square += heading * heading;
+    worst = std::max(worst, std::abs(heading));
+    ++scans;
+  }
+  EXPECT_LT(std::sqrt(square / scans), 3.0 * kDegree);
+  EXPECT_LT(worst, 6.0 * kDegree);
+}
+
+}  // namespace
+}  // namespace boresight::tracking
