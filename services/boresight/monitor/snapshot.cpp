@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <istream>
+#include <limits>
 #include <ostream>
 #include <sstream>
 
@@ -32,14 +33,15 @@ class Words {
     refuse(word, "a number");
     return 0.0;
   }
-  std::uint64_t count() {
+  std::uint64_t count(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
     const std::string word = text();
     std::uint64_t value = 0;
     const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (result.ec == std::errc() && result.ptr == word.data() + word.size()) return value;
-    refuse(word, "a whole number from 0 to 18446744073709551615");
+    if (result.ec == std::errc() && result.ptr == word.data() + word.size() && value <= most) return value;
+    refuse(word, fmt::format("a whole number from 0 to {}", most));
     return 0;
   }
+  std::uint32_t number32() { return static_cast<std::uint32_t>(count(std::numeric_limits<std::uint32_t>::max())); }
   void refuse(const std::string& word, std::string_view allowed) {
     if (!ok()) return;
     error_ = word.empty() ? fmt::format("ends before word {}", index_)
@@ -47,9 +49,10 @@ class Words {
   }
   [[nodiscard]] bool ok() const { return error_.empty(); }
   [[nodiscard]] const std::string& error() const { return error_; }
+  /// One of an enumeration's values, which count from 0 to `last`.
   template <typename Enum>
-  Enum value() {
-    return static_cast<Enum>(count());
+  Enum value(Enum last) {
+    return static_cast<Enum>(count(static_cast<std::uint64_t>(last)));
   }
   AngleEstimate angle() {
     AngleEstimate result;
@@ -72,30 +75,30 @@ void write_angle(std::ostream& output, const AngleEstimate& angle) {
 
 RadarSnapshot read_radar(Words& words) {
   RadarSnapshot r;
-  r.id = static_cast<std::uint32_t>(words.count());
+  r.id = words.number32();
   r.name = words.text();
   r.scans = words.count();
   r.lost = words.count();
   r.rate_hz = words.number();
-  r.detections = static_cast<std::uint32_t>(words.count());
-  r.moving = static_cast<std::uint32_t>(words.count());
-  r.ghosts = static_cast<std::uint32_t>(words.count());
-  r.state = words.value<AlignmentState>();
+  r.detections = words.number32();
+  r.moving = words.number32();
+  r.ghosts = words.number32();
+  r.state = words.value(AlignmentState::kConverged);
   r.yaw = words.angle();
   r.pitch = words.angle();
   r.roll = words.angle();
   r.speed_scale = words.number();
   r.speed_scale_std = words.number();
-  r.data_qualifier = words.value<DataQualifier>();
-  r.extended_qualifier = words.value<ExtendedQualifier>();
+  r.data_qualifier = words.value(DataQualifier::kNotAvailable);
+  r.extended_qualifier = words.value(ExtendedQualifier::kInitialising);
   r.yaw_tolerance_rad = words.number();
-  r.conditions = static_cast<std::uint32_t>(words.count());
+  r.conditions = words.number32();
   r.missed = words.count();
   r.suspect = words.count();
   if (!words.more()) return r;  // a record of an earlier version
   AlignmentDetails& d = r.details;
   for (AngleEstimate* const angle : {&d.yaw, &d.pitch, &d.roll, &d.yaw_rate_bias, &d.slip}) *angle = words.angle();
-  d.knocks = static_cast<std::uint32_t>(words.count());
+  d.knocks = words.number32();
   d.yaw_seconds_to_95_percent = words.number();
   d.pitch_seconds_to_95_percent = words.number();
   d.yaw_drift_radpmin = words.number();
@@ -111,9 +114,9 @@ RadarSnapshot read_radar(Words& words) {
 
 TrackSnapshot read_track(Words& words) {
   TrackSnapshot t;
-  t.id = static_cast<std::uint32_t>(words.count());
+  t.id = words.number32();
   t.confirmed = words.count() != 0;
-  t.movement = words.value<MovementState>();
+  t.movement = words.value(MovementState::kStopped);
   t.x_m = words.number();
   t.y_m = words.number();
   t.vx_mps = words.number();
@@ -124,9 +127,9 @@ TrackSnapshot read_track(Words& words) {
 
 ServiceSnapshot read_service(Words& words) {
   ServiceSnapshot s;
-  s.service = words.value<catalogue::Service>();
-  s.condition = words.value<ServiceCondition>();
-  s.restarts = static_cast<std::uint32_t>(words.count());
+  s.service = words.value(static_cast<catalogue::Service>(catalogue::kNumberOfServices - 1));
+  s.condition = words.value(ServiceCondition::kRestarted);
+  s.restarts = words.number32();
   s.inputs = words.count();
   s.outputs = words.count();
   s.heap_allocations = words.count();
@@ -136,13 +139,13 @@ ServiceSnapshot read_service(Words& words) {
 }
 
 void read_latency(Words& words, Snapshot& snapshot) {
-  const std::uint64_t index = words.count();
-  if (index >= kNumberOfLatencies) return;
+  const std::uint64_t index = words.count(kNumberOfLatencies - 1);
   LatencyHistogram& histogram = snapshot.latencies[index];
   histogram.restore_max(words.number());
   while (words.more()) {
-    const std::uint64_t bucket = words.count();
-    histogram.restore(bucket, words.count());
+    const std::uint64_t bucket = words.count(LatencyHistogram::kBuckets - 1);
+    // A count of which any sum still is a number.
+    histogram.restore(bucket, words.count(std::numeric_limits<std::uint32_t>::max()));
   }
 }
 
@@ -233,7 +236,7 @@ std::vector<Snapshot> read_record(std::istream& input, const std::string& name, 
       current = Snapshot();
       open = true;
       spoilt = false;
-      current.time_ns = static_cast<std::int64_t>(words.count());
+      current.time_ns = static_cast<std::int64_t>(words.count(std::numeric_limits<std::int64_t>::max()));
       current.ego_speed_mps = words.number();
       current.ego_yaw_rate_radps = words.number();
       current.track_lists = words.count();
