@@ -28,8 +28,9 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
   const TrackFaults faults = track_faults(outcomes);
   const std::string what_tracks = "ghost tracks of over five scans",
                     what_lost = "seconds of objects lost to the filter";
-  const std::string how_tracks =
-      how + ", sum; the longest has " + std::to_string(faults.longest_ghost_track_scans) + " scans";
+  const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
+                                 " last half a second, the longest has " +
+                                 std::to_string(faults.longest_ghost_track_scans) + " scans";
   const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels";
   const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_seconds);
   if (judged) {
