@@ -42,6 +42,14 @@ double track_density(double speed_mps) {
   return kTrackDensity * std::max(1.0, kOrdinary_mps / std::max(kSlow_mps, speed_mps));
 }
 
+/// Weight, in the scans to come, of what is real with that probability. Images are detected again as objects are, but
+/// only objects are remembered: weighed by its probability alone, what is rather an image would be told an object after
+/// a few scans. So its odds are squared, as if the same evidence had been found a second time.
+double remembered(double real) {
+  const double unreal = 1.0 - real;
+  return real * real / (real * real + unreal * unreal);
+}
+
 bool is_usable(const CorrectedScan& scan, std::size_t i) {
   return (scan.detection_flags[i] & corrected_flag::kRejected) == 0 && std::isfinite(scan.x_vehicle_m[i]) &&
          std::isfinite(scan.y_vehicle_m[i]) && std::isfinite(scan.range_rate_over_ground_mps[i]);
@@ -376,7 +384,9 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
       const bool tracked = d.of_tracks > kTrackTells * d.sum();
       constexpr double kOfNoTrack = 1e-6;
       const double of_real = (d.of_tracks + kOfNoTrack) / (d.of_tracks + d.of_images + kOfNoTrack);
-      movers_.set_weight(mover++, tracked ? 0.0 : of_real * d.moving / std::max(d.sum(), 1e-300));
+      const double apparent = d.sum() - d.stationary;  // what does not stand, real or not
+      const double real = of_real * d.moving / std::max(apparent, 1e-300);
+      movers_.set_weight(mover++, tracked ? 0.0 : remembered(real) * apparent / std::max(d.sum(), 1e-300));
     }
   }
   write_segments(map_.reflectors(), odometry_, out);
