@@ -77,7 +77,8 @@ struct Extent {
     const Eigen::Vector2d sight = to_body(centre_m - sensor_m).normalized();
     follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * sight.y() * sight.y(), kSmallest_m,
            is_small ? kCycleLength_m : kLongest_m);
-    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), kSmallest_m,
+    const double narrowest_m = !is_small && length_m > kTwoWheeler_m ? std::min(width_m, kNarrowestCar_m) : kSmallest_m;
+    follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), narrowest_m,
            is_small ? kCycleWidth_m : kWidest_m);
     if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
   }
@@ -164,7 +165,10 @@ struct Extent {
 
  private:
   static constexpr double kLongest_m = 20.0, kSmallest_m = 0.5;
-  static constexpr double kWidest_m = 4.0, kCycleLength_m = 2.0, kCycleWidth_m = 1.0;
+  // What more is seen across is noise, a neighbour or a ghost: 2.6 m is the most that is allowed on roads (96/53/EC).
+  // And what is longer than a two-wheeler is not as narrow as the part of it that is seen.
+  static constexpr double kWidest_m = 2.6, kTwoWheeler_m = 3.0, kNarrowestCar_m = 1.6;
+  static constexpr double kCycleLength_m = 2.0, kCycleWidth_m = 1.0;
   static constexpr double kSmallLength_m = 1.2, kSmallWidth_m = 0.7;  // between a person and a cycle
   static constexpr double kLeastOfVehicle_dbsm = 3.0;
   static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger

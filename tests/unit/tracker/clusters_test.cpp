@@ -212,6 +212,25 @@ TEST(Extent, ShowsItsSideToWhoStandsBesideItsTrack) {
   EXPECT_TRUE(box.shows_side(centre, {2.9, 10.0}));
 }
 
+TEST(Extent, IsAsWideAsVehiclesAre) {
+  Extent wide{.heading_rad = 0.0, .length_m = 4.5, .width_m = 1.9}, narrow = wide;
+  const Eigen::Vector2d centre(20.0, 0.0), velocity(10.0, 0.0), sensor(3.6, 0.0);
+  Cluster cluster{};
+  cluster.strongest_dbsm = std::numeric_limits<double>::quiet_NaN();
+  cluster.number_on_outline = 3;
+  for (int i = 0; i < 400; ++i) {
+    cluster.outline[0] = {18.0, -2.5};
+    cluster.outline[1] = {18.0, 2.5};
+    cluster.outline[2] = {22.0, 0.0};
+    wide.update(cluster, centre, velocity, sensor, false);
+    cluster.outline[0] = {18.0, -0.1};
+    cluster.outline[1] = {18.0, 0.1};
+    narrow.update(cluster, centre, velocity, sensor, false);
+  }
+  EXPECT_NEAR(wide.width_m, 2.6, 1e-6);
+  EXPECT_NEAR(narrow.width_m, 1.6, 1e-6);
+}
+
 TEST(Extent, LengthensToReachAnother) {
   Extent rear{.heading_rad = M_PI / 2, .length_m = 4.0, .width_m = 2.0};
   const Extent front{.heading_rad = M_PI / 2, .length_m = 3.0, .width_m = 2.0};
