@@ -163,6 +163,25 @@ struct Extent {
     return std::abs(at.x()) < 0.5 * length_m + margin_m && std::abs(at.y()) < 0.5 * width_m + margin_m;
   }
 
+  /// Whether the box is in the way from one place to another that is not in it.
+  [[nodiscard]] bool hides(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& from_m,
+                           const Eigen::Vector2d& to_m) const {
+    const Eigen::Vector2d from = to_body(from_m - centre_m), way = to_body(to_m - from_m);
+    const Eigen::Vector2d half(0.5 * length_m, 0.5 * width_m);
+    double enters = 0.0, leaves = 1.0;
+    for (const int axis : {0, 1}) {
+      constexpr double kParallel_m = 1e-9;
+      if (std::abs(way(axis)) < kParallel_m) {
+        if (std::abs(from(axis)) > half(axis)) return false;
+        continue;
+      }
+      const double a = (-half(axis) - from(axis)) / way(axis), b = (half(axis) - from(axis)) / way(axis);
+      enters = std::max(enters, std::min(a, b));
+      leaves = std::min(leaves, std::max(a, b));
+    }
+    return enters < leaves && enters > 0.0 && leaves < 1.0;
+  }
+
  private:
   static constexpr double kLongest_m = 20.0, kSmallest_m = 0.5;
   // What more is seen across is noise, a neighbour or a ghost: 2.6 m is the most that is allowed on roads (96/53/EC).

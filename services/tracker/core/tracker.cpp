@@ -288,7 +288,16 @@ bool Tracker::can_see(const ScanGeometry& geometry, std::uint32_t radar_id, cons
   const Eigen::Vector3d in_sensor = rotation.cast<double>().transpose() * sight;
   const double azimuth = std::atan2(in_sensor.y(), in_sensor.x());
   const FieldOfView& view = radar->field_of_view;
-  return azimuth > view.azimuth_min_rad && azimuth < view.azimuth_max_rad && sight.norm() < view.range_max_m;
+  if (azimuth <= view.azimuth_min_rad || azimuth >= view.azimuth_max_rad || sight.norm() >= view.range_max_m) {
+    return false;
+  }
+  // Behind a vehicle that is surely there it is hidden, to this radar.
+  constexpr double kSurelyThere = 0.95;
+  const Eigen::Vector2d to = track.state.mean.head<2>(), from = to - sight.head<2>();
+  return std::none_of(tracks_.begin(), tracks_.end(), [&](const Entry& other) {
+    return &other != &track && other.confirmed && other.existence > kSurelyThere && !other.extent.is_small &&
+           other.extent.hides(other.state.mean.head<2>(), from, to);
+  });
 }
 
 bool Tracker::is_dead(const Entry& track) const {

@@ -130,6 +130,20 @@ TEST(Clusterer, MoreClustersThanRoomAreCounted) {
   EXPECT_EQ(clusterer.dropped(), 200u - geometry::Assignment::kCapacity);
 }
 
+TEST(Extent, HidesWhatLiesBehindIt) {
+  Extent car;
+  car.heading_rad = 90.0 * kDegree;
+  car.length_m = 4.0;
+  car.width_m = 2.0;
+  const Eigen::Vector2d centre(10.0, 0.0);
+  EXPECT_TRUE(car.hides(centre, {0.0, 0.0}, {20.0, 0.0}));
+  EXPECT_TRUE(car.hides(centre, {0.0, 1.9}, {20.0, 1.9})) << "it is 4 m wide across";
+  EXPECT_FALSE(car.hides(centre, {0.0, 2.1}, {20.0, 2.1})) << "beside";
+  EXPECT_FALSE(car.hides(centre, {0.0, 0.0}, {8.0, 0.0})) << "before";
+  EXPECT_FALSE(car.hides(centre, {0.0, 0.0}, {10.0, 0.5})) << "in it";
+  EXPECT_FALSE(car.hides(centre, {15.0, 0.0}, {20.0, 0.0})) << "behind both";
+}
+
 TEST(Extent, KnowsWhichFacesAreSeen) {
   const Extent car{.heading_rad = 0.0, .length_m = 4.0, .width_m = 2.0};
   const Eigen::Vector2d centre(30.0, 0.0);

@@ -259,6 +259,31 @@ TEST_F(TrackerTest, PeopleWhoComeTogetherAndWalkAbreastKeepTheirNames) {
   EXPECT_NE(names[-1.0], names[1.0]);
 }
 
+TEST_F(TrackerTest, WhatAVehicleHidesIsNotMissed) {
+  // A car drives in front of another one, which is not seen any more; nor is a third, which nothing hides.
+  const Eigen::Vector2d v(8.0, 0.0);
+  for (int k = 0; k < 20; ++k) {
+    scene_.begin(now_);
+    const Eigen::Vector2d moved = 0.05 * k * v;
+    scene_.add(Eigen::Vector2d(15.0, 0.0) + moved, v);
+    if (k < 12) scene_.add(Eigen::Vector2d(40.0, 0.3) + moved, v);
+    if (k < 12) scene_.add(Eigen::Vector2d(40.0, 15.0) + moved, v);
+    tracker_.step(*scene_.scan);
+    now_ += 50 * kMillisecond;
+  }
+  bool hidden = false;
+  const TrackList& tracks = list();
+  for (std::size_t t = 0; t < tracks.number_of_confirmed_tracks; ++t) {
+    const Track& track = tracks.tracks[t];
+    if (track.position_vehicle_m[0] < 35.0F) continue;
+    if (track.position_vehicle_m[1] < 5.0F) hidden = track.existence_probability > 0.9F;
+    if (track.position_vehicle_m[1] > 10.0F) {
+      EXPECT_LT(track.existence_probability, 0.5F);
+    }
+  }
+  EXPECT_TRUE(hidden);
+}
+
 TEST_F(TrackerTest, OutputHasNothingOfTheStaleChunk) {
   for (int i = 0; i < 6; ++i) step({30.0 + 0.4 * i, 0.0}, {8.0, 0.0});
   const Track& t = list().tracks[0];
