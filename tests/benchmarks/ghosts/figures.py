@@ -26,7 +26,9 @@ def clipped(points):
         begin, end = max(begin, enter), min(end, leave)
     if begin >= end:
         return []
-    return [(x0 + s * (x1 - x0), y0 + s * (y1 - y0)) for s in (begin, end)]
+    # Rounded, an end may lie beyond the edge by the last digit, and a panel leaves out what does.
+    return [tuple(min(max(value, low), high) for value, (low, high) in
+                  zip((x0 + s * (x1 - x0), y0 + s * (y1 - y0)), REACH.values())) for s in (begin, end)]
 
 
 def marks(panel, points, css, is_told):
