@@ -7,6 +7,22 @@
 
 namespace boresight::tracking {
 
+namespace {
+
+/// Update of all seven states by one number, the difference of what is measured from what is expected: its covariances
+/// with the six and with the heading, and its variance.
+void observe(KinematicState& state, const Vector6d& with_rest, double with_heading, double variance,
+             double difference) {
+  if (!(variance > 0.0)) return;
+  state.mean += with_rest / variance * difference;
+  state.heading.rad = geometry::wrap_angle(state.heading.rad + with_heading / variance * difference);
+  state.covariance -= with_rest * with_rest.transpose() / variance;
+  state.heading.with_rest -= with_rest * with_heading / variance;
+  state.heading.variance -= with_heading * with_heading / variance;
+}
+
+}  // namespace
+
 void begin_heading(KinematicState& state) {
   // Errors of the places that a new track was made of stay for a while: the course is not so sure as the filter has it.
   constexpr double kMinSpeed_mps = 0.5, kKnown_rad = 0.25, kMore_rad = 0.1;
@@ -51,25 +67,13 @@ void hold_to_heading(KinematicState& state) {
   const Vector6d rest = state.covariance.middleCols<2>(2) * across + by_heading * state.heading.with_rest;
   const double own = across.dot(state.heading.with_rest.segment<2>(2)) + by_heading * state.heading.variance;
   const double slip_mps = kSlip_mps + kSlipShare * v.norm();
-  const double sum = across.dot(rest.segment<2>(2)) + by_heading * own + slip_mps * slip_mps;
-  if (!(sum > 0.0)) return;
-  const double innovation = -across.dot(v);
-  state.mean += rest / sum * innovation;
-  state.heading.rad = geometry::wrap_angle(state.heading.rad + own / sum * innovation);
-  state.covariance -= rest * rest.transpose() / sum;
-  state.heading.with_rest -= rest * own / sum;
-  state.heading.variance -= own * own / sum;
+  const double variance = across.dot(rest.segment<2>(2)) + by_heading * own + slip_mps * slip_mps;
+  observe(state, rest, own, variance, -across.dot(v));
 }
 
 void measure_heading(KinematicState& state, const Turn& turn) {
-  const double sum = state.heading.variance + turn.variance;
-  if (!(sum > 0.0)) return;
-  const Vector6d rest = state.heading.with_rest;
-  state.mean += rest / sum * turn.difference_rad;
-  state.covariance -= rest * rest.transpose() / sum;
-  state.heading.rad = geometry::wrap_angle(state.heading.rad + state.heading.variance / sum * turn.difference_rad);
-  state.heading.with_rest *= turn.variance / sum;
-  state.heading.variance *= turn.variance / sum;
+  const Heading known = state.heading;
+  observe(state, known.with_rest, known.variance, known.variance + turn.variance, turn.difference_rad);
 }
 
 std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad) {

@@ -11,8 +11,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/tracker/core/clusters.hpp"
 #include "services/tracker/core/config.hpp"
-#include "services/tracker/core/extent.hpp"
-#include "services/tracker/core/kalman.hpp"
+#include "services/tracker/core/tracked_object.hpp"
 
 namespace boresight::tracking {
 
@@ -35,45 +34,25 @@ class Tracker {
   void write(TrackList& out) const;
 
  private:
-  static constexpr std::size_t kLongestWindow = 32;
-  struct Entry {
-    std::uint32_t id = 0;
-    bool confirmed = false;
-    KinematicState state;
-    Extent extent;
-    std::uint32_t history = 0;  // one bit for each scan that could see the object, the latest lowest; 1: detected
-    std::uint32_t seen_scans = 0;
-    std::array<float, kLongestWindow> evidence{};  // how real each of those scans' detections were, the latest first
-    double existence = 0.5;
-    double age_s = 0.0;
-    double since_update_s = 0.0;
-    std::uint32_t detections = 0;  // in the last scan
-    double realness = 0.0;         // of those
-    bool slow = false;             // when it was detected last
-  };
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
   /// Where confirmed people and cycles are.
   std::span<const Eigen::Vector2d> people();
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
   /// Heading and size of a track that the cluster has just updated.
-  static void update_extent(Entry& track, const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
+  static void update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
+                            bool has_elevation);
   /// Nothing is where the own vehicle is: moves tracks that drift there back beside it, their velocity, too.
   void push_off(double ego_speed_mps);
-  /// Keeps what came to a stand, of which the scans see only what stands.
-  void keep_stopped(const ClassifiedScan& scan);
   void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
+  /// Of each track, what the scan says of whether it is there; gives up those that are not.
   void judge(const ClassifiedScan& scan);
-  [[nodiscard]] bool are_one(const Entry& a, const Entry& b, const Eigen::Vector2d& sensor) const;
-  void remove_duplicates(const Eigen::Vector2d& sensor);
-  [[nodiscard]] bool can_see(const ScanGeometry& geometry, std::uint32_t radar_id, const Entry& track) const;
-  [[nodiscard]] bool is_dead(const Entry& track) const;
 
   VehicleConfig vehicle_;
   Config config_;
   Clusterer clusterer_;
   geometry::Assignment assignment_;
-  std::vector<Entry> tracks_;
+  std::vector<TrackedObject> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
   std::array<Eigen::Vector2d, kMaxTracks> visible_mean_, people_;
   Eigen::Vector2d radars_low_m_{1e9, 1e9}, radars_high_m_{-1e9, -1e9};  // what lies between them is the own body

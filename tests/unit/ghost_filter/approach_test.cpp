@@ -26,15 +26,31 @@ Mirror some_mirror(std::mt19937& random, double most_curvature_per_m) {
   return m;
 }
 
-/// How much longer a way by a place on the mirror is than one that ends farther on by as much as it must; a way that
-/// turns as light does changes sign there. NaN where there is no such way.
-double departing_less_arriving(const Mirror& m, double arc, const Eigen::Vector2d& sensor, const Eigen::Vector2d& from,
-                               const Eigen::Vector2d& direction, double length, double* rest) {
+/// A ray, and how long the way by a mirror to a place on it and back along it is.
+struct Ray {
+  Eigen::Vector2d sensor{3.6, 0.7}, direction, from;
+  double length;
+};
+/// From the sensor itself, or from somewhere else.
+Ray some_ray(std::mt19937& random, bool from_sensor) {
+  std::uniform_real_distribution<double> place(-35.0, 35.0), angle(-3.15, 3.15), range(5.0, 120.0);
+  const double azimuth = angle(random);
+  Ray ray;
+  ray.direction = {std::cos(azimuth), std::sin(azimuth)};
+  ray.from = from_sensor ? ray.sensor : Eigen::Vector2d(place(random), place(random));
+  ray.length = (ray.from - ray.sensor).norm() + 2.0 * range(random);
+  return ray;
+}
+
+/// Of a way that turns at a place on the mirror, the cosine at which it arrives there less that at which it leaves:
+/// light turns where that changes its sign. NaN where there is no such way.
+double arriving_less_leaving(const Mirror& m, double arc, const Ray& ray, double* rest) {
+  const auto& [sensor, direction, from, length] = ray;
   const Eigen::Vector2d point = m.curve.at(arc), tangent = m.curve.tangent_at(arc);
   const double left = length - (point - sensor).norm();
   // |T − W| = left − rest along the ray, by halving.
   double low = 0.0, high = left;
-  const auto too_short = [&](double r) { return r + (from + r * direction - point).norm() < left; };
+  const auto too_short = [&](double r) { return r + (ray.from + r * ray.direction - point).norm() < left; };
   if (left <= 0.0 || !too_short(low)) return std::nan("");
   for (int k = 0; k < 60; ++k) (too_short(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
   *rest = low;
@@ -46,17 +62,13 @@ double departing_less_arriving(const Mirror& m, double arc, const Eigen::Vector2
 
 TEST(Meet, FindsWhatASearchAlongTheMirrorFinds) {
   std::mt19937 random(2);
-  std::uniform_real_distribution<double> place(-35.0, 35.0), angle(-3.15, 3.15), range(5.0, 120.0);
   // Straight ones, rails in bends, and a quarter of a roundabout.
   constexpr std::array<double, 3> kMostBent{0.0, 0.01, 0.03}, kLeastFound{0.99, 0.96, 0.85};
   std::array<std::size_t, 3> ways{}, found{}, invented{};
   for (int run = 0; run < 20000; ++run) {
     const Mirror m = some_mirror(random, kMostBent[static_cast<std::size_t>(run % 3)]);
-    const Eigen::Vector2d sensor(3.6, 0.7);
-    const double azimuth = angle(random);
-    const Eigen::Vector2d direction(std::cos(azimuth), std::sin(azimuth));
-    const Eigen::Vector2d from = run % 2 == 0 ? sensor : Eigen::Vector2d(place(random), place(random));
-    const double length = (from - sensor).norm() + 2.0 * range(random);
+    const Ray ray = some_ray(random, run % 2 == 0);
+    const auto& [sensor, direction, from, length] = ray;
     const auto way = approach(m, sensor, from, direction, length);
     const auto met = way ? meet(m, way->arc_m, sensor, from, direction, length, 0.5) : std::nullopt;
     if (met) {
@@ -74,7 +86,7 @@ TEST(Meet, FindsWhatASearchAlongTheMirrorFinds) {
     bool is_way = false, is_found = false;
     for (double arc = m.begin_m; arc <= m.end_m; arc += 0.5) {
       double rest = 0.0;
-      const double now = departing_less_arriving(m, arc, sensor, from, direction, length, &rest);
+      const double now = arriving_less_leaving(m, arc, ray, &rest);
       if (before * now <= 0.0 && rest > 1.0) {
         is_way = true;
         is_found = is_found || (met && std::abs(m.curve.arc(met->point_m) - arc) < 1.0);
@@ -96,16 +108,12 @@ TEST(Meet, FindsWhatASearchAlongTheMirrorFinds) {
 
 TEST(Approach, HoldsOfEveryWayThatIsFound) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> place(-35.0, 35.0), angle(-3.15, 3.15), range(5.0, 120.0);
   std::size_t met = 0, known = 0, none = 0, gentle_missed = 0, missed = 0, farther = 0;
   for (int run = 0; run < 100000; ++run) {
     const bool gentle = run % 3 != 0;  // as walls and rails are
     const Mirror m = some_mirror(random, run % 3 == 2 ? 0.0 : gentle ? 0.0005 : 0.05);
-    const Eigen::Vector2d sensor(3.6, 0.7);
-    const double azimuth = angle(random);
-    const Eigen::Vector2d direction(std::cos(azimuth), std::sin(azimuth));
-    const Eigen::Vector2d from = run % 2 == 0 ? sensor : Eigen::Vector2d(place(random), place(random));
-    const double length = (from - sensor).norm() + 2.0 * range(random);
+    const Ray ray = some_ray(random, run % 2 == 0);
+    const auto& [sensor, direction, from, length] = ray;
     const auto way = approach(m, sensor, from, direction, length);
     none += way ? 0 : 1;
     // What starts near a way finds it, whatever approach() says.

@@ -1,0 +1,55 @@
+#include "services/tracker/core/duplicates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace boresight::tracking {
+
+namespace {
+
+bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector2d& sensor, const Config& config) {
+  const Eigen::Vector2d p = a.state.mean.head<2>(), q = b.state.mean.head<2>();
+  const Eigen::Vector2d velocity = a.state.mean.segment<2>(2);
+  const double apart_mps = (velocity - b.state.mean.segment<2>(2)).norm();
+  // Two vehicles that have both long been tracked, each at a speed of its own, are two, wherever ghosts draw them. The
+  // limbs of who walks have their own speeds, too, but no vehicle's length.
+  constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5, kVehicle_m = 2.5;
+  if (a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s && apart_mps > kOwnSpeed_mps &&
+      std::min(a.extent.length_m, b.extent.length_m) > kVehicle_m) {
+    return false;
+  }
+  // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.
+  if (a.extent.contains(p, q, 0.0) || b.extent.contains(q, p, 0.0)) return true;
+  if (apart_mps > config.duplicate_speed_mps) return false;
+  const double margin_m = config.duplicate_margin_m;
+  if (a.extent.contains(p, q, margin_m) || b.extent.contains(q, p, margin_m)) return true;
+  if (!a.extent.shows_side(p, sensor)) return false;
+  // Both ends of a long vehicle: nobody follows so closely.
+  constexpr double kSmallestHeadway_s = 0.3;
+  return a.extent.in_file(p, b.extent, q, kSmallestHeadway_s * velocity.norm());
+}
+
+}  // namespace
+
+void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m, const Config& config) {
+  for (std::size_t a = 0; a < tracks.size(); ++a) {
+    for (std::size_t b = a + 1; b < tracks.size();) {
+      if (!are_one(tracks[a], tracks[b], sensor_m, config)) {
+        ++b;
+        continue;
+      }
+      if (tracks[b].confirmed && !tracks[a].confirmed) std::swap(tracks[a], tracks[b]);
+      TrackedObject& kept = tracks[a];
+      const TrackedObject& gone = tracks[b];
+      const double speed_mps = (kept.state.mean - gone.state.mean).segment<2>(2).norm();
+      const bool shows_side = kept.extent.shows_side(kept.state.mean.head<2>(), sensor_m);
+      if (gone.confirmed && shows_side && speed_mps <= config.duplicate_speed_mps) {
+        kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), gone.state.mean.head<2>());
+      }
+      tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(b));
+    }
+  }
+}
+
+}  // namespace boresight::tracking

@@ -1,0 +1,46 @@
+#include "services/tracker/core/stopped.hpp"
+
+#include <algorithm>
+
+namespace boresight::tracking {
+
+namespace {
+
+/// Rails and walls stand, too.
+bool is_of_reflector(const ClassifiedScan& scan, const Eigen::Vector2d& place_m) {
+  constexpr double kNear_m = 0.7;
+  const std::size_t count = std::min<std::size_t>(scan.number_of_reflector_segments, kMaxReflectorSegments);
+  return std::any_of(scan.reflector_segments.begin(),
+                     scan.reflector_segments.begin() + static_cast<std::ptrdiff_t>(count),
+                     [&](const ReflectorSegment& segment) {
+                       const Eigen::Vector2d from(segment.start_vehicle_m[0], segment.start_vehicle_m[1]),
+                           to(segment.end_vehicle_m[0], segment.end_vehicle_m[1]);
+                       const Eigen::Vector2d along = to - from;
+                       const double share = (place_m - from).dot(along) / std::max(1e-6, along.squaredNorm());
+                       return (place_m - from - std::clamp(share, 0.0, 1.0) * along).norm() < kNear_m;
+                     });
+}
+
+}  // namespace
+
+void keep_stopped(std::span<TrackedObject> tracks, const ClassifiedScan& scan) {
+  // Ghosts' tracks, too, come to rest on what stands somewhere, but do not live so long before.
+  constexpr double kLongEnough_s = 5.0, kSure = 0.9;
+  const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
+  for (TrackedObject& track : tracks) {
+    if (!track.confirmed || !track.slow || track.detections > 0 || track.age_s < kLongEnough_s ||
+        track.existence < kSure) {
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (scan.provenance[i] != Provenance::kStationary) continue;
+      const Eigen::Vector2d place(scan.x_vehicle_m[i], scan.y_vehicle_m[i]);
+      if (!track.extent.contains(track.state.mean.head<2>(), place, 0.0) || is_of_reflector(scan, place)) continue;
+      come_to_rest(track.state);
+      track.since_update_s = 0.0;
+      break;
+    }
+  }
+}
+
+}  // namespace boresight::tracking
