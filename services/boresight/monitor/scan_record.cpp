@@ -1,15 +1,14 @@
 #include "services/boresight/monitor/scan_record.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <istream>
 #include <iterator>
-#include <limits>
 #include <ostream>
 #include <string_view>
-#include <type_traits>
 
 #include <fmt/format.h>
+
+#include "services/boresight/monitor/words.hpp"
 
 namespace boresight::monitor {
 
@@ -26,69 +25,6 @@ char letter_of(const ClassifiedScan& scan, std::size_t i) {
   const auto index = static_cast<std::size_t>(scan.provenance[i]);
   return index < kLetters.size() ? kLetters[index] : kLetters[0];
 }
-
-template <typename T>
-std::string allowed_numbers(T most = std::numeric_limits<T>::max()) {
-  if constexpr (std::is_floating_point_v<T>) return "a number";
-  return fmt::format("a whole number from {} to {}", std::numeric_limits<T>::min(), most);
-}
-
-template <typename T>
-bool parse(std::string_view word, T& value) {
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  return result.ec == std::errc() && result.ptr == word.data() + word.size();
-}
-
-/// The words of a line, up to the first that is missing or not allowed.
-class Words {
- public:
-  explicit Words(std::string_view line) : rest_(line) {}
-  [[nodiscard]] bool ok() const { return error_.empty(); }
-  [[nodiscard]] const std::string& error() const { return error_; }
-  /// The fields that follow belong to this one of a list; it counts from 0, errors from 1.
-  void item(std::string_view what, std::size_t index) {
-    item_ = what;
-    index_ = index;
-  }
-  void no_item() { item_ = {}; }
-  [[nodiscard]] std::string_view word() {
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size()));
-    const std::size_t end = std::min(rest_.find(' '), rest_.size());
-    const std::string_view word = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    return word;
-  }
-  template <typename T>
-  void read(std::string_view field, T& value) {
-    const std::string_view text = word();
-    if (!parse(text, value)) refuse(field, text, allowed_numbers<T>());
-  }
-  /// 0 where it is not allowed.
-  [[nodiscard]] std::uint32_t at_most(std::string_view field, std::size_t most) {
-    const std::string_view text = word();
-    std::uint32_t value = 0;
-    if (parse(text, value) && value <= most) return value;
-    refuse(field, text, allowed_numbers(most));
-    return 0;
-  }
-  void refuse(std::string_view field, std::string_view word, std::string_view allowed) {
-    if (!ok()) return;
-    const std::string whose = item_.empty() ? std::string(field) : fmt::format("{} of {} {}", field, item_, index_ + 1);
-    error_ = word.empty() ? fmt::format("ends before {}", whose)
-                          : fmt::format("{} is {}, allowed: {}", whose, quoted(word), allowed);
-  }
-  /// Nothing but what closes a line is left.
-  void close() {
-    no_item();
-    const std::string_view last = word();
-    if (last != "." || !rest_.empty()) refuse("its end", last == "." ? rest_ : last, "'.'");
-  }
-
- private:
-  std::string_view rest_, item_;
-  std::size_t index_ = 0;
-  std::string error_;
-};
 
 void read_header(Words& words, MessageHeader& header) {
   words.read("source id", header.source_id);
@@ -138,8 +74,7 @@ void read_tracks(Words& words, TrackList& list) {
     words.item("track", i);
     track.status = TrackStatus::kConfirmed;
     words.read("id", track.tracking_id);
-    track.movement =
-        static_cast<MovementState>(words.at_most("movement", static_cast<std::size_t>(MovementState::kStopped)));
+    track.movement = words.value("movement", MovementState::kStopped);
     words.read("x", track.position_vehicle_m[0]);
     words.read("y", track.position_vehicle_m[1]);
     words.read("heading", track.heading_rad);

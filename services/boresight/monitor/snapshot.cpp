@@ -1,151 +1,111 @@
 #include "services/boresight/monitor/snapshot.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <istream>
 #include <limits>
 #include <ostream>
-#include <sstream>
 
 #include <fmt/format.h>
+
+#include "services/boresight/monitor/words.hpp"
 
 namespace boresight::monitor {
 
 namespace {
 
-/// The words of one line; one that is missing or not what was asked for reads as 0, and the first such is told.
-class Words {
- public:
-  explicit Words(const std::string& line) : input_(line) {}
-  std::string text() {
-    std::string word;
-    input_ >> word;
-    ++index_;
-    if (word.empty()) refuse(word, {});
-    return word;
-  }
-  double number() {  // also "nan"
-    const std::string word = text();
-    char* end = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    if (end == word.c_str() + word.size()) return value;
-    refuse(word, "a number");
-    return 0.0;
-  }
-  std::uint64_t count(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
-    const std::string word = text();
-    std::uint64_t value = 0;
-    const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (result.ec == std::errc() && result.ptr == word.data() + word.size() && value <= most) return value;
-    refuse(word, fmt::format("a whole number from 0 to {}", most));
-    return 0;
-  }
-  std::uint32_t number32() { return static_cast<std::uint32_t>(count(std::numeric_limits<std::uint32_t>::max())); }
-  void refuse(const std::string& word, std::string_view allowed) {
-    if (!ok()) return;
-    error_ = word.empty() ? fmt::format("ends before word {}", index_)
-                          : fmt::format("word {} is {}, allowed: {}", index_, quoted(word), allowed);
-  }
-  [[nodiscard]] bool ok() const { return error_.empty(); }
-  [[nodiscard]] const std::string& error() const { return error_; }
-  /// One of an enumeration's values, which count from 0 to `last`.
-  template <typename Enum>
-  Enum value(Enum last) {
-    return static_cast<Enum>(count(static_cast<std::uint64_t>(last)));
-  }
-  AngleEstimate angle() {
-    AngleEstimate result;
-    result.value_rad = number();
-    result.std_rad = number();
-    result.observable = count() != 0;
-    return result;
-  }
-  [[nodiscard]] bool more() { return static_cast<bool>(input_ >> std::ws) && input_.peek() != EOF; }
-
- private:
-  std::istringstream input_;
-  std::size_t index_ = 0;  // of the last word, from 1
-  std::string error_;
-};
+AngleEstimate read_angle(Words& words, const std::string& axis) {
+  AngleEstimate result;
+  words.read(axis, result.value_rad);
+  words.read(axis + "'s std", result.std_rad);
+  result.observable = words.at_most(axis + "'s observability", 1) != 0;
+  return result;
+}
 
 void write_angle(std::ostream& output, const AngleEstimate& angle) {
   output << ' ' << angle.value_rad << ' ' << angle.std_rad << ' ' << (angle.observable ? 1 : 0);
 }
 
+void read_details(Words& words, AlignmentDetails& d) {
+  d.yaw = read_angle(words, "yaw about the vehicle's axes");
+  d.pitch = read_angle(words, "pitch about the vehicle's axes");
+  d.roll = read_angle(words, "roll about the vehicle's axes");
+  d.yaw_rate_bias = read_angle(words, "yaw rate bias");
+  d.slip = read_angle(words, "slip");
+  words.read("knocks", d.knocks);
+  words.read("seconds to 95 % of yaw", d.yaw_seconds_to_95_percent);
+  words.read("seconds to 95 % of pitch", d.pitch_seconds_to_95_percent);
+  words.read("drift of yaw", d.yaw_drift_radpmin);
+  words.read("residual", d.residual_rmse_mps);
+  words.read("NEES", d.nees);
+}
+
 RadarSnapshot read_radar(Words& words) {
   RadarSnapshot r;
-  r.id = words.number32();
-  r.name = words.text();
-  r.scans = words.count();
-  r.lost = words.count();
-  r.rate_hz = words.number();
-  r.detections = words.number32();
-  r.moving = words.number32();
-  r.ghosts = words.number32();
-  r.state = words.value(AlignmentState::kConverged);
-  r.yaw = words.angle();
-  r.pitch = words.angle();
-  r.roll = words.angle();
-  r.speed_scale = words.number();
-  r.speed_scale_std = words.number();
-  r.data_qualifier = words.value(DataQualifier::kNotAvailable);
-  r.extended_qualifier = words.value(ExtendedQualifier::kInitialising);
-  r.yaw_tolerance_rad = words.number();
-  r.conditions = words.number32();
-  r.missed = words.count();
-  r.suspect = words.count();
+  words.read("radar id", r.id);
+  r.name = words.text("radar's name");
+  words.read("scans", r.scans);
+  words.read("scans lost", r.lost);
+  words.read("rate", r.rate_hz);
+  words.read("detections", r.detections);
+  words.read("moving", r.moving);
+  words.read("ghosts", r.ghosts);
+  r.state = words.value("alignment state", AlignmentState::kConverged);
+  r.yaw = read_angle(words, "yaw");
+  r.pitch = read_angle(words, "pitch");
+  r.roll = read_angle(words, "roll");
+  words.read("speed scale", r.speed_scale);
+  words.read("std of the speed scale", r.speed_scale_std);
+  r.data_qualifier = words.value("data qualifier", DataQualifier::kNotAvailable);
+  r.extended_qualifier = words.value("extended qualifier", ExtendedQualifier::kInitialising);
+  words.read("tolerance of yaw", r.yaw_tolerance_rad);
+  words.read("conditions", r.conditions);
+  words.read("missed", r.missed);
+  words.read("suspect", r.suspect);
   if (!words.more()) return r;  // a record of an earlier version
-  AlignmentDetails& d = r.details;
-  for (AngleEstimate* const angle : {&d.yaw, &d.pitch, &d.roll, &d.yaw_rate_bias, &d.slip}) *angle = words.angle();
-  d.knocks = words.number32();
-  d.yaw_seconds_to_95_percent = words.number();
-  d.pitch_seconds_to_95_percent = words.number();
-  d.yaw_drift_radpmin = words.number();
-  d.residual_rmse_mps = words.number();
-  d.nees = words.number();
+  read_details(words, r.details);
   if (!words.more()) return r;  // the same
-  for (std::uint64_t& told : r.labels.told) told = words.count();
-  r.labels.left_out = words.count();
-  r.labels.scans = words.count();
-  r.labels.scans_without_tracks = words.count();
+  for (std::uint64_t& told : r.labels.told) words.read("detections with a label", told);
+  words.read("detections left out", r.labels.left_out);
+  words.read("scans with labels", r.labels.scans);
+  words.read("scans without tracks", r.labels.scans_without_tracks);
   return r;
 }
 
 TrackSnapshot read_track(Words& words) {
   TrackSnapshot t;
-  t.id = words.number32();
-  t.confirmed = words.count() != 0;
-  t.movement = words.value(MovementState::kStopped);
-  t.x_m = words.number();
-  t.y_m = words.number();
-  t.vx_mps = words.number();
-  t.vy_mps = words.number();
-  t.age_s = words.number();
+  words.read("track id", t.id);
+  t.confirmed = words.at_most("confirmed", 1) != 0;
+  t.movement = words.value("movement", MovementState::kStopped);
+  words.read("x", t.x_m);
+  words.read("y", t.y_m);
+  words.read("speed along x", t.vx_mps);
+  words.read("speed along y", t.vy_mps);
+  words.read("age", t.age_s);
   return t;
 }
 
 ServiceSnapshot read_service(Words& words) {
   ServiceSnapshot s;
-  s.service = words.value(static_cast<catalogue::Service>(catalogue::kNumberOfServices - 1));
-  s.condition = words.value(ServiceCondition::kRestarted);
-  s.restarts = words.number32();
-  s.inputs = words.count();
-  s.outputs = words.count();
-  s.heap_allocations = words.count();
-  s.processing_max_us = words.number();
-  for (std::uint64_t& fault : s.faults) fault = words.count();
+  s.service = words.value("service", static_cast<catalogue::Service>(catalogue::kNumberOfServices - 1));
+  s.condition = words.value("condition", ServiceCondition::kRestarted);
+  words.read("restarts", s.restarts);
+  words.read("inputs", s.inputs);
+  words.read("outputs", s.outputs);
+  words.read("heap allocations", s.heap_allocations);
+  words.read("longest processing", s.processing_max_us);
+  for (std::uint64_t& fault : s.faults) words.read("faults", fault);
   return s;
 }
 
 void read_latency(Words& words, Snapshot& snapshot) {
-  const std::uint64_t index = words.count(kNumberOfLatencies - 1);
-  LatencyHistogram& histogram = snapshot.latencies[index];
-  histogram.restore_max(words.number());
-  while (words.more()) {
-    const std::uint64_t bucket = words.count(LatencyHistogram::kBuckets - 1);
+  LatencyHistogram& histogram = snapshot.latencies[words.at_most("stage", kNumberOfLatencies - 1)];
+  double max_us = 0.0;
+  words.read("longest latency", max_us);
+  histogram.restore_max(max_us);
+  while (words.more() && words.ok()) {
+    const std::size_t bucket = words.at_most("bucket", LatencyHistogram::kBuckets - 1);
     // A count of which any sum still is a number.
-    histogram.restore(bucket, words.count(std::numeric_limits<std::uint32_t>::max()));
+    histogram.restore(bucket, words.at_most("count of a bucket", std::numeric_limits<std::uint32_t>::max()));
   }
 }
 
@@ -230,18 +190,18 @@ std::vector<Snapshot> read_record(std::istream& input, const std::string& name, 
   for (std::string line; std::getline(input, line);) {
     ++number;
     Words words(line);
-    const std::string tag = words.text();
+    const std::string_view tag = words.word();
     if (tag == "snapshot") {
       if (open) damaged.add(name, number, "the snapshot before has no end");
       current = Snapshot();
       open = true;
       spoilt = false;
-      current.time_ns = static_cast<std::int64_t>(words.count(std::numeric_limits<std::int64_t>::max()));
-      current.ego_speed_mps = words.number();
-      current.ego_yaw_rate_radps = words.number();
-      current.track_lists = words.count();
+      words.read("time", current.time_ns);
+      words.read("speed", current.ego_speed_mps);
+      words.read("yaw rate", current.ego_yaw_rate_radps);
+      words.read("track lists", current.track_lists);
     } else if (!open && !spoilt) {
-      words.refuse(tag, "snapshot");
+      words.refuse("kind of line", tag, "snapshot");
     } else if (tag == "radar") {
       current.radars.push_back(read_radar(words));
     } else if (tag == "track") {
@@ -251,7 +211,7 @@ std::vector<Snapshot> read_record(std::istream& input, const std::string& name, 
     } else if (tag == "latency") {
       read_latency(words, current);
     } else if (tag != "end") {
-      words.refuse(tag, "snapshot, radar, track, service, latency or end");
+      words.refuse("kind of line", tag, "snapshot, radar, track, service, latency or end");
     }
     if (!words.ok()) {
       damaged.add(name, number, words.error());

@@ -205,22 +205,23 @@ TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
     std::string text;
     const char* first;
   } cases[] = {
-      {"snapshot soon 2.5 0 0\ntrack 1\nend\n", "r:1: word 2 is 'soon', allowed: a whole number from 0 to "},
-      {head + "track 1 1 0 4 fast 0 0 0\nend\n", "r:2: word 6 is 'fast', allowed: a number"},
-      {head + "track 1 1 0\nend\n", "r:2: ends before word 5"},
+      {"snapshot soon 2.5 0 0\ntrack 1\nend\n", "r:1: time is 'soon', allowed: a whole number from -"},
+      {head + "track 1 1 0 4 fast 0 0 0\nend\n", "r:2: y is 'fast', allowed: a number"},
+      {head + "track 1 1 0\nend\n", "r:2: ends before x"},
       {head + "track 4294967296 1 0 4 0 0 0 0\nend\n",
-       "r:2: word 2 is '4294967296', allowed: a whole number from 0 to 4294967295"},
-      {head + "track 1 1 4 4 0 0 0 0\nend\n", "r:2: word 4 is '4', allowed: a whole number from 0 to 3"},
+       "r:2: track id is '4294967296', allowed: a whole number from 0 to 4294967295"},
+      {head + "track 1 1 4 4 0 0 0 0\nend\n", "r:2: movement is '4', allowed: a whole number from 0 to 3"},
       {head + "service 18446744073709551615 1 0 0 0 0 0\nend\n",
-       "r:2: word 2 is '18446744073709551615', allowed: a whole number from 0 to 6"},
-      {head + "latency 99 1\nend\n", "r:2: word 2 is '99', allowed: a whole number from 0 to "},
-      {head + "latency 0 1 4000000000 1\nend\n", "r:2: word 4 is '4000000000', allowed: a whole number from 0 to "},
+       "r:2: service is '18446744073709551615', allowed: a whole number from 0 to 6"},
+      {head + "latency 99 1\nend\n", "r:2: stage is '99', allowed: a whole number from 0 to "},
+      {head + "latency 0 1 4000000000 1\nend\n", "r:2: bucket is '4000000000', allowed: a whole number from 0 to "},
       {head + "latency 0 1 3 18446744073709551615\nend\n",
-       "r:2: word 5 is '18446744073709551615', allowed: a whole number from 0 to 4294967295"},
-      {head + "truck 1\nend\n", "r:2: word 1 is 'truck', allowed: snapshot, radar, track, service, latency or end"},
+       "r:2: count of a bucket is '18446744073709551615', allowed: a whole number from 0 to 4294967295"},
+      {head + "truck 1\nend\n",
+       "r:2: kind of line is 'truck', allowed: snapshot, radar, track, service, latency or end"},
       {head, "r:2: the snapshot before has no end"},
-      {"end\n", "r:1: word 1 is 'end', allowed: snapshot"},
-      {"track 1 1 0 4 0 0 0 0\n", "r:1: word 1 is 'track', allowed: snapshot"},
+      {"end\n", "r:1: kind of line is 'end', allowed: snapshot"},
+      {"track 1 1 0 4 0 0 0 0\n", "r:1: kind of line is 'track', allowed: snapshot"},
   };
   for (const auto& c : cases) {
     std::istringstream record(c.text + whole);
