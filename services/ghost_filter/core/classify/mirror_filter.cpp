@@ -6,6 +6,7 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/geometry/ego_step.hpp"
+#include "services/ghost_filter/core/classify/place_mirrors.hpp"
 #include "services/ghost_filter/core/classify/segments.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
 #include "services/ghost_filter/core/pass_on.hpp"
@@ -15,7 +16,6 @@ namespace boresight::ghosts {
 namespace {
 
 constexpr std::size_t kJudgedAtOnce = 16;  // tracks in a scan
-constexpr std::size_t kMaxVehicleSides = 32;
 constexpr double kTrackDensity =
     5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
@@ -29,11 +29,6 @@ constexpr double kHeard_db = 3.0;          // a track's strength is known if its
 /// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
-constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
-constexpr double kVans = 0.2;                             // share of vehicles whose ends mirror: vans, trucks
-constexpr double kLeastVehicle_m = 3.0;                   // what is shorter has no end that mirrors
-/// Where only the end is seen, cosine of the angle to the axis, the length is not; farther away few rays meet an end.
-constexpr double kAlongAxis = 0.97, kFarEnd_m = 25.0;
 constexpr double kSlowest = 0.1;  // share of a new judgement of a track in what is thought of it
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
@@ -153,54 +148,6 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
     o.reach_m = extent.norm();
     sources_.enter_object(i, o.position_m, extent);
   }
-}
-
-void MirrorFilter::place_mirrors() {
-  mirrors_.clear();
-  for (const Reflector& r : map_.reflectors()) {
-    Mirror m;
-    m.curve = {odometry_.point_to_vehicle(r.curve.origin_m), odometry_.vector_to_vehicle(r.curve.tangent),
-               r.curve.curvature_per_m};
-    m.covariance = r.covariance;
-    m.covariance(0, 0) += 0.03 * 0.03;  // a rail is not a line
-    m.begin_m = r.begin_m();
-    m.end_m = r.end_m();
-    m.existence = r.existence();
-    m.occupancy = &r.occupancy;
-    m.arc_shift_m = r.arc_shift_m;
-    mirrors_.push_back(m);
-  }
-  // The sides of large vehicles that the sensor can see.
-  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-    const Object& o = objects_[i];
-    // How long a vehicle is shows late: a van's track may still have the length of a car.
-    const double is_long = below((2.0 * o.half_length_m - config_.classes.min_mirror_length_m) / kLengthStd_m);
-    // From behind or from ahead it is not seen at all: what may be a van is one as often as vans are.
-    const Eigen::Vector2d sight = o.position_m - sensor_m_;
-    const bool may_be_van = 2.0 * o.half_length_m > kLeastVehicle_m && sight.squaredNorm() < kFarEnd_m * kFarEnd_m &&
-                            std::abs(sight.dot(o.axis)) > kAlongAxis * sight.norm();
-    const double has_end = may_be_van ? std::max(is_long, kVans) : is_long < kLeastLong ? 0.0 : is_long;
-    if (o.own || o.weight < 0.5 || has_end <= 0.0) continue;
-    const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
-    const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth,
-                              double is_mirror) {
-      const double side = across.dot(sensor_m_ - o.position_m);
-      if (std::abs(side) <= depth || mirrors_.size() == mirrors_.capacity()) return;
-      Mirror m;
-      m.curve = {o.position_m + std::copysign(depth, side) * across, along, 0.0};
-      m.covariance =
-          Eigen::Vector3d(0.2 * 0.2 + across.dot(o.position_covariance * across), 0.04 * 0.04, 0.0).asDiagonal();
-      m.begin_m = -half;
-      m.end_m = half;
-      m.existence = 0.8 * o.weight * is_mirror;
-      m.velocity_mps = o.velocity_mps;
-      m.body = i;
-      mirrors_.push_back(m);
-    };
-    if (is_long >= kLeastLong) add_side(o.axis, o.half_length_m, left, o.half_width_m, is_long);
-    add_side(left, o.half_width_m, o.axis, o.half_length_m, has_end);
-  }
-  for (Mirror& m : mirrors_) m.least_range_m = std::abs(m.curve.distance(sensor_m_));
 }
 
 Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const {
@@ -363,7 +310,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
   predict_objects(scan);
   update_map(scan, count);
-  place_mirrors();
+  place_mirrors(map_.reflectors(), odometry_, objects_, sensor_m_, config_.classes.min_mirror_length_m, mirrors_);
   judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &sources_, &odometry_, &movers_, &map_.grid()});
   gather_movers(scan, count);
   judge_tracks();

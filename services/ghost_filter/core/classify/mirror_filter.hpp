@@ -37,7 +37,6 @@ class MirrorFilter final : public Method {
   void update_map(const CorrectedScan& scan, std::size_t count);
   void predict_objects(const CorrectedScan& scan);
   [[nodiscard]] bool is_on_moving(const Eigen::Vector2d& place_m) const;
-  void place_mirrors();
   void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
   void learn_strength(const Densities& densities, const Measured& measured);
