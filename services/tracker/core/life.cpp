@@ -28,7 +28,9 @@ void count_scan(TrackedObject& track, const Config& config) {
   const auto window = track.evidence.begin() + static_cast<std::ptrdiff_t>(config.confirm_window);
   const double evidence = std::accumulate(track.evidence.begin(), window, 0.0);
   const bool often = std::popcount(recent) >= static_cast<int>(config.confirm_hits);
-  const bool long_enough = track.age_s > config.confirm_age_s - 1e-6;
+  const bool weak = track.extent.is_too_weak(track.state.mean.segment<2>(2).norm());
+  const double wait_s = weak ? std::max(config.confirm_age_s, config.confirm_weak_age_s) : config.confirm_age_s;
+  const bool long_enough = track.age_s > wait_s - 1e-6;
   if (often && long_enough && evidence >= config.confirm_evidence) track.confirmed = true;
 }
 

@@ -76,6 +76,31 @@ TEST(TrackerBirth, NeedsEvidenceThatIsReal) {
   EXPECT_EQ(scans_to_confirm(0.9), 0) << "not even tentative";
 }
 
+/// Seconds from the first detection until an object that goes away is confirmed, whose detections are all as strong.
+double seconds_to_confirm(double speed_mps, float rcs_dbsm) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 60; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    scene.add({20.0 + 0.05 * speed_mps * i, 0.0}, {speed_mps, 0.0});
+    scene.scan->rcs_dbsm[0] = rcs_dbsm;
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (list->number_of_confirmed_tracks > 0) return 0.05 * i;
+  }
+  return 1e9;
+}
+
+TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
+  EXPECT_NEAR(seconds_to_confirm(15.0, 10.0F), 0.15, 1e-6) << "a car";
+  EXPECT_NEAR(seconds_to_confirm(15.0, -14.0F), 1.0, 1e-6) << "a car's image";
+  EXPECT_NEAR(seconds_to_confirm(2.0, -10.0F), 0.15, 1e-6) << "a person";
+  EXPECT_NEAR(seconds_to_confirm(2.0, -18.0F), 1.0, 1e-6) << "an image";
+  EXPECT_NEAR(seconds_to_confirm(15.0, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6) << "strength not measured";
+}
+
 TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
