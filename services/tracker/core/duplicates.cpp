@@ -15,8 +15,14 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
   // Two vehicles that have both long been tracked, each at a speed of its own, are two, wherever ghosts draw them. The
   // limbs of who walks have their own speeds, too, but no vehicle's length.
   constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5, kVehicle_m = 2.5;
-  if (a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s && apart_mps > kOwnSpeed_mps &&
-      std::min(a.extent.length_m, b.extent.length_m) > kVehicle_m) {
+  const bool long_tracked = a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s;
+  if (long_tracked && apart_mps > kOwnSpeed_mps && std::min(a.extent.length_m, b.extent.length_m) > kVehicle_m) {
+    return false;
+  }
+  // People who walk different ways pass each other at arm's length, but not through each other, as limbs do.
+  constexpr double kOwnWay_mps = 1.5, kShoulders_m = 0.5;
+  if (long_tracked && apart_mps > kOwnWay_mps && a.extent.is_small && b.extent.is_small &&
+      (p - q).norm() > kShoulders_m) {
     return false;
   }
   // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.

@@ -106,7 +106,7 @@ std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) 
   // A long vehicle reflects at its ends and little between: what lies in its box and moves with it is one thing.
   constexpr double kMargin_m = 0.5;
   for (const TrackedObject& track : tracks_) {
-    if (!track.confirmed) continue;
+    if (!track.confirmed || track.extent.is_small) continue;
     const auto is_part = [&](const Cluster& cluster) {
       const double rate = cluster.mean_sight.dot(track.state.mean.segment<2>(2));
       return track.extent.contains(track.state.mean.head<2>(), cluster.position_m, kMargin_m) &&

@@ -109,5 +109,33 @@ TEST(TrackerDuplicates, LimbsThatWereLongTrackedAtTheirOwnSpeedsAreOne) {
   EXPECT_EQ(list.number_of_confirmed_tracks, 1u) << "nobody walks through another";
 }
 
+TEST(TrackerDuplicates, PeopleWhoPassEachOtherAtArmsLengthStayTwo) {
+  // One behind the other, seen from the radar, when they meet: only places tell them apart.
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  TrackList list;
+  std::set<std::uint32_t> ids;
+  for (int i = 0; i < 120; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    for (std::size_t k = 0; k < 6; ++k) scene.scan->rcs_dbsm[k] = -8.0F;
+    const double way = 1.4 * 0.05 * i - 4.2;
+    for (const double part : {-0.1, 0.0, 0.1}) {
+      scene.add({9.0 + part, way}, {0.0, 1.4});
+      scene.add({9.8 + part, -way}, {0.0, -1.4});
+    }
+    tracker.step(*scene.scan);
+    tracker.write(list);
+    if (i < 20) continue;
+    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << 0.05 * i << " s";
+    for (const Track& track : {list.tracks[0], list.tracks[1]}) {
+      ids.insert(track.tracking_id);
+      const bool is_near = track.position_vehicle_m[0] < 9.5F;
+      EXPECT_NEAR(track.position_vehicle_m[1], is_near ? way : -way, 0.4) << "after " << 0.05 * i << " s";
+    }
+  }
+  EXPECT_EQ(ids.size(), 2u);
+}
+
 }  // namespace
 }  // namespace boresight::tracking
