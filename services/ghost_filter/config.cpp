@@ -70,6 +70,7 @@ ClassConfig read_classes(config::Reader reader) {
   c.range_rate_slack_mps = reader.number("range_rate_slack_mps", {0.0, 10.0}, c.range_rate_slack_mps);
   c.margin_m = reader.number("margin_m", {0.0, 20.0}, c.margin_m);
   c.min_mirror_length_m = reader.number("min_mirror_length_m", {1.0, 100.0}, c.min_mirror_length_m);
+  c.mirror_doubt = reader.number("mirror_doubt", {0.0, 1.0}, c.mirror_doubt);
   c.ego_front_m = reader.number("ego_front_m", {0.0, 20.0}, c.ego_front_m);
   c.ego_rear_m = reader.number("ego_rear_m", {-20.0, 0.0}, c.ego_rear_m);
   c.ego_half_width_m = reader.number("ego_half_width_m", {0.1, 3.0}, c.ego_half_width_m);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "services/ghost_filter/core/density/exponential.hpp"
+#include "services/ghost_filter/core/mirror/beam.hpp"
 #include "services/ghost_filter/core/mirror/meeting.hpp"
 
 namespace boresight::ghosts {
@@ -136,6 +137,36 @@ TEST(Approach, HoldsOfEveryWayThatIsFound) {
   // Of mirrors that are bent to a quarter of a circle some are hard to foretell.
   EXPECT_LT(missed, met / 500);
   EXPECT_LT(farther, known / 2000);
+}
+
+TEST(Beam, LightsEveryWayThatIsFound) {
+  std::mt19937 random(3);
+  std::size_t met = 0, dark = 0, missed = 0, gentle_missed = 0;
+  for (int run = 0; run < 100000; ++run) {
+    const bool gentle = run % 3 != 0;  // as walls and rails are
+    const Mirror m = some_mirror(random, run % 3 == 2 ? 0.0 : gentle ? 0.0005 : 0.03);
+    const Ray ray = some_ray(random, run % 2 == 0);
+    const auto& [sensor, direction, from, length] = ray;
+    // Farther along the ray than this, there and back would be longer.
+    const double farthest = 0.5 * (length + (from - sensor).norm());
+    const bool is_lit = Beam(m, sensor).may_light(from, from + farthest * direction);
+    dark += is_lit ? 0 : 1;
+    const auto way = approach(m, sensor, from, direction, length);
+    if (!way || !meet(m, way->arc_m, sensor, from, direction, length, 0.5)) continue;
+    ++met;
+    missed += is_lit ? 0 : 1;
+    gentle_missed += gentle && !is_lit ? 1 : 0;
+    if (!is_lit && run < 3000) {
+      const auto there = meet(m, way->arc_m, sensor, from, direction, length, 0.5);
+      std::printf("run %d bend %.4f begin %.1f end %.1f dist %.2f rest %.2f far %.2f arc %.2f\n", run,
+                  m.curve.curvature_per_m, m.begin_m, m.end_m, m.curve.distance(sensor), there->rest_m, farthest,
+                  m.curve.arc(there->point_m));
+    }
+  }
+  EXPECT_GT(met, 3000U);
+  EXPECT_GT(dark, 20000U) << "or it saves nothing";
+  EXPECT_EQ(gentle_missed, 0U);
+  EXPECT_LT(missed, met / 500);
 }
 
 TEST(Exponential, HasNineDigits) {

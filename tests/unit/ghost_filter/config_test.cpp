@@ -63,6 +63,7 @@ std::vector<double> numbers(const Config& config) {
           k.range_rate_slack_mps,
           k.margin_m,
           k.min_mirror_length_m,
+          k.mirror_doubt,
           k.ego_front_m,
           k.ego_rear_m,
           k.ego_half_width_m};

@@ -89,7 +89,7 @@ TEST_F(MirrorFilterTest, ALongRailGoesOnUnseenAndAShortOneDoesNot) {
     }
     return static_cast<double>(ghosts) / static_cast<double>(scans);
   };
-  EXPECT_GE(share_of_ghosts(40.0), 0.9);
+  EXPECT_GE(share_of_ghosts(60.0), 0.9);
   EXPECT_LE(share_of_ghosts(14.0), 0.1);
 }
 

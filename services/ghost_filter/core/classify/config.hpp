@@ -23,6 +23,7 @@ struct ClassConfig {
   double range_rate_slack_mps = 0.3;       ///< turning, bodies that are not rigid
   double margin_m = 1.0;                   ///< a ghost of an unknown path lies at least this far behind its object
   double min_mirror_length_m = 5.0;        ///< of a vehicle whose sides are mirrors
+  double mirror_doubt = 1.0;               ///< how much it counts whether reflectors are known to mirror; 0: all do
   double ego_front_m = 4.0, ego_rear_m = -1.0, ego_half_width_m = 0.95;  ///< the own body, seen in mirrors
 };
 

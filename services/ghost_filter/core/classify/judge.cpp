@@ -141,11 +141,13 @@ void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_obj
   for (const Crossing& crossing : crossings_) {
     // By different mirrors a ghost would be elsewhere: one fits, or two found for one that is there. So the best
     // counts.
-    densities.type2 = std::max(densities.type2, type2(m, crossing, index, but_object, least) +
-                                                    type2_of_two(m, crossing, index, but_object, least));
+    const double by_one = type2(m, crossing, index, but_object, std::max(least, kLittle * densities.type2));
+    const double best = std::max(densities.type2, by_one);
+    const double by_two = type2_of_two(m, crossing, index, but_object, std::max(least, kLittle * best));
+    densities.type2 = std::max(densities.type2, by_one + by_two);
   }
   pairs_left_of_scan_ -= most - pairs_left_;
-  densities.type1 = type1(m, index, but_object, least);
+  densities.type1 = type1(m, index, but_object, std::max(least, kNegligible * densities.type2));
 }
 
 void Judge::real(const Measured& m, std::uint32_t index, bool is_hidden, Densities& densities) const {
@@ -180,7 +182,8 @@ Densities Judge::weigh_still(const Measured& m) {
   if (like_slow) densities.type1 = type1(m, kNobody, kNobody, least);
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {
-    densities.type2 = std::max(densities.type2, type2(m, crossing, kNobody, kNobody, least));
+    densities.type2 =
+        std::max(densities.type2, type2(m, crossing, kNobody, kNobody, std::max(least, kLittle * densities.type2)));
   }
   return densities;
 }

@@ -104,6 +104,10 @@ class Judge {
   /// Of less than `least` it may tell nothing.
   [[nodiscard]] double ghosts_of(const Target& target, const Measured& measured, std::uint32_t but_object,
                                  std::uint32_t but_index, double least) const;
+  /// The part of that by objects that are not tracked (yet) but have been detected at least; and what was detected is
+  /// known better than a box. Nothing if it is not more than `least`.
+  [[nodiscard]] double of_detected(const Target& target, const Measured& measured, std::uint32_t but_object,
+                                   std::uint32_t but_index, double least) const;
   /// Both types, of what is known; needs the crossings.
   void ghosts(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least,
               Densities& densities);
@@ -135,6 +139,8 @@ class Judge {
   [[nodiscard]] double image_of_stationary(const Target& target, const Measured& measured) const;
   [[nodiscard]] bool has_company(const Measured& measured, std::uint32_t index) const;
   [[nodiscard]] double rate_variance(const Measured& m) const;
+  /// Share of what is explained already that it hardly matters whether something else adds to it.
+  static constexpr double kLittle = 0.1;
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;

@@ -40,14 +40,13 @@ double rate_density(double value, const Eigen::Vector2d& q, const Eigen::Vector2
 
 double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t but_object, std::uint32_t but_index,
                         double least) const {
-  double of_tracks = 0.0;
   least /= target.stretch;
   const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
-  const double doubt = config_.strength_doubt;
-  // However an object reflects: blurred, it is nowhere denser than this.
-  const double densest = 1.0 / (2.0 * M_PI * std::sqrt(blurred.determinant()));
   const double reach_m = reach_of(blurred.diagonal());
   const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_m);
+  // However an object reflects: blurred, it is nowhere denser than this.
+  const double densest = 1.0 / (2.0 * M_PI * std::sqrt(blurred.determinant()));
+  double of_tracks = 0.0;
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
@@ -56,20 +55,27 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
     const double rate = body_rate_at(o, m.rate_mps - target.known_mps, target.q, noise);
     if (o.weight * rate * densest <= least) return;
-    const double anywhere = o.weight * rate * likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, doubt);
+    const double anywhere =
+        o.weight * rate * likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, config_.strength_doubt);
     if (anywhere * densest <= least) return;
     of_tracks += anywhere * reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m).body;
   });
-  if (!SourceMap::has_movers(sources)) return of_tracks * target.stretch;
-  // Objects that are not tracked (yet) have been detected at least; and what was detected is known better than a box.
-  // Several detections are of one object.
-  double of_movers = least;
+  const double enough = std::max(least, kLittle * of_tracks);
+  const double of_movers = SourceMap::has_movers(sources) ? of_detected(target, m, but_object, but_index, enough) : 0.0;
+  return (of_tracks + of_movers) * target.stretch;
+}
+
+double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t but_object, std::uint32_t but_index,
+                          double least) const {
+  // Several detections are of one object: the best counts.
+  double most = least;
   const std::size_t own = s_.movers->earlier();
   const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
+  const double rate_mps = m.rate_mps - target.known_mps;
   const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
-  const double most_of_strength =
-      std::isfinite(m.rcs_dbsm) ? likelihood(target.strength, target.strength.mean_db, 0.0, doubt) : 1.0;
-  const double most_of_rest = most_of_strength / std::sqrt(2.0 * M_PI * rate_noise);
+  const double most_of_rate = 1.0 / std::sqrt(2.0 * M_PI * rate_noise);
+  const StrengthLikelihood of_heard(target.strength, kFluctuation_db, config_.strength_doubt);
+  const StrengthLikelihood of_usual(target.strength, kUsualRcsStd_db, config_.strength_doubt);
   const double spread = target.covariance.trace();
   s_.movers->weighing_near(s_.odometry->point_to_frame(target.place_m), [&](const Mover& mover, const MovedMover& moved,
                                                                             std::uint32_t number) {
@@ -81,27 +87,24 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     if (but_object != kNobody && is_on(s_.objects[but_object], moved.position_m, kAround_m)) return;
     const bool owned = number >= own && mover.object != kNobody;
     if (owned && (mover.object == target.mirror->body || mover.object == target.other_body)) return;
-    // Even at the very place, with the best range rate and strength, it would not be the likeliest.
+    const bool heard = std::isfinite(mover.rcs_dbsm);
+    const double strength = heard ? of_heard(m.rcs_dbsm - mover.rcs_dbsm) : of_usual(m.rcs_dbsm - kUsualRcs_dbsm);
+    const double most_of_rest = mover.weight * strength * most_of_rate;
     const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d same = target.covariance + (sure + square(0.2)) * eye;
-    if (mover.weight * most_of_rest <= of_movers * 2.0 * M_PI * std::sqrt(same.determinant())) return;
+    // Even at the very place, with the best range rate, it would not be the likeliest.
+    if (square(most_of_rest) <= square(2.0 * M_PI * most) * same.determinant()) return;
     const double there =
         kSame * gaussian(residual, same) +
         (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
-    // Even the best range rate and strength would not.
-    if (mover.weight * there * most_of_rest <= of_movers) return;
+    if (there * most_of_rest <= most) return;
     // A track knows the velocity, a single detection one component of it.
-    const double fits =
-        owned ? body_rate_at(s_.objects[mover.object], m.rate_mps - target.known_mps, target.q, rate_noise)
-              : rate_density(m.rate_mps - target.known_mps, target.q, moved.direction, mover.rate_mps,
-                             square(config_.range_rate_slack_mps), along, rate_noise);
-    const bool heard = std::isfinite(mover.rcs_dbsm);
-    const double above_db = m.rcs_dbsm - (heard ? mover.rcs_dbsm : kUsualRcs_dbsm);
-    of_movers = std::max(of_movers,
-                         mover.weight * there * fits *
-                             likelihood(target.strength, above_db, heard ? kFluctuation_db : kUsualRcsStd_db, doubt));
+    const double fits = owned ? body_rate_at(s_.objects[mover.object], rate_mps, target.q, rate_noise)
+                              : rate_density(rate_mps, target.q, moved.direction, mover.rate_mps,
+                                             square(config_.range_rate_slack_mps), along, rate_noise);
+    most = std::max(most, mover.weight * strength * there * fits);
   });
-  return (of_tracks + (of_movers > least ? of_movers : 0.0)) * target.stretch;
+  return most > least ? most : 0.0;
 }
 
 Judge::Target Judge::target_of(const Measured& m, const Crossing& crossing, double rest_m, double metres_per_m) const {
@@ -172,9 +175,12 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   const double share = kOtherMirror * config_.type2_per_object * sure;
   double density = 0.0;
+  // What is reached over there lies at most half of the way off.
+  const Eigen::Vector2d farthest_m = turn.point_m + m.range_m * d;
   for (const Mirror& other : s_.mirrors) {
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
-        sure * other.existence < kLeastChance || other.least_range_m > m.range_m)
+        sure * other.existence < kLeastChance || other.least_range_m > m.range_m ||
+        !other.beam.may_light(turn.point_m, farthest_m))
       continue;
     const double length = 2.0 * m.range_m - turn.distance_m;
     const auto way = approach(other, s_.sensor_m, turn.point_m, d, length);
@@ -218,7 +224,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
   for (const Mirror& mirror : s_.mirrors) {
     if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
     // The way out and back is no shorter than to the mirror and back.
-    if (mirror.least_range_m > m.range_m) continue;
+    if (mirror.least_range_m > m.range_m || !mirror.beam.may_light(s_.sensor_m, m.position_m)) continue;
     const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
     if (!way || !may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))) continue;
     const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);

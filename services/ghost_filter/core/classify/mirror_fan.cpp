@@ -5,18 +5,10 @@
 
 namespace boresight::ghosts {
 
-std::size_t MirrorFan::sector_of(const Eigen::Vector2d& direction) {
-  // Round the square |x| + |y| = 1 instead of the circle: as good an order of directions, without an arc tangent.
-  const double size = std::abs(direction.x()) + std::abs(direction.y());
-  const double y = size > 0.0 ? direction.y() / size : 0.0;
-  const double round = direction.x() >= 0.0 ? 1.0 + y : 3.0 - y;  // 0 … 4 from −y by +x
-  return static_cast<std::size_t>(round * (kSectors / 4.0)) % kSectors;
-}
-
 void MirrorFan::enter(std::size_t mirror, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   // The shorter way round, and a sector more on either side: pieces of arcs are taken for straight.
   const bool left = from.x() * to.y() - from.y() * to.x() >= 0.0;
-  const std::size_t first = sector_of(left ? from : to), last = sector_of(left ? to : from);
+  const std::size_t first = sector_of<kSectors>(left ? from : to), last = sector_of<kSectors>(left ? to : from);
   const std::size_t number = (last + kSectors - first) % kSectors + 3;
   for (std::size_t k = 0; k < std::min(number, kSectors); ++k) {
     sectors_[(first + kSectors - 1 + k) % kSectors][mirror / 64] |= std::uint64_t{1} << (mirror % 64);

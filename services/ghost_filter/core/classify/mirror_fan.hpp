@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "services/ghost_filter/core/classify/sectors.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 
 namespace boresight::ghosts {
@@ -21,7 +22,7 @@ class MirrorFan {
   /// direction (not zero), and for a few more.
   template <typename Visit>
   void visit(const Eigen::Vector2d& direction, const Visit& visit) const {
-    const Bits& bits = sectors_[sector_of(direction)];
+    const Bits& bits = sectors_[sector_of<kSectors>(direction)];
     for (std::size_t word = 0; word < bits.size(); ++word) {
       for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
         visit(mirrors_[64 * word + static_cast<std::size_t>(std::countr_zero(left))]);
@@ -32,7 +33,6 @@ class MirrorFan {
  private:
   static constexpr std::size_t kSectors = 128;
   using Bits = std::array<std::uint64_t, kMaxMirrors / 64>;
-  [[nodiscard]] static std::size_t sector_of(const Eigen::Vector2d& direction);
   void enter(std::size_t mirror, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
   std::span<const Mirror> mirrors_;
   std::array<Bits, kSectors> sectors_{};

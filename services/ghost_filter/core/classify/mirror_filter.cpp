@@ -256,6 +256,19 @@ void MirrorFilter::judge_tracks() {
   }
 }
 
+void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
+  constexpr std::size_t kAtOnce = 8;
+  trials_.begin();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_usable(scan, i)) trials_.saw(measured_[i].direction, measured_[i].range_m);
+  }
+  const std::size_t reflectors = map_.reflectors().size();
+  for (std::size_t k = 0; k < std::min(kAtOnce, reflectors); ++k) {
+    const std::size_t i = mirrors_turn_++ % reflectors;
+    map_.tried(i, trials_.evidence_of(mirrors_[i], {sensor_m_, sensor_velocity_mps_, objects_, &odometry_, &movers_}));
+  }
+}
+
 void MirrorFilter::learn_strength(const Densities& densities, const Measured& m) {
   // Written so that nothing, and what is not a number, teaches nothing: there is no object then.
   if (!std::isfinite(m.rcs_dbsm) || !(densities.of_body > 0.5 * densities.sum())) return;
@@ -310,10 +323,11 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   }
   predict_objects(scan);
   update_map(scan, count);
-  place_mirrors(map_.reflectors(), odometry_, objects_, sensor_m_, config_.classes.min_mirror_length_m, mirrors_);
+  place_mirrors(map_.reflectors(), odometry_, objects_, sensor_m_, config_.classes, mirrors_);
   judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &sources_, &odometry_, &movers_, &map_.grid()});
   gather_movers(scan, count);
   judge_tracks();
+  try_mirrors(scan, count);
 
   std::size_t mover = movers_.earlier();
   for (std::size_t i = 0; i < count; ++i) {

@@ -8,6 +8,7 @@
 
 #include "services/ghost_filter/core/classify/filter_config.hpp"
 #include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/mirror_trials.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/classify/source_map.hpp"
 #include "services/ghost_filter/core/method.hpp"
@@ -39,6 +40,7 @@ class MirrorFilter final : public Method {
   [[nodiscard]] bool is_on_moving(const Eigen::Vector2d& place_m) const;
   void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
+  void try_mirrors(const CorrectedScan& scan, std::size_t count);
   void learn_strength(const Densities& densities, const Measured& measured);
   [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i) const;
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
@@ -47,6 +49,7 @@ class MirrorFilter final : public Method {
   ReflectorMap map_;
   RecentMovers movers_;
   Judge judge_;
+  MirrorTrials trials_;
   std::vector<Mirror> mirrors_;
   std::vector<Object> objects_;     // the own vehicle is the last
   SourceMap sources_;               // these, and the movers
@@ -55,6 +58,7 @@ class MirrorFilter final : public Method {
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   std::array<Image, kMaxTracks> images_{}, images_before_{};
   std::size_t turn_ = 0;  // the track that is judged next
+  std::size_t mirrors_turn_ = 0;
   bool has_tracks_ = false;
   Eigen::Vector2d sensor_m_{0.0, 0.0}, sensor_velocity_mps_{0.0, 0.0};
   double ego_speed_std_mps_ = 0.0, mounting_std_rad_ = 0.0;

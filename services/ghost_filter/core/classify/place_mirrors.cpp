@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/ghost_filter/core/classify/mirror_trials.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
@@ -15,7 +16,8 @@ constexpr double kLeastVehicle_m = 3.0;                   // what is shorter has
 /// Where only the end is seen, cosine of the angle to the axis, the length is not; farther away few rays meet an end.
 constexpr double kAlongAxis = 0.97, kFarEnd_m = 25.0;
 
-void add_reflectors(std::span<const Reflector> reflectors, const Odometry& odometry, std::vector<Mirror>& mirrors) {
+void add_reflectors(std::span<const Reflector> reflectors, const Odometry& odometry, double doubt,
+                    std::vector<Mirror>& mirrors) {
   for (const Reflector& r : reflectors) {
     Mirror m;
     m.curve = {odometry.point_to_vehicle(r.curve.origin_m), odometry.vector_to_vehicle(r.curve.tangent),
@@ -24,7 +26,9 @@ void add_reflectors(std::span<const Reflector> reflectors, const Odometry& odome
     m.covariance(0, 0) += 0.03 * 0.03;  // a rail is not a line
     m.begin_m = r.begin_m();
     m.end_m = r.end_m();
-    m.existence = r.existence();
+    const double age_s = static_cast<double>(odometry.now_ns() - r.born_ns) * 1e-9;
+    const double is_none = 1.0 / (1.0 + std::exp(r.mirrors + mirrors_by_length(r.length_m(), age_s)));
+    m.existence = r.existence() * (1.0 - doubt * is_none);
     m.occupancy = &r.occupancy;
     m.arc_shift_m = r.arc_shift_m;
     mirrors.push_back(m);
@@ -67,11 +71,14 @@ void add_sides(std::span<const Object> objects, const Eigen::Vector2d& sensor_m,
 }  // namespace
 
 void place_mirrors(std::span<const Reflector> reflectors, const Odometry& odometry, std::span<const Object> objects,
-                   const Eigen::Vector2d& sensor_m, double min_length_m, std::vector<Mirror>& mirrors) {
+                   const Eigen::Vector2d& sensor_m, const ClassConfig& config, std::vector<Mirror>& mirrors) {
   mirrors.clear();
-  add_reflectors(reflectors, odometry, mirrors);
-  add_sides(objects, sensor_m, min_length_m, mirrors);
-  for (Mirror& m : mirrors) m.least_range_m = std::abs(m.curve.distance(sensor_m));
+  add_reflectors(reflectors, odometry, config.mirror_doubt, mirrors);
+  add_sides(objects, sensor_m, config.min_mirror_length_m, mirrors);
+  for (Mirror& m : mirrors) {
+    m.least_range_m = std::abs(m.curve.distance(sensor_m));
+    m.beam = Beam(m, sensor_m);
+  }
 }
 
 }  // namespace boresight::ghosts

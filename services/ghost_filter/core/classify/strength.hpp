@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "services/ghost_filter/core/density/exponential.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 
@@ -33,15 +34,29 @@ inline constexpr double kUsualRcs_dbsm = 5.0, kUsualRcsStd_db = 5.0;
   return {-loss, kStd_db + kDoubt * (loss - kBounce_db)};
 }
 
-/// Likelihood of the strength `above_db` of the body's. Losses of reflectors, aspects and dirt are known so badly that
-/// strength is one argument among others: `doubt` is the share of cases in which it tells nothing.
+/// How likely a strength beside the body's is. Losses of reflectors, aspects and dirt are known so badly that strength
+/// is one argument among others: `doubt` is the share of cases in which it tells nothing.
+class StrengthLikelihood {
+ public:
+  StrengthLikelihood(const Strength& strength, double more_std_db, double doubt)
+      : mean_db_(strength.mean_db), per_twice_variance_(0.5 / (square(strength.std_db) + square(more_std_db))) {
+    constexpr double kSpread_db = 60.0;
+    least_ = doubt / kSpread_db;
+    peak_ = (1.0 - doubt) * std::sqrt(per_twice_variance_ / M_PI);
+  }
+  /// 1 for what is not measured.
+  [[nodiscard]] double operator()(double above_db) const {
+    if (!std::isfinite(above_db)) return 1.0;
+    const double residual = above_db - mean_db_;
+    return least_ + peak_ * exponential(-per_twice_variance_ * residual * residual);
+  }
+
+ private:
+  double mean_db_, per_twice_variance_, least_, peak_;
+};
+
 [[nodiscard]] inline double likelihood(const Strength& strength, double above_db, double more_std_db, double doubt) {
-  if (!std::isfinite(above_db)) return 1.0;
-  constexpr double kSpread_db = 60.0;
-  const double variance = strength.std_db * strength.std_db + more_std_db * more_std_db;
-  const double residual = above_db - strength.mean_db;
-  return doubt / kSpread_db +
-         (1.0 - doubt) * exponential(-0.5 * residual * residual / variance) / std::sqrt(2.0 * M_PI * variance);
+  return StrengthLikelihood(strength, more_std_db, doubt)(above_db);
 }
 
 }  // namespace boresight::ghosts

@@ -30,7 +30,10 @@ inline constexpr double kFarthest2 = 50.0;
 
 /// Standard normal distribution function, by the logistic approximation (to 0.01).
 [[nodiscard]] inline double below(double x) {
-  return 1.0 / (1.0 + exponential(-1.702 * std::clamp(x, -20.0, 20.0)));
+  constexpr double kFar = 8.0;  // as good as all or nothing
+  if (x > kFar) return 1.0;
+  if (x < -kFar) return 0.0;
+  return 1.0 / (1.0 + exponential(-1.702 * x));
 }
 
 [[nodiscard]] inline double gaussian(const Eigen::Vector2d& residual, const Eigen::Matrix2d& covariance) {

@@ -4,21 +4,23 @@
 #include <cmath>
 #include <limits>
 
+#include "services/ghost_filter/core/mirror/specular.hpp"
+
 namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kBeyond_m = 5.0;       // as far the mirror of a way by it may go on unseen
+constexpr double kUnseen_m = 5.0;       // as far the mirror of a way by it may go on unseen
 constexpr double kLeastWay_m = 0.2;     // to a mirror, and from it
 constexpr double kLeastChance = 0.01;   // of there being something where the wave turns
 constexpr double kMostError_m = 0.005;  // of a way's length: far less than a range is known by
 constexpr int kRounds = 4;
 
-double beyond_m(const Mirror& mirror) {
-  return is_long(mirror) || mirror.occupancy == nullptr ? kBeyond_m : 0.0;
-}
-
 }  // namespace
+
+double most_unseen_m(const Mirror& mirror) {
+  return is_long(mirror) || mirror.occupancy == nullptr ? kUnseen_m : 0.0;
+}
 
 std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& from_m,
                                  const Eigen::Vector2d& direction, double length_m) {
@@ -46,7 +48,8 @@ std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& se
     return way;
   }
   const double turns = way.arc_m;
-  const double slack = beyond_m(mirror) + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + 2.0 * sag;
+  const double slack =
+      most_unseen_m(mirror) + 0.5 * bend * std::max(-mirror.begin_m, mirror.end_m) * length_m + 2.0 * sag;
   if (turns < mirror.begin_m - slack || turns > mirror.end_m + slack) return std::nullopt;
   const double second = length_m - way.rest_m;  // from the sensor's image to the target
   const double opening = second + along.dot(target - Eigen::Vector2d(sensor.x(), -sensor.y()));
@@ -66,7 +69,7 @@ std::optional<Meeting> meet(const Mirror& mirror, double near_arc_m, const Eigen
                             double least_m) {
   const Curve& curve = mirror.curve;
   const Eigen::Vector2d sensor = curve.local(sensor_m), from = curve.local(from_m), along = curve.to_local(direction);
-  const double low = mirror.begin_m - beyond_m(mirror), high = mirror.end_m + beyond_m(mirror);
+  const double low = mirror.begin_m - most_unseen_m(mirror), high = mirror.end_m + most_unseen_m(mirror);
   double arc = std::clamp(near_arc_m, low, high);
   for (int round = 0;; ++round) {
     // Were the wave to turn here, T would be where the length is right; the angles to both sides tell where it turns.
@@ -79,22 +82,16 @@ std::optional<Meeting> meet(const Mirror& mirror, double near_arc_m, const Eigen
     const double second = left - rest;
     if (!(second > kLeastWay_m)) return std::nullopt;
     const Eigen::Vector2d u = out / first, d = (back + rest * along) / second;
-    const double departing = u.dot(tangent), arriving = d.dot(tangent);
-    const double sine_of_departure = tangent.x() * u.y() - tangent.y() * u.x();
-    const double sine_of_arrival = tangent.x() * d.y() - tangent.y() * d.x();
-    // Newton's method for departing = arriving; it is exact where T does not move, as at the end by Fermat's principle.
-    const double straight = -(1.0 - departing * departing) / first - (1.0 - arriving * arriving) / second;
-    const double bent = straight + curve.curvature_per_m * (sine_of_arrival - sine_of_departure);
-    const double slope = bent < 0.2 * straight ? bent : straight;
-    const double step = (departing - arriving) / std::min(-1e-9, slope);
-    if (0.5 * std::abs(slope) * step * step > kMostError_m) {
-      const double next = std::clamp(arc + step, low, high);
+    // T moves as W does, but not at the end, by Fermat's principle: there Newton's method is exact.
+    const Specular here = specular(u, first, d, second, tangent, curve.curvature_per_m);
+    if (here.error_m > kMostError_m) {
+      const double next = std::clamp(arc + here.step_m, low, high);
       if (round == kRounds || next == arc) return std::nullopt;
       arc = next;
       continue;
     }
     // Both on the same side of the mirror.
-    if (!(sine_of_departure * sine_of_arrival < 0.0) || rest < least_m) return std::nullopt;
+    if (!here.is_reflection() || rest < least_m) return std::nullopt;
     const double probability = chance_at(mirror, arc, 0.5);
     if (probability < kLeastChance) return std::nullopt;
     const Eigen::Vector2d arrival = curve.from_local(d);
@@ -104,7 +101,7 @@ std::optional<Meeting> meet(const Mirror& mirror, double near_arc_m, const Eigen
                    curve.from_local(u),
                    arrival,
                    probability,
-                   2.0 * std::abs(sine_of_departure) * std::sqrt(offset_variance_at(mirror, arc))};
+                   2.0 * std::abs(here.sine_of_departure) * std::sqrt(offset_variance_at(mirror, arc))};
   }
 }
 

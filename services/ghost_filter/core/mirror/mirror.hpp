@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 
+#include "services/ghost_filter/core/mirror/beam.hpp"
 #include "services/ghost_filter/core/reflector_map/curve.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
 
@@ -31,6 +32,7 @@ struct Mirror {
   double arc_shift_m = 0.0;                ///< arc length of the curve's origin in the occupancy's count
   std::uint32_t body = kNobody;            ///< object whose side it is
   double least_range_m = 0.0;              ///< of what is seen by it: its distance from the sensor
+  Beam beam;                               ///< what it lights, from the sensor
 };
 
 /// A rail or a wall: long enough that it may go on where vehicles hide it, or where it was not looked for yet.

@@ -2,6 +2,7 @@
 // along it there is something.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -63,8 +64,14 @@ struct Reflector {
   double residual_m;  ///< scatter of its detections across it
   std::uint32_t detections;
   std::uint32_t id;  ///< stays the same
+  std::int64_t born_ns;
   std::int64_t refined_ns;
-  Evidence evidence{};  ///< since then
+  Evidence evidence{};   ///< since then
+  double mirrors = 0.0;  ///< log-odds that it mirrors, by what was seen in it, or was not
+  void add_to_mirrors(double log_odds) {
+    constexpr double kMost = 6.0;  // so that it can still be told otherwise
+    mirrors = std::clamp(mirrors + log_odds, -kMost, kMost);
+  }
   [[nodiscard]] double begin_m() const { return occupancy.begin_m() - arc_shift_m; }
   [[nodiscard]] double end_m() const { return occupancy.end_m() - arc_shift_m; }
   [[nodiscard]] double length_m() const { return occupancy.end_m() - occupancy.begin_m(); }

@@ -263,6 +263,7 @@ void ReflectorMap::take(const FoundCurve& found, std::span<const Eigen::Vector2d
               .residual_m = found.residual_m,
               .detections = static_cast<std::uint32_t>(points.size()),
               .id = ++births_,
+              .born_ns = now_ns_,
               .refined_ns = now_ns_};
   r.occupancy.reset(found.begin_m, found.end_m, config_.bin_m);
   for (const Eigen::Vector2d& p : points) {

@@ -43,6 +43,8 @@ class ReflectorMap {
   void drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
 
   [[nodiscard]] std::span<const Reflector> reflectors() const { return reflectors_; }
+  /// What was seen in one of them, or was not: a change of the log-odds that it mirrors.
+  void tried(std::size_t reflector, double change) { reflectors_[reflector].add_to_mirrors(change); }
   [[nodiscard]] const StationaryGrid& grid() const { return grid_; }
   /// Reflectors that were found so far.
   [[nodiscard]] std::uint32_t births() const { return births_; }

@@ -28,6 +28,7 @@ constexpr Variant kVariants[] = {
      [](NamedGhostMethod& m) { m.config.mirror.map.max_curvature_per_m = 1e-3; }},
     {"reflectors without openings", [](NamedGhostMethod& m) { m.config.mirror.map.bin_m = 200.0; }},
     {"vehicles are no mirrors", [](NamedGhostMethod& m) { m.config.mirror.classes.min_mirror_length_m = 1e9; }},
+    {"every reflector mirrors", [](NamedGhostMethod& m) { m.config.mirror.classes.mirror_doubt = 0.0; }},
     {"type 2: to be behind a reflector is proof",
      [](NamedGhostMethod& m) { m.config.mirror.classes.lone_ghost_density = kAlways; }},
     {"type 2: only of objects that are seen",
