@@ -12,12 +12,11 @@ namespace {
 
 constexpr double kLeastSine = 0.02;  // a ray that grazes at less than a degree is not followed
 
-constexpr double kGoesOn_m = 40.0;  // as far beyond its ends a long mirror may go on unseen
-
 double goes_on(const Mirror& mirror, double arc_m) {
   constexpr double kAtTheEnd = 0.2;
   const double beyond_m = std::max(mirror.begin_m - arc_m, arc_m - mirror.end_m);
   if (beyond_m <= 0.0 || beyond_m >= kGoesOn_m || !is_long(mirror)) return 0.0;
+  if (mirror.occupancy->is_driven(arc_m + mirror.arc_shift_m)) return 0.0;
   return kAtTheEnd * (1.0 - beyond_m / kGoesOn_m);
 }
 

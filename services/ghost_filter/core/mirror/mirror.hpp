@@ -35,9 +35,7 @@ struct Mirror {
   Beam beam;                               ///< what it lights, from the sensor
 };
 
-/// A rail or a wall: long enough that it may go on where vehicles hide it, or where it was not looked for yet.
 [[nodiscard]] inline bool is_long(const Mirror& mirror) {
-  constexpr double kLong_m = 20.0;
   return mirror.occupancy != nullptr && mirror.end_m - mirror.begin_m >= kLong_m;
 }
 /// How far beyond the mirror's ends chance_at() may be something.

@@ -18,7 +18,7 @@ float to_probability(float log_odds) {
 }  // namespace
 
 void Occupancy::set(std::int32_t bin, float log_odds) {
-  if (driven_[index(bin)]) log_odds = kDriven;
+  if (driven(bin)) log_odds = kDriven;
   log_odds_[index(bin)] = log_odds;
   probability_[index(bin)] = to_probability(log_odds);
 }
@@ -40,16 +40,13 @@ std::int32_t Occupancy::bin_of(double arc_m) const {
 bool Occupancy::extend(double arc_m) {
   const std::int32_t bin = bin_of(arc_m);
   if (std::max(last_, bin) - std::min(first_, bin) >= kBins) return false;
-  while (last_ < bin) {
-    ++last_;
-    hit_[index(last_)] = driven_[index(last_)] = false;
-    set(last_, kUnseen);
-  }
-  while (first_ > bin) {
-    --first_;
-    hit_[index(first_)] = driven_[index(first_)] = false;
-    set(first_, kUnseen);
-  }
+  const auto begin = [this](std::int32_t new_bin, std::int32_t newly_beyond) {
+    driven(newly_beyond) = false;
+    hit_[index(new_bin)] = false;
+    set(new_bin, kUnseen);
+  };
+  for (; last_ < bin; ++last_) begin(last_ + 1, last_ + 1 + kBeyond);
+  for (; first_ > bin; --first_) begin(first_ - 1, first_ - 1 - kBeyond);
   return true;
 }
 
@@ -72,18 +69,23 @@ void Occupancy::settle() {
 }
 
 void Occupancy::open(double arc_m, double around_m) {
-  const std::int32_t to = std::min(last_, bin_of(arc_m + around_m));
-  for (std::int32_t bin = std::max(first_, bin_of(arc_m - around_m)); bin <= to; ++bin) {
-    driven_[index(bin)] = true;
-    set(bin, kDriven);
+  const std::int32_t to = std::min(last_ + kBeyond, bin_of(arc_m + around_m));
+  for (std::int32_t bin = std::max(first_ - kBeyond, bin_of(arc_m - around_m)); bin <= to; ++bin) {
+    driven(bin) = true;
+    if (bin >= first_ && bin <= last_) set(bin, kDriven);
   }
+}
+
+bool Occupancy::is_driven(double arc_m) const {
+  const std::int32_t bin = bin_of(arc_m);
+  return bin >= first_ - kBeyond && bin <= last_ + kBeyond && driven_[static_cast<std::uint32_t>(bin) % driven_.size()];
 }
 
 void Occupancy::join(double arc_m, const Occupancy& other, double other_arc_m) {
   const std::int32_t theirs = other.bin_of(other_arc_m);
   if (theirs < other.first_ || theirs > other.last_ || !extend(arc_m)) return;
   const std::int32_t bin = bin_of(arc_m);
-  driven_[index(bin)] = driven_[index(bin)] || other.driven_[index(theirs)];
+  driven(bin) = driven(bin) || other.is_driven(other_arc_m);
   set(bin, std::max(log_odds_[index(bin)], other.log_odds_[index(theirs)]));
 }
 

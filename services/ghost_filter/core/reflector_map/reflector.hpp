@@ -19,15 +19,18 @@ class Occupancy {
  public:
   static constexpr std::int32_t kBins = 128;
   static constexpr std::int32_t kMostBlur = 4;  ///< bins to either side over which a probability is averaged
+  static constexpr std::int32_t kBeyond = 20;   ///< bins beyond either end in which is remembered what drove through
   void reset(double begin_m, double end_m, double bin_m);
   /// Makes room for a place; false if the reflector would become longer than there are bins.
   bool extend(double arc_m);
   void hit(double arc_m);
   /// Of the bins between those that were hit since the last call, those that were not become less likely.
   void settle();
-  /// Something drove through at this place: there is nothing, ever, within `around_m`, whatever is heard from there
-  /// (what hangs above the road, say).
+  /// Something drove through at this place, which may lie beyond the ends: there is nothing, ever, within `around_m`,
+  /// whatever is heard from there (what hangs above the road, say).
   void open(double arc_m, double around_m);
+  /// Whether something is known to have driven through at a place, at most kBeyond bins beyond the ends.
+  [[nodiscard]] bool is_driven(double arc_m) const;
   /// Takes over what another one that runs along the same line knows of a place; see extend().
   void join(double arc_m, const Occupancy& other, double other_arc_m);
   /// Forgets the bins before and after.
@@ -47,13 +50,19 @@ class Occupancy {
   [[nodiscard]] std::int32_t bin_of(double arc_m) const;
   [[nodiscard]] static std::size_t index(std::int32_t bin) { return static_cast<std::uint32_t>(bin) % kBins; }
   void set(std::int32_t bin, float log_odds);
+  [[nodiscard]] bool& driven(std::int32_t bin) { return driven_[static_cast<std::uint32_t>(bin) % driven_.size()]; }
   double bin_m_ = 1.0;
   std::int32_t first_ = 0, last_ = -1;
   std::array<float, kBins> log_odds_{};
   std::array<float, kBins> probability_{};  // the same, as it is asked for far more often than it changes
   std::array<bool, kBins> hit_{};
-  std::array<bool, kBins> driven_{};  // through
+  std::array<bool, 2 * kBins> driven_{};  // through; holds those beyond the ends, too
+  static_assert(kBins + 2 * kBeyond <= 2 * kBins);
 };
+
+/// As far beyond its ends a long one, a rail or a wall, may go on unseen: vehicles hide it, or it was not looked for
+/// yet.
+inline constexpr double kGoesOn_m = 40.0, kLong_m = 20.0;
 
 struct Reflector {
   Curve curve;  ///< in the odometry frame

@@ -97,19 +97,25 @@ void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double
 }
 
 void ReflectorMap::drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
-  constexpr double kLane_m = 4.0;
-  constexpr double kAcross = 0.5;  // sine: what drives along a wall may seem to touch it
+  constexpr double kLane_m = 4.0;    // what hangs above the road spans the lane
+  constexpr double kBeside_m = 2.5;  // an unseen wall may begin where there is room for the vehicle
+  constexpr double kAcross = 0.5;    // sine: what drives along a wall may seem to touch it
   const double way_m = (to_m - from_m).norm();
   for (Reflector& r : reflectors_) {
+    // Nor is it there unseen, where it is long enough to be thought to go on.
+    const double beyond_m = r.length_m() >= kLong_m ? kGoesOn_m : 0.0;
+    const double begin_m = r.begin_m() - beyond_m, end_m = r.end_m() + beyond_m;
     // What is farther away than both reach does not cross.
-    const double reach_m = std::max(-r.begin_m(), r.end_m()) + way_m + 2.0 * kLane_m;
+    const double reach_m = std::max(-begin_m, end_m) + way_m + 2.0 * kLane_m;
     if ((r.curve.origin_m - from_m).squaredNorm() > reach_m * reach_m) continue;
     const Eigen::Vector2d from = r.curve.local(from_m), to = r.curve.local(to_m);
-    if ((from.x() > r.end_m() && to.x() > r.end_m()) || (from.x() < r.begin_m() && to.x() < r.begin_m())) continue;
+    if ((from.x() > end_m && to.x() > end_m) || (from.x() < begin_m && to.x() < begin_m)) continue;
     const double before = r.curve.distance_of_local(from), behind = r.curve.distance_of_local(to);
     if (before * behind >= 0.0 || std::abs(before - behind) < kAcross * (to - from).norm()) continue;
     const Eigen::Vector2d at = from + before / (before - behind) * (to - from);
-    r.occupancy.open(r.curve.arc_of_local(at) + r.arc_shift_m, kLane_m);
+    const double arc = r.curve.arc_of_local(at);
+    const bool is_within = arc >= r.begin_m() && arc <= r.end_m();
+    r.occupancy.open(arc + r.arc_shift_m, is_within ? kLane_m : kBeside_m);
   }
 }
 
