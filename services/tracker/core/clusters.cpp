@@ -26,7 +26,7 @@ Clusterer::Clusterer(const Config& config) : config_(config), dbscan_(kMaxDetect
   clusters_.reserve(geometry::Assignment::kCapacity);
 }
 
-std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m) {
+std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<const KnownPlace> known) {
   points_.clear();
   index_.clear();
   clusters_.clear();
@@ -50,26 +50,48 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<c
     for (std::size_t k = 0; k < labels.size(); ++k) {
       if (labels[k] == static_cast<std::int32_t>(c)) members_.push_back(static_cast<std::uint32_t>(k));
     }
-    part(scan, people_m);
+    part(scan, known);
   }
   return clusters_;
 }
 
-void Clusterer::part(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m) {
-  constexpr double kReach_m = 1.5;  // of a person and what is not known of where they are
-  std::span<std::uint32_t> rest = members_;
-  for (const std::uint32_t k : rest) {
-    double best_m2 = kReach_m * kReach_m;
-    whose_[k] = people_m.size();
-    for (std::size_t p = 0; p < people_m.size(); ++p) {
-      const double distance_m2 = (people_m[p] - points_[k]).squaredNorm();
-      if (distance_m2 >= best_m2) continue;
-      best_m2 = distance_m2;
-      whose_[k] = p;
+std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, std::span<const KnownPlace> known) {
+  constexpr double kReach_m = 1.5;   // of a person and what is not known of where they are
+  constexpr double kBeside_m = 1.0;  // the same of a vehicle's box
+  std::size_t person = known.size(), vehicle = known.size();
+  double nearest_m2 = kReach_m * kReach_m, nearest_m = kBeside_m;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const double distance_m2 = (known[k].position_m - point_m).squaredNorm();
+    if (known[k].is_small) {
+      if (distance_m2 >= nearest_m2) continue;
+      nearest_m2 = distance_m2;
+      person = k;
+      continue;
     }
+    const double reach_m = known[k].half_m.sum() + kBeside_m;
+    if (distance_m2 >= reach_m * reach_m) continue;
+    const double distance_m = known[k].distance_m(point_m);
+    if (distance_m >= nearest_m) continue;
+    nearest_m = distance_m;
+    vehicle = k;
   }
-  for (std::size_t p = 0; p < people_m.size() && !rest.empty(); ++p) {
-    const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) { return whose_[k] == p; });
+  return person < known.size() ? person : vehicle;
+}
+
+void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> known) {
+  std::span<std::uint32_t> rest = members_;
+  std::size_t vehicle = known.size();
+  bool are_several = false;
+  for (const std::uint32_t k : rest) {
+    whose_[k] = owner(points_[k], known);
+    if (whose_[k] == known.size() || known[whose_[k]].is_small) continue;
+    are_several = are_several || (vehicle != known.size() && vehicle != whose_[k]);
+    vehicle = whose_[k];
+  }
+  for (std::size_t o = 0; o < known.size() && !rest.empty(); ++o) {
+    // What is of one vehicle alone is of one thing with what lies beside it.
+    if (!known[o].is_small && !are_several) continue;
+    const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) { return whose_[k] == o; });
     const auto own = static_cast<std::size_t>(others - rest.begin());
     split(scan, rest.first(own));
     rest = rest.subspan(own);

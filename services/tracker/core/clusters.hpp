@@ -35,13 +35,25 @@ struct Cluster {
   std::uint32_t number_on_outline;
 };
 
+/// Where a tracked object is expected in the scan.
+struct KnownPlace {
+  Eigen::Vector2d position_m, axis, half_m;  ///< centre; direction of the length, unit; half of length and width
+  bool is_small;                             ///< a person or a cycle
+  /// Of a point from the box.
+  [[nodiscard]] double distance_m(const Eigen::Vector2d& point_m) const {
+    const Eigen::Vector2d d = point_m - position_m;
+    const Eigen::Vector2d at(axis.dot(d), axis.x() * d.y() - axis.y() * d.x());
+    return (at.cwiseAbs() - half_m).cwiseMax(0.0).norm();
+  }
+};
+
 class Clusterer {
  public:
   explicit Clusterer(const Config& config);
   /// Groups the detections of provenance kMoving, by place and then by range rate. At most Assignment::kCapacity
-  /// clusters; further ones are counted. Where people and cycles are known to be closer to each other than a cluster's
-  /// radius, each detection is of the nearest of them.
-  std::span<const Cluster> find(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m = {});
+  /// clusters; further ones are counted. Where objects are known to be closer to each other than a cluster's radius,
+  /// each detection is of the nearest of them.
+  std::span<const Cluster> find(const ClassifiedScan& scan, std::span<const KnownPlace> known = {});
   /// Makes one cluster of two, which takes the place of the first; those behind the second move up.
   std::span<const Cluster> join(std::size_t first, std::size_t second);
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
@@ -49,8 +61,10 @@ class Clusterer {
  private:
   /// Clusters of the points of one place, by range rate.
   void split(const ClassifiedScan& scan, std::span<std::uint32_t> rest);
-  /// The same of `members_`, but of each of those people apart who are among them.
-  void part(const ClassifiedScan& scan, std::span<const Eigen::Vector2d> people_m);
+  /// The same of `members_`, but of each of those known objects apart that are among them.
+  void part(const ClassifiedScan& scan, std::span<const KnownPlace> known);
+  /// The one that a point is of, or the number of all.
+  [[nodiscard]] static std::size_t owner(const Eigen::Vector2d& point_m, std::span<const KnownPlace> known);
   /// One cluster, of points by index.
   void add(const ClassifiedScan& scan, std::span<const std::uint32_t> members);
 
@@ -59,7 +73,7 @@ class Clusterer {
   std::vector<Eigen::Vector2d> points_;
   std::vector<std::uint32_t> index_;    // detection of each point
   std::vector<std::uint32_t> members_;  // points of one place
-  std::vector<std::size_t> whose_;      // person that each point is nearest to
+  std::vector<std::size_t> whose_;      // known object that each point is of
   std::vector<Cluster> clusters_;
   std::uint32_t dropped_ = 0;
 };

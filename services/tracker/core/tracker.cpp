@@ -65,7 +65,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
 
   predict_all(elapsed_s, scan.geometry);
   const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
-  const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan, people()));
+  const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan, known()));
   result.dropped_clusters = clusterer_.dropped();
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   assign(clusters, sensor, has_elevation);
@@ -94,12 +94,19 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   }
 }
 
-std::span<const Eigen::Vector2d> Tracker::people() {
+std::span<const KnownPlace> Tracker::known() {
+  // Younger ones may be parts of one vehicle.
+  constexpr double kNew_s = 0.5;
   std::size_t count = 0;
   for (const TrackedObject& track : tracks_) {
-    if (track.confirmed && track.extent.is_small) people_[count++] = track.state.mean.head<2>();
+    const Extent& e = track.extent;
+    if (!track.confirmed || (!e.is_small && track.age_s < kNew_s)) continue;
+    known_[count++] = {track.state.mean.head<2>(),
+                       {std::cos(e.heading_rad), std::sin(e.heading_rad)},
+                       {0.5 * e.length_m, 0.5 * e.width_m},
+                       e.is_small};
   }
-  return {people_.data(), count};
+  return {known_.data(), count};
 }
 
 std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) {

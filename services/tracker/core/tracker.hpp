@@ -35,8 +35,8 @@ class Tracker {
 
  private:
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
-  /// Where confirmed people and cycles are.
-  std::span<const Eigen::Vector2d> people();
+  /// Where confirmed people and cycles are, and vehicles that are not new.
+  std::span<const KnownPlace> known();
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
   /// Heading and size of a track that the cluster has just updated.
@@ -54,7 +54,8 @@ class Tracker {
   geometry::Assignment assignment_;
   std::vector<TrackedObject> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
-  std::array<Eigen::Vector2d, kMaxTracks> visible_mean_, people_;
+  std::array<Eigen::Vector2d, kMaxTracks> visible_mean_;
+  std::array<KnownPlace, kMaxTracks> known_;
   Eigen::Vector2d radars_low_m_{1e9, 1e9}, radars_high_m_{-1e9, -1e9};  // what lies between them is the own body
   std::uint32_t next_id_ = 1;
   std::int64_t time_ns_ = 0;

@@ -94,12 +94,31 @@ TEST(Clusterer, WhatIsSeenOfPeopleWhoPassEachOtherIsOfTheNearest) {
   scene.add({14.0, 0.5}, {0.0, 1.3});
   Clusterer clusterer(Config{});
   EXPECT_EQ(clusterer.find(*scene.scan).size(), 1u);
-  const std::array<Eigen::Vector2d, 2> people{{{12.0, 0.0}, {12.0, 1.0}}};
+  const std::array<KnownPlace, 2> people{
+      {{{12.0, 0.0}, {1.0, 0.0}, {0.5, 0.3}, true}, {{12.0, 1.0}, {1.0, 0.0}, {0.5, 0.3}, true}}};
   const auto clusters = clusterer.find(*scene.scan, people);
   ASSERT_EQ(clusters.size(), 3u);
   EXPECT_NEAR(clusters[0].position_m.y(), 0.0, 1e-6);
   EXPECT_NEAR(clusters[1].position_m.y(), 1.0, 1e-6);
   EXPECT_NEAR(clusters[2].position_m.x(), 14.0, 1e-6) << "nobody's";
+}
+
+TEST(Clusterer, WhatIsSeenOfVehiclesSideBySideIsOfTheNearestBox) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  // The flank of the one in the left lane, and the rear of the one in the own lane, less than a radius apart.
+  for (const double x : {16.0, 18.0, 20.0}) scene.add({x, 2.7}, {15.0, 0.0});
+  for (const double y : {-0.8, 0.8}) scene.add({17.8, y}, {14.0, 0.0});
+  Clusterer clusterer(Config{});
+  EXPECT_EQ(clusterer.find(*scene.scan).size(), 1u);
+  const KnownPlace left{{18.0, 3.6}, {1.0, 0.0}, {2.25, 0.9}, false}, own{{20.2, 0.0}, {1.0, 0.0}, {2.25, 0.9}, false};
+  const std::array<KnownPlace, 2> both{left, own};
+  const auto clusters = clusterer.find(*scene.scan, both);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_NEAR(clusters[0].position_m.y(), 2.7, 1e-6);
+  EXPECT_NEAR(clusters[1].position_m.y(), 0.0, 1e-6);
+  // One alone takes nothing off what lies beside it: that may be of it.
+  EXPECT_EQ(clusterer.find(*scene.scan, {&left, 1}).size(), 1u);
 }
 
 TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {

@@ -109,6 +109,28 @@ TEST(TrackerDuplicates, LimbsThatWereLongTrackedAtTheirOwnSpeedsAreOne) {
   EXPECT_EQ(list.number_of_confirmed_tracks, 1u) << "nobody walks through another";
 }
 
+TEST(TrackerDuplicates, AVehicleThatIsOvertakenInTheNextLaneStaysATrack) {
+  // Seen from ahead, their nearest reflections are nearer than a cluster's radius, and 2.5 m/s tells no clusters apart.
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  TrackList list;
+  std::set<std::uint32_t> ids;
+  for (int i = 0; i < 100; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    const double t = 0.05 * i, fast = 54.0 - 7.5 * t, slow = 45.0 - 5.0 * t;
+    for (const double part : {-0.8, 0.0, 0.8}) {
+      scene.add({slow, part}, {-5.0, 0.0});
+      scene.add({fast, 3.4 + part}, {-7.5, 0.0});
+    }
+    tracker.step(*scene.scan);
+    tracker.write(list);
+    if (i < 20) continue;
+    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << t << " s";
+    for (const Track& track : {list.tracks[0], list.tracks[1]}) ids.insert(track.tracking_id);
+  }
+  EXPECT_EQ(ids.size(), 2u);
+}
+
 TEST(TrackerDuplicates, PeopleWhoPassEachOtherAtArmsLengthStayTwo) {
   // One behind the other, seen from the radar, when they meet: only places tell them apart.
   Tracker tracker(two_radars(), Config{});
