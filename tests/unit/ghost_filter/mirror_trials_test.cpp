@@ -107,9 +107,11 @@ class MirrorTrialsTest : public testing::TestWithParam<double> {
                 odometry_);
   }
   [[nodiscard]] double evidence() const {
-    return trials_.evidence_of(wall_, {sensor_, turned({15.0, 0.0}), objects_, &odometry_, &movers_});
+    return trials_.evidence_of(wall_,
+                               {sensor_, turned({15.0, 0.0}), mounting_std_rad_, objects_, &odometry_, &movers_});
   }
   Vector2d sensor_ = turned({3.6, 0.0});
+  double mounting_std_rad_ = 0.002;
   Mirror wall_;
   Occupancy occupancy_;
   std::vector<Object> objects_;
@@ -152,6 +154,12 @@ TEST_P(MirrorTrialsTest, WhereNothingCanBeSeenNothingIsTold) {
   objects_.front().velocity_mps = turned({0.5, 0.0});
   EXPECT_EQ(evidence(), 0.0) << "its image would look as if it stood";
   objects_.front().velocity_mps = turned({20.0, 0.0});
+  objects_.front().position_covariance = 4.0 * Eigen::Matrix2d::Identity();
+  EXPECT_EQ(evidence(), 0.0) << "it is not known well where the object is";
+  objects_.front().position_covariance.setZero();
+  mounting_std_rad_ = 0.1;
+  EXPECT_EQ(evidence(), 0.0) << "nor where the radar looks";
+  mounting_std_rad_ = 0.002;
   occupancy_.open(-5.0, 15.0);
   EXPECT_EQ(evidence(), 0.0) << "there is a gap";
   occupancy_.reset(-40.0, 40.0, 2.0);

@@ -75,7 +75,6 @@ double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t
   const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
   const double most_of_rate = 1.0 / std::sqrt(2.0 * M_PI * rate_noise);
   const StrengthLikelihood of_heard(target.strength, kFluctuation_db, config_.strength_doubt);
-  const StrengthLikelihood of_usual(target.strength, kUsualRcsStd_db, config_.strength_doubt);
   const double spread = target.covariance.trace();
   s_.movers->weighing_near(s_.odometry->point_to_frame(target.place_m), [&](const Mover& mover, const MovedMover& moved,
                                                                             std::uint32_t number) {
@@ -88,7 +87,9 @@ double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t
     const bool owned = number >= own && mover.object != kNobody;
     if (owned && (mover.object == target.mirror->body || mover.object == target.other_body)) return;
     const bool heard = std::isfinite(mover.rcs_dbsm);
-    const double strength = heard ? of_heard(m.rcs_dbsm - mover.rcs_dbsm) : of_usual(m.rcs_dbsm - kUsualRcs_dbsm);
+    const double strength =
+        heard ? of_heard(m.rcs_dbsm - mover.rcs_dbsm)
+              : likelihood(target.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
     const double most_of_rest = mover.weight * strength * most_of_rate;
     const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d same = target.covariance + (sure + square(0.2)) * eye;

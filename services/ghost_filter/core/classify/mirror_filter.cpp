@@ -257,7 +257,7 @@ void MirrorFilter::judge_tracks() {
 }
 
 void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
-  constexpr std::size_t kAtOnce = 8;
+  constexpr std::size_t kAtOnce = 8;  // from scan to scan an image hardly changes, so that turns lose little
   trials_.begin();
   for (std::size_t i = 0; i < count; ++i) {
     if (is_usable(scan, i)) trials_.saw(measured_[i].direction, measured_[i].range_m);
@@ -265,7 +265,8 @@ void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
   const std::size_t reflectors = map_.reflectors().size();
   for (std::size_t k = 0; k < std::min(kAtOnce, reflectors); ++k) {
     const std::size_t i = mirrors_turn_++ % reflectors;
-    map_.tried(i, trials_.evidence_of(mirrors_[i], {sensor_m_, sensor_velocity_mps_, objects_, &odometry_, &movers_}));
+    map_.tried(i, trials_.evidence_of(mirrors_[i], {sensor_m_, sensor_velocity_mps_, mounting_std_rad_, objects_,
+                                                    &odometry_, &movers_}));
   }
 }
 

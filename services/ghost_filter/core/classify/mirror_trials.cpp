@@ -21,6 +21,7 @@ constexpr double kBefore_m = 2.0;                      // as far before a mirror
 constexpr double kHides_m = 2.0;                       // beside the way
 constexpr double kLeastRate_mps = 2.0;                 // what shows less is not told from what stands
 constexpr double kBeside_m = 3.0, kOff_mps = 1.5;      // of an image
+constexpr double kTold = 2.0;                          // standard deviations of its place that must be within that
 constexpr double kOfOther_m = 6.0;                     // about a box: what is detected there may be of that object
 
 bool hides(const Object& o, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m) {
@@ -61,6 +62,9 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
       mirror.occupancy->probability(image->arc_m + mirror.arc_shift_m, 0.5) < kSurePlace) {
     return Outcome::kUnknown;
   }
+  // A radar that is crooked sees it elsewhere, and so it is if the object is elsewhere.
+  const double variance = square(far * scan.mounting_std_rad) + o.position_covariance.trace();
+  if (square(kTold) * variance > square(kBeside_m)) return Outcome::kUnknown;
   const Eigen::Vector2d turn = scan.sensor_m + image->first_m * image->departure;
   const Eigen::Vector2d sight = o.position_m - scan.sensor_m;
   const double direct_m = std::max(0.1, sight.norm());

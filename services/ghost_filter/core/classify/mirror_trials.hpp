@@ -21,6 +21,7 @@ class MirrorTrials {
  public:
   struct Scan {
     Eigen::Vector2d sensor_m, sensor_velocity_mps;
+    double mounting_std_rad;  ///< of the sensor's yaw
     std::span<const Object> objects;
     const Odometry* odometry;
     const RecentMovers* movers;  ///< of the scan itself, too

@@ -35,6 +35,7 @@ struct Mirror {
   Beam beam;                               ///< what it lights, from the sensor
 };
 
+/// A rail or a wall, which may go on unseen; a vehicle's side does not.
 [[nodiscard]] inline bool is_long(const Mirror& mirror) {
   return mirror.occupancy != nullptr && mirror.end_m - mirror.begin_m >= kLong_m;
 }
