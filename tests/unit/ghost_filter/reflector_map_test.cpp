@@ -1,6 +1,7 @@
 // The map over time: what it makes of a drive past things of which the truth is known.
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -68,6 +69,37 @@ class Drive {
   std::mt19937 random_;
   std::int64_t time_ns_ = 1'000'000'000;
 };
+
+TEST(ReflectorMap, FindsARailThatIsMeasuredWellAtLastInTheCloudThatWasMadeOfItBefore) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> along(0.0, 40.0);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    ReflectorMap map{MapConfig{}};
+    Odometry odometry;
+    for (std::int64_t time_ns = 0; time_ns < 3'000'000'000; time_ns += kScan_ns) {
+      static_cast<void>(odometry.advance(1'000'000'000 + time_ns, 0.0, 0.0));
+      for (const double std_m : {0.08, 0.6}) {
+        if (std_m < 0.1 && time_ns < 1'000'000'000) continue;
+        for (int k = 0; k < 15; ++k) {
+          const Eigen::Vector2d place(along(random), -9.0 + std_m * noise(random));
+          map.add(place, std_m * std_m, 1'000'000'000 + time_ns);
+        }
+      }
+      map.update(odometry, 0.02, 0.0005);
+    }
+    const auto runs_past = [](const Reflector& r, double x) {
+      const double arc = r.curve.arc({x, -9.0});
+      return arc >= r.begin_m() && arc <= r.end_m() && std::abs(r.curve.distance({x, -9.0})) < 0.2 &&
+             std::abs(r.curve.tangent_at(arc).y()) < 0.05;
+    };
+    for (const double x : {5.0, 20.0, 35.0}) {
+      EXPECT_TRUE(std::any_of(map.reflectors().begin(), map.reflectors().end(),
+                              [&](const Reflector& r) { return r.log_odds > 0.0 && runs_past(r, x); }))
+          << "seed " << seed << " at " << x;
+    }
+  }
+}
 
 TEST(ReflectorMap, FindsRailsAndKeepsThem) {
   for (const unsigned seed : {1U, 2U, 3U}) {

@@ -29,9 +29,11 @@ ReflectorMap::ReflectorMap(const MapConfig& config)
       grid_(config.capacity, config.cell_m),
       curves_(config),
       dbscan_(config.capacity),
-      clusters_(config.capacity) {
+      clusters_(config.capacity),
+      exact_clusters_(config.capacity) {
   reflectors_.reserve(kMaxReflectorSegments);
   free_.reserve(config.capacity);
+  inexact_.reserve(config.capacity);
 }
 
 void ReflectorMap::clear() {
@@ -76,12 +78,13 @@ void ReflectorMap::add(const Eigen::Vector2d& position_m, double variance_m2, st
   if (!position_m.allFinite() || !(variance_m2 >= 0.0)) return;
   double arc = 0.0;
   Reflector* const r = reflector_of(position_m, variance_m2, arc);
+  const bool is_exact = variance_m2 < config_.tolerance_m * config_.tolerance_m;
   if (r != nullptr && r->occupancy.extend(arc + r->arc_shift_m)) {
     const Eigen::Vector2d q = r->curve.local(position_m);
     r->evidence.add_local(q, r->curve.distance_of_local(q), kInCommon * (kScatter_m * kScatter_m + variance_m2));
     r->occupancy.hit(arc + r->arc_shift_m);
   }
-  grid_.add(position_m, time_ns, r != nullptr);
+  grid_.add(position_m, time_ns, r != nullptr, is_exact);
 }
 
 void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps) {
@@ -216,20 +219,28 @@ void ReflectorMap::search(const StationaryGrid::Tile& tile) {
   const Eigen::Array2d low(tile.place.column * width - margin, tile.place.row * width - margin);
   const Eigen::Array2d high = low + width + 2.0 * margin;
   free_.clear();
+  inexact_.clear();
   for (std::int32_t column = tile.place.column - 1; column <= tile.place.column + 1; ++column) {
     for (std::int32_t row = tile.place.row - 1; row <= tile.place.row + 1; ++row) {
       grid_.visit_tile({column, row}, [&](const StationaryGrid::Cell& cell) {
         if (cell.claimed) return;
         const Eigen::Vector2d p = cell.mean_m();
-        if ((p.array() >= low).all() && (p.array() <= high).all()) free_.push_back(p);
+        if ((p.array() >= low).all() && (p.array() <= high).all()) (cell.exact ? free_ : inexact_).push_back(p);
       });
     }
   }
+  const std::size_t exact = free_.size();
+  free_.insert(free_.end(), inexact_.begin(), inexact_.end());
   points_searched_ += free_.size();
   if (free_.size() < config_.min_cells) return;
   const std::size_t clusters = dbscan_.cluster(free_, config_.cluster_radius_m, config_.cluster_min_cells);
   clusters_.sort(free_, dbscan_.labels(), clusters);
-  for (std::size_t c = 0; c < clusters_.size(); ++c) search_part(clusters_[c], 0);
+  exact_clusters_.sort(free_, dbscan_.labels().first(exact), clusters);
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    // From afar a rail is a cloud, in which there are lines of all directions: where enough is known well, the rest
+    // tells nothing.
+    search_part(exact_clusters_[c].size() >= config_.min_cells ? exact_clusters_[c] : clusters_[c], 0);
+  }
 }
 
 void ReflectorMap::search_part(std::span<Eigen::Vector2d> points, int depth) {

@@ -66,10 +66,10 @@ class ReflectorMap {
   StationaryGrid grid_;
   CurveSearch curves_;
   geometry::Dbscan dbscan_;
-  geometry::ClusterRuns<Eigen::Vector2d> clusters_;
+  geometry::ClusterRuns<Eigen::Vector2d> clusters_, exact_clusters_;
   ReflectorIndex index_;
   std::vector<Reflector> reflectors_;
-  std::vector<Eigen::Vector2d> free_;
+  std::vector<Eigen::Vector2d> free_, inexact_;  // cells that no reflector claims; the latter end up in the former
   std::size_t next_reflector_ = 0, next_tile_ = 0;
   std::int64_t updated_ns_ = 0, indexed_ns_ = 0, now_ns_ = 0;
   bool index_is_due_ = true;

@@ -28,7 +28,7 @@ void StationaryGrid::clear() {
   for (std::size_t i = cells_.size(); i-- > 0;) unused_.push_back(static_cast<std::uint32_t>(i));
 }
 
-void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed) {
+void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed, bool exact) {
   if (!position_m.allFinite()) return;
   const geometry::GridCell at = geometry::grid_cell(position_m.x(), position_m.y(), cell_m_);
   const std::uint32_t* const known = table_.find(at);
@@ -51,7 +51,13 @@ void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns
     ++tile.news;
   }
   Cell& cell = cells_[index];
-  cell.sum_m += position_m;
+  if (exact && !cell.exact) {
+    // What was measured worse before does not count for the mean.
+    cell.sum_m = cell.count * position_m;
+    cell.exact = true;
+    if (cell.count > 0) ++tiles_[*tile_table_.find(tile_of(at))].news;
+  }
+  cell.sum_m += exact || !cell.exact ? position_m : cell.mean_m();
   ++cell.count;
   cell.last_ns = time_ns;
   cell.claimed = claimed;

@@ -25,13 +25,14 @@ class StationaryGrid {
     std::uint32_t next = kUnclaimed;
     geometry::GridCell place{};
     bool claimed = false;  ///< its last detection belongs to a known reflector
+    bool exact = false;    ///< its mean is of where its detections are known well
     [[nodiscard]] Eigen::Vector2d mean_m() const { return sum_m / count; }
   };
   struct Tile {
     geometry::GridCell place{};
     std::uint32_t first = kUnclaimed;  ///< cell
     std::uint32_t cells = 0;
-    std::uint32_t news = 0;  ///< cells that were begun since the tile was searched
+    std::uint32_t news = 0;  ///< cells that were begun, or became exact, since the tile was searched
   };
 
   /// Room for `capacity` cells; points in further ones are dropped until the oldest are forgotten.
@@ -39,7 +40,7 @@ class StationaryGrid {
 
   void clear();
   /// A detection that looks stationary; not finite: ignored.
-  void add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed);
+  void add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed, bool exact);
   /// Of the tile with that number, forgets the cells last hit before `oldest_ns`. If nothing is left the tile goes,
   /// too: the last one has its number then, and false is returned.
   bool forget(std::size_t tile, std::int64_t oldest_ns);
