@@ -92,7 +92,8 @@ struct Extent {
   /// Whether hardly anything that is so fast reflects as little. Mirrors take away power, so images do. What was never
   /// heard is not.
   [[nodiscard]] bool is_too_weak(double speed_mps) const {
-    return strongest_dbsm < (speed_mps > kFastestCycle_mps ? kWeakestVehicle_dbsm : kWeakestPerson_dbsm);
+    if (speed_mps > kFastestCycle_mps) return strongest_dbsm < kWeakestVehicle_dbsm;
+    return strongest_dbsm < (speed_mps > kFastestRunner_mps ? kWeakestCycle_dbsm : kWeakestPerson_dbsm);
   }
 
   /// As strong as `dbsm` and at that speed: as long as a person or a cycle would be so, the box is no larger than what
@@ -196,8 +197,9 @@ struct Extent {
   static constexpr double kSmallLength_m = 1.2, kSmallWidth_m = 0.7;  // between a person and a cycle
   static constexpr double kLeastOfVehicle_dbsm = 3.0;
   static constexpr double kFastestCycle_mps = 9.0;
-  // A vehicle's strongest reflection, from wherever it is seen, and a person's.
-  static constexpr double kWeakestVehicle_dbsm = -5.0, kWeakestPerson_dbsm = -13.0;
+  static constexpr double kFastestRunner_mps = 5.0;
+  // A vehicle's strongest reflection, from wherever it is seen, that of a cycle with who rides it, and a person's.
+  static constexpr double kWeakestVehicle_dbsm = -5.0, kWeakestCycle_dbsm = -9.0, kWeakestPerson_dbsm = -13.0;
   static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger
   [[nodiscard]] Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
     const double c = std::cos(heading_rad), s = std::sin(heading_rad);

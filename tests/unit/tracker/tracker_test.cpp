@@ -98,6 +98,8 @@ TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
   EXPECT_NEAR(seconds_to_confirm(15.0, -14.0F), 1.0, 1e-6) << "a car's image";
   EXPECT_NEAR(seconds_to_confirm(2.0, -10.0F), 0.15, 1e-6) << "a person";
   EXPECT_NEAR(seconds_to_confirm(2.0, -18.0F), 1.0, 1e-6) << "an image";
+  EXPECT_NEAR(seconds_to_confirm(7.0, -5.0F), 0.15, 1e-6) << "a cycle";
+  EXPECT_NEAR(seconds_to_confirm(7.0, -11.0F), 1.0, 1e-6) << "nobody runs that fast";
   EXPECT_NEAR(seconds_to_confirm(15.0, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6) << "strength not measured";
 }
 
