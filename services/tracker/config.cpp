@@ -39,6 +39,7 @@ Config read_config(config::Reader root) {
   c.start_realness = life.number("start_realness", {0.0, 1.0}, c.start_realness);
   c.delete_misses = count(life, "delete_misses", c.delete_misses);
   c.delete_window = count(life, "delete_window", c.delete_window);
+  c.delete_age_s = life.number("delete_age_s", {0.0, 5.0}, c.delete_age_s);
   c.coast_s = life.number("coast_s", {0.05, 10.0}, c.coast_s);
   c.blind_range_rate_mps = life.number("blind_range_rate_mps", {0.0, 10.0}, c.blind_range_rate_mps);
   c.stopped_speed_mps = life.number("stopped_speed_mps", {0.0, 5.0}, c.stopped_speed_mps);

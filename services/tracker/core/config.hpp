@@ -27,6 +27,7 @@ struct Config {
   double start_realness = 0.2;        ///< what is less likely real starts no track
   std::size_t delete_misses = 8;      ///< k …
   std::size_t delete_window = 10;     ///< … of t scans
+  double delete_age_s = 0.5;          ///< of a confirmed one, and so long after its last detection, as at birth
   double coast_s = 1.0;               ///< longest prediction without a detection
   double blind_range_rate_mps = 1.5;  ///< below it over ground, a scan may take the object for stationary
   double stopped_speed_mps = 0.5;

@@ -41,7 +41,9 @@ bool is_dead(const TrackedObject& track, const Config& config) {
   }
   const std::uint32_t seen = window_mask(track.seen_scans);
   const std::uint32_t misses = ~track.history & seen & window_mask(config.delete_window);
-  if (std::popcount(misses) >= static_cast<int>(config.delete_misses)) return true;
+  // Several radars at one instant are one look, and what hides an object or makes it faint does so for many scans.
+  const bool long_enough = !track.confirmed || track.since_update_s > config.delete_age_s - 1e-6;
+  if (long_enough && std::popcount(misses) >= static_cast<int>(config.delete_misses)) return true;
   // A tentative track that can no longer be confirmed in its window gives up its place.
   const std::uint32_t window = seen & window_mask(config.confirm_window);
   const std::size_t early_misses = static_cast<std::size_t>(std::popcount(~track.history & window));
