@@ -131,6 +131,30 @@ TEST(TrackerDuplicates, AVehicleThatIsOvertakenInTheNextLaneStaysATrack) {
   EXPECT_EQ(ids.size(), 2u);
 }
 
+TEST(TrackerDuplicates, APersonWhomACarPassesNearbyStaysATrack) {
+  // The car drives away, the person comes towards the radar, a step beside the car's box.
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  TrackList list;
+  std::set<std::uint32_t> ids;
+  for (int i = 0; i < 100; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    const double t = 0.05 * i;
+    scene.scan->rcs_dbsm[0] = scene.scan->rcs_dbsm[1] = 12.0F;
+    scene.scan->rcs_dbsm[2] = -6.0F;
+    scene.add({15.0 + 3.3 * t, -0.7}, {3.3, 0.0});
+    scene.add({15.0 + 3.3 * t, 0.7}, {3.3, 0.0});
+    scene.add({32.0 - 1.2 * t, -1.5}, {-1.2, 0.0});
+    tracker.step(*scene.scan);
+    tracker.write(list);
+    if (i < 20) continue;
+    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << t << " s";
+    for (const Track& track : {list.tracks[0], list.tracks[1]}) ids.insert(track.tracking_id);
+  }
+  EXPECT_EQ(ids.size(), 2u);
+}
+
 TEST(TrackerDuplicates, PeopleWhoPassEachOtherAtArmsLengthStayTwo) {
   // One behind the other, seen from the radar, when they meet: only places tell them apart.
   Tracker tracker(two_radars(), Config{});
