@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 
 namespace {
+
+/// What is crossed by the lines of sight of moving detections is kept for so many crossings in all.
+constexpr std::size_t kMostKept = 4 * kMaxDetections;
 
 /// Ways over two mirrors, the least likely ghosts, are what costs most where mirrors are many: so many are followed for
 /// a detection, and for all of a scan.
@@ -28,17 +32,24 @@ constexpr double kSlow_mps = 3.0, kLeastSlow = 0.3;
 
 /// What is so much less likely than all else cannot change a verdict.
 constexpr double kNegligible = 1e-3;
+/// What is so much likelier a ghost than all else is one, by whatever way.
+constexpr double kBeyondDoubt = 20.0;
 
 }  // namespace
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
+  kept_crossings_.reserve(kMostKept);
+  kept_.reserve(kMaxDetections);
 }
 
 void Judge::begin(const Surroundings& surroundings) {
   s_ = surroundings;
   fan_.build(s_.mirrors, s_.sensor_m);
   crossings_.clear();
+  kept_crossings_.clear();
+  kept_.clear();
+  next_kept_ = 0;
   pairs_left_of_scan_ = kMostPairsOfScan;
   has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
     return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
@@ -105,22 +116,35 @@ bool Judge::has_company(const Measured& m, std::uint32_t index) const {
   return found;
 }
 
-double Judge::behind_mirror(const Measured& m) const {
+double Judge::behind_mirror(const Measured& m, std::uint32_t index) {
+  cross(m, kNobody);
+  if (kept_.size() < kept_.capacity() && kept_crossings_.size() + crossings_.size() <= kept_crossings_.capacity()) {
+    kept_crossings_.insert(kept_crossings_.end(), crossings_.begin(), crossings_.end());
+    kept_.push_back({index, static_cast<std::uint32_t>(kept_crossings_.size())});
+  }
   double most = 0.0;
-  fan_.visit(m.direction, [&](const Mirror& mirror) {
-    const auto turn = turn_at(mirror, s_.sensor_m, m.direction, m.range_m - config_.margin_m, m.azimuth_std_rad);
-    if (turn) most = std::max(most, turn->probability);
-  });
+  for (const Crossing& crossing : crossings_) {
+    if (crossing.turn.distance_m < m.range_m - config_.margin_m) most = std::max(most, crossing.turn.probability);
+  }
   return most;
+}
+
+void Judge::cross_again(const Measured& m, std::uint32_t index) {
+  // They come in the order in which they were asked for first.
+  if (next_kept_ == kept_.size() || kept_[next_kept_].index != index) return cross(m, kNobody);
+  const std::uint32_t begin = next_kept_ == 0 ? 0 : kept_[next_kept_ - 1].end;
+  crossings_.assign(kept_crossings_.begin() + begin, kept_crossings_.begin() + kept_[next_kept_].end);
+  ++next_kept_;
 }
 
 Densities Judge::weigh(const Measured& m, std::uint32_t index) {
   Densities densities;
-  cross(m, kNobody);
+  cross_again(m, index);
   bool is_hidden = false;
   const double of_hidden = hidden(m, kNobody, is_hidden);
   real(m, index, is_hidden, densities);
-  ghosts(m, index, kNobody, kNegligible * densities.sum(), densities);
+  const double rest = densities.sum();
+  ghosts(m, index, kNobody, {kNegligible * rest, kBeyondDoubt * rest}, densities);
   densities.type1 += of_hidden;
   densities.type2 += densities.of_images;
   return densities;
@@ -129,25 +153,30 @@ Densities Judge::weigh(const Measured& m, std::uint32_t index) {
 double Judge::images(const Measured& m, std::uint32_t object, double least) {
   Densities densities;
   cross(m, object);
-  ghosts(m, kNobody, object, least, densities);
+  ghosts(m, kNobody, object, {least, std::numeric_limits<double>::infinity()}, densities);
   bool is_hidden = false;
   return densities.type1 + densities.type2 + hidden(m, object, is_hidden);
 }
 
-void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least,
+void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_object, const Telling& telling,
                    Densities& densities) {
   const std::size_t most = std::min(kMostPairs, pairs_left_of_scan_);
   pairs_left_ = most;
   for (const Crossing& crossing : crossings_) {
     // By different mirrors a ghost would be elsewhere: one fits, or two found for one that is there. So the best
     // counts.
-    const double by_one = type2(m, crossing, index, but_object, std::max(least, kLittle * densities.type2));
-    const double best = std::max(densities.type2, by_one);
-    const double by_two = type2_of_two(m, crossing, index, but_object, std::max(least, kLittle * best));
+    const double by_one = type2(m, crossing, index, but_object, std::max(telling.least, kLittle * densities.type2));
+    densities.type2 = std::max(densities.type2, by_one);
+    if (densities.type2 > telling.enough) break;  // one is, by whatever way
+    const double by_two =
+        type2_of_two(m, crossing, index, but_object, std::max(telling.least, kLittle * densities.type2));
     densities.type2 = std::max(densities.type2, by_one + by_two);
+    if (densities.type2 > telling.enough) break;
   }
   pairs_left_of_scan_ -= most - pairs_left_;
-  densities.type1 = type1(m, index, but_object, std::max(least, kNegligible * densities.type2));
+  // Of what is one beyond doubt only the likelier type matters.
+  const double little = densities.type2 > telling.enough ? 1.0 : kLittle;
+  densities.type1 = type1(m, index, but_object, std::max(telling.least, little * densities.type2));
 }
 
 void Judge::real(const Measured& m, std::uint32_t index, bool is_hidden, Densities& densities) const {
@@ -177,6 +206,10 @@ Densities Judge::weigh_still(const Measured& m) {
   of_objects(m, true, densities);
   if (densities.likeliest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.likeliest]))
     seen = 1;
+  if (densities.moving == 0.0 && crossings_.empty() && !like_slow) {
+    densities.stationary = 1.0;  // how dense it is tells nothing where nothing else can be
+    return densities;
+  }
   densities.stationary = of_stationary(m, seen);
   const double least = kNegligible * densities.sum();
   if (like_slow) densities.type1 = type1(m, kNobody, kNobody, least);

@@ -67,8 +67,9 @@ class Judge {
   [[nodiscard]] double images(const Measured& measured, std::uint32_t object, double least);
   /// As weigh(), but only what a detection that looks stationary can be: that, or of an object that is tracked.
   [[nodiscard]] Densities weigh_still(const Measured& measured);
-  /// Whether there is a mirror in front of the detection, as probability.
-  [[nodiscard]] double behind_mirror(const Measured& measured) const;
+  /// Whether there is a mirror in front of the detection, as probability. For the detections that weigh() is asked for
+  /// later, in their order, so that the mirrors in front of each are found once.
+  [[nodiscard]] double behind_mirror(const Measured& measured, std::uint32_t index);
   /// The tracked object that a detection lies on, and whether it has another range rate than its body.
   struct Owner {
     std::uint32_t object = kNobody;
@@ -100,6 +101,8 @@ class Judge {
     bool of_own = false;                 ///< the own vehicle may be the target
   };
   void cross(const Measured& measured, std::uint32_t but_object);
+  /// As cross(), of what behind_mirror() was asked for before.
+  void cross_again(const Measured& measured, std::uint32_t index);
   /// Expected density of ghosts, if every object has one, of tracked objects and of what was detected lately.
   /// Of less than `least` it may tell nothing.
   [[nodiscard]] double ghosts_of(const Target& target, const Measured& measured, std::uint32_t but_object,
@@ -108,8 +111,12 @@ class Judge {
   /// known better than a box. Nothing if it is not more than `least`.
   [[nodiscard]] double of_detected(const Target& target, const Measured& measured, std::uint32_t but_object,
                                    std::uint32_t but_index, double least) const;
+  /// Of less than `least` nothing need be told, and of more than `enough` not how much it is.
+  struct Telling {
+    double least, enough;
+  };
   /// Both types, of what is known; needs the crossings.
-  void ghosts(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least,
+  void ghosts(const Measured& measured, std::uint32_t index, std::uint32_t but_object, const Telling& telling,
               Densities& densities);
   /// All that is no ghost; needs the crossings.
   void real(const Measured& measured, std::uint32_t index, bool is_hidden, Densities& densities) const;
@@ -145,6 +152,13 @@ class Judge {
   Surroundings s_{};
   MirrorFan fan_;
   std::vector<Crossing> crossings_;
+  /// Those of the detections that behind_mirror() was asked for, one after the other.
+  struct Kept {
+    std::uint32_t index, end;
+  };
+  std::vector<Crossing> kept_crossings_;
+  std::vector<Kept> kept_;
+  std::size_t next_kept_ = 0;
   bool has_slow_ = false;  ///< a tracked object whose images may look as if they stood
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;

@@ -206,7 +206,7 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
     const Measured& m = measured_[i];
     // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
-    double weight = 1.0 - 0.95 * judge_.behind_mirror(m);
+    double weight = 1.0 - 0.95 * judge_.behind_mirror(m, static_cast<std::uint32_t>(i));
     // Wheels are too weak to be seen in mirrors.
     const Judge::Owner owner = judge_.owner_of(m);
     if (owner.is_wheel) weight *= 0.05;

@@ -112,7 +112,7 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
                            static_cast<double>(radar) * kPeriod_ns / static_cast<double>(radars_));
   for (std::size_t i = 0; i < detections_; ++i) {
     Eigen::Vector2d p;
-    double along_mps = 0.0;
+    double along_mps = 0.0, rcs_dbsm = random.uniform(-10.0, 10.0);
     if (i % 100 >= kMovingOf100) {
       // Any of the repetitions in view: those in front of the vehicle, or behind it.
       const double low = ahead > 0.0 ? 0.0 : -reach_m_;
@@ -124,8 +124,12 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
       } while (p.x() > low + reach_m_);
     } else {
       p = vehicles_[random.next() % vehicles_.size()];
-      p += Eigen::Vector2d(random.uniform(-2.2, 2.2), random.uniform(-0.9, 0.9));
+      // Of the faces that look to the own vehicle.
+      const bool at_end = p.y() == 0.0 || random.uniform() < 0.5;
+      p += at_end ? Eigen::Vector2d(p.x() > 0.0 ? -2.2 : 2.2, random.uniform(-0.9, 0.9))
+                  : Eigen::Vector2d(random.uniform(-2.2, 2.2), -0.9);
       const double kind = random.uniform();
+      rcs_dbsm = 5.0 + 6.0 * random.gaussian() - (kind > 0.5 ? 26.0 : 0.0);
       if (kind > 0.5) p.y() = (kind > 0.75 ? 2.0 : -2.0) * kRail_m - p.y();
       along_mps = kSpeed_mps;
     }
@@ -141,7 +145,7 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
     const double over_ground = along_mps * sight.x() / sight.norm();
     scan.range_rate_over_ground_mps[i] = static_cast<float>(over_ground + 0.05 * random.gaussian());
     scan.range_rate_mps[i] = static_cast<float>(over_ground - kSpeed_mps * sight.x() / sight.norm());
-    scan.rcs_dbsm[i] = static_cast<float>(random.uniform(-10.0, 10.0));
+    scan.rcs_dbsm[i] = static_cast<float>(rcs_dbsm);
     scan.range_std_m[i] = static_cast<float>(kRangeStd_m);
     scan.azimuth_std_rad[i] = static_cast<float>(kAzimuthStd_rad);
     scan.elevation_std_rad[i] = 0.01F;
