@@ -306,6 +306,52 @@ TEST_F(MirrorFilterTest, AWheelMovesThoughItsRangeRateIsNotTheCars) {
   EXPECT_LE(beside, scans / 2);
 }
 
+TEST_F(MirrorFilterTest, WhatStandsHighUpMayShowSomeRangeRate) {
+  // On a wall, now and then: of its upper edge the road moves the elevation.
+  const auto told_moving = [&](float height_m) {
+    filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
+    std::size_t moving = 0;
+    for (int k = 0; k < 20; ++k) {
+      std::uint32_t edge = 0;
+      drive(0.25, [&] { rail(4.0); });
+      drive(0.05, [&] {
+        rail(4.0);
+        const Vector2d sight = Vector2d(14.0, 4.0) - sensor();
+        edge = add(sight.normalized(), sight.norm(), 1.2 - sight.normalized().dot(sensor_velocity()), 5.0,
+                   corrected_flag::kMoving);
+        scan_->z_vehicle_m[edge] = height_m;
+      });
+      moving += label(edge) == Provenance::kMoving ? 1U : 0U;
+    }
+    return moving;
+  };
+  EXPECT_GE(told_moving(0.5F), 15u);
+  EXPECT_LE(told_moving(4.5F), 1u);
+}
+
+TEST_F(MirrorFilterTest, ErrorsThatAreAlikeAreNoCompany) {
+  // Two points of a wall are wrong by the same three standard deviations in one scan: neither is why the other moves.
+  std::size_t moving = 0;
+  drive(1.0, [&] { rail(4.0); });
+  for (int k = 0; k < 20; ++k) {
+    std::uint32_t first = 0, second = 0;
+    drive(0.25, [&] { rail(4.0); });
+    drive(0.05, [&] {
+      rail(4.0);
+      const double post = 18.0 - std::fmod(t_s_ * speed_mps_, 2.0);
+      const auto wrong = [&](const Vector2d& p) {
+        const Vector2d sight = p - sensor();
+        return add(sight.normalized(), sight.norm(), 0.3 - sight.normalized().dot(sensor_velocity()), 0.0,
+                   corrected_flag::kMoving);
+      };
+      first = wrong({post, 4.0});
+      second = wrong({post + 2.0, 4.0});
+    });
+    for (const std::uint32_t i : {first, second}) moving += label(i) == Provenance::kMoving ? 1U : 0U;
+  }
+  EXPECT_LE(moving, 10u) << "of 40";
+}
+
 TEST_F(MirrorFilterTest, RejectedUndecidedAndNotFiniteAreUnknown) {
   begin();
   const auto rejected = direct({20.0, 0.0}, {5.0, 0.0});

@@ -101,6 +101,16 @@ double Judge::of_stationary(const Measured& m, std::uint32_t seen) const {
   return expected * fit * likelihood({-5.0, 15.0}, m.rcs_dbsm, 0.0, 0.3);
 }
 
+double Judge::moves(const Measured& m) const {
+  // Beyond that nothing stands, and nobody needs to ask what was detected there before.
+  constexpr double kSurely = 12.0;  // standard deviations
+  if (std::abs(m.rate_mps) > kSurely * m.still_std_mps) return 1.0;
+  const double moving =
+      config_.new_object_density * likelihood(kNewStrength, m.rcs_dbsm - kUsualRcs_dbsm, 0.0, config_.strength_doubt);
+  const StationaryGrid::Cell* const cell = known_still(m);
+  return moving / (moving + of_stationary(m, cell == nullptr ? 1 : cell->count));
+}
+
 bool Judge::has_company(const Measured& m, std::uint32_t index) const {
   bool found = false;
   const Eigen::Vector2d place = s_.odometry->point_to_frame(m.position_m);

@@ -60,6 +60,8 @@ class Judge {
   void begin(const Surroundings& surroundings);
   /// As far from a mover as something may be that it is taken for, but for what that is known worse.
   [[nodiscard]] double reach_of_mover(const MovedMover& mover) const;
+  /// Whether what the corrector found moving does, as probability, by its range rate and what is known to stand there.
+  [[nodiscard]] double moves(const Measured& measured) const;
   /// `index` of the detection in the scan.
   [[nodiscard]] Densities weigh(const Measured& measured, std::uint32_t index);
   /// Expected density of ghosts where an object is, which is not considered itself, nor what is detected of it. What

@@ -59,6 +59,15 @@ double root_of_squares(double a, double b) {
   return std::sqrt(a * a + b * b);
 }
 
+/// Of the range rate of what stands, for a line of sight straight up: by turns of the radar about the axes in the
+/// plane.
+double tilt_variance(const std::array<float, 6>& mounting, const Eigen::Vector2d& velocity_mps) {
+  const double x = -velocity_mps.y(), y = velocity_mps.x();
+  const double xx = mounting[0], xy = mounting[1], yy = mounting[3];
+  const double variance = x * x * xx + 2.0 * x * y * xy + y * y * yy;
+  return std::isfinite(variance) ? std::max(0.0, variance) : 0.0;
+}
+
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
   const auto c = [&](std::size_t row, std::size_t column) {
     return static_cast<double>(track.covariance[(at + row) * kTrackStateSize + at + column]);
@@ -150,6 +159,20 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
   }
 }
 
+double MirrorFilter::still_variance_by_height(const CorrectedScan& scan, std::size_t i, const Measured& m) const {
+  const double height_m = scan.z_vehicle_m[i];
+  if ((scan.flags & pipeline_flag::kNoElevation) != 0 || !std::isfinite(height_m)) return 0.0;
+  // A part of the wave comes by way of the road, unresolved, from as far below it as the thing is above: that draws the
+  // elevation to and fro by that share of the angle between both, which no sensor states.
+  constexpr double kByRoad = 0.1;
+  const double by_road_rad = kByRoad * 2.0 * std::max(0.0, height_m) / m.range_m;
+  const double stated_rad = positive_or(scan.elevation_std_rad[i], 0.0);
+  // The higher above the sensor, the more an elevation that is wrong takes out too much or too little own motion.
+  const double rise = (height_m - sensor_height_m_) / m.range_m;
+  const double along = m.direction.dot(sensor_velocity_mps_);
+  return rise * rise * (along * along * (stated_rad * stated_rad + by_road_rad * by_road_rad) + tilt_variance_m2ps2_);
+}
+
 Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const {
   Measured m;
   m.position_m = {scan.x_vehicle_m[i], scan.y_vehicle_m[i]};
@@ -162,8 +185,9 @@ Measured MirrorFilter::measured(const CorrectedScan& scan, std::size_t i) const 
   const double across = m.direction.x() * sensor_velocity_mps_.y() - m.direction.y() * sensor_velocity_mps_.x();
   // A crooked radar takes the own motion out wrongly.
   m.rate_std_mps = root_of_squares(positive_or(scan.range_rate_std_mps[i], 0.05), across * mounting_std_rad_);
-  m.still_std_mps = std::sqrt(m.rate_std_mps * m.rate_std_mps + 0.06 * 0.06 + ego_speed_std_mps_ * ego_speed_std_mps_ +
-                              across * across * m.azimuth_std_rad * m.azimuth_std_rad);
+  m.still_std_mps =
+      std::sqrt(m.rate_std_mps * m.rate_std_mps + 0.06 * 0.06 + ego_speed_std_mps_ * ego_speed_std_mps_ +
+                across * across * m.azimuth_std_rad * m.azimuth_std_rad + still_variance_by_height(scan, i, m));
   m.rcs_dbsm = (scan.fields & scan_field::kRcs) != 0 ? static_cast<double>(scan.rcs_dbsm[i])
                                                      : std::numeric_limits<double>::quiet_NaN();
   return m;
@@ -210,7 +234,7 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
     // Wheels are too weak to be seen in mirrors.
     const Judge::Owner owner = judge_.owner_of(m);
     if (owner.is_wheel) weight *= 0.05;
-    weight *= owner.real;
+    weight *= owner.real * judge_.moves(m);
     const double across = m.range_m * m.azimuth_std_rad;
     movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
                  m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i),
@@ -314,7 +338,9 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   sensor_velocity_mps_ = {g.sensor_velocity_vehicle_mps[0], g.sensor_velocity_vehicle_mps[1]};
   ego_speed_std_mps_ = std::hypot(positive_or(g.ego_speed_std_mps, 0.05),
                                   positive_or(scan.speed_scale_std, 0.0) * static_cast<double>(g.ego_speed_mps));
+  sensor_height_m_ = g.sensor_position_vehicle_m[2];
   mounting_std_rad_ = std::sqrt(positive_or(scan.mounting_covariance[5], 0.0));
+  tilt_variance_m2ps2_ = tilt_variance(scan.mounting_covariance, sensor_velocity_mps_);
   if (!odometry_.advance(time_ns, g.ego_speed_mps, g.ego_yaw_rate_radps)) {
     map_.clear();
     movers_.clear();

@@ -43,6 +43,9 @@ class MirrorFilter final : public Method {
   void try_mirrors(const CorrectedScan& scan, std::size_t count);
   void learn_strength(const Densities& densities, const Measured& measured);
   [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i) const;
+  /// Of the range rate over ground of what stands: by what is not known of its elevation.
+  [[nodiscard]] double still_variance_by_height(const CorrectedScan& scan, std::size_t i,
+                                                const Measured& measured) const;
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
   MirrorConfig config_;
   Odometry odometry_;
@@ -62,6 +65,7 @@ class MirrorFilter final : public Method {
   bool has_tracks_ = false;
   Eigen::Vector2d sensor_m_{0.0, 0.0}, sensor_velocity_mps_{0.0, 0.0};
   double ego_speed_std_mps_ = 0.0, mounting_std_rad_ = 0.0;
+  double sensor_height_m_ = 0.0, tilt_variance_m2ps2_ = 0.0;
 };
 
 }  // namespace boresight::ghosts
