@@ -1,0 +1,107 @@
+// What a detection may be, by itself: a wall on the left, a car ahead, and what was detected of both.
+#include "services/ghost_filter/core/classify/judge.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+
+namespace boresight::ghosts {
+
+namespace {
+
+using Eigen::Vector2d;
+
+class JudgeTest : public testing::Test {
+ protected:
+  JudgeTest() {
+    Mirror wall;
+    wall.curve = {{20.0, 8.0}, {1.0, 0.0}, 0.0};
+    wall.covariance = Eigen::Vector3d(1e-3, 1e-6, 1e-8).asDiagonal();
+    wall.begin_m = -40.0;
+    wall.end_m = 40.0;
+    wall.existence = 0.99;
+    wall.beam = Beam(wall, sensor_);
+    mirrors_.push_back(wall);
+    Object car;
+    car.position_m = {30.0, 2.0};
+    car.half_length_m = 2.2;
+    car.half_width_m = 0.9;
+    car.velocity_mps = kVelocity;
+    car.position_covariance = car.velocity_covariance = 0.01 * Eigen::Matrix2d::Identity();
+    car.weight = 0.95;
+    objects_.push_back(car);
+    sources_.enter_object(0, car.position_m, most_extent(car));
+    static_cast<void>(odometry_.advance(1'000'000'000, 15.0, 0.0));
+    movers_.forget(0, odometry_);
+    judge_.begin({sensor_, {15.0, 0.0}, mirrors_, objects_, &sources_, &odometry_, &movers_, &stationary_});
+  }
+  [[nodiscard]] Measured measured(const Vector2d& place_m, const Vector2d& velocity_mps, double rcs_dbsm) const {
+    Measured m{};
+    m.position_m = place_m;
+    m.range_m = (place_m - sensor_).norm();
+    m.direction = (place_m - sensor_) / m.range_m;
+    m.rate_mps = m.direction.dot(velocity_mps);
+    m.range_std_m = 0.1;
+    m.azimuth_std_rad = 0.004;
+    m.rate_std_mps = 0.05;
+    m.still_std_mps = 0.1;
+    m.rcs_dbsm = rcs_dbsm;
+    return m;
+  }
+  /// The car's end that the sensor sees, and its image by three bounces.
+  [[nodiscard]] Measured of_car() const { return measured({27.8, 2.0}, kVelocity, 5.0); }
+  [[nodiscard]] Measured image() const { return measured({27.8, 14.0}, kVelocity, -21.0); }
+  static void expect_same(const Densities& a, const Densities& b) {
+    EXPECT_EQ(a.moving, b.moving);
+    EXPECT_EQ(a.stationary, b.stationary);
+    EXPECT_EQ(a.type1, b.type1);
+    EXPECT_EQ(a.type2, b.type2);
+    EXPECT_EQ(a.clutter, b.clutter);
+  }
+  static inline const Vector2d kVelocity{20.0, 0.0};
+  Vector2d sensor_{3.6, 0.0};
+  std::vector<Mirror> mirrors_;
+  std::vector<Object> objects_;
+  SourceMap sources_;
+  Odometry odometry_;
+  RecentMovers movers_;
+  StationaryGrid stationary_{64, 0.5};
+  Judge judge_{ClassConfig{}};
+};
+
+}  // namespace
+
+TEST_F(JudgeTest, TheImageIsAGhostBeyondDoubtAndTheCarIsNone) {
+  const Densities car = judge_.weigh(of_car(), 0), ghost = judge_.weigh(image(), 1);
+  EXPECT_GT(car.moving, 20.0 * (car.sum() - car.moving));
+  EXPECT_GT(ghost.type2, 20.0 * (ghost.moving + ghost.stationary + ghost.clutter));
+  EXPECT_GT(ghost.type2, ghost.type1);
+}
+
+TEST_F(JudgeTest, WhatStandsInFrontIsFoundOnceWhoeverAsksFirst) {
+  const Densities car = judge_.weigh(of_car(), 4), ghost = judge_.weigh(image(), 7);
+  EXPECT_EQ(judge_.behind_mirror(of_car(), 4), 0.0);
+  EXPECT_GT(judge_.behind_mirror(image(), 7), 0.9);
+  expect_same(judge_.weigh(of_car(), 4), car);
+  expect_same(judge_.weigh(image(), 7), ghost);
+  // All that was kept is used up.
+  expect_same(judge_.weigh(image(), 7), ghost);
+}
+
+TEST_F(JudgeTest, WhatWasNotAskedForInOrderIsFoundAgain) {
+  const Densities ghost = judge_.weigh(image(), 7);
+  EXPECT_EQ(judge_.behind_mirror(of_car(), 4), 0.0);
+  EXPECT_GT(judge_.behind_mirror(image(), 7), 0.9);
+  expect_same(judge_.weigh(image(), 7), ghost);
+}
+
+TEST_F(JudgeTest, WhatStandsWhereNothingElseCanBeIsThatAlone) {
+  const Densities alone = judge_.weigh_still(measured({-30.0, -20.0}, {0.0, 0.0}, 0.0));
+  EXPECT_GT(alone.stationary, 0.0);
+  EXPECT_EQ(alone.sum(), alone.stationary);
+}
+
+}  // namespace boresight::ghosts
