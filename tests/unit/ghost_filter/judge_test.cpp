@@ -1,12 +1,9 @@
 // What a detection may be, by itself: a wall on the left, a car ahead, and what was detected of both.
 #include "services/ghost_filter/core/classify/judge.hpp"
 
-#include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
-
 
 namespace boresight::ghosts {
 
