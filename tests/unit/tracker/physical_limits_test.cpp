@@ -109,78 +109,73 @@ TEST(TrackerDuplicates, LimbsThatWereLongTrackedAtTheirOwnSpeedsAreOne) {
   EXPECT_EQ(list.number_of_confirmed_tracks, 1u) << "nobody walks through another";
 }
 
-TEST(TrackerDuplicates, AVehicleThatIsOvertakenInTheNextLaneStaysATrack) {
-  // Seen from ahead, their nearest reflections are nearer than a cluster's radius, and 2.5 m/s tells no clusters apart.
+/// From the first second on both are tracked, each by one track to the end. `add(scene, t_s)` says what is detected of
+/// them, `check(track, t_s)` looks at their tracks.
+template <typename Add, typename Check>
+void expect_two_that_stay(int scans, const Add& add, const Check& check) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
   TrackList list;
   std::set<std::uint32_t> ids;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < scans; ++i) {
+    const double t_s = 0.05 * i;
     scene.begin((1000 + 50 * i) * kMillisecond);
-    const double t = 0.05 * i, fast = 54.0 - 7.5 * t, slow = 45.0 - 5.0 * t;
-    for (const double part : {-0.8, 0.0, 0.8}) {
-      scene.add({slow, part}, {-5.0, 0.0});
-      scene.add({fast, 3.4 + part}, {-7.5, 0.0});
-    }
+    add(scene, t_s);
     tracker.step(*scene.scan);
     tracker.write(list);
     if (i < 20) continue;
-    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << t << " s";
-    for (const Track& track : {list.tracks[0], list.tracks[1]}) ids.insert(track.tracking_id);
+    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << t_s << " s";
+    for (const Track& track : {list.tracks[0], list.tracks[1]}) {
+      ids.insert(track.tracking_id);
+      check(track, t_s);
+    }
   }
   EXPECT_EQ(ids.size(), 2u);
 }
 
+void check_nothing(const Track& /*track*/, double /*t_s*/) {}
+
+TEST(TrackerDuplicates, AVehicleThatIsOvertakenInTheNextLaneStaysATrack) {
+  // Seen from ahead, their nearest reflections are nearer than a cluster's radius, and 2.5 m/s tells no clusters apart.
+  const auto add = [](Scene& scene, double t) {
+    const double fast = 54.0 - 7.5 * t, slow = 45.0 - 5.0 * t;
+    for (const double part : {-0.8, 0.0, 0.8}) {
+      scene.add({slow, part}, {-5.0, 0.0});
+      scene.add({fast, 3.4 + part}, {-7.5, 0.0});
+    }
+  };
+  expect_two_that_stay(100, add, check_nothing);
+}
+
 TEST(TrackerDuplicates, APersonWhomACarPassesNearbyStaysATrack) {
   // The car drives away, the person comes towards the radar, a step beside the car's box.
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  TrackList list;
-  std::set<std::uint32_t> ids;
-  for (int i = 0; i < 100; ++i) {
-    scene.begin((1000 + 50 * i) * kMillisecond);
+  const auto add = [](Scene& scene, double t) {
     scene.scan->fields |= scan_field::kRcs;
-    const double t = 0.05 * i;
     scene.scan->rcs_dbsm[0] = scene.scan->rcs_dbsm[1] = 12.0F;
     scene.scan->rcs_dbsm[2] = -6.0F;
     scene.add({15.0 + 3.3 * t, -0.7}, {3.3, 0.0});
     scene.add({15.0 + 3.3 * t, 0.7}, {3.3, 0.0});
     scene.add({32.0 - 1.2 * t, -1.5}, {-1.2, 0.0});
-    tracker.step(*scene.scan);
-    tracker.write(list);
-    if (i < 20) continue;
-    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << t << " s";
-    for (const Track& track : {list.tracks[0], list.tracks[1]}) ids.insert(track.tracking_id);
-  }
-  EXPECT_EQ(ids.size(), 2u);
+  };
+  expect_two_that_stay(100, add, check_nothing);
 }
 
 TEST(TrackerDuplicates, PeopleWhoPassEachOtherAtArmsLengthStayTwo) {
   // One behind the other, seen from the radar, when they meet: only places tell them apart.
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  TrackList list;
-  std::set<std::uint32_t> ids;
-  for (int i = 0; i < 120; ++i) {
-    scene.begin((1000 + 50 * i) * kMillisecond);
+  const auto way = [](double t) { return 1.4 * t - 4.2; };
+  const auto add = [&](Scene& scene, double t) {
     scene.scan->fields |= scan_field::kRcs;
     for (std::size_t k = 0; k < 6; ++k) scene.scan->rcs_dbsm[k] = -8.0F;
-    const double way = 1.4 * 0.05 * i - 4.2;
     for (const double part : {-0.1, 0.0, 0.1}) {
-      scene.add({9.0 + part, way}, {0.0, 1.4});
-      scene.add({9.8 + part, -way}, {0.0, -1.4});
+      scene.add({9.0 + part, way(t)}, {0.0, 1.4});
+      scene.add({9.8 + part, -way(t)}, {0.0, -1.4});
     }
-    tracker.step(*scene.scan);
-    tracker.write(list);
-    if (i < 20) continue;
-    ASSERT_EQ(list.number_of_confirmed_tracks, 2u) << "after " << 0.05 * i << " s";
-    for (const Track& track : {list.tracks[0], list.tracks[1]}) {
-      ids.insert(track.tracking_id);
-      const bool is_near = track.position_vehicle_m[0] < 9.5F;
-      EXPECT_NEAR(track.position_vehicle_m[1], is_near ? way : -way, 0.4) << "after " << 0.05 * i << " s";
-    }
-  }
-  EXPECT_EQ(ids.size(), 2u);
+  };
+  const auto check = [&](const Track& track, double t) {
+    const bool is_near = track.position_vehicle_m[0] < 9.5F;
+    EXPECT_NEAR(track.position_vehicle_m[1], is_near ? way(t) : -way(t), 0.4) << "after " << t << " s";
+  };
+  expect_two_that_stay(120, add, check);
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_obj
     // counts.
     const double by_one = type2(m, crossing, index, but_object, std::max(telling.least, kLittle * densities.type2));
     densities.type2 = std::max(densities.type2, by_one);
-    if (densities.type2 > telling.enough) break;  // one is, by whatever way
+    if (densities.type2 > telling.enough) break;
     const double by_two =
         type2_of_two(m, crossing, index, but_object, std::max(telling.least, kLittle * densities.type2));
     densities.type2 = std::max(densities.type2, by_one + by_two);
