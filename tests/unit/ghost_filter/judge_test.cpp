@@ -33,7 +33,7 @@ class JudgeTest : public testing::Test {
     sources_.enter_object(0, car.position_m, most_extent(car));
     static_cast<void>(odometry_.advance(1'000'000'000, 15.0, 0.0));
     movers_.forget(0, odometry_);
-    judge_.begin({sensor_, {15.0, 0.0}, mirrors_, objects_, &sources_, &odometry_, &movers_, &stationary_});
+    judge_.begin({sensor_, {15.0, 0.0}, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_});
   }
   [[nodiscard]] Measured measured(const Vector2d& place_m, const Vector2d& velocity_mps, double rcs_dbsm) const {
     Measured m{};
@@ -65,6 +65,7 @@ class JudgeTest : public testing::Test {
   SourceMap sources_;
   Odometry odometry_;
   RecentMovers movers_;
+  DirectEchoes echoes_{64};
   StationaryGrid stationary_{64, 0.5};
   Judge judge_{ClassConfig{}};
 };

@@ -13,6 +13,9 @@ namespace {
 /// What is crossed by the lines of sight of moving detections is kept for so many crossings in all.
 constexpr std::size_t kMostKept = 4 * kMaxDetections;
 
+/// Nearer detections in the same direction, of which something may be the ghost.
+constexpr std::size_t kMostFronts = 64;
+
 /// Ways over two mirrors, the least likely ghosts, are what costs most where mirrors are many: so many are followed for
 /// a detection, and for all of a scan.
 constexpr std::size_t kMostPairs = 32, kMostPairsOfScan = 2048;
@@ -39,6 +42,7 @@ constexpr double kBeyondDoubt = 20.0;
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
+  fronts_.reserve(kMostFronts);
   kept_crossings_.reserve(kMostKept);
   kept_.reserve(kMaxDetections);
 }

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "services/ghost_filter/core/classify/config.hpp"
+#include "services/ghost_filter/core/classify/direct_echoes.hpp"
 #include "services/ghost_filter/core/classify/mirror_fan.hpp"
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
@@ -48,6 +49,7 @@ struct Surroundings {
   const SourceMap* sources;  ///< and where they are; weigh() needs the movers entered as well
   const Odometry* odometry;
   const RecentMovers* movers;  ///< of the scan itself, too
+  const DirectEchoes* echoes;  ///< of the scan itself only
   const StationaryGrid* stationary;
 };
 
@@ -101,6 +103,7 @@ class Judge {
     const Mirror* mirror;                ///< the last one
     std::uint32_t other_body = kNobody;  ///< of another mirror on the way
     bool of_own = false;                 ///< the own vehicle may be the target
+    bool silent = false;                 ///< only what shows the sensor no range rate itself may be the target
   };
   void cross(const Measured& measured, std::uint32_t but_object);
   /// As cross(), of what behind_mirror() was asked for before.
@@ -132,8 +135,19 @@ class Judge {
   [[nodiscard]] bool was_before(const StationaryGrid::Cell& cell, const Measured& measured, const Object& object) const;
   /// `seen`: how often something was detected there, this time included.
   [[nodiscard]] double of_stationary(const Measured& measured, std::uint32_t seen) const;
-  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object,
-                             double least) const;
+  [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least);
+  /// What a type-1 ghost may be of: an echo in front, or a tracked object that is not known to have sent one.
+  struct Front {
+    const DirectEcho* echo;
+    double depth_m, reach_m;       ///< along the line of sight, and how far from there the target may be
+    double same_spot, other_spot;  ///< densities across it, for each metre
+  };
+  /// Fills `fronts_`.
+  void find_fronts(const Measured& measured, std::uint32_t index);
+  /// Density of ghosts of an echo in front; `along2` is the variance of the target's place along the line of sight.
+  [[nodiscard]] double of_front(const Front& front, const Target& target, double along2,
+                                const Measured& measured) const;
+  [[nodiscard]] bool shows_rate(const Object& object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
                              std::uint32_t but_object, double least) const;
@@ -150,10 +164,13 @@ class Judge {
   [[nodiscard]] double rate_variance(const Measured& m) const;
   /// Share of what is explained already that it hardly matters whether something else adds to it.
   static constexpr double kLittle = 0.1;
+  /// Of mirrors being there: less is not followed.
+  static constexpr double kLeastChance = 0.05;
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;
   std::vector<Crossing> crossings_;
+  std::vector<Front> fronts_;
   /// Those of the detections that behind_mirror() was asked for, one after the other.
   struct Kept {
     std::uint32_t index, end;

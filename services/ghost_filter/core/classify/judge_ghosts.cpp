@@ -3,38 +3,18 @@
 #include <cmath>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/rate_density.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kSpeedAlong_mps = 20.0, kSpeedAcross_mps = 1.5, kSpeedAnyway_mps = 10.0;
-constexpr double kAlongShare = 0.75;
-constexpr double kHiddenRate_mps = 5.0;  // by which a type-1 ghost's range rate differs from its object's
-constexpr double kLeastRest_m = 0.3;     // behind a mirror
-constexpr double kLeastChance = 0.05;    // of mirrors being there: less is not followed
+constexpr double kLeastRest_m = 0.3;  // behind a mirror
 // Of one object's type-2 ghosts by one mirror, shares by the way out: by the same mirror, directly, by another mirror.
 constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
-constexpr double kAround_m = 2.0;        // of a track's box
-constexpr double kFluctuation_db = 4.0;  // of one reflection from scan to scan
-constexpr double kSame = 0.4;            // share of ghosts whose very reflection was detected directly, too
-
-/// Density of `value` as q·v, of a velocity v of which one component is measured, e·v = rate: most go along the mirror
-/// (rails and walls follow the road), the others anywhere.
-double rate_density(double value, const Eigen::Vector2d& q, const Eigen::Vector2d& e, double rate, double rate_variance,
-                    const Eigen::Vector2d& along, double variance) {
-  const Eigen::Vector2d across(-along.y(), along.x());
-  const auto given = [&](double var_along, double var_across) {
-    const double qa = q.dot(along), qc = q.dot(across), ea = e.dot(along), ec = e.dot(across);
-    const double qe = qa * ea * var_along + qc * ec * var_across;
-    const double ee = ea * ea * var_along + ec * ec * var_across + rate_variance;
-    const double qq = qa * qa * var_along + qc * qc * var_across;
-    return gaussian(value - qe / ee * rate, std::max(0.0, qq - qe * qe / ee) + variance);
-  };
-  return kAlongShare * given(square(kSpeedAlong_mps), square(kSpeedAcross_mps)) +
-         (1.0 - kAlongShare) * given(square(kSpeedAnyway_mps), square(kSpeedAnyway_mps));
-}
+constexpr double kAround_m = 2.0;  // of a track's box
+constexpr double kSame = 0.4;      // share of ghosts whose very reflection was detected directly, too
 
 }  // namespace
 
@@ -50,6 +30,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
+    if (target.silent && shows_rate(o)) return;
     if ((o.position_m - target.place_m).squaredNorm() > square(1.5 * reach_m + o.reach_m)) return;
     // Wheels are too weak to be seen in mirrors: what has another range rate than the body is no image of it.
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
@@ -61,6 +42,7 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     of_tracks += anywhere * reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m).body;
   });
   const double enough = std::max(least, kLittle * of_tracks);
+  if (target.silent) return of_tracks * target.stretch;
   const double of_movers = SourceMap::has_movers(sources) ? of_detected(target, m, but_object, but_index, enough) : 0.0;
   return (of_tracks + of_movers) * target.stretch;
 }
@@ -218,61 +200,6 @@ double Judge::image_of_stationary(const Target& t, const Measured& m) const {
   const bool stands = s_.stationary->index_at(s_.odometry->point_to_frame(t.place_m)) != StationaryGrid::kUnclaimed;
   return (stands ? 1.0 : 0.02) * config_.stationary_image_density * gaussian(m.rate_mps - t.known_mps, variance) *
          likelihood(kGhostStrength, m.rcs_dbsm - kUsualRcs_dbsm, 10.0, config_.strength_doubt);
-}
-
-double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least) const {
-  double density = 0.0;
-  for (const Mirror& mirror : s_.mirrors) {
-    if ((but_object != kNobody && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
-    // The way out and back is no shorter than to the mirror and back.
-    if (mirror.least_range_m > m.range_m || !mirror.beam.may_light(s_.sensor_m, m.position_m)) continue;
-    const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
-    if (!way || !may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))) continue;
-    const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, 0.5);
-    if (!met || met->rest_m > m.range_m - 0.3 || met->probability < kLeastChance) continue;
-    const Eigen::Vector2d& u = met->departure;
-    const Eigen::Vector2d& d = met->arrival;
-    Target t{};
-    t.other_body = kNobody;
-    t.place_m = s_.sensor_m + met->rest_m * m.direction;
-    t.covariance = outer(m.direction, square(2.0 * met->metres_per_m * m.range_std_m) +
-                                          square(met->metres_per_m * met->length_std_m)) +
-                   outer(left_of(m.direction), square(met->rest_m * m.azimuth_std_rad));
-    t.q = 0.5 * (m.direction + d);
-    t.known_mps = 0.5 * ((m.direction - u).dot(s_.sensor_velocity_mps) + (u - d).dot(mirror.velocity_mps));
-    t.noise_variance = rate_variance(m);
-    t.lit_from_m = met->point_m;
-    t.seen_from_m = s_.sensor_m;
-    t.strength = strength_of_ghost(1, m.direction.dot(d));
-    t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
-    t.turn_variance = square(m.azimuth_std_rad);
-    t.mirror = &mirror;
-    const double share = met->probability * config_.type1_per_object;
-    density = std::max(density, share * ghosts_of(t, m, but_object, index, std::max(density, least) / share));
-  }
-  return density;
-}
-
-double Judge::hidden(const Measured& m, std::uint32_t but_object, bool& is_hidden) const {
-  double density = 0.0;
-  is_hidden = false;
-  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
-    const Object& o = s_.objects[i];
-    if (i == but_object || o.own || o.weight < 0.05) continue;
-    const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
-    const double depth = sight.dot(m.direction), beside = std::abs(sight.dot(left_of(m.direction)));
-    if (depth < 1.0 || depth > m.range_m) continue;
-    const double along = std::abs(o.axis.dot(m.direction)), across = std::abs(o.axis.dot(left_of(m.direction)));
-    const double half_depth = o.half_length_m * along + o.half_width_m * across;
-    const double half_width = o.half_length_m * across + o.half_width_m * along;
-    const double blur = depth * m.azimuth_std_rad;
-    if (beside > half_width + 2.0 * blur + 0.3 || m.range_m < depth + half_depth + config_.margin_m) continue;
-    is_hidden = true;
-    density += o.weight * config_.hidden_ghost_density *
-               gaussian(m.rate_mps - m.direction.dot(o.velocity_mps), square(kHiddenRate_mps)) *
-               likelihood(kGhostStrength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, config_.strength_doubt);
-  }
-  return density;
 }
 
 }  // namespace boresight::ghosts

@@ -84,6 +84,7 @@ MirrorFilter::MirrorFilter(const MirrorConfig& config)
   mirrors_.reserve(kMaxReflectorSegments + kMaxVehicleSides);
   objects_.reserve(Judge::kMaxObjects);
   measured_.resize(kMaxDetections);
+  verdicts_.reserve(kMaxDetections);
 }
 
 void MirrorFilter::add_tracks(const TrackList& tracks) {
@@ -225,6 +226,7 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
 
 void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
+  echoes_.clear();
   movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9), odometry_);
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
@@ -236,6 +238,8 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
     if (owner.is_wheel) weight *= 0.05;
     weight *= owner.real * judge_.moves(m);
     const double across = m.range_m * m.azimuth_std_rad;
+    echoes_.add({m.direction, m.range_m, m.range_std_m * m.range_std_m, m.azimuth_std_rad * m.azimuth_std_rad,
+                 m.rate_mps, m.rcs_dbsm, weight, static_cast<std::uint32_t>(i), owner.object});
     movers_.add({odometry_.point_to_frame(m.position_m), odometry_.vector_to_frame(m.direction), m.rate_mps,
                  m.range_std_m * m.range_std_m + across * across, weight, time_ns, static_cast<std::uint32_t>(i),
                  m.rcs_dbsm, owner.object},
@@ -351,12 +355,13 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   predict_objects(scan);
   update_map(scan, count);
   place_mirrors(map_.reflectors(), odometry_, objects_, sensor_m_, config_.classes, mirrors_);
-  judge_.begin({sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &sources_, &odometry_, &movers_, &map_.grid()});
+  judge_.begin(
+      {sensor_m_, sensor_velocity_mps_, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &map_.grid()});
   gather_movers(scan, count);
   judge_tracks();
   try_mirrors(scan, count);
 
-  std::size_t mover = movers_.earlier();
+  verdicts_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     out.provenance[i] = Provenance::kUnknown;
     out.ghost_probability[i] = 0.0F;
@@ -367,16 +372,19 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     const Densities d = moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m);
     write_verdict(d, i, out);
     learn_strength(d, m);
-    if (moving && mover < movers_.size() && movers_[mover].index == i) {
+    if (const std::size_t mover = movers_.earlier() + verdicts_.size();
+        moving && mover < movers_.size() && movers_[mover].index == i) {
       // Where there is a track, that tells the next scans more than single detections.
       const bool tracked = d.of_tracks > kTrackTells * d.sum();
       constexpr double kOfNoTrack = 1e-6;
       const double of_real = (d.of_tracks + kOfNoTrack) / (d.of_tracks + d.of_images + kOfNoTrack);
       const double apparent = d.sum() - d.stationary;  // what does not stand, real or not
       const double real = of_real * d.moving / std::max(apparent, 1e-300);
-      movers_.set_weight(mover++, tracked ? 0.0 : remembered(real) * apparent / std::max(d.sum(), 1e-300));
+      verdicts_.push_back(tracked ? 0.0 : remembered(real) * apparent / std::max(d.sum(), 1e-300));
     }
   }
+  // Only now: what is judged first must not count otherwise than what is judged last.
+  for (std::size_t k = 0; k < verdicts_.size(); ++k) movers_.set_weight(movers_.earlier() + k, verdicts_[k]);
   write_segments(map_.reflectors(), odometry_, out);
 }
 

@@ -51,6 +51,8 @@ class MirrorFilter final : public Method {
   Odometry odometry_;
   ReflectorMap map_;
   RecentMovers movers_;
+  DirectEchoes echoes_{kMaxDetections};
+  std::vector<double> verdicts_;  ///< weights that the scan's movers have for those to come
   Judge judge_;
   MirrorTrials trials_;
   std::vector<Mirror> mirrors_;

@@ -22,6 +22,9 @@ inline constexpr Strength kBodyStrength{0.0, 6.0}, kWheelStrength{-13.0, 7.0}, k
 /// What a body reflects if nothing is known of it: from a pedestrian to a truck.
 inline constexpr double kUsualRcs_dbsm = 5.0, kUsualRcsStd_db = 5.0;
 
+/// Of one reflection from scan to scan.
+inline constexpr double kFluctuation_db = 4.0;
+
 /// Of a ghost whose waves met mirrors `bounces` times on their way out and back, and came back from the object at an
 /// angle to where they had come from: vehicles' strong reflections are corners, which send waves back to there, so that
 /// a ghost by a detour of a few degrees is far stronger than one from aside.

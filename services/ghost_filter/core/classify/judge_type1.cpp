@@ -1,0 +1,159 @@
+// Type-1 ghosts: the last bounce was on the target, so that they lie in its direction, behind it.
+#include <algorithm>
+#include <cmath>
+
+#include "services/ghost_filter/core/classify/judge.hpp"
+#include "services/ghost_filter/core/classify/rate_density.hpp"
+#include "services/ghost_filter/core/density/normal.hpp"
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr double kHiddenRate_mps = 5.0;  // by which a ghost's range rate differs from its object's
+constexpr double kLeastRest_m = 0.5;     // of the target from the sensor
+constexpr double kLeastDetour_m = 0.3;
+/// Share of ghosts whose very spot was detected directly; of the others another spot of the same vehicle was.
+constexpr double kSameSpot = 0.6;
+constexpr double kSpot_m = 0.2;  // how large a spot is
+constexpr double kFar = 3.0;     // standard deviations, beyond which another spot is not of the same vehicle
+constexpr double kLeastShown_mps = 1.0;
+constexpr double kLeastWeight = 0.02;
+
+}  // namespace
+
+bool Judge::shows_rate(const Object& object) const {
+  const Eigen::Vector2d sight = object.position_m - s_.sensor_m;
+  return square(sight.dot(object.velocity_mps)) > square(kLeastShown_mps) * sight.squaredNorm();
+}
+
+void Judge::find_fronts(const Measured& m, std::uint32_t index) {
+  fronts_.clear();
+  const double extent2 = square(config_.extent_std_m), azimuth2 = square(m.azimuth_std_rad);
+  // Of what is nearer than half as far, only what lies in the same direction more closely.
+  const double angle = 2.0 * kFar * std::sqrt(extent2 / square(m.range_m) + azimuth2);
+  s_.echoes->near(m.direction, angle, [&](const DirectEcho& echo) {
+    if (echo.index == index || echo.weight < kLeastWeight || fronts_.size() == fronts_.capacity()) return;
+    const double depth_m = echo.range_m * echo.direction.dot(m.direction);
+    if (depth_m < kLeastRest_m || depth_m > m.range_m + kFar * config_.extent_std_m) return;
+    const double beside_m = echo.range_m * echo.direction.dot(left_of(m.direction));
+    const double across2 = square(depth_m) * (echo.azimuth_variance_rad2 + azimuth2);
+    if (square(beside_m) > square(kFar) * (across2 + extent2)) return;
+    fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2),
+                       kSameSpot * gaussian(beside_m, across2 + square(kSpot_m)),
+                       (1.0 - kSameSpot) * gaussian(beside_m, across2 + extent2)});
+  });
+  for (const Object& o : s_.objects) {
+    if (o.own || o.weight < kLeastWeight || shows_rate(o) || fronts_.size() == fronts_.capacity()) continue;
+    const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
+    const double depth_m = sight.dot(m.direction), beside_m = sight.dot(left_of(m.direction));
+    if (depth_m - o.reach_m > m.range_m || depth_m + o.reach_m < 0.0) continue;
+    if (std::abs(beside_m) > o.reach_m + kFar * depth_m * m.azimuth_std_rad) continue;
+    fronts_.push_back({nullptr, depth_m, o.reach_m, 0.0, 0.0});
+  }
+}
+
+double Judge::of_front(const Front& front, const Target& t, double along2, const Measured& m) const {
+  const DirectEcho& echo = *front.echo;
+  const double off_m = front.depth_m - (t.place_m - s_.sensor_m).dot(m.direction);
+  along2 += echo.range_variance_m2;
+  const double there = front.same_spot * gaussian(off_m, along2 + square(kSpot_m)) +
+                       front.other_spot * gaussian(off_m, along2 + square(config_.extent_std_m));
+  const double strength =
+      std::isfinite(echo.rcs_dbsm)
+          ? likelihood(t.strength, m.rcs_dbsm - echo.rcs_dbsm, kFluctuation_db, config_.strength_doubt)
+          : likelihood(t.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+  // A track knows the velocity, a single detection one component of it.
+  const double rate_mps = m.rate_mps - t.known_mps;
+  const double noise = t.noise_variance + t.turn_variance * square(15.0);
+  const double fits = echo.object != kNobody ? body_rate_at(s_.objects[echo.object], rate_mps, t.q, noise)
+                                             : rate_density(rate_mps, t.q, echo.direction, echo.rate_mps,
+                                                            square(config_.range_rate_slack_mps),
+                                                            left_of(t.mirror->curve.normal()), noise);
+  return echo.weight * there * strength * fits;
+}
+
+double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least) {
+  // What reflects to the radar by way of a mirror reflects directly, too, and stronger: it was detected, in front. Of a
+  // track, which is no detection, that is not asked: it may be out of this radar's sight.
+  const bool is_track = but_object != kNobody;
+  if (!is_track) {
+    find_fronts(m, index);
+    if (fronts_.empty()) return 0.0;
+  }
+  const auto is_near = [&](const Front& front, const Approach& way, double blur_m) {
+    return std::abs(front.depth_m - way.rest_m) <= front.reach_m + way.error_m + blur_m;
+  };
+  double density = 0.0;
+  for (const Mirror& mirror : s_.mirrors) {
+    if ((is_track && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
+    // The way out and back is no shorter than to the mirror and back.
+    if (mirror.least_range_m > m.range_m || !mirror.beam.may_light(s_.sensor_m, m.position_m)) continue;
+    const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
+    if (!way) continue;
+    const double blur_m = kFar * way->metres_per_m * (2.0 * m.range_std_m + way->length_std_m);
+    if (is_track ? !may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))
+                 : std::none_of(fronts_.begin(), fronts_.end(),
+                                [&](const Front& front) { return is_near(front, *way, blur_m); }))
+      continue;
+    const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
+    if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
+    const Eigen::Vector2d& u = met->departure;
+    const Eigen::Vector2d& d = met->arrival;
+    const double along2 =
+        square(2.0 * met->metres_per_m * m.range_std_m) + square(met->metres_per_m * met->length_std_m);
+    Target t{};
+    t.other_body = kNobody;
+    t.place_m = s_.sensor_m + met->rest_m * m.direction;
+    t.covariance = outer(m.direction, along2) + outer(left_of(m.direction), square(met->rest_m * m.azimuth_std_rad));
+    t.q = 0.5 * (m.direction + d);
+    t.known_mps = 0.5 * ((m.direction - u).dot(s_.sensor_velocity_mps) + (u - d).dot(mirror.velocity_mps));
+    t.noise_variance = rate_variance(m);
+    t.lit_from_m = met->point_m;
+    t.seen_from_m = s_.sensor_m;
+    t.strength = strength_of_ghost(1, m.direction.dot(d));
+    t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
+    t.turn_variance = square(m.azimuth_std_rad);
+    t.mirror = &mirror;
+    t.silent = !is_track;
+    const double share = met->probability * config_.type1_per_object;
+    double here = 0.0;
+    bool silent = is_track;
+    for (const Front& front : fronts_) {
+      if (is_track) break;
+      if (!is_near(front, *way, blur_m)) continue;
+      if (front.echo == nullptr) {
+        silent = true;
+      } else {
+        here += t.stretch * of_front(front, t, along2, m);
+      }
+    }
+    if (silent) here += ghosts_of(t, m, but_object, index, std::max(density, least) / share);
+    density = std::max(density, share * here);
+  }
+  return density;
+}
+
+double Judge::hidden(const Measured& m, std::uint32_t but_object, bool& is_hidden) const {
+  double density = 0.0;
+  is_hidden = false;
+  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+    const Object& o = s_.objects[i];
+    if (i == but_object || o.own || o.weight < 0.05) continue;
+    const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
+    const double depth = sight.dot(m.direction), beside = std::abs(sight.dot(left_of(m.direction)));
+    if (depth < 1.0 || depth > m.range_m) continue;
+    const double along = std::abs(o.axis.dot(m.direction)), across = std::abs(o.axis.dot(left_of(m.direction)));
+    const double half_depth = o.half_length_m * along + o.half_width_m * across;
+    const double half_width = o.half_length_m * across + o.half_width_m * along;
+    const double blur = depth * m.azimuth_std_rad;
+    if (beside > half_width + 2.0 * blur + 0.3 || m.range_m < depth + half_depth + config_.margin_m) continue;
+    is_hidden = true;
+    density += o.weight * config_.hidden_ghost_density *
+               gaussian(m.rate_mps - m.direction.dot(o.velocity_mps), square(kHiddenRate_mps)) *
+               likelihood(kGhostStrength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, config_.strength_doubt);
+  }
+  return density;
+}
+
+}  // namespace boresight::ghosts
