@@ -141,12 +141,19 @@ class Judge {
     const DirectEcho* echo;
     double depth_m, reach_m;       ///< along the line of sight, and how far from there the target may be
     double same_spot, other_spot;  ///< densities across it, for each metre
+    double most;                   ///< of the density of its ghosts
   };
   /// Fills `fronts_`.
   void find_fronts(const Measured& measured, std::uint32_t index);
-  /// Density of ghosts of an echo in front; `along2` is the variance of the target's place along the line of sight.
-  [[nodiscard]] double of_front(const Front& front, const Target& target, double along2,
-                                const Measured& measured) const;
+  /// What of that a way may lead to: the most that the echoes may come to, and whether there is something without.
+  struct Ahead {
+    double most;
+    bool silent;
+  };
+  [[nodiscard]] Ahead ahead_on(const Approach& way, const Measured& measured) const;
+  /// Density at the target of ghosts of the echoes in front; `along2` is the variance of its place along the line of
+  /// sight.
+  [[nodiscard]] double of_fronts(const Target& target, double along2, const Measured& measured) const;
   [[nodiscard]] bool shows_rate(const Object& object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,

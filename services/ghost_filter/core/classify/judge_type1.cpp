@@ -19,6 +19,8 @@ constexpr double kSpot_m = 0.2;  // how large a spot is
 constexpr double kFar = 3.0;     // standard deviations, beyond which another spot is not of the same vehicle
 constexpr double kLeastShown_mps = 1.0;
 constexpr double kLeastWeight = 0.02;
+/// Of a straight mirror's way: a bent one's may stretch so much more, or, where that is not known, so much.
+constexpr double kMargin = 1.2, kMostStretch = 10.0;
 
 }  // namespace
 
@@ -30,47 +32,72 @@ bool Judge::shows_rate(const Object& object) const {
 void Judge::find_fronts(const Measured& m, std::uint32_t index) {
   fronts_.clear();
   const double extent2 = square(config_.extent_std_m), azimuth2 = square(m.azimuth_std_rad);
+  const Eigen::Vector2d left = left_of(m.direction);
+  const double most_of_rate = 1.0 / std::sqrt(2.0 * M_PI * rate_variance(m));
   // Of what is nearer than half as far, only what lies in the same direction more closely.
   const double angle = 2.0 * kFar * std::sqrt(extent2 / square(m.range_m) + azimuth2);
   s_.echoes->near(m.direction, angle, [&](const DirectEcho& echo) {
-    if (echo.index == index || echo.weight < kLeastWeight || fronts_.size() == fronts_.capacity()) return;
+    // Written so that what is not measured is not too weak.
+    if (m.rcs_dbsm > echo.rcs_dbsm || echo.index == index || echo.weight < kLeastWeight) return;
     const double depth_m = echo.range_m * echo.direction.dot(m.direction);
     if (depth_m < kLeastRest_m || depth_m > m.range_m + kFar * config_.extent_std_m) return;
-    const double beside_m = echo.range_m * echo.direction.dot(left_of(m.direction));
+    const double beside_m = echo.range_m * echo.direction.dot(left);
     const double across2 = square(depth_m) * (echo.azimuth_variance_rad2 + azimuth2);
-    if (square(beside_m) > square(kFar) * (across2 + extent2)) return;
-    fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2),
-                       kSameSpot * gaussian(beside_m, across2 + square(kSpot_m)),
-                       (1.0 - kSameSpot) * gaussian(beside_m, across2 + extent2)});
+    if (square(beside_m) > square(kFar) * (across2 + extent2) || fronts_.size() == fronts_.capacity()) return;
+    const double same = kSameSpot * gaussian(beside_m, across2 + square(kSpot_m));
+    const double other = (1.0 - kSameSpot) * gaussian(beside_m, across2 + extent2);
+    const double most = (same / kSpot_m + other / config_.extent_std_m) / std::sqrt(2.0 * M_PI) * echo.weight *
+                        config_.type1_per_object * most_of_rate;
+    fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2), same, other, most});
   });
   for (const Object& o : s_.objects) {
     if (o.own || o.weight < kLeastWeight || shows_rate(o) || fronts_.size() == fronts_.capacity()) continue;
     const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
-    const double depth_m = sight.dot(m.direction), beside_m = sight.dot(left_of(m.direction));
+    const double depth_m = sight.dot(m.direction), beside_m = sight.dot(left);
     if (depth_m - o.reach_m > m.range_m || depth_m + o.reach_m < 0.0) continue;
     if (std::abs(beside_m) > o.reach_m + kFar * depth_m * m.azimuth_std_rad) continue;
-    fronts_.push_back({nullptr, depth_m, o.reach_m, 0.0, 0.0});
+    fronts_.push_back({nullptr, depth_m, o.reach_m, 0.0, 0.0, 0.0});
   }
 }
 
-double Judge::of_front(const Front& front, const Target& t, double along2, const Measured& m) const {
-  const DirectEcho& echo = *front.echo;
-  const double off_m = front.depth_m - (t.place_m - s_.sensor_m).dot(m.direction);
-  along2 += echo.range_variance_m2;
-  const double there = front.same_spot * gaussian(off_m, along2 + square(kSpot_m)) +
-                       front.other_spot * gaussian(off_m, along2 + square(config_.extent_std_m));
-  const double strength =
-      std::isfinite(echo.rcs_dbsm)
-          ? likelihood(t.strength, m.rcs_dbsm - echo.rcs_dbsm, kFluctuation_db, config_.strength_doubt)
-          : likelihood(t.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
-  // A track knows the velocity, a single detection one component of it.
+Judge::Ahead Judge::ahead_on(const Approach& way, const Measured& m) const {
+  const double blur_m = way.error_m + kFar * way.metres_per_m * (2.0 * m.range_std_m + way.length_std_m);
+  Ahead ahead{0.0, false};
+  for (const Front& front : fronts_) {
+    if (std::abs(front.depth_m - way.rest_m) > front.reach_m + blur_m) continue;
+    ahead.most += front.most;
+    ahead.silent = ahead.silent || front.echo == nullptr;
+  }
+  // Of most ways it is known how much a place behind the target stretches there.
+  ahead.most *= std::isfinite(way.error_m) ? 2.0 * kMargin * way.metres_per_m : kMostStretch;
+  return ahead;
+}
+
+double Judge::of_fronts(const Target& t, double along2, const Measured& m) const {
+  const double rest_m = (t.place_m - s_.sensor_m).dot(m.direction);
+  const double blur_m = kFar * std::sqrt(along2);
   const double rate_mps = m.rate_mps - t.known_mps;
   const double noise = t.noise_variance + t.turn_variance * square(15.0);
-  const double fits = echo.object != kNobody ? body_rate_at(s_.objects[echo.object], rate_mps, t.q, noise)
-                                             : rate_density(rate_mps, t.q, echo.direction, echo.rate_mps,
-                                                            square(config_.range_rate_slack_mps),
-                                                            left_of(t.mirror->curve.normal()), noise);
-  return echo.weight * there * strength * fits;
+  double sum = 0.0;
+  for (const Front& front : fronts_) {
+    const double off_m = front.depth_m - rest_m;
+    if (front.echo == nullptr || std::abs(off_m) > front.reach_m + blur_m) continue;
+    const DirectEcho& echo = *front.echo;
+    const double off2 = along2 + echo.range_variance_m2;
+    const double there = front.same_spot * gaussian(off_m, off2 + square(kSpot_m)) +
+                         front.other_spot * gaussian(off_m, off2 + square(config_.extent_std_m));
+    const double strength =
+        std::isfinite(echo.rcs_dbsm)
+            ? likelihood(t.strength, m.rcs_dbsm - echo.rcs_dbsm, kFluctuation_db, config_.strength_doubt)
+            : likelihood(t.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+    // A track knows the velocity, a single detection one component of it.
+    const double fits = echo.object != kNobody ? body_rate_at(s_.objects[echo.object], rate_mps, t.q, noise)
+                                               : rate_density(rate_mps, t.q, echo.direction, echo.rate_mps,
+                                                              square(config_.range_rate_slack_mps),
+                                                              left_of(t.mirror->curve.normal()), noise);
+    sum += echo.weight * there * strength * fits;
+  }
+  return sum;
 }
 
 double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least) {
@@ -81,9 +108,6 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     find_fronts(m, index);
     if (fronts_.empty()) return 0.0;
   }
-  const auto is_near = [&](const Front& front, const Approach& way, double blur_m) {
-    return std::abs(front.depth_m - way.rest_m) <= front.reach_m + way.error_m + blur_m;
-  };
   double density = 0.0;
   for (const Mirror& mirror : s_.mirrors) {
     if ((is_track && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
@@ -91,17 +115,15 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (mirror.least_range_m > m.range_m || !mirror.beam.may_light(s_.sensor_m, m.position_m)) continue;
     const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
     if (!way) continue;
-    const double blur_m = kFar * way->metres_per_m * (2.0 * m.range_std_m + way->length_std_m);
-    if (is_track ? !may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))
-                 : std::none_of(fronts_.begin(), fronts_.end(),
-                                [&](const Front& front) { return is_near(front, *way, blur_m); }))
-      continue;
+    const Ahead ahead =
+        is_track ? Ahead{0.0, may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))}
+                 : ahead_on(*way, m);
+    if (!ahead.silent && ahead.most <= std::max(density, least)) continue;
     const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
     if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
     const Eigen::Vector2d& u = met->departure;
     const Eigen::Vector2d& d = met->arrival;
-    const double along2 =
-        square(2.0 * met->metres_per_m * m.range_std_m) + square(met->metres_per_m * met->length_std_m);
+    const double along2 = square(met->metres_per_m) * (square(2.0 * m.range_std_m) + square(met->length_std_m));
     Target t{};
     t.other_body = kNobody;
     t.place_m = s_.sensor_m + met->rest_m * m.direction;
@@ -117,18 +139,8 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     t.mirror = &mirror;
     t.silent = !is_track;
     const double share = met->probability * config_.type1_per_object;
-    double here = 0.0;
-    bool silent = is_track;
-    for (const Front& front : fronts_) {
-      if (is_track) break;
-      if (!is_near(front, *way, blur_m)) continue;
-      if (front.echo == nullptr) {
-        silent = true;
-      } else {
-        here += t.stretch * of_front(front, t, along2, m);
-      }
-    }
-    if (silent) here += ghosts_of(t, m, but_object, index, std::max(density, least) / share);
+    double here = is_track ? 0.0 : t.stretch * of_fronts(t, along2, m);
+    if (ahead.silent) here += ghosts_of(t, m, but_object, index, std::max(density, least) / share);
     density = std::max(density, share * here);
   }
   return density;
