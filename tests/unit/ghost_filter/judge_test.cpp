@@ -48,6 +48,20 @@ class JudgeTest : public testing::Test {
     m.rcs_dbsm = rcs_dbsm;
     return m;
   }
+  /// What was detected of it directly, in the same scan.
+  void hear(const Measured& m, std::uint32_t index, std::uint32_t object) {
+    echoes_.add({m.direction, m.range_m, m.range_std_m * m.range_std_m, m.azimuth_std_rad * m.azimuth_std_rad,
+                 m.rate_mps, m.rcs_dbsm, 1.0, index, object});
+  }
+  /// Out by the wall, back directly from the car's end that the sensor sees.
+  [[nodiscard]] Measured detour(double rcs_dbsm = -12.0) const {
+    const Vector2d end(27.8, 2.0), image(27.8, 14.0);
+    const double direct_m = (end - sensor_).norm(), far_m = (image - sensor_).norm();
+    const Vector2d e = (end - sensor_) / direct_m, u = (image - sensor_) / far_m, d(u.x(), -u.y());
+    Measured m = measured(sensor_ + 0.5 * (direct_m + far_m) * e, {0.0, 0.0}, rcs_dbsm);
+    m.rate_mps = 0.5 * ((e + d).dot(kVelocity) + (e - u).dot(Vector2d(15.0, 0.0)));
+    return m;
+  }
   /// The car's end that the sensor sees, and its image by three bounces.
   [[nodiscard]] Measured of_car() const { return measured({27.8, 2.0}, kVelocity, 5.0); }
   [[nodiscard]] Measured image() const { return measured({27.8, 14.0}, kVelocity, -21.0); }
@@ -94,6 +108,43 @@ TEST_F(JudgeTest, WhatWasNotAskedForInOrderIsFoundAgain) {
   EXPECT_EQ(judge_.behind_mirror(of_car(), 4), 0.0);
   EXPECT_GT(judge_.behind_mirror(image(), 7), 0.9);
   expect_same(judge_.weigh(image(), 7), ghost);
+}
+
+TEST_F(JudgeTest, WhatLiesBehindAStrongerEchoAtTheLengthOfADetourIsAGhost) {
+  hear(of_car(), 0, 0);
+  const Densities ghost = judge_.weigh(detour(), 1);
+  EXPECT_GT(ghost.type1, 5.0 * (ghost.sum() - ghost.type1));
+  const Densities car = judge_.weigh(of_car(), 0);
+  EXPECT_LT(car.type1, 0.01 * car.moving) << "its own echo is not in front of it";
+}
+
+TEST_F(JudgeTest, WithoutAnEchoInFrontOrBehindAWeakerOneNothingIsAType1Ghost) {
+  // Where the car reflects to by the wall, it reflects directly as well.
+  EXPECT_EQ(judge_.weigh(detour(), 1).type1, 0.0);
+  hear(measured({27.8, 2.0}, kVelocity, -15.0), 0, 0);
+  EXPECT_EQ(judge_.weigh(detour(), 1).type1, 0.0);
+}
+
+TEST_F(JudgeTest, AnEchoOfWhatIsNotTrackedIsInFrontAsWell) {
+  hear(of_car(), 0, kNobody);
+  const Densities ghost = judge_.weigh(detour(), 1);
+  EXPECT_GT(ghost.type1, 0.1 * judge_.weigh(detour(), 1).sum());
+  // Elsewhere than the length of a detour it is another part of what reflects there.
+  Measured other = detour();
+  other.position_m += 12.0 * other.direction;
+  other.range_m += 12.0;
+  EXPECT_LT(judge_.weigh(other, 1).type1, 0.01 * ghost.type1);
+}
+
+TEST_F(JudgeTest, WhatShowsNoRangeRateDirectlyNeedsNoEcho) {
+  // Across the line of sight: its own echo looks as if it stood, and is none of a moving detection.
+  const Vector2d sight = (objects_[0].position_m - sensor_).normalized();
+  objects_[0].velocity_mps = {-6.0 * sight.y(), 6.0 * sight.x()};
+  Measured m = detour();
+  const Vector2d end(27.8, 2.0), image(27.8, 14.0);
+  const Vector2d e = (end - sensor_).normalized(), u = (image - sensor_).normalized(), d(u.x(), -u.y());
+  m.rate_mps = 0.5 * ((e + d).dot(objects_[0].velocity_mps) + (e - u).dot(Vector2d(15.0, 0.0)));
+  EXPECT_GT(judge_.weigh(m, 1).type1, 0.0);
 }
 
 TEST_F(JudgeTest, WhatStandsWhereNothingElseCanBeIsThatAlone) {

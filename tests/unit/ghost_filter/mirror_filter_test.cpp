@@ -1,11 +1,13 @@
 // The mirror method in small scenes whose ghosts are exact by the image method.
 #include "services/ghost_filter/core/classify/mirror_filter.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <random>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -149,6 +151,46 @@ TEST_F(MirrorFilterTest, InTheDirectionOfATrackAtTheLengthOfADetourIsAType1Ghost
   EXPECT_GE(cars, scans - 1);
   EXPECT_GE(beside, scans - 1);
   EXPECT_GE(ghosts, scans * 9 / 10);
+}
+
+TEST_F(MirrorFilterTest, TheOrderOfDetectionsTellsNothing) {
+  // Twins: one is given the detections of its last scan in the opposite order.
+  const auto last_scan = [this](bool turned) {
+    filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
+    random_.seed(5);
+    t_s_ = 0.0;
+    const Vector2d p(11.0, 2.0), v(24.0, 0.0);
+    drive(1.0, [&] {
+      track(p, v);
+      hand_over_tracks();
+      rail(kRail);
+    });
+    t_s_ += 0.05;
+    begin();
+    track(p, v);
+    hand_over_tracks();
+    direct(p + Vector2d(-2.25, 0.5), v);
+    direct(p + Vector2d(-2.25, -0.5), v, 2.0);
+    by_two_bounces(p + Vector2d(-2.25, 0.5), v, kRailPlane, true, -16.0);
+    by_two_bounces(p + Vector2d(-2.25, -0.5), v, kRailPlane, false, -12.0);
+    by_three_bounces(p + Vector2d(-2.25, 0.5), v, kRailPlane);
+    const std::uint32_t n = scan_->number_of_valid_detections;
+    const auto turn = [&](auto& values) {
+      if (turned) std::reverse(&values[0], &values[0] + n);
+    };
+    turn(scan_->x_vehicle_m);
+    turn(scan_->y_vehicle_m);
+    turn(scan_->range_m);
+    turn(scan_->range_rate_over_ground_mps);
+    turn(scan_->rcs_dbsm);
+    classify();
+    std::vector<float> told(&out_->ghost_probability[0], &out_->ghost_probability[0] + n);
+    if (turned) std::reverse(told.begin(), told.end());
+    return told;
+  };
+  const std::vector<float> one = last_scan(false), other = last_scan(true);
+  ASSERT_EQ(one.size(), 5U);
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(one[i], other[i], 1e-5F) << i;
 }
 
 TEST_F(MirrorFilterTest, TheSideOfATruckMirrorsAndMovesItself) {

@@ -10,9 +10,11 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kLengthStd_m = 0.45, kLeastLong = 0.25;  // of a track's length; less is no mirror
-constexpr double kVans = 0.2;                             // share of vehicles whose ends mirror: vans, trucks
-constexpr double kLeastVehicle_m = 3.0;                   // what is shorter has no end that mirrors
+constexpr double kLengthStd_m = 0.6;  // of a track's length
+/// Probability of being long enough, from which on a vehicle's sides are thought of as mirrors.
+constexpr double kLeastLong = 0.25, kLeastLongNear = 0.1;
+constexpr double kVans = 0.2;            // share of vehicles whose ends mirror: vans, trucks
+constexpr double kLeastVehicle_m = 3.0;  // what is shorter has no end that mirrors
 /// Where only the end is seen, cosine of the angle to the axis, the length is not; farther away few rays meet an end.
 constexpr double kAlongAxis = 0.97, kFarEnd_m = 25.0;
 
@@ -40,12 +42,14 @@ void add_sides(std::span<const Object> objects, const Eigen::Vector2d& sensor_m,
   for (std::uint32_t i = 0; i < objects.size(); ++i) {
     const Object& o = objects[i];
     // How long a vehicle is shows late: a van's track may still have the length of a car.
-    const double is_long = below((2.0 * o.half_length_m - min_length_m) / kLengthStd_m);
+    const double may_be_long = below((2.0 * o.half_length_m - min_length_m) / kLengthStd_m);
     // From behind or from ahead it is not seen at all: what may be a van is one as often as vans are.
     const Eigen::Vector2d sight = o.position_m - sensor_m;
-    const bool may_be_van = 2.0 * o.half_length_m > kLeastVehicle_m && sight.squaredNorm() < kFarEnd_m * kFarEnd_m &&
-                            std::abs(sight.dot(o.axis)) > kAlongAxis * sight.norm();
-    const double has_end = may_be_van ? std::max(is_long, kVans) : is_long < kLeastLong ? 0.0 : is_long;
+    const bool is_near = sight.squaredNorm() < kFarEnd_m * kFarEnd_m;
+    const double is_long = may_be_long < (is_near ? kLeastLongNear : kLeastLong) ? 0.0 : may_be_long;
+    const bool may_be_van =
+        2.0 * o.half_length_m > kLeastVehicle_m && is_near && std::abs(sight.dot(o.axis)) > kAlongAxis * sight.norm();
+    const double has_end = may_be_van ? std::max(is_long, kVans) : is_long;
     if (o.own || o.weight < 0.5 || has_end <= 0.0) continue;
     const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
     const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth,
@@ -63,7 +67,7 @@ void add_sides(std::span<const Object> objects, const Eigen::Vector2d& sensor_m,
       m.body = i;
       mirrors.push_back(m);
     };
-    if (is_long >= kLeastLong) add_side(o.axis, o.half_length_m, left, o.half_width_m, is_long);
+    if (is_long > 0.0) add_side(o.axis, o.half_length_m, left, o.half_width_m, is_long);
     add_side(left, o.half_width_m, o.axis, o.half_length_m, has_end);
   }
 }
