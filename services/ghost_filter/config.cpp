@@ -60,6 +60,7 @@ ClassConfig read_classes(config::Reader reader) {
   c.lone_ghost_density = reader.number("lone_ghost_density", {0.0, 1.0}, c.lone_ghost_density);
   c.hidden_ghost_density = reader.number("hidden_ghost_density", {0.0, 1.0}, c.hidden_ghost_density);
   c.type1_per_object = reader.number("type1_per_object", {0.0, 100.0}, c.type1_per_object);
+  c.type1_unheard = reader.number("type1_unheard", {0.0, 1.0}, c.type1_unheard);
   c.type2_per_object = reader.number("type2_per_object", {0.0, 100.0}, c.type2_per_object);
   c.real_per_object = reader.number("real_per_object", {0.01, 100.0}, c.real_per_object);
   c.tentative_weight = reader.number("tentative_weight", {0.0, 1.0}, c.tentative_weight);

@@ -53,6 +53,7 @@ std::vector<double> numbers(const Config& config) {
           k.lone_ghost_density,
           k.hidden_ghost_density,
           k.type1_per_object,
+          k.type1_unheard,
           k.type2_per_object,
           k.real_per_object,
           k.tentative_weight,

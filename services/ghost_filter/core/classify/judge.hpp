@@ -103,7 +103,7 @@ class Judge {
     const Mirror* mirror;                ///< the last one
     std::uint32_t other_body = kNobody;  ///< of another mirror on the way
     bool of_own = false;                 ///< the own vehicle may be the target
-    bool silent = false;                 ///< only what shows the sensor no range rate itself may be the target
+    bool silent = false;  ///< the target is not among what was detected: if it shows a range rate that is unlikely
   };
   void cross(const Measured& measured, std::uint32_t but_object);
   /// As cross(), of what behind_mirror() was asked for before.

@@ -30,14 +30,14 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
-    if (target.silent && shows_rate(o)) return;
+    const double weight = o.weight * (target.silent && shows_rate(o) ? config_.type1_unheard : 1.0);
     if ((o.position_m - target.place_m).squaredNorm() > square(1.5 * reach_m + o.reach_m)) return;
     // Wheels are too weak to be seen in mirrors: what has another range rate than the body is no image of it.
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
     const double rate = body_rate_at(o, m.rate_mps - target.known_mps, target.q, noise);
-    if (o.weight * rate * densest <= least) return;
+    if (weight * rate * densest <= least) return;
     const double anywhere =
-        o.weight * rate * likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, config_.strength_doubt);
+        weight * rate * likelihood(target.strength, m.rcs_dbsm - o.rcs_dbsm, o.rcs_std_db, config_.strength_doubt);
     if (anywhere * densest <= least) return;
     of_tracks += anywhere * reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m).body;
   });

@@ -33,7 +33,12 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
   fronts_.clear();
   const double extent2 = square(config_.extent_std_m), azimuth2 = square(m.azimuth_std_rad);
   const Eigen::Vector2d left = left_of(m.direction);
-  const double most_of_rate = 1.0 / std::sqrt(2.0 * M_PI * rate_variance(m));
+  // However it is bent back at the object, no strength is told better, nor a range rate.
+  const Strength strength = strength_of_ghost(1, 1.0);
+  const double most_of_rest =
+      config_.type1_per_object / std::sqrt(2.0 * M_PI * rate_variance(m)) *
+      (std::isfinite(m.rcs_dbsm) ? likelihood(strength, strength.mean_db, kFluctuation_db, config_.strength_doubt)
+                                 : 1.0);
   // Of what is nearer than half as far, only what lies in the same direction more closely.
   const double angle = 2.0 * kFar * std::sqrt(extent2 / square(m.range_m) + azimuth2);
   s_.echoes->near(m.direction, angle, [&](const DirectEcho& echo) {
@@ -46,12 +51,14 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
     if (square(beside_m) > square(kFar) * (across2 + extent2) || fronts_.size() == fronts_.capacity()) return;
     const double same = kSameSpot * gaussian(beside_m, across2 + square(kSpot_m));
     const double other = (1.0 - kSameSpot) * gaussian(beside_m, across2 + extent2);
-    const double most = (same / kSpot_m + other / config_.extent_std_m) / std::sqrt(2.0 * M_PI) * echo.weight *
-                        config_.type1_per_object * most_of_rate;
+    const double most =
+        (same / kSpot_m + other / config_.extent_std_m) / std::sqrt(2.0 * M_PI) * echo.weight * most_of_rest;
     fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2), same, other, most});
   });
   for (const Object& o : s_.objects) {
-    if (o.own || o.weight < kLeastWeight || shows_rate(o) || fronts_.size() == fronts_.capacity()) continue;
+    if (o.own || o.weight < kLeastWeight || (shows_rate(o) && config_.type1_unheard <= 0.0) ||
+        fronts_.size() == fronts_.capacity())
+      continue;
     const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
     const double depth_m = sight.dot(m.direction), beside_m = sight.dot(left);
     if (depth_m - o.reach_m > m.range_m || depth_m + o.reach_m < 0.0) continue;

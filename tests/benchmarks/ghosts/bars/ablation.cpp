@@ -37,6 +37,8 @@ constexpr Variant kVariants[] = {
      [](NamedGhostMethod& m) { m.config.mirror.classes.hidden_ghost_density = kAlways; }},
     {"type 1: by path lengths only",
      [](NamedGhostMethod& m) { m.config.mirror.classes.hidden_ghost_density = kNever; }},
+    {"type 1: of tracks that were not heard, too",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.type1_unheard = 1.0; }},
     {"type 1: not by path lengths", [](NamedGhostMethod& m) { m.config.mirror.classes.type1_per_object = kNever; }},
     {"no images of the stationary world",
      [](NamedGhostMethod& m) { m.config.mirror.classes.stationary_image_density = kNever; }},
