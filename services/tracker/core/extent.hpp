@@ -19,6 +19,12 @@ struct VisibleFaces {
   double side;  ///< +1 the left side, −1 the right one
 };
 
+/// Where the reflections of what a sensor sees of a box lie.
+struct VisiblePart {
+  Eigen::Vector2d mean_m;    ///< relative to the box's centre, in vehicle axes
+  double variance_along_m2;  ///< of one reflection, along the box
+};
+
 /// Box along the heading. A side that is seen grows quickly to what is seen and shrinks slowly, as one scan sees only
 /// some of its reflections; a side that is not seen stays as it is, at the start that of a car.
 struct Extent {
@@ -41,14 +47,15 @@ struct Extent {
     return {face(at.x(), 0.5 * length_m), face(at.y(), 0.5 * width_m)};
   }
 
-  /// Where the mean of the reflections lies, relative to the centre of the box, if the faces that look towards the
-  /// sensor reflect evenly along their lengths. Vehicle axes.
-  [[nodiscard]] Eigen::Vector2d visible_mean(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
+  /// The reflections of the faces that look towards the sensor, if those reflect evenly along their lengths.
+  [[nodiscard]] VisiblePart visible_part(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
     const VisibleFaces faces = visible_faces(centre_m, sensor_m);
-    const double end_share = std::abs(faces.end) * width_m, side_share = std::abs(faces.side) * length_m;
-    if (end_share + side_share <= 0.0) return {0.0, 0.0};
-    const Eigen::Vector2d body(0.5 * faces.end * length_m * end_share, 0.5 * faces.side * width_m * side_share);
-    return from_body(body) / (end_share + side_share);
+    const double end = std::abs(faces.end) * width_m, side = std::abs(faces.side) * length_m;
+    if (end + side <= 0.0) return {{0.0, 0.0}, 0.0};
+    const double of_side = side / (end + side), of_end = 1.0 - of_side;
+    const Eigen::Vector2d mean(0.5 * faces.end * length_m * of_end, 0.5 * faces.side * width_m * of_side);
+    // One reflection lies at the end, or anywhere along the length.
+    return {from_body(mean), of_side * (1.0 / 12.0 + 0.25 * of_end) * length_m * length_m};
   }
 
   /// The course, or what is known of the heading, turns the box.
@@ -57,6 +64,24 @@ struct Extent {
     // that follows over some ten updates, or one would excite the other.
     constexpr double kGain = 0.1;
     heading_rad = geometry::wrap_angle(heading_rad + kGain * geometry::wrap_angle(wanted_rad - heading_rad));
+  }
+
+  /// What is seen of a side farther than `sure_m` beyond an end of the box is of it: the box grows there, and its
+  /// centre moves by what is returned.
+  [[nodiscard]] Eigen::Vector2d grow_to(const Cluster& cluster, const Eigen::Vector2d& centre_m,
+                                        const Eigen::Vector2d& sensor_m, double sure_m) {
+    if (length_m < kTruck_m || visible_faces(centre_m, sensor_m).side == 0.0) return {0.0, 0.0};
+    const double end_m = 0.5 * length_m + sure_m;
+    double ahead_m = 0.0, behind_m = 0.0;
+    for (std::uint32_t i = 0; i < cluster.number_on_outline; ++i) {
+      const double at = to_body(cluster.outline[i] - centre_m).x();
+      ahead_m = std::max(ahead_m, at - end_m);
+      behind_m = std::max(behind_m, -at - end_m);
+    }
+    constexpr double kGain = 0.3;
+    const double more_m = kGain * std::min(std::max(ahead_m, behind_m), kLongest_m - length_m);
+    length_m += more_m;
+    return from_body({ahead_m > behind_m ? 0.5 * more_m : -0.5 * more_m, 0.0});
   }
 
   /// What is seen now sets the size; `velocity` over ground tells what it may be.
@@ -72,11 +97,11 @@ struct Extent {
       high = high.cwiseMax(p);
     }
     const VisibleFaces faces = visible_faces(centre_m, sensor_m);
-    // Few detections say little of how long a side is, and a side that is seen at a slant shows little of itself.
+    // Few detections say little of how long a side is, and a face that is seen at a slant shows little of itself.
     const double said = static_cast<double>(n) / static_cast<double>(n + 3);
     const Eigen::Vector2d sight = to_body(centre_m - sensor_m).normalized();
-    follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * sight.y() * sight.y(), kSmallest_m,
-           is_small ? kCycleLength_m : kLongest_m);
+    follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * side_shown(to_body(sensor_m - centre_m)),
+           kSmallest_m, is_small ? kCycleLength_m : kLongest_m);
     const double narrowest_m = !is_small && length_m > kTwoWheeler_m ? std::min(width_m, kNarrowestCar_m) : kSmallest_m;
     follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), narrowest_m,
            is_small ? kCycleWidth_m : kWidest_m);
@@ -116,7 +141,7 @@ struct Extent {
   }
 
   [[nodiscard]] ObjectClass object_class() const {
-    if (length_m > 6.5) return ObjectClass::kTruck;
+    if (length_m > kTruck_m) return ObjectClass::kTruck;
     if (length_m > 2.6) return ObjectClass::kCar;
     return length_m > 1.4 ? ObjectClass::kTwoWheeler : ObjectClass::kUnknown;
   }
@@ -193,6 +218,7 @@ struct Extent {
   // What more is seen across is noise, a neighbour or a ghost: 2.6 m is the most that is allowed on roads (96/53/EC).
   // And what is longer than a two-wheeler is not as narrow as the part of it that is seen.
   static constexpr double kWidest_m = 2.6, kTwoWheeler_m = 3.0, kNarrowestCar_m = 1.6;
+  static constexpr double kTruck_m = 6.5;
   static constexpr double kCycleLength_m = 2.0, kCycleWidth_m = 1.0;
   static constexpr double kSmallLength_m = 1.2, kSmallWidth_m = 0.7;  // between a person and a cycle
   static constexpr double kLeastOfVehicle_dbsm = 3.0;
@@ -208,6 +234,12 @@ struct Extent {
   [[nodiscard]] Eigen::Vector2d from_body(const Eigen::Vector2d& v) const {
     const double c = std::cos(heading_rad), s = std::sin(heading_rad);
     return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+  }
+  /// How much of a side is to be seen up to its far end, 0 … 1: from nearby that is at a slant even for a sensor beside
+  /// the middle, where nothing has a range rate over ground. Of a truck alongside each radar sees but a piece.
+  [[nodiscard]] double side_shown(const Eigen::Vector2d& sensor_in_body_m) const {
+    const double along_m = std::abs(sensor_in_body_m.x()) + 0.5 * length_m, beside_m = sensor_in_body_m.y();
+    return beside_m * beside_m / (beside_m * beside_m + along_m * along_m);
   }
   /// `shown`: how much of it was to be seen, 0 … 1.
   static void follow(double& value, double seen, double shown, double low, double high) {

@@ -11,6 +11,7 @@
 #include "services/tracker/core/stopped.hpp"
 #include "services/tracker/core/track_message.hpp"
 #include "services/tracker/core/visibility.hpp"
+#include "services/tracker/core/wheels.hpp"
 
 namespace boresight::tracking {
 
@@ -18,15 +19,20 @@ namespace {
 
 /// The cluster as a measurement of the centre of the box that it would be the visible part of. How far the mean of what
 /// is seen may be from where the box says it is goes with its size.
-PositionRate measurement_of(const Cluster& cluster, const Extent& extent, const Eigen::Vector2d& visible_mean_m,
+PositionRate measurement_of(const Cluster& cluster, const Extent& extent, const VisiblePart& visible,
                             double centre_std_m) {
   constexpr double kLeast = 0.25;  // of a person who walks
   const double share = extent.is_small ? std::clamp(extent.length_m / Extent::kCarLength_m, kLeast, 1.0) : 1.0;
   PositionRate m;
-  m.value << cluster.position_m - visible_mean_m, cluster.range_rate_over_ground_mps;
+  m.value << cluster.position_m - visible.mean_m, cluster.range_rate_over_ground_mps;
   m.covariance.setZero();
   m.covariance.topLeftCorner<2, 2>() =
       cluster.covariance_m2 + share * share * centre_std_m * centre_std_m * Eigen::Matrix2d::Identity();
+  // Few detections of a long vehicle are of any part of it. People have no faces.
+  const double of_part_m2 = extent.is_small ? 0.0 : visible.variance_along_m2 / cluster.number_of_detections;
+  const Eigen::Vector2d axis(std::cos(extent.heading_rad), std::sin(extent.heading_rad));
+  m.covariance.topLeftCorner<2, 2>() +=
+      (std::max(0.0, of_part_m2 - centre_std_m * centre_std_m)) * axis * axis.transpose();
   m.covariance(2, 2) = cluster.range_rate_variance;
   m.line_of_sight = cluster.mean_sight;
   return m;
@@ -136,10 +142,10 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
   cluster_used_.fill(false);
   assignment_.reset(tracks_.size(), clusters.size(), config_.gate_chi2);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    visible_mean_[t] = tracks_[t].extent.visible_mean(tracks_[t].state.mean.head<2>(), sensor);
+    visible_[t] = tracks_[t].extent.visible_part(tracks_[t].state.mean.head<2>(), sensor);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      const Distance d = distance(
-          tracks_[t].state, measurement_of(clusters[c], tracks_[t].extent, visible_mean_[t], config_.centre_std_m));
+      const Distance d =
+          distance(tracks_[t].state, measurement_of(clusters[c], tracks_[t].extent, visible_[t], config_.centre_std_m));
       if (d.squared >= config_.gate_chi2) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
@@ -154,8 +160,12 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
     TrackedObject& track = tracks_[t];
     // What may be a ghost moves the track by as little as it is likely real.
-    PositionRate measurement = measurement_of(cluster, track.extent, visible_mean_[t], config_.centre_std_m);
+    PositionRate measurement = measurement_of(cluster, track.extent, visible_[t], config_.centre_std_m);
     measurement.covariance /= cluster.realness;
+    // What is new knows no velocity to tell wheels by; people are nothing but limbs.
+    if (track.confirmed && !track.extent.is_small) {
+      measurement.covariance(2, 2) /= chance_of_body(track.state, measurement);
+    }
     if (!update(track.state, measurement)) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
     update_extent(track, cluster, sensor, has_elevation);
@@ -193,6 +203,13 @@ void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const 
     track.extent.follow_heading(track.state.heading.rad);
   } else if (velocity.norm() > kLeastCourse_mps) {
     track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));
+  }
+  if (track.confirmed) {
+    constexpr double kSure = 2.0;  // standard deviations
+    const Eigen::Vector2d axis(std::cos(track.extent.heading_rad), std::sin(track.extent.heading_rad));
+    const Eigen::Matrix2d covariance = track.state.covariance.topLeftCorner<2, 2>() + cluster.covariance_m2;
+    const double sure_m = kSure * std::sqrt(axis.dot(covariance * axis));
+    track.state.mean.head<2>() += track.extent.grow_to(cluster, track.state.mean.head<2>(), sensor, sure_m);
   }
   track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
 }
@@ -236,7 +253,7 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
   track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
   if (cluster.number_on_outline > 0) track.extent.hear(cluster.strongest_dbsm, track.state.mean.segment<2>(2).norm());
-  track.state.mean.head<2>() = cluster.position_m - track.extent.visible_mean(cluster.position_m, sensor);
+  track.state.mean.head<2>() = cluster.position_m - track.extent.visible_part(cluster.position_m, sensor).mean_m;
   track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
   track.history = 1;
   track.evidence[0] = static_cast<float>(cluster.realness);

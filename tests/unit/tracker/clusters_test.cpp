@@ -169,12 +169,59 @@ TEST(Extent, KnowsWhichFacesAreSeen) {
   const VisibleFaces from_behind = car.visible_faces(centre, {0.0, 0.0});
   EXPECT_EQ(from_behind.end, -1.0);
   EXPECT_EQ(from_behind.side, 0.0);
-  EXPECT_LT((car.visible_mean(centre, {0.0, 0.0}) - Eigen::Vector2d(-2.0, 0.0)).norm(), 1e-12);
+  EXPECT_LT((car.visible_part(centre, {0.0, 0.0}).mean_m - Eigen::Vector2d(-2.0, 0.0)).norm(), 1e-12);
   // From the left and behind: the rear (2 m long) and the left side (4 m long).
-  const Eigen::Vector2d mean = car.visible_mean(centre, {0.0, 20.0});
+  const Eigen::Vector2d mean = car.visible_part(centre, {0.0, 20.0}).mean_m;
   EXPECT_NEAR(mean.x(), -2.0 * 2.0 / 6.0, 1e-12);
   EXPECT_NEAR(mean.y(), 1.0 * 4.0 / 6.0, 1e-12);
-  EXPECT_EQ(car.visible_mean(centre, centre), Eigen::Vector2d(0.0, 0.0)) << "from inside";
+  EXPECT_EQ(car.visible_part(centre, centre).mean_m, Eigen::Vector2d(0.0, 0.0)) << "from inside";
+}
+
+TEST(Extent, AReflectionOfASideIsOfAnyPlaceAlongIt) {
+  const Extent truck{.heading_rad = 0.0, .length_m = 12.0, .width_m = 2.0};
+  const Eigen::Vector2d centre(30.0, 0.0);
+  EXPECT_NEAR(truck.visible_part(centre, {30.0, 20.0}).variance_along_m2, 12.0, 1e-12) << "from beside";
+  EXPECT_EQ(truck.visible_part(centre, {0.0, 0.0}).variance_along_m2, 0.0) << "from behind";
+  // From both, the rear (2 m) and the side (12 m): around their common mean.
+  const double of_side = 12.0 / 14.0;
+  EXPECT_NEAR(truck.visible_part(centre, {0.0, 20.0}).variance_along_m2,
+              of_side * 12.0 + of_side * (1.0 - of_side) * 36.0, 1e-9);
+}
+
+TEST(Extent, OfWhatIsNearbyEachScanShowsAPieceOnly) {
+  Extent near{.heading_rad = 0.0, .length_m = 16.0, .width_m = 2.5}, far = near;
+  const Eigen::Vector2d centre(0.0, -3.5), velocity(20.0, 0.0);
+  Cluster cluster{};
+  cluster.strongest_dbsm = std::numeric_limits<double>::quiet_NaN();
+  cluster.number_on_outline = 2;
+  cluster.outline[0] = {3.0, -2.2};
+  cluster.outline[1] = {7.0, -2.2};
+  for (int i = 0; i < 100; ++i) {
+    near.update(cluster, centre, velocity, {0.0, 0.0}, false);
+    far.update(cluster, centre, velocity, {0.0, 40.0}, false);
+  }
+  EXPECT_GT(near.length_m, 14.0) << "alongside";
+  EXPECT_LT(far.length_m, 12.0);
+}
+
+TEST(Extent, GrowsToWhatIsSeenBeyondItsEnd) {
+  const Extent before{.heading_rad = M_PI / 2, .length_m = 10.0, .width_m = 2.0};
+  const Eigen::Vector2d centre(5.0, 20.0), beside(0.0, 20.0);
+  Cluster cluster{};
+  cluster.number_on_outline = 1;
+  cluster.outline[0] = {4.0, 28.0};  // 3 m beyond the front
+  Extent box = before;
+  Eigen::Vector2d place = centre;
+  for (int i = 0; i < 50; ++i) place += box.grow_to(cluster, place, beside, 1.0);
+  EXPECT_NEAR(box.length_m, 12.0, 1e-3);
+  EXPECT_NEAR(place.y() - 0.5 * box.length_m, 15.0, 1e-9) << "the rear stays where it is";
+  EXPECT_NEAR(place.x(), 5.0, 1e-9);
+  box = before;
+  EXPECT_EQ(box.grow_to(cluster, centre, {5.0, 0.0}, 1.0), Eigen::Vector2d(0.0, 0.0)) << "its ghost, from behind";
+  EXPECT_EQ(box.grow_to(cluster, centre, beside, 4.0), Eigen::Vector2d(0.0, 0.0)) << "as the place is not known";
+  EXPECT_EQ(box.length_m, 10.0);
+  Extent car{.heading_rad = M_PI / 2, .length_m = 4.5, .width_m = 1.8};
+  EXPECT_EQ(car.grow_to(cluster, centre, beside, 1.0), Eigen::Vector2d(0.0, 0.0)) << "the next car";
 }
 
 TEST(Extent, TurnsWithTheObject) {
@@ -183,8 +230,10 @@ TEST(Extent, TurnsWithTheObject) {
   for (const double angle : {0.3, 1.7, -2.5}) {
     const Eigen::Rotation2Dd turn(angle);
     const Extent turned{.heading_rad = angle, .length_m = 6.0, .width_m = 2.0};
-    EXPECT_LT((turned.visible_mean(turn * centre, turn * sensor) - turn * straight.visible_mean(centre, sensor)).norm(),
-              1e-12);
+    EXPECT_LT(
+        (turned.visible_part(turn * centre, turn * sensor).mean_m - turn * straight.visible_part(centre, sensor).mean_m)
+            .norm(),
+        1e-12);
   }
 }
 
