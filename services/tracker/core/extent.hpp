@@ -38,6 +38,7 @@ struct Extent {
   /// A person's or a cycle's. A vehicle's corners and plates reflect far more than people and cycles do (some 10 dBsm
   /// beside some -5), so that strength tells sizes apart long before the detections do. Without RCS all are vehicles.
   bool is_small = false;
+  bool was_small = false;  ///< when it was first heard
 
   [[nodiscard]] VisibleFaces visible_faces(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
     const Eigen::Vector2d at = to_body(sensor_m - centre_m);
@@ -124,12 +125,15 @@ struct Extent {
   /// As strong as `dbsm` and at that speed: as long as a person or a cycle would be so, the box is no larger than what
   /// was seen of it.
   void hear(double dbsm, double speed_mps) {
-    constexpr double kGain = 0.2;
+    constexpr double kGain = 0.2, kSurely_db = 3.0;
     if (!std::isfinite(dbsm)) return;
     const bool is_first = !std::isfinite(strongest_dbsm);
     strongest_dbsm = is_first ? dbsm : strongest_dbsm + kGain * (dbsm - strongest_dbsm);
     const bool small = may_be_small(speed_mps);
-    if (is_first && small) {
+    was_small = was_small || (is_first && small);
+    // Who was taken for a vehicle because a vehicle passed is small again when that is gone.
+    const bool is_again = was_small && !is_small && small && strongest_dbsm < kLeastOfVehicle_dbsm - kSurely_db;
+    if ((is_first && small) || is_again) {
       is_small = true;
       length_m = kSmallLength_m;
       width_m = kSmallWidth_m;

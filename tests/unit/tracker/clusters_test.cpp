@@ -224,6 +224,27 @@ TEST(Extent, GrowsToWhatIsSeenBeyondItsEnd) {
   EXPECT_EQ(car.grow_to(cluster, centre, beside, 1.0), Eigen::Vector2d(0.0, 0.0)) << "the next car";
 }
 
+TEST(Extent, WhoWasTakenForAVehicleThatPassedIsSmallAgain) {
+  const auto hear = [](Extent& extent, double dbsm) {
+    for (int i = 0; i < 30; ++i) extent.hear(dbsm, 1.4);
+  };
+  Extent person, car;
+  hear(person, -5.0);
+  EXPECT_TRUE(person.is_small);
+  hear(person, 12.0);
+  EXPECT_FALSE(person.is_small);
+  EXPECT_EQ(person.length_m, Extent::kCarLength_m);
+  hear(person, 1.0);
+  EXPECT_FALSE(person.is_small) << "not at the first doubt";
+  hear(person, -5.0);
+  EXPECT_TRUE(person.is_small);
+  EXPECT_LT(person.length_m, 1.5);
+  // What began as a vehicle and is hardly seen any more stays one.
+  hear(car, 12.0);
+  hear(car, -5.0);
+  EXPECT_FALSE(car.is_small);
+}
+
 TEST(Extent, TurnsWithTheObject) {
   const Eigen::Vector2d centre(10.0, 5.0), sensor(-7.0, 20.0);
   const Extent straight{.heading_rad = 0.0, .length_m = 6.0, .width_m = 2.0};

@@ -204,31 +204,6 @@ TEST_F(TrackerTest, ALongVehicleIsFoundByOneOfItsEnds) {
   EXPECT_NEAR(list().tracks[0].position_vehicle_m[0], x - 0.3 + 8.0, 3.0);
 }
 
-/// By how much a last detection, whose range rate is that much more than the body's, makes a car faster.
-double faster_by(double more_mps) {
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  const auto list = std::make_unique<TrackList>();
-  double before_mps = 0.0;
-  for (int i = 0; i <= 40; ++i) {
-    tracker.write(*list);
-    before_mps = list->tracks[0].velocity_over_ground_mps[0];
-    scene.begin((1000 + 50 * i) * kMillisecond);
-    scene.add({20.0 + 0.5 * i, 3.0}, {10.0, 0.0});
-    if (i == 40) scene.scan->range_rate_over_ground_mps[0] += static_cast<float>(more_mps);
-    tracker.step(*scene.scan);
-  }
-  tracker.write(*list);
-  EXPECT_EQ(list->tracks[0].number_of_detections, 1u);
-  return static_cast<double>(list->tracks[0].velocity_over_ground_mps[0]) - before_mps;
-}
-
-TEST(TrackerUpdate, AWheelMakesNothingFaster) {
-  const double of_noise = faster_by(0.5) - faster_by(0.0), of_wheel = faster_by(1.5) - faster_by(0.0);
-  EXPECT_GT(of_noise, 0.0);
-  EXPECT_LT(of_wheel, of_noise);
-}
-
 TEST_F(TrackerTest, WhatLiesBehindACarInTheLineOfSightMakesItNoLonger) {
   // A car straight ahead and its type-1 ghost, which the filter does not tell: a detour of 8 m by a rail.
   for (int i = 0; i < 60; ++i) {
