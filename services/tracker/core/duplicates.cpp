@@ -30,7 +30,10 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
   if (in_box) return true;
   if (apart_mps > config.duplicate_speed_mps) return false;
   const double margin_m = config.duplicate_margin_m;
-  if (a.extent.contains(p, q, margin_m) || b.extent.contains(q, p, margin_m)) return true;
+  // Two that were confirmed may be vehicles side by side, drawn together as their places are not known well yet.
+  const bool are_vehicles = a.confirmed && b.confirmed && !a.extent.is_small && !b.extent.is_small;
+  const double beside_m = are_vehicles ? 0.0 : margin_m;
+  if (a.extent.contains(p, q, margin_m, beside_m) || b.extent.contains(q, p, margin_m, beside_m)) return true;
   if (!a.extent.shows_side(p, sensor)) return false;
   // Both ends of a long vehicle: nobody follows so closely.
   constexpr double kSmallestHeadway_s = 0.3;

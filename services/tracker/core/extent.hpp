@@ -194,8 +194,13 @@ struct Extent {
 
   /// Whether a point lies in the box, made larger by a margin on every side.
   [[nodiscard]] bool contains(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& point_m, double margin_m) const {
+    return contains(centre_m, point_m, margin_m, margin_m);
+  }
+  /// The same with margins ahead and behind, and beside it.
+  [[nodiscard]] bool contains(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& point_m, double along_m,
+                              double beside_m) const {
     const Eigen::Vector2d at = to_body(point_m - centre_m);
-    return std::abs(at.x()) < 0.5 * length_m + margin_m && std::abs(at.y()) < 0.5 * width_m + margin_m;
+    return std::abs(at.x()) < 0.5 * length_m + along_m && std::abs(at.y()) < 0.5 * width_m + beside_m;
   }
 
   /// Whether the box is in the way from one place to another that is not in it.

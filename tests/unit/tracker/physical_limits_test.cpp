@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "services/tracker/core/duplicates.hpp"
 #include "tests/unit/tracker/scene.hpp"
 
 namespace boresight::tracking {
@@ -25,6 +27,29 @@ VehicleConfig four_corners() {
     }
   }
   return vehicle;
+}
+
+/// How many of two tracks of cars are left, the second one that far ahead of the first and to its left.
+std::size_t left_of_two(double ahead_m, double left_m, bool confirmed) {
+  std::vector<TrackedObject> tracks(2);
+  for (TrackedObject& track : tracks) {
+    track.confirmed = true;
+    track.age_s = 1.0;
+    track.state.mean << -17.0, 0.0, 15.0, 0.0, 0.0, 0.0;
+    track.state.covariance.setIdentity();
+  }
+  tracks[1].state.mean.head<2>() += Eigen::Vector2d(ahead_m, left_m);
+  tracks[1].state.mean(2) += 2.5;
+  tracks[1].confirmed = confirmed;
+  remove_duplicates(tracks, {-0.8, 0.0}, Config{});
+  return tracks.size();
+}
+
+TEST(Duplicates, NeighboursDrawnTogetherStayTwoButNothingIsTwiceInItsPlace) {
+  EXPECT_EQ(left_of_two(-2.4, 1.8, true), 2U) << "overtakes in the next lane, whose place is not known well yet";
+  EXPECT_EQ(left_of_two(-2.4, 1.8, false), 1U) << "another part of the same, as far as is known";
+  EXPECT_EQ(left_of_two(-1.0, 0.5, true), 1U);
+  EXPECT_EQ(left_of_two(-3.0, 0.5, true), 1U) << "its other end";
 }
 
 TEST(Extent, TellsTheShortestWayOffTheOwnVehicle) {

@@ -41,8 +41,8 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
     if (anywhere * densest <= least) return;
     of_tracks += anywhere * reflections_at(o, target.place_m, blurred, target.seen_from_m, target.lit_from_m).body;
   });
-  const double enough = std::max(least, kLittle * of_tracks);
   if (target.silent) return of_tracks * target.stretch;
+  const double enough = std::max(least, kLittle * of_tracks);
   const double of_movers = SourceMap::has_movers(sources) ? of_detected(target, m, but_object, but_index, enough) : 0.0;
   return (of_tracks + of_movers) * target.stretch;
 }

@@ -90,6 +90,7 @@ double Judge::of_fronts(const Target& t, double along2, const Measured& m) const
     const double off_m = front.depth_m - rest_m;
     if (front.echo == nullptr || std::abs(off_m) > front.reach_m + blur_m) continue;
     const DirectEcho& echo = *front.echo;
+    if (echo.object != kNobody && echo.object == t.mirror->body) continue;  // nothing is seen in its own side
     const double off2 = along2 + echo.range_variance_m2;
     const double there = front.same_spot * gaussian(off_m, off2 + square(kSpot_m)) +
                          front.other_spot * gaussian(off_m, off2 + square(config_.extent_std_m));
