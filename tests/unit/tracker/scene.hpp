@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/geometry/frames.hpp"
@@ -69,5 +70,24 @@ class Scene {
   }
   std::unique_ptr<ClassifiedScan> scan = std::make_unique<ClassifiedScan>();
 };
+
+/// By how much the last of 41 scans changes what `value` reads from the only track; `add` fills the scans.
+template <typename Add, typename Value>
+double changed_by_last_scan(const Add& add, const Value& value) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  double before = 0.0;
+  for (int i = 0; i <= 40; ++i) {
+    tracker.write(*list);
+    before = static_cast<double>(value(list->tracks[0]));
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    add(scene, i, i == 40);
+    tracker.step(*scene.scan);
+  }
+  tracker.write(*list);
+  EXPECT_EQ(list->number_of_tracks, 1u);
+  return static_cast<double>(value(list->tracks[0])) - before;
+}
 
 }  // namespace boresight::tracking

@@ -119,20 +119,12 @@ TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
 
 /// How far a last detection, beside the track by 1.5 m, moves it.
 double moved_by(double ghost_probability) {
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  const auto list = std::make_unique<TrackList>();
-  double before = 0.0;
-  for (int i = 0; i <= 40; ++i) {
-    tracker.write(*list);
-    before = list->tracks[0].position_vehicle_m[1];
-    scene.begin((1000 + 50 * i) * kMillisecond);
-    scene.add({30.0 + 0.4 * i, i < 40 ? 0.0 : 1.5}, {8.0, 0.0}, Provenance::kMoving, i < 40 ? 0.0 : ghost_probability);
-    tracker.step(*scene.scan);
-  }
-  tracker.write(*list);
-  EXPECT_EQ(list->number_of_tracks, 1u);
-  return static_cast<double>(list->tracks[0].position_vehicle_m[1]) - before;
+  return changed_by_last_scan(
+      [ghost_probability](Scene& scene, int i, bool is_last) {
+        scene.add({30.0 + 0.4 * i, is_last ? 1.5 : 0.0}, {8.0, 0.0}, Provenance::kMoving,
+                  is_last ? ghost_probability : 0.0);
+      },
+      [](const Track& track) { return track.position_vehicle_m[1]; });
 }
 
 TEST(TrackerUpdate, WhatMayBeAGhostHardlyMovesATrack) {

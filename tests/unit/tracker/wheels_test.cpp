@@ -1,8 +1,6 @@
 // Wheels turn with other range rates than their vehicle's, which must not change its speed.
 #include "services/tracker/core/wheels.hpp"
 
-#include <memory>
-
 #include <gtest/gtest.h>
 
 #include "tests/unit/tracker/scene.hpp"
@@ -12,21 +10,12 @@ namespace {
 
 /// By how much a last detection, whose range rate is that much more than the body's, makes a car faster.
 double faster_by(double more_mps) {
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  const auto list = std::make_unique<TrackList>();
-  double before_mps = 0.0;
-  for (int i = 0; i <= 40; ++i) {
-    tracker.write(*list);
-    before_mps = list->tracks[0].velocity_over_ground_mps[0];
-    scene.begin((1000 + 50 * i) * kMillisecond);
-    scene.add({20.0 + 0.5 * i, 3.0}, {10.0, 0.0});
-    if (i == 40) scene.scan->range_rate_over_ground_mps[0] += static_cast<float>(more_mps);
-    tracker.step(*scene.scan);
-  }
-  tracker.write(*list);
-  EXPECT_EQ(list->tracks[0].number_of_detections, 1u);
-  return static_cast<double>(list->tracks[0].velocity_over_ground_mps[0]) - before_mps;
+  return changed_by_last_scan(
+      [more_mps](Scene& scene, int i, bool is_last) {
+        scene.add({20.0 + 0.5 * i, 3.0}, {10.0, 0.0});
+        if (is_last) scene.scan->range_rate_over_ground_mps[0] += static_cast<float>(more_mps);
+      },
+      [](const Track& track) { return track.velocity_over_ground_mps[0]; });
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ class DirectEchoes {
   /// Calls `visit(echo)` for all up to that angle to both sides of a direction (not zero), and for some more.
   template <typename Visit>
   void near(const Eigen::Vector2d& direction, double angle_rad, const Visit& visit) const {
-    // No sector is narrower than a quarter of the square over a quarter of their number, in radians.
+    // Where sectors are narrowest a radian has a quarter of them.
     const double parts = std::max(0.0, angle_rad) * (kSectors / 4.0);
     const std::size_t around = std::min(kSectors / 2 - 1, 1 + static_cast<std::size_t>(std::min(parts, 1e3)));
     const std::size_t middle = sector_of<kSectors>(direction);

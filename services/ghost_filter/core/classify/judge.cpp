@@ -43,6 +43,8 @@ constexpr double kBeyondDoubt = 20.0;
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
   fronts_.reserve(kMostFronts);
+  const Strength straight_back = strength_of_ghost(1, 1.0);
+  most_of_strength_ = likelihood(straight_back, straight_back.mean_db, kFluctuation_db, config_.strength_doubt);
   kept_crossings_.reserve(kMostKept);
   kept_.reserve(kMaxDetections);
 }

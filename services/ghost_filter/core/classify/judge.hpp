@@ -154,6 +154,15 @@ class Judge {
   /// Density at the target of ghosts of the echoes in front; `along2` is the variance of its place along the line of
   /// sight.
   [[nodiscard]] double of_fronts(const Target& target, double along2, const Measured& measured) const;
+  /// Variance of the range rate that a target of whatever speed would show.
+  [[nodiscard]] static double noise_of_any(const Target& target);
+  /// Densities if the target is what was detected in that direction with that range rate and strength: of an object's,
+  /// or of nobody's.
+  [[nodiscard]] double rate_fits(const Target& target, const Measured& measured, std::uint32_t object,
+                                 const Eigen::Vector2d& direction, double rate_mps) const;
+  /// `of_heard`: the likelihood beside a detection, which is the same for all of a target.
+  [[nodiscard]] double strength_beside(const StrengthLikelihood& of_heard, const Target& target,
+                                       const Measured& measured, double rcs_dbsm) const;
   [[nodiscard]] bool shows_rate(const Object& object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
@@ -178,6 +187,7 @@ class Judge {
   MirrorFan fan_;
   std::vector<Crossing> crossings_;
   std::vector<Front> fronts_;
+  double most_of_strength_;  ///< density of a type-1 ghost's strength, however it is bent back at its object
   /// Those of the detections that behind_mirror() was asked for, one after the other.
   struct Kept {
     std::uint32_t index, end;

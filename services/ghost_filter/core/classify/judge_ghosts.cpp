@@ -18,6 +18,26 @@ constexpr double kSame = 0.4;      // share of ghosts whose very reflection was 
 
 }  // namespace
 
+double Judge::noise_of_any(const Target& target) {
+  constexpr double kAnySpeed_mps = 15.0;
+  return target.noise_variance + target.turn_variance * square(kAnySpeed_mps);
+}
+
+double Judge::rate_fits(const Target& target, const Measured& m, std::uint32_t object, const Eigen::Vector2d& direction,
+                        double rate_mps) const {
+  const double value = m.rate_mps - target.known_mps, noise = noise_of_any(target);
+  // A track knows the velocity, a single detection one component of it.
+  if (object != kNobody) return body_rate_at(s_.objects[object], value, target.q, noise);
+  return rate_density(value, target.q, direction, rate_mps, square(config_.range_rate_slack_mps),
+                      left_of(target.mirror->curve.normal()), noise);
+}
+
+double Judge::strength_beside(const StrengthLikelihood& of_heard, const Target& target, const Measured& m,
+                              double rcs_dbsm) const {
+  if (std::isfinite(rcs_dbsm)) return of_heard(m.rcs_dbsm - rcs_dbsm);
+  return likelihood(target.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+}
+
 double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t but_object, std::uint32_t but_index,
                         double least) const {
   least /= target.stretch;
@@ -52,9 +72,7 @@ double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t
   // Several detections are of one object: the best counts.
   double most = least;
   const std::size_t own = s_.movers->earlier();
-  const Eigen::Vector2d along = left_of(target.mirror->curve.normal());
-  const double rate_mps = m.rate_mps - target.known_mps;
-  const double rate_noise = target.noise_variance + target.turn_variance * square(15.0);
+  const double rate_noise = noise_of_any(target);
   const double most_of_rate = 1.0 / std::sqrt(2.0 * M_PI * rate_noise);
   const StrengthLikelihood of_heard(target.strength, kFluctuation_db, config_.strength_doubt);
   const double spread = target.covariance.trace();
@@ -68,10 +86,7 @@ double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t
     if (but_object != kNobody && is_on(s_.objects[but_object], moved.position_m, kAround_m)) return;
     const bool owned = number >= own && mover.object != kNobody;
     if (owned && (mover.object == target.mirror->body || mover.object == target.other_body)) return;
-    const bool heard = std::isfinite(mover.rcs_dbsm);
-    const double strength =
-        heard ? of_heard(m.rcs_dbsm - mover.rcs_dbsm)
-              : likelihood(target.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
+    const double strength = strength_beside(of_heard, target, m, mover.rcs_dbsm);
     const double most_of_rest = mover.weight * strength * most_of_rate;
     const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d same = target.covariance + (sure + square(0.2)) * eye;
@@ -81,10 +96,7 @@ double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t
         kSame * gaussian(residual, same) +
         (1.0 - kSame) * gaussian(residual, target.covariance + (sure + square(config_.extent_std_m)) * eye);
     if (there * most_of_rest <= most) return;
-    // A track knows the velocity, a single detection one component of it.
-    const double fits = owned ? body_rate_at(s_.objects[mover.object], rate_mps, target.q, rate_noise)
-                              : rate_density(rate_mps, target.q, moved.direction, mover.rate_mps,
-                                             square(config_.range_rate_slack_mps), along, rate_noise);
+    const double fits = rate_fits(target, m, owned ? mover.object : kNobody, moved.direction, mover.rate_mps);
     most = std::max(most, mover.weight * strength * there * fits);
   });
   return most > least ? most : 0.0;

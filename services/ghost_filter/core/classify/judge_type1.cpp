@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
-#include "services/ghost_filter/core/classify/rate_density.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
 
 namespace boresight::ghosts {
@@ -18,7 +17,6 @@ constexpr double kSameSpot = 0.6;
 constexpr double kSpot_m = 0.2;  // how large a spot is
 constexpr double kFar = 3.0;     // standard deviations, beyond which another spot is not of the same vehicle
 constexpr double kLeastShown_mps = 1.0;
-constexpr double kLeastWeight = 0.02;
 /// Of a straight mirror's way: a bent one's may stretch so much more, or, where that is not known, so much.
 constexpr double kMargin = 1.2, kMostStretch = 10.0;
 
@@ -33,17 +31,13 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
   fronts_.clear();
   const double extent2 = square(config_.extent_std_m), azimuth2 = square(m.azimuth_std_rad);
   const Eigen::Vector2d left = left_of(m.direction);
-  // However it is bent back at the object, no strength is told better, nor a range rate.
-  const Strength strength = strength_of_ghost(1, 1.0);
-  const double most_of_rest =
-      config_.type1_per_object / std::sqrt(2.0 * M_PI * rate_variance(m)) *
-      (std::isfinite(m.rcs_dbsm) ? likelihood(strength, strength.mean_db, kFluctuation_db, config_.strength_doubt)
-                                 : 1.0);
+  const double most_of_rest = config_.type1_per_object / std::sqrt(2.0 * M_PI * rate_variance(m)) *
+                              (std::isfinite(m.rcs_dbsm) ? most_of_strength_ : 1.0);
   // Of what is nearer than half as far, only what lies in the same direction more closely.
   const double angle = 2.0 * kFar * std::sqrt(extent2 / square(m.range_m) + azimuth2);
   s_.echoes->near(m.direction, angle, [&](const DirectEcho& echo) {
     // Written so that what is not measured is not too weak.
-    if (m.rcs_dbsm > echo.rcs_dbsm || echo.index == index || echo.weight < kLeastWeight) return;
+    if (m.rcs_dbsm > echo.rcs_dbsm || echo.index == index || echo.weight < RecentMovers::kLeastWeight) return;
     const double depth_m = echo.range_m * echo.direction.dot(m.direction);
     if (depth_m < kLeastRest_m || depth_m > m.range_m + kFar * config_.extent_std_m) return;
     const double beside_m = echo.range_m * echo.direction.dot(left);
@@ -56,7 +50,7 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
     fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2), same, other, most});
   });
   for (const Object& o : s_.objects) {
-    if (o.own || o.weight < kLeastWeight || (shows_rate(o) && config_.type1_unheard <= 0.0) ||
+    if (o.own || o.weight < RecentMovers::kLeastWeight || (shows_rate(o) && config_.type1_unheard <= 0.0) ||
         fronts_.size() == fronts_.capacity())
       continue;
     const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
@@ -83,8 +77,7 @@ Judge::Ahead Judge::ahead_on(const Approach& way, const Measured& m) const {
 double Judge::of_fronts(const Target& t, double along2, const Measured& m) const {
   const double rest_m = (t.place_m - s_.sensor_m).dot(m.direction);
   const double blur_m = kFar * std::sqrt(along2);
-  const double rate_mps = m.rate_mps - t.known_mps;
-  const double noise = t.noise_variance + t.turn_variance * square(15.0);
+  const StrengthLikelihood of_heard(t.strength, kFluctuation_db, config_.strength_doubt);
   double sum = 0.0;
   for (const Front& front : fronts_) {
     const double off_m = front.depth_m - rest_m;
@@ -94,16 +87,8 @@ double Judge::of_fronts(const Target& t, double along2, const Measured& m) const
     const double off2 = along2 + echo.range_variance_m2;
     const double there = front.same_spot * gaussian(off_m, off2 + square(kSpot_m)) +
                          front.other_spot * gaussian(off_m, off2 + square(config_.extent_std_m));
-    const double strength =
-        std::isfinite(echo.rcs_dbsm)
-            ? likelihood(t.strength, m.rcs_dbsm - echo.rcs_dbsm, kFluctuation_db, config_.strength_doubt)
-            : likelihood(t.strength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
-    // A track knows the velocity, a single detection one component of it.
-    const double fits = echo.object != kNobody ? body_rate_at(s_.objects[echo.object], rate_mps, t.q, noise)
-                                               : rate_density(rate_mps, t.q, echo.direction, echo.rate_mps,
-                                                              square(config_.range_rate_slack_mps),
-                                                              left_of(t.mirror->curve.normal()), noise);
-    sum += echo.weight * there * strength * fits;
+    sum += echo.weight * there * strength_beside(of_heard, t, m, echo.rcs_dbsm) *
+           rate_fits(t, m, echo.object, echo.direction, echo.rate_mps);
   }
   return sum;
 }
