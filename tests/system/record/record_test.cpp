@@ -63,12 +63,16 @@ class Record : public testing::Test {
   void SetUp() override {
     if (!has_network_) GTEST_SKIP() << "skipped: network namespaces are not permitted";
   }
+  /// From a fixed port, as radars send: of the ports that the kernel would choose from, some are those of other
+  /// protocols (37008, 44818, 47000, 54328), as whose malformed datagrams tshark would show these.
   static void send(const std::string& data) {
     const int sender = socket(AF_INET, SOCK_DGRAM, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
-    address.sin_port = htons(42102);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(42101);
+    ASSERT_EQ(bind(sender, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    address.sin_port = htons(42102);
     ASSERT_EQ(sendto(sender, data.data(), data.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof(address)),
               static_cast<ssize_t>(data.size()));
     close(sender);
