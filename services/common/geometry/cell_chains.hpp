@@ -16,7 +16,7 @@ namespace boresight::geometry {
 
 class CellChains {
  public:
-  static constexpr std::int32_t kSide = 64;  ///< cells after which the plane repeats
+  static constexpr std::int32_t kSide = 32;  ///< cells after which the plane repeats
   /// For numbers less than `capacity`.
   CellChains(std::size_t capacity, double cell_m)
       : cell_m_(cell_m), first_(static_cast<std::size_t>(kSide) * kSide, kNone), next_(capacity, kNone) {}

@@ -86,9 +86,9 @@ void Judge::cross(const Measured& m, std::uint32_t but_object) {
 }
 
 const StationaryGrid::Cell* Judge::known_still(const Measured& m) const {
-  const std::uint32_t at = s_.stationary->index_at(s_.odometry->point_to_frame(m.position_m));
-  if (at == StationaryGrid::kUnclaimed || s_.stationary->cells()[at].count < 3) return nullptr;  // one is it itself
-  return &s_.stationary->cells()[at];
+  if (m.cell == StationaryGrid::kUnclaimed) return nullptr;
+  const StationaryGrid::Cell& cell = s_.stationary->cells()[m.cell];
+  return cell.count < 3 ? nullptr : &cell;  // one is it itself
 }
 
 bool Judge::was_before(const StationaryGrid::Cell& cell, const Measured& m, const Object& o) const {
@@ -115,21 +115,6 @@ double Judge::moves(const Measured& m) const {
       config_.new_object_density * likelihood(kNewStrength, m.rcs_dbsm - kUsualRcs_dbsm, 0.0, config_.strength_doubt);
   const StationaryGrid::Cell* const cell = known_still(m);
   return moving / (moving + of_stationary(m, cell == nullptr ? 1 : cell->count));
-}
-
-bool Judge::has_company(const Measured& m, std::uint32_t index) const {
-  bool found = false;
-  const Eigen::Vector2d place = s_.odometry->point_to_frame(m.position_m);
-  const std::int64_t now_ns = s_.odometry->now_ns();
-  const std::size_t own = s_.movers->earlier();
-  s_.movers->near(place, [&](const Mover& mover, std::uint32_t number) {
-    if (found || (number >= own && mover.index == index)) return;
-    const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
-    const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
-    if ((moved - place).squaredNorm() > 9.0) return;
-    found = std::abs(mover.rate_mps - m.rate_mps) < 1.5;
-  });
-  return found;
 }
 
 double Judge::behind_mirror(const Measured& m, std::uint32_t index) {
@@ -199,13 +184,13 @@ void Judge::real(const Measured& m, std::uint32_t index, bool is_hidden, Densiti
   double behind = 0.0;
   for (const Crossing& crossing : crossings_) behind = std::max(behind, crossing.turn.probability * crossing.beyond);
   of_objects(m, false, densities);
-  const bool company = has_company(m, index);
+  const Recent recent = of_movers(m, index);
   const double above_db = m.rcs_dbsm - kUsualRcs_dbsm;
-  densities.moving += of_movers(m, index) * (1.0 - 0.7 * behind);
-  densities.moving += config_.new_object_density * (company ? kCompanyOfNew : 1.0 - kCompanyOfNew) *
+  densities.moving += recent.density * (1.0 - 0.7 * behind);
+  densities.moving += config_.new_object_density * (recent.in_company ? kCompanyOfNew : 1.0 - kCompanyOfNew) *
                       (1.0 - 0.7 * behind) * (is_hidden ? 0.5 : 1.0) *
                       likelihood(kNewStrength, above_db, 0.0, config_.strength_doubt);
-  densities.clutter = config_.clutter_density * (company ? kCompanyOfClutter : 1.0 - kCompanyOfClutter) *
+  densities.clutter = config_.clutter_density * (recent.in_company ? kCompanyOfClutter : 1.0 - kCompanyOfClutter) *
                       likelihood(kClutterStrength, above_db, 0.0, config_.strength_doubt);
   const StationaryGrid::Cell* const cell = known_still(m);
   densities.stationary = of_stationary(m, cell == nullptr ? 1 : cell->count);

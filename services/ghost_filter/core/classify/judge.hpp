@@ -26,8 +26,9 @@ struct Measured {
   Eigen::Vector2d position_m, direction;
   double range_m, rate_mps;  ///< rate over ground
   double range_std_m, azimuth_std_rad, rate_std_mps;
-  double still_std_mps;  ///< of the range rate over ground of what stands still
-  double rcs_dbsm;       ///< NaN: not measured
+  double still_std_mps;                             ///< of the range rate over ground of what stands still
+  double rcs_dbsm;                                  ///< NaN: not measured
+  std::uint32_t cell = StationaryGrid::kUnclaimed;  ///< of the map of what stands, in which it lies; or none
 };
 
 /// Expected number of detections for each m², m/s and dB.
@@ -127,8 +128,13 @@ class Judge {
   void real(const Measured& measured, std::uint32_t index, bool is_hidden, Densities& densities) const;
   /// `looks_still`: of those that move, as likely as they do.
   void of_objects(const Measured& measured, bool looks_still, Densities& densities) const;
-  /// The same of objects that are not tracked (yet) but were detected, in this scan or just before.
-  [[nodiscard]] double of_movers(const Measured& measured, std::uint32_t index) const;
+  /// The same of objects that are not tracked (yet) but were detected, in this scan or just before; and whether
+  /// anything else was detected there at all.
+  struct Recent {
+    double density;
+    bool in_company;
+  };
+  [[nodiscard]] Recent of_movers(const Measured& measured, std::uint32_t index) const;
   /// The cell of the map in which something was detected before, or nullptr.
   [[nodiscard]] const StationaryGrid::Cell* known_still(const Measured& measured) const;
   /// Whether something was detected there before the object came: what has been there only since then may be of it.
@@ -176,7 +182,6 @@ class Judge {
   [[nodiscard]] bool may_be_at(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, const Approach& way,
                                const Measured& measured, double variance_across) const;
   [[nodiscard]] double image_of_stationary(const Target& target, const Measured& measured) const;
-  [[nodiscard]] bool has_company(const Measured& measured, std::uint32_t index) const;
   [[nodiscard]] double rate_variance(const Measured& m) const;
   /// Share of what is explained already that it hardly matters whether something else adds to it.
   static constexpr double kLittle = 0.1;

@@ -13,6 +13,8 @@ namespace {
 constexpr double kSeenThrough = 0.03;
 /// Of what as likely stands, and of what is hardly known to be there, nothing looks stationary that is not.
 constexpr double kLeastMoving = 0.6, kLeastThere = 0.5;
+/// What goes together is so near, and so alike in range rate.
+constexpr double kCompany_m = 3.0, kCompany_mps = 1.5;
 
 }  // namespace
 
@@ -20,9 +22,10 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
   double most = 0.0;
   const Eigen::Matrix2d covariance = outer(m.direction, square(m.range_std_m) + square(0.2)) +
                                      outer(left_of(m.direction), square(m.range_m * m.azimuth_std_rad) + square(0.2));
+  const double blur_m = reach_of(covariance.diagonal());
   const auto judge = [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
-    if (o.own || (o.position_m - m.position_m).squaredNorm() > square(o.half_length_m + 20.0)) return;
+    if (o.own || (o.position_m - m.position_m).squaredNorm() > square(o.reach_m + 1.5 * blur_m)) return;
     if (looks_still && (o.moving < kLeastMoving || o.weight < kLeastThere)) return;
     const Reflections place = reflections_at(o, m.position_m, covariance, s_.sensor_m, s_.sensor_m);
     if (place.wheel <= 0.0) return;
@@ -53,8 +56,8 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
       densities.object = i;
     }
   };
-  SourceMap::visit_objects(s_.sources->about(m.position_m, reach_of(covariance.diagonal())),
-                           static_cast<std::uint32_t>(s_.objects.size()), judge);
+  SourceMap::visit_objects(s_.sources->about(m.position_m, blur_m), static_cast<std::uint32_t>(s_.objects.size()),
+                           judge);
   densities.of_tracks = densities.moving;
 }
 
@@ -79,7 +82,8 @@ Judge::Owner Judge::owner_of(const Measured& m) const {
   return owner;
 }
 
-double Judge::of_movers(const Measured& m, std::uint32_t index) const {
+Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
+  Recent recent{0.0, false};
   double most = 0.0;
   const Eigen::Vector2d place = s_.odometry->point_to_frame(m.position_m);
   const Eigen::Vector2d direction = s_.odometry->vector_to_frame(m.direction);
@@ -92,8 +96,11 @@ double Judge::of_movers(const Measured& m, std::uint32_t index) const {
     if (number >= own && mover.index == index) return;
     const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
     const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
+    const double distance2 = (moved - place).squaredNorm();
+    recent.in_company =
+        recent.in_company || (distance2 <= square(kCompany_m) && std::abs(mover.rate_mps - m.rate_mps) < kCompany_mps);
     const double variance = blur + mover.variance_m2 + square(8.0 * elapsed_s);
-    const double chi2 = (moved - place).squaredNorm() / variance;
+    const double chi2 = distance2 / variance;
     if (chi2 > 16.0) return;
     // The same velocity shows another range rate from another direction: by the speed across, which is not known.
     const double turn = 1.0 - square(direction.dot(mover.direction));
@@ -108,7 +115,8 @@ double Judge::of_movers(const Measured& m, std::uint32_t index) const {
     const double rcs_std_db = owned ? s_.objects[mover.object].rcs_std_db : kUsualRcsStd_db;
     most = std::max(most, here * likelihood(kBodyStrength, m.rcs_dbsm - rcs_dbsm, rcs_std_db, config_.strength_doubt));
   });
-  return config_.real_per_object * (1.0 - config_.wheel_share) * most;
+  recent.density = config_.real_per_object * (1.0 - config_.wheel_share) * most;
+  return recent;
 }
 
 }  // namespace boresight::ghosts

@@ -49,9 +49,10 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
         (same / kSpot_m + other / config_.extent_std_m) / std::sqrt(2.0 * M_PI) * echo.weight * most_of_rest;
     fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2), same, other, most});
   });
+  const SectorSet around = sectors_about(m.direction, kFar * m.azimuth_std_rad);
   for (const Object& o : s_.objects) {
-    if (o.own || o.weight < RecentMovers::kLeastWeight || (shows_rate(o) && config_.type1_unheard <= 0.0) ||
-        fronts_.size() == fronts_.capacity())
+    if ((o.sectors & around) == 0 || o.own || o.weight < RecentMovers::kLeastWeight ||
+        (shows_rate(o) && config_.type1_unheard <= 0.0) || fronts_.size() == fronts_.capacity())
       continue;
     const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
     const double depth_m = sight.dot(m.direction), beside_m = sight.dot(left);
@@ -111,7 +112,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     const Ahead ahead =
         is_track ? Ahead{0.0, may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))}
                  : ahead_on(*way, m);
-    if (!ahead.silent && ahead.most <= std::max(density, least)) continue;
+    if (!ahead.silent && mirror.existence * ahead.most <= std::max(density, least)) continue;
     const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
     if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
     const Eigen::Vector2d& u = met->departure;
@@ -142,9 +143,10 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
 double Judge::hidden(const Measured& m, std::uint32_t but_object, bool& is_hidden) const {
   double density = 0.0;
   is_hidden = false;
+  const SectorSet around = sectors_about(m.direction, kFar * m.azimuth_std_rad);
   for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
     const Object& o = s_.objects[i];
-    if (i == but_object || o.own || o.weight < 0.05) continue;
+    if ((o.sectors & around) == 0 || i == but_object || o.own || o.weight < 0.05) continue;
     const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
     const double depth = sight.dot(m.direction), beside = std::abs(sight.dot(left_of(m.direction)));
     if (depth < 1.0 || depth > m.range_m) continue;

@@ -156,6 +156,7 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
     Object& o = objects_[i];
     const Eigen::Vector2d extent = most_extent(o).array() + reach_of(o.position_covariance.diagonal());
     o.reach_m = extent.norm();
+    o.sectors = sectors_about(o.position_m - sensor_m_, o.reach_m);
     sources_.enter_object(i, o.position_m, extent);
   }
 }
@@ -206,14 +207,18 @@ bool MirrorFilter::is_on_moving(const Eigen::Vector2d& place_m) const {
 
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_usable(scan, i)) measured_[i].cell = map_.grid().fetch_at(odometry_.point_to_frame(measured_[i].position_m));
+  }
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
-    const Measured& m = measured_[i];
+    Measured& m = measured_[i];
     // What a moving object shows without a range rate is no part of the map.
     if (is_on_moving(m.position_m)) continue;
     const double across = m.range_m * m.azimuth_std_rad;
-    map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns);
+    m.cell = map_.add(odometry_.point_to_frame(m.position_m), m.range_std_m * m.range_std_m + across * across, time_ns,
+                      m.cell);
   }
   for (const Object& o : objects_) {
     if (o.weight < kNoImage || o.moving < 1.0) continue;

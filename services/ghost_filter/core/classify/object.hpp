@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "services/ghost_filter/core/classify/sectors.hpp"
 #include "services/ghost_filter/core/classify/strength.hpp"
 
 namespace boresight::ghosts {
@@ -23,6 +24,7 @@ struct Object {
   double age_s = 1e9;    ///< since it was first tracked
   bool own = false;      ///< the own vehicle: seen only in mirrors
   double reach_m = 1e9;  ///< from its centre: farther away nothing is of it, as well as it is known where it is
+  SectorSet sectors = kAllSectors;                                 ///< in which the sensor sees all of that
   double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, on average
 };
 

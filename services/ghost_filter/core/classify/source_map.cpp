@@ -8,7 +8,14 @@ namespace boresight::ghosts {
 SourceMap::SourceMap() : objects_(kReaches_m.size() * kCells * kCells, 0), movers_(kReaches_m.size() * kCells, 0) {}
 
 void SourceMap::clear() {
-  std::fill(objects_.begin(), objects_.end(), Bits{0});
+  // On a road most rows are empty.
+  for (std::size_t level = 0; level < kReaches_m.size(); ++level) {
+    for (Bits left = rows_[level]; left != 0; left &= left - 1) {
+      Bits* const row = row_of(level, std::countr_zero(left));
+      std::fill(row, row + kCells, Bits{0});
+    }
+  }
+  rows_ = {};
   std::fill(movers_.begin(), movers_.end(), Bits{0});
 }
 
@@ -25,22 +32,21 @@ SourceMap::Cells SourceMap::cells_of(const Eigen::Vector2d& centre_m, const Eige
 
 void SourceMap::enter_object(std::uint32_t index, const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m) {
   const Bits bit = Bits{1} << (index % kObjectBits);
-  Bits* row = objects_.data();
-  for (const double reach : kReaches_m) {
-    const Cells cells = cells_of(centre_m, half_m.array() + reach);
+  for (std::size_t level = 0; level < kReaches_m.size(); ++level) {
+    const Cells cells = cells_of(centre_m, half_m.array() + kReaches_m[level]);
+    rows_[level] |= bits_between(cells.bottom, cells.top);
     for (std::int32_t k = cells.bottom; k <= cells.top; ++k) {
-      for (std::int32_t column = cells.left; column <= cells.right; ++column) row[k * kCells + column] |= bit;
+      Bits* const row = row_of(level, k);
+      for (std::int32_t column = cells.left; column <= cells.right; ++column) row[column] |= bit;
     }
-    row += kCells * kCells;
   }
 }
 
 void SourceMap::enter_mover(const Eigen::Vector2d& place_m, double reach_m) {
-  static_assert(kCells < 64);
   Bits* row = movers_.data();
   for (const double reach : kReaches_m) {
     const Cells cells = cells_of(place_m, Eigen::Vector2d::Constant(reach_m + reach));
-    const Bits columns = (Bits{2} << cells.right) - (Bits{1} << cells.left);
+    const Bits columns = bits_between(cells.left, cells.right);
     for (std::int32_t k = cells.bottom; k <= cells.top; ++k) row[k] |= columns;
     row += kCells;
   }

@@ -44,8 +44,16 @@ class SourceMap {
   };
   [[nodiscard]] static std::int32_t cell_of(double coordinate_m);
   [[nodiscard]] static Cells cells_of(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& half_m);
-  std::vector<Bits> objects_;  // by reach, row, column
-  std::vector<Bits> movers_;   // by reach and row: a bit for each column
+  [[nodiscard]] static Bits bits_between(std::int32_t first, std::int32_t last) {
+    static_assert(kCells < 64);
+    return (Bits{2} << last) - (Bits{1} << first);
+  }
+  [[nodiscard]] Bits* row_of(std::size_t level, std::int32_t row) {
+    return objects_.data() + (level * kCells + static_cast<std::size_t>(row)) * kCells;
+  }
+  std::vector<Bits> objects_;                   // by reach, row, column
+  std::array<Bits, kReaches_m.size()> rows_{};  // of those, by reach: a bit for each in which there is something
+  std::vector<Bits> movers_;                    // by reach and row: a bit for each column
 };
 
 }  // namespace boresight::ghosts

@@ -74,8 +74,9 @@ Reflector* ReflectorMap::reflector_of(const Eigen::Vector2d& position_m, double 
   return best;
 }
 
-void ReflectorMap::add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns) {
-  if (!position_m.allFinite() || !(variance_m2 >= 0.0)) return;
+std::uint32_t ReflectorMap::add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns,
+                                std::uint32_t cell) {
+  if (!position_m.allFinite() || !(variance_m2 >= 0.0)) return cell;
   double arc = 0.0;
   Reflector* const r = reflector_of(position_m, variance_m2, arc);
   const bool is_exact = variance_m2 < config_.tolerance_m * config_.tolerance_m;
@@ -84,7 +85,7 @@ void ReflectorMap::add(const Eigen::Vector2d& position_m, double variance_m2, st
     r->evidence.add_local(q, r->curve.distance_of_local(q), kInCommon * (kScatter_m * kScatter_m + variance_m2));
     r->occupancy.hit(arc + r->arc_shift_m);
   }
-  grid_.add(position_m, time_ns, r != nullptr, is_exact);
+  return grid_.add(position_m, time_ns, r != nullptr, is_exact, cell);
 }
 
 void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps) {

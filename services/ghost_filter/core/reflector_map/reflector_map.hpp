@@ -32,8 +32,10 @@ class ReflectorMap {
 
   void clear();
   /// A stationary detection in the odometry frame, with the variance of its place. It tells of the reflector that it
-  /// lies on, if one is known. Not finite: ignored.
-  void add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns);
+  /// lies on, if one is known. Not finite: ignored. `cell` is the grid's there, if it was asked for; what it is now is
+  /// returned.
+  std::uint32_t add(const Eigen::Vector2d& position_m, double variance_m2, std::int64_t time_ns,
+                    std::uint32_t cell = StationaryGrid::kUnclaimed);
   /// After the detections of a scan: fits the reflectors that are due to what is new about them, forgets what is old in
   /// the tiles that are due and looks for new reflectors there.
   void update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps);

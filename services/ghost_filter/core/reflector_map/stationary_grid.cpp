@@ -28,15 +28,13 @@ void StationaryGrid::clear() {
   for (std::size_t i = cells_.size(); i-- > 0;) unused_.push_back(static_cast<std::uint32_t>(i));
 }
 
-void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed, bool exact) {
-  if (!position_m.allFinite()) return;
+std::uint32_t StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed, bool exact,
+                                  std::uint32_t index) {
+  if (!position_m.allFinite()) return kUnclaimed;
   const geometry::GridCell at = geometry::grid_cell(position_m.x(), position_m.y(), cell_m_);
-  const std::uint32_t* const known = table_.find(at);
-  std::uint32_t index;
-  if (known != nullptr) {
-    index = *known;
-  } else {
-    if (unused_.empty()) return;
+  if (index == kUnclaimed) index = index_at(position_m);  // another of the scan may have begun it
+  if (index == kUnclaimed) {
+    if (unused_.empty()) return kUnclaimed;
     index = unused_.back();
     unused_.pop_back();
     table_.at(at, index) = index;
@@ -61,6 +59,7 @@ void StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_t time_ns
   ++cell.count;
   cell.last_ns = time_ns;
   cell.claimed = claimed;
+  return index;
 }
 
 bool StationaryGrid::forget(std::size_t number, std::int64_t oldest_ns) {

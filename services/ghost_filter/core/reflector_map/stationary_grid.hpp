@@ -39,8 +39,10 @@ class StationaryGrid {
   StationaryGrid(std::size_t capacity, double cell_m);
 
   void clear();
-  /// A detection that looks stationary; not finite: ignored.
-  void add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed, bool exact);
+  /// A detection that looks stationary; not finite: ignored. `index` is what index_at() told of it, if that was asked
+  /// for. Returns what it tells now.
+  std::uint32_t add(const Eigen::Vector2d& position_m, std::int64_t time_ns, bool claimed, bool exact,
+                    std::uint32_t index = kUnclaimed);
   /// Of the tile with that number, forgets the cells last hit before `oldest_ns`. If nothing is left the tile goes,
   /// too: the last one has its number then, and false is returned.
   bool forget(std::size_t tile, std::int64_t oldest_ns);
@@ -60,6 +62,12 @@ class StationaryGrid {
   }
   /// Index of the cell at a position, or kUnclaimed.
   [[nodiscard]] std::uint32_t index_at(const Eigen::Vector2d& position_m) const;
+  /// The same for one that is needed soon, which is fetched from memory meanwhile: the map is larger than the cache.
+  [[nodiscard]] std::uint32_t fetch_at(const Eigen::Vector2d& position_m) const {
+    const std::uint32_t index = index_at(position_m);
+    if (index != kUnclaimed) __builtin_prefetch(&cells_[index], 1);
+    return index;
+  }
   /// Says of the cell at a position that it belongs to a reflector.
   void claim(const Eigen::Vector2d& position_m);
 
