@@ -147,6 +147,38 @@ TEST_F(JudgeTest, WhatShowsNoRangeRateDirectlyNeedsNoEcho) {
   EXPECT_GT(judge_.weigh(m, 1).type1, 0.0);
 }
 
+TEST_F(JudgeTest, WhatDrivesAlongsideBetweenTwoWallsHasGhostsThatLookStill) {
+  Mirror right = mirrors_[0];
+  right.curve.origin_m.y() = -10.0;
+  // Walls are of the map; they are seen all along.
+  Occupancy seen;
+  seen.reset(-40.0, 40.0, 0.5);
+  for (int times = 0; times < 20; ++times) {
+    for (double arc = -40.0; arc <= 40.0; arc += 0.25) seen.hit(arc);
+    seen.settle();
+  }
+  mirrors_[0].occupancy = right.occupancy = &seen;
+  right.beam = Beam(right, sensor_);
+  mirrors_.push_back(right);
+  objects_[0].position_m = {3.6, 3.5};
+  objects_[0].velocity_mps = {15.0, 0.0};
+  objects_[0].sectors = sectors_about(objects_[0].position_m - sensor_, 4.0);
+  sources_.clear();
+  sources_.enter_object(0, objects_[0].position_m, most_extent(objects_[0]));
+  const auto weigh = [&](double range_m) {
+    judge_.begin({sensor_, {15.0, 0.0}, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_});
+    return judge_.weigh_still(measured({3.6, range_m}, {0.0, 0.0}, -18.0));
+  };
+  // The flank at 2.6 m; by the left wall and the right one: 8 + 18 + 12.6 m to it, 2.6 m back.
+  const double by_both_m = 0.5 * (8.0 + 18.0 + 12.6 + 2.6);
+  const Densities ghost = weigh(by_both_m), other = weigh(by_both_m + 6.0);
+  EXPECT_GT(ghost.type1, 0.2 * ghost.stationary);
+  EXPECT_LT(other.type1, 0.01 * ghost.type1);
+  // It takes both.
+  mirrors_.pop_back();
+  EXPECT_LT(weigh(by_both_m).type1, 0.01 * ghost.type1);
+}
+
 TEST_F(JudgeTest, WhatStandsWhereNothingElseCanBeIsThatAlone) {
   const Densities alone = judge_.weigh_still(measured({-30.0, -20.0}, {0.0, 0.0}, 0.0));
   EXPECT_GT(alone.stationary, 0.0);

@@ -12,7 +12,7 @@ struct ClassConfig {
   double lone_ghost_density = 1e-6;  ///< of type-2 ghosts behind a reflector whose object is not seen
   double hidden_ghost_density =
       4e-5;                       ///< for each m²: of type-1 ghosts behind an object by a reflector that is not known
-  double type1_per_object = 0.7;  ///< expected detections by one reflector
+  double type1_per_object = 0.8;  ///< expected detections by one reflector
   double type1_unheard = 0.0;     ///< weight of those of tracks that were not detected directly, though they could be
   double type2_per_object = 4.0;
   double real_per_object = 3.0;

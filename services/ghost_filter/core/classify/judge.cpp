@@ -60,6 +60,10 @@ void Judge::begin(const Surroundings& surroundings) {
   has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
     return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
   });
+  unmoved_ = 0;
+  for (const Object& o : s_.objects) {
+    if (!o.own && o.weight > kLeastSlow && !shows_rate(o)) unmoved_ |= o.sectors;
+  }
 }
 
 double Judge::reach_of_mover(const MovedMover& mover) const {
@@ -203,17 +207,21 @@ Densities Judge::weigh_still(const Measured& m) {
   const StationaryGrid::Cell* const cell = known_still(m);
   std::uint32_t seen = cell == nullptr ? 1 : cell->count;
   const bool like_slow = has_slow_ && seen < kOftenEnough;
+  // Behind what drives across the line of sight its type-1 ghosts look as if they stood, too.
+  const bool behind_unmoved = seen < kOftenEnough && (unmoved_ & sectors_about(m.direction, 0.0)) != 0;
   if (like_slow || (std::abs(m.rate_mps) > m.still_std_mps && cell == nullptr)) cross(m, kNobody);
   of_objects(m, true, densities);
   if (densities.likeliest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.likeliest]))
     seen = 1;
-  if (densities.moving == 0.0 && crossings_.empty() && !like_slow) {
+  if (densities.moving == 0.0 && crossings_.empty() && !like_slow && !behind_unmoved) {
     densities.stationary = 1.0;  // how dense it is tells nothing where nothing else can be
     return densities;
   }
   densities.stationary = of_stationary(m, seen);
   const double least = kNegligible * densities.sum();
-  if (like_slow) densities.type1 = type1(m, kNobody, kNobody, least);
+  if (like_slow || behind_unmoved) densities.type1 = type1(m, kNobody, kNobody, least);
+  // Ways between two walls are this one's only where they run square to the walls, as they do to what drives alongside.
+  if (behind_unmoved) densities.type1 += type1_of_two(m, std::max(least, kLittle * densities.type1));
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {
     densities.type2 =

@@ -142,6 +142,13 @@ class Judge {
   /// `seen`: how often something was detected there, this time included.
   [[nodiscard]] double of_stationary(const Measured& measured, std::uint32_t seen) const;
   [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least);
+  /// Those whose way out is by one wall and then by another, of what looks still.
+  [[nodiscard]] double type1_of_two(const Measured& measured, double least);
+  /// The variance of a type-1 ghost's object along the line of sight, and what else is known of that object; the
+  /// mirrors' own motion is not in it.
+  [[nodiscard]] static double variance_along(const Measured& measured, const Meeting& met);
+  [[nodiscard]] Target target_of(const Measured& measured, const Meeting& met, double along2,
+                                 const Mirror& mirror) const;
   /// What a type-1 ghost may be of: an echo in front, or a tracked object that is not known to have sent one.
   struct Front {
     const DirectEcho* echo;
@@ -201,6 +208,7 @@ class Judge {
   std::vector<Kept> kept_;
   std::size_t next_kept_ = 0;
   bool has_slow_ = false;  ///< a tracked object whose images may look as if they stood
+  SectorSet unmoved_ = 0;  ///< with tracked objects that show no range rate
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
 };

@@ -4,6 +4,7 @@
 
 #include "services/ghost_filter/core/classify/judge.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
+#include "services/ghost_filter/core/mirror/between_walls.hpp"
 
 namespace boresight::ghosts {
 
@@ -17,6 +18,7 @@ constexpr double kSameSpot = 0.6;
 constexpr double kSpot_m = 0.2;  // how large a spot is
 constexpr double kFar = 3.0;     // standard deviations, beyond which another spot is not of the same vehicle
 constexpr double kLeastShown_mps = 1.0;
+constexpr double kLeastWall = 0.3;  // of two mirrors being there: waves go to and fro between walls
 /// Of a straight mirror's way: a bent one's may stretch so much more, or, where that is not known, so much.
 constexpr double kMargin = 1.2, kMostStretch = 10.0;
 
@@ -94,6 +96,26 @@ double Judge::of_fronts(const Target& t, double along2, const Measured& m) const
   return sum;
 }
 
+double Judge::variance_along(const Measured& m, const Meeting& met) {
+  return square(met.metres_per_m) * (square(2.0 * m.range_std_m) + square(met.length_std_m));
+}
+
+Judge::Target Judge::target_of(const Measured& m, const Meeting& met, double along2, const Mirror& mirror) const {
+  Target t{};
+  t.other_body = kNobody;
+  t.place_m = s_.sensor_m + met.rest_m * m.direction;
+  t.covariance = outer(m.direction, along2) + outer(left_of(m.direction), square(met.rest_m * m.azimuth_std_rad));
+  t.q = 0.5 * (m.direction + met.arrival);
+  t.known_mps = 0.5 * (m.direction - met.departure).dot(s_.sensor_velocity_mps);
+  t.noise_variance = rate_variance(m);
+  t.lit_from_m = met.point_m;
+  t.seen_from_m = s_.sensor_m;
+  t.stretch = 2.0 * met.metres_per_m * met.rest_m / m.range_m;
+  t.turn_variance = square(m.azimuth_std_rad);
+  t.mirror = &mirror;
+  return t;
+}
+
 double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_object, double least) {
   // What reflects to the radar by way of a mirror reflects directly, too, and stronger: it was detected, in front. Of a
   // track, which is no detection, that is not asked: it may be out of this radar's sight.
@@ -115,27 +137,40 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (!ahead.silent && mirror.existence * ahead.most <= std::max(density, least)) continue;
     const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
     if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
-    const Eigen::Vector2d& u = met->departure;
-    const Eigen::Vector2d& d = met->arrival;
-    const double along2 = square(met->metres_per_m) * (square(2.0 * m.range_std_m) + square(met->length_std_m));
-    Target t{};
-    t.other_body = kNobody;
-    t.place_m = s_.sensor_m + met->rest_m * m.direction;
-    t.covariance = outer(m.direction, along2) + outer(left_of(m.direction), square(met->rest_m * m.azimuth_std_rad));
-    t.q = 0.5 * (m.direction + d);
-    t.known_mps = 0.5 * ((m.direction - u).dot(s_.sensor_velocity_mps) + (u - d).dot(mirror.velocity_mps));
-    t.noise_variance = rate_variance(m);
-    t.lit_from_m = met->point_m;
-    t.seen_from_m = s_.sensor_m;
-    t.strength = strength_of_ghost(1, m.direction.dot(d));
-    t.stretch = 2.0 * met->metres_per_m * met->rest_m / m.range_m;
-    t.turn_variance = square(m.azimuth_std_rad);
-    t.mirror = &mirror;
+    const double along2 = variance_along(m, *met);
+    Target t = target_of(m, *met, along2, mirror);
+    t.known_mps += 0.5 * (met->departure - met->arrival).dot(mirror.velocity_mps);
+    t.strength = strength_of_ghost(1, m.direction.dot(met->arrival));
     t.silent = !is_track;
     const double share = met->probability * config_.type1_per_object;
     double here = is_track ? 0.0 : t.stretch * of_fronts(t, along2, m);
     if (ahead.silent) here += ghosts_of(t, m, but_object, index, std::max(density, least) / share);
     density = std::max(density, share * here);
+  }
+  return density;
+}
+
+double Judge::type1_of_two(const Measured& m, double least) {
+  const auto is_wall = [](const Mirror& mirror) { return is_long(mirror) && mirror.existence > kLeastWall; };
+  find_fronts(m, kNobody);
+  if (fronts_.empty()) return 0.0;
+  double density = 0.0;
+  for (const Mirror& first : s_.mirrors) {
+    if (!is_wall(first)) continue;
+    for (const Mirror& second : s_.mirrors) {
+      if (&second == &first || !is_wall(second)) continue;
+      const auto met = meet_between(first, second, s_.sensor_m, m.direction, 2.0 * m.range_m);
+      if (!met || met->rest_m < kLeastRest_m || met->rest_m > m.range_m - kLeastDetour_m) continue;
+      if (met->probability < kLeastChance) continue;
+      const double along2 = variance_along(m, *met);
+      Target t = target_of(m, *met, along2, second);
+      t.strength = strength_of_ghost(2, m.direction.dot(met->arrival));
+      t.silent = true;
+      const double share = met->probability * config_.type1_per_object;
+      const double more = std::max(density, least) / share;
+      density =
+          std::max(density, share * (t.stretch * of_fronts(t, along2, m) + ghosts_of(t, m, kNobody, kNobody, more)));
+    }
   }
   return density;
 }
