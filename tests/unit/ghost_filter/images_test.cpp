@@ -66,6 +66,35 @@ TEST_F(MirrorFilterTest, WhatLiesOnATrackedImageIsAGhostThoughItMirrorsNothing) 
   EXPECT_LE(share_of_ghosts(false), 0.1) << "of nothing it is no image";
 }
 
+TEST_F(MirrorFilterTest, WhatWasLongTrackedIsNoImageForASecondWhereOneWouldBe) {
+  std::size_t moving_before = 0, moving_at_first = 0, ghosts_later = 0;  // the middle: of 35, in 1.75 s
+  for (int k = 0; k < 160; ++k) {
+    std::uint32_t far_end = 0;
+    drive(0.05, [&] {
+      const Vector2d p(25.0, 1.0), v(23.0, 0.0);
+      rail(kRail);
+      // For three seconds it drives alone, then beside what would be mirrored there.
+      if (k >= 60) {
+        track(p, v);
+        direct(p + Vector2d(-2.2, 0.0), v);
+        by_three_bounces(p + Vector2d(-2.2, 0.0), v, kRailPlane);
+      } else {
+        ++tracks_->number_of_tracks;  // an empty place, so that it keeps its number
+        tracks_->tracks[0] = {};
+      }
+      track(kRailPlane.image(p) + Vector2d(5.0, 0.0), v, 14.0, 2.0);
+      hand_over_tracks();
+      far_end = direct(kRailPlane.image(p) + Vector2d(11.5, 0.0), v, -8.0);
+    });
+    moving_before += k >= 50 && k < 60 && label(far_end) == Provenance::kMoving ? 1U : 0U;
+    moving_at_first += k >= 60 && k < 95 && label(far_end) == Provenance::kMoving ? 1U : 0U;
+    ghosts_later += k >= 140 && label(far_end) == Provenance::kGhostType2 ? 1U : 0U;
+  }
+  EXPECT_EQ(moving_before, 10U);
+  EXPECT_GE(moving_at_first, 34U);
+  EXPECT_GE(ghosts_later, 18U) << "but in the end it is believed";
+}
+
 TEST_F(MirrorFilterTest, ALongRailGoesOnUnseenAndAShortOneDoesNot) {
   const auto share_of_ghosts = [&](double length_m) {
     filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
