@@ -18,7 +18,7 @@ constexpr std::size_t kMostFronts = 64;
 
 /// Ways over two mirrors, the least likely ghosts, are what costs most where mirrors are many: so many are followed for
 /// a detection, and for all of a scan.
-constexpr std::size_t kMostPairs = 32, kMostPairsOfScan = 2048;
+constexpr std::size_t kMostPairs = 32, kMostPairsOfScan = 2048, kMostWallsOfScan = 2048;
 
 /// Chances that something else was detected at a moving detection's place, moved on, in the scans before: of a vehicle
 /// that nothing announces, and of clutter.
@@ -57,6 +57,7 @@ void Judge::begin(const Surroundings& surroundings) {
   kept_.clear();
   next_kept_ = 0;
   pairs_left_of_scan_ = kMostPairsOfScan;
+  walls_left_of_scan_ = kMostWallsOfScan;
   has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
     return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
   });

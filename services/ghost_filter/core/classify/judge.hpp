@@ -211,6 +211,7 @@ class Judge {
   SectorSet unmoved_ = 0;  ///< with tracked objects that show no range rate
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
+  std::size_t walls_left_of_scan_ = 0;  ///< pairs of them, for what looks still
 };
 
 }  // namespace boresight::ghosts

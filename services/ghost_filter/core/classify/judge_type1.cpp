@@ -156,9 +156,15 @@ double Judge::type1_of_two(const Measured& m, double least) {
   if (fronts_.empty()) return 0.0;
   double density = 0.0;
   for (const Mirror& first : s_.mirrors) {
-    if (!is_wall(first)) continue;
+    if (!is_wall(first) || first.least_range_m > m.range_m) continue;
+    const double first_m = first.curve.distance(s_.sensor_m);
     for (const Mirror& second : s_.mirrors) {
-      if (&second == &first || !is_wall(second)) continue;
+      // To be between them is to have them on different sides, and the way there and back is as long as to both.
+      if (!is_wall(second) || first.least_range_m + second.least_range_m > m.range_m) continue;
+      if (first_m * second.curve.distance(s_.sensor_m) * first.curve.normal().dot(second.curve.normal()) >= 0.0)
+        continue;
+      if (walls_left_of_scan_ == 0) return density;
+      --walls_left_of_scan_;
       const auto met = meet_between(first, second, s_.sensor_m, m.direction, 2.0 * m.range_m);
       if (!met || met->rest_m < kLeastRest_m || met->rest_m > m.range_m - kLeastDetour_m) continue;
       if (met->probability < kLeastChance) continue;
