@@ -221,7 +221,7 @@ Densities Judge::weigh_still(const Measured& m) {
   densities.stationary = of_stationary(m, seen);
   const double least = kNegligible * densities.sum();
   if (like_slow || behind_unmoved) densities.type1 = type1(m, kNobody, kNobody, least);
-  // Ways between two walls are this one's only where they run square to the walls, as they do to what drives alongside.
+  // Between two walls it is lit by way of both, too; what is not alongside shows a range rate and seldom such ghosts.
   if (behind_unmoved) densities.type1 += type1_of_two(m, std::max(least, kLittle * densities.type1));
   // The image of a vehicle may look as if it stood, when it crosses the line of sight.
   for (const Crossing& crossing : crossings_) {

@@ -129,7 +129,7 @@ class Judge {
   /// `looks_still`: of those that move, as likely as they do.
   void of_objects(const Measured& measured, bool looks_still, Densities& densities) const;
   /// The same of objects that are not tracked (yet) but were detected, in this scan or just before; and whether
-  /// anything else was detected there at all.
+  /// anything else was detected there that goes with it.
   struct Recent {
     double density;
     bool in_company;
@@ -142,7 +142,7 @@ class Judge {
   /// `seen`: how often something was detected there, this time included.
   [[nodiscard]] double of_stationary(const Measured& measured, std::uint32_t seen) const;
   [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least);
-  /// Those whose way out is by one wall and then by another, of what looks still.
+  /// Those whose way out is by one wall and then by another, of what looks still; needs the fronts that type1() found.
   [[nodiscard]] double type1_of_two(const Measured& measured, double least);
   /// The variance of a type-1 ghost's object along the line of sight, and what else is known of that object; the
   /// mirrors' own motion is not in it.

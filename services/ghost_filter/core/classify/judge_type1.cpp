@@ -152,7 +152,6 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
 
 double Judge::type1_of_two(const Measured& m, double least) {
   const auto is_wall = [](const Mirror& mirror) { return is_long(mirror) && mirror.existence > kLeastWall; };
-  find_fronts(m, kNobody);
   if (fronts_.empty()) return 0.0;
   double density = 0.0;
   for (const Mirror& first : s_.mirrors) {

@@ -103,7 +103,7 @@ void cost(const Options& options, Report& report) {
                        " times the published method's in the same run; " + how);
     report.at_most("cost", "growth to 8 radars × 800: exponent", growth, 1.1, "",
                    "of the cost of a cycle in its size; the map grows with it");
-    report.at_most("cost", "allocations", static_cast<double>(allocations), 0.0, "", how);
+    report.at_most("cost", "allocations", static_cast<double>(allocations), 0.0, "", "in all runs");
   }
   report.add(std::move(table));
 }
