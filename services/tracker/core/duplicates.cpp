@@ -35,9 +35,10 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
   const double beside_m = are_vehicles ? 0.0 : margin_m;
   if (a.extent.contains(p, q, margin_m, beside_m) || b.extent.contains(q, p, margin_m, beside_m)) return true;
   if (!a.extent.shows_side(p, sensor)) return false;
-  // Both ends of a long vehicle: nobody follows so closely.
-  constexpr double kSmallestHeadway_s = 0.3;
-  return a.extent.in_file(p, b.extent, q, kSmallestHeadway_s * velocity.norm());
+  // Both ends of a long vehicle: nobody follows so closely, and they move alike. What is new may seem to come over from
+  // the next lane.
+  constexpr double kSmallestHeadway_s = 0.3, kAlike_mps = 2.0;
+  return apart_mps < kAlike_mps && a.extent.in_file(p, b.extent, q, kSmallestHeadway_s * velocity.norm());
 }
 
 }  // namespace

@@ -19,12 +19,6 @@ struct VisibleFaces {
   double side;  ///< +1 the left side, −1 the right one
 };
 
-/// Where the reflections of what a sensor sees of a box lie.
-struct VisiblePart {
-  Eigen::Vector2d mean_m;    ///< relative to the box's centre, in vehicle axes
-  double variance_along_m2;  ///< of one reflection, along the box
-};
-
 /// Box along the heading. A side that is seen grows quickly to what is seen and shrinks slowly, as one scan sees only
 /// some of its reflections; a side that is not seen stays as it is, at the start that of a car.
 struct Extent {
@@ -40,23 +34,22 @@ struct Extent {
   bool is_small = false;
   bool was_small = false;  ///< when it was first heard
 
+  /// From vehicle axes to the box's, along and across it, and back.
+  [[nodiscard]] Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
+    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+    return {c * v.x() + s * v.y(), -s * v.x() + c * v.y()};
+  }
+  [[nodiscard]] Eigen::Vector2d from_body(const Eigen::Vector2d& v) const {
+    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+  }
+
   [[nodiscard]] VisibleFaces visible_faces(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
     const Eigen::Vector2d at = to_body(sensor_m - centre_m);
     const auto face = [](double coordinate, double half) {
       return std::abs(coordinate) > half ? std::copysign(1.0, coordinate) : 0.0;
     };
     return {face(at.x(), 0.5 * length_m), face(at.y(), 0.5 * width_m)};
-  }
-
-  /// The reflections of the faces that look towards the sensor, if those reflect evenly along their lengths.
-  [[nodiscard]] VisiblePart visible_part(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& sensor_m) const {
-    const VisibleFaces faces = visible_faces(centre_m, sensor_m);
-    const double end = std::abs(faces.end) * width_m, side = std::abs(faces.side) * length_m;
-    if (end + side <= 0.0) return {{0.0, 0.0}, 0.0};
-    const double of_side = side / (end + side), of_end = 1.0 - of_side;
-    const Eigen::Vector2d mean(0.5 * faces.end * length_m * of_end, 0.5 * faces.side * width_m * of_side);
-    // One reflection lies at the end, or anywhere along the length.
-    return {from_body(mean), of_side * (1.0 / 12.0 + 0.25 * of_end) * length_m * length_m};
   }
 
   /// The course, or what is known of the heading, turns the box.
@@ -85,12 +78,15 @@ struct Extent {
     return from_body({ahead_m > behind_m ? 0.5 * more_m : -0.5 * more_m, 0.0});
   }
 
-  /// What is seen now sets the size; `velocity` over ground tells what it may be.
-  void update(const Cluster& cluster, const Eigen::Vector2d& centre_m, const Eigen::Vector2d& velocity_mps,
-              const Eigen::Vector2d& sensor_m, bool has_elevation) {
+  /// What is seen now sets the size; `velocity` over ground tells what it may be. It grows to where what is seen lies
+  /// beyond it, faces that are seen stay where they are else, and the centre moves by what is returned.
+  [[nodiscard]] Eigen::Vector2d update(const Cluster& cluster, const Eigen::Vector2d& centre_m,
+                                       const Eigen::Vector2d& velocity_mps, const Eigen::Vector2d& sensor_m,
+                                       bool has_elevation) {
     const std::size_t n = std::min<std::size_t>(cluster.number_on_outline, cluster.outline.size());
-    if (n == 0) return;
+    if (n == 0) return {0.0, 0.0};
     hear(cluster.strongest_dbsm, velocity_mps.norm());
+    const Eigen::Vector2d before_m(length_m, width_m);
     Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
     for (std::size_t i = 0; i < n; ++i) {
       const Eigen::Vector2d p = to_body(cluster.outline[i]);
@@ -107,6 +103,10 @@ struct Extent {
     follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), narrowest_m,
            is_small ? kCycleWidth_m : kWidest_m);
     if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
+    if (is_small) return {0.0, 0.0};
+    const Eigen::Vector2d centre = to_body(centre_m);
+    return from_body({shift(before_m.x(), length_m, low.x() - centre.x(), high.x() - centre.x(), faces.end),
+                      shift(before_m.y(), width_m, low.y() - centre.y(), high.y() - centre.y(), faces.side)});
   }
 
   /// Whether a person or a cycle would be as strong and as fast.
@@ -236,19 +236,18 @@ struct Extent {
   // A vehicle's strongest reflection, from wherever it is seen, that of a cycle with who rides it, and a person's.
   static constexpr double kWeakestVehicle_dbsm = -5.0, kWeakestCycle_dbsm = -9.0, kWeakestPerson_dbsm = -13.0;
   static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger
-  [[nodiscard]] Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
-    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
-    return {c * v.x() + s * v.y(), -s * v.x() + c * v.y()};
-  }
-  [[nodiscard]] Eigen::Vector2d from_body(const Eigen::Vector2d& v) const {
-    const double c = std::cos(heading_rad), s = std::sin(heading_rad);
-    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-  }
   /// How much of a side is to be seen up to its far end, 0 … 1: from nearby that is at a slant even for a sensor beside
   /// the middle, where nothing has a range rate over ground. Of a truck alongside each radar sees but a piece.
   [[nodiscard]] double side_shown(const Eigen::Vector2d& sensor_in_body_m) const {
     const double along_m = std::abs(sensor_in_body_m.x()) + 0.5 * length_m, beside_m = sensor_in_body_m.y();
     return beside_m * beside_m / (beside_m * beside_m + along_m * along_m);
+  }
+  /// Of the centre along an axis, as the size there changes; what is seen lies from `low` to `high`, and `face` is
+  /// seen.
+  static double shift(double before, double after, double low, double high, double face) {
+    const double more = 0.5 * (after - before);
+    const double above = std::max(0.0, high - 0.5 * before), below = std::max(0.0, -0.5 * before - low);
+    return more > 0.0 && above + below > 0.0 ? more * (above - below) / (above + below) : -face * more;
   }
   /// `shown`: how much of it was to be seen, 0 … 1.
   static void follow(double& value, double seen, double shown, double low, double high) {

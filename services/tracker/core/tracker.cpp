@@ -8,6 +8,7 @@
 #include "services/tracker/core/duplicates.hpp"
 #include "services/tracker/core/heading.hpp"
 #include "services/tracker/core/life.hpp"
+#include "services/tracker/core/seen_centre.hpp"
 #include "services/tracker/core/stopped.hpp"
 #include "services/tracker/core/track_message.hpp"
 #include "services/tracker/core/visibility.hpp"
@@ -17,25 +18,30 @@ namespace boresight::tracking {
 
 namespace {
 
-/// The cluster as a measurement of the centre of the box that it would be the visible part of. How far the mean of what
-/// is seen may be from where the box says it is goes with its size.
-PositionRate measurement_of(const Cluster& cluster, const Extent& extent, const VisiblePart& visible,
+/// The cluster as a measurement of the centre of the box that it is seen of.
+PositionRate measurement_of(const Cluster& cluster, const TrackedObject& track, const Eigen::Vector2d& sensor,
                             double centre_std_m) {
-  constexpr double kLeast = 0.25;  // of a person who walks
-  const double share = extent.is_small ? std::clamp(extent.length_m / Extent::kCarLength_m, kLeast, 1.0) : 1.0;
+  // Where a box is said to be goes with its size: that errs the same way from scan to scan.
+  constexpr double kLeast = 0.5;  // of a person who walks
+  const double share = std::clamp(track.extent.length_m / Extent::kCarLength_m, kLeast, 1.0);
+  const SeenCentre seen = seen_centre(cluster, track.extent, track.state.mean.head<2>(),
+                                      track.state.covariance.topLeftCorner<2, 2>(), sensor);
   PositionRate m;
-  m.value << cluster.position_m - visible.mean_m, cluster.range_rate_over_ground_mps;
+  m.value << seen.at_m, cluster.range_rate_over_ground_mps;
   m.covariance.setZero();
   m.covariance.topLeftCorner<2, 2>() =
-      cluster.covariance_m2 + share * share * centre_std_m * centre_std_m * Eigen::Matrix2d::Identity();
-  // Few detections of a long vehicle are of any part of it. People have no faces.
-  const double of_part_m2 = extent.is_small ? 0.0 : visible.variance_along_m2 / cluster.number_of_detections;
-  const Eigen::Vector2d axis(std::cos(extent.heading_rad), std::sin(extent.heading_rad));
-  m.covariance.topLeftCorner<2, 2>() +=
-      (std::max(0.0, of_part_m2 - centre_std_m * centre_std_m)) * axis * axis.transpose();
+      seen.covariance_m2 + share * share * centre_std_m * centre_std_m * Eigen::Matrix2d::Identity();
   m.covariance(2, 2) = cluster.range_rate_variance;
   m.line_of_sight = cluster.mean_sight;
   return m;
+}
+
+/// Whether the range rate alone is within the gate; else nothing need be asked about the place.
+bool rate_fits(const Cluster& cluster, const KinematicState& state, double gate_chi2) {
+  const Eigen::Vector2d& sight = cluster.mean_sight;
+  const double off_mps = cluster.range_rate_over_ground_mps - sight.dot(state.mean.segment<2>(2));
+  const double variance = cluster.range_rate_variance + sight.dot(state.covariance.block<2, 2>(2, 2) * sight);
+  return off_mps * off_mps < gate_chi2 * variance;
 }
 
 }  // namespace
@@ -142,10 +148,10 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
   cluster_used_.fill(false);
   assignment_.reset(tracks_.size(), clusters.size(), config_.gate_chi2);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    visible_[t] = tracks_[t].extent.visible_part(tracks_[t].state.mean.head<2>(), sensor);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
+      if (!rate_fits(clusters[c], tracks_[t].state, config_.gate_chi2)) continue;
       const Distance d =
-          distance(tracks_[t].state, measurement_of(clusters[c], tracks_[t].extent, visible_[t], config_.centre_std_m));
+          distance(tracks_[t].state, measurement_of(clusters[c], tracks_[t], sensor, config_.centre_std_m));
       if (d.squared >= config_.gate_chi2) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
@@ -160,7 +166,7 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
     TrackedObject& track = tracks_[t];
     // What may be a ghost moves the track by as little as it is likely real.
-    PositionRate measurement = measurement_of(cluster, track.extent, visible_[t], config_.centre_std_m);
+    PositionRate measurement = measurement_of(cluster, track, sensor, config_.centre_std_m);
     measurement.covariance /= cluster.realness;
     // What is new knows no velocity to tell wheels by; people are nothing but limbs.
     if (track.confirmed && !track.extent.is_small) {
@@ -211,7 +217,8 @@ void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const 
     const double sure_m = kSure * std::sqrt(axis.dot(covariance * axis));
     track.state.mean.head<2>() += track.extent.grow_to(cluster, track.state.mean.head<2>(), sensor, sure_m);
   }
-  track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
+  track.state.mean.head<2>() +=
+      track.extent.update(cluster, track.state.mean.head<2>(), velocity, sensor, has_elevation);
 }
 
 void Tracker::push_off(double ego_speed_mps) {
@@ -253,8 +260,15 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
   track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
   if (cluster.number_on_outline > 0) track.extent.hear(cluster.strongest_dbsm, track.state.mean.segment<2>(2).norm());
-  track.state.mean.head<2>() = cluster.position_m - track.extent.visible_part(cluster.position_m, sensor).mean_m;
-  track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
+  track.state.mean.head<2>() = cluster.position_m;
+  if (!track.extent.is_small) {
+    // What is seen is of the faces.
+    const VisibleFaces faces = track.extent.visible_faces(cluster.position_m, sensor);
+    track.state.mean.head<2>() -=
+        track.extent.from_body({0.5 * faces.end * track.extent.length_m, 0.5 * faces.side * track.extent.width_m});
+  }
+  track.state.mean.head<2>() +=
+      track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
   track.history = 1;
   track.evidence[0] = static_cast<float>(cluster.realness);
   track.seen_scans = 1;

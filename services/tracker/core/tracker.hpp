@@ -54,7 +54,6 @@ class Tracker {
   geometry::Assignment assignment_;
   std::vector<TrackedObject> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
-  std::array<VisiblePart, kMaxTracks> visible_;
   std::array<KnownPlace, kMaxTracks> known_;
   Eigen::Vector2d radars_low_m_{1e9, 1e9}, radars_high_m_{-1e9, -1e9};  // what lies between them is the own body
   std::uint32_t next_id_ = 1;

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "services/tracker/core/extent.hpp"
@@ -169,23 +171,12 @@ TEST(Extent, KnowsWhichFacesAreSeen) {
   const VisibleFaces from_behind = car.visible_faces(centre, {0.0, 0.0});
   EXPECT_EQ(from_behind.end, -1.0);
   EXPECT_EQ(from_behind.side, 0.0);
-  EXPECT_LT((car.visible_part(centre, {0.0, 0.0}).mean_m - Eigen::Vector2d(-2.0, 0.0)).norm(), 1e-12);
-  // From the left and behind: the rear (2 m long) and the left side (4 m long).
-  const Eigen::Vector2d mean = car.visible_part(centre, {0.0, 20.0}).mean_m;
-  EXPECT_NEAR(mean.x(), -2.0 * 2.0 / 6.0, 1e-12);
-  EXPECT_NEAR(mean.y(), 1.0 * 4.0 / 6.0, 1e-12);
-  EXPECT_EQ(car.visible_part(centre, centre).mean_m, Eigen::Vector2d(0.0, 0.0)) << "from inside";
-}
-
-TEST(Extent, AReflectionOfASideIsOfAnyPlaceAlongIt) {
-  const Extent truck{.heading_rad = 0.0, .length_m = 12.0, .width_m = 2.0};
-  const Eigen::Vector2d centre(30.0, 0.0);
-  EXPECT_NEAR(truck.visible_part(centre, {30.0, 20.0}).variance_along_m2, 12.0, 1e-12) << "from beside";
-  EXPECT_EQ(truck.visible_part(centre, {0.0, 0.0}).variance_along_m2, 0.0) << "from behind";
-  // From both, the rear (2 m) and the side (12 m): around their common mean.
-  const double of_side = 12.0 / 14.0;
-  EXPECT_NEAR(truck.visible_part(centre, {0.0, 20.0}).variance_along_m2,
-              of_side * 12.0 + of_side * (1.0 - of_side) * 36.0, 1e-9);
+  const VisibleFaces from_aside = car.visible_faces(centre, {0.0, 20.0});
+  EXPECT_EQ(from_aside.end, -1.0);
+  EXPECT_EQ(from_aside.side, 1.0);
+  const VisibleFaces from_inside = car.visible_faces(centre, centre);
+  EXPECT_EQ(from_inside.end, 0.0);
+  EXPECT_EQ(from_inside.side, 0.0);
 }
 
 TEST(Extent, OfWhatIsNearbyEachScanShowsAPieceOnly) {
@@ -197,8 +188,8 @@ TEST(Extent, OfWhatIsNearbyEachScanShowsAPieceOnly) {
   cluster.outline[0] = {3.0, -2.2};
   cluster.outline[1] = {7.0, -2.2};
   for (int i = 0; i < 100; ++i) {
-    near.update(cluster, centre, velocity, {0.0, 0.0}, false);
-    far.update(cluster, centre, velocity, {0.0, 40.0}, false);
+    std::ignore = near.update(cluster, centre, velocity, {0.0, 0.0}, false);
+    std::ignore = far.update(cluster, centre, velocity, {0.0, 40.0}, false);
   }
   EXPECT_GT(near.length_m, 14.0) << "alongside";
   EXPECT_LT(far.length_m, 12.0);
@@ -245,17 +236,25 @@ TEST(Extent, WhoWasTakenForAVehicleThatPassedIsSmallAgain) {
   EXPECT_FALSE(car.is_small);
 }
 
-TEST(Extent, TurnsWithTheObject) {
-  const Eigen::Vector2d centre(10.0, 5.0), sensor(-7.0, 20.0);
-  const Extent straight{.heading_rad = 0.0, .length_m = 6.0, .width_m = 2.0};
-  for (const double angle : {0.3, 1.7, -2.5}) {
-    const Eigen::Rotation2Dd turn(angle);
-    const Extent turned{.heading_rad = angle, .length_m = 6.0, .width_m = 2.0};
-    EXPECT_LT(
-        (turned.visible_part(turn * centre, turn * sensor).mean_m - turn * straight.visible_part(centre, sensor).mean_m)
-            .norm(),
-        1e-12);
-  }
+TEST(Extent, GrowsAwayFromTheFacesThatAreSeen) {
+  Extent box{.heading_rad = 0.4, .length_m = 4.0, .width_m = 1.8};
+  const Eigen::Vector2d centre(20.0, 5.0), velocity(10.0, 0.0), sensor(0.0, 0.0);
+  const VisibleFaces faces = box.visible_faces(centre, sensor);
+  ASSERT_NE(faces.end, 0.0);
+  ASSERT_NE(faces.side, 0.0);
+  const auto corner = [&](const Eigen::Vector2d& middle) -> Eigen::Vector2d {
+    return middle + box.from_body({0.5 * faces.end * box.length_m, 0.5 * faces.side * box.width_m});
+  };
+  Cluster cluster{};
+  cluster.strongest_dbsm = 10.0;
+  cluster.number_on_outline = 2;
+  cluster.outline[0] = corner(centre);
+  cluster.outline[1] = cluster.outline[0] - box.from_body({faces.end * 7.0, 0.0});
+  const Eigen::Vector2d before = corner(centre);
+  Eigen::Vector2d middle = centre;
+  for (int i = 0; i < 10; ++i) middle += box.update(cluster, middle, velocity, sensor, false);
+  EXPECT_GT(box.length_m, 6.0);
+  EXPECT_LT((corner(middle) - before).norm(), 1e-9) << "the corner that is seen stays where it is";
 }
 
 TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
@@ -264,17 +263,17 @@ TEST(Extent, GrowsWithWhatIsSeenAndKeepsWhatIsNot) {
   cluster.number_of_detections = cluster.number_on_outline = 2;
   cluster.outline[0] = {20.0, -0.9};
   cluster.outline[1] = {20.0, 0.9};
-  for (int i = 0; i < 300; ++i) extent.update(cluster, {22.0, 0.0}, {10.0, 0.0}, {0.0, 0.0}, true);
+  for (int i = 0; i < 300; ++i) std::ignore = extent.update(cluster, {22.0, 0.0}, {10.0, 0.0}, {0.0, 0.0}, true);
   EXPECT_NEAR(extent.length_m, 4.5, 1e-9) << "from behind the length is not seen";
   EXPECT_NEAR(extent.width_m, 1.8, 0.01);
   cluster.outline[1] = {28.0, -0.9};
-  for (int i = 0; i < 20; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
+  for (int i = 0; i < 20; ++i) std::ignore = extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
   EXPECT_NEAR(extent.length_m, 8.0, 0.05);
   EXPECT_EQ(extent.object_class(), ObjectClass::kTruck);
   cluster.outline[1] = {22.0, -0.9};
-  for (int i = 0; i < 20; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
+  for (int i = 0; i < 20; ++i) std::ignore = extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
   EXPECT_GT(extent.length_m, 7.0) << "a few scans that show a part of it";
-  for (int i = 0; i < 2000; ++i) extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
+  for (int i = 0; i < 2000; ++i) std::ignore = extent.update(cluster, {24.0, 0.0}, {10.0, 0.0}, {0.0, -20.0}, true);
   EXPECT_NEAR(extent.length_m, 2.0, 0.1);
 }
 
@@ -289,7 +288,7 @@ TEST(Extent, IsAPersonsAsLongAsItReflectsAndMovesAsOne) {
   two.number_of_detections = two.number_on_outline = 2;
   two.outline[0] = {10.0, -2.0};
   two.outline[1] = {10.0, 2.0};
-  for (int i = 0; i < 20; ++i) person.update(two, {10.0, 0.0}, {0.0, 1.4}, {0.0, 0.0}, false);
+  for (int i = 0; i < 20; ++i) std::ignore = person.update(two, {10.0, 0.0}, {0.0, 1.4}, {0.0, 0.0}, false);
   EXPECT_LE(person.length_m, 2.0) << "no longer than a cycle, whoever is beside";
   person.hear(5.0, 1.4);
   EXPECT_TRUE(person.is_small) << "one strong echo";
@@ -325,10 +324,10 @@ TEST(Extent, IsAsWideAsVehiclesAre) {
     cluster.outline[0] = {18.0, -2.5};
     cluster.outline[1] = {18.0, 2.5};
     cluster.outline[2] = {22.0, 0.0};
-    wide.update(cluster, centre, velocity, sensor, false);
+    std::ignore = wide.update(cluster, centre, velocity, sensor, false);
     cluster.outline[0] = {18.0, -0.1};
     cluster.outline[1] = {18.0, 0.1};
-    narrow.update(cluster, centre, velocity, sensor, false);
+    std::ignore = narrow.update(cluster, centre, velocity, sensor, false);
   }
   EXPECT_NEAR(wide.width_m, 2.6, 1e-6);
   EXPECT_NEAR(narrow.width_m, 1.6, 1e-6);
