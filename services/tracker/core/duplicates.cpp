@@ -30,9 +30,13 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
   if (in_box) return true;
   if (apart_mps > config.duplicate_speed_mps) return false;
   const double margin_m = config.duplicate_margin_m;
+  const bool are_confirmed = a.confirmed && b.confirmed;
   // Two that were confirmed may be vehicles side by side, drawn together as their places are not known well yet.
-  const bool are_vehicles = a.confirmed && b.confirmed && !a.extent.is_small && !b.extent.is_small;
-  const double beside_m = are_vehicles ? 0.0 : margin_m;
+  const bool are_vehicles = are_confirmed && !a.extent.is_small && !b.extent.is_small;
+  // And who is beside a vehicle is no part of it, but for wheels, which are at its side.
+  const bool one_is_small = a.extent.is_small != b.extent.is_small;
+  constexpr double kWheel_m = 0.5;
+  const double beside_m = are_vehicles ? 0.0 : are_confirmed && one_is_small ? std::min(kWheel_m, margin_m) : margin_m;
   if (a.extent.contains(p, q, margin_m, beside_m) || b.extent.contains(q, p, margin_m, beside_m)) return true;
   if (!a.extent.shows_side(p, sensor)) return false;
   // Both ends of a long vehicle: nobody follows so closely, and they move alike. What is new may seem to come over from

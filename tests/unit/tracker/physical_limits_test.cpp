@@ -52,6 +52,44 @@ TEST(Duplicates, NeighboursDrawnTogetherStayTwoButNothingIsTwiceInItsPlace) {
   EXPECT_EQ(left_of_two(-3.0, 0.5, true), 1U) << "its other end";
 }
 
+/// How many are left of two confirmed vehicles, 4.5 m long, one 3 m behind the other at 20 m/s, seen from beside.
+std::size_t left_in_file(double across_mps) {
+  std::vector<TrackedObject> tracks(2);
+  for (TrackedObject& track : tracks) {
+    track.confirmed = true;
+    track.age_s = 1.0;
+    track.state.mean << 20.0, 6.0, 20.0, 0.0, 0.0, 0.0;
+  }
+  tracks[1].state.mean(0) += 7.5;
+  tracks[1].state.mean(3) = across_mps;
+  remove_duplicates(tracks, {0.0, 0.0}, Config{});
+  return tracks.size();
+}
+
+TEST(Duplicates, TheEndsOfALongVehicleMoveAlike) {
+  EXPECT_EQ(left_in_file(0.5), 1U);
+  EXPECT_EQ(left_in_file(3.0), 2U) << "seems to come over from the next lane";
+}
+
+TEST(Duplicates, WhoStandsBesideAVehicleIsNoPartOfItButAWheelIs) {
+  const auto left_of = [](double beside_m) {
+    std::vector<TrackedObject> tracks(2);
+    for (TrackedObject& track : tracks) {
+      track.confirmed = true;
+      track.age_s = 1.0;
+      track.state.mean << 20.0, 6.0, 4.0, 0.0, 0.0, 0.0;
+    }
+    tracks[1].extent.is_small = true;
+    tracks[1].extent.length_m = 1.2;
+    tracks[1].extent.width_m = 0.7;
+    tracks[1].state.mean(1) -= 0.5 * Extent::kCarWidth_m + beside_m;
+    remove_duplicates(tracks, {0.0, 0.0}, Config{});
+    return tracks.size();
+  };
+  EXPECT_EQ(left_of(0.3), 1U) << "a wheel";
+  EXPECT_EQ(left_of(0.8), 2U) << "a person";
+}
+
 TEST(Extent, TellsTheShortestWayOffTheOwnVehicle) {
   const Extent truck{.heading_rad = 0.0, .length_m = 16.0, .width_m = 2.5};
   const Eigen::Vector2d middle(1.4, 0.0), half(2.2, 0.75);
