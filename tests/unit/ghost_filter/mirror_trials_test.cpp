@@ -169,6 +169,33 @@ TEST_P(MirrorTrialsTest, WhereNothingCanBeSeenNothingIsTold) {
   EXPECT_EQ(evidence(), 0.0) << "or not so far";
 }
 
+TEST_P(MirrorTrialsTest, AFlankShowsThatItMirrorsAsAWallDoes) {
+  // A van as far to the left as the wall; it drives as fast as the own vehicle, along its flank.
+  Object van = objects_.front();
+  van.position_m = turned({17.0, 9.0});
+  van.half_length_m = 3.0;
+  van.half_width_m = 1.0;
+  objects_.push_back(van);
+  wall_.occupancy = nullptr;
+  wall_.curve.origin_m = turned({17.0, 8.0});
+  wall_.begin_m = -3.0;
+  wall_.end_m = 3.0;
+  wall_.body = 1;
+  wall_.velocity_mps = turned({15.0, 0.0});
+  EXPECT_LT(evidence(), 0.0) << "the van itself hides nothing";
+  show_image(0.0, 1);
+  EXPECT_LT(evidence(), 0.0) << "what is of the van itself is no image";
+  show_image();
+  EXPECT_GT(evidence(), 0.0);
+  wall_.velocity_mps = turned({15.0, 8.0});
+  EXPECT_LT(evidence(), 0.0) << "a mirror that comes nearer changes the image's range rate";
+  wall_.velocity_mps.setZero();
+  wall_.begin_m = 0.0;
+  wall_.end_m = 6.0;
+  wall_.curve.origin_m = turned({1.0, 8.0});
+  EXPECT_EQ(evidence(), 0.0) << "the wave would turn beyond its end";
+}
+
 INSTANTIATE_TEST_SUITE_P(Turned, MirrorTrialsTest, testing::Values(0.0, 0.7, -2.1));
 
 constexpr double kHedge = 9.0;

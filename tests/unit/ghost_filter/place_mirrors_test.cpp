@@ -13,12 +13,13 @@ namespace {
 using Eigen::Vector2d;
 
 /// How likely the side is one that looks across the vehicle's axis, of a vehicle beside the sensor; 0: there is none.
-double flank_of(double length_m, double beside_m, double weight = 1.0) {
+double flank_of(double length_m, double beside_m, double weight = 1.0, double learnt = 0.0) {
   Object o;
   o.position_m = {3.0, beside_m};
   o.half_length_m = 0.5 * length_m;
   o.half_width_m = 0.9;
   o.weight = weight;
+  o.mirrors = learnt;
   o.position_covariance = 0.01 * Eigen::Matrix2d::Identity();
   const std::vector<Object> objects{o};
   Odometry odometry;
@@ -30,6 +31,7 @@ double flank_of(double length_m, double beside_m, double weight = 1.0) {
     if (std::abs(m.curve.tangent.x()) > 0.9) {
       // The side that the sensor sees.
       EXPECT_NEAR(m.curve.origin_m.y(), beside_m - 0.9, 1e-9);
+      EXPECT_GT(m.end_m, 0.5 * length_m) << "its far corner is not seen";
       return m.existence;
     }
   }
@@ -50,6 +52,13 @@ TEST(PlaceMirrors, WhatLooksLikeACarMayBeAVanWhereManyRaysMeetIt) {
   EXPECT_LT(flank_of(4.5, 5.0), 0.4);
   EXPECT_EQ(flank_of(4.5, 60.0), 0.0);
   EXPECT_EQ(flank_of(1.8, 5.0), 0.0) << "a cycle";
+}
+
+TEST(PlaceMirrors, WhatShowedImagesIsBelievedToMirror) {
+  EXPECT_GT(flank_of(4.5, 5.0, 1.0, 4.0), 0.85) << "it is a van";
+  EXPECT_GT(flank_of(12.0, 5.0, 1.0, 4.0), flank_of(12.0, 5.0));
+  EXPECT_LE(flank_of(12.0, 5.0, 1.0, 4.0), 1.0);
+  EXPECT_LT(flank_of(12.0, 5.0, 0.6, 4.0), 0.6) << "but it may be no vehicle at all";
 }
 
 }  // namespace boresight::ghosts

@@ -139,6 +139,7 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
       o.rcs_dbsm = images_[i].rcs_dbsm;
       o.rcs_std_db = images_[i].rcs_std_db;
       o.moving = moving_of(o);
+      o.mirrors = images_[i].mirrors;
       o.age_s = track.age_s;
       track_of_object_[objects_.size()] = i;
       objects_.push_back(o);
@@ -297,11 +298,20 @@ void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (is_usable(scan, i)) trials_.saw(measured_[i].direction, measured_[i].range_m);
   }
+  const MirrorTrials::Scan seen{sensor_m_, sensor_velocity_mps_, mounting_std_rad_, objects_, &odometry_, &movers_};
   const std::size_t reflectors = map_.reflectors().size();
   for (std::size_t k = 0; k < std::min(kAtOnce, reflectors); ++k) {
     const std::size_t i = mirrors_turn_++ % reflectors;
-    map_.tried(i, trials_.evidence_of(mirrors_[i], {sensor_m_, sensor_velocity_mps_, mounting_std_rad_, objects_,
-                                                    &odometry_, &movers_}));
+    map_.tried(i, trials_.evidence_of(mirrors_[i], seen));
+  }
+  // Of vehicles it is only learnt that they mirror. Most that are as long do, and where no image is seen in one it is
+  // rather hidden, or too weak: that hardly tells them from cars.
+  constexpr double kMost = 4.0;
+  const std::size_t faces = mirrors_.size() - reflectors;
+  for (std::size_t k = 0; k < std::min(kAtOnce, faces); ++k) {
+    const Mirror& face = mirrors_[reflectors + faces_turn_++ % faces];
+    double& learnt = images_[track_of_object_[face.body]].mirrors;
+    learnt = std::clamp(learnt + trials_.evidence_of(face, seen), 0.0, kMost);
   }
 }
 

@@ -28,12 +28,14 @@ class MirrorFilter final : public Method {
   [[nodiscard]] std::size_t map_points() const override { return map_.grid().size(); }
 
  private:
-  /// How much a track looks like the image of something else, over time, and how strongly it reflects.
+  /// How much a track looks like the image of something else, over time, how strongly it reflects and whether it
+  /// mirrors.
   struct Image {
     std::uint32_t tracking_id = 0;
     double log_odds = 0.0;
     std::uint32_t judgements = 0;
     double rcs_dbsm = kUsualRcs_dbsm, rcs_std_db = kUsualRcsStd_db;  ///< of its parts, as far as they were heard
+    double mirrors = 0.0;                                            ///< log-odds gained, that its faces do
   };
   void update_map(const CorrectedScan& scan, std::size_t count);
   void predict_objects(const CorrectedScan& scan);
@@ -63,7 +65,7 @@ class MirrorFilter final : public Method {
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   std::array<Image, kMaxTracks> images_{}, images_before_{};
   std::size_t turn_ = 0;  // the track that is judged next
-  std::size_t mirrors_turn_ = 0;
+  std::size_t mirrors_turn_ = 0, faces_turn_ = 0;
   bool has_tracks_ = false;
   Eigen::Vector2d sensor_m_{0.0, 0.0}, sensor_velocity_mps_{0.0, 0.0};
   double ego_speed_std_mps_ = 0.0, mounting_std_rad_ = 0.0;

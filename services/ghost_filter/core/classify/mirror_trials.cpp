@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "services/ghost_filter/core/classify/sectors.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
@@ -23,6 +24,7 @@ constexpr double kLeastRate_mps = 2.0;                 // what shows less is not
 constexpr double kBeside_m = 3.0, kOff_mps = 1.5;      // of an image
 constexpr double kTold = 2.0;                          // standard deviations of its place that must be within that
 constexpr double kOfOther_m = 6.0;                     // about a box: what is detected there may be of that object
+constexpr double kOfBody_m = 1.0;                      // the same of whose face it is: images lie right behind it
 
 bool hides(const Object& o, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m) {
   const Eigen::Vector2d q = o.position_m - from_m;
@@ -59,7 +61,8 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
   const double far = image->first_m + image->second_m;
   if (far > kInReach * farthest_of_all_m_ ||
       farthest_m_[sector_of<kSectors>(image->departure)] < image->first_m - kBefore_m ||
-      mirror.occupancy->probability(image->arc_m + mirror.arc_shift_m, 0.5) < kSurePlace) {
+      (mirror.occupancy != nullptr &&
+       mirror.occupancy->probability(image->arc_m + mirror.arc_shift_m, 0.5) < kSurePlace)) {
     return Outcome::kUnknown;
   }
   // A radar that is crooked sees it elsewhere, and so it is if the object is elsewhere.
@@ -73,15 +76,17 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
   struct Place {
     double range_m, rate_mps;
   };
+  const double carried = (image->departure - image->arrival).dot(mirror.velocity_mps);
   const std::array<Place, 2> places{
-      {{far, image->arrival.dot(o.velocity_mps)},
-       {0.5 * (far + direct_m),
-        0.5 * ((image->arrival + e).dot(o.velocity_mps) + (image->departure - e).dot(scan.sensor_velocity_mps))}}};
+      {{far, image->arrival.dot(o.velocity_mps) + carried},
+       {0.5 * (far + direct_m), 0.5 * ((image->arrival + e).dot(o.velocity_mps) + carried +
+                                       (image->departure - e).dot(scan.sensor_velocity_mps))}}};
   for (const Place& place : places) {
     if (std::abs(place.rate_mps) < kLeastRate_mps) return Outcome::kUnknown;
   }
+  const Object* const body = mirror.body == kNobody ? nullptr : &scan.objects[mirror.body];
   for (const Object& other : scan.objects) {
-    if (&other == &o || other.own || other.weight + other.image < 0.5) continue;
+    if (&other == &o || &other == body || other.own || other.weight + other.image < 0.5) continue;
     if (hides(other, scan.sensor_m, image->departure, image->first_m) ||
         hides(other, turn, image->arrival, image->second_m)) {
       return Outcome::kUnknown;
@@ -92,7 +97,7 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
   for (const Place& place : places) {
     const Eigen::Vector2d p = scan.sensor_m + place.range_m * image->departure;
     for (const Object& other : scan.objects) {
-      if (other.weight > 0.5 && is_on(other, p, kOfOther_m)) return Outcome::kUnknown;
+      if (other.weight > 0.5 && is_on(other, p, &other == body ? kOfBody_m : kOfOther_m)) return Outcome::kUnknown;
     }
     scan.movers->near(scan.odometry->point_to_frame(p), [&](const Mover& mover, std::uint32_t number) {
       if (number < own || mover.object != kNobody) return;
@@ -106,8 +111,9 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
 
 double MirrorTrials::evidence_of(const Mirror& mirror, const Scan& scan) const {
   double sum = 0.0;
-  for (const Object& o : scan.objects) {
-    if (o.own || o.weight < kSureObject || o.moving < 1.0) continue;
+  for (std::uint32_t i = 0; i < scan.objects.size(); ++i) {
+    const Object& o = scan.objects[i];
+    if (i == mirror.body || o.own || o.weight < kSureObject || o.moving < 1.0) continue;
     const Outcome outcome = look_for(o, mirror, scan);
     if (outcome != Outcome::kUnknown) sum += outcome == Outcome::kSeen ? kSeen : kNotSeen;
   }

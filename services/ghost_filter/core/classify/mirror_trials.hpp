@@ -1,5 +1,6 @@
 // Whether reflectors mirror. Hedges, kerbs and rows of parked cars look like rails and walls, but nothing is seen in
-// them: so it is looked where tracked objects would have to be seen, and what never shows one is no mirror.
+// them: so it is looked where tracked objects would have to be seen, and what never shows one is no mirror. What is
+// tracked with the length of a car may be a van, whose flank shows images.
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ class MirrorTrials {
   void begin();
   /// Something was detected there, whatever it is: so far the radar sees.
   void saw(const Eigen::Vector2d& direction, double range_m);
-  /// What the scan tells of a mirror of the map: the change of the log-odds that it is one. Everything in the vehicle
-  /// frame.
+  /// What the scan tells of a mirror, of the map or a vehicle's: the change of the log-odds that it is one. Everything
+  /// in the vehicle frame.
   [[nodiscard]] double evidence_of(const Mirror& mirror, const Scan& scan) const;
 
  private:

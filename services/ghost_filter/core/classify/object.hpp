@@ -20,6 +20,7 @@ struct Object {
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
   double weight = 0.0;   ///< probability that it exists and is no image itself
   double image = 0.0;    ///< that it exists and is an image
+  double mirrors = 0.0;  ///< log-odds that its faces do, more than those of others as long: images were seen in them
   double moving = 1.0;   ///< probability that it does not just stand
   double age_s = 1e9;    ///< since it was first tracked
   bool own = false;      ///< the own vehicle: seen only in mirrors

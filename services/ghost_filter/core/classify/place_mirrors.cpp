@@ -11,6 +11,8 @@ namespace boresight::ghosts {
 namespace {
 
 constexpr double kLengthStd_m = 0.6;  // of a track's length
+constexpr double kUnseenEnd_m = 0.5;  // a flank's far corner does not look to the sensor
+constexpr double kIntact = 0.8;       // share of long vehicles whose faces mirror
 /// Probability of being long enough, from which on a vehicle's sides are thought of as mirrors.
 constexpr double kLeastLong = 0.25, kLeastLongNear = 0.1;
 constexpr double kVans = 0.2;            // share of vehicles whose ends mirror: vans, trucks
@@ -53,22 +55,23 @@ void add_sides(std::span<const Object> objects, const Eigen::Vector2d& sensor_m,
     if (o.own || o.weight < 0.5 || has_end <= 0.0) continue;
     const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
     const auto add_side = [&](const Eigen::Vector2d& along, double half, const Eigen::Vector2d& across, double depth,
-                              double is_mirror) {
+                              double beyond_m, double is_mirror) {
       const double side = across.dot(sensor_m - o.position_m);
       if (std::abs(side) <= depth || mirrors.size() == mirrors.capacity()) return;
       Mirror m;
       m.curve = {o.position_m + std::copysign(depth, side) * across, along, 0.0};
       m.covariance =
           Eigen::Vector3d(0.2 * 0.2 + across.dot(o.position_covariance * across), 0.04 * 0.04, 0.0).asDiagonal();
-      m.begin_m = -half;
-      m.end_m = half;
-      m.existence = 0.8 * o.weight * is_mirror;
+      m.begin_m = -half - beyond_m;
+      m.end_m = half + beyond_m;
+      const double odds = kIntact * is_mirror / (1.0 - kIntact * is_mirror) * std::exp(o.mirrors);
+      m.existence = o.weight * odds / (1.0 + odds);
       m.velocity_mps = o.velocity_mps;
       m.body = i;
       mirrors.push_back(m);
     };
-    if (is_long > 0.0) add_side(o.axis, o.half_length_m, left, o.half_width_m, is_long);
-    add_side(left, o.half_width_m, o.axis, o.half_length_m, has_end);
+    if (is_long > 0.0) add_side(o.axis, o.half_length_m, left, o.half_width_m, kUnseenEnd_m, is_long);
+    add_side(left, o.half_width_m, o.axis, o.half_length_m, 0.0, has_end);
   }
 }
 
