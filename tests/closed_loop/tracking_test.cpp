@@ -39,12 +39,12 @@ void expect_objects(const Figures& figures) {
   EXPECT_EQ(figures.stays_found, figures.stays);
   EXPECT_GT(figures.stays, 0u);
   // The rest of the time they are half hidden, or cross the line of sight and look stationary.
-  EXPECT_GT(figures.share(), 0.9);
-  // A car's length is not seen from behind, and its track stands at the end that is.
-  EXPECT_LT(figures.along_rms_m, 1.3);
-  EXPECT_LT(figures.across_rms_m, 1.0);
+  EXPECT_GT(figures.share(), 0.97);
+  // A car's length is not seen from behind; its track stands at the end that is.
+  EXPECT_LT(figures.along_rms_m, 0.6);
+  EXPECT_LT(figures.across_rms_m, 0.55);
   EXPECT_LT(figures.velocity_rms_mps, 2.2);
-  EXPECT_LT(figures.heading_rms_rad, 0.17);
+  EXPECT_LT(figures.heading_rms_rad, 0.12);
 }
 
 class Tracking : public testing::TestWithParam<const char*> {};

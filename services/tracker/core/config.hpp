@@ -11,7 +11,7 @@ struct Config {
   double cluster_max_range_rate_spread_mps = 4.0;  ///< a detection that moves otherwise belongs to another cluster
   double gate_chi2 = 16.0;            ///< Mahalanobis distance² of position and range rate (3 degrees of freedom)
   double jerk_std_mps3 = 3.0;         ///< process noise: how fast the acceleration changes
-  double centre_std_m = 0.5;          ///< of what the faces that are seen say of the middle: by size, from scan to scan
+  double centre_std_m = 0.5;          ///< error of what the faces say of the middle, from scan to scan
   double range_rate_std_mps = 0.4;    ///< micro-motion and rotation, added to the sensor's std
   double start_position_std_m = 1.0;  ///< of the centre of a new object, of which only a part is seen
   double start_speed_std_mps = 12.0;

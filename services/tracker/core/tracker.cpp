@@ -21,7 +21,7 @@ namespace {
 /// The cluster as a measurement of the centre of the box that it is seen of.
 PositionRate measurement_of(const Cluster& cluster, const TrackedObject& track, const Eigen::Vector2d& sensor,
                             double centre_std_m) {
-  // Where a box is said to be goes with its size: that errs the same way from scan to scan.
+  // What the faces say errs the same way from scan to scan, and the more the larger they are.
   constexpr double kLeast = 0.5;  // of a person who walks
   const double share = std::clamp(track.extent.length_m / Extent::kCarLength_m, kLeast, 1.0);
   const SeenCentre seen = seen_centre(cluster, track.extent, track.state.mean.head<2>(),

@@ -23,7 +23,7 @@ struct Config {
   double max_segment_residual_m = 0.8;  ///< rms distance from the line; longer curves are split until they fit
   double type2_margin_m = 0.0;          ///< a ghost lies at least this far behind its reflector
   double type1_margin_m = 0.0;          ///< and this far behind its target
-  double ellipse_margin_m = 0.4;        ///< added to the half axes of a track
+  double ellipse_margin_m = 0.2;        ///< added to the half axes of a track
   double tracks_max_age_s = 0.5;
 };
 
