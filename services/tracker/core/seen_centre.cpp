@@ -80,7 +80,7 @@ SeenCentre seen_centre(const Cluster& cluster, const Extent& extent, const Eigen
   // From inside it is anywhere in the box. All that is seen of a flank says no more of where its middle is than one
   // detection would: it is the same parts that reflect, from scan to scan.
   Said by_end(noise, end_seen ? rough_m2 : along(length_m), along(width_m));
-  Said by_side(noise, of_side * along(length_m), rough_m2);
+  Said by_side(noise, std::max(1.0, of_side) * along(length_m), rough_m2);
   for (const Eigen::Vector2d& detection_m : detections) {
     const Look look = look_at(detection_m);
     (look.of_side ? by_side : by_end).add(look.off_m, look.fits / best);

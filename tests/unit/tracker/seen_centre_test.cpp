@@ -141,6 +141,14 @@ TEST(SeenCentre, OfWhatHasNoOutlineTheMeanCounts) {
   EXPECT_NEAR(seen.at_m.x(), kCentre.x(), 1e-9);
 }
 
+TEST(SeenCentre, ASensorThatSaysItHasNoNoiseIsNoHindrance) {
+  const Eigen::Vector2d centre(30.0, 0.0);
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(28.0, 0.0), Eigen::Vector2d(30.0, -1.0)}) {
+    const SeenCentre seen = seen_centre(cluster_of({place}, 0.0), kCar, centre, kKnown_m2, kSensor);
+    EXPECT_TRUE(seen.at_m.allFinite() && seen.covariance_m2.allFinite());
+  }
+}
+
 TEST(SeenCentre, FromInsideItIsAnywhereInTheBox) {
   const SeenCentre seen = seen_centre(cluster_of({{30.4, 10.2}}), kCar, kCentre, kKnown_m2, kCentre);
   EXPECT_LT((seen.at_m - Eigen::Vector2d(30.4, 10.2)).norm(), 1e-9);
