@@ -10,6 +10,7 @@
 
 #include "services/ghost_filter/core/classify/config.hpp"
 #include "services/ghost_filter/core/classify/direct_echoes.hpp"
+#include "services/ghost_filter/core/classify/measured.hpp"
 #include "services/ghost_filter/core/classify/mirror_fan.hpp"
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
@@ -20,16 +21,6 @@
 #include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
 
 namespace boresight::ghosts {
-
-/// A detection, in the plane.
-struct Measured {
-  Eigen::Vector2d position_m, direction;
-  double range_m, rate_mps;  ///< rate over ground
-  double range_std_m, azimuth_std_rad, rate_std_mps;
-  double still_std_mps;                             ///< of the range rate over ground of what stands still
-  double rcs_dbsm;                                  ///< NaN: not measured
-  std::uint32_t cell = StationaryGrid::kUnclaimed;  ///< of the map of what stands, in which it lies; or none
-};
 
 /// Expected number of detections for each m², m/s and dB.
 struct Densities {
