@@ -109,6 +109,16 @@ bool MirrorFilter::is_on_moving(const Eigen::Vector2d& place_m) const {
   return found;
 }
 
+void MirrorFilter::cast_shadows() {
+  Shadows& shadows = map_.shadows();
+  shadows.begin(odometry_.point_to_frame(objects_.back().position_m));  // the own vehicle
+  for (const Object& o : objects_) {
+    if (o.own || o.weight < kNoImage) continue;
+    shadows.add(odometry_.point_to_frame(o.position_m), odometry_.vector_to_frame(o.axis), o.half_length_m,
+                o.half_width_m);
+  }
+}
+
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   for (std::size_t i = 0; i < count; ++i) {
@@ -129,6 +139,7 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
     const Eigen::Vector2d reach = o.half_length_m * o.axis;
     map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));
   }
+  cast_shadows();
   map_.update(odometry_, positive_or(scan.geometry.ego_speed_std_mps, 0.05),
               positive_or(scan.geometry.ego_yaw_rate_std_radps, 0.002));
 }

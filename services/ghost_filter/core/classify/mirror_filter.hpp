@@ -29,6 +29,8 @@ class MirrorFilter final : public Method {
   [[nodiscard]] std::size_t map_points() const override { return map_.grid().size(); }
 
  private:
+  /// Of the tracked vehicles on the map.
+  void cast_shadows();
   void update_map(const CorrectedScan& scan, std::size_t count);
   void predict_objects(const CorrectedScan& scan);
   [[nodiscard]] bool is_on_moving(const Eigen::Vector2d& place_m) const;

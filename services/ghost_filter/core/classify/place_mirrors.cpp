@@ -35,6 +35,8 @@ void add_reflectors(std::span<const Reflector> reflectors, const Odometry& odome
     m.existence = r.existence() * (1.0 - doubt * is_none);
     m.occupancy = &r.occupancy;
     m.arc_shift_m = r.arc_shift_m;
+    m.hidden_before_m = r.hidden_before_m;
+    m.hidden_after_m = r.hidden_after_m;
     mirrors.push_back(m);
   }
 }

@@ -13,11 +13,12 @@ namespace {
 constexpr double kLeastSine = 0.02;  // a ray that grazes at less than a degree is not followed
 
 double goes_on(const Mirror& mirror, double arc_m) {
-  constexpr double kAtTheEnd = 0.2;
+  constexpr double kAtTheEnd = 0.2, kHidden = 0.5;
   const double beyond_m = std::max(mirror.begin_m - arc_m, arc_m - mirror.end_m);
   if (beyond_m <= 0.0 || beyond_m >= kGoesOn_m || !is_long(mirror)) return 0.0;
   if (mirror.occupancy->is_driven(arc_m + mirror.arc_shift_m)) return 0.0;
-  return kAtTheEnd * (1.0 - beyond_m / kGoesOn_m);
+  const double hidden_m = arc_m < mirror.begin_m ? mirror.hidden_before_m : mirror.hidden_after_m;
+  return std::max(beyond_m <= hidden_m ? kHidden : 0.0, kAtTheEnd * (1.0 - beyond_m / kGoesOn_m));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void Occupancy::hit(double arc_m) {
   if (bin >= first_ && bin <= last_) hit_[index(bin)] = true;
 }
 
-void Occupancy::settle() {
+void Occupancy::settle(const HiddenStretches& hidden, double shift_m) {
   std::int32_t from = last_ + 1, to = first_ - 1;
   for (std::int32_t bin = first_; bin <= last_; ++bin) {
     if (!hit_[index(bin)]) continue;
@@ -63,6 +63,7 @@ void Occupancy::settle() {
     to = bin;
   }
   for (std::int32_t bin = from; bin <= to; ++bin) {
+    if (!hit_[index(bin)] && hidden.contains((bin + 0.5) * bin_m_ - shift_m)) continue;
     set(bin, std::clamp(log_odds_[index(bin)] + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurest));
     hit_[index(bin)] = false;
   }

@@ -11,6 +11,7 @@
 
 #include "services/ghost_filter/core/reflector_map/curve.hpp"
 #include "services/ghost_filter/core/reflector_map/curve_fit.hpp"
+#include "services/ghost_filter/core/reflector_map/shadows.hpp"
 
 namespace boresight::ghosts {
 
@@ -24,8 +25,9 @@ class Occupancy {
   /// Makes room for a place; false if the reflector would become longer than there are bins.
   bool extend(double arc_m);
   void hit(double arc_m);
-  /// Of the bins between those that were hit since the last call, those that were not become less likely.
-  void settle();
+  /// Of the bins between those that were hit since the last call, those that were not become less likely, but for what
+  /// is hidden; its arc lengths count from `shift_m`.
+  void settle(const HiddenStretches& hidden = {}, double shift_m = 0.0);
   /// Something drove through at this place, which may lie beyond the ends: there is nothing, ever, within `around_m`,
   /// whatever is heard from there (what hangs above the road, say).
   void open(double arc_m, double around_m);
@@ -75,8 +77,9 @@ struct Reflector {
   std::uint32_t id;  ///< stays the same
   std::int64_t born_ns;
   std::int64_t refined_ns;
-  Evidence evidence{};   ///< since then
-  double mirrors = 0.0;  ///< log-odds that it mirrors, by what was seen in it, or was not
+  Evidence evidence{};                                 ///< since then
+  double hidden_before_m = 0.0, hidden_after_m = 0.0;  ///< as far beyond its begin and its end all is hidden
+  double mirrors = 0.0;                                ///< log-odds that it mirrors, by what was seen in it, or was not
   void add_to_mirrors(double log_odds) {
     constexpr double kMost = 6.0;  // so that it can still be told otherwise
     mirrors = std::clamp(mirrors + log_odds, -kMost, kMost);

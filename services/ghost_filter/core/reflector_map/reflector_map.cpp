@@ -155,7 +155,11 @@ void ReflectorMap::refine(Reflector& r, const Odometry& odometry, const DriftStd
   const Evidence evidence = r.evidence;
   r.evidence = {};
   r.detections += evidence.points;
-  r.occupancy.settle();
+  // What is short does not go on, and is seen or hidden as a whole.
+  const HiddenStretches hidden = r.length_m() >= kLong_m ? shadows_.on(r.curve) : HiddenStretches{};
+  r.occupancy.settle(hidden, r.arc_shift_m);
+  r.hidden_before_m = hidden.before(r.begin_m(), kGoesOn_m);
+  r.hidden_after_m = hidden.after(r.end_m(), kGoesOn_m);
   if (evidence.points < 3) {
     r.log_odds += kUnseenLogOdds;
   } else {
