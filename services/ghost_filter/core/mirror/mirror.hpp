@@ -27,13 +27,13 @@ struct Mirror {
   Eigen::Matrix3d covariance;  ///< of shift, turn, curvature at the curve's origin
   double begin_m = 0.0, end_m = 0.0;
   double existence = 0.0;
-  Eigen::Vector2d velocity_mps{0.0, 0.0};  ///< over ground, vehicle axes
-  const Occupancy* occupancy = nullptr;    ///< nullptr: solid from end to end
-  double arc_shift_m = 0.0;                ///< arc length of the curve's origin in the occupancy's count
+  Eigen::Vector2d velocity_mps{0.0, 0.0};              ///< over ground, vehicle axes
+  const Occupancy* occupancy = nullptr;                ///< nullptr: solid from end to end
+  double arc_shift_m = 0.0;                            ///< arc length of the curve's origin in the occupancy's count
   double hidden_before_m = 0.0, hidden_after_m = 0.0;  ///< as far beyond its begin and its end vehicles hide it
-  std::uint32_t body = kNobody;            ///< object whose side it is
-  double least_range_m = 0.0;              ///< of what is seen by it: its distance from the sensor
-  Beam beam;                               ///< what it lights, from the sensor
+  std::uint32_t body = kNobody;                        ///< object whose side it is
+  double least_range_m = 0.0;                          ///< of what is seen by it: its distance from the sensor
+  Beam beam;                                           ///< what it lights, from the sensor
 };
 
 /// A rail or a wall, which may go on unseen; a vehicle's side does not.

@@ -43,19 +43,86 @@ struct Runs {
 };
 using RunsBySize = std::array<Runs, std::size(kSizes)>;
 
+/// A row of the table.
+struct Series {
+  NamedGhostMethod method;
+  Surroundings surroundings;
+  [[nodiscard]] std::string name() const {
+    return method.name + (surroundings == Surroundings::kSame ? "" : ", surroundings as much larger");
+  }
+};
+
+std::vector<Series> all_series() {
+  std::vector<Series> all;
+  for (const Surroundings surroundings : {Surroundings::kSame, Surroundings::kLarger}) {
+    for (const NamedGhostMethod& method : ghost_methods()) {
+      all.push_back({method, surroundings});
+      // Room for the largest load's map, so that none is cheap because it is full. (The published one's is fixed.)
+      all.back().method.config.mirror.map.capacity = 32768;
+    }
+  }
+  return all;
+}
+
 /// What else runs on the processor adds to what a run takes, for seconds at a time, and never takes away: so the
 /// quickest of several tells, with all sizes in each round.
-std::vector<RunsBySize> measure(const std::vector<NamedGhostMethod>& methods, std::size_t cycles, std::size_t rounds) {
-  std::vector<RunsBySize> all(methods.size());
+std::vector<RunsBySize> measure(const std::vector<Series>& series, std::size_t cycles, std::size_t rounds) {
+  std::vector<RunsBySize> all(series.size());
   for (std::size_t round = 0; round < rounds; ++round) {
-    for (std::size_t m = 0; m < methods.size(); ++m) {
+    for (std::size_t s = 0; s < series.size(); ++s) {
       for (std::size_t k = 0; k < std::size(kSizes); ++k) {
-        GhostLoad load(kSizes[k].radars, kSizes[k].detections);
-        all[m][k].add(measure_ghost_cycles(load, *ghosts::make_method(methods[m].config), cycles));
+        GhostLoad load(kSizes[k].radars, kSizes[k].detections, series[s].surroundings);
+        all[s][k].add(measure_ghost_cycles(load, *ghosts::make_method(series[s].method.config), cycles));
       }
     }
   }
   return all;
+}
+
+/// By which power of its size the cost of a cycle grows.
+double growth_of(const RunsBySize& runs) {
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t k = 0; k < std::size(kSizes); ++k) {
+    points.emplace_back(static_cast<double>(kSizes[k].radars * kSizes[k].detections), runs[k].quickest.mean_cycle_us);
+  }
+  return exponent(points);
+}
+
+std::vector<std::string> row_of(const Series& series, const RunsBySize& runs) {
+  std::vector<std::string> row = {series.name()};
+  std::uint64_t allocations = 0;
+  for (const Runs& run : runs) {
+    row.push_back(fixed(run.quickest.mean_us, 0) + " / " + fixed(run.quickest.p99_us, 0) + " / " +
+                  fixed(run.quickest.max_us, 0) + " (" + fixed(run.quickest.map_points, 0) + ")");
+    allocations += run.allocations;
+  }
+  row.insert(row.end(), {fixed(growth_of(runs), 2), std::to_string(allocations)});
+  return row;
+}
+
+void judge(const RunsBySize& runs, const RunsBySize& published, const RunsBySize& larger, const std::string& how,
+           Report& report) {
+  constexpr std::size_t kJudged = 1;
+  static_assert(kSizes[kJudged].radars == 4 && kSizes[kJudged].detections == 300);
+  const Runs& judged = runs[kJudged];
+  const double mean_us = judged.quickest.mean_us;
+  report.at_most("cost", "four radars × 300 detections, mean", mean_us, 300.0, "µs a scan",
+                 "the slowest run " + fixed(judged.slowest_us, 0) + "; " + fixed(judged.quickest.map_points, 0) +
+                     " points in the map; " + fixed(mean_us / published[kJudged].quickest.mean_us, 2) +
+                     " times the published method's in the same run; " + how);
+  const auto points = [](const RunsBySize& of) {
+    return fixed(of[kJudged].quickest.map_points, 0) + " to " + fixed(of.back().quickest.map_points, 0) +
+           " points in the map";
+  };
+  const std::string what = "of the cost of a cycle in its size; ";
+  report.at_most("cost", "growth to 8 radars × 800: exponent", growth_of(runs), 1.1, "", what + points(runs));
+  report.at_most("cost", "the same where the surroundings grow as much", growth_of(larger), 1.1, "",
+                 what + points(larger));
+  std::uint64_t allocations = 0;
+  for (const RunsBySize* all : {&runs, &larger}) {
+    for (const Runs& run : *all) allocations += run.allocations;
+  }
+  report.at_most("cost", "allocations", static_cast<double>(allocations), 0.0, "", "in all runs");
 }
 
 }  // namespace
@@ -71,40 +138,12 @@ void cost(const Options& options, Report& report) {
     table.header.push_back(std::to_string(size.radars) + " × " + std::to_string(size.detections));
   }
   table.header.insert(table.header.end(), {"exponent", "allocations"});
-  std::vector<NamedGhostMethod> methods = ghost_methods();
-  // Room for the largest load's map, so that none is cheap because it is full. (The published one's is fixed.)
-  for (NamedGhostMethod& named : methods) named.config.mirror.map.capacity = 32768;
-  const std::vector<RunsBySize> measured = measure(methods, cycles, rounds);
-  double published_us = 0.0;
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    std::vector<std::string> row = {methods[m].name};
-    std::vector<std::pair<double, double>> points;
-    std::uint64_t allocations = 0;
-    Runs judged{};
-    for (std::size_t k = 0; k < std::size(kSizes); ++k) {
-      const GhostCost& cost = measured[m][k].quickest;
-      row.push_back(fixed(cost.mean_us, 0) + " / " + fixed(cost.p99_us, 0) + " / " + fixed(cost.max_us, 0) + " (" +
-                    fixed(cost.map_points, 0) + ")");
-      points.emplace_back(static_cast<double>(kSizes[k].radars * kSizes[k].detections), cost.mean_cycle_us);
-      allocations += measured[m][k].allocations;
-      if (kSizes[k].radars == 4 && kSizes[k].detections == 300) judged = measured[m][k];
-    }
-    const double growth = exponent(points);
-    row.insert(row.end(), {fixed(growth, 2), std::to_string(allocations)});
-    table.rows.push_back(std::move(row));
-    const double mean_us = judged.quickest.mean_us;
-    if (m + 1 < methods.size()) {
-      published_us = mean_us;
-      continue;
-    }
-    report.at_most("cost", "four radars × 300 detections, mean", mean_us, 300.0, "µs a scan",
-                   "the slowest run " + fixed(judged.slowest_us, 0) + "; " + fixed(judged.quickest.map_points, 0) +
-                       " points in the map; " + fixed(mean_us / published_us, 2) +
-                       " times the published method's in the same run; " + how);
-    report.at_most("cost", "growth to 8 radars × 800: exponent", growth, 1.1, "",
-                   "of the cost of a cycle in its size; the map grows with it");
-    report.at_most("cost", "allocations", static_cast<double>(allocations), 0.0, "", "in all runs");
-  }
+  const std::vector<Series> series = all_series();
+  const std::vector<RunsBySize> measured = measure(series, cycles, rounds);
+  for (std::size_t k = 0; k < series.size(); ++k) table.rows.push_back(row_of(series[k], measured[k]));
+  // The product's own method is the last one.
+  const std::size_t methods = series.size() / 2;
+  judge(measured[methods - 1], measured[0], measured[2 * methods - 1], how, report);
   report.add(std::move(table));
 }
 

@@ -32,10 +32,11 @@ double seconds(clockid_t clock) {
 
 }  // namespace
 
-GhostLoad::GhostLoad(std::size_t radars, std::size_t detections)
+GhostLoad::GhostLoad(std::size_t radars, std::size_t detections, Surroundings surroundings)
     : radars_(radars), detections_(std::min(detections, kMaxDetections)) {
-  // A larger load sees a larger area, in which as much stands on each square metre.
-  const double scale = std::sqrt(static_cast<double>(radars_ * detections_) / 1200.0);
+  // In a larger area as much stands on each square metre.
+  const double scale =
+      surroundings == Surroundings::kSame ? 1.0 : std::sqrt(static_cast<double>(radars_ * detections_) / 1200.0);
   reach_m_ = 100.0 * scale;
   half_width_m_ = 40.0 * scale;
   build_world();

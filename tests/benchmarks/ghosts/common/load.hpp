@@ -2,6 +2,7 @@
 // measured is the ghost filter and not the simulator.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -16,13 +17,16 @@ namespace boresight::bench {
 /// The condition: of four radars with 300 detections each, the map accumulates 5,000 points.
 inline constexpr double kMapPoints = 5000.0;
 
+/// What a larger load sees: the same road within 100 m more closely, or as much more of the road, and beside it.
+enum class Surroundings : std::uint8_t { kSame, kLarger };
+
 class GhostLoad {
  public:
   /// `radars` × `detections` a cycle of 50 ms at 25 m/s. 87 % are of a standing world that is met again in every scan,
-  /// so that the map holds about kMapPoints × radars × detections / 1200 points: rails, a wall, parked cars, poles, and
-  /// vegetation for the rest. Of the others (13 %) half are of tracked vehicles and half their mirror images in the
-  /// rails; as many more vehicles are there as the longer road has that a larger load sees.
-  GhostLoad(std::size_t radars, std::size_t detections);
+  /// so that the map holds about kMapPoints points in the same surroundings, and in larger ones × radars × detections /
+  /// 1200: rails, a wall, parked cars, poles, and vegetation for the rest. Of the others (13 %) half are of tracked
+  /// vehicles and half their mirror images in the rails; a longer road has as many more vehicles.
+  GhostLoad(std::size_t radars, std::size_t detections, Surroundings surroundings);
 
   /// One scan of each radar and the tracks. Time goes on from call to call. `each`(radar) is called after each scan.
   template <typename Each>

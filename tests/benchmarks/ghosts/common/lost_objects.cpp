@@ -1,5 +1,7 @@
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
 
+#include <algorithm>
+
 namespace boresight::bench {
 
 void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop::Object>& objects) {
@@ -10,10 +12,19 @@ void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop
   }
 }
 
+void TrackedObjects::add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth) {
+  const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, truth.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_direct = truth[i].provenance == Provenance::kMoving && scan.provenance[i] == Provenance::kMoving;
+    const auto second = is_direct ? seconds_.find(truth[i].object_id) : seconds_.end();
+    if (second != seconds_.end()) ++second->second.detections;
+  }
+}
+
 void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_labels,
                              const TrackedObjects& with_filter) {
   for (const auto& [id, second] : with_perfect_labels.seconds()) {
-    if (second.share() < kHasIt) continue;
+    if (second.share() < kHasIt || second.detections == 0) continue;
     ++object_seconds;
     if (with_filter.seconds().at(id).share() < kHasItNot) lost.push_back({until_s, id});
   }

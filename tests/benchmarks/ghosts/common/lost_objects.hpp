@@ -5,7 +5,9 @@
 #include <map>
 #include <vector>
 
+#include "interfaces/messages/classified_scan.hpp"
 #include "tests/closed_loop/objects.hpp"
+#include "tests/simulator/detection_truth.hpp"
 #include "tests/simulator/judge/matching.hpp"
 
 namespace boresight::bench {
@@ -14,14 +16,16 @@ using judge::kNone;
 using judge::match;
 using judge::Matching;
 
-/// In how many of the scans of a second each object had a confirmed track.
+/// In how many of the scans of a second each object had a confirmed track, and how many detections it had.
 class TrackedObjects {
  public:
   struct Second {
-    std::size_t scans = 0, tracked = 0;
+    std::size_t scans = 0, tracked = 0, detections = 0;
     [[nodiscard]] double share() const { return static_cast<double>(tracked) / static_cast<double>(scans); }
   };
   void add(const Matching& matching, const std::vector<closed_loop::Object>& objects);
+  /// Of an object's own detections, those that are told to be moving.
+  void add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth);
   void clear() { seconds_.clear(); }
   [[nodiscard]] const std::map<std::uint32_t, Second>& seconds() const { return seconds_; }
 
@@ -37,8 +41,10 @@ struct LostSecond {
 
 struct LostObjects {
   static constexpr double kHasIt = 0.9, kHasItNot = 0.5;  ///< shares of the scans of a second
-  std::size_t object_seconds = 0;                         ///< in which perfect labels have the object all through
-  std::vector<LostSecond> lost;                           ///< of these: the filter's labels have it for less than half
+  /// In which perfect labels have the object all through. What is not seen is not the filter's to lose: the track that
+  /// lies there is as likely another object's.
+  std::size_t object_seconds = 0;
+  std::vector<LostSecond> lost;  ///< of these: the filter's labels have it for less than half
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 

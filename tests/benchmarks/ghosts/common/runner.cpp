@@ -98,6 +98,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
     perfect_labels.tell(truth);
     perfect.take(*front.corrected);
     tracked_perfectly.add(match_confirmed(perfect, objects), objects);
+    tracked_perfectly.add_detections(*perfect.classified, truth);
     for (std::size_t m = 0; m < lanes.size(); ++m) {
       Lane& lane = *lanes[m];
       lane.back.take(*front.corrected);

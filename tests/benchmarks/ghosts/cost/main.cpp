@@ -14,7 +14,7 @@ using namespace boresight::bench;
 
 void cycles(benchmark::State& state, const NamedGhostMethod& named, std::size_t radars, std::size_t detections) {
   using Clock = std::chrono::steady_clock;
-  GhostLoad load(radars, detections);
+  GhostLoad load(radars, detections, Surroundings::kSame);
   const auto method = boresight::ghosts::make_method(named.config);
   load.warm_up(*method);
   std::vector<double> each_us;

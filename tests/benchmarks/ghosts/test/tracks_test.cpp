@@ -10,15 +10,26 @@ namespace {
 
 using closed_loop::Object;
 
+constexpr std::uint32_t kFirst = 1;
+
 TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   const std::vector<Object> objects = {{1, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8},
                                        {2, {60.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
   // Never the second car, and the first in `share` of ten scans.
-  const auto second_with = [&objects](int share) {
+  const auto second_with = [&objects](int share, bool is_seen = true) {
     const auto tracks = std::make_unique<TrackList>();
     tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
     TrackedObjects tracked;
     for (int scan = 0; scan < 10; ++scan) tracked.add(match(*tracks, scan < share ? 1 : 0, objects), objects);
+    const auto scan = std::make_unique<ClassifiedScan>();
+    scan->number_of_valid_detections = 2;
+    scan->provenance[0] = is_seen ? Provenance::kMoving : Provenance::kStationary;
+    scan->provenance[1] = Provenance::kMoving;
+    simulator::DetectionTruth direct, ghost;
+    direct.provenance = Provenance::kMoving;
+    ghost.provenance = Provenance::kGhostType1;
+    direct.object_id = ghost.object_id = kFirst;
+    tracked.add_detections(*scan, {direct, ghost});
     return tracked;
   };
   LostObjects lost;
@@ -27,6 +38,10 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   EXPECT_EQ(lost.object_seconds, 1u);
   EXPECT_EQ(lost.lost.size(), 1u);
   lost.add_second(1.0, second_with(10), second_with(10));
+  EXPECT_EQ(lost.object_seconds, 2u);
+  EXPECT_EQ(lost.lost.size(), 1u);
+  // Not told to move by whoever knows the truth, though a ghost of it is: it was not seen to move.
+  lost.add_second(1.0, second_with(10, false), second_with(4));
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
 }
