@@ -14,12 +14,13 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
   const double apart_mps = (velocity - b.state.mean.segment<2>(2)).norm();
   const bool in_box = a.extent.contains(p, q, 0.0) || b.extent.contains(q, p, 0.0);
   // Two vehicles that have both long been tracked, each at a speed of its own, are two, wherever ghosts draw them. So
-  // are a vehicle and a person beside it, but a wheel is in its box. The limbs of who walks have their own speeds, too,
-  // but neither has a vehicle's length.
-  constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5, kVehicle_m = 2.5;
+  // are a vehicle and a person beside it, whose box may have been drawn to who passes; but a wheel is in its box. The
+  // limbs of who walks have their own speeds, too, but neither has a vehicle's length.
+  constexpr double kLong_s = 2.0, kOwnSpeed_mps = 2.5, kVehicle_m = 2.5, kDrawn_m = 0.3;
   const bool long_tracked = a.confirmed && b.confirmed && std::min(a.age_s, b.age_s) > kLong_s;
+  const bool deep_in_box = a.extent.contains(p, q, 0.0, -kDrawn_m) || b.extent.contains(q, p, 0.0, -kDrawn_m);
   const auto [shorter_m, longer_m] = std::minmax(a.extent.length_m, b.extent.length_m);
-  if (long_tracked && apart_mps > kOwnSpeed_mps && (in_box ? shorter_m : longer_m) > kVehicle_m) return false;
+  if (long_tracked && apart_mps > kOwnSpeed_mps && (deep_in_box ? shorter_m : longer_m) > kVehicle_m) return false;
   // People who walk different ways pass each other at arm's length, but not through each other, as limbs do.
   constexpr double kOwnWay_mps = 1.5, kShoulders_m = 0.5;
   if (long_tracked && apart_mps > kOwnWay_mps && a.extent.is_small && b.extent.is_small &&

@@ -90,6 +90,27 @@ TEST(Duplicates, WhoStandsBesideAVehicleIsNoPartOfItButAWheelIs) {
   EXPECT_EQ(left_of(0.8), 2U) << "a person";
 }
 
+TEST(Duplicates, ABoxDrawnToAPersonWhomItPassesDoesNotSwallowThem) {
+  const auto left_of = [](double deep_m, double age_s) {
+    std::vector<TrackedObject> tracks(2);
+    for (TrackedObject& track : tracks) {
+      track.confirmed = true;
+      track.age_s = age_s;
+      track.state.mean << 14.0, 0.0, 3.5, 0.0, 0.0, 0.0;
+    }
+    tracks[1].extent.is_small = true;
+    tracks[1].extent.length_m = 1.2;
+    tracks[1].extent.width_m = 0.7;
+    tracks[1].state.mean(1) -= 0.5 * Extent::kCarWidth_m - deep_m;
+    tracks[1].state.mean(2) = -1.2;
+    remove_duplicates(tracks, {0.0, 0.0}, Config{});
+    return tracks.size();
+  };
+  EXPECT_EQ(left_of(0.2, 5.0), 2U);
+  EXPECT_EQ(left_of(0.6, 5.0), 1U) << "a wheel";
+  EXPECT_EQ(left_of(0.2, 1.0), 1U) << "not tracked for long: a wheel";
+}
+
 TEST(Extent, TellsTheShortestWayOffTheOwnVehicle) {
   const Extent truck{.heading_rad = 0.0, .length_m = 16.0, .width_m = 2.5};
   const Eigen::Vector2d middle(1.4, 0.0), half(2.2, 0.75);
