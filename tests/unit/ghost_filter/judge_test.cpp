@@ -147,26 +147,37 @@ TEST_F(JudgeTest, WhatShowsNoRangeRateDirectlyNeedsNoEcho) {
   EXPECT_GT(judge_.weigh(m, 1).type1, 0.0);
 }
 
-TEST_F(JudgeTest, WhatDrivesAlongsideBetweenTwoWallsHasGhostsThatLookStill) {
-  Mirror right = mirrors_[0];
-  right.curve.origin_m.y() = -10.0;
-  // Walls are of the map; they are seen all along.
-  Occupancy seen;
-  seen.reset(-40.0, 40.0, 0.5);
-  for (int times = 0; times < 20; ++times) {
-    for (double arc = -40.0; arc <= 40.0; arc += 0.25) seen.hit(arc);
-    seen.settle();
+/// The wall on the left at 8 m, another one on the right at 10 m, and the car beside the sensor.
+class AlongsideTest : public JudgeTest {
+ protected:
+  AlongsideTest() {
+    Mirror right = mirrors_[0];
+    right.curve.origin_m.y() = -10.0;
+    // Walls are of the map; they are seen all along.
+    seen_.reset(-40.0, 40.0, 0.5);
+    for (int times = 0; times < 20; ++times) {
+      for (double arc = -40.0; arc <= 40.0; arc += 0.25) seen_.hit(arc);
+      seen_.settle();
+    }
+    mirrors_[0].occupancy = right.occupancy = &seen_;
+    right.beam = Beam(right, sensor_);
+    mirrors_.push_back(right);
+    objects_[0].position_m = {3.6, 3.5};
+    objects_[0].velocity_mps = kOwn;
+    objects_[0].sectors = sectors_about(objects_[0].position_m - sensor_, 4.0);
+    sources_.clear();
+    sources_.enter_object(0, objects_[0].position_m, most_extent(objects_[0]));
   }
-  mirrors_[0].occupancy = right.occupancy = &seen;
-  right.beam = Beam(right, sensor_);
-  mirrors_.push_back(right);
-  objects_[0].position_m = {3.6, 3.5};
-  objects_[0].velocity_mps = {15.0, 0.0};
-  objects_[0].sectors = sectors_about(objects_[0].position_m - sensor_, 4.0);
-  sources_.clear();
-  sources_.enter_object(0, objects_[0].position_m, most_extent(objects_[0]));
+  void begin() {
+    judge_.begin({sensor_, kOwn, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_});
+  }
+  static inline const Vector2d kOwn{15.0, 0.0};
+  Occupancy seen_;
+};
+
+TEST_F(AlongsideTest, BetweenTwoWallsItHasGhostsThatLookStill) {
   const auto weigh = [&](double range_m) {
-    judge_.begin({sensor_, {15.0, 0.0}, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_});
+    begin();
     return judge_.weigh_still(measured({3.6, range_m}, {0.0, 0.0}, -18.0));
   };
   // The flank at 2.6 m; by the left wall and the right one: 8 + 18 + 12.6 m to it, 2.6 m back.
@@ -177,6 +188,26 @@ TEST_F(JudgeTest, WhatDrivesAlongsideBetweenTwoWallsHasGhostsThatLookStill) {
   // It takes both.
   mirrors_.pop_back();
   EXPECT_LT(weigh(by_both_m).type1, 0.01 * ghost.type1);
+}
+
+TEST_F(AlongsideTest, BetweenTwoWallsItHasGhostsThatMoveToo) {
+  // Its front corner is 2 m ahead: there it has a range rate. Both walls' images of the sensor are at y = 8 + 18 + 10.
+  const Vector2d corner(5.6, 2.6), image(3.6, -36.0);
+  const double direct_m = (corner - sensor_).norm(), far_m = (corner - image).norm();
+  const Vector2d e = (corner - sensor_) / direct_m, d = (corner - image) / far_m;
+  Measured m = measured(sensor_ + 0.5 * (direct_m + far_m) * e, {0.0, 0.0}, -18.0);
+  m.rate_mps = 0.5 * ((e + d).dot(kOwn) + (e - d).dot(kOwn));  // twice turned at walls along x, it leaves as it arrives
+  hear(measured(corner, kOwn, 8.0), 0, 0);
+  begin();
+  const Densities ghost = judge_.weigh(m, 1);
+  EXPECT_GT(ghost.type1, 3.0 * (ghost.sum() - ghost.type1));
+  m.rate_mps += 3.0;
+  begin();
+  EXPECT_LT(judge_.weigh(m, 1).type1, 0.01 * ghost.type1) << "not with any range rate";
+  m.rate_mps -= 3.0;
+  mirrors_.pop_back();
+  begin();
+  EXPECT_LT(judge_.weigh(m, 1).type1, 0.01 * ghost.type1) << "it takes both";
 }
 
 TEST_F(JudgeTest, WhatStandsWhereNothingElseCanBeIsThatAlone) {

@@ -183,6 +183,9 @@ void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_obj
   // Of what is one beyond doubt only the likelier type matters.
   const double little = densities.type2 > telling.enough ? 1.0 : kLittle;
   densities.type1 = type1(m, index, but_object, std::max(telling.least, little * densities.type2));
+  if (but_object == kNobody && densities.type1 + densities.type2 <= telling.enough && is_behind_alongside()) {
+    densities.type1 += type1_of_two(m, std::max(telling.least, kLittle * (densities.type1 + densities.type2)));
+  }
 }
 
 void Judge::real(const Measured& m, std::uint32_t index, bool is_hidden, Densities& densities) const {

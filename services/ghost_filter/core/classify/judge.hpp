@@ -133,7 +133,9 @@ class Judge {
   /// `seen`: how often something was detected there, this time included.
   [[nodiscard]] double of_stationary(const Measured& measured, std::uint32_t seen) const;
   [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least);
-  /// Those whose way out is by one wall and then by another, of what looks still; needs the fronts that type1() found.
+  /// Whether it lies behind something so near that walls on both sides light it. Of the fronts that type1() found.
+  [[nodiscard]] bool is_behind_alongside() const;
+  /// Those whose way out is by one wall and then by another; needs the fronts that type1() found.
   [[nodiscard]] double type1_of_two(const Measured& measured, double least);
   /// The variance of a type-1 ghost's object along the line of sight, and what else is known of that object; the
   /// mirrors' own motion is not in it.
@@ -202,7 +204,7 @@ class Judge {
   SectorSet unmoved_ = 0;  ///< with tracked objects that show no range rate
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
-  std::size_t walls_left_of_scan_ = 0;  ///< pairs of them, for what looks still
+  std::size_t walls_left_of_scan_ = 0;  ///< pairs of them
 };
 
 }  // namespace boresight::ghosts

@@ -150,6 +150,11 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
   return density;
 }
 
+bool Judge::is_behind_alongside() const {
+  constexpr double kAlongside_m = 10.0;
+  return std::any_of(fronts_.begin(), fronts_.end(), [](const Front& front) { return front.depth_m < kAlongside_m; });
+}
+
 double Judge::type1_of_two(const Measured& m, double least) {
   const auto is_wall = [](const Mirror& mirror) { return is_long(mirror) && mirror.existence > kLeastWall; };
   if (fronts_.empty()) return 0.0;
