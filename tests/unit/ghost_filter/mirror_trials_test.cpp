@@ -169,6 +169,19 @@ TEST_P(MirrorTrialsTest, WhereNothingCanBeSeenNothingIsTold) {
   EXPECT_EQ(evidence(), 0.0) << "or not so far";
 }
 
+TEST_P(MirrorTrialsTest, AnImageTellsWhereNoneWouldBeMissed) {
+  show_image();
+  const double seen = evidence();
+  mounting_std_rad_ = 0.1;
+  EXPECT_EQ(evidence(), seen) << "it is not known well where the radar looks";
+  mounting_std_rad_ = 0.002;
+  trials_.begin();
+  trials_.saw(turned({1.0, 0.0}), 40.0);
+  EXPECT_EQ(evidence(), seen) << "the radar hardly sees so far";
+  occupancy_.open(-5.0, 15.0);
+  EXPECT_EQ(evidence(), 0.0) << "behind a gap it is rather real";
+}
+
 TEST_P(MirrorTrialsTest, AFlankShowsThatItMirrorsAsAWallDoes) {
   // A van as far to the left as the wall; it drives as fast as the own vehicle, along its flank.
   Object van = objects_.front();

@@ -81,7 +81,7 @@ double seconds_to_confirm(double speed_mps, float rcs_dbsm) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 100; ++i) {
     scene.begin((1000 + 50 * i) * kMillisecond);
     scene.scan->fields |= scan_field::kRcs;
     scene.add({20.0 + 0.05 * speed_mps * i, 0.0}, {speed_mps, 0.0});
@@ -95,11 +95,11 @@ double seconds_to_confirm(double speed_mps, float rcs_dbsm) {
 
 TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
   EXPECT_NEAR(seconds_to_confirm(15.0, 10.0F), 0.15, 1e-6) << "a car";
-  EXPECT_NEAR(seconds_to_confirm(15.0, -14.0F), 1.0, 1e-6) << "a car's image";
+  EXPECT_NEAR(seconds_to_confirm(15.0, -14.0F), 4.0, 1e-6) << "a car's image";
   EXPECT_NEAR(seconds_to_confirm(2.0, -10.0F), 0.15, 1e-6) << "a person";
-  EXPECT_NEAR(seconds_to_confirm(2.0, -18.0F), 1.0, 1e-6) << "an image";
+  EXPECT_NEAR(seconds_to_confirm(2.0, -12.0F), 4.0, 1e-6) << "an image";
   EXPECT_NEAR(seconds_to_confirm(7.0, -5.0F), 0.15, 1e-6) << "a cycle";
-  EXPECT_NEAR(seconds_to_confirm(7.0, -11.0F), 1.0, 1e-6) << "nobody runs that fast";
+  EXPECT_NEAR(seconds_to_confirm(7.0, -11.0F), 4.0, 1e-6) << "nobody runs that fast";
   EXPECT_NEAR(seconds_to_confirm(15.0, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6) << "strength not measured";
 }
 

@@ -16,15 +16,17 @@ namespace {
 /// many scans, so that one that is missing counts for less than its share.
 constexpr double kSeen = 1.5, kNotSeen = -0.3;
 
-constexpr double kSureObject = 0.8, kSurePlace = 0.7;  // that the object exists; that there is something of the mirror
-constexpr double kInReach = 0.6;                       // of the farthest detection: images are weak
-constexpr double kBefore_m = 2.0;                      // as far before a mirror what is detected of it may be
-constexpr double kHides_m = 2.0;                       // beside the way
-constexpr double kLeastRate_mps = 2.0;                 // what shows less is not told from what stands
-constexpr double kBeside_m = 3.0, kOff_mps = 1.5;      // of an image
-constexpr double kTold = 2.0;                          // standard deviations of its place that must be within that
-constexpr double kOfOther_m = 6.0;                     // about a box: what is detected there may be of that object
-constexpr double kOfBody_m = 1.0;                      // the same of whose face it is: images lie right behind it
+constexpr double kSureObject = 0.8;                // that the object exists
+constexpr double kSurePlace = 0.7, kGap = 0.5;     // that there is something of the mirror; rather nothing
+constexpr double kInReach = 0.6;                   // of the farthest detection: images are weak
+constexpr double kBefore_m = 2.0;                  // as far before a mirror what is detected of it may be
+constexpr double kHides_m = 2.0;                   // beside the way
+constexpr double kSlow_mps = 2.0;                  // what shows less may be taken for what stands
+constexpr double kLeastRate_mps = 0.7;             // and less still is rather that than the image
+constexpr double kBeside_m = 3.0, kOff_mps = 1.5;  // of an image
+constexpr double kTold = 2.0;                      // standard deviations of its place that must be within that
+constexpr double kOfOther_m = 6.0;                 // about a box: what is detected there may be of that object
+constexpr double kOfBody_m = 1.0;                  // the same of whose face it is: images lie right behind it
 
 bool hides(const Object& o, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction, double length_m) {
   const Eigen::Vector2d q = o.position_m - from_m;
@@ -59,15 +61,15 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
   const auto image = image_of(mirror, scan.sensor_m, o.position_m);
   if (!image) return Outcome::kUnknown;
   const double far = image->first_m + image->second_m;
-  if (far > kInReach * farthest_of_all_m_ ||
-      farthest_m_[sector_of<kSectors>(image->departure)] < image->first_m - kBefore_m ||
-      (mirror.occupancy != nullptr &&
-       mirror.occupancy->probability(image->arc_m + mirror.arc_shift_m, 0.5) < kSurePlace)) {
-    return Outcome::kUnknown;
-  }
-  // A radar that is crooked sees it elsewhere, and so it is if the object is elsewhere.
+  const double there =
+      mirror.occupancy == nullptr ? 1.0 : mirror.occupancy->probability(image->arc_m + mirror.arc_shift_m, 0.5);
+  if (there < kGap || square(kTold) * o.position_covariance.trace() > square(kBeside_m)) return Outcome::kUnknown;
+  // An image that is seen tells from wherever it is; one that is missing, only from where it would be seen. A radar
+  // that is crooked turns object, mirror and image alike, but some of them were seen by another one.
   const double variance = square(far * scan.mounting_std_rad) + o.position_covariance.trace();
-  if (square(kTold) * variance > square(kBeside_m)) return Outcome::kUnknown;
+  bool must_show = there > kSurePlace && far < kInReach * farthest_of_all_m_ &&
+                   square(kTold) * variance < square(kBeside_m) &&
+                   farthest_m_[sector_of<kSectors>(image->departure)] > image->first_m - kBefore_m;
   const Eigen::Vector2d turn = scan.sensor_m + image->first_m * image->departure;
   const Eigen::Vector2d sight = o.position_m - scan.sensor_m;
   const double direct_m = std::max(0.1, sight.norm());
@@ -83,6 +85,7 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
                                        (image->departure - e).dot(scan.sensor_velocity_mps))}}};
   for (const Place& place : places) {
     if (std::abs(place.rate_mps) < kLeastRate_mps) return Outcome::kUnknown;
+    must_show = must_show && std::abs(place.rate_mps) > kSlow_mps;
   }
   const Object* const body = mirror.body == kNobody ? nullptr : &scan.objects[mirror.body];
   for (const Object& other : scan.objects) {
@@ -106,7 +109,8 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
           is_seen || (beside.squaredNorm() < square(kBeside_m) && std::abs(mover.rate_mps - place.rate_mps) < kOff_mps);
     });
   }
-  return is_seen ? Outcome::kSeen : Outcome::kNotSeen;
+  if (is_seen) return Outcome::kSeen;
+  return must_show ? Outcome::kNotSeen : Outcome::kUnknown;
 }
 
 double MirrorTrials::evidence_of(const Mirror& mirror, const Scan& scan) const {
