@@ -97,12 +97,15 @@ struct Extent {
     // Few detections say little of how long a side is, and a face that is seen at a slant shows little of itself.
     const double said = static_cast<double>(n) / static_cast<double>(n + 3);
     const Eigen::Vector2d sight = to_body(centre_m - sensor_m).normalized();
+    // A vehicle's side is not both weak and short: who was taken for one, as something strong was near, walks or
+    // cycles.
+    const double shrinks = !is_small && is_surely_small(velocity_mps.norm()) ? kQuick : kSlow;
     follow(length_m, high.x() - low.x(), faces.side == 0.0 ? 0.0 : said * side_shown(to_body(sensor_m - centre_m)),
-           kSmallest_m, is_small ? kCycleLength_m : kLongest_m);
+           kSmallest_m, is_small ? kCycleLength_m : kLongest_m, shrinks);
     const double narrowest_m = !is_small && length_m > kTwoWheeler_m ? std::min(width_m, kNarrowestCar_m) : kSmallest_m;
     follow(width_m, high.y() - low.y(), faces.end == 0.0 ? 0.0 : said * sight.x() * sight.x(), narrowest_m,
-           is_small ? kCycleWidth_m : kWidest_m);
-    if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0);
+           is_small ? kCycleWidth_m : kWidest_m, kSlow);
+    if (has_elevation) follow(height_m, cluster.z_max_m, 1.0, 0.0, 5.0, kSlow);
     if (is_small) return {0.0, 0.0};
     const Eigen::Vector2d centre = to_body(centre_m);
     return from_body({shift(before_m.x(), length_m, low.x() - centre.x(), high.x() - centre.x(), faces.end),
@@ -122,6 +125,11 @@ struct Extent {
     return strongest_dbsm < (speed_mps > kFastestRunner_mps ? kWeakestCycle_dbsm : kWeakestPerson_dbsm);
   }
 
+  /// Whether a person or a cycle would be as strong and as fast, and neither a vehicle nor an image would.
+  [[nodiscard]] bool is_surely_small(double speed_mps) const {
+    return may_be_small(speed_mps) && strongest_dbsm < kWeakestVehicle_dbsm && !is_too_weak(speed_mps);
+  }
+
   /// As strong as `dbsm` and at that speed: as long as a person or a cycle would be so, the box is no larger than what
   /// was seen of it.
   void hear(double dbsm, double speed_mps) {
@@ -131,8 +139,11 @@ struct Extent {
     strongest_dbsm = is_first ? dbsm : strongest_dbsm + kGain * (dbsm - strongest_dbsm);
     const bool small = may_be_small(speed_mps);
     was_small = was_small || (is_first && small);
-    // Who was taken for a vehicle because a vehicle passed is small again when that is gone.
-    const bool is_again = was_small && !is_small && small && strongest_dbsm < kLeastOfVehicle_dbsm - kSurely_db;
+    // Who was taken for a vehicle because a vehicle passed is small again when that is gone. So is who always was taken
+    // for one, once their side has been seen to be short.
+    const bool is_short = length_m < kCycleLength_m && is_surely_small(speed_mps);
+    const bool is_weak = was_small && small && strongest_dbsm < kLeastOfVehicle_dbsm - kSurely_db;
+    const bool is_again = !is_small && (is_weak || is_short);
     if ((is_first && small) || is_again) {
       is_small = true;
       length_m = kSmallLength_m;
@@ -250,9 +261,11 @@ struct Extent {
     const double above = std::max(0.0, high - 0.5 * before), below = std::max(0.0, -0.5 * before - low);
     return more > 0.0 && above + below > 0.0 ? more * (above - below) / (above + below) : -face * more;
   }
-  /// `shown`: how much of it was to be seen, 0 … 1.
-  static void follow(double& value, double seen, double shown, double low, double high) {
-    const double gain = seen > value ? 0.3 : 0.02 * shown;
+  // Shares of the difference that one scan makes up for.
+  static constexpr double kSlow = 0.02, kQuick = 0.3;
+  /// `shown`: how much of it was to be seen, 0 … 1; `shrinks`: by what share, if it shows less.
+  static void follow(double& value, double seen, double shown, double low, double high, double shrinks) {
+    const double gain = seen > value ? kQuick : shrinks * shown;
     value = std::clamp(value + gain * (seen - value), low, high);
   }
 };

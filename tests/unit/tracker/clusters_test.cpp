@@ -236,6 +236,37 @@ TEST(Extent, WhoWasTakenForAVehicleThatPassedIsSmallAgain) {
   EXPECT_FALSE(car.is_small);
 }
 
+TEST(Extent, WhoseSideIsWeakAndShortIsNoVehicle) {
+  const Eigen::Vector2d velocity(0.0, 1.4), sensor(0.0, 0.0);
+  Cluster cluster{};
+  cluster.number_of_detections = cluster.number_on_outline = 3;
+  const auto see = [&](Extent& box, double dbsm, double length_m) {
+    cluster.strongest_dbsm = dbsm;
+    for (int i = 0; i < 60; ++i) {
+      cluster.outline = {{{8.0, -0.5 * length_m}, {8.0, 0.0}, {8.0, 0.5 * length_m}}};
+      std::ignore = box.update(cluster, {8.5, 0.0}, velocity, sensor, false);
+    }
+  };
+  // Something strong was near when they came into sight.
+  const auto begun = [] {
+    Extent box{.heading_rad = M_PI / 2};
+    box.hear(10.0, 1.4);
+    return box;
+  };
+  Extent person = begun(), car = begun(), end_of_a_car = begun(), long_one = begun();
+  see(person, -9.0, 0.5);
+  EXPECT_TRUE(person.is_small);
+  EXPECT_LT(person.length_m, 1.3);
+  see(car, 8.0, 0.5);
+  EXPECT_FALSE(car.is_small) << "of a strong side only a part was seen";
+  EXPECT_GT(car.length_m, 2.5);
+  see(long_one, -9.0, 4.0);
+  EXPECT_FALSE(long_one.is_small) << "weak, but as long as a car";
+  end_of_a_car.heading_rad = 0.0;
+  see(end_of_a_car, -9.0, 0.5);
+  EXPECT_FALSE(end_of_a_car.is_small) << "its side was not seen";
+}
+
 TEST(Extent, GrowsAwayFromTheFacesThatAreSeen) {
   Extent box{.heading_rad = 0.4, .length_m = 4.0, .width_m = 1.8};
   const Eigen::Vector2d centre(20.0, 5.0), velocity(10.0, 0.0), sensor(0.0, 0.0);
