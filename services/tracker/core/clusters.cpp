@@ -79,6 +79,7 @@ std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, std::span<const Kno
 }
 
 void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> known) {
+  const Eigen::Vector2d kUnknown(0.0, 0.0);
   std::span<std::uint32_t> rest = members_;
   std::size_t vehicle = known.size();
   bool are_several = false;
@@ -93,25 +94,42 @@ void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> kno
     if (!known[o].is_small && !are_several) continue;
     const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) { return whose_[k] == o; });
     const auto own = static_cast<std::size_t>(others - rest.begin());
-    split(scan, rest.first(own));
+    split(scan, rest.first(own), known[o].is_small ? kUnknown : known[o].velocity_mps);
     rest = rest.subspan(own);
   }
-  split(scan, rest);
+  split(scan, rest, are_several || vehicle == known.size() ? kUnknown : known[vehicle].velocity_mps);
 }
 
-void Clusterer::split(const ClassifiedScan& scan, std::span<std::uint32_t> rest) {
+std::size_t Clusterer::alike(const ClassifiedScan& scan, std::span<std::uint32_t> rest,
+                             const Eigen::Vector2d& velocity_mps) {
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
+  const auto rate_of = [&](std::uint32_t k) {
+    const Eigen::Vector2d sight = points_[k] - sensor;
+    return static_cast<double>(scan.range_rate_over_ground_mps[index_[k]]) -
+           velocity_mps.dot(sight) / std::max(1e-3, sight.norm());
+  };
+  // The median range rate is what the body with the most detections does.
+  const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
+  std::nth_element(rest.begin(), middle, rest.end(), [&](auto a, auto b) { return rate_of(a) < rate_of(b); });
+  const double median = rate_of(*middle);
+  const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) {
+    return std::abs(rate_of(k) - median) <= config_.cluster_max_range_rate_spread_mps;
+  });
+  return static_cast<std::size_t>(others - rest.begin());
+}
+
+void Clusterer::split(const ClassifiedScan& scan, std::span<std::uint32_t> rest, const Eigen::Vector2d& velocity_mps) {
   // Where two vehicles pass each other, one place has two motions; a third and a fourth may be wheels and ghosts.
   constexpr int kMostMotions = 4;
-  const auto rate_of = [&](std::uint32_t k) { return static_cast<double>(scan.range_rate_over_ground_mps[index_[k]]); };
+  const Eigen::Vector2d kNone(0.0, 0.0);
   for (int motion = 0; motion < kMostMotions && !rest.empty(); ++motion) {
-    // The median range rate is what the body with the most detections does.
-    const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
-    std::nth_element(rest.begin(), middle, rest.end(), [&](auto a, auto b) { return rate_of(a) < rate_of(b); });
-    const double median = rate_of(*middle);
-    const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) {
-      return std::abs(rate_of(k) - median) <= config_.cluster_max_range_rate_spread_mps;
-    });
-    const auto own = static_cast<std::size_t>(others - rest.begin());
+    std::size_t own = alike(scan, rest, kNone);
+    // Alongside, the ends of one body show range rates farther apart than those of two that pass each other. But a
+    // velocity that is not known well makes several of one: it counts where it finds more alike.
+    if (own < rest.size() && velocity_mps != kNone) {
+      const std::size_t with_velocity = alike(scan, rest, velocity_mps);
+      own = with_velocity > own ? with_velocity : alike(scan, rest, kNone);
+    }
     if (clusters_.size() == clusters_.capacity()) {
       ++dropped_;
     } else {

@@ -39,6 +39,7 @@ struct Cluster {
 struct KnownPlace {
   Eigen::Vector2d position_m, axis, half_m;  ///< centre; direction of the length, unit; half of length and width
   bool is_small;                             ///< a person or a cycle
+  Eigen::Vector2d velocity_mps{0.0, 0.0};    ///< over ground
   /// Of a point from the box.
   [[nodiscard]] double distance_m(const Eigen::Vector2d& point_m) const {
     const Eigen::Vector2d d = point_m - position_m;
@@ -59,8 +60,10 @@ class Clusterer {
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 
  private:
-  /// Clusters of the points of one place, by range rate.
-  void split(const ClassifiedScan& scan, std::span<std::uint32_t> rest);
+  /// Puts those first that have the median range rate, or range rates that a body shows that moves so; their number.
+  std::size_t alike(const ClassifiedScan& scan, std::span<std::uint32_t> rest, const Eigen::Vector2d& velocity_mps);
+  /// Clusters of the points of one place, by range rate, which a body that moves so may show different ones of.
+  void split(const ClassifiedScan& scan, std::span<std::uint32_t> rest, const Eigen::Vector2d& velocity_mps);
   /// The same of `members_`, but of each of those known objects apart that are among them.
   void part(const ClassifiedScan& scan, std::span<const KnownPlace> known);
   /// The one that a point is of, or the number of all.

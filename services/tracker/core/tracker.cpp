@@ -116,7 +116,8 @@ std::span<const KnownPlace> Tracker::known() {
     known_[count++] = {track.state.mean.head<2>(),
                        {std::cos(e.heading_rad), std::sin(e.heading_rad)},
                        {0.5 * e.length_m, 0.5 * e.width_m},
-                       e.is_small};
+                       e.is_small,
+                       track.state.mean.segment<2>(2)};
   }
   return {known_.data(), count};
 }

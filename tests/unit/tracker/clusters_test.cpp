@@ -123,6 +123,25 @@ TEST(Clusterer, WhatIsSeenOfVehiclesSideBySideIsOfTheNearestBox) {
   EXPECT_EQ(clusterer.find(*scene.scan, {&left, 1}).size(), 1u);
 }
 
+TEST(Clusterer, RangeRatesOfAVehicleAlongsideAreThoseThatItsVelocityShows) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  const Eigen::Vector2d velocity(20.0, 0.0);
+  // The flank's ends and its middle show from −11 to 16 m/s, and a wheel what the middle does.
+  for (const double x : {2.1, 3.9, 6.6}) scene.add({x, -2.2}, velocity);
+  scene.add({5.6, -2.2}, {4.0, 0.0});
+  Clusterer clusterer(Config{});
+  EXPECT_EQ(clusterer.find(*scene.scan).size(), 3u) << "by range rate alone the middle is one with the wheel";
+  KnownPlace alongside{{4.4, -3.1}, {1.0, 0.0}, {2.25, 0.9}, false, velocity};
+  const auto clusters = clusterer.find(*scene.scan, {&alongside, 1});
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].number_of_detections, 3u);
+  EXPECT_NEAR(clusters[0].range_rate_over_ground_mps, clusters[0].mean_sight.dot(velocity), 1e-4);
+  EXPECT_EQ(clusters[1].number_of_detections, 1u);
+  alongside.velocity_mps = {-10.0, 15.0};
+  EXPECT_EQ(clusterer.find(*scene.scan, {&alongside, 1}).size(), 3u) << "a velocity that explains nothing";
+}
+
 TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
   Scene scene;
   scene.begin(kMillisecond);
