@@ -244,8 +244,8 @@ struct Extent {
   static constexpr double kLeastOfVehicle_dbsm = 3.0;
   static constexpr double kFastestCycle_mps = 9.0;
   static constexpr double kFastestRunner_mps = 5.0;
-  // A vehicle's strongest reflection, from wherever it is seen, that of a cycle with who rides it, and a grown person's,
-  // who reflects some -8 dBsm.
+  // A vehicle's strongest reflection, from wherever it is seen, that of a cycle with who rides it, and a grown
+  // person's, who reflects some -8 dBsm.
   static constexpr double kWeakestVehicle_dbsm = -5.0, kWeakestCycle_dbsm = -9.0, kWeakestPerson_dbsm = -11.0;
   static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger
   /// How much of a side is to be seen up to its far end, 0 … 1: from nearby that is at a slant even for a sensor beside

@@ -50,6 +50,7 @@ TEST(PlaceMirrors, WhatLooksLikeACarMayBeAVanWhereManyRaysMeetIt) {
   // A van's track, beside, still has the length of a car; and a car's may be one.
   EXPECT_GT(flank_of(4.5, 5.0), 0.1);
   EXPECT_LT(flank_of(4.5, 5.0), 0.4);
+  EXPECT_GT(flank_of(3.9, 5.0), 0.1) << "most of a flank alongside has no range rate";
   EXPECT_EQ(flank_of(4.5, 60.0), 0.0);
   EXPECT_EQ(flank_of(1.8, 5.0), 0.0) << "a cycle";
 }

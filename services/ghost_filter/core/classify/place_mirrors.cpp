@@ -13,10 +13,10 @@ namespace {
 constexpr double kLengthStd_m = 0.6;  // of a track's length
 constexpr double kUnseenEnd_m = 0.5;  // a flank's far corner does not look to the sensor
 constexpr double kIntact = 0.8;       // share of long vehicles whose faces mirror
-/// Probability of being long enough, from which on a vehicle's sides are thought of as mirrors.
-constexpr double kLeastLong = 0.25, kLeastLongNear = 0.1;
-constexpr double kVans = 0.2;            // share of vehicles whose ends mirror: vans, trucks
+constexpr double kLeastLong = 0.25;   // probability of being long enough, from which on sides are thought of as mirrors
+constexpr double kVans = 0.2;         // share of vehicles that mirror: vans, trucks
 constexpr double kLeastVehicle_m = 3.0;  // what is shorter has no end that mirrors
+constexpr double kLeastVan_m = 3.75;     // a van alongside may be tracked with this length
 /// Where only the end is seen, cosine of the angle to the axis, the length is not; farther away few rays meet an end.
 constexpr double kAlongAxis = 0.97, kFarEnd_m = 25.0;
 
@@ -45,14 +45,18 @@ void add_sides(std::span<const Object> objects, const Eigen::Vector2d& sensor_m,
                std::vector<Mirror>& mirrors) {
   for (std::uint32_t i = 0; i < objects.size(); ++i) {
     const Object& o = objects[i];
-    // How long a vehicle is shows late: a van's track may still have the length of a car.
-    const double may_be_long = below((2.0 * o.half_length_m - min_length_m) / kLengthStd_m);
-    // From behind or from ahead it is not seen at all: what may be a van is one as often as vans are.
+    const double length_m = 2.0 * o.half_length_m;
+    const double may_be_long = below((length_m - min_length_m) / kLengthStd_m);
+    // How long a vehicle is shows late, and alongside, where its flank has no range rate, hardly: what may be a van is
+    // one as often as vans are.
     const Eigen::Vector2d sight = o.position_m - sensor_m;
     const bool is_near = sight.squaredNorm() < kFarEnd_m * kFarEnd_m;
-    const double is_long = may_be_long < (is_near ? kLeastLongNear : kLeastLong) ? 0.0 : may_be_long;
+    const double is_long = is_near && length_m > kLeastVan_m ? std::max(may_be_long, kVans)
+                           : may_be_long < kLeastLong        ? 0.0
+                                                             : may_be_long;
+    // From behind or from ahead it is not seen at all.
     const bool may_be_van =
-        2.0 * o.half_length_m > kLeastVehicle_m && is_near && std::abs(sight.dot(o.axis)) > kAlongAxis * sight.norm();
+        length_m > kLeastVehicle_m && is_near && std::abs(sight.dot(o.axis)) > kAlongAxis * sight.norm();
     const double has_end = may_be_van ? std::max(is_long, kVans) : is_long;
     if (o.own || o.weight < 0.5 || has_end <= 0.0) continue;
     const Eigen::Vector2d left(-o.axis.y(), o.axis.x());
