@@ -9,6 +9,7 @@
 
 #include "services/ghost_filter/config.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
+#include "tests/benchmarks/ghosts/explain/boxes.hpp"
 #include "tests/benchmarks/ghosts/explain/explained.hpp"
 #include "tests/simulator/scenario_file.hpp"
 
@@ -18,7 +19,7 @@ using namespace boresight::bench;
 namespace {
 
 struct Arguments {
-  std::string scenario = "highway_multipath", method = "mirror", config_file, csv_file;
+  std::string scenario = "highway_multipath", method = "mirror", config_file, csv_file, boxes_file;
   std::uint64_t seed = 101;
   std::size_t seeds = 1;
   double duration_s = 20.0;
@@ -47,13 +48,24 @@ void print_faults(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
   }
 }
 
+/// A file that begins with that line; without a name one that is not open.
+std::ofstream table(const std::string& name, const char* header) {
+  std::ofstream out;
+  if (!name.empty()) {
+    out.open(name);
+    out << header;
+  }
+  return out;
+}
+
+void close(std::ofstream& out, const std::string& name) {
+  out.flush();
+  if (!out) throw std::runtime_error("cannot write " + name);
+}
+
 void run(const Arguments& arguments) {
   const NamedGhostMethod method = method_of(arguments);
-  std::ofstream csv;
-  if (!arguments.csv_file.empty()) {
-    csv.open(arguments.csv_file);
-    csv << csv_header();
-  }
+  std::ofstream csv = table(arguments.csv_file, csv_header()), boxes = table(arguments.boxes_file, boxes_header());
   Summary summary;
   Report report;
   std::vector<Outcome> outcomes;
@@ -65,11 +77,12 @@ void run(const Arguments& arguments) {
         const bool is_wrong = !row.rejected && row.truth.provenance != row.label;
         if (csv.is_open() && (is_wrong || arguments.all)) write_csv(row, csv);
       }
+      if (boxes.is_open()) write_boxes(seed, observed, boxes);
     };
     outcomes.push_back(run_ghost_drive(arguments.scenario, {&method, 1}, seed, arguments.duration_s, observe).front());
   }
-  csv.flush();
-  if (!csv) throw std::runtime_error("cannot write " + arguments.csv_file);
+  close(csv, arguments.csv_file);
+  close(boxes, arguments.boxes_file);
   const std::string how = std::to_string(arguments.seeds) + " seeds from " + std::to_string(arguments.seed) + " on";
   report.add(confusion_table("", arguments.scenario + ", " + arguments.method + ": % of each truth, " + how, outcomes));
   judge_tracks(arguments.scenario, outcomes, false, how, report);
@@ -101,6 +114,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   app.add_option("--csv", arguments.csv_file, "file with a row for each detection that was told wrong");
+  app.add_option("--boxes", arguments.boxes_file,
+                 "file with a row for each track and each true object after each scan");
   app.add_flag("--all", arguments.all, "rows of those told right and of those left out as well");
   CLI11_PARSE(app, argc, argv);
   try {
