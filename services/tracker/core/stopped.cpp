@@ -26,6 +26,7 @@ bool is_of_reflector(const ClassifiedScan& scan, const Eigen::Vector2d& place_m)
 void keep_stopped(std::span<TrackedObject> tracks, const ClassifiedScan& scan) {
   // Ghosts' tracks, too, come to rest on what stands somewhere, but do not live so long before.
   constexpr double kLongEnough_s = 5.0, kSure = 0.9;
+  constexpr double kAround_m = 0.5;  // what the filter does not know of where the faces are
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
   for (TrackedObject& track : tracks) {
     if (!track.confirmed || !track.slow || track.detections > 0 || track.age_s < kLongEnough_s ||
@@ -35,7 +36,8 @@ void keep_stopped(std::span<TrackedObject> tracks, const ClassifiedScan& scan) {
     for (std::size_t i = 0; i < count; ++i) {
       if (scan.provenance[i] != Provenance::kStationary) continue;
       const Eigen::Vector2d place(scan.x_vehicle_m[i], scan.y_vehicle_m[i]);
-      if (!track.extent.contains(track.state.mean.head<2>(), place, 0.0) || is_of_reflector(scan, place)) continue;
+      if (!track.extent.contains(track.state.mean.head<2>(), place, kAround_m) || is_of_reflector(scan, place))
+        continue;
       come_to_rest(track.state);
       track.since_update_s = 0.0;
       break;

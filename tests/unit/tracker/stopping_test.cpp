@@ -24,7 +24,8 @@ TEST(Stand, TakesTheVelocityAway) {
 class Stopping : public testing::Test {
  protected:
   /// A car brakes to a stand in so long; then, at most, stationary detections are left of it, beside a wall or not.
-  void drive(bool seen_standing, bool by_a_wall, double braking_s = 6.0) {
+  /// `ahead_m`: where, from the middle of its rear.
+  void drive(bool seen_standing, bool by_a_wall, double braking_s = 6.0, double ahead_m = 0.3) {
     for (int i = 0; i < 160; ++i) {
       const double t = 0.05 * i, v = std::max(0.0, 8.0 * (1.0 - t / braking_s));
       x_ += 0.05 * v;
@@ -33,7 +34,7 @@ class Stopping : public testing::Test {
         scene_.add({x_, 0.7}, {v, 0.0});
         scene_.add({x_, -0.7}, {v, 0.0});
       } else if (seen_standing) {
-        scene_.add({x_ + 0.3, 0.0}, {0.0, 0.0}, Provenance::kStationary);
+        scene_.add({x_ + ahead_m, 0.0}, {0.0, 0.0}, Provenance::kStationary);
       }
       scene_.scan->number_of_reflector_segments = by_a_wall ? 1 : 0;
       scene_.scan->reflector_segments[0] = {{0.0F, 0.2F}, {80.0F, 0.2F}, 0.1F, 100};
@@ -53,6 +54,16 @@ TEST_F(Stopping, WhatStandsWhereItCameToAStandIsKept) {
   EXPECT_NEAR(list_->tracks[0].position_vehicle_m[0] - 0.5F * list_->tracks[0].length_m, x_, 1.5);
   EXPECT_NEAR(list_->tracks[0].velocity_over_ground_mps[0], 0.0, 0.1);
   EXPECT_EQ(list_->tracks[0].movement, MovementState::kStopped);
+}
+
+TEST_F(Stopping, WhatIsSeenOfItMayLieALittleBesideItsBox) {
+  drive(true, false, 6.0, -0.3);
+  EXPECT_EQ(list_->number_of_confirmed_tracks, 1u);
+}
+
+TEST_F(Stopping, WhatStandsFartherOffIsNotIt) {
+  drive(true, false, 6.0, -2.0);
+  EXPECT_EQ(list_->number_of_tracks, 0u);
 }
 
 TEST_F(Stopping, WhatWasNotTrackedForLongIsGone) {
