@@ -15,7 +15,7 @@ std::uint32_t window_mask(std::size_t scans) {
 
 }  // namespace
 
-void count_scan(TrackedObject& track, const Config& config) {
+void count_scan(TrackedObject& track, const Config& config, bool may_be_image) {
   constexpr double kDetection = 0.8, kHitGain = 0.5;
   const bool hit = track.detections > 0;
   track.history = track.history << 1 | (hit ? 1u : 0u);
@@ -29,7 +29,9 @@ void count_scan(TrackedObject& track, const Config& config) {
   const double evidence = std::accumulate(track.evidence.begin(), window, 0.0);
   const bool often = std::popcount(recent) >= static_cast<int>(config.confirm_hits);
   const bool weak = track.extent.is_too_weak(track.state.mean.segment<2>(2).norm());
-  const double wait_s = weak ? std::max(config.confirm_age_s, config.confirm_weak_age_s) : config.confirm_age_s;
+  double wait_s = config.confirm_age_s;
+  if (may_be_image) wait_s = std::max(wait_s, config.confirm_image_age_s);
+  if (weak) wait_s = std::max(wait_s, config.confirm_weak_age_s);
   const bool long_enough = track.age_s > wait_s - 1e-6;
   if (often && long_enough && evidence >= config.confirm_evidence) track.confirmed = true;
 }

@@ -7,6 +7,7 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/tracker/core/duplicates.hpp"
 #include "services/tracker/core/heading.hpp"
+#include "services/tracker/core/images.hpp"
 #include "services/tracker/core/life.hpp"
 #include "services/tracker/core/seen_centre.hpp"
 #include "services/tracker/core/stopped.hpp"
@@ -279,10 +280,11 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
 
 void Tracker::judge(const ClassifiedScan& scan) {
   const RadarConfig* const radar = vehicle_.radar(scan.header.source_id);
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   for (TrackedObject& track : tracks_) {
     const bool could_see = track.detections > 0 || (radar != nullptr && can_see(*radar, scan.geometry, track, tracks_,
                                                                                 config_.blind_range_rate_mps));
-    if (could_see) count_scan(track, config_);
+    if (could_see) count_scan(track, config_, !track.confirmed && may_be_image(track, tracks_, sensor));
   }
   std::erase_if(tracks_, [this](const TrackedObject& track) { return is_dead(track, config_); });
 }

@@ -103,6 +103,37 @@ TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
   EXPECT_NEAR(seconds_to_confirm(15.0, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6) << "strength not measured";
 }
 
+/// Beside a car of 10 dBsm: seconds until something that comes with it is confirmed, over there, with the velocity.
+double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector2d& velocity_mps, float rcs_dbsm) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 40; ++i) {
+    const double t = 0.05 * i;
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    scene.add({40.0 + 15.0 * t, 0.0}, {15.0, 0.0});
+    scene.scan->rcs_dbsm[0] = 10.0F;
+    scene.add(Eigen::Vector2d(40.0, 0.0) + beside_m + t * velocity_mps, velocity_mps);
+    scene.scan->rcs_dbsm[1] = rcs_dbsm;
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (list->number_of_confirmed_tracks > 1) return t;
+  }
+  return 1e9;
+}
+
+TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
+  const Eigen::Vector2d along(15.0, 0.0);
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F), 1.0, 1e-6) << "an image, or a weak car in the next lane";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 9.0F), 0.15, 1e-6) << "as strong as the other one";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, {12.0, 0.0}, 0.0F), 0.15, 1e-6) << "moves otherwise";
+  EXPECT_NEAR(seconds_beside_a_car({-6.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "nothing mirrors to where it is nearer";
+  EXPECT_NEAR(seconds_beside_a_car({14.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "a detour that no lane makes";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6)
+      << "strength not measured";
+}
+
 TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
