@@ -1,0 +1,109 @@
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/tracker/scene.hpp"
+
+// When a track begins, and when it is confirmed.
+namespace boresight::tracking {
+namespace {
+
+/// Scans until the object is confirmed, whose detections may be ghosts with that probability; 0: never.
+int scans_to_confirm(double ghost_probability) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 40; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.add({30.0 + 0.4 * i, 0.0}, {8.0, 0.0}, Provenance::kMoving, ghost_probability);
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (list->number_of_confirmed_tracks > 0) return i + 1;
+    EXPECT_EQ(list->number_of_tracks, ghost_probability > 0.8 ? 0u : 1u);
+  }
+  return 0;
+}
+
+TEST(TrackerBirth, NeedsEvidenceThatIsReal) {
+  EXPECT_EQ(scans_to_confirm(0.0), 4);
+  EXPECT_EQ(scans_to_confirm(0.05), 4);
+  EXPECT_EQ(scans_to_confirm(0.3), 5);
+  EXPECT_EQ(scans_to_confirm(0.5), 6);
+  EXPECT_EQ(scans_to_confirm(0.6), 0) << "too doubtful for ever";
+  EXPECT_EQ(scans_to_confirm(0.9), 0) << "not even tentative";
+}
+
+/// Seconds from the first detection until an object that goes away is confirmed, whose detections are all as strong.
+double seconds_to_confirm(double speed_mps, float rcs_dbsm) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 100; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    scene.add({20.0 + 0.05 * speed_mps * i, 0.0}, {speed_mps, 0.0});
+    scene.scan->rcs_dbsm[0] = rcs_dbsm;
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (list->number_of_confirmed_tracks > 0) return 0.05 * i;
+  }
+  return 1e9;
+}
+
+TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
+  EXPECT_NEAR(seconds_to_confirm(15.0, 10.0F), 0.15, 1e-6) << "a car";
+  EXPECT_NEAR(seconds_to_confirm(15.0, -14.0F), 4.0, 1e-6) << "a car's image";
+  EXPECT_NEAR(seconds_to_confirm(2.0, -10.0F), 0.15, 1e-6) << "a person";
+  EXPECT_NEAR(seconds_to_confirm(2.0, -12.0F), 4.0, 1e-6) << "an image";
+  EXPECT_NEAR(seconds_to_confirm(7.0, -5.0F), 0.15, 1e-6) << "a cycle";
+  EXPECT_NEAR(seconds_to_confirm(7.0, -11.0F), 4.0, 1e-6) << "nobody runs that fast";
+  EXPECT_NEAR(seconds_to_confirm(15.0, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6) << "strength not measured";
+}
+
+/// Beside a car of 10 dBsm: seconds until something that comes with it is confirmed, over there, with the velocity.
+double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector2d& velocity_mps, float rcs_dbsm) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 40; ++i) {
+    const double t = 0.05 * i;
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    scene.add({40.0 + 15.0 * t, 0.0}, {15.0, 0.0});
+    scene.scan->rcs_dbsm[0] = 10.0F;
+    scene.add(Eigen::Vector2d(40.0, 0.0) + beside_m + t * velocity_mps, velocity_mps);
+    scene.scan->rcs_dbsm[1] = rcs_dbsm;
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (list->number_of_confirmed_tracks > 1) return t;
+  }
+  return 1e9;
+}
+
+TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
+  const Eigen::Vector2d along(15.0, 0.0);
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F), 1.0, 1e-6) << "an image, or a weak car in the next lane";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 9.0F), 0.15, 1e-6) << "as strong as the other one";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, {12.0, 0.0}, 0.0F), 0.15, 1e-6) << "moves otherwise";
+  EXPECT_NEAR(seconds_beside_a_car({-6.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "nothing mirrors to where it is nearer";
+  EXPECT_NEAR(seconds_beside_a_car({14.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "a detour that no lane makes";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6)
+      << "strength not measured";
+}
+
+TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 8; ++i) {
+    scene.begin((1000 + i) * kMillisecond, 1u + static_cast<unsigned>(i) % 2u);
+    scene.add({15.0, 9.0}, {5.0, 4.0});
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    EXPECT_EQ(list->number_of_confirmed_tracks, 0u);
+  }
+  EXPECT_EQ(list->number_of_tracks, 1u);
+}
+
+}  // namespace
+}  // namespace boresight::tracking
