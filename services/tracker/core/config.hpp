@@ -14,7 +14,7 @@ struct Config {
   double centre_std_m = 0.5;          ///< error of what the faces say of the middle, from scan to scan
   double range_rate_std_mps = 0.4;    ///< micro-motion and rotation, added to the sensor's std
   double start_position_std_m = 1.0;  ///< of the centre of a new object, of which only a part is seen
-  double start_speed_std_mps = 12.0;
+  double start_speed_std_mps = 7.0;
   double start_acceleration_std_mps2 = 2.0;
   double part_margin_m = 2.0;       ///< a cluster that close to a confirmed track's box is another part of that object
   double duplicate_margin_m = 1.0;  ///< of two tracks with one velocity, that close to the other's box, one is too many

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 #include "services/common/geometry/frames.hpp"
 
 namespace boresight::tracking {
@@ -21,6 +23,21 @@ void observe(KinematicState& state, const Vector6d& with_rest, double with_headi
   state.heading.variance -= with_heading * with_heading / variance;
 }
 
+/// Standard deviation of the direction of the velocity. What is new has a range rate, but nothing tells how fast it
+/// goes across: by a derivative, what seems to go across would be sure of its direction. So it is asked how far two
+/// standard deviations turn it.
+double course_std_rad(const KinematicState& state) {
+  constexpr double kFar = 2.0;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(state.covariance.block<2, 2>(2, 2));
+  const double std_mps = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  const Eigen::Vector2d off = kFar * std_mps * axes.eigenvectors().col(1), v = state.mean.segment<2>(2);
+  const auto turned_rad = [&v](const Eigen::Vector2d& to) {
+    return std::abs(std::atan2(v.x() * to.y() - v.y() * to.x(), v.dot(to)));
+  };
+  return std::max(turned_rad(v + off), turned_rad(v - off)) / kFar;
+}
+
 }  // namespace
 
 void begin_heading(KinematicState& state) {
@@ -28,10 +45,9 @@ void begin_heading(KinematicState& state) {
   constexpr double kMinSpeed_mps = 0.5, kKnown_rad = 0.25, kMore_rad = 0.1;
   const Eigen::Vector2d v = state.mean.segment<2>(2);
   const double speed2 = v.squaredNorm();
-  if (!(speed2 > kMinSpeed_mps * kMinSpeed_mps)) return;
+  if (!(speed2 > kMinSpeed_mps * kMinSpeed_mps) || !(course_std_rad(state) < kKnown_rad)) return;
   const Eigen::Vector2d by_velocity(-v.y() / speed2, v.x() / speed2);
   const double variance = by_velocity.dot(state.covariance.block<2, 2>(2, 2) * by_velocity);
-  if (!(variance < kKnown_rad * kKnown_rad)) return;
   state.heading.known = true;
   state.heading.rad = std::atan2(v.y(), v.x());
   state.heading.with_rest = state.covariance.middleCols<2>(2) * by_velocity;

@@ -15,8 +15,8 @@ struct Turn {
   double variance;
 };
 
-/// Takes the course, the direction of the velocity over ground, for the heading, once that is known well enough (and it
-/// drives faster than 0.5 m/s): before, `state.heading` is not known.
+/// Takes the course, the direction of the velocity over ground, for the heading, once that is known to a quarter of a
+/// radian (and it drives faster than 0.5 m/s): before, `state.heading` is not known.
 void begin_heading(KinematicState& state);
 
 /// The same by the line of a flank, of a track whose box heads for `box_heading_rad`: the course of who creeps is never

@@ -45,6 +45,24 @@ bool rate_fits(const Cluster& cluster, const KinematicState& state, double gate_
   return off_mps * off_mps < gate_chi2 * variance;
 }
 
+/// The heading of a vehicle, and its box along it.
+void follow_heading(TrackedObject& track, const Cluster& cluster) {
+  Heading& heading = track.state.heading;
+  if (heading.known) {
+    hold_to_heading(track.state);
+    if (const auto turn = turn_of_flank(cluster, heading.rad)) measure_heading(track.state, *turn);
+    track.extent.follow_heading(heading.rad);
+    return;
+  }
+  begin_heading(track.state);
+  if (!heading.known) {
+    const auto turn = turn_of_flank(cluster, track.extent.heading_rad);
+    if (turn) begin_heading(track.state, track.extent.heading_rad, *turn);
+  }
+  // Until then the box lay along the line of sight.
+  if (heading.known) track.extent.heading_rad = heading.rad;
+}
+
 }  // namespace
 
 Tracker::Tracker(const VehicleConfig& vehicle, const Config& config)
@@ -195,22 +213,13 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
 void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
                             bool has_elevation) {
   const Eigen::Vector2d velocity = track.state.mean.segment<2>(2);
-  constexpr double kLeastCourse_mps = 1.0;
   // People turn as they like: theirs is but the course. Some are in vehicles' boxes, as ghosts made them look strong.
   if (track.extent.is_small || track.extent.may_be_small(velocity.norm())) {
+    constexpr double kLeastCourse_mps = 1.0;
     track.state.heading = {};
-  } else if (track.state.heading.known) {
-    hold_to_heading(track.state);
+    if (velocity.norm() > kLeastCourse_mps) track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));
   } else {
-    begin_heading(track.state);
-    const auto turn = turn_of_flank(cluster, track.extent.heading_rad);
-    if (!track.state.heading.known && turn) begin_heading(track.state, track.extent.heading_rad, *turn);
-  }
-  if (track.state.heading.known) {
-    if (const auto turn = turn_of_flank(cluster, track.state.heading.rad)) measure_heading(track.state, *turn);
-    track.extent.follow_heading(track.state.heading.rad);
-  } else if (velocity.norm() > kLeastCourse_mps) {
-    track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));
+    follow_heading(track, cluster);
   }
   if (track.confirmed) {
     constexpr double kSure = 2.0;  // standard deviations

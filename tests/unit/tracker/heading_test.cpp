@@ -32,6 +32,43 @@ TEST(Heading, BeginsAsTheCourseOnceThatIsKnown) {
   EXPECT_NEAR(s.heading.variance, 0.01 + 0.01, 1e-12) << "0.5 of 5 m/s, and some more";
 }
 
+TEST(Heading, DoesNotBeginAcrossTheLineOfSightByAVelocityThatMayBeNone) {
+  // Ahead, 1.1 m/s by its range rate; and four across, give or take as much. Where the mean points to, a derivative by
+  // the velocity would find the course sure to 0.25 rad.
+  KinematicState s;
+  s.mean.segment<2>(2) << 1.1, -4.0;
+  s.covariance.block<2, 2>(2, 2) = Eigen::Vector2d(0.01, 12.0).asDiagonal();
+  begin_heading(s);
+  EXPECT_FALSE(s.heading.known);
+  s.covariance(3, 3) = 0.25;
+  begin_heading(s);
+  EXPECT_TRUE(s.heading.known) << "it does go across";
+}
+
+/// Of a car that creeps 80 m ahead in the next lane, seen where noise of the azimuth puts it: how far its box turns,
+/// rad.
+double most_turned(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> across_m(0.0, 0.8);
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  double most_rad = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.add({80.0 + 0.1 * i, 3.6 + across_m(random)}, {2.0, 0.0});
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    EXPECT_EQ(list->number_of_tracks, 1u);
+    most_rad = std::max(most_rad, std::abs(static_cast<double>(list->tracks[0].heading_rad)));
+  }
+  return most_rad;
+}
+
+TEST(Heading, OfWhatCreepsFarAheadIsNotThatOfTheNoise) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) EXPECT_LT(most_turned(seed), 0.3) << seed;
+}
+
 /// A range rate measured abeam, and the place hardly.
 PositionRate rate_across(const KinematicState& state, double rate_mps) {
   PositionRate m;
