@@ -46,8 +46,13 @@ std::optional<std::string> shared_memory_shortage(std::size_t needed_bytes,
          std::to_string(needed_bytes / kMebibyte + 1) + " MiB are needed (in a container, see --shm-size)";
 }
 
-std::filesystem::path unused_run_directory() {
-  return "/tmp/boresight-" + std::to_string(getuid()) + "-" + std::to_string(getpid());
+std::filesystem::path unused_run_directory(const std::filesystem::path& folder) {
+  const std::string name = "boresight-" + std::to_string(getuid()) + "-" + std::to_string(getpid());
+  std::filesystem::path directory = folder / name;
+  std::error_code ignored;
+  for (int n = 2; std::filesystem::exists(directory, ignored); ++n)
+    directory = folder / (name + "-" + std::to_string(n));
+  return directory;
 }
 
 }  // namespace boresight::supervisor

@@ -33,7 +33,8 @@ struct DomainOptions {
 [[nodiscard]] std::optional<std::string> shared_memory_shortage(std::size_t needed_bytes,
                                                                 const std::filesystem::path& shared_memory);
 
-/// A short path for a run directory of this process alone; not created.
-[[nodiscard]] std::filesystem::path unused_run_directory();
+/// A short path for a run directory of this process alone; not created. What a killed process of the same number (in a
+/// container, numbers are soon the same) left behind is not taken for one's own.
+[[nodiscard]] std::filesystem::path unused_run_directory(const std::filesystem::path& folder = "/tmp");
 
 }  // namespace boresight::supervisor

@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "deploy/supervisor/domain.hpp"
+
 namespace boresight::supervisor {
 namespace {
 
@@ -292,6 +294,15 @@ TEST_F(SupervisorTest, KilledSupervisorLeavesNoProcessAndNoFile) {
   EXPECT_FALSE(std::filesystem::exists(directory_ / "run"));
   close(report[0]);
   close(report[1]);
+}
+
+TEST_F(SupervisorTest, RunDirectoryThatAKilledOneLeftIsNotTaken) {
+  const path first = unused_run_directory(directory_);
+  EXPECT_EQ(first.parent_path(), directory_);
+  std::filesystem::create_directory(first);
+  const path second = unused_run_directory(directory_);
+  EXPECT_NE(second, first);
+  EXPECT_FALSE(std::filesystem::exists(second));
 }
 
 TEST_F(SupervisorTest, OutputOfAServiceGoesToItsLog) {
