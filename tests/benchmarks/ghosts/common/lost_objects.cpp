@@ -24,9 +24,12 @@ void TrackedObjects::add_detections(const ClassifiedScan& scan, const std::vecto
 void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_labels,
                              const TrackedObjects& with_filter) {
   for (const auto& [id, second] : with_perfect_labels.seconds()) {
-    if (second.share() < kHasIt || second.detections == 0) continue;
+    if (second.detections == 0) continue;
+    const double with_labels = with_filter.seconds().at(id).share();
+    if (second.share() < kHasItNot && with_labels >= kHasIt) ++gained;
+    if (second.share() < kHasIt) continue;
     ++object_seconds;
-    if (with_filter.seconds().at(id).share() < kHasItNot) lost.push_back({until_s, id});
+    if (with_labels < kHasItNot) lost.push_back({until_s, id});
   }
 }
 

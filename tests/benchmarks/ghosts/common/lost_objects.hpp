@@ -45,6 +45,8 @@ struct LostObjects {
   /// lies there is as likely another object's.
   std::size_t object_seconds = 0;
   std::vector<LostSecond> lost;  ///< of these: the filter's labels have it for less than half
+  /// The other way round. Where both are many, what is lost is so by the tracker's chance and not by the filter.
+  std::size_t gained = 0;
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 

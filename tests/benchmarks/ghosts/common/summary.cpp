@@ -71,6 +71,7 @@ TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
   other_tracks += other.other_tracks;
   object_seconds += other.object_seconds;
   lost_seconds += other.lost_seconds;
+  gained_seconds += other.gained_seconds;
   lasting_ghost_tracks += other.lasting_ghost_tracks;
   return *this;
 }
@@ -81,8 +82,13 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
     const auto lasting = std::count_if(o.long_ghost_tracks.begin(), o.long_ghost_tracks.end(), [](const GhostTrack& t) {
       return t.until_s - t.since_s >= TrackFaults::kFiveSteps_s;
     });
-    sum += {o.long_ghost_tracks.size(), o.longest_ghost_track_scans, o.long_other_tracks,
-            o.lost.object_seconds,      o.lost.lost.size(),          static_cast<std::size_t>(lasting)};
+    sum += {o.long_ghost_tracks.size(),
+            o.longest_ghost_track_scans,
+            o.long_other_tracks,
+            o.lost.object_seconds,
+            o.lost.lost.size(),
+            o.lost.gained,
+            static_cast<std::size_t>(lasting)};
   }
   return sum;
 }

@@ -31,7 +31,8 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
   const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
                                  " last half a second, the longest has " +
                                  std::to_string(faults.longest_ghost_track_scans) + " scans";
-  const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels";
+  const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
+                               std::to_string(faults.gained_seconds) + " the other way";
   const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_seconds);
   if (judged) {
     report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);

@@ -44,6 +44,10 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   lost.add_second(1.0, second_with(10, false), second_with(4));
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
+  EXPECT_EQ(lost.gained, 0u);
+  lost.add_second(1.0, second_with(4), second_with(10));
+  EXPECT_EQ(lost.gained, 1u);
+  EXPECT_EQ(lost.object_seconds, 2u);
 }
 
 }  // namespace
