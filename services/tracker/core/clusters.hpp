@@ -17,8 +17,8 @@
 namespace boresight::tracking {
 
 struct Cluster {
-  Eigen::Vector2d position_m;     ///< mean of the detections, each as real as it is, vehicle frame
-  Eigen::Matrix2d covariance_m2;  ///< of that mean by the sensor's noise
+  Eigen::Vector2d position_m;  ///< mean of the detections, each as real as it is, vehicle frame
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();  ///< of that mean by the sensor's noise
   double range_rate_over_ground_mps;
   double range_rate_variance;     ///< of the mean, m²/s²
   Eigen::Vector2d line_of_sight;  ///< unit vector from the sensor

@@ -93,6 +93,7 @@ struct Extent {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
+    if (!is_small) without_noise(cluster, low, high);
     const VisibleFaces faces = visible_faces(centre_m, sensor_m);
     // Few detections say little of how long a side is, and a face that is seen at a slant shows little of itself.
     const double said = static_cast<double>(n) / static_cast<double>(n + 3);
@@ -248,6 +249,17 @@ struct Extent {
   // person's, who reflects some -8 dBsm.
   static constexpr double kWeakestVehicle_dbsm = -5.0, kWeakestCycle_dbsm = -9.0, kWeakestPerson_dbsm = -11.0;
   static constexpr double kLeastOfPerson_dbsm = -16.0;  // what is weaker is a ghost of something larger
+  /// Across the line of sight noise spreads the detections of a vehicle far ahead over more than its width: so much
+  /// less lies between the outermost ones.
+  void without_noise(const Cluster& cluster, Eigen::Vector2d& low, Eigen::Vector2d& high) const {
+    constexpr double kOutermost = 1.0;  // standard deviations, of some seven
+    const Eigen::Vector2d along(std::cos(heading_rad), std::sin(heading_rad)), across(-along.y(), along.x());
+    const double std_m = std::sqrt(cluster.weight * across.dot(cluster.covariance_m2 * across));
+    const double middle = 0.5 * (low.y() + high.y());
+    const double half = std::max(0.0, 0.5 * (high.y() - low.y()) - kOutermost * std_m);
+    low.y() = middle - half;
+    high.y() = middle + half;
+  }
   /// How much of a side is to be seen up to its far end, 0 … 1: from nearby that is at a slant even for a sensor beside
   /// the middle, where nothing has a range rate over ground. Of a truck alongside each radar sees but a piece.
   [[nodiscard]] double side_shown(const Eigen::Vector2d& sensor_in_body_m) const {

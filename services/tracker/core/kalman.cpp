@@ -55,6 +55,11 @@ void predict(KinematicState& state, double dt, double jerk_std_mps3, const geome
   symmetrise(state.covariance);
 }
 
+void blur_own_turn(KinematicState& state, double variance_rad2) {
+  const Eigen::Vector2d aside(-state.mean(1), state.mean(0));
+  state.covariance.topLeftCorner<2, 2>() += variance_rad2 * aside * aside.transpose();
+}
+
 Distance distance(const KinematicState& state, const PositionRate& m) {
   const Matrix36d h = measurement_matrix(m);
   const Eigen::Vector3d innovation = m.value - h * state.mean;

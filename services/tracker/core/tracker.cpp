@@ -115,8 +115,13 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
 void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   const geometry::EgoStep ego = geometry::ego_step(geometry.ego_speed_mps, geometry.ego_yaw_rate_radps, elapsed_s);
   const double turn = static_cast<double>(geometry.ego_yaw_rate_radps) * elapsed_s;
+  // The signal's error, of its steps and its bias, stays the same for some seconds: as if it walked.
+  constexpr double kUnstated_radps = 0.002, kStays_s = 3.0;
+  const auto stated = static_cast<double>(geometry.ego_yaw_rate_std_radps);
+  const double turn_std_radps = stated > 0.0 ? stated : kUnstated_radps;
   for (TrackedObject& track : tracks_) {
     predict(track.state, elapsed_s, config_.jerk_std_mps3, ego);
+    blur_own_turn(track.state, turn_std_radps * turn_std_radps * kStays_s * elapsed_s);
     if (track.state.heading.known) predict_heading(track.state, elapsed_s, turn);
     track.extent.heading_rad = geometry::wrap_angle(track.extent.heading_rad - turn);
     track.age_s += elapsed_s;
@@ -214,7 +219,7 @@ void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const 
                             bool has_elevation) {
   const Eigen::Vector2d velocity = track.state.mean.segment<2>(2);
   // People turn as they like: theirs is but the course. Some are in vehicles' boxes, as ghosts made them look strong.
-  if (track.extent.is_small || track.extent.may_be_small(velocity.norm())) {
+  if (track.extent.is_small || track.extent.is_surely_small(velocity.norm())) {
     constexpr double kLeastCourse_mps = 1.0;
     track.state.heading = {};
     if (velocity.norm() > kLeastCourse_mps) track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));

@@ -69,6 +69,33 @@ TEST(Heading, OfWhatCreepsFarAheadIsNotThatOfTheNoise) {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) EXPECT_LT(most_turned(seed), 0.3) << seed;
 }
 
+TEST(Heading, OfACarThatIsHeardLessFarAheadStays) {
+  // Weaker than some cycles from then on: their boxes follow the course, which noise turns.
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> across_m(0.0, 1.2);
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  double square = 0.0;
+  for (int i = 0; i < 260; ++i) {
+    const bool is_far = i >= 60;
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    for (const double along_m : {0.0, 2.2}) {
+      const std::uint32_t k = scene.scan->number_of_valid_detections;
+      scene.add({60.0 + 0.1 * i + along_m, 2.7 + (is_far ? 1.0 : 0.1) * across_m(random)}, {2.0, 0.0});
+      scene.scan->rcs_dbsm[k] = is_far ? 0.0F : 10.0F;
+      if (is_far) scene.scan->azimuth_std_rad[k] = 0.02F;
+    }
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (!is_far) continue;
+    ASSERT_EQ(list->number_of_confirmed_tracks, 1u) << i;
+    square += std::pow(static_cast<double>(list->tracks[0].heading_rad), 2) / 200.0;
+  }
+  EXPECT_LT(std::sqrt(square), 0.08);
+}
+
 /// A range rate measured abeam, and the place hardly.
 PositionRate rate_across(const KinematicState& state, double rate_mps) {
   PositionRate m;

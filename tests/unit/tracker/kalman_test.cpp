@@ -66,6 +66,16 @@ TEST(Kalman, WhatStandsStillInTheWorldStaysThereAsTheVehicleMoves) {
   EXPECT_LT(s.mean.tail<4>().norm(), 1e-12);
 }
 
+TEST(Kalman, AnErrorOfTheOwnTurnMovesAsideWhatIsFarAway) {
+  KinematicState s = some_state();
+  const Matrix6d before = s.covariance;
+  blur_own_turn(s, 1e-4);
+  const Eigen::Vector2d sight = s.mean.head<2>().normalized(), across(-sight.y(), sight.x());
+  const Eigen::Matrix2d more = (s.covariance - before).topLeftCorner<2, 2>();
+  EXPECT_NEAR(across.dot(more * across), 1e-4 * s.mean.head<2>().squaredNorm(), 1e-9);
+  EXPECT_NEAR(sight.dot(more * sight), 0.0, 1e-9);
+}
+
 TEST(Kalman, VelocityTurnsWithTheAxesOfTheVehicle) {
   KinematicState s = some_state();
   s.mean.tail<2>().setZero();
