@@ -31,8 +31,9 @@ constexpr double kHeard_db = 3.0;          // a track's strength is known if its
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
 /// Share of a new judgement of a track in what is thought of it: what has been tracked for long does not become an
-/// image, or cease to be one, by a second in which it is where something else would be mirrored.
-constexpr double kSlowest = 0.04;
+/// image, or cease to be one, by a second in which it is where something else would be mirrored. With four radars of 20
+/// scans a second it follows within some seconds.
+constexpr double kSlowest = 0.015;
 
 /// In a jam all have about the same speed: to fit one's range rate by chance is easier.
 double track_density(double speed_mps) {
