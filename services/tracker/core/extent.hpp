@@ -252,8 +252,8 @@ struct Extent {
   /// Across the line of sight noise spreads the detections of a vehicle far ahead over more than its width: so much
   /// less lies between the outermost ones.
   void without_noise(const Cluster& cluster, Eigen::Vector2d& low, Eigen::Vector2d& high) const {
-    constexpr double kOutermost = 1.0;  // standard deviations, of some seven
-    const Eigen::Vector2d along(std::cos(heading_rad), std::sin(heading_rad)), across(-along.y(), along.x());
+    constexpr double kOutermost = 1.0;  // standard deviations: where the outermost of four lie
+    const Eigen::Vector2d across = from_body({0.0, 1.0});
     const double std_m = std::sqrt(cluster.weight * across.dot(cluster.covariance_m2 * across));
     const double middle = 0.5 * (low.y() + high.y());
     const double half = std::max(0.0, 0.5 * (high.y() - low.y()) - kOutermost * std_m);

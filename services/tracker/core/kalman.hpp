@@ -36,7 +36,7 @@ struct PositionRate {
 /// vehicle frame; all but the heading (predict_heading).
 void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego);
 
-/// By the variance of the vehicle's own turn: an error of it moves aside what is far away.
+/// Adds what an error of the vehicle's own turn (rad²) does to the place: it moves aside what is far away.
 void blur_own_turn(KinematicState& state, double variance_rad2);
 
 /// Squared Mahalanobis distance of a measurement from the prediction, and the logarithm of the determinant of the

@@ -116,9 +116,9 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   const geometry::EgoStep ego = geometry::ego_step(geometry.ego_speed_mps, geometry.ego_yaw_rate_radps, elapsed_s);
   const double turn = static_cast<double>(geometry.ego_yaw_rate_radps) * elapsed_s;
   // The signal's error, of its steps and its bias, stays the same for some seconds: as if it walked.
-  constexpr double kUnstated_radps = 0.002, kStays_s = 3.0;
+  constexpr double kStays_s = 3.0;
   const auto stated = static_cast<double>(geometry.ego_yaw_rate_std_radps);
-  const double turn_std_radps = stated > 0.0 ? stated : kUnstated_radps;
+  const double turn_std_radps = stated > 0.0 ? stated : vehicle_.ego.yaw_rate_std_radps;
   for (TrackedObject& track : tracks_) {
     predict(track.state, elapsed_s, config_.jerk_std_mps3, ego);
     blur_own_turn(track.state, turn_std_radps * turn_std_radps * kStays_s * elapsed_s);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,41 +47,49 @@ TEST(Heading, DoesNotBeginAcrossTheLineOfSightByAVelocityThatMayBeNone) {
   EXPECT_TRUE(s.heading.known) << "it does go across";
 }
 
-/// Of a car that creeps 80 m ahead in the next lane, seen where noise of the azimuth puts it: how far its box turns,
-/// rad.
-double most_turned(std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> across_m(0.0, 0.8);
+/// How the box of the one track heads after each of so many scans, rad; `add` fills them.
+template <typename Add>
+std::vector<double> headings(int scans, const Add& add) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
-  double most_rad = 0.0;
-  for (int i = 0; i < 40; ++i) {
+  std::vector<double> found_rad;
+  for (int i = 0; i < scans; ++i) {
     scene.begin((1000 + 50 * i) * kMillisecond);
-    scene.add({80.0 + 0.1 * i, 3.6 + across_m(random)}, {2.0, 0.0});
+    add(scene, i);
     tracker.step(*scene.scan);
     tracker.write(*list);
-    EXPECT_EQ(list->number_of_tracks, 1u);
-    most_rad = std::max(most_rad, std::abs(static_cast<double>(list->tracks[0].heading_rad)));
+    EXPECT_GE(list->number_of_tracks, 1u) << i;
+    EXPECT_LE(list->number_of_confirmed_tracks, 1u) << i;
+    found_rad.push_back(static_cast<double>(list->tracks[0].heading_rad));
   }
-  return most_rad;
+  return found_rad;
+}
+
+double rms(std::span<const double> values) {
+  double square = 0.0;
+  for (const double value : values) square += value * value / static_cast<double>(values.size());
+  return std::sqrt(square);
 }
 
 TEST(Heading, OfWhatCreepsFarAheadIsNotThatOfTheNoise) {
-  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) EXPECT_LT(most_turned(seed), 0.3) << seed;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> across_m(0.0, 0.8);
+    const std::vector<double> found_rad = headings(40, [&](Scene& scene, int i) {
+      scene.add({80.0 + 0.1 * i, 3.6 + across_m(random)}, {2.0, 0.0});
+    });
+    for (const double heading_rad : found_rad) EXPECT_NEAR(heading_rad, 0.0, 0.3) << seed;
+  }
 }
 
 TEST(Heading, OfACarThatIsHeardLessFarAheadStays) {
   // Weaker than some cycles from then on: their boxes follow the course, which noise turns.
+  constexpr int kNear = 60;  // scans
   std::mt19937_64 random(3);
   std::normal_distribution<double> across_m(0.0, 1.2);
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  const auto list = std::make_unique<TrackList>();
-  double square = 0.0;
-  for (int i = 0; i < 260; ++i) {
-    const bool is_far = i >= 60;
-    scene.begin((1000 + 50 * i) * kMillisecond);
+  const std::vector<double> found_rad = headings(260, [&](Scene& scene, int i) {
+    const bool is_far = i >= kNear;
     scene.scan->fields |= scan_field::kRcs;
     for (const double along_m : {0.0, 2.2}) {
       const std::uint32_t k = scene.scan->number_of_valid_detections;
@@ -87,13 +97,8 @@ TEST(Heading, OfACarThatIsHeardLessFarAheadStays) {
       scene.scan->rcs_dbsm[k] = is_far ? 0.0F : 10.0F;
       if (is_far) scene.scan->azimuth_std_rad[k] = 0.02F;
     }
-    tracker.step(*scene.scan);
-    tracker.write(*list);
-    if (!is_far) continue;
-    ASSERT_EQ(list->number_of_confirmed_tracks, 1u) << i;
-    square += std::pow(static_cast<double>(list->tracks[0].heading_rad), 2) / 200.0;
-  }
-  EXPECT_LT(std::sqrt(square), 0.08);
+  });
+  EXPECT_LT(rms(std::span(found_rad).subspan(kNear)), 0.08);
 }
 
 /// A range rate measured abeam, and the place hardly.
@@ -190,32 +195,20 @@ TEST(Heading, BeginsAlongAFlankIfTheCourseIsNotKnown) {
 
 /// A truck creeps ahead, its flank seen from the lane beside.
 TEST(Creeping, TrucksKeepTheirHeading) {
-  Tracker tracker(two_radars(), Config{});
-  Scene scene;
-  const auto list = std::make_unique<TrackList>();
+  constexpr int kSettles = 60;  // scans
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 0.1);
   std::bernoulli_distribution seen(0.8);
   const Eigen::Vector2d velocity(1.2, 0.0);
-  double square = 0.0, worst = 0.0;
-  int scans = 0;
-  for (int i = 0; i < 160; ++i) {
-    scene.begin((1000 + 50 * i) * kMillisecond);
+  const std::vector<double> found_rad = headings(160, [&](Scene& scene, int i) {
     const double rear_m = 14.0 + 0.05 * i * velocity.x();
     for (const double along : {0.0, 2.1, 5.2, 8.3, 11.4, 14.5}) {
       if (seen(random)) scene.add({rear_m + along + noise(random), -3.0 + noise(random)}, velocity);
     }
-    tracker.step(*scene.scan);
-    if (i < 60) continue;
-    tracker.write(*list);
-    ASSERT_GE(list->number_of_confirmed_tracks, 1u);
-    const double heading = static_cast<double>(list->tracks[0].heading_rad);
-    square += heading * heading;
-    worst = std::max(worst, std::abs(heading));
-    ++scans;
-  }
-  EXPECT_LT(std::sqrt(square / scans), 3.0 * kDegree);
-  EXPECT_LT(worst, 6.0 * kDegree);
+  });
+  const auto settled = std::span(found_rad).subspan(kSettles);
+  EXPECT_LT(rms(settled), 3.0 * kDegree);
+  for (const double heading_rad : settled) EXPECT_NEAR(heading_rad, 0.0, 6.0 * kDegree);
 }
 
 }  // namespace

@@ -82,13 +82,13 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
     const auto lasting = std::count_if(o.long_ghost_tracks.begin(), o.long_ghost_tracks.end(), [](const GhostTrack& t) {
       return t.until_s - t.since_s >= TrackFaults::kFiveSteps_s;
     });
-    sum += {o.long_ghost_tracks.size(),
-            o.longest_ghost_track_scans,
-            o.long_other_tracks,
-            o.lost.object_seconds,
-            o.lost.lost.size(),
-            o.lost.gained,
-            static_cast<std::size_t>(lasting)};
+    sum += {.ghost_tracks = o.long_ghost_tracks.size(),
+            .longest_ghost_track_scans = o.longest_ghost_track_scans,
+            .other_tracks = o.long_other_tracks,
+            .object_seconds = o.lost.object_seconds,
+            .lost_seconds = o.lost.lost.size(),
+            .gained_seconds = o.lost.gained,
+            .lasting_ghost_tracks = static_cast<std::size_t>(lasting)};
   }
   return sum;
 }
