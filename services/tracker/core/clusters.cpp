@@ -55,7 +55,8 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<c
   return clusters_;
 }
 
-std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, std::span<const KnownPlace> known) {
+std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, const Eigen::Vector2d& sight, double rate_mps,
+                             std::span<const KnownPlace> known) {
   constexpr double kReach_m = 1.5;   // of a person and what is not known of where they are
   constexpr double kBeside_m = 1.0;  // the same of a vehicle's box
   std::size_t person = known.size(), vehicle = known.size();
@@ -63,7 +64,7 @@ std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, std::span<const Kno
   for (std::size_t k = 0; k < known.size(); ++k) {
     const double distance_m2 = (known[k].position_m - point_m).squaredNorm();
     if (known[k].is_small) {
-      if (distance_m2 >= nearest_m2) continue;
+      if (distance_m2 >= nearest_m2 || !known[k].may_show(rate_mps, sight)) continue;
       nearest_m2 = distance_m2;
       person = k;
       continue;
@@ -80,11 +81,13 @@ std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, std::span<const Kno
 
 void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> known) {
   const Eigen::Vector2d kUnknown(0.0, 0.0);
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   std::span<std::uint32_t> rest = members_;
   std::size_t vehicle = known.size();
   bool are_several = false;
   for (const std::uint32_t k : rest) {
-    whose_[k] = owner(points_[k], known);
+    const Eigen::Vector2d sight = (points_[k] - sensor).normalized();
+    whose_[k] = owner(points_[k], sight, static_cast<double>(scan.range_rate_over_ground_mps[index_[k]]), known);
     if (whose_[k] == known.size() || known[whose_[k]].is_small) continue;
     are_several = are_several || (vehicle != known.size() && vehicle != whose_[k]);
     vehicle = whose_[k];

@@ -40,6 +40,12 @@ struct KnownPlace {
   Eigen::Vector2d position_m, axis, half_m;  ///< centre; direction of the length, unit; half of length and width
   bool is_small;                             ///< a person or a cycle
   Eigen::Vector2d velocity_mps{0.0, 0.0};    ///< over ground
+  /// Whether limbs or wheels of who moves so may show that range rate over ground in that direction.
+  [[nodiscard]] bool may_show(double rate_mps, const Eigen::Vector2d& sight) const {
+    constexpr double kMore_mps = 1.5;
+    const double mean_mps = sight.dot(velocity_mps);
+    return std::abs(rate_mps - mean_mps) < std::abs(mean_mps) + kMore_mps;
+  }
   /// Of a point from the box.
   [[nodiscard]] double distance_m(const Eigen::Vector2d& point_m) const {
     const Eigen::Vector2d d = point_m - position_m;
@@ -66,8 +72,9 @@ class Clusterer {
   void split(const ClassifiedScan& scan, std::span<std::uint32_t> rest, const Eigen::Vector2d& velocity_mps);
   /// The same of `members_`, but of each of those known objects apart that are among them.
   void part(const ClassifiedScan& scan, std::span<const KnownPlace> known);
-  /// The one that a point is of, or the number of all.
-  [[nodiscard]] static std::size_t owner(const Eigen::Vector2d& point_m, std::span<const KnownPlace> known);
+  /// The one that a point is of, or the number of all; `sight` is the unit vector to it.
+  [[nodiscard]] static std::size_t owner(const Eigen::Vector2d& point_m, const Eigen::Vector2d& sight, double rate_mps,
+                                         std::span<const KnownPlace> known);
   /// One cluster, of points by index.
   void add(const ClassifiedScan& scan, std::span<const std::uint32_t> members);
 

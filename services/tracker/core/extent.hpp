@@ -123,8 +123,9 @@ struct Extent {
   /// heard is not.
   [[nodiscard]] bool is_too_weak(double speed_mps) const {
     if (speed_mps > kFastestCycle_mps) return strongest_dbsm < kWeakestVehicle_dbsm;
-    return strongest_dbsm < (speed_mps > kFastestRunner_mps ? kWeakestCycle_dbsm : kWeakestPerson_dbsm);
+    return strongest_dbsm < (outruns_people(speed_mps) ? kWeakestCycle_dbsm : kWeakestPerson_dbsm);
   }
+  [[nodiscard]] static bool outruns_people(double speed_mps) { return speed_mps > kFastestRunner_mps; }
 
   /// Whether a person or a cycle would be as strong and as fast, and neither a vehicle nor an image would.
   [[nodiscard]] bool is_surely_small(double speed_mps) const {

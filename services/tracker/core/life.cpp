@@ -28,12 +28,15 @@ void count_scan(TrackedObject& track, const Config& config, bool may_be_image) {
   const auto window = track.evidence.begin() + static_cast<std::ptrdiff_t>(config.confirm_window);
   const double evidence = std::accumulate(track.evidence.begin(), window, 0.0);
   const bool often = std::popcount(recent) >= static_cast<int>(config.confirm_hits);
-  const bool weak = track.extent.is_too_weak(track.state.mean.segment<2>(2).norm());
+  const double speed_mps = track.state.mean.segment<2>(2).norm();
+  const bool weak = track.extent.is_too_weak(speed_mps);
   double wait_s = config.confirm_age_s;
   if (may_be_image) wait_s = std::max(wait_s, config.confirm_image_age_s);
   if (weak) wait_s = std::max(wait_s, config.confirm_weak_age_s);
   const bool long_enough = track.age_s > wait_s - 1e-6;
   if (often && long_enough && evidence >= config.confirm_evidence) track.confirmed = true;
+  // What began at a walk, as strong as people are, and goes faster than they do now waits after all.
+  if (weak && !long_enough && Extent::outruns_people(speed_mps)) track.confirmed = false;
 }
 
 bool is_dead(const TrackedObject& track, const Config& config) {

@@ -6,15 +6,21 @@ namespace boresight::tracking {
 
 namespace {
 
-/// Rails and walls stand, too.
-bool is_of_reflector(const ClassifiedScan& scan, const Eigen::Vector2d& place_m) {
+/// Rails and walls stand, too. But what lies along the box and is hardly longer is a side of it, as the map has it.
+bool is_of_reflector(const ClassifiedScan& scan, const Eigen::Vector2d& place_m, const TrackedObject& track) {
   constexpr double kNear_m = 0.7;
+  // By so much boxes are too short, and reflectors in the map too long, in which their ends are found in steps.
+  constexpr double kLonger_m = 4.0, kBeside_m = 1.0;
+  const auto is_own = [&track](const Eigen::Vector2d& end_m) {
+    return track.extent.contains(track.state.mean.head<2>(), end_m, kLonger_m, kBeside_m);
+  };
   const std::size_t count = std::min<std::size_t>(scan.number_of_reflector_segments, kMaxReflectorSegments);
   return std::any_of(scan.reflector_segments.begin(),
                      scan.reflector_segments.begin() + static_cast<std::ptrdiff_t>(count),
                      [&](const ReflectorSegment& segment) {
                        const Eigen::Vector2d from(segment.start_vehicle_m[0], segment.start_vehicle_m[1]),
                            to(segment.end_vehicle_m[0], segment.end_vehicle_m[1]);
+                       if (is_own(from) && is_own(to)) return false;
                        const Eigen::Vector2d along = to - from;
                        const double share = (place_m - from).dot(along) / std::max(1e-6, along.squaredNorm());
                        return (place_m - from - std::clamp(share, 0.0, 1.0) * along).norm() < kNear_m;
@@ -36,7 +42,7 @@ void keep_stopped(std::span<TrackedObject> tracks, const ClassifiedScan& scan) {
     for (std::size_t i = 0; i < count; ++i) {
       if (scan.provenance[i] != Provenance::kStationary) continue;
       const Eigen::Vector2d place(scan.x_vehicle_m[i], scan.y_vehicle_m[i]);
-      if (!track.extent.contains(track.state.mean.head<2>(), place, kAround_m) || is_of_reflector(scan, place))
+      if (!track.extent.contains(track.state.mean.head<2>(), place, kAround_m) || is_of_reflector(scan, place, track))
         continue;
       come_to_rest(track.state);
       track.since_update_s = 0.0;

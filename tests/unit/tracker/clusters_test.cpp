@@ -102,6 +102,24 @@ TEST(Clusterer, WhatIsSeenOfPeopleWhoPassEachOtherIsOfTheNearest) {
   EXPECT_NEAR(clusters[2].position_m.x(), 14.0, 1e-6) << "nobody's";
 }
 
+TEST(Clusterer, WhatNoLimbShowsIsNotOfThePersonBesideACar) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  const Eigen::Vector2d walks(-1.2, 0.0), drives(3.5, 0.0);
+  // A leg that stands, the trunk, a leg that swings; and the near corner of a car that drives away beside them.
+  for (const double share : {0.1, 1.0, 1.8}) scene.add({12.3, -1.9}, share * walks);
+  for (const double y : {-0.95, 0.0, 0.95}) scene.add({11.8, y}, drives);
+  const std::array<KnownPlace, 2> both{
+      {{{12.3, -1.9}, {-1.0, 0.0}, {0.5, 0.3}, true, walks}, {{14.0, 0.0}, {1.0, 0.0}, {2.25, 0.95}, false, drives}}};
+  Clusterer clusterer(Config{});
+  const auto clusters = clusterer.find(*scene.scan, both);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].number_of_detections, 3u);
+  EXPECT_NEAR(clusters[0].position_m.y(), -1.9, 1e-6);
+  EXPECT_EQ(clusters[1].number_of_detections, 3u);
+  EXPECT_NEAR(clusters[1].range_rate_over_ground_mps, 3.5, 0.1);
+}
+
 TEST(Clusterer, WhatIsSeenOfVehiclesSideBySideIsOfTheNearestBox) {
   Scene scene;
   scene.begin(kMillisecond);
