@@ -36,6 +36,7 @@ Config read_config(config::Reader root) {
   c.confirm_evidence = life.number("confirm_evidence", {0.0, 32.0}, c.confirm_evidence);
   c.confirm_age_s = life.number("confirm_age_s", {0.0, 5.0}, c.confirm_age_s);
   c.confirm_image_age_s = life.number("confirm_image_age_s", {0.0, 60.0}, c.confirm_image_age_s);
+  c.confirm_side_image_age_s = life.number("confirm_side_image_age_s", {0.0, 60.0}, c.confirm_side_image_age_s);
   c.confirm_weak_age_s = life.number("confirm_weak_age_s", {0.0, 60.0}, c.confirm_weak_age_s);
   c.start_realness = life.number("start_realness", {0.0, 1.0}, c.start_realness);
   c.delete_misses = count(life, "delete_misses", c.delete_misses);

@@ -39,13 +39,41 @@ bool may_be_image_of(const TrackedObject& track, const View& seen, const Tracked
          std::abs(rate_mps - seen.sight.dot(velocity)) < kAlike_mps;
 }
 
+/// Whether the vehicle's side, the one that is seen, would show the other one where the track is.
+bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, const TrackedObject& track,
+                   const Eigen::Vector2d& sensor_m) {
+  // Of where the middles of new tracks are, and how wide the vehicle is, that much is not known; and of the heading of
+  // one that is new itself, whatever its track says.
+  constexpr double kAlong_m = 3.0, kAcross_m = 1.5, kNewHeading_rad = 0.1, kNew_s = 2.0;
+  if (!vehicle.confirmed || vehicle.extent.is_small) return false;
+  const Eigen::Vector2d centre_m = vehicle.state.mean.head<2>();
+  const double side = vehicle.extent.visible_faces(centre_m, sensor_m).side;
+  const Eigen::Vector2d object = vehicle.extent.to_body(other.state.mean.head<2>() - centre_m);
+  const Eigen::Vector2d image = vehicle.extent.to_body(track.state.mean.head<2>() - centre_m);
+  const double face_m = 0.5 * side * vehicle.extent.width_m;
+  const double known_rad = std::sqrt(std::max(0.0, vehicle.state.heading.variance));
+  const bool is_new = vehicle.age_s < kNew_s || !vehicle.state.heading.known;
+  // A mirror that turns by so much turns what it shows by twice as much.
+  const double turn_rad = 2.0 * (is_new ? std::max(kNewHeading_rad, known_rad) : known_rad);
+  return side != 0.0 && std::abs(image.x() - object.x()) < kAlong_m &&
+         std::abs(image.y() + object.y() - 2.0 * face_m) < kAcross_m + turn_rad * std::abs(image.x());
+}
+
 }  // namespace
 
-bool may_be_image(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m) {
+double image_wait_s(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m,
+                    const Config& config) {
   const View seen = view_of(track, sensor_m);
-  return std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& other) {
-    return &other != &track && may_be_image_of(track, seen, other, sensor_m);
-  });
+  double wait_s = 0.0;
+  for (const TrackedObject& other : tracks) {
+    if (&other == &track || !may_be_image_of(track, seen, other, sensor_m)) continue;
+    wait_s = std::max(wait_s, config.confirm_image_age_s);
+    const bool in_side = std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& vehicle) {
+      return &vehicle != &track && &vehicle != &other && shows_in_side(vehicle, other, track, sensor_m);
+    });
+    if (in_side) return std::max(wait_s, config.confirm_side_image_age_s);
+  }
+  return wait_s;
 }
 
 }  // namespace boresight::tracking

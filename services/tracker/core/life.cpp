@@ -15,7 +15,7 @@ std::uint32_t window_mask(std::size_t scans) {
 
 }  // namespace
 
-void count_scan(TrackedObject& track, const Config& config, bool may_be_image) {
+void count_scan(TrackedObject& track, const Config& config, double image_wait_s) {
   constexpr double kDetection = 0.8, kHitGain = 0.5;
   const bool hit = track.detections > 0;
   track.history = track.history << 1 | (hit ? 1u : 0u);
@@ -30,13 +30,12 @@ void count_scan(TrackedObject& track, const Config& config, bool may_be_image) {
   const bool often = std::popcount(recent) >= static_cast<int>(config.confirm_hits);
   const double speed_mps = track.state.mean.segment<2>(2).norm();
   const bool weak = track.extent.is_too_weak(speed_mps);
-  double wait_s = config.confirm_age_s;
-  if (may_be_image) wait_s = std::max(wait_s, config.confirm_image_age_s);
+  double wait_s = std::max(config.confirm_age_s, image_wait_s);
   if (weak) wait_s = std::max(wait_s, config.confirm_weak_age_s);
   const bool long_enough = track.age_s > wait_s - 1e-6;
   if (often && long_enough && evidence >= config.confirm_evidence) track.confirmed = true;
-  // What began at a walk, as strong as people are, and goes faster than they do now waits after all.
-  if (weak && !long_enough && Extent::outruns_people(speed_mps)) track.confirmed = false;
+  // What was taken for a person and goes faster than they do waits after all.
+  if (weak && !long_enough && track.extent.was_small && Extent::outruns_people(speed_mps)) track.confirmed = false;
 }
 
 bool is_dead(const TrackedObject& track, const Config& config) {

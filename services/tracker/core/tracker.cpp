@@ -298,7 +298,7 @@ void Tracker::judge(const ClassifiedScan& scan) {
   for (TrackedObject& track : tracks_) {
     const bool could_see = track.detections > 0 || (radar != nullptr && can_see(*radar, scan.geometry, track, tracks_,
                                                                                 config_.blind_range_rate_mps));
-    if (could_see) count_scan(track, config_, !track.confirmed && may_be_image(track, tracks_, sensor));
+    if (could_see) count_scan(track, config_, track.confirmed ? 0.0 : image_wait_s(track, tracks_, sensor, config_));
   }
   std::erase_if(tracks_, [this](const TrackedObject& track) { return is_dead(track, config_); });
 }

@@ -60,7 +60,7 @@ TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
   EXPECT_NEAR(seconds_to_confirm(15.0, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6) << "strength not measured";
 }
 
-TEST(TrackerBirth, WhatBeganAtAWalkAndOutrunsPeopleHasToWaitAfterAll) {
+TEST(TrackerBirth, WhoIsTakenForAPersonAndOutrunsThemHasToWaitAfterAll) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
@@ -82,11 +82,13 @@ TEST(TrackerBirth, WhatBeganAtAWalkAndOutrunsPeopleHasToWaitAfterAll) {
 }
 
 /// Beside a car of 10 dBsm: seconds until something that comes with it is confirmed, over there, with the velocity.
-double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector2d& velocity_mps, float rcs_dbsm) {
+/// `truck`: one drives behind the car in the next lane, at its speed.
+double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector2d& velocity_mps, float rcs_dbsm,
+                            bool truck = false) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 60; ++i) {
     const double t = 0.05 * i;
     scene.begin((1000 + 50 * i) * kMillisecond);
     scene.scan->fields |= scan_field::kRcs;
@@ -94,16 +96,25 @@ double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector
     scene.scan->rcs_dbsm[0] = 10.0F;
     scene.add(Eigen::Vector2d(40.0, 0.0) + beside_m + t * velocity_mps, velocity_mps);
     scene.scan->rcs_dbsm[1] = rcs_dbsm;
+    if (truck) {
+      // Its flank, 2.4 m beside the car's middle.
+      for (const double x : {20.0, 23.0, 26.0}) {
+        scene.add({x + 15.0 * t, 2.4}, {15.0, 0.0});
+        scene.scan->rcs_dbsm[scene.scan->number_of_valid_detections - 1] = 20.0F;
+      }
+    }
     tracker.step(*scene.scan);
     tracker.write(*list);
-    if (list->number_of_confirmed_tracks > 1) return t;
+    if (list->number_of_confirmed_tracks > (truck ? 2u : 1u)) return t;
   }
   return 1e9;
 }
 
 TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
   const Eigen::Vector2d along(15.0, 0.0);
-  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F), 1.5, 1e-6) << "an image, or a weak car in the next lane";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F), 1.0, 1e-6) << "an image, or a weak car in the next lane";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 4.8}, along, 0.0F, true), 2.0, 1e-6) << "an image in a truck's flank";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, -4.8}, along, 0.0F, true), 1.0, 1e-6) << "not where that would show it";
   EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 9.0F), 0.15, 1e-6) << "as strong as the other one";
   EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, {12.0, 0.0}, 0.0F), 0.15, 1e-6) << "moves otherwise";
   EXPECT_NEAR(seconds_beside_a_car({-6.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "nothing mirrors to where it is nearer";

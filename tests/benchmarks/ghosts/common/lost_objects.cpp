@@ -1,6 +1,7 @@
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace boresight::bench {
 
@@ -31,6 +32,19 @@ void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_
     ++object_seconds;
     if (with_labels < kHasItNot) lost.push_back({until_s, id});
   }
+}
+
+LostByChance& LostByChance::operator+=(const LostByChance& other) {
+  std::transform(seconds.begin(), seconds.end(), other.seconds.begin(), seconds.begin(), std::plus<>());
+  return *this;
+}
+
+std::size_t LostByChance::least() const {
+  return *std::min_element(seconds.begin(), seconds.end());
+}
+
+std::size_t LostByChance::most() const {
+  return *std::max_element(seconds.begin(), seconds.end());
 }
 
 }  // namespace boresight::bench

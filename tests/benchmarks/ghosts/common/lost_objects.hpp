@@ -1,6 +1,8 @@
 // Objects that a filter takes away: those which the same tracker has when it is given perfect labels.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -48,6 +50,18 @@ struct LostObjects {
   /// The other way round. Where both are many, what is lost is so by the tracker's chance and not by the filter.
   std::size_t gained = 0;
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
+};
+
+/// Seconds that are lost where perfect labels miss but so large a share of what moves, by chance: the least that the
+/// bar on moving detections allows. A tracker has chances of its own where objects are hardly seen or close together;
+/// what a filter loses beyond these it has taken away.
+struct LostByChance {
+  static constexpr double kThrownOut = 0.03;
+  static constexpr std::size_t kDraws = 5;
+  std::array<std::size_t, kDraws> seconds{};
+  LostByChance& operator+=(const LostByChance& other);
+  [[nodiscard]] std::size_t least() const;
+  [[nodiscard]] std::size_t most() const;
 };
 
 }  // namespace boresight::bench

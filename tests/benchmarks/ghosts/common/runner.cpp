@@ -19,6 +19,33 @@ using closed_loop::Back;
 using closed_loop::Object;
 using simulator::DetectionTruth;
 
+Matching match_confirmed(const Back& back, const std::vector<Object>& objects) {
+  return match(*back.tracks, back.tracks->number_of_confirmed_tracks, objects);
+}
+
+/// The tracker that is given perfect labels.
+struct Perfect {
+  explicit Perfect(const VehicleConfig& vehicle) : Perfect(vehicle, std::make_unique<TruthMethod>()) {}
+  /// … of which a share is thrown out by chance.
+  Perfect(const VehicleConfig& vehicle, std::uint64_t seed)
+      : Perfect(vehicle, std::make_unique<TruthMethod>(LostByChance::kThrownOut, seed)) {}
+
+  void take(const CorrectedScan& scan, const std::vector<DetectionTruth>& truth, const std::vector<Object>& objects) {
+    labels.tell(truth);
+    back.take(scan);
+    tracked.add(match_confirmed(back, objects), objects);
+  }
+
+  TruthMethod& labels;
+  Back back;
+  TrackedObjects tracked;
+  LostObjects lost;  ///< beside the labels of which nothing is thrown out
+
+ private:
+  Perfect(const VehicleConfig& vehicle, std::unique_ptr<TruthMethod> method)
+      : labels(*method), back(vehicle, std::move(method)) {}
+};
+
 /// One method with its tracker, and what is counted of them.
 struct Lane {
   Lane(const VehicleConfig& vehicle, const NamedGhostMethod& method)
@@ -57,10 +84,6 @@ void count_apart(const ClassifiedScan& scan, const std::vector<DetectionTruth>& 
   }
 }
 
-Matching match_confirmed(const Back& back, const std::vector<Object>& objects) {
-  return match(*back.tracks, back.tracks->number_of_confirmed_tracks, objects);
-}
-
 /// The vehicle that a scenario is meant for.
 VehicleConfig vehicle_of(const simulator::Scenario& scenario) {
   const std::string name = scenario.vehicle.empty() ? "demo" : scenario.vehicle;
@@ -76,10 +99,11 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
   simulator::Drive drive(scenario, vehicle, seed, std::min(duration_s, scenario.duration_s));
   // What comes before the ghost filter is the same for all methods and done once.
   closed_loop::Front front(vehicle);
-  auto knowing = std::make_unique<TruthMethod>();
-  TruthMethod& perfect_labels = *knowing;
-  Back perfect(vehicle, std::move(knowing));
-  TrackedObjects tracked_perfectly;
+  Perfect perfect(vehicle);
+  std::vector<std::unique_ptr<Perfect>> by_chance;
+  for (std::size_t draw = 0; draw < LostByChance::kDraws; ++draw) {
+    by_chance.push_back(std::make_unique<Perfect>(vehicle, LostByChance::kDraws * seed + draw));
+  }
   std::vector<std::unique_ptr<Lane>> lanes;
   for (const NamedGhostMethod& method : methods) lanes.push_back(std::make_unique<Lane>(vehicle, method));
   double second_ends_s = 1.0;
@@ -87,18 +111,21 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
     if (!front.take(*event)) continue;
     if (event->t_s > second_ends_s) {
       for (const auto& lane : lanes) {
-        lane->out.lost.add_second(second_ends_s, tracked_perfectly, lane->tracked);
+        lane->out.lost.add_second(second_ends_s, perfect.tracked, lane->tracked);
         lane->tracked.clear();
       }
-      tracked_perfectly.clear();
+      for (const auto& draw : by_chance) {
+        draw->lost.add_second(second_ends_s, perfect.tracked, draw->tracked);
+        draw->tracked.clear();
+      }
+      perfect.tracked.clear();
       second_ends_s += 1.0;
     }
     const std::vector<DetectionTruth>& truth = *event->truth;
     const std::vector<Object> objects = closed_loop::objects_at(drive, event->t_s);
-    perfect_labels.tell(truth);
-    perfect.take(*front.corrected);
-    tracked_perfectly.add(match_confirmed(perfect, objects), objects);
-    tracked_perfectly.add_detections(*perfect.classified, truth);
+    perfect.take(*front.corrected, truth, objects);
+    perfect.tracked.add_detections(*perfect.back.classified, truth);
+    for (const auto& draw : by_chance) draw->take(*front.corrected, truth, objects);
     for (std::size_t m = 0; m < lanes.size(); ++m) {
       Lane& lane = *lanes[m];
       lane.back.take(*front.corrected);
@@ -112,6 +139,8 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
   }
   std::vector<Outcome> outcomes;
   for (const auto& lane : lanes) {
+    std::transform(by_chance.begin(), by_chance.end(), lane->out.lost_by_chance.seconds.begin(),
+                   [](const auto& draw) { return draw->lost.lost.size(); });
     lane->out.long_ghost_tracks = lane->false_tracks.long_ghost_tracks();
     lane->out.longest_ghost_track_scans = lane->false_tracks.longest_ghost_track_scans();
     lane->out.long_other_tracks = lane->false_tracks.long_other_tracks();

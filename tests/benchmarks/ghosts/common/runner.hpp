@@ -36,6 +36,7 @@ struct Outcome {
   ApartGhosts type1;
   Reliability reliability;  ///< of ghost_probability, of detections that the corrector found moving
   LostObjects lost;
+  LostByChance lost_by_chance;  ///< on the same drive, whatever the method
   std::uint64_t scans = 0;
   std::vector<GhostTrack> long_ghost_tracks;
   std::size_t longest_ghost_track_scans = 0;

@@ -73,6 +73,7 @@ TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
   lost_seconds += other.lost_seconds;
   gained_seconds += other.gained_seconds;
   lasting_ghost_tracks += other.lasting_ghost_tracks;
+  lost_by_chance += other.lost_by_chance;
   return *this;
 }
 
@@ -88,7 +89,8 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
             .object_seconds = o.lost.object_seconds,
             .lost_seconds = o.lost.lost.size(),
             .gained_seconds = o.lost.gained,
-            .lasting_ghost_tracks = static_cast<std::size_t>(lasting)};
+            .lasting_ghost_tracks = static_cast<std::size_t>(lasting),
+            .lost_by_chance = o.lost_by_chance};
   }
   return sum;
 }

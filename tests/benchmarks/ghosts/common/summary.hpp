@@ -30,6 +30,7 @@ struct TrackFaults {
   /// Of the ghost tracks, those that last five steps of Report B, in each of which all radars scan once.
   static constexpr double kFiveSteps_s = 0.5;
   std::size_t lasting_ghost_tracks = 0;
+  LostByChance lost_by_chance;
   TrackFaults& operator+=(const TrackFaults& other);
 };
 [[nodiscard]] TrackFaults track_faults(const std::vector<Outcome>& outcomes);

@@ -32,11 +32,13 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
                                  " last half a second, the longest has " +
                                  std::to_string(faults.longest_ghost_track_scans) + " scans";
   const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
-                               std::to_string(faults.gained_seconds) + " the other way";
+                               std::to_string(faults.gained_seconds) + " the other way; by chance " +
+                               std::to_string(faults.lost_by_chance.least()) + " to " +
+                               std::to_string(faults.lost_by_chance.most());
   const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_seconds);
   if (judged) {
     report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);
-    report.at_most(group, what_lost, lost, 0.0, "", how_lost);
+    report.at_most(group, what_lost, lost, static_cast<double>(faults.lost_by_chance.most()), "", how_lost);
   } else {
     report.beside(group, what_tracks, tracks, "", how_tracks);
     report.beside(group, what_lost, lost, "", how_lost);

@@ -50,5 +50,14 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   EXPECT_EQ(lost.object_seconds, 2u);
 }
 
+TEST(Tracks, WhatIsLostByChanceIsSummedDrawByDraw) {
+  LostByChance sum;
+  sum += {{1, 0, 2, 0, 0}};
+  sum += {{1, 3, 1, 0, 0}};
+  EXPECT_EQ(sum.seconds, (std::array<std::size_t, LostByChance::kDraws>{2, 3, 3, 0, 0}));
+  EXPECT_EQ(sum.least(), 0u);
+  EXPECT_EQ(sum.most(), 3u);
+}
+
 }  // namespace
 }  // namespace boresight::bench
