@@ -90,8 +90,7 @@ def compare_panel(box, title, rows):
                                + text(left + width + 36, y + 9, f"{values[who]:.1f}", "s", "end"))
             y += 12
         panel.parts.append(text(left - 8, (first + y) / 2 + 3, what, "", "end"))
-        if "bar" in values:
-            panel.parts.append(f'<path class="bar" d="M{panel.x(values["bar"]):.1f} {first}V{y - 2}"/>')
+        panel.parts.append(f'<path class="bar" d="M{panel.x(values["bar"]):.1f} {first}V{y - 2}"/>')
         y += 10
     return panel.parts
 
@@ -106,7 +105,7 @@ def compare(curves):
             groups.setdefault(scenario, {}).setdefault(what, {})[c["label"]] = percent
     # Of what does not occur there is only the bar.
     groups = {name: {what: v for what, v in rows.items() if "mirror" in v} for name, rows in groups.items()}
-    parts = [text(20, 24, "Told as they should be, %, median over drives; red: what is asked of the mirror method, where it is", "t"),
+    parts = [text(20, 24, "Told as they should be, %, median over drives; red: what is asked of the mirror method", "t"),
              legend([(css + " own", NAMES[who]) for who, css in WHO.items()], 20, 46, 840)]
     heights = {name: sum(12 * sum(who in v for who in WHO) + 10 for v in rows.values()) for name, rows in groups.items()}
     top = 90

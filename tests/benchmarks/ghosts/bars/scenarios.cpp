@@ -14,32 +14,18 @@ namespace boresight::bench {
 
 namespace {
 
-/// Those that have bars on what is told, and whose confusion is printed whole. The others are harder, or there for
-/// other tests: of them only the faults that must not be anywhere are judged.
+/// Those whose confusion is printed whole.
 constexpr std::array<std::string_view, 5> kFive = {"tunnel", "city_canyon", "parking_garage", "truck_overtaking",
                                                    "curve_with_rail"};
 
-bool is_of_five(const std::string& scenario) {
-  return std::find(kFive.begin(), kFive.end(), scenario) != kFive.end();
-}
-
-void judge_share(const std::string& scenario, const std::string& what, Percent percent, double bar,
-                 const std::string& how, Report& report) {
-  if (is_of_five(scenario)) {
-    judge_percent(scenario, what, percent, bar, how, report);
-  } else {
-    report.beside(scenario, what, percent.median, "%", how + "; worst seed " + fixed(percent.worst, 1));
-  }
-}
-
 void judge(const std::string& scenario, const std::vector<Outcome>& outcomes, const std::string& how, Report& report) {
   const Percent moving = percent_told(outcomes, Provenance::kMoving, Provenance::kMoving);
-  judge_share(scenario, "moving told to be moving", moving, 97.0, how, report);
+  judge_percent(scenario, "moving told to be moving", moving, 97.0, how, report);
   for (const Provenance type : {Provenance::kGhostType1, Provenance::kGhostType2}) {
     const Percent ghost = percent_told_ghost(outcomes, type);
     // A scenario without ghosts of a type has no figure to judge.
     if (std::isnan(ghost.median)) continue;
-    judge_share(scenario, std::string(name_of(type)) + " told to be a ghost", ghost, 90.0, how, report);
+    judge_percent(scenario, std::string(name_of(type)) + " told to be a ghost", ghost, 90.0, how, report);
     if (type != Provenance::kGhostType1) continue;
     report.beside(scenario, "of type 1 over 0.5 m from their object: told to be a ghost",
                   percent_apart_told(outcomes).median, "%",
@@ -58,7 +44,6 @@ void compare(const std::string& scenario, const std::vector<NamedGhostMethod>& m
     add("type 1 → ghost", percent_told_ghost(outcomes[m], Provenance::kGhostType1).median);
     add("type 2 → ghost", percent_told_ghost(outcomes[m], Provenance::kGhostType2).median);
   }
-  if (!is_of_five(scenario)) return;
   add_comparison(scenario, "moving → moving", "bar", 97.0, report);
   add_comparison(scenario, "type 1 → ghost", "bar", 90.0, report);
   add_comparison(scenario, "type 2 → ghost", "bar", 90.0, report);
@@ -96,7 +81,7 @@ void scenarios(const Options& options, Report& report) {
                             fixed(percent_left_out(mine, Provenance::kMoving).median, 2),
                             std::to_string(faults.ghost_tracks), std::to_string(faults.other_tracks),
                             std::to_string(faults.lost_seconds)});
-      if (!is_of_five(scenario)) continue;
+      if (std::find(kFive.begin(), kFive.end(), scenario) == kFive.end()) continue;
       report.add(confusion_table(scenario + "_" + methods[m].name,
                                  scenario + ", " + methods[m].name + ": % of each truth, median over " + how, mine));
     }

@@ -52,9 +52,9 @@ struct LostObjects {
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 
-/// Seconds that are lost where perfect labels miss but so large a share of what moves, by chance: the least that the
-/// bar on moving detections allows. A tracker has chances of its own where objects are hardly seen or close together;
-/// what a filter loses beyond these it has taken away.
+/// Seconds that are lost where perfect labels miss but so large a share of what moves, by chance: as many as the
+/// bar on moving detections allows. It is for comparison: a tracker has chances of its own where objects are hardly
+/// seen or close together.
 struct LostByChance {
   static constexpr double kThrownOut = 0.03;
   static constexpr std::size_t kDraws = 5;

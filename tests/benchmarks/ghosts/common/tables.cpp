@@ -38,7 +38,7 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
   const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_seconds);
   if (judged) {
     report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);
-    report.at_most(group, what_lost, lost, static_cast<double>(faults.lost_by_chance.most()), "", how_lost);
+    report.at_most(group, what_lost, lost, 0.0, "", how_lost);
   } else {
     report.beside(group, what_tracks, tracks, "", how_tracks);
     report.beside(group, what_lost, lost, "", how_lost);
