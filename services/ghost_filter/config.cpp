@@ -63,6 +63,7 @@ ClassConfig read_classes(config::Reader reader) {
   c.type1_unheard = reader.number("type1_unheard", {0.0, 1.0}, c.type1_unheard);
   c.type2_per_object = reader.number("type2_per_object", {0.0, 100.0}, c.type2_per_object);
   c.real_per_object = reader.number("real_per_object", {0.01, 100.0}, c.real_per_object);
+  c.real_per_truck = reader.number("real_per_truck", {0.01, 100.0}, c.real_per_truck);
   c.tentative_weight = reader.number("tentative_weight", {0.0, 1.0}, c.tentative_weight);
   c.wheel_share = reader.number("wheel_share", {0.0, 1.0}, c.wheel_share);
   c.strength_doubt = reader.number("strength_doubt", {0.0, 1.0}, c.strength_doubt);

@@ -56,6 +56,7 @@ std::vector<double> numbers(const Config& config) {
           k.type1_unheard,
           k.type2_per_object,
           k.real_per_object,
+          k.real_per_truck,
           k.tentative_weight,
           k.wheel_share,
           k.strength_doubt,

@@ -16,6 +16,13 @@ constexpr double kLeastMoving = 0.6, kLeastThere = 0.5;
 /// What goes together is so near, and so alike in range rate.
 constexpr double kCompany_m = 3.0, kCompany_mps = 1.5;
 
+/// Detections in a scan. From where a car's box may end to where it hardly does, an object is more likely a truck.
+double expected_of(const Object& object, const ClassConfig& config) {
+  constexpr double kMayBeTruck_m = 4.7, kIsTruck_m = 5.3;
+  const double share = (2.0 * object.half_length_m - kMayBeTruck_m) / (kIsTruck_m - kMayBeTruck_m);
+  return config.real_per_object + std::clamp(share, 0.0, 1.0) * (config.real_per_truck - config.real_per_object);
+}
+
 }  // namespace
 
 void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities) const {
@@ -38,8 +45,9 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
     const RateDensity rates = rates_at(o, m.rate_mps, m.direction, rate_variance(m));
     const double above_db = m.rcs_dbsm - o.rcs_dbsm, doubt = config_.strength_doubt;
     const double weight = o.weight * (looks_still ? o.moving : 1.0);
-    const double all = weight * config_.real_per_object * seen;
-    const double of_whole = config_.real_per_object * (1.0 - config_.wheel_share) * place.body * rates.body *
+    const double expected = expected_of(o, config_);
+    const double all = weight * expected * seen;
+    const double of_whole = expected * (1.0 - config_.wheel_share) * place.body * rates.body *
                             likelihood(kBodyStrength, above_db, o.rcs_std_db, doubt);
     const double of_all = weight * seen * of_whole + all * config_.wheel_share * place.wheel * rates.wheel *
                                                          likelihood(kWheelStrength, above_db, o.rcs_std_db, doubt);

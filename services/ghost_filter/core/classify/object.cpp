@@ -12,8 +12,12 @@ namespace {
 
 constexpr double kWithin = 0.12;  // share of a body's reflections that come from anywhere in the box
 constexpr double kEdge = 0.15;    // of a face that only one of the two ends of the path sees, beside one that both see
+/// Wheels and what else turns are at the flank, as far as it is seen, of what is as long as a car; else anywhere.
+constexpr double kWheelsAtFlank = 0.5, kHalfCar_m = 1.9;
 
 constexpr double kSlow_mps = 0.5;  // what is slower may as well stand
+
+constexpr double kLeastHalf_m = 0.05;  // of a face
 
 /// How much larger than its track's box a vehicle may be, on each side, and how likely that is.
 struct Growth {
@@ -40,7 +44,7 @@ struct AcrossFace {
     if (chi2 > kFarthest2) return 0.0;
     const double middle = along - slope * away;
     const double share = below((middle + half) * per_std_along) - below((middle - half) * per_std_along);
-    return norm * exponential(-0.5 * chi2) * std::max(0.0, share) / std::max(0.1, 2.0 * half);
+    return norm * exponential(-0.5 * chi2) * std::max(0.0, share) / (2.0 * std::max(kLeastHalf_m, half));
   }
 };
 
@@ -65,21 +69,29 @@ class Faces {
     const double chi2 = (in_.yy * x * x - 2.0 * in_.xy * x * y + in_.xx * y * y) * per_determinant_;
     if (chi2 > kFarthest2) return {0.0, 0.0};  // no face is nearer than the box
     const double anywhere = exponential(-0.5 * chi2) / (blur_ + 4.0 * half.x() * half.y());
+    // Reflections are as many for each metre of any face, so that a truck's flank shows far more than its rear.
     double sum = 0.0, weights = 0.0;
     for (int axis = 0; axis < 2; ++axis) {
       const int seen = side(in_.from(axis), half(axis)), shone = side(in_.lit(axis), half(axis));
       for (const int end : {-1, 1}) {
-        const double weight = seen == end && shone == end ? 1.0 : seen == end || shone == end ? kEdge : 0.0;
-        if (weight <= 0.0) continue;
+        const double lit = seen == end && shone == end ? 1.0 : seen == end || shone == end ? kEdge : 0.0;
+        if (lit <= 0.0) continue;
+        const double weight = lit * std::max(kLeastHalf_m, half(1 - axis));
         weights += weight;
         sum += weight * across_[static_cast<std::size_t>(axis)].density(
                             in_.place(1 - axis), in_.place(axis) - end * half(axis), half(1 - axis));
       }
     }
-    return {weights > 0.0 ? kWithin * anywhere + (1.0 - kWithin) * sum / weights : anywhere, anywhere};
+    return {weights > 0.0 ? kWithin * anywhere + (1.0 - kWithin) * sum / weights : anywhere, wheel(half, anywhere)};
   }
 
  private:
+  [[nodiscard]] double wheel(const Eigen::Vector2d& half, double anywhere) const {
+    const int flank = side(in_.from.y(), half.y());
+    if (flank == 0 || half.x() < kHalfCar_m) return anywhere;
+    const double at_flank = across_[1].density(in_.place.x(), in_.place.y() - flank * half.y(), half.x());
+    return kWheelsAtFlank * at_flank + (1.0 - kWheelsAtFlank) * anywhere;
+  }
   [[nodiscard]] static double beyond(double coordinate, double half) {
     return coordinate - std::clamp(coordinate, -half, half);
   }

@@ -47,7 +47,7 @@ struct Object {
 /// Densities for each m² of an object's reflections at a place, the number of each kind being 1.
 struct Reflections {
   double body;   ///< from the faces that look to where the wave comes from and goes to, a little from the others' edges
-  double wheel;  ///< from anywhere in the box
+  double wheel;  ///< from the flank, or from anywhere in the box
 };
 /// A vehicle may be larger than its track's box: a young track's, or one's that shows one face only.
 /// At a place that is known with `covariance`, seen from and lit from (the last and the first corner of the path).
