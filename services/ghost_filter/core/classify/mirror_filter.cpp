@@ -23,6 +23,8 @@ constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which
 constexpr double kSurest = 3.0;      // log-odds
 constexpr double kTrackNegligible = 0.01;  // ratio of densities; less than exp(-kSurest) anyway
 constexpr double kNoImage = 0.95;          // weight of an object that surely is where it seems to be
+/// A new track may seem to drive across the road, through rails; what is driven through stays open for good.
+constexpr double kKnowsCourse_s = 2.0;
 constexpr double kRather = 0.5;            // weight from which on an object is rather there than an image
 constexpr double kMoves = 0.8;             // probability from which on what an object shows is no part of the map
 constexpr double kAroundBody_m = 0.5;      // what seems to be so near to a body is of it
@@ -136,7 +138,7 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
                       m.cell);
   }
   for (const Object& o : objects_) {
-    if (o.weight < kNoImage || o.moving < 1.0) continue;
+    if (o.weight < kNoImage || o.moving < 1.0 || o.age_s < kKnowsCourse_s) continue;
     const Eigen::Vector2d reach = o.half_length_m * o.axis;
     map_.drive_over(odometry_.point_to_frame(o.position_m - reach), odometry_.point_to_frame(o.position_m + reach));
   }

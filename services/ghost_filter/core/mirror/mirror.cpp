@@ -32,7 +32,8 @@ double chance_at(const Mirror& mirror, double arc_m, double arc_std_m) {
     const double seen = mirror.occupancy->probability(arc_m + mirror.arc_shift_m, arc_std_m);
     return mirror.existence * std::max(seen, goes_on(mirror, arc_m));
   }
-  const double slack = arc_std_m + 0.3;
+  constexpr double kEnd_m = 0.6;  // as well as a track's ends are known
+  const double slack = arc_std_m + kEnd_m;
   const double between = below((arc_m - mirror.begin_m) / slack) - below((arc_m - mirror.end_m) / slack);
   return mirror.existence * std::max(0.0, between);
 }
