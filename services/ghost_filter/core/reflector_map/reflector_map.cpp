@@ -220,17 +220,15 @@ void ReflectorMap::visit_tiles(std::int64_t now_ns, double elapsed_s) {
 
 void ReflectorMap::search(const StationaryGrid::Tile& tile) {
   // With a margin, so that what stands across a border is seen whole.
-  const double width = StationaryGrid::kTileCells * grid_.cell_m(), margin = 0.25 * width;
-  const Eigen::Array2d low(tile.place.column * width - margin, tile.place.row * width - margin);
-  const Eigen::Array2d high = low + width + 2.0 * margin;
+  constexpr std::int32_t kTile = StationaryGrid::kTileCells, kMargin = kTile / 4;
+  const geometry::GridCell first{tile.place.column * kTile - kMargin, tile.place.row * kTile - kMargin};
+  const geometry::GridCell last{first.column + kTile + 2 * kMargin - 1, first.row + kTile + 2 * kMargin - 1};
   free_.clear();
   inexact_.clear();
   for (std::int32_t column = tile.place.column - 1; column <= tile.place.column + 1; ++column) {
     for (std::int32_t row = tile.place.row - 1; row <= tile.place.row + 1; ++row) {
-      grid_.visit_tile({column, row}, [&](const StationaryGrid::Cell& cell) {
-        if (cell.claimed) return;
-        const Eigen::Vector2d p = cell.mean_m();
-        if ((p.array() >= low).all() && (p.array() <= high).all()) (cell.exact ? free_ : inexact_).push_back(p);
+      grid_.visit_unclaimed({column, row}, first, last, [&](const Eigen::Vector2d& mean_m, bool is_exact) {
+        (is_exact ? free_ : inexact_).push_back(mean_m);
       });
     }
   }

@@ -14,7 +14,7 @@ geometry::GridCell tile_of(geometry::GridCell cell) {
 }  // namespace
 
 StationaryGrid::StationaryGrid(std::size_t capacity, double cell_m)
-    : cell_m_(cell_m), table_(capacity), tile_table_(capacity), cells_(capacity) {
+    : cell_m_(cell_m), table_(capacity), tile_table_(capacity), cells_(capacity), links_(capacity) {
   unused_.reserve(capacity);
   tiles_.reserve(capacity);
   clear();
@@ -43,36 +43,39 @@ std::uint32_t StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_
     const std::uint32_t number = tile_table_.at(place, last);
     if (number == last) tiles_.push_back({.place = place});
     Tile& tile = tiles_[number];
-    cells_[index] = {.first_ns = time_ns, .next = tile.first, .place = at};
+    cells_[index] = {.first_ns = time_ns};
+    links_[index] = {.place = at, .next = tile.first};
     tile.first = index;
     ++tile.cells;
     ++tile.news;
   }
   Cell& cell = cells_[index];
-  if (exact && !cell.exact) {
+  Link& link = links_[index];
+  if (exact && !link.exact) {
     // What was measured worse before does not count for the mean.
     cell.sum_m = cell.count * position_m;
-    cell.exact = true;
+    link.exact = true;
     if (cell.count > 0) ++tiles_[*tile_table_.find(tile_of(at))].news;
   }
-  cell.sum_m += exact || !cell.exact ? position_m : cell.mean_m();
+  cell.sum_m += exact || !link.exact ? position_m : cell.mean_m();
   ++cell.count;
   cell.last_ns = time_ns;
-  cell.claimed = claimed;
+  link.claimed = claimed;
   return index;
 }
 
 bool StationaryGrid::forget(std::size_t number, std::int64_t oldest_ns) {
   Tile& tile = tiles_[number];
-  for (std::uint32_t* link = &tile.first; *link != kUnclaimed;) {
-    Cell& cell = cells_[*link];
+  for (std::uint32_t* index = &tile.first; *index != kUnclaimed;) {
+    Cell& cell = cells_[*index];
+    Link& link = links_[*index];
     if (cell.last_ns >= oldest_ns) {
-      link = &cell.next;
+      index = &link.next;
       continue;
     }
-    table_.erase(cell.place);
-    unused_.push_back(*link);
-    *link = cell.next;
+    table_.erase(link.place);
+    unused_.push_back(*index);
+    *index = link.next;
     cell.count = 0;
     --tile.cells;
   }
@@ -91,7 +94,7 @@ std::uint32_t StationaryGrid::index_at(const Eigen::Vector2d& position_m) const 
 
 void StationaryGrid::claim(const Eigen::Vector2d& position_m) {
   const std::uint32_t index = index_at(position_m);
-  if (index != kUnclaimed) cells_[index].claimed = true;
+  if (index != kUnclaimed) links_[index].claimed = true;
 }
 
 }  // namespace boresight::ghosts

@@ -22,10 +22,6 @@ class StationaryGrid {
     std::int64_t first_ns = 0;  ///< since when something was detected here again and again
     std::int64_t last_ns = 0;
     std::uint32_t count = 0;  ///< 0: not in use
-    std::uint32_t next = kUnclaimed;
-    geometry::GridCell place{};
-    bool claimed = false;  ///< its last detection belongs to a known reflector
-    bool exact = false;    ///< its mean is of where its detections are known well
     [[nodiscard]] Eigen::Vector2d mean_m() const { return sum_m / count; }
   };
   struct Tile {
@@ -52,12 +48,18 @@ class StationaryGrid {
   /// With those not in use.
   [[nodiscard]] std::span<const Cell> cells() const { return cells_; }
   [[nodiscard]] std::span<Tile> tiles() { return tiles_; }
-  /// Calls `visit(cell)` for the cells of the tile at a place, if there is one.
+  /// Calls `visit(mean_m, exact)` for the cells of the tile at a place, if there is one, from `low` to `high` that no
+  /// reflector claims; exact: the mean is of where detections are known well.
   template <typename Visit>
-  void visit_tile(geometry::GridCell place, const Visit& visit) {
-    const std::uint32_t* const tile = tile_table_.find(place);
-    for (std::uint32_t i = tile == nullptr ? kUnclaimed : tiles_[*tile].first; i != kUnclaimed; i = cells_[i].next) {
-      visit(cells_[i]);
+  void visit_unclaimed(geometry::GridCell tile_place, geometry::GridCell low, geometry::GridCell high,
+                       const Visit& visit) const {
+    const std::uint32_t* const tile = tile_table_.find(tile_place);
+    for (std::uint32_t i = tile == nullptr ? kUnclaimed : tiles_[*tile].first; i != kUnclaimed; i = links_[i].next) {
+      const Link& link = links_[i];
+      if (link.claimed || link.place.column < low.column || link.place.row < low.row ||
+          link.place.column > high.column || link.place.row > high.row)
+        continue;
+      visit(cells_[i].mean_m(), link.exact);
     }
   }
   /// Index of the cell at a position, or kUnclaimed.
@@ -72,9 +74,17 @@ class StationaryGrid {
   void claim(const Eigen::Vector2d& position_m);
 
  private:
+  /// What is asked of all cells of a tile, apart from the rest: of a large map that stays in the cache.
+  struct Link {
+    geometry::GridCell place{};
+    std::uint32_t next = kUnclaimed;
+    bool claimed = false;  ///< the cell's last detection belongs to a known reflector
+    bool exact = false;
+  };
   double cell_m_;
   geometry::CellTable table_, tile_table_;
   std::vector<Cell> cells_;
+  std::vector<Link> links_;  // of each cell
   std::vector<std::uint32_t> unused_;
   std::vector<Tile> tiles_;
 };
