@@ -42,9 +42,9 @@ bool may_be_image_of(const TrackedObject& track, const View& seen, const Tracked
 /// Whether the vehicle's side, the one that is seen, would show the other one where the track is.
 bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, const TrackedObject& track,
                    const Eigen::Vector2d& sensor_m) {
-  // Of where the middle of a new track is, and how wide the vehicle is, that much is not known; and of the heading of
-  // one that is new itself, whatever its track says. What is shown may be any part of the other one.
-  constexpr double kAlong_m = 1.0, kAcross_m = 0.6, kNewHeading_rad = 0.1, kNew_s = 2.0;
+  // Of where the middles of new tracks are, and how wide the vehicle is, that much is not known; and of the heading of
+  // one that is new itself, whatever its track says.
+  constexpr double kAlong_m = 3.0, kAcross_m = 1.5, kNewHeading_rad = 0.1, kNew_s = 2.0;
   if (!vehicle.confirmed || vehicle.extent.is_small) return false;
   const Eigen::Vector2d centre_m = vehicle.state.mean.head<2>();
   const double side = vehicle.extent.visible_faces(centre_m, sensor_m).side;
@@ -55,9 +55,8 @@ bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, con
   const bool is_new = vehicle.age_s < kNew_s || !vehicle.state.heading.known;
   // A mirror that turns by so much turns what it shows by twice as much.
   const double turn_rad = 2.0 * (is_new ? std::max(kNewHeading_rad, known_rad) : known_rad);
-  return side != 0.0 && std::abs(image.x() - object.x()) < 0.5 * other.extent.length_m + kAlong_m &&
-         std::abs(image.y() + object.y() - 2.0 * face_m) <
-             0.5 * other.extent.width_m + kAcross_m + turn_rad * std::abs(image.x());
+  return side != 0.0 && std::abs(image.x() - object.x()) < kAlong_m &&
+         std::abs(image.y() + object.y() - 2.0 * face_m) < kAcross_m + turn_rad * std::abs(image.x());
 }
 
 }  // namespace

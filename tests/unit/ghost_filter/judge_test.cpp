@@ -93,6 +93,24 @@ TEST_F(JudgeTest, TheImageIsAGhostBeyondDoubtAndTheCarIsNone) {
   EXPECT_GT(ghost.type2, ghost.type1);
 }
 
+TEST_F(JudgeTest, WhatIsLongerThanACarIsDetectedMoreOften) {
+  ClassConfig alike;
+  alike.real_per_truck = alike.real_per_object;
+  Judge without(alike);
+  const auto more = [&](double length_m) {
+    objects_[0].half_length_m = 0.5 * length_m;
+    const Surroundings all{sensor_,    {15.0, 0.0}, mirrors_, objects_,    &sources_,
+                           &odometry_, &movers_,    &echoes_, &stationary_};
+    judge_.begin(all);
+    without.begin(all);
+    const Measured rear = measured({30.0 - 0.5 * length_m, 2.0}, kVelocity, 5.0);
+    return judge_.weigh(rear, 0).moving / without.weigh(rear, 0).moving;
+  };
+  EXPECT_EQ(more(4.5), 1.0);
+  EXPECT_NEAR(more(5.0), 2.0, 0.01);
+  EXPECT_NEAR(more(12.0), 3.0, 0.01);
+}
+
 TEST_F(JudgeTest, WhatStandsInFrontIsFoundOnceWhoeverAsksFirst) {
   const Densities car = judge_.weigh(of_car(), 4), ghost = judge_.weigh(image(), 7);
   EXPECT_EQ(judge_.behind_mirror(of_car(), 4), 0.0);

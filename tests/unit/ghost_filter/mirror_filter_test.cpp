@@ -127,6 +127,35 @@ TEST_F(MirrorFilterTest, APassageInTheRailStaysOpen) {
   EXPECT_EQ(label(through), Provenance::kMoving);
 }
 
+TEST_F(MirrorFilterTest, WhatIsDrivenThroughStaysOpenUnlessTheTrackIsNew) {
+  // A new track may seem to drive any way.
+  const auto open_m = [this](double age_s) {
+    filter_ = std::make_unique<MirrorFilter>(MirrorConfig{});
+    t_s_ = 0.0;
+    const double at_world = 60.0;
+    for (int k = 0; k < 40; ++k) {
+      drive(0.05, [&] {
+        if (k == 20) {
+          track({at_world - t_s_ * speed_mps_, kRail}, {0.0, 8.0}, 4.5, 1.8, 0.1, age_s);
+          hand_over_tracks();
+        }
+        rail(kRail);
+      });
+    }
+    const double from_m = -20.0, to_m = 60.0;
+    double covered_m = 0.0;
+    for (std::size_t i = 0; i < out_->number_of_reflector_segments; ++i) {
+      const ReflectorSegment& r = out_->reflector_segments[i];
+      const double low = std::min(r.start_vehicle_m[0], r.end_vehicle_m[0]);
+      const double high = std::max(r.start_vehicle_m[0], r.end_vehicle_m[0]);
+      covered_m += std::max(0.0, std::min(high, to_m) - std::max(low, from_m));
+    }
+    return to_m - from_m - covered_m;
+  };
+  EXPECT_LT(open_m(1.0), 1.0);
+  EXPECT_GT(open_m(3.0), 6.0);
+}
+
 TEST_F(MirrorFilterTest, InTheDirectionOfATrackAtTheLengthOfADetourIsAType1Ghost) {
   std::size_t ghosts = 0, cars = 0, beside = 0, scans = 0;
   for (int k = 0; k < 60; ++k) {

@@ -62,4 +62,16 @@ TEST(PlaceMirrors, WhatShowedImagesIsBelievedToMirror) {
   EXPECT_LT(flank_of(12.0, 5.0, 0.6, 4.0), 0.6) << "but it may be no vehicle at all";
 }
 
+TEST(PlaceMirrors, EndsOfAVehicleAreKnownAsItsTrackKnowsThem) {
+  Mirror side;
+  side.curve = {{5.0, 3.0}, {1.0, 0.0}, 0.0};
+  side.begin_m = -2.0;
+  side.end_m = 2.0;
+  side.existence = 1.0;
+  EXPECT_GT(chance_at(side, 0.0, 0.1), 0.98);
+  EXPECT_NEAR(chance_at(side, 2.0, 0.1), 0.5, 1e-3);
+  EXPECT_GT(chance_at(side, 2.5, 0.1), 0.15) << "its track may be too short";
+  EXPECT_LT(chance_at(side, 4.5, 0.1), 0.01);
+}
+
 }  // namespace boresight::ghosts

@@ -25,10 +25,10 @@ constexpr double kTrackNegligible = 0.01;  // ratio of densities; less than exp(
 constexpr double kNoImage = 0.95;          // weight of an object that surely is where it seems to be
 /// A new track may seem to drive across the road, through rails; what is driven through stays open for good.
 constexpr double kKnowsCourse_s = 2.0;
-constexpr double kRather = 0.5;            // weight from which on an object is rather there than an image
-constexpr double kMoves = 0.8;             // probability from which on what an object shows is no part of the map
-constexpr double kAroundBody_m = 0.5;      // what seems to be so near to a body is of it
-constexpr double kHeard_db = 3.0;          // a track's strength is known if its std is less
+constexpr double kRather = 0.5;        // weight from which on an object is rather there than an image
+constexpr double kMoves = 0.8;         // probability from which on what an object shows is no part of the map
+constexpr double kAroundBody_m = 0.5;  // what seems to be so near to a body is of it
+constexpr double kHeard_db = 3.0;      // a track's strength is known if its std is less
 /// Mean strength of tracks of objects from a pedestrian to a truck, beside the usual.
 constexpr Strength kObjectStrength{-2.0, 9.0};
 constexpr double kObjectDoubt = 0.1;
