@@ -205,12 +205,14 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     track.detections = cluster.number_of_detections;
     track.realness = cluster.realness;
   }
-  // What lies within a confirmed track's box is another part of that object and no object of its own.
+  // What lies within a confirmed track's box is another part of that object and no object of its own; but people have
+  // no parts farther off than an arm, and others pass them.
+  constexpr double kArm_m = 1.0;
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     for (const TrackedObject& track : tracks_) {
       if (cluster_used_[c] || !track.confirmed) continue;
-      cluster_used_[c] =
-          track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, config_.part_margin_m);
+      const double margin_m = track.extent.is_small ? std::min(kArm_m, config_.part_margin_m) : config_.part_margin_m;
+      cluster_used_[c] = track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, margin_m);
     }
   }
 }
