@@ -123,6 +123,24 @@ TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
       << "strength not measured";
 }
 
+TEST(TrackerBirth, WhoComesBesideAPersonIsNoPartOfThem) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 40; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    const double x = 15.0 + 0.05 * 1.2 * i;
+    scene.add({x, 0.0}, {1.2, 0.0});
+    if (i >= 20) scene.add({x, 1.6}, {1.2, 0.0});
+    for (std::size_t k = 0; k < 2; ++k) scene.scan->rcs_dbsm[k] = -5.0F;
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    EXPECT_LE(list->number_of_confirmed_tracks, i < 20 ? 1u : 2u);
+  }
+  EXPECT_EQ(list->number_of_confirmed_tracks, 2u);
+}
+
 TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
