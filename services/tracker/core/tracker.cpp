@@ -45,6 +45,23 @@ bool rate_fits(const Cluster& cluster, const KinematicState& state, double gate_
   return off_mps * off_mps < gate_chi2 * variance;
 }
 
+/// Whether the cluster lies on another vehicle that has long been tracked, beside this one, and moves rather as that
+/// one does: then it tells nothing of this one, even where the other is given another cluster, of a part farther off.
+bool is_of_another(const Cluster& cluster, const TrackedObject& track, std::span<const TrackedObject> tracks) {
+  constexpr double kMargin_m = 0.5, kLong_s = 2.0;
+  const auto is_on = [&cluster](const TrackedObject& t) {
+    return t.confirmed && !t.extent.is_small &&
+           t.extent.contains(t.state.mean.head<2>(), cluster.position_m, kMargin_m);
+  };
+  const auto off_mps = [&cluster](const TrackedObject& t) {
+    return std::abs(cluster.range_rate_over_ground_mps - cluster.mean_sight.dot(t.state.mean.segment<2>(2)));
+  };
+  if (!track.confirmed || track.extent.is_small || is_on(track)) return false;
+  return std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& other) {
+    return other.age_s >= kLong_s && is_on(other) && off_mps(other) < off_mps(track);
+  });
+}
+
 /// The heading of a vehicle, and its box along it.
 void follow_heading(TrackedObject& track, const Cluster& cluster) {
   Heading& heading = track.state.heading;
@@ -177,7 +194,7 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
       if (!rate_fits(clusters[c], tracks_[t].state, config_.gate_chi2)) continue;
       const Distance d =
           distance(tracks_[t].state, measurement_of(clusters[c], tracks_[t], sensor, config_.centre_std_m));
-      if (d.squared >= config_.gate_chi2) continue;
+      if (d.squared >= config_.gate_chi2 || is_of_another(clusters[c], tracks_[t], tracks_)) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
       // Twice the negative logarithm of being real, as d² is of the place: what may be a ghost comes second.

@@ -156,12 +156,6 @@ TEST(Beam, LightsEveryWayThatIsFound) {
     ++met;
     missed += is_lit ? 0 : 1;
     gentle_missed += gentle && !is_lit ? 1 : 0;
-    if (!is_lit && run < 3000) {
-      const auto there = meet(m, way->arc_m, sensor, from, direction, length, 0.5);
-      std::printf("run %d bend %.4f begin %.1f end %.1f dist %.2f rest %.2f far %.2f arc %.2f\n", run,
-                  m.curve.curvature_per_m, m.begin_m, m.end_m, m.curve.distance(sensor), there->rest_m, farthest,
-                  m.curve.arc(there->point_m));
-    }
   }
   EXPECT_GT(met, 3000U);
   EXPECT_GT(dark, 20000U) << "or it saves nothing";

@@ -33,8 +33,12 @@ class JudgeTest : public testing::Test {
     sources_.enter_object(0, car.position_m, most_extent(car));
     static_cast<void>(odometry_.advance(1'000'000'000, 15.0, 0.0));
     movers_.forget(0, odometry_);
-    judge_.begin({sensor_, {15.0, 0.0}, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_});
+    begin();
   }
+  [[nodiscard]] Surroundings surroundings() const {
+    return {sensor_, kOwn, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_};
+  }
+  void begin() { judge_.begin(surroundings()); }
   [[nodiscard]] Measured measured(const Vector2d& place_m, const Vector2d& velocity_mps, double rcs_dbsm) const {
     Measured m{};
     m.position_m = place_m;
@@ -72,7 +76,7 @@ class JudgeTest : public testing::Test {
     EXPECT_EQ(a.type2, b.type2);
     EXPECT_EQ(a.clutter, b.clutter);
   }
-  static inline const Vector2d kVelocity{20.0, 0.0};
+  static inline const Vector2d kOwn{15.0, 0.0}, kVelocity{20.0, 0.0};
   Vector2d sensor_{3.6, 0.0};
   std::vector<Mirror> mirrors_;
   std::vector<Object> objects_;
@@ -99,10 +103,8 @@ TEST_F(JudgeTest, WhatIsLongerThanACarIsDetectedMoreOften) {
   Judge without(alike);
   const auto more = [&](double length_m) {
     objects_[0].half_length_m = 0.5 * length_m;
-    const Surroundings all{sensor_,    {15.0, 0.0}, mirrors_, objects_,    &sources_,
-                           &odometry_, &movers_,    &echoes_, &stationary_};
-    judge_.begin(all);
-    without.begin(all);
+    begin();
+    without.begin(surroundings());
     const Measured rear = measured({30.0 - 0.5 * length_m, 2.0}, kVelocity, 5.0);
     return judge_.weigh(rear, 0).moving / without.weigh(rear, 0).moving;
   };
@@ -186,10 +188,6 @@ class AlongsideTest : public JudgeTest {
     sources_.clear();
     sources_.enter_object(0, objects_[0].position_m, most_extent(objects_[0]));
   }
-  void begin() {
-    judge_.begin({sensor_, kOwn, mirrors_, objects_, &sources_, &odometry_, &movers_, &echoes_, &stationary_});
-  }
-  static inline const Vector2d kOwn{15.0, 0.0};
   Occupancy seen_;
 };
 
