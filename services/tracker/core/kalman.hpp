@@ -33,7 +33,7 @@ struct PositionRate {
 };
 
 /// Predicts over `elapsed_s` ≥ 0 with white jerk of spectral density jerk_std², then moves the state to the new
-/// vehicle frame; all but the heading (predict_heading).
+/// vehicle frame; all but the heading (predict_heading). What brakes comes to a stand and does not drive back.
 void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego);
 
 /// Adds what an error of the vehicle's own turn (rad²) does to the place: it moves aside what is far away.

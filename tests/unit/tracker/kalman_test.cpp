@@ -40,6 +40,23 @@ TEST(Kalman, PredictionIsTheIntegralOfTheMotion) {
   EXPECT_LT((s.mean - expected).norm(), 1e-8);
 }
 
+TEST(Kalman, BrakesEndAtAStandstill) {
+  // From 3 m/s at 6 m/s² in 0.5 s and 0.75 m, whatever the steps; the velocity across is noise.
+  for (const int steps : {1, 7, 80}) {
+    KinematicState s = some_state();
+    s.mean << 20.0, -4.0, 3.0, 0.05, -6.0, 0.0;
+    for (int i = 0; i < steps; ++i) predict(s, 1.0 / steps, 3.0, geometry::EgoStep{});
+    EXPECT_NEAR(s.mean(0), 20.75, 0.02) << steps << " steps";
+    EXPECT_NEAR(s.mean(1), -4.0, 0.05) << steps << " steps";
+    EXPECT_EQ(s.mean.tail<4>().norm(), 0.0) << steps << " steps";
+  }
+  // What reverses already goes on to.
+  KinematicState reversing = some_state();
+  reversing.mean << 20.0, -4.0, -2.0, 0.0, -1.0, 0.0;
+  predict(reversing, 0.5, 3.0, geometry::EgoStep{});
+  EXPECT_NEAR(reversing.mean(2), -2.5, 1e-9);
+}
+
 TEST(Kalman, ProcessNoiseIsThatOfWhiteJerk) {
   // Two short steps are one long step: only the exact discretisation has that property.
   KinematicState once = some_state(), twice = some_state();

@@ -26,11 +26,15 @@ void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_
                              const TrackedObjects& with_filter) {
   for (const auto& [id, second] : with_perfect_labels.seconds()) {
     if (second.detections == 0) continue;
-    const double with_labels = with_filter.seconds().at(id).share();
+    const TrackedObjects::Second& filtered = with_filter.seconds().at(id);
+    const double with_labels = filtered.share();
     if (second.share() < kHasItNot && with_labels >= kHasIt) ++gained;
     if (second.share() < kHasIt) continue;
     ++object_seconds;
-    if (with_labels < kHasItNot) lost.push_back({until_s, id});
+    if (with_labels >= kHasItNot) continue;
+    lost.push_back({until_s, id});
+    const auto own = static_cast<double>(second.detections);
+    lost_though_told += static_cast<double>(filtered.detections) >= kToldRight * own ? 1 : 0;
   }
 }
 

@@ -49,6 +49,10 @@ struct LostObjects {
   std::vector<LostSecond> lost;  ///< of these: the filter's labels have it for less than half
   /// The other way round. Where both are many, what is lost is so by the tracker's chance and not by the filter.
   std::size_t gained = 0;
+  /// Of those lost: with at least kToldRight of the object's own detections told to move. What took it away then was
+  /// told wrong elsewhere or before, or is the tracker's chance.
+  static constexpr double kToldRight = 0.9;
+  std::size_t lost_though_told = 0;
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 

@@ -134,6 +134,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
       const Matching matching = match_confirmed(lane.back, objects);
       lane.false_tracks.add(event->t_s, *lane.back.classified, truth, *lane.back.tracks, matching);
       lane.tracked.add(matching, objects);
+      lane.tracked.add_detections(*lane.back.classified, truth);
       if (observe) observe({drive, *event, objects, *lane.back.classified, *lane.back.tracks, m});
     }
   }

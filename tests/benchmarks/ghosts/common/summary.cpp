@@ -71,6 +71,7 @@ TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
   other_tracks += other.other_tracks;
   object_seconds += other.object_seconds;
   lost_seconds += other.lost_seconds;
+  lost_though_told_seconds += other.lost_though_told_seconds;
   gained_seconds += other.gained_seconds;
   lasting_ghost_tracks += other.lasting_ghost_tracks;
   lost_by_chance += other.lost_by_chance;
@@ -88,6 +89,7 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
             .other_tracks = o.long_other_tracks,
             .object_seconds = o.lost.object_seconds,
             .lost_seconds = o.lost.lost.size(),
+            .lost_though_told_seconds = o.lost.lost_though_told,
             .gained_seconds = o.lost.gained,
             .lasting_ghost_tracks = static_cast<std::size_t>(lasting),
             .lost_by_chance = o.lost_by_chance};

@@ -37,6 +37,8 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   // The second car has no track with perfect labels either.
   EXPECT_EQ(lost.object_seconds, 1u);
   EXPECT_EQ(lost.lost.size(), 1u);
+  // The filter's label of its detection is right.
+  EXPECT_EQ(lost.lost_though_told, 1u);
   lost.add_second(1.0, second_with(10), second_with(10));
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
@@ -45,9 +47,12 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
   EXPECT_EQ(lost.gained, 0u);
+  lost.add_second(1.0, second_with(10), second_with(4, false));
+  EXPECT_EQ(lost.lost.size(), 2u);
+  EXPECT_EQ(lost.lost_though_told, 1u);
   lost.add_second(1.0, second_with(4), second_with(10));
   EXPECT_EQ(lost.gained, 1u);
-  EXPECT_EQ(lost.object_seconds, 2u);
+  EXPECT_EQ(lost.object_seconds, 3u);
 }
 
 TEST(Tracks, WhatIsLostByChanceIsSummedDrawByDraw) {
