@@ -1,6 +1,7 @@
 #include "services/tracker/core/kalman.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -22,13 +23,12 @@ Matrix36d measurement_matrix(const PositionRate& m) {
   return h;
 }
 
-/// Brakes end at a standstill: after that time of at most `dt` the state stands; what is predicted on from there would
-/// drive back. More than `dt`: it does not come to a stand.
-double time_to_standstill(const KinematicState& state, double dt) {
+/// Seconds until what brakes stands; what is predicted on from there would drive back. Infinity: it does not brake.
+double time_to_standstill(const KinematicState& state) {
   constexpr double kStill_mps = 0.3;  // the direction of less is chance
   const auto velocity = state.mean.segment<2>(2);
   const double braking = -velocity.dot(state.mean.tail<2>());
-  if (!(braking > 0.0)) return 2.0 * dt;
+  if (!(braking > 0.0)) return std::numeric_limits<double>::infinity();
   return velocity.norm() < kStill_mps ? 0.0 : velocity.squaredNorm() / braking;
 }
 
@@ -56,8 +56,8 @@ void predict(KinematicState& state, double dt, double jerk_std_mps3, const geome
   }
   Matrix6d turn = Matrix6d::Zero();
   for (Eigen::Index k = 0; k < 6; k += 2) turn.block<2, 2>(k, k) = ego.to_new;
-  const double stands_after_s = time_to_standstill(state, dt);
-  if (stands_after_s <= dt && dt > 0.0) {
+  const double stands_after_s = time_to_standstill(state);
+  if (stands_after_s < dt) {
     state.mean.head<2>() += stands_after_s * (state.mean.segment<2>(2) + 0.5 * stands_after_s * state.mean.tail<2>());
     state.mean.tail<4>().setZero();
   } else {

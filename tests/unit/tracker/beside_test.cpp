@@ -1,6 +1,5 @@
 // Vehicles side by side: whose a detection is.
 #include <algorithm>
-#include <cmath>
 
 #include <gtest/gtest.h>
 

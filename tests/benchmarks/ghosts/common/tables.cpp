@@ -33,7 +33,7 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
                                  std::to_string(faults.longest_ghost_track_scans) + " scans";
   const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
                                std::to_string(faults.lost_though_told_seconds) +
-                               " though at least 90 % of the object's detections then were told right; " +
+                               " of those lost though at least 90 % of the object's detections were told right; " +
                                std::to_string(faults.gained_seconds) + " the other way; by chance " +
                                std::to_string(faults.lost_by_chance.least()) + " to " +
                                std::to_string(faults.lost_by_chance.most());
