@@ -55,39 +55,24 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<c
   return clusters_;
 }
 
-std::size_t Clusterer::owner(const Eigen::Vector2d& point_m, const Eigen::Vector2d& sight, double rate_mps,
-                             std::span<const KnownPlace> known) {
-  constexpr double kReach_m = 1.5;   // of a person and what is not known of where they are
-  constexpr double kBeside_m = 1.0;  // the same of a vehicle's box
-  std::size_t person = known.size(), vehicle = known.size();
-  double nearest_m2 = kReach_m * kReach_m, nearest_m = kBeside_m;
-  for (std::size_t k = 0; k < known.size(); ++k) {
-    const double distance_m2 = (known[k].position_m - point_m).squaredNorm();
-    if (known[k].is_small) {
-      if (distance_m2 >= nearest_m2 || !known[k].may_show(rate_mps, sight)) continue;
-      nearest_m2 = distance_m2;
-      person = k;
-      continue;
-    }
-    const double reach_m = known[k].half_m.sum() + kBeside_m;
-    if (distance_m2 >= reach_m * reach_m) continue;
-    const double distance_m = known[k].distance_m(point_m);
-    if (distance_m >= nearest_m) continue;
-    nearest_m = distance_m;
-    vehicle = k;
-  }
-  return person < known.size() ? person : vehicle;
+Seen Clusterer::seen(const ClassifiedScan& scan, std::uint32_t point) const {
+  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
+  const std::size_t i = index_[point];
+  return {points_[point],
+          (points_[point] - sensor).normalized(),
+          static_cast<double>(scan.range_std_m[i]),
+          static_cast<double>(scan.range_m[i] * scan.azimuth_std_rad[i]),
+          static_cast<double>(scan.range_rate_over_ground_mps[i]),
+          static_cast<double>(scan.range_rate_std_mps[i])};
 }
 
 void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> known) {
   const Eigen::Vector2d kUnknown(0.0, 0.0);
-  const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   std::span<std::uint32_t> rest = members_;
   std::size_t vehicle = known.size();
   bool are_several = false;
   for (const std::uint32_t k : rest) {
-    const Eigen::Vector2d sight = (points_[k] - sensor).normalized();
-    whose_[k] = owner(points_[k], sight, static_cast<double>(scan.range_rate_over_ground_mps[index_[k]]), known);
+    whose_[k] = owner_of(seen(scan, k), known);
     if (whose_[k] == known.size() || known[whose_[k]].is_small) continue;
     are_several = are_several || (vehicle != known.size() && vehicle != whose_[k]);
     vehicle = whose_[k];
@@ -104,7 +89,7 @@ void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> kno
 }
 
 std::size_t Clusterer::alike(const ClassifiedScan& scan, std::span<std::uint32_t> rest,
-                             const Eigen::Vector2d& velocity_mps) {
+                             const Eigen::Vector2d& velocity_mps, double spread_mps) {
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   const auto rate_of = [&](std::uint32_t k) {
     const Eigen::Vector2d sight = points_[k] - sensor;
@@ -115,9 +100,8 @@ std::size_t Clusterer::alike(const ClassifiedScan& scan, std::span<std::uint32_t
   const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
   std::nth_element(rest.begin(), middle, rest.end(), [&](auto a, auto b) { return rate_of(a) < rate_of(b); });
   const double median = rate_of(*middle);
-  const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) {
-    return std::abs(rate_of(k) - median) <= config_.cluster_max_range_rate_spread_mps;
-  });
+  const auto others =
+      std::partition(rest.begin(), rest.end(), [&](auto k) { return std::abs(rate_of(k) - median) <= spread_mps; });
   return static_cast<std::size_t>(others - rest.begin());
 }
 
@@ -125,24 +109,29 @@ void Clusterer::split(const ClassifiedScan& scan, std::span<std::uint32_t> rest,
   // Where two vehicles pass each other, one place has two motions; a third and a fourth may be wheels and ghosts.
   constexpr int kMostMotions = 4;
   const Eigen::Vector2d kNone(0.0, 0.0);
+  const double spread_mps = config_.cluster_max_range_rate_spread_mps;
   for (int motion = 0; motion < kMostMotions && !rest.empty(); ++motion) {
-    std::size_t own = alike(scan, rest, kNone);
+    std::size_t own = alike(scan, rest, kNone, spread_mps);
     // Alongside, the ends of one body show range rates farther apart than those of two that pass each other. But a
     // velocity that is not known well makes several of one: it counts where it finds more alike.
     if (own < rest.size() && velocity_mps != kNone) {
-      const std::size_t with_velocity = alike(scan, rest, velocity_mps);
-      own = with_velocity > own ? with_velocity : alike(scan, rest, kNone);
+      const std::size_t with_velocity = alike(scan, rest, velocity_mps, spread_mps);
+      own = with_velocity > own ? with_velocity : alike(scan, rest, kNone, spread_mps);
     }
     if (clusters_.size() == clusters_.capacity()) {
       ++dropped_;
     } else {
-      add(scan, rest.first(own));
+      add(scan, rest.first(own), velocity_mps);
     }
     rest = rest.subspan(own);
   }
 }
 
-void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> members) {
+void Clusterer::add(const ClassifiedScan& scan, std::span<std::uint32_t> members, const Eigen::Vector2d& velocity_mps) {
+  // A body's detections are alike to a tenth of that; where most are, the others are wheels.
+  constexpr double kBody_mps = 0.5;
+  const std::size_t most = alike(scan, members, velocity_mps, kBody_mps);
+  const std::size_t of_body = 2 * most > members.size() ? most : members.size();
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   Cluster cluster{};
   cluster.position_m.setZero();
@@ -151,25 +140,30 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
   cluster.z_min_m = 1e9;
   cluster.z_max_m = -1e9;
   double range_variance = 0.0, cross_variance = 0.0, rate_variance = 0.0;
-  double sum = 0.0, square = 0.0;
-  for (const std::uint32_t k : members) {
+  double sum = 0.0, sum_of_body = 0.0, square = 0.0;
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    const std::uint32_t k = members[n];
     const std::size_t i = index_[k];
     const double real = realness_of(scan, i);
     sum += real;
     square += real * real;
     cluster.position_m += real * points_[k];
-    cluster.mean_sight += real * (points_[k] - sensor).normalized();
-    cluster.range_rate_over_ground_mps += real * static_cast<double>(scan.range_rate_over_ground_mps[i]);
-    const double across = static_cast<double>(scan.range_m[i] * scan.azimuth_std_rad[i]);
-    range_variance += real * real * static_cast<double>(scan.range_std_m[i] * scan.range_std_m[i]);
-    cross_variance += real * real * across * across;
-    rate_variance += real * real * static_cast<double>(scan.range_rate_std_mps[i] * scan.range_rate_std_mps[i]);
+    const Seen told = seen(scan, k);
+    if (n < of_body) {
+      sum_of_body += real;
+      cluster.mean_sight += real * told.sight;
+      cluster.range_rate_over_ground_mps += real * told.rate_mps;
+      rate_variance += real * real * told.rate_std_mps * told.rate_std_mps;
+    }
+    range_variance += real * real * told.range_std_m * told.range_std_m;
+    cross_variance += real * real * told.across_std_m * told.across_std_m;
     cluster.z_min_m = std::min(cluster.z_min_m, static_cast<double>(scan.z_vehicle_m[i]));
     cluster.z_max_m = std::max(cluster.z_max_m, static_cast<double>(scan.z_vehicle_m[i]));
     // fmax: the other one where one is no number.
     if (has_rcs) cluster.strongest_dbsm = std::fmax(cluster.strongest_dbsm, static_cast<double>(scan.rcs_dbsm[i]));
     // A ghost beside an object shall not make it longer.
     if (real >= 0.5 && cluster.number_on_outline < cluster.outline.size()) {
+      cluster.outline_rate_mps[cluster.number_on_outline] = told.rate_mps;
       cluster.outline[cluster.number_on_outline++] = points_[k];
     }
     ++cluster.number_of_detections;
@@ -177,15 +171,15 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<const std::uint32_t> m
   cluster.realness = square / sum;
   cluster.weight = sum;
   cluster.position_m /= sum;
-  cluster.mean_sight /= sum;
-  cluster.range_rate_over_ground_mps /= sum;
+  cluster.mean_sight /= sum_of_body;
+  cluster.range_rate_over_ground_mps /= sum_of_body;
   const Eigen::Vector2d sight = cluster.position_m - sensor;
   if (sight.squaredNorm() < 1e-6) return;
   cluster.line_of_sight = sight.normalized();
   const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
   cluster.covariance_m2 =
       range_variance / (sum * sum) * u * u.transpose() + cross_variance / (sum * sum) * v * v.transpose();
-  cluster.range_rate_variance = rate_variance / (sum * sum) + config_.range_rate_std_mps * config_.range_rate_std_mps;
+  cluster.range_rate_variance = rate_variance / (sum_of_body * sum_of_body);
   clusters_.push_back(cluster);
 }
 
@@ -204,6 +198,7 @@ std::span<const Cluster> Clusterer::join(std::size_t first, std::size_t second) 
   into.z_max_m = std::max(into.z_max_m, part.z_max_m);
   into.number_of_detections += part.number_of_detections;
   for (std::uint32_t k = 0; k < part.number_on_outline && into.number_on_outline < into.outline.size(); ++k) {
+    into.outline_rate_mps[into.number_on_outline] = part.outline_rate_mps[k];
     into.outline[into.number_on_outline++] = part.outline[k];
   }
   clusters_.erase(clusters_.begin() + static_cast<std::ptrdiff_t>(second));

@@ -1,5 +1,6 @@
 #include "services/tracker/core/kalman.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,9 +24,18 @@ Matrix36d measurement_matrix(const PositionRate& m) {
   return h;
 }
 
+constexpr double kStill_mps = 0.3;    // the direction of less is chance
+constexpr double kTurnLasts_s = 1.0;  // until it is straight on again, or turns the other way
+
+/// Of a vehicle's acceleration across its course: on a circle of 10 m where it is slow. At speed nobody turns so; and
+/// at a walking pace places, not turns, still go to and fro.
+double across_std_mps2(double speed_mps) {
+  constexpr double kCurvature_per_m = 0.1, kLeast_mps2 = 0.3, kMost_mps2 = 2.0;
+  return std::clamp(kCurvature_per_m * speed_mps * speed_mps, kLeast_mps2, kMost_mps2);
+}
+
 /// Seconds until what brakes stands; what is predicted on from there would drive back. Infinity: it does not brake.
 double time_to_standstill(const KinematicState& state) {
-  constexpr double kStill_mps = 0.3;  // the direction of less is chance
   const auto velocity = state.mean.segment<2>(2);
   const double braking = -velocity.dot(state.mean.tail<2>());
   if (!(braking > 0.0)) return std::numeric_limits<double>::infinity();
@@ -38,22 +48,30 @@ void symmetrise(Matrix6d& m) {
 
 }  // namespace
 
-void predict(KinematicState& state, double dt, double jerk_std_mps3, const geometry::EgoStep& ego) {
-  Matrix6d f = Matrix6d::Identity();
-  Matrix6d q = Matrix6d::Zero();
-  const double s = jerk_std_mps3 * jerk_std_mps3;
+void predict(KinematicState& state, double dt, double jerk_std_mps3, const geometry::EgoStep& ego, Moves moves) {
+  const Eigen::Matrix2d eye = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d jerk = jerk_std_mps3 * jerk_std_mps3 * eye;
+  Matrix6d f = Matrix6d::Identity(), q = Matrix6d::Zero();
   const double d2 = dt * dt, d3 = d2 * dt, d4 = d3 * dt, d5 = d4 * dt;
-  for (Eigen::Index k = 0; k < 2; ++k) {
-    f(k, k + 2) = dt;
-    f(k, k + 4) = 0.5 * d2;
-    f(k + 2, k + 4) = dt;
-    q(k, k) = s * d5 / 20.0;
-    q(k, k + 2) = q(k + 2, k) = s * d4 / 8.0;
-    q(k, k + 4) = q(k + 4, k) = s * d3 / 6.0;
-    q(k + 2, k + 2) = s * d3 / 3.0;
-    q(k + 2, k + 4) = q(k + 4, k + 2) = s * d2 / 2.0;
-    q(k + 4, k + 4) = s * dt;
+  f.block<2, 2>(0, 2) = dt * eye;
+  f.block<2, 2>(0, 4) = 0.5 * d2 * eye;
+  f.block<2, 2>(2, 4) = dt * eye;
+  if (const double speed = state.mean.segment<2>(2).norm(); moves == Moves::kAsVehicle && speed > kStill_mps) {
+    const Eigen::Vector2d course = state.mean.segment<2>(2) / speed, across(-course.y(), course.x());
+    const Eigen::Matrix2d side = across * across.transpose();
+    const double std = across_std_mps2(speed), stays = std::exp(-dt / kTurnLasts_s);
+    jerk += (2.0 * std * std / kTurnLasts_s - jerk_std_mps3 * jerk_std_mps3) * side;
+    const double faster_s = kTurnLasts_s * (1.0 - stays);
+    f.block<2, 2>(0, 4) += (kTurnLasts_s * (dt - faster_s) - 0.5 * d2) * side;
+    f.block<2, 2>(2, 4) += (faster_s - dt) * side;
+    f.block<2, 2>(4, 4) -= (1.0 - stays) * side;
   }
+  q.block<2, 2>(0, 0) = d5 / 20.0 * jerk;
+  q.block<2, 2>(0, 2) = q.block<2, 2>(2, 0) = d4 / 8.0 * jerk;
+  q.block<2, 2>(0, 4) = q.block<2, 2>(4, 0) = d3 / 6.0 * jerk;
+  q.block<2, 2>(2, 2) = d3 / 3.0 * jerk;
+  q.block<2, 2>(2, 4) = q.block<2, 2>(4, 2) = d2 / 2.0 * jerk;
+  q.block<2, 2>(4, 4) = dt * jerk;
   Matrix6d turn = Matrix6d::Zero();
   for (Eigen::Index k = 0; k < 6; k += 2) turn.block<2, 2>(k, k) = ego.to_new;
   const double stands_after_s = time_to_standstill(state);
@@ -103,6 +121,21 @@ bool update(KinematicState& state, const PositionRate& m) {
   state.covariance = rest * state.covariance * rest.transpose() + gain * m.covariance * gain.transpose();
   symmetrise(state.covariance);
   return true;
+}
+
+void update_rate(KinematicState& state, const Eigen::Vector2d& sight, double rate_mps, double variance) {
+  const Vector6d with_rate = state.covariance.middleCols<2>(2) * sight;
+  const double whole = sight.dot(with_rate.segment<2>(2)) + variance;
+  const double innovation = rate_mps - sight.dot(state.mean.segment<2>(2));
+  if (state.heading.known) {
+    const double with_heading = sight.dot(state.heading.with_rest.segment<2>(2));
+    state.heading.rad = geometry::wrap_angle(state.heading.rad + with_heading / whole * innovation);
+    state.heading.with_rest -= with_heading / whole * with_rate;
+    state.heading.variance -= with_heading * with_heading / whole;
+  }
+  state.mean += innovation / whole * with_rate;
+  state.covariance -= with_rate * with_rate.transpose() / whole;
+  symmetrise(state.covariance);
 }
 
 void come_to_rest(KinematicState& state) {

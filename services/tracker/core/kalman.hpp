@@ -32,9 +32,15 @@ struct PositionRate {
   Eigen::Vector2d line_of_sight;  ///< from the sensor: unit vector, or the mean of several
 };
 
+/// What may change the acceleration: people go any way; who drives a vehicle gives gas and brakes along its course, but
+/// across it nothing but a turn accelerates, and hardly at all what is slow.
+enum class Moves { kAnyWay, kAsVehicle };
+
 /// Predicts over `elapsed_s` ≥ 0 with white jerk of spectral density jerk_std², then moves the state to the new
-/// vehicle frame; all but the heading (predict_heading). What brakes comes to a stand and does not drive back.
-void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego);
+/// vehicle frame; all but the heading (predict_heading). What brakes comes to a stand and does not drive back. Across a
+/// vehicle's course the acceleration is a Gauss–Markov process of a second (Singer's model).
+void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego,
+             Moves moves = Moves::kAnyWay);
 
 /// Adds what an error of the vehicle's own turn (rad²) does to the place: it moves aside what is far away.
 void blur_own_turn(KinematicState& state, double variance_rad2);
@@ -52,5 +58,8 @@ void come_to_rest(KinematicState& state);
 
 /// Update in Joseph form, symmetrised. A singular innovation covariance leaves the state alone and returns false.
 bool update(KinematicState& state, const PositionRate& measurement);
+
+/// Update by a range rate over ground alone, along a unit vector; variance > 0, m²/s².
+void update_rate(KinematicState& state, const Eigen::Vector2d& sight, double rate_mps, double variance);
 
 }  // namespace boresight::tracking

@@ -19,9 +19,19 @@ namespace boresight::tracking {
 
 namespace {
 
+/// Of what a cluster's range rate says of its body, beside the sensor's noise. People are nothing but limbs, and of
+/// what is new it is not known what is a wheel; but a vehicle is rigid, and what is left of wheels in the mean is a
+/// share of the speed.
+double range_rate_std_mps(const TrackedObject& track, const Config& config) {
+  constexpr double kOfSpeed = 0.04, kRigid = 0.5;
+  if (!track.confirmed || track.extent.is_small) return config.range_rate_std_mps;
+  const double of_wheels = kOfSpeed * track.state.mean.segment<2>(2).norm();
+  return std::clamp(of_wheels, kRigid * config.range_rate_std_mps, config.range_rate_std_mps);
+}
+
 /// The cluster as a measurement of the centre of the box that it is seen of.
 PositionRate measurement_of(const Cluster& cluster, const TrackedObject& track, const Eigen::Vector2d& sensor,
-                            double centre_std_m) {
+                            const Config& config) {
   // What the faces say errs the same way from scan to scan, and the more the larger they are.
   constexpr double kLeast = 0.5;  // of a person who walks
   const double share = std::clamp(track.extent.length_m / Extent::kCarLength_m, kLeast, 1.0);
@@ -31,18 +41,20 @@ PositionRate measurement_of(const Cluster& cluster, const TrackedObject& track, 
   m.value << seen.at_m, cluster.range_rate_over_ground_mps;
   m.covariance.setZero();
   m.covariance.topLeftCorner<2, 2>() =
-      seen.covariance_m2 + share * share * centre_std_m * centre_std_m * Eigen::Matrix2d::Identity();
-  m.covariance(2, 2) = cluster.range_rate_variance;
+      seen.covariance_m2 + share * share * config.centre_std_m * config.centre_std_m * Eigen::Matrix2d::Identity();
+  const double std = range_rate_std_mps(track, config);
+  m.covariance(2, 2) = cluster.range_rate_variance + std * std;
   m.line_of_sight = cluster.mean_sight;
   return m;
 }
 
 /// Whether the range rate alone is within the gate; else nothing need be asked about the place.
-bool rate_fits(const Cluster& cluster, const KinematicState& state, double gate_chi2) {
+bool rate_fits(const Cluster& cluster, const KinematicState& state, const Config& config) {
   const Eigen::Vector2d& sight = cluster.mean_sight;
   const double off_mps = cluster.range_rate_over_ground_mps - sight.dot(state.mean.segment<2>(2));
-  const double variance = cluster.range_rate_variance + sight.dot(state.covariance.block<2, 2>(2, 2) * sight);
-  return off_mps * off_mps < gate_chi2 * variance;
+  const double variance = cluster.range_rate_variance + config.range_rate_std_mps * config.range_rate_std_mps +
+                          sight.dot(state.covariance.block<2, 2>(2, 2) * sight);
+  return off_mps * off_mps < config.gate_chi2 * variance;
 }
 
 /// Whether the cluster lies on another vehicle that has long been tracked, beside this one, and moves rather as that
@@ -137,7 +149,8 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   const auto stated = static_cast<double>(geometry.ego_yaw_rate_std_radps);
   const double turn_std_radps = stated > 0.0 ? stated : vehicle_.ego.yaw_rate_std_radps;
   for (TrackedObject& track : tracks_) {
-    predict(track.state, elapsed_s, config_.jerk_std_mps3, ego);
+    predict(track.state, elapsed_s, config_.jerk_std_mps3, ego,
+            track.extent.is_small ? Moves::kAnyWay : Moves::kAsVehicle);
     blur_own_turn(track.state, turn_std_radps * turn_std_radps * kStays_s * elapsed_s);
     if (track.state.heading.known) predict_heading(track.state, elapsed_s, turn);
     track.extent.heading_rad = geometry::wrap_angle(track.extent.heading_rad - turn);
@@ -158,7 +171,9 @@ std::span<const KnownPlace> Tracker::known() {
                        {std::cos(e.heading_rad), std::sin(e.heading_rad)},
                        {0.5 * e.length_m, 0.5 * e.width_m},
                        e.is_small,
-                       track.state.mean.segment<2>(2)};
+                       track.state.mean.segment<2>(2),
+                       track.state.covariance.topLeftCorner<2, 2>(),
+                       track.state.covariance.block<2, 2>(2, 2)};
   }
   return {known_.data(), count};
 }
@@ -191,9 +206,8 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
   assignment_.reset(tracks_.size(), clusters.size(), config_.gate_chi2);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      if (!rate_fits(clusters[c], tracks_[t].state, config_.gate_chi2)) continue;
-      const Distance d =
-          distance(tracks_[t].state, measurement_of(clusters[c], tracks_[t], sensor, config_.centre_std_m));
+      if (!rate_fits(clusters[c], tracks_[t].state, config_)) continue;
+      const Distance d = distance(tracks_[t].state, measurement_of(clusters[c], tracks_[t], sensor, config_));
       if (d.squared >= config_.gate_chi2 || is_of_another(clusters[c], tracks_[t], tracks_)) continue;
       // A new track is unsure of everything and fits anything: the confirmed one has the right of way.
       const double preference = tracks_[t].confirmed ? 0.0 : 0.25 * (config_.gate_chi2 - d.squared);
@@ -207,14 +221,7 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     if (column < 0) continue;
     const Cluster& cluster = clusters[static_cast<std::size_t>(column)];
     TrackedObject& track = tracks_[t];
-    // What may be a ghost moves the track by as little as it is likely real.
-    PositionRate measurement = measurement_of(cluster, track, sensor, config_.centre_std_m);
-    measurement.covariance /= cluster.realness;
-    // What is new knows no velocity to tell wheels by; people are nothing but limbs.
-    if (track.confirmed && !track.extent.is_small) {
-      measurement.covariance(2, 2) /= chance_of_body(track.state, measurement);
-    }
-    if (!update(track.state, measurement)) continue;
+    if (!follow(track, cluster, sensor)) continue;
     cluster_used_[static_cast<std::size_t>(column)] = true;
     update_extent(track, cluster, sensor, has_elevation);
     track.slow = track.state.mean.segment<2>(2).norm() < kSlow_mps;
@@ -232,6 +239,23 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
       cluster_used_[c] = track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, margin_m);
     }
   }
+}
+
+bool Tracker::follow(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor) const {
+  PositionRate measurement = measurement_of(cluster, track, sensor, config_);
+  // What may be a ghost moves the track by as little as it is likely real.
+  measurement.covariance /= cluster.realness;
+  // What is new knows no velocity to tell wheels by; people are nothing but limbs.
+  const bool has_wheels = track.confirmed && !track.extent.is_small;
+  if (has_wheels && is_seen_all_round(cluster)) {
+    constexpr double kNothing = 1e8;  // m²/s²: the mean of many directions says less than each of them
+    measurement.covariance(2, 2) = kNothing;
+    if (!update(track.state, measurement)) return false;
+    follow_rates(track.state, cluster, sensor);
+    return true;
+  }
+  if (has_wheels) measurement.covariance(2, 2) /= chance_of_body(track.state, measurement);
+  return update(track.state, measurement);
 }
 
 void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
@@ -290,7 +314,8 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
   const double across = config_.start_speed_std_mps * config_.start_speed_std_mps;
   track.state.covariance.block<2, 2>(2, 2) =
-      cluster.range_rate_variance * u * u.transpose() + across * v * v.transpose();
+      (cluster.range_rate_variance + config_.range_rate_std_mps * config_.range_rate_std_mps) * u * u.transpose() +
+      across * v * v.transpose();
   const double acceleration = config_.start_acceleration_std_mps2 * config_.start_acceleration_std_mps2;
   track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
   track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));

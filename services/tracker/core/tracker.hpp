@@ -39,6 +39,8 @@ class Tracker {
   std::span<const KnownPlace> known();
   std::span<const Cluster> join_parts(std::span<const Cluster> clusters);
   void assign(std::span<const Cluster> clusters, const Eigen::Vector2d& sensor, bool has_elevation);
+  /// Place and velocity of a track by the cluster that is its own; false: that tells nothing.
+  [[nodiscard]] bool follow(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor) const;
   /// Heading and size of a track that the cluster has just updated.
   static void update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
                             bool has_elevation);

@@ -1,6 +1,7 @@
 // Range rates of wheels, which are not their vehicle's.
 #pragma once
 
+#include "services/tracker/core/clusters.hpp"
 #include "services/tracker/core/kalman.hpp"
 
 namespace boresight::tracking {
@@ -9,5 +10,12 @@ namespace boresight::tracking {
 /// another one, between nothing and twice the body's. From beside a body shows so little range rate that a wheel's,
 /// taken for it, changes the speed by metres per second.
 [[nodiscard]] double chance_of_body(const KinematicState& vehicle, const PositionRate& measurement);
+
+/// Whether the lines of sight to the cluster's detections are so far apart that their mean says less of the velocity
+/// than each of them does: of what drives alongside, the ends show how fast it is, and its middle shows nothing.
+[[nodiscard]] bool is_seen_all_round(const Cluster& cluster);
+
+/// Update of a vehicle's velocity by the range rates of such a cluster one by one, each as likely a wheel's as it is.
+void follow_rates(KinematicState& vehicle, const Cluster& cluster, const Eigen::Vector2d& sensor_m);
 
 }  // namespace boresight::tracking

@@ -40,6 +40,22 @@ TEST(Clusterer, EachDetectionCountsAsMuchAsItIsReal) {
   EXPECT_NEAR(clusters[1].realness, 0.1, 1e-6);
 }
 
+TEST(Clusterer, WheelsHaveNoPartInTheBodysRangeRate) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  for (const double x : {20.0, 20.5, 21.0}) scene.add({x, 0.0}, {2.0, 0.0});
+  scene.add({21.5, 0.0}, {3.9, 0.0});
+  Clusterer clusterer(Config{});
+  ASSERT_EQ(clusterer.find(*scene.scan).size(), 1u);
+  EXPECT_NEAR(clusterer.find(*scene.scan)[0].range_rate_over_ground_mps, 2.0, 1e-4);
+  EXPECT_NEAR(clusterer.find(*scene.scan)[0].position_m.x(), 20.75, 1e-5) << "but they are where it is";
+  // Of as many others nobody knows which are the body.
+  scene.add({19.5, 0.0}, {3.9, 0.0});
+  scene.add({19.0, 0.0}, {3.9, 0.0});
+  scene.scan->range_rate_over_ground_mps[2] = 2.9F;
+  EXPECT_NEAR(clusterer.find(*scene.scan)[0].range_rate_over_ground_mps, (2 * 2.0 + 2.9 + 3 * 3.9) / 6.0, 1e-4);
+}
+
 TEST(Clusterer, JoinsTwoPartsByTheirWeight) {
   Scene scene;
   scene.begin(kMillisecond);

@@ -173,13 +173,13 @@ TEST(Heading, LiesAlongTheFlankOfALongVehicle) {
 TEST(RangeRate, OfALongBodyNearbyIsThatOfTheMeanOfItsDirections) {
   Scene scene;
   scene.begin(kMillisecond);
-  const Eigen::Vector2d velocity(1.2, 0.0);
+  const Eigen::Vector2d velocity(0.4, 0.0);  // so slow that none of it looks like a wheel
   for (const double x : {3.0, 5.0, 7.0, 9.0}) scene.add({x, -2.0}, velocity);
   Clusterer clusterer{Config{}};
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);
   EXPECT_NEAR(clusters[0].mean_sight.dot(velocity), clusters[0].range_rate_over_ground_mps, 1e-6);
-  EXPECT_GT(std::abs(clusters[0].line_of_sight.dot(velocity) - clusters[0].range_rate_over_ground_mps), 0.1);
+  EXPECT_GT(std::abs(clusters[0].line_of_sight.dot(velocity) - clusters[0].range_rate_over_ground_mps), 0.03);
 }
 
 TEST(Heading, BeginsAlongAFlankIfTheCourseIsNotKnown) {

@@ -1,5 +1,6 @@
 #include "services/tracker/core/kalman.hpp"
 
+#include <cmath>
 #include <random>
 
 #include <Eigen/Dense>
@@ -67,6 +68,47 @@ TEST(Kalman, ProcessNoiseIsThatOfWhiteJerk) {
   EXPECT_LT((once.mean - twice.mean).norm(), 1e-12);
 }
 
+TEST(Kalman, AVehiclesAccelerationAcrossFadesAndTwoShortStepsAreOneLong) {
+  KinematicState once = some_state(), twice = some_state();
+  once.mean << 20.0, -4.0, 3.0, 0.0, 0.0, 0.8;
+  twice.mean = once.mean;
+  predict(once, 0.02, 3.0, geometry::EgoStep{}, Moves::kAsVehicle);
+  predict(twice, 0.01, 3.0, geometry::EgoStep{}, Moves::kAsVehicle);
+  predict(twice, 0.01, 3.0, geometry::EgoStep{}, Moves::kAsVehicle);
+  EXPECT_LT((once.mean - twice.mean).norm(), 1e-4) << "but for the course, which turns";
+  EXPECT_LT((once.covariance - twice.covariance).norm(), 1e-2);
+  EXPECT_NEAR(once.mean(5), 0.8 * std::exp(-0.02), 1e-9);
+  EXPECT_NEAR(once.mean(3), 0.8 * (1.0 - std::exp(-0.02)), 1e-9);
+  EXPECT_NEAR(once.mean(1), -4.0 + 0.8 * (0.02 - (1.0 - std::exp(-0.02))), 1e-9);
+}
+
+TEST(Kalman, AcrossItsCourseAVehicleAcceleratesNoMoreThanATurnDoes) {
+  // On a circle of 10 m at 3 m/s: 0.9 m/s². Along it nothing bounds the acceleration, nor that of people at all.
+  for (const Moves moves : {Moves::kAsVehicle, Moves::kAnyWay}) {
+    KinematicState s = some_state();
+    for (int i = 0; i < 400; ++i) {
+      s.mean << 20.0, -4.0, 3.0, 0.0, 0.0, 0.0;
+      predict(s, 0.02, 3.0, geometry::EgoStep{}, moves);
+    }
+    const double along = std::sqrt(s.covariance(4, 4)), across = std::sqrt(s.covariance(5, 5));
+    EXPECT_GT(along, 8.0);
+    EXPECT_NEAR(across, moves == Moves::kAsVehicle ? 0.9 : along, 0.1);
+  }
+}
+
+TEST(Kalman, AVehicleGoingAnyOtherWayIsPredictedAlike) {
+  const Eigen::Rotation2Dd turn(0.7);
+  Matrix6d turned = Matrix6d::Zero();
+  for (Eigen::Index k = 0; k < 6; k += 2) turned.block<2, 2>(k, k) = turn.toRotationMatrix();
+  KinematicState s = some_state(), other = some_state();
+  other.mean = turned * s.mean;
+  other.covariance = turned * s.covariance * turned.transpose();
+  predict(s, 0.1, 3.0, geometry::EgoStep{}, Moves::kAsVehicle);
+  predict(other, 0.1, 3.0, geometry::EgoStep{}, Moves::kAsVehicle);
+  EXPECT_LT((other.mean - turned * s.mean).norm(), 1e-9);
+  EXPECT_LT((other.covariance - turned * s.covariance * turned.transpose()).norm(), 1e-9);
+}
+
 TEST(Kalman, WhatStandsStillInTheWorldStaysThereAsTheVehicleMoves) {
   const double speed = 14.0, yaw_rate = 0.4;
   Eigen::Vector2d world(30.0, 8.0), place(0.0, 0.0);
@@ -125,6 +167,26 @@ TEST(Kalman, UpdateIsTheTextbooksAndTheInformationFilters) {
   ASSERT_TRUE(update(s, m));
   EXPECT_LT((s.mean - mean).norm(), 1e-9);
   EXPECT_LT((s.covariance - information.inverse()).norm(), 1e-9);
+}
+
+TEST(Kalman, ARangeRateAloneIsAMeasurementWhosePlaceSaysNothing) {
+  KinematicState s = some_state(), other = some_state();
+  for (KinematicState* state : {&s, &other}) {
+    state->heading.known = true;
+    state->heading.rad = 0.2;
+    state->heading.variance = 0.09;
+    state->heading.with_rest << 0.0, 0.0, 0.05, 0.1, 0.0, 0.0;
+  }
+  PositionRate m = measure(s.mean);
+  m.value(2) += 0.7;
+  m.covariance = Eigen::Vector3d(1e9, 1e9, 0.04).asDiagonal();
+  ASSERT_TRUE(update(s, m));
+  update_rate(other, m.line_of_sight, m.value(2), 0.04);
+  EXPECT_LT((s.mean - other.mean).norm(), 1e-6);
+  EXPECT_LT((s.covariance - other.covariance).norm(), 1e-5);
+  EXPECT_NEAR(s.heading.rad, other.heading.rad, 1e-7);
+  EXPECT_NEAR(s.heading.variance, other.heading.variance, 1e-7);
+  EXPECT_LT((s.heading.with_rest - other.heading.with_rest).norm(), 1e-6);
 }
 
 TEST(Kalman, DistanceIsTheMahalanobisDistance) {

@@ -47,4 +47,49 @@ TEST(Wheels, AreTheLikelierTheFartherTheRangeRateIsOff) {
   EXPECT_GT(chance_of_body(state, measurement), 0.7);
 }
 
+/// What a radar sees of a van that drives alongside at that speed: its flank from end to end, and a wheel of it.
+Cluster seen_alongside(double speed_mps, const Eigen::Vector2d& sensor_m) {
+  Cluster cluster{};
+  cluster.realness = 1.0;
+  cluster.mean_sight.setZero();
+  for (const double x : {-1.5, 0.5, 2.5, 4.5, 6.5}) {
+    const Eigen::Vector2d at(x, 2.7);
+    const Eigen::Vector2d sight = (at - sensor_m).normalized();
+    cluster.mean_sight += 0.2 * sight;
+    cluster.outline_rate_mps[cluster.number_on_outline] = sight.x() * speed_mps;
+    cluster.outline[cluster.number_on_outline++] = at;
+  }
+  cluster.outline[cluster.number_on_outline] = {1.5, 2.7};
+  cluster.outline_rate_mps[cluster.number_on_outline++] = -0.8 * speed_mps;
+  return cluster;
+}
+
+TEST(Wheels, RangeRatesOneByOneSayHowFastItIsWhoseMeanSaysNothing) {
+  const Eigen::Vector2d sensor(2.5, 0.0);
+  const Cluster cluster = seen_alongside(10.0, sensor);
+  ASSERT_TRUE(is_seen_all_round(cluster));
+  ASSERT_LT(std::abs(cluster.mean_sight.x()), 0.01) << "all of it goes across the mean line of sight";
+  KinematicState van;
+  van.mean << 2.5, 3.6, 12.0, 0.0, 0.0, 0.0;
+  van.covariance.setIdentity();
+  van.covariance(2, 2) = 4.0;
+  follow_rates(van, cluster, sensor);
+  EXPECT_NEAR(van.mean(2), 10.0, 0.3);
+  EXPECT_LT(van.covariance(2, 2), 0.1);
+  EXPECT_GT(van.covariance(2, 2), 0.3 * 0.3 / 5.0) << "no surer than five detections are";
+  EXPECT_NEAR(van.mean(3), 0.0, 0.5);
+}
+
+TEST(Wheels, WhatIsFarAwayIsSeenFromOneSideOnly) {
+  EXPECT_FALSE(is_seen_all_round(seen_alongside(10.0, {-60.0, 0.0})));
+}
+
+TEST(Wheels, TwoRangeRatesMayBeABodysAndAWheels) {
+  Cluster cluster = seen_alongside(10.0, {2.5, 0.0});
+  cluster.number_on_outline = 3;
+  EXPECT_TRUE(is_seen_all_round(cluster));
+  cluster.number_on_outline = 2;
+  EXPECT_FALSE(is_seen_all_round(cluster));
+}
+
 }  // namespace boresight::tracking
