@@ -31,11 +31,18 @@ void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_
     if (second.share() < kHasItNot && with_labels >= kHasIt) ++gained;
     if (second.share() < kHasIt) continue;
     ++object_seconds;
+    ++of_object[id].held;
     if (with_labels >= kHasItNot) continue;
+    ++of_object[id].lost;
     lost.push_back({until_s, id});
     const auto own = static_cast<double>(second.detections);
     lost_though_told += static_cast<double>(filtered.detections) >= kToldRight * own ? 1 : 0;
   }
+}
+
+std::size_t LostObjects::rather_lost() const {
+  const auto is_lost = [](const auto& object) { return 2 * object.second.lost > object.second.held; };
+  return static_cast<std::size_t>(std::count_if(of_object.begin(), of_object.end(), is_lost));
 }
 
 LostByChance& LostByChance::operator+=(const LostByChance& other) {

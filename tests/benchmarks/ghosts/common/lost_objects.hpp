@@ -53,6 +53,13 @@ struct LostObjects {
   /// told wrong elsewhere or before, or is the tracker's chance.
   static constexpr double kToldRight = 0.9;
   std::size_t lost_though_told = 0;
+  /// Each object's seconds of both kinds, over the drive.
+  struct Seconds {
+    std::size_t held = 0, lost = 0;
+  };
+  std::map<std::uint32_t, Seconds> of_object;
+  /// Objects that are lost for over half of the seconds in which perfect labels have them.
+  [[nodiscard]] std::size_t rather_lost() const;
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 

@@ -73,6 +73,8 @@ TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
   lost_seconds += other.lost_seconds;
   lost_though_told_seconds += other.lost_though_told_seconds;
   gained_seconds += other.gained_seconds;
+  objects += other.objects;
+  lost_objects += other.lost_objects;
   lasting_ghost_tracks += other.lasting_ghost_tracks;
   lost_by_chance += other.lost_by_chance;
   return *this;
@@ -91,6 +93,8 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
             .lost_seconds = o.lost.lost.size(),
             .lost_though_told_seconds = o.lost.lost_though_told,
             .gained_seconds = o.lost.gained,
+            .objects = o.lost.of_object.size(),
+            .lost_objects = o.lost.rather_lost(),
             .lasting_ghost_tracks = static_cast<std::size_t>(lasting),
             .lost_by_chance = o.lost_by_chance};
   }

@@ -34,6 +34,8 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
   const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
                                std::to_string(faults.lost_though_told_seconds) +
                                " of those lost though at least 90 % of the object's detections were told right; " +
+                               std::to_string(faults.lost_objects) + " of " + std::to_string(faults.objects) +
+                               " objects are lost for over half of their seconds; " +
                                std::to_string(faults.gained_seconds) + " the other way; by chance " +
                                std::to_string(faults.lost_by_chance.least()) + " to " +
                                std::to_string(faults.lost_by_chance.most());

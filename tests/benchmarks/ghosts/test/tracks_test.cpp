@@ -53,6 +53,16 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   lost.add_second(1.0, second_with(4), second_with(10));
   EXPECT_EQ(lost.gained, 1u);
   EXPECT_EQ(lost.object_seconds, 3u);
+  ASSERT_EQ(lost.of_object.size(), 1u);
+  EXPECT_EQ(lost.of_object[kFirst].held, 3u);
+  EXPECT_EQ(lost.of_object[kFirst].lost, 2u);
+}
+
+TEST(Tracks, AnObjectIsRatherLostIfItIsSoForOverHalfOfItsSeconds) {
+  LostObjects lost;
+  lost.of_object = {{1, {4, 2}}, {2, {3, 2}}, {3, {1, 1}}, {4, {9, 0}}};
+  EXPECT_EQ(lost.rather_lost(), 2u);
+  EXPECT_EQ(LostObjects{}.rather_lost(), 0u);
 }
 
 TEST(Tracks, WhatIsLostByChanceIsSummedDrawByDraw) {
