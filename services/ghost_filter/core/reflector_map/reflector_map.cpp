@@ -219,6 +219,9 @@ void ReflectorMap::visit_tiles(std::int64_t now_ns, double elapsed_s) {
 }
 
 void ReflectorMap::search(const StationaryGrid::Tile& tile) {
+  // What is found must have room. In a large map there is none for most of the time, and the clusters, which were for
+  // nothing then, cost most of a search.
+  if (reflectors_.size() == reflectors_.capacity()) return;
   // With a margin, so that what stands across a border is seen whole.
   constexpr std::int32_t kTile = StationaryGrid::kTileCells, kMargin = kTile / 4;
   const geometry::GridCell first{tile.place.column * kTile - kMargin, tile.place.row * kTile - kMargin};
