@@ -212,7 +212,7 @@ Densities Judge::weigh_still(const Measured& m) {
   std::uint32_t seen = cell == nullptr ? 1 : cell->count;
   const bool like_slow = has_slow_ && seen < kOftenEnough;
   // Behind what drives across the line of sight its type-1 ghosts look as if they stood, too.
-  const bool behind_unmoved = seen < kOftenEnough && (unmoved_ & sectors_about(m.direction, 0.0)) != 0;
+  const bool behind_unmoved = unmoved_ != 0 && seen < kOftenEnough && (unmoved_ & sectors_about(m.direction, 0.0)) != 0;
   if (like_slow || (std::abs(m.rate_mps) > m.still_std_mps && cell == nullptr)) cross(m, kNobody);
   of_objects(m, true, densities);
   if (densities.likeliest != kNobody && cell != nullptr && !was_before(*cell, m, s_.objects[densities.likeliest]))

@@ -89,6 +89,7 @@ class Judge {
     Eigen::Vector2d q;
     double known_mps, noise_variance;
     Eigen::Vector2d lit_from_m, seen_from_m;
+    Eigen::Vector2d sight;               ///< unit, along the last way to it: along that its place is known best
     Strength strength;                   ///< beside what it reflects directly
     double stretch;                      ///< square metres at the target for each one at the detection
     double turn_variance;                ///< of the direction to it, rad²

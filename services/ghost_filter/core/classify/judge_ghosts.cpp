@@ -46,12 +46,16 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_m);
   // However an object reflects: blurred, it is nowhere denser than this.
   const double densest = 1.0 / (2.0 * M_PI * std::sqrt(blurred.determinant()));
+  const double along2 = target.sight.dot(blurred * target.sight);
   double of_tracks = 0.0;
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
-    const double weight = o.weight * (target.silent && shows_rate(o) ? config_.type1_unheard : 1.0);
     if ((o.position_m - target.place_m).squaredNorm() > square(1.5 * reach_m + o.reach_m)) return;
+    // A range is known well, and most vehicles are nearer or farther: that takes less than to ask for their range rate.
+    if (is_beyond(o, target.place_m, target.sight, along2)) return;
+    const double weight = o.weight * (target.silent && shows_rate(o) ? config_.type1_unheard : 1.0);
+    if (weight <= 0.0) return;
     // Wheels are too weak to be seen in mirrors: what has another range rate than the body is no image of it.
     const double noise = target.noise_variance + target.turn_variance * o.velocity_mps.squaredNorm();
     const double rate = body_rate_at(o, m.rate_mps - target.known_mps, target.q, noise);
@@ -115,6 +119,7 @@ Judge::Target Judge::target_of(const Measured& m, const Crossing& crossing, doub
       outer(turn.normal, square(2.0 * turn.offset_std_m));
   t.noise_variance = rate_variance(m);
   t.lit_from_m = t.seen_from_m = turn.point_m;
+  t.sight = d;
   t.stretch = metres_per_m * far * focus / m.range_m;
   t.turn_variance = square(m.azimuth_std_rad) + square(2.0 * turn.angle_std_rad);
   t.mirror = crossing.mirror;

@@ -110,6 +110,7 @@ Judge::Target Judge::target_of(const Measured& m, const Meeting& met, double alo
   t.noise_variance = rate_variance(m);
   t.lit_from_m = met.point_m;
   t.seen_from_m = s_.sensor_m;
+  t.sight = m.direction;
   t.stretch = 2.0 * met.metres_per_m * met.rest_m / m.range_m;
   t.turn_variance = square(m.azimuth_std_rad);
   t.mirror = &mirror;

@@ -109,6 +109,17 @@ Eigen::Vector2d most_extent(const Object& object) {
   return {axis.x() * length + axis.y() * width, axis.y() * length + axis.x() * width};
 }
 
+bool is_beyond(const Object& object, const Eigen::Vector2d& place_m, const Eigen::Vector2d& direction,
+               double variance_m2) {
+  const double along = std::abs(direction.dot(object.axis)), across = std::abs(left_of(direction).dot(object.axis));
+  const double half = along * (object.half_length_m + kGrowths.back().length_m) +
+                      across * (object.half_width_m + kGrowths.back().width_m);
+  const double beyond = std::abs(direction.dot(object.position_m - place_m)) - half;
+  if (beyond <= 0.0) return false;
+  // In no direction a place is nearer, in its standard deviations, than in the one in which it is farthest.
+  return square(beyond) > kFarthest2 * (variance_m2 + direction.dot(object.position_covariance * direction));
+}
+
 Reflections reflections_at(const Object& object, const Eigen::Vector2d& place_m, const Eigen::Matrix2d& covariance,
                            const Eigen::Vector2d& seen_from_m, const Eigen::Vector2d& lit_from_m) {
   const Eigen::Vector2d q = place_m - object.position_m;

@@ -39,6 +39,11 @@ struct Object {
 /// Half the extent along x and y of all that may belong to it, were it as large as can be.
 [[nodiscard]] Eigen::Vector2d most_extent(const Object& object);
 
+/// Whether a place that is known along a direction (unit) with that variance is too far from the object along it for
+/// anything there to be of it, were it as large as can be.
+[[nodiscard]] bool is_beyond(const Object& object, const Eigen::Vector2d& place_m, const Eigen::Vector2d& direction,
+                             double variance_m2);
+
 /// Whether the object's speed is beyond doubt.
 [[nodiscard]] bool moves_surely(const Object& object);
 /// Probability that the object moves, by its velocity and what is not known of that.

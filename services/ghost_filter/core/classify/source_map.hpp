@@ -27,7 +27,8 @@ class SourceMap {
   /// Calls `visit(index)` for the objects, of `count`.
   template <typename Visit>
   static void visit_objects(Bits bits, std::uint32_t count, const Visit& visit) {
-    for (Bits left = bits & ~kMovers; left != 0; left &= left - 1) {
+    // Where all may be, only those are asked for that there are.
+    for (Bits left = bits & (count < kObjectBits ? (Bits{1} << count) - 1 : ~kMovers); left != 0; left &= left - 1) {
       for (auto i = static_cast<std::uint32_t>(std::countr_zero(left)); i < count; i += kObjectBits) visit(i);
     }
   }
