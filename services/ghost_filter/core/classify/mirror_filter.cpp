@@ -16,7 +16,6 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr std::size_t kJudgedAtOnce = 16;  // tracks in a scan
 constexpr double kTrackDensity =
     5e-4;                            // of ghosts, for each m² and m/s, at which a track is as likely real as an image
 constexpr double kTrackTells = 0.3;  // share of a track in a verdict from which on it stands for the detection
@@ -175,8 +174,8 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
 void MirrorFilter::judge_tracks() {
   // In turns where there are many, so that a crowd does not cost its square.
   const std::size_t tracks = objects_.size() - 1;
-  const std::size_t first = tracks > kJudgedAtOnce ? turn_ % tracks : 0;
-  const std::size_t judged = std::min(tracks, kJudgedAtOnce);
+  const std::size_t judged = tracks_pace_.take(tracks);
+  const std::size_t first = tracks > judged ? turn_ % tracks : 0;
   turn_ = first + judged;
   for (std::size_t i = 0; i < judged; ++i) {
     const auto k = static_cast<std::uint32_t>((first + i) % tracks);
@@ -208,7 +207,7 @@ void MirrorFilter::judge_tracks() {
 }
 
 void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
-  constexpr std::size_t kAtOnce = 8;  // from scan to scan an image hardly changes, so that turns lose little
+  // From scan to scan an image hardly changes, so that turns lose little.
   trials_.begin();
   for (std::size_t i = 0; i < count; ++i) {
     if (is_usable(scan, i)) trials_.saw(measured_[i].direction, measured_[i].range_m);
@@ -216,7 +215,7 @@ void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
   const MirrorTrials::Scan seen{from_.sensor_m, from_.sensor_velocity_mps, from_.mounting_std_rad, objects_, &odometry_,
                                 &movers_};
   const std::size_t reflectors = map_.reflectors().size();
-  for (std::size_t k = 0; k < std::min(kAtOnce, reflectors); ++k) {
+  for (std::size_t left = mirrors_pace_.take(reflectors); left > 0; --left) {
     const std::size_t i = mirrors_turn_++ % reflectors;
     map_.tried(i, trials_.evidence_of(mirrors_[i], seen));
   }
@@ -224,7 +223,7 @@ void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
   // rather hidden, or too weak: that hardly tells them from cars.
   constexpr double kMost = 4.0;
   const std::size_t faces = mirrors_.size() - reflectors;
-  for (std::size_t k = 0; k < std::min(kAtOnce, faces); ++k) {
+  for (std::size_t left = faces_pace_.take(faces); left > 0; --left) {
     const Mirror& face = mirrors_[reflectors + faces_turn_++ % faces];
     double& learnt = beliefs_[track_of_object_[face.body]].mirrors;
     learnt = std::clamp(learnt + trials_.evidence_of(face, seen), 0.0, kMost);
@@ -271,6 +270,9 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
              config_.tracks_max_age_s) {
     out.flags |= pipeline_flag::kTracksStale;
   }
+  const double elapsed_s = static_cast<double>(time_ns - before_ns_) * 1e-9;
+  for (Pace* const pace : {&tracks_pace_, &mirrors_pace_, &faces_pace_}) pace->advance(elapsed_s);
+  before_ns_ = time_ns;
   from_ = viewpoint_of(scan);
   if (!odometry_.advance(time_ns, g.ego_speed_mps, g.ego_yaw_rate_radps)) {
     map_.clear();

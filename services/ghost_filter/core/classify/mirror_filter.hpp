@@ -9,6 +9,7 @@
 #include "services/ghost_filter/core/classify/filter_config.hpp"
 #include "services/ghost_filter/core/classify/judge.hpp"
 #include "services/ghost_filter/core/classify/mirror_trials.hpp"
+#include "services/ghost_filter/core/classify/pace.hpp"
 #include "services/ghost_filter/core/classify/predicted_object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/classify/source_map.hpp"
@@ -56,6 +57,10 @@ class MirrorFilter final : public Method {
   std::array<TrackBelief, kMaxTracks> beliefs_{}, beliefs_before_{};
   std::size_t turn_ = 0;  // the track that is judged next
   std::size_t mirrors_turn_ = 0, faces_turn_ = 0;
+  /// Four radars of 20 scans a second have all at once in each scan.
+  static constexpr double kTurn_s = 0.0125;
+  Pace tracks_pace_{16, kTurn_s}, mirrors_pace_{8, kTurn_s}, faces_pace_{8, kTurn_s};
+  std::int64_t before_ns_ = 0;  // time of the scan before
   bool has_tracks_ = false;
   Viewpoint from_;  // of the scan in hand
 };
