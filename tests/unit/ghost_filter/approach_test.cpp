@@ -70,8 +70,8 @@ TEST(Meet, FindsWhatASearchAlongTheMirrorFinds) {
     const Mirror m = some_mirror(random, kMostBent[static_cast<std::size_t>(run % 3)]);
     const Ray ray = some_ray(random, run % 2 == 0);
     const auto& [sensor, direction, from, length] = ray;
-    const auto way = approach(m, sensor, from, direction, length);
-    const auto met = way ? meet(m, way->arc_m, sensor, from, direction, length, 0.5) : std::nullopt;
+    const auto way = WaysBy(m, sensor).approach(from, direction, length);
+    const auto met = way ? WaysBy(m, sensor).meet(way->arc_m, from, direction, length, 0.5) : std::nullopt;
     if (met) {
       const Eigen::Vector2d target = from + met->rest_m * direction;
       const double by_mirror = (met->point_m - sensor).norm() + (target - met->point_m).norm();
@@ -115,10 +115,10 @@ TEST(Approach, HoldsOfEveryWayThatIsFound) {
     const Mirror m = some_mirror(random, run % 3 == 2 ? 0.0 : gentle ? 0.0005 : 0.05);
     const Ray ray = some_ray(random, run % 2 == 0);
     const auto& [sensor, direction, from, length] = ray;
-    const auto way = approach(m, sensor, from, direction, length);
+    const auto way = WaysBy(m, sensor).approach(from, direction, length);
     none += way ? 0 : 1;
     // What starts near a way finds it, whatever approach() says.
-    const auto there = meet(m, way ? way->arc_m : m.curve.arc(sensor), sensor, from, direction, length, 0.5);
+    const auto there = WaysBy(m, sensor).meet(way ? way->arc_m : m.curve.arc(sensor), from, direction, length, 0.5);
     if (!there) continue;
     ++met;
     gentle_missed += gentle && !way ? 1 : 0;
@@ -151,8 +151,8 @@ TEST(Beam, LightsEveryWayThatIsFound) {
     const double farthest = 0.5 * (length + (from - sensor).norm());
     const bool is_lit = Beam(m, sensor).may_light(from, from + farthest * direction);
     dark += is_lit ? 0 : 1;
-    const auto way = approach(m, sensor, from, direction, length);
-    if (!way || !meet(m, way->arc_m, sensor, from, direction, length, 0.5)) continue;
+    const auto way = WaysBy(m, sensor).approach(from, direction, length);
+    if (!way || !WaysBy(m, sensor).meet(way->arc_m, from, direction, length, 0.5)) continue;
     ++met;
     missed += is_lit ? 0 : 1;
     gentle_missed += gentle && !is_lit ? 1 : 0;

@@ -42,6 +42,7 @@ constexpr double kBeyondDoubt = 20.0;
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
+  ways_.reserve(MirrorFan::kMaxMirrors);
   fronts_.reserve(kMostFronts);
   const Strength straight_back = strength_of_ghost(1, 1.0);
   most_of_strength_ = likelihood(straight_back, straight_back.mean_db, kFluctuation_db, config_.strength_doubt);
@@ -52,6 +53,10 @@ Judge::Judge(const ClassConfig& config) : config_(config) {
 void Judge::begin(const Surroundings& surroundings) {
   s_ = surroundings;
   fan_.build(s_.mirrors, s_.sensor_m);
+  ways_.clear();
+  for (const Mirror& mirror : s_.mirrors) {
+    if (mirror.existence >= kLeastChance && ways_.size() < ways_.capacity()) ways_.emplace_back(mirror, s_.sensor_m);
+  }
   crossings_.clear();
   kept_crossings_.clear();
   kept_.clear();
@@ -77,9 +82,10 @@ double Judge::rate_variance(const Measured& m) const {
 
 void Judge::cross(const Measured& m, std::uint32_t but_object) {
   crossings_.clear();
+  const double farthest_m = m.range_m + 2.0 * m.range_std_m;
   fan_.visit(m.direction, [&](const Mirror& mirror) {
-    if (mirror.body != kNobody && mirror.body == but_object) return;
-    const auto turn = turn_at(mirror, s_.sensor_m, m.direction, m.range_m + 2.0 * m.range_std_m, m.azimuth_std_rad);
+    if (mirror.least_range_m > farthest_m || (mirror.body != kNobody && mirror.body == but_object)) return;
+    const auto turn = turn_at(mirror, s_.sensor_m, m.direction, farthest_m, m.azimuth_std_rad);
     if (!turn || crossings_.size() == crossings_.capacity()) return;
     // How far behind the mirror it lies, across it.
     const double sine = -m.direction.dot(turn->normal), cosine = m.direction.dot(left_of(turn->normal));

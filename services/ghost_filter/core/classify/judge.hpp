@@ -191,6 +191,7 @@ class Judge {
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;
+  std::vector<WaysBy> ways_;  // by the mirrors that are likely enough to be there
   std::vector<Crossing> crossings_;
   std::vector<Front> fronts_;
   double most_of_strength_;  ///< density of a type-1 ghost's strength, however it is bent back at its object

@@ -177,19 +177,20 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   double density = 0.0;
   // What is reached over there lies at most half of the way off.
   const Eigen::Vector2d farthest_m = turn.point_m + m.range_m * d;
-  for (const Mirror& other : s_.mirrors) {
+  for (const WaysBy& ways : ways_) {
+    const Mirror& other = ways.mirror();
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
         sure * other.existence < kLeastChance || other.least_range_m > m.range_m ||
         !other.beam.may_light(turn.point_m, farthest_m))
       continue;
     const double length = 2.0 * m.range_m - turn.distance_m;
-    const auto way = approach(other, s_.sensor_m, turn.point_m, d, length);
+    const auto way = ways.approach(turn.point_m, d, length);
     if (!way) continue;
     const double far = turn.distance_m + way->rest_m;
     const double across = m.azimuth_std_rad * (far + 2.0 * std::abs(way->rest_m) * turn.distance_m * turn.focus_per_m);
     const double by_mirror = square(2.0 * way->rest_m * turn.angle_std_rad) + square(2.0 * turn.offset_std_m);
     if (!may_be_at(turn.point_m, d, *way, m, square(across) + by_mirror)) continue;
-    const auto met = meet(other, way->arc_m, s_.sensor_m, turn.point_m, d, length, kLeastRest_m);
+    const auto met = ways.meet(way->arc_m, turn.point_m, d, length, kLeastRest_m);
     if (!met || sure * met->probability < kLeastChance) continue;
     if (pairs_left_ == 0) break;
     --pairs_left_;

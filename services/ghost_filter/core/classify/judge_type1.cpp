@@ -126,17 +126,18 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (fronts_.empty()) return 0.0;
   }
   double density = 0.0;
-  for (const Mirror& mirror : s_.mirrors) {
-    if ((is_track && mirror.body == but_object) || mirror.existence < kLeastChance) continue;
+  for (const WaysBy& ways : ways_) {
+    const Mirror& mirror = ways.mirror();
+    if (is_track && mirror.body == but_object) continue;
     // The way out and back is no shorter than to the mirror and back.
-    if (mirror.least_range_m > m.range_m || !mirror.beam.may_light(s_.sensor_m, m.position_m)) continue;
-    const auto way = approach(mirror, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m);
+    if (mirror.least_range_m > m.range_m || !mirror.beam.may_light_before(m.position_m)) continue;
+    const auto way = ways.approach(s_.sensor_m, m.direction, 2.0 * m.range_m);
     if (!way) continue;
     const Ahead ahead =
         is_track ? Ahead{0.0, may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))}
                  : ahead_on(*way, m);
     if (!ahead.silent && mirror.existence * ahead.most <= std::max(density, least)) continue;
-    const auto met = meet(mirror, way->arc_m, s_.sensor_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
+    const auto met = ways.meet(way->arc_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
     if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
     const double along2 = variance_along(m, *met);
     Target t = target_of(m, *met, along2, mirror);

@@ -39,6 +39,8 @@ Beam::Beam(const Mirror& mirror, const Eigen::Vector2d& sensor_m) {
   };
   begin_ = ray_of(begin);
   end_ = ray_of(end);
+  begin_from_sensor_m_ = begin_.left(sensor_m);
+  end_from_sensor_m_ = end_.left(sensor_m);
   // Where a bent mirror gathers them, some of the rays between pass beside those from the ends: as a sphere's.
   slack_m_ = kSlack_m + bend * bend * half * half * half;
 }

@@ -19,10 +19,6 @@ struct Approach {
   double error_m;       ///< as far off `rest_m` may be; infinite where that is not known
   double arc_m;         ///< where on the mirror the wave would turn
 };
-/// Nothing if the wave would turn beyond the mirror's ends, or on its other side, however the mirror may be bent.
-[[nodiscard]] std::optional<Approach> approach(const Mirror& mirror, const Eigen::Vector2d& sensor_m,
-                                               const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
-                                               double length_m);
 
 /// A place T on a ray, and the way from the sensor by a mirror to it.
 struct Meeting {
@@ -34,11 +30,30 @@ struct Meeting {
   double probability;         ///< that there is something at W
   double length_std_m;        ///< of the way by the mirror
 };
-/// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
-/// mirror to T have the sum `length_m`, found from `near_arc_m` on. Nothing if there is none, or less than `least_m`
-/// along.
-[[nodiscard]] std::optional<Meeting> meet(const Mirror& mirror, double near_arc_m, const Eigen::Vector2d& sensor_m,
-                                          const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
-                                          double length_m, double least_m);
+
+/// What ways by a mirror from one sensor have in common: many are asked for in a scan, most of them to be left out.
+/// The mirror is referred to.
+class WaysBy {
+ public:
+  WaysBy(const Mirror& mirror, const Eigen::Vector2d& sensor_m);
+  [[nodiscard]] const Mirror& mirror() const { return *mirror_; }
+  /// Where meet() would find it, were the mirror straight. Nothing if the wave would turn beyond the mirror's ends, or
+  /// on its other side, however the mirror may be bent.
+  [[nodiscard]] std::optional<Approach> approach(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                                 double length_m) const;
+  /// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
+  /// mirror to T have the sum `length_m`, found from `near_arc_m` on. Nothing if there is none, or less than `least_m`
+  /// along.
+  [[nodiscard]] std::optional<Meeting> meet(double near_arc_m, const Eigen::Vector2d& from_m,
+                                            const Eigen::Vector2d& direction, double length_m, double least_m) const;
+
+ private:
+  const Mirror* mirror_;
+  Eigen::Vector2d sensor_m_, sensor_;  // the latter in the curve's axes
+  double low_m_, high_m_;              // between which arc lengths waves turn
+  double origin2_m2_;                  // squared distance of the curve's origin from the sensor
+  double size_m_;                      // as far from that the mirror reaches, and some more
+  double unseen_m_, bend_;
+};
 
 }  // namespace boresight::ghosts
