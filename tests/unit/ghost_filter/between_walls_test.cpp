@@ -55,7 +55,7 @@ TEST(BetweenWalls, TheWayFoundIsTheShortestThatTouchesBoth) {
     double at_left = 0.0, at_right = 0.0;
     const double out = shortest_way(left, right, sensor, target, at_left, at_right);
     const double back = (target - sensor).norm();
-    const auto met = meet_between(left, right, sensor, (target - sensor) / back, out + back);
+    const auto met = WaysBetween(left, right, sensor).meet((target - sensor) / back, out + back);
     if (std::abs(at_left) > left.end_m + 3.0) {
       EXPECT_FALSE(met) << "where there is no wall";
       ++beyond;
@@ -71,7 +71,7 @@ TEST(BetweenWalls, TheWayFoundIsTheShortestThatTouchesBoth) {
     EXPECT_NEAR(met->length_std_m, 0.1 * 2.0 * std::sqrt(2.0), 0.15);
     if (met->metres_per_m > 20.0) continue;  // the wave comes from where the ray goes: no length tells the place
     // As the length grows, so goes the place.
-    const auto longer = meet_between(left, right, sensor, (target - sensor) / back, out + back + 1e-4);
+    const auto longer = WaysBetween(left, right, sensor).meet((target - sensor) / back, out + back + 1e-4);
     ASSERT_TRUE(longer);
     EXPECT_NEAR((longer->rest_m - met->rest_m) / 1e-4, met->metres_per_m, 1e-2 * met->metres_per_m);
   }
@@ -82,17 +82,18 @@ TEST(BetweenWalls, TheWayFoundIsTheShortestThatTouchesBoth) {
 TEST(BetweenWalls, NoWayGoesWhereItCannot) {
   const Eigen::Vector2d sensor(0.0, 0.0), abeam(0.0, 1.0);
   const Mirror left = wall({0.0, 6.0}, 0.0, 50.0), right = wall({0.0, -10.0}, 0.0, 50.0);
+  const Mirror before = wall({0.0, 8.0}, 0.0, 50.0);
   // 6 up, 16 down, 13 up to what is 3 m away, and 3 back.
-  ASSERT_TRUE(meet_between(left, right, sensor, abeam, 38.0));
-  EXPECT_NEAR(meet_between(left, right, sensor, abeam, 38.0)->rest_m, 3.0, 1e-9);
-  EXPECT_FALSE(meet_between(left, right, sensor, abeam, 20.0)) << "shorter than to the walls and back";
-  EXPECT_FALSE(meet_between(left, left, sensor, abeam, 38.0));
-  EXPECT_FALSE(meet_between(left, wall({0.0, 8.0}, 0.0, 50.0), sensor, abeam, 38.0)) << "one behind the other";
+  ASSERT_TRUE(WaysBetween(left, right, sensor).meet(abeam, 38.0));
+  EXPECT_NEAR(WaysBetween(left, right, sensor).meet(abeam, 38.0)->rest_m, 3.0, 1e-9);
+  EXPECT_FALSE(WaysBetween(left, right, sensor).meet(abeam, 20.0)) << "shorter than to the walls and back";
+  EXPECT_FALSE(WaysBetween(left, left, sensor).meet(abeam, 38.0));
+  EXPECT_FALSE(WaysBetween(left, before, sensor).meet(abeam, 38.0)) << "one behind the other";
   // A bent wall is as good as straight where the wave turns, but not far along.
   Mirror bent = right;
   bent.curve.curvature_per_m = 0.002;
-  EXPECT_TRUE(meet_between(left, bent, sensor, abeam, 38.0));
-  EXPECT_FALSE(meet_between(left, bent, sensor, Eigen::Vector2d(0.95, 0.3122499).normalized(), 120.0));
+  EXPECT_TRUE(WaysBetween(left, bent, sensor).meet(abeam, 38.0));
+  EXPECT_FALSE(WaysBetween(left, bent, sensor).meet(Eigen::Vector2d(0.95, 0.3122499).normalized(), 120.0));
 }
 
 }  // namespace

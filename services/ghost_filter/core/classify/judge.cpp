@@ -19,6 +19,7 @@ constexpr std::size_t kMostFronts = 64;
 /// Ways over two mirrors, the least likely ghosts, are what costs most where mirrors are many: so many are followed for
 /// a detection, and for all of a scan.
 constexpr std::size_t kMostPairs = 32, kMostPairsOfScan = 2048, kMostWallsOfScan = 2048;
+constexpr std::size_t kMostWallPairs = 512;
 
 /// Chances that something else was detected at a moving detection's place, moved on, in the scans before: of a vehicle
 /// that nothing announces, and of clutter.
@@ -43,6 +44,7 @@ constexpr double kBeyondDoubt = 20.0;
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
   ways_.reserve(MirrorFan::kMaxMirrors);
+  walls_.reserve(kMostWallPairs);
   fronts_.reserve(kMostFronts);
   const Strength straight_back = strength_of_ghost(1, 1.0);
   most_of_strength_ = likelihood(straight_back, straight_back.mean_db, kFluctuation_db, config_.strength_doubt);
@@ -57,6 +59,7 @@ void Judge::begin(const Surroundings& surroundings) {
   for (const Mirror& mirror : s_.mirrors) {
     if (mirror.existence >= kLeastChance && ways_.size() < ways_.capacity()) ways_.emplace_back(mirror, s_.sensor_m);
   }
+  walls_are_found_ = false;
   crossings_.clear();
   kept_crossings_.clear();
   kept_.clear();

@@ -15,6 +15,7 @@
 #include "services/ghost_filter/core/classify/object.hpp"
 #include "services/ghost_filter/core/classify/recent_movers.hpp"
 #include "services/ghost_filter/core/classify/source_map.hpp"
+#include "services/ghost_filter/core/mirror/between_walls.hpp"
 #include "services/ghost_filter/core/mirror/meeting.hpp"
 #include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
@@ -136,6 +137,7 @@ class Judge {
   [[nodiscard]] double type1(const Measured& measured, std::uint32_t index, std::uint32_t but_object, double least);
   /// Whether it lies behind something so near that walls on both sides light it. Of the fronts that type1() found.
   [[nodiscard]] bool is_behind_alongside() const;
+  void find_walls();
   /// Those whose way out is by one wall and then by another; needs the fronts that type1() found.
   [[nodiscard]] double type1_of_two(const Measured& measured, double least);
   /// The variance of a type-1 ghost's object along the line of sight, and what else is known of that object; the
@@ -188,10 +190,13 @@ class Judge {
   static constexpr double kLittle = 0.1;
   /// Of mirrors being there: less is not followed.
   static constexpr double kLeastChance = 0.05;
+  static constexpr double kLeastPair = 0.1;  ///< of two
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;
-  std::vector<WaysBy> ways_;  // by the mirrors that are likely enough to be there
+  std::vector<WaysBy> ways_;        // by the mirrors that are likely enough to be there
+  std::vector<WaysBetween> walls_;  // that have the sensor between them, once they were asked for in the scan
+  bool walls_are_found_ = false;
   std::vector<Crossing> crossings_;
   std::vector<Front> fronts_;
   double most_of_strength_;  ///< density of a type-1 ghost's strength, however it is bent back at its object

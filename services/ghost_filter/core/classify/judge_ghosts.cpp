@@ -171,7 +171,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   const Turn& turn = crossing.turn;
   const Eigen::Vector2d& d = turn.direction;
   const double sure = turn.probability * crossing.beyond;
-  if (sure < kLeastChance) return 0.0;
+  if (sure < kLeastPair) return 0.0;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   const double share = kOtherMirror * config_.type2_per_object * sure;
   double density = 0.0;
@@ -180,7 +180,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   for (const WaysBy& ways : ways_) {
     const Mirror& other = ways.mirror();
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
-        sure * other.existence < kLeastChance || other.least_range_m > m.range_m ||
+        sure * other.existence < kLeastPair || other.least_range_m > m.range_m ||
         !other.beam.may_light(turn.point_m, farthest_m))
       continue;
     const double length = 2.0 * m.range_m - turn.distance_m;
@@ -191,7 +191,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
     const double by_mirror = square(2.0 * way->rest_m * turn.angle_std_rad) + square(2.0 * turn.offset_std_m);
     if (!may_be_at(turn.point_m, d, *way, m, square(across) + by_mirror)) continue;
     const auto met = ways.meet(way->arc_m, turn.point_m, d, length, kLeastRest_m);
-    if (!met || sure * met->probability < kLeastChance) continue;
+    if (!met || sure * met->probability < kLeastPair) continue;
     if (pairs_left_ == 0) break;
     --pairs_left_;
     const Eigen::Vector2d& u = met->departure;

@@ -1,10 +1,10 @@
 // Type-1 ghosts: the last bounce was on the target, so that they lie in its direction, behind it.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "services/ghost_filter/core/classify/judge.hpp"
 #include "services/ghost_filter/core/density/normal.hpp"
-#include "services/ghost_filter/core/mirror/between_walls.hpp"
 
 namespace boresight::ghosts {
 
@@ -157,32 +157,42 @@ bool Judge::is_behind_alongside() const {
   return std::any_of(fronts_.begin(), fronts_.end(), [](const Front& front) { return front.depth_m < kAlongside_m; });
 }
 
-double Judge::type1_of_two(const Measured& m, double least) {
+void Judge::find_walls() {
+  if (std::exchange(walls_are_found_, true)) return;
+  walls_.clear();
   const auto is_wall = [](const Mirror& mirror) { return is_long(mirror) && mirror.existence > kLeastWall; };
-  if (fronts_.empty()) return 0.0;
-  double density = 0.0;
   for (const Mirror& first : s_.mirrors) {
-    if (!is_wall(first) || first.least_range_m > m.range_m) continue;
+    if (!is_wall(first)) continue;
     const double first_m = first.curve.distance(s_.sensor_m);
     for (const Mirror& second : s_.mirrors) {
-      // To be between them is to have them on different sides, and the way there and back is as long as to both.
-      if (!is_wall(second) || first.least_range_m + second.least_range_m > m.range_m) continue;
-      if (first_m * second.curve.distance(s_.sensor_m) * first.curve.normal().dot(second.curve.normal()) >= 0.0)
+      // To be between them is to have them on different sides.
+      if (!is_wall(second) || walls_.size() == walls_.capacity() ||
+          first_m * second.curve.distance(s_.sensor_m) * first.curve.normal().dot(second.curve.normal()) >= 0.0)
         continue;
-      if (walls_left_of_scan_ == 0) return density;
-      --walls_left_of_scan_;
-      const auto met = meet_between(first, second, s_.sensor_m, m.direction, 2.0 * m.range_m);
-      if (!met || met->rest_m < kLeastRest_m || met->rest_m > m.range_m - kLeastDetour_m) continue;
-      if (met->probability < kLeastChance) continue;
-      const double along2 = variance_along(m, *met);
-      Target t = target_of(m, *met, along2, second);
-      t.strength = strength_of_ghost(2, m.direction.dot(met->arrival));
-      t.silent = true;
-      const double share = met->probability * config_.type1_per_object;
-      const double more = std::max(density, least) / share;
-      density =
-          std::max(density, share * (t.stretch * of_fronts(t, along2, m) + ghosts_of(t, m, kNobody, kNobody, more)));
+      walls_.emplace_back(first, second, s_.sensor_m);
     }
+  }
+}
+
+double Judge::type1_of_two(const Measured& m, double least) {
+  if (fronts_.empty()) return 0.0;
+  find_walls();
+  double density = 0.0;
+  for (const WaysBetween& ways : walls_) {
+    if (ways.least_range_m() > m.range_m) continue;
+    if (walls_left_of_scan_ == 0) return density;
+    --walls_left_of_scan_;
+    const auto met = ways.meet(m.direction, 2.0 * m.range_m);
+    if (!met || met->rest_m < kLeastRest_m || met->rest_m > m.range_m - kLeastDetour_m) continue;
+    if (met->probability < kLeastChance) continue;
+    const double along2 = variance_along(m, *met);
+    Target t = target_of(m, *met, along2, ways.second());
+    t.strength = strength_of_ghost(2, m.direction.dot(met->arrival));
+    t.silent = true;
+    const double share = met->probability * config_.type1_per_object;
+    const double more = std::max(density, least) / share;
+    density =
+        std::max(density, share * (t.stretch * of_fronts(t, along2, m) + ghosts_of(t, m, kNobody, kNobody, more)));
   }
   return density;
 }
