@@ -159,6 +159,8 @@ class Judge {
     double most;
     bool silent;
   };
+  /// However the way runs.
+  [[nodiscard]] Ahead of_all_fronts() const;
   [[nodiscard]] Ahead ahead_on(const Approach& way, const Measured& measured) const;
   /// Density at the target of ghosts of the echoes in front; `along2` is the variance of its place along the line of
   /// sight.

@@ -46,14 +46,16 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_m);
   // However an object reflects: blurred, it is nowhere denser than this.
   const double densest = 1.0 / (2.0 * M_PI * std::sqrt(blurred.determinant()));
-  const double along2 = target.sight.dot(blurred * target.sight);
+  const double along2 = target.sight.dot(blurred * target.sight), along_m = std::sqrt(kFarthest2 * along2);
   double of_tracks = 0.0;
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
-    if ((o.position_m - target.place_m).squaredNorm() > square(1.5 * reach_m + o.reach_m)) return;
+    const Eigen::Vector2d off = o.position_m - target.place_m;
     // A range is known well, and most vehicles are nearer or farther: that takes less than to ask for their range rate.
-    if (is_beyond(o, target.place_m, target.sight, along2)) return;
+    if (std::abs(off.dot(target.sight)) > along_m + o.reach_m ||
+        off.squaredNorm() > square(1.5 * reach_m + o.reach_m) || is_beyond(o, target.place_m, target.sight, along2))
+      return;
     const double weight = o.weight * (target.silent && shows_rate(o) ? config_.type1_unheard : 1.0);
     if (weight <= 0.0) return;
     // Wheels are too weak to be seen in mirrors: what has another range rate than the body is no image of it.

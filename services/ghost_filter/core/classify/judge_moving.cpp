@@ -73,19 +73,22 @@ Judge::Owner Judge::owner_of(const Measured& m) const {
   constexpr double kAround_m = 1.0, kOff = 4.0;
   Owner owner;
   double real = 1.0;
-  for (std::uint32_t i = 0; i < s_.objects.size(); ++i) {
+  bool is_found = false;
+  const auto look = [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     const bool is_image = o.image > o.weight;
-    if (o.own || (o.weight < 0.5 && !is_image) || !is_on(o, m.position_m, kAround_m)) continue;
+    if (is_found || o.own || (o.weight < 0.5 && !is_image) || !is_on(o, m.position_m, kAround_m)) return;
     const double variance = rate_variance(m) + m.direction.dot(o.velocity_covariance * m.direction);
     const bool is_off = square(m.rate_mps - m.direction.dot(o.velocity_mps)) > square(kOff) * variance;
     if (is_image) {
       if (!is_off) real = std::min(real, o.weight / (o.weight + o.image));
-      continue;
+      return;
     }
     owner = {i, is_off};
-    if (!owner.is_wheel) break;
-  }
+    is_found = !owner.is_wheel;
+  };
+  SourceMap::visit_objects(s_.sources->about(m.position_m, kAround_m), static_cast<std::uint32_t>(s_.objects.size()),
+                           look);
   if (owner.object == kNobody) owner.real = real;
   return owner;
 }

@@ -64,6 +64,16 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
   }
 }
 
+Judge::Ahead Judge::of_all_fronts() const {
+  Ahead all{0.0, false};
+  for (const Front& front : fronts_) {
+    all.most += front.most;
+    all.silent = all.silent || front.echo == nullptr;
+  }
+  all.most *= std::max(kMostStretch, 2.0 * kMargin * kMostMetresPerM);
+  return all;
+}
+
 Judge::Ahead Judge::ahead_on(const Approach& way, const Measured& m) const {
   const double blur_m = way.error_m + kFar * way.metres_per_m * (2.0 * m.range_std_m + way.length_std_m);
   Ahead ahead{0.0, false};
@@ -125,10 +135,13 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     find_fronts(m, index);
     if (fronts_.empty()) return 0.0;
   }
+  const Ahead in_all = of_all_fronts();
   double density = 0.0;
   for (const WaysBy& ways : ways_) {
     const Mirror& mirror = ways.mirror();
-    if (is_track && mirror.body == but_object) continue;
+    if (is_track ? mirror.body == but_object
+                 : !in_all.silent && mirror.existence * in_all.most <= std::max(density, least))
+      continue;
     // The way out and back is no shorter than to the mirror and back.
     if (mirror.least_range_m > m.range_m || !mirror.beam.may_light_before(m.position_m)) continue;
     const auto way = ways.approach(s_.sensor_m, m.direction, 2.0 * m.range_m);

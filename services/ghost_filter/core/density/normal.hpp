@@ -14,15 +14,16 @@ namespace boresight::ghosts {
   return x * x;
 }
 
-/// In standard deviations, squared: farther out densities are taken for nothing.
-inline constexpr double kFarthest2 = 50.0;
+/// In standard deviations, squared: farther out densities are taken for nothing. There they are less than 1e-7 of what
+/// they are in the middle.
+inline constexpr double kFarthest2 = 32.0;
 
 /// As far along x or y a density with these variances along them is something.
 [[nodiscard]] inline double reach_of(const Eigen::Vector2d& variances) {
   return std::sqrt(kFarthest2 * std::max(variances.x(), variances.y()));
 }
 
-/// 0 beyond seven standard deviations.
+/// 0 beyond kFarthest2.
 [[nodiscard]] inline double gaussian(double residual, double variance) {
   const double chi2 = residual * residual / variance;
   return chi2 > kFarthest2 ? 0.0 : exponential(-0.5 * chi2) / std::sqrt(2.0 * M_PI * variance);

@@ -35,8 +35,7 @@ WaysBy::WaysBy(const Mirror& mirror, const Eigen::Vector2d& sensor_m)
 
 std::optional<Approach> WaysBy::approach(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
                                          double length_m) const {
-  constexpr double kMostBent_rad = 0.2;    // from the origin to where the wave turns
-  constexpr double kMostMetresPerM = 5.0;  // else what is found hangs on little
+  constexpr double kMostBent_rad = 0.2;  // from the origin to where the wave turns
   constexpr double kAround_m = 15.0;
   // The way out and the way on to the ray's begin are no shorter than to the nearest point of the mirror and from
   // there.

@@ -12,6 +12,9 @@ namespace boresight::ghosts {
 /// How far beyond its ends the mirror of a way by it may go on unseen.
 [[nodiscard]] double most_unseen_m(const Mirror& mirror);
 
+/// The most of `metres_per_m` that is told without following a way: beyond it what is found hangs on little.
+inline constexpr double kMostMetresPerM = 5.0;
+
 /// Where meet() would find it, were the mirror straight: what is known of most ways without following them.
 struct Approach {
   double rest_m, metres_per_m;
