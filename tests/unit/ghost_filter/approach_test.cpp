@@ -134,8 +134,9 @@ TEST(Approach, HoldsOfEveryWayThatIsFound) {
   EXPECT_GT(known, met / 2);
   EXPECT_GT(none, 20000U) << "or it saves nothing";
   EXPECT_LE(gentle_missed, 2U) << "but what grazes";
-  // Of mirrors that are bent to a quarter of a circle some are hard to foretell.
-  EXPECT_LT(missed, met / 500);
+  // Of mirrors that are bent to a quarter of a circle some are hard to foretell; and what meet() would not find from
+  // where approach() leads is not told.
+  EXPECT_LT(missed, met / 400);
   EXPECT_LT(farther, known / 2000);
 }
 

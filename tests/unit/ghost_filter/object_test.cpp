@@ -1,6 +1,9 @@
 // Where an object is thought to reflect.
 #include "services/ghost_filter/core/classify/object.hpp"
 
+#include <cmath>
+#include <random>
+
 #include <gtest/gtest.h>
 
 namespace boresight::ghosts {
@@ -44,6 +47,27 @@ TEST(ObjectReflections, OfWheelsAreAnywhereWhereNoFlankIsSeen) {
   Object ahead = vehicle(4.5, 1.8);
   ahead.position_m = {30.0, 0.0};
   EXPECT_NEAR(at(ahead, -2.0, 0.5).wheel / at(ahead, 0.0, 0.0).wheel, 1.0, 1e-3);
+}
+
+TEST(ObjectReflections, NothingIsOfWhatIsTooFarInAnyDirection) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> off(-40.0, 40.0), angle(-3.15, 3.15), std_m(0.1, 3.0);
+  std::size_t beyond = 0, nothing = 0;
+  for (int run = 0; run < 20000; ++run) {
+    Object o = vehicle(4.5, 1.9);
+    const double heading = angle(random), sight = angle(random);
+    o.axis = {std::cos(heading), std::sin(heading)};
+    const Vector2d place = o.position_m + Vector2d(off(random), off(random));
+    const Vector2d along(std::cos(sight), std::sin(sight)), across(-along.y(), along.x());
+    const double along2 = std::pow(std_m(random), 2), across2 = std::pow(std_m(random), 2);
+    const Matrix2d covariance = along2 * along * along.transpose() + across2 * across * across.transpose();
+    const bool is_nothing = reflections_at(o, place, covariance, kSensor, kSensor).body <= 0.0;
+    const bool is_too_far = is_beyond(o, place, along, along2);
+    EXPECT_LE(is_too_far, is_nothing) << "run " << run;
+    beyond += is_too_far ? 1 : 0;
+    nothing += is_nothing ? 1 : 0;
+  }
+  EXPECT_GT(beyond, nothing / 2) << "or it saves nothing";
 }
 
 }  // namespace

@@ -31,7 +31,27 @@ WaysBy::WaysBy(const Mirror& mirror, const Eigen::Vector2d& sensor_m)
       origin2_m2_((mirror.curve.origin_m - sensor_m).squaredNorm()),
       size_m_(std::max(-mirror.begin_m, mirror.end_m)),
       unseen_m_(most_unseen_m(mirror)),
-      bend_(std::abs(mirror.curve.curvature_per_m)) {}
+      bend_(std::abs(mirror.curve.curvature_per_m)),
+      low_(end_at(low_m_, -1.0)),
+      high_(end_at(high_m_, 1.0)) {}
+
+WaysBy::End WaysBy::end_at(double arc_m, double outward) const {
+  const Eigen::Vector2d point = mirror_->curve.at(arc_m), out = point - sensor_m_;
+  const double first = out.norm();
+  return {point, mirror_->curve.tangent_at(arc_m), out / first, first, outward};
+}
+
+bool WaysBy::turns_beyond(const End& end, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                          double length_m) const {
+  const Eigen::Vector2d back = from_m - end.point_m;
+  const double left = length_m - end.first_m, opening = left + back.dot(direction);
+  if (!(end.first_m > kLeastWay_m && opening > 1e-6)) return true;
+  const double rest = 0.5 * (left * left - back.squaredNorm()) / opening, second = left - rest;
+  if (!(second > kLeastWay_m)) return true;
+  const Eigen::Vector2d d = (back + rest * direction) / second;
+  const Specular here = specular(end.departure, end.first_m, d, second, end.tangent, mirror_->curve.curvature_per_m);
+  return here.error_m > kMostError_m && end.outward * here.step_m > 0.0;
+}
 
 std::optional<Approach> WaysBy::approach(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
                                          double length_m) const {
@@ -53,6 +73,11 @@ std::optional<Approach> WaysBy::approach(const Eigen::Vector2d& from_m, const Ei
   const double sag = 1.0 + bend * (sensor.x() * sensor.x() + target.x() * target.x());
   const double share = std::abs(sensor.y()) / std::max(1e-9, std::abs(sensor.y()) + std::abs(target.y()));
   way.arc_m = sensor.x() + (target.x() - sensor.x()) * share;
+  // Most mirrors are short, and bent if they are what is seen of a bush: from there a straight one tells little, but
+  // beyond which end light would turn.
+  if (way.arc_m <= low_m_ ? turns_beyond(low_, from_m, direction, length_m)
+                          : way.arc_m >= high_m_ && turns_beyond(high_, from_m, direction, length_m))
+    return std::nullopt;
   if (sensor.y() * target.y() <= 0.0) {
     if (std::min(std::abs(sensor.y()), std::abs(target.y())) > sag) return std::nullopt;
     return way;

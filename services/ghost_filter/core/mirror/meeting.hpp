@@ -51,12 +51,23 @@ class WaysBy {
                                             const Eigen::Vector2d& direction, double length_m, double least_m) const;
 
  private:
+  /// Of the arc lengths between which waves turn, the first or the last one.
+  struct End {
+    Eigen::Vector2d point_m, tangent, departure;  // the latter from the sensor, unit
+    double first_m;                               // from the sensor
+    double outward;                               // 1 where the arc length grows beyond it, else −1
+  };
+  [[nodiscard]] End end_at(double arc_m, double outward) const;
+  /// Whether meet(), begun at an end, would have to go on beyond it.
+  [[nodiscard]] bool turns_beyond(const End& end, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                  double length_m) const;
   const Mirror* mirror_;
   Eigen::Vector2d sensor_m_, sensor_;  // the latter in the curve's axes
   double low_m_, high_m_;              // between which arc lengths waves turn
   double origin2_m2_;                  // squared distance of the curve's origin from the sensor
   double size_m_;                      // as far from that the mirror reaches, and some more
   double unseen_m_, bend_;
+  End low_, high_;
 };
 
 }  // namespace boresight::ghosts
