@@ -160,6 +160,7 @@ TEST_F(JudgeTest, WhatShowsNoRangeRateDirectlyNeedsNoEcho) {
   // Across the line of sight: its own echo looks as if it stood, and is none of a moving detection.
   const Vector2d sight = (objects_[0].position_m - sensor_).normalized();
   objects_[0].velocity_mps = {-6.0 * sight.y(), 6.0 * sight.x()};
+  begin();
   Measured m = detour();
   const Vector2d end(27.8, 2.0), image(27.8, 14.0);
   const Vector2d e = (end - sensor_).normalized(), u = (image - sensor_).normalized(), d(u.x(), -u.y());

@@ -69,8 +69,9 @@ void Judge::begin(const Surroundings& surroundings) {
   has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
     return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
   });
-  unmoved_ = 0;
+  unmoved_ = unheard_ = 0;
   for (const Object& o : s_.objects) {
+    if (may_be_unheard(o)) unheard_ |= o.sectors;
     if (!o.own && o.weight > kLeastSlow && !shows_rate(o)) unmoved_ |= o.sectors;
   }
 }

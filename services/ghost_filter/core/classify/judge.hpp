@@ -159,9 +159,9 @@ class Judge {
     double most;
     bool silent;
   };
-  /// However the way runs.
+  /// However the way runs, but for what it stretches.
   [[nodiscard]] Ahead of_all_fronts() const;
-  [[nodiscard]] Ahead ahead_on(const Approach& way, const Measured& measured) const;
+  [[nodiscard]] Ahead ahead_on(const Approach& way, const Measured& measured, const Ahead& all) const;
   /// Density at the target of ghosts of the echoes in front; `along2` is the variance of its place along the line of
   /// sight.
   [[nodiscard]] double of_fronts(const Target& target, double along2, const Measured& measured) const;
@@ -175,6 +175,8 @@ class Judge {
   [[nodiscard]] double strength_beside(const StrengthLikelihood& of_heard, const Target& target,
                                        const Measured& measured, double rcs_dbsm) const;
   [[nodiscard]] bool shows_rate(const Object& object) const;
+  /// Whether a type-1 ghost may be of it without an echo in front.
+  [[nodiscard]] bool may_be_unheard(const Object& object) const;
   [[nodiscard]] double hidden(const Measured& measured, std::uint32_t but_object, bool& is_hidden) const;
   [[nodiscard]] double type2(const Measured& measured, const Crossing& crossing, std::uint32_t index,
                              std::uint32_t but_object, double least) const;
@@ -211,6 +213,7 @@ class Judge {
   std::size_t next_kept_ = 0;
   bool has_slow_ = false;  ///< a tracked object whose images may look as if they stood
   SectorSet unmoved_ = 0;  ///< with tracked objects that show no range rate
+  SectorSet unheard_ = 0;  ///< with those that may_be_unheard()
   /// Of two mirrors, that the detection in hand, and the scan, may still be followed over.
   std::size_t pairs_left_ = 0, pairs_left_of_scan_ = 0;
   std::size_t walls_left_of_scan_ = 0;  ///< pairs of them

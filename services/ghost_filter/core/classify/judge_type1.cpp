@@ -21,12 +21,18 @@ constexpr double kLeastShown_mps = 1.0;
 constexpr double kLeastWall = 0.3;  // of two mirrors being there: waves go to and fro between walls
 /// Of a straight mirror's way: a bent one's may stretch so much more, or, where that is not known, so much.
 constexpr double kMargin = 1.2, kMostStretch = 10.0;
+constexpr double kMostStretchOfAny = std::max(kMostStretch, 2.0 * kMargin * kMostMetresPerM);
 
 }  // namespace
 
 bool Judge::shows_rate(const Object& object) const {
   const Eigen::Vector2d sight = object.position_m - s_.sensor_m;
   return square(sight.dot(object.velocity_mps)) > square(kLeastShown_mps) * sight.squaredNorm();
+}
+
+bool Judge::may_be_unheard(const Object& object) const {
+  return !object.own && object.weight >= RecentMovers::kLeastWeight &&
+         (config_.type1_unheard > 0.0 || !shows_rate(object));
 }
 
 void Judge::find_fronts(const Measured& m, std::uint32_t index) {
@@ -51,11 +57,11 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
         (same / kSpot_m + other / config_.extent_std_m) / std::sqrt(2.0 * M_PI) * echo.weight * most_of_rest;
     fronts_.push_back({&echo, depth_m, kFar * std::sqrt(echo.range_variance_m2 + extent2), same, other, most});
   });
+  if (unheard_ == 0) return;
   const SectorSet around = sectors_about(m.direction, kFar * m.azimuth_std_rad);
+  if ((unheard_ & around) == 0) return;
   for (const Object& o : s_.objects) {
-    if ((o.sectors & around) == 0 || o.own || o.weight < RecentMovers::kLeastWeight ||
-        (shows_rate(o) && config_.type1_unheard <= 0.0) || fronts_.size() == fronts_.capacity())
-      continue;
+    if ((o.sectors & around) == 0 || !may_be_unheard(o) || fronts_.size() == fronts_.capacity()) continue;
     const Eigen::Vector2d sight = o.position_m - s_.sensor_m;
     const double depth_m = sight.dot(m.direction), beside_m = sight.dot(left);
     if (depth_m - o.reach_m > m.range_m || depth_m + o.reach_m < 0.0) continue;
@@ -70,11 +76,11 @@ Judge::Ahead Judge::of_all_fronts() const {
     all.most += front.most;
     all.silent = all.silent || front.echo == nullptr;
   }
-  all.most *= std::max(kMostStretch, 2.0 * kMargin * kMostMetresPerM);
   return all;
 }
 
-Judge::Ahead Judge::ahead_on(const Approach& way, const Measured& m) const {
+Judge::Ahead Judge::ahead_on(const Approach& way, const Measured& m, const Ahead& all) const {
+  if (!std::isfinite(way.error_m)) return {all.most * kMostStretch, all.silent};
   const double blur_m = way.error_m + kFar * way.metres_per_m * (2.0 * m.range_std_m + way.length_std_m);
   Ahead ahead{0.0, false};
   for (const Front& front : fronts_) {
@@ -82,8 +88,8 @@ Judge::Ahead Judge::ahead_on(const Approach& way, const Measured& m) const {
     ahead.most += front.most;
     ahead.silent = ahead.silent || front.echo == nullptr;
   }
-  // Of most ways it is known how much a place behind the target stretches there.
-  ahead.most *= std::isfinite(way.error_m) ? 2.0 * kMargin * way.metres_per_m : kMostStretch;
+  // It is known how much a place behind the target stretches there.
+  ahead.most *= 2.0 * kMargin * way.metres_per_m;
   return ahead;
 }
 
@@ -140,7 +146,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
   for (const WaysBy& ways : ways_) {
     const Mirror& mirror = ways.mirror();
     if (is_track ? mirror.body == but_object
-                 : !in_all.silent && mirror.existence * in_all.most <= std::max(density, least))
+                 : !in_all.silent && mirror.existence * kMostStretchOfAny * in_all.most <= std::max(density, least))
       continue;
     // The way out and back is no shorter than to the mirror and back.
     if (mirror.least_range_m > m.range_m || !mirror.beam.may_light_before(m.position_m)) continue;
@@ -148,7 +154,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (!way) continue;
     const Ahead ahead =
         is_track ? Ahead{0.0, may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))}
-                 : ahead_on(*way, m);
+                 : ahead_on(*way, m, in_all);
     if (!ahead.silent && mirror.existence * ahead.most <= std::max(density, least)) continue;
     const auto met = ways.meet(way->arc_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
     if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
