@@ -42,8 +42,9 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
                         double least) const {
   least /= target.stretch;
   const Eigen::Matrix2d blurred = target.covariance + square(0.2) * Eigen::Matrix2d::Identity();
-  const double reach_m = reach_of(blurred.diagonal());
-  const SourceMap::Bits sources = s_.sources->about(target.place_m, reach_m);
+  const Eigen::Vector2d reaches_m = reaches_of(blurred.diagonal());
+  const double reach_m = reaches_m.maxCoeff();
+  const SourceMap::Bits sources = s_.sources->about(target.place_m, reaches_m);
   // However an object reflects: blurred, it is nowhere denser than this.
   const double densest = 1.0 / (2.0 * M_PI * std::sqrt(blurred.determinant()));
   const double along2 = target.sight.dot(blurred * target.sight), along_m = std::sqrt(kFarthest2 * along2);

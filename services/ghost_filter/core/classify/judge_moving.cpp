@@ -64,8 +64,8 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
       densities.object = i;
     }
   };
-  SourceMap::visit_objects(s_.sources->about(m.position_m, blur_m), static_cast<std::uint32_t>(s_.objects.size()),
-                           judge);
+  SourceMap::visit_objects(s_.sources->objects_about(m.position_m, blur_m),
+                           static_cast<std::uint32_t>(s_.objects.size()), judge);
   densities.of_tracks = densities.moving;
 }
 
@@ -87,8 +87,8 @@ Judge::Owner Judge::owner_of(const Measured& m) const {
     owner = {i, is_off};
     is_found = !owner.is_wheel;
   };
-  SourceMap::visit_objects(s_.sources->about(m.position_m, kAround_m), static_cast<std::uint32_t>(s_.objects.size()),
-                           look);
+  SourceMap::visit_objects(s_.sources->objects_about(m.position_m, kAround_m),
+                           static_cast<std::uint32_t>(s_.objects.size()), look);
   if (owner.object == kNobody) owner.real = real;
   return owner;
 }
@@ -103,6 +103,8 @@ Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
   const double blur = square(m.range_std_m) + square(m.range_m * m.azimuth_std_rad) + square(config_.extent_std_m);
   const double most_of_strength =
       std::isfinite(m.rcs_dbsm) ? likelihood(kBodyStrength, 0.0, 0.0, config_.strength_doubt) : 1.0;
+  const double least_noise = rate_variance(m) + square(m.rate_std_mps);
+  const double most_of_rest = most_of_strength / (2.0 * M_PI * std::sqrt(2.0 * M_PI * least_noise));
   s_.movers->near(place, [&](const Mover& mover, std::uint32_t number) {
     if (number >= own && mover.index == index) return;
     const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
@@ -112,10 +114,11 @@ Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
         recent.in_company || (distance2 <= square(kCompany_m) && std::abs(mover.rate_mps - m.rate_mps) < kCompany_mps);
     const double variance = blur + mover.variance_m2 + square(8.0 * elapsed_s);
     const double chi2 = distance2 / variance;
-    if (chi2 > 16.0) return;
+    // What a track stands for weighs nothing, and on a busy road that is most.
+    if (chi2 > 16.0 || mover.weight * most_of_rest <= most * variance) return;
     // The same velocity shows another range rate from another direction: by the speed across, which is not known.
     const double turn = 1.0 - square(direction.dot(mover.direction));
-    const double noise = rate_variance(m) + square(m.rate_std_mps) + square(15.0) * std::max(0.0, turn);
+    const double noise = least_noise + square(15.0) * std::max(0.0, turn);
     // Even the best strength would not make it the likeliest.
     const double here = mover.weight * exponential(-0.5 * chi2) / (2.0 * M_PI * variance) *
                         gaussian(m.rate_mps - mover.rate_mps, noise);

@@ -150,7 +150,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
       continue;
     // The way out and back is no shorter than to the mirror and back.
     if (mirror.least_range_m > m.range_m || !mirror.beam.may_light_before(m.position_m)) continue;
-    const auto way = ways.approach(s_.sensor_m, m.direction, 2.0 * m.range_m);
+    const auto way = ways.approach(m.direction, 2.0 * m.range_m);
     if (!way) continue;
     const Ahead ahead =
         is_track ? Ahead{0.0, may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))}

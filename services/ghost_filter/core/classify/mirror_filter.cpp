@@ -104,7 +104,7 @@ void MirrorFilter::predict_objects(const CorrectedScan& scan) {
 bool MirrorFilter::is_on_moving(const Eigen::Vector2d& place_m) const {
   bool found = false;
   SourceMap::visit_objects(
-      sources_.about(place_m, 0.0), static_cast<std::uint32_t>(objects_.size()), [&](std::uint32_t i) {
+      sources_.objects_about(place_m, 0.0), static_cast<std::uint32_t>(objects_.size()), [&](std::uint32_t i) {
         const Object& o = objects_[i];
         found = found || (o.weight > kRather && o.moving >= kMoves && is_on(o, place_m, kAroundBody_m));
       });

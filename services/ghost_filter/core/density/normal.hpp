@@ -23,6 +23,11 @@ inline constexpr double kFarthest2 = 32.0;
   return std::sqrt(kFarthest2 * std::max(variances.x(), variances.y()));
 }
 
+/// The same along each of them.
+[[nodiscard]] inline Eigen::Vector2d reaches_of(const Eigen::Vector2d& variances) {
+  return {std::sqrt(kFarthest2 * variances.x()), std::sqrt(kFarthest2 * variances.y())};
+}
+
 /// 0 beyond kFarthest2.
 [[nodiscard]] inline double gaussian(double residual, double variance) {
   const double chi2 = residual * residual / variance;

@@ -15,6 +15,7 @@ constexpr double kLeastWay_m = 0.2;     // to a mirror, and from it
 constexpr double kLeastChance = 0.01;   // of there being something where the wave turns
 constexpr double kMostError_m = 0.005;  // of a way's length: far less than a range is known by
 constexpr int kRounds = 4;
+constexpr double kAround_m = 15.0;  // of a mirror: so much farther than to it a way is
 
 }  // namespace
 
@@ -55,13 +56,23 @@ bool WaysBy::turns_beyond(const End& end, const Eigen::Vector2d& from_m, const E
 
 std::optional<Approach> WaysBy::approach(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
                                          double length_m) const {
-  constexpr double kMostBent_rad = 0.2;  // from the origin to where the wave turns
-  constexpr double kAround_m = 15.0;
   // The way out and the way on to the ray's begin are no shorter than to the nearest point of the mirror and from
   // there.
   const double reach = 0.5 * (length_m + (from_m - sensor_m_).norm()) + (size_m_ + kAround_m);
   if (origin2_m2_ > reach * reach) return std::nullopt;
-  const Eigen::Vector2d &sensor = sensor_, from = mirror_->curve.local(from_m);
+  return approach_along(from_m, direction, length_m, mirror_->curve.local(from_m));
+}
+
+std::optional<Approach> WaysBy::approach(const Eigen::Vector2d& direction, double length_m) const {
+  const double reach = 0.5 * length_m + (size_m_ + kAround_m);
+  if (origin2_m2_ > reach * reach) return std::nullopt;
+  return approach_along(sensor_m_, direction, length_m, sensor_);
+}
+
+std::optional<Approach> WaysBy::approach_along(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
+                                               double length_m, const Eigen::Vector2d& from) const {
+  constexpr double kMostBent_rad = 0.2;  // from the origin to where the wave turns
+  const Eigen::Vector2d& sensor = sensor_;
   const Eigen::Vector2d along = mirror_->curve.to_local(direction);
   const Eigen::Vector2d back(from.x() - sensor.x(), from.y() + sensor.y());  // from the sensor's image
   Approach way{0.0, 0.0, 0.0, std::numeric_limits<double>::infinity(), 0.0};

@@ -44,6 +44,8 @@ class WaysBy {
   /// on its other side, however the mirror may be bent.
   [[nodiscard]] std::optional<Approach> approach(const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,
                                                  double length_m) const;
+  /// The same of rays from the sensor itself, which are most.
+  [[nodiscard]] std::optional<Approach> approach(const Eigen::Vector2d& direction, double length_m) const;
   /// The place T on the ray from `from_m` (unit `direction`) for which |T − from| and the way from the sensor by the
   /// mirror to T have the sum `length_m`, found from `near_arc_m` on. Nothing if there is none, or less than `least_m`
   /// along.
@@ -57,6 +59,9 @@ class WaysBy {
     double first_m;                               // from the sensor
     double outward;                               // 1 where the arc length grows beyond it, else −1
   };
+  /// `from` is the ray's begin in the curve's axes.
+  [[nodiscard]] std::optional<Approach> approach_along(const Eigen::Vector2d& begin_m, const Eigen::Vector2d& direction,
+                                                       double length_m, const Eigen::Vector2d& from) const;
   [[nodiscard]] End end_at(double arc_m, double outward) const;
   /// Whether meet(), begun at an end, would have to go on beyond it.
   [[nodiscard]] bool turns_beyond(const End& end, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction,

@@ -59,7 +59,7 @@ std::uint32_t StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_
   }
   cell.sum_m += exact || !link.exact ? position_m : cell.mean_m();
   ++cell.count;
-  cell.last_ns = time_ns;
+  link.last_ns = time_ns;
   link.claimed = claimed;
   return index;
 }
@@ -67,16 +67,15 @@ std::uint32_t StationaryGrid::add(const Eigen::Vector2d& position_m, std::int64_
 bool StationaryGrid::forget(std::size_t number, std::int64_t oldest_ns) {
   Tile& tile = tiles_[number];
   for (std::uint32_t* index = &tile.first; *index != kUnclaimed;) {
-    Cell& cell = cells_[*index];
     Link& link = links_[*index];
-    if (cell.last_ns >= oldest_ns) {
+    if (link.last_ns >= oldest_ns) {
       index = &link.next;
       continue;
     }
     table_.erase(link.place);
+    cells_[*index].count = 0;
     unused_.push_back(*index);
     *index = link.next;
-    cell.count = 0;
     --tile.cells;
   }
   if (tile.first != kUnclaimed) return true;

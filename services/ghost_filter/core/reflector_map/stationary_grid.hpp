@@ -20,8 +20,7 @@ class StationaryGrid {
   struct Cell {
     Eigen::Vector2d sum_m{0.0, 0.0};
     std::int64_t first_ns = 0;  ///< since when something was detected here again and again
-    std::int64_t last_ns = 0;
-    std::uint32_t count = 0;  ///< 0: not in use
+    std::uint32_t count = 0;    ///< 0: not in use
     [[nodiscard]] Eigen::Vector2d mean_m() const { return sum_m / count; }
   };
   struct Tile {
@@ -77,6 +76,7 @@ class StationaryGrid {
   /// What is asked of all cells of a tile, apart from the rest: of a large map that stays in the cache.
   struct Link {
     geometry::GridCell place{};
+    std::int64_t last_ns = 0;  ///< when something was detected here
     std::uint32_t next = kUnclaimed;
     bool claimed = false;  ///< the cell's last detection belongs to a known reflector
     bool exact = false;
