@@ -139,8 +139,8 @@ void update_rate(KinematicState& state, const Eigen::Vector2d& sight, double rat
 }
 
 void come_to_rest(KinematicState& state) {
-  constexpr double kStill_mps = 0.3;  // moves by less than what is told from standing
-  const Eigen::Matrix2d s = state.covariance.block<2, 2>(2, 2) + kStill_mps * kStill_mps * Eigen::Matrix2d::Identity();
+  constexpr double kTold_mps = 0.3;  // moves by less than what is told from standing
+  const Eigen::Matrix2d s = state.covariance.block<2, 2>(2, 2) + kTold_mps * kTold_mps * Eigen::Matrix2d::Identity();
   const Eigen::Matrix<double, 6, 2> gain = state.covariance.middleCols<2>(2) * s.inverse();
   const Eigen::Vector2d velocity = state.mean.segment<2>(2);
   // The heading stays: which way it stands is not known any better.

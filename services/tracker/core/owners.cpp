@@ -1,5 +1,6 @@
 #include "services/tracker/core/owners.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <Eigen/LU>
