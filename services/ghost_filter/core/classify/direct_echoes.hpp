@@ -47,7 +47,7 @@ class DirectEchoes {
   }
 
  private:
-  static constexpr std::size_t kSectors = 64;
+  static constexpr std::size_t kSectors = 256;
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
   std::vector<DirectEcho> echoes_;
   std::array<std::uint32_t, kSectors> first_;

@@ -16,6 +16,7 @@ void MirrorFan::enter(std::size_t mirror, const Eigen::Vector2d& from, const Eig
 }
 
 void MirrorFan::build(std::span<const Mirror> mirrors, const Eigen::Vector2d& sensor_m) {
+  constexpr double kSag_m = 0.1;  // of a piece of an arc at most, where it takes no more than 64 of them
   mirrors_ = mirrors.first(std::min(mirrors.size(), kMaxMirrors));
   sectors_.fill({});
   for (std::size_t i = 0; i < mirrors_.size(); ++i) {
@@ -23,7 +24,7 @@ void MirrorFan::build(std::span<const Mirror> mirrors, const Eigen::Vector2d& se
     const double beyond_m = most_beyond_m(m);
     const double begin = m.begin_m - beyond_m, length = m.end_m - m.begin_m + 2.0 * beyond_m;
     const double turned = std::abs(m.curve.curvature_per_m) * length;
-    const int pieces = std::clamp(static_cast<int>(std::ceil(10.0 * turned)), 1, 64);
+    const int pieces = std::clamp(static_cast<int>(std::ceil(std::sqrt(turned * length / (8.0 * kSag_m)))), 1, 64);
     // How far a piece of an arc leaves its chord; nearer to it than this the sides are not told apart.
     const double sag = turned * length / (8.0 * pieces * pieces);
     const double near_m = std::max(0.5, 20.0 * sag);
