@@ -53,9 +53,13 @@ Viewpoint viewpoint_of(const CorrectedScan& scan) {
   return from;
 }
 
-bool is_usable(const CorrectedScan& scan, std::size_t i) {
-  return (scan.detection_flags[i] & corrected_flag::kRejected) == 0 && std::isfinite(scan.x_vehicle_m[i]) &&
-         std::isfinite(scan.y_vehicle_m[i]) && std::isfinite(scan.range_rate_over_ground_mps[i]);
+Kind kind_of(const CorrectedScan& scan, std::size_t i) {
+  const std::uint16_t flags = scan.detection_flags[i];
+  if ((flags & corrected_flag::kRejected) != 0 || !std::isfinite(scan.x_vehicle_m[i]) ||
+      !std::isfinite(scan.y_vehicle_m[i]) || !std::isfinite(scan.range_rate_over_ground_mps[i]))
+    return Kind::kLeftOut;
+  if ((flags & corrected_flag::kMoving) != 0) return Kind::kMoving;
+  return (flags & corrected_flag::kStationary) != 0 ? Kind::kStationary : Kind::kNotTold;
 }
 
 Measured measured(const CorrectedScan& scan, std::size_t i, const Viewpoint& from) {

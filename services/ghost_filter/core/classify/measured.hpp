@@ -32,9 +32,15 @@ struct Viewpoint {
 };
 [[nodiscard]] Viewpoint viewpoint_of(const CorrectedScan& scan);
 
-/// Whether a detection was not left out and is known in the plane.
-[[nodiscard]] bool is_usable(const CorrectedScan& scan, std::size_t i);
-/// One that is_usable(); its cell is not known yet.
+/// What the corrector told of a detection.
+enum class Kind : std::uint8_t {
+  kLeftOut,  ///< or its place in the plane or its range rate is not known
+  kNotTold,  ///< whether it moves
+  kStationary,
+  kMoving
+};
+[[nodiscard]] Kind kind_of(const CorrectedScan& scan, std::size_t i);
+/// One that is not left out; its cell is not known yet.
 [[nodiscard]] Measured measured(const CorrectedScan& scan, std::size_t i, const Viewpoint& from);
 
 /// For what a message may leave open, or not know.

@@ -124,11 +124,12 @@ void MirrorFilter::cast_shadows() {
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_usable(scan, i)) measured_[i].cell = map_.grid().fetch_at(odometry_.point_to_frame(measured_[i].position_m));
+    if (kinds_[i] == Kind::kLeftOut) continue;
+    measured_[i].cell = map_.grid().fetch_at(odometry_.point_to_frame(measured_[i].position_m));
   }
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
-    if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
+    if (kinds_[i] != Kind::kStationary) continue;
     Measured& m = measured_[i];
     // What a moving object shows without a range rate is no part of the map.
     if (is_on_moving(m.position_m)) continue;
@@ -151,7 +152,7 @@ void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   echoes_.clear();
   movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9), odometry_);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!is_usable(scan, i) || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
+    if (kinds_[i] != Kind::kMoving) continue;
     const Measured& m = measured_[i];
     // What lies behind a mirror may be an image itself, and an image of an image is too weak to be seen.
     double weight = 1.0 - 0.95 * judge_.behind_mirror(m, static_cast<std::uint32_t>(i));
@@ -206,11 +207,11 @@ void MirrorFilter::judge_tracks() {
   }
 }
 
-void MirrorFilter::try_mirrors(const CorrectedScan& scan, std::size_t count) {
+void MirrorFilter::try_mirrors(std::size_t count) {
   // From scan to scan an image hardly changes, so that turns lose little.
   trials_.begin();
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_usable(scan, i)) trials_.saw(measured_[i].direction, measured_[i].range_m);
+    if (kinds_[i] != Kind::kLeftOut) trials_.saw(measured_[i].direction, measured_[i].range_m);
   }
   const MirrorTrials::Scan seen{from_.sensor_m, from_.sensor_velocity_mps, from_.mounting_std_rad, objects_, &odometry_,
                                 &movers_};
@@ -279,7 +280,8 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     movers_.clear();
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_usable(scan, i)) measured_[i] = measured(scan, i, from_);
+    kinds_[i] = kind_of(scan, i);
+    if (kinds_[i] != Kind::kLeftOut) measured_[i] = measured(scan, i, from_);
   }
   predict_objects(scan);
   update_map(scan, count);
@@ -288,15 +290,14 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
                 &echoes_, &map_.grid()});
   gather_movers(scan, count);
   judge_tracks();
-  try_mirrors(scan, count);
+  try_mirrors(count);
 
   verdicts_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     out.provenance[i] = Provenance::kUnknown;
     out.ghost_probability[i] = 0.0F;
-    if (!is_usable(scan, i)) continue;
-    const bool moving = (scan.detection_flags[i] & corrected_flag::kMoving) != 0;
-    if (!moving && (scan.detection_flags[i] & corrected_flag::kStationary) == 0) continue;
+    if (kinds_[i] == Kind::kLeftOut || kinds_[i] == Kind::kNotTold) continue;
+    const bool moving = kinds_[i] == Kind::kMoving;
     const Measured& m = measured_[i];
     const Densities d = moving ? judge_.weigh(m, static_cast<std::uint32_t>(i)) : judge_.weigh_still(m);
     write_verdict(d, i, out);

@@ -37,7 +37,7 @@ class MirrorFilter final : public Method {
   [[nodiscard]] bool is_on_moving(const Eigen::Vector2d& place_m) const;
   void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
-  void try_mirrors(const CorrectedScan& scan, std::size_t count);
+  void try_mirrors(std::size_t count);
   void learn_strength(const Densities& densities, const Measured& measured);
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
   MirrorConfig config_;
@@ -49,9 +49,10 @@ class MirrorFilter final : public Method {
   Judge judge_;
   MirrorTrials trials_;
   std::vector<Mirror> mirrors_;
-  std::vector<Object> objects_;     // the own vehicle is the last
-  SourceMap sources_;               // these, and the movers
-  std::vector<Measured> measured_;  // the scan's usable detections, at their places
+  std::vector<Object> objects_;  // the own vehicle is the last
+  SourceMap sources_;            // these, and the movers
+  std::array<Kind, kMaxDetections> kinds_{};
+  std::vector<Measured> measured_;  // the scan's detections that are not left out, at their places
   std::array<std::uint32_t, kMaxTracks> track_of_object_{};
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   std::array<TrackBelief, kMaxTracks> beliefs_{}, beliefs_before_{};
