@@ -1,6 +1,9 @@
 // What a detection may be, by itself: a wall on the left, a car ahead, and what was detected of both.
 #include "services/ghost_filter/core/classify/judge.hpp"
 
+#include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -95,6 +98,38 @@ TEST_F(JudgeTest, TheImageIsAGhostBeyondDoubtAndTheCarIsNone) {
   EXPECT_GT(car.moving, 20.0 * (car.sum() - car.moving));
   EXPECT_GT(ghost.type2, 20.0 * (ghost.moving + ghost.stationary + ghost.clutter));
   EXPECT_GT(ghost.type2, ghost.type1);
+}
+
+TEST_F(JudgeTest, TheOrderOfMirrorsTellsNothing) {
+  const auto add_wall = [&](double offset_m, double existence) {
+    mirrors_.push_back(mirrors_.front());
+    mirrors_.back().curve.origin_m.y() = offset_m;
+    mirrors_.back().existence = existence;
+    mirrors_.back().beam = Beam(mirrors_.back(), sensor_);
+  };
+  add_wall(-20.0, 0.9);
+  add_wall(11.0, 0.6);
+  add_wall(-7.0, 0.1);  // hardly there
+  // Out by the wall on the right, back by that on the left, where the car's image is.
+  const Vector2d end(27.8, 2.0), back(27.8, 14.0), out(3.6, -40.0);
+  Measured by_both = measured(back, {0.0, 0.0}, -21.0);
+  const Vector2d d(by_both.direction.x(), -by_both.direction.y()), e = (end - out).normalized(), u(e.x(), -e.y());
+  by_both.range_m = 0.5 * (by_both.range_m + (end - out).norm());
+  by_both.position_m = sensor_ + by_both.range_m * by_both.direction;
+  by_both.rate_mps = 0.5 * ((d + e).dot(kVelocity) + (by_both.direction - u).dot(kOwn));
+  hear(of_car(), 0, 0);
+  const auto weigh_all = [&] {
+    begin();
+    return std::array{judge_.weigh(of_car(), 0), judge_.weigh(image(), 1), judge_.weigh(detour(), 2),
+                      judge_.weigh(by_both, 3)};
+  };
+  const auto before = weigh_all();
+  EXPECT_GT(before[1].type2, before[1].moving);
+  EXPECT_GT(before[2].type1, before[2].moving);
+  EXPECT_GT(before[3].type2, 3.0 * before[3].moving);
+  std::reverse(mirrors_.begin(), mirrors_.end());
+  const auto after = weigh_all();
+  for (std::size_t i = 0; i < before.size(); ++i) expect_same(before[i], after[i]);
 }
 
 TEST_F(JudgeTest, WhatIsLongerThanACarIsDetectedMoreOften) {

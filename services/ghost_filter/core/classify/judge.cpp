@@ -38,12 +38,16 @@ constexpr double kSlow_mps = 3.0, kLeastSlow = 0.3;
 constexpr double kNegligible = 1e-3;
 /// What is so much likelier a ghost than all else is one, by whatever way.
 constexpr double kBeyondDoubt = 20.0;
+/// What is so much likelier of type 2 than that needs no look whether it is likelier still of type 1, which takes most.
+constexpr double kOneTypeOnly = 200.0;
 
 }  // namespace
 
 Judge::Judge(const ClassConfig& config) : config_(config) {
   crossings_.reserve(kMaxReflectorSegments + kMaxObjects);
+  likely_.reserve(MirrorFan::kMaxMirrors);
   ways_.reserve(MirrorFan::kMaxMirrors);
+  sides_.reserve(MirrorFan::kMaxMirrors);
   walls_.reserve(kMostWallPairs);
   fronts_.reserve(kMostFronts);
   const Strength straight_back = strength_of_ghost(1, 1.0);
@@ -55,10 +59,14 @@ Judge::Judge(const ClassConfig& config) : config_(config) {
 void Judge::begin(const Surroundings& surroundings) {
   s_ = surroundings;
   fan_.build(s_.mirrors, s_.sensor_m);
-  ways_.clear();
+  likely_.clear();
   for (const Mirror& mirror : s_.mirrors) {
-    if (mirror.existence >= kLeastChance && ways_.size() < ways_.capacity()) ways_.emplace_back(mirror, s_.sensor_m);
+    if (mirror.existence >= kLeastChance && likely_.size() < likely_.capacity()) likely_.push_back(&mirror);
   }
+  std::sort(likely_.begin(), likely_.end(),
+            [](const Mirror* a, const Mirror* b) { return a->existence > b->existence; });
+  ways_.clear();
+  for (const Mirror* mirror : likely_) ways_.emplace_back(*mirror, s_.sensor_m);
   walls_are_found_ = false;
   crossings_.clear();
   kept_crossings_.clear();
@@ -97,6 +105,10 @@ void Judge::cross(const Measured& m, std::uint32_t but_object) {
     const double std = std::sqrt(square(sine * m.range_std_m) + square(cosine * m.range_m * m.azimuth_std_rad) +
                                  square(turn->offset_std_m) + square(0.1));
     crossings_.push_back({&mirror, *turn, below(depth / std)});
+  });
+  // The surest ones first: what they explain lets most of the others be left.
+  std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+    return a.turn.probability * a.beyond > b.turn.probability * b.beyond;
   });
 }
 
@@ -190,7 +202,7 @@ void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_obj
     if (densities.type2 > telling.enough) break;
   }
   pairs_left_of_scan_ -= most - pairs_left_;
-  // Of what is one beyond doubt only the likelier type matters.
+  if (densities.type2 > kOneTypeOnly * telling.enough) return;
   const double little = densities.type2 > telling.enough ? 1.0 : kLittle;
   densities.type1 = type1(m, index, but_object, std::max(telling.least, little * densities.type2));
   if (but_object == kNobody && densities.type1 + densities.type2 <= telling.enough && is_behind_alongside()) {

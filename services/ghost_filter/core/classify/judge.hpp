@@ -194,11 +194,18 @@ class Judge {
   static constexpr double kLittle = 0.1;
   /// Of mirrors being there: less is not followed.
   static constexpr double kLeastChance = 0.05;
-  static constexpr double kLeastPair = 0.1;  ///< of two
+  static constexpr double kLeastPair = 0.15;  ///< of two
   ClassConfig config_;
   Surroundings s_{};
   MirrorFan fan_;
-  std::vector<WaysBy> ways_;        // by the mirrors that are likely enough to be there
+  std::vector<const Mirror*> likely_;  // mirrors, the likeliest one first
+  std::vector<WaysBy> ways_;           // by them
+  /// A wall, and where the sensor is beside it.
+  struct Side {
+    const Mirror* mirror;
+    Eigen::Vector2d side_m;
+  };
+  std::vector<Side> sides_;
   std::vector<WaysBetween> walls_;  // that have the sensor between them, once they were asked for in the scan
   bool walls_are_found_ = false;
   std::vector<Crossing> crossings_;

@@ -182,9 +182,9 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
   const Eigen::Vector2d farthest_m = turn.point_m + m.range_m * d;
   for (const WaysBy& ways : ways_) {
     const Mirror& other = ways.mirror();
+    if (sure * other.existence < kLeastPair) break;  // those that follow are less likely
     if (&other == crossing.mirror || (but_object != kNobody && other.body == but_object) ||
-        sure * other.existence < kLeastPair || other.least_range_m > m.range_m ||
-        !other.beam.may_light(turn.point_m, farthest_m))
+        other.least_range_m > m.range_m || !other.beam.may_light(turn.point_m, farthest_m))
       continue;
     const double length = 2.0 * m.range_m - turn.distance_m;
     const auto way = ways.approach(turn.point_m, d, length);

@@ -18,7 +18,7 @@ constexpr double kSameSpot = 0.6;
 constexpr double kSpot_m = 0.2;  // how large a spot is
 constexpr double kFar = 3.0;     // standard deviations, beyond which another spot is not of the same vehicle
 constexpr double kLeastShown_mps = 1.0;
-constexpr double kLeastWall = 0.3;  // of two mirrors being there: waves go to and fro between walls
+constexpr double kLeastWall = 0.3;  // of each of two mirrors being there: waves go to and fro between walls
 /// Of a straight mirror's way: a bent one's may stretch so much more, or, where that is not known, so much.
 constexpr double kMargin = 1.2, kMostStretch = 10.0;
 constexpr double kMostStretchOfAny = std::max(kMostStretch, 2.0 * kMargin * kMostMetresPerM);
@@ -142,12 +142,13 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
     if (fronts_.empty()) return 0.0;
   }
   const Ahead in_all = of_all_fronts();
+  const double most = kMostStretchOfAny * in_all.most;
   double density = 0.0;
   for (const WaysBy& ways : ways_) {
     const Mirror& mirror = ways.mirror();
-    if (is_track ? mirror.body == but_object
-                 : !in_all.silent && mirror.existence * kMostStretchOfAny * in_all.most <= std::max(density, least))
-      continue;
+    // Of those that follow it is the less so.
+    if (!is_track && !in_all.silent && mirror.existence * most <= std::max(density, least)) break;
+    if (is_track && mirror.body == but_object) continue;
     // The way out and back is no shorter than to the mirror and back.
     if (mirror.least_range_m > m.range_m || !mirror.beam.may_light_before(m.position_m)) continue;
     const auto way = ways.approach(m.direction, 2.0 * m.range_m);
@@ -179,17 +180,19 @@ bool Judge::is_behind_alongside() const {
 void Judge::find_walls() {
   if (std::exchange(walls_are_found_, true)) return;
   walls_.clear();
-  const auto is_wall = [](const Mirror& mirror) { return is_long(mirror) && mirror.existence > kLeastWall; };
-  for (const Mirror& first : s_.mirrors) {
-    if (!is_wall(first)) continue;
-    const double first_m = first.curve.distance(s_.sensor_m);
-    for (const Mirror& second : s_.mirrors) {
+  sides_.clear();
+  for (const Mirror* const mirror : likely_) {
+    if (mirror->existence < kLeastWall) break;  // the likeliest ones come first
+    if (!is_long(*mirror)) continue;
+    const Eigen::Vector2d side_m = mirror->curve.distance(s_.sensor_m) * mirror->curve.normal();
+    for (const Side& other : sides_) {
+      if (mirror->existence * other.mirror->existence < kLeastPair || walls_.capacity() - walls_.size() < 2) break;
       // To be between them is to have them on different sides.
-      if (!is_wall(second) || walls_.size() == walls_.capacity() ||
-          first_m * second.curve.distance(s_.sensor_m) * first.curve.normal().dot(second.curve.normal()) >= 0.0)
-        continue;
-      walls_.emplace_back(first, second, s_.sensor_m);
+      if (side_m.dot(other.side_m) >= 0.0) continue;
+      walls_.emplace_back(*mirror, *other.mirror, s_.sensor_m);
+      walls_.emplace_back(*other.mirror, *mirror, s_.sensor_m);
     }
+    sides_.push_back({mirror, side_m});
   }
 }
 
