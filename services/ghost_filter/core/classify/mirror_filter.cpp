@@ -123,10 +123,6 @@ void MirrorFilter::cast_shadows() {
 
 void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] == Kind::kLeftOut) continue;
-    measured_[i].cell = map_.grid().fetch_at(odometry_.point_to_frame(measured_[i].position_m));
-  }
   // The scan itself counts: without it the first ghosts would come before any reflector.
   for (std::size_t i = 0; i < count; ++i) {
     if (kinds_[i] != Kind::kStationary) continue;
@@ -207,12 +203,8 @@ void MirrorFilter::judge_tracks() {
   }
 }
 
-void MirrorFilter::try_mirrors(std::size_t count) {
+void MirrorFilter::try_mirrors() {
   // From scan to scan an image hardly changes, so that turns lose little.
-  trials_.begin();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (kinds_[i] != Kind::kLeftOut) trials_.saw(measured_[i].direction, measured_[i].range_m);
-  }
   const MirrorTrials::Scan seen{from_.sensor_m, from_.sensor_velocity_mps, from_.mounting_std_rad, objects_, &odometry_,
                                 &movers_};
   const std::size_t reflectors = map_.reflectors().size();
@@ -279,9 +271,13 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     map_.clear();
     movers_.clear();
   }
+  trials_.begin();
   for (std::size_t i = 0; i < count; ++i) {
     kinds_[i] = kind_of(scan, i);
-    if (kinds_[i] != Kind::kLeftOut) measured_[i] = measured(scan, i, from_);
+    if (kinds_[i] == Kind::kLeftOut) continue;
+    measured_[i] = measured(scan, i, from_);
+    measured_[i].cell = map_.grid().fetch_at(odometry_.point_to_frame(measured_[i].position_m));
+    trials_.saw(measured_[i].direction, measured_[i].range_m);
   }
   predict_objects(scan);
   update_map(scan, count);
@@ -290,7 +286,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
                 &echoes_, &map_.grid()});
   gather_movers(scan, count);
   judge_tracks();
-  try_mirrors(count);
+  try_mirrors();
 
   verdicts_.clear();
   for (std::size_t i = 0; i < count; ++i) {

@@ -37,7 +37,7 @@ class MirrorFilter final : public Method {
   [[nodiscard]] bool is_on_moving(const Eigen::Vector2d& place_m) const;
   void gather_movers(const CorrectedScan& scan, std::size_t count);
   void judge_tracks();
-  void try_mirrors(std::size_t count);
+  void try_mirrors();
   void learn_strength(const Densities& densities, const Measured& measured);
   void write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const;
   MirrorConfig config_;

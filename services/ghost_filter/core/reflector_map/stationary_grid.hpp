@@ -66,7 +66,9 @@ class StationaryGrid {
   /// The same for one that is needed soon, which is fetched from memory meanwhile: the map is larger than the cache.
   [[nodiscard]] std::uint32_t fetch_at(const Eigen::Vector2d& position_m) const {
     const std::uint32_t index = index_at(position_m);
-    if (index != kUnclaimed) __builtin_prefetch(&cells_[index], 1);
+    if (index == kUnclaimed) return index;
+    __builtin_prefetch(&cells_[index], 1);
+    __builtin_prefetch(&links_[index], 1);
     return index;
   }
   /// Says of the cell at a position that it belongs to a reflector.
