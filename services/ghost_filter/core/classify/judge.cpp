@@ -104,7 +104,9 @@ void Judge::cross(const Measured& m, std::uint32_t but_object) {
     const double depth = (m.range_m - turn->distance_m) * sine;
     const double std = std::sqrt(square(sine * m.range_std_m) + square(cosine * m.range_m * m.azimuth_std_rad) +
                                  square(turn->offset_std_m) + square(0.1));
-    crossings_.push_back({&mirror, *turn, below(depth / std)});
+    const Crossing crossing{&mirror, *turn, below(depth / std)};
+    // What is not a number is no crossing, and has no place in an order.
+    if (crossing.turn.probability * crossing.beyond >= 0.0) crossings_.push_back(crossing);
   });
   // The surest ones first: what they explain lets most of the others be left.
   std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
