@@ -164,7 +164,8 @@ class Client:
         sock = sock or self.events
         end = time.monotonic() + seconds
         parts, received, shared = {}, [], []
-        while time.monotonic() < end:
+        # What had begun when the time was up gets another second to end.
+        while time.monotonic() < end + (1.0 if parts else 0.0):
             try:
                 datagram, sender = sock.recvfrom(65536)
             except BlockingIOError:
