@@ -106,12 +106,11 @@ void Judge::cross(const Measured& m, std::uint32_t but_object) {
                                  square(turn->offset_std_m) + square(0.1));
     const Crossing crossing{&mirror, *turn, below(depth / std)};
     // What is not a number is no crossing, and has no place in an order.
-    if (crossing.turn.probability * crossing.beyond >= 0.0) crossings_.push_back(crossing);
+    if (crossing.sure() >= 0.0) crossings_.push_back(crossing);
   });
   // The surest ones first: what they explain lets most of the others be left.
-  std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
-    return a.turn.probability * a.beyond > b.turn.probability * b.beyond;
-  });
+  std::sort(crossings_.begin(), crossings_.end(),
+            [](const Crossing& a, const Crossing& b) { return a.sure() > b.sure(); });
 }
 
 const StationaryGrid::Cell* Judge::known_still(const Measured& m) const {
@@ -205,6 +204,7 @@ void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_obj
   }
   pairs_left_of_scan_ -= most - pairs_left_;
   if (densities.type2 > kOneTypeOnly * telling.enough) return;
+  // Of what is a ghost beyond doubt only the likelier type matters.
   const double little = densities.type2 > telling.enough ? 1.0 : kLittle;
   densities.type1 = type1(m, index, but_object, std::max(telling.least, little * densities.type2));
   if (but_object == kNobody && densities.type1 + densities.type2 <= telling.enough && is_behind_alongside()) {
@@ -214,7 +214,7 @@ void Judge::ghosts(const Measured& m, std::uint32_t index, std::uint32_t but_obj
 
 void Judge::real(const Measured& m, std::uint32_t index, bool is_hidden, Densities& densities) const {
   double behind = 0.0;
-  for (const Crossing& crossing : crossings_) behind = std::max(behind, crossing.turn.probability * crossing.beyond);
+  for (const Crossing& crossing : crossings_) behind = std::max(behind, crossing.sure());
   of_objects(m, false, densities);
   const Recent recent = of_movers(m, index);
   const double above_db = m.rcs_dbsm - kUsualRcs_dbsm;

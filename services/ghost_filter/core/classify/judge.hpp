@@ -81,6 +81,7 @@ class Judge {
     const Mirror* mirror;
     Turn turn;
     double beyond;  ///< probability that the detection lies behind it, if it is there
+    [[nodiscard]] double sure() const { return turn.probability * beyond; }
   };
   /// What would have to be where for a detection to be a ghost of it: something at `place_m` whose velocity v makes
   /// the range rate over ground q·v + known.

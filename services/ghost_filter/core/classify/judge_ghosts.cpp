@@ -141,7 +141,7 @@ bool Judge::may_be_at(const Eigen::Vector2d& from_m, const Eigen::Vector2d& dire
 double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t index, std::uint32_t but_object,
                     double least) const {
   const Turn& turn = crossing.turn;
-  const double sure = turn.probability * crossing.beyond;
+  const double sure = crossing.sure();
   if (!(sure > 0.0)) return 0.0;
   const Eigen::Vector2d& d = turn.direction;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
@@ -173,7 +173,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
                            double least) {
   const Turn& turn = crossing.turn;
   const Eigen::Vector2d& d = turn.direction;
-  const double sure = turn.probability * crossing.beyond;
+  const double sure = crossing.sure();
   if (sure < kLeastPair) return 0.0;
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   const double share = kOtherMirror * config_.type2_per_object * sure;

@@ -40,7 +40,7 @@ void Judge::of_objects(const Measured& m, bool looks_still, Densities& densities
     for (const Crossing& crossing : crossings_) {
       const double sensor_side = crossing.mirror->curve.distance(s_.sensor_m);
       if (crossing.mirror->body == i || crossing.mirror->curve.distance(o.position_m) * sensor_side <= 0.0) continue;
-      seen *= 1.0 - (1.0 - kSeenThrough) * crossing.turn.probability * crossing.beyond;
+      seen *= 1.0 - (1.0 - kSeenThrough) * crossing.sure();
     }
     const RateDensity rates = rates_at(o, m.rate_mps, m.direction, rate_variance(m));
     const double above_db = m.rcs_dbsm - o.rcs_dbsm, doubt = config_.strength_doubt;
