@@ -15,6 +15,7 @@ struct Object {
   Eigen::Vector2d velocity_mps;
   double heading_rad;
   double length_m, width_m;
+  bool is_hidden = false;  ///< from all radars (hidden.hpp)
 
   /// Distance of a point from the object's box, 0 inside.
   [[nodiscard]] double distance_m(const Eigen::Vector2d& point) const {

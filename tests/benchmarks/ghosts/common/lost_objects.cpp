@@ -7,6 +7,7 @@ namespace boresight::bench {
 
 void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop::Object>& objects) {
   for (std::size_t o = 0; o < objects.size(); ++o) {
+    if (objects[o].is_hidden) continue;
     Second& second = seconds_[objects[o].id];
     ++second.scans;
     second.tracked += matching.track_of_object[o] != kNone ? 1 : 0;
@@ -16,8 +17,9 @@ void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop
 void TrackedObjects::add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth) {
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, truth.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const bool is_direct = truth[i].provenance == Provenance::kMoving && scan.provenance[i] == Provenance::kMoving;
-    const auto second = is_direct ? seconds_.find(truth[i].object_id) : seconds_.end();
+    const Provenance is = truth[i].provenance;
+    const bool is_direct = is == Provenance::kMoving || is == Provenance::kStationary;
+    const auto second = is_direct && scan.provenance[i] == is ? seconds_.find(truth[i].object_id) : seconds_.end();
     if (second != seconds_.end()) ++second->second.detections;
   }
 }

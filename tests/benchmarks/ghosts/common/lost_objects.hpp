@@ -18,7 +18,8 @@ using judge::kNone;
 using judge::match;
 using judge::Matching;
 
-/// In how many of the scans of a second each object had a confirmed track, and how many detections it had.
+/// In how many of those scans of a second in which it was not hidden each object had a confirmed track, and how many
+/// detections it had.
 class TrackedObjects {
  public:
   struct Second {
@@ -26,7 +27,8 @@ class TrackedObjects {
     [[nodiscard]] double share() const { return static_cast<double>(tracked) / static_cast<double>(scans); }
   };
   void add(const Matching& matching, const std::vector<closed_loop::Object>& objects);
-  /// Of an object's own detections, those that are told to be moving.
+  /// Of an object's own detections, those that are told to be what they are: moving, or, of what came to a stand,
+  /// stationary.
   void add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth);
   void clear() { seconds_.clear(); }
   [[nodiscard]] const std::map<std::uint32_t, Second>& seconds() const { return seconds_; }

@@ -9,6 +9,7 @@
 #include "tests/benchmarks/ghosts/common/changed_method.hpp"
 #include "tests/benchmarks/ghosts/common/truth_method.hpp"
 #include "tests/closed_loop/chain.hpp"
+#include "tests/simulator/judge/hidden.hpp"
 #include "tests/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
@@ -106,6 +107,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
   }
   std::vector<std::unique_ptr<Lane>> lanes;
   for (const NamedGhostMethod& method : methods) lanes.push_back(std::make_unique<Lane>(vehicle, method));
+  judge::LastSeen last_seen;
   double second_ends_s = 1.0;
   while (const simulator::Event* event = drive.next()) {
     if (!front.take(*event)) continue;
@@ -122,7 +124,8 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
       second_ends_s += 1.0;
     }
     const std::vector<DetectionTruth>& truth = *event->truth;
-    const std::vector<Object> objects = closed_loop::objects_at(drive, event->t_s);
+    std::vector<Object> objects = closed_loop::objects_at(drive, event->t_s);
+    last_seen.mark(event->t_s, truth, objects);
     perfect.take(*front.corrected, truth, objects);
     perfect.tracked.add_detections(*perfect.back.classified, truth);
     for (const auto& draw : by_chance) draw->take(*front.corrected, truth, objects);

@@ -58,6 +58,28 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   EXPECT_EQ(lost.of_object[kFirst].lost, 2u);
 }
 
+TEST(Tracks, AnObjectIsJudgedWhileItIsSeenMovingOrStanding) {
+  std::vector<Object> objects = {{kFirst, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
+  const auto tracks = std::make_unique<TrackList>();
+  tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
+  TrackedObjects tracked;
+  objects[0].is_hidden = true;
+  tracked.add(match(*tracks, 1, objects), objects);
+  EXPECT_TRUE(tracked.seconds().empty());
+  objects[0].is_hidden = false;
+  tracked.add(match(*tracks, 0, objects), objects);
+  EXPECT_EQ(tracked.seconds().at(kFirst).share(), 0.0);
+  const auto scan = std::make_unique<ClassifiedScan>();
+  scan->number_of_valid_detections = 3;
+  simulator::DetectionTruth moves, stands;
+  moves.provenance = scan->provenance[0] = Provenance::kMoving;
+  stands.provenance = scan->provenance[1] = Provenance::kStationary;
+  moves.object_id = stands.object_id = kFirst;
+  scan->provenance[2] = Provenance::kGhostType1;
+  tracked.add_detections(*scan, {moves, stands, stands});
+  EXPECT_EQ(tracked.seconds().at(kFirst).detections, 2u) << "one of the three is told wrong";
+}
+
 TEST(Tracks, AnObjectIsRatherLostIfItIsSoForOverHalfOfItsSeconds) {
   LostObjects lost;
   lost.of_object = {{1, {4, 2}}, {2, {3, 2}}, {3, {1, 1}}, {4, {9, 0}}};

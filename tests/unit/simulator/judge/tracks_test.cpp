@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "tests/simulator/judge/false_tracks.hpp"
+#include "tests/simulator/judge/hidden.hpp"
 
 namespace boresight::judge {
 namespace {
@@ -47,6 +48,35 @@ TEST_F(Tracks, BelongToTheNearestObjectAndToOneOnly) {
   // The car beside it has no track because another's is near.
   EXPECT_EQ(m.track_of_object, (std::vector<std::size_t>{kNone, 0, 1}));
   EXPECT_EQ(m.object_of_track, (std::vector<std::size_t>{1, 2, kNone}));
+}
+
+TEST_F(Tracks, BelongToWhatIsHiddenOnlyIfNothingThatIsSeenIsThere) {
+  objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6)};
+  add_track(7, 20.0f, 1.3f);
+  EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{0}));
+  objects_[0].is_hidden = true;
+  EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{1}));
+  objects_.pop_back();
+  EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{0}));
+}
+
+TEST(LastSeen, HidesWhatShowsNothingOfItsOwnForHalfASecond) {
+  std::vector<Object> objects = {{1, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8},
+                                 {2, {60.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
+  LastSeen last_seen;
+  const auto is_hidden_after = [&](double t_s, Provenance provenance) {
+    simulator::DetectionTruth truth;
+    truth.object_id = 1;
+    truth.provenance = provenance;
+    last_seen.mark(t_s, {truth}, objects);
+    EXPECT_TRUE(objects[1].is_hidden);
+    return objects[0].is_hidden;
+  };
+  EXPECT_TRUE(is_hidden_after(0.0, Provenance::kGhostType2)) << "an image is not seen of itself";
+  EXPECT_FALSE(is_hidden_after(0.1, Provenance::kMoving));
+  EXPECT_FALSE(is_hidden_after(0.6, Provenance::kGhostType2));
+  EXPECT_TRUE(is_hidden_after(0.7, Provenance::kGhostType2));
+  EXPECT_FALSE(is_hidden_after(0.8, Provenance::kStationary)) << "it came to a stand";
 }
 
 TEST_F(Tracks, LiveOnGhostsEvenCloseToTheirObject) {
