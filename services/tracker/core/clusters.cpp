@@ -77,8 +77,18 @@ void Clusterer::part(const ClassifiedScan& scan, std::span<const KnownPlace> kno
     are_several = are_several || (vehicle != known.size() && vehicle != whose_[k]);
     vehicle = whose_[k];
   }
+  if (!are_several && vehicle != known.size()) {
+    // What is of one vehicle alone is of one thing with what lies at it and is nobody's, but not with the next lane.
+    for (const std::uint32_t k : rest) {
+      if (whose_[k] != known.size()) continue;
+      if (is_beside(seen(scan, k), known[vehicle])) {
+        are_several = true;
+      } else {
+        whose_[k] = vehicle;
+      }
+    }
+  }
   for (std::size_t o = 0; o < known.size() && !rest.empty(); ++o) {
-    // What is of one vehicle alone is of one thing with what lies beside it.
     if (!known[o].is_small && !are_several) continue;
     const auto others = std::partition(rest.begin(), rest.end(), [&](auto k) { return whose_[k] == o; });
     const auto own = static_cast<std::size_t>(others - rest.begin());

@@ -1,6 +1,7 @@
 #include "services/tracker/core/owners.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/LU>
@@ -70,6 +71,16 @@ std::size_t vehicle_at(const Seen& seen, std::span<const KnownPlace> known) {
 std::size_t owner_of(const Seen& seen, std::span<const KnownPlace> known) {
   const std::size_t person = person_at(seen, known);
   return person < known.size() ? person : vehicle_at(seen, known);
+}
+
+bool is_beside(const Seen& seen, const KnownPlace& vehicle) {
+  constexpr double kHalfWidest_m = 1.3, kRough_m = 0.3;
+  constexpr double kOwnSpeed_mps = 0.15;  // in a jam lanes differ by little, but range rates are told to a tenth
+  const Eigen::Vector2d left(-vehicle.axis.y(), vehicle.axis.x());
+  const double off_line_m = std::abs(left.dot(seen.at_m - vehicle.position_m));
+  const double variance = seen.across_std_m * seen.across_std_m + left.dot(vehicle.position_covariance_m2 * left);
+  return off_line_m > kHalfWidest_m + kRough_m + std::sqrt(variance) &&
+         std::abs(seen.rate_mps - seen.sight.dot(vehicle.velocity_mps)) > kOwnSpeed_mps;
 }
 
 }  // namespace boresight::tracking

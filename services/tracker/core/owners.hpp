@@ -44,4 +44,8 @@ struct Seen {
 /// of a radar's range are nearer to each other than azimuths are sure, but in a jam each lane has a speed of its own.
 [[nodiscard]] std::size_t owner_of(const Seen& seen, std::span<const KnownPlace> known);
 
+/// Whether a detection is surely of something beside the vehicle: it lies farther from its middle line than vehicles
+/// are wide, however wide the box has been drawn by what is beside it, and moves otherwise than its body.
+[[nodiscard]] bool is_beside(const Seen& seen, const KnownPlace& vehicle);
+
 }  // namespace boresight::tracking

@@ -150,8 +150,24 @@ TEST(Clusterer, WhatIsSeenOfVehiclesSideBySideIsOfTheNearestBox) {
   ASSERT_EQ(clusters.size(), 2u);
   EXPECT_NEAR(clusters[0].position_m.y(), 2.7, 1e-6);
   EXPECT_NEAR(clusters[1].position_m.y(), 0.0, 1e-6);
-  // One alone takes nothing off what lies beside it: that may be of it.
-  EXPECT_EQ(clusterer.find(*scene.scan, {&left, 1}).size(), 1u);
+}
+
+TEST(Clusterer, WhatLiesBesideOneVehicleIsAnothersIfItMovesOtherwise) {
+  Scene scene;
+  scene.begin(kMillisecond);
+  // A truck's flank and, in the next lane, the rear of a car that no track is of yet.
+  for (const double x : {16.0, 18.0, 20.0}) scene.add({x, -2.4}, {1.2, 0.0});
+  for (const double y : {0.4, 1.0}) scene.add({17.8, y}, {1.6, 0.0});
+  Clusterer clusterer(Config{});
+  KnownPlace truck{{22.0, -3.6}, {1.0, 0.0}, {8.25, 1.25}, false, {1.2, 0.0}};
+  const auto clusters = clusterer.find(*scene.scan, {&truck, 1});
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_NEAR(clusters[0].position_m.y(), -2.4, 1e-6);
+  EXPECT_NEAR(clusters[1].position_m.y(), 0.7, 1e-6);
+  EXPECT_NEAR(clusters[1].range_rate_over_ground_mps, 1.6, 0.02);
+  // One alone takes nothing off what moves as it does: that may be of it.
+  truck.velocity_mps = {1.55, 0.0};
+  EXPECT_EQ(clusterer.find(*scene.scan, {&truck, 1}).size(), 1u);
 }
 
 TEST(Clusterer, RangeRatesOfAVehicleAlongsideAreThoseThatItsVelocityShows) {

@@ -48,6 +48,21 @@ TEST(Owner, IsNobodyOfWhatLiesTooFarOff) {
   EXPECT_EQ(owner_of(seen_at(97.8, 0.0, 1.5), {}), 0u);
 }
 
+TEST(Beside, IsWhatIsFartherOffThanVehiclesAreWideAndMovesOtherwise) {
+  const KnownPlace& car = kJam[kLeft];
+  // Its middle line is at 3.6 m; half of 2.6 m, a bit for what is rough, and a standard deviation of 1.02 m.
+  EXPECT_TRUE(is_beside(seen_at(97.8, 0.9, 1.5), car));
+  EXPECT_TRUE(is_beside(seen_at(97.8, 6.3, 1.5), car));
+  EXPECT_FALSE(is_beside(seen_at(97.8, 1.1, 1.5), car)) << "within the noise";
+  EXPECT_TRUE(is_beside(seen_at(97.8, 1.1, 1.5, 0.5), car)) << "azimuths that are known better";
+  EXPECT_FALSE(is_beside(seen_at(97.8, 0.9, 1.9), car)) << "moves as it does";
+  EXPECT_FALSE(is_beside(seen_at(110.0, 3.6, 1.5), car)) << "ahead";
+  KnownPlace drawn = car;
+  drawn.half_m.y() = 3.0;
+  EXPECT_TRUE(is_beside(seen_at(97.8, 0.9, 1.5), drawn)) << "a box that is wider than any vehicle";
+  EXPECT_FALSE(is_beside({{97.8, std::nan("")}, {1.0, 0.0}, 0.15, 1.0, 1.5, 0.05}, car));
+}
+
 TEST(Owner, IsTheSameInAnyOtherAxes) {
   const Eigen::Rotation2Dd turn(0.9);
   std::array<KnownPlace, 2> turned = kJam;

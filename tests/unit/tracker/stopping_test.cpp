@@ -24,9 +24,10 @@ TEST(Stand, TakesTheVelocityAway) {
 class Stopping : public testing::Test {
  protected:
   /// A car brakes to a stand in so long; then, at most, stationary detections are left of it, beside a wall or not.
-  /// `ahead_m`: where, from the middle of its rear. `wall_m`: where that begins and ends, from there.
+  /// `ahead_m`: where, from the middle of its rear. `wall_m`: where that begins and ends, from there; it lies along the
+  /// course or across.
   void drive(bool seen_standing, bool by_a_wall, double braking_s = 6.0, double ahead_m = 0.3,
-             const Eigen::Vector2d& wall_m = {-40.0, 40.0}) {
+             const Eigen::Vector2d& wall_m = {-40.0, 40.0}, bool across = false) {
     for (int i = 0; i < 160; ++i) {
       const double t = 0.05 * i, v = std::max(0.0, 8.0 * (1.0 - t / braking_s));
       x_ += 0.05 * v;
@@ -38,8 +39,10 @@ class Stopping : public testing::Test {
         scene_.add({x_ + ahead_m, 0.0}, {0.0, 0.0}, Provenance::kStationary);
       }
       scene_.scan->number_of_reflector_segments = by_a_wall ? 1 : 0;
-      const auto from = static_cast<float>(x_ + wall_m.x()), to = static_cast<float>(x_ + wall_m.y());
-      scene_.scan->reflector_segments[0] = {{from, 0.2F}, {to, 0.2F}, 0.1F, 100};
+      const auto x = static_cast<float>(x_), from = static_cast<float>(wall_m.x()), to = static_cast<float>(wall_m.y());
+      ReflectorSegment& wall = scene_.scan->reflector_segments[0];
+      wall = {{x + from, 0.2F}, {x + to, 0.2F}, 0.1F, 100};
+      if (across) wall = {{x + 0.2F, from}, {x + 0.2F, to}, 0.1F, 100};
       tracker_.step(*scene_.scan);
     }
     tracker_.write(*list_);
@@ -86,6 +89,17 @@ TEST_F(Stopping, AWallIsNoVehicleThatCameToAStand) {
 TEST_F(Stopping, AVehiclesOwnSideIsNoWall) {
   drive(true, true, 6.0, 0.3, {-2.3, 5.7});
   EXPECT_EQ(list_->number_of_confirmed_tracks, 1u);
+}
+
+// The map finds ends in steps of 4 m, and what a truck beside shows of a rear lengthens that, too.
+TEST_F(Stopping, AVehiclesOwnRearIsNoWall) {
+  drive(true, true, 6.0, 0.3, {-6.1, 1.9}, true);
+  EXPECT_EQ(list_->number_of_confirmed_tracks, 1u);
+}
+
+TEST_F(Stopping, AWallAcrossTheCourseIsNoVehicleEither) {
+  drive(true, true, 6.0, 0.3, {-40.0, 40.0}, true);
+  EXPECT_EQ(list_->number_of_tracks, 0u);
 }
 
 }  // namespace
