@@ -7,15 +7,15 @@
 
 #include "tests/closed_loop/chain.hpp"
 #include "tests/closed_loop/objects.hpp"
+#include "tests/simulator/judge/hidden.hpp"
+#include "tests/simulator/judge/matching.hpp"
 
 namespace boresight::closed_loop {
 
 /// Of the vehicle's centre from the ego vehicle: what four corner radars shall see.
 constexpr double kFarthest_m = 60.0;
-/// A track whose centre is this near to an object's box is that object's.
-constexpr double kNear_m = 3.0;
-/// An object that no radar had a detection of for so long is hidden, and no tracker can know of it.
-constexpr double kHidden_s = 0.5;
+using judge::kHidden_s;
+using judge::kNear_m;
 /// The alignment estimator, which here remembers nothing, takes over a second to find that a radar is 2.5° crooked;
 /// what such a radar makes up meanwhile is counted apart.
 constexpr double kAligned_s = 1.5;

@@ -8,14 +8,13 @@ namespace boresight::judge {
 Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<Object>& objects) {
   Matching out{std::vector<std::size_t>(objects.size(), kNone), std::vector<std::size_t>(number_of_tracks, kNone)};
   // A long vehicle's track may lie at either of its ends, so the box comes first; inside of it the middle decides.
-  // And what is hidden takes no track from what is seen beside it.
   std::vector<std::tuple<bool, double, double, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < number_of_tracks; ++k) {
     const Eigen::Vector2d place = place_of(tracks.tracks[k]);
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const double distance_m = objects[o].distance_m(place);
-      if (distance_m < kNear_m)
-        pairs.emplace_back(objects[o].is_hidden, distance_m, (objects[o].position_m - place).norm(), k, o);
+      if (!(distance_m < kNear_m)) continue;
+      pairs.emplace_back(objects[o].is_hidden, distance_m, (objects[o].position_m - place).norm(), k, o);
     }
   }
   std::sort(pairs.begin(), pairs.end());

@@ -78,6 +78,7 @@ TEST(Owner, IsTheSameInAnyOtherAxes) {
       other.at_m = turn * seen.at_m;
       other.sight = turn * seen.sight;
       EXPECT_EQ(owner_of(seen, kJam), owner_of(other, turned)) << y_m << " m, " << rate_mps << " m/s";
+      EXPECT_EQ(is_beside(seen, kJam[kLeft]), is_beside(other, turned[kLeft])) << y_m << " m, " << rate_mps << " m/s";
     }
   }
 }
