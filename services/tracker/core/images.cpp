@@ -61,19 +61,18 @@ bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, con
 
 }  // namespace
 
-double image_wait_s(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m,
-                    const Config& config) {
+ImageOf image_of(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m) {
   const View seen = view_of(track, sensor_m);
-  double wait_s = 0.0;
+  ImageOf kind = ImageOf::kNothing;
   for (const TrackedObject& other : tracks) {
     if (&other == &track || !may_be_image_of(track, seen, other, sensor_m)) continue;
-    wait_s = std::max(wait_s, config.confirm_image_age_s);
+    kind = ImageOf::kAny;
     const bool in_side = std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& vehicle) {
       return &vehicle != &track && &vehicle != &other && shows_in_side(vehicle, other, track, sensor_m);
     });
-    if (in_side) return std::max(wait_s, config.confirm_side_image_age_s);
+    if (in_side) return ImageOf::kSide;
   }
-  return wait_s;
+  return kind;
 }
 
 }  // namespace boresight::tracking

@@ -30,10 +30,14 @@ class TrackedObjects {
   /// Of an object's own detections, those that are told to be what they are: moving, or, of what came to a stand,
   /// stationary.
   void add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth);
-  void clear() { seconds_.clear(); }
+  void clear() { *this = {}; }
   [[nodiscard]] const std::map<std::uint32_t, Second>& seconds() const { return seconds_; }
+  /// Whether the object was in sight all through, for 90 % of the scans: what comes or goes may be had later or
+  /// shorter.
+  [[nodiscard]] bool is_in_sight(const Second& second) const { return 10 * second.scans >= 9 * scans_; }
 
  private:
+  std::size_t scans_ = 0;
   std::map<std::uint32_t, Second> seconds_;
 };
 

@@ -30,7 +30,8 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
                     what_lost = "seconds of objects lost to the filter";
   const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
                                  " last half a second, the longest has " +
-                                 std::to_string(faults.longest_ghost_track_scans) + " scans";
+                                 std::to_string(faults.longest_ghost_track_scans) + " scans; " +
+                                 std::to_string(faults.second_tracks) + " second tracks of objects";
   const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
                                std::to_string(faults.lost_though_told_seconds) +
                                " of those lost though at least 90 % of the object's detections were told right; " +
