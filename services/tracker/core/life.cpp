@@ -22,7 +22,8 @@ double image_wait_s(ImageOf image, double realness, const Config& config) {
     case ImageOf::kNothing:
       return 0.0;
     case ImageOf::kAny:
-      return std::max(config.confirm_age_s + kNextScan_s, (1.0 - realness) * config.confirm_image_age_s);
+      return std::min(config.confirm_image_age_s,
+                      std::max(config.confirm_age_s + kNextScan_s, (1.0 - realness) * config.confirm_image_age_s));
     case ImageOf::kSide:
       return config.confirm_side_image_age_s;
   }
