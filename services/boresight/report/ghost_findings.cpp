@@ -122,7 +122,6 @@ class Finder {
   }
   [[nodiscard]] GhostFindings finish() {
     out_.ghost_tracks = false_tracks_.long_ghost_tracks();
-    out_.second_tracks = false_tracks_.long_second_tracks();
     out_.other_false_tracks = false_tracks_.long_other_tracks();
     return std::move(out_);
   }

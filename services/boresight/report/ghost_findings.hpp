@@ -65,7 +65,6 @@ struct GhostFindings {
   std::uint64_t compared_scans = 0;           ///< of the scans that hold detections
   std::uint64_t unknown_scans = 0;  ///< the others of these: no scan of that time and number of detections in the truth
   std::vector<judge::GhostTrack> ghost_tracks;  ///< times are CLOCK_MONOTONIC
-  std::size_t second_tracks = 0;                ///< of objects that have another one
   std::size_t other_false_tracks = 0;           ///< of clutter, or of the stationary world
   /// Where most labels differ from the truth. It is always the first moments of a drive, when neither mirrors nor
   /// tracks are known, so that those are passed over here (and nowhere else).

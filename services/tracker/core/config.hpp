@@ -23,7 +23,7 @@ struct Config {
   std::size_t confirm_window = 6;         ///< … of n scans that could see the object
   double confirm_evidence = 3.0;          ///< and as many of those hits are real, by what the ghost filter says of them
   double confirm_age_s = 0.15;            ///< and this long after the first: several radars at one instant are one look
-  double confirm_image_age_s = 1.0;       ///< the same, times doubt, of what may be an image in an unknown mirror
+  double confirm_image_age_s = 1.0;       ///< the same of what may be another track's image in an unknown mirror
   double confirm_side_image_age_s = 2.0;  ///< the same of what lies where a tracked vehicle's side would show it
   double confirm_weak_age_s = 4.0;        ///< the same of what is weaker than anything as fast: it rather is an image
   double start_realness = 0.2;            ///< what is less likely real starts no track

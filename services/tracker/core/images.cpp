@@ -61,18 +61,19 @@ bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, con
 
 }  // namespace
 
-ImageOf image_of(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m) {
+double image_wait_s(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m,
+                    const Config& config) {
   const View seen = view_of(track, sensor_m);
-  ImageOf kind = ImageOf::kNothing;
+  double wait_s = 0.0;
   for (const TrackedObject& other : tracks) {
     if (&other == &track || !may_be_image_of(track, seen, other, sensor_m)) continue;
-    kind = ImageOf::kAny;
+    wait_s = std::max(wait_s, config.confirm_image_age_s);
     const bool in_side = std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& vehicle) {
       return &vehicle != &track && &vehicle != &other && shows_in_side(vehicle, other, track, sensor_m);
     });
-    if (in_side) return ImageOf::kSide;
+    if (in_side) return std::max(wait_s, config.confirm_side_image_age_s);
   }
-  return kind;
+  return wait_s;
 }
 
 }  // namespace boresight::tracking

@@ -26,26 +26,12 @@ Matrix36d measurement_matrix(const PositionRate& m) {
 
 constexpr double kStill_mps = 0.3;    // the direction of less is chance
 constexpr double kTurnLasts_s = 1.0;  // until it is straight on again, or turns the other way
-constexpr double kPerson_mps2 = 2.0;  // of who walks on, stops or turns, on foot or on a cycle
 
 /// Of a vehicle's acceleration across its course: on a circle of 10 m where it is slow. At speed nobody turns so; and
 /// at a walking pace places, not turns, still go to and fro.
 double across_std_mps2(double speed_mps) {
   constexpr double kCurvature_per_m = 0.1, kLeast_mps2 = 0.3, kMost_mps2 = 2.0;
   return std::clamp(kCurvature_per_m * speed_mps * speed_mps, kLeast_mps2, kMost_mps2);
-}
-
-/// Acceleration that does not last: in which directions (a projection), and its standard deviation.
-struct Fading {
-  Eigen::Matrix2d directions;
-  double std_mps2;
-};
-Fading fading(const KinematicState& state, Moves moves) {
-  if (moves == Moves::kAsPerson) return {Eigen::Matrix2d::Identity(), kPerson_mps2};
-  const double speed = state.mean.segment<2>(2).norm();
-  if (moves == Moves::kAnyWay || !(speed > kStill_mps)) return {Eigen::Matrix2d::Zero(), 0.0};
-  const Eigen::Vector2d course = state.mean.segment<2>(2) / speed, across(-course.y(), course.x());
-  return {across * across.transpose(), across_std_mps2(speed)};
 }
 
 /// Seconds until what brakes stands; what is predicted on from there would drive back. Infinity: it does not brake.
@@ -70,12 +56,15 @@ void predict(KinematicState& state, double dt, double jerk_std_mps3, const geome
   f.block<2, 2>(0, 2) = dt * eye;
   f.block<2, 2>(0, 4) = 0.5 * d2 * eye;
   f.block<2, 2>(2, 4) = dt * eye;
-  if (const Fading a = fading(state, moves); a.std_mps2 > 0.0) {
-    const double stays = std::exp(-dt / kTurnLasts_s), faster_s = kTurnLasts_s * (1.0 - stays);
-    jerk += (2.0 * a.std_mps2 * a.std_mps2 / kTurnLasts_s - jerk_std_mps3 * jerk_std_mps3) * a.directions;
-    f.block<2, 2>(0, 4) += (kTurnLasts_s * (dt - faster_s) - 0.5 * d2) * a.directions;
-    f.block<2, 2>(2, 4) += (faster_s - dt) * a.directions;
-    f.block<2, 2>(4, 4) -= (1.0 - stays) * a.directions;
+  if (const double speed = state.mean.segment<2>(2).norm(); moves == Moves::kAsVehicle && speed > kStill_mps) {
+    const Eigen::Vector2d course = state.mean.segment<2>(2) / speed, across(-course.y(), course.x());
+    const Eigen::Matrix2d side = across * across.transpose();
+    const double std = across_std_mps2(speed), stays = std::exp(-dt / kTurnLasts_s);
+    jerk += (2.0 * std * std / kTurnLasts_s - jerk_std_mps3 * jerk_std_mps3) * side;
+    const double faster_s = kTurnLasts_s * (1.0 - stays);
+    f.block<2, 2>(0, 4) += (kTurnLasts_s * (dt - faster_s) - 0.5 * d2) * side;
+    f.block<2, 2>(2, 4) += (faster_s - dt) * side;
+    f.block<2, 2>(4, 4) -= (1.0 - stays) * side;
   }
   q.block<2, 2>(0, 0) = d5 / 20.0 * jerk;
   q.block<2, 2>(0, 2) = q.block<2, 2>(2, 0) = d4 / 8.0 * jerk;

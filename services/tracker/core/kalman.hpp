@@ -32,14 +32,13 @@ struct PositionRate {
   Eigen::Vector2d line_of_sight;  ///< from the sensor: unit vector, or the mean of several
 };
 
-/// What may change the acceleration: anything, in Report D's model; who drives a vehicle gives gas and brakes along its
-/// course, but across it nothing but a turn accelerates, and hardly at all what is slow. People and cycles go any way,
-/// but soon have the speed that they wanted.
-enum class Moves { kAnyWay, kAsVehicle, kAsPerson };
+/// What may change the acceleration: people go any way; who drives a vehicle gives gas and brakes along its course, but
+/// across it nothing but a turn accelerates, and hardly at all what is slow.
+enum class Moves { kAnyWay, kAsVehicle };
 
 /// Predicts over `elapsed_s` ≥ 0 with white jerk of spectral density jerk_std², then moves the state to the new
 /// vehicle frame; all but the heading (predict_heading). What brakes comes to a stand and does not drive back. Across a
-/// vehicle's course, and of people any way, the acceleration is a Gauss–Markov process of a second (Singer's model).
+/// vehicle's course the acceleration is a Gauss–Markov process of a second (Singer's model).
 void predict(KinematicState& state, double elapsed_s, double jerk_std_mps3, const geometry::EgoStep& ego,
              Moves moves = Moves::kAnyWay);
 

@@ -13,26 +13,9 @@ std::uint32_t window_mask(std::size_t scans) {
   return scans >= TrackedObject::kLongestWindow ? ~0u : (1u << scans) - 1u;
 }
 
-/// How old a track has to be that may be an image; `realness` of its detections in the mean. What the ghost filter is
-/// sure is real need not wait for a mirror that nobody knows. But of the sides of vehicles the filter knows what the
-/// tracks know, and one that came at the same time has to be confirmed first.
-double image_wait_s(ImageOf image, double realness, const Config& config) {
-  constexpr double kNextScan_s = 0.05;
-  switch (image) {
-    case ImageOf::kNothing:
-      return 0.0;
-    case ImageOf::kAny:
-      return std::min(config.confirm_image_age_s,
-                      std::max(config.confirm_age_s + kNextScan_s, (1.0 - realness) * config.confirm_image_age_s));
-    case ImageOf::kSide:
-      return config.confirm_side_image_age_s;
-  }
-  return 0.0;
-}
-
 }  // namespace
 
-void count_scan(TrackedObject& track, const Config& config, ImageOf image) {
+void count_scan(TrackedObject& track, const Config& config, double image_wait_s) {
   constexpr double kDetection = 0.8, kHitGain = 0.5;
   const bool hit = track.detections > 0;
   track.history = track.history << 1 | (hit ? 1u : 0u);
@@ -44,11 +27,10 @@ void count_scan(TrackedObject& track, const Config& config, ImageOf image) {
   const std::uint32_t recent = track.history & window_mask(config.confirm_window);
   const auto window = track.evidence.begin() + static_cast<std::ptrdiff_t>(config.confirm_window);
   const double evidence = std::accumulate(track.evidence.begin(), window, 0.0);
-  const int hits = std::popcount(recent);
-  const bool often = hits >= static_cast<int>(config.confirm_hits);
+  const bool often = std::popcount(recent) >= static_cast<int>(config.confirm_hits);
   const double speed_mps = track.state.mean.segment<2>(2).norm();
   const bool weak = track.extent.is_too_weak(speed_mps);
-  double wait_s = std::max(config.confirm_age_s, image_wait_s(image, evidence / std::max(1, hits), config));
+  double wait_s = std::max(config.confirm_age_s, image_wait_s);
   if (weak) wait_s = std::max(wait_s, config.confirm_weak_age_s);
   const bool long_enough = track.age_s > wait_s - 1e-6;
   if (often && long_enough && evidence >= config.confirm_evidence) track.confirmed = true;

@@ -2,14 +2,13 @@
 #pragma once
 
 #include "services/tracker/core/config.hpp"
-#include "services/tracker/core/images.hpp"
 #include "services/tracker/core/tracked_object.hpp"
 
 namespace boresight::tracking {
 
 /// Takes a scan that showed the object, or could have: its history, its existence, and whether it is confirmed by now.
-/// What may be another one's image waits until it is.
-void count_scan(TrackedObject& track, const Config& config, ImageOf image);
+/// `image_wait_s`: until it is confirmed, as it may be another one's image (images.hpp).
+void count_scan(TrackedObject& track, const Config& config, double image_wait_s);
 
 /// Whether it was missed too often or for too long, can no longer be confirmed, or is not a number any more.
 [[nodiscard]] bool is_dead(const TrackedObject& track, const Config& config);

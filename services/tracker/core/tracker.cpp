@@ -150,7 +150,7 @@ void Tracker::predict_all(double elapsed_s, const ScanGeometry& geometry) {
   const double turn_std_radps = stated > 0.0 ? stated : vehicle_.ego.yaw_rate_std_radps;
   for (TrackedObject& track : tracks_) {
     predict(track.state, elapsed_s, config_.jerk_std_mps3, ego,
-            track.extent.is_small ? Moves::kAsPerson : Moves::kAsVehicle);
+            track.extent.is_small ? Moves::kAnyWay : Moves::kAsVehicle);
     blur_own_turn(track.state, turn_std_radps * turn_std_radps * kStays_s * elapsed_s);
     if (track.state.heading.known) predict_heading(track.state, elapsed_s, turn);
     track.extent.heading_rad = geometry::wrap_angle(track.extent.heading_rad - turn);
@@ -310,23 +310,16 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
   const double centre =
       config_.start_position_std_m * config_.start_position_std_m + config_.centre_std_m * config_.centre_std_m;
   track.state.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2 + centre * Eigen::Matrix2d::Identity();
-  if (cluster.number_on_outline > 0) track.extent.hear(cluster.strongest_dbsm, track.state.mean.segment<2>(2).norm());
-  // The range rate says the speed along the line of sight; across it nothing is known, but of people and cycles that
-  // they are slow. From far away noise would else make those run who are seen seldom.
-  constexpr double kPerson_mps = 2.5, kPerson_mps2 = 1.0;
-  double speed_std_mps = config_.start_speed_std_mps, acceleration_std_mps2 = config_.start_acceleration_std_mps2;
-  if (track.extent.is_small) {
-    speed_std_mps = std::min(speed_std_mps, kPerson_mps);
-    acceleration_std_mps2 = std::min(acceleration_std_mps2, kPerson_mps2);
-  }
+  // The range rate says the speed along the line of sight; across it nothing is known.
   const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
-  const double across = speed_std_mps * speed_std_mps;
+  const double across = config_.start_speed_std_mps * config_.start_speed_std_mps;
   track.state.covariance.block<2, 2>(2, 2) =
       (cluster.range_rate_variance + config_.range_rate_std_mps * config_.range_rate_std_mps) * u * u.transpose() +
       across * v * v.transpose();
-  const double acceleration = acceleration_std_mps2 * acceleration_std_mps2;
+  const double acceleration = config_.start_acceleration_std_mps2 * config_.start_acceleration_std_mps2;
   track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
   track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
+  if (cluster.number_on_outline > 0) track.extent.hear(cluster.strongest_dbsm, track.state.mean.segment<2>(2).norm());
   track.state.mean.head<2>() = cluster.position_m;
   if (!track.extent.is_small) {
     // What is seen is of the faces.
@@ -349,7 +342,7 @@ void Tracker::judge(const ClassifiedScan& scan) {
   for (TrackedObject& track : tracks_) {
     const bool could_see = track.detections > 0 || (radar != nullptr && can_see(*radar, scan.geometry, track, tracks_,
                                                                                 config_.blind_range_rate_mps));
-    if (could_see) count_scan(track, config_, track.confirmed ? ImageOf::kNothing : image_of(track, tracks_, sensor));
+    if (could_see) count_scan(track, config_, track.confirmed ? 0.0 : image_wait_s(track, tracks_, sensor, config_));
   }
   std::erase_if(tracks_, [this](const TrackedObject& track) { return is_dead(track, config_); });
 }

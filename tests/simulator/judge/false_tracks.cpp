@@ -20,46 +20,35 @@ void FalseTracks::add(double t_s, const ClassifiedScan& scan, const std::vector<
          : is == Provenance::kMoving                                    ? moving
                                                                         : others);
     }
-    Life& life = lives_[track.tracking_id];
-    const std::size_t all = ghosts + moving + others;
-    if (2 * ghosts > all) {
-      GhostTrack& its = life.on_ghosts;
-      if (its.scans++ == 0) its.since_s = t_s;
-      its.tracking_id = track.tracking_id;
+    if (2 * ghosts > ghosts + moving + others) {
+      GhostTrack& its =
+          on_ghosts_.try_emplace(track.tracking_id, GhostTrack{track.tracking_id, 0, t_s, t_s, 0.0, 0.0}).first->second;
+      ++its.scans;
       its.until_s = t_s;
       its.x_vehicle_m = track.position_vehicle_m[0];
       its.y_vehicle_m = track.position_vehicle_m[1];
     }
-    if (2 * moving > all) ++life.on_moving;
-    if (2 * others > all) ++life.on_others;
+    if (2 * others > ghosts + moving + others) ++on_others_[track.tracking_id];
   }
 }
 
 std::vector<GhostTrack> FalseTracks::long_ghost_tracks() const {
   std::vector<GhostTrack> tracks;
-  for (const auto& [id, life] : lives_) {
-    if (life.on_ghosts.scans > kLong_scans && !life.is_second()) tracks.push_back(life.on_ghosts);
+  for (const auto& [id, track] : on_ghosts_) {
+    if (track.scans > kLong_scans) tracks.push_back(track);
   }
   return tracks;
 }
 
 std::size_t FalseTracks::longest_ghost_track_scans() const {
   std::size_t longest = 0;
-  for (const auto& [id, life] : lives_) {
-    if (!life.is_second()) longest = std::max(longest, life.on_ghosts.scans);
-  }
+  for (const auto& [id, track] : on_ghosts_) longest = std::max(longest, track.scans);
   return longest;
 }
 
-std::size_t FalseTracks::long_second_tracks() const {
-  return static_cast<std::size_t>(std::count_if(lives_.begin(), lives_.end(), [](const auto& entry) {
-    return entry.second.on_moving > kLong_scans && entry.second.is_second();
-  }));
-}
-
 std::size_t FalseTracks::long_other_tracks() const {
-  return static_cast<std::size_t>(std::count_if(
-      lives_.begin(), lives_.end(), [](const auto& entry) { return entry.second.on_others > kLong_scans; }));
+  return static_cast<std::size_t>(std::count_if(on_others_.begin(), on_others_.end(),
+                                                [](const auto& entry) { return entry.second > kLong_scans; }));
 }
 
 }  // namespace boresight::judge

@@ -26,26 +26,19 @@ class FalseTracks {
 
   /// A track counts as living on ghosts in a scan in which it is confirmed, has detections, is no object's
   /// (matching.hpp), and most of what lies within kEvidence_m of its box and was told to be moving is a ghost in truth.
-  /// If it is rather what moves itself, the track is a second one of that.
   static constexpr double kEvidence_m = 2.0;
   void add(double t_s, const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
            const TrackList& tracks, const Matching& matching);
 
-  /// That lived on ghosts for more than kLong_scans scans, in a row or not, and not longer on what moves itself.
+  /// That lived on ghosts for more than kLong_scans scans, in a row or not.
   [[nodiscard]] std::vector<GhostTrack> long_ghost_tracks() const;
   [[nodiscard]] std::size_t longest_ghost_track_scans() const;
-  /// The number of those that lived longer on what moves itself, for more than kLong_scans scans.
-  [[nodiscard]] std::size_t long_second_tracks() const;
   /// The number of those of what is neither a ghost nor moving: clutter, or the stationary world.
   [[nodiscard]] std::size_t long_other_tracks() const;
 
  private:
-  struct Life {
-    GhostTrack on_ghosts{};
-    std::size_t on_moving = 0, on_others = 0;  ///< scans
-    [[nodiscard]] bool is_second() const { return on_moving > on_ghosts.scans; }
-  };
-  std::map<std::uint32_t, Life> lives_;  // by track
+  std::map<std::uint32_t, GhostTrack> on_ghosts_;
+  std::map<std::uint32_t, std::size_t> on_others_;  // scans
 };
 
 }  // namespace boresight::judge

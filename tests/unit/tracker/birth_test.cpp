@@ -81,10 +81,10 @@ TEST(TrackerBirth, WhoIsTakenForAPersonAndOutrunsThemHasToWaitAfterAll) {
   EXPECT_NEAR(confirmed_s, 4.0, 0.06);
 }
 
-/// Beside a car of 10 dBsm: seconds until something that comes with it is confirmed, over there, with the velocity; a
-/// ghost by so much, as the ghost filter has it. `truck`: one drives behind the car in the next lane, at its speed.
+/// Beside a car of 10 dBsm: seconds until something that comes with it is confirmed, over there, with the velocity.
+/// `truck`: one drives behind the car in the next lane, at its speed.
 double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector2d& velocity_mps, float rcs_dbsm,
-                            double ghost_probability, bool truck = false) {
+                            bool truck = false) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
@@ -94,8 +94,7 @@ double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector
     scene.scan->fields |= scan_field::kRcs;
     scene.add({40.0 + 15.0 * t, 0.0}, {15.0, 0.0});
     scene.scan->rcs_dbsm[0] = 10.0F;
-    scene.add(Eigen::Vector2d(40.0, 0.0) + beside_m + t * velocity_mps, velocity_mps, Provenance::kMoving,
-              ghost_probability);
+    scene.add(Eigen::Vector2d(40.0, 0.0) + beside_m + t * velocity_mps, velocity_mps);
     scene.scan->rcs_dbsm[1] = rcs_dbsm;
     if (truck) {
       // Its flank, 2.4 m beside the car's middle.
@@ -113,21 +112,14 @@ double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector
 
 TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
   const Eigen::Vector2d along(15.0, 0.0);
-  constexpr double kDoubt = 0.4;
-  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F, kDoubt), 0.4, 1e-6) << "an image, or a weak car";
-  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F, 0.0), 0.2, 1e-6) << "no image, the ghost filter is sure";
-  for (const double doubt : {0.0, kDoubt}) {
-    EXPECT_NEAR(seconds_beside_a_car({0.5, 4.8}, along, 0.0F, doubt, true), 2.0, 1e-6) << "an image in a truck's flank";
-  }
-  EXPECT_NEAR(seconds_beside_a_car({0.5, -4.8}, along, 0.0F, kDoubt, true), 0.4, 1e-6)
-      << "not where that would show it";
-  // Of as much doubt it takes five scans to be enough evidence.
-  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 9.0F, kDoubt), 0.2, 1e-6) << "as strong as the other one";
-  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, {12.0, 0.0}, 0.0F, 0.0), 0.15, 1e-6) << "moves otherwise";
-  EXPECT_NEAR(seconds_beside_a_car({-6.0, 6.0}, along, 0.0F, 0.0), 0.15, 1e-6)
-      << "nothing mirrors to where it is nearer";
-  EXPECT_NEAR(seconds_beside_a_car({14.0, 6.0}, along, 0.0F, 0.0), 0.15, 1e-6) << "a detour that no lane makes";
-  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, std::numeric_limits<float>::quiet_NaN(), 0.0), 0.15, 1e-6)
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 0.0F), 1.0, 1e-6) << "an image, or a weak car in the next lane";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 4.8}, along, 0.0F, true), 2.0, 1e-6) << "an image in a truck's flank";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, -4.8}, along, 0.0F, true), 1.0, 1e-6) << "not where that would show it";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, 9.0F), 0.15, 1e-6) << "as strong as the other one";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, {12.0, 0.0}, 0.0F), 0.15, 1e-6) << "moves otherwise";
+  EXPECT_NEAR(seconds_beside_a_car({-6.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "nothing mirrors to where it is nearer";
+  EXPECT_NEAR(seconds_beside_a_car({14.0, 6.0}, along, 0.0F), 0.15, 1e-6) << "a detour that no lane makes";
+  EXPECT_NEAR(seconds_beside_a_car({0.5, 6.0}, along, std::numeric_limits<float>::quiet_NaN()), 0.15, 1e-6)
       << "strength not measured";
 }
 

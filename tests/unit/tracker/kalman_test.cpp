@@ -83,7 +83,7 @@ TEST(Kalman, AVehiclesAccelerationAcrossFadesAndTwoShortStepsAreOneLong) {
 }
 
 TEST(Kalman, AcrossItsCourseAVehicleAcceleratesNoMoreThanATurnDoes) {
-  // On a circle of 10 m at 3 m/s: 0.9 m/s². Along it nothing bounds the acceleration.
+  // On a circle of 10 m at 3 m/s: 0.9 m/s². Along it nothing bounds the acceleration, nor that of people at all.
   for (const Moves moves : {Moves::kAsVehicle, Moves::kAnyWay}) {
     KinematicState s = some_state();
     for (int i = 0; i < 400; ++i) {
@@ -94,21 +94,6 @@ TEST(Kalman, AcrossItsCourseAVehicleAcceleratesNoMoreThanATurnDoes) {
     EXPECT_GT(along, 8.0);
     EXPECT_NEAR(across, moves == Moves::kAsVehicle ? 0.9 : along, 0.1);
   }
-}
-
-TEST(Kalman, PeopleAccelerateAnyWayButNotForLong) {
-  KinematicState s = some_state();
-  s.mean << 20.0, -4.0, 1.0, 0.0, 0.5, 0.8;
-  predict(s, 0.5, 3.0, geometry::EgoStep{}, Moves::kAsPerson);
-  EXPECT_NEAR(s.mean(4), 0.5 * std::exp(-0.5), 1e-9);
-  EXPECT_NEAR(s.mean(5), 0.8 * std::exp(-0.5), 1e-9);
-  EXPECT_NEAR(s.mean(3), 0.8 * (1.0 - std::exp(-0.5)), 1e-9);
-  for (int i = 0; i < 400; ++i) {
-    s.mean << 20.0, -4.0, 1.0, 0.0, 0.0, 0.0;
-    predict(s, 0.02, 3.0, geometry::EgoStep{}, Moves::kAsPerson);
-  }
-  EXPECT_NEAR(std::sqrt(s.covariance(4, 4)), 2.0, 0.05);
-  EXPECT_NEAR(std::sqrt(s.covariance(5, 5)), 2.0, 0.05);
 }
 
 TEST(Kalman, AVehicleGoingAnyOtherWayIsPredictedAlike) {

@@ -36,9 +36,7 @@ std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& tim
   std::string text = fmt::format(
       "<h3>Tracks of ghosts</h3>\n<p class=\"faint\">A confirmed track lives on ghosts in a scan if it is no object's "
       "(nearest pairs within 3 m of a true box) and most of what was told to be moving within {:.0f} m of its box is a "
-      "ghost in truth. Counted are those that did so in more than {} scans and not in more on what moves itself: such "
-      "a "
-      "one is an object's second track. Of {} track lists.</p>\n",
+      "ghost in truth. Counted are those that did so in more than {} scans, of {} track lists.</p>\n",
       judge::FalseTracks::kEvidence_m, judge::FalseTracks::kLong_scans, ghosts.track_lists);
   if (ghosts.track_lists == 0) return text + "<p>No track list is in the record.</p>\n";
   if (ghosts.ghost_tracks.empty()) {
@@ -57,10 +55,8 @@ std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& tim
     }
     text += "</table>\n<p>";
   }
-  return text + fmt::format(
-                    " Second tracks of objects: {}. False tracks of another kind, of clutter or of what stands still: "
-                    "{}.</p>\n",
-                    ghosts.second_tracks, ghosts.other_false_tracks);
+  return text + fmt::format(" False tracks of another kind, of clutter or of what stands still: {}.</p>\n",
+                            ghosts.other_false_tracks);
 }
 
 }  // namespace

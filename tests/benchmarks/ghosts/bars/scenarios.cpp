@@ -62,8 +62,7 @@ void scenarios(const Options& options, Report& report) {
           ": % of moving told to be moving, % of ghosts told to be ghosts; "
           "type 1 apart: % of type 1 that lie over 0.5 m from their object's box, and of these told to be ghosts",
       {"scenario", "method", "moving", "stationary", "type 1", "type 1 apart", "of these", "type 2",
-       "clutter not moving", "moving left out", "ghost tracks", "second tracks", "other false tracks",
-       "lost object seconds"},
+       "clutter not moving", "moving left out", "ghost tracks", "other false tracks", "lost object seconds"},
       {}};
   std::vector<std::vector<Outcome>> together(methods.size());
   for (const std::string& scenario : simulator::scenario_names()) {
@@ -80,8 +79,8 @@ void scenarios(const Options& options, Report& report) {
                             fixed(percent_told_ghost(mine, Provenance::kGhostType2).median, 2),
                             fixed(percent_not_moving(mine, Provenance::kClutter).median, 2),
                             fixed(percent_left_out(mine, Provenance::kMoving).median, 2),
-                            std::to_string(faults.ghost_tracks), std::to_string(faults.second_tracks),
-                            std::to_string(faults.other_tracks), std::to_string(faults.lost_seconds)});
+                            std::to_string(faults.ghost_tracks), std::to_string(faults.other_tracks),
+                            std::to_string(faults.lost_seconds)});
       if (std::find(kFive.begin(), kFive.end(), scenario) == kFive.end()) continue;
       report.add(confusion_table(scenario + "_" + methods[m].name,
                                  scenario + ", " + methods[m].name + ": % of each truth, median over " + how, mine));

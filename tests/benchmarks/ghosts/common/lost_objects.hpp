@@ -30,14 +30,10 @@ class TrackedObjects {
   /// Of an object's own detections, those that are told to be what they are: moving, or, of what came to a stand,
   /// stationary.
   void add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth);
-  void clear() { *this = {}; }
+  void clear() { seconds_.clear(); }
   [[nodiscard]] const std::map<std::uint32_t, Second>& seconds() const { return seconds_; }
-  /// Whether the object was in sight all through, for 90 % of the scans: what comes or goes may be had later or
-  /// shorter.
-  [[nodiscard]] bool is_in_sight(const Second& second) const { return 10 * second.scans >= 9 * scans_; }
 
  private:
-  std::size_t scans_ = 0;
   std::map<std::uint32_t, Second> seconds_;
 };
 

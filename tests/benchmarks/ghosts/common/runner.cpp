@@ -147,7 +147,6 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
                    [](const auto& draw) { return draw->lost.lost.size(); });
     lane->out.long_ghost_tracks = lane->false_tracks.long_ghost_tracks();
     lane->out.longest_ghost_track_scans = lane->false_tracks.longest_ghost_track_scans();
-    lane->out.long_second_tracks = lane->false_tracks.long_second_tracks();
     lane->out.long_other_tracks = lane->false_tracks.long_other_tracks();
     outcomes.push_back(lane->out);
   }

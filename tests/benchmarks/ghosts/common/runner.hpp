@@ -40,8 +40,7 @@ struct Outcome {
   std::uint64_t scans = 0;
   std::vector<GhostTrack> long_ghost_tracks;
   std::size_t longest_ghost_track_scans = 0;
-  std::size_t long_second_tracks = 0;  ///< of an object that has another one
-  std::size_t long_other_tracks = 0;   ///< of clutter or the stationary world
+  std::size_t long_other_tracks = 0;  ///< of clutter or the stationary world
 };
 
 /// One scan with what a method made of it.

@@ -68,7 +68,6 @@ double median_count(const std::vector<Outcome>& outcomes, Provenance truth) {
 TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
   ghost_tracks += other.ghost_tracks;
   longest_ghost_track_scans = std::max(longest_ghost_track_scans, other.longest_ghost_track_scans);
-  second_tracks += other.second_tracks;
   other_tracks += other.other_tracks;
   object_seconds += other.object_seconds;
   lost_seconds += other.lost_seconds;
@@ -89,7 +88,6 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
     });
     sum += {.ghost_tracks = o.long_ghost_tracks.size(),
             .longest_ghost_track_scans = o.longest_ghost_track_scans,
-            .second_tracks = o.long_second_tracks,
             .other_tracks = o.long_other_tracks,
             .object_seconds = o.lost.object_seconds,
             .lost_seconds = o.lost.lost.size(),

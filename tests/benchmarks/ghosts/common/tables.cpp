@@ -27,31 +27,26 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
                   Report& report) {
   const TrackFaults faults = track_faults(outcomes);
   const std::string what_tracks = "ghost tracks of over five scans",
-                    what_objects = "objects lost to the filter for most of their time",
-                    what_lost = "seconds of objects lost to the filter (own bar)";
+                    what_lost = "seconds of objects lost to the filter";
   const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
                                  " last half a second, the longest has " +
-                                 std::to_string(faults.longest_ghost_track_scans) + " scans; " +
-                                 std::to_string(faults.second_tracks) + " second tracks of objects";
+                                 std::to_string(faults.longest_ghost_track_scans) + " scans";
   const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
                                std::to_string(faults.lost_though_told_seconds) +
                                " of those lost though at least 90 % of the object's detections were told right; " +
+                               std::to_string(faults.lost_objects) + " of " + std::to_string(faults.objects) +
+                               " objects are lost for over half of their seconds; " +
                                std::to_string(faults.gained_seconds) + " the other way; by chance " +
                                std::to_string(faults.lost_by_chance.least()) + " to " +
                                std::to_string(faults.lost_by_chance.most());
-  const std::string how_objects = how + ", sum; of " + std::to_string(faults.objects) +
-                                  " that perfect labels have for a second or more, in over half of those seconds";
-  const auto judge_none = [&](const std::string& what, std::size_t figure, const std::string& how_counted) {
-    const auto value = static_cast<double>(figure);
-    if (judged) {
-      report.at_most(group, what, value, 0.0, "", how_counted);
-    } else {
-      report.beside(group, what, value, "", how_counted);
-    }
-  };
-  judge_none(what_tracks, faults.ghost_tracks, how_tracks);
-  judge_none(what_objects, faults.lost_objects, how_objects);
-  judge_none(what_lost, faults.lost_seconds, how_lost);
+  const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_seconds);
+  if (judged) {
+    report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);
+    report.at_most(group, what_lost, lost, 0.0, "", how_lost);
+  } else {
+    report.beside(group, what_tracks, tracks, "", how_tracks);
+    report.beside(group, what_lost, lost, "", how_lost);
+  }
 }
 
 }  // namespace boresight::bench

@@ -80,33 +80,6 @@ TEST(Tracks, AnObjectIsJudgedWhileItIsSeenMovingOrStanding) {
   EXPECT_EQ(tracked.seconds().at(kFirst).detections, 2u) << "one of the three is told wrong";
 }
 
-TEST(Tracks, ASecondInWhichAnObjectCameIntoSightIsNotJudged) {
-  std::vector<Object> objects = {{kFirst, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
-  const auto tracks = std::make_unique<TrackList>();
-  tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
-  const auto scan = std::make_unique<ClassifiedScan>();
-  scan->number_of_valid_detections = 1;
-  scan->provenance[0] = Provenance::kMoving;
-  simulator::DetectionTruth moves;
-  moves.provenance = Provenance::kMoving;
-  moves.object_id = kFirst;
-  const auto second_with = [&](int share, int hidden) {
-    TrackedObjects tracked;
-    for (int i = 0; i < 10; ++i) {
-      objects[0].is_hidden = i < hidden;
-      tracked.add(match(*tracks, i < share ? 1 : 0, objects), objects);
-    }
-    tracked.add_detections(*scan, {moves});
-    return tracked;
-  };
-  LostObjects lost;
-  lost.add_second(1.0, second_with(10, 2), second_with(0, 2));
-  EXPECT_EQ(lost.object_seconds, 0u);
-  lost.add_second(1.0, second_with(10, 1), second_with(0, 1));
-  EXPECT_EQ(lost.object_seconds, 1u);
-  EXPECT_EQ(lost.lost.size(), 1u);
-}
-
 TEST(Tracks, AnObjectIsRatherLostIfItIsSoForOverHalfOfItsSeconds) {
   LostObjects lost;
   lost.of_object = {{1, {4, 2}}, {2, {3, 2}}, {3, {1, 1}}, {4, {9, 0}}};
