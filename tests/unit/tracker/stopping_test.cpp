@@ -25,9 +25,11 @@ class Stopping : public testing::Test {
  protected:
   /// A car brakes to a stand in so long; then, at most, stationary detections are left of it, beside a wall or not.
   /// `ahead_m`: where, from the middle of its rear. `wall_m`: where that begins and ends, from there; it lies along the
-  /// course or across.
+  /// course, or across, at what is left of it.
   void drive(bool seen_standing, bool by_a_wall, double braking_s = 6.0, double ahead_m = 0.3,
              const Eigen::Vector2d& wall_m = {-40.0, 40.0}, bool across = false) {
+    x_ = 14.0;
+    tracker_ = Tracker(two_radars(), Config{});
     for (int i = 0; i < 160; ++i) {
       const double t = 0.05 * i, v = std::max(0.0, 8.0 * (1.0 - t / braking_s));
       x_ += 0.05 * v;
@@ -42,12 +44,13 @@ class Stopping : public testing::Test {
       const auto x = static_cast<float>(x_), from = static_cast<float>(wall_m.x()), to = static_cast<float>(wall_m.y());
       ReflectorSegment& wall = scene_.scan->reflector_segments[0];
       wall = {{x + from, 0.2F}, {x + to, 0.2F}, 0.1F, 100};
-      if (across) wall = {{x + 0.2F, from}, {x + 0.2F, to}, 0.1F, 100};
+      const float at = x + static_cast<float>(ahead_m);
+      if (across) wall = {{at, from}, {at, to}, 0.1F, 100};
       tracker_.step(*scene_.scan);
     }
     tracker_.write(*list_);
   }
-  double x_ = 14.0;
+  double x_ = 0.0;
   Tracker tracker_{two_radars(), Config{}};
   Scene scene_;
   std::unique_ptr<TrackList> list_ = std::make_unique<TrackList>();
@@ -91,14 +94,23 @@ TEST_F(Stopping, AVehiclesOwnSideIsNoWall) {
   EXPECT_EQ(list_->number_of_confirmed_tracks, 1u);
 }
 
-// The map finds ends in steps of 4 m, and what a truck beside shows of a rear lengthens that, too.
-TEST_F(Stopping, AVehiclesOwnRearIsNoWall) {
-  drive(true, true, 6.0, 0.3, {-6.1, 1.9}, true);
+// Cars and trucks beside show images of a rear, which the map takes for more of it. Who drives forward came through
+// there.
+TEST_F(Stopping, WhatLiesAcrossWhereItCameFromIsNoWallHoweverLong) {
+  for (const Eigen::Vector2d& wall_m : {Eigen::Vector2d(-6.1, 1.9), {-1.4, 8.6}, {-40.0, 40.0}}) {
+    drive(true, true, 6.0, 0.3, wall_m, true);
+    EXPECT_EQ(list_->number_of_confirmed_tracks, 1u) << wall_m.transpose();
+  }
+}
+
+// The map finds ends in steps of 4 m.
+TEST_F(Stopping, AVehiclesOwnFrontIsNoWall) {
+  drive(true, true, 6.0, 4.3, {-6.1, 1.9}, true);
   EXPECT_EQ(list_->number_of_confirmed_tracks, 1u);
 }
 
-TEST_F(Stopping, AWallAcrossTheCourseIsNoVehicleEither) {
-  drive(true, true, 6.0, 0.3, {-40.0, 40.0}, true);
+TEST_F(Stopping, AWallInFrontOfItIsNoVehicle) {
+  drive(true, true, 6.0, 4.3, {-40.0, 40.0}, true);
   EXPECT_EQ(list_->number_of_tracks, 0u);
 }
 
