@@ -1,6 +1,7 @@
 #include "services/tracker/core/stopped.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace boresight::tracking {
 
