@@ -102,12 +102,12 @@ bool parse_date(std::string_view text, std::int64_t& stamp_ns) {
       !parse_fraction(text.substr(19), fraction)) {
     return false;
   }
-  // Second 60 is a leap second; beyond the year 2262 nanoseconds do not fit.
-  if (year < 1970 || year > 2261 || month < 1 || month > 12 || day < 1 || day > 31 || hour > 23 || minute > 59 ||
-      second > 60) {
+  // Second 60 is a leap second.
+  if (year < 1970 || month < 1 || month > 12 || day < 1 || day > 31 || hour > 23 || minute > 59 || second > 60) {
     return false;
   }
   const std::int64_t seconds = ((days_from_civil(year, month, day) * 24 + hour) * 60 + minute) * 60 + second;
+  if (seconds > kLastStamp_s) return false;
   stamp_ns = seconds * 1'000'000'000 + fraction;
   return true;
 }
@@ -121,7 +121,7 @@ bool parse_seconds(std::string_view text, std::int64_t& stamp_ns, std::size_t& d
       !parse_fraction(text.substr(digits), fraction)) {
     return false;
   }
-  if (seconds > 9'000'000'000) return false;  // beyond the year 2262 nanoseconds do not fit
+  if (seconds > kLastStamp_s) return false;
   stamp_ns = seconds * 1'000'000'000 + fraction;
   return true;
 }
@@ -300,7 +300,7 @@ std::string_view describe(CandumpResult result) {
     case CandumpResult::kNoStamp:
       return "no time stamp; record with candump -l, -L or -ta";
     case CandumpResult::kBadStamp:
-      return "time stamp is neither (seconds.fraction) nor (YYYY-MM-DD hh:mm:ss.fraction)";
+      return "time stamp is neither (seconds.fraction) nor (YYYY-MM-DD hh:mm:ss.fraction), from 1970 to March 2255";
     case CandumpResult::kBadName:
       return "interface name missing, longer than 15 characters or with control characters";
     case CandumpResult::kBadId:

@@ -11,6 +11,10 @@
 
 namespace boresight::recording {
 
+/// The last second of stamps since the epoch, in 2255: a round number below those whose nanoseconds do not fit. Readers
+/// of every format and notation share it, so that what one of them takes can be written for the others.
+inline constexpr std::int64_t kLastStamp_s = 9'000'000'000;
+
 enum class FrameKind : std::uint8_t { kCan = 1, kCanFd = 2, kUdp = 3 };
 
 /// A view: `payload` points into the reader's or the link's buffer and is valid until its next frame.

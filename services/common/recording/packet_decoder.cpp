@@ -11,9 +11,8 @@ void PacketDecoder::problem(std::string_view text) {
 
 bool PacketDecoder::take(CaptureInterface& interface, std::int64_t seconds, std::int64_t nanoseconds,
                          std::span<const std::uint8_t> packet, std::size_t original_size, Frame& frame) {
-  constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // beyond the year 2262 nanoseconds do not fit
-  if (seconds < 0 || seconds > kMaxSeconds) {
-    problem("time stamp out of range");
+  if (seconds < 0 || seconds > kLastStamp_s) {
+    problem("time stamp is not between 1970 and March 2255");
     return false;
   }
   frame = Frame{};

@@ -166,14 +166,13 @@ void PcapngReader::add_interface(std::size_t block_size) {
     }
     at += (size + 3) / 4 * 4;
   }
-  constexpr std::int64_t kMaxOffset_s = 9'000'000'000;
   interface->supported = is_supported_link(interface->capture.link_type);
   if (!interface->supported) {
     decoder_.problem(
         "interface " + interface->name + " has link type " + std::to_string(interface->capture.link_type) +
         ", which is not supported: its packets are left out; supported: " + std::string(supported_links()));
-  } else if (!is_resolution(interface->resolution) || interface->offset_s < -kMaxOffset_s ||
-             interface->offset_s > kMaxOffset_s) {
+  } else if (!is_resolution(interface->resolution) || interface->offset_s < -kLastStamp_s ||
+             interface->offset_s > kLastStamp_s) {
     interface->supported = false;
     decoder_.problem("interface " + interface->name +
                      " has a unit or an offset of time that cannot be: its packets are left out");

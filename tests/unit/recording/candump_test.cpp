@@ -52,6 +52,16 @@ TEST(Candump, StampsKeepEveryDigit) {
   EXPECT_EQ(parse("(1700000000.9999999999) c 001#").frame.stamp_ns, 1'700'000'000'999'999'999);
 }
 
+// What one notation takes, the other one must take, too: a recording is read back from what was written of it.
+TEST(Candump, BothNotationsEndAtTheSameSecond) {
+  EXPECT_EQ(parse("(9000000000.5) can0 123#").frame.stamp_ns, 9'000'000'000'500'000'000);
+  EXPECT_EQ(parse("(9000000001.0) can0 123#").result, CandumpResult::kBadStamp);
+  // `date -u -d @9000000000` says 2255-03-14 16:00:00.
+  EXPECT_EQ(parse(" (2255-03-14 16:00:00.5)  can0  123   [0]").frame.stamp_ns, 9'000'000'000'500'000'000);
+  EXPECT_EQ(parse(" (2255-03-14 16:00:01.0)  can0  123   [0]").result, CandumpResult::kBadStamp);
+  EXPECT_EQ(parse(" (9999-12-31 23:59:60.0)  can0  123   [0]").result, CandumpResult::kBadStamp);
+}
+
 TEST(Candump, SaysWhatIsWrong) {
   EXPECT_EQ(parse("").result, CandumpResult::kEmpty);
   EXPECT_EQ(parse("  \r").result, CandumpResult::kEmpty);
