@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "services/tracker/core/pieces.hpp"
+
 namespace boresight::tracking {
 
 namespace {
@@ -27,6 +29,7 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
       (p - q).norm() > kShoulders_m) {
     return false;
   }
+  if (is_piece_of(a, b, sensor) || is_piece_of(b, a, sensor)) return true;
   // What has its middle in another one's box is no object of its own at whatever velocity: a wheel, or a limb.
   if (in_box) return true;
   if (apart_mps > config.duplicate_speed_mps) return false;
@@ -60,7 +63,8 @@ void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d
       const TrackedObject& gone = tracks[b];
       const double speed_mps = (kept.state.mean - gone.state.mean).segment<2>(2).norm();
       const bool shows_side = kept.extent.shows_side(kept.state.mean.head<2>(), sensor_m);
-      if (gone.confirmed && shows_side && speed_mps <= config.duplicate_speed_mps) {
+      const bool is_part = gone.confirmed || is_piece_of(gone, kept, sensor_m);
+      if (is_part && shows_side && speed_mps <= config.duplicate_speed_mps) {
         kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), gone.state.mean.head<2>());
       }
       tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(b));

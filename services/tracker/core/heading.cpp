@@ -109,12 +109,20 @@ std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad) {
   // The line's turn against the heading, by its principal axis; what is no line has no direction.
   const double difference = spread(0, 0) - spread(1, 1), turn = 0.5 * std::atan2(2.0 * spread(0, 1), difference);
   const double half = 0.5 * std::hypot(difference, 2.0 * spread(0, 1)), middle = 0.5 * spread.trace();
-  // Points spread evenly over a length have its square over twelve for a variance.
-  const double length2 = 12.0 * (middle + half), off2 = std::max(0.0, middle - half);
-  if (length2 < kLeast_m * kLeast_m || off2 > kMostOff_m * kMostOff_m || std::abs(turn) > kMost_rad) {
-    return std::nullopt;
+  const double along2 = middle + half, off2 = std::max(0.0, middle - half);
+  if (off2 > kMostOff_m * kMostOff_m || std::abs(turn) > kMost_rad) return std::nullopt;
+  const double flank_rad = heading_rad + turn;
+  const Eigen::Vector2d along(std::cos(flank_rad), std::sin(flank_rad)), across(-along.y(), along.x());
+  double first_m = 0.0, last_m = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double at_m = along.dot(cluster.outline[i] - mean);
+    first_m = std::min(first_m, at_m);
+    last_m = std::max(last_m, at_m);
   }
-  return Turn{turn, 12.0 * (off2 + kRough_m * kRough_m) / (length2 * static_cast<double>(n))};
+  if (last_m - first_m < kLeast_m) return std::nullopt;
+  // That few points lie in a line may be chance: the radar's noise turns them, too.
+  const double noise2 = cluster.weight * across.dot(cluster.covariance_m2 * across);
+  return Turn{turn, (off2 + kRough_m * kRough_m + noise2) / (along2 * static_cast<double>(n))};
 }
 
 }  // namespace boresight::tracking

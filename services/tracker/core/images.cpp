@@ -18,25 +18,36 @@ View view_of(const TrackedObject& track, const Eigen::Vector2d& sensor_m) {
   return {sight / range_m, range_m};
 }
 
+/// How much farther from the middle than a car's the ends of a long one are.
+double longer_m(const TrackedObject& track) {
+  return std::max(0.0, 0.5 * (track.extent.length_m - Extent::kCarLength_m));
+}
+
 bool may_be_image_of(const TrackedObject& track, const View& seen, const TrackedObject& other,
                      const Eigen::Vector2d& sensor_m) {
   constexpr double kYounger_s = 0.1;  // both may have come into sight at once
   constexpr double kLoss_db = 3.0;    // at the least, of what each bounce costs
   // A detour by the lane beside, and what is not known of where the middle of a new track is.
   constexpr double kMostDetour_m = 8.0, kNearer_m = 1.5;
-  constexpr double kAlike_mps = 0.8;
+  // Of the speed: mirrors are not quite parallel to the course. In a jam, lanes differ by hardly more than the least.
+  constexpr double kAlikeShare = 0.15, kLeastAlike_mps = 0.2, kMostAlike_mps = 0.8;
   // Written so that what was never heard is nothing's image.
   if (other.age_s < track.age_s - kYounger_s ||
       !(other.extent.strongest_dbsm > track.extent.strongest_dbsm + kLoss_db)) {
     return false;
   }
   const View from = view_of(other, sensor_m);
-  if (seen.range_m < from.range_m - kNearer_m || seen.range_m > from.range_m + kMostDetour_m) return false;
+  // Of a long one, any part may be what is mirrored.
+  const double part_m = longer_m(other);
+  if (seen.range_m < from.range_m - part_m - kNearer_m || seen.range_m > from.range_m + part_m + kMostDetour_m) {
+    return false;
+  }
   // In a mirror along the road an image drives as its object does; out there and back here it shows a bit of both.
   const Eigen::Vector2d velocity = other.state.mean.segment<2>(2);
   const double rate_mps = seen.sight.dot(track.state.mean.segment<2>(2));
-  return std::abs(rate_mps - from.sight.dot(velocity)) < kAlike_mps ||
-         std::abs(rate_mps - seen.sight.dot(velocity)) < kAlike_mps;
+  const double alike_mps = std::clamp(kAlikeShare * velocity.norm(), kLeastAlike_mps, kMostAlike_mps);
+  return std::abs(rate_mps - from.sight.dot(velocity)) < alike_mps ||
+         std::abs(rate_mps - seen.sight.dot(velocity)) < alike_mps;
 }
 
 /// Whether the vehicle's side, the one that is seen, would show the other one where the track is.
@@ -55,7 +66,7 @@ bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, con
   const bool is_new = vehicle.age_s < kNew_s || !vehicle.state.heading.known;
   // A mirror that turns by so much turns what it shows by twice as much.
   const double turn_rad = 2.0 * (is_new ? std::max(kNewHeading_rad, known_rad) : known_rad);
-  return side != 0.0 && std::abs(image.x() - object.x()) < kAlong_m &&
+  return side != 0.0 && std::abs(image.x() - object.x()) < kAlong_m + longer_m(other) &&
          std::abs(image.y() + object.y() - 2.0 * face_m) < kAcross_m + turn_rad * std::abs(image.x());
 }
 

@@ -37,6 +37,12 @@ double across_std_mps2(double speed_mps) {
 /// Seconds until what brakes stands; what is predicted on from there would drive back. Infinity: it does not brake.
 double time_to_standstill(const KinematicState& state) {
   const auto velocity = state.mean.segment<2>(2);
+  if (state.heading.known) {
+    // What seems to go aside is noise, and keeps nobody from standing.
+    const Eigen::Vector2d course(std::cos(state.heading.rad), std::sin(state.heading.rad));
+    const double speed = course.dot(velocity), slows = -course.dot(state.mean.tail<2>());
+    if (speed > 0.0 && slows > 0.0) return speed < kStill_mps ? 0.0 : speed / slows;
+  }
   const double braking = -velocity.dot(state.mean.tail<2>());
   if (!(braking > 0.0)) return std::numeric_limits<double>::infinity();
   return velocity.norm() < kStill_mps ? 0.0 : velocity.squaredNorm() / braking;

@@ -15,7 +15,7 @@ std::uint32_t window_mask(std::size_t scans) {
 
 }  // namespace
 
-void count_scan(TrackedObject& track, const Config& config, double image_wait_s) {
+void count_scan(TrackedObject& track, const Config& config, double wait_s) {
   constexpr double kDetection = 0.8, kHitGain = 0.5;
   const bool hit = track.detections > 0;
   track.history = track.history << 1 | (hit ? 1u : 0u);
@@ -30,7 +30,7 @@ void count_scan(TrackedObject& track, const Config& config, double image_wait_s)
   const bool often = std::popcount(recent) >= static_cast<int>(config.confirm_hits);
   const double speed_mps = track.state.mean.segment<2>(2).norm();
   const bool weak = track.extent.is_too_weak(speed_mps);
-  double wait_s = std::max(config.confirm_age_s, image_wait_s);
+  wait_s = std::max(config.confirm_age_s, wait_s);
   if (weak) wait_s = std::max(wait_s, config.confirm_weak_age_s);
   const bool long_enough = track.age_s > wait_s - 1e-6;
   if (often && long_enough && evidence >= config.confirm_evidence) track.confirmed = true;

@@ -7,8 +7,8 @@
 namespace boresight::tracking {
 
 /// Takes a scan that showed the object, or could have: its history, its existence, and whether it is confirmed by now.
-/// `image_wait_s`: until it is confirmed, as it may be another one's image (images.hpp).
-void count_scan(TrackedObject& track, const Config& config, double image_wait_s);
+/// `wait_s`: age until which it is not confirmed, as it may be another one's image (images.hpp) or piece (pieces.hpp).
+void count_scan(TrackedObject& track, const Config& config, double wait_s);
 
 /// Whether it was missed too often or for too long, can no longer be confirmed, or is not a number any more.
 [[nodiscard]] bool is_dead(const TrackedObject& track, const Config& config);

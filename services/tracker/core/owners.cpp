@@ -70,7 +70,10 @@ std::size_t vehicle_at(const Seen& seen, std::span<const KnownPlace> known) {
 
 std::size_t owner_of(const Seen& seen, std::span<const KnownPlace> known) {
   const std::size_t person = person_at(seen, known);
-  return person < known.size() ? person : vehicle_at(seen, known);
+  if (person < known.size()) return person;
+  // The likeliest vehicle may be but the only one that is known there.
+  const std::size_t vehicle = vehicle_at(seen, known);
+  return vehicle < known.size() && is_beside(seen, known[vehicle]) ? known.size() : vehicle;
 }
 
 bool is_beside(const Seen& seen, const KnownPlace& vehicle) {

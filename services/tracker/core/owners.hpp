@@ -42,6 +42,7 @@ struct Seen {
 /// such a range rate. Else it is of the vehicle that it is likeliest of, by how far off its box it lies, beside the
 /// noise and what is not known of the track, and by its range rate, which is the body's or a wheel's: cars at the end
 /// of a radar's range are nearer to each other than azimuths are sure, but in a jam each lane has a speed of its own.
+/// What is surely beside the likeliest one is nobody's.
 [[nodiscard]] std::size_t owner_of(const Seen& seen, std::span<const KnownPlace> known);
 
 /// Whether a detection is surely of something beside the vehicle: it lies farther from its middle line than vehicles

@@ -10,6 +10,15 @@
 
 namespace boresight::tracking {
 
+/// Who is before or behind, and may be the vehicle of which the track is a piece (pieces.hpp).
+struct Companion {
+  std::uint32_t id = 0;               ///< 0: nobody
+  double since_age_s = 0.0;           ///< of the track
+  double first_m = 0.0, now_m = 0.0;  ///< how far the ends that are seen are apart
+  std::uint32_t scans = 0;            ///< of which first_m is the mean
+  bool is_apart = false;              ///< it has moved on its own
+};
+
 struct TrackedObject {
   static constexpr std::size_t kLongestWindow = 32;  // of scans
   std::uint32_t id = 0;
@@ -24,7 +33,8 @@ struct TrackedObject {
   double since_update_s = 0.0;
   std::uint32_t detections = 0;  // in the last scan
   double realness = 0.0;         // of those
-  bool slow = false;             // when it was detected last
+  Companion companion;
+  bool slow = false;  // when it was detected last
 };
 
 }  // namespace boresight::tracking

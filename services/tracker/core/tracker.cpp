@@ -9,6 +9,7 @@
 #include "services/tracker/core/heading.hpp"
 #include "services/tracker/core/images.hpp"
 #include "services/tracker/core/life.hpp"
+#include "services/tracker/core/pieces.hpp"
 #include "services/tracker/core/seen_centre.hpp"
 #include "services/tracker/core/stopped.hpp"
 #include "services/tracker/core/track_message.hpp"
@@ -57,21 +58,50 @@ bool rate_fits(const Cluster& cluster, const KinematicState& state, const Config
   return off_mps * off_mps < config.gate_chi2 * variance;
 }
 
-/// Whether the cluster lies on another vehicle that has long been tracked, beside this one, and moves rather as that
-/// one does: then it tells nothing of this one, even where the other is given another cluster, of a part farther off.
+/// Whether the cluster is another vehicle's and tells nothing of this track, even where the other is given another
+/// cluster, of a part farther off: it lies on one that has long been tracked, beside this one, and moves rather as that
+/// one does; or near one, and moves as that one does and clearly not as this one.
 bool is_of_another(const Cluster& cluster, const TrackedObject& track, std::span<const TrackedObject> tracks) {
-  constexpr double kMargin_m = 0.5, kLong_s = 2.0;
-  const auto is_on = [&cluster](const TrackedObject& t) {
-    return t.confirmed && !t.extent.is_small &&
-           t.extent.contains(t.state.mean.head<2>(), cluster.position_m, kMargin_m);
+  constexpr double kOn_m = 0.5, kLong_s = 2.0;
+  constexpr double kNear_m = 2.0, kNew_s = 0.5, kClearly_mps = 0.2;
+  const auto is_at = [&cluster](const TrackedObject& t, double margin_m) {
+    return t.confirmed && !t.extent.is_small && t.extent.contains(t.state.mean.head<2>(), cluster.position_m, margin_m);
   };
   const auto off_mps = [&cluster](const TrackedObject& t) {
     return std::abs(cluster.range_rate_over_ground_mps - cluster.mean_sight.dot(t.state.mean.segment<2>(2)));
   };
-  if (!track.confirmed || track.extent.is_small || is_on(track)) return false;
+  const double own_mps = off_mps(track);
+  const bool is_beside = track.confirmed && !track.extent.is_small && !is_at(track, kOn_m);
   return std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& other) {
-    return other.age_s >= kLong_s && is_on(other) && off_mps(other) < off_mps(track);
+    if (&other == &track || other.age_s < kNew_s) return false;
+    if (is_at(other, kNear_m) && off_mps(other) < own_mps - kClearly_mps) return true;
+    return is_beside && other.age_s >= kLong_s && is_at(other, kOn_m) && off_mps(other) < own_mps;
   });
+}
+
+/// Where the track is, as the owners of detections are asked for.
+KnownPlace place_of(const TrackedObject& track) {
+  const Extent& e = track.extent;
+  return {track.state.mean.head<2>(),
+          {std::cos(e.heading_rad), std::sin(e.heading_rad)},
+          {0.5 * e.length_m, 0.5 * e.width_m},
+          e.is_small,
+          track.state.mean.segment<2>(2),
+          track.state.covariance.topLeftCorner<2, 2>(),
+          track.state.covariance.block<2, 2>(2, 2)};
+}
+
+/// Whether the cluster is surely of something beside the track's vehicle, one that has long been tracked.
+bool drives_beside(const Cluster& cluster, const TrackedObject& track) {
+  constexpr double kLong_s = 2.0;
+  if (track.extent.is_small || track.age_s < kLong_s) return false;
+  const Eigen::Vector2d left(-cluster.mean_sight.y(), cluster.mean_sight.x());
+  Seen seen;
+  seen.at_m = cluster.position_m;
+  seen.sight = cluster.mean_sight;
+  seen.across_std_m = std::sqrt(left.dot(cluster.covariance_m2 * left));
+  seen.rate_mps = cluster.range_rate_over_ground_mps;
+  return is_beside(seen, place_of(track));
 }
 
 /// The heading of a vehicle, and its box along it.
@@ -131,6 +161,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   assign(clusters, sensor, has_elevation);
   push_off(scan.geometry.ego_speed_mps);
   keep_stopped(tracks_, scan);
+  watch_pieces(tracks_, sensor);
   judge(scan);
   for (std::size_t c = 0; c < clusters.size(); ++c) {
     if (cluster_used_[c] || clusters[c].realness < config_.start_realness) continue;
@@ -167,13 +198,7 @@ std::span<const KnownPlace> Tracker::known() {
   for (const TrackedObject& track : tracks_) {
     const Extent& e = track.extent;
     if (!track.confirmed || (!e.is_small && track.age_s < kNew_s)) continue;
-    known_[count++] = {track.state.mean.head<2>(),
-                       {std::cos(e.heading_rad), std::sin(e.heading_rad)},
-                       {0.5 * e.length_m, 0.5 * e.width_m},
-                       e.is_small,
-                       track.state.mean.segment<2>(2),
-                       track.state.covariance.topLeftCorner<2, 2>(),
-                       track.state.covariance.block<2, 2>(2, 2)};
+    known_[count++] = place_of(track);
   }
   return {known_.data(), count};
 }
@@ -186,7 +211,8 @@ std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) 
     const auto is_part = [&](const Cluster& cluster) {
       const double rate = cluster.mean_sight.dot(track.state.mean.segment<2>(2));
       return track.extent.contains(track.state.mean.head<2>(), cluster.position_m, kMargin_m) &&
-             std::abs(cluster.range_rate_over_ground_mps - rate) < config_.cluster_max_range_rate_spread_mps;
+             std::abs(cluster.range_rate_over_ground_mps - rate) < config_.cluster_max_range_rate_spread_mps &&
+             !drives_beside(cluster, track);
     };
     std::size_t first = 0;
     while (first < clusters.size() && !is_part(clusters[first])) ++first;
@@ -236,7 +262,8 @@ void Tracker::assign(std::span<const Cluster> clusters, const Eigen::Vector2d& s
     for (const TrackedObject& track : tracks_) {
       if (cluster_used_[c] || !track.confirmed) continue;
       const double margin_m = track.extent.is_small ? std::min(kArm_m, config_.part_margin_m) : config_.part_margin_m;
-      cluster_used_[c] = track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, margin_m);
+      cluster_used_[c] = track.extent.contains(track.state.mean.head<2>(), clusters[c].position_m, margin_m) &&
+                         !drives_beside(clusters[c], track);
     }
   }
 }
@@ -342,7 +369,9 @@ void Tracker::judge(const ClassifiedScan& scan) {
   for (TrackedObject& track : tracks_) {
     const bool could_see = track.detections > 0 || (radar != nullptr && can_see(*radar, scan.geometry, track, tracks_,
                                                                                 config_.blind_range_rate_mps));
-    if (could_see) count_scan(track, config_, track.confirmed ? 0.0 : image_wait_s(track, tracks_, sensor, config_));
+    if (!could_see) continue;
+    const double image_s = track.confirmed ? 0.0 : image_wait_s(track, tracks_, sensor, config_);
+    count_scan(track, config_, std::max(image_s, piece_wait_s(track)));
   }
   std::erase_if(tracks_, [this](const TrackedObject& track) { return is_dead(track, config_); });
 }

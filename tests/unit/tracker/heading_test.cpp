@@ -170,6 +170,27 @@ TEST(Heading, LiesAlongTheFlankOfALongVehicle) {
   EXPECT_FALSE(turn_of_flank(bent, 0.3)) << "no line";
 }
 
+TEST(Heading, IsNotThatOfADiagonalThroughACar) {
+  // A far rear corner, a wheel and the near front corner, all within 4.5 m: as spread as if they were 5 m long.
+  Cluster car{};
+  for (const Eigen::Vector2d& at : {Eigen::Vector2d(52.8, 4.4), {55.0, 3.5}, {57.2, 2.65}}) {
+    car.outline[car.number_on_outline++] = at;
+  }
+  EXPECT_FALSE(turn_of_flank(car, 0.0));
+}
+
+TEST(Heading, OfAFlankIsAsUnsureAsAzimuthsMakeIt) {
+  Cluster truck = line_of(5, 12.0, 0.0);
+  truck.weight = 5.0;
+  const auto sure = turn_of_flank(truck, 0.0);
+  constexpr double kNoise_m = 0.7;
+  truck.covariance_m2 = kNoise_m * kNoise_m / truck.weight * Eigen::Matrix2d::Identity();
+  const auto unsure = turn_of_flank(truck, 0.0);
+  ASSERT_TRUE(sure && unsure);
+  // Least squares: the noise's variance beside the sum of the squared distances from the middle, 5 x 18 m².
+  EXPECT_NEAR(unsure->variance - sure->variance, kNoise_m * kNoise_m / 90.0, 1e-9);
+}
+
 TEST(RangeRate, OfALongBodyNearbyIsThatOfTheMeanOfItsDirections) {
   Scene scene;
   scene.begin(kMillisecond);

@@ -109,6 +109,17 @@ TEST(Kalman, AVehicleGoingAnyOtherWayIsPredictedAlike) {
   EXPECT_LT((other.covariance - turned * s.covariance * turned.transpose()).norm(), 1e-9);
 }
 
+TEST(Kalman, BrakesEndAtAStandstillWhateverNoiseSeemsToGoAside) {
+  KinematicState state;
+  state.mean << 4.0, 3.6, 2.0, -0.4, -9.0, 0.0;
+  state.heading.known = true;
+  state.heading.rad = 0.0;
+  for (int i = 0; i < 80; ++i) predict(state, 0.0125, 3.0, {}, Moves::kAsVehicle);
+  EXPECT_NEAR(state.mean(0), 4.0 + 2.0 * 2.0 / (2.0 * 9.0), 0.02);
+  EXPECT_EQ(state.mean(2), 0.0);
+  EXPECT_EQ(state.mean(3), 0.0);
+}
+
 TEST(Kalman, WhatStandsStillInTheWorldStaysThereAsTheVehicleMoves) {
   const double speed = 14.0, yaw_rate = 0.4;
   Eigen::Vector2d world(30.0, 8.0), place(0.0, 0.0);

@@ -48,6 +48,13 @@ TEST(Owner, IsNobodyOfWhatLiesTooFarOff) {
   EXPECT_EQ(owner_of(seen_at(97.8, 0.0, 1.5), {}), 0u);
 }
 
+TEST(Owner, IsNobodyOfWhatIsBesideTheOnlyOneKnown) {
+  const std::array<KnownPlace, 1> truck{car_at(100.0, -3.6, 1.2)};
+  EXPECT_EQ(owner_of(seen_at(97.8, -0.8, 1.5), truck), 1u) << "the own lane's car";
+  EXPECT_EQ(owner_of(seen_at(97.8, -0.8, 1.2), truck), 0u) << "noise of its own";
+  EXPECT_EQ(owner_of(seen_at(97.8, -2.6, 1.5), truck), 0u) << "a wheel";
+}
+
 TEST(Beside, IsWhatIsFartherOffThanVehiclesAreWideAndMovesOtherwise) {
   const KnownPlace& car = kJam[kLeft];
   // Its middle line is at 3.6 m; half of 2.6 m, a bit for what is rough, and a standard deviation of 1.02 m.

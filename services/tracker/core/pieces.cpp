@@ -1,0 +1,83 @@
+#include "services/tracker/core/pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::tracking {
+
+namespace {
+
+constexpr double kLong_s = 3.0;  // two drivers hardly keep their distance to a hand's width for so long
+
+/// Before or behind the other one, so near that it may be a piece of it, and seen from beside: else what lies behind is
+/// as likely a type-1 ghost.
+bool is_in_file(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
+  constexpr double kGap_m = 3.5;  // between axles, or an axle and an end
+  constexpr double kBesides_m =
+      1.5;  // of whose flank alone is seen, the middle is known to half a width; lanes are wider
+  const Eigen::Vector2d from_m = other.state.mean.head<2>();
+  const Eigen::Vector2d at_m = other.extent.to_body(track.state.mean.head<2>() - from_m).cwiseAbs();
+  return other.extent.shows_side(from_m, sensor_m) && at_m.y() < kBesides_m &&
+         at_m.x() < 0.5 * (track.extent.length_m + other.extent.length_m) + kGap_m;
+}
+
+/// Which of the tracks may be what this one is a piece of.
+bool may_be_whole(const TrackedObject& other, const TrackedObject& track, const Eigen::Vector2d& sensor_m) {
+  constexpr double kAlike_mps = 0.6;
+  if (&other == &track || !other.confirmed || other.extent.is_small || other.age_s < track.age_s) return false;
+  const Eigen::Vector2d apart_mps = other.extent.to_body((track.state.mean - other.state.mean).segment<2>(2));
+  return std::abs(apart_mps.x()) < kAlike_mps && is_in_file(track, other, sensor_m);
+}
+
+/// Along the other one's axis, of the end that is seen, which a track knows best: middles move as boxes grow.
+double seen_end_m(const TrackedObject& track, const Extent& axes, const Eigen::Vector2d& sensor_m) {
+  const Eigen::Vector2d centre_m = track.state.mean.head<2>();
+  return axes.to_body(centre_m).x() + 0.5 * track.extent.visible_faces(centre_m, sensor_m).end * track.extent.length_m;
+}
+
+/// How far apart they were at first, a mean over a second, and how far they are now.
+void measure(Companion& companion, double since_s, double apart_m) {
+  constexpr double kFirst_s = 1.0, kGain = 0.1, kMoved_m = 0.3;
+  if (since_s < kFirst_s) {
+    companion.first_m += (apart_m - companion.first_m) / ++companion.scans;
+    companion.now_m = companion.first_m;
+  } else {
+    companion.now_m += kGain * (apart_m - companion.now_m);
+  }
+  companion.is_apart = companion.is_apart || std::abs(companion.now_m - companion.first_m) > kMoved_m;
+}
+
+}  // namespace
+
+void watch_pieces(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m) {
+  for (TrackedObject& track : tracks) {
+    if (track.extent.is_small || track.detections == 0) continue;
+    Companion& companion = track.companion;
+    auto other = std::find_if(tracks.begin(), tracks.end(),
+                              [&](const TrackedObject& o) { return &o != &track && o.id == companion.id; });
+    if (other == tracks.end()) {
+      companion = {};
+      other = std::find_if(tracks.begin(), tracks.end(),
+                           [&](const TrackedObject& o) { return may_be_whole(o, track, sensor_m); });
+      if (other == tracks.end()) continue;
+      companion.id = other->id;
+      companion.since_age_s = track.age_s;
+    }
+    const Extent& axes = other->extent;
+    measure(companion, track.age_s - companion.since_age_s,
+            seen_end_m(track, axes, sensor_m) - seen_end_m(*other, axes, sensor_m));
+  }
+}
+
+double piece_wait_s(const TrackedObject& track) {
+  const Companion& companion = track.companion;
+  return companion.id == 0 || companion.is_apart ? 0.0 : companion.since_age_s + kLong_s;
+}
+
+bool is_piece_of(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
+  const Companion& companion = track.companion;
+  return companion.id == other.id && !companion.is_apart && track.age_s - companion.since_age_s > kLong_s &&
+         is_in_file(track, other, sensor_m);
+}
+
+}  // namespace boresight::tracking
