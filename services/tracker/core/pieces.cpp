@@ -12,9 +12,9 @@ constexpr double kLong_s = 3.0;  // two drivers hardly keep their distance to a 
 /// Before or behind the other one, so near that it may be a piece of it, and seen from beside: else what lies behind is
 /// as likely a type-1 ghost.
 bool is_in_file(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
-  constexpr double kGap_m = 3.5;  // between axles, or an axle and an end
-  constexpr double kBesides_m =
-      1.5;  // of whose flank alone is seen, the middle is known to half a width; lanes are wider
+  // The gap is that between axles, or an axle and an end. Of whose flank alone is seen the middle is known to half a
+  // width; lanes are wider.
+  constexpr double kGap_m = 3.5, kBesides_m = 1.5;
   const Eigen::Vector2d from_m = other.state.mean.head<2>();
   const Eigen::Vector2d at_m = other.extent.to_body(track.state.mean.head<2>() - from_m).cwiseAbs();
   return other.extent.shows_side(from_m, sensor_m) && at_m.y() < kBesides_m &&

@@ -96,11 +96,12 @@ bool drives_beside(const Cluster& cluster, const TrackedObject& track) {
   constexpr double kLong_s = 2.0;
   if (track.extent.is_small || track.age_s < kLong_s) return false;
   const Eigen::Vector2d left(-cluster.mean_sight.y(), cluster.mean_sight.x());
-  Seen seen;
-  seen.at_m = cluster.position_m;
-  seen.sight = cluster.mean_sight;
-  seen.across_std_m = std::sqrt(left.dot(cluster.covariance_m2 * left));
-  seen.rate_mps = cluster.range_rate_over_ground_mps;
+  const Seen seen{cluster.position_m,
+                  cluster.mean_sight,
+                  std::sqrt(cluster.mean_sight.dot(cluster.covariance_m2 * cluster.mean_sight)),
+                  std::sqrt(left.dot(cluster.covariance_m2 * left)),
+                  cluster.range_rate_over_ground_mps,
+                  std::sqrt(cluster.range_rate_variance)};
   return is_beside(seen, place_of(track));
 }
 
@@ -370,8 +371,9 @@ void Tracker::judge(const ClassifiedScan& scan) {
     const bool could_see = track.detections > 0 || (radar != nullptr && can_see(*radar, scan.geometry, track, tracks_,
                                                                                 config_.blind_range_rate_mps));
     if (!could_see) continue;
-    const double image_s = track.confirmed ? 0.0 : image_wait_s(track, tracks_, sensor, config_);
-    count_scan(track, config_, std::max(image_s, piece_wait_s(track)));
+    const double wait_s =
+        track.confirmed ? 0.0 : std::max(image_wait_s(track, tracks_, sensor, config_), piece_wait_s(track));
+    count_scan(track, config_, wait_s);
   }
   std::erase_if(tracks_, [this](const TrackedObject& track) { return is_dead(track, config_); });
 }
