@@ -163,14 +163,20 @@ struct Extent {
     return length_m > 1.4 ? ObjectClass::kTwoWheeler : ObjectClass::kUnknown;
   }
 
-  /// Whether the other box lies before or behind this one, in its track, at most `gap_m` away.
+  /// Whether the other box lies before or behind this one, at most `gap_m` away, with its middle at most `besides_m`
+  /// off this one's middle line.
+  [[nodiscard]] bool in_file(const Eigen::Vector2d& centre_m, const Extent& other,
+                             const Eigen::Vector2d& other_centre_m, double gap_m, double besides_m) const {
+    const Eigen::Vector2d at = to_body(other_centre_m - centre_m).cwiseAbs();
+    return at.x() < 0.5 * (length_m + other.length_m) + gap_m && at.y() < besides_m;
+  }
+  /// The same in this one's track, as far as it is wide.
   [[nodiscard]] bool in_file(const Eigen::Vector2d& centre_m, const Extent& other,
                              const Eigen::Vector2d& other_centre_m, double gap_m) const {
-    const Eigen::Vector2d at = to_body(other_centre_m - centre_m).cwiseAbs();
     // What the narrower one is seen to be wide depends on the side that is seen; lanes are over two of these apart.
     constexpr double kBesides_m = 1.5;
-    const double besides_m = std::min(0.5 * std::max(width_m, other.width_m), kBesides_m);
-    return at.x() < 0.5 * (length_m + other.length_m) + gap_m && at.y() < besides_m;
+    return in_file(centre_m, other, other_centre_m, gap_m,
+                   std::min(0.5 * std::max(width_m, other.width_m), kBesides_m));
   }
 
   /// Makes the box reach as far as another one's middle, as what else that one is may be no more than the length of a

@@ -16,9 +16,8 @@ bool is_in_file(const TrackedObject& track, const TrackedObject& other, const Ei
   // width; lanes are wider.
   constexpr double kGap_m = 3.5, kBesides_m = 1.5;
   const Eigen::Vector2d from_m = other.state.mean.head<2>();
-  const Eigen::Vector2d at_m = other.extent.to_body(track.state.mean.head<2>() - from_m).cwiseAbs();
-  return other.extent.shows_side(from_m, sensor_m) && at_m.y() < kBesides_m &&
-         at_m.x() < 0.5 * (track.extent.length_m + other.extent.length_m) + kGap_m;
+  return other.extent.shows_side(from_m, sensor_m) &&
+         other.extent.in_file(from_m, track.extent, track.state.mean.head<2>(), kGap_m, kBesides_m);
 }
 
 /// Which of the tracks may be what this one is a piece of.

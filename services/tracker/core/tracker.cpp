@@ -71,11 +71,11 @@ bool is_of_another(const Cluster& cluster, const TrackedObject& track, std::span
     return std::abs(cluster.range_rate_over_ground_mps - cluster.mean_sight.dot(t.state.mean.segment<2>(2)));
   };
   const double own_mps = off_mps(track);
-  const bool is_beside = track.confirmed && !track.extent.is_small && !is_at(track, kOn_m);
+  const bool has_own_place = track.confirmed && !track.extent.is_small && !is_at(track, kOn_m);
   return std::any_of(tracks.begin(), tracks.end(), [&](const TrackedObject& other) {
     if (&other == &track || other.age_s < kNew_s) return false;
     if (is_at(other, kNear_m) && off_mps(other) < own_mps - kClearly_mps) return true;
-    return is_beside && other.age_s >= kLong_s && is_at(other, kOn_m) && off_mps(other) < own_mps;
+    return has_own_place && other.age_s >= kLong_s && is_at(other, kOn_m) && off_mps(other) < own_mps;
   });
 }
 
@@ -212,8 +212,7 @@ std::span<const Cluster> Tracker::join_parts(std::span<const Cluster> clusters) 
     const auto is_part = [&](const Cluster& cluster) {
       const double rate = cluster.mean_sight.dot(track.state.mean.segment<2>(2));
       return track.extent.contains(track.state.mean.head<2>(), cluster.position_m, kMargin_m) &&
-             std::abs(cluster.range_rate_over_ground_mps - rate) < config_.cluster_max_range_rate_spread_mps &&
-             !drives_beside(cluster, track);
+             std::abs(cluster.range_rate_over_ground_mps - rate) < config_.cluster_max_range_rate_spread_mps;
     };
     std::size_t first = 0;
     while (first < clusters.size() && !is_part(clusters[first])) ++first;
