@@ -14,7 +14,7 @@ constexpr double kLong_s = 3.0;  // two drivers hardly keep their distance to a 
 bool is_in_file(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
   // The gap is that between axles, or an axle and an end. Of whose flank alone is seen the middle is known to half a
   // width; lanes are wider.
-  constexpr double kGap_m = 3.5, kBesides_m = 1.5;
+  constexpr double kGap_m = 4.2, kBesides_m = 1.5;
   const Eigen::Vector2d from_m = other.state.mean.head<2>();
   return other.extent.shows_side(from_m, sensor_m) &&
          other.extent.in_file(from_m, track.extent, track.state.mean.head<2>(), kGap_m, kBesides_m);
@@ -34,16 +34,20 @@ double seen_end_m(const TrackedObject& track, const Extent& axes, const Eigen::V
   return axes.to_body(centre_m).x() + 0.5 * track.extent.visible_faces(centre_m, sensor_m).end * track.extent.length_m;
 }
 
-/// How far apart they were at first, a mean over a second, and how far they are now.
-void measure(Companion& companion, double since_s, double apart_m) {
-  constexpr double kFirst_s = 1.0, kGain = 0.1, kMoved_m = 0.3;
-  if (since_s < kFirst_s) {
+/// How far apart they were at first, a mean over a second, and how far they are now. What is seen of a piece changes
+/// with the way it is seen from, by an axle that comes into sight: after a small step the distance is measured anew.
+void measure(Companion& companion, double age_s, double apart_m) {
+  constexpr double kFirst_s = 1.0, kGain = 0.1, kMoved_m = 0.3, kOwnWay_m = 0.8;
+  if (age_s - companion.since_age_s < kFirst_s) {
     companion.first_m += (apart_m - companion.first_m) / ++companion.scans;
     companion.now_m = companion.first_m;
   } else {
     companion.now_m += kGain * (apart_m - companion.now_m);
   }
-  companion.is_apart = companion.is_apart || std::abs(companion.now_m - companion.first_m) > kMoved_m;
+  companion.is_apart = companion.is_apart || std::abs(companion.now_m - companion.begun_m) > kOwnWay_m;
+  if (std::abs(companion.now_m - companion.first_m) <= kMoved_m) return;
+  companion.since_age_s = age_s;
+  companion.scans = 0;
 }
 
 }  // namespace
@@ -59,12 +63,15 @@ void watch_pieces(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sen
       other = std::find_if(tracks.begin(), tracks.end(),
                            [&](const TrackedObject& o) { return may_be_whole(o, track, sensor_m); });
       if (other == tracks.end()) continue;
-      companion.id = other->id;
-      companion.since_age_s = track.age_s;
     }
     const Extent& axes = other->extent;
-    measure(companion, track.age_s - companion.since_age_s,
-            seen_end_m(track, axes, sensor_m) - seen_end_m(*other, axes, sensor_m));
+    const double apart_m = seen_end_m(track, axes, sensor_m) - seen_end_m(*other, axes, sensor_m);
+    if (companion.id == 0) {
+      companion.id = other->id;
+      companion.begun_m = apart_m;
+      companion.since_age_s = track.age_s;
+    }
+    measure(companion, track.age_s, apart_m);
   }
 }
 

@@ -148,6 +148,17 @@ TEST_F(JudgeTest, WhatIsLongerThanACarIsDetectedMoreOften) {
   EXPECT_NEAR(more(12.0), 3.0, 0.01);
 }
 
+TEST_F(JudgeTest, AMetreOfALongTruckShowsAsMuchAsOneOfAShortTruck) {
+  const auto at_rear = [&](double length_m) {
+    objects_[0].half_length_m = 0.5 * length_m;
+    objects_[0].position_m = {26.0 + 0.5 * length_m, 2.0};
+    begin();
+    return judge_.weigh(measured({26.0, 2.0}, kVelocity, 5.0), 0).moving;
+  };
+  // The share of the rear falls as the flank grows: (1.8 + 8) / (1.8 + 16) of it is left, of twice as many detections.
+  EXPECT_NEAR(at_rear(16.0) / at_rear(8.0), 1.1, 0.15);
+}
+
 TEST_F(JudgeTest, WhatStandsInFrontIsFoundOnceWhoeverAsksFirst) {
   const Densities car = judge_.weigh(of_car(), 4), ghost = judge_.weigh(image(), 7);
   EXPECT_EQ(judge_.behind_mirror(of_car(), 4), 0.0);

@@ -53,6 +53,24 @@ TEST(Pieces, AreNoneThatMoveOnTheirOwn) {
   EXPECT_EQ(piece_wait_s(tracks[1]), 0.0) << "nor is it kept waiting";
 }
 
+TEST(Pieces, OfWhichAnotherAxleComesIntoSightAreMeasuredAnew) {
+  std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.0, -3.0, 4.0)};
+  drive(tracks, 2.0, 0.0);
+  tracks[1].state.mean.x() -= 0.6;
+  drive(tracks, 2.0, 0.0);
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it has not kept its distance for three seconds";
+  EXPECT_GT(piece_wait_s(tracks[1]), tracks[1].age_s);
+  drive(tracks, 2.5, 0.0);
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+}
+
+TEST(Pieces, AreNoneThatHaveComeNearerAndThenKeepTheirDistance) {
+  std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.5, -3.0, 4.0)};
+  drive(tracks, 4.0, -0.35);
+  drive(tracks, 10.0, 0.0);
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it followed, and stopped behind";
+}
+
 TEST(Pieces, AreNeitherBesideNorFarNorSeenFromBehindAlone) {
   for (const auto& [behind, x_m, y_m] : {std::tuple{-3.0, 58.0, -1.0}, {-3.0, 60.0, -3.0}, {0.0, 58.0, 0.0}}) {
     std::vector<TrackedObject> tracks{vehicle(1, 50.0, behind, 5.0), vehicle(2, x_m, y_m, 4.0)};

@@ -16,7 +16,7 @@ struct ClassConfig {
   double type1_unheard = 0.0;     ///< weight of those of tracks that were not detected directly, though they could be
   double type2_per_object = 4.0;
   double real_per_object = 3.0;
-  double real_per_truck = 9.0;    ///< of what is longer than a car, by its track
+  double real_per_truck = 9.0;  ///< of what is longer than a car, by its track; beyond 8 m as many more as it is longer
   double tentative_weight = 0.1;  ///< of an object whose track is not confirmed yet
   double wheel_share = 0.5;       ///< of an object's detections that are of wheels or limbs, at other range rates
   double strength_doubt = 0.02;   ///< share of cases in which a detection's strength tells nothing

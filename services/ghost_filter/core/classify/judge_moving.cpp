@@ -16,11 +16,14 @@ constexpr double kLeastMoving = 0.6, kLeastThere = 0.5;
 /// What goes together is so near, and so alike in range rate.
 constexpr double kCompany_m = 3.0, kCompany_mps = 1.5;
 
-/// Detections in a scan. From where a car's box may end to where it hardly does, an object is more likely a truck.
+/// Detections in a scan. From where a car's box may end to where it hardly does, an object is more likely a truck. Of
+/// one that is longer than a box van each metre shows as much as of that: it has more axles.
 double expected_of(const Object& object, const ClassConfig& config) {
-  constexpr double kMayBeTruck_m = 4.7, kIsTruck_m = 5.3;
-  const double share = (2.0 * object.half_length_m - kMayBeTruck_m) / (kIsTruck_m - kMayBeTruck_m);
-  return config.real_per_object + std::clamp(share, 0.0, 1.0) * (config.real_per_truck - config.real_per_object);
+  constexpr double kMayBeTruck_m = 4.7, kIsTruck_m = 5.3, kIsLong_m = 8.0;
+  const double length_m = 2.0 * object.half_length_m;
+  const double share = std::clamp((length_m - kMayBeTruck_m) / (kIsTruck_m - kMayBeTruck_m), 0.0, 1.0);
+  return (config.real_per_object + share * (config.real_per_truck - config.real_per_object)) *
+         std::max(1.0, length_m / kIsLong_m);
 }
 
 }  // namespace
