@@ -64,11 +64,17 @@ struct Extent {
   /// centre moves by what is returned.
   [[nodiscard]] Eigen::Vector2d grow_to(const Cluster& cluster, const Eigen::Vector2d& centre_m,
                                         const Eigen::Vector2d& sensor_m, double sure_m) {
-    if (length_m < kTruck_m || visible_faces(centre_m, sensor_m).side == 0.0) return {0.0, 0.0};
+    // Of what is shorter, and shows its side at more of a slant, what lies beyond its end may be a ghost behind it; and
+    // cars differ by less than that, so what lies farther off is the next one.
+    constexpr double kShown = 0.1, kNext_m = 1.5;
+    const bool is_truck = length_m >= kTruck_m;
+    const bool shows_length = is_truck || side_shown(to_body(sensor_m - centre_m)) >= kShown;
+    if (!shows_length || visible_faces(centre_m, sensor_m).side == 0.0) return {0.0, 0.0};
     const double end_m = 0.5 * length_m + sure_m;
     double ahead_m = 0.0, behind_m = 0.0;
     for (std::uint32_t i = 0; i < cluster.number_on_outline; ++i) {
       const double at = to_body(cluster.outline[i] - centre_m).x();
+      if (!is_truck && std::abs(at) > 0.5 * length_m + kNext_m) continue;
       ahead_m = std::max(ahead_m, at - end_m);
       behind_m = std::max(behind_m, -at - end_m);
     }

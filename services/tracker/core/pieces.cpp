@@ -36,15 +36,19 @@ double seen_end_m(const TrackedObject& track, const Extent& axes, const Eigen::V
 
 /// How far apart they were at first, a mean over a second, and how far they are now. What is seen of a piece changes
 /// with the way it is seen from, by an axle that comes into sight: after a small step the distance is measured anew.
+/// All steps together count from the first mean on: where a single scan has a new track may be a metre off.
 void measure(Companion& companion, double age_s, double apart_m) {
   constexpr double kFirst_s = 1.0, kGain = 0.1, kMoved_m = 0.3, kOwnWay_m = 0.8;
   if (age_s - companion.since_age_s < kFirst_s) {
     companion.first_m += (apart_m - companion.first_m) / ++companion.scans;
     companion.now_m = companion.first_m;
   } else {
+    if (!companion.has_begun) companion.begun_m = companion.first_m;
+    companion.has_begun = true;
     companion.now_m += kGain * (apart_m - companion.now_m);
   }
-  companion.is_apart = companion.is_apart || std::abs(companion.now_m - companion.begun_m) > kOwnWay_m;
+  const bool is_off = companion.has_begun && std::abs(companion.now_m - companion.begun_m) > kOwnWay_m;
+  companion.is_apart = companion.is_apart || is_off;
   if (std::abs(companion.now_m - companion.first_m) <= kMoved_m) return;
   companion.since_age_s = age_s;
   companion.scans = 0;
@@ -68,7 +72,6 @@ void watch_pieces(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sen
     const double apart_m = seen_end_m(track, axes, sensor_m) - seen_end_m(*other, axes, sensor_m);
     if (companion.id == 0) {
       companion.id = other->id;
-      companion.begun_m = apart_m;
       companion.since_age_s = track.age_s;
     }
     measure(companion, track.age_s, apart_m);

@@ -13,7 +13,8 @@ namespace boresight::tracking {
 /// Who is before or behind, and may be the vehicle of which the track is a piece (pieces.hpp).
 struct Companion {
   std::uint32_t id = 0;               ///< 0: nobody
-  double begun_m = 0.0;               ///< how far the ends that are seen were apart when it was noted
+  bool has_begun = false;             ///< been watched for a second
+  double begun_m = 0.0;               ///< how far the ends that are seen were apart in that second
   double since_age_s = 0.0;           ///< of the track, from when on it has kept its distance
   double first_m = 0.0, now_m = 0.0;  ///< that distance at first, and now
   std::uint32_t scans = 0;            ///< of which first_m is the mean

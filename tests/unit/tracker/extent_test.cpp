@@ -74,6 +74,11 @@ TEST(Extent, GrowsToWhatIsSeenBeyondItsEnd) {
   EXPECT_EQ(box.length_m, 10.0);
   Extent car{.heading_rad = M_PI / 2, .length_m = 4.5, .width_m = 1.8};
   EXPECT_EQ(car.grow_to(cluster, centre, beside, 1.0), Eigen::Vector2d(0.0, 0.0)) << "the next car";
+  cluster.outline[0] = {4.0, centre.y() + 3.35};
+  EXPECT_EQ(car.grow_to(cluster, centre, {4.0, -20.0}, 0.3), Eigen::Vector2d(0.0, 0.0)) << "its ghost, at a slant";
+  place = centre;
+  for (int i = 0; i < 50; ++i) place += car.grow_to(cluster, place, beside, 0.3);
+  EXPECT_NEAR(car.length_m, 5.3, 1e-3) << "a van that passed: its front was known, and now its rear is";
 }
 
 TEST(Extent, WhoWasTakenForAVehicleThatPassedIsSmallAgain) {

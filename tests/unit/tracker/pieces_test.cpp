@@ -48,7 +48,7 @@ TEST(Pieces, AreOfOneVehicleThatKeepTheirDistanceForThreeSeconds) {
 
 TEST(Pieces, AreNoneThatMoveOnTheirOwn) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.0, -3.0, 4.0)};
-  drive(tracks, 3.5, -0.3);  // comes nearer
+  drive(tracks, 4.5, -0.3);  // comes nearer
   EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m));
   EXPECT_EQ(piece_wait_s(tracks[1]), 0.0) << "nor is it kept waiting";
 }
@@ -61,6 +61,14 @@ TEST(Pieces, OfWhichAnotherAxleComesIntoSightAreMeasuredAnew) {
   EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it has not kept its distance for three seconds";
   EXPECT_GT(piece_wait_s(tracks[1]), tracks[1].age_s);
   drive(tracks, 2.5, 0.0);
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+}
+
+TEST(Pieces, MayBeginWithAScanThatIsOff) {
+  std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 57.0, -3.0, 4.0)};
+  drive(tracks, kScan_s, 0.0);
+  tracks[1].state.mean.x() += 1.2;
+  drive(tracks, 5.0, 0.0);
   EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
 }
 
