@@ -64,10 +64,11 @@ struct Extent {
   /// centre moves by what is returned.
   [[nodiscard]] Eigen::Vector2d grow_to(const Cluster& cluster, const Eigen::Vector2d& centre_m,
                                         const Eigen::Vector2d& sensor_m, double sure_m) {
-    // Of what is shorter, and shows its side at more of a slant, what lies beyond its end may be a ghost behind it; and
-    // cars differ by less than that, so what lies farther off is the next one.
+    // Of a car that shows its side at more of a slant, what lies beyond its end may be a ghost behind it; and cars
+    // differ by less than that, so what lies farther off is the next one. Nor does a car that swallows what follows it
+    // become a truck.
     constexpr double kShown = 0.1, kNext_m = 1.5;
-    const bool is_truck = length_m >= kTruck_m;
+    const bool is_truck = length_m > kTruck_m;
     const bool shows_length = is_truck || side_shown(to_body(sensor_m - centre_m)) >= kShown;
     if (!shows_length || visible_faces(centre_m, sensor_m).side == 0.0) return {0.0, 0.0};
     const double end_m = 0.5 * length_m + sure_m;
@@ -79,7 +80,8 @@ struct Extent {
       behind_m = std::max(behind_m, -at - end_m);
     }
     constexpr double kGain = 0.3;
-    const double more_m = kGain * std::min(std::max(ahead_m, behind_m), kLongest_m - length_m);
+    const double longest_m = is_truck ? kLongest_m : kTruck_m;
+    const double more_m = kGain * std::min(std::max(ahead_m, behind_m), longest_m - length_m);
     length_m += more_m;
     return from_body({ahead_m > behind_m ? 0.5 * more_m : -0.5 * more_m, 0.0});
   }

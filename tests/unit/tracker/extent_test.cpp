@@ -79,6 +79,11 @@ TEST(Extent, GrowsToWhatIsSeenBeyondItsEnd) {
   place = centre;
   for (int i = 0; i < 50; ++i) place += car.grow_to(cluster, place, beside, 0.3);
   EXPECT_NEAR(car.length_m, 5.3, 1e-3) << "a van that passed: its front was known, and now its rear is";
+  for (int i = 0; i < 50; ++i) {
+    cluster.outline[0] = {4.0, place.y() + 0.5 * car.length_m + 1.4};
+    place += car.grow_to(cluster, place, beside, 0.3);
+  }
+  EXPECT_LE(car.length_m, 6.5) << "and no truck, with the car behind that closes up";
 }
 
 TEST(Extent, WhoWasTakenForAVehicleThatPassedIsSmallAgain) {
