@@ -174,6 +174,8 @@ void Clusterer::add(const ClassifiedScan& scan, std::span<std::uint32_t> members
     // A ghost beside an object shall not make it longer.
     if (real >= 0.5 && cluster.number_on_outline < cluster.outline.size()) {
       cluster.outline_rate_mps[cluster.number_on_outline] = told.rate_mps;
+      cluster.outline_dbsm[cluster.number_on_outline] =
+          has_rcs ? static_cast<double>(scan.rcs_dbsm[i]) : std::numeric_limits<double>::quiet_NaN();
       cluster.outline[cluster.number_on_outline++] = points_[k];
     }
     ++cluster.number_of_detections;
@@ -209,6 +211,7 @@ std::span<const Cluster> Clusterer::join(std::size_t first, std::size_t second) 
   into.number_of_detections += part.number_of_detections;
   for (std::uint32_t k = 0; k < part.number_on_outline && into.number_on_outline < into.outline.size(); ++k) {
     into.outline_rate_mps[into.number_on_outline] = part.outline_rate_mps[k];
+    into.outline_dbsm[into.number_on_outline] = part.outline_dbsm[k];
     into.outline[into.number_on_outline++] = part.outline[k];
   }
   clusters_.erase(clusters_.begin() + static_cast<std::ptrdiff_t>(second));

@@ -34,6 +34,7 @@ struct Cluster {
   double weight;                            ///< sum of that probability over the detections
   std::array<Eigen::Vector2d, 24> outline;  ///< up to 24 of the detections that are rather real, for the extent
   std::array<double, 24> outline_rate_mps;  ///< range rates over ground of the same
+  std::array<double, 24> outline_dbsm;      ///< RCS of the same; NaN: the sensor measures none
   std::uint32_t number_on_outline;
 };
 
