@@ -8,8 +8,7 @@ namespace boresight::tracking {
 
 namespace {
 
-/// Plates and corners reflect some 10 dB more than wheels do. Share of wheels in what is the strongest of several, and
-/// in the others.
+/// Share of wheels in what is the strongest of several, and in the others: plates and corners reflect some 10 dB more.
 constexpr double kOfStrongest = 0.02, kOfOthers = 0.9;
 
 /// Which detection on the outline is the strongest; none if the sensor measures no strength.
@@ -39,7 +38,7 @@ double chance_of_body(const KinematicState& vehicle, const PositionRate& measure
 
 bool is_seen_all_round(const Cluster& cluster) {
   constexpr double kMeanSight = 0.98;  // spread over some 0.2 rad
-  constexpr std::uint32_t kLeast = 2;
+  constexpr std::uint32_t kLeast = 2;  // what is rather a ghost has a part in the mean, but no range rate of its own
   return cluster.mean_sight.norm() < kMeanSight && cluster.number_on_outline >= kLeast;
 }
 

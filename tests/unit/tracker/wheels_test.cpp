@@ -87,6 +87,14 @@ TEST(Wheels, WhatIsFarAwayIsSeenFromOneSideOnly) {
   EXPECT_FALSE(is_seen_all_round(seen_alongside(10.0, {-60.0, 0.0})));
 }
 
+TEST(Wheels, OneRangeRateIsNotSeenAllRoundWhereverGhostsAre) {
+  Cluster cluster = seen_alongside(10.0, {2.5, 0.0});
+  cluster.number_on_outline = 2;
+  EXPECT_TRUE(is_seen_all_round(cluster));
+  cluster.number_on_outline = 1;
+  EXPECT_FALSE(is_seen_all_round(cluster));
+}
+
 /// A van's speed after many looks at its middle and at a wheel house ahead of it, whose range rate is any that a wheel
 /// shows; the van drives at 6 m/s and was thought to drive at 7.
 double followed_speed(double body_dbsm, double wheel_dbsm) {
