@@ -13,6 +13,7 @@ constexpr double kLeft = 52.0;
 constexpr double kRight = 12.0;
 constexpr double kTop = 10.0;
 constexpr double kBottom = 36.0;
+constexpr double kHalfDigit = 3.3;
 
 bool is_finite(const Point& p) {
   return std::isfinite(p.x) && std::isfinite(p.y);
@@ -20,7 +21,7 @@ bool is_finite(const Point& p) {
 
 std::string tick_text(double value) {
   if (value != 0.0 && std::abs(value) < 1e-9) value = 0.0;
-  return fmt::format("{:.4g}", value);
+  return fmt::format("{:.6g}", value);
 }
 
 /// With as many decimals as tell neighbouring ticks apart.
@@ -196,8 +197,11 @@ std::string SvgChart::axes() const {
   }
   for (const double value : x_ticks) {
     text += fmt::format("<path class=\"grid\" d=\"M{0:.1f},{1:.1f}V{2:.1f}\"/>", px(value), kTop, bottom);
-    text += fmt::format("<text class=\"tick\" text-anchor=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", px(value),
-                        bottom + 14.0, x_.logarithmic ? tick_text(value) : tick_text(value, x_ticks));
+    // In the middle of its tick a long number at the edge would end outside of the picture.
+    const std::string number = x_.logarithmic ? tick_text(value) : tick_text(value, x_ticks);
+    const bool fits = px(value) + kHalfDigit * static_cast<double>(number.size()) < width_;
+    text += fmt::format("<text class=\"tick\" text-anchor=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                        fits ? "middle" : "end", px(value), bottom + 14.0, number);
   }
   const int rows = std::max(2, static_cast<int>((height_ - kTop - kBottom) / 32.0));
   const std::vector<double> y_ticks = y_.label.empty() ? std::vector<double>{} : ticks(y_.min, y_.max, rows);

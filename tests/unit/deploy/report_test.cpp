@@ -255,6 +255,13 @@ TEST(SvgChart, TicksAreRoundAndCoverTheRange) {
   EXPECT_THAT(SvgChart::ticks(1.0, 1.0, 5), ::testing::IsEmpty());
 }
 
+TEST(SvgChart, NumbersAtTheEdgeLieInThePicture) {
+  const SvgChart chart(520, 250, {.min = 100.0, .max = 10000.0, .label = "x", .logarithmic = true}, {.label = "y"});
+  const std::string text = chart.finish();
+  EXPECT_THAT(text, ::testing::ContainsRegex("text-anchor=\"middle\"[^<]*>1000<"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("text-anchor=\"end\"[^<]*>10000<"));
+}
+
 TEST(SvgChart, LeavesOutWhatIsNotANumber) {
   SvgChart chart(100, 100, {.label = "x"}, {.label = "y"});
   chart.line({{0.0, 0.0}, {0.5, NAN}, {1.0, 1.0}}, "estimate");
