@@ -11,9 +11,12 @@ Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std:
   std::vector<std::tuple<bool, double, double, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < number_of_tracks; ++k) {
     const Eigen::Vector2d place = place_of(tracks.tracks[k]);
+    const bool in_box = std::any_of(objects.begin(), objects.end(), [&place](const Object& object) {
+      return !object.is_hidden && object.distance_m(place) <= 0.0;
+    });
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const double distance_m = objects[o].distance_m(place);
-      if (!(distance_m < kNear_m)) continue;
+      if (!(distance_m < kNear_m) || (in_box && distance_m > 0.0)) continue;
       pairs.emplace_back(objects[o].is_hidden, distance_m, (objects[o].position_m - place).norm(), k, o);
     }
   }

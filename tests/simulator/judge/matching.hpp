@@ -21,8 +21,9 @@ struct Matching {
 };
 
 /// The first `number_of_tracks` of the list (the confirmed ones come first) with the objects, nearest pairs first: one
-/// vehicle's track is not its neighbour's as well, and a second track beside a vehicle is nobody's. Those objects that
-/// are hidden come last: they take no track from what is seen beside them.
+/// vehicle's track is not its neighbour's as well, and a second track beside a vehicle is nobody's; one in a vehicle's
+/// box is that vehicle's or nobody's. Those objects that are hidden come last: they take no track from what is seen
+/// beside them.
 [[nodiscard]] Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<Object>& objects);
 
 [[nodiscard]] inline Eigen::Vector2d place_of(const Track& track) {

@@ -50,6 +50,16 @@ TEST_F(Tracks, BelongToTheNearestObjectAndToOneOnly) {
   EXPECT_EQ(m.object_of_track, (std::vector<std::size_t>{1, 2, kNone}));
 }
 
+TEST_F(Tracks, BelongToTheVehicleInWhoseBoxTheyLieOrToNone) {
+  objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6)};
+  add_track(7, 20.0f, 3.6f);
+  add_track(8, 20.0f, 2.8f);
+  // The second one in the second car's box is 1.9 m beside the first car.
+  EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{1, kNone}));
+  objects_[1].is_hidden = true;
+  EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{1, 0}));
+}
+
 TEST_F(Tracks, BelongToWhatIsHiddenOnlyIfNothingThatIsSeenIsThere) {
   objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6)};
   add_track(7, 20.0f, 1.3f);
