@@ -11,6 +11,8 @@ namespace boresight::tracking {
 
 namespace {
 
+constexpr double kMinSpeed_mps = 0.5;  // the course of what is slower is not asked for
+
 /// Update of all seven states by one number, the difference of what is measured from what is expected: its covariances
 /// with the six and with the heading, and its variance.
 void observe(KinematicState& state, const Vector6d& with_rest, double with_heading, double variance,
@@ -42,7 +44,7 @@ double course_std_rad(const KinematicState& state) {
 
 void begin_heading(KinematicState& state) {
   // Errors of the places that a new track was made of stay for a while: the course is not so sure as the filter has it.
-  constexpr double kMinSpeed_mps = 0.5, kKnown_rad = 0.25, kMore_rad = 0.1;
+  constexpr double kKnown_rad = 0.25, kMore_rad = 0.1;
   const Eigen::Vector2d v = state.mean.segment<2>(2);
   const double speed2 = v.squaredNorm();
   if (!(speed2 > kMinSpeed_mps * kMinSpeed_mps) || !(course_std_rad(state) < kKnown_rad)) return;
@@ -62,6 +64,24 @@ void begin_heading(KinematicState& state, double box_heading_rad, const Turn& tu
   state.heading.known = true;
   state.heading.rad = geometry::wrap_angle(rad);
   state.heading.variance = turn.variance;
+}
+
+void begin_heading(KinematicState& state, double road_rad) {
+  constexpr double kUnsure_mps = 2.5;  // of more than that across the road nothing is known yet
+  constexpr double kAlike = 1.5;       // standard deviations across it: more rather crosses it
+  constexpr double kStd_rad = 0.15;    // lane changes, and what the own course says of the road
+  const Eigen::Vector2d along(std::cos(road_rad), std::sin(road_rad)), across(-along.y(), along.x());
+  const Eigen::Vector2d v = state.mean.segment<2>(2);
+  const auto std_mps = [&state](const Eigen::Vector2d& way) {
+    return std::sqrt(std::max(0.0, way.dot(state.covariance.block<2, 2>(2, 2) * way)));
+  };
+  const double speed_mps = along.dot(v), across_mps = std_mps(across);
+  if (!(std::abs(speed_mps) > std::max(kMinSpeed_mps, 2.0 * std_mps(along)))) return;
+  if (!(across_mps < kUnsure_mps && std::abs(across.dot(v)) < kAlike * across_mps)) return;
+  state.heading = {};
+  state.heading.known = true;
+  state.heading.rad = geometry::wrap_angle(speed_mps > 0.0 ? road_rad : road_rad + M_PI);
+  state.heading.variance = kStd_rad * kStd_rad;
 }
 
 void predict_heading(KinematicState& state, double elapsed_s, double turned_rad) {
@@ -90,39 +110,6 @@ void hold_to_heading(KinematicState& state) {
 void measure_heading(KinematicState& state, const Turn& turn) {
   const Heading known = state.heading;
   observe(state, known.with_rest, known.variance, known.variance + turn.variance, turn.difference_rad);
-}
-
-std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad) {
-  constexpr double kLeast_m = 5.0, kMost_rad = 0.5;
-  constexpr double kMostOff_m = 0.2;  // more is no flank, but an end as well, or another vehicle, or a ghost behind it
-  constexpr double kRough_m = 0.25;   // reflections lie beside the flank by so much
-  const std::size_t n = std::min<std::size_t>(cluster.number_on_outline, cluster.outline.size());
-  if (n < 3) return std::nullopt;
-  Eigen::Vector2d mean(0.0, 0.0);
-  for (std::size_t i = 0; i < n; ++i) mean += cluster.outline[i] / static_cast<double>(n);
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector2d d = cluster.outline[i] - mean, off(c * d.x() + s * d.y(), c * d.y() - s * d.x());
-    spread += off * off.transpose() / static_cast<double>(n);
-  }
-  // The line's turn against the heading, by its principal axis; what is no line has no direction.
-  const double difference = spread(0, 0) - spread(1, 1), turn = 0.5 * std::atan2(2.0 * spread(0, 1), difference);
-  const double half = 0.5 * std::hypot(difference, 2.0 * spread(0, 1)), middle = 0.5 * spread.trace();
-  const double along2 = middle + half, off2 = std::max(0.0, middle - half);
-  if (off2 > kMostOff_m * kMostOff_m || std::abs(turn) > kMost_rad) return std::nullopt;
-  const double flank_rad = heading_rad + turn;
-  const Eigen::Vector2d along(std::cos(flank_rad), std::sin(flank_rad)), across(-along.y(), along.x());
-  double first_m = 0.0, last_m = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double at_m = along.dot(cluster.outline[i] - mean);
-    first_m = std::min(first_m, at_m);
-    last_m = std::max(last_m, at_m);
-  }
-  if (last_m - first_m < kLeast_m) return std::nullopt;
-  // That few points lie in a line may be chance: the radar's noise turns them, too.
-  const double noise2 = cluster.weight * across.dot(cluster.covariance_m2 * across);
-  return Turn{turn, (off2 + kRough_m * kRough_m + noise2) / (along2 * static_cast<double>(n))};
 }
 
 }  // namespace boresight::tracking

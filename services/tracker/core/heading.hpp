@@ -2,9 +2,6 @@
 // that places and range rates over time tell it, and what lies along its flank tells its velocity.
 #pragma once
 
-#include <optional>
-
-#include "services/tracker/core/clusters.hpp"
 #include "services/tracker/core/kalman.hpp"
 
 namespace boresight::tracking {
@@ -23,6 +20,10 @@ void begin_heading(KinematicState& state);
 /// known well enough.
 void begin_heading(KinematicState& state, double box_heading_rad, const Turn& turn);
 
+/// The same by the road on which it drives, which heads for `road_rad` (vehicle axes) or comes from there: if what is
+/// known of the velocity so far is little, but rather along that road than across.
+void begin_heading(KinematicState& state, double road_rad);
+
 /// A vehicle's heading after `elapsed_s` in the new vehicle frame, which has turned by `turned_rad`: it has turned as
 /// vehicles do, the less the slower it is.
 void predict_heading(KinematicState& state, double elapsed_s, double turned_rad);
@@ -31,8 +32,5 @@ void predict_heading(KinematicState& state, double elapsed_s, double turned_rad)
 void hold_to_heading(KinematicState& state);
 
 void measure_heading(KinematicState& state, const Turn& turn);
-
-/// What is seen along the flank of a long vehicle lies along its heading. Nothing if it is short, or no line.
-[[nodiscard]] std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad);
 
 }  // namespace boresight::tracking

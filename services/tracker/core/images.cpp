@@ -25,7 +25,7 @@ double longer_m(const TrackedObject& track) {
 
 bool may_be_image_of(const TrackedObject& track, const View& seen, const TrackedObject& other,
                      const Eigen::Vector2d& sensor_m) {
-  constexpr double kYounger_s = 0.1;  // both may have come into sight at once
+  constexpr double kYounger_s = 0.5;  // both may have come into sight at once, or one been missed at first
   constexpr double kLoss_db = 3.0;    // at the least, of what each bounce costs
   // A detour by the lane beside, and what is not known of where the middle of a new track is.
   constexpr double kMostDetour_m = 8.0, kNearer_m = 1.5;

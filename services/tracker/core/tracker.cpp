@@ -5,7 +5,9 @@
 
 #include "services/common/geometry/ego_step.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/tracker/core/birth.hpp"
 #include "services/tracker/core/duplicates.hpp"
+#include "services/tracker/core/flank.hpp"
 #include "services/tracker/core/heading.hpp"
 #include "services/tracker/core/images.hpp"
 #include "services/tracker/core/life.hpp"
@@ -106,7 +108,7 @@ bool drives_beside(const Cluster& cluster, const TrackedObject& track) {
 }
 
 /// The heading of a vehicle, and its box along it.
-void follow_heading(TrackedObject& track, const Cluster& cluster) {
+void follow_heading(TrackedObject& track, const Cluster& cluster, const OwnRoad& road) {
   Heading& heading = track.state.heading;
   if (heading.known) {
     hold_to_heading(track.state);
@@ -118,6 +120,10 @@ void follow_heading(TrackedObject& track, const Cluster& cluster) {
   if (!heading.known) {
     const auto turn = turn_of_flank(cluster, track.extent.heading_rad);
     if (turn) begin_heading(track.state, track.extent.heading_rad, *turn);
+  }
+  if (!heading.known) {
+    const auto road_rad = road.heading_rad(track.state.mean.head<2>());
+    if (road_rad) begin_heading(track.state, *road_rad);
   }
   // Until then the box lay along the line of sight.
   if (heading.known) track.extent.heading_rad = heading.rad;
@@ -155,6 +161,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   dropped_tracks_ = 0;
 
   predict_all(elapsed_s, scan.geometry);
+  road_ = OwnRoad(scan.geometry);
   const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
   const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan, known()));
   result.dropped_clusters = clusterer_.dropped();
@@ -286,7 +293,7 @@ bool Tracker::follow(TrackedObject& track, const Cluster& cluster, const Eigen::
 }
 
 void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
-                            bool has_elevation) {
+                            bool has_elevation) const {
   const Eigen::Vector2d velocity = track.state.mean.segment<2>(2);
   // People turn as they like: theirs is but the course. Some are in vehicles' boxes, as ghosts made them look strong.
   if (track.extent.is_small || track.extent.is_surely_small(velocity.norm())) {
@@ -294,7 +301,7 @@ void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const 
     track.state.heading = {};
     if (velocity.norm() > kLeastCourse_mps) track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));
   } else {
-    follow_heading(track, cluster);
+    follow_heading(track, cluster, road_);
   }
   if (track.confirmed) {
     constexpr double kSure = 2.0;  // standard deviations
@@ -330,36 +337,8 @@ void Tracker::start_track(const Cluster& cluster, const Eigen::Vector2d& sensor,
     ++dropped_tracks_;
     return;
   }
-  TrackedObject track;
+  TrackedObject track = new_track(cluster, sensor, has_elevation, road_, config_);
   track.id = next_id_++;
-  track.state.mean.segment<2>(2) = cluster.range_rate_over_ground_mps * cluster.line_of_sight;
-  track.state.covariance.setZero();
-  const double centre =
-      config_.start_position_std_m * config_.start_position_std_m + config_.centre_std_m * config_.centre_std_m;
-  track.state.covariance.topLeftCorner<2, 2>() = cluster.covariance_m2 + centre * Eigen::Matrix2d::Identity();
-  // The range rate says the speed along the line of sight; across it nothing is known.
-  const Eigen::Vector2d u = cluster.line_of_sight, v(-u.y(), u.x());
-  const double across = config_.start_speed_std_mps * config_.start_speed_std_mps;
-  track.state.covariance.block<2, 2>(2, 2) =
-      (cluster.range_rate_variance + config_.range_rate_std_mps * config_.range_rate_std_mps) * u * u.transpose() +
-      across * v * v.transpose();
-  const double acceleration = config_.start_acceleration_std_mps2 * config_.start_acceleration_std_mps2;
-  track.state.covariance.bottomRightCorner<2, 2>() = acceleration * Eigen::Matrix2d::Identity();
-  track.extent.heading_rad = std::atan2(track.state.mean(3), track.state.mean(2));
-  if (cluster.number_on_outline > 0) track.extent.hear(cluster.strongest_dbsm, track.state.mean.segment<2>(2).norm());
-  track.state.mean.head<2>() = cluster.position_m;
-  if (!track.extent.is_small) {
-    // What is seen is of the faces.
-    const VisibleFaces faces = track.extent.visible_faces(cluster.position_m, sensor);
-    track.state.mean.head<2>() -=
-        track.extent.from_body({0.5 * faces.end * track.extent.length_m, 0.5 * faces.side * track.extent.width_m});
-  }
-  track.state.mean.head<2>() +=
-      track.extent.update(cluster, track.state.mean.head<2>(), track.state.mean.segment<2>(2), sensor, has_elevation);
-  track.history = 1;
-  track.evidence[0] = static_cast<float>(cluster.realness);
-  track.seen_scans = 1;
-  track.detections = cluster.number_of_detections;
   tracks_.push_back(track);
 }
 
@@ -370,8 +349,13 @@ void Tracker::judge(const ClassifiedScan& scan) {
     const bool could_see = track.detections > 0 || (radar != nullptr && can_see(*radar, scan.geometry, track, tracks_,
                                                                                 config_.blind_range_rate_mps));
     if (!could_see) continue;
-    const double wait_s =
-        track.confirmed ? 0.0 : std::max(image_wait_s(track, tracks_, sensor, config_), piece_wait_s(track));
+    double wait_s = 0.0;
+    if (!track.confirmed || track.age_s < config_.confirm_side_image_age_s) {
+      const double image_s = image_wait_s(track, tracks_, sensor, config_);
+      // What would show it may have been found a little later than the image.
+      if (image_s >= config_.confirm_side_image_age_s) track.confirmed = false;
+      if (!track.confirmed) wait_s = std::max(image_s, piece_wait_s(track));
+    }
     count_scan(track, config_, wait_s);
   }
   std::erase_if(tracks_, [this](const TrackedObject& track) { return is_dead(track, config_); });

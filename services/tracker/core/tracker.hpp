@@ -11,6 +11,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/tracker/core/clusters.hpp"
 #include "services/tracker/core/config.hpp"
+#include "services/tracker/core/own_road.hpp"
 #include "services/tracker/core/tracked_object.hpp"
 
 namespace boresight::tracking {
@@ -42,8 +43,8 @@ class Tracker {
   /// Place and velocity of a track by the cluster that is its own; false: that tells nothing.
   [[nodiscard]] bool follow(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor) const;
   /// Heading and size of a track that the cluster has just updated.
-  static void update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
-                            bool has_elevation);
+  void update_extent(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor,
+                     bool has_elevation) const;
   /// Nothing is where the own vehicle is: moves tracks that drift there back beside it, their velocity, too.
   void push_off(double ego_speed_mps);
   void start_track(const Cluster& cluster, const Eigen::Vector2d& sensor, bool has_elevation);
@@ -57,6 +58,7 @@ class Tracker {
   std::vector<TrackedObject> tracks_;
   std::array<bool, geometry::Assignment::kCapacity> cluster_used_{};
   std::array<KnownPlace, kMaxTracks> known_;
+  OwnRoad road_;                                                        // at the time of the last scan
   Eigen::Vector2d radars_low_m_{1e9, 1e9}, radars_high_m_{-1e9, -1e9};  // what lies between them is the own body
   std::uint32_t next_id_ = 1;
   std::int64_t time_ns_ = 0;

@@ -123,6 +123,88 @@ TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
       << "strength not measured";
 }
 
+/// Velocity with which a car begins that is first seen there, at that velocity, by a vehicle that drives at 20 m/s on a
+/// bend of that curvature.
+Eigen::Vector2d velocity_at_birth(const Eigen::Vector2d& at_m, const Eigen::Vector2d& velocity_mps,
+                                  double curvature_per_m = 0.0) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  scene.begin(1000 * kMillisecond);
+  scene.scan->geometry.ego_speed_mps = 20.0F;
+  scene.scan->geometry.ego_yaw_rate_radps = static_cast<float>(20.0 * curvature_per_m);
+  scene.add(at_m, velocity_mps);
+  tracker.step(*scene.scan);
+  const auto list = std::make_unique<TrackList>();
+  tracker.write(*list);
+  EXPECT_EQ(list->number_of_tracks, 1u);
+  const auto& v = list->tracks[0].velocity_over_ground_mps;
+  return {v[0], v[1]};
+}
+
+TEST(TrackerBirth, FarAwayOnTheOwnRoadItDrivesAlongIt) {
+  const Eigen::Vector2d along = velocity_at_birth({80.0, 7.0}, {2.0, 0.0});
+  EXPECT_NEAR(along.x(), 2.0, 1e-3);
+  EXPECT_NEAR(along.y(), 0.0, 1e-3);
+  const Eigen::Vector2d oncoming = velocity_at_birth({80.0, 3.6}, {-15.0, 0.0});
+  EXPECT_NEAR(oncoming.x(), -15.0, 1e-2);
+  EXPECT_NEAR(oncoming.y(), 0.0, 1e-3);
+  // On a circle of 500 m to the left the road has turned by 0.16 rad after 80 m, and is 6.4 m aside.
+  const Eigen::Vector2d turned = velocity_at_birth({80.0, 6.4}, {2.0, 0.32}, 1.0 / 500.0);
+  EXPECT_NEAR(std::atan2(turned.y(), turned.x()), 0.16, 1e-3);
+}
+
+TEST(TrackerBirth, ElsewhereOnlyTheRangeRateIsKnown) {
+  for (const Eigen::Vector2d& at_m : {Eigen::Vector2d(20.0, 7.0), {80.0, 12.0}}) {
+    const Eigen::Vector2d sight = at_m - Eigen::Vector2d(3.6, 0.0), v = velocity_at_birth(at_m, {2.0, 0.0});
+    EXPECT_NEAR(std::atan2(v.y(), v.x()), std::atan2(sight.y(), sight.x()), 1e-5) << at_m.transpose();
+  }
+}
+
+TEST(TrackerBirth, WhatCrossesFarAheadIsFollowedAllTheSame) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.05 * i;
+    const Eigen::Vector2d velocity(2.0, 8.0), at = Eigen::Vector2d(60.0, -7.0) + t * velocity;
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.add(at, velocity);
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    if (t < 0.3) continue;
+    ASSERT_EQ(list->number_of_confirmed_tracks, 1u) << t;
+    EXPECT_NEAR(list->tracks[0].position_vehicle_m[1], at.y(), 2.0) << t;
+  }
+  EXPECT_NEAR(list->tracks[0].velocity_over_ground_mps[1], 8.0, 2.0);
+}
+
+TEST(TrackerBirth, AnImageThatIsFoundBeforeItsObjectWaitsAfterAll) {
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  const Eigen::Vector2d along(15.0, 0.0);
+  bool was_confirmed = false;
+  for (int i = 0; i < 40; ++i) {
+    const double t = 0.05 * i;
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    scene.scan->fields |= scan_field::kRcs;
+    const auto add = [&](double x_m, double y_m, float rcs_dbsm) {
+      scene.add({x_m + 15.0 * t, y_m}, along);
+      scene.scan->rcs_dbsm[scene.scan->number_of_valid_detections - 1] = rcs_dbsm;
+    };
+    add(40.5, 4.8, 0.0F);
+    if (i >= 6) add(40.0, 0.0, 10.0F);
+    for (const double x : {20.0, 23.0, 26.0}) add(x, 2.4, 20.0F);
+    tracker.step(*scene.scan);
+    tracker.write(*list);
+    was_confirmed = was_confirmed || (i < 6 && list->number_of_confirmed_tracks == 2);
+    if (t > 0.6 && t < 1.9) {
+      EXPECT_EQ(list->number_of_confirmed_tracks, 2u) << "the truck and the car, at " << t;
+    }
+  }
+  EXPECT_TRUE(was_confirmed);
+}
+
 TEST(TrackerBirth, WhoComesBesideAPersonIsNoPartOfThem) {
   Tracker tracker(two_radars(), Config{});
   Scene scene;

@@ -146,51 +146,6 @@ TEST(Heading, ComingToRestDoesNotTurn) {
   EXPECT_EQ(s.heading.rad, before);
 }
 
-Cluster line_of(int number, double length_m, double angle_rad) {
-  Cluster cluster{};
-  const Eigen::Vector2d along(std::cos(angle_rad), std::sin(angle_rad));
-  for (int i = 0; i < number; ++i) {
-    cluster.outline[cluster.number_on_outline++] = Eigen::Vector2d(20.0, -5.0) + length_m * i / (number - 1) * along;
-  }
-  cluster.position_m = Eigen::Vector2d(20.0, -5.0) + 0.5 * length_m * along;
-  return cluster;
-}
-
-TEST(Heading, LiesAlongTheFlankOfALongVehicle) {
-  const auto truck = turn_of_flank(line_of(5, 12.0, 0.0), 0.3);
-  ASSERT_TRUE(truck);
-  EXPECT_NEAR(truck->difference_rad, -0.3, 1e-9);
-  EXPECT_LT(truck->variance, 0.01);
-  EXPECT_FALSE(turn_of_flank(line_of(5, 3.0, 0.0), 0.3)) << "too short";
-  EXPECT_FALSE(turn_of_flank(line_of(2, 12.0, 0.0), 0.3)) << "two points make no line";
-  EXPECT_FALSE(turn_of_flank(line_of(5, 12.0, 0.0), 1.0)) << "rather its end";
-  Cluster bent = line_of(5, 8.0, 0.0);
-  bent.outline[4] += Eigen::Vector2d(0.0, -2.5);
-  bent.outline[3] += Eigen::Vector2d(0.0, -2.5);
-  EXPECT_FALSE(turn_of_flank(bent, 0.3)) << "no line";
-}
-
-TEST(Heading, IsNotThatOfADiagonalThroughACar) {
-  // A far rear corner, a wheel and the near front corner, all within 4.5 m: as spread as if they were 5 m long.
-  Cluster car{};
-  for (const Eigen::Vector2d& at : {Eigen::Vector2d(52.8, 4.4), {55.0, 3.5}, {57.2, 2.65}}) {
-    car.outline[car.number_on_outline++] = at;
-  }
-  EXPECT_FALSE(turn_of_flank(car, 0.0));
-}
-
-TEST(Heading, OfAFlankIsAsUnsureAsAzimuthsMakeIt) {
-  Cluster truck = line_of(5, 12.0, 0.0);
-  truck.weight = 5.0;
-  const auto sure = turn_of_flank(truck, 0.0);
-  constexpr double kNoise_m = 0.7;
-  truck.covariance_m2 = kNoise_m * kNoise_m / truck.weight * Eigen::Matrix2d::Identity();
-  const auto unsure = turn_of_flank(truck, 0.0);
-  ASSERT_TRUE(sure && unsure);
-  // Least squares: the noise's variance beside the sum of the squared distances from the middle, 5 x 18 m².
-  EXPECT_NEAR(unsure->variance - sure->variance, kNoise_m * kNoise_m / 90.0, 1e-9);
-}
-
 TEST(RangeRate, OfALongBodyNearbyIsThatOfTheMeanOfItsDirections) {
   Scene scene;
   scene.begin(kMillisecond);
