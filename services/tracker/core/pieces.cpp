@@ -9,15 +9,18 @@ namespace {
 
 constexpr double kLong_s = 3.0;  // two drivers hardly keep their distance to a hand's width for so long
 
-/// Before or behind the other one, so near that it may be a piece of it, and seen from beside: else what lies behind is
-/// as likely a type-1 ghost.
-bool is_in_file(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
-  // The gap is that between axles, or an axle and an end. Of whose flank alone is seen the middle is known to half a
-  // width; lanes are wider.
-  constexpr double kGap_m = 4.2, kBesides_m = 1.5;
-  const Eigen::Vector2d from_m = other.state.mean.head<2>();
-  return other.extent.shows_side(from_m, sensor_m) &&
-         other.extent.in_file(from_m, track.extent, track.state.mean.head<2>(), kGap_m, kBesides_m);
+/// Before or behind the other one, with at most that between them. Of whose flank alone is seen the middle is known to
+/// half a width; lanes are wider.
+bool is_in_file(const TrackedObject& track, const TrackedObject& other, double gap_m) {
+  constexpr double kBesides_m = 1.5;
+  return other.extent.in_file(other.state.mean.head<2>(), track.extent, track.state.mean.head<2>(), gap_m, kBesides_m);
+}
+
+/// So near before or behind that it may be a piece of the other one, and seen from beside: else what lies behind is as
+/// likely a type-1 ghost.
+bool is_close_in_file(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
+  constexpr double kGap_m = 4.2;  // between axles, or an axle and an end
+  return other.extent.shows_side(other.state.mean.head<2>(), sensor_m) && is_in_file(track, other, kGap_m);
 }
 
 /// Which of the tracks may be what this one is a piece of.
@@ -25,7 +28,7 @@ bool may_be_whole(const TrackedObject& other, const TrackedObject& track, const 
   constexpr double kAlike_mps = 0.6;
   if (&other == &track || !other.confirmed || other.extent.is_small || other.age_s < track.age_s) return false;
   const Eigen::Vector2d apart_mps = other.extent.to_body((track.state.mean - other.state.mean).segment<2>(2));
-  return std::abs(apart_mps.x()) < kAlike_mps && is_in_file(track, other, sensor_m);
+  return std::abs(apart_mps.x()) < kAlike_mps && is_close_in_file(track, other, sensor_m);
 }
 
 /// Along the other one's axis, of the end that is seen, which a track knows best: middles move as boxes grow.
@@ -57,12 +60,13 @@ void measure(Companion& companion, double age_s, double apart_m) {
 }  // namespace
 
 void watch_pieces(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m) {
+  constexpr double kLeft_m = 6.0;  // that far away it was no piece, whatever its first scans made of its place
   for (TrackedObject& track : tracks) {
     if (track.extent.is_small || track.detections == 0) continue;
     Companion& companion = track.companion;
     auto other = std::find_if(tracks.begin(), tracks.end(),
                               [&](const TrackedObject& o) { return &o != &track && o.id == companion.id; });
-    if (other == tracks.end()) {
+    if (other == tracks.end() || !is_in_file(track, *other, kLeft_m)) {
       companion = {};
       other = std::find_if(tracks.begin(), tracks.end(),
                            [&](const TrackedObject& o) { return may_be_whole(o, track, sensor_m); });
@@ -86,7 +90,7 @@ double piece_wait_s(const TrackedObject& track) {
 bool is_piece_of(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
   const Companion& companion = track.companion;
   return companion.id == other.id && !companion.is_apart && track.age_s - companion.since_age_s > kLong_s &&
-         is_in_file(track, other, sensor_m);
+         is_close_in_file(track, other, sensor_m);
 }
 
 }  // namespace boresight::tracking

@@ -72,6 +72,15 @@ TEST(Pieces, MayBeginWithAScanThatIsOff) {
   EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
 }
 
+TEST(Pieces, AreNoneThatTurnOutToBeFarAway) {
+  std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 59.0, -3.0, 0.0)};
+  drive(tracks, kScan_s, 0.0);
+  EXPECT_GT(piece_wait_s(tracks[1]), 3.0);
+  tracks[1].state.mean.x() += 3.0;
+  drive(tracks, kScan_s, 0.0);
+  EXPECT_EQ(piece_wait_s(tracks[1]), 0.0);
+}
+
 TEST(Pieces, AreNoneThatHaveComeNearerAndThenKeepTheirDistance) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.5, -3.0, 4.0)};
   drive(tracks, 4.0, -0.35);
