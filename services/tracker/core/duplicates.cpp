@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "services/tracker/core/pieces.hpp"
@@ -49,6 +50,23 @@ bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector
   return apart_mps < kAlike_mps && a.extent.in_file(p, b.extent, q, kSmallestHeadway_s * velocity.norm());
 }
 
+/// Of what is new and nearer than the end that is seen of the other one, the end that is seen: nothing mirrors to where
+/// it is nearer, and nobody who drives follows so closely, so that it is the other one's, whose rear came into sight
+/// after its front, or was taken for wheels.
+std::optional<Eigen::Vector2d> nearer_end(const TrackedObject& kept, const TrackedObject& gone,
+                                          const Eigen::Vector2d& sensor) {
+  constexpr double kCreeps_mps = 5.0;
+  const Eigen::Vector2d p = kept.state.mean.head<2>(), q = gone.state.mean.head<2>();
+  if (!kept.confirmed || kept.state.mean.segment<2>(2).norm() < kCreeps_mps) return std::nullopt;
+  // Where one who was taken for a person ends is not known.
+  if (kept.extent.is_small || gone.extent.is_small || gone.extent.was_small) return std::nullopt;
+  if (kept.extent.contains(p, q, 0.0)) return std::nullopt;
+  const double end = kept.extent.visible_faces(p, sensor).end;
+  const double at_m = kept.extent.to_body(q - p).x() + 0.5 * end * gone.extent.length_m;
+  if (end * at_m <= 0.5 * kept.extent.length_m) return std::nullopt;
+  return p + kept.extent.from_body({at_m, 0.0});
+}
+
 }  // namespace
 
 void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m, const Config& config) {
@@ -65,7 +83,11 @@ void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d
       const bool shows_side = kept.extent.shows_side(kept.state.mean.head<2>(), sensor_m);
       const bool is_part = gone.confirmed || is_piece_of(gone, kept, sensor_m);
       if (is_part && shows_side && speed_mps <= config.duplicate_speed_mps) {
+        // What else the other one is may be no more than the length of a car that it was born with.
         kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), gone.state.mean.head<2>());
+      } else if (const auto end_m = nearer_end(kept, gone, sensor_m); end_m && shows_side) {
+        constexpr double kMost_m = 1.0;  // each time: one wheel that seems to move alike is no rear
+        kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), *end_m, kMost_m);
       }
       tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(b));
     }

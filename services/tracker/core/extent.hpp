@@ -187,11 +187,12 @@ struct Extent {
                    std::min(0.5 * std::max(width_m, other.width_m), kBesides_m));
   }
 
-  /// Makes the box reach as far as another one's middle, as what else that one is may be no more than the length of a
-  /// car that it was born with; returns where this one's centre is then.
-  [[nodiscard]] Eigen::Vector2d lengthen(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& other_centre_m) {
-    const double at = to_body(other_centre_m - centre_m).x();
-    const double low = std::min(-0.5 * length_m, at), high = std::max(0.5 * length_m, at);
+  /// Makes the box reach as far along as a place that is of it, but grow by no more than `most_m`; returns where its
+  /// centre is then.
+  [[nodiscard]] Eigen::Vector2d lengthen(const Eigen::Vector2d& centre_m, const Eigen::Vector2d& to_m,
+                                         double most_m = kLongest_m) {
+    const double at = to_body(to_m - centre_m).x(), half = 0.5 * length_m;
+    const double low = -half - std::clamp(-half - at, 0.0, most_m), high = half + std::clamp(at - half, 0.0, most_m);
     length_m = std::min(high - low, kLongest_m);
     return centre_m + 0.5 * (low + high) * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
   }

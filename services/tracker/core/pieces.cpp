@@ -7,7 +7,8 @@ namespace boresight::tracking {
 
 namespace {
 
-constexpr double kLong_s = 3.0;  // two drivers hardly keep their distance to a hand's width for so long
+constexpr double kSettled_s = 1.0;  // until then a new track is not where it is for good
+constexpr double kLong_s = 3.0;     // two drivers hardly keep their distance to a hand's width for so long
 
 /// Before or behind the other one, with at most that between them. Of whose flank alone is seen the middle is known to
 /// half a width; lanes are wider.
@@ -41,6 +42,7 @@ double seen_end_m(const TrackedObject& track, const Extent& axes, const Eigen::V
 /// with the way it is seen from, by an axle that comes into sight: after a small step the distance is measured anew.
 /// All steps together count from the first mean on: where a single scan has a new track may be a metre off.
 void measure(Companion& companion, double age_s, double apart_m) {
+  if (age_s < companion.since_age_s) return;
   constexpr double kFirst_s = 1.0, kGain = 0.1, kMoved_m = 0.3, kOwnWay_m = 0.8;
   if (age_s - companion.since_age_s < kFirst_s) {
     companion.first_m += (apart_m - companion.first_m) / ++companion.scans;
@@ -76,7 +78,7 @@ void watch_pieces(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sen
     const double apart_m = seen_end_m(track, axes, sensor_m) - seen_end_m(*other, axes, sensor_m);
     if (companion.id == 0) {
       companion.id = other->id;
-      companion.since_age_s = track.age_s;
+      companion.since_age_s = std::max(track.age_s, kSettled_s);
     }
     measure(companion, track.age_s, apart_m);
   }

@@ -266,6 +266,9 @@ TEST(Extent, LengthensToReachAnother) {
   EXPECT_NEAR(rear.length_m, 7.0, 1e-12);
   EXPECT_NEAR(moved.y(), 11.5, 1e-12);
   EXPECT_NEAR(moved.x(), 5.0, 1e-12);
+  const Eigen::Vector2d back = rear.lengthen(moved, {5.0, 2.0}, 1.0);
+  EXPECT_NEAR(rear.length_m, 8.0, 1e-12) << "no more than that";
+  EXPECT_NEAR(back.y(), 11.0, 1e-12);
 }
 
 }  // namespace

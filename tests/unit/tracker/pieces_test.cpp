@@ -72,6 +72,15 @@ TEST(Pieces, MayBeginWithAScanThatIsOff) {
   EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
 }
 
+TEST(Pieces, BeginWhereANewTrackHasSettled) {
+  std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 56.0, -3.0, 0.0)};
+  drive(tracks, 0.5, 4.0);  // its first scans draw it to where the axles are that are seen then
+  drive(tracks, 3.0, 0.0);
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it has not kept its distance for three seconds";
+  drive(tracks, 0.7, 0.0);
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+}
+
 TEST(Pieces, AreNoneThatTurnOutToBeFarAway) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 59.0, -3.0, 0.0)};
   drive(tracks, kScan_s, 0.0);
@@ -130,6 +139,27 @@ TEST(Pieces, OfATruckWhoseAxlesAreFarApartBecomeOneTrack) {
   EXPECT_NEAR(truck.position_vehicle_m[0] - 0.5F * truck.length_m, 25.0 + 8.0 * kCreeps_mps, 0.5) << "its rear";
   EXPECT_GT(truck.length_m, 9.5F);
   EXPECT_EQ(truck.object_class, ObjectClass::kTruck);
+}
+
+TEST(Pieces, OfWhichTheRearComesIntoSightLastReachBackToIt) {
+  // A truck at 20 m/s: its front half first, then, seven metres nearer, its rear.
+  Tracker tracker(two_radars(), Config{});
+  Scene scene;
+  const auto list = std::make_unique<TrackList>();
+  double rear_m = 0.0;
+  for (int i = 0; i <= 24; ++i) {
+    scene.begin((1000 + 50 * i) * kMillisecond);
+    rear_m = 35.0 + 20.0 * kScan_s * i;
+    for (const double along_m : {12.0, 14.0}) scene.add({rear_m + along_m, -2.35}, {20.0, 0.0});
+    for (const double along_m : {0.0, 2.0, 5.0}) {
+      if (i > 6) scene.add({rear_m + along_m, -2.35}, {20.0, 0.0});
+    }
+    tracker.step(*scene.scan);
+  }
+  tracker.write(*list);
+  ASSERT_EQ(list->number_of_confirmed_tracks, 1u);
+  // But for the margin within which a cluster is a part and starts no track, and half of the cluster.
+  EXPECT_NEAR(list->tracks[0].position_vehicle_m[0] - 0.5F * list->tracks[0].length_m, rear_m, 4.0);
 }
 
 TEST(Pieces, OfTwoDriversWhoCloseUpAreTwoTracks) {
