@@ -108,17 +108,18 @@ bool drives_beside(const Cluster& cluster, const TrackedObject& track) {
 }
 
 /// The heading of a vehicle, and its box along it.
-void follow_heading(TrackedObject& track, const Cluster& cluster, const OwnRoad& road) {
+void follow_heading(TrackedObject& track, const Cluster& cluster, const Eigen::Vector2d& sensor, const OwnRoad& road) {
   Heading& heading = track.state.heading;
+  const bool is_long = track.extent.object_class() == ObjectClass::kTruck;
   if (heading.known) {
     hold_to_heading(track.state);
-    if (const auto turn = turn_of_flank(cluster, heading.rad)) measure_heading(track.state, *turn);
+    if (const auto turn = turn_of_flank(cluster, heading.rad, sensor, is_long)) measure_heading(track.state, *turn);
     track.extent.follow_heading(heading.rad);
     return;
   }
   begin_heading(track.state);
   if (!heading.known) {
-    const auto turn = turn_of_flank(cluster, track.extent.heading_rad);
+    const auto turn = turn_of_flank(cluster, track.extent.heading_rad, sensor, is_long);
     if (turn) begin_heading(track.state, track.extent.heading_rad, *turn);
   }
   if (!heading.known) {
@@ -301,7 +302,7 @@ void Tracker::update_extent(TrackedObject& track, const Cluster& cluster, const 
     track.state.heading = {};
     if (velocity.norm() > kLeastCourse_mps) track.extent.follow_heading(std::atan2(velocity.y(), velocity.x()));
   } else {
-    follow_heading(track, cluster, road_);
+    follow_heading(track, cluster, sensor, road_);
   }
   if (track.confirmed) {
     constexpr double kSure = 2.0;  // standard deviations
@@ -350,7 +351,7 @@ void Tracker::judge(const ClassifiedScan& scan) {
                                                                                 config_.blind_range_rate_mps));
     if (!could_see) continue;
     double wait_s = 0.0;
-    if (!track.confirmed || track.age_s < config_.confirm_side_image_age_s) {
+    if (!track.confirmed || track.age_s < config_.confirm_image_age_s) {
       const double image_s = image_wait_s(track, tracks_, sensor, config_);
       // What would show it may have been found a little later than the image.
       if (image_s >= config_.confirm_side_image_age_s) track.confirmed = false;
