@@ -354,7 +354,7 @@ void Tracker::judge(const ClassifiedScan& scan) {
     if (!track.confirmed || track.age_s < config_.confirm_image_age_s) {
       const double image_s = image_wait_s(track, tracks_, sensor, config_);
       // What would show it may have been found a little later than the image.
-      if (image_s >= config_.confirm_side_image_age_s) track.confirmed = false;
+      if (image_s > track.age_s && image_s >= config_.confirm_side_image_age_s) track.confirmed = false;
       if (!track.confirmed) wait_s = std::max(image_s, piece_wait_s(track));
     }
     count_scan(track, config_, wait_s);
