@@ -82,12 +82,17 @@ void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d
       const double speed_mps = (kept.state.mean - gone.state.mean).segment<2>(2).norm();
       const bool shows_side = kept.extent.shows_side(kept.state.mean.head<2>(), sensor_m);
       const bool is_part = gone.confirmed || is_piece_of(gone, kept, sensor_m);
-      if (is_part && shows_side && speed_mps <= config.duplicate_speed_mps) {
-        // What else the other one is may be no more than the length of a car that it was born with.
-        kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), gone.state.mean.head<2>());
-      } else if (const auto end_m = nearer_end(kept, gone, sensor_m); end_m && shows_side) {
-        constexpr double kMost_m = 1.0;  // each time: one wheel that seems to move alike is no rear
-        kept.state.mean.head<2>() = kept.extent.lengthen(kept.state.mean.head<2>(), *end_m, kMost_m);
+      // What lies behind it in the line of sight may be its ghost, and what moves otherwise another's.
+      if (shows_side && speed_mps <= config.duplicate_speed_mps) {
+        // What else a part is may be no more than the length of a car that it was born with, so that its middle counts.
+        // Of what is new, each time a metre: one wheel that seems to move alike is no rear.
+        constexpr double kEachTime_m = 1.0;
+        const Eigen::Vector2d centre_m = kept.state.mean.head<2>();
+        if (is_part) {
+          kept.state.mean.head<2>() = kept.extent.lengthen(centre_m, gone.state.mean.head<2>());
+        } else if (const auto end_m = nearer_end(kept, gone, sensor_m)) {
+          kept.state.mean.head<2>() = kept.extent.lengthen(centre_m, *end_m, kEachTime_m);
+        }
       }
       tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(b));
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace boresight::tracking {
 
@@ -10,18 +11,24 @@ namespace {
 constexpr double kSettled_s = 1.0;  // until then a new track is not where it is for good
 constexpr double kLong_s = 3.0;     // two drivers hardly keep their distance to a hand's width for so long
 
-/// Before or behind the other one, with at most that between them. Of whose flank alone is seen the middle is known to
-/// half a width; lanes are wider.
-bool is_in_file(const TrackedObject& track, const TrackedObject& other, double gap_m) {
-  constexpr double kBesides_m = 1.5;
-  return other.extent.in_file(other.state.mean.head<2>(), track.extent, track.state.mean.head<2>(), gap_m, kBesides_m);
+bool is_in_file(const TrackedObject& track, const TrackedObject& other, double gap_m, double besides_m) {
+  return other.extent.in_file(other.state.mean.head<2>(), track.extent, track.state.mean.head<2>(), gap_m, besides_m);
 }
 
 /// So near before or behind that it may be a piece of the other one, and seen from beside: else what lies behind is as
 /// likely a type-1 ghost.
 bool is_close_in_file(const TrackedObject& track, const TrackedObject& other, const Eigen::Vector2d& sensor_m) {
-  constexpr double kGap_m = 4.2;  // between axles, or an axle and an end
-  return other.extent.shows_side(other.state.mean.head<2>(), sensor_m) && is_in_file(track, other, kGap_m);
+  // The gap is that between axles, or an axle and an end. Of whose flank alone is seen the middle is known to half a
+  // width; lanes are wider.
+  constexpr double kGap_m = 4.2, kBesides_m = 1.5;
+  return other.extent.shows_side(other.state.mean.head<2>(), sensor_m) && is_in_file(track, other, kGap_m, kBesides_m);
+}
+
+/// Too far before or behind to be a piece, whatever its first scans made of its place. How far aside says nothing: far
+/// ahead noise moves it by a lane.
+bool has_left(const TrackedObject& track, const TrackedObject& other) {
+  constexpr double kLeft_m = 6.0;
+  return !is_in_file(track, other, kLeft_m, std::numeric_limits<double>::infinity());
 }
 
 /// Which of the tracks may be what this one is a piece of.
@@ -42,8 +49,8 @@ double seen_end_m(const TrackedObject& track, const Extent& axes, const Eigen::V
 /// with the way it is seen from, by an axle that comes into sight: after a small step the distance is measured anew.
 /// All steps together count from the first mean on: where a single scan has a new track may be a metre off.
 void measure(Companion& companion, double age_s, double apart_m) {
-  if (age_s < companion.since_age_s) return;
   constexpr double kFirst_s = 1.0, kGain = 0.1, kMoved_m = 0.3, kOwnWay_m = 0.8;
+  if (age_s < companion.since_age_s) return;
   if (age_s - companion.since_age_s < kFirst_s) {
     companion.first_m += (apart_m - companion.first_m) / ++companion.scans;
     companion.now_m = companion.first_m;
@@ -62,13 +69,12 @@ void measure(Companion& companion, double age_s, double apart_m) {
 }  // namespace
 
 void watch_pieces(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m) {
-  constexpr double kLeft_m = 6.0;  // that far away it was no piece, whatever its first scans made of its place
   for (TrackedObject& track : tracks) {
     if (track.extent.is_small || track.detections == 0) continue;
     Companion& companion = track.companion;
     auto other = std::find_if(tracks.begin(), tracks.end(),
                               [&](const TrackedObject& o) { return &o != &track && o.id == companion.id; });
-    if (other == tracks.end() || !is_in_file(track, *other, kLeft_m)) {
+    if (other == tracks.end() || has_left(track, *other)) {
       companion = {};
       other = std::find_if(tracks.begin(), tracks.end(),
                            [&](const TrackedObject& o) { return may_be_whole(o, track, sensor_m); });

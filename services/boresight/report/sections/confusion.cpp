@@ -35,8 +35,9 @@ std::string render_matrix(const judge::Confusion& confusion) {
 std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& time) {
   std::string text = fmt::format(
       "<h3>Tracks of ghosts</h3>\n<p class=\"faint\">A confirmed track lives on ghosts in a scan if it is no object's "
-      "(nearest pairs within 3 m of a true box) and most of what was told to be moving within {:.0f} m of its box is a "
-      "ghost in truth. Counted are those that did so in more than {} scans, of {} track lists.</p>\n",
+      "(nearest pairs within 3 m of a true box; what lies in a box is that object's or nobody's) and most of what was "
+      "told to be moving within {:.0f} m of its box is a ghost in truth. Counted are those that did so in more than {} "
+      "scans, of {} track lists.</p>\n",
       judge::FalseTracks::kEvidence_m, judge::FalseTracks::kLong_scans, ghosts.track_lists);
   if (ghosts.track_lists == 0) return text + "<p>No track list is in the record.</p>\n";
   if (ghosts.ghost_tracks.empty()) {
