@@ -122,5 +122,28 @@ TEST_F(MirrorFilterTest, ALongRailGoesOnUnseenAndAShortOneDoesNot) {
   EXPECT_LE(share_of_ghosts(14.0), 0.1);
 }
 
+TEST_F(MirrorFilterTest, NothingIsItsOwnImageInAMirrorAlongTheLineOfSight) {
+  // A hundred metres ahead, where the azimuth's noise is half a lane and the car and its image are one place.
+  constexpr double kAzimuthStd_rad = 0.015;
+  const Vector2d p(100.0, -1.0), v(20.0, 0.0);
+  std::normal_distribution<double> across_m(0.0, kAzimuthStd_rad * p.x());
+  std::size_t scans = 0;
+  double ghost_probability = 0.0;
+  for (int k = 0; k < 120; ++k) {
+    std::uint32_t car = 0;
+    drive(0.05, [&] {
+      track(p, v, 4.5, 1.8, 0.5);
+      hand_over_tracks();
+      rail(-0.7);
+      car = direct(p + Vector2d(-2.2, across_m(random_)), v);
+      scan_->azimuth_std_rad[car] = static_cast<float>(kAzimuthStd_rad);
+    });
+    if (k < 40) continue;
+    ++scans;
+    ghost_probability += static_cast<double>(out_->ghost_probability[car]);
+  }
+  EXPECT_LE(ghost_probability / static_cast<double>(scans), 0.01) << "0.03 where it may be its own image";
+}
+
 }  // namespace
 }  // namespace boresight::ghosts

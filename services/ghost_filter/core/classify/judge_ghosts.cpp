@@ -16,6 +16,13 @@ constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
 constexpr double kAround_m = 2.0;  // of a track's box
 constexpr double kSame = 0.4;      // share of ghosts whose very reflection was detected directly, too
 
+/// Whether something is rather what was detected itself than what that would be a ghost of. Far away, in a mirror
+/// almost along the line of sight, both are one place, and a vehicle would be a ghost of what was detected of it just
+/// before.
+bool is_itself(const Eigen::Vector2d& at_m, const Measured& m, const Eigen::Vector2d& target_m) {
+  return (at_m - m.position_m).squaredNorm() < (at_m - target_m).squaredNorm();
+}
+
 }  // namespace
 
 double Judge::noise_of_any(const Target& target) {
@@ -52,6 +59,8 @@ double Judge::ghosts_of(const Target& target, const Measured& m, std::uint32_t b
   SourceMap::visit_objects(sources, static_cast<std::uint32_t>(s_.objects.size()), [&](std::uint32_t i) {
     const Object& o = s_.objects[i];
     if (i == but_object || i == target.mirror->body || i == target.other_body || (o.own && !target.of_own)) return;
+    // Type-1 ghosts of a long one may lie within it, right behind what they are of.
+    if (!target.silent && is_itself(o.position_m, m, target.place_m)) return;
     const Eigen::Vector2d off = o.position_m - target.place_m;
     // A range is known well, and most vehicles are nearer or farther: that takes less than to ask for their range rate.
     if (std::abs(off.dot(target.sight)) > along_m + o.reach_m ||
@@ -87,6 +96,7 @@ double Judge::of_detected(const Target& target, const Measured& m, std::uint32_t
                                                                             std::uint32_t number) {
     if (number >= own && mover.index == but_index) return;
     const Eigen::Vector2d residual = moved.position_m - target.place_m;
+    if (is_itself(moved.position_m, m, target.place_m)) return;
     const double sure = moved.variance_m2;
     if (residual.squaredNorm() > square(kFarMover) * (spread + sure + square(config_.extent_std_m))) return;
     // Of a track that is judged itself, what was detected of it tells nothing.
