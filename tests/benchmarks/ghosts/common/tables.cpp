@@ -26,27 +26,28 @@ void judge_percent(const std::string& group, const std::string& what, Percent pe
 void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes, bool judged, const std::string& how,
                   Report& report) {
   const TrackFaults faults = track_faults(outcomes);
-  const std::string what_tracks = "ghost tracks of over five scans",
-                    what_lost = "seconds of objects lost to the filter";
+  const std::string what_tracks = "ghost tracks of over five scans", what_objects = "objects lost to the filter";
   const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
                                  " last half a second, the longest has " +
                                  std::to_string(faults.longest_ghost_track_scans) + " scans";
-  const std::string how_lost = how + ", sum; of " + std::to_string(faults.object_seconds) + " with perfect labels; " +
-                               std::to_string(faults.lost_though_told_seconds) +
-                               " of those lost though at least 90 % of the object's detections were told right; " +
-                               std::to_string(faults.lost_objects) + " of " + std::to_string(faults.objects) +
-                               " objects are lost for over half of their seconds; " +
-                               std::to_string(faults.gained_seconds) + " the other way; by chance " +
-                               std::to_string(faults.lost_by_chance.least()) + " to " +
-                               std::to_string(faults.lost_by_chance.most());
-  const auto tracks = static_cast<double>(faults.ghost_tracks), lost = static_cast<double>(faults.lost_seconds);
+  const std::string how_objects = how + ", sum; of " + std::to_string(faults.objects) +
+                                  " that perfect labels have; lost for over half of the seconds in which they do";
+  const std::string how_seconds = how + ", sum; of " + std::to_string(faults.object_seconds) +
+                                  " with perfect labels; " + std::to_string(faults.lost_though_told_seconds) +
+                                  " of those lost though at least 90 % of the object's detections were told right; " +
+                                  std::to_string(faults.gained_seconds) + " the other way; by chance " +
+                                  std::to_string(faults.lost_by_chance.least()) + " to " +
+                                  std::to_string(faults.lost_by_chance.most());
+  const auto tracks = static_cast<double>(faults.ghost_tracks), objects = static_cast<double>(faults.lost_objects);
   if (judged) {
     report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);
-    report.at_most(group, what_lost, lost, 0.0, "", how_lost);
+    report.at_most(group, what_objects, objects, 0.0, "", how_objects);
   } else {
     report.beside(group, what_tracks, tracks, "", how_tracks);
-    report.beside(group, what_lost, lost, "", how_lost);
+    report.beside(group, what_objects, objects, "", how_objects);
   }
+  report.beside(group, "seconds of objects lost to the filter", static_cast<double>(faults.lost_seconds), "",
+                how_seconds);
 }
 
 }  // namespace boresight::bench
