@@ -12,7 +12,7 @@ namespace boresight::tracking {
 /// Where a tracked object is expected in the scan.
 struct KnownPlace {
   Eigen::Vector2d position_m, axis, half_m;  ///< centre; direction of the length, unit; half of length and width
-  bool is_small;                             ///< a person or a cycle
+  bool is_small = false;                     ///< a person or a cycle
   Eigen::Vector2d velocity_mps{0.0, 0.0};    ///< over ground
   Eigen::Matrix2d position_covariance_m2 = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();  ///< m²/s²
