@@ -26,7 +26,8 @@ void judge_percent(const std::string& group, const std::string& what, Percent pe
 void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes, bool judged, const std::string& how,
                   Report& report) {
   const TrackFaults faults = track_faults(outcomes);
-  const std::string what_tracks = "ghost tracks of over five scans", what_objects = "objects lost to the filter";
+  const std::string what_tracks = "ghost tracks of over five scans", what_objects = "objects lost to the filter",
+                    what_seconds = "seconds of objects lost to the filter";
   const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
                                  " last half a second, the longest has " +
                                  std::to_string(faults.longest_ghost_track_scans) + " scans";
@@ -38,16 +39,17 @@ void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes
                                   std::to_string(faults.gained_seconds) + " the other way; by chance " +
                                   std::to_string(faults.lost_by_chance.least()) + " to " +
                                   std::to_string(faults.lost_by_chance.most());
-  const auto tracks = static_cast<double>(faults.ghost_tracks), objects = static_cast<double>(faults.lost_objects);
+  const auto tracks = static_cast<double>(faults.ghost_tracks), objects = static_cast<double>(faults.lost_objects),
+             seconds = static_cast<double>(faults.lost_seconds);
   if (judged) {
     report.at_most(group, what_tracks, tracks, 0.0, "", how_tracks);
     report.at_most(group, what_objects, objects, 0.0, "", how_objects);
+    report.at_most(group, what_seconds, seconds, 0.0, "", how_seconds);
   } else {
     report.beside(group, what_tracks, tracks, "", how_tracks);
     report.beside(group, what_objects, objects, "", how_objects);
+    report.beside(group, what_seconds, seconds, "", how_seconds);
   }
-  report.beside(group, "seconds of objects lost to the filter", static_cast<double>(faults.lost_seconds), "",
-                how_seconds);
 }
 
 }  // namespace boresight::bench
