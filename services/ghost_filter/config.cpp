@@ -55,6 +55,7 @@ ClassConfig read_classes(config::Reader reader) {
   ClassConfig c;
   c.decision_probability = reader.number("decision_probability", {0.01, 0.99}, c.decision_probability);
   c.memory_s = reader.number("memory_s", {0.0, 2.0}, c.memory_s);
+  c.sighting_s = reader.number("sighting_s", {0.0, 2.0}, c.sighting_s);
   c.new_object_density = reader.number("new_object_density", {1e-12, 1.0}, c.new_object_density);
   c.clutter_density = reader.number("clutter_density", {0.0, 1.0}, c.clutter_density);
   c.lone_ghost_density = reader.number("lone_ghost_density", {0.0, 1.0}, c.lone_ghost_density);

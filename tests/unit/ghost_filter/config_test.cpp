@@ -48,6 +48,7 @@ std::vector<double> numbers(const Config& config) {
           m.bin_m,
           k.decision_probability,
           k.memory_s,
+          k.sighting_s,
           k.new_object_density,
           k.clutter_density,
           k.lone_ghost_density,

@@ -35,7 +35,7 @@ class JudgeTest : public testing::Test {
     objects_.push_back(car);
     sources_.enter_object(0, car.position_m, most_extent(car));
     static_cast<void>(odometry_.advance(1'000'000'000, 15.0, 0.0));
-    movers_.forget(0, odometry_);
+    movers_.forget(0, 0, odometry_);
     begin();
   }
   [[nodiscard]] Surroundings surroundings() const {
@@ -271,6 +271,27 @@ TEST_F(AlongsideTest, BetweenTwoWallsItHasGhostsThatMoveToo) {
   mirrors_.pop_back();
   begin();
   EXPECT_LT(judge_.weigh(m, 1).type1, 0.01 * ghost.type1) << "it takes both";
+}
+
+TEST_F(JudgeTest, WhatDrivesBehindLightsNothingThatIsSeenAhead) {
+  // A wall across the road; out by it, and back directly from behind the radar, which does not look there.
+  Mirror& wall = mirrors_.front();
+  wall.curve = {{58.0, 0.0}, {0.0, 1.0}, 0.0};
+  wall.beam = Beam(wall, sensor_);
+  const auto type2_with = [&](double x_m, double range_m, double rate_mps) {
+    objects_[0].position_m = {x_m, 0.0};
+    sources_.clear();
+    sources_.enter_object(0, objects_[0].position_m, most_extent(objects_[0]));
+    begin();
+    Measured m = measured(sensor_ + range_m * Vector2d(1.0, 0.0), {0.0, 0.0}, -8.0);
+    m.rate_mps = rate_mps;
+    return judge_.weigh(m, 0).type2;
+  };
+  const double out_m = 58.0 - 3.6, behind_m = 41.0 + 3.6;
+  const double nothing = type2_with(1000.0, 0.5 * (2.0 * out_m + 2.0 * behind_m), -5.0);
+  EXPECT_LT(type2_with(-41.0, 0.5 * (2.0 * out_m + 2.0 * behind_m), -5.0), 1.1 * nothing);
+  // By the wall out and back it is seen in it.
+  EXPECT_GT(type2_with(-41.0, out_m + 58.0 + 38.8, -20.0), 100.0 * nothing);
 }
 
 TEST_F(JudgeTest, WhatStandsWhereNothingElseCanBeIsThatAlone) {

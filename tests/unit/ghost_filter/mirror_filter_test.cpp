@@ -353,6 +353,25 @@ TEST_F(MirrorFilterTest, AWeakDetectionAllAloneIsClutter) {
   EXPECT_GT(out_->ghost_probability[alone], 0.5F);
 }
 
+TEST_F(MirrorFilterTest, WhatIsSeenNowAndThenMovesAsSoonAsItIsSeenAgain) {
+  // Behind another car, at the end of the radar's range, twice a second.
+  std::vector<Provenance> told;
+  for (int k = 0; k < 40; ++k) {
+    std::uint32_t far = 0;
+    drive(0.05, [&] {
+      const Vector2d lead(42.0, 0.0), v(20.5, 0.0);
+      track(lead, {20.0, 0.0});
+      hand_over_tracks();
+      direct(lead - Vector2d(2.2, 0.0), {20.0, 0.0});
+      if (k % 10 == 9) far = direct({102.0 + 0.5 * t_s_, 0.0}, v, -1.0);
+    });
+    if (k % 10 == 9) told.push_back(label(far));
+  }
+  ASSERT_EQ(told.size(), 4u);
+  EXPECT_NE(told[0], Provenance::kMoving) << "as likely a ghost of the car in front";
+  EXPECT_EQ(std::count(told.begin() + 1, told.end(), Provenance::kMoving), 3);
+}
+
 TEST_F(MirrorFilterTest, AWheelMovesThoughItsRangeRateIsNotTheCars) {
   std::size_t wheels = 0, beside = 0, scans = 0;
   for (int k = 0; k < 40; ++k) {
@@ -363,8 +382,8 @@ TEST_F(MirrorFilterTest, AWheelMovesThoughItsRangeRateIsNotTheCars) {
       hand_over_tracks();
       rail(kRail);
       direct(p + Vector2d(-2.2, 0.0), v);
-      // The rim's upper half, at a part of its turn that no other scan repeats; and the same without a car.
-      const double rim = 1.3 + 0.5 * std::sin(2.5 * k);
+      // The rim, at a part of its turn that no scan of the last second repeats; and the same without a car.
+      const double rim = 0.8 + std::fmod(0.618034 * k, 1.0);
       wheel = direct(p + Vector2d(-1.3, -0.9), rim * v, -8.0);
       other = direct(p + Vector2d(25.0, 9.0), rim * v, -18.0);
     });

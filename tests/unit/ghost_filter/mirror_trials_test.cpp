@@ -92,7 +92,7 @@ class MirrorTrialsTest : public testing::TestWithParam<double> {
     car.weight = 0.95;
     objects_.push_back(car);
     static_cast<void>(odometry_.advance(1'000'000'000, 0.0, 0.0));
-    movers_.forget(0, odometry_);
+    movers_.forget(0, 0, odometry_);
     trials_.begin();
     for (double azimuth = -3.14; azimuth < 3.14; azimuth += 0.02) {
       trials_.saw({std::cos(azimuth), std::sin(azimuth)}, 100.0);

@@ -7,6 +7,7 @@ namespace boresight::ghosts {
 struct ClassConfig {
   double decision_probability = 0.5;  ///< from here on a detection is called a ghost (or clutter)
   double memory_s = 0.2;              ///< moving detections of this time can be what a ghost mirrors
+  double sighting_s = 1.0;            ///< … and of this time what is detected again, moved on
   double new_object_density = 4e-6;   ///< of real moving objects that nothing announces
   double clutter_density = 2e-6;
   double lone_ghost_density = 1e-6;  ///< of type-2 ghosts behind a reflector whose object is not seen

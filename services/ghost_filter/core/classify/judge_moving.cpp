@@ -113,8 +113,8 @@ Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
     const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
     const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
     const double distance2 = (moved - place).squaredNorm();
-    recent.in_company =
-        recent.in_company || (distance2 <= square(kCompany_m) && std::abs(mover.rate_mps - m.rate_mps) < kCompany_mps);
+    recent.in_company = recent.in_company || (elapsed_s <= config_.memory_s && distance2 <= square(kCompany_m) &&
+                                              std::abs(mover.rate_mps - m.rate_mps) < kCompany_mps);
     const double variance = blur + mover.variance_m2 + square(8.0 * elapsed_s);
     const double chi2 = distance2 / variance;
     // What a track stands for weighs nothing, and on a busy road that is most.

@@ -146,7 +146,9 @@ void MirrorFilter::update_map(const CorrectedScan& scan, std::size_t count) {
 void MirrorFilter::gather_movers(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   echoes_.clear();
-  movers_.forget(time_ns - static_cast<std::int64_t>(config_.classes.memory_s * 1e9), odometry_);
+  const auto before_now = [time_ns](double s) { return time_ns - static_cast<std::int64_t>(s * 1e9); };
+  const ClassConfig& c = config_.classes;
+  movers_.forget(before_now(std::max(c.sighting_s, c.memory_s)), before_now(c.memory_s), odometry_);
   for (std::size_t i = 0; i < count; ++i) {
     if (kinds_[i] != Kind::kMoving) continue;
     const Measured& m = measured_[i];

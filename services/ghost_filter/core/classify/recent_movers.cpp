@@ -23,16 +23,18 @@ void RecentMovers::clear() {
 
 void RecentMovers::enter(std::uint32_t i, const Odometry& odometry) {
   const Mover& m = movers_[i];
-  all_.link(m.position_m, i);
-  if (!(m.weight > kLeastWeight)) return;
-  weighing_.link(m.position_m, i);
   const double elapsed_s = static_cast<double>(odometry.now_ns() - m.time_ns) * 1e-9;
+  const Eigen::Vector2d moved_m = m.position_m + elapsed_s * m.rate_mps * m.direction;
+  all_.link(moved_m, i);
+  if (!weighs(m)) return;
+  weighing_.link(m.position_m, i);
   const double across_m = kAcross_mps * elapsed_s;
-  moved_[i] = {odometry.point_to_vehicle(m.position_m + elapsed_s * m.rate_mps * m.direction),
-               odometry.vector_to_vehicle(m.direction), m.variance_m2 + across_m * across_m};
+  moved_[i] = {odometry.point_to_vehicle(moved_m), odometry.vector_to_vehicle(m.direction),
+               m.variance_m2 + across_m * across_m};
 }
 
-void RecentMovers::forget(std::int64_t oldest_ns, const Odometry& odometry) {
+void RecentMovers::forget(std::int64_t oldest_ns, std::int64_t oldest_source_ns, const Odometry& odometry) {
+  oldest_source_ns_ = oldest_source_ns;
   newest_.clear();
   const std::int64_t now_ns = movers_.empty() ? 0 : movers_.back().time_ns;
   std::size_t kept = movers_.size();

@@ -1,4 +1,4 @@
-// Moving-looking detections of the last instants of all radars, to be found by place.
+// Moving-looking detections of the last second of all radars, to be found by place.
 #pragma once
 
 #include <cstdint>
@@ -39,9 +39,9 @@ class RecentMovers {
   static constexpr std::size_t kCapacity = 8192;
   RecentMovers();
   void clear();
-  /// Forgets what is older. To be called before the scan's own are added; they are the last ones then. Where they are
-  /// is told as of `odometry`.
-  void forget(std::int64_t oldest_ns, const Odometry& odometry);
+  /// Forgets what is older, and what is older than `oldest_source_ns` weighs nothing any more. To be called before the
+  /// scan's own are added; they are the last ones then. Where they are is told as of `odometry`.
+  void forget(std::int64_t oldest_ns, std::int64_t oldest_source_ns, const Odometry& odometry);
   void add(const Mover& mover, const Odometry& odometry);
   /// What the verdict on one was, for the scans to come.
   void set_weight(std::size_t i, double weight) { movers_[i].weight = weight; }
@@ -49,13 +49,13 @@ class RecentMovers {
   [[nodiscard]] std::size_t earlier() const { return earlier_; }
   [[nodiscard]] const Mover& operator[](std::size_t i) const { return movers_[i]; }
   [[nodiscard]] std::size_t size() const { return movers_.size(); }
-  /// Calls `visit(mover, number)` for those in the cells about a position in the odometry frame, within kCell_m at
-  /// least, and for some that are far away.
+  /// Calls `visit(mover, number)` for those that have moved on into the cells about a position in the odometry frame,
+  /// within kCell_m at least, and for some that are far away.
   template <typename Visit>
   void near(const Eigen::Vector2d& position_m, const Visit& visit) const {
     all_.near(position_m, [&](std::uint32_t i) { visit(movers_[i], i); });
   }
-  /// Calls `visit(mover, moved, number)` for those of them that weigh something.
+  /// Calls `visit(mover, moved, number)` for those that weigh something, in the cells about where they were detected.
   template <typename Visit>
   void weighing_near(const Eigen::Vector2d& position_m, const Visit& visit) const {
     weighing_.near(position_m, [&](std::uint32_t i) { visit(movers_[i], moved_[i], i); });
@@ -64,7 +64,7 @@ class RecentMovers {
   template <typename Visit>
   void visit_weighing(const Visit& visit) const {
     for (std::size_t i = 0; i < movers_.size(); ++i) {
-      if (movers_[i].weight > kLeastWeight) visit(moved_[i]);
+      if (weighs(movers_[i])) visit(moved_[i]);
     }
   }
   static constexpr double kCell_m = 4.0;
@@ -72,10 +72,14 @@ class RecentMovers {
       0.02;  ///< of what most likely is a ghost itself, nothing else is seen to be one
 
  private:
+  [[nodiscard]] bool weighs(const Mover& mover) const {
+    return mover.weight > kLeastWeight && mover.time_ns >= oldest_source_ns_;
+  }
   void enter(std::uint32_t i, const Odometry& odometry);
   std::vector<Mover> movers_;
   std::vector<MovedMover> moved_;  // of those that weigh something
   std::size_t earlier_ = 0;
+  std::int64_t oldest_source_ns_ = 0;
   geometry::CellChains all_{kCapacity, kCell_m}, weighing_{kCapacity, kCell_m};
   geometry::CellTable newest_;
 };
