@@ -98,7 +98,7 @@ Judge::Owner Judge::owner_of(const Measured& m) const {
 
 Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
   Recent recent{0.0, false};
-  double most = 0.0;
+  double most_now = 0.0, most_before = 0.0;
   const Eigen::Vector2d place = s_.odometry->point_to_frame(m.position_m);
   const Eigen::Vector2d direction = s_.odometry->vector_to_frame(m.direction);
   const std::int64_t now_ns = s_.odometry->now_ns();
@@ -113,7 +113,9 @@ Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
     const double elapsed_s = static_cast<double>(now_ns - mover.time_ns) * 1e-9;
     const Eigen::Vector2d moved = mover.position_m + elapsed_s * mover.rate_mps * mover.direction;
     const double distance2 = (moved - place).squaredNorm();
-    recent.in_company = recent.in_company || (elapsed_s <= config_.memory_s && distance2 <= square(kCompany_m) &&
+    const bool is_now = elapsed_s <= config_.memory_s;
+    double& most = is_now ? most_now : most_before;
+    recent.in_company = recent.in_company || (is_now && distance2 <= square(kCompany_m) &&
                                               std::abs(mover.rate_mps - m.rate_mps) < kCompany_mps);
     const double variance = blur + mover.variance_m2 + square(8.0 * elapsed_s);
     const double chi2 = distance2 / variance;
@@ -132,6 +134,8 @@ Judge::Recent Judge::of_movers(const Measured& m, std::uint32_t index) const {
     const double rcs_std_db = owned ? s_.objects[mover.object].rcs_std_db : kUsualRcsStd_db;
     most = std::max(most, here * likelihood(kBodyStrength, m.rcs_dbsm - rcs_dbsm, rcs_std_db, config_.strength_doubt));
   });
+  // What was judged just now knows what was seen before, and ghosts are seen in every scan.
+  const double most = recent.in_company ? most_now : std::max(most_now, most_before);
   recent.density = config_.real_per_object * (1.0 - config_.wheel_share) * most;
   return recent;
 }
