@@ -7,8 +7,9 @@ namespace boresight::bench {
 
 void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop::Object>& objects) {
   for (std::size_t o = 0; o < objects.size(); ++o) {
-    if (objects[o].is_hidden) continue;
     Second& second = seconds_[objects[o].id];
+    second.hidden += objects[o].is_hidden ? 1 : 0;
+    if (objects[o].is_hidden) continue;
     ++second.scans;
     second.tracked += matching.track_of_object[o] != kNone ? 1 : 0;
   }
@@ -27,7 +28,7 @@ void TrackedObjects::add_detections(const ClassifiedScan& scan, const std::vecto
 void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_labels,
                              const TrackedObjects& with_filter) {
   for (const auto& [id, second] : with_perfect_labels.seconds()) {
-    if (second.detections == 0) continue;
+    if (second.detections == 0 || !second.is_long_in_sight()) continue;
     const TrackedObjects::Second& filtered = with_filter.seconds().at(id);
     const double with_labels = filtered.share();
     if (second.share() < kHasItNot && with_labels >= kHasIt) ++gained;

@@ -23,7 +23,12 @@ using judge::Matching;
 class TrackedObjects {
  public:
   struct Second {
-    std::size_t scans = 0, tracked = 0, detections = 0;
+    std::size_t scans = 0, tracked = 0, detections = 0, hidden = 0;
+    /// Of who comes into sight as the second ends no tracker can know in it: what lies there is something else's track.
+    [[nodiscard]] bool is_long_in_sight() const {
+      constexpr double kLeast = 0.25;
+      return static_cast<double>(scans) >= kLeast * static_cast<double>(scans + hidden);
+    }
     [[nodiscard]] double share() const { return static_cast<double>(tracked) / static_cast<double>(scans); }
   };
   void add(const Matching& matching, const std::vector<closed_loop::Object>& objects);

@@ -65,7 +65,7 @@ TEST(Tracks, AnObjectIsJudgedWhileItIsSeenMovingOrStanding) {
   TrackedObjects tracked;
   objects[0].is_hidden = true;
   tracked.add(match(*tracks, 1, objects), objects);
-  EXPECT_TRUE(tracked.seconds().empty());
+  EXPECT_EQ(tracked.seconds().at(kFirst).scans, 0u);
   objects[0].is_hidden = false;
   tracked.add(match(*tracks, 0, objects), objects);
   EXPECT_EQ(tracked.seconds().at(kFirst).share(), 0.0);
@@ -78,6 +78,32 @@ TEST(Tracks, AnObjectIsJudgedWhileItIsSeenMovingOrStanding) {
   scan->provenance[2] = Provenance::kGhostType1;
   tracked.add_detections(*scan, {moves, stands, stands});
   EXPECT_EQ(tracked.seconds().at(kFirst).detections, 2u) << "one of the three is told wrong";
+}
+
+TEST(Tracks, OfWhoComesIntoSightAsASecondEndsItTellsNothing) {
+  std::vector<Object> objects = {{kFirst, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
+  const auto tracks = std::make_unique<TrackList>();
+  tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
+  const auto scan = std::make_unique<ClassifiedScan>();
+  scan->number_of_valid_detections = 1;
+  simulator::DetectionTruth moves;
+  moves.provenance = scan->provenance[0] = Provenance::kMoving;
+  moves.object_id = kFirst;
+  const auto second_with = [&](int hidden, std::size_t number_of_tracks) {
+    TrackedObjects tracked;
+    for (int k = 0; k < 20; ++k) {
+      objects[0].is_hidden = k < hidden;
+      tracked.add(match(*tracks, number_of_tracks, objects), objects);
+    }
+    tracked.add_detections(*scan, {moves});
+    return tracked;
+  };
+  LostObjects lost;
+  lost.add_second(1.0, second_with(16, 1), second_with(16, 0));
+  EXPECT_EQ(lost.object_seconds, 0u);
+  lost.add_second(2.0, second_with(15, 1), second_with(15, 0));
+  EXPECT_EQ(lost.object_seconds, 1u);
+  EXPECT_EQ(lost.lost.size(), 1u);
 }
 
 TEST(Tracks, AnObjectIsRatherLostIfItIsSoForOverHalfOfItsSeconds) {
