@@ -47,6 +47,8 @@ constexpr Variant kVariants[] = {
     {"no wheels and limbs of other range rates",
      [](NamedGhostMethod& m) { m.config.mirror.classes.wheel_share = 0.0; }},
     {"confirmed tracks only", [](NamedGhostMethod& m) { m.config.mirror.classes.tentative_weight = 0.0; }},
+    {"what is seen now and then is forgotten in between",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.sighting_s = 0.0; }},
     {"no class for clutter", [](NamedGhostMethod& m) { m.config.mirror.classes.clutter_density = kNever; }},
 };
 
