@@ -288,8 +288,8 @@ TEST_F(JudgeTest, WhatDrivesBehindLightsNothingThatIsSeenAhead) {
     return judge_.weigh(m, 0).type2;
   };
   const double out_m = 58.0 - 3.6, behind_m = 41.0 + 3.6;
-  const double nothing = type2_with(1000.0, 0.5 * (2.0 * out_m + 2.0 * behind_m), -5.0);
-  EXPECT_LT(type2_with(-41.0, 0.5 * (2.0 * out_m + 2.0 * behind_m), -5.0), 1.1 * nothing);
+  const double nothing = type2_with(1000.0, out_m + behind_m, -5.0);
+  EXPECT_LT(type2_with(-41.0, out_m + behind_m, -5.0), 1.1 * nothing);
   // By the wall out and back it is seen in it.
   EXPECT_GT(type2_with(-41.0, out_m + 58.0 + 38.8, -20.0), 100.0 * nothing);
 }

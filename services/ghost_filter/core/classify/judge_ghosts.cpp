@@ -16,8 +16,8 @@ constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
 constexpr double kAround_m = 2.0;  // of a track's box
 constexpr double kSame = 0.4;      // share of ghosts whose very reflection was detected directly, too
 
-/// Whether one radar sees in both directions (unit vectors): none looks ahead and back at once, so what is lit directly
-/// is no more than 150 degrees off what is seen.
+/// Whether one radar sees in both directions (unit vectors). Vehicles' radars look one way, over 150 degrees at most:
+/// none is lit directly by what drives behind it.
 bool sees_both(const Eigen::Vector2d& one, const Eigen::Vector2d& other) {
   constexpr double kWidestView = -0.87;  // cosine
   return one.dot(other) > kWidestView;
@@ -173,10 +173,10 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     const double share = kSameWay * config_.type2_per_object;
     density += share * ghosts_of(t, m, but_object, index, least / (share * sure));
   }
-  const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m);
-  const Eigen::Vector2d e = (turn.point_m + rest * d - s_.sensor_m).normalized();
-  // A track may have been seen by another radar than the one from whose place it is judged.
-  if (rest > kLeastRest_m && (but_object != kNobody || sees_both(m.direction, e))) {
+  if (const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m); rest > kLeastRest_m) {
+    const Eigen::Vector2d e = (turn.point_m + rest * d - s_.sensor_m).normalized();
+    // A track may have been seen by another radar than the one from whose place it is judged.
+    if (but_object == kNobody && !sees_both(m.direction, e)) return sure * density;
     Target t = target_of(m, crossing, rest, 2.0 / std::max(0.02, 1.0 + d.dot(e)));
     t.q = 0.5 * (d + e);
     t.known_mps = 0.5 * (carried + (m.direction - e).dot(s_.sensor_velocity_mps));

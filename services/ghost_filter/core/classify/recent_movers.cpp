@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interfaces/messages/header.hpp"
+
 namespace boresight::ghosts {
 
 namespace {
@@ -37,8 +39,10 @@ void RecentMovers::forget(std::int64_t oldest_ns, std::int64_t oldest_source_ns,
   oldest_source_ns_ = oldest_source_ns;
   newest_.clear();
   const std::int64_t now_ns = movers_.empty() ? 0 : movers_.back().time_ns;
+  // The scan to come finds room: where there is too much, the oldest go.
+  constexpr std::size_t kMost = kCapacity - kMaxDetections;
   std::size_t kept = movers_.size();
-  for (std::size_t i = movers_.size(); i-- > 0;) {
+  for (std::size_t i = movers_.size(); i-- > 0 && movers_.size() - kept < kMost;) {
     const Mover& m = movers_[i];
     if (m.time_ns < oldest_ns) continue;
     const double elapsed_s = static_cast<double>(now_ns - m.time_ns) * 1e-9;

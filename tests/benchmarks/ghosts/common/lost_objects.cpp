@@ -8,8 +8,10 @@ namespace boresight::bench {
 void TrackedObjects::add(const Matching& matching, const std::vector<closed_loop::Object>& objects) {
   for (std::size_t o = 0; o < objects.size(); ++o) {
     Second& second = seconds_[objects[o].id];
-    second.hidden += objects[o].is_hidden ? 1 : 0;
-    if (objects[o].is_hidden) continue;
+    if (objects[o].is_hidden) {
+      ++second.hidden;
+      continue;
+    }
     ++second.scans;
     second.tracked += matching.track_of_object[o] != kNone ? 1 : 0;
   }
