@@ -53,12 +53,12 @@ struct AlignmentKpis {
 static_assert(sizeof(AlignmentKpis) == 96);
 
 /// A sudden change of one radar's mounting.
-struct AlignmentKnock {
+struct AlignmentStepChange {
   std::int64_t time_ns;                       ///< measurement time at which it was told; 0: never
   std::array<float, 3> rotation_vehicle_rad;  ///< estimated turn about the vehicle's x, y, z axes (right-handed)
   std::uint32_t count;                        ///< since the start of the service
 };
-static_assert(sizeof(AlignmentKnock) == 24);
+static_assert(sizeof(AlignmentStepChange) == 24);
 
 /// Mounting correction of the radar `header.source_id`, in two forms of the same rotation.
 /// Sensor form: actual mounting = nominal + correction, R(sensor→vehicle) = R_z(α_b+α_m)·R_y(−(β_b+β_m))·R_x(γ_b+γ_m),
@@ -87,7 +87,7 @@ struct AlignmentEstimate {
   /// Row-major 4 × 4 over (k_v, yaw, pitch, roll), units 1 and rad; rows of unobservable axes hold the prior.
   alignas(16) std::array<float, 16> covariance;
   std::array<float, 16> vehicle_covariance;  ///< the same over (k_v, vehicle yaw, pitch, roll)
-  AlignmentKnock knock;
+  AlignmentStepChange step_change;
   AlignmentKpis kpis;
 
   [[nodiscard]] bool is_observable(std::uint32_t axis_bits) const { return (observable & axis_bits) == axis_bits; }

@@ -51,8 +51,8 @@ struct SensorHealth {
   /// What the misalignment does (Report A §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
-  std::uint32_t conditions;  ///< source_condition bits: what the sensor said of itself last
-  std::uint32_t knocks;      ///< sudden changes of the mounting, since the estimator's start
+  std::uint32_t conditions;    ///< source_condition bits: what the sensor said of itself last
+  std::uint32_t step_changes;  ///< sudden changes of the mounting, since the estimator's start
   std::uint64_t scans;
   std::uint64_t lost_scans;     ///< published by the gateway, missing here
   std::uint64_t missed_scans;   ///< sent by the sensor, by its own counter, and never complete at the gateway

@@ -60,16 +60,17 @@ FilterConfig read_filter(config::Reader table) {
   c.memory_rotation_std_rad = remembered.angle_deg("rotation_std_deg", {0.0, 30.0}, c.memory_rotation_std_rad);
   c.memory_speed_scale_std = remembered.number("speed_scale_std", {0.0, 0.5}, c.memory_speed_scale_std);
 
-  config::Reader knock = table.table("knock");
-  c.knock_block_s = knock.number("block_s", {0.1, 60.0}, c.knock_block_s);
-  c.knock_yaw_rad = knock.angle_deg("yaw_deg", {0.05, 30.0}, c.knock_yaw_rad);
-  c.knock_pitch_rad = knock.angle_deg("pitch_deg", {0.05, 30.0}, c.knock_pitch_rad);
-  c.knock_sum_blocks = knock.number("sum_blocks", {0.1, 100.0}, c.knock_sum_blocks);
-  c.knock_window_s = knock.number("window_s", {0.1, 60.0}, c.knock_window_s);
-  c.knock_small_stds = knock.number("small_stds", {0.1, 100.0}, c.knock_small_stds);
-  c.knock_small_sum_stds = knock.number("small_sum_stds", {0.1, 100.0}, c.knock_small_sum_stds);
-  c.knock_small_confirm_stds = knock.number("small_confirm_stds", {0.1, 100.0}, c.knock_small_confirm_stds);
-  c.knock_least_rad = knock.angle_deg("least_deg", {0.0, 30.0}, c.knock_least_rad);
+  config::Reader step_change = table.table("step_change");
+  c.step_change_block_s = step_change.number("block_s", {0.1, 60.0}, c.step_change_block_s);
+  c.step_change_yaw_rad = step_change.angle_deg("yaw_deg", {0.05, 30.0}, c.step_change_yaw_rad);
+  c.step_change_pitch_rad = step_change.angle_deg("pitch_deg", {0.05, 30.0}, c.step_change_pitch_rad);
+  c.step_change_sum_blocks = step_change.number("sum_blocks", {0.1, 100.0}, c.step_change_sum_blocks);
+  c.step_change_window_s = step_change.number("window_s", {0.1, 60.0}, c.step_change_window_s);
+  c.step_change_small_stds = step_change.number("small_stds", {0.1, 100.0}, c.step_change_small_stds);
+  c.step_change_small_sum_stds = step_change.number("small_sum_stds", {0.1, 100.0}, c.step_change_small_sum_stds);
+  c.step_change_small_confirm_stds =
+      step_change.number("small_confirm_stds", {0.1, 100.0}, c.step_change_small_confirm_stds);
+  c.step_change_least_rad = step_change.angle_deg("least_deg", {0.0, 30.0}, c.step_change_least_rad);
   return c;
 }
 

@@ -21,13 +21,15 @@ std::optional<std::filesystem::path> memory_file(const alignment::MemorySettings
 }
 
 /// Logs what is new; the publications carry it as well.
-void report_knocks(const VehicleConfig& vehicle, const alignment::Estimator& estimator,
-                   std::array<std::uint32_t, kMaxRadars>& reported) {
+void report_step_changes(const VehicleConfig& vehicle, const alignment::Estimator& estimator,
+                         std::array<std::uint32_t, kMaxRadars>& reported) {
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
-    const AlignmentKnock knock = estimator.estimate(i).knock;
-    if (knock.count == reported[i]) continue;
-    reported[i] = knock.count;
-    const auto degrees = [&knock](std::size_t axis) { return knock.rotation_vehicle_rad[axis] * 180.0 / M_PI; };
+    const AlignmentStepChange step_change = estimator.estimate(i).step_change;
+    if (step_change.count == reported[i]) continue;
+    reported[i] = step_change.count;
+    const auto degrees = [&step_change](std::size_t axis) {
+      return step_change.rotation_vehicle_rad[axis] * 180.0 / M_PI;
+    };
     runtime::log::warning("radar {} was knocked: by {:+.2f}, {:+.2f}, {:+.2f} deg about the vehicle's x, y, z axes",
                           vehicle.radars[i].name, degrees(0), degrees(1), degrees(2));
   }
@@ -42,8 +44,8 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Sett
     if (taken_over) keeper.remember();
     return taken_over;
   });
-  std::array<std::uint32_t, kMaxRadars> reported_knocks{};
-  node.every(1'000'000'000, [&] { report_knocks(vehicle, estimator, reported_knocks); });
+  std::array<std::uint32_t, kMaxRadars> reported_step_changes{};
+  node.every(1'000'000'000, [&] { report_step_changes(vehicle, estimator, reported_step_changes); });
   node.on<EgoMotion>([&](const EgoMotion& motion) {
     estimator.add_ego_motion(motion);
     calibration.add_ego_motion(motion);

@@ -66,7 +66,7 @@ void check(const Scenario& scenario, const VehicleConfig& vehicle) {
     const Misalignment& m = e.misalignment[id];
     if (m.yaw_rad != 0.0 || m.pitch_rad != 0.0 || m.roll_rad != 0.0) expect_radar(vehicle, e, id, "misalignment");
   }
-  for (const RadarKnock& knock : e.knocks) expect_radar(vehicle, e, knock.radar, "knock");
+  for (const RadarStepChange& step_change : e.step_changes) expect_radar(vehicle, e, step_change.radar, "step_change");
   for (const RadarBlockage& blockage : e.blockages) expect_radar(vehicle, e, blockage.radar, "blockage");
   for (const RadarInterference& i : e.interference) {
     if (i.radar != 0) expect_radar(vehicle, e, i.radar, "interference");

@@ -19,11 +19,11 @@ struct Misalignment {
 };
 
 /// From `time_s` on the radar is crooked by `by` more.
-struct RadarKnock {
+struct RadarStepChange {
   std::uint32_t radar = 0;
   double time_s = 0.0;
   Misalignment by{};
-  [[nodiscard]] bool operator==(const RadarKnock&) const = default;
+  [[nodiscard]] bool operator==(const RadarStepChange&) const = default;
 };
 
 /// Dirt, snow or ice on a radar: its two-way loss grows linearly from 0 at `begin_s` to `loss_db` at `full_s` and
@@ -93,7 +93,7 @@ struct RadarEffects {
   double speed_scale = 1.0;                                 ///< k_v: true speed = k_v · signalled speed
   bool noise = true;                                        ///< of measurements, ego signals and RCS
   std::array<Misalignment, kMaxRadars + 1> misalignment{};  ///< by radar id
-  std::vector<RadarKnock> knocks;
+  std::vector<RadarStepChange> step_changes;
   std::vector<RadarBlockage> blockages;
   std::vector<RadarInterference> interference;
   double clutter_per_scan = 1.5;  ///< mean number

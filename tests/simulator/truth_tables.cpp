@@ -112,7 +112,7 @@ TruthTables::TruthTables(const std::filesystem::path& folder, const Scenario& sc
       "height_m,kind,parked\n",
       objects_.get());
   std::fputs(
-      "t_s,radar,scan,alignment_yaw_deg,alignment_pitch_deg,alignment_roll_deg,knocks,blockage_max_db,"
+      "t_s,radar,scan,alignment_yaw_deg,alignment_pitch_deg,alignment_roll_deg,step_changes,blockage_max_db,"
       "blockage_mean_db,stated,noise_rise_db,interference_per_scan,detections,dropped,moving,stationary,ghost_type_1,"
       "ghost_type_2,clutter\n",
       sensors_.get());
@@ -146,8 +146,9 @@ void TruthTables::add_detections(const Event& event) {
 
 void TruthTables::add_sensor(const Event& event, const RadarConfig& radar) {
   const Misalignment m = radar::misalignment_at(effects_, radar.id, event.t_s);
-  const auto knocks = std::count_if(effects_.knocks.begin(), effects_.knocks.end(),
-                                    [&](const RadarKnock& k) { return k.radar == radar.id && k.time_s <= event.t_s; });
+  const auto step_changes =
+      std::count_if(effects_.step_changes.begin(), effects_.step_changes.end(),
+                    [&](const RadarStepChange& k) { return k.radar == radar.id && k.time_s <= event.t_s; });
   std::vector<radar::Dirt> dirt;
   radar::dirt_at(effects_.blockages, radar.id, event.t_s, dirt);
   const View loss = dirt_over(radar.field_of_view, dirt);
@@ -155,7 +156,7 @@ void TruthTables::add_sensor(const Event& event, const RadarConfig& radar) {
   const Counts n = count(*event.truth, [](const DetectionTruth&) { return true; });
   std::fprintf(sensors_.get(), "%.6f,%u,%llu,%.6f,%.6f,%.6f,%td,%.3f,%.3f,%s,%.3f,%.3f,%u,%u,%u,%u,%u,%u,%u\n",
                event.t_s, radar.id, scan_number(event), m.yaw_rad * kDegrees, m.pitch_rad * kDegrees,
-               m.roll_rad * kDegrees, knocks, loss.most_db, loss.mean_db, name_of_condition(event.condition),
+               m.roll_rad * kDegrees, step_changes, loss.most_db, loss.mean_db, name_of_condition(event.condition),
                other.noise_rise_db, other.detections_per_scan, n.sum(), event.scan->dropped_detections,
                n[Provenance::kMoving], n[Provenance::kStationary], n[Provenance::kGhostType1],
                n[Provenance::kGhostType2], n[Provenance::kClutter]);

@@ -61,7 +61,7 @@ void Estimator::begin(std::size_t index) {
   radar.seen = true;
   radar.scans_used = e.scans_used;
   // Where the way to the estimate begins: the nominal mounting, or what was remembered.
-  radar.convergence.add(0.0, 0, vehicle_form(radar.config, e).values, e.knock.count);
+  radar.convergence.add(0.0, 0, vehicle_form(radar.config, e).values, e.step_change.count);
 }
 
 void Estimator::offer(std::size_t index, const RadarScan& scan, const EgoSample& ego) {
@@ -82,7 +82,7 @@ void Estimator::offer(std::size_t index, const RadarScan& scan, const EgoSample&
 void Estimator::observe(std::size_t index, const EgoSample& ego, double elapsed_s) {
   Radar& radar = radars_[index];
   const RadarEstimate e = method_->estimate(index);
-  radar.convergence.add(radar.drive_s, radar.drive_scans, vehicle_form(radar.config, e).values, e.knock.count);
+  radar.convergence.add(radar.drive_s, radar.drive_scans, vehicle_form(radar.config, e).values, e.step_change.count);
   // A scan that the method did not use is no evidence of how well it does.
   if (e.scans_used == radar.scans_used) return;
   radar.scans_used = e.scans_used;

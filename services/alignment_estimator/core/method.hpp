@@ -31,7 +31,7 @@ struct RadarEstimate {
   std::uint64_t scans_used = 0;
   std::uint64_t detections_used = 0;
   double seconds_of_drive = 0.0;  ///< spent estimating with this radar
-  AlignmentKnock knock{};
+  AlignmentStepChange step_change{};
 };
 
 class Method {

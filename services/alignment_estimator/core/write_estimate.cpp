@@ -61,7 +61,7 @@ void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, dou
   out.slip_coefficient_radps2pm = static_cast<float>(estimate.slip_coefficient_radps2pm);
   out.slip_coefficient_std_radps2pm = static_cast<float>(estimate.slip_coefficient_std_radps2pm);
   out.angle_noise_scale = static_cast<float>(estimate.angle_noise_scale);
-  out.knock = estimate.knock;
+  out.step_change = estimate.step_change;
 }
 
 }  // namespace boresight::alignment

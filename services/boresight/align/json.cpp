@@ -71,7 +71,7 @@ void write_truth(JsonWriter& json, const TruthComparison& truth) {
   for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.nees.at(i));
   json.end_object().key("seconds_to_95_percent").begin_object();
   for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.seconds_to_95_percent.at(i));
-  json.end_object().key("knocks").begin_array();
+  json.end_object().key("step_changes").begin_array();
   for (std::size_t i = 1; i < truth.mountings.size(); ++i) json.value(truth.mountings[i].from_s);
   json.end_array().end_object();
 }
@@ -119,10 +119,10 @@ void write_radar(JsonWriter& json, const RadarResult& radar) {
   json.field("detections", radar.detections).field("detections_used", radar.estimate.detections_used);
   json.field("seconds_of_drive", radar.estimate.seconds_of_drive);
   json.field("angle_noise_scale", radar.estimate.angle_noise_scale);
-  json.key("knocks").begin_array();
-  for (const KnockEvent& knock : radar.knocks) {
-    json.begin_object().field("t", knock.time_s);
-    for (std::size_t i = 0; i < 3; ++i) json.field(key_of(i + 1), knock.yaw_pitch_roll_rad.at(i) * kDegrees);
+  json.key("step_changes").begin_array();
+  for (const StepChangeEvent& step_change : radar.step_changes) {
+    json.begin_object().field("t", step_change.time_s);
+    for (std::size_t i = 0; i < 3; ++i) json.field(key_of(i + 1), step_change.yaw_pitch_roll_rad.at(i) * kDegrees);
     json.end_object();
   }
   json.end_array();

@@ -99,7 +99,7 @@ class Picture {
     const bool has_truth = std::any_of(result_.radars.begin(), result_.radars.end(),
                                        [](const RadarResult& r) { return r.truth.has_value(); });
     if (has_truth) entry(line("truth"), "truth", 80.0);
-    entry(line("knock"), "knock", 85.0);
+    entry(line("step_change"), "step_change", 85.0);
     entry(line("before"), "residuals with the nominal mounting", 275.0);
     entry(R"(<rect class="after" width="24" height="9"/>)", "with the estimate", 150.0);
     return text + "<text class=\"legend\" text-anchor=\"end\" x=\"" +
@@ -166,7 +166,7 @@ class Picture {
              .std = [index, i](const Sample& s) { return s.radars[index].stds.at(i) * kDegrees; },
              .observable = [index,
                             bit = kBits.at(i)](const Sample& s) { return (s.radars[index].observable & bit) != 0; }},
-            radar.knocks);
+            radar.step_changes);
     }
     histogram(name, radar.residuals);
     end_row();
@@ -213,7 +213,7 @@ class Picture {
     return {middle - half, middle + half, curve.axis.empty() ? curve.unit : curve.axis, false};
   }
 
-  void curve(const Curve& curve, const std::vector<KnockEvent>& knocks) {
+  void curve(const Curve& curve, const std::vector<StepChangeEvent>& step_changes) {
     std::string title = curve.title;
     if (!result_.series.empty()) {
       const Sample& last = result_.series.back();
@@ -242,7 +242,8 @@ class Picture {
       truth.push_back({i + 1 < curve.truth.size() ? curve.truth[i + 1].x : std::max(x_max_, 1.0), curve.truth[i].y});
     }
     chart.line(truth, "truth");
-    for (const KnockEvent& knock : knocks) chart.vertical(knock.time_s - result_.start_s, "knock", "knock");
+    for (const StepChangeEvent& step_change : step_changes)
+      chart.vertical(step_change.time_s - result_.start_s, "step_change", "step_change");
     place(chart, title);
   }
 

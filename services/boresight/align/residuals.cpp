@@ -65,8 +65,9 @@ void ResidualSample::add(const alignment::ScanDetections& scan, const EgoSample&
   }
 }
 
-alignment::post_factum::Recording ResidualSample::recording(const MountingPose& nominal, bool has_elevation) const {
-  alignment::post_factum::Recording recording;
+alignment::batch_calibration::Recording ResidualSample::recording(const MountingPose& nominal,
+                                                                  bool has_elevation) const {
+  alignment::batch_calibration::Recording recording;
   recording.nominal = nominal;
   recording.has_elevation = has_elevation;
   recording.detections.reserve(detections_.size());

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 #include "services/alignment_estimator/core/method.hpp"
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
 #include "services/alignment_estimator/core/scan_detections.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -41,7 +41,8 @@ class ResidualSample {
  public:
   void add(const alignment::ScanDetections& scan, const EgoSample& ego);
   /// For the post-factum calibration, which takes all detections in a row.
-  [[nodiscard]] alignment::post_factum::Recording recording(const MountingPose& nominal, bool has_elevation) const;
+  [[nodiscard]] alignment::batch_calibration::Recording recording(const MountingPose& nominal,
+                                                                  bool has_elevation) const;
   /// `nominal` is R(sensor→vehicle) as configured.
   [[nodiscard]] ResidualSummary judge(const alignment::RadarEstimate& estimate, const RadarConfig& radar,
                                       const Eigen::Matrix3d& nominal) const;

@@ -32,7 +32,7 @@ struct Sample {
   std::vector<Radar> radars;
 };
 
-struct KnockEvent {
+struct StepChangeEvent {
   double time_s = 0.0;
   std::array<double, 3> yaw_pitch_roll_rad{};  ///< of the turn, about the vehicle's axes
 };
@@ -65,8 +65,8 @@ struct RadarResult {
   std::uint64_t scans = 0, scans_without_ego = 0, detections = 0;
   ResidualSummary residuals;
   double cpu_us_per_scan = 0.0, max_cpu_us_per_scan = 0.0;  ///< NaN where no scan was processed one by one
-  std::vector<KnockEvent> knocks;
-  /// post_factum: what the data say of α, β, γ: "supported" or why not.
+  std::vector<StepChangeEvent> step_changes;
+  /// batch_calibration: what the data say of α, β, γ: "supported" or why not.
   std::vector<std::string> support;
   std::optional<TruthComparison> truth;
 };
@@ -81,7 +81,7 @@ struct Result {
   bool speed_scale_observable = false;
   std::optional<double> true_speed_scale, true_yaw_rate_bias_radps, true_slip_coefficient_radps2pm;
   std::string problem;              ///< why there is no result; "" where there is
-  std::string speed_scale_support;  ///< post_factum, as RadarResult::support
+  std::string speed_scale_support;  ///< batch_calibration, as RadarResult::support
   std::vector<RadarResult> radars;
   bool x_is_iteration = false;
   std::vector<Sample> series;

@@ -7,7 +7,7 @@
 
 #include "services/alignment_estimator/core/scan_detections.hpp"
 #include "services/alignment_estimator/core/write_estimate.hpp"
-#include "services/boresight/align/post_factum.hpp"
+#include "services/boresight/align/batch_calibration.hpp"
 #include "services/boresight/align/stds.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
@@ -16,7 +16,7 @@ namespace boresight::align {
 
 namespace {
 
-constexpr std::string_view kPostFactum = "post_factum";
+constexpr std::string_view kBatchCalibration = "batch_calibration";
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// The origin on the estimator's clock: what comes a little before it shall not be at 0, which means "never".
 constexpr std::int64_t kOrigin_ns = 10'000'000'000;
@@ -57,10 +57,10 @@ std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const 
   };
   Truth::Radar radar = known->second;
   add(-std::numeric_limits<double>::infinity(), radar);
-  for (const Truth::Knock& knock : truth.knocks) {
-    if (knock.radar != config.id) continue;
-    radar.sensor_rad = knock.sensor_rad;
-    add(knock.time_s, radar);
+  for (const Truth::StepChange& step_change : truth.step_changes) {
+    if (step_change.radar != config.id) continue;
+    radar.sensor_rad = step_change.sensor_rad;
+    add(step_change.time_s, radar);
   }
   return mountings;
 }
@@ -70,7 +70,7 @@ std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const auto& [name, method] : alignment::kMethodNames) names.emplace_back(name);
-  names.emplace_back(kPostFactum);
+  names.emplace_back(kBatchCalibration);
   return names;
 }
 
@@ -87,7 +87,7 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     options_.config.method = method;
     estimator_ = std::make_unique<alignment::Estimator>(vehicle_, options_.config);
   }
-  if (estimator_ == nullptr && options_.method != kPostFactum) {
+  if (estimator_ == nullptr && options_.method != kBatchCalibration) {
     throw std::invalid_argument(options_.method + " is no alignment method");
   }
   for (const RadarConfig& config : vehicle_.radars) {
@@ -144,18 +144,18 @@ void Run::add_scan(RadarScan& scan, double time_s) {
     ++radar.timed_scans;
   }
   const alignment::RadarEstimate estimate = estimator_->estimate(static_cast<std::size_t>(found - radars_.begin()));
-  observe_knocks(radar, estimate, options_.origin_s);
+  observe_step_changes(radar, estimate, options_.origin_s);
   observe_truth(radar, estimate, time_s);
 }
 
-void Run::observe_knocks(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s) {
-  if (estimate.knock.count == radar.knocks_seen) return;
-  radar.knocks_seen = estimate.knock.count;
+void Run::observe_step_changes(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s) {
+  if (estimate.step_change.count == radar.step_changes_seen) return;
+  radar.step_changes_seen = estimate.step_change.count;
   // What was measured before is no longer to be explained by the mounting.
   radar.residuals = {};
-  const auto& turn = estimate.knock.rotation_vehicle_rad;
-  radar.knocks.push_back(
-      {origin_s + 1e-9 * static_cast<double>(estimate.knock.time_ns - kOrigin_ns), {turn[2], -turn[1], turn[0]}});
+  const auto& turn = estimate.step_change.rotation_vehicle_rad;
+  radar.step_changes.push_back(
+      {origin_s + 1e-9 * static_cast<double>(estimate.step_change.time_ns - kOrigin_ns), {turn[2], -turn[1], turn[0]}});
 }
 
 void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s) {
@@ -234,7 +234,7 @@ Result Run::finish() {
     const double timed = static_cast<double>(radar.timed_scans);
     r.cpu_us_per_scan = radar.timed_scans > 0 ? 1e-3 * static_cast<double>(radar.cpu_ns) / timed : kNaN;
     r.max_cpu_us_per_scan = radar.timed_scans > 0 ? 1e-3 * static_cast<double>(radar.max_cpu_ns) : kNaN;
-    r.knocks = radar.knocks;
+    r.step_changes = radar.step_changes;
     result.scans += radar.scans;
     result.detections += radar.detections;
   }
@@ -243,7 +243,7 @@ Result Run::finish() {
   } else {
     std::vector<const ResidualSample*> samples;
     for (const Radar& radar : radars_) samples.push_back(&radar.residuals);
-    solve_post_factum(vehicle_, samples, options_.post_factum, options_.post_factum_progress, result);
+    solve_batch_calibration(vehicle_, samples, options_.batch_calibration, options_.batch_calibration_progress, result);
   }
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     RadarResult& r = result.radars[i];

@@ -12,9 +12,9 @@
 
 #include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/radar_scan.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/alignment_estimator/core/estimator.hpp"
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
 #include "services/boresight/align/residuals.hpp"
 #include "services/boresight/align/result.hpp"
 #include "services/boresight/align/truth_file.hpp"
@@ -23,7 +23,7 @@
 
 namespace boresight::align {
 
-/// Names that --method takes: the estimator's, and post_factum.
+/// Names that --method takes: the estimator's, and batch_calibration.
 [[nodiscard]] std::vector<std::string> method_names();
 
 class Run {
@@ -34,8 +34,8 @@ class Run {
     /// Time on the recording's clock that the estimator's clock counts from; not more than ten seconds after what comes
     /// first. NaN: the time of what comes first.
     double origin_s = std::numeric_limits<double>::quiet_NaN();
-    alignment::post_factum::Config post_factum{};
-    alignment::post_factum::Progress post_factum_progress{};  ///< called by finish()
+    alignment::batch_calibration::Config batch_calibration{};
+    alignment::batch_calibration::Progress batch_calibration_progress{};  ///< called by finish()
     std::optional<Truth> truth;
     std::function<std::int64_t()> cpu_time_ns;  ///< of this thread, for the cost of a scan
   };
@@ -56,8 +56,8 @@ class Run {
     std::int64_t cpu_ns = 0, max_cpu_ns = 0;
     std::uint64_t timed_scans = 0;
     ResidualSample residuals;
-    std::uint32_t knocks_seen = 0;
-    std::vector<KnockEvent> knocks;
+    std::uint32_t step_changes_seen = 0;
+    std::vector<StepChangeEvent> step_changes;
     std::vector<TruthComparison::Mounting> truth;  ///< none where it is not known
     std::size_t true_now = 0;
     std::array<double, kParameters> way_begin{}, way_begin_s{}, seconds_to_95_percent{};
@@ -66,14 +66,14 @@ class Run {
   void observe_until(double time_s);
   [[nodiscard]] Sample sample(double time_s);
   /// After a scan.
-  static void observe_knocks(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s);
+  static void observe_step_changes(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s);
   static void observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s);
   void finish_estimator(Result& result);
   [[nodiscard]] static TruthComparison compare(const Radar& radar, const RadarResult& result);
 
   VehicleConfig vehicle_;
   Options options_;
-  std::unique_ptr<alignment::Estimator> estimator_;  ///< none for post_factum, which wants all at once
+  std::unique_ptr<alignment::Estimator> estimator_;  ///< none for batch_calibration, which wants all at once
   EgoHistory ego_;
   std::vector<Radar> radars_;
   std::unique_ptr<alignment::ScanDetections> detections_;

@@ -53,7 +53,8 @@ std::string to_table(const Result& result) {
     text += padded(seconds(t95[1]) + " / " + seconds(t95[2]) + " / " + seconds(t95[3]), 17);
     text += padded(std::isfinite(r.cpu_us_per_scan) ? fmt::format("{:.1f}", r.cpu_us_per_scan) : "–", 9);
     text += name_of(m.state);
-    if (!r.knocks.empty()) text += fmt::format(", {} knock{}", r.knocks.size(), r.knocks.size() == 1 ? "" : "s");
+    if (!r.step_changes.empty())
+      text += fmt::format(", {} knock{}", r.step_changes.size(), r.step_changes.size() == 1 ? "" : "s");
     text += '\n';
     constexpr std::array<const char*, 3> kSensorAxes = {"alpha", "beta", "gamma"};
     for (std::size_t i = 0; i < r.support.size(); ++i) {

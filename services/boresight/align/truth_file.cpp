@@ -70,20 +70,20 @@ Truth read_truth(std::istream& input, const std::string& name) {
       if (!angles) fail(fmt::format("radar {}: alpha_deg, beta_deg and gamma_deg must follow, each with a number", id));
       radar.sensor_rad = *angles;
       truth.radars[id] = radar;
-    } else if (kind == "knock") {
+    } else if (kind == "step_change") {
       const auto values = pairs(words);
       const auto time_s = find(values, "t"), id = find(values, "radar");
       const auto angles = sensor_angles(values);
-      if (!time_s || !id || !angles) fail("knock: t, radar, alpha_deg, beta_deg and gamma_deg must follow");
-      truth.knocks.push_back({*time_s, static_cast<std::uint32_t>(std::clamp(*id, 0.0, 99.0)), *angles});
+      if (!time_s || !id || !angles) fail("step_change: t, radar, alpha_deg, beta_deg and gamma_deg must follow");
+      truth.step_changes.push_back({*time_s, static_cast<std::uint32_t>(std::clamp(*id, 0.0, 99.0)), *angles});
     } else if (kind == "disturbance") {
       const auto values = pairs(words);
       truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
       truth.slip_coefficient_radps2pm = find(values, "rear_slip_coeff");
     }
   }
-  std::stable_sort(truth.knocks.begin(), truth.knocks.end(),
-                   [](const Truth::Knock& a, const Truth::Knock& b) { return a.time_s < b.time_s; });
+  std::stable_sort(truth.step_changes.begin(), truth.step_changes.end(),
+                   [](const Truth::StepChange& a, const Truth::StepChange& b) { return a.time_s < b.time_s; });
   if (!truth.speed_scale && truth.radars.empty()) {
     throw std::runtime_error(name + ": holds no truth (lines \"k_v VALUE\" and \"radar ID … alpha_deg VALUE …\")");
   }

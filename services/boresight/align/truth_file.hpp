@@ -25,18 +25,18 @@ struct Truth {
     std::array<double, 3> sensor_rad{};  ///< α, β, γ
   };
   /// From `time_s` on a radar is mounted otherwise.
-  struct Knock {
+  struct StepChange {
     double time_s = 0.0;
     std::uint32_t radar = 0;
     std::array<double, 3> sensor_rad{};
   };
   std::map<std::uint32_t, Radar> radars;  ///< by id
-  std::vector<Knock> knocks;              ///< in the order of time
+  std::vector<StepChange> step_changes;   ///< in the order of time
 };
 
-/// Lines "k_v VALUE", and "radar ID", "knock" and "disturbance" with pairs "key value"; others (and comments) are for
-/// other readers. /// Throws std::runtime_error naming line and cause if a number is missing or none of these lines is
-/// there.
+/// Lines "k_v VALUE", and "radar ID", "step_change" and "disturbance" with pairs "key value"; others (and comments) are
+/// for other readers. /// Throws std::runtime_error naming line and cause if a number is missing or none of these lines
+/// is there.
 [[nodiscard]] Truth read_truth(std::istream& input, const std::string& name);
 
 /// R(sensor→vehicle) = R_z(yaw_b+α)·R_y(−(pitch_b+β))·R_x(roll_b+γ); what the truth does not say of the nominal

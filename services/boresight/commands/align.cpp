@@ -82,7 +82,7 @@ class Align {
     align::Run::Options run_options;
     run_options.method = options_.method;
     run_options.cpu_time_ns = cpu_time_ns;
-    run_options.post_factum_progress = [this](auto phase, double share) { show_post_factum(phase, share); };
+    run_options.batch_calibration_progress = [this](auto phase, double share) { show_batch_calibration(phase, share); };
     if (!options_.config.empty()) {
       run_options.config = alignment::read_settings(config::Reader::open(options_.config)).estimator;
     }
@@ -155,7 +155,7 @@ class Align {
               fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(position)));
   }
 
-  void show_post_factum(alignment::post_factum::Phase phase, double share) {
+  void show_batch_calibration(alignment::batch_calibration::Phase phase, double share) {
     struct Part {
       const char* what;
       double begin, end;  // of a bar over all phases, by what they cost on a drive of minutes
@@ -226,7 +226,7 @@ class Align {
   terminal::ProgressBar bar_;
   align::Problems problems_;
   align::Provenance provenance_;
-  std::optional<alignment::post_factum::Phase> told_phase_;
+  std::optional<alignment::batch_calibration::Phase> told_phase_;
   int exit_code_ = EXIT_SUCCESS;
 };
 

@@ -30,7 +30,7 @@ std::size_t index_of(const simulator::AlignmentSpec& spec, std::uint32_t id) {
   throw std::invalid_argument("the vehicle has no radar " + std::to_string(id));
 }
 
-simulator::Knock parse_knock(const std::string& text, const simulator::AlignmentSpec& spec) {
+simulator::StepChange parse_step_change(const std::string& text, const simulator::AlignmentSpec& spec) {
   double time_s = 0.0;
   unsigned id = 0;
   std::array<double, 3> turn_deg{};
@@ -38,7 +38,7 @@ simulator::Knock parse_knock(const std::string& text, const simulator::Alignment
   const int read = std::sscanf(text.c_str(), "%lf,%u,%lf,%lf,%lf%n", &time_s, &id, turn_deg.data(), &turn_deg[1],
                                &turn_deg[2], &end);
   if (read != 5 || static_cast<std::size_t>(end) != text.size()) {
-    throw std::invalid_argument("--knock " + text + ": SECONDS,RADAR,X,Y,Z with the turn in degrees is needed");
+    throw std::invalid_argument("--step-change " + text + ": SECONDS,RADAR,X,Y,Z with the turn in degrees is needed");
   }
   return {simulator::AlignmentDrive::kStart_s + time_s, index_of(spec, id),
           Eigen::Vector3d(turn_deg[0], turn_deg[1], turn_deg[2]) * kDegree};
@@ -74,7 +74,9 @@ CLI::Option* add_alignment_drive_options(CLI::App& command, AlignmentDriveOption
   number("--slip", options.slip_coefficient, "rear slip angle by lateral acceleration, rad per m/s2", -0.05, 0.05);
   number("--body-pitch", options.body_pitch_deg, "std of the body's pitch, deg", 0.0, 5.0);
   number("--brake-pitch", options.brake_pitch_deg, "nose down by deceleration, deg per m/s2", -2.0, 2.0);
-  group->add_option("--knock", options.knocks, "SECONDS,RADAR,X,Y,Z: turn (deg) about the vehicle's axes; repeatable")
+  group
+      ->add_option("--step-change", options.step_changes,
+                   "SECONDS,RADAR,X,Y,Z: turn (deg) about the vehicle's axes; repeatable")
       ->delimiter(';')
       ->needs(road);
   return road;
@@ -103,7 +105,8 @@ simulator::AlignmentSpec alignment_spec(const AlignmentDriveOptions& options, co
     if (options.unsynchronised) radar.first_scan_s = 0.0101 * static_cast<double>(i + 1);
   }
   for (const std::uint32_t id : options.without_elevation) spec.radars[index_of(spec, id)].measures_elevation = false;
-  for (const std::string& knock : options.knocks) spec.knocks.push_back(parse_knock(knock, spec));
+  for (const std::string& step_change : options.step_changes)
+    spec.step_changes.push_back(parse_step_change(step_change, spec));
   return spec;
 }
 

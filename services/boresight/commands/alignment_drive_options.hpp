@@ -27,7 +27,7 @@ struct AlignmentDriveOptions {
   double slip_coefficient = 0.0;
   double body_pitch_deg = 0.0;
   double brake_pitch_deg = 0.0;
-  std::vector<std::string> knocks;
+  std::vector<std::string> step_changes;
 };
 
 /// The returned option asks for an alignment drive; the others need it.

@@ -26,7 +26,7 @@ AlignmentDetails details_of(const AlignmentEstimate& e) {
             e.is_observable(alignment_axis::kVehicleRoll)};
   d.yaw_rate_bias = {e.yaw_rate_bias_radps, e.yaw_rate_bias_std_radps, e.is_observable(alignment_axis::kYawRateBias)};
   d.slip = {e.slip_coefficient_radps2pm, e.slip_coefficient_std_radps2pm, e.is_observable(alignment_axis::kSlip)};
-  d.knocks = e.knock.count;
+  d.step_changes = e.step_change.count;
   d.yaw_seconds_to_95_percent = e.kpis.seconds_to_95_percent[static_cast<std::size_t>(AlignmentParameter::kYaw)];
   d.pitch_seconds_to_95_percent = e.kpis.seconds_to_95_percent[static_cast<std::size_t>(AlignmentParameter::kPitch)];
   d.yaw_drift_radpmin = e.kpis.drift_per_minute[static_cast<std::size_t>(AlignmentParameter::kYaw)];

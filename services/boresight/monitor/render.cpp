@@ -110,7 +110,7 @@ std::string complaint(const RadarSnapshot& radar) {
   const auto add = [&text](std::uint64_t count, std::string_view what) {
     if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
-  add(radar.details.knocks, "knocks");
+  add(radar.details.step_changes, "step_changes");
   add(radar.missed, "scans missed on the wire");
   add(radar.suspect, "suspect scans");
   return text;

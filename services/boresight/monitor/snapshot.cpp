@@ -31,7 +31,7 @@ void read_details(Words& words, AlignmentDetails& d) {
   d.roll = read_angle(words, "roll about the vehicle's axes");
   d.yaw_rate_bias = read_angle(words, "yaw rate bias");
   d.slip = read_angle(words, "slip");
-  words.read("knocks", d.knocks);
+  words.read("step_changes", d.step_changes);
   words.read("seconds to 95 % of yaw", d.yaw_seconds_to_95_percent);
   words.read("seconds to 95 % of pitch", d.pitch_seconds_to_95_percent);
   words.read("drift of yaw", d.yaw_drift_radpmin);
@@ -124,11 +124,11 @@ std::string details_json(const AlignmentDetails& d) {
   return axis_json("vehicle_yaw_deg", d.yaw, kDegrees) + axis_json("vehicle_pitch_deg", d.pitch, kDegrees) +
          axis_json("vehicle_roll_deg", d.roll, kDegrees) + axis_json("yaw_rate_bias_degps", d.yaw_rate_bias, kDegrees) +
          axis_json("slip_coefficient_radps2pm", d.slip, 1.0) +
-         fmt::format(R"("knocks":{},"yaw_seconds_to_95_percent":{},"pitch_seconds_to_95_percent":{},)"
+         fmt::format(R"("step_changes":{},"yaw_seconds_to_95_percent":{},"pitch_seconds_to_95_percent":{},)"
                      R"("yaw_drift_degpmin":{},"residual_rmse_mps":{},"nees":{})",
-                     d.knocks, json_number(d.yaw_seconds_to_95_percent), json_number(d.pitch_seconds_to_95_percent),
-                     json_number(d.yaw_drift_radpmin * kDegrees), json_number(d.residual_rmse_mps),
-                     json_number(d.nees));
+                     d.step_changes, json_number(d.yaw_seconds_to_95_percent),
+                     json_number(d.pitch_seconds_to_95_percent), json_number(d.yaw_drift_radpmin * kDegrees),
+                     json_number(d.residual_rmse_mps), json_number(d.nees));
 }
 
 /// Sums since the monitor began.
@@ -155,7 +155,7 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
            << r.missed << ' ' << r.suspect;
     const AlignmentDetails& d = r.details;
     for (const AngleEstimate& angle : {d.yaw, d.pitch, d.roll, d.yaw_rate_bias, d.slip}) write_angle(output, angle);
-    output << ' ' << d.knocks << ' ' << d.yaw_seconds_to_95_percent << ' ' << d.pitch_seconds_to_95_percent << ' '
+    output << ' ' << d.step_changes << ' ' << d.yaw_seconds_to_95_percent << ' ' << d.pitch_seconds_to_95_percent << ' '
            << d.yaw_drift_radpmin << ' ' << d.residual_rmse_mps << ' ' << d.nees;
     for (const std::uint64_t told : r.labels.told) output << ' ' << told;
     output << ' ' << r.labels.left_out << ' ' << r.labels.scans << ' ' << r.labels.scans_without_tracks << '\n';

@@ -34,7 +34,7 @@ struct AlignmentDetails {
   AngleEstimate yaw, pitch, roll;
   AngleEstimate yaw_rate_bias;  ///< rad/s
   AngleEstimate slip;           ///< rad per m/s²
-  std::uint32_t knocks = 0;
+  std::uint32_t step_changes = 0;
   double yaw_seconds_to_95_percent = std::numeric_limits<double>::quiet_NaN();
   double pitch_seconds_to_95_percent = std::numeric_limits<double>::quiet_NaN();
   double yaw_drift_radpmin = std::numeric_limits<double>::quiet_NaN();

@@ -80,7 +80,7 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
         estimate.vehicle_pitch_rad, alignment_axis::kVehiclePitch);
   judge(roll_, AlignmentParameter::kRoll, estimate.alignment_roll_rad, alignment_axis::kRoll, estimate.vehicle_roll_rad,
         alignment_axis::kVehicleRoll);
-  knocks_ = estimate.knock.count;
+  step_changes_ = estimate.step_change.count;
   const double scale_std = std_of(estimate.covariance, AlignmentParameter::kSpeedScale);
   if (!std::isfinite(estimate.speed_scale) || !std::isfinite(scale_std)) return;
   speed_scale_ = estimate.speed_scale;
@@ -113,7 +113,7 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
   health.scans = scans_;
   health.lost_scans = lost_scans_;
   health.conditions = last_statistics_.conditions;
-  health.knocks = knocks_;
+  health.step_changes = step_changes_;
   health.missed_scans = last_statistics_.lost;
   health.suspect_scans = last_statistics_.suspect;
   health.e2e_lost = last_statistics_.e2e_lost;

@@ -56,7 +56,7 @@ class SensorMonitor {
   Angle yaw_;
   Angle pitch_;
   Angle roll_;
-  std::uint32_t knocks_ = 0;
+  std::uint32_t step_changes_ = 0;
   double speed_scale_ = 1.0;
   double speed_scale_std_ = 0.0;
 };

@@ -77,7 +77,7 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   add_axis(status, "roll error", sensor.roll);
   add_value(status, "lateral displacement",
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
-  add_value(status, "knocks", fmt::format("{}", sensor.knocks));
+  add_value(status, "step_changes", fmt::format("{}", sensor.step_changes));
   add_value(status, "speed scale", fmt::format("{:.4f}, std {:.4f}", sensor.speed_scale, sensor.speed_scale_std));
   add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
   add_value(status, "scans missed on the wire", fmt::format("{}", sensor.missed_scans));

@@ -43,7 +43,7 @@ def residuals(curves):
     return picture(880, 390, parts + panel.parts)
 
 
-def knock(curves):
+def step_change(curves):
     parts = [text(20, 24, "Median error of the knocked radar about the axis of the knock, °", "t"),
              legend([("c0 own", "clean drives"), ("c1", "disturbed drives")], 20, 46, 840)]
     panels = [p for p in ("1° yaw", "2° pitch", "0.5° yaw", "2° roll") if any(c["panel"] == p for c in curves)]
@@ -117,7 +117,7 @@ def draw_all(curves, folder):
     drawings = {
         "published": lambda c: convergence(c, "The published set-up, truth by the planar roll model (10)(11)"),
         "published_exact": lambda c: convergence(c, "The published set-up, truth a rotation"),
-        "residuals": residuals, "knock": knock, "honesty": honesty, "roll": roll, "false_alarms": false_alarms,
+        "residuals": residuals, "step_change": step_change, "honesty": honesty, "roll": roll, "false_alarms": false_alarms,
     }
     for name, draw in drawings.items():
         mine = of_figure(curves, name)

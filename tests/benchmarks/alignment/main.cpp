@@ -20,7 +20,7 @@ constexpr BarGroup kGroups[] = {
     {"published_optimum", published_optimum},
     {"published_filter", published_filter},
     {"outliers", outliers},
-    {"knock", knock},
+    {"step_change", step_change},
     {"false_alarms", false_alarms},
     {"cost", cost},
     {"plate", plate},

@@ -196,9 +196,9 @@ struct AlignmentDrive::State {
     const Misalignment& m = spec.radars[radar].truth;
     Mounting out{geometry::sensor_to_vehicle(nominal, m.yaw_rad, m.pitch_rad, m.roll_rad),
                  {nominal.yaw_rad + m.yaw_rad, nominal.pitch_rad + m.pitch_rad, nominal.roll_rad + m.roll_rad}};
-    for (const Knock& knock : spec.knocks) {
-      if (knock.radar != radar || time_s < knock.time_s) continue;
-      out.rotation = geometry::so3_exp(knock.rotation_vehicle_rad) * out.rotation;
+    for (const StepChange& step_change : spec.step_changes) {
+      if (step_change.radar != radar || time_s < step_change.time_s) continue;
+      out.rotation = geometry::so3_exp(step_change.rotation_vehicle_rad) * out.rotation;
       out.yaw_pitch_roll_rad = geometry::euler_angles(out.rotation);
     }
     return out;

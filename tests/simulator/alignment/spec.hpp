@@ -35,7 +35,7 @@ struct AlignmentRadar {
   double noise_scale = 1.0;        ///< real angle noise over the stated one
 };
 
-struct Knock {
+struct StepChange {
   double time_s = 0.0;                                  ///< of measurement, as AlignmentEvent::time_s
   std::size_t radar = 0;                                ///< index
   Eigen::Vector3d rotation_vehicle_rad{0.0, 0.0, 0.0};  ///< turn about vehicle axes, Exp(d)·R
@@ -60,7 +60,7 @@ struct AlignmentSpec {
   double body_pitch_std_rad = 0.0;         ///< Ornstein–Uhlenbeck
   double body_pitch_correlation_s = 0.3;
   double body_pitch_per_acceleration_radps2pm = 0.0;  ///< nose down when braking
-  std::vector<Knock> knocks;
+  std::vector<StepChange> step_changes;
 };
 
 /// Four corner radars, as in drive_1: noise, mounting and truth of Report A's Table 1.

@@ -34,13 +34,13 @@ std::string radar_text(const AlignmentRadar& radar) {
                      pose.pitch_rad / kDegree, pose.roll_rad / kDegree);
 }
 
-std::string knock_text(const Knock& knock, const AlignmentSpec& spec, const AlignmentDrive& drive) {
-  const RadarConfig& radar = spec.radars[knock.radar].config;
-  const Eigen::Vector3d turn = knock.rotation_vehicle_rad / kDegree;
+std::string step_change_text(const StepChange& step_change, const AlignmentSpec& spec, const AlignmentDrive& drive) {
+  const RadarConfig& radar = spec.radars[step_change.radar].config;
+  const Eigen::Vector3d turn = step_change.rotation_vehicle_rad / kDegree;
   return fmt::format(
-      "knock t {:.4f} radar {} turn_x_deg {:.4f} turn_y_deg {:.4f} turn_z_deg {:.4f} {}\n",
-      knock.time_s - AlignmentDrive::kStart_s, radar.id, turn.x(), turn.y(), turn.z(),
-      angles_text(misalignment(drive.sensor_to_vehicle(knock.radar, knock.time_s), radar.mounting_pose)));
+      "step_change t {:.4f} radar {} turn_x_deg {:.4f} turn_y_deg {:.4f} turn_z_deg {:.4f} {}\n",
+      step_change.time_s - AlignmentDrive::kStart_s, radar.id, turn.x(), turn.y(), turn.z(),
+      angles_text(misalignment(drive.sensor_to_vehicle(step_change.radar, step_change.time_s), radar.mounting_pose)));
 }
 
 std::string bound_text(const CramerRaoBound& bound, std::size_t radars) {
@@ -79,7 +79,7 @@ std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive, c
       "(V_lat=-c*V*(V*w)) pitch_std {:.3f} deg pitch_per_ax {:.4f} rad/(m/s2)\n",
       spec.yaw_rate_bias_radps, spec.slip_coefficient_radps2pm, spec.body_pitch_std_rad / kDegree,
       spec.body_pitch_per_acceleration_radps2pm);
-  for (const Knock& knock : spec.knocks) text += knock_text(knock, spec, drive);
+  for (const StepChange& step_change : spec.step_changes) text += step_change_text(step_change, spec, drive);
   text += fmt::format("stationary residual rmse_uncorrected {:.4f} at_truth {:.4f}\n", residuals.uncorrected_mps,
                       residuals.at_truth_mps);
   if (bound != nullptr) text += bound_text(*bound, spec.radars.size());

@@ -12,11 +12,11 @@ namespace boresight::simulator::radar {
 /// Misalignment at `t_s`; knocks add up from their times on.
 [[nodiscard]] inline Misalignment misalignment_at(const RadarEffects& effects, std::uint32_t radar, double t_s) {
   Misalignment m = radar < effects.misalignment.size() ? effects.misalignment[radar] : Misalignment{};
-  for (const RadarKnock& knock : effects.knocks) {
-    if (knock.radar != radar || t_s < knock.time_s) continue;
-    m.yaw_rad += knock.by.yaw_rad;
-    m.pitch_rad += knock.by.pitch_rad;
-    m.roll_rad += knock.by.roll_rad;
+  for (const RadarStepChange& step_change : effects.step_changes) {
+    if (step_change.radar != radar || t_s < step_change.time_s) continue;
+    m.yaw_rad += step_change.by.yaw_rad;
+    m.pitch_rad += step_change.by.pitch_rad;
+    m.roll_rad += step_change.by.roll_rad;
   }
   return m;
 }

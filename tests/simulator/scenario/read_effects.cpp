@@ -89,12 +89,12 @@ RadarEffects read_effects(Reader reader) {
     const std::uint32_t radar = read_radar(r, e);
     e.misalignment[radar] = read_angles(r);
   }
-  for (Reader& r : reader.tables("knock")) {
-    RadarKnock knock;
-    knock.radar = read_radar(r, e);
-    knock.time_s = r.number("time_s", kTime_s, 0.0);
-    knock.by = read_angles(r);
-    e.knocks.push_back(knock);
+  for (Reader& r : reader.tables("step_change")) {
+    RadarStepChange step_change;
+    step_change.radar = read_radar(r, e);
+    step_change.time_s = r.number("time_s", kTime_s, 0.0);
+    step_change.by = read_angles(r);
+    e.step_changes.push_back(step_change);
   }
   for (Reader& r : reader.tables("blockage")) e.blockages.push_back(read_blockage(r, e));
   for (Reader& r : reader.tables("interference")) e.interference.push_back(read_interference(r, e));

@@ -46,25 +46,25 @@ HealthReport report() {
   }
   r.services[4].condition = ServiceCondition::kSilent;
   r.sensors[0].radar_id = 1;
-  SensorHealth& crooked = r.sensors[1];
-  crooked.radar_id = 2;
-  crooked.data_qualifier = DataQualifier::kAvailableReduced;
-  crooked.extended_qualifier = ExtendedQualifier::kMisaligned;
-  crooked.rate_hz = 20.0F;
-  crooked.yaw.error_rad = 0.0436F;
-  crooked.yaw.std_rad = 0.0004F;
-  crooked.yaw.tolerance_rad = 0.0262F;
-  crooked.yaw.observable = crooked.yaw.beyond_tolerance = 1;
-  crooked.speed_scale = 1.012F;
-  crooked.lateral_displacement_m = 4.36F;
-  crooked.reference_range_m = 100.0F;
-  crooked.scans = 12'345'678'901ULL;
-  crooked.missed_scans = 23'456'789'012ULL;
-  crooked.suspect_scans = 34;
-  crooked.e2e_lost = 5;
-  crooked.e2e_repeated = 6;
-  crooked.e2e_wrong = 7;
-  crooked.conditions = source_condition::kSupply | source_condition::kWithoutEgoMotion;
+  SensorHealth& misaligned = r.sensors[1];
+  misaligned.radar_id = 2;
+  misaligned.data_qualifier = DataQualifier::kAvailableReduced;
+  misaligned.extended_qualifier = ExtendedQualifier::kMisaligned;
+  misaligned.rate_hz = 20.0F;
+  misaligned.yaw.error_rad = 0.0436F;
+  misaligned.yaw.std_rad = 0.0004F;
+  misaligned.yaw.tolerance_rad = 0.0262F;
+  misaligned.yaw.observable = misaligned.yaw.beyond_tolerance = 1;
+  misaligned.speed_scale = 1.012F;
+  misaligned.lateral_displacement_m = 4.36F;
+  misaligned.reference_range_m = 100.0F;
+  misaligned.scans = 12'345'678'901ULL;
+  misaligned.missed_scans = 23'456'789'012ULL;
+  misaligned.suspect_scans = 34;
+  misaligned.e2e_lost = 5;
+  misaligned.e2e_repeated = 6;
+  misaligned.e2e_wrong = 7;
+  misaligned.conditions = source_condition::kSupply | source_condition::kWithoutEgoMotion;
   return r;
 }
 

@@ -26,7 +26,7 @@ using alignment::LoadedMemory;
 using alignment::Memory;
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr std::uint32_t kCrooked = 2;       // front_right, which the drive turns by …
+constexpr std::uint32_t kMisaligned = 2;    // front_right, which the drive turns by …
 constexpr double kTrueYaw = 2.5 * kDegree;  // … this
 const std::string kService = "alignment_estimator";
 const fs::path kState = "/tmp/state";
@@ -83,7 +83,7 @@ class Witness {
     runtime::Node node(catalogue::Service::kMonitor, "-story");
     const auto estimator = static_cast<std::uint32_t>(catalogue::Service::kAlignmentEstimator);
     node.on<AlignmentEstimate>([this](const AlignmentEstimate& estimate) {
-      if (estimate.header.source_id != kCrooked || size() == seen_->log.size()) return;
+      if (estimate.header.source_id != kMisaligned || size() == seen_->log.size()) return;
       seen_->log[size()] = estimate;
       seen_->estimates = size() + 1;
     });
@@ -139,23 +139,23 @@ class IgnitionCycles : public testing::Test {
     if (!fs::exists(file_)) return 0.0;
     const LoadedMemory loaded = kept();
     EXPECT_EQ(loaded.kind, LoadedMemory::Kind::kTaken) << loaded.reason;
-    return loaded.memory.radars[kCrooked - 1].seconds_of_drive;
+    return loaded.memory.radars[kMisaligned - 1].seconds_of_drive;
   }
 
   /// As it was remembered, with more doubt: Config's `remembered`.
   void expect_taken_up(const AlignmentEstimate& first, const Memory& memory) const {
     const alignment::FilterConfig config;
-    const std::size_t yaw = Memory::kShared + 3 * (kCrooked - 1) + 2;
+    const std::size_t yaw = Memory::kShared + 3 * (kMisaligned - 1) + 2;
     const double variance = memory.covariance[yaw * memory.number_of_parameters() + yaw];
     const double doubted = std::sqrt(config.memory_inflation * variance + std::pow(config.memory_rotation_std_rad, 2));
     // The memory has a rotation vector, the message angles about fixed axes: roll and pitch make a difference of 2e-4.
-    const Eigen::Vector3d remembered(memory.radars[kCrooked - 1].rotation_vehicle_rad.data());
+    const Eigen::Vector3d remembered(memory.radars[kMisaligned - 1].rotation_vehicle_rad.data());
     EXPECT_NEAR(first.vehicle_yaw_rad, geometry::fixed_axes_angles(geometry::so3_exp(remembered))(0), 1e-4);
     EXPECT_NEAR(first.speed_scale, memory.speed_scale, 1e-6);
     EXPECT_NEAR(yaw_std(first), doubted, 0.01 * doubted);
     EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "or nothing was inflated";
     EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
-    EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kCrooked - 1].seconds_of_drive, 0.1);
+    EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kMisaligned - 1].seconds_of_drive, 0.1);
     EXPECT_NE(log().find("alignment of 4 radars remembered from " + file_.string()), std::string::npos) << log();
   }
 
@@ -217,13 +217,13 @@ TEST_F(IgnitionCycles, WhatWasLearntIsTakenUpWithMoreDoubt) {
   ignition_off();
   const LoadedMemory first = kept();
   ASSERT_EQ(first.kind, LoadedMemory::Kind::kTaken) << first.reason;
-  EXPECT_NEAR(first.memory.radars[kCrooked - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kDegree);
-  EXPECT_NEAR(first.memory.radars[kCrooked - 1].seconds_of_drive, witness_->last().kpis.seconds_of_drive, 0.3)
+  EXPECT_NEAR(first.memory.radars[kMisaligned - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kDegree);
+  EXPECT_NEAR(first.memory.radars[kMisaligned - 1].seconds_of_drive, witness_->last().kpis.seconds_of_drive, 0.3)
       << "the file is that of the end, not of the last period";
 
   expect_taken_up(ignition_on(), first.memory);
   // Killed amid the drive, after it has put down more than it began with.
-  const double began_s = first.memory.radars[kCrooked - 1].seconds_of_drive;
+  const double began_s = first.memory.radars[kMisaligned - 1].seconds_of_drive;
   ASSERT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > began_s + 1.0; }));
   // Just after an estimate was sent, because who dies while sending leaves the bus locked (system_service_killed).
   const std::size_t sent = witness_->size();

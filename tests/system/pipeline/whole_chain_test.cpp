@@ -151,7 +151,7 @@ TEST_F(WholeChain, CorrectorUsesTheEstimatesAsTheyCome) {
   for (std::uint32_t radar = 1; radar <= 4; ++radar) EXPECT_GE(changes[radar], 40u) << "of 60, radar " << radar;
 }
 
-TEST_F(WholeChain, CrookedRadarIsReported) {
+TEST_F(WholeChain, MisalignedRadarIsReported) {
   const auto reports = observer_->of(TopicId::kHealthReport);
   const auto misaligned = [&](std::uint32_t radar) {
     return std::any_of(reports.begin(), reports.end(), [radar](const Sample* s) {

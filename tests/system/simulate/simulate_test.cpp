@@ -33,12 +33,12 @@ std::string errors() {
 TEST(Simulate, AnAlignmentDriveHasWhatWasAskedFor) {
   const std::string asked =
       "--alignment-drive city --seed 5 --duration 12 --yaw-rate-bias 0.1 --slip 0.003 --body-pitch 0.3 "
-      "--knock 2,3,0,2,0 --knock 4,1,0,0,1 --no-elevation 2 --stds --ambiguity 40";
+      "--step-change 2,3,0,2,0 --step-change 4,1,0,0,1 --no-elevation 2 --stds --ambiguity 40";
   ASSERT_EQ(simulate(asked + " --out /tmp/a"), 0) << errors();
   const std::string truth = text_of("/tmp/a/truth.txt");
-  for (const char* part :
-       {"kind=city duration_s=12", "yaw_rate_bias 0.001745 ", "rear_slip_coeff 0.0030 ", "pitch_std 0.300 ",
-        "knock t 2.0000 radar 3 turn_x_deg 0.0000 turn_y_deg 2.0000", "knock t 4.0000 radar 1 ", "crlb_sd kv "}) {
+  for (const char* part : {"kind=city duration_s=12", "yaw_rate_bias 0.001745 ", "rear_slip_coeff 0.0030 ",
+                           "pitch_std 0.300 ", "step_change t 2.0000 radar 3 turn_x_deg 0.0000 turn_y_deg 2.0000",
+                           "step_change t 4.0000 radar 1 ", "crlb_sd kv "}) {
     EXPECT_THAT(truth, HasSubstr(part));
   }
   EXPECT_THAT(text_of("/tmp/a/drive.csv"),
@@ -109,10 +109,11 @@ TEST(Simulate, AWrongScenarioIsNamedWithItsLine) {
   EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
   EXPECT_THAT(
       errors(),
-      HasSubstr("/tmp/own.toml:5: radars.knock[1].radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4"));
+      HasSubstr(
+          "/tmp/own.toml:5: radars.step_change[1].radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4"));
   std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\n[radars]\nknock = [{time_s = 1.0}]\n";
   EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
-  EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:4: radars.knock[0].radar: is missing; allowed: 1 … 16"));
+  EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:4: radars.step_change[0].radar: is missing; allowed: 1 … 16"));
   std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"submarine\"\n";
   EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
   EXPECT_THAT(errors(), HasSubstr("/vehicle/submarine.toml; name one by --vehicle"));
@@ -134,9 +135,9 @@ TEST(Simulate, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(simulate("--alignment-drive moon --out /tmp/a"), 2);
   EXPECT_EQ(simulate("--alignment-drive city --scenario demo_drive --out /tmp/a"), 2);
   EXPECT_EQ(simulate("--slip 0.003 --vehicle v.toml --out /tmp/a"), 2) << "without --alignment-drive it means nothing";
-  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --knock 1,2,3"), 0);
-  EXPECT_THAT(errors(), HasSubstr("--knock 1,2,3: "));
-  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --knock 1,9,0,0,1"), 0);
+  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --step-change 1,2,3"), 0);
+  EXPECT_THAT(errors(), HasSubstr("--step-change 1,2,3: "));
+  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --step-change 1,9,0,0,1"), 0);
   EXPECT_THAT(errors(), HasSubstr("no radar 9"));
   EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --no-elevation 5"), 0);
   EXPECT_NE(simulate("--alignment-drive city --duration 1 --out /proc/nowhere"), 0);

@@ -54,15 +54,16 @@ TEST(TruthFile, ReadsTheFormatOfTheRecordedDrive) {
                   .isApprox(geometry::sensor_to_vehicle(136.0 * degree, 2.0 * degree, 179.0 * degree)));
 }
 
-TEST(TruthFile, KnocksComeInTheOrderOfTime) {
+TEST(TruthFile, StepChangesComeInTheOrderOfTime) {
   std::istringstream text(
-      "k_v 1\nknock t 60 radar 2 alpha_deg 3 beta_deg 0 gamma_deg 0\nknock t 30 radar 1 turn_x_deg 9 alpha_deg 1 "
+      "k_v 1\nstep_change t 60 radar 2 alpha_deg 3 beta_deg 0 gamma_deg 0\nstep_change t 30 radar 1 turn_x_deg 9 "
+      "alpha_deg 1 "
       "beta_deg 2 gamma_deg 3\n");
   const Truth truth = read_truth(text, "truth.txt");
-  ASSERT_EQ(truth.knocks.size(), 2u);
-  EXPECT_EQ(truth.knocks[0].radar, 1u);
-  EXPECT_DOUBLE_EQ(truth.knocks[0].time_s, 30.0);
-  EXPECT_DOUBLE_EQ(truth.knocks[0].sensor_rad[1], 2.0 * M_PI / 180.0);
+  ASSERT_EQ(truth.step_changes.size(), 2u);
+  EXPECT_EQ(truth.step_changes[0].radar, 1u);
+  EXPECT_DOUBLE_EQ(truth.step_changes[0].time_s, 30.0);
+  EXPECT_DOUBLE_EQ(truth.step_changes[0].sensor_rad[1], 2.0 * M_PI / 180.0);
 }
 
 TEST(TruthFile, RefusesWhatHoldsNone) {
@@ -80,7 +81,7 @@ TEST(TruthFile, RefusesWhatHoldsNone) {
   EXPECT_THAT(error_of("radar 17 alpha_deg 1\n"), HasSubstr("1 … 16"));
   EXPECT_THAT(error_of("k_v 1\nradar 1 alpha_deg 1 beta_deg 2\n"),
               HasSubstr("truth.txt:2: radar 1: alpha_deg, beta_deg"));
-  EXPECT_THAT(error_of("k_v 1\nknock t 30 radar 1\n"), HasSubstr("truth.txt:2: knock"));
+  EXPECT_THAT(error_of("k_v 1\nstep_change t 30 radar 1\n"), HasSubstr("truth.txt:2: step_change"));
 }
 
 /// With nothing known: every figure NaN.

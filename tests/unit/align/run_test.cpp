@@ -93,7 +93,7 @@ const std::string kInputs = "--drive drive.csv --ego ego.csv --vehicle vehicle.t
 
 TEST_F(Align, EveryMethodRunsAndItsResultIsValid) {
   for (const std::string& method : method_names()) {
-    if (method == "post_factum") continue;  // takes long; below
+    if (method == "batch_calibration") continue;  // takes long; below
     SCOPED_TRACE(method);
     ASSERT_EQ(align(kInputs + "--plot out.svg --method " + method), 0) << errors();
     EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
@@ -105,15 +105,15 @@ TEST_F(Align, EveryMethodRunsAndItsResultIsValid) {
   }
 }
 
-TEST(PostFactum, SaysWhatTheDataSupportAndHowItIterated) {
+TEST(BatchCalibration, SaysWhatTheDataSupportAndHowItIterated) {
   simulator::AlignmentSpec spec = simulator::four_corner_radars();
   spec.duration_s = 20.0;
   for (simulator::AlignmentRadar& radar : spec.radars) radar.measures_elevation = false;
   simulator::AlignmentDrive drive(spec);
   align::Run::Options options;
-  options.method = "post_factum";
-  options.post_factum.iterations = 4000;
-  options.post_factum.judgement_draws = 2;
+  options.method = "batch_calibration";
+  options.batch_calibration.iterations = 4000;
+  options.batch_calibration.judgement_draws = 2;
   align::Run run(drive.vehicle(), options);
   auto scan = std::make_unique<RadarScan>();
   for (simulator::AlignmentEvent event; drive.next(event);) {
@@ -146,7 +146,7 @@ TEST(PostFactum, SaysWhatTheDataSupportAndHowItIterated) {
   EXPECT_THAT(to_table(result), HasSubstr("beta not supported"));
 }
 
-TEST_F(Align, PostFactumTellsWhereItIs) {
+TEST_F(Align, BatchCalibrationTellsWhereItIs) {
   std::string one_radar;  // a quarter of the time
   std::istringstream lines(tables_.drive);
   for (std::string line; std::getline(lines, line);) {
@@ -154,13 +154,14 @@ TEST_F(Align, PostFactumTellsWhereItIs) {
     if (line.compare(radar, 2, "1,") == 0 || line.compare(radar, 5, "radar") == 0) one_radar += line + "\n";
   }
   testing::write_text(folder_ / "one_radar.csv", one_radar);
-  ASSERT_EQ(align("--drive one_radar.csv --ego ego.csv --vehicle vehicle.toml --method post_factum --json out.json"), 0)
+  ASSERT_EQ(
+      align("--drive one_radar.csv --ego ego.csv --vehicle vehicle.toml --method batch_calibration --json out.json"), 0)
       << errors();
   // No terminal: no bar, a line a step.
   EXPECT_EQ(errors(),
-            "boresight align: post_factum, step 1 of 3: finding what stands still …\n"
-            "boresight align: post_factum, step 2 of 3: iterating …\n"
-            "boresight align: post_factum, step 3 of 3: judging what the data support …\n");
+            "boresight align: batch_calibration, step 1 of 3: finding what stands still …\n"
+            "boresight align: batch_calibration, step 2 of 3: iterating …\n"
+            "boresight align: batch_calibration, step 3 of 3: judging what the data support …\n");
   EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
 }
 

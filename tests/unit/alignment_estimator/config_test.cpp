@@ -56,15 +56,15 @@ std::vector<double> numbers(const Settings& s) {
       f.memory_inflation,
       f.memory_rotation_std_rad,
       f.memory_speed_scale_std,
-      f.knock_block_s,
-      f.knock_yaw_rad,
-      f.knock_pitch_rad,
-      f.knock_sum_blocks,
-      f.knock_window_s,
-      f.knock_small_stds,
-      f.knock_small_sum_stds,
-      f.knock_small_confirm_stds,
-      f.knock_least_rad,
+      f.step_change_block_s,
+      f.step_change_yaw_rad,
+      f.step_change_pitch_rad,
+      f.step_change_sum_blocks,
+      f.step_change_window_s,
+      f.step_change_small_stds,
+      f.step_change_small_sum_stds,
+      f.step_change_small_confirm_stds,
+      f.step_change_least_rad,
       static_cast<double>(p.road_model),
       p.straight_yaw_rate_radps,
       p.min_speed_mps,
@@ -126,7 +126,7 @@ TEST(Config, ErrorsAreNamed) {
   EXPECT_EQ(problem(""), "");
   EXPECT_NE(problem("method = \"best\"\n").find("method"), std::string::npos);
   EXPECT_NE(problem("[filter]\nmin_sped_mps = 5.0\n").find("min_sped_mps"), std::string::npos);
-  EXPECT_NE(problem("[filter.knock]\nyaw_deg = -1.0\n").find("yaw_deg"), std::string::npos);
+  EXPECT_NE(problem("[filter.step_change]\nyaw_deg = -1.0\n").find("yaw_deg"), std::string::npos);
   EXPECT_NE(problem("[published]\nnls_rate = [1.0, 2.0]\n").find("nls_rate"), std::string::npos);
   EXPECT_NE(
       problem("truth_file = \"/nowhere/truth.csv\"\n").find("truth_file: no truth of a drive in /nowhere/truth.csv"),

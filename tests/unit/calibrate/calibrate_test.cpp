@@ -63,7 +63,7 @@ class Calibrate : public ::testing::Test {
   align::Problems problems_{[this](const std::string& text) { told_.push_back(text); }};
 };
 
-simulator::PlateSpec crooked() {
+simulator::PlateSpec misaligned() {
   simulator::PlateSpec spec;
   spec.pitch_rad = -0.8 / kDegrees;
   spec.yaw_rad = 1.1 / kDegrees;
@@ -71,9 +71,9 @@ simulator::PlateSpec crooked() {
 }
 
 TEST_F(Calibrate, a_plates_table_is_read_as_it_was_measured) {
-  const plate::Measurements run = plate_of(testing::plate_table(crooked(), 3));
+  const plate::Measurements run = plate_of(testing::plate_table(misaligned(), 3));
   std::mt19937_64 random(3);
-  const plate::Measurements expected = simulator::simulate_plate(crooked(), random);
+  const plate::Measurements expected = simulator::simulate_plate(misaligned(), random);
   EXPECT_EQ(problems_.bad_lines(), 0u);
   ASSERT_EQ(run.number_of_tilts, 11u);
   for (std::size_t i = 0; i < 11; ++i) {
@@ -105,7 +105,7 @@ TEST_F(Calibrate, a_plates_bad_rows_are_told_with_line_value_and_what_is_allowed
 }
 
 TEST_F(Calibrate, the_command_reports_a_plates_run) {
-  simulator::PlateSpec spec = crooked();
+  simulator::PlateSpec spec = misaligned();
   spec.bad_tilts = 1;
   const std::string csv = folder_.write("run.csv", testing::plate_table(spec, 4));
   const Outcome outcome =
@@ -128,7 +128,7 @@ TEST_F(Calibrate, the_command_reports_a_plates_run) {
 TEST_F(Calibrate, a_plates_recording_is_what_the_radar_saw_at_the_tilts) {
   const VehicleConfig vehicle = config::read_vehicle_file(kVehicle);
   const std::string pcap = folder_.path("plate.pcap");
-  const std::string tilts = testing::record_plate(crooked(), vehicle, 2, pcap, 3);
+  const std::string tilts = testing::record_plate(misaligned(), vehicle, 2, pcap, 3);
   recording::ByteSource source(folder_.write("tilts.csv", tilts));
   PlateFeed feed(2, read_tilts(source, problems_), {});
   ingest::Gateway gateway(vehicle, feed);
@@ -138,7 +138,7 @@ TEST_F(Calibrate, a_plates_recording_is_what_the_radar_saw_at_the_tilts) {
   EXPECT_EQ(feed.within(), 330u);
   EXPECT_EQ(feed.scans(), 330u + 110u);
   std::mt19937_64 random(3);
-  const plate::Measurements expected = simulator::simulate_plate(crooked(), random);
+  const plate::Measurements expected = simulator::simulate_plate(misaligned(), random);
   const plate::Measurements& run = feed.measurements();
   ASSERT_EQ(run.number_of_tilts, 11u);
   for (std::size_t i = 0; i < 11; ++i) {
@@ -154,7 +154,7 @@ TEST_F(Calibrate, a_plates_recording_is_what_the_radar_saw_at_the_tilts) {
 TEST_F(Calibrate, the_command_calibrates_from_a_recording) {
   const VehicleConfig vehicle = config::read_vehicle_file(kVehicle);
   const std::string pcap = folder_.path("plate.pcap"), state = folder_.path("state");
-  const std::string text = testing::record_plate(crooked(), vehicle, 2, pcap, 4);
+  const std::string text = testing::record_plate(misaligned(), vehicle, 2, pcap, 4);
   const std::string of_radar = " --vehicle " + kVehicle + " --radar 2";
   const std::string recording = "plate --recording " + pcap, tilts = " --tilts " + folder_.write("tilts.csv", text);
   Outcome outcome = run(recording + tilts + of_radar + " --state " + state);
@@ -220,14 +220,14 @@ TEST_F(Calibrate, a_run_without_a_maximum_says_so_and_exits_with_one) {
 }
 
 TEST_F(Calibrate, a_limit_that_the_bumper_misses_fails_the_run) {
-  const std::string csv = folder_.write("run.csv", testing::plate_table(crooked()));
+  const std::string csv = folder_.write("run.csv", testing::plate_table(misaligned()));
   const Outcome outcome = run("plate --min-amplitude 30 --csv " + csv);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.output, HasSubstr("bumper"));
 }
 
 TEST_F(Calibrate, tables_with_faults_are_not_calibrated_from) {
-  std::string table = testing::plate_table(crooked());
+  std::string table = testing::plate_table(misaligned());
   table += "5,0,none,0\n";
   const std::string csv = folder_.write("run.csv", table);
   Outcome outcome = run("plate --csv " + csv);
@@ -242,7 +242,7 @@ TEST_F(Calibrate, tables_with_faults_are_not_calibrated_from) {
 }
 
 TEST_F(Calibrate, wrong_command_lines_exit_with_two) {
-  const std::string csv = folder_.write("run.csv", testing::plate_table(crooked()));
+  const std::string csv = folder_.write("run.csv", testing::plate_table(misaligned()));
   EXPECT_EQ(run("").exit_code, 2);
   EXPECT_EQ(run("plate").exit_code, 2);
   EXPECT_EQ(run("plate --csv " + csv + " --method guess").exit_code, 2);
@@ -258,7 +258,7 @@ TEST_F(Calibrate, wrong_command_lines_exit_with_two) {
 
 TEST_F(Calibrate, a_plates_result_gets_into_the_estimators_memory) {
   const VehicleConfig vehicle = config::read_vehicle_file(kVehicle, config::VehicleUse::kOffline);
-  const std::string csv = folder_.write("run.csv", testing::plate_table(crooked())), state = folder_.path("state");
+  const std::string csv = folder_.write("run.csv", testing::plate_table(misaligned())), state = folder_.path("state");
   const Outcome outcome = run("plate --csv " + csv + " --state " + state + " --radar 2 --vehicle " + kVehicle);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   const alignment::LoadedMemory loaded = alignment::load_memory(state, alignment::identity_of(vehicle));

@@ -30,7 +30,7 @@ void see_scan(Accumulator& accumulator, std::uint32_t radar, std::uint64_t seque
   accumulator.observe(*scan, now_ns);
 }
 
-void see_crooked_radar(Accumulator& accumulator) {
+void see_misaligned_radar(Accumulator& accumulator) {
   AlignmentEstimate estimate{};
   estimate.header.source_id = 2;
   estimate.state = AlignmentState::kConverged;
@@ -40,7 +40,7 @@ void see_crooked_radar(Accumulator& accumulator) {
   estimate.vehicle_pitch_rad = static_cast<float>(-0.7 * kDegree);
   estimate.yaw_rate_bias_radps = static_cast<float>(0.1 * kDegree);
   estimate.yaw_rate_bias_std_radps = static_cast<float>(0.02 * kDegree);
-  estimate.knock.count = 1;
+  estimate.step_change.count = 1;
   estimate.kpis.seconds_to_95_percent = {1.0F, 1.4F, std::nanf(""), std::nanf("")};
   estimate.kpis.drift_per_minute[1] = static_cast<float>(0.004 * kDegree);
   estimate.vehicle_covariance[5] = estimate.vehicle_covariance[10] = static_cast<float>(std::pow(0.04 * kDegree, 2));
@@ -161,7 +161,7 @@ TEST(LatencyHistogram, PercentilesAreWithinABucketOfTheTruth) {
 TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   Accumulator accumulator(vehicle());
   see_scan(accumulator, 2, 1, 0);
-  see_crooked_radar(accumulator);
+  see_misaligned_radar(accumulator);
   see_tracks(accumulator);
   see_labels(accumulator, 2, pipeline_flag::kNoTracks);
   ServiceStatus status{};
@@ -187,7 +187,7 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   EXPECT_THAT(to_json(written),
               ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7,"std":0.04,"observable":true})"));
   EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("knocks":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
+              ::testing::HasSubstr(R"("step_changes":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
   EXPECT_THAT(to_json(written),
               ::testing::HasSubstr(R"("told":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
                                    R"("clutter":1,"left_out":1},"classified_scans":1,"classified_without_tracks":1})"));
@@ -236,9 +236,9 @@ TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
   EXPECT_THAT(damaged.first, ::testing::EndsWith(": the snapshot has no end"));
 }
 
-TEST(Render, SaysWhichRadarIsCrookedAndHowSure) {
+TEST(Render, SaysWhichRadarIsMisalignedAndHowSure) {
   Accumulator accumulator(vehicle());
-  see_crooked_radar(accumulator);
+  see_misaligned_radar(accumulator);
   see_tracks(accumulator);
   RenderOptions options;
   options.width = 190;
@@ -262,7 +262,7 @@ TEST(Render, SaysWhichRadarIsCrookedAndHowSure) {
 
 TEST(Render, CutsLinesByCharactersNotBytes) {
   Accumulator accumulator(vehicle());
-  see_crooked_radar(accumulator);
+  see_misaligned_radar(accumulator);
   RenderOptions options;
   options.width = 60;
   std::istringstream screen(render_screen(accumulator.snapshot(0), options));

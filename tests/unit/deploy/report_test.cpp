@@ -19,7 +19,7 @@ bool passed(const Summary& summary, const std::string& part) {
   return false;
 }
 
-TEST(Summary, GoodDrivePassesAndNamesTheCrookedRadar) {
+TEST(Summary, GoodDrivePassesAndNamesTheMisalignedRadar) {
   const Summary summary = summarise(synthetic_drive(), synthetic_truth());
   EXPECT_TRUE(summary.all_passed()) << render_summary(summary);
   ASSERT_EQ(summary.radars.size(), 4U);
@@ -149,7 +149,7 @@ TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
   EXPECT_DOUBLE_EQ(drive.speed_scale, 1.012);
   ASSERT_EQ(drive.radars.size(), 2U);
   EXPECT_EQ(drive.radars.at(2).scans, 899u);
-  EXPECT_NEAR(drive.radars.at(2).yaw_rad, kCrooked_rad, 1e-12);
+  EXPECT_NEAR(drive.radars.at(2).yaw_rad, kMisaligned_rad, 1e-12);
   EXPECT_TRUE(std::isnan(drive.radars.at(1).pitch_rad));
 
   VehicleConfig vehicle;
@@ -178,10 +178,10 @@ TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
 TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
   auto snapshots = synthetic_drive();
   Truth truth = synthetic_truth();
-  truth.vehicle_rad[2] = {kCrooked_rad, 0.4 * kDegree, 0.0};
+  truth.vehicle_rad[2] = {kMisaligned_rad, 0.4 * kDegree, 0.0};
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     monitor::AlignmentDetails& d = snapshots[i].radars[1].details;
-    d.yaw = {kCrooked_rad + 0.02 * kDegree, 0.04 * kDegree, true};
+    d.yaw = {kMisaligned_rad + 0.02 * kDegree, 0.04 * kDegree, true};
     d.pitch = {0.1 * kDegree, 0.1 * kDegree, true};
     d.roll = {0.0, 4.0 * kDegree, false};
     d.nees = i < 10 ? NAN : (i % 2 == 0 ? 0.5 : 1.0);

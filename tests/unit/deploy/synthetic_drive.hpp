@@ -10,10 +10,10 @@
 namespace boresight::report {
 
 inline constexpr double kDegree = 3.14159265358979323846 / 180.0;
-inline constexpr double kCrooked_rad = 2.5 * kDegree;
+inline constexpr double kMisaligned_rad = 2.5 * kDegree;
 
 inline Truth synthetic_truth() {
-  return {.yaw_rad = {{1, 0.1 * kDegree}, {2, kCrooked_rad}, {3, -0.3 * kDegree}, {4, 0.0}},
+  return {.yaw_rad = {{1, 0.1 * kDegree}, {2, kMisaligned_rad}, {3, -0.3 * kDegree}, {4, 0.0}},
           .speed_scale = 1.03,
           .vehicle_rad = {},
           .scans = {}};

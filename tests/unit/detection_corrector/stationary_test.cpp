@@ -201,7 +201,7 @@ TEST(StationaryTest, AlignedRadarsAreWrongAsOftenAsSigmaSays) {
   }
 }
 
-TEST(StationaryTest, CrookedRadarsThatHaveConvergedAsWell) {
+TEST(StationaryTest, MisalignedRadarsThatHaveConvergedAsWell) {
   for (const double mount_yaw_deg : {0.0, -45.0, 135.0}) {
     Case c;
     c.mount_yaw_deg = mount_yaw_deg;

@@ -163,7 +163,7 @@ TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
-TEST_F(SupervisionTest, ACrookedRadarIsReducedAndFarBeyondNotAvailable) {
+TEST_F(SupervisionTest, AMisalignedRadarIsReducedAndFarBeyondNotAvailable) {
   run(3.0);
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
   run(3.0);
@@ -217,12 +217,12 @@ TEST_F(SupervisionTest, APitchThatIsKnownAboutTheVehiclesAxisOnlyCounts) {
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
-TEST_F(SupervisionTest, KnocksAreCounted) {
+TEST_F(SupervisionTest, StepChangesAreCounted) {
   run(1.0);
-  EXPECT_EQ(radar(2).knocks, 0u);
-  estimate_[1].knock.count = 2;
+  EXPECT_EQ(radar(2).step_changes, 0u);
+  estimate_[1].step_change.count = 2;
   run(1.0);
-  EXPECT_EQ(radar(2).knocks, 2u);
+  EXPECT_EQ(radar(2).step_changes, 2u);
 }
 
 TEST_F(SupervisionTest, AnEstimatorThatWaitsIsNotBelieved) {

@@ -138,7 +138,7 @@ TEST_P(SimulatedDrive, DamagedRangeRatesAreToldByEveryRadarAndSoon) {
 
 INSTANTIATE_TEST_SUITE_P(All, SimulatedDrive, testing::ValuesIn(simulator::scenario_names()));
 
-TEST(ScanJudge, CrookedByEightDegreesAndFivePercentIsNoContradiction) {
+TEST(ScanJudge, MisalignedByEightDegreesAndFivePercentIsNoContradiction) {
   for (const double yaw_deg : {-8.0, 8.0}) {
     for (const double speed_scale : {0.96, 1.04}) {
       simulator::Scenario scenario = simulator::scenario("demo_drive");

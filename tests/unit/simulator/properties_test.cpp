@@ -115,9 +115,9 @@ TEST_P(Shipped, WhatHappensToOneRadarChangesNoOther) {
   const auto before = [](const Row& r) { return r.radar == 2 && r.t_s < 1.0; };
   const auto after = [](const Row& r) { return r.radar == 2 && r.t_s >= 1.0; };
   const std::map<std::string, std::function<void(RadarEffects&)>> effects = {
-      {"knock",
+      {"step_change",
        [](RadarEffects& e) {
-         e.knocks.push_back({2, 1.0, {0.05, 0.02, -0.03}});
+         e.step_changes.push_back({2, 1.0, {0.05, 0.02, -0.03}});
        }},
       {"blockage",
        [](RadarEffects& e) {
@@ -135,9 +135,9 @@ TEST_P(Shipped, WhatHappensToOneRadarChangesNoOther) {
     EXPECT_NE(only(with.rows, after), only(as_it_is.rows, after)) << name;
     EXPECT_TRUE(same_ego(with, as_it_is)) << name;
   }
-  Scenario crooked = s;
-  crooked.effects.misalignment[2].yaw_rad += 0.05;
-  EXPECT_EQ(only(drive(crooked).rows, others), only(as_it_is.rows, others));
+  Scenario misaligned = s;
+  misaligned.effects.misalignment[2].yaw_rad += 0.05;
+  EXPECT_EQ(only(drive(misaligned).rows, others), only(as_it_is.rows, others));
 }
 
 TEST_P(Shipped, ASpeedSignalThatIsWrongChangesNoScanAndNoNoise) {

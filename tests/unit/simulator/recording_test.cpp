@@ -35,7 +35,7 @@ Scenario disturbed() {
   Scenario s = scenario("city_canyon");
   s.effects.speed_scale = 1.01;
   s.effects.misalignment[3] = {0.02, -0.01, 0.005};
-  s.effects.knocks = {{1, 2.0, {0.03, 0.0, -0.01}}, {1, 4.0, {0.0, 0.02, 0.0}}};
+  s.effects.step_changes = {{1, 2.0, {0.03, 0.0, -0.01}}, {1, 4.0, {0.0, 0.02, 0.0}}};
   s.effects.blockages = {{2, 1.0, 4.0, 30.0, -3.2, 3.2}};
   s.effects.interference = {{4, 2.5, 1.0, 6.0, 15.0}};
   return s;
@@ -280,7 +280,7 @@ TEST_F(Recording, TheTruthOfSensorsTellsMountingBlockageInterferenceAndCountsAtE
                 1e-5);
     EXPECT_NEAR(number(row, "alignment_roll_deg"), ((id == "3" ? 0.005 : 0.0) + (first ? -0.01 : 0.0)) * kDegrees,
                 1e-5);
-    EXPECT_EQ(number(row, "knocks"), (first ? 1.0 : 0.0) + (second ? 1.0 : 0.0));
+    EXPECT_EQ(number(row, "step_changes"), (first ? 1.0 : 0.0) + (second ? 1.0 : 0.0));
     const double blockage_db = id == "2" ? 10.0 * std::clamp(t - 1.0, 0.0, 3.0) : 0.0;
     EXPECT_NEAR(number(row, "blockage_max_db"), blockage_db, 1e-3);
     EXPECT_NEAR(number(row, "blockage_mean_db"), blockage_db, 1e-3);
@@ -364,8 +364,8 @@ TEST(DriveWriter, RefusesWhatItCannotWrite) {
     return "";
   };
   Scenario s = scenario("tunnel");
-  s.effects.knocks = {{9, 1.0, {}}};
-  EXPECT_EQ(problem(s, demo()), "radars.knock.radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4");
+  s.effects.step_changes = {{9, 1.0, {}}};
+  EXPECT_EQ(problem(s, demo()), "radars.step_change.radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4");
   VehicleConfig other = demo();
   other.radars[1].profile = RadarProfile::kArs408;
   EXPECT_NE(problem(scenario("tunnel"), other).find("front_right"), std::string::npos);

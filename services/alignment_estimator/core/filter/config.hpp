@@ -48,17 +48,17 @@ struct FilterConfig {
   double memory_speed_scale_std = 0.003;
 
   // Knocks: what the radar's own deviation in blocks must exceed, and the sum of its excess (CUSUM).
-  double knock_block_s = 0.5;
-  double knock_yaw_rad = 0.0087;    ///< 0.5°: half of the smallest step to be told
-  double knock_pitch_rad = 0.0175;  ///< 1°
-  double knock_sum_blocks = 1.5;    ///< of excess in units of the above
+  double step_change_block_s = 0.5;
+  double step_change_yaw_rad = 0.0087;    ///< 0.5°: half of the smallest step to be told
+  double step_change_pitch_rad = 0.0175;  ///< 1°
+  double step_change_sum_blocks = 1.5;    ///< of excess in units of the above
   // Smaller ones, more slowly: what the own deviation of a window must exceed in its own σ, the sum of its excess, and
   // what the window after a suspicion must show.
-  double knock_window_s = 2.0;
-  double knock_small_stds = 1.5;
-  double knock_small_sum_stds = 5.0;
-  double knock_small_confirm_stds = 2.5;
-  double knock_least_rad = 0.0035;  ///< 0.2°: what is smaller is followed, but not told
+  double step_change_window_s = 2.0;
+  double step_change_small_stds = 1.5;
+  double step_change_small_sum_stds = 5.0;
+  double step_change_small_confirm_stds = 2.5;
+  double step_change_least_rad = 0.0035;  ///< 0.2°: what is smaller is followed, but not told
 };
 
 }  // namespace boresight::alignment

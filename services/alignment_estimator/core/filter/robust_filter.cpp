@@ -17,7 +17,7 @@ constexpr double kMaxGap_s = 1.0;
 constexpr double kSpreadMemory_s = 20.0, kNoiseMemory_s = 60.0, kInlierMemory_s = 10.0, kLoweringMemory_s = 10.0;
 /// A scan in which so much less than usual stands still is not used.
 constexpr double kStrangeShare = 0.4;
-constexpr double kKnockMeasured_s = 20.0;
+constexpr double kStepChangeMeasured_s = 20.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 
 }  // namespace
@@ -32,8 +32,8 @@ RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& con
     : config_(config),
       state_(vehicle.radars.size()),
       nuisance_model_(config),
-      knocks_(vehicle.radars.size(), config),
-      small_knocks_(vehicle.radars.size(), config) {
+      step_changes_(vehicle.radars.size(), config),
+      small_step_changes_(vehicle.radars.size(), config) {
   const std::size_t count = std::min(vehicle.radars.size(), kMaxRadars);
   radars_.reserve(count);
   state_.set_variance(column::kSpeedScale, square(config.prior_speed_scale_std));
@@ -165,15 +165,15 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   const Eigen::Matrix3d turn = velocity.gradient.middleRows<3>(column::kShared);
   const Eigen::Matrix3d by_turn = turn * information * turn.transpose();
   const Eigen::Vector3d turn_score = turn * score;
-  const std::uint32_t suspicious =
-      knocks_.add(index, time_ns, by_turn.bottomRightCorner<2, 2>(), turn_score.tail<2>(), sums.standing, detections);
+  const std::uint32_t suspicious = step_changes_.add(index, time_ns, by_turn.bottomRightCorner<2, 2>(),
+                                                     turn_score.tail<2>(), sums.standing, detections);
   const std::uint32_t changed =
-      strange ? 0 : small_knocks_.add(index, time_ns, by_turn, turn_score, state_.rotation_covariance(index));
+      strange ? 0 : small_step_changes_.add(index, time_ns, by_turn, turn_score, state_.rotation_covariance(index));
   if (suspicious != 0) watch(suspicious, time_ns);
   if (changed != 0) follow(changed, time_ns);
   // What this scan says was said of the rotation before a change.
   if ((changed >> index & 1u) != 0) return;
-  if (strange || radar.phase != Phase::kRunning || small_knocks_.doubted(index)) return;
+  if (strange || radar.phase != Phase::kRunning || small_step_changes_.doubted(index)) return;
   if (!state_.update(information, score)) return;
   linearise(index);
   learn_noise(index, sums, elapsed_s);
@@ -183,7 +183,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
     radar.since_earlier_s = 0.0;
   }
   // How large a knock was becomes clearer for a while.
-  if (radar.knock.count > 0 && radar.since_start_s < kKnockMeasured_s) measure_knock(index);
+  if (radar.step_change.count > 0 && radar.since_start_s < kStepChangeMeasured_s) measure_step_change(index);
   ++radar.scans_used;
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
 }

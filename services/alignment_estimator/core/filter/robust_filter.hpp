@@ -10,11 +10,11 @@
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
 #include "services/alignment_estimator/core/filter/graduated_start.hpp"
 #include "services/alignment_estimator/core/filter/joint_state.hpp"
-#include "services/alignment_estimator/core/filter/knock_detector.hpp"
 #include "services/alignment_estimator/core/filter/noise_scale.hpp"
 #include "services/alignment_estimator/core/filter/nuisance_model.hpp"
-#include "services/alignment_estimator/core/filter/small_knock_detector.hpp"
+#include "services/alignment_estimator/core/filter/small_step_change_detector.hpp"
 #include "services/alignment_estimator/core/filter/spread.hpp"
+#include "services/alignment_estimator/core/filter/step_change_detector.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -36,8 +36,8 @@ class RobustFilter : public Method {
   /// For tests and benchmarks.
   [[nodiscard]] const JointState& state() const { return state_; }
   [[nodiscard]] const NuisanceModel& nuisance_model() const { return nuisance_model_; }
-  [[nodiscard]] const KnockDetector& knock_detector() const { return knocks_; }
-  [[nodiscard]] const SmallKnockDetector& small_knock_detector() const { return small_knocks_; }
+  [[nodiscard]] const StepChangeDetector& step_change_detector() const { return step_changes_; }
+  [[nodiscard]] const SmallStepChangeDetector& small_step_change_detector() const { return small_step_changes_; }
 
  private:
   /// χ² of three degrees of freedom that is passed once in 10⁴: a rotation that is another one.
@@ -67,8 +67,8 @@ class RobustFilter : public Method {
     std::uint64_t scans_used = 0, detections_used = 0;
     std::int64_t suspected_ns = 0;
     bool drifted = false;
-    AlignmentKnock knock{};
-    Eigen::Matrix3d before_knock = Eigen::Matrix3d::Identity();
+    AlignmentStepChange step_change{};
+    Eigen::Matrix3d before_step_change = Eigen::Matrix3d::Identity();
     /// The rotation a few seconds ago: what a knock did to the estimate before it was told is undone.
     struct Earlier {
       Eigen::Matrix3d sensor_to_vehicle;
@@ -90,7 +90,7 @@ class RobustFilter : public Method {
   void place_speed_scale(std::size_t radar, const StartResult& found);
   void place(std::size_t radar, const StartResult& found);
   void reopen(std::size_t radar);
-  void measure_knock(std::size_t radar);
+  void measure_step_change(std::size_t radar);
   [[nodiscard]] Radar::Earlier now(std::size_t radar) const;
   void update(std::size_t radar, const ScanMotion3d& motion, double elapsed_s, std::int64_t time_ns);
   void learn_noise(std::size_t radar, const ScanSums& sums, double elapsed_s);
@@ -107,8 +107,8 @@ class RobustFilter : public Method {
   std::vector<Radar> radars_;
   JointState state_;
   NuisanceModel nuisance_model_;
-  KnockDetector knocks_;
-  SmallKnockDetector small_knocks_;
+  StepChangeDetector step_changes_;
+  SmallStepChangeDetector small_step_changes_;
   EgoTrend trend_;
   Sightings sightings_;
   std::int64_t instant_ns_ = 0;

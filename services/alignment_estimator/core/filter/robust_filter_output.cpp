@@ -68,7 +68,7 @@ RadarEstimate RobustFilter::estimate(std::size_t index) const {
   out.scans_used = radar.scans_used;
   out.detections_used = radar.detections_used;
   out.seconds_of_drive = radar.seconds_of_drive;
-  out.knock = radar.knock;
+  out.step_change = radar.step_change;
   return out;
 }
 

@@ -31,7 +31,8 @@ StartPrior RobustFilter::start_prior(std::size_t index) const {
   prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3)
                                      : square(config_.prior_speed_scale_std);
   // What the window does not tell stays as it was.
-  prior.sensor_to_vehicle = radar.phase == Phase::kSuspected ? radar.before_knock : state_.sensor_to_vehicle[index];
+  prior.sensor_to_vehicle =
+      radar.phase == Phase::kSuspected ? radar.before_step_change : state_.sensor_to_vehicle[index];
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
   const Eigen::Index noise = column::of_radar(index) + column::kAngleNoise;
   prior.log_angle_noise_std = std::sqrt(state_.covariance(noise, noise));

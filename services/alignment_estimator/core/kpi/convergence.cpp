@@ -6,15 +6,15 @@
 namespace boresight::alignment {
 
 void Convergence::add(double seconds_of_drive, std::uint64_t scans, const Eigen::Vector4d& values,
-                      std::uint32_t knocks) {
+                      std::uint32_t step_changes) {
   if (!values.allFinite() || !std::isfinite(seconds_of_drive)) return;
   const Entry before = latest_;
   latest_ = {seconds_of_drive, scans, values};
   if (number_kept_ == 0) {
     kept_[number_kept_++] = latest_;
-    knocks_ = knocks;
-  } else if (knocks != knocks_) {
-    knocks_ = knocks;
+    step_changes_ = step_changes;
+  } else if (step_changes != step_changes_) {
+    step_changes_ = step_changes;
     kept_[0] = before;
     number_kept_ = 1;
   }

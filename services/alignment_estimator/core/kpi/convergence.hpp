@@ -24,7 +24,7 @@ class Convergence {
 
   /// Takes the estimate after a scan. The first one is where the way starts, and a growing count of knocks starts a new
   /// way at the value before the knock.
-  void add(double seconds_of_drive, std::uint64_t scans, const Eigen::Vector4d& values, std::uint32_t knocks);
+  void add(double seconds_of_drive, std::uint64_t scans, const Eigen::Vector4d& values, std::uint32_t step_changes);
 
   /// Drive until the value stayed within 5 % of the way from the start to today's value (Report A §8; the truth is not
   /// known). Not known while the way is shorter than five times `std`: then it may be all noise.
@@ -46,7 +46,7 @@ class Convergence {
   std::array<Entry, kCapacity> kept_{};
   std::size_t number_kept_ = 0;
   Entry latest_;
-  std::uint32_t knocks_ = 0;
+  std::uint32_t step_changes_ = 0;
   /// One value a second of drive.
   std::array<Entry, kMinute + 1> minute_{};
   std::size_t minute_next_ = 0;

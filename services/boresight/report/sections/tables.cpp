@@ -55,7 +55,7 @@ std::string render_details(const Summary& summary) {
         "<td class=n>{}</td><td class=n>{}</td><td class=n>{}</td></tr>\n",
         escape(radar.last.name), angle(d.yaw), angle(d.pitch), angle(d.roll),
         known_number(d.yaw_seconds_to_95_percent, " s", 1), known_number(d.pitch_seconds_to_95_percent, " s", 1),
-        known_number(d.yaw_drift_radpmin * kDegrees, "°", 3), known_number(d.residual_rmse_mps, "", 3), d.knocks);
+        known_number(d.yaw_drift_radpmin * kDegrees, "°", 3), known_number(d.residual_rmse_mps, "", 3), d.step_changes);
   }
   text += "</table>\n";
   for (const RadarSummary& radar : summary.radars) {

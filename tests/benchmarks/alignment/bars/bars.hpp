@@ -17,7 +17,7 @@ void published(const Options& options, Report& report);
 void published_optimum(const Options& options, Report& report);
 void published_filter(const Options& options, Report& report);
 void outliers(const Options& options, Report& report);
-void knock(const Options& options, Report& report);
+void step_change(const Options& options, Report& report);
 void false_alarms(const Options& options, Report& report);
 void cost(const Options& options, Report& report);
 void plate(const Options& options, Report& report);

@@ -108,7 +108,7 @@ class SmallWatch {
  public:
   explicit SmallWatch(double confirms_stds) : confirms_stds_(confirms_stds) {}
 
-  void look(const alignment::SmallKnockDetector& detector, std::size_t radar, std::size_t axis, double& maximum,
+  void look(const alignment::SmallStepChangeDetector& detector, std::size_t radar, std::size_t axis, double& maximum,
             std::vector<double>& then) {
     const double sum = detector.sum(radar, axis), deviation = detector.deviation(radar, axis);
     maximum = std::max(maximum, std::abs(sum));
@@ -126,7 +126,7 @@ class SmallWatch {
 
 Quiet drive_quietly(const std::vector<AlignmentSpec>& specs, const Options& options) {
   const alignment::FilterConfig config;
-  const Eigen::Array2d needed = kNeeded * Eigen::Array2d(config.knock_pitch_rad, config.knock_yaw_rad);
+  const Eigen::Array2d needed = kNeeded * Eigen::Array2d(config.step_change_pitch_rad, config.step_change_yaw_rad);
   Quiet quiet;
   std::mutex lock;
   parallel_for(specs.size(), options.jobs, [&](std::size_t i) {
@@ -137,25 +137,25 @@ Quiet drive_quietly(const std::vector<AlignmentSpec>& specs, const Options& opti
     std::vector<Eigen::Array2d> before(radars, Eigen::Array2d::Zero());
     std::vector<SmallWatch> watches;
     for (std::size_t k = 0; k < 3 * radars; ++k) {
-      watches.emplace_back(alignment::SmallKnockDetector::confirming_stds(config, k % 3));
+      watches.emplace_back(alignment::SmallStepChangeDetector::confirming_stds(config, k % 3));
     }
     RunOptions run_options;
-    run_options.snapshot_period_s = run_options.fine_period_s = config.knock_block_s;
+    run_options.snapshot_period_s = run_options.fine_period_s = config.step_change_block_s;
     run_options.look = [&](const alignment::Method& method, double time_s) {
       const auto& filter = dynamic_cast<const alignment::RobustFilter&>(method);
       const std::size_t minute = std::min(static_cast<std::size_t>(time_s / 60.0), minutes - 1);
       own.told = 0.0;
       for (std::size_t r = 0; r < radars; ++r) {
         const std::size_t at = minute * radars + r;
-        const Eigen::Array2d now = filter.knock_detector().deviation(r).array();
+        const Eigen::Array2d now = filter.step_change_detector().deviation(r).array();
         double& maximum = own.large.maxima[at];
         maximum = std::max(maximum, (0.5 * (before[r] + now).abs() / needed).maxCoeff());
         before[r] = now;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           Seen& seen = axis == 0 ? own.roll : own.small;
-          watches[3 * r + axis].look(filter.small_knock_detector(), r, axis, seen.maxima[at], seen.then);
+          watches[3 * r + axis].look(filter.small_step_change_detector(), r, axis, seen.maxima[at], seen.then);
         }
-        own.told += filter.estimate(r).knock.count;
+        own.told += filter.estimate(r).step_change.count;
       }
     };
     static_cast<void>(run_drive(specs[i], own_method().make, run_options));
@@ -248,10 +248,10 @@ void false_alarms(const Options& options, Report& report) {
     report.add(curve_of(name, quiet.large.maxima));
     report.add(curve_of(name + ", small", quiet.small.maxima));
   }
-  report.at_most("knock", "false alarms told", told, 0.0, "",
+  report.at_most("step_change", "false alarms told", told, 0.0, "",
                  "in " + fixed(all_hours, 1) + " h without a knock, half of them disturbed");
   report.at_most(
-      "knock", "false alarms per 1000 h of a vehicle of four radars", worst, 1.0, "",
+      "step_change", "false alarms per 1000 h of a vehicle of four radars", worst, 1.0, "",
       "the worse of clean and disturbed; extrapolated suspicions × share that would be confirmed, of large and small "
       "changes together, all from exponential tails, or as seen where that is more");
   report.add(std::move(table));

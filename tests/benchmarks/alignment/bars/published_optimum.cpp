@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "services/alignment_estimator/core/post_factum/joint.hpp"
+#include "services/alignment_estimator/core/batch_calibration/joint.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
@@ -17,8 +17,8 @@ namespace boresight::bench {
 
 namespace {
 
-using alignment::post_factum::Recording;
-using alignment::post_factum::Solution;
+using alignment::batch_calibration::Recording;
+using alignment::batch_calibration::Solution;
 
 enum class Model : std::uint8_t { kAzimuth, kPlanar, kRotation };
 
@@ -73,7 +73,7 @@ std::vector<Recording> recordings_of(const simulator::AlignmentSpec& spec) {
 
 /// (k_v, α, β, γ of each radar) of the best rotations.
 Solution rotation_optimum(const std::vector<Recording>& radars) {
-  const auto size = alignment::post_factum::first_angle(radars.size());
+  const auto size = alignment::batch_calibration::first_angle(radars.size());
   double speed_scale = 1.0, squares = 0.0, count = 0.0;
   bool converged = false;
   std::vector<Eigen::Matrix3d> mounted;
@@ -97,7 +97,7 @@ Solution rotation_optimum(const std::vector<Recording>& radars) {
         squares += residual * residual;
         count += 1.0;
       }
-      const Eigen::Index at = alignment::post_factum::first_angle(r);
+      const Eigen::Index at = alignment::batch_calibration::first_angle(r);
       information(0, 0) += jtj(0, 0);
       information.block<1, 3>(0, at) = jtj.topRightCorner<1, 3>();
       information.block<3, 1>(at, 0) = jtj.bottomLeftCorner<3, 1>();
@@ -108,7 +108,7 @@ Solution rotation_optimum(const std::vector<Recording>& radars) {
     const Eigen::VectorXd step = information.ldlt().solve(right);
     speed_scale += step(0);
     for (std::size_t r = 0; r < radars.size(); ++r) {
-      mounted[r] = geometry::so3_exp(step.segment<3>(alignment::post_factum::first_angle(r))) * mounted[r];
+      mounted[r] = geometry::so3_exp(step.segment<3>(alignment::batch_calibration::first_angle(r))) * mounted[r];
     }
     converged = step.cwiseAbs().maxCoeff() < 1e-9;
   }
@@ -117,7 +117,7 @@ Solution rotation_optimum(const std::vector<Recording>& radars) {
   for (std::size_t r = 0; r < radars.size(); ++r) {
     const Eigen::Vector3d angles = geometry::euler_angles(mounted[r]);
     const MountingPose& nominal = radars[r].nominal;
-    found.segment<3>(alignment::post_factum::first_angle(r)) << geometry::wrap_angle(angles(0) - nominal.yaw_rad),
+    found.segment<3>(alignment::batch_calibration::first_angle(r)) << geometry::wrap_angle(angles(0) - nominal.yaw_rad),
         angles(1) - nominal.pitch_rad, geometry::wrap_angle(angles(2) - nominal.roll_rad);
   }
   return {found, std::sqrt(squares / count), converged};
@@ -125,13 +125,13 @@ Solution rotation_optimum(const std::vector<Recording>& radars) {
 
 Solution optimum(const std::vector<Recording>& radars, Model model) {
   if (model == Model::kRotation) return rotation_optimum(radars);
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(alignment::post_factum::first_angle(radars.size()));
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(alignment::batch_calibration::first_angle(radars.size()));
   start(0) = 1.0;
   std::vector<Eigen::Index> held;
   for (std::size_t r = 0; model == Model::kAzimuth && r < radars.size(); ++r) {
-    for (const Eigen::Index i : {1, 2}) held.push_back(alignment::post_factum::first_angle(r) + i);
+    for (const Eigen::Index i : {1, 2}) held.push_back(alignment::batch_calibration::first_angle(r) + i);
   }
-  return alignment::post_factum::solve(radars, start, held);
+  return alignment::batch_calibration::solve(radars, start, held);
 }
 
 struct Outcome {
@@ -152,8 +152,8 @@ Outcome outcome_of(const Truth& truth, Model model, std::size_t seeds, const Opt
     outcome.bias[0] += std::abs(x(0) - specs[seed].speed_scale) / runs;
     for (std::size_t r = 0; r < specs[seed].radars.size(); ++r) {
       const simulator::Misalignment& m = specs[seed].radars[r].truth;
-      const Eigen::Vector3d error =
-          x.segment<3>(alignment::post_factum::first_angle(r)) - Eigen::Vector3d(m.yaw_rad, m.pitch_rad, m.roll_rad);
+      const Eigen::Vector3d error = x.segment<3>(alignment::batch_calibration::first_angle(r)) -
+                                    Eigen::Vector3d(m.yaw_rad, m.pitch_rad, m.roll_rad);
       for (std::size_t p = 1; p < 4; ++p) {
         outcome.bias[p] += std::abs(error(static_cast<Eigen::Index>(p) - 1)) / kDegree / (radars * runs);
       }

@@ -91,7 +91,7 @@ Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make, cons
   auto scan = std::make_unique<RadarScan>();
   auto detections = std::make_unique<alignment::ScanDetections>();
   std::vector<double> predicted(kMaxDetections);
-  std::vector<std::uint32_t> knocks(radars, 0);
+  std::vector<std::uint32_t> step_changes(radars, 0);
   double previous_s = 0.0, driven_s = 0.0, next_s = 0.0;
   std::uint64_t iterations = 0;
   simulator::AlignmentEvent event;
@@ -121,10 +121,10 @@ Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make, cons
     method->process(event.radar, *detections, motion);
     ++run.scans;
     if (event.radar == 0) ++iterations;
-    const std::uint32_t count = spec.knocks.empty() ? 0 : method->estimate(event.radar).knock.count;
-    if (count > knocks[event.radar]) {
-      knocks[event.radar] = count;
-      run.knocks.push_back({event.radar, now_s});
+    const std::uint32_t count = spec.step_changes.empty() ? 0 : method->estimate(event.radar).step_change.count;
+    if (count > step_changes[event.radar]) {
+      step_changes[event.radar] = count;
+      run.step_changes.push_back({event.radar, now_s});
     }
     if (options.residuals && now_s >= 0.8 * spec.duration_s) {
       *scan = *event.scan;

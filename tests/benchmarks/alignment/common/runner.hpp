@@ -42,7 +42,7 @@ struct Snapshot {
   std::vector<RadarError> radars;
 };
 
-struct KnockSeen {
+struct StepChangeSeen {
   std::size_t radar = 0;
   double time_s = 0.0;  ///< when it could first be read, since the first message
 };
@@ -50,7 +50,7 @@ struct KnockSeen {
 struct Run {
   std::vector<Snapshot> snapshots;  ///< the first is before any data
   Moments corrected, uncorrected;   ///< residuals of stationary detections in the last fifth of the drive
-  std::vector<KnockSeen> knocks;
+  std::vector<StepChangeSeen> step_changes;
   std::uint64_t scans = 0;  ///< of all radars
 
   [[nodiscard]] const Snapshot& last() const { return snapshots.back(); }

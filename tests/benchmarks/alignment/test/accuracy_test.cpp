@@ -37,15 +37,15 @@ TEST(Accuracy, FiveDegreesAmongFiftyPercentOutliersAreCaptured) {
   EXPECT_LT(worst_radar(run.last(), kPitch), 0.5 * kDegree);
 }
 
-TEST(Accuracy, AKnockIsToldOfTheRightRadarInTime) {
+TEST(Accuracy, AStepChangeIsToldOfTheRightRadarInTime) {
   AlignmentSpec spec = clean_drive(RoadKind::kMixed, 40.0, 5);
   constexpr double kAt_s = 30.0;
-  spec.knocks.push_back({1.0 + kAt_s, 2, {0.0, 0.0, 1.0 * kDegree}});  // measurement times start at 1 s
+  spec.step_changes.push_back({1.0 + kAt_s, 2, {0.0, 0.0, 1.0 * kDegree}});  // measurement times start at 1 s
   const auto run = run_drive(spec, own_method().make);
-  ASSERT_EQ(run.knocks.size(), 1u);
-  EXPECT_EQ(run.knocks[0].radar, 2u);
-  EXPECT_GT(run.knocks[0].time_s, kAt_s);
-  EXPECT_LT(run.knocks[0].time_s, kAt_s + 4.0);
+  ASSERT_EQ(run.step_changes.size(), 1u);
+  EXPECT_EQ(run.step_changes[0].radar, 2u);
+  EXPECT_GT(run.step_changes[0].time_s, kAt_s);
+  EXPECT_LT(run.step_changes[0].time_s, kAt_s + 4.0);
   EXPECT_LT(worst_radar(run.last(), kYaw), 0.05 * kDegree);
 }
 

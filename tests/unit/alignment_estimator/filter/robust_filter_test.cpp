@@ -27,7 +27,7 @@ TEST(RobustFilter, FindsFourCornerRadars) {
     EXPECT_NEAR(estimate.speed_scale, 1.01, 1e-4) << r;
     EXPECT_LT(std::abs(error.z()), 0.015) << r;
     EXPECT_LT(std::abs(error.y()), 0.06) << r;
-    EXPECT_EQ(estimate.knock.count, 0u) << r;
+    EXPECT_EQ(estimate.step_change.count, 0u) << r;
     EXPECT_NEAR(estimate.angle_noise_scale, 1.0, 0.1) << r;
     EXPECT_NEAR(estimate.inlier_ratio, 0.76, 0.05) << r;
   }
@@ -309,39 +309,39 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
   EXPECT_EQ(foreign.filter->estimate(0).speed_scale, 1.0);
 }
 
-TEST(RobustFilter, AKnockIsToldOfItsRadarOnly) {
+TEST(RobustFilter, AStepChangeIsToldOfItsRadarOnly) {
   struct Case {
     double pitch_deg, yaw_deg, within_s;
   };
-  for (const Case& knock : {Case{0.0, 1.0, 3.0}, Case{2.0, 0.0, 6.0}, Case{0.0, -5.0, 3.0}}) {
+  for (const Case& step_change : {Case{0.0, 1.0, 3.0}, Case{2.0, 0.0, 6.0}, Case{0.0, -5.0, 3.0}}) {
     simulator::AlignmentSpec spec = drive(91, 40.0);
-    spec.knocks.push_back({26.2, 1, {0.0, knock.pitch_deg * kDegree, knock.yaw_deg * kDegree}});
+    spec.step_changes.push_back({26.2, 1, {0.0, step_change.pitch_deg * kDegree, step_change.yaw_deg * kDegree}});
     Bench bench(spec);
     bench.run(25.0);
-    for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).knock.count, 0u);
-    bench.run(25.2 + knock.within_s);
-    EXPECT_EQ(bench.filter->estimate(1).knock.count, 1u);
+    for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).step_change.count, 0u);
+    bench.run(25.2 + step_change.within_s);
+    EXPECT_EQ(bench.filter->estimate(1).step_change.count, 1u);
     bench.run(40.0);
-    const AlignmentKnock told = bench.filter->estimate(1).knock;
-    EXPECT_NEAR(told.rotation_vehicle_rad[1], knock.pitch_deg * kDegree, 0.5 * kDegree);
-    EXPECT_NEAR(told.rotation_vehicle_rad[2], knock.yaw_deg * kDegree, 0.1 * kDegree);
+    const AlignmentStepChange told = bench.filter->estimate(1).step_change;
+    EXPECT_NEAR(told.rotation_vehicle_rad[1], step_change.pitch_deg * kDegree, 0.5 * kDegree);
+    EXPECT_NEAR(told.rotation_vehicle_rad[2], step_change.yaw_deg * kDegree, 0.1 * kDegree);
     for (std::size_t r = 0; r < 4; ++r) {
-      EXPECT_EQ(bench.filter->estimate(r).knock.count, r == 1 ? 1u : 0u);
+      EXPECT_EQ(bench.filter->estimate(r).step_change.count, r == 1 ? 1u : 0u);
       EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kDegree) << r;
       EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.3 * kDegree) << r;
     }
   }
 }
 
-TEST(RobustFilter, SlowlyBentIsNoKnock) {
+TEST(RobustFilter, SlowlyBentIsNoStepChange) {
   // 0.6° in a minute, far faster than the random walk of the mounting lets expect.
   simulator::AlignmentSpec spec = drive(92, 90.0);
   for (int i = 0; i < 300; ++i) {
-    spec.knocks.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
+    spec.step_changes.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
   }
   Bench bench(spec);
   bench.run(90.0);
-  EXPECT_EQ(bench.filter->estimate(0).knock.count, 0u);
+  EXPECT_EQ(bench.filter->estimate(0).step_change.count, 0u);
 }
 
 TEST(RobustFilter, AllocatesNothingWhileDriving) {

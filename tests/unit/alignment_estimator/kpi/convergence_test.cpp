@@ -11,12 +11,12 @@ constexpr double kCycle_s = 0.05;
 
 /// 1 − exp(−t/τ) of `way` in yaw, steady elsewhere.
 void drive(Convergence& convergence, double from_s, double to_s, double begin, double way, double tau_s,
-           std::uint32_t knocks = 0) {
+           std::uint32_t step_changes = 0) {
   const auto first = static_cast<int>(std::lround(from_s / kCycle_s)), last = static_cast<int>(to_s / kCycle_s);
   for (int i = first; i < last; ++i) {
     const double t = kCycle_s * (i + 1);
     const double yaw = begin + way * (1.0 - std::exp(-(t - from_s - kCycle_s) / tau_s));
-    convergence.add(t, static_cast<std::uint64_t>(i + 1), {1.0, yaw, 0.01, 0.0}, knocks);
+    convergence.add(t, static_cast<std::uint64_t>(i + 1), {1.0, yaw, 0.01, 0.0}, step_changes);
   }
 }
 
@@ -48,7 +48,7 @@ TEST(Convergence, AnExcursionPutsOffTheTime) {
   EXPECT_NEAR(convergence.to_95_percent(AlignmentParameter::kYaw, 1e-4).seconds, 20.0, 0.5);
 }
 
-TEST(Convergence, AKnockBeginsAnew) {
+TEST(Convergence, AStepChangeBeginsAnew) {
   Convergence convergence;
   drive(convergence, 0.0, 300.0, 0.0, 0.03, 2.0);
   drive(convergence, 300.0, 400.0, 0.03, 0.0175, 1.0, 1);

@@ -178,7 +178,7 @@ TEST(AlignmentCsv, TruthIsThatOfTheDrive) {
   spec.slip_coefficient_radps2pm = 0.003;
   spec.body_pitch_std_rad = 0.3 * kDegree;
   const Eigen::Vector3d turn(0.0, 0.0, 1.0 * kDegree);
-  spec.knocks.push_back({11.0, 1, turn});
+  spec.step_changes.push_back({11.0, 1, turn});
   const auto file = write_alignment_drive(spec, folder.path(), kNobodyListens).truth;
   EXPECT_NEAR(truth_line(file, "k_v")["k_v"], 1.01, 1e-9);
   const auto radar = truth_line(file, "radar 3");
@@ -191,12 +191,12 @@ TEST(AlignmentCsv, TruthIsThatOfTheDrive) {
   EXPECT_NEAR(disturbance.at("yaw_rate_bias"), 0.001, 1e-9);
   EXPECT_NEAR(disturbance.at("rear_slip_coeff"), 0.003, 1e-9);
   EXPECT_NEAR(disturbance.at("pitch_std"), 0.3, 1e-9);
-  const auto knock = truth_line(file, "knock");
-  EXPECT_NEAR(knock.at("t"), 10.0, 1e-9);
-  EXPECT_NEAR(knock.at("radar"), 2.0, 1e-9);
-  EXPECT_NEAR(knock.at("turn_z_deg"), 1.0, 1e-9);
-  EXPECT_NEAR(knock.at("alpha_deg"), 3.0, 1e-4) << "a turn about the vehicle's z is one of yaw";
-  EXPECT_NEAR(knock.at("beta_deg"), -1.0, 1e-4);
+  const auto step_change = truth_line(file, "step_change");
+  EXPECT_NEAR(step_change.at("t"), 10.0, 1e-9);
+  EXPECT_NEAR(step_change.at("radar"), 2.0, 1e-9);
+  EXPECT_NEAR(step_change.at("turn_z_deg"), 1.0, 1e-9);
+  EXPECT_NEAR(step_change.at("alpha_deg"), 3.0, 1e-4) << "a turn about the vehicle's z is one of yaw";
+  EXPECT_NEAR(step_change.at("beta_deg"), -1.0, 1e-4);
   AlignmentDrive drive(spec);
   CramerRaoBound bound(spec, drive, {0.02, 3.0 * kDegree, 0.003, 0.005});
   AlignmentEvent event;

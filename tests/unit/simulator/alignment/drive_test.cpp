@@ -311,20 +311,20 @@ TEST(AlignmentDrive, RangeRatesAreFoldedIntoTheUnambiguousInterval) {
   EXPECT_GT(differ, 100U);
 }
 
-TEST(AlignmentDrive, AKnockTurnsOneRadarAtOneInstant) {
+TEST(AlignmentDrive, AStepChangeTurnsOneRadarAtOneInstant) {
   AlignmentSpec spec = without_noise(short_drive());
   const Eigen::Vector3d turn(0.0, 0.02, 0.03);
-  spec.knocks.push_back({5.0, 2, turn});
+  spec.step_changes.push_back({5.0, 2, turn});
   const AlignmentDrive drive(spec);
   const Eigen::Matrix3d before = drive.sensor_to_vehicle(2, 4.999), after = drive.sensor_to_vehicle(2, 5.0);
   EXPECT_LT((geometry::so3_log(after * before.transpose()) - turn).norm(), 1e-12);
   EXPECT_EQ(drive.sensor_to_vehicle(1, 4.0), drive.sensor_to_vehicle(1, 6.0));
   AlignmentSpec without = spec;
-  without.knocks.clear();
+  without.step_changes.clear();
   const Heard a = hear(spec), b = hear(without);
   for (std::size_t i = 0; i < a.scans.size(); ++i) {
-    const bool knocked = a.scans[i].radar == 2 && a.scans[i].time_s >= 5.0;
-    EXPECT_EQ(a.scans[i].azimuth != b.scans[i].azimuth, knocked);
+    const bool step_changed = a.scans[i].radar == 2 && a.scans[i].time_s >= 5.0;
+    EXPECT_EQ(a.scans[i].azimuth != b.scans[i].azimuth, step_changed);
     EXPECT_EQ(a.scans[i].range_rate, b.scans[i].range_rate) << "the world moves past as before";
   }
 }

@@ -91,7 +91,7 @@ TEST(Effects, AddingOneChangesNoOther) {
   Road more = road;
   more.effects.clutter_per_scan = 4.0;
   more.effects.interference = {{0, 0.0, 10.0, 0.0, 20.0}};    // false detections only
-  more.effects.knocks = {{1, 5.0, {0.1, 0.0, 0.0}}};          // later than now
+  more.effects.step_changes = {{1, 5.0, {0.1, 0.0, 0.0}}};    // later than now
   more.effects.blockages = {{2, 0.0, 0.0, 30.0, -3.2, 3.2}};  // another radar
   more.effects.misalignment[2] = {0.1, 0.0, 0.0};
   EXPECT_EQ(alone, rows(more));
@@ -196,11 +196,11 @@ TEST(Effects, BlockageGrowsTakesDetectionsAwayAndIsStated) {
   EXPECT_EQ(RadarSensor(road.config, road.effects, road.ego_body, 1).condition(1.0), source_condition::kPartlyBlocked);
 }
 
-TEST(Effects, AMisalignedAndKnockedRadarSeesTheWorldTurned) {
+TEST(Effects, AMisalignedAndStepChangedRadarSeesTheWorldTurned) {
   Bench e;
   e.config.mounting_pose.yaw_rad = 0.4;
   e.effects.misalignment[1] = {0.03, -0.02, 0.05};
-  e.effects.knocks = {{1, 5.0, {-0.01, 0.04, 0.02}}, {2, 0.0, {1.0, 1.0, 1.0}}};
+  e.effects.step_changes = {{1, 5.0, {-0.01, 0.04, 0.02}}, {2, 0.0, {1.0, 1.0, 1.0}}};
   const Eigen::Vector3d place(40.0, 12.0, 3.0);
   e.scene.scatterers = {{place, 0.0}};
   const Eigen::Vector3d truth = (place - Eigen::Vector3d(0.0, 0.0, kHeight_m)).normalized();

@@ -75,7 +75,7 @@ noise = false
 clutter_per_scan = 0.5
 unambiguous_mps = 60.0
 misalignment = [{radar = 2, yaw_deg = 90e-1}]
-knock = [{radar = 1, time_s = 3.0, pitch_deg = 1.0}]
+step_change = [{radar = 1, time_s = 3.0, pitch_deg = 1.0}]
 blockage = [{radar = 3, begin_s = 1.0, full_s = 9.0, loss_db = 20.0, azimuth_min_deg = 0.0}]
 interference = [{begin_s = 2.0, duration_s = 0.5, noise_rise_db = 10.0, detections_per_scan = 20.0}]
 multipath = {on = true, max_bounces = 2, ground_bounce = false}
@@ -103,7 +103,7 @@ sensitivity = {threshold_db = -30.0, max_detections = 200}
   EXPECT_EQ(s.bodies[3].kind, BodyKind::kPedestrian);
   EXPECT_NEAR(s.effects.misalignment[2].yaw_rad, 9.0 * M_PI / 180.0, 1e-12);
   EXPECT_FALSE(s.effects.noise);
-  EXPECT_EQ(s.effects.knocks.at(0).time_s, 3.0);
+  EXPECT_EQ(s.effects.step_changes.at(0).time_s, 3.0);
   EXPECT_EQ(s.effects.blockages.at(0).azimuth_min_rad, 0.0);
   EXPECT_EQ(s.effects.blockages.at(0).azimuth_max_rad, RadarBlockage{}.azimuth_max_rad);
   EXPECT_EQ(s.effects.interference.at(0).radar, 0u);
@@ -121,7 +121,7 @@ TEST(ScenarioFile, NamesFileLineKeyAndWhatIsAllowed) {
   EXPECT_THAT(problems("name = \"x\"\n[[body]]\nkind = \"car\"\nstart_m = 1.0\ncolour = 3\n"),
               HasSubstr("my.toml:5: body[0].colour: unknown key"));
   EXPECT_THAT(problems(""), HasSubstr("name: is missing"));
-  EXPECT_THAT(problems("name = \"x\"\n[radars]\nknock = [{time_s = 1.0}]\n"), HasSubstr("radars.knock[0].radar"));
+  EXPECT_THAT(problems("name = \"x\"\n[radars]\nknock = [{time_s = 1.0}]\n"), HasSubstr("radars.step_change[0].radar"));
   EXPECT_THAT(problems("name = \"x\"\n[radars]\nmisalignment = [{radar = 17}]\n"), HasSubstr("1 … 16"));
 }
 

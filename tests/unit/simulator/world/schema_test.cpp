@@ -99,7 +99,7 @@ const std::map<std::string, Table>& tables() {
       {"body.repeat", {car + "repeat = ", {}, true, ""}},
       {"radars", {name + "[radars]\n", {}, false, ""}},
       {"radars.misalignment", {name + "[radars]\nmisalignment = [", radar, true, "]"}},
-      {"radars.knock", {name + "[radars]\nknock = [", radar, true, "]"}},
+      {"radars.step_change", {name + "[radars]\nknock = [", radar, true, "]"}},
       {"radars.blockage", {name + "[radars]\nblockage = [", radar, true, "]"}},
       {"radars.interference", {name + "[radars]\ninterference = [", {}, true, "]"}},
       {"radars.multipath", {name + "[radars]\nmultipath = ", {}, true, ""}},

@@ -1,14 +1,14 @@
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/alignment_estimator/core/post_factum/gate.hpp"
-#include "services/alignment_estimator/core/post_factum/joint.hpp"
-#include "services/alignment_estimator/core/post_factum/judgement.hpp"
+#include "services/alignment_estimator/core/batch_calibration/gate.hpp"
+#include "services/alignment_estimator/core/batch_calibration/joint.hpp"
+#include "services/alignment_estimator/core/batch_calibration/judgement.hpp"
 #include "services/alignment_estimator/core/published/draw.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 namespace {
 
@@ -179,4 +179,4 @@ const char* to_text(Support support) {
   return "";
 }
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

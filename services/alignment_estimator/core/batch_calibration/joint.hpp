@@ -6,10 +6,10 @@
 
 #include <Eigen/Core>
 
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 #include "services/alignment_estimator/core/published/normal_equations.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 [[nodiscard]] inline Eigen::Index first_angle(std::size_t radar) {
   return 1 + 3 * static_cast<Eigen::Index>(radar);
@@ -61,4 +61,4 @@ struct Solution {
                                    std::span<const Eigen::Index> held, double residual_std_mps,
                                    double prior_angle_std_rad);
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

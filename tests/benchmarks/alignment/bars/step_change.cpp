@@ -14,7 +14,7 @@ namespace {
 using simulator::AlignmentSpec;
 using simulator::RoadKind;
 
-constexpr double kKnockAt_s = 60.0;
+constexpr double kStepChangeAt_s = 60.0;
 
 struct Case {
   const char* name;
@@ -39,13 +39,13 @@ struct Outcome {
 Outcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Run>& runs) {
   Outcome out;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const simulator::Knock& knock = specs[i].knocks.front();
+    const simulator::StepChange& step_change = specs[i].step_changes.front();
     double delay_s = std::numeric_limits<double>::infinity();
-    for (const KnockSeen& seen : runs[i].knocks) {
-      if (seen.radar != knock.radar || seen.time_s < kKnockAt_s) {
+    for (const StepChangeSeen& seen : runs[i].step_changes) {
+      if (seen.radar != step_change.radar || seen.time_s < kStepChangeAt_s) {
         out.wrong_radar += 1.0;
       } else if (std::isinf(delay_s)) {
-        delay_s = seen.time_s - kKnockAt_s;
+        delay_s = seen.time_s - kStepChangeAt_s;
       }
     }
     out.delays_s.push_back(delay_s);
@@ -55,12 +55,13 @@ Outcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Ru
 
 }  // namespace
 
-void knock(const Options& options, Report& report) {
+void step_change(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(32);
-  Table table{"knock",
-              "seconds from the knock until it is told: median (95 % quantile)",
-              {"knock", "road", "delay s", "never told", "wrong radar told", "error 20 s later °", "NEES 20 s later"},
-              {}};
+  Table table{
+      "step_change",
+      "seconds from the knock until it is told: median (95 % quantile)",
+      {"step_change", "road", "delay s", "never told", "wrong radar told", "error 20 s later °", "NEES 20 s later"},
+      {}};
   for (const Case& one : kCases) {
     std::vector<double> all_delays_s;
     for (const bool with_disturbances : {false, true}) {
@@ -69,7 +70,7 @@ void knock(const Options& options, Report& report) {
         AlignmentSpec spec = with_disturbances ? disturbed_drive(RoadKind::kMixed, 90.0, 3000 + seed)
                                                : clean_drive(RoadKind::kMixed, 90.0, 3000 + seed);
         const double sign = seed / 4 % 2 == 0 ? 1.0 : -1.0;  // measurement times start at 1 s
-        spec.knocks.push_back({1.0 + kKnockAt_s, seed % 4, sign * one.rotation_deg * kDegree});
+        spec.step_changes.push_back({1.0 + kStepChangeAt_s, seed % 4, sign * one.rotation_deg * kDegree});
         specs.push_back(spec);
       }
       RunOptions run_options;
@@ -78,14 +79,14 @@ void knock(const Options& options, Report& report) {
       const Outcome outcome = outcome_of(specs, runs);
       all_delays_s.insert(all_delays_s.end(), outcome.delays_s.begin(), outcome.delays_s.end());
       std::vector<double> later, later_normalised;
-      Curve response{"knock", one.name, with_disturbances ? "disturbed" : "clean", {}};
+      Curve response{"step_change", one.name, with_disturbances ? "disturbed" : "clean", {}};
       for (std::size_t s = 0; s < runs.front().snapshots.size(); ++s) {
-        const double time_s = runs.front().snapshots[s].time_s - kKnockAt_s;
+        const double time_s = runs.front().snapshots[s].time_s - kStepChangeAt_s;
         if (time_s < -5.0) continue;
         std::vector<double> errors, normalised;
         for (std::size_t i = 0; i < runs.size(); ++i) {
           if (s >= runs[i].snapshots.size()) continue;
-          const RadarError& radar = runs[i].snapshots[s].radars[specs[i].knocks[0].radar];
+          const RadarError& radar = runs[i].snapshots[s].radars[specs[i].step_changes[0].radar];
           errors.push_back(std::abs(radar.error(one.parameter)));
           normalised.push_back(radar.error(one.parameter) / radar.std(one.parameter));
         }
@@ -107,7 +108,7 @@ void knock(const Options& options, Report& report) {
     }
     if (one.bar_s > 0.0) {
       report.at_most(
-          "knock", one.name, median(all_delays_s), one.bar_s, "s",
+          "step_change", one.name, median(all_delays_s), one.bar_s, "s",
           "median over 2 × " + std::to_string(seeds) +
               " seeds, each radar in turn, either sign, half of the drives disturbed; the 95 % quantile is " +
               number(quantile(all_delays_s, 0.95)) + " s");

@@ -1,13 +1,13 @@
-#include "services/alignment_estimator/core/post_factum/gate.hpp"
+#include "services/alignment_estimator/core/batch_calibration/gate.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-#include "services/alignment_estimator/core/post_factum/joint.hpp"
+#include "services/alignment_estimator/core/batch_calibration/joint.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::vector<Recording> gated(std::span<const Recording> radars, const Config& co
   return kept;
 }
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

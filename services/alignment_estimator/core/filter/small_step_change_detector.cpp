@@ -1,4 +1,4 @@
-#include "services/alignment_estimator/core/filter/small_knock_detector.hpp"
+#include "services/alignment_estimator/core/filter/small_step_change_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace boresight::alignment {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-/// Lengths of the windows about x, y, z, in units of FilterConfig::knock_window_s.
+/// Lengths of the windows about x, y, z, in units of FilterConfig::step_change_window_s.
 constexpr std::array<std::int64_t, 3> kLengths{16, 1, 1};
 /// Roll shows only in turns and when the body pitches: windows are joined, up to so many, until they know it this well.
 constexpr std::array<int, 3> kMostJoined{8, 1, 1};
@@ -41,34 +41,34 @@ constexpr double kDoubt = 0.5;
 
 }  // namespace
 
-SmallKnockDetector::SmallKnockDetector(std::size_t radars, const FilterConfig& config)
+SmallStepChangeDetector::SmallStepChangeDetector(std::size_t radars, const FilterConfig& config)
     : config_(config), number_(std::min(radars, kMaxRadars)) {}
 
-void SmallKnockDetector::clear(std::size_t radar) {
+void SmallStepChangeDetector::clear(std::size_t radar) {
   radars_[radar] = {};
 }
 
-double SmallKnockDetector::sum(std::size_t radar, std::size_t axis) const {
+double SmallStepChangeDetector::sum(std::size_t radar, std::size_t axis) const {
   const std::array<double, 2>& sums = radars_[radar].axes[axis].sums;
-  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kAsked[axis] * config_.knock_small_sum_stds);
+  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kAsked[axis] * config_.step_change_small_sum_stds);
 }
 
-double SmallKnockDetector::confirming_stds(const FilterConfig& config, std::size_t axis) {
-  return kAsked[axis] * config.knock_small_confirm_stds;
+double SmallStepChangeDetector::confirming_stds(const FilterConfig& config, std::size_t axis) {
+  return kAsked[axis] * config.step_change_small_confirm_stds;
 }
 
-bool SmallKnockDetector::doubted(std::size_t radar) const {
+bool SmallStepChangeDetector::doubted(std::size_t radar) const {
   const auto& axes = radars_[radar].axes;
   return axes[1].suspected != 0 || axes[2].suspected != 0 || std::abs(sum(radar, 1)) > kDoubt ||
          std::abs(sum(radar, 2)) > kDoubt;
 }
 
-std::uint32_t SmallKnockDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
-                                      const Eigen::Vector3d& score, const Eigen::Matrix3d& covariance) {
+std::uint32_t SmallStepChangeDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
+                                           const Eigen::Vector3d& score, const Eigen::Matrix3d& covariance) {
   std::uint32_t changed = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     // A common grid of windows, so that radars are compared over the same time.
-    const auto length_ns = kLengths[a] * static_cast<std::int64_t>(config_.knock_window_s * 1e9);
+    const auto length_ns = kLengths[a] * static_cast<std::int64_t>(config_.step_change_window_s * 1e9);
     const std::int64_t window = time_ns / length_ns;
     if (window != window_[a]) {
       close(a);
@@ -86,7 +86,7 @@ std::uint32_t SmallKnockDetector::add(std::size_t radar, std::int64_t time_ns, c
   return changed;
 }
 
-void SmallKnockDetector::close(std::size_t a) {
+void SmallStepChangeDetector::close(std::size_t a) {
   const auto i = static_cast<Eigen::Index>(a);
   for (std::size_t r = 0; r < number_; ++r) {
     Axis& axis = radars_[r].axes[a];
@@ -107,7 +107,7 @@ void SmallKnockDetector::close(std::size_t a) {
   }
 }
 
-bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
+bool SmallStepChangeDetector::judge(std::size_t r, std::size_t a) {
   Axis& axis = radars_[r].axes[a];
   axis.confirmed = false;
   if (!axis.ended) return false;
@@ -133,9 +133,9 @@ bool SmallKnockDetector::judge(std::size_t r, std::size_t a) {
     for (double& sum : axis.sums) sum *= kKeptUnconfirmed;
     return axis.confirmed;
   }
-  const double limit = kAsked[a] * config_.knock_small_sum_stds;
+  const double limit = kAsked[a] * config_.step_change_small_sum_stds;
   for (std::size_t s = 0; s < 2; ++s) {
-    const double excess = (s == 0 ? axis.stds : -axis.stds) - kAsked[a] * config_.knock_small_stds;
+    const double excess = (s == 0 ? axis.stds : -axis.stds) - kAsked[a] * config_.step_change_small_stds;
     // One wild window alone is no change.
     axis.sums[s] = std::max(0.0, kKept * axis.sums[s] + std::min(excess, 0.7 * limit));
     if (axis.sums[s] > limit) axis.suspected = s == 0 ? 1 : -1;

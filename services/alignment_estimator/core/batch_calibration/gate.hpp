@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 /// The recordings with what can be used: finite, fast enough and, if the gate is on, near what a robust fit of k_v and
 /// of each radar's yaw expects of a world that stands still (Tukey weights, joint over radars; missing elevation 0).
@@ -16,4 +16,4 @@ namespace boresight::alignment::post_factum {
 [[nodiscard]] std::vector<Recording> gated(std::span<const Recording> radars, const Config& config,
                                            const std::function<void(double)>& progress = {});
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

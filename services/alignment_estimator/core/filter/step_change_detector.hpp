@@ -16,9 +16,9 @@ namespace boresight::alignment {
 /// vehicle's axes. What the other radars deviate by is taken off (their median): an error of speed, yaw rate or body
 /// moves all of them. A step so large that its detections fall out of the gate shows in the share of stationary
 /// detections, which collapses for one radar only.
-class KnockDetector {
+class StepChangeDetector {
  public:
-  KnockDetector(std::size_t radars, const FilterConfig& config);
+  StepChangeDetector(std::size_t radars, const FilterConfig& config);
 
   /// Takes what one scan of a running radar says: information and score about the vehicle's y and z axes at the present
   /// estimate, and the detections that were believed stationary. Returns a set of radars (bit by index) whose sums are
@@ -28,7 +28,7 @@ class KnockDetector {
   /// Starts a radar's sums anew (new estimate).
   void clear(std::size_t radar);
 
-  /// Largest of the radar's sums, in units of blocks; a suspicion above FilterConfig::knock_sum_blocks.
+  /// Largest of the radar's sums, in units of blocks; a suspicion above FilterConfig::step_change_sum_blocks.
   [[nodiscard]] double sum(std::size_t radar) const;
   /// Own deviation of the radar in its last block, (pitch axis, yaw axis) in rad; and its slow mean: that of a drift.
   [[nodiscard]] const Eigen::Vector2d& deviation(std::size_t radar) const { return radars_[radar].own; }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 #include "services/boresight/align/residuals.hpp"
 #include "services/boresight/align/result.hpp"
 #include "services/common/vehicle/vehicle.hpp"
@@ -12,8 +12,8 @@ namespace boresight::align {
 
 /// Fills k_v, the radars' estimates and messages, what the data support, and the iterations as series. `result` has the
 /// radars of the vehicle file in its order, `samples` their detections. Takes seconds, of which `progress` hears.
-void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
-                       const alignment::post_factum::Config& settings, const alignment::post_factum::Progress& progress,
-                       Result& result);
+void solve_batch_calibration(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
+                             const alignment::batch_calibration::Config& settings,
+                             const alignment::batch_calibration::Progress& progress, Result& result);
 
 }  // namespace boresight::align

@@ -1,4 +1,4 @@
-#include "services/boresight/align/post_factum.hpp"
+#include "services/boresight/align/batch_calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 #include "services/alignment_estimator/core/write_estimate.hpp"
 #include "services/boresight/align/stds.hpp"
 #include "services/common/geometry/frames.hpp"
@@ -16,17 +16,17 @@ namespace boresight::align {
 
 namespace {
 
-namespace post_factum = alignment::post_factum;
+namespace batch_calibration = alignment::batch_calibration;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// What stands for a std that is not finite.
 constexpr double kOpen_rad = 1.0;
 
-bool is_supported(const post_factum::Parameter& parameter) {
-  return parameter.support == post_factum::Support::kSupported;
+bool is_supported(const batch_calibration::Parameter& parameter) {
+  return parameter.support == batch_calibration::Support::kSupported;
 }
 
-double std_of(const post_factum::Parameter& parameter) {
+double std_of(const batch_calibration::Parameter& parameter) {
   return std::isfinite(parameter.std) ? std::hypot(parameter.std, parameter.spread) : kOpen_rad;
 }
 
@@ -39,8 +39,8 @@ alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scal
 }
 
 /// Of (k_v, d_x, d_y, d_z) from the stds of (α, β, γ), whose correlations the method does not tell.
-Eigen::Matrix4d covariance_of(const post_factum::Parameter& speed_scale, const post_factum::RadarResult& radar,
-                              const Eigen::Matrix3d& sensor_to_vehicle) {
+Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
+                              const batch_calibration::RadarResult& radar, const Eigen::Matrix3d& sensor_to_vehicle) {
   const Eigen::Vector3d angles = geometry::euler_angles(sensor_to_vehicle);
   const Eigen::Matrix3d to_turn = geometry::euler_gradient(angles(0), angles(1)).inverse();
   const Eigen::Vector3d stds(std_of(radar.yaw), std_of(radar.pitch), std_of(radar.roll));
@@ -52,22 +52,23 @@ Eigen::Matrix4d covariance_of(const post_factum::Parameter& speed_scale, const p
 
 /// Only k_v and yaw can be: the planar roll model is no rotation and leaves pitch and roll wrong by up to 1.5° each,
 /// whatever their stds (algorithms: Report A's (10)(11) against the exact rotation).
-std::uint32_t observable_of(const post_factum::Parameter& speed_scale, const post_factum::RadarResult& radar) {
+std::uint32_t observable_of(const batch_calibration::Parameter& speed_scale,
+                            const batch_calibration::RadarResult& radar) {
   std::uint32_t bits = 0;
   if (is_supported(speed_scale)) bits |= alignment_axis::kSpeedScale;
   if (is_supported(radar.yaw)) bits |= alignment_axis::kYaw | alignment_axis::kVehicleYaw;
   return bits;
 }
 
-std::string support_of(const post_factum::Parameter& parameter, bool by_planar_model) {
-  const std::string text = post_factum::to_text(parameter.support);
+std::string support_of(const batch_calibration::Parameter& parameter, bool by_planar_model) {
+  const std::string text = batch_calibration::to_text(parameter.support);
   if (!by_planar_model || !is_supported(parameter)) return text;
   return text + ", but by the planar roll model, which is no rotation: may be off by 1.5 degrees";
 }
 
-void add_series(const VehicleConfig& vehicle, const post_factum::Result& found, Result& result) {
+void add_series(const VehicleConfig& vehicle, const batch_calibration::Result& found, Result& result) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  for (const post_factum::Step& step : found.history) {
+  for (const batch_calibration::Step& step : found.history) {
     Sample& sample = result.series.emplace_back();
     sample.x = static_cast<double>(step.iteration);
     sample.speed_scale = step.parameters[0];
@@ -89,20 +90,21 @@ void add_series(const VehicleConfig& vehicle, const post_factum::Result& found, 
 
 }  // namespace
 
-void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
-                       const post_factum::Config& settings, const post_factum::Progress& progress, Result& result) {
-  std::vector<post_factum::Recording> recordings;
+void solve_batch_calibration(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
+                             const batch_calibration::Config& settings, const batch_calibration::Progress& progress,
+                             Result& result) {
+  std::vector<batch_calibration::Recording> recordings;
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     recordings.push_back(samples[i]->recording(vehicle.radars[i].mounting_pose, result.radars[i].measures_elevation));
   }
-  const post_factum::Result found = post_factum::calibrate(recordings, settings, progress);
+  const batch_calibration::Result found = batch_calibration::calibrate(recordings, settings, progress);
   result.problem = found.problem;
   result.x_is_iteration = true;
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     RadarResult& radar = result.radars[i];
     const RadarConfig& config = vehicle.radars[i];
     if (found.ok) {
-      const post_factum::RadarResult& r = found.radars[i];
+      const batch_calibration::RadarResult& r = found.radars[i];
       radar.estimate =
           estimate_of(config.mounting_pose, found.speed_scale.value, r.yaw.value, r.pitch.value, r.roll.value);
       radar.estimate.covariance = covariance_of(found.speed_scale, r, radar.estimate.sensor_to_vehicle);
@@ -122,7 +124,7 @@ void solve_post_factum(const VehicleConfig& vehicle, const std::vector<const Res
   result.speed_scale = found.speed_scale.value;
   result.speed_scale_std = std_of(found.speed_scale);
   result.speed_scale_observable = is_supported(found.speed_scale);
-  result.speed_scale_support = post_factum::to_text(found.speed_scale.support);
+  result.speed_scale_support = batch_calibration::to_text(found.speed_scale.support);
   for (RadarResult& radar : result.radars) {
     radar.stds = stds_of(alignment::vehicle_form(*vehicle.radar(radar.id), radar.estimate));
   }

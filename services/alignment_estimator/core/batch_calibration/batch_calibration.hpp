@@ -11,7 +11,7 @@
 
 #include "services/common/vehicle/vehicle.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 /// One detection with the signalled motion of its instant (at the rear axle, without k_v).
 struct Detection {
@@ -132,4 +132,4 @@ using Progress = std::function<void(Phase phase, double share)>;
 /// One word or two: "supported", "follows the made-up elevation", …
 [[nodiscard]] const char* to_text(Support support);
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

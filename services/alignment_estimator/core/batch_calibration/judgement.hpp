@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 /// How to make up missing elevations otherwise than published.
 struct Alternative {
@@ -29,4 +29,4 @@ void fill_in(Recording& radar, const Config& config, std::uint64_t seed, const A
 [[nodiscard]] std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::VectorXd& found,
                                            const Config& config, const std::function<void(double)>& progress = {});
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

@@ -1,5 +1,5 @@
 // The post-factum calibration on recordings of a planar world: what it finds, and what it says it cannot know.
-#include "services/alignment_estimator/core/post_factum/post_factum.hpp"
+#include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,11 +10,11 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "services/alignment_estimator/core/post_factum/gate.hpp"
-#include "services/alignment_estimator/core/post_factum/joint.hpp"
-#include "services/alignment_estimator/core/post_factum/judgement.hpp"
+#include "services/alignment_estimator/core/batch_calibration/gate.hpp"
+#include "services/alignment_estimator/core/batch_calibration/joint.hpp"
+#include "services/alignment_estimator/core/batch_calibration/judgement.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -65,7 +65,7 @@ Config quick() {
   return config;
 }
 
-TEST(PostFactum, DefaultsArePublished) {
+TEST(BatchCalibration, DefaultsArePublished) {
   const Config config;
   EXPECT_EQ(config.elevation_low_rad, -0.02);
   EXPECT_EQ(config.elevation_high_rad, 0.06);
@@ -75,7 +75,7 @@ TEST(PostFactum, DefaultsArePublished) {
   EXPECT_EQ(config.rate, 1e-4);
 }
 
-TEST(PostFactum, TheStepIsTheSingularVectorOfTheStackedJacobian) {
+TEST(BatchCalibration, TheStepIsTheSingularVectorOfTheStackedJacobian) {
   const World world;
   const std::vector<Recording> radars = world.recordings();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(13);
@@ -105,7 +105,7 @@ TEST(PostFactum, TheStepIsTheSingularVectorOfTheStackedJacobian) {
   }
 }
 
-TEST(PostFactum, WithElevationItFindsEverything) {
+TEST(BatchCalibration, WithElevationItFindsEverything) {
   const World world;
   const Result result = calibrate(world.recordings(), quick());
   ASSERT_TRUE(result.ok) << result.problem;
@@ -128,7 +128,7 @@ TEST(PostFactum, WithElevationItFindsEverything) {
   EXPECT_LT(result.after.rmse_mps, 0.9 * result.yaw_only.rmse_mps);
 }
 
-TEST(PostFactum, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest) {
+TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest) {
   World world;
   world.has_elevation = false;
   const Config config = quick();
@@ -152,7 +152,7 @@ TEST(PostFactum, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest) {
   EXPECT_LT(result.after.rmse_mps, 0.5 * result.before.rmse_mps);
 }
 
-TEST(PostFactum, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
+TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
   World world;
   world.has_elevation = false;
   world.truth = {{-1, 0, 0}, {2, 0, 0}, {1, 0, 0}, {-2, 0, 0}};
@@ -169,7 +169,7 @@ TEST(PostFactum, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
   EXPECT_NEAR(pitch[1] - pitch[0], -0.04, 0.01);
 }
 
-TEST(PostFactum, TheSpeedScaleCostsWhatItSays) {
+TEST(BatchCalibration, TheSpeedScaleCostsWhatItSays) {
   // (31): the minimum moves by −cost / Σ(∂R/∂k_v)², with yaw free; far less with the published 0.1 than its std.
   World world;
   world.noise_mps = 0.0;
@@ -182,7 +182,7 @@ TEST(PostFactum, TheSpeedScaleCostsWhatItSays) {
   EXPECT_NEAR(free, 1.01, 1e-4);
 }
 
-TEST(PostFactum, MoversAreLeftOut) {
+TEST(BatchCalibration, MoversAreLeftOut) {
   World world;
   world.has_elevation = false;
   world.movers = 0.35;
@@ -200,7 +200,7 @@ TEST(PostFactum, MoversAreLeftOut) {
   EXPECT_GT(calibrate(radars, open).after.rmse_mps, 2.0);
 }
 
-TEST(PostFactum, HistoryGoesFromThePublishedStartToTheResult) {
+TEST(BatchCalibration, HistoryGoesFromThePublishedStartToTheResult) {
   Config config = quick();
   config.history_every = 100;
   const Result result = calibrate(World{}.recordings(), config);
@@ -218,7 +218,7 @@ TEST(PostFactum, HistoryGoesFromThePublishedStartToTheResult) {
   EXPECT_LT(last.cost, 0.1 * first.cost);
 }
 
-TEST(PostFactum, TheSameSeedGivesTheSame) {
+TEST(BatchCalibration, TheSameSeedGivesTheSame) {
   World world;
   world.has_elevation = false;
   Config config = quick();
@@ -230,7 +230,7 @@ TEST(PostFactum, TheSameSeedGivesTheSame) {
   EXPECT_NE(calibrate(radars, config).radars[2].yaw.value, first);
 }
 
-TEST(PostFactum, ProgressGoesThroughThePhasesAndChangesNothing) {
+TEST(BatchCalibration, ProgressGoesThroughThePhasesAndChangesNothing) {
   const std::vector<Recording> radars = World{}.recordings();
   std::vector<std::pair<Phase, double>> heard;
   const Result result =
@@ -250,7 +250,7 @@ TEST(PostFactum, ProgressGoesThroughThePhasesAndChangesNothing) {
   EXPECT_EQ(calibrate(radars, quick()).radars[1].pitch.value, result.radars[1].pitch.value);
 }
 
-TEST(PostFactum, ARadarWithoutDataIsSaidToHaveNone) {
+TEST(BatchCalibration, ARadarWithoutDataIsSaidToHaveNone) {
   std::vector<Recording> radars = World{}.recordings();
   radars[1].detections.clear();
   radars[2].detections.resize(127);  // one fewer than it takes
@@ -266,7 +266,7 @@ TEST(PostFactum, ARadarWithoutDataIsSaidToHaveNone) {
   EXPECT_NEAR(result.speed_scale.value, 1.01, 2e-4);
 }
 
-TEST(PostFactum, WhatCannotBeUsedIsNotUsed) {
+TEST(BatchCalibration, WhatCannotBeUsedIsNotUsed) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   World world;
   world.detections = 400;
@@ -283,7 +283,7 @@ TEST(PostFactum, WhatCannotBeUsedIsNotUsed) {
   EXPECT_EQ(kept[1].detections.size(), 400u);
 }
 
-TEST(PostFactum, NothingComesOfNothing) {
+TEST(BatchCalibration, NothingComesOfNothing) {
   EXPECT_FALSE(calibrate({}, quick()).ok);
   std::vector<Recording> radars(3);
   const Result result = calibrate(radars, quick());
@@ -293,7 +293,7 @@ TEST(PostFactum, NothingComesOfNothing) {
   EXPECT_EQ(result.radars[0].yaw.support, Support::kNoData);
 }
 
-TEST(PostFactum, AVehicleThatSeesOneDirectionOnlyIsNotBelieved) {
+TEST(BatchCalibration, AVehicleThatSeesOneDirectionOnlyIsNotBelieved) {
   World world;
   std::vector<Recording> radars = world.recordings();
   radars.resize(1);
@@ -312,7 +312,7 @@ TEST(PostFactum, AVehicleThatSeesOneDirectionOnlyIsNotBelieved) {
   EXPECT_EQ(result.speed_scale.support, Support::kUncertain);
 }
 
-TEST(PostFactum, FillInIsThePublishedUniform) {
+TEST(BatchCalibration, FillInIsThePublishedUniform) {
   Recording radar;
   radar.detections.resize(20'000);
   for (std::size_t i = 0; i < radar.detections.size(); ++i) radar.detections[i].azimuth_rad = i % 2 == 0 ? -1.0 : 1.0;
@@ -338,4 +338,4 @@ TEST(PostFactum, FillInIsThePublishedUniform) {
 }
 
 }  // namespace
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/alignment_estimator/core/filter/small_knock_detector.hpp"
+#include "services/alignment_estimator/core/filter/small_step_change_detector.hpp"
 
 namespace boresight::alignment {
 namespace {
@@ -46,7 +46,7 @@ struct Drive {
   }
 
   std::size_t number;
-  SmallKnockDetector detector;
+  SmallStepChangeDetector detector;
   Eigen::Matrix3d information, covariance;
   std::mt19937_64 random{7};
   std::normal_distribution<double> gauss;
@@ -60,7 +60,7 @@ Eigen::Matrix<double, 3, 4> only(Eigen::Index radar, const Eigen::Vector3d& off_
 }
 const Eigen::Matrix<double, 3, 4> kQuiet = Eigen::Matrix<double, 3, 4>::Zero();
 
-TEST(SmallKnock, SmallStepsOfOneRadarAreFoundWithTheirAxisAndSize) {
+TEST(SmallStepChange, SmallStepsOfOneRadarAreFoundWithTheirAxisAndSize) {
   struct Case {
     std::size_t axis;
     double off_deg, within_s;
@@ -82,7 +82,7 @@ TEST(SmallKnock, SmallStepsOfOneRadarAreFoundWithTheirAxisAndSize) {
   }
 }
 
-TEST(SmallKnock, RollIsFoundAsLateAsTheDataSayOfIt) {
+TEST(SmallStepChange, RollIsFoundAsLateAsTheDataSayOfIt) {
   Drive drive;
   ASSERT_FALSE(drive.run(60.0, kQuiet));
   const auto found = drive.run(600.0, only(1, {3.0, 0.0, 0.0}));
@@ -93,7 +93,7 @@ TEST(SmallKnock, RollIsFoundAsLateAsTheDataSayOfIt) {
   EXPECT_FALSE(drive.detector.doubted(1));
 }
 
-TEST(SmallKnock, NoiseAndWhatMovesAllAlikeAreNoChange) {
+TEST(SmallStepChange, NoiseAndWhatMovesAllAlikeAreNoChange) {
   Drive drive;
   EXPECT_FALSE(drive.run(3600.0, kQuiet));
   Eigen::Matrix<double, 3, 4> all;
@@ -101,13 +101,13 @@ TEST(SmallKnock, NoiseAndWhatMovesAllAlikeAreNoChange) {
   EXPECT_FALSE(drive.run(600.0, all));
 }
 
-TEST(SmallKnock, WhatTheEstimateDoesNotKnowIsNoChange) {
+TEST(SmallStepChange, WhatTheEstimateDoesNotKnowIsNoChange) {
   Drive drive;
   drive.covariance = (Eigen::Vector3d(4.0, 4.0, 0.5) * kDegree).array().square().matrix().asDiagonal();
   EXPECT_FALSE(drive.run(300.0, only(0, {3.0, 1.0, 0.25})));
 }
 
-TEST(SmallKnock, AWildWindowOrAShortDeviationIsDroppedAgain) {
+TEST(SmallStepChange, AWildWindowOrAShortDeviationIsDroppedAgain) {
   Drive drive;
   drive.time_s = 10.0;
   EXPECT_FALSE(drive.run(2.0, only(0, {0.0, 0.0, 5.0})));
@@ -121,20 +121,20 @@ TEST(SmallKnock, AWildWindowOrAShortDeviationIsDroppedAgain) {
   EXPECT_FALSE(drive.detector.doubted(0));
 }
 
-TEST(SmallKnock, ARadarThatIsAloneIsAskedForMore) {
+TEST(SmallStepChange, ARadarThatIsAloneIsAskedForMore) {
   Drive alone(1);
   EXPECT_FALSE(alone.run(300.0, only(0, {0.0, 0.2, 0.1})));
   EXPECT_TRUE(alone.run(30.0, only(0, {0.0, 0.0, 0.5})));
 }
 
-TEST(SmallKnock, OfTwoRadarsTheOneThatDeviatesIsNamed) {
+TEST(SmallStepChange, OfTwoRadarsTheOneThatDeviatesIsNamed) {
   Drive two(2);
   const auto found = two.run(30.0, only(1, {0.0, 0.0, 0.25}));
   ASSERT_TRUE(found);
   EXPECT_EQ(found->radar, 1u);
 }
 
-TEST(SmallKnock, NotANumberSpoilsNothingElse) {
+TEST(SmallStepChange, NotANumberSpoilsNothingElse) {
   Drive drive;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto found = drive.run(60.0, only(3, {nan, nan, nan}));
@@ -145,7 +145,7 @@ TEST(SmallKnock, NotANumberSpoilsNothingElse) {
   EXPECT_EQ(after->radar, 3u);
 }
 
-TEST(SmallKnock, ANewEstimateBeginsAnew) {
+TEST(SmallStepChange, ANewEstimateBeginsAnew) {
   Drive drive;
   EXPECT_FALSE(drive.run(4.1, only(0, {0.0, 0.0, 0.3})));
   EXPECT_TRUE(drive.detector.doubted(0));

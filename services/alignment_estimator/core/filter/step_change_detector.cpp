@@ -1,4 +1,4 @@
-#include "services/alignment_estimator/core/filter/knock_detector.hpp"
+#include "services/alignment_estimator/core/filter/step_change_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,21 +26,21 @@ constexpr double kAlone = 1.25;
 
 }  // namespace
 
-KnockDetector::KnockDetector(std::size_t radars, const FilterConfig& config)
+StepChangeDetector::StepChangeDetector(std::size_t radars, const FilterConfig& config)
     : config_(config), number_(std::min(radars, kMaxRadars)) {}
 
-void KnockDetector::clear(std::size_t radar) {
+void StepChangeDetector::clear(std::size_t radar) {
   radars_[radar] = {};
 }
 
-double KnockDetector::sum(std::size_t radar) const {
+double StepChangeDetector::sum(std::size_t radar) const {
   return *std::max_element(radars_[radar].sums.begin(), radars_[radar].sums.end());
 }
 
-std::uint32_t KnockDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
-                                 const Eigen::Vector2d& score, double standing, double detections) {
+std::uint32_t StepChangeDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
+                                      const Eigen::Vector2d& score, double standing, double detections) {
   // A common grid of blocks, so that radars are compared over the same time.
-  const auto length_ns = static_cast<std::int64_t>(config_.knock_block_s * 1e9);
+  const auto length_ns = static_cast<std::int64_t>(config_.step_change_block_s * 1e9);
   const std::int64_t block = time_ns / length_ns;
   std::uint32_t suspicious = 0;
   if (block != block_) {
@@ -57,7 +57,7 @@ std::uint32_t KnockDetector::add(std::size_t radar, std::int64_t time_ns, const 
   return suspicious;
 }
 
-void KnockDetector::close(Radar& radar) const {
+void StepChangeDetector::close(Radar& radar) const {
   radar.known = {};
   radar.collapsed = false;
   if (!radar.active) return;
@@ -72,7 +72,7 @@ void KnockDetector::close(Radar& radar) const {
   information.diagonal().array() += 1.0 / (kPriorStd_rad * kPriorStd_rad);
   const Eigen::Matrix2d covariance = information.inverse();
   radar.deviation = covariance * radar.score;
-  const std::array<double, 2> limit{config_.knock_pitch_rad, config_.knock_yaw_rad};
+  const std::array<double, 2> limit{config_.step_change_pitch_rad, config_.step_change_yaw_rad};
   bool all = true;
   for (std::size_t a = 0; a < 2; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
@@ -89,7 +89,7 @@ void KnockDetector::close(Radar& radar) const {
   }
 }
 
-double KnockDetector::common(std::size_t radar, Eigen::Index axis) const {
+double StepChangeDetector::common(std::size_t radar, Eigen::Index axis) const {
   std::array<Deviation, kMaxRadars> others;
   std::size_t count = 0;
   for (std::size_t r = 0; r < number_; ++r) {
@@ -98,9 +98,9 @@ double KnockDetector::common(std::size_t radar, Eigen::Index axis) const {
   return common_mode({others.data(), count}, radars_[radar].deviation(axis)).value_rad;
 }
 
-std::uint32_t KnockDetector::judge() {
+std::uint32_t StepChangeDetector::judge() {
   std::uint32_t suspicious = 0;
-  const std::array<double, 2> limits{config_.knock_pitch_rad, config_.knock_yaw_rad};
+  const std::array<double, 2> limits{config_.step_change_pitch_rad, config_.step_change_yaw_rad};
   for (std::size_t r = 0; r < number_; ++r) {
     Radar& radar = radars_[r];
     if (!radar.active) continue;
@@ -127,7 +127,7 @@ std::uint32_t KnockDetector::judge() {
     double& collapse = radar.sums[4];
     const bool alone = radar.collapsed && 2 * others_collapsed <= others;
     collapse = std::max(0.0, collapse + (alone ? 1.0 : -1.0));
-    if (sum(r) > config_.knock_sum_blocks) suspicious |= 1u << r;
+    if (sum(r) > config_.step_change_sum_blocks) suspicious |= 1u << r;
   }
   return suspicious;
 }

@@ -1,12 +1,12 @@
-#include "services/alignment_estimator/core/post_factum/judgement.hpp"
+#include "services/alignment_estimator/core/batch_calibration/judgement.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/alignment_estimator/core/post_factum/joint.hpp"
+#include "services/alignment_estimator/core/batch_calibration/joint.hpp"
 #include "services/alignment_estimator/core/published/draw.hpp"
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 namespace {
 
@@ -120,4 +120,4 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
   return judged;
 }
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

@@ -1,11 +1,11 @@
-#include "services/alignment_estimator/core/post_factum/joint.hpp"
+#include "services/alignment_estimator/core/batch_calibration/joint.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include <Eigen/Cholesky>
 
-namespace boresight::alignment::post_factum {
+namespace boresight::alignment::batch_calibration {
 
 void JointEquations::clear() {
   jtj.setZero();
@@ -117,4 +117,4 @@ Eigen::VectorXd stds(std::span<const Recording> radars, const Eigen::VectorXd& p
   return result;
 }
 
-}  // namespace boresight::alignment::post_factum
+}  // namespace boresight::alignment::batch_calibration

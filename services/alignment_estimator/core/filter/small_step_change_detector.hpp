@@ -17,9 +17,9 @@ namespace boresight::alignment {
 /// An axis of which a window says little thus needs more windows, however small the change that is looked for. The
 /// median of the other radars is taken off, as in KnockDetector. A sum beyond its limit is a suspicion; the window
 /// after it, whose data had no part in the sum, confirms or drops it.
-class SmallKnockDetector {
+class SmallStepChangeDetector {
  public:
-  SmallKnockDetector(std::size_t radars, const FilterConfig& config);
+  SmallStepChangeDetector(std::size_t radars, const FilterConfig& config);
 
   /// Takes what one scan of a running radar says: information and score about the vehicle's axes at the present
   /// estimate, and the covariance of that estimate (rad²). Returns a set of radars (bit by index) whose mounting

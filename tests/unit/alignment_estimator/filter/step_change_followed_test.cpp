@@ -15,22 +15,22 @@ simulator::AlignmentSpec drive(std::uint64_t seed, double seconds) {
   return spec;
 }
 
-TEST(FollowsKnock, SmallOnesAreToldOfTheirRadarAndFollowedHonestly) {
+TEST(FollowsStepChange, SmallOnesAreToldOfTheirRadarAndFollowedHonestly) {
   for (const Eigen::Vector2d& pitch_yaw_deg : {Eigen::Vector2d(0.0, 0.5), Eigen::Vector2d(-1.0, 0.0)}) {
     simulator::AlignmentSpec spec = drive(93, 75.0);
-    spec.knocks.push_back({41.2, 2, {0.0, pitch_yaw_deg(0) * kDegree, pitch_yaw_deg(1) * kDegree}});
+    spec.step_changes.push_back({41.2, 2, {0.0, pitch_yaw_deg(0) * kDegree, pitch_yaw_deg(1) * kDegree}});
     Bench bench(spec);
     bench.run(40.0);
-    for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).knock.count, 0u) << r;
+    for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).step_change.count, 0u) << r;
     bench.run(52.2);
-    EXPECT_EQ(bench.filter->estimate(2).knock.count, 1u);
+    EXPECT_EQ(bench.filter->estimate(2).step_change.count, 1u);
     bench.run(75.0);
-    const AlignmentKnock told = bench.filter->estimate(2).knock;
+    const AlignmentStepChange told = bench.filter->estimate(2).step_change;
     EXPECT_NEAR(told.rotation_vehicle_rad[1], pitch_yaw_deg(0) * kDegree, 0.2 * kDegree);
     EXPECT_NEAR(told.rotation_vehicle_rad[2], pitch_yaw_deg(1) * kDegree, 0.1 * kDegree);
     for (std::size_t r = 0; r < 4; ++r) {
       const RadarEstimate estimate = bench.filter->estimate(r);
-      EXPECT_EQ(estimate.knock.count, r == 2 ? 1u : 0u) << r;
+      EXPECT_EQ(estimate.step_change.count, r == 2 ? 1u : 0u) << r;
       for (Eigen::Index a = 1; a < 3; ++a) {
         const double std_rad = std::sqrt(estimate.covariance(a + 1, a + 1));
         EXPECT_LT(std::abs(bench.error_rad(r)(a)), 4.0 * std_rad) << r << " " << a;
@@ -40,20 +40,20 @@ TEST(FollowsKnock, SmallOnesAreToldOfTheirRadarAndFollowedHonestly) {
   }
 }
 
-TEST(FollowsKnock, WhatIsTooSmallToTellIsFollowedToo) {
+TEST(FollowsStepChange, WhatIsTooSmallToTellIsFollowedToo) {
   simulator::AlignmentSpec spec = drive(94, 75.0);
-  spec.knocks.push_back({41.2, 1, {0.0, 0.0, 0.12 * kDegree}});
+  spec.step_changes.push_back({41.2, 1, {0.0, 0.0, 0.12 * kDegree}});
   Bench bench(spec);
   bench.run(75.0);
-  EXPECT_EQ(bench.filter->estimate(1).knock.count, 0u);
+  EXPECT_EQ(bench.filter->estimate(1).step_change.count, 0u);
   EXPECT_LT(std::abs(bench.error_rad(1).z()), 0.02 * kDegree);
 }
 
-TEST(FollowsKnock, ASlowBendIsFollowed) {
+TEST(FollowsStepChange, ASlowBendIsFollowed) {
   // 0.6° in a minute.
   simulator::AlignmentSpec spec = drive(92, 90.0);
   for (int i = 0; i < 300; ++i) {
-    spec.knocks.push_back({21.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
+    spec.step_changes.push_back({21.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
   }
   Bench bench(spec);
   double worst_rad = 0.0;
@@ -62,7 +62,7 @@ TEST(FollowsKnock, ASlowBendIsFollowed) {
   });
   EXPECT_LT(worst_rad, 0.25 * kDegree);
   EXPECT_LT(std::abs(bench.error_rad(0).z()), 0.04 * kDegree);
-  EXPECT_EQ(bench.filter->estimate(0).knock.count, 0u);
+  EXPECT_EQ(bench.filter->estimate(0).step_change.count, 0u);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace boresight::alignment {
 namespace {
 
 /// A rotation that is confirmed as a knock is at least this large.
-constexpr double kMinKnock_rad = 0.0044;
+constexpr double kMinStepChange_rad = 0.0044;
 /// Slow mean of a radar's deviation, as a share of what it is now, beyond which it has been growing.
 constexpr double kDriftShare = 0.4;
 
@@ -28,21 +28,21 @@ void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
     radars_[r].drifted = drifts(r);
     radars_[r].phase = Phase::kSuspected;
     radars_[r].suspected_ns = time_ns;
-    radars_[r].before_knock = radars_[r].earlier[0].sensor_to_vehicle;
+    radars_[r].before_step_change = radars_[r].earlier[0].sensor_to_vehicle;
     radars_[r].start.clear();
   }
 }
 
 void RobustFilter::verify(std::size_t index, const StartResult& found, std::int64_t time_ns) {
   Radar& radar = radars_[index];
-  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_knock.transpose());
+  const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_step_change.transpose());
   // Twice the statistical σ: what inflates a start is for the estimate that follows it, whereas two rotations are
   // compared here, and a start that is wrong by more only begins anew.
   const Eigen::Matrix3d covariance =
       4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>() + state_.rotation_covariance(index);
   const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
   const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
-  const bool another = distance > kAnother && off.tail<2>().norm() > kMinKnock_rad;
+  const bool another = distance > kAnother && off.tail<2>().norm() > kMinStepChange_rad;
   if (another) {
     reopen(index);
     place(index, found);
@@ -50,9 +50,9 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
     radar.since_start_s = radar.since_earlier_s = 0.0;
     radar.earlier.fill(now(index));
     if (!radar.drifted) {
-      radar.knock.time_ns = time_ns;
-      ++radar.knock.count;
-      measure_knock(index);
+      radar.step_change.time_ns = time_ns;
+      ++radar.step_change.count;
+      measure_step_change(index);
     }
     radar.inlier_ratio = found.inlier_ratio;
   }
@@ -67,10 +67,11 @@ void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if ((changed >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
     Radar& radar = radars_[r];
-    const bool tilted = small_knocks_.changed(r, 1) || small_knocks_.changed(r, 2);
+    const bool tilted = small_step_changes_.changed(r, 1) || small_step_changes_.changed(r, 2);
     double size_squared = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      if (small_knocks_.changed(r, a)) size_squared += square(small_knocks_.change(r)(static_cast<Eigen::Index>(a)));
+      if (small_step_changes_.changed(r, a))
+        size_squared += square(small_step_changes_.change(r)(static_cast<Eigen::Index>(a)));
     }
     // After a change a few seconds ago, what was before is no better.
     const bool again = radar.since_change_s < static_cast<double>(radar.earlier.size()) * kEarlier_s;
@@ -79,7 +80,7 @@ void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
       Eigen::Vector3d turn = geometry::so3_log(before.sensor_to_vehicle * state_.sensor_to_vehicle[r].transpose());
       for (std::size_t a = 1; a < 3; ++a) {
         const auto i = static_cast<Eigen::Index>(a);
-        if (small_knocks_.changed(r, a)) turn(i) = small_knocks_.change(r)(i);
+        if (small_step_changes_.changed(r, a)) turn(i) = small_step_changes_.change(r)(i);
       }
       state_.sensor_to_vehicle[r] = state_.linearised[r] = geometry::so3_exp(turn) * state_.sensor_to_vehicle[r];
       radar.since_change_s = 0.0;
@@ -93,12 +94,12 @@ void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
     }
     note_linearised(r);
     // Sudden or not does not show in roll, for which a window lasts too long.
-    if (tilted && size_squared > square(config_.knock_least_rad) && !drifts(r)) {
-      radar.before_knock = before.sensor_to_vehicle;
+    if (tilted && size_squared > square(config_.step_change_least_rad) && !drifts(r)) {
+      radar.before_step_change = before.sensor_to_vehicle;
       radar.since_start_s = 0.0;
-      radar.knock.time_ns = time_ns;
-      ++radar.knock.count;
-      measure_knock(r);
+      radar.step_change.time_ns = time_ns;
+      ++radar.step_change.count;
+      measure_step_change(r);
     }
     radar.earlier.fill(now(r));
     radar.since_earlier_s = 0.0;
@@ -106,23 +107,24 @@ void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
   }
 }
 
-void RobustFilter::measure_knock(std::size_t index) {
+void RobustFilter::measure_step_change(std::size_t index) {
   Radar& radar = radars_[index];
-  const Eigen::Vector3d turn = geometry::so3_log(state_.sensor_to_vehicle[index] * radar.before_knock.transpose());
+  const Eigen::Vector3d turn =
+      geometry::so3_log(state_.sensor_to_vehicle[index] * radar.before_step_change.transpose());
   for (std::size_t i = 0; i < 3; ++i) {
-    radar.knock.rotation_vehicle_rad[i] = static_cast<float>(turn(static_cast<Eigen::Index>(i)));
+    radar.step_change.rotation_vehicle_rad[i] = static_cast<float>(turn(static_cast<Eigen::Index>(i)));
   }
 }
 
 /// What grew over a minute is a drift: followed, but not reported as a knock.
 bool RobustFilter::drifts(std::size_t index) const {
-  const Eigen::Vector2d& own = knocks_.deviation(index);
-  return !knocks_.collapsed(index) && own.dot(knocks_.drift(index)) > kDriftShare * own.squaredNorm();
+  const Eigen::Vector2d& own = step_changes_.deviation(index);
+  return !step_changes_.collapsed(index) && own.dot(step_changes_.drift(index)) > kDriftShare * own.squaredNorm();
 }
 
 void RobustFilter::forget_deviations(std::size_t index) {
-  knocks_.clear(index);
-  small_knocks_.clear(index);
+  step_changes_.clear(index);
+  small_step_changes_.clear(index);
 }
 
 }  // namespace boresight::alignment
