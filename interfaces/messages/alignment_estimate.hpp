@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kYawRateBias = 1u << 7;
 inline constexpr std::uint32_t kSlip = 1u << 8;
 }  // namespace alignment_axis
 
-/// Key figures (Report A §8). What is not known (yet) is NaN, or 0 for counts.
+/// Key figures (Burza 2025, §8). What is not known (yet) is NaN, or 0 for counts.
 struct AlignmentKpis {
   float residual_rmse_mps;              ///< of the corrected range-rate residual of inliers over the sliding window
   float uncorrected_residual_rmse_mps;  ///< the same with k_v = 1 and no correction

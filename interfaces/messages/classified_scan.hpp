@@ -6,7 +6,7 @@
 
 namespace boresight {
 
-/// Where a detection comes from (Report B §2).
+/// Where a detection comes from (Le Ba Thanh 2023, §2).
 enum class Provenance : std::uint8_t {
   kUnknown = 0,     ///< not classified: rejected earlier, or no ego motion
   kMoving = 1,      ///< direct reflection of a moving object

@@ -48,7 +48,7 @@ struct SensorHealth {
   AxisHealth roll;
   float speed_scale;
   float speed_scale_std;
-  /// What the misalignment does (Report A §6): lateral displacement of a detection at the reference range.
+  /// What the misalignment does (Burza 2025, §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
   std::uint32_t conditions;    ///< source_condition bits: what the sensor said of itself last

@@ -63,7 +63,7 @@ TEST_P(Tracking, FindsEveryVehicleSoonAndMakesUpLittle) {
   }
 }
 
-// Report B's method, which is there to compare with, tells what stands by a constant and knows no ghosts beside an
+// Le Ba Thanh's method, which is there to compare with, tells what stands by a constant and knows no ghosts beside an
 // object: some of both become tracks. No object is lost by it all the same.
 TEST_P(Tracking, FindsEveryVehicleWithThePublishedGhostFilterToo) {
   const Figures figures = judge(GetParam(), ghosts::MethodName::kPublished, 1, 40.0);

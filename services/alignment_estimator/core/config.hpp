@@ -13,7 +13,7 @@
 
 namespace boresight::alignment {
 
-/// Estimators to choose from: Boresight's own, and those of the literature (Report A §8).
+/// Estimators to choose from: Boresight's own, and those of the literature (Burza 2025, §8).
 enum class MethodName : std::uint8_t {
   kBoresight,
   kSteepestDescent,
@@ -32,7 +32,7 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodN
     {"tls", MethodName::kTls},
     {"nelder_mead", MethodName::kNelderMead},
     {"azimuth_1d", MethodName::kAzimuth1d},
-    // Boresight's filter with the planar roll model of Report A, for reproducing its tables only.
+    // Boresight's filter with the planar roll model of Burza 2025, for reproducing its tables only.
     {"boresight_planar", MethodName::kBoresightPlanar},
 }};
 

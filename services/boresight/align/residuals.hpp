@@ -14,7 +14,7 @@
 
 namespace boresight::align {
 
-/// Key figures of Report A §8; NaN where there are no residuals.
+/// Key figures of Burza 2025, §8; NaN where there are no residuals.
 struct Moments {
   double rmse_mps = 0.0;
   double skewness = 0.0;

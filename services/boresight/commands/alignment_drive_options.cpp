@@ -58,7 +58,7 @@ CLI::Option* add_alignment_drive_options(CLI::App& command, AlignmentDriveOption
   const auto flag = [&](const char* name, bool& value, const char* text) {
     group->add_flag(name, value, text)->needs(road);
   };
-  flag("--planar", options.planar, "Report A's planar roll model is the truth instead of rotations");
+  flag("--planar", options.planar, "Burza's planar roll model is the truth instead of rotations");
   flag("--random-truth", options.random_truth, "speed scale and mounting errors (within 3 deg) by the seed");
   number("--outliers", options.outlier_share, "share of detections that do not stand still", 0.0, 0.95);
   number("--detections", options.mean_detections, "mean number in a scan", 1.0, 500.0);

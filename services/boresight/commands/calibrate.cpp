@@ -276,7 +276,7 @@ void add_plate(CLI::App& app, int& exit_code) {
   command->add_option("--azimuth-half-width", options->azimuth_half_width_deg, "… and this about straight ahead, deg")
       ->check(CLI::Range(0.1, 90.0))
       ->capture_default_str();
-  command->add_option("--method", options->method, "robust, or published (Report A)")
+  command->add_option("--method", options->method, "robust, or published (Burza 2025)")
       ->check(CLI::IsMember({"robust", "published"}))
       ->capture_default_str();
   command->add_option("--plot", options->plot, "SVG of the amplitudes and the parabola; \"-\" is standard output");

@@ -10,7 +10,7 @@ struct Config {
   std::array<double, 3> region_min_m{-100.0, -60.0, -2.0};
   std::array<double, 3> region_max_m{200.0, 60.0, 6.0};
   /// A detection at `range` is weak below rcs_near_dbsm + rcs_slope_db_per_decade · log10(range / 10 m): what is near
-  /// must reflect more to be real than what is far, since multipath and noise are near (Report D).
+  /// must reflect more to be real than what is far, since multipath and noise are near (the 4D chain design).
   double rcs_near_dbsm = -25.0;
   double rcs_slope_db_per_decade = 0.0;
   /// Moving if |range rate over ground| exceeds this many stds of what stands still would have.

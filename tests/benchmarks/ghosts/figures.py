@@ -70,8 +70,8 @@ def plan(curves):
     return picture(890, top - 20, parts)
 
 
-WHO = {"Report B": "c5", "published": "c2", "mirror": "c0"}
-NAMES = {"Report B": "published method, as printed in Report B", "published": "published method, here", "mirror": "mirror method"}
+WHO = {"Le Ba Thanh 2023": "c5", "published": "c2", "mirror": "c0"}
+NAMES = {"Le Ba Thanh 2023": "published method, as printed in Le Ba Thanh 2023", "published": "published method, here", "mirror": "mirror method"}
 
 
 def compare_panel(box, title, rows):

@@ -17,7 +17,7 @@ struct BoundPriors {
   double rotation_std_rad = 3.0 * M_PI / 180.0;  ///< about each axis of the vehicle, of every radar
   double yaw_rate_bias_std_radps = 0.0;
   double slip_coefficient_std_radps2pm = 0.0;
-  double min_speed_mps = 0.0;  ///< signalled; slower scans do not count, as estimators leave them out (Report A §8)
+  double min_speed_mps = 0.0;  ///< signalled; slower scans do not count, as estimators leave them out (Burza 2025, §8)
 };
 
 /// Sums the information of a drive's stationary detections at the truth, each with the variance

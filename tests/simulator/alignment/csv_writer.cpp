@@ -44,7 +44,7 @@ class Expectation {
       return geometry::stationary_range_rate(rotation_ * geometry::direction(azimuth, elevation), velocity_);
     }
     const double c = std::cos(angles_.z()), s = std::sin(angles_.z());
-    return geometry::stationary_range_rate(  // Report A (10)–(12)
+    return geometry::stationary_range_rate(  // Burza 2025, (10)–(12)
         geometry::direction(angles_.x() + azimuth * c - elevation * s, angles_.y() + elevation * c + azimuth * s),
         velocity_);
   }

@@ -299,7 +299,7 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
       const Eigen::Vector3d u = to_sensor * sight;
       seen_azimuth = std::atan2(u.y(), u.x());
       seen_elevation = std::asin(std::clamp(u.z(), -1.0, 1.0));
-    } else {  // Report A (10)(11), solved for the angles that the sensor sees
+    } else {  // Burza 2025, (10)(11), solved for the angles that the sensor sees
       const double a = geometry::wrap_angle(azimuth_vehicle - yaw), b = elevation - pitch;
       seen_azimuth = cos_roll * a + sin_roll * b;
       seen_elevation = -sin_roll * a + cos_roll * b;

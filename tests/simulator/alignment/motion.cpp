@@ -9,7 +9,7 @@ namespace boresight::simulator {
 namespace {
 
 constexpr double kStep_s = 0.01;
-constexpr double kSlowest_mps = 5.0;  // Report A: slower driving tells nothing
+constexpr double kSlowest_mps = 5.0;  // Burza 2025: slower driving tells nothing
 
 enum class Shape : std::uint8_t { kStraight, kWide, kCurve, kCorner };
 

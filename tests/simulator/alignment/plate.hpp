@@ -1,4 +1,4 @@
-// What a radar sees of a tilting plate at an end-of-line station: Report A §7 with known truth.
+// What a radar sees of a tilting plate at an end-of-line station: Burza 2025, §7 with known truth.
 //
 // Physics: a flat plate larger than the beam's footprint returns the ray that meets it squarely. At tilt τ (positive =
 // toward the ground) that ray has elevation −τ, so it lies at −τ − β_m in the antenna's elevation lobe, and passes the

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// Report A, Table 1: (α, β, γ) of the radars in degrees.
+/// Burza 2025, Table 1: (α, β, γ) of the radars in degrees.
 constexpr std::array<std::array<double, 3>, 4> kTable1_deg{
     {{-1.0, 1.0, 2.0}, {2.0, -1.0, 1.0}, {1.0, 2.0, -1.0}, {-2.0, -2.0, -2.0}}};
 

@@ -17,11 +17,11 @@ namespace boresight::simulator {
 enum class RoadKind : std::uint8_t { kCity, kMotorway, kStraight, kSlow, kMixed };
 [[nodiscard]] const char* name_of(RoadKind road);
 
-/// How range rates follow from angles: the exact rotation, or the planar roll model of Report A (10)(11), for
+/// How range rates follow from angles: the exact rotation, or the planar roll model of Burza 2025, (10)(11), for
 /// reproducing its tables.
 enum class MountingModel : std::uint8_t { kExact, kPlanar };
 
-/// How elevations are drawn: reflectors at heights seen from the road, Report A's uniform −0.02…0.06 rad, or none.
+/// How elevations are drawn: reflectors at heights seen from the road, Burza's uniform −0.02…0.06 rad, or none.
 enum class ElevationKind : std::uint8_t { kScene, kUniform, kZero };
 
 struct AlignmentRadar {
@@ -63,7 +63,7 @@ struct AlignmentSpec {
   std::vector<StepChange> step_changes;
 };
 
-/// Four corner radars, as in drive_1: noise, mounting and truth of Report A's Table 1.
+/// Four corner radars, as in drive_1: noise, mounting and truth of Burza's Table 1.
 [[nodiscard]] AlignmentSpec four_corner_radars();
 /// The published set-up: planar truth, slow drive, no outliers, residuals of 0.20 → 0.027 m/s.
 [[nodiscard]] AlignmentSpec published_setup();

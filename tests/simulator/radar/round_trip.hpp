@@ -40,8 +40,8 @@ struct Echo {
   return std::min(kMost_db, 3.0 * angle * angle);
 }
 
-/// Truth of an echo (algorithms.md §2): the last bounce decides. On the target itself: its own direction, type 1 if the
-/// way there was longer. On a mirror: type 2.
+/// Truth of an echo (docs/algorithms/ghosts.md): the last bounce decides. On the target itself: its own direction, type
+/// 1 if the way there was longer. On a mirror: type 2.
 [[nodiscard]] inline DetectionTruth truth_of(const Target& target, const OneWay& out, const OneWay& back) {
   DetectionTruth truth;
   truth.object_id = target.body_id;

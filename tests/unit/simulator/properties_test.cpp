@@ -244,7 +244,7 @@ TEST_P(Shipped, WhatStandsHasTheRangeRateOfTheEgoMotionEquation) {
   std::size_t compared = 0;
   const auto expected = [&](const RadarConfig& radar, double azimuth, double elevation) {
     const Eigen::Matrix3d rotation = radar::actual_mounting(radar.mounting_pose, s.effects, radar.id, scene.t_s);
-    // (12) of Report A in three dimensions: ṙ = −(R u)·v_s with the velocity of the place where the radar sits.
+    // (12) of Burza 2025 in three dimensions: ṙ = −(R u)·v_s with the velocity of the place where the radar sits.
     const auto& p = radar.mounting_pose.position_m;
     const Eigen::Vector3d velocity(scene.ego.speed_mps - scene.ego.yaw_rate_radps * p[1],
                                    scene.ego.yaw_rate_radps * p[0], 0.0);

@@ -1,4 +1,5 @@
-// Calibration of a recording after the fact, without measured elevation (Report A §9; algorithms.md §1.1).
+// Calibration of a recording after the fact, without measured elevation (Burza 2025, §9;
+// docs/algorithms/batch-calibration.md).
 #pragma once
 
 #include <array>
@@ -53,7 +54,7 @@ struct Config {
   /// supported.
   std::size_t judgement_draws = 8;
   std::size_t judgement_detections = 20'000;
-  double judgement_shift_rad = 0.035;  ///< 2°, as the errors of Report A's simulation
+  double judgement_shift_rad = 0.035;  ///< 2°, as the errors of Burza's simulation
   double judgement_width = 2.0;
   double judgement_roll_rad = 0.035;
   double prior_angle_std_rad = 0.0698;  ///< 4°: no std is larger
@@ -124,8 +125,8 @@ using Progress = std::function<void(Phase phase, double share)>;
 
 /// All radars together for one k_v and per-radar α, β, γ, by nonlinear total least squares. Same input and seed, same
 /// output. For offline tools: allocates and takes seconds. What the data support is judged within the planar model of
-/// Report A, which is no rotation: where elevation is measured, it lets pitch and roll seem better known than they are
-/// (algorithms.md §1.4).
+/// Burza 2025, which is no rotation: where elevation is measured, it lets pitch and roll seem better known than they
+/// are (docs/algorithms/alignment.md).
 [[nodiscard]] Result calibrate(std::span<const Recording> radars, const Config& config = {},
                                const Progress& progress = {});
 

@@ -21,7 +21,7 @@ namespace boresight::alignment::batch_calibration {
   return b;
 }
 
-/// Normal equations over 1 + 3·K_r parameters; the stacked Jacobian of Report A §9 has as many columns, most of its
+/// Normal equations over 1 + 3·K_r parameters; the stacked Jacobian of Burza 2025, §9 has as many columns, most of its
 /// entries zero.
 struct JointEquations {
   explicit JointEquations(std::size_t radars)

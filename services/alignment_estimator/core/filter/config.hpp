@@ -5,7 +5,7 @@
 namespace boresight::alignment {
 
 struct FilterConfig {
-  double min_speed_mps = 5.0;  ///< slower driving tells nothing (Report A §8)
+  double min_speed_mps = 5.0;  ///< slower driving tells nothing (Burza 2025, §8)
 
   // How wrong everything may be before anything was measured (1 σ).
   double prior_speed_scale_std = 0.03;

@@ -1,4 +1,4 @@
-// Velocity of a sensor over ground and its derivatives to everything that is estimated (algorithms.md §0).
+// Velocity of a sensor over ground and its derivatives to everything that is estimated (docs/algorithms/frames.md).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Boresight's own alignment estimator: a robust recursive information filter over all radars of the vehicle
-// (algorithms.md §1.4).
+// (docs/algorithms/alignment.md).
 #pragma once
 
 #include <cstdint>

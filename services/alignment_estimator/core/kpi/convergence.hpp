@@ -26,8 +26,8 @@ class Convergence {
   /// way at the value before the knock.
   void add(double seconds_of_drive, std::uint64_t scans, const Eigen::Vector4d& values, std::uint32_t step_changes);
 
-  /// Drive until the value stayed within 5 % of the way from the start to today's value (Report A §8; the truth is not
-  /// known). Not known while the way is shorter than five times `std`: then it may be all noise.
+  /// Drive until the value stayed within 5 % of the way from the start to today's value (Burza 2025, §8; the truth is
+  /// not known). Not known while the way is shorter than five times `std`: then it may be all noise.
   [[nodiscard]] Settled to_95_percent(AlignmentParameter parameter, double std) const;
   /// Change over the last minute of drive; NaN before that.
   [[nodiscard]] double drift_per_minute(AlignmentParameter parameter) const;

@@ -1,4 +1,4 @@
-// Moments and histograms of the range-rate residual over an exponential window: the key figures of Report A §8, with
+// Moments and histograms of the range-rate residual over an exponential window: the key figures of Burza 2025, §8, with
 // constant memory, whatever the method.
 #pragma once
 

@@ -1,16 +1,16 @@
-// Settings of Boresight's filter with the planar roll model of Report A; for reproducing its tables only.
+// Settings of Boresight's filter with the planar roll model of Burza 2025; for reproducing its tables only.
 #pragma once
 
 namespace boresight::alignment::planar {
 
 struct PlanarConfig {
-  double min_speed_mps = 5.0;  ///< slower driving tells nothing (Report A §8)
+  double min_speed_mps = 5.0;  ///< slower driving tells nothing (Burza 2025, §8)
 
   // How wrong everything may be before anything was measured (1 σ).
   double prior_speed_scale_std = 0.03;
   double prior_angle_std_rad = 0.0698;  ///< 4°, of α, β and γ each
 
-  // Random walks. Report A's truth stands still, so these are smaller than a real mounting's.
+  // Random walks. Burza's truth stands still, so these are smaller than a real mounting's.
   double angle_drift_rad_per_sqrt_s = 1e-7;
   double speed_scale_drift_per_sqrt_s = 5e-8;
 

@@ -1,4 +1,4 @@
-// Boresight's filter with the planar roll model of Report A, for reproducing its tables only.
+// Boresight's filter with the planar roll model of Burza 2025, for reproducing its tables only.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Where the plate was seen: yaw error, Report A §7 (9).
+// Where the plate was seen: yaw error, Burza 2025, §7 (9).
 #pragma once
 
 #include "services/alignment_estimator/core/plate/fit.hpp"

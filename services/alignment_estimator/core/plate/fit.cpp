@@ -126,7 +126,7 @@ Solution fit_robust(const Points& points, double& rivals_variance) {
   return result;
 }
 
-/// Maxima of M random triples, Report A §7: how far the tilts agree with one another.
+/// Maxima of M random triples, Burza 2025, §7: how far the tilts agree with one another.
 void judge_by_triples(const Points& points, const FitConfig& config, PlateResult& result) {
   std::array<double, kMaxTriples> maxima{};
   std::size_t count = 0;

@@ -13,7 +13,7 @@ namespace boresight::alignment::plate {
 enum class FitMethod : std::uint8_t {
   /// Each tilt's median in dB, sharpened by Tukey's biweight; RANSAC and least squares; azimuth by a mean within 3 MAD.
   kRobust,
-  /// Report A §7: weighted least squares of means (2)–(8); azimuth by two rounds of 2σ (9).
+  /// Burza 2025, §7: weighted least squares of means (2)–(8); azimuth by two rounds of 2σ (9).
   kPublished,
 };
 

@@ -6,8 +6,8 @@
 
 namespace boresight::alignment::plate {
 
-inline constexpr std::size_t kMaxTilts = 11;         ///< Report A §7: N ≤ 11
-inline constexpr std::size_t kMinScansPerTilt = 10;  ///< Report A §7: K = 10…50
+inline constexpr std::size_t kMaxTilts = 11;         ///< Burza 2025, §7: N ≤ 11
+inline constexpr std::size_t kMinScansPerTilt = 10;  ///< Burza 2025, §7: K = 10…50
 inline constexpr std::size_t kMaxScansPerTilt = 50;
 inline constexpr std::size_t kFewestTilts = 3;      ///< a parabola has three coefficients
 inline constexpr double kLargestTilt_rad = 0.3491;  ///< 20°: beyond, no plate is seen in the main lobe

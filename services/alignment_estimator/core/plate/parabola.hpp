@@ -1,4 +1,4 @@
-// Weighted least squares of a parabola, Report A §7 (2)–(8).
+// Weighted least squares of a parabola, Burza 2025, §7 (2)–(8).
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The hand-shake between an end-of-line station that tilts a plate and the radar's calibration (Report A §7), as a
+// The hand-shake between an end-of-line station that tilts a plate and the radar's calibration (Burza 2025, §7), as a
 // state machine: commands, scans and clock ticks go in with their time; state, instruction, progress and result come
 // out.
 #pragma once

@@ -1,4 +1,4 @@
-// Settings of the published alignment methods of Report A §8; the defaults of what it states are its constants.
+// Settings of the published alignment methods of Burza 2025, §8; the defaults of what it states are its constants.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ enum class RoadModel : std::uint8_t {
 struct PublishedConfig {
   RoadModel road_model = RoadModel::kFull;
   double straight_yaw_rate_radps = 0.005;  ///< limit of RoadModel::kStraightWhereSlow
-  double min_speed_mps = 5.0;              ///< Report A §8
+  double min_speed_mps = 5.0;              ///< Burza 2025, §8
 
   // In the order k_v, α, β, γ.
   std::array<double, 4> steepest_descent_rate{1e-6, 1e-3, 1e-2, 1e-2};  ///< η of (23)

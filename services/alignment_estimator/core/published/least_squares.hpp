@@ -1,4 +1,4 @@
-// Report A (24)(25): damped nonlinear least squares, and the 1-D reference of the literature in the same way.
+// Burza 2025, (24)(25): damped nonlinear least squares, and the 1-D reference of the literature in the same way.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -15,7 +15,7 @@ namespace boresight::alignment::published {
   return -rate.cwiseProduct(damped.ldlt().solve(equations.jtr));
 }
 
-/// All four parameters (`Kind::kLeastSquares`), or k_v and α with β = γ = 0 (`Kind::kAzimuth1d`), for which Report A
+/// All four parameters (`Kind::kLeastSquares`), or k_v and α with β = γ = 0 (`Kind::kAzimuth1d`), for which Burza 2025
 /// names no algorithm: it gets the same one.
 class LeastSquares final : public PublishedMethod {
  public:

@@ -13,7 +13,7 @@ namespace boresight::alignment::published {
 [[nodiscard]] std::unique_ptr<Method> make_published(Kind kind, const VehicleConfig& vehicle,
                                                      const PublishedConfig& config = {});
 
-/// Report A's simulation: the constants as published and, since nothing moves in it, no gate.
+/// Burza's simulation: the constants as published and, since nothing moves in it, no gate.
 [[nodiscard]] inline PublishedConfig as_published() {
   PublishedConfig config;
   config.gate = false;

@@ -34,7 +34,7 @@ struct ScanView {
   }
 };
 
-/// Every radar has its angles, all share k_v. Report A steps all radars at once, with the mean of their steps of k_v;
+/// Every radar has its angles, all share k_v. Burza 2025 steps all radars at once, with the mean of their steps of k_v;
 /// here scans come one radar at a time, and each moves k_v by its own step divided by the number of radars that
 /// currently deliver. For synchronised radars that is the same but for terms of second order in the step.
 ///

@@ -1,4 +1,4 @@
-// Report A (22)(23): steepest descent.
+// Burza 2025, (22)(23): steepest descent.
 #pragma once
 
 #include "services/alignment_estimator/core/published/published_method.hpp"

@@ -1,4 +1,4 @@
-// Report A (26)(27): nonlinear total least squares.
+// Burza 2025, (26)(27): nonlinear total least squares.
 #pragma once
 
 #include "services/alignment_estimator/core/published/published_method.hpp"

@@ -1,5 +1,5 @@
-// Static calibration with corner reflectors at surveyed positions (Report D §2.1): the published fit of a line, and the
-// product's own fit of the whole rotation to the directions.
+// Static calibration with corner reflectors at surveyed positions (the 4D chain design, §2.1): the published fit of a
+// line, and the product's own fit of the whole rotation to the directions.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ struct Position {
 
 struct Config {
   bool has_elevation = true;
-  std::size_t min_positions = 10;  ///< Report D §2.1
+  std::size_t min_positions = 10;  ///< the 4D chain design, §2.1
   double range_min_m = 5.0;
   double range_max_m = 50.0;
   double survey_std_m = 0.02;    ///< of a position, along x and along y

@@ -5,7 +5,7 @@
 
 namespace boresight::ghosts::published {
 
-/// What the public example states from which Report B's scene comes (MathWorks, "Highway Vehicle Tracking with
+/// What the public example states from which Le Ba Thanh's scene comes (MathWorks, "Highway Vehicle Tracking with
 /// Multipath Radar Reflections"): both thresholds of range rate, the clusters' ellipse and number, no margins. The
 /// report names the tests but not their constants.
 struct Config {

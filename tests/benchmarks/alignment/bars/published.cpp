@@ -1,4 +1,4 @@
-// The set-up of Report A's tables: planar truth, slow drive, no outliers. Every published method, and ours beside them.
+// The set-up of Burza's tables: planar truth, slow drive, no outliers. Every published method, and ours beside them.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
@@ -108,7 +108,7 @@ void published(const Options& options, Report& report) {
       table.rows.push_back({"*published:* Nelder–Mead", "6971", "", "", "", "2.99e-05", "0.0106", "0.1380", "0.0912",
                             "0.0272", "−0.0201 / 3.2126"});
     }
-    // The bar is for ours with the model that the truth has: Report A's planar rows on planar truth, a rotation on one.
+    // The bar is for ours with the model that the truth has: Burza's planar rows on planar truth, a rotation on one.
     std::vector<NamedMethod> ours = {own_method()};
     if (planar_truth) ours.insert(ours.begin(), own_method_with_planar_rows());
     for (const NamedMethod& own : ours) {

@@ -1,4 +1,5 @@
-// Report A states neither the size of Nelder–Mead's simplex nor the time constant of its filter: how much they matter.
+// Burza 2025 states neither the size of Nelder–Mead's simplex nor the time constant of its filter: how much they
+// matter.
 #include "services/alignment_estimator/core/published/published.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"

@@ -1,4 +1,4 @@
-// Outcome of a method on drives like those of Report A's tables, over seeds and radars, in its terms.
+// Outcome of a method on drives like those of Burza's tables, over seeds and radars, in its terms.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct PublishedResult {
 /// Error of (k_v, α, β, γ) by place; 1, degrees.
 [[nodiscard]] double published_error(const RadarError& radar, std::size_t parameter);
 
-/// Converged estimates wander; their mean over the last fifth of the drive is what Report A's tables call bias.
+/// Converged estimates wander; their mean over the last fifth of the drive is what Burza's tables call bias.
 [[nodiscard]] PublishedResult published_result(const std::vector<Run>& runs, double duration_s);
 
 /// Cells for the header below: name, iterations, biases, residuals.

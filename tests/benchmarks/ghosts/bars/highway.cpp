@@ -1,4 +1,4 @@
-// Report B's scene: the published method comes out as published, which shows that the scene is not easier than the
+// Le Ba Thanh's scene: the published method comes out as published, which shows that the scene is not easier than the
 // original, and the product's own method is better.
 #include <algorithm>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kScenario = "highway_multipath";
 constexpr double kDuration_s = 11.4;  // 114 steps of 0.1 s
 
-/// Report B's table: count, and percent of the right label, with GGIW-PMBM.
+/// Le Ba Thanh's table: count, and percent of the right label, with GGIW-PMBM.
 struct Published {
   Provenance truth;
   double count;
@@ -32,7 +32,7 @@ void judge_counts(const std::vector<Outcome>& outcomes, const std::string& how, 
     const double count = median_count(outcomes, truth);
     const double left_out = 0.01 * percent_left_out(outcomes, truth).median * count;
     report.within("scene", "detections: " + std::string(name_of(truth)), count, 0.8 * published, 1.2 * published, "",
-                  how + "; Report B: " + fixed(published, 0) + " ± 20 %; of these the corrector leaves out " +
+                  how + "; Le Ba Thanh 2023: " + fixed(published, 0) + " ± 20 %; of these the corrector leaves out " +
                       fixed(left_out, 0));
   };
   for (const Published& p : kPublished) judge(p.truth, p.count);
@@ -44,10 +44,11 @@ void judge_published(const std::vector<Outcome>& outcomes, const std::string& ho
     report.within("published", std::string(name_of(p.truth)) + " told right",
                   percent_told(outcomes, p.truth, p.truth).median, p.right_percent - 5.0,
                   std::min(100.0, p.right_percent + 5.0), "%",
-                  how + "; Report B: " + fixed(p.right_percent, 2) + " ± 5");
+                  how + "; Le Ba Thanh 2023: " + fixed(p.right_percent, 2) + " ± 5");
   }
   report.within("published", "clutter not moving", percent_not_moving(outcomes, Provenance::kClutter).median,
-                kPublishedClutterNotMoving - 5.0, kPublishedClutterNotMoving + 5.0, "%", how + "; Report B: 75.38 ± 5");
+                kPublishedClutterNotMoving - 5.0, kPublishedClutterNotMoving + 5.0, "%",
+                how + "; Le Ba Thanh 2023: 75.38 ± 5");
 }
 
 void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Report& report) {
@@ -77,7 +78,7 @@ void judge_own(const std::vector<Outcome>& outcomes, const std::string& how, Rep
 void compare(const std::vector<NamedGhostMethod>& methods, const std::vector<std::vector<Outcome>>& outcomes,
              Report& report) {
   const auto add = [&](const std::string& what, double published, double bar, auto&& percent) {
-    add_comparison("highway_multipath", what, "Report B", published, report);
+    add_comparison("highway_multipath", what, "Le Ba Thanh 2023", published, report);
     for (std::size_t m = 0; m < methods.size(); ++m) {
       add_comparison("highway_multipath", what, methods[m].name, percent(outcomes[m]), report);
     }

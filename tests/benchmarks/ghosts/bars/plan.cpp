@@ -1,5 +1,5 @@
-// One cycle of all radars of Report B's scene from above, for a figure: what detections are, and what they were told to
-// be, with the true mirrors and the reflectors that were found. It judges nothing.
+// One cycle of all radars of Le Ba Thanh's scene from above, for a figure: what detections are, and what they were told
+// to be, with the true mirrors and the reflectors that were found. It judges nothing.
 #include <map>
 #include <string>
 #include <vector>

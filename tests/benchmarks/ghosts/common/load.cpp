@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 50'000'000;
 constexpr double kSpeed_mps = 25.0, kRail_m = 7.5;
 constexpr double kRoad_m = 100.0;         // of world, which repeats: kCycles periods at kSpeed_mps
-constexpr std::size_t kMovingOf100 = 13;  // ghosts among them: Report B has 12 % moving, half of them real
+constexpr std::size_t kMovingOf100 = 13;  // ghosts among them: Le Ba Thanh 2023 has 12 % moving, half of them real
 /// Places of the standing world per kRoad_m in the condition. Noise and the angles of view spread each of them
 /// over several points of the map.
 constexpr double kPlaces = 890.0;

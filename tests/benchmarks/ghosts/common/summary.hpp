@@ -28,7 +28,7 @@ struct TrackFaults {
   std::size_t ghost_tracks = 0, longest_ghost_track_scans = 0, other_tracks = 0;
   std::size_t object_seconds = 0, lost_seconds = 0, lost_though_told_seconds = 0, gained_seconds = 0;
   std::size_t objects = 0, lost_objects = 0;  ///< with a second that perfect labels have; lost for over half of those
-  /// Of the ghost tracks, those that last five steps of Report B, in each of which all radars scan once.
+  /// Of the ghost tracks, those that last five steps of Le Ba Thanh 2023, in each of which all radars scan once.
   static constexpr double kFiveSteps_s = 0.5;
   std::size_t lasting_ghost_tracks = 0;
   LostByChance lost_by_chance;

@@ -21,7 +21,7 @@ constexpr double kDegree = M_PI / 180.0;
 
 struct World {
   double speed_scale = 1.01;
-  // Table 1 of Report A; front and rear radars of both sides.
+  // Table 1 of Burza 2025; front and rear radars of both sides.
   std::vector<Eigen::Vector3d> truth = {{-1, 1, 2}, {2, -1, 1}, {1, 2, -1}, {-2, -2, -2}};
   std::size_t detections = 3'000;
   double noise_mps = 0.02, movers = 0.0;
@@ -147,7 +147,7 @@ TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest)
     EXPECT_GT(radar.pitch.made_up, 0.8 * config.judgement_shift_rad);
     EXPECT_GT(std::abs(radar.pitch.response), 0.5);
   }
-  // Pitch and roll are worth nothing to the residuals (algorithms.md §1.4).
+  // Pitch and roll are worth nothing to the residuals (docs/algorithms/alignment.md).
   EXPECT_GT(result.after.rmse_mps, 0.97 * result.yaw_only.rmse_mps);
   EXPECT_LT(result.after.rmse_mps, 0.5 * result.before.rmse_mps);
 }

@@ -26,7 +26,7 @@ inline VehicleConfig four_corners() {
   return vehicle;
 }
 
-/// Table 1 of Report A.
+/// Table 1 of Burza 2025.
 inline std::vector<Eigen::Vector4d> table_1() {
   const double deg[4][3] = {{-1, 1, 2}, {2, -1, 1}, {1, 2, -1}, {-2, -2, -2}};
   std::vector<Eigen::Vector4d> truth;

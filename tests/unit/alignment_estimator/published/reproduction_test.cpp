@@ -1,4 +1,4 @@
-// The set-up of Report A's tables, briefly: that the published figures come out. The whole table, over seeds and for
+// The set-up of Burza's tables, briefly: that the published figures come out. The whole table, over seeds and for
 // the methods that take an hour of drive, is the benchmark's.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// The published set-up must give the residuals that Report A prints, or nothing compared with its tables means a thing.
+// The published set-up must give the residuals that Burza 2025 prints, or nothing compared with its tables means a
+// thing.
 #include <cmath>
 
 #include "tests/simulator/alignment/drive.hpp"
