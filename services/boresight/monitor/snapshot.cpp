@@ -64,8 +64,8 @@ RadarSnapshot read_radar(Words& words) {
   if (!words.more()) return r;  // a record of an earlier version
   read_details(words, r.details);
   if (!words.more()) return r;  // the same
-  for (std::uint64_t& told : r.labels.told) words.read("detections with a label", told);
-  words.read("detections left out", r.labels.left_out);
+  for (std::uint64_t& count : r.labels.classified) words.read("detections with a label", count);
+  words.read("detections rejected", r.labels.rejected);
   words.read("scans with labels", r.labels.scans);
   words.read("scans without tracks", r.labels.scans_without_tracks);
   return r;
@@ -133,11 +133,11 @@ std::string details_json(const AlignmentDetails& d) {
 
 /// Sums since the monitor began.
 std::string labels_json(const LabelCounts& labels) {
-  const auto& told = labels.told;
-  return fmt::format(R"("told":{{"unknown":{},"moving":{},"stationary":{},"ghost_type_1":{},"ghost_type_2":{},)"
-                     R"("clutter":{},"left_out":{}}},"classified_scans":{},"classified_without_tracks":{})",
-                     told[0], told[1], told[2], told[3], told[4], told[5], labels.left_out, labels.scans,
-                     labels.scans_without_tracks);
+  const auto& by_label = labels.classified;
+  return fmt::format(R"("classified":{{"unknown":{},"moving":{},"stationary":{},"ghost_type_1":{},"ghost_type_2":{},)"
+                     R"("clutter":{},"rejected":{}}},"classified_scans":{},"classified_without_tracks":{})",
+                     by_label[0], by_label[1], by_label[2], by_label[3], by_label[4], by_label[5], labels.rejected,
+                     labels.scans, labels.scans_without_tracks);
 }
 
 }  // namespace
@@ -157,8 +157,8 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
     for (const AngleEstimate& angle : {d.yaw, d.pitch, d.roll, d.yaw_rate_bias, d.slip}) write_angle(output, angle);
     output << ' ' << d.step_changes << ' ' << d.yaw_seconds_to_95_percent << ' ' << d.pitch_seconds_to_95_percent << ' '
            << d.yaw_drift_radpmin << ' ' << d.residual_rmse_mps << ' ' << d.nees;
-    for (const std::uint64_t told : r.labels.told) output << ' ' << told;
-    output << ' ' << r.labels.left_out << ' ' << r.labels.scans << ' ' << r.labels.scans_without_tracks << '\n';
+    for (const std::uint64_t count : r.labels.classified) output << ' ' << count;
+    output << ' ' << r.labels.rejected << ' ' << r.labels.scans << ' ' << r.labels.scans_without_tracks << '\n';
   }
   for (const TrackSnapshot& t : snapshot.tracks) {
     output << "track " << t.id << ' ' << (t.confirmed ? 1 : 0) << ' ' << static_cast<int>(t.movement) << ' ' << t.x_m

@@ -44,16 +44,16 @@ struct AlignmentDetails {
 
 /// What the ghost filter told detections to be, of all its scans that the onlooker received.
 struct LabelCounts {
-  std::array<std::uint64_t, 6> told{};  ///< by Provenance
-  std::uint64_t left_out = 0;           ///< by the corrector before; not among those told
+  std::array<std::uint64_t, 6> classified{};  ///< by Provenance
+  std::uint64_t rejected = 0;                 ///< by the corrector before; not among those told
   std::uint64_t scans = 0;
   std::uint64_t scans_without_tracks = 0;  ///< the filter had none of the tracker's, or too old ones
 
-  [[nodiscard]] std::uint64_t of(Provenance label) const { return told[static_cast<std::size_t>(label)]; }
+  [[nodiscard]] std::uint64_t of(Provenance label) const { return classified[static_cast<std::size_t>(label)]; }
   /// Those left out included.
   [[nodiscard]] std::uint64_t detections() const {
-    std::uint64_t sum = left_out;
-    for (const std::uint64_t count : told) sum += count;
+    std::uint64_t sum = rejected;
+    for (const std::uint64_t count : classified) sum += count;
     return sum;
   }
 };

@@ -97,12 +97,12 @@ class Finder {
     }
     if (truth_ != nullptr && count > 0) ++(recent.truth != nullptr ? out_.compared_scans : out_.unknown_scans);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool left_out = (scan.detection_flags[i] & corrected_flag::kRejected) != 0;
+      const bool rejected = (scan.detection_flags[i] & corrected_flag::kRejected) != 0;
       if (is_ghost(scan.provenance[i])) ++recent.ghosts;
       if (recent.truth == nullptr) continue;
       const Provenance is = recent.truth->detections[i].provenance;
-      out_.confusion->add(is, scan.provenance[i], left_out);
-      if (!left_out && is != scan.provenance[i]) ++recent.mistakes;
+      out_.confusion->add(is, scan.provenance[i], rejected);
+      if (!rejected && is != scan.provenance[i]) ++recent.mistakes;
     }
     std::deque<Recent>& of_radar = recent_[scan.header.source_id];
     of_radar.push_front(std::move(recent));

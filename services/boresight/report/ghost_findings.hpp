@@ -32,8 +32,8 @@ struct PlanView {
     float x_m, y_m;  ///< vehicle frame at its scan's time
     float range_rate_over_ground_mps;
     float ghost_probability;
-    Provenance told;
-    bool left_out;  ///< by the corrector
+    Provenance label;
+    bool rejected;  ///< by the corrector
     std::optional<Provenance> truth;
   };
   struct Sensor {

@@ -33,31 +33,31 @@ class Counter {
 struct RadarSums {
   Counter scans;
   Counter lost;
-  std::array<Counter, 6> told;
-  Counter left_out, classified, without_tracks;
+  std::array<Counter, 6> classified;
+  Counter rejected, scans_with_labels, without_tracks;
   double nees = 0.0;
   int known_nees = 0;
 };
 
 void see_labels(const monitor::LabelCounts& labels, RadarSums& sums) {
-  for (std::size_t i = 0; i < labels.told.size(); ++i) sums.told[i].see(labels.told[i]);
-  sums.left_out.see(labels.left_out);
-  sums.classified.see(labels.scans);
+  for (std::size_t i = 0; i < labels.classified.size(); ++i) sums.classified[i].see(labels.classified[i]);
+  sums.rejected.see(labels.rejected);
+  sums.scans_with_labels.see(labels.scans);
   sums.without_tracks.see(labels.scans_without_tracks);
 }
 
 monitor::LabelCounts labels_of(const RadarSums& sums) {
   monitor::LabelCounts labels;
-  for (std::size_t i = 0; i < labels.told.size(); ++i) labels.told[i] = sums.told[i].total();
-  labels.left_out = sums.left_out.total();
-  labels.scans = sums.classified.total();
+  for (std::size_t i = 0; i < labels.classified.size(); ++i) labels.classified[i] = sums.classified[i].total();
+  labels.rejected = sums.rejected.total();
+  labels.scans = sums.scans_with_labels.total();
   labels.scans_without_tracks = sums.without_tracks.total();
   return labels;
 }
 
 void add_labels(const monitor::LabelCounts& labels, monitor::LabelCounts& sum) {
-  for (std::size_t i = 0; i < labels.told.size(); ++i) sum.told[i] += labels.told[i];
-  sum.left_out += labels.left_out;
+  for (std::size_t i = 0; i < labels.classified.size(); ++i) sum.classified[i] += labels.classified[i];
+  sum.rejected += labels.rejected;
   sum.scans += labels.scans;
   sum.scans_without_tracks += labels.scans_without_tracks;
 }
@@ -338,7 +338,7 @@ std::string labels_text(const monitor::LabelCounts& labels) {
     put((ghost ? "ghost " : "") + std::string(name_of(label)), labels.of(label));
   }
   if (labels.of(Provenance::kUnknown) > 0) put("nothing", labels.of(Provenance::kUnknown));
-  if (labels.left_out > 0) put("left out by the corrector", labels.left_out);
+  if (labels.rejected > 0) put("left out by the corrector", labels.rejected);
   return text;
 }
 

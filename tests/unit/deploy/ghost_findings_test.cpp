@@ -156,7 +156,7 @@ TEST(GhostFindings, WithoutTruthThereAreViewsAndNoVerdict) {
   EXPECT_TRUE(ghost_checks(found)[0].passed);
   ASSERT_EQ(found.most_ghosts.sensors.size(), 2u);
   EXPECT_FALSE(found.most_ghosts.detections.at(1).truth);
-  EXPECT_EQ(found.most_ghosts.detections.at(1).told, Provenance::kGhostType2);
+  EXPECT_EQ(found.most_ghosts.detections.at(1).label, Provenance::kGhostType2);
   EXPECT_EQ(found.most_ghosts.tracks.size(), 2u);
   EXPECT_NEAR(found.most_ghosts.sensors[0].age_s, 0.0125, 1e-6);
   EXPECT_TRUE(found.most_ghosts.objects.empty());

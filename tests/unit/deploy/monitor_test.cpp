@@ -130,7 +130,7 @@ TEST(Accumulator, SumsWhatDetectionsWereToldToBe) {
   EXPECT_EQ(labels.of(Provenance::kGhostType2), 2u);
   EXPECT_EQ(labels.of(Provenance::kClutter), 2u);
   EXPECT_EQ(labels.of(Provenance::kUnknown), 0u);
-  EXPECT_EQ(labels.left_out, 2u);
+  EXPECT_EQ(labels.rejected, 2u);
   EXPECT_EQ(labels.detections(), 10u);
   EXPECT_EQ(labels.scans, 2u);
   EXPECT_EQ(labels.scans_without_tracks, 1u);
@@ -186,11 +186,13 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
               ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
   EXPECT_THAT(to_json(written),
               ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7,"std":0.04,"observable":true})"));
-  EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("step_changes":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
-  EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("told":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
-                                   R"("clutter":1,"left_out":1},"classified_scans":1,"classified_without_tracks":1})"));
+  EXPECT_THAT(
+      to_json(written),
+      ::testing::HasSubstr(R"("step_changes":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
+  EXPECT_THAT(
+      to_json(written),
+      ::testing::HasSubstr(R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
+                           R"("clutter":1,"rejected":1},"classified_scans":1,"classified_without_tracks":1})"));
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);

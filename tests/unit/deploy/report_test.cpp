@@ -121,8 +121,8 @@ TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheOnlooker) {
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     for (auto& radar : snapshots[i].radars) {
       const std::uint64_t n = i < 60 ? i : i - 60;  // it began anew
-      radar.labels.told = {0, 10 * n, 80 * n, n, 3 * n, n};
-      radar.labels.left_out = 5 * n;
+      radar.labels.classified = {0, 10 * n, 80 * n, n, 3 * n, n};
+      radar.labels.rejected = 5 * n;
       radar.labels.scans = n;
     }
   }

@@ -21,15 +21,15 @@ std::string row(const std::string& who, const LabelCounts& labels) {
   };
   std::string text = fmt::format("<tr><td>{}</td><td class=n>{}</td>", who, labels.detections());
   for (const LabelStyle& style : kLabelStyles) text += cell(labels.of(style.label));
-  return text + cell(labels.left_out) +
+  return text + cell(labels.rejected) +
          fmt::format("<td class=n>{} of {}</td></tr>\n", labels.scans_without_tracks, labels.scans);
 }
 
 LabelCounts sum_of(const Snapshot& snapshot) {
   LabelCounts sum;
   for (const RadarSnapshot& radar : snapshot.radars) {
-    for (std::size_t i = 0; i < sum.told.size(); ++i) sum.told[i] += radar.labels.told[i];
-    sum.left_out += radar.labels.left_out;
+    for (std::size_t i = 0; i < sum.classified.size(); ++i) sum.classified[i] += radar.labels.classified[i];
+    sum.rejected += radar.labels.rejected;
   }
   return sum;
 }

@@ -40,7 +40,7 @@ struct Extent {
 };
 
 std::string tooltip(const PlanView::Detection& d) {
-  std::string text = fmt::format("radar {}: {}", d.radar, d.left_out ? "left out" : style_of(d.told).words);
+  std::string text = fmt::format("radar {}: {}", d.radar, d.rejected ? "left out" : style_of(d.label).words);
   if (d.truth) text += fmt::format(", in truth {}", style_of(*d.truth).words);
   return text + fmt::format("; {:.1f} m ahead, {:.1f} m left, {:+.1f} m/s over ground, ghost probability {:.2f}", d.x_m,
                             d.y_m, d.range_rate_over_ground_mps, d.ghost_probability);
@@ -48,7 +48,7 @@ std::string tooltip(const PlanView::Detection& d) {
 
 /// What matters most; the rest is drawn small, and where there is room.
 bool stands_out(const PlanView::Detection& d) {
-  return !d.left_out && d.told != Provenance::kStationary;
+  return !d.rejected && d.label != Provenance::kStationary;
 }
 
 Extent extent_of(const PlanView& view) {
@@ -78,10 +78,10 @@ std::string draw(const PlanView& view, const Extent& extent) {
   for (const bool still : {true, false}) {
     for (const PlanView::Detection& d : view.detections) {
       if (stands_out(d) == still) continue;
-      const LabelStyle& style = style_of(d.told);
-      const auto shape = d.left_out ? SvgChart::Shape::kSquare : style.shape;
-      chart.symbol({d.x_m, d.y_m}, shape, still ? 2.0 : kSymbol_px, d.left_out ? "lx" : style.css, tooltip(d));
-      if (!d.left_out && d.truth && *d.truth != d.told) {
+      const LabelStyle& style = style_of(d.label);
+      const auto shape = d.rejected ? SvgChart::Shape::kSquare : style.shape;
+      chart.symbol({d.x_m, d.y_m}, shape, still ? 2.0 : kSymbol_px, d.rejected ? "lx" : style.css, tooltip(d));
+      if (!d.rejected && d.truth && *d.truth != d.label) {
         chart.symbol({d.x_m, d.y_m}, SvgChart::Shape::kCircle, 2.2 * kSymbol_px, "wrong", tooltip(d));
       }
     }
@@ -103,11 +103,11 @@ std::string render(const std::string& what, const PlanView& view, const TimeBase
   std::size_t wrong = 0, ghosts = 0, compared = 0, outside = 0;
   double oldest_s = 0.0;
   for (const PlanView::Detection& d : view.detections) {
-    if (d.left_out) continue;
-    ghosts += d.told == Provenance::kGhostType1 || d.told == Provenance::kGhostType2 ? 1 : 0;
+    if (d.rejected) continue;
+    ghosts += d.label == Provenance::kGhostType1 || d.label == Provenance::kGhostType2 ? 1 : 0;
     outside += stands_out(d) && !extent.shows(d.x_m, d.y_m) ? 1 : 0;
     if (d.truth) ++compared;
-    if (d.truth && *d.truth != d.told) ++wrong;
+    if (d.truth && *d.truth != d.label) ++wrong;
   }
   for (const PlanView::Sensor& sensor : view.sensors) oldest_s = std::max(oldest_s, sensor.age_s);
   std::string text = fmt::format(
