@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "services/ingest_gateway/dbc/names.hpp"
+#include "services/common/text/near_names.hpp"
 
 namespace boresight::ingest {
 
@@ -66,7 +66,7 @@ template <typename Items>
 std::string near_text(const std::string& name, const Items& items) {
   std::vector<std::string> candidates;
   for (const auto& item : items) candidates.push_back(item.name);
-  const std::vector<std::string> near = dbc::near_names(name, candidates);
+  const std::vector<std::string> near = near_names(name, candidates);
   return near.empty() ? "" : fmt::format("; similar: {}", quoted(near));
 }
 
