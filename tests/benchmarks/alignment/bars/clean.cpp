@@ -31,7 +31,7 @@ void clean(const Options& options, Report& report) {
     table.rows.push_back(row);
   }
   const std::string how =
-      "worst of 5 road kinds; " + std::to_string(seeds) + " seeds each, 120 s, worst radar of each, median over seeds";
+      "120 s: median over " + std::to_string(seeds) + " seeds of the worst radar; worst of 5 road kinds";
   report.at_most("clean", "k_v", worst[kSpeedScale], 5e-5, "", how);
   report.at_most("clean", "yaw", worst[kYaw], 0.005, "°", how);
   report.at_most("clean", "pitch", worst[kPitch], 0.03, "°", how);

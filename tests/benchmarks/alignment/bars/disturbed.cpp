@@ -1,4 +1,4 @@
-// Three minutes with a yaw-rate bias, rear-axle slip, body pitch and braking pitch, one by one and all at once.
+// Drives of three minutes with yaw-rate bias, rear-axle slip, body pitch and braking pitch, singly and all at once.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -12,7 +12,7 @@ using simulator::AlignmentSpec;
 
 struct Case {
   const char* name;
-  void (*keep)(AlignmentSpec&);  ///< switches off what does not belong to the case
+  void (*keep)(AlignmentSpec&);  ///< switches off the disturbances of the other cases
 };
 
 void none_but(AlignmentSpec& spec, bool bias, bool slip, bool body_pitch, bool braking) {
@@ -61,8 +61,8 @@ void disturbed(const Options& options, Report& report) {
       table.rows.push_back(row);
     }
   }
-  const std::string how = "all disturbances at once; worst of city and mixed roads, " + std::to_string(all_seeds) +
-                          " seeds each, 180 s, worst radar of each, median over seeds";
+  const std::string how = "all disturbances at once, 180 s: median over " + std::to_string(all_seeds) +
+                          " seeds of the worst radar; worst of city and mixed roads";
   report.at_most("disturbed", "yaw", worst_yaw, 0.01, "°", how);
   report.at_most("disturbed", "pitch", worst_pitch, 0.05, "°", how);
   report.add(std::move(table));

@@ -1,4 +1,4 @@
-// Radars crooked by 5° about each axis, and every second detection moves or is a ghost.
+// Mounting errors of 5° about each axis, and up to 60 % outliers: detections of moving objects and ghosts.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -12,7 +12,7 @@ void outliers(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(40);
   double worst = 100.0;
   Table table{"outliers",
-              "share of runs captured, 5° errors about each axis",
+              "share of runs that converge, mounting errors of 5° about each axis",
               {"share of outliers", "city", "motorway", "mixed"},
               {}};
   for (const double share : {0.25, 0.5, 0.6}) {
@@ -42,9 +42,9 @@ void outliers(const Options& options, Report& report) {
     }
     table.rows.push_back(row);
   }
-  report.at_least("outliers", "captured with 50 % movers and ghosts, 5° errors", worst, 95.0, "%",
+  report.at_least("outliers", "runs that converge, 50 % outliers, mounting errors of 5°", worst, 95.0, "%",
                   "worst of 3 road kinds, " + std::to_string(seeds) +
-                      " runs each, 60 s; captured: all radars' yaw within 0.1°, pitch 0.5°, k_v 1e-3");
+                      " runs each of 60 s; all radars within 0.1° of yaw, 0.5° of pitch, 1e-3 of k_v");
   report.add(std::move(table));
 }
 

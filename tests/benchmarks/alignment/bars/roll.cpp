@@ -1,4 +1,4 @@
-// Roll about the vehicle's axis after ten minutes in the city: the parameter that takes longest.
+// Roll about the vehicle's axis after ten minutes in the city: the parameter that converges last.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -15,7 +15,7 @@ void roll(const Options& options, Report& report) {
   RunOptions run_options;
   run_options.snapshot_period_s = 10.0;
   const auto runs = run_drives(specs, own_method().make, options, run_options);
-  const std::string how = std::to_string(seeds) + " seeds, 600 s of city, worst radar of each, median over seeds";
+  const std::string how = "600 s of city: median over " + std::to_string(seeds) + " seeds of the worst radar";
   const auto front = final_errors(runs, kRoll, {0, 1}), rear = final_errors(runs, kRoll, {2, 3});
   report.at_most("roll", "front radars", median(front) / kDegree, 0.3, "°", how);
   report.at_most("roll", "rear radars", median(rear) / kDegree, 0.7, "°", how);

@@ -1,5 +1,5 @@
-// A knock of one radar: how long until it is told, whether the right radar is named, how the estimate follows and
-// whether its std tells how well. Of 0.5° yaw and 1° pitch the bars are our own.
+// A step change (sudden misalignment) of one radar: delay until it is reported, whether the right radar is named, the
+// error afterwards, and whether the stated std covers that error. The bars for 0.5° yaw and 1° pitch are our own.
 #include <cmath>
 
 #include "tests/benchmarks/alignment/bars/bars.hpp"
@@ -32,8 +32,8 @@ const Case kCases[] = {
 };
 
 struct Outcome {
-  std::vector<double> delays_s;  ///< infinite where it was never told
-  double wrong_radar = 0.0;      ///< told of a radar that nobody touched
+  std::vector<double> delays_s;  ///< infinite if it was never reported
+  double wrong_radar = 0.0;      ///< reports for a radar that was not moved
 };
 
 Outcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Run>& runs) {
@@ -57,11 +57,11 @@ Outcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Ru
 
 void step_change(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(32);
-  Table table{
-      "step_change",
-      "seconds from the knock until it is told: median (95 % quantile)",
-      {"step_change", "road", "delay s", "never told", "wrong radar told", "error 20 s later °", "NEES 20 s later"},
-      {}};
+  Table table{"step_change",
+              "seconds from the step change until it is reported: median (95 % quantile)",
+              {"step change", "road", "delay s", "never reported", "wrong radar reported", "error 20 s later °",
+               "NEES 20 s later"},
+              {}};
   for (const Case& one : kCases) {
     std::vector<double> all_delays_s;
     for (const bool with_disturbances : {false, true}) {
@@ -107,11 +107,10 @@ void step_change(const Options& options, Report& report) {
                             number(std::pow(root_mean_square(later_normalised), 2))});
     }
     if (one.bar_s > 0.0) {
-      report.at_most(
-          "step_change", one.name, median(all_delays_s), one.bar_s, "s",
-          "median over 2 × " + std::to_string(seeds) +
-              " seeds, each radar in turn, either sign, half of the drives disturbed; the 95 % quantile is " +
-              number(quantile(all_delays_s, 0.95)) + " s");
+      report.at_most("step change", one.name, median(all_delays_s), one.bar_s, "s",
+                     "median over 2 × " + std::to_string(seeds) +
+                         " seeds, each radar in turn, both signs, half of the drives disturbed; 95 % quantile: " +
+                         number(quantile(all_delays_s, 0.95)) + " s");
     }
   }
   report.add(std::move(table));

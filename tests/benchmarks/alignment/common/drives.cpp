@@ -64,8 +64,8 @@ AlignmentSpec unsynchronised(double duration_s, std::uint64_t seed) {
   return spec;
 }
 
-/// Ahead, at the corners, and behind; the second on its head, the third with an ambiguity of range rates, the fourth
-/// without elevation, none of the last two with stated stds.
+/// One ahead, two at corners and one behind. The second is upside down, the third has ambiguous range rates, the fourth
+/// measures no elevation; the last two state no stds.
 AlignmentSpec mixed_radars(double duration_s, std::uint64_t seed) {
   AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   const AlignmentRadar like = spec.radars[0];
