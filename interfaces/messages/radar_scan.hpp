@@ -11,8 +11,7 @@ namespace scan_field {
 inline constexpr std::uint32_t kElevation = 1u << 0;
 inline constexpr std::uint32_t kRcs = 1u << 1;
 inline constexpr std::uint32_t kSnr = 1u << 2;
-inline constexpr std::uint32_t kStds =
-    1u << 3;  ///< the sensor states standard deviations; otherwise they are the configured ones
+inline constexpr std::uint32_t kStds = 1u << 3;       ///< standard deviations by the sensor; else the configured ones
 inline constexpr std::uint32_t kExistence = 1u << 4;  ///< otherwise existence is 1
 inline constexpr std::uint32_t kAmbiguity = 1u << 5;  ///< range_rate_min/max_mps bound the unambiguous interval
 }  // namespace scan_field
@@ -25,14 +24,11 @@ inline constexpr std::uint16_t kAmbiguous = 1u << 1;  ///< the range rate lies o
 
 /// Bits of `RadarScan::integrity`: faults of the scan as a whole that the gateway detected.
 namespace scan_integrity {
-inline constexpr std::uint16_t kCounterGap = 1u << 0;  ///< scans are missing before this one
-inline constexpr std::uint16_t kRepeated =
-    1u << 1;  ///< received before, by the sensor's counter or else by content and stamp
-inline constexpr std::uint16_t kFrozen = 1u << 2;  ///< bitwise the same detections as in the previous scan
-inline constexpr std::uint16_t kStale =
-    1u << 3;  ///< measured too long before reception, or with stamps that do not advance
-inline constexpr std::uint16_t kImplausible =
-    1u << 4;  ///< too many detections outside the sensor's field of view or limits
+inline constexpr std::uint16_t kCounterGap = 1u << 0;   ///< scans are missing before this one
+inline constexpr std::uint16_t kRepeated = 1u << 1;     ///< a list received before, by counter or by content and stamp
+inline constexpr std::uint16_t kFrozen = 1u << 2;       ///< bitwise the same detections as in the previous scan
+inline constexpr std::uint16_t kStale = 1u << 3;        ///< too old at reception, or the stamps do not advance
+inline constexpr std::uint16_t kImplausible = 1u << 4;  ///< too many detections beyond the sensor's limits
 inline constexpr std::uint16_t kContradictsEgo = 1u << 5;    ///< range rates contradict the vehicle's motion
 inline constexpr std::uint16_t kIncomplete = 1u << 6;        ///< frames of the cycle are missing
 inline constexpr std::uint16_t kImpossibleCopies = 1u << 7;  ///< many detections of the scan are copies of one another
