@@ -15,7 +15,7 @@ namespace boresight::closed_loop {
 /// Of the vehicle's centre from the ego vehicle: what four corner radars shall see.
 constexpr double kFarthest_m = 60.0;
 using judge::kHidden_s;
-using judge::kNear_m;
+using judge::kMaxTrackDistance_m;
 /// The alignment estimator, which here remembers nothing, takes over a second to find that a radar is 2.5° crooked;
 /// what such a radar makes up meanwhile is counted apart.
 constexpr double kAligned_s = 1.5;

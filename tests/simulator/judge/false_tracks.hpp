@@ -22,15 +22,16 @@ struct GhostTrack {
 
 class FalseTracks {
  public:
-  static constexpr std::size_t kLong_scans = 5;
+  static constexpr std::size_t kMaxTolerated_scans = 5;
 
   /// A track counts as living on ghosts in a scan in which it is confirmed, has detections, is no object's
-  /// (matching.hpp), and most of what lies within kEvidence_m of its box and was told to be moving is a ghost in truth.
-  static constexpr double kEvidence_m = 2.0;
+  /// (matching.hpp), and most of what lies within kEvidenceDistance_m of its box and was told to be moving is a ghost
+  /// in truth.
+  static constexpr double kEvidenceDistance_m = 2.0;
   void add(double t_s, const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
            const TrackList& tracks, const Matching& matching);
 
-  /// That lived on ghosts for more than kLong_scans scans, in a row or not.
+  /// That lived on ghosts for more than kMaxTolerated_scans scans, in a row or not.
   [[nodiscard]] std::vector<GhostTrack> long_ghost_tracks() const;
   [[nodiscard]] std::size_t longest_ghost_track_scans() const;
   /// The number of those of what is neither a ghost nor moving: clutter, or the stationary world.

@@ -16,7 +16,7 @@ Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std:
     });
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const double distance_m = objects[o].distance_m(place);
-      if (!(distance_m < kNear_m) || (in_box && distance_m > 0.0)) continue;
+      if (!(distance_m < kMaxTrackDistance_m) || (in_box && distance_m > 0.0)) continue;
       pairs.emplace_back(objects[o].is_hidden, distance_m, (objects[o].position_m - place).norm(), k, o);
     }
   }

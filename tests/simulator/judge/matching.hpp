@@ -12,7 +12,7 @@
 namespace boresight::judge {
 
 /// Farther than this from an object's box a track cannot be the object's.
-inline constexpr double kNear_m = 3.0;
+inline constexpr double kMaxTrackDistance_m = 3.0;
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 struct Matching {

@@ -25,7 +25,7 @@ class PcapWriter {
 
   void write(std::int64_t stamp_ns, const Endpoint& source, const Endpoint& destination,
              std::span<const std::uint8_t> payload);
-  /// Throws std::runtime_error if anything of what was written is lost, as on a full disk.
+  /// Throws std::runtime_error if a write failed, as on a full disk.
   void finish();
 
  private:

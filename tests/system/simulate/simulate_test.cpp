@@ -105,13 +105,13 @@ TEST(Simulate, AWrongScenarioIsNamedWithItsLine) {
   EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:4: ego.speed_mps: 200 is out of range; allowed: -80 … 80"));
   EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:5: ego.colour: unknown key"));
   std::ofstream("/tmp/own.toml")
-      << "name = \"own\"\nvehicle = \"demo\"\n[radars]\nknock = [{radar = 2},\n  {radar = 9}]\n";
+      << "name = \"own\"\nvehicle = \"demo\"\n[radars]\nstep_change = [{radar = 2},\n  {radar = 9}]\n";
   EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
   EXPECT_THAT(
       errors(),
       HasSubstr(
           "/tmp/own.toml:5: radars.step_change[1].radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4"));
-  std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\n[radars]\nknock = [{time_s = 1.0}]\n";
+  std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"demo\"\n[radars]\nstep_change = [{time_s = 1.0}]\n";
   EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
   EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:4: radars.step_change[0].radar: is missing; allowed: 1 … 16"));
   std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"submarine\"\n";

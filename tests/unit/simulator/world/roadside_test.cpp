@@ -61,7 +61,7 @@ TEST(Sides, OnlyLargeVehiclesMirrorAndByAllFour) {
   body.width_m = 2.5;
   body.height_m = 3.8;
   body.clearance_m = 0.8;
-  body.flank_low_m = 0.5;
+  body.side_low_m = 0.5;
   body.velocity_mps = {3.0, 1.0};
   std::vector<MirrorSurface> sides;
   add_sides(body, 4.0, sides);

@@ -121,7 +121,8 @@ TEST(ScenarioFile, NamesFileLineKeyAndWhatIsAllowed) {
   EXPECT_THAT(problems("name = \"x\"\n[[body]]\nkind = \"car\"\nstart_m = 1.0\ncolour = 3\n"),
               HasSubstr("my.toml:5: body[0].colour: unknown key"));
   EXPECT_THAT(problems(""), HasSubstr("name: is missing"));
-  EXPECT_THAT(problems("name = \"x\"\n[radars]\nknock = [{time_s = 1.0}]\n"), HasSubstr("radars.step_change[0].radar"));
+  EXPECT_THAT(problems("name = \"x\"\n[radars]\nstep_change = [{time_s = 1.0}]\n"),
+              HasSubstr("radars.step_change[0].radar"));
   EXPECT_THAT(problems("name = \"x\"\n[radars]\nmisalignment = [{radar = 17}]\n"), HasSubstr("1 … 16"));
 }
 

@@ -45,7 +45,7 @@ TEST_P(Shipped, HoldsWhatIsWithinReachAndKeepsItsBuffers) {
   for (double t = 0.0; t < s.duration_s; t += 0.5) {
     world.at(t, 100.0, scene);
     // From a much longer reach what is near must be the same.
-    world.at(t, World::kSight_m, all);
+    world.at(t, World::kReach_m, all);
     const auto near = std::count_if(all.scatterers.begin(), all.scatterers.end(), [&](const Scatterer& p) {
       return (p.position_m.head<2>() - all.ego.position_m).norm() <= 100.0;
     });
