@@ -181,5 +181,27 @@ def unknown_fragment(message, corpus):
     return None
 
 
+_LINK = re.compile(r"\]\(([^)\s]+)\)")
+
+
+def anchors(text):
+    """What links to a page may have behind '#': its headings, as GitHub spells them."""
+    headings = re.findall(r"^#+\s+(.*)$", re.sub(r"```.*?```", "", text, flags=re.S), re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def dead_links(root, name):
+    """(line, link) of each link of the page within the project that leads nowhere."""
+    root = pathlib.Path(root)
+    for number, row in enumerate(load(root, name).split("\n"), 1):
+        for link in _LINK.findall(row):
+            file, _, anchor = link.partition("#")
+            target = (root / name).parent / file if file else root / name
+            if "://" in link:
+                continue
+            if not target.exists() or (anchor and anchor not in anchors(target.read_text(encoding="utf-8"))):
+                yield number, link
+
+
 def load(root, name):
     return (pathlib.Path(root) / name).read_text(encoding="utf-8")

@@ -77,6 +77,17 @@ class Messages(unittest.TestCase):
         self.assertEqual(pages.unknown_fragment("…: no gateway hears: …", corpus), "no gateway hears")
 
 
+class Links(unittest.TestCase):
+    def test_links_lead_to_files_and_headings(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "docs").mkdir()
+            (root / "README.md").write_text("# One\n## What it costs, all\n")
+            (root / "docs/a.md").write_text("[1](../README.md#what-it-costs-all) [2](https://x.org/) [3](#b)\n# b\n"
+                                            "[4](no.md)\n[5](../README.md#two)")
+            self.assertEqual(list(pages.dead_links(root, "docs/a.md")), [(3, "no.md"), (4, "../README.md#two")])
+
+
 class Run(unittest.TestCase):
     """The runner on pages of its own: a wrong page fails it."""
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """run.py SOURCE_DIR BUILD_DIR [PAGE…]: executes every command of README.md and the guides as a reader would, each page in
-a clean folder that looks like the checkout: `config`, `docs`, `interfaces`, and the build tree as `build`. Also looks
-for the messages of the troubleshooting page in the programs' text. Exit code 1 if a page is not true."""
+a clean folder that looks like the checkout: `config`, `docs`, `interfaces`, and the build tree as `build`. Also follows
+their links, and looks for the messages of the troubleshooting page in the programs' text. Exit code 1 if a page is not
+true."""
 import os
 import pathlib
 import re
@@ -143,10 +144,18 @@ def check_messages(source):
     return faults + (not quoted)
 
 
+def check_links(source, names):
+    dead = [(name, line, link) for name in names for line, link in pages.dead_links(source, name)]
+    for name, line, link in dead:
+        print(f"FAILED  {name}:{line}: the link {link} leads nowhere")
+    return len(dead)
+
+
 def main(arguments):
     source, build = (pathlib.Path(a).resolve() for a in arguments[:2])
     names = arguments[2:]
     faults = sum(check_page(name, source, build) for name in names or PAGES)
+    faults += check_links(source, names or PAGES)
     if not names:
         faults += check_messages(source)
     return 1 if faults else 0
