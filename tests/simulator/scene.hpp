@@ -19,7 +19,7 @@ struct EgoPose {
   double yaw_rate_radps;
 };
 
-/// A point that reflects back to the radar: a corner, a wheel house, a leg. `facing` is a unit vector out of the body's
+/// A point that reflects back to the radar: a corner, a rim, a leg. `facing` is a unit vector out of the body's
 /// side: the point is visible from that half-space. A zero vector means visible from everywhere.
 struct ReflectionCentre {
   Eigen::Vector3d position_m;

@@ -18,7 +18,7 @@ std::string angles_text(const Eigen::Vector3d& yaw_pitch_roll_rad) {
   return fmt::format("alpha_deg {:.4f} beta_deg {:.4f} gamma_deg {:.4f}", degrees.x(), degrees.y(), degrees.z());
 }
 
-/// α, β, γ of a mounting: what is added to the nominal angles.
+/// α, β, γ of a mounting: true angles minus nominal angles.
 Eigen::Vector3d misalignment(const Eigen::Matrix3d& rotation, const MountingPose& nominal) {
   Eigen::Vector3d angles = geometry::euler_angles(rotation);
   angles -= Eigen::Vector3d(nominal.yaw_rad, nominal.pitch_rad, nominal.roll_rad);

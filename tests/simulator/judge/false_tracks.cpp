@@ -12,7 +12,7 @@ void FalseTracks::add(double t_s, const ClassifiedScan& scan, const std::vector<
     const Object box{track.tracking_id, place_of(track), {0.0, 0.0}, track.heading_rad, track.length_m, track.width_m};
     std::size_t ghosts = 0, moving = 0, others = 0;
     for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
-      // What the tracker never got made no track.
+      // The tracker gets only detections classified as moving.
       if (scan.provenance[i] != Provenance::kMoving) continue;
       if (box.distance_m({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}) > kEvidenceDistance_m) continue;
       const Provenance is = truth[i].provenance;

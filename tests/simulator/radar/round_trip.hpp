@@ -41,8 +41,8 @@ struct Echo {
   return std::min(kMaxLoss_db, 3.0 * angle * angle);
 }
 
-/// Truth of an echo (docs/algorithms/ghosts.md): the last bounce decides. On the target itself: its own direction, type
-/// 1 if the way there was longer. On a mirror: type 2.
+/// Truth of an echo (docs/algorithms/ghosts.md): the last reflection before the sensor decides. At the target, the echo
+/// has the target's direction; it is a ghost of type 1 if the path out includes a mirror. At a mirror it is of type 2.
 [[nodiscard]] inline DetectionTruth truth_of(const Target& target, const OneWay& out, const OneWay& back) {
   DetectionTruth truth;
   truth.object_id = target.body_id;

@@ -29,7 +29,7 @@ constexpr double kPedalRadius_m = 0.17;
 constexpr double kPedalGear_m = 5.0;  // distance travelled per turn of the cranks
 
 // Point reflectors at corners and middles, as usual in extended-target models of automotive radar: ends and corners are
-// strong, wheel houses are weaker.
+// strong, rims are weaker.
 constexpr std::array<Spot, 12> kCar = {{{1, 1, 0.6, kDiagonal, kDiagonal, 7},
                                         {1, -1, 0.6, kDiagonal, -kDiagonal, 7},
                                         {-1, 1, 0.6, -kDiagonal, kDiagonal, 7},
