@@ -1,5 +1,5 @@
-// Rotations between the sensor's and the vehicle's frame and the range rate of a stationary reflector: the one place
-// where the signs of docs/algorithms/frames.md are written down.
+// Rotations between the sensor's and the vehicle's frame, and the range rate of a stationary reflector. The only code
+// with the signs of docs/algorithms/frames.md.
 #pragma once
 
 #include <cmath>
