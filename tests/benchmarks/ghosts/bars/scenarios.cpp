@@ -15,8 +15,8 @@ namespace boresight::bench {
 namespace {
 
 /// Scenarios whose confusion matrix is printed.
-constexpr std::array<std::string_view, 5> kPrintedWhole = {"tunnel", "city_canyon", "parking_garage",
-                                                           "truck_overtaking", "curve_with_rail"};
+constexpr std::array<std::string_view, 5> kConfusionPrinted = {"tunnel", "city_canyon", "parking_garage",
+                                                               "truck_overtaking", "curve_with_rail"};
 
 void judge(const std::string& scenario, const std::vector<Outcome>& outcomes, const std::string& how, Report& report) {
   const Percent moving = percent_classified(outcomes, Provenance::kMoving, Provenance::kMoving);
@@ -85,7 +85,7 @@ void scenarios(const Options& options, Report& report) {
                             std::to_string(faults.ghost_tracks), std::to_string(faults.other_tracks),
                             std::to_string(faults.lost_objects) + " of " + std::to_string(faults.objects),
                             std::to_string(faults.lost_seconds) + " of " + std::to_string(faults.object_seconds)});
-      if (std::find(kPrintedWhole.begin(), kPrintedWhole.end(), scenario) == kPrintedWhole.end()) continue;
+      if (std::find(kConfusionPrinted.begin(), kConfusionPrinted.end(), scenario) == kConfusionPrinted.end()) continue;
       report.add(confusion_table(scenario + "_" + methods[m].name,
                                  scenario + ", " + methods[m].name + ": % of each truth, median over " + how, mine));
     }
