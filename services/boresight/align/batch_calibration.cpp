@@ -51,7 +51,7 @@ Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
 }
 
 /// Only k_v and yaw can be: the planar roll model is no rotation and leaves pitch and roll wrong by up to 1.5° each,
-/// whatever their stds (docs/algorithms/alignment.md: Burza's (10)(11) against the exact rotation).
+/// whatever their stds (docs/algorithms/published-alignment.md: (10)(11) against the exact rotation).
 std::uint32_t observable_of(const batch_calibration::Parameter& speed_scale,
                             const batch_calibration::RadarResult& radar) {
   std::uint32_t bits = 0;

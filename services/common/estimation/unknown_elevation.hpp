@@ -1,4 +1,5 @@
 // Elevations that a radar does not measure: their distribution and its effect on range rates.
+// Equations: docs/algorithms/alignment.md (A20)(A21).
 #pragma once
 
 #include "services/common/vehicle/vehicle.hpp"

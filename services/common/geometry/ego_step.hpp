@@ -1,4 +1,5 @@
 // Transforms positions from the vehicle frame of one scan to that of the next.
+// Equations: docs/algorithms/frames.md (F11).
 #pragma once
 
 #include <cmath>

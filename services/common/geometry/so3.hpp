@@ -1,4 +1,5 @@
 // Rotations as vectors: exponential, logarithm, and the Euler angles of a mounting.
+// Equations: docs/algorithms/frames.md (F9)(F10).
 #pragma once
 
 #include <algorithm>

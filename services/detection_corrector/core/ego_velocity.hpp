@@ -1,4 +1,5 @@
 // How the sensor moves, and how wrong the range rate may be that this predicts for what stands still.
+// Equations: docs/algorithms/correction.md (C3)(C4).
 #pragma once
 
 #include <Eigen/Core>

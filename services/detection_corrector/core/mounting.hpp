@@ -1,4 +1,5 @@
 // The mounting of a radar and what else the alignment estimate knows, as far as it is sure, and how wrong that may be.
+// Equations: docs/algorithms/correction.md (C1)(C2).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // Whether what a detection says of its motion is what something that stands still could have said.
+// Equations: docs/algorithms/correction.md (C5)(C6).
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // Is a mounting angle beyond its tolerance? By confidence, debounced, with hysteresis.
+// Equations: docs/algorithms/downstream.md (D2)(D3).
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // How far one clock is behind another, from pairs of stamps of which one is late by a varying delay.
+// Equations: docs/algorithms/ingest.md (I1).
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // Do the range rates of a scan fit any motion near that of the vehicle?
+// Equations: docs/algorithms/ingest.md (I2)–(I4).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Calibration of a recording after the fact, without measured elevation (Burza 2025, §9;
-// docs/algorithms/batch-calibration.md).
+// docs/algorithms/batch-calibration.md (29)–(32)).
 #pragma once
 
 #include <array>
@@ -126,7 +126,7 @@ using Progress = std::function<void(Phase phase, double share)>;
 /// All radars together for one k_v and per-radar α, β, γ, by nonlinear total least squares. Same input and seed, same
 /// output. For offline tools: allocates and takes seconds. What the data support is judged within the planar model of
 /// Burza 2025, which is no rotation: where elevation is measured, it lets pitch and roll seem better known than they
-/// are (docs/algorithms/alignment.md).
+/// are (docs/algorithms/published-alignment.md).
 [[nodiscard]] Result calibrate(std::span<const Recording> radars, const Config& config = {},
                                const Progress& progress = {});
 

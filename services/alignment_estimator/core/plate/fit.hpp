@@ -1,4 +1,5 @@
 // From the plate's measurements to the mounting error: the published fit and the product's own.
+// Equations: docs/algorithms/plate.md (1)–(9) and (P1)–(P5).
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // Static calibration with corner reflectors at surveyed positions (the 4D chain design, §2.1): the published fit of a
 // line, and the product's own fit of the whole rotation to the directions.
+// Equations: docs/algorithms/reflectors.md (R1)–(R6).
 #pragma once
 
 #include <cstddef>

@@ -147,7 +147,7 @@ TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest)
     EXPECT_GT(radar.pitch.made_up, 0.8 * config.judgement_shift_rad);
     EXPECT_GT(std::abs(radar.pitch.response), 0.5);
   }
-  // Pitch and roll are worth nothing to the residuals (docs/algorithms/alignment.md).
+  // Pitch and roll are worth nothing to the residuals (docs/algorithms/batch-calibration.md).
   EXPECT_GT(result.after.rmse_mps, 0.97 * result.yaw_only.rmse_mps);
   EXPECT_LT(result.after.rmse_mps, 0.5 * result.before.rmse_mps);
 }

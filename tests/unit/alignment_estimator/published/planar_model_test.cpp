@@ -88,8 +88,8 @@ TEST(PlanarModel, GradientsOfSpeedYawAndPitchAheadAreThoseOfTheRotation) {
 }
 
 TEST(PlanarModel, IsNoRotationElsewhere) {
-  // docs/algorithms/alignment.md: 2° of each error, 60° to the side: off by more than a degree, which is 0.1 m/s and
-  // more.
+  // docs/algorithms/published-alignment.md: 2° of each error, 60° to the side: off by more than a degree, which is 0.1
+  // m/s and more.
   constexpr double kTwoDegrees = 2.0 * M_PI / 180.0;
   const Case c{{{3.6, 0.7, 0.5}, 0.785, 0.0, 0.0}, {1.0, 0.0, kTwoDegrees, kTwoDegrees}, 20.0, 0.0, 1.047, 0.15};
   EXPECT_GT(std::abs(PlanarModel(c.nominal, c.b, c.speed_mps, 0.0).value(c.azimuth_rad, c.elevation_rad) - exact(c)),
