@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/common/runtime/config/former_keys.hpp"
+
 namespace boresight::config {
 namespace {
 
@@ -70,18 +72,21 @@ TEST(Reader, UnknownKeyIsAnErrorThatNamesTheNearestAndAllKnownKeys) {
 }
 
 TEST(Reader, RenamedKeyIsAnErrorThatNamesTheKeyOfToday) {
-  Reader root = Reader::parse("[filter.knock]\nblock_s = 1\n[[radars.knock]]\nradar = 1\n", "x.toml");
-  static_cast<void>(root.table("filter").table("step_change").number("block_s", {}, 1));
-  static_cast<void>(root.table("radars").tables("step_change"));
-  EXPECT_EQ(error_of([&] { root.finish(); }),
-            "x.toml:1: filter.knock: is called 'step_change' now\n"
-            "x.toml:3: radars.knock: is called 'step_change' now");
+  for (const RenamedKey& key : kRenamedKeys) {
+    const std::string former(key.former), current(key.current);
+    Reader root = Reader::parse("[filter." + former + "]\na = 1\n[[radars." + former + "]]\na = 1\n", "x.toml");
+    static_cast<void>(root.table("filter").table(current).number("a", {}, 1));
+    static_cast<void>(root.table("radars").tables(current));
+    EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:1: filter." + former + ": is called '" + current + "' now\n" +
+                                                    "x.toml:3: radars." + former + ": is called '" + current + "' now");
+  }
 }
 
 TEST(Reader, FormerKeyIsAnOrdinaryUnknownKeyWhereTheNewOneIsNotKnown) {
-  Reader root = Reader::parse("knock = 1\n", "x.toml");
+  const std::string former(kRenamedKeys.front().former);
+  Reader root = Reader::parse(former + " = 1\n", "x.toml");
   static_cast<void>(root.number("limit", {}, 1));
-  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:1: knock: unknown key; known here: limit");
+  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:1: " + former + ": unknown key; known here: limit");
 }
 
 TEST(Reader, UnknownTableIsAnError) {
