@@ -34,7 +34,7 @@ struct RadarSummary {
   double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
 };
 
-/// One thing that had to be true; or that is aimed at, which is told when it is missed and fails nothing.
+/// A statement that must hold, or an aim: an aim that is missed is reported but fails nothing.
 struct Check {
   std::string what;
   bool passed;
@@ -59,21 +59,27 @@ struct Summary {
   [[nodiscard]] std::size_t missed_aims() const;
 };
 
-/// `snapshots` in the order of time; counters may start anew where the onlooker was restarted.
+/// `snapshots` in the order of time. Counters may begin at zero again where the monitor was restarted.
 [[nodiscard]] Summary summarise(const std::vector<monitor::Snapshot>& snapshots, const Truth& truth);
 
-/// "front_right: MISALIGNED, yaw +2.51° ± 0.03°, beyond the tolerance of 1.5°".
+/// "front_right: MISALIGNED, yaw +2.512 ± 0.031°, beyond the tolerance of 1.5°".
 [[nodiscard]] std::string verdict_line(const RadarSummary& radar);
-/// "+2.51° ± 0.03°", or "-" without an estimate.
+/// "+2.512 ± 0.031°", or a dash without an estimate.
 [[nodiscard]] std::string yaw_text(const monitor::RadarSnapshot& radar);
 /// Whether there is an estimate to compare with a truth.
 [[nodiscard]] bool has_estimate(const monitor::RadarSnapshot& radar);
-/// "+0.021° (0.5 σ)": estimate − truth; "not observable", or "-" where nothing is known.
-[[nodiscard]] std::string off_by(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad);
-/// Of k_v: "+1.2e-05 (0.3 σ)", or "-".
-[[nodiscard]] std::string speed_scale_off_by(const RadarSummary& radar);
-/// Shares of all detections: "moving 8.1 %, stationary 84.0 %, …"; empty where the ghost filter told nothing.
+/// The true yaw with the digits of the estimate, or a dash.
+[[nodiscard]] std::string true_yaw_text(const RadarSummary& radar);
+/// "1.01192 ± 0.00031", or a dash without an estimate.
+[[nodiscard]] std::string speed_scale_text(const monitor::RadarSnapshot& radar);
+/// "+0.021° (0.5 σ)": estimate − truth; "not observable", or a dash where the truth is not known.
+[[nodiscard]] std::string error_text(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad);
+/// "+0.000012 (0.3 σ)", or a dash.
+[[nodiscard]] std::string speed_scale_error_text(const RadarSummary& radar);
+/// Shares of all detections: "moving 8.1 %, stationary 84.0 %, …"; empty without any detection.
 [[nodiscard]] std::string labels_text(const monitor::LabelCounts& labels);
+/// "All 19 checks passed, 1 of 4 aims was missed."
+[[nodiscard]] std::string result_text(const Summary& summary);
 /// For the terminal, several lines.
 [[nodiscard]] std::string render_summary(const Summary& summary);
 

@@ -119,7 +119,7 @@ TEST_F(Calibrate, the_command_reports_a_plates_run) {
   EXPECT_THAT(json, HasSubstr("\"ok\":true"));
   EXPECT_THAT(json, Not(HasSubstr("\"seed\"")));
   const std::string svg = folder_.read("r.svg");
-  EXPECT_THAT(svg, HasSubstr("class=\"unused\" cx"));
+  EXPECT_THAT(svg, HasSubstr("tilt rejected by the fit"));
   EXPECT_THAT(svg, HasSubstr("</svg>"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(run("plate --method published --json - --csv " + csv).output, HasSubstr("{\"tool\""));

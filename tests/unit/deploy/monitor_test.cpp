@@ -121,7 +121,7 @@ void see_labels(Accumulator& accumulator, std::uint32_t radar, std::uint32_t fla
   accumulator.observe(*scan);
 }
 
-TEST(Accumulator, SumsWhatDetectionsWereToldToBe) {
+TEST(Accumulator, SumsTheLabelsOfDetections) {
   Accumulator accumulator(vehicle());
   see_labels(accumulator, 2, pipeline_flag::kNoTracks);
   see_labels(accumulator, 2, 0);
@@ -137,7 +137,7 @@ TEST(Accumulator, SumsWhatDetectionsWereToldToBe) {
   EXPECT_EQ(accumulator.snapshot(0).radars[0].labels.scans, 0u);
 }
 
-TEST(Accumulator, MeasuresStagesAndTheWholeWayFromTheStamps) {
+TEST(Accumulator, MeasuresStagesAndTheTotalFromTheStamps) {
   Accumulator accumulator(vehicle());
   see_tracks(accumulator);
   const Snapshot snapshot = accumulator.snapshot(0);
@@ -198,7 +198,7 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
 }
 
-TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
+TEST(MonitorRecord, DamagedSnapshotIsSkippedAndReported) {
   std::ostringstream one;
   write_record(one, Snapshot());
   const std::string whole = one.str();
@@ -238,28 +238,30 @@ TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
   EXPECT_THAT(damaged.first, ::testing::EndsWith(": the snapshot has no end"));
 }
 
-TEST(Render, SaysWhichRadarIsMisalignedAndHowSure) {
+TEST(Render, ShowsWhichRadarIsMisalignedWithItsUncertainty) {
   Accumulator accumulator(vehicle());
   see_misaligned_radar(accumulator);
   see_tracks(accumulator);
   RenderOptions options;
   options.width = 190;
   const std::string screen = render_screen(accumulator.snapshot(0), options);
-  EXPECT_THAT(screen, ::testing::HasSubstr("+2.50° ± 0.04°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("+2.500 ± 0.040°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("AVAILABLE_REDUCED (MISALIGNED)"));
-  EXPECT_THAT(screen,
-              ::testing::HasSubstr(
-                  "\n             partly blocked, unsynchronised, 1 knocks, 12 scans missed on the wire, 3 suspect "
-                  "scans\n"));
-  EXPECT_THAT(screen, ::testing::HasSubstr("-0.70° ± 0.04°"));
+  EXPECT_THAT(
+      screen,
+      ::testing::HasSubstr(
+          "\n             partly blocked, unsynchronised, 1 sudden misalignment, 12 scans lost or incomplete at "
+          "the gateway, 3 scans of doubtful integrity\n"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("-0.700 ± 0.040°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("not observable"));
   EXPECT_THAT(screen, ::testing::HasSubstr("1.4 s     +0.004°"));
-  EXPECT_THAT(screen, ::testing::HasSubstr("yaw-rate bias +0.100 ± 0.020 °/s   slip coefficient not observable"));
+  EXPECT_THAT(screen, ::testing::HasSubstr(
+                          "yaw-rate bias +0.100 ± 0.020 °/s   slip coefficient of the rear axle not observable"));
   EXPECT_THAT(screen, ::testing::HasSubstr("1 confirmed, 1 tentative"));
   EXPECT_THAT(screen, ::testing::HasSubstr("10.0 m behind"));
-  EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restarts)"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restart)"));
   EXPECT_THAT(screen, ::testing::Not(::testing::HasSubstr("\x1b"))) << "no colour unless asked for";
-  EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0), ::testing::HasSubstr("front_right 0/s yaw +2.50° ± 0.04°"));
+  EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0), ::testing::HasSubstr("front_right 0/s yaw +2.500 ± 0.040°"));
 }
 
 TEST(Render, CutsLinesByCharactersNotBytes) {

@@ -1,4 +1,4 @@
-// Snapshots as a monitor would have recorded them on a drive with one crooked radar.
+// Snapshots as a monitor would have recorded them on a drive with one misaligned radar.
 #pragma once
 
 #include <cmath>
