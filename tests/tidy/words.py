@@ -35,6 +35,7 @@ ALLOWED = {
     ("docs/bibliography.md", "Report [A-D]"),
     # Former names of keys and options, beside those of today.
     ("docs/CHANGELOG.md", "knock|told|left out|flank|post.factum"),
+    ("services/common/runtime/config/former_keys.hpp", "knock|told|left out|flank|post.factum"),
 }
 
 CPP = {".cpp", ".hpp"}
