@@ -100,7 +100,7 @@ def legend(entries, left, top, width):
     """Entries are (css, label); the legend wraps at `width`."""
     parts, x, y = [], left, top
     for css, label in entries:
-        needed = 34 + 7 * len(label)
+        needed = 40 + 7.5 * len(label)
         if x + needed > left + width:
             x, y = left, y + 18
         parts.append(f'<path class="l {css}" d="M{x} {y - 4}h22"/>' + text(x + 28, y, label))

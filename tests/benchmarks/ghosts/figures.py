@@ -106,7 +106,7 @@ def compare(curves):
             groups.setdefault(scenario, {}).setdefault(what, {})[c["label"]] = percent
     # Ghost types that do not occur in a scenario have a required value only: they are not drawn.
     groups = {name: {what: v for what, v in rows.items() if "mirror" in v} for name, rows in groups.items()}
-    parts = [text(20, 24, "Classified correctly, %, median over drives. Red: required of the mirror method", "t"),
+    parts = [text(20, 24, "Truth → classification, % of each truth, median over drives. Red: required of the mirror method", "t"),
              legend([(css + " own", NAMES[source]) for source, css in SOURCES_CSS.items()], 20, 46, 840)]
     heights = {name: sum(12 * sum(source in v for source in SOURCES_CSS) + 10 for v in rows.values()) for name, rows in groups.items()}
     top = 90
