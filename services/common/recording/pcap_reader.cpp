@@ -33,7 +33,7 @@ bool is_pcap(std::span<const std::uint8_t> head) {
 PcapReader::PcapReader(std::unique_ptr<ByteSource> source, OnProblem on_problem, const ReadOptions& options)
     : source_(std::move(source)), decoder_(source_->name(), std::move(on_problem)), buffer_(new char[kBuffer]) {
   interface_.can_name = options.can_interface;
-  // A stream of our own instead of a file name: it tells the position, takes a pipe and reads in large pieces.
+  // A stream instead of a file name: it has a position, accepts a pipe and reads large blocks.
   std::FILE* const stream = fopencookie(source_.get(), "r", {read_cookie, nullptr, nullptr, nullptr});
   if (stream == nullptr) throw OpenError(source_->name() + ": " + std::strerror(errno));
   static_cast<void>(std::setvbuf(stream, buffer_.get(), _IOFBF, kBuffer));
@@ -64,7 +64,7 @@ bool PcapReader::next(Frame& frame) {
   int status = 0;
   while (!ended_ && (status = pcap_next_ex(pcap_, &header, &bytes)) == 1) {
     decoder_.begin_packet();
-    // tv_usec holds nanoseconds, as asked for.
+    // tv_usec holds nanoseconds, as requested.
     if (decoder_.take(interface_, header->ts.tv_sec, header->ts.tv_usec, {bytes, header->caplen}, header->len, frame)) {
       return true;
     }

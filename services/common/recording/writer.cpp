@@ -85,7 +85,7 @@ void CandumpWriter::append(std::string_view text) {
 void CandumpWriter::write(const Frame& frame, bool error_frame) {
   std::array<char, kMaxCandumpText> text;
   const std::size_t size = format_candump(frame, error_frame, text);
-  if (size == 0) throw WriteError(name_ + ": no candump line can hold the frame");
+  if (size == 0) throw WriteError(name_ + ": a candump line cannot hold the frame");
   append({text.data(), size});
 }
 
@@ -122,11 +122,11 @@ void PcapWriter::write(std::int64_t stamp_ns, std::span<const std::uint8_t> pack
   constexpr std::uint64_t kPacketHeader = 16;
   pcap_pkthdr header{};
   header.ts.tv_sec = std::max<std::int64_t>(stamp_ns, 0) / kSecond_ns;
-  header.ts.tv_usec = std::max<std::int64_t>(stamp_ns, 0) % kSecond_ns;  // in fact nanoseconds, as asked for
+  header.ts.tv_usec = std::max<std::int64_t>(stamp_ns, 0) % kSecond_ns;  // in fact nanoseconds, as requested
   header.caplen = static_cast<bpf_u_int32>(packet.size());
   header.len = static_cast<bpf_u_int32>(std::max(original_size, packet.size()));
   pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, packet.data());
-  // libpcap does not say whether it could write.
+  // libpcap does not report write errors.
   if (std::ferror(pcap_dump_file(dumper_)) != 0) throw WriteError(name_ + ": " + std::strerror(errno));
   bytes_ += kPacketHeader + packet.size();
 }
