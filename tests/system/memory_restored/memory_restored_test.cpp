@@ -156,7 +156,7 @@ class IgnitionCycles : public testing::Test {
     EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "or nothing was inflated";
     EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
     EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kMisaligned - 1].seconds_of_drive, 0.1);
-    EXPECT_NE(log().find("alignment of 4 radars remembered from " + file_.string()), std::string::npos) << log();
+    EXPECT_NE(log().find("alignment of 4 radars restored from " + file_.string()), std::string::npos) << log();
   }
 
   static void expect_from_the_prior(const AlignmentEstimate& first) {
@@ -174,12 +174,13 @@ class IgnitionCycles : public testing::Test {
     expect_from_the_prior(ignition_on());
     EXPECT_FALSE(fs::exists(file_)) << "it is not in the way of the next";
     EXPECT_EQ(text_of(kState / "alignment.rejected"), content) << "kept for who wants to know";
-    EXPECT_NE(log().find("remembered alignment is " + said + "; it is kept aside and not used"), std::string::npos)
+    EXPECT_NE(log().find("stored alignment is " + said + "; kept with the suffix .rejected and not used"),
+              std::string::npos)
         << log();
     EXPECT_TRUE(domain_.until(3.0, [&] { return witness_->rejected_inputs() == 1; })) << "health has not heard of it";
     const ServiceStatus& status = witness_->status();
     EXPECT_EQ(status.faults[static_cast<std::size_t>(Fault::kWireValue)], 1u);
-    EXPECT_EQ(std::string(status.last_fault.data()), "remembered alignment is " + said);
+    EXPECT_EQ(std::string(status.last_fault.data()), "stored alignment is " + said);
     // It learns as on the first day, and remembers that.
     EXPECT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > 1.0; }));
     EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kDegree);

@@ -129,7 +129,7 @@ TEST(Config, ErrorsAreNamed) {
   EXPECT_NE(problem("[filter.step_change]\nyaw_deg = -1.0\n").find("yaw_deg"), std::string::npos);
   EXPECT_NE(problem("[published]\nnls_rate = [1.0, 2.0]\n").find("nls_rate"), std::string::npos);
   EXPECT_NE(
-      problem("truth_file = \"/nowhere/truth.csv\"\n").find("truth_file: no truth of a drive in /nowhere/truth.csv"),
+      problem("truth_file = \"/nowhere/truth.csv\"\n").find("truth_file: no truth of a simulated drive in /nowhere/truth.csv"),
       std::string::npos);
 }
 
