@@ -1,5 +1,5 @@
-// Three minutes of a simulated drive that another simulator made, with four radars crooked in all three angles: what
-// the one-dimensional reference method finds of it.
+// Three minutes of a drive by another simulator, with four radars misaligned in all three angles. The one-dimensional
+// reference method must find yaw and k_v.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -50,7 +50,7 @@ Truth read_truth(const fs::path& file) {
   return truth;
 }
 
-/// The lines of a compressed file; empty if there is no program to unpack it.
+/// The lines of a compressed file; empty without a program to decompress it.
 std::vector<std::string> unpack(const fs::path& file) {
   std::vector<std::string> lines;
   FILE* const pipe = popen(("xz -dc '" + file.string() + "' 2>/dev/null").c_str(), "r");
