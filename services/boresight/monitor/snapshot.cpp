@@ -131,7 +131,7 @@ std::string details_json(const AlignmentDetails& d) {
                      json_number(d.residual_rmse_mps), json_number(d.nees));
 }
 
-/// Sums since the monitor began.
+/// Sums since the start of the monitor.
 std::string labels_json(const LabelCounts& labels) {
   const auto& by_label = labels.classified;
   return fmt::format(R"("classified":{{"unknown":{},"moving":{},"stationary":{},"ghost_type_1":{},"ghost_type_2":{},)"
@@ -185,7 +185,7 @@ std::vector<Snapshot> read_record(std::istream& input, const std::string& name, 
   std::vector<Snapshot> snapshots;
   Snapshot current;
   bool open = false;    // a snapshot has begun, and all its lines so far were read
-  bool spoilt = false;  // it had a line that could not be read, and is left out
+  bool spoilt = false;  // it has a damaged line and is skipped
   std::uint64_t number = 0;
   for (std::string line; std::getline(input, line);) {
     ++number;

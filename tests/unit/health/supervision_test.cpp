@@ -32,7 +32,7 @@ VehicleConfig two_radars() {
   return vehicle;
 }
 
-/// A sound system of two radars and six services, of which a test takes parts away.
+/// A healthy system of two radars and six services. A test stops parts of it.
 class SupervisionTest : public testing::Test {
  protected:
   SupervisionTest() {
@@ -103,7 +103,7 @@ class SupervisionTest : public testing::Test {
   std::uint64_t step_ = 0;
 };
 
-TEST_F(SupervisionTest, ASoundSystemIsAvailable) {
+TEST_F(SupervisionTest, HealthySystemIsAvailable) {
   run(5.0);
   EXPECT_EQ(report_->overall, DataQualifier::kAvailable);
   EXPECT_EQ(report_->number_of_sensors, 2u);
@@ -121,7 +121,7 @@ TEST_F(SupervisionTest, ASoundSystemIsAvailable) {
   }
 }
 
-TEST_F(SupervisionTest, NothingHeardYetIsInitialisingAndThenNoData) {
+TEST_F(SupervisionTest, RadarWithoutAScanIsInitialisingAndThenNoData) {
   supervision_.judge(*report_, kStart + 100 * kMillisecond);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInitialising);
@@ -133,7 +133,7 @@ TEST_F(SupervisionTest, NothingHeardYetIsInitialisingAndThenNoData) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
 
-TEST_F(SupervisionTest, ASilentRadarIsNotAvailableAtItsDeadlineAndBackWithItsFirstScan) {
+TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableWithItsNextScan) {
   run(5.0);
   silent_radar_ = 2;
   run(0.2);
@@ -143,7 +143,7 @@ TEST_F(SupervisionTest, ASilentRadarIsNotAvailableAtItsDeadlineAndBackWithItsFir
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNoData);
   EXPECT_EQ(radar(2).rate_hz, 0.0F);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailable);
-  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced) << "the other radar goes on";
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced) << "the other radar is available";
   run(10.0);
   silent_radar_ = 0;
   run(0.1);
@@ -163,7 +163,7 @@ TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
-TEST_F(SupervisionTest, AMisalignedRadarIsReducedAndFarBeyondNotAvailable) {
+TEST_F(SupervisionTest, MisalignedRadarIsReducedAndFarBeyondToleranceNotAvailable) {
   run(3.0);
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
   run(3.0);
@@ -179,7 +179,7 @@ TEST_F(SupervisionTest, AMisalignedRadarIsReducedAndFarBeyondNotAvailable) {
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
 }
 
-TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyWhatIsObservableCounts) {
+TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyObservableAxesCount) {
   estimate_[0].alignment_pitch_rad = static_cast<float>(2.0 * kDegree);
   estimate_[1].alignment_roll_rad = static_cast<float>(2.0 * kDegree);
   run(5.0);
@@ -191,7 +191,7 @@ TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyWhatIsObservableCounts) {
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal) << "2° of roll are within 3°";
 }
 
-TEST_F(SupervisionTest, APitchThatIsKnownAboutTheVehiclesAxisOnlyCounts) {
+TEST_F(SupervisionTest, PitchThatIsObservableAboutTheVehicleAxisOnlyCounts) {
   // A radar that looks 45° to the side: of its own axes neither pitch nor roll is observable on straight roads.
   VehicleConfig vehicle = two_radars();
   vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kDegree;
@@ -225,7 +225,7 @@ TEST_F(SupervisionTest, StepChangesAreCounted) {
   EXPECT_EQ(radar(2).step_changes, 2u);
 }
 
-TEST_F(SupervisionTest, AnEstimatorThatWaitsIsNotBelieved) {
+TEST_F(SupervisionTest, EstimateOfAWaitingEstimatorIsIgnored) {
   estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
   estimate_[1].state = AlignmentState::kWaiting;
   run(10.0);
@@ -265,7 +265,7 @@ TEST_F(SupervisionTest, SuspectScansBeyondTheirShareAreInvalidData) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
-TEST_F(SupervisionTest, WhatTheSensorSaysOfItselfIsBelieved) {
+TEST_F(SupervisionTest, ConditionsReportedByTheSensorSetTheVerdict) {
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
   const auto verdict_with = [&](std::uint32_t conditions) {
@@ -283,11 +283,11 @@ TEST_F(SupervisionTest, WhatTheSensorSaysOfItselfIsBelieved) {
   EXPECT_EQ(verdict_with(c::kDefective), std::pair(kNotAvailable, kInvalidData));
   EXPECT_EQ(verdict_with(c::kSupply | c::kTemperature | c::kUnsynchronised | c::kWithoutEgoMotion),
             std::pair(kAvailable, kNormal))
-      << "told, and no reason to distrust its data";
+      << "reported, but no reason to distrust its data";
   EXPECT_EQ(verdict_with(0), std::pair(kAvailable, kNormal));
 }
 
-TEST_F(SupervisionTest, OfTwoReasonsTheWorseEffectIsSaidAndThenWhatAWorkshopHasToActOn) {
+TEST_F(SupervisionTest, WorstEffectIsReportedAndThenTheReasonThatAWorkshopMustRepair) {
   estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
@@ -301,13 +301,13 @@ TEST_F(SupervisionTest, OfTwoReasonsTheWorseEffectIsSaidAndThenWhatAWorkshopHasT
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked);
   silent_radar_ = 1;
   run(1.0);
-  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked) << "which is why it is silent";
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked) << "the blockage explains the silence";
   source.conditions = 0;
   run(0.2);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
 
-TEST_F(SupervisionTest, ScansThatNeverCameAreTold) {
+TEST_F(SupervisionTest, ScansLostBeforeTheGatewayAreReported) {
   status_[0].sources[0].lost = 7;
   status_[0].sources[0].e2e_lost = 8;
   status_[0].sources[0].e2e_repeated = 9;
@@ -342,7 +342,7 @@ TEST_F(SupervisionTest, AServiceWithoutHeartbeatIsSilentAndBreaksTheChain) {
   EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
 }
 
-TEST_F(SupervisionTest, WithoutTheEstimatorDataGoOn) {
+TEST_F(SupervisionTest, DataAreAvailableWithoutTheEstimator) {
   run(3.0);
   mute_[static_cast<std::size_t>(Service::kAlignmentEstimator)] = true;
   run(1.0);
@@ -369,7 +369,7 @@ TEST_F(SupervisionTest, ANewIncarnationIsARestartForAWhile) {
 TEST_F(SupervisionTest, TheFirstStageThatDoesNotDeliverIsNamed) {
   run(3.0);
   for (const Service s : {Service::kDetectionCorrector, Service::kGhostFilter, Service::kTracker}) {
-    idle_[static_cast<std::size_t>(s)] = true;  // alive, but nothing comes out
+    idle_[static_cast<std::size_t>(s)] = true;  // alive, but without output
   }
   run(2.0);
   EXPECT_EQ(service(Service::kDetectionCorrector).deadline_missed, 1);
@@ -409,7 +409,7 @@ TEST_F(SupervisionTest, LatencyIsFromReceptionToTrackList) {
   EXPECT_NEAR(report_->latency_max_ms, 4.0, 1e-3);
 }
 
-TEST_F(SupervisionTest, RadarsAndServicesItDoesNotKnowAreLeftAlone) {
+TEST_F(SupervisionTest, UnknownRadarsAndServicesAreIgnored) {
   scan_->header.source_id = 9;
   supervision_.observe(*scan_, now_);
   estimate_[0].header.source_id = 16;
