@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <stdexcept>
 
 #include <net/if.h>
 #include <netinet/in.h>
@@ -78,7 +79,7 @@ void PacketCapture::open() {
   if (pcap_compile(pcap_, &program, source_.filter.c_str(), 1, PCAP_NETMASK_UNKNOWN) != 0) {
     const std::string cause = pcap_geterr(pcap_);
     close();
-    throw CaptureError(interface + ": filter \"" + source_.filter + "\": " + cause);
+    throw std::invalid_argument(interface + ": filter \"" + source_.filter + "\": " + cause);
   }
   const bool filtered = pcap_setfilter(pcap_, &program) == 0;
   pcap_freecode(&program);

@@ -18,7 +18,7 @@ namespace boresight::record {
 class PacketCapture {
  public:
   /// Opens the interface with whole packets, nanosecond stamps and a large buffer, and joins the source's multicast
-  /// groups. Throws CaptureError.
+  /// groups. Throws CaptureError, and std::invalid_argument for a filter that libpcap does not understand.
   explicit PacketCapture(PacketSource source);
   ~PacketCapture();
   PacketCapture(const PacketCapture&) = delete;
