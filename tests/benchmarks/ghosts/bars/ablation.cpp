@@ -46,7 +46,7 @@ constexpr Variant kVariants[] = {
     {"echo strength (RCS) ignored by the method",
      [](NamedGhostMethod& m) { m.config.mirror.classes.strength_doubt = 1.0; }},
     {"radars without RCS measurement", [](NamedGhostMethod& m) { m.change.gets_rcs = false; }},
-    {"no micro-Doppler of rotating wheels and limbs",
+    {"no micro-Doppler echoes of vehicles and pedestrians",
      [](NamedGhostMethod& m) { m.config.mirror.classes.wheel_share = 0.0; }},
     {"tentative tracks ignored", [](NamedGhostMethod& m) { m.config.mirror.classes.tentative_weight = 0.0; }},
     {"no memory of sporadic detections", [](NamedGhostMethod& m) { m.config.mirror.classes.sighting_s = 0.0; }},
