@@ -29,11 +29,11 @@ constexpr svg::Style kStepChange = svg::line_of(svg::kOrange, 1.2, "4 3");
 constexpr svg::Style kBefore = svg::line_of(svg::kGrey, 1.6);
 constexpr svg::Style kAfter = {.fill = svg::kBlue, .fill_opacity = 0.2, .stroke = svg::kBlue, .stroke_width_px = 1.2};
 
-/// What one chart of a parameter shows, in the unit of its axis.
+/// Content of one chart of a parameter, in the unit of its axis.
 struct Curve {
   std::string title, unit, axis;  // the label of the axis is the unit, unless it is given
   double smallest_span = 0.01;
-  std::vector<Point> truth;  // (from when on, value); the last is true at the end
+  std::vector<Point> truth;  // (start, value) of each true value; the last holds at the end
   std::function<double(const Sample&)> value, std;
   std::function<bool(const Sample&)> observable;
 };

@@ -18,8 +18,8 @@ namespace {
 
 using Line = monitor::ScanRecordReader::Line;
 
-/// A scan of the record is a scan of the truth if their times agree this well: far less than any radar's cycle, far
-/// more than the gateway's mapping of a sensor's clock onto this ECU's wavers.
+/// A scan of the record is a scan of the truth if their times differ by less: far below the cycle time of any radar,
+/// far above the variation of the gateway's mapping from the sensor's clock to the ECU's.
 constexpr double kSameTime_s = 0.01;
 constexpr std::int64_t kView_ns = 100'000'000;  // scans that are shown together: two cycles of 50 ms
 
@@ -130,7 +130,7 @@ class Finder {
  private:
   static constexpr std::size_t kKept = 4;  // scans of a radar that a track list may come after
   [[nodiscard]] double seconds(std::int64_t time_ns) const { return static_cast<double>(time_ns - *begin_ns_) * 1e-9; }
-  /// The latest scan of each radar that is young enough.
+  /// The latest scan of each radar within kView_ns of the time.
   [[nodiscard]] std::vector<const Recent*> together(std::int64_t now_ns) const {
     std::vector<const Recent*> scans;
     for (const auto& [radar, of_radar] : recent_) {

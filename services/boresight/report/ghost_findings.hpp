@@ -39,7 +39,7 @@ struct PlanView {
   struct Sensor {
     std::uint32_t radar;
     float x_m, y_m;
-    double age_s;  ///< how much older its scan is than the latest
+    double age_s;  ///< of its scan, against the latest scan
   };
   struct Box {
     std::uint32_t tracking_id;
@@ -50,8 +50,8 @@ struct PlanView {
   std::vector<Sensor> sensors;
   std::vector<ReflectorSegment> segments;  ///< of the latest scan
   std::vector<Box> tracks;                 ///< confirmed ones
-  double tracks_age_s = 0.0;               ///< how much older their list is than the latest scan
-  std::vector<judge::Object> objects;      ///< in truth; empty where it is not known
+  double tracks_age_s = 0.0;               ///< of the track list, against the latest scan
+  std::vector<judge::Object> objects;      ///< true objects; empty where the truth is not known
 };
 
 struct GhostFindings {
@@ -61,9 +61,10 @@ struct GhostFindings {
   monitor::DamagedLines damaged;   ///< their content is missing below
   PlanView most_ghosts;            ///< where most detections were classified as ghosts; empty if none ever was
   // With truth only:
-  std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that could be found in the truth
-  std::uint64_t compared_scans = 0;           ///< of the scans that hold detections
-  std::uint64_t unknown_scans = 0;  ///< the others of these: no scan of that time and number of detections in the truth
+  std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that were matched to the truth
+  std::uint64_t compared_scans = 0;           ///< matched scans with detections
+  std::uint64_t unknown_scans =
+      0;  ///< others with detections: the truth has no scan of that time and number of detections
   std::vector<judge::GhostTrack> ghost_tracks;  ///< times are CLOCK_MONOTONIC
   std::size_t other_false_tracks = 0;           ///< of clutter, or of the stationary world
   /// Where most labels differ from the truth. In the first moments of a drive neither reflectors nor tracks are known,
@@ -72,8 +73,8 @@ struct GhostFindings {
   static constexpr double kFirstMoments_s = 2.0;
 };
 
-/// `record` as monitor::write_scan and write_tracks wrote it; it is read twice. `name` is what errors call it. Null:
-/// nothing is known of the truth.
+/// `record` was written by monitor::write_scan and write_tracks; it is read twice. Errors name it `name`. `truth` is
+/// null where it is not known.
 [[nodiscard]] GhostFindings find_ghosts(std::istream& record, const std::string& name, const DetectionTruths* truth);
 
 /// What a filter must reach on a drive with truth: the bars of the ghost filter's scenarios (docs/ghosts.md).

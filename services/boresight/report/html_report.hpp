@@ -12,7 +12,7 @@
 namespace boresight::report {
 
 struct ReportInput {
-  std::string title;                         ///< what was played
+  std::string title;                         ///< of the drive
   std::vector<monitor::Snapshot> snapshots;  ///< in the order of time
   Truth truth;
   VehicleConfig vehicle;            ///< for mounting positions and fields of view in the top view

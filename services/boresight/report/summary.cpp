@@ -17,7 +17,7 @@ using monitor::Snapshot;
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
-/// Sum of a counter that may have started anew.
+/// Sum of a counter that may have restarted at zero.
 class Counter {
  public:
   void see(std::uint64_t value) {
@@ -31,7 +31,7 @@ class Counter {
   std::uint64_t last_ = 0;
 };
 
-/// What is summed up over the drive.
+/// Sums over the drive.
 struct RadarSums {
   Counter scans;
   Counter lost;
@@ -70,13 +70,13 @@ std::uint64_t number_of_scans(const Snapshot& snapshot) {
   return scans;
 }
 
-/// Latencies of the whole run: the last histogram of every incarnation of the onlooker.
+/// Latencies of the whole run: the last histogram before each restart of the monitor, and the last of all.
 void add_latencies(const std::vector<Snapshot>& snapshots, Summary& summary) {
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     const bool last = i + 1 == snapshots.size();
     for (std::size_t k = 0; k < monitor::kNumberOfLatencies; ++k) {
-      const bool starts_anew = !last && snapshots[i + 1].latencies[k].total() < snapshots[i].latencies[k].total();
-      if (last || starts_anew) summary.latencies[k].merge(snapshots[i].latencies[k]);
+      const bool restarts = !last && snapshots[i + 1].latencies[k].total() < snapshots[i].latencies[k].total();
+      if (last || restarts) summary.latencies[k].merge(snapshots[i].latencies[k]);
     }
   }
 }

@@ -1,4 +1,4 @@
-// What a run has shown, judged: per radar against the truth where it is known, and whether everything worked.
+// Results of a run: estimates of each radar, compared with the truth where it is known, and checks.
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace boresight::report {
 
-/// What a simulated drive knows about itself; empty for recordings.
+/// The truth of a simulated drive; empty for recordings.
 struct Truth {
   std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
   std::optional<double> speed_scale;
-  std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: turned by yaw, pitch, roll about the
-                                                               ///< vehicle's axes, as AlignmentEstimate's
-  std::map<std::uint32_t, std::uint64_t> scans;                ///< by radar id: how many the radar sent
+  std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: yaw, pitch, roll of the rotation about
+                                                               ///< the vehicle's axes, as AlignmentEstimate's
+  std::map<std::uint32_t, std::uint64_t> scans;  ///< by radar id: how many the radar sent
   [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
 };
 
 struct RadarSummary {
-  monitor::RadarSnapshot last;  ///< while it was still sending; its counters are sums over the whole run
+  monitor::RadarSnapshot last;  ///< while the radar was sending; counters are sums over the whole run
   std::optional<double> true_yaw_rad;
   std::optional<double> true_speed_scale;
   std::optional<std::array<double, 3>> true_vehicle_rad;
-  double mean_nees = std::numeric_limits<double>::quiet_NaN();  ///< over the drive, where the estimator states it
-  bool misaligned = false;                                      ///< health's verdict while it was still sending
+  double mean_nees = std::numeric_limits<double>::quiet_NaN();  ///< over the drive, where the truth is known
+  bool misaligned = false;  ///< verdict of the health service while the radar was sending
   bool expected_to_be_misaligned = false;
   double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
 };
@@ -54,7 +54,7 @@ struct Summary {
   std::vector<monitor::ServiceSnapshot> services;
   std::array<LatencyHistogram, monitor::kNumberOfLatencies> latencies;
   std::vector<Check> checks;
-  /// But for aims.
+  /// Checks only, without aims.
   [[nodiscard]] bool all_passed() const;
   [[nodiscard]] std::size_t missed_aims() const;
 };

@@ -199,7 +199,7 @@ std::string Chart::axes() const {
   }
   for (const double value : x_ticks) {
     text += fmt::format("<path{3} d=\"M{0:.1f},{1:.1f}V{2:.1f}\"/>", px(value), kTop, bottom, attributes(kGrid));
-    // In the middle of its tick a long number at the edge would end outside of the picture.
+    // A long number at the edge would end outside of the picture if it were centred on its tick.
     const std::string number = x_.logarithmic ? tick_text(value) : tick_text(value, x_ticks);
     const bool fits = px(value) + kHalfDigit * static_cast<double>(number.size()) < width_;
     text += text_element(px(value), bottom + 14.0, kFaint, fits ? "middle" : "end", number);

@@ -21,7 +21,7 @@ struct Axis {
   bool logarithmic = false;  ///< decimal; min > 0
 };
 
-/// Kinds of symbols, which readers can distinguish without colours.
+/// Symbols that readers can distinguish without colours.
 enum class Shape { kCircle, kSquare, kTriangle, kDiamond, kCross, kDash, kBox };
 
 /// One chart. It is clipped to the plot area. Points that are not finite are skipped.

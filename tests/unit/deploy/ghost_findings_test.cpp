@@ -11,9 +11,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::int64_t kBegin_ns = 77'000'000'123'456;  // this ECU's clock at the drive's beginning
+constexpr std::int64_t kBegin_ns = 77'000'000'123'456;  // the ECU's clock at the start of the drive
 
-/// Twenty seconds of two radars; each scan has one detection of a car, its ghost of type 2, and `k % 3` of the ground.
+/// Twenty seconds of two radars; each scan has one detection of a car, its ghost of type 2, and `k % 3` stationary
+/// ones.
 class Drive {
  public:
   Drive() {
@@ -166,7 +167,7 @@ TEST(GhostFindings, DamagedLinesAreReportedWithFileAndLine) {
   Drive drive;
   drive.publish_all(0);
   const std::string whole = drive.record.str();
-  // Of the first scan the y of its second detection, and the end of the last track list.
+  // Damages the y of the second detection of the first scan, and the end of the last track list.
   std::string text = whole.substr(0, whole.size() - 20);
   const std::size_t at = text.find(" 9.00 ");
   ASSERT_NE(at, std::string::npos);

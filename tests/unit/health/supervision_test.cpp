@@ -58,7 +58,7 @@ class SupervisionTest : public testing::Test {
   const ServiceHealth& service(Service s) const { return report_->services[static_cast<std::size_t>(s)]; }
   const SensorHealth& radar(std::uint32_t id) const { return report_->sensors[id - 1]; }
 
-  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, whatever is not muted.
+  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, except muted ones.
   void run(double seconds) {
     const std::int64_t end_ns = now_ + static_cast<std::int64_t>(seconds * 1e9);
     for (; now_ < end_ns; now_ += 10 * kMillisecond, ++step_) {
@@ -192,7 +192,7 @@ TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyObservableAxesCount) {
 }
 
 TEST_F(SupervisionTest, PitchThatIsObservableAboutTheVehicleAxisOnlyCounts) {
-  // A radar that looks 45° to the side: of its own axes neither pitch nor roll is observable on straight roads.
+  // A radar that looks 45° to the side. On straight roads neither pitch nor roll about its own axes is observable.
   VehicleConfig vehicle = two_radars();
   vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kDegree;
   vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kDegree;
