@@ -36,7 +36,7 @@ NamedGhostMethod method_of(const Arguments& arguments) {
 void print_faults(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
   for (const Outcome& outcome : outcomes) {
     for (const GhostTrack& track : outcome.long_ghost_tracks) {
-      std::printf("seed %llu: ghost track %u, %zu scans in %.2f–%.2f s, at the end at (%.1f, %.1f)\n",
+      std::printf("seed %llu: ghost track %u, %zu scans from %.2f to %.2f s, last position (%.1f, %.1f) m\n",
                   static_cast<unsigned long long>(seed), track.tracking_id, track.scans, track.since_s, track.until_s,
                   track.x_vehicle_m, track.y_vehicle_m);
     }

@@ -119,7 +119,7 @@ class SomeIpServer {
           return 127;
         }) {}
 
-  /// Waits for its end; returns the lists that it says it has sent.
+  /// Waits for the server's end; returns the number of sent lists that it reports.
   std::uint64_t sent(double seconds) {
     const auto code = process_.wait_for(seconds);
     std::ifstream output(kOutput);
