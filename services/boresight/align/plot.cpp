@@ -61,8 +61,8 @@ class Picture {
   }
 
   void head() {
-    document_.title(
-        fmt::format("Alignment of {} by {}: rotations about the vehicle's axes", result_.vehicle, result_.method));
+    document_.title(fmt::format("Alignment of vehicle {}, method {}: rotations about the vehicle's axes",
+                                result_.vehicle, result_.method));
     document_.legend_at(kMargin, 38.0);
     document_.legend_entry(svg::area_sample(svg::kUncertainty) + svg::line_sample(svg::kEstimate), "estimate ± 2 σ");
     document_.legend_entry(svg::line_sample(kNotObservable), "not observable");

@@ -9,7 +9,7 @@ namespace boresight::svg {
 namespace {
 
 constexpr double kSampleWidth_px = 30.0;    // with the gap to its meaning
-constexpr double kCharacterWidth_px = 6.2;  // on average, at 12 px
+constexpr double kCharacterWidth_px = 6.8;  // on average, at 12 px
 constexpr double kGapBetweenEntries_px = 20.0;
 
 /// Characters, not bytes: legends contain ± and σ.

@@ -62,7 +62,7 @@ TEST(Document, LegendEntriesStandSideBySide) {
   document.legend_entry(line_sample(kEstimate), "σ");
   document.legend_entry(line_sample(kTruth), "truth");
   EXPECT_THAT(document.finish(), HasSubstr("<g transform=\"translate(10,20)\">"));
-  EXPECT_THAT(document.finish(), HasSubstr("<g transform=\"translate(66,20)\">")) << "σ is one character of two bytes";
+  EXPECT_THAT(document.finish(), HasSubstr("<g transform=\"translate(67,20)\">")) << "σ is one character of two bytes";
 }
 
 }  // namespace
