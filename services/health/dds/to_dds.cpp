@@ -78,7 +78,7 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   add_axis(status, "roll error", sensor.roll);
   add_value(status, "lateral displacement",
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
-  add_value(status, "sudden misalignments", fmt::format("{}", sensor.step_changes));
+  add_value(status, "step_changes", fmt::format("{}", sensor.step_changes));
   add_value(status, "speed scale", text::with_std(sensor.speed_scale, sensor.speed_scale_std));
   add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
   add_value(status, "scans lost before the gateway", fmt::format("{}", sensor.missed_scans));
