@@ -19,15 +19,15 @@ namespace {
 namespace batch_calibration = alignment::batch_calibration;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-/// What stands for a std that is not finite.
-constexpr double kOpen_rad = 1.0;
+/// Replaces a standard deviation that is not finite.
+constexpr double kUnknownStd_rad = 1.0;
 
 bool is_supported(const batch_calibration::Parameter& parameter) {
   return parameter.support == batch_calibration::Support::kSupported;
 }
 
 double std_of(const batch_calibration::Parameter& parameter) {
-  return std::isfinite(parameter.std) ? std::hypot(parameter.std, parameter.spread) : kOpen_rad;
+  return std::isfinite(parameter.std) ? std::hypot(parameter.std, parameter.spread) : kUnknownStd_rad;
 }
 
 alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scale, double yaw, double pitch,
@@ -38,7 +38,7 @@ alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scal
   return e;
 }
 
-/// Of (k_v, d_x, d_y, d_z) from the stds of (α, β, γ), whose correlations the method does not tell.
+/// Covariance of (k_v, d_x, d_y, d_z) from the stds of (α, β, γ). The method gives no correlations, so they are zero.
 Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
                               const batch_calibration::RadarResult& radar, const Eigen::Matrix3d& sensor_to_vehicle) {
   const Eigen::Vector3d angles = geometry::euler_angles(sensor_to_vehicle);
@@ -50,8 +50,8 @@ Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
   return covariance;
 }
 
-/// Only k_v and yaw can be: the planar roll model is no rotation and leaves pitch and roll wrong by up to 1.5° each,
-/// whatever their stds (docs/algorithms/published-alignment.md: (10)(11) against the exact rotation).
+/// Only k_v and yaw can be observable. The planar roll model is no rotation: pitch and roll may be wrong by up to 1.5°
+/// each, whatever their stds (docs/algorithms/published-alignment.md: (10)(11) against the exact rotation).
 std::uint32_t observable_of(const batch_calibration::Parameter& speed_scale,
                             const batch_calibration::RadarResult& radar) {
   std::uint32_t bits = 0;

@@ -24,8 +24,9 @@ bool EgoReader::next(EgoMotion& motion, double& time_s) {
   while (table_.next(row)) {
     const double newest_s = order_.newest_s();
     if (!order_.accept(row[kT])) {
-      table_.reject(kT, fmt::format("read {} s after {} s; times may go back by {} s and forward by {} s", row[kT],
-                                    newest_s, TimeOrder::kBack_s, TimeOrder::kForward_s));
+      table_.reject(kT,
+                    fmt::format("read {} s after {} s; times may go back by at most {} s and forward by at most {} s",
+                                row[kT], newest_s, TimeOrder::kBack_s, TimeOrder::kForward_s));
       continue;
     }
     table_.accept();

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// Of "a 1 b text 2" the pairs (a, 1); words that no number follows are passed over.
+/// The pairs of a word and the number after it: (a, 1) in "a 1 b text". Words without a number are skipped.
 std::map<std::string, double> pairs(std::istringstream& words) {
   std::map<std::string, double> result;
   std::string key;
