@@ -29,9 +29,9 @@ void Keeper::restore(const std::filesystem::path& file, const Identity& identity
       estimator_.restore(loaded.memory);
       kept_drive_s_ = drive_s(loaded.memory);
       log::info("alignment of {} radars restored from {}", loaded.memory.number_of_radars, file.string());
-      if (loaded.left_out > 0) {
+      if (loaded.rejected_radars > 0) {
         log::warning("{} radars have another mounting than the stored one: they start from the nominal mounting",
-                     loaded.left_out);
+                     loaded.rejected_radars);
       }
       break;
     case LoadedMemory::Kind::kRejected:

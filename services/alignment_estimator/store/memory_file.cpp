@@ -82,8 +82,8 @@ LoadedMemory load_memory(const fs::path& file, const Identity& identity) {
       return loaded;
     }
   }
-  loaded.verdict =
-      decode_memory(std::span(bytes.data(), static_cast<std::size_t>(size)), identity, loaded.memory, loaded.left_out);
+  loaded.verdict = decode_memory(std::span(bytes.data(), static_cast<std::size_t>(size)), identity, loaded.memory,
+                                 loaded.rejected_radars);
   if (loaded.verdict == MemoryVerdict::kTaken) {
     loaded.kind = LoadedMemory::Kind::kTaken;
     return loaded;

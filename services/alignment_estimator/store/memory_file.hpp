@@ -21,8 +21,8 @@ struct LoadedMemory {
   };
   Kind kind = Kind::kMissing;
   MemoryVerdict verdict = MemoryVerdict::kTaken;
-  std::size_t left_out = 0;  ///< number of radars whose mounting or profile changed since
-  std::string reason;        ///< of kRejected and kUnreadable
+  std::size_t rejected_radars = 0;  ///< number of radars whose mounting or profile changed since
+  std::string reason;               ///< of kRejected and kUnreadable
   Memory memory;
 };
 

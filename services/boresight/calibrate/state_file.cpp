@@ -17,9 +17,9 @@ std::string seed_state_file(const std::filesystem::path& file, const VehicleConf
   std::string news;
   switch (loaded->kind) {
     case Kind::kTaken:
-      if (loaded->left_out > 0) {
+      if (loaded->rejected_radars > 0) {
         news = file.string() +
-               ": radars mounted otherwise than remembered were left out: " + std::to_string(loaded->left_out);
+               ": radars mounted otherwise than remembered were left out: " + std::to_string(loaded->rejected_radars);
       }
       break;
     case Kind::kUnreadable:

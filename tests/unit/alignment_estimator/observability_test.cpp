@@ -1,4 +1,4 @@
-// What the service may claim to know: by the geometry of what it sees, not by how often it sees it.
+// Which parameters the service may report as observable: decided by the geometry of the detections, not their number.
 #include <memory>
 
 #include <Eigen/Dense>
@@ -24,7 +24,7 @@ class Drive {
       take();
     }
   }
-  /// Takes the synthesizer's present scan.
+  /// Processes the synthesizer's present scan.
   void take() {
     EgoMotion m{};
     m.header.measurement_time_ns = synthesizer.scan->header.measurement_time_ns;
@@ -55,7 +55,7 @@ double std_of(const AlignmentEstimate& e, std::size_t parameter) {
   return std::sqrt(static_cast<double>(e.covariance[5 * parameter]));
 }
 
-TEST(Observability, AnyMountingIsAsGood) {
+TEST(Observability, AnyMountingIsAsAccurate) {
   struct Mount {
     double yaw_deg, pitch_deg, roll_deg;
   };
@@ -74,8 +74,8 @@ TEST(Observability, AnyMountingIsAsGood) {
   }
 }
 
-TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
-  // How high reflectors stand is assumed; no number of scans tells whether that is so on this road.
+TEST(Observability, AnUnmeasuredElevationStaysInTheSpeedScale) {
+  // The height of the reflectors is assumed; no number of scans can verify it on this road.
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
@@ -83,10 +83,10 @@ TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
   const AlignmentEstimate measured = after(drive, 1000, 3);
   drive.measures_elevation = false;
   const AlignmentEstimate assumed = after(drive, 1000, 3);
-  // Spread over the view at every range: a little higher than what stands on roads.
+  // Spread over the field of view at every range: a little higher than real reflectors.
   EXPECT_NEAR(assumed.speed_scale, drive.speed_scale, 2.0 * std_of(assumed, 0));
   EXPECT_LT(std_of(measured, 0), 4e-4);
-  // The cosine of ±5° lacks 1/6·0.0873² in the mean: what is not known is of that size.
+  // The mean cosine over ±5° is 1 − 1/6·0.0873²; the uncertainty has this size.
   EXPECT_GT(std_of(assumed, 0), 4e-4);
   EXPECT_LT(std_of(assumed, 0), 1.3e-3);
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kVehiclePitch));
@@ -95,7 +95,7 @@ TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kRoll));
 }
 
-/// Straight on, everything seen at one angle from the direction of travel.
+/// Straight driving, all detections at one angle from the direction of travel.
 SyntheticDrive one_azimuth(double from_ahead_deg) {
   SyntheticDrive drive;
   drive.turning_radps = 0.0;
@@ -104,8 +104,8 @@ SyntheticDrive one_azimuth(double from_ahead_deg) {
   return drive;
 }
 
-TEST(Observability, OneAzimuthCannotTellYawFromSpeed) {
-  // The noise of the azimuth makes it look like a spread of azimuths; taken for one, it moved k_v by 65 times its σ.
+TEST(Observability, OneAzimuthCannotSeparateYawFromSpeed) {
+  // Noise of the azimuth looks like a spread of azimuths. Without correction it moved k_v by 65 times its σ.
   for (const double from_ahead_deg : {30.0, 45.0, -60.0}) {
     for (unsigned seed = 1; seed <= 6; ++seed) {
       const SyntheticDrive drive = one_azimuth(from_ahead_deg);
@@ -120,7 +120,7 @@ TEST(Observability, OneAzimuthCannotTellYawFromSpeed) {
   }
 }
 
-TEST(Observability, AheadTellsOnlySpeedAndSidewaysOnlyYaw) {
+TEST(Observability, AViewAheadDeterminesOnlySpeedAndAViewAsideOnlyYaw) {
   const double prior_yaw = Config{}.filter.prior_rotation_std_rad, prior_scale = Config{}.filter.prior_speed_scale_std;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const AlignmentEstimate ahead = after(one_azimuth(0.0), 1000, seed);
@@ -138,7 +138,7 @@ TEST(Observability, AheadTellsOnlySpeedAndSidewaysOnlyYaw) {
   }
 }
 
-/// The angles' noise is a third of the view: least squares that takes angles for exact is off by 20 σ.
+/// The angles' noise is a third of the field of view: least squares with exact angles would be off by 20 σ.
 SyntheticDrive narrow_view() {
   SyntheticDrive drive;
   drive.azimuth_centre_rad = -40.0 * kDegree;
@@ -151,7 +151,7 @@ TEST(Observability, ANarrowViewWithCoarseAnglesIsNotBiased) {
   double normalised = 0.0;
   constexpr int kRuns = 40;
   Config config;
-  config.filter.azimuth_std_edge = 1.0;  // as this drive's noise is
+  config.filter.azimuth_std_edge = 1.0;  // as for the noise of this drive
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
     const SyntheticDrive drive = narrow_view();
     const AlignmentEstimate e = after(drive, 300, seed, config);
@@ -160,12 +160,12 @@ TEST(Observability, ANarrowViewWithCoarseAnglesIsNotBiased) {
     covariance << e.covariance[0], e.covariance[1], e.covariance[4], e.covariance[5];
     normalised += error.dot(covariance.inverse() * error);
   }
-  // 2 for a linear problem. The line along which k_v and yaw can hardly be told apart is bent, and where on it the
-  // estimate began is known to degrees: the covariance is a little too thin across it.
+  // 2 for a linear problem. k_v and yaw are hardly separable along a curved line, and the start of the estimate on it
+  // is known to degrees only: the covariance is a little too thin across the line.
   EXPECT_LT(normalised / kRuns, 8.0);
 }
 
-TEST(Observability, WithoutAStationaryWorldNothingIsClaimed) {
+TEST(Observability, WithoutAStationaryWorldNothingIsObservable) {
   SyntheticDrive moving;
   moving.outliers = 1.0;
   const SyntheticDrive standing;
@@ -189,13 +189,14 @@ TEST(Observability, WithoutAStationaryWorldNothingIsClaimed) {
       run.synthesizer.ego = world.ego;
       run.take();
     }
-    EXPECT_NEAR(run.written().alignment_yaw_rad, standing.yaw_rad, 0.05 * kDegree) << "what then stands still is found";
+    EXPECT_NEAR(run.written().alignment_yaw_rad, standing.yaw_rad, 0.05 * kDegree)
+        << "the stationary reflectors are found afterwards";
     EXPECT_EQ(run.written().state, AlignmentState::kConverged);
   }
 }
 
 TEST(Observability, AConvoyIsNoStationaryWorld) {
-  // All that a radar sees ahead drives on, the car closes in on it at 5 m/s.
+  // All objects ahead move, and the car approaches them at 5 m/s.
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
@@ -212,7 +213,7 @@ TEST(Observability, AConvoyIsNoStationaryWorld) {
   EXPECT_EQ(run.written().observable, 0u);
 }
 
-TEST(Observability, StandingStillOrAloneItWaits) {
+TEST(Observability, WaitsAtAStandstillOrWithoutDetections) {
   const SyntheticDrive drive;
   for (const char* what : {"too slow", "too few detections", "nothing but NaN"}) {
     Drive run(drive, 1);

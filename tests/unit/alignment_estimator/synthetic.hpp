@@ -1,4 +1,5 @@
-// A radar with a known error on a drive at a known speed: stationary points all around, outliers, noise as stated.
+// A radar with a known error on a drive at a known speed: stationary points all around, outliers, and noise with the
+// stated std.
 #pragma once
 
 #include <cmath>

@@ -102,7 +102,7 @@ TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
   EXPECT_NEAR(out_->geometry.sensor_position_vehicle_m[1], -0.7, 1e-6);
 }
 
-TEST_F(CorrectorTest, EstimateIsAppliedWhereItIsSure) {
+TEST_F(CorrectorTest, EstimateIsAppliedIfCertainEnough) {
   Corrector corrector(one_radar(), Config{});
   ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kDegree, 1.01)));
   corrector.add_ego_motion(ego(20.0F, 0.0F));
@@ -125,7 +125,7 @@ TEST_F(CorrectorTest, EstimateIsAppliedWhereItIsSure) {
   EXPECT_TRUE(out_->flags & pipeline_flag::kNoAlignment);
 }
 
-TEST_F(CorrectorTest, WhatStandsStillHasNoRangeRateOverGround) {
+TEST_F(CorrectorTest, StationaryReflectorsHaveNoRangeRateOverGround) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> azimuth(-1.2, 1.2), elevation(-0.2, 0.2), angle(-3.0, 3.0);
   const double yaw = 1.7 * kDegree, scale = 1.012;
@@ -147,8 +147,8 @@ TEST_F(CorrectorTest, WhatStandsStillHasNoRangeRateOverGround) {
 }
 
 TEST_F(CorrectorTest, MovingThresholdByHand) {
-  // Straight ahead at 10 m/s with k_v known to 0.001, ego speed to 0.03 and range rates to 0.03 m/s: angles do not
-  // count.
+  // Straight ahead at 10 m/s with σ of 0.001 for k_v and 0.03 m/s for ego speed and range rates: angles have no
+  // effect.
   const Config config;
   const double std = std::sqrt(0.03 * 0.03 + 0.03 * 0.03 + 0.01 * 0.01 + std::pow(config.body_motion_std_mps, 2));
   const double threshold = config.moving_sigma * std;
@@ -158,19 +158,19 @@ TEST_F(CorrectorTest, MovingThresholdByHand) {
   add(50.0, 0.0, 0.0, -10.0 + threshold - 0.01);
   add(50.0, 0.0, 0.0, -10.0 + threshold + 0.01);
   add(50.0, 0.0, 0.0, -10.0 - threshold - 0.01);
-  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold + 0.01);  // here the azimuth's noise counts as well
+  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold + 0.01);  // here the noise of the azimuth has an effect too
   corrector.correct(*scan_, *out_);
   EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kMoving);
   EXPECT_TRUE(out_->detection_flags[2] & corrected_flag::kMoving);
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kStationary);
-  // The covariance of what is left of the mounting goes on.
+  // The covariance of the remaining mounting error is published.
   EXPECT_NEAR(out_->speed_scale_std, 1e-3, 1e-6);
   EXPECT_NEAR(out_->mounting_covariance[5], 1e-7, 1e-9);
   EXPECT_NEAR(out_->mounting_covariance[3], 0.005, 1e-6);
 }
 
-TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreTakenOut) {
+TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreRemoved) {
   Corrector corrector(one_radar(), Config{});
   AlignmentEstimate e = estimate(0.0, 1.0);
   e.observable |= alignment_axis::kYawRateBias | alignment_axis::kSlip;
@@ -195,7 +195,7 @@ TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
   Corrector corrector(one_radar(), config);
   corrector.add_ego_motion(ego(10.0F, 0.0F));
   add(50.0, 0.0, 0.0, -10.0);
-  add(250.0, 0.0, 0.0, -10.0);           // beyond the box
+  add(250.0, 0.0, 0.0, -10.0);           // outside the box
   add(30.0, 0.0, 20.0 * kDegree, -9.4);  // above it
   add(10.0, 0.0, 0.0, -10.0, -6.0);      // limit −5 at 10 m
   add(40.0, 0.0, 0.0, -10.0, -10.0);     // limit −11 at 40 m
@@ -210,10 +210,10 @@ TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kWeak);
   EXPECT_FALSE(out_->detection_flags[4] & corrected_flag::kWeak);
   EXPECT_EQ(out_->detection_flags[5], corrected_flag::kInvalid);
-  EXPECT_EQ(out_->detection_flags[6], corrected_flag::kAmbiguous) << "an aliased range rate says nothing of motion";
+  EXPECT_EQ(out_->detection_flags[6], corrected_flag::kAmbiguous) << "an aliased range rate determines no motion";
 }
 
-TEST_F(CorrectorTest, MissingSideInputsAreSaid) {
+TEST_F(CorrectorTest, MissingSideInputsAreFlagged) {
   Corrector corrector(one_radar(), Config{});
   add(50.0, 0.0, 0.0, -10.0);
   corrector.correct(*scan_, *out_);
@@ -230,7 +230,7 @@ TEST_F(CorrectorTest, MissingSideInputsAreSaid) {
   EXPECT_EQ(out_->geometry.ego_speed_mps, 0.0F);
 }
 
-TEST_F(CorrectorTest, NumbersThatAreNoneAreInvalidAndHarmNobodyElse) {
+TEST_F(CorrectorTest, NonFiniteValuesAreInvalidAndDoNotAffectOthers) {
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(10.0F, 0.0F));
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
@@ -254,7 +254,7 @@ TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
   unknown.header.source_id = 9;
   EXPECT_FALSE(corrector.add_alignment(unknown));
   for (std::uint32_t i = 0; i < kMaxDetections; ++i) add(20.0, 0.0, 0.0, -10.0);
-  scan_->number_of_valid_detections = 5000;  // a scan that lies about its length
+  scan_->number_of_valid_detections = 5000;  // a scan with a wrong length
   corrector.correct(*scan_, *out_);
   EXPECT_EQ(out_->number_of_valid_detections, kMaxDetections);
   scan_->header.source_id = 9;
@@ -263,8 +263,8 @@ TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
 }
 
 TEST_F(CorrectorTest, QuarterTurnsByHand) {
-  // Mounted to the left at (3.6, −0.7, 0.5): what it sees ahead of itself is at the vehicle's left, what it sees to its
-  // left is behind, and what it sees above is above.
+  // Mounted to the left at (3.6, −0.7, 0.5): a reflector ahead of it is at the vehicle's left, one at its left is
+  // behind, and one above it is above.
   Corrector corrector(one_radar(90.0), Config{});
   add(10.0, 0.0, 0.0, -1.0);
   add(10.0, 90.0 * kDegree, 0.0, -1.0);
@@ -294,8 +294,8 @@ TEST_F(CorrectorTest, LeverArmByHand) {
   EXPECT_NEAR(out_->geometry.sensor_velocity_vehicle_mps[1], 1.8, 1e-6);
 }
 
-TEST_F(CorrectorTest, ThereAndBackIsWhatWasMeasured) {
-  // From the output alone, with the geometry that it states, back to what the sensor said.
+TEST_F(CorrectorTest, TheInverseGivesTheMeasuredValues) {
+  // From the output alone, with the geometry that it states, back to the values of the sensor.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> azimuth(-1.3, 1.3), elevation(-0.3, 0.3), range(1.0, 90.0), rate(-30.0, 30.0);
   Corrector corrector(one_radar(-135.0, -2.0, 4.0), Config{});
@@ -326,7 +326,7 @@ TEST_F(CorrectorTest, ThereAndBackIsWhatWasMeasured) {
   }
 }
 
-TEST_F(CorrectorTest, SideInputsThatAreNoNumbersAreNotApplied) {
+TEST_F(CorrectorTest, NonFiniteSideInputsAreNotApplied) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   add(50.0, 10.0 * kDegree, 0.0, -10.0 * std::cos(10.0 * kDegree));
   for (int what = 0; what < 4; ++what) {
@@ -347,7 +347,7 @@ TEST_F(CorrectorTest, SideInputsThatAreNoNumbersAreNotApplied) {
   }
 }
 
-TEST_F(CorrectorTest, StatedStdsAreUsedWhereTheyAreNumbers) {
+TEST_F(CorrectorTest, StatedStdsAreUsedIfTheyAreNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(10.0F, 0.0F));
@@ -360,7 +360,7 @@ TEST_F(CorrectorTest, StatedStdsAreUsedWhereTheyAreNumbers) {
   }
   corrector.correct(*scan_, *out_);
   EXPECT_EQ(out_->range_rate_std_mps[0], 0.7F);
-  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary) << "1.5 m/s is within three of its stds";
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary) << "1.5 m/s is within three stds";
   for (std::size_t i = 1; i < 3; ++i) {
     EXPECT_EQ(out_->range_rate_std_mps[i], 0.03F) << "that of the vehicle file";
     EXPECT_EQ(out_->range_std_m[i], 0.1F);
@@ -393,13 +393,13 @@ TEST_F(CorrectorTest, EachFaceOfTheBoxIsALimit) {
   }
 }
 
-TEST_F(CorrectorTest, RcsIsComparedOnlyWhereItIsKnown) {
+TEST_F(CorrectorTest, RcsIsComparedOnlyIfKnown) {
   const Corrector corrector(one_radar(), Config{});
   add(50.0, 0.0, 0.0, 0.0, std::numeric_limits<double>::quiet_NaN());
   add(50.0, 0.0, 0.0, 0.0, -25.1);
   add(50.0, 0.0, 0.0, 0.0, -24.9);
   corrector.correct(*scan_, *out_);
-  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kWeak) << "no number is no evidence";
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kWeak) << "an RCS that is not a number sets no flag";
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kWeak);
   EXPECT_FALSE(out_->detection_flags[2] & corrected_flag::kWeak);
   scan_->fields = scan_field::kElevation;

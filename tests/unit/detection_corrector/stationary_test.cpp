@@ -1,5 +1,5 @@
-// What stands still is told as moving as often as the configured sigma says, whatever is known of the mounting; and a
-// slow mover is told where its range rate can tell it.
+// The share of stationary reflectors that are classified as moving matches the configured sigma, whatever the certainty
+// of the mounting; and a slow object is classified as moving if its range rate shows it.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -16,7 +16,7 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kTime = 1'000'000'000'000;
 
-/// How wrong everything is, 1 sigma.
+/// Standard deviations of all errors.
 struct Spread {
   double yaw_deg, pitch_deg, roll_deg;  // of the estimate, about the vehicle's axes
   double speed_scale;
@@ -27,9 +27,9 @@ struct Case {
   double yaw_rate_radps = 0.0;
   double mount_yaw_deg = -45.0;
   double sigma = 2.5;
-  Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();  // roll about x, about y, about z: as estimated
+  Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();  // estimated rotation about x, y, z
   Spread spread{0.05, 0.1, 0.3, 5e-4};
-  bool draws_turn = false;  // the estimate is itself wrong by its spread: nothing is known yet
+  bool draws_turn = false;  // the error of the estimate is drawn from its covariance: nothing is known yet
   bool has_estimate = true;
   bool has_elevation = true;
   std::uint32_t observable = alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch |
@@ -50,7 +50,7 @@ RadarConfig radar_of(const Case& c) {
   return radar;
 }
 
-/// Drives with errors drawn from what the messages state; a fraction of detections told as moving.
+/// Drives with errors drawn from the stds in the messages; returns the share of detections classified as moving.
 class Simulation {
  public:
   explicit Simulation(const Case& c, std::uint64_t seed = 1) : case_(c), random_(seed) {
@@ -59,7 +59,7 @@ class Simulation {
     config_.region_max_m[2] = 50.0;
   }
 
-  /// `over_ground`: velocity of what is seen, of its line of sight (vehicle axes).
+  /// `over_ground`: velocity of the object as a function of its line of sight (vehicle axes).
   template <typename Velocity>
   double moving_rate(int scans, int per_scan, double azimuth_limit_deg, Velocity&& over_ground) {
     std::size_t moving = 0, all = 0;
@@ -86,7 +86,7 @@ class Simulation {
  private:
   double normal(double std) { return std * std::normal_distribution<double>()(random_); }
 
-  /// Gives the corrector its side inputs; returns the true rotation and keeps the true velocity of the sensor.
+  /// Passes the side inputs to the corrector; returns the true rotation and stores the true velocity of the sensor.
   Eigen::Matrix3d draw(Corrector& corrector) {
     const RadarConfig& radar = vehicle_.radars[0];
     const Eigen::Vector3d std =
@@ -148,7 +148,7 @@ class Simulation {
       const double a = azimuth(random_), range = 6.0 + 50.0 * uniform(random_);
       double e = elevation(random_);
       if (!case_.has_elevation) {
-        // Reflects anywhere between the road and the top of something that stands on it, inside of the view.
+        // Reflectors anywhere between the road and the top of an object on it, within the field of view.
         do {
           e = std::asin((4.7 * uniform(random_) * uniform(random_) - 0.5) / range);
         } while (std::abs(e) > 10.0 * kDegree);
@@ -186,7 +186,7 @@ void expect_rate_of_sigma(const Case& c, const char* what) {
   EXPECT_LT(rate, 2.0 * rate_of(c.sigma)) << what;
 }
 
-TEST(StationaryTest, AlignedRadarsAreWrongAsOftenAsSigmaSays) {
+TEST(StationaryTest, ErrorRateOfAlignedRadarsMatchesSigma) {
   for (const double mount_yaw_deg : {0.0, -45.0, 90.0, 135.0}) {
     for (const double speed_mps : {1.0, 10.0, 35.0}) {
       for (const double sigma : {2.0, 3.0}) {
@@ -201,30 +201,30 @@ TEST(StationaryTest, AlignedRadarsAreWrongAsOftenAsSigmaSays) {
   }
 }
 
-TEST(StationaryTest, MisalignedRadarsThatHaveConvergedAsWell) {
+TEST(StationaryTest, ErrorRateOfConvergedMisalignedRadarsMatchesSigma) {
   for (const double mount_yaw_deg : {0.0, -45.0, 135.0}) {
     Case c;
     c.mount_yaw_deg = mount_yaw_deg;
     c.turn_deg = {1.5, -2.0, 2.5};
     c.yaw_rate_radps = 0.2;
-    expect_rate_of_sigma(c, "crooked, converged");
+    expect_rate_of_sigma(c, "misaligned, converged");
   }
 }
 
-TEST(StationaryTest, BeforeTheEstimateHasConvergedItsSpreadWidensTheThreshold) {
+TEST(StationaryTest, BeforeConvergenceTheCovarianceWidensTheThreshold) {
   for (const double mount_yaw_deg : {0.0, -45.0, 135.0}) {
     Case c;
     c.mount_yaw_deg = mount_yaw_deg;
     c.spread = {2.0, 2.0, 3.0, 0.015};
     c.draws_turn = true;
     expect_rate_of_sigma(c, "not yet converged");
-    c.observable = 0;  // the prior alone
+    c.observable = 0;  // only the prior
     c.draws_turn = false;
     expect_rate_of_sigma(c, "not observable");
   }
 }
 
-TEST(StationaryTest, WithoutAnEstimateWhatIsUnknownIsThatOfTheConfiguration) {
+TEST(StationaryTest, WithoutAnEstimateTheConfiguredStdsApply) {
   const Config config;
   Case c;
   c.has_estimate = false;
@@ -233,17 +233,19 @@ TEST(StationaryTest, WithoutAnEstimateWhatIsUnknownIsThatOfTheConfiguration) {
   expect_rate_of_sigma(c, "without an estimate");
 }
 
-TEST(StationaryTest, ElevationsThatAreNotMeasuredMakeNothingMove) {
+TEST(StationaryTest, UnmeasuredElevationsAreNotMotion) {
   Case c;
   c.has_elevation = false;
   for (const double speed_mps : {10.0, 30.0}) {
     c.speed_mps = speed_mps;
-    // Of what is expected of them they may have none or twice as much: wider than this world, hence no lower bound.
+    // The model admits from zero to twice the expected reduction. This is wider than in this world, so there is no
+    // lower
+    // bound.
     EXPECT_LT(Simulation(c).stationary_rate(), 2.0 * rate_of(c.sigma)) << speed_mps;
   }
 }
 
-TEST(StationaryTest, AMoverAtWalkingPaceIsToldWhereItsRangeRateTellsIt) {
+TEST(StationaryTest, AWalkingPaceIsDetectedAlongTheLineOfSight) {
   Case c;
   c.sigma = Config{}.moving_sigma;
   c.speed_mps = 10.0;
@@ -253,14 +255,14 @@ TEST(StationaryTest, AMoverAtWalkingPaceIsToldWhereItsRangeRateTellsIt) {
       return sign * Eigen::Vector3d(-sight.y(), sight.x(), 0.0).normalized();
     };
     EXPECT_GT(Simulation(c).moving_rate(300, 40, 60.0, along), 0.99);
-    // Across the line of sight nothing tells it.
+    // Motion across the line of sight cannot be measured.
     EXPECT_LT(Simulation(c).moving_rate(300, 40, 60.0, across), 0.01);
-    // On a course of its own, forward: along the line of sight of a radar that looks ahead.
+    // Motion forward, along the line of sight of a radar that looks ahead.
     Case ahead = c;
     ahead.mount_yaw_deg = 0.0;
     const auto forward = [&](const Eigen::Vector3d&) -> Eigen::Vector3d { return {sign, 0.0, 0.0}; };
     EXPECT_GT(Simulation(ahead).moving_rate(300, 40, 30.0, forward), 0.99);
-    // To the left, seen by a radar that looks to the left.
+    // Motion to the left, along the line of sight of a radar that looks to the left.
     Case left = c;
     left.mount_yaw_deg = 90.0;
     const auto leftward = [&](const Eigen::Vector3d&) -> Eigen::Vector3d { return {0.0, sign, 0.0}; };
@@ -268,7 +270,7 @@ TEST(StationaryTest, AMoverAtWalkingPaceIsToldWhereItsRangeRateTellsIt) {
   }
 }
 
-TEST(StationaryTest, AnUnknownMountingAdmitsThatItCannotTellToTheSide) {
+TEST(StationaryTest, AnUnknownMountingWidensTheThresholdToTheSide) {
   Case c;
   c.sigma = Config{}.moving_sigma;
   c.speed_mps = 20.0;

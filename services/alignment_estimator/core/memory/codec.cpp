@@ -152,7 +152,7 @@ std::size_t encode_memory(const Memory& memory, const Identity& identity, Memory
 }
 
 MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity& identity, Memory& out,
-                            std::size_t& left_out) {
+                            std::size_t& rejected_radars) {
   // The frame of magic, version, length and checksum is the same in every version.
   if (bytes.size() < 20 || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin())) return MemoryVerdict::kCorrupt;
   Reader reader(bytes);
@@ -191,7 +191,7 @@ MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity&
     for (std::size_t c = r; c < n; ++c) m.covariance[r * n + c] = m.covariance[c * n + r] = reader.f64();
   }
   if (!is_plausible(m)) return MemoryVerdict::kImplausible;
-  left_out = m.number_of_radars - number_kept;
+  rejected_radars = m.number_of_radars - number_kept;
   reduce(m, kept);
   out = m;
   return MemoryVerdict::kTaken;

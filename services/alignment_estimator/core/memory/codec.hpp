@@ -38,8 +38,8 @@ enum class MemoryVerdict : std::uint8_t {
 [[nodiscard]] std::size_t encode_memory(const Memory& memory, const Identity& identity, MemoryBytes& out);
 
 /// Removes radars whose mounting or profile differs from `identity`, or that the vehicle no longer has, together with
-/// their rows and columns of the covariance. `left_out` counts them. `out` is written only with kTaken.
+/// their rows and columns of the covariance. `rejected_radars` counts them. `out` is written only with kTaken.
 [[nodiscard]] MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity& identity, Memory& out,
-                                          std::size_t& left_out);
+                                          std::size_t& rejected_radars);
 
 }  // namespace boresight::alignment

@@ -22,13 +22,13 @@ TEST(Accuracy, OneMinuteOfDriving) {
   }
 }
 
-TEST(Accuracy, DisturbancesAreNotTakenForMounting) {
+TEST(Accuracy, DisturbancesDoNotChangeTheMounting) {
   const auto run = run_drive(disturbed_drive(RoadKind::kMixed, 90.0, 3), own_method().make);
   EXPECT_LT(worst_radar(run.last(), kYaw), 0.03 * kDegree);
   EXPECT_LT(worst_radar(run.last(), kPitch), 0.2 * kDegree);
 }
 
-TEST(Accuracy, FiveDegreesAmongFiftyPercentOutliersAreCaptured) {
+TEST(Accuracy, FiveDegreesAmongFiftyPercentOutliersConverge) {
   AlignmentSpec spec = clean_drive(RoadKind::kCity, 30.0, 4);
   spec.outlier_share = 0.5;
   for (auto& radar : spec.radars) radar.truth = {5.0 * kDegree, -5.0 * kDegree, 5.0 * kDegree};
@@ -37,7 +37,7 @@ TEST(Accuracy, FiveDegreesAmongFiftyPercentOutliersAreCaptured) {
   EXPECT_LT(worst_radar(run.last(), kPitch), 0.5 * kDegree);
 }
 
-TEST(Accuracy, AStepChangeIsToldOfTheRightRadarInTime) {
+TEST(Accuracy, AStepChangeIsReportedForTheRightRadarInTime) {
   AlignmentSpec spec = clean_drive(RoadKind::kMixed, 40.0, 5);
   constexpr double kAt_s = 30.0;
   spec.step_changes.push_back({1.0 + kAt_s, 2, {0.0, 0.0, 1.0 * kDegree}});  // measurement times start at 1 s
@@ -49,7 +49,7 @@ TEST(Accuracy, AStepChangeIsToldOfTheRightRadarInTime) {
   EXPECT_LT(worst_radar(run.last(), kYaw), 0.05 * kDegree);
 }
 
-TEST(Accuracy, RollIsNotStatedOnAStraightRoad) {
+TEST(Accuracy, RollIsNotObservableOnAStraightRoad) {
   const auto run = run_drive(clean_drive(RoadKind::kStraight, 30.0, 6), own_method().make);
   for (const RadarError& radar : run.last().radars) {
     EXPECT_EQ(radar.observable & alignment_axis::kVehicleRoll, 0u);

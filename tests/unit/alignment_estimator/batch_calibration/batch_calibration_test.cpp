@@ -1,4 +1,4 @@
-// The post-factum calibration on recordings of a planar world: what it finds, and what it says it cannot know.
+// Batch calibration of recordings of a planar world: its results, and the parameters that it reports as unsupported.
 #include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ struct World {
   }
 };
 
-/// The published iteration needs 60,000 rounds at its η; a larger η gets there sooner.
+/// The published iteration needs 60,000 rounds at its η; a larger η converges sooner.
 Config quick() {
   Config config;
   config.rate = 5e-3;
@@ -128,7 +128,7 @@ TEST(BatchCalibration, WithElevationItFindsEverything) {
   EXPECT_LT(result.after.rmse_mps, 0.9 * result.yaw_only.rmse_mps);
 }
 
-TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest) {
+TEST(BatchCalibration, WithoutElevationOnlyYawAndSpeedScaleAreSupported) {
   World world;
   world.has_elevation = false;
   const Config config = quick();
@@ -143,16 +143,16 @@ TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest)
     EXPECT_LT(std::abs(radar.yaw.value / kDegree - world.truth[r](0)), 3.0 * radar.yaw.made_up / kDegree + 0.02);
     EXPECT_NE(radar.pitch.support, Support::kSupported);
     EXPECT_NE(radar.roll.support, Support::kSupported);
-    // As large a change as the made-up elevations': it is their mirror and no measurement.
+    // The change equals that of the assumed elevations: the parameter follows them and is not measured.
     EXPECT_GT(radar.pitch.made_up, 0.8 * config.judgement_shift_rad);
     EXPECT_GT(std::abs(radar.pitch.response), 0.5);
   }
-  // Pitch and roll are worth nothing to the residuals (docs/algorithms/batch-calibration.md).
+  // Pitch and roll do not change the residuals (docs/algorithms/batch-calibration.md).
   EXPECT_GT(result.after.rmse_mps, 0.97 * result.yaw_only.rmse_mps);
   EXPECT_LT(result.after.rmse_mps, 0.5 * result.before.rmse_mps);
 }
 
-TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
+TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfTheAssumedElevations) {
   World world;
   world.has_elevation = false;
   world.truth = {{-1, 0, 0}, {2, 0, 0}, {1, 0, 0}, {-2, 0, 0}};
@@ -169,7 +169,7 @@ TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
   EXPECT_NEAR(pitch[1] - pitch[0], -0.04, 0.01);
 }
 
-TEST(BatchCalibration, TheSpeedScaleCostsWhatItSays) {
+TEST(BatchCalibration, TheSpeedScaleCostLowersTheSpeedScale) {
   // (31): the minimum moves by −cost / Σ(∂R/∂k_v)², with yaw free; far less with the published 0.1 than its std.
   World world;
   world.noise_mps = 0.0;
@@ -182,7 +182,7 @@ TEST(BatchCalibration, TheSpeedScaleCostsWhatItSays) {
   EXPECT_NEAR(free, 1.01, 1e-4);
 }
 
-TEST(BatchCalibration, MoversAreLeftOut) {
+TEST(BatchCalibration, MovingDetectionsAreRejected) {
   World world;
   world.has_elevation = false;
   world.movers = 0.35;
@@ -250,10 +250,10 @@ TEST(BatchCalibration, ProgressGoesThroughThePhasesAndChangesNothing) {
   EXPECT_EQ(calibrate(radars, quick()).radars[1].pitch.value, result.radars[1].pitch.value);
 }
 
-TEST(BatchCalibration, ARadarWithoutDataIsSaidToHaveNone) {
+TEST(BatchCalibration, ARadarWithoutDataIsReported) {
   std::vector<Recording> radars = World{}.recordings();
   radars[1].detections.clear();
-  radars[2].detections.resize(127);  // one fewer than it takes
+  radars[2].detections.resize(127);  // one fewer than required
   const Result result = calibrate(radars, quick());
   ASSERT_TRUE(result.ok);
   for (const std::size_t r : {1u, 2u}) {
@@ -266,7 +266,7 @@ TEST(BatchCalibration, ARadarWithoutDataIsSaidToHaveNone) {
   EXPECT_NEAR(result.speed_scale.value, 1.01, 2e-4);
 }
 
-TEST(BatchCalibration, WhatCannotBeUsedIsNotUsed) {
+TEST(BatchCalibration, UnusableDetectionsAreRejected) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   World world;
   world.detections = 400;
@@ -283,7 +283,7 @@ TEST(BatchCalibration, WhatCannotBeUsedIsNotUsed) {
   EXPECT_EQ(kept[1].detections.size(), 400u);
 }
 
-TEST(BatchCalibration, NothingComesOfNothing) {
+TEST(BatchCalibration, WithoutDataThereIsNoResult) {
   EXPECT_FALSE(calibrate({}, quick()).ok);
   std::vector<Recording> radars(3);
   const Result result = calibrate(radars, quick());
@@ -293,7 +293,7 @@ TEST(BatchCalibration, NothingComesOfNothing) {
   EXPECT_EQ(result.radars[0].yaw.support, Support::kNoData);
 }
 
-TEST(BatchCalibration, AVehicleThatSeesOneDirectionOnlyIsNotBelieved) {
+TEST(BatchCalibration, OneDirectionOnlyIsNotSupported) {
   World world;
   std::vector<Recording> radars = world.recordings();
   radars.resize(1);

@@ -1,5 +1,5 @@
-// Vehicles of which some radars measure elevation and others do not: the former know k_v so well that a pitch of the
-// latter would show in the length of their velocity, were it not for elevations that nobody knows.
+// Vehicles whose radars measure elevation only in part. The radars with elevation determine k_v so well that a pitch of
+// the others would change the length of their velocity, if the unmeasured elevations were known.
 #include <gtest/gtest.h>
 
 #include "interfaces/messages/alignment_estimate.hpp"
@@ -19,7 +19,7 @@ TEST(MixedElevation, PitchAndRollOfRadarsWithoutElevationStayOpen) {
     const RadarEstimate e = bench.filter->estimate(r);
     EXPECT_EQ(e.observable & (alignment_axis::kVehiclePitch | alignment_axis::kVehicleRoll), 0u) << r;
     EXPECT_EQ(e.observable & alignment_axis::kVehicleYaw, alignment_axis::kVehicleYaw) << r;
-    EXPECT_GT(std::sqrt(e.covariance(2, 2)), 3.0 * kDegree) << r << ": the prior's";
+    EXPECT_GT(std::sqrt(e.covariance(2, 2)), 3.0 * kDegree) << r << ": that of the prior";
     EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kDegree) << r;
   }
   for (const std::size_t r : {2u, 3u}) {

@@ -33,8 +33,8 @@ TEST(RobustFilter, FindsFourCornerRadars) {
   }
 }
 
-TEST(RobustFilter, IsAsSureAsItMayBe) {
-  // χ² of all drives and radars, per axis; the radars' pitch errors have the body's in common.
+TEST(RobustFilter, StatedCovarianceMatchesTheErrors) {
+  // χ² of all drives and radars, per axis; the pitch errors of the radars share that of the body.
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   int count = 0;
   for (std::uint64_t seed = 21; seed < 33; ++seed) {
@@ -61,7 +61,7 @@ TEST(RobustFilter, IsAsSureAsItMayBe) {
   }
 }
 
-/// Two filters on the same data, the second one's changed.
+/// Two filters on the same data; the data of the second are modified.
 void compare(const std::function<VehicleConfig(VehicleConfig)>& other_vehicle,
              const std::function<std::size_t(std::size_t)>& other_radar,
              const std::function<void(ScanDetections&, EgoSample&)>& change, const Eigen::Vector3d& signs) {
@@ -106,7 +106,7 @@ TEST(RobustFilter, AMirroredVehicleHasAMirroredEstimate) {
       {-1.0, 1.0, -1.0});
 }
 
-TEST(RobustFilter, ARadarOnItsHeadIsAsGood) {
+TEST(RobustFilter, AnUpsideDownRadarIsAsAccurate) {
   compare(
       [](VehicleConfig v) {
         for (RadarConfig& radar : v.radars) radar.mounting_pose.roll_rad += M_PI;
@@ -122,7 +122,7 @@ TEST(RobustFilter, ARadarOnItsHeadIsAsGood) {
       {1.0, 1.0, 1.0});
 }
 
-TEST(RobustFilter, TheOrderInTheVehicleFileIsNoMatter) {
+TEST(RobustFilter, TheOrderInTheVehicleFileDoesNotMatter) {
   compare(
       [](VehicleConfig v) {
         std::reverse(v.radars.begin(), v.radars.end());
@@ -132,8 +132,8 @@ TEST(RobustFilter, TheOrderInTheVehicleFileIsNoMatter) {
 }
 
 TEST(RobustFilter, DenseLeastSquaresFindsTheSame) {
-  // Nearly exact angles, no outliers and exact ego signals: then the estimate is that of weighted least squares over
-  // all detections at once, here with numerical derivatives.
+  // With nearly exact angles, no outliers and exact ego signals the estimate must equal weighted least squares over all
+  // detections at once, here with numerical derivatives.
   simulator::AlignmentSpec spec = drive(51, 12.0);
   spec.radars.resize(1);
   spec.outlier_share = 0.0;
@@ -219,7 +219,7 @@ TEST(RobustFilter, WithoutElevationYawAndSpeedOnly) {
   }
 }
 
-TEST(RobustFilter, HalfOfAllMovesAndRadarsAreFiveDegreesOff) {
+TEST(RobustFilter, ConvergesWithHalfOutliersAndFiveDegreesOfError) {
   for (std::uint64_t seed = 71; seed < 77; ++seed) {
     simulator::AlignmentSpec spec = drive(seed, 4.0);
     spec.outlier_share = 0.5;
@@ -246,7 +246,7 @@ TEST(RobustFilter, AmbiguousAndUnsynchronisedRadars) {
   }
 }
 
-TEST(RobustFilter, BadInputsAreLeftOut) {
+TEST(RobustFilter, InvalidInputsAreRejected) {
   Bench bench(drive(64, 20.0));
   const double nan = std::numeric_limits<double>::quiet_NaN(), huge = std::numeric_limits<double>::max();
   int n = 0;
@@ -259,7 +259,7 @@ TEST(RobustFilter, BadInputsAreLeftOut) {
     if (n % 7 == 0) scan.time_ns -= 5'000'000'000;
     if (n % 11 == 0) scan.time_ns = std::numeric_limits<std::int64_t>::max() / 2;
     if (n % 13 == 0) scan.count = 0;
-    // Wild ego motions beside the good ones.
+    // Invalid ego motions between the good ones.
     for (const EgoSample& ego :
          {EgoSample{}, EgoSample{true, true, 20.0, 0.1, 0.0, 0.01}, EgoSample{true, false, nan, 0.1, 0.0, 0.01},
           EgoSample{true, false, 1e6, nan, 1e9, nan}, EgoSample{true, false, 4.0, 0.1, 0.0, 0.01}}) {
@@ -274,7 +274,7 @@ TEST(RobustFilter, BadInputsAreLeftOut) {
   EXPECT_EQ(bench.filter->estimate(99).state, AlignmentState::kNoData);
 }
 
-TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
+TEST(RobustFilter, AMemoryHelpsAndIsDroppedIfWrong) {
   Memory memory;
   {
     Bench before(drive(81, 60.0));
@@ -282,7 +282,7 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
     before.filter->save(memory);
   }
   ASSERT_EQ(memory.number_of_radars, 4u);
-  // On a straight road roll is known from the last drive only.
+  // On a straight road only the memory of the last drive contains roll.
   simulator::AlignmentSpec spec = drive(82, 10.0);
   spec.road = simulator::RoadKind::kStraight;
   Bench same(spec);
@@ -291,7 +291,7 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
   EXPECT_EQ(same.filter->estimate(0).state, AlignmentState::kNoData);
   same.run(10.0);
   EXPECT_NE(same.filter->estimate(0).observable & alignment_axis::kVehicleRoll, 0u);
-  // One radar was mounted anew while the car was parked.
+  // One radar was remounted while the car was parked.
   simulator::AlignmentSpec changed = drive(83, 10.0);
   changed.radars[2].truth.yaw_rad += 3.0 * kDegree;
   Bench remounted(changed);
@@ -301,7 +301,7 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
     EXPECT_LT(std::abs(remounted.error_rad(r).z()), 0.05 * kDegree) << r;
     EXPECT_LT(std::abs(remounted.error_rad(r).y()), 0.3 * kDegree) << r;
   }
-  // Of another vehicle: ignored.
+  // A memory of another vehicle is ignored.
   simulator::AlignmentSpec fewer = drive(84, 1.0);
   fewer.radars.resize(2);
   Bench foreign(fewer);
@@ -309,7 +309,7 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
   EXPECT_EQ(foreign.filter->estimate(0).speed_scale, 1.0);
 }
 
-TEST(RobustFilter, AStepChangeIsToldOfItsRadarOnly) {
+TEST(RobustFilter, AStepChangeIsReportedForItsRadarOnly) {
   struct Case {
     double pitch_deg, yaw_deg, within_s;
   };
@@ -333,8 +333,8 @@ TEST(RobustFilter, AStepChangeIsToldOfItsRadarOnly) {
   }
 }
 
-TEST(RobustFilter, SlowlyBentIsNoStepChange) {
-  // 0.6° in a minute, far faster than the random walk of the mounting lets expect.
+TEST(RobustFilter, ASlowDriftIsNoStepChange) {
+  // 0.6° in a minute, far faster than the random walk of the mounting.
   simulator::AlignmentSpec spec = drive(92, 90.0);
   for (int i = 0; i < 300; ++i) {
     spec.step_changes.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
@@ -357,7 +357,7 @@ TEST(RobustFilter, AllocatesNothingWhileDriving) {
   });
 }
 
-TEST(RobustFilter, PredictsWhatStandsStill) {
+TEST(RobustFilter, PredictsTheRangeRatesOfStationaryReflectors) {
   Bench bench(drive(13, 20.0));
   double square = 0.0;
   std::size_t count = 0;

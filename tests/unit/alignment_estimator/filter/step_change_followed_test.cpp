@@ -1,4 +1,4 @@
-// What the filter makes of small changes of one radar's mounting.
+// Reaction of the filter to small changes of one radar's mounting.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ simulator::AlignmentSpec drive(std::uint64_t seed, double seconds) {
   return spec;
 }
 
-TEST(FollowsStepChange, SmallOnesAreToldOfTheirRadarAndFollowedHonestly) {
+TEST(FollowsStepChange, SmallChangesAreReportedForTheirRadarAndFollowedConsistently) {
   for (const Eigen::Vector2d& pitch_yaw_deg : {Eigen::Vector2d(0.0, 0.5), Eigen::Vector2d(-1.0, 0.0)}) {
     simulator::AlignmentSpec spec = drive(93, 75.0);
     spec.step_changes.push_back({41.2, 2, {0.0, pitch_yaw_deg(0) * kDegree, pitch_yaw_deg(1) * kDegree}});
@@ -40,7 +40,7 @@ TEST(FollowsStepChange, SmallOnesAreToldOfTheirRadarAndFollowedHonestly) {
   }
 }
 
-TEST(FollowsStepChange, WhatIsTooSmallToTellIsFollowedToo) {
+TEST(FollowsStepChange, ChangesBelowTheReportLimitAreFollowedToo) {
   simulator::AlignmentSpec spec = drive(94, 75.0);
   spec.step_changes.push_back({41.2, 1, {0.0, 0.0, 0.12 * kDegree}});
   Bench bench(spec);
@@ -49,7 +49,7 @@ TEST(FollowsStepChange, WhatIsTooSmallToTellIsFollowedToo) {
   EXPECT_LT(std::abs(bench.error_rad(1).z()), 0.02 * kDegree);
 }
 
-TEST(FollowsStepChange, ASlowBendIsFollowed) {
+TEST(FollowsStepChange, ASlowDriftIsFollowed) {
   // 0.6° in a minute.
   simulator::AlignmentSpec spec = drive(92, 90.0);
   for (int i = 0; i < 300; ++i) {

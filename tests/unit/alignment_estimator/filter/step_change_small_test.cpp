@@ -15,7 +15,7 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 constexpr double kScan_s = 0.05;
 
-/// Four radars' scans; each says of yaw and pitch what real ones do (σ of 2 s: 0.015° and 0.15°), of roll 3°.
+/// Scans of four radars with realistic information: σ over 2 s of 0.015° in yaw, 0.15° in pitch and 3° in roll.
 struct Drive {
   explicit Drive(std::size_t radars = 4) : number(radars), detector(radars, FilterConfig{}) {
     const Eigen::Vector3d std_2s = Eigen::Vector3d(3.0, 0.15, 0.015) * kDegree;
@@ -27,7 +27,7 @@ struct Drive {
     std::size_t radar;
     double after_s;
   };
-  /// The first change that is confirmed within `seconds`, while the radars deviate by the columns of `off_rad`.
+  /// The first confirmed change within `seconds`, while the radars deviate by the columns of `off_rad`.
   std::optional<Found> run(double seconds, const Eigen::Matrix<double, 3, 4>& off_rad) {
     const double begin_s = time_s;
     for (; time_s < begin_s + seconds; time_s += kScan_s) {
@@ -82,7 +82,7 @@ TEST(SmallStepChange, SmallStepsOfOneRadarAreFoundWithTheirAxisAndSize) {
   }
 }
 
-TEST(SmallStepChange, RollIsFoundAsLateAsTheDataSayOfIt) {
+TEST(SmallStepChange, RollIsFoundLaterBecauseItsDataAreWeaker) {
   Drive drive;
   ASSERT_FALSE(drive.run(60.0, kQuiet));
   const auto found = drive.run(600.0, only(1, {3.0, 0.0, 0.0}));
@@ -93,7 +93,7 @@ TEST(SmallStepChange, RollIsFoundAsLateAsTheDataSayOfIt) {
   EXPECT_FALSE(drive.detector.doubted(1));
 }
 
-TEST(SmallStepChange, NoiseAndWhatMovesAllAlikeAreNoChange) {
+TEST(SmallStepChange, NoiseAndCommonDeviationsAreNoChange) {
   Drive drive;
   EXPECT_FALSE(drive.run(3600.0, kQuiet));
   Eigen::Matrix<double, 3, 4> all;
@@ -101,13 +101,13 @@ TEST(SmallStepChange, NoiseAndWhatMovesAllAlikeAreNoChange) {
   EXPECT_FALSE(drive.run(600.0, all));
 }
 
-TEST(SmallStepChange, WhatTheEstimateDoesNotKnowIsNoChange) {
+TEST(SmallStepChange, ADeviationWithinTheCovarianceIsNoChange) {
   Drive drive;
   drive.covariance = (Eigen::Vector3d(4.0, 4.0, 0.5) * kDegree).array().square().matrix().asDiagonal();
   EXPECT_FALSE(drive.run(300.0, only(0, {3.0, 1.0, 0.25})));
 }
 
-TEST(SmallStepChange, AWildWindowOrAShortDeviationIsDroppedAgain) {
+TEST(SmallStepChange, OneLargeWindowOrAShortDeviationIsDropped) {
   Drive drive;
   drive.time_s = 10.0;
   EXPECT_FALSE(drive.run(2.0, only(0, {0.0, 0.0, 5.0})));
@@ -121,13 +121,13 @@ TEST(SmallStepChange, AWildWindowOrAShortDeviationIsDroppedAgain) {
   EXPECT_FALSE(drive.detector.doubted(0));
 }
 
-TEST(SmallStepChange, ARadarThatIsAloneIsAskedForMore) {
+TEST(SmallStepChange, ASingleRadarNeedsALargerDeviation) {
   Drive alone(1);
   EXPECT_FALSE(alone.run(300.0, only(0, {0.0, 0.2, 0.1})));
   EXPECT_TRUE(alone.run(30.0, only(0, {0.0, 0.0, 0.5})));
 }
 
-TEST(SmallStepChange, OfTwoRadarsTheOneThatDeviatesIsNamed) {
+TEST(SmallStepChange, WithTwoRadarsTheDeviatingOneIsReported) {
   Drive two(2);
   const auto found = two.run(30.0, only(1, {0.0, 0.0, 0.25}));
   ASSERT_TRUE(found);
@@ -145,7 +145,7 @@ TEST(SmallStepChange, NotANumberSpoilsNothingElse) {
   EXPECT_EQ(after->radar, 3u);
 }
 
-TEST(SmallStepChange, ANewEstimateBeginsAnew) {
+TEST(SmallStepChange, ANewEstimateClearsTheSums) {
   Drive drive;
   EXPECT_FALSE(drive.run(4.1, only(0, {0.0, 0.0, 0.3})));
   EXPECT_TRUE(drive.detector.doubted(0));

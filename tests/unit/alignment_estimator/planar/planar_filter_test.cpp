@@ -34,7 +34,7 @@ TEST(PlanarFilter, FindsTheTruthWithoutNoise) {
   }
 }
 
-TEST(PlanarFilter, FindsARadarThatIsMountedTiltedRolledAndOnItsHead) {
+TEST(PlanarFilter, FindsTiltedRolledAndUpsideDownRadars) {
   simulator::AlignmentSpec spec = without_noise(published_drive(20.0, 4));
   spec.radars[0].config.mounting_pose.pitch_rad = 0.06;
   spec.radars[1].config.mounting_pose.roll_rad = 0.2;
@@ -49,7 +49,7 @@ TEST(PlanarFilter, FindsARadarThatIsMountedTiltedRolledAndOnItsHead) {
   }
 }
 
-TEST(PlanarFilter, BiasOnAShortPublishedDriveIsThatOfTheBoundAndItsStdIsHonest) {
+TEST(PlanarFilter, BiasOnAShortPublishedDriveReachesTheBoundAndItsStdIsConsistent) {
   PlanarBench bench(published_drive(120.0, 7));
   bench.run();
   Eigen::Vector4d nees = Eigen::Vector4d::Zero();
@@ -66,8 +66,8 @@ TEST(PlanarFilter, BiasOnAShortPublishedDriveIsThatOfTheBoundAndItsStdIsHonest) 
 }
 
 TEST(PlanarFilter, AgreesWithADenseBatchOfTheSameDetections) {
-  // Gauss–Newton over all detections at once, k_v and twelve angles, uncorrected for noise of angles, of which there is
-  // next to none here.
+  // Gauss–Newton over all detections at once, k_v and twelve angles, without correction for the noise of angles, which
+  // is almost zero here.
   simulator::AlignmentSpec spec = published_drive(12.0, 8);
   for (simulator::AlignmentRadar& radar : spec.radars) {
     radar.config.noise.azimuth_std_rad = radar.config.noise.elevation_std_rad = 1e-5;
@@ -109,14 +109,14 @@ TEST(PlanarFilter, AgreesWithADenseBatchOfTheSameDetections) {
     for (Eigen::Index i = 0; i < 4; ++i) {
       const Eigen::Index at = i == 0 ? 0 : 3 * static_cast<Eigen::Index>(r) + i;
       const double std = std::sqrt(covariance(at, at));
-      // The start gives away most of a second and a half of twelve, and Tukey's weights some.
+      // The start loses the information of most of a second and a half of twelve; Tukey's weights lose some more.
       EXPECT_NEAR(bench.filter->parameters(r)(i), x(at), 1.0 * std) << r << ' ' << i;
       EXPECT_NEAR(std::sqrt(bench.filter->covariance(r)(i, i)), std, 0.15 * std) << r << ' ' << i;
     }
   }
 }
 
-TEST(PlanarFilter, HalfOfTheDetectionsMayMove) {
+TEST(PlanarFilter, ConvergesWithHalfOfTheDetectionsMoving) {
   simulator::AlignmentSpec spec = published_drive(40.0, 9);
   spec.outlier_share = 0.5;
   PlanarBench bench(spec);
@@ -130,7 +130,7 @@ TEST(PlanarFilter, HalfOfTheDetectionsMayMove) {
 TEST(PlanarFilter, WithoutElevationPitchAndRollAreNotObservable) {
   for (const bool measured : {true, false}) {
     simulator::AlignmentSpec spec = published_drive(30.0, 10);
-    // At one elevation: where it is measured, its noise must not pass for a spread.
+    // All reflectors at one elevation: the noise of a measured elevation must not count as spread.
     spec.elevation = simulator::ElevationKind::kZero;
     for (simulator::AlignmentRadar& radar : spec.radars) {
       radar.measures_elevation = measured;
@@ -147,7 +147,7 @@ TEST(PlanarFilter, WithoutElevationPitchAndRollAreNotObservable) {
   }
 }
 
-TEST(PlanarFilter, LearnsNothingAtAStandstillNorFromNonsense) {
+TEST(PlanarFilter, IgnoresAStandstillAndInvalidScans) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const int kind : {0, 1, 2, 3}) {
     PlanarBench bench(published_drive(4.0, 11));
@@ -180,7 +180,7 @@ TEST(PlanarFilter, AllocatesNothing) {
       static_cast<void>(bench.filter->estimate(e.radar));
     }
     allocations += runtime::counted_allocations() - before;
-    bench.scan->count = 0;  // what the bench itself gives to the filter is empty
+    bench.scan->count = 0;  // the bench itself passes an empty scan
   });
   EXPECT_EQ(allocations, 0u);
   EXPECT_NE(bench.filter->estimate(0).observable & alignment_axis::kVehicleYaw, 0u);

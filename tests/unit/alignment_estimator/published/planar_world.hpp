@@ -1,4 +1,4 @@
-// Four corner radars in a world that obeys the planar model, without noise: what a method must find to the last digit.
+// Four corner radars in a world that follows the planar model, without noise: methods must find the exact values.
 #pragma once
 
 #include <cmath>
@@ -38,7 +38,7 @@ class PlanarWorld {
  public:
   explicit PlanarWorld(unsigned seed = 1) : random_(seed) {}
 
-  /// The scan of one radar at `time_s`, with the motion of that time.
+  /// The scan of one radar at `time_s`, with the motion at that time.
   void look(std::size_t radar, double time_s) {
     std::uniform_real_distribution<double> azimuth(-1.1, 1.1), elevation(-0.15, 0.15), share(0.0, 1.0),
         own(-20.0, 20.0);

@@ -1,5 +1,5 @@
-// The set-up of Burza's tables, briefly: that the published figures come out. The whole table, over seeds and for
-// the methods that take an hour of drive, is the benchmark's.
+// A short run of the set-up of Burza's tables: it must reproduce the published figures. The benchmark has the whole
+// table, with more seeds and the methods that need an hour of driving.
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/published/published.hpp"
@@ -95,8 +95,8 @@ TEST(Reproduction, LeastSquares) {
   EXPECT_NEAR(outcome.rmse_mps, 0.0272, 0.002);
 }
 
-TEST(Reproduction, TheReferenceIsHeldOffByPitchAndRoll) {
-  // k_v takes the mean of cos β for its own: 1 − (1 + 1 + 4 + 4)/4·(1°)²/2 = −3.8e-4.
+TEST(Reproduction, TheReferenceIsBiasedByPitchAndRoll) {
+  // k_v absorbs the mean of cos β: 1 − (1 + 1 + 4 + 4)/4·(1°)²/2 = −3.8e-4.
   const Outcome outcome = run(Kind::kAzimuth1d, 400.0);
   EXPECT_NEAR(outcome.bias(0), 3.1e-4, 1e-4);
   EXPECT_NEAR(outcome.bias(1) / kDegree, 0.046, 0.015);
