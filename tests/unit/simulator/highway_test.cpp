@@ -1,4 +1,4 @@
-// highway_multipath has Le Ba Thanh's numbers of detections.
+// highway_multipath has about the numbers of detections of Le Ba Thanh 2023.
 #include <array>
 #include <filesystem>
 

@@ -1,5 +1,5 @@
-// The Cramér–Rao bound against a dense computation by finite differences, against the bound that another program
-// wrote beside a recorded drive, and against what must be so on any road.
+// The Cramér–Rao bound agrees with a dense computation by finite differences and with the bound that another program
+// wrote beside a recorded drive. General properties of the bound hold on any road.
 #include "tests/simulator/alignment/bound.hpp"
 
 #include <array>
@@ -28,8 +28,8 @@ CramerRaoBound bound_of(const AlignmentSpec& spec, AlignmentDrive& drive, const 
   return bound;
 }
 
-/// Everything that a detection's range rate depends on, as functions of one long vector: the parameters, then for each
-/// ego motion the errors of speed and yaw rate, then for each instant of a scan the body's pitch.
+/// The inputs of a detection's range rate as functions of one long vector: the parameters, then the errors of speed and
+/// yaw rate for each ego motion, then the body pitch at each instant of a scan.
 struct Model {
   struct Detection {
     Eigen::Vector3d sight;  // sensor axes
@@ -85,7 +85,7 @@ TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
       d.rotation = drive.sensor_to_vehicle(event.radar, event.time_s);
       d.position_m = radar.config.mounting_pose.position_m;
       d.radar = static_cast<Eigen::Index>(event.radar);
-      d.ego = egos - 1;  // numbers; places below
+      d.ego = egos - 1;  // counted here; converted to positions below
       d.pitch = static_cast<Eigen::Index>(pitch_times.size()) - 1;
       d.signalled_speed = event.speed_mps / spec.speed_scale;
       d.signalled_yaw_rate = event.yaw_rate_radps;
@@ -176,7 +176,7 @@ TEST(CramerRaoBound, OfADriveLikeTheRecordedOneIsAsPublishedWithIt) {
   }
 }
 
-/// Lines of a table without its heading; through `xz` where it is compressed.
+/// Lines of a table without its header; decompressed by `xz` if needed.
 std::vector<std::vector<double>> read_table(const std::filesystem::path& file, std::size_t columns) {
   const std::string command = (file.extension() == ".xz" ? "xz -dc '" : "cat '") + file.string() + "'";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
@@ -200,7 +200,7 @@ TEST(CramerRaoBound, OfTheRecordedDriveIsThatOfItsTruthFile) {
   const std::filesystem::path folder = std::filesystem::path(BORESIGHT_SHARED_DATA) / "alignment_drive";
   if (!std::filesystem::exists(folder / "drive_1.csv.xz")) GTEST_SKIP() << "skipped: no shared data";
   const auto rows = read_table(folder / "drive_1.csv.xz", 7), egos = read_table(folder / "ego_1.csv", 3);
-  if (rows.empty()) GTEST_SKIP() << "skipped: no xz to unpack the recording";
+  if (rows.empty()) GTEST_SKIP() << "skipped: no xz to decompress the recording";
   ASSERT_GT(rows.size(), 800'000U);
   const AlignmentSpec spec = four_corner_radars();
   const AlignmentDrive drive(spec);
@@ -258,13 +258,13 @@ TEST(CramerRaoBound, InformationGrowsAlongTheDrive) {
     const Eigen::VectorXd scale = before.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd gain = scale.asDiagonal() * (before - now) * scale.asDiagonal();
     const Eigen::MatrixXd shifted = gain + 1e-9 * Eigen::MatrixXd::Identity(gain.rows(), gain.cols());
-    EXPECT_EQ(shifted.llt().info(), Eigen::Success) << "nothing becomes less known, at " << event.time_s << " s";
+    EXPECT_EQ(shifted.llt().info(), Eigen::Success) << "no parameter becomes less certain, at " << event.time_s << " s";
     before = now;
   }
   EXPECT_LT(bound.rotation_std_rad(0).z(), 0.005 * kDegree);
 }
 
-TEST(CramerRaoBound, AStraightRoadTellsNothingOfRoll) {
+TEST(CramerRaoBound, RollIsUnobservableOnAStraightRoad) {
   AlignmentSpec spec = four_corner_radars();
   spec.road = RoadKind::kStraight;
   spec.duration_s = 30.0;
@@ -276,7 +276,7 @@ TEST(CramerRaoBound, AStraightRoadTellsNothingOfRoll) {
   }
 }
 
-TEST(CramerRaoBound, DisturbancesAndMissingElevationCost) {
+TEST(CramerRaoBound, DisturbancesAndMissingElevationRaiseIt) {
   const auto yaw_of = [](const AlignmentSpec& spec, const BoundPriors& priors) {
     AlignmentDrive drive(spec);
     return bound_of(spec, drive, priors).rotation_std_rad(0);
@@ -298,7 +298,7 @@ TEST(CramerRaoBound, DisturbancesAndMissingElevationCost) {
   EXPECT_LT(blind.z(), 0.02 * kDegree);
 }
 
-TEST(CramerRaoBound, SlowScansCountOnlyIfTheyMay) {
+TEST(CramerRaoBound, SlowScansCountOnlyAboveTheMinimumSpeed) {
   AlignmentSpec spec = four_corner_radars();
   spec.duration_s = 20.0;
   spec.road = RoadKind::kCity;
@@ -325,7 +325,7 @@ TEST(CramerRaoBound, SlowScansCountOnlyIfTheyMay) {
   EXPECT_GT(fast.rotation_std_rad(0).x(), 1.05 * all.rotation_std_rad(0).x());
 }
 
-TEST(CramerRaoBound, RefusesTheModelThatIsNoRotation) {
+TEST(CramerRaoBound, RefusesThePlanarModel) {
   const AlignmentSpec spec = published_setup();
   const AlignmentDrive drive(spec);
   EXPECT_THROW(CramerRaoBound(spec, drive), std::invalid_argument);

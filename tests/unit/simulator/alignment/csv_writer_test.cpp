@@ -1,4 +1,4 @@
-// The files of an alignment drive, read back with readers that know nothing of the writer.
+// The files of an alignment drive, read back by independent readers.
 #include "tests/simulator/alignment/csv_writer.hpp"
 
 #include <cmath>
@@ -195,7 +195,7 @@ TEST(AlignmentCsv, TruthIsThatOfTheDrive) {
   EXPECT_NEAR(step_change.at("t"), 10.0, 1e-9);
   EXPECT_NEAR(step_change.at("radar"), 2.0, 1e-9);
   EXPECT_NEAR(step_change.at("turn_z_deg"), 1.0, 1e-9);
-  EXPECT_NEAR(step_change.at("alpha_deg"), 3.0, 1e-4) << "a turn about the vehicle's z is one of yaw";
+  EXPECT_NEAR(step_change.at("alpha_deg"), 3.0, 1e-4) << "a rotation about the vehicle's z axis is a change of yaw";
   EXPECT_NEAR(step_change.at("beta_deg"), -1.0, 1e-4);
   AlignmentDrive drive(spec);
   CramerRaoBound bound(spec, drive, {0.02, 3.0 * kDegree, 0.003, 0.005});
@@ -210,11 +210,11 @@ TEST(AlignmentCsv, ResidualsAreLikeThoseOfTheRecordedDrive) {
   spec.duration_s = 120.0;
   spec.road = RoadKind::kMixed;
   const auto residual = truth_line(write_alignment_drive(spec, folder.path(), kNobodyListens).truth, "stationary");
-  EXPECT_NEAR(residual.at("rmse_uncorrected"), 0.45, 0.08);  // 0.4504 → 0.0989 there
+  EXPECT_NEAR(residual.at("rmse_uncorrected"), 0.45, 0.08);  // the recorded drive has 0.4504 → 0.0989
   EXPECT_NEAR(residual.at("at_truth"), 0.099, 0.015);
 }
 
-TEST(AlignmentCsv, WhatCannotBeWrittenIsAnError) {
+TEST(AlignmentCsv, UnwritableFolderIsAnError) {
   EXPECT_THROW(write_alignment_drive(small_drive(), "/proc/nowhere", kNobodyListens), std::exception);
 }
 

@@ -1,4 +1,4 @@
-// What a statistical alignment drive promises: its truth, and that each effect touches nothing but what it is about.
+// A statistical alignment drive has the stated truth, and each effect changes only the quantities that it concerns.
 #include "tests/simulator/alignment/drive.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// What a drive said, as numbers.
+/// The messages of a drive, as numbers.
 struct Heard {
   struct Scan {
     double time_s;
@@ -90,7 +90,7 @@ TEST(AlignmentDrive, SameSeedSameDriveAnotherSeedAnother) {
   EXPECT_FALSE(all_equal_to_other);
 }
 
-TEST(AlignmentDrive, NoEffectShiftsAnother) {
+TEST(AlignmentDrive, NoEffectChangesTheDrawsOfAnother) {
   const Heard plain = hear(short_drive());
   const auto with = [](const std::function<void(AlignmentSpec&)>& change) {
     AlignmentSpec spec = short_drive();
@@ -135,8 +135,8 @@ TEST(AlignmentDrive, NoEffectShiftsAnother) {
   }
 }
 
-/// The range rate by elementary turns about axes, written independently of the simulator: the sensor's roll, then its
-/// pitch, then its yaw turn the line of sight; the sensor's motion is projected on it.
+/// The range rate by elementary rotations, written independently of the simulator. The sensor's roll, pitch and yaw
+/// rotate the line of sight in this order; the sensor's motion is projected on it.
 double expected_range_rate(const MountingPose& nominal, const Misalignment& m, double azimuth, double elevation,
                            const Heard::Scan& scan) {
   double x = std::cos(elevation) * std::cos(azimuth), y = std::cos(elevation) * std::sin(azimuth),
@@ -154,7 +154,7 @@ double expected_range_rate(const MountingPose& nominal, const Misalignment& m, d
   return -(x * vx + y * vy + z * scan.vertical_speed_mps);
 }
 
-TEST(AlignmentDrive, StationaryRangeRatesFollowTheMountingHoweverItIs) {
+TEST(AlignmentDrive, StationaryRangeRatesFollowAnyMounting) {
   AlignmentSpec spec = without_noise(short_drive());
   spec.radars[0].config.mounting_pose.pitch_rad = 6.0 * kDegree;
   spec.radars[1].config.mounting_pose.roll_rad = M_PI;
@@ -177,7 +177,7 @@ TEST(AlignmentDrive, StationaryRangeRatesFollowTheMountingHoweverItIs) {
       ASSERT_NEAR(scan.elevation[i], scan.truth[i].elevation_rad, 1e-6);
     }
   }
-  EXPECT_GT(largest_yaw_rate, 0.02) << "the drive must turn for the test to mean anything";
+  EXPECT_GT(largest_yaw_rate, 0.02) << "the test needs a drive with bends";
 }
 
 TEST(AlignmentDrive, NoiseIsWhatIsStated) {
@@ -236,7 +236,7 @@ TEST(AlignmentDrive, TheNoseGoesDownWhenBraking) {
   while (drive.next(event)) {
     if (event.ego == nullptr) continue;
     const double acceleration = (event.speed_mps - last_speed) * spec.ego_rate_hz;
-    // Velocity in body axes: with the nose down the car moves towards its own roof. Not where it changes just now.
+    // Velocity in body axes: with the nose down the car moves towards its own roof. Changes of pitch are excluded.
     if (acceleration < -1.0 && last_vertical != 0.0 && std::abs(event.vertical_speed_mps / last_vertical - 1.0) < 0.1) {
       ++braking;
       EXPECT_NEAR(event.vertical_speed_mps / event.speed_mps, -0.004 * acceleration, 0.001);
@@ -325,7 +325,7 @@ TEST(AlignmentDrive, AStepChangeTurnsOneRadarAtOneInstant) {
   for (std::size_t i = 0; i < a.scans.size(); ++i) {
     const bool step_changed = a.scans[i].radar == 2 && a.scans[i].time_s >= 5.0;
     EXPECT_EQ(a.scans[i].azimuth != b.scans[i].azimuth, step_changed);
-    EXPECT_EQ(a.scans[i].range_rate, b.scans[i].range_rate) << "the world moves past as before";
+    EXPECT_EQ(a.scans[i].range_rate, b.scans[i].range_rate) << "range rates do not change";
   }
 }
 
@@ -342,7 +342,7 @@ TEST(AlignmentDrive, RadarsKeepTheirOwnTime) {
     EXPECT_GE(event.time_s, std::max(last_s, 1.0));
     EXPECT_NE(event.ego == nullptr, event.scan == nullptr);
     if (event.ego != nullptr && last_was_scan) {
-      EXPECT_GT(event.time_s, last_s) << "ego motion first";
+      EXPECT_GT(event.time_s, last_s) << "ego motion precedes scans";
     }
     last_s = event.time_s;
     last_was_scan = event.scan != nullptr;
@@ -358,7 +358,7 @@ TEST(AlignmentDrive, RadarsKeepTheirOwnTime) {
   EXPECT_NEAR(last_s, 11.0, 0.1);
 }
 
-TEST(AlignmentDrive, ARadarWithoutElevationSaysNothingOfIt) {
+TEST(AlignmentDrive, ARadarWithoutElevationLacksTheField) {
   AlignmentSpec spec = short_drive(2.0);
   spec.radars[3].measures_elevation = false;
   const Heard plain = hear(short_drive(2.0)), heard = hear(spec);
@@ -400,7 +400,7 @@ TEST(AlignmentDrive, EgoSignalsAreScaledAndNoisy) {
   EXPECT_NEAR(std::sqrt(square / n), 0.02, 0.002);
 }
 
-/// What moves in a scan: azimuth, and range rate without that of the sensor's own motion.
+/// Moving detections of a scan: azimuth, and range rate without the part of the sensor's own motion.
 std::vector<std::pair<double, double>> movers(const AlignmentRadar& radar, const Heard::Scan& scan) {
   std::vector<std::pair<double, double>> found;
   for (std::size_t i = 0; i < scan.truth.size(); ++i) {
@@ -419,7 +419,7 @@ TEST(AlignmentDrive, MoversLastFromScanToScan) {
   for (const Heard::Scan& scan : hear(spec).scans) {
     if (scan.radar == 0) scans.push_back(movers(spec.radars[0], scan));
   }
-  // Share of what moves that was seen `back` scans before in the same direction at the same speed.
+  // Share of moving detections with a detection of the same direction and speed `back` scans earlier.
   const auto known = [&scans](std::size_t back) {
     double matched = 0.0, all = 0.0;
     for (std::size_t k = back; k < scans.size(); ++k) {
