@@ -40,14 +40,14 @@ void CanLink::read() {
     Reception reception{.sender = {}, .stamp = {}, .drops = kernel_drops_};
     const ssize_t length = receive(socket_, {reinterpret_cast<std::uint8_t*>(&raw), sizeof(raw)}, reception);
     if (length < 0) {
-      // ENETDOWN comes once when the interface goes down; it is opened anew until it is back.
+      // ENETDOWN comes once when the interface goes down; the link is opened again until the interface is back.
       if (errno != EAGAIN && errno != EINTR) fail("receiving failed: " + last_error());
       return;
     }
     report_drops(reception, kernel_drops_, "CAN frames", events_);
     recording::Frame frame;
     if (runtime::from_kernel(raw, length, frame) != runtime::CanFrameKind::kData) {
-      events_.on_fault(Fault::kWireLength, "CAN frame of a wrong length");
+      events_.on_fault(Fault::kWireLength, "CAN frame with a wrong length");
       continue;
     }
     frame.stamp_ns = reception.stamp.received_ns;
