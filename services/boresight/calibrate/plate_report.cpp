@@ -27,6 +27,10 @@ bool was_fitted(const plate::PlateResult& result) {
   return result.tilts_used > 0;
 }
 
+std::string degrees_with_std(double value_rad, double std_rad) {
+  return text::with_std(value_rad * kDegrees, std_rad * kDegrees, " deg", text::Sign::kAlways);
+}
+
 /// Whether the fit has a maximum, and so a pitch, even if the run failed for another reason.
 bool has_pitch(const plate::PlateResult& result) {
   return was_fitted(result) && result.failure != plate::Failure::kNoMaximum;
@@ -62,7 +66,7 @@ std::string to_table(const PlateRun& run) {
     }
     text += fmt::format(" {:12.3f} {:8.3f}", measured.azimuth.mean() * kDegrees,
                         std::sqrt(measured.azimuth.variance()) * kDegrees);
-    if (was_fitted(result) && !result.tilts[i].used) text += "  left out";
+    if (was_fitted(result) && !result.tilts[i].used) text += "  not used";
     text += '\n';
   }
   if (was_fitted(result)) {
@@ -71,10 +75,10 @@ std::string to_table(const PlateRun& run) {
                         result.tilts_used, result.number_of_tilts);
   }
   if (has_pitch(result)) {
-    text += fmt::format("pitch {:+.3f} ± {:.3f} deg (positive looks up), maximum {:.2f} dB\n",
-                        result.pitch_rad * kDegrees, result.pitch_std_rad * kDegrees, result.maximum_db);
-    text += fmt::format("yaw   {:+.3f} ± {:.3f} deg (positive looks left), {:.1f} % of the scans believed\n",
-                        result.yaw_rad * kDegrees, result.yaw_std_rad * kDegrees, 100.0 * result.azimuth_inlier_ratio);
+    text += fmt::format("pitch {} (positive: looks up), maximum {:.2f} dB\n",
+                        degrees_with_std(result.pitch_rad, result.pitch_std_rad), result.maximum_db);
+    text += fmt::format("yaw   {} (positive: looks left), {:.1f} % of the scans are inliers\n",
+                        degrees_with_std(result.yaw_rad, result.yaw_std_rad), 100.0 * result.azimuth_inlier_ratio);
     text +=
         fmt::format("{:.0f} % of the triples agree within {:g} deg; their median {:+.3f} deg, spread {:.3f} deg\n",
                     100.0 * result.self_consistency, std::round(run.config.consistency_rad * kDegrees * 100.0) / 100.0,

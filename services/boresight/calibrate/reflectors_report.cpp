@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/calibrate/seed_json.hpp"
+#include "services/common/text/measured.hpp"
 
 namespace boresight::calibrate {
 
@@ -18,7 +19,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string angle(const char* name, double value_rad, double std_rad, bool observable) {
   if (!observable) return fmt::format("  {:6}not observable (±{:.2f} deg)\n", name, std_rad * kDegrees);
-  return fmt::format("  {:6}{:+.3f} ± {:.3f} deg\n", name, value_rad * kDegrees, std_rad * kDegrees);
+  return fmt::format("  {:6}{}\n", name,
+                     text::with_std(value_rad * kDegrees, std_rad * kDegrees, " deg", text::Sign::kAlways));
 }
 
 void write_angle(align::JsonWriter& json, const std::string& name, bool known, double value_rad, double std_rad,
@@ -49,7 +51,7 @@ std::string problem_of(const ReflectorRun& run, reflectors::Problem problem, std
                         (place - Eigen::Vector3d(mount.data())).norm(), mount[0], mount[1], mount[2],
                         run.config.range_min_m, run.config.range_max_m);
   } else if (problem == Problem::kNotALine) {
-    text += fmt::format(", allowed are {:g} m beside it", run.config.line_tolerance_m);
+    text += fmt::format(", at most {:g} m beside the line are allowed", run.config.line_tolerance_m);
   }
   return text;
 }
@@ -67,7 +69,7 @@ std::string to_table(const ReflectorRun& run) {
                           result.residual_azimuth_rad[i] * kDegrees);
       text += run.config.has_elevation ? fmt::format(" {:14.3f}", result.residual_elevation_rad[i] * kDegrees)
                                        : std::string(15, ' ');
-      text += result.used[i] ? "\n" : "  left out\n";
+      text += result.used[i] ? "\n" : "  not used\n";
     }
   }
   if (result.ok()) {

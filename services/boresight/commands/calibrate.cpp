@@ -76,8 +76,8 @@ const RadarConfig& radar_of(const VehicleConfig& vehicle, const CalibrateOptions
 
 void keep_seed(const CalibrateOptions& options, const VehicleConfig& vehicle, const alignment::RotationSeed& seed) {
   if (options.state.empty()) return;
-  const std::string news = calibrate::seed_state_file(options.state, vehicle, seed);
-  if (!news.empty()) options.tell(news);
+  const std::string note = calibrate::seed_state_file(options.state, vehicle, seed);
+  if (!note.empty()) options.tell(note);
 }
 
 void check_calibrate_options(const CalibrateOptions& options) {

@@ -1,4 +1,4 @@
-// Several captures at a time: one candump log for all CAN interfaces, one pcap file a network interface.
+// Several captures at the same time: one candump log for all CAN interfaces, one pcap file for each network interface.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace boresight::record {
 
-/// Names the files of a plan: `out` itself, if it has the extension of the one file needed (.log, .pcap), else files
-/// in the folder `out`, which is made. Throws CaptureError if one of them exists already, and std::invalid_argument if
+/// Names the files of a plan: `out` itself, if it has the extension of the single file (.log, .pcap), else files in the
+/// folder `out`, which is made. Throws CaptureError if one of them exists already, and std::invalid_argument if
 /// `out` does not fit the plan.
 struct OutputFiles {
   std::filesystem::path can;                   ///< empty if no CAN is recorded
@@ -47,9 +47,9 @@ class Recorder {
   Recorder(const CapturePlan& plan, const std::filesystem::path& out, const std::string& date_and_time,
            OnProblem on_problem);
 
-  /// Waits up to `timeout_ms` for input and writes what has come. Throws recording::WriteError.
+  /// Waits up to `timeout_ms` for input and writes it. Throws recording::WriteError.
   void turn(int timeout_ms);
-  /// To be called each second: what was written reaches the file, and lost interfaces are tried again.
+  /// To be called each second: flushes the files and tries lost interfaces again.
   void each_second();
 
   [[nodiscard]] std::vector<FileSummary> summaries() const;
