@@ -10,8 +10,8 @@ namespace {
 
 using testing::SizeIs;
 
-/// Sensor at (0, 0) with 20 m/s along x, target at (30, 1) with (25, 0.5) m/s, rail along y = 4. The target's mirror
-/// image is at (30, 7) and moves with (25, −0.5) m/s. The specular point is at x = 30·4/7.
+/// Sensor at (0, 0) with 20 m/s along x, target at (30, 1) with (25, 0.5) m/s, rail along y = 4. The mirror image of
+/// the target is at (30, 7) and moves with (25, −0.5) m/s. The specular point is at x = 30·4/7.
 struct RailExample : Bench {
   RailExample() {
     add_rail({0.0, 4.0}, {100.0, 4.0});

@@ -126,6 +126,11 @@ TEST(ScenarioFile, NamesFileLineKeyAndWhatIsAllowed) {
   EXPECT_THAT(problems("name = \"x\"\n[radars]\nmisalignment = [{radar = 17}]\n"), HasSubstr("1 … 16"));
 }
 
+TEST(ScenarioFile, FormerKeyIsAnErrorThatNamesTheKeyOfToday) {
+  EXPECT_THAT(problems("name = \"x\"\n[[body]]\nkind = \"truck\"\nstart_m = 1.0\nflank_low_m = 0.8\n"),
+              HasSubstr("my.toml:5: body[0].flank_low_m: is called 'side_low_m' now"));
+}
+
 TEST(ScenarioFile, RefusesContradictions) {
   const std::string head = "name = \"x\"\n";
   const std::string rail = "[[structure]]\nkind = \"guard_rail\"\nlateral_m = 1.0\n";
