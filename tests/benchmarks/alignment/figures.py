@@ -94,18 +94,23 @@ def roll(curves):
     panel = Panel((70, 90, 770, 240), (0.0, last), (0.05, 5.0), "|error|, °", "seconds of driving", False, True)
     for c in curves:
         panel.line(c["points"], "c0 own" if c["label"] == "front" else "c2")
-    panel.horizontal(0.3, "required after 600 s, front: 0.3°")
-    panel.horizontal(0.7, "rear: 0.7°")
+    panel.horizontal(0.7, "required after 600 s, rear radars: 0.7°")
+    # Below its line: the curve of the rear radars is above it.
+    y = panel.y(0.3)
+    panel.parts.append(f'<path class="bar" d="M{panel.left} {y:.1f}h{panel.width}"/>' +
+                       text(panel.left + panel.width, y + 13, "required after 600 s, front radars: 0.3°", "s", "end"))
     return picture(880, 380, parts + panel.parts)
 
 
 def false_alarms(curves):
-    parts = [text(20, 24, "Drives without a step change: largest average of two successive blocks per minute and radar", "t"),
-             legend([("c0 own", "clean drives"), ("c1", "disturbed drives")], 20, 46, 840)]
+    css = {"clean": "c0 own", "disturbed": "c1 own", "clean, small": "c0 d", "disturbed, small": "c1 d"}
+    names = ("large changes, clean", "large changes, disturbed", "small changes, clean", "small changes, disturbed")
+    parts = [text(20, 24, "Drives without a step change: largest suspicion statistic per minute and radar", "t"),
+             legend(list(zip(css.values(), names)), 20, 46, 840)]
     panel = Panel((70, 90, 770, 240), (0.0, 1.1), (1e-4, 1.0), "share of minutes above",
-                  "deviation / limit of a suspicion", False, True)
+                  "statistic / limit of a suspicion", False, True)
     for c in curves:
-        panel.line([p for p in c["points"] if p[1] > 0], "c0 own" if c["label"] == "clean" else "c1")
+        panel.line([p for p in c["points"] if p[1] > 0], css[c["label"]])
     x = panel.x(1.0)
     panel.parts.append(f'<path class="bar" d="M{x:.1f} 90v240"/>' + text(x - 6, 104, "suspicion", "s", "end"))
     return picture(880, 380, parts + panel.parts)
