@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/closed_loop/figures.hpp"
 
@@ -22,7 +23,6 @@ Figures judge(const std::string& scenario, ghosts::MethodName method, std::uint6
     if (chain.take(*event)) judge.add(event->t_s, chain, *event->truth, objects_at(drive, event->t_s));
   }
   const Figures f = judge.finish(duration_s);
-  constexpr double kDegree = M_PI / 180.0;
   std::printf(
       "%s, %s, seed %llu: %zu of %zu objects in view for over 3 s found, longest delay %.2f s; tracked %.1f %% of the "
       "time, %zu id switches; rms error along %.2f m, across %.2f m, velocity %.2f m/s, heading %.1f deg; length bias "
@@ -30,8 +30,8 @@ Figures judge(const std::string& scenario, ghosts::MethodName method, std::uint6
       "alignment: %zu false tracks (%.3f per scan)\n",
       scenario.c_str(), method == ghosts::MethodName::kMirror ? "mirror" : "published",
       static_cast<unsigned long long>(seed), f.stays_found, f.stays, f.worst_delay_s, 100.0 * f.share(), f.switches,
-      f.along_rms_m, f.across_rms_m, f.velocity_rms_mps, f.heading_rms_rad / kDegree, f.length_bias_m, f.width_bias_m,
-      f.ids, f.false_ids, f.false_tracks(), f.twice_tracks(), f.early_false_ids,
+      f.along_rms_m, f.across_rms_m, f.velocity_rms_mps, f.heading_rms_rad / kRadiansPerDegree, f.length_bias_m,
+      f.width_bias_m, f.ids, f.false_ids, f.false_tracks(), f.twice_tracks(), f.early_false_ids,
       static_cast<double>(f.early_false_scans) / static_cast<double>(f.scans));
   return f;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
@@ -136,9 +137,8 @@ TEST_F(Ars548, StationaryDetectionsGiveMountingAndSpeed) {
     }
     velocity = normal.ldlt().solve(right);
   }
-  constexpr double kDegrees = 180.0 / M_PI;
-  const double yaw_deg = std::atan2(velocity.y(), velocity.x()) * kDegrees;
-  const double pitch_deg = std::atan2(velocity.z(), velocity.x()) * kDegrees;
+  const double yaw_deg = std::atan2(velocity.y(), velocity.x()) * kDegreesPerRadian;
+  const double pitch_deg = std::atan2(velocity.z(), velocity.x()) * kDegreesPerRadian;
   std::printf("%zu of %zu inliers, speed %.3f m/s, yaw %+.2f deg, pitch %+.2f deg\n", inliers, count, velocity.norm(),
               yaw_deg, pitch_deg);
   EXPECT_NEAR(velocity.norm(), 6.18, 0.02);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "interfaces/messages/service_status.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/judge/truth_files.hpp"
 #include "tests/simulator/radar/blockage.hpp"
 #include "tests/simulator/radar/false_echoes.hpp"
@@ -16,7 +17,6 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kObjectReach_m = 150.0;
 
 const char* name_of(BodyKind kind) {
@@ -155,11 +155,11 @@ void TruthTables::add_sensor(const Event& event, const RadarConfig& radar) {
   const radar::Disturbance other = radar::disturbance_at(effects_.interference, radar.id, event.t_s);
   const Counts n = count(*event.truth, [](const DetectionTruth&) { return true; });
   std::fprintf(sensors_.get(), "%.6f,%u,%llu,%.6f,%.6f,%.6f,%td,%.3f,%.3f,%s,%.3f,%.3f,%u,%u,%u,%u,%u,%u,%u\n",
-               event.t_s, radar.id, scan_number(event), m.yaw_rad * kDegrees, m.pitch_rad * kDegrees,
-               m.roll_rad * kDegrees, step_changes, loss.max_db, loss.mean_db, name_of_condition(event.condition),
-               other.noise_rise_db, other.detections_per_scan, n.sum(), event.scan->dropped_detections,
-               n[Provenance::kMoving], n[Provenance::kStationary], n[Provenance::kGhostType1],
-               n[Provenance::kGhostType2], n[Provenance::kClutter]);
+               event.t_s, radar.id, scan_number(event), m.yaw_rad * kDegreesPerRadian, m.pitch_rad * kDegreesPerRadian,
+               m.roll_rad * kDegreesPerRadian, step_changes, loss.max_db, loss.mean_db,
+               name_of_condition(event.condition), other.noise_rise_db, other.detections_per_scan, n.sum(),
+               event.scan->dropped_detections, n[Provenance::kMoving], n[Provenance::kStationary],
+               n[Provenance::kGhostType1], n[Provenance::kGhostType2], n[Provenance::kClutter]);
 }
 
 void TruthTables::add_visibility(const Drive& drive, const Event& event, Radar& radar) {
@@ -200,7 +200,8 @@ void TruthTables::finish() {
     const std::uint32_t id = radar.config->id;
     const Misalignment& m = effects_.misalignment[id];
     std::fprintf(out.get(), "alignment_yaw,%u,%.6f,deg\nalignment_pitch,%u,%.6f,deg\nalignment_roll,%u,%.6f,deg\n", id,
-                 m.yaw_rad * kDegrees, id, m.pitch_rad * kDegrees, id, m.roll_rad * kDegrees);
+                 m.yaw_rad * kDegreesPerRadian, id, m.pitch_rad * kDegreesPerRadian, id,
+                 m.roll_rad * kDegreesPerRadian);
     std::fprintf(out.get(), "scans,%u,%zu,1\n", id, radar.scans);
   }
   out.finish();

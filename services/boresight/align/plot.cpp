@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/svg/document.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::align {
@@ -17,8 +18,6 @@ namespace {
 using svg::Axis;
 using svg::Chart;
 using svg::Point;
-
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kHead = 60.0;
 constexpr double kMargin = svg::Document::kMargin_px;
@@ -94,9 +93,9 @@ class Picture {
              .unit = "°/s",
              .axis = "",
              .smallest_span = 0.01,
-             .truth = constant(result_.true_yaw_rate_bias_radps, kDegrees),
-             .value = [](const Sample& s) { return s.yaw_rate_bias_radps * kDegrees; },
-             .std = [](const Sample& s) { return s.yaw_rate_bias_std_radps * kDegrees; },
+             .truth = constant(result_.true_yaw_rate_bias_radps, kDegreesPerRadian),
+             .value = [](const Sample& s) { return s.yaw_rate_bias_radps * kDegreesPerRadian; },
+             .std = [](const Sample& s) { return s.yaw_rate_bias_std_radps * kDegreesPerRadian; },
              .observable = [](const Sample& s) { return any(s, alignment_axis::kYawRateBias); }},
             {});
     }
@@ -127,8 +126,8 @@ class Picture {
              .axis = "degrees",
              .smallest_span = 0.02,
              .truth = mountings(radar, i),
-             .value = [index, i](const Sample& s) { return s.radars[index].values.at(i) * kDegrees; },
-             .std = [index, i](const Sample& s) { return s.radars[index].stds.at(i) * kDegrees; },
+             .value = [index, i](const Sample& s) { return s.radars[index].values.at(i) * kDegreesPerRadian; },
+             .std = [index, i](const Sample& s) { return s.radars[index].stds.at(i) * kDegreesPerRadian; },
              .observable = [index,
                             bit = kBits.at(i)](const Sample& s) { return (s.radars[index].observable & bit) != 0; }},
             radar.step_changes);
@@ -145,7 +144,7 @@ class Picture {
     if (!radar.truth) return points;
     for (const TruthComparison::Mounting& mounting : radar.truth->mountings) {
       const double from_s = std::max(0.0, mounting.from_s - result_.start_s);
-      points.push_back({result_.x_is_iteration ? 0.0 : from_s, mounting.values.at(parameter) * kDegrees});
+      points.push_back({result_.x_is_iteration ? 0.0 : from_s, mounting.values.at(parameter) * kDegreesPerRadian});
     }
     return points;
   }

@@ -5,13 +5,12 @@
 #include <fmt/format.h>
 
 #include "services/boresight/align/json.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::align {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / M_PI;
 
 /// `text` in `width` columns; characters such as ± and ° have two bytes but one column.
 std::string padded(const std::string& text, std::size_t width) {
@@ -22,7 +21,7 @@ std::string padded(const std::string& text, std::size_t width) {
 
 std::string angle(double value_rad, double std_rad, bool observable) {
   if (!observable) return "not observable";
-  return text::with_std(value_rad * kDegrees, std_rad * kDegrees, "°", text::Sign::kAlways);
+  return text::with_std(value_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, "°", text::Sign::kAlways);
 }
 
 std::string seconds(double value) {
@@ -63,7 +62,7 @@ std::string to_table(const Result& result) {
     }
     if (r.truth) {
       const auto error = [&](std::size_t i) {
-        return text::error_in_stds(r.truth->errors.at(i) * kDegrees, r.stds.at(i) * kDegrees, "°");
+        return text::error_in_stds(r.truth->errors.at(i) * kDegreesPerRadian, r.stds.at(i) * kDegreesPerRadian, "°");
       };
       table += padded("  error", kName) + padded(error(1), kAngle) + padded(error(2), kAngle) + error(3) + '\n';
     }
@@ -76,8 +75,9 @@ std::string to_table(const Result& result) {
   if (!result.series.empty()) {
     const Sample& last = result.series.back();
     if (last.yaw_rate_bias_std_radps > 0.0) {
-      table += ", yaw-rate bias " + text::with_std(last.yaw_rate_bias_radps * kDegrees,
-                                                   last.yaw_rate_bias_std_radps * kDegrees, "°/s", text::Sign::kAlways);
+      table += ", yaw-rate bias " + text::with_std(last.yaw_rate_bias_radps * kDegreesPerRadian,
+                                                   last.yaw_rate_bias_std_radps * kDegreesPerRadian, "°/s",
+                                                   text::Sign::kAlways);
     }
     if (last.slip_coefficient_std_radps2pm > 0.0) {
       table += ", slip " + text::with_std(last.slip_coefficient_radps2pm, last.slip_coefficient_std_radps2pm,

@@ -8,6 +8,7 @@
 
 #include "services/boresight/calibrate/seed_json.hpp"
 #include "services/boresight/svg/document.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::calibrate {
@@ -16,7 +17,6 @@ namespace plate = alignment::plate;
 
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const char* name_of(plate::FitMethod method) {
@@ -28,7 +28,7 @@ bool was_fitted(const plate::PlateResult& result) {
 }
 
 std::string degrees_with_std(double value_rad, double std_rad) {
-  return text::with_std(value_rad * kDegrees, std_rad * kDegrees, " deg", text::Sign::kAlways);
+  return text::with_std(value_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, " deg", text::Sign::kAlways);
 }
 
 /// Whether the fit has a maximum, and so a pitch, even if the run failed for another reason.
@@ -57,32 +57,33 @@ std::string to_table(const PlateRun& run) {
                       "taken/dB", "fit/dB", "azimuth/deg", "std/deg");
   for (std::size_t i = 0; i < run.measurements.number_of_tilts; ++i) {
     const plate::TiltMeasurement& measured = run.measurements.tilts[i];
-    text += fmt::format("{:10.3f} {:6d} {:9.3f} {:9.3f}", measured.tilt_rad * kDegrees, measured.scans,
+    text += fmt::format("{:10.3f} {:6d} {:9.3f} {:9.3f}", measured.tilt_rad * kDegreesPerRadian, measured.scans,
                         measured.amplitude.mean(), std::sqrt(measured.amplitude.variance()));
     if (was_fitted(result)) {
       text += fmt::format(" {:10.3f} {:9.3f}", result.tilts[i].taken_db, result.tilts[i].fitted_db);
     } else {
       text += fmt::format(" {:>10} {:>9}", "", "");
     }
-    text += fmt::format(" {:12.3f} {:8.3f}", measured.azimuth.mean() * kDegrees,
-                        std::sqrt(measured.azimuth.variance()) * kDegrees);
+    text += fmt::format(" {:12.3f} {:8.3f}", measured.azimuth.mean() * kDegreesPerRadian,
+                        std::sqrt(measured.azimuth.variance()) * kDegreesPerRadian);
     if (was_fitted(result) && !result.tilts[i].used) text += "  not used";
     text += '\n';
   }
   if (was_fitted(result)) {
     text += fmt::format("A = {:.4f} dB/deg2 tilt^2 {:+.4f} dB/deg tilt {:+.3f} dB, {} of {} tilts\n",
-                        result.parabola[0] / (kDegrees * kDegrees), result.parabola[1] / kDegrees, result.parabola[2],
-                        result.tilts_used, result.number_of_tilts);
+                        result.parabola[0] / (kDegreesPerRadian * kDegreesPerRadian),
+                        result.parabola[1] / kDegreesPerRadian, result.parabola[2], result.tilts_used,
+                        result.number_of_tilts);
   }
   if (has_pitch(result)) {
     text += fmt::format("pitch {} (positive: looks up), maximum {:.2f} dB\n",
                         degrees_with_std(result.pitch_rad, result.pitch_std_rad), result.maximum_db);
     text += fmt::format("yaw   {} (positive: looks left), {:.1f} % of the scans are inliers\n",
                         degrees_with_std(result.yaw_rad, result.yaw_std_rad), 100.0 * result.azimuth_inlier_ratio);
-    text +=
-        fmt::format("{:.0f} % of the triples agree within {:g} deg; their median {:+.3f} deg, spread {:.3f} deg\n",
-                    100.0 * result.self_consistency, std::round(run.config.consistency_rad * kDegrees * 100.0) / 100.0,
-                    result.triples_median_rad * kDegrees, result.triples_std_rad * kDegrees);
+    text += fmt::format("{:.0f} % of the triples agree within {:g} deg; their median {:+.3f} deg, spread {:.3f} deg\n",
+                        100.0 * result.self_consistency,
+                        std::round(run.config.consistency_rad * kDegreesPerRadian * 100.0) / 100.0,
+                        result.triples_median_rad * kDegreesPerRadian, result.triples_std_rad * kDegreesPerRadian);
   }
   if (result.ok()) return text + "the run is good\n";
   return text + fmt::format("FAILED: {} ({})\n", plate::explain(result.failure), plate::name_of(result.failure));
@@ -95,30 +96,33 @@ std::string to_json(const PlateRun& run) {
   json.begin_object().field("tool", "boresight calibrate plate").field("version", run.tool_version);
   json.field("source", run.source).field("method", name_of(result.method));
   json.field("ok", result.ok()).field("failure", plate::name_of(result.failure));
-  json.field("pitch_deg", known(result.pitch_rad * kDegrees));
-  json.field("pitch_std_deg", known(result.pitch_std_rad * kDegrees));
-  json.field("yaw_deg", known(result.yaw_rad * kDegrees)).field("yaw_std_deg", known(result.yaw_std_rad * kDegrees));
+  json.field("pitch_deg", known(result.pitch_rad * kDegreesPerRadian));
+  json.field("pitch_std_deg", known(result.pitch_std_rad * kDegreesPerRadian));
+  json.field("yaw_deg", known(result.yaw_rad * kDegreesPerRadian))
+      .field("yaw_std_deg", known(result.yaw_std_rad * kDegreesPerRadian));
   json.field("maximum_db", known(result.maximum_db)).field("min_amplitude_db", run.config.min_amplitude_db);
   json.field("self_consistency", known(result.self_consistency));
-  json.field("triples_median_deg", known(result.triples_median_rad * kDegrees));
-  json.field("triples_std_deg", known(result.triples_std_rad * kDegrees));
+  json.field("triples_median_deg", known(result.triples_median_rad * kDegreesPerRadian));
+  json.field("triples_std_deg", known(result.triples_std_rad * kDegreesPerRadian));
   json.field("azimuth_inlier_ratio", known(result.azimuth_inlier_ratio));
   json.field("tilts_used", std::uint64_t{result.tilts_used});
   json.key("parabola").begin_object();
   const bool fitted = was_fitted(result);
-  json.field("b1_db_per_deg2", fitted ? result.parabola[0] / (kDegrees * kDegrees) : kNaN);
-  json.field("b2_db_per_deg", fitted ? result.parabola[1] / kDegrees : kNaN);
+  json.field("b1_db_per_deg2", fitted ? result.parabola[0] / (kDegreesPerRadian * kDegreesPerRadian) : kNaN);
+  json.field("b2_db_per_deg", fitted ? result.parabola[1] / kDegreesPerRadian : kNaN);
   json.field("b3_db", fitted ? result.parabola[2] : kNaN).end_object();
   json.key("tilts").begin_array();
   for (std::size_t i = 0; i < run.measurements.number_of_tilts; ++i) {
     const plate::TiltMeasurement& measured = run.measurements.tilts[i];
-    json.begin_object().field("tilt_deg", measured.tilt_rad * kDegrees).field("scans", std::uint64_t{measured.scans});
+    json.begin_object()
+        .field("tilt_deg", measured.tilt_rad * kDegreesPerRadian)
+        .field("scans", std::uint64_t{measured.scans});
     json.field("mean_db", measured.amplitude.mean()).field("std_db", std::sqrt(measured.amplitude.variance()));
     json.field("median_db", fitted ? result.tilts[i].median_db : kNaN);
     json.field("taken_db", fitted ? result.tilts[i].taken_db : kNaN);
     json.field("fitted_db", fitted ? result.tilts[i].fitted_db : kNaN);
-    json.field("mean_azimuth_deg", measured.azimuth.mean() * kDegrees);
-    json.field("azimuth_std_deg", std::sqrt(measured.azimuth.variance()) * kDegrees);
+    json.field("mean_azimuth_deg", measured.azimuth.mean() * kDegreesPerRadian);
+    json.field("azimuth_std_deg", std::sqrt(measured.azimuth.variance()) * kDegreesPerRadian);
     json.field("used", fitted && result.tilts[i].used).end_object();
   }
   json.end_array();
@@ -132,8 +136,8 @@ std::string to_svg(const PlateRun& run) {
   double first = HUGE_VAL, last = -HUGE_VAL, low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < run.measurements.number_of_tilts; ++i) {
     const plate::TiltMeasurement& tilt = run.measurements.tilts[i];
-    first = std::min(first, tilt.tilt_rad * kDegrees);
-    last = std::max(last, tilt.tilt_rad * kDegrees);
+    first = std::min(first, tilt.tilt_rad * kDegreesPerRadian);
+    last = std::max(last, tilt.tilt_rad * kDegreesPerRadian);
     for (std::size_t k = 0; k < tilt.scans; ++k) {
       low = std::min(low, tilt.amplitude_db[k]);
       high = std::max(high, tilt.amplitude_db[k]);
@@ -145,7 +149,7 @@ std::string to_svg(const PlateRun& run) {
   const svg::Axis x{first - side, last + side, "tilt, degrees (positive: toward the ground)", false};
   const svg::Axis y{low - room, high + room, "amplitude, dB", false};
   svg::Chart chart(kWidth, kHeight, x, y);
-  const double best_deg = -result.pitch_rad * kDegrees, std_deg = result.pitch_std_rad * kDegrees;
+  const double best_deg = -result.pitch_rad * kDegreesPerRadian, std_deg = result.pitch_std_rad * kDegreesPerRadian;
   if (has_pitch(result)) {
     chart.band({{best_deg - 2.0 * std_deg, y.min}, {best_deg + 2.0 * std_deg, y.min}},
                {{best_deg - 2.0 * std_deg, y.max}, {best_deg + 2.0 * std_deg, y.max}}, svg::kUncertainty);
@@ -154,7 +158,7 @@ std::string to_svg(const PlateRun& run) {
   for (std::size_t i = 0; i < run.measurements.number_of_tilts; ++i) {
     const plate::TiltMeasurement& tilt = run.measurements.tilts[i];
     for (std::size_t k = 0; k < tilt.scans; ++k) {
-      chart.dot({tilt.tilt_rad * kDegrees, tilt.amplitude_db[k]}, 1.8, kScan);
+      chart.dot({tilt.tilt_rad * kDegreesPerRadian, tilt.amplitude_db[k]}, 1.8, kScan);
     }
   }
   if (was_fitted(result)) {
@@ -162,23 +166,24 @@ std::string to_svg(const PlateRun& run) {
     constexpr int kPoints = 100;
     for (int i = 0; i <= kPoints; ++i) {
       const double tilt_deg = x.min + (x.max - x.min) * i / kPoints;
-      curve.push_back({tilt_deg, fitted_db(result, tilt_deg / kDegrees)});
+      curve.push_back({tilt_deg, fitted_db(result, tilt_deg / kDegreesPerRadian)});
     }
     chart.line(curve, svg::kEstimate);
     for (std::size_t i = 0; i < result.number_of_tilts; ++i) {
       const plate::TiltSummary& tilt = result.tilts[i];
-      chart.dot(
-          {tilt.tilt_rad * kDegrees, tilt.taken_db}, 4.5, tilt.used ? kUsedTilt : kRejectedTilt,
-          fmt::format("{:.2f} deg: {:.2f} dB, fit {:.2f} dB", tilt.tilt_rad * kDegrees, tilt.taken_db, tilt.fitted_db));
+      chart.dot({tilt.tilt_rad * kDegreesPerRadian, tilt.taken_db}, 4.5, tilt.used ? kUsedTilt : kRejectedTilt,
+                fmt::format("{:.2f} deg: {:.2f} dB, fit {:.2f} dB", tilt.tilt_rad * kDegreesPerRadian, tilt.taken_db,
+                            tilt.fitted_db));
     }
   }
   if (has_pitch(result)) chart.line({{best_deg, y.min}, {best_deg, result.maximum_db}}, kMaximum);
 
   const std::string verdict =
-      result.ok()
-          ? "pitch " + text::with_std(result.pitch_rad * kDegrees, std_deg, "°", text::Sign::kAlways) + ", yaw " +
-                text::with_std(result.yaw_rad * kDegrees, result.yaw_std_rad * kDegrees, "°", text::Sign::kAlways)
-          : fmt::format("failed: {}", plate::explain(result.failure));
+      result.ok() ? "pitch " + text::with_std(result.pitch_rad * kDegreesPerRadian, std_deg, "°", text::Sign::kAlways) +
+                        ", yaw " +
+                        text::with_std(result.yaw_rad * kDegreesPerRadian, result.yaw_std_rad * kDegreesPerRadian, "°",
+                                       text::Sign::kAlways)
+                  : fmt::format("failed: {}", plate::explain(result.failure));
   svg::Document document;
   document.title(fmt::format("Tilting plate, {} fit", name_of(result.method)));
   document.text(svg::Document::kMargin_px, 45.0, verdict, 13.0);

@@ -6,13 +6,12 @@
 #include <map>
 #include <stdexcept>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight {
 
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 const std::map<std::string, simulator::RoadKind>& roads() {
   static const std::map<std::string, simulator::RoadKind> kRoads{{"city", simulator::RoadKind::kCity},
@@ -41,7 +40,7 @@ simulator::StepChange parse_step_change(const std::string& text, const simulator
     throw std::invalid_argument("--step-change " + text + ": must be SECONDS,RADAR,X,Y,Z with the rotation in degrees");
   }
   return {simulator::AlignmentDrive::kStart_s + time_s, index_of(spec, id),
-          Eigen::Vector3d(turn_deg[0], turn_deg[1], turn_deg[2]) * kDegree};
+          Eigen::Vector3d(turn_deg[0], turn_deg[1], turn_deg[2]) * kRadiansPerDegree};
 }
 
 }  // namespace
@@ -94,10 +93,10 @@ simulator::AlignmentSpec alignment_spec(const AlignmentDriveOptions& options, co
   spec.road = roads().at(options.road);
   if (options.planar) spec.model = simulator::MountingModel::kPlanar;
   spec.outlier_share = options.outlier_share;
-  spec.yaw_rate_bias_radps = options.yaw_rate_bias_degps * kDegree;
+  spec.yaw_rate_bias_radps = options.yaw_rate_bias_degps * kRadiansPerDegree;
   spec.slip_coefficient_radps2pm = options.slip_coefficient;
-  spec.body_pitch_std_rad = options.body_pitch_deg * kDegree;
-  spec.body_pitch_per_acceleration_radps2pm = options.brake_pitch_deg * kDegree;
+  spec.body_pitch_std_rad = options.body_pitch_deg * kRadiansPerDegree;
+  spec.body_pitch_per_acceleration_radps2pm = options.brake_pitch_deg * kRadiansPerDegree;
   if (options.random_truth) simulator::draw_truth(spec);
   for (std::size_t i = 0; i < spec.radars.size(); ++i) {
     simulator::AlignmentRadar& radar = spec.radars[i];

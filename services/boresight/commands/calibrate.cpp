@@ -16,6 +16,7 @@
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/terminal/output_file.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 
 namespace boresight {
@@ -24,8 +25,6 @@ namespace {
 
 namespace plate = alignment::plate;
 namespace reflectors = alignment::reflectors;
-
-constexpr double kDegrees = 180.0 / M_PI;
 
 /// Options of both calibrations.
 struct CalibrateOptions {
@@ -109,7 +108,7 @@ plate::Measurements read_plate_recording(const PlateOptions& options, const Vehi
   const std::vector<calibrate::TiltInterval> intervals = calibrate::read_tilts(source, problems);
   demand_all_lines(options.tilts, problems);
   plate::PlateWindow window = options.window;
-  window.azimuth_half_width_rad = options.azimuth_half_width_deg / kDegrees;
+  window.azimuth_half_width_rad = options.azimuth_half_width_deg / kDegreesPerRadian;
   calibrate::PlateFeed feed(radar.id, intervals, window);
   ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
   align::Problems unreadable = printed_problems();
@@ -160,15 +159,15 @@ int run_plate(const PlateOptions& options) {
   run->source = is_recorded ? fmt::format("{}", fmt::join(options.recordings, ", ")) : options.table;
   run->config = options.fit;
   run->config.method = options.method == "robust" ? plate::FitMethod::kRobust : plate::FitMethod::kPublished;
-  run->config.consistency_rad = options.consistency_deg / kDegrees;
+  run->config.consistency_rad = options.consistency_deg / kDegreesPerRadian;
   run->measurements = is_recorded ? read_plate_recording(options, vehicle, *radar) : read_plate_table(options.table);
   run->result = plate::evaluate(run->measurements, run->config);
   const plate::PlateResult& result = run->result;
   alignment::RotationSeed seed;
   if (result.ok() && radar != nullptr) {
     alignment::SeedConfig config = options.seed;
-    config.placement_yaw_std_rad = options.placement_yaw_std_deg / kDegrees;
-    config.placement_pitch_std_rad = options.placement_pitch_std_deg / kDegrees;
+    config.placement_yaw_std_rad = options.placement_yaw_std_deg / kDegreesPerRadian;
+    config.placement_pitch_std_rad = options.placement_pitch_std_deg / kDegreesPerRadian;
     if (!alignment::seed_from_plate(*radar, result.yaw_rad, result.yaw_std_rad, result.pitch_rad, result.pitch_std_rad,
                                     config, seed)) {
       throw UsageError(fmt::format("radar {} {} is mounted on its side: the tilting plate cannot measure its yaw",

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/names.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::diagnostics_text {
@@ -15,8 +16,6 @@ namespace boresight::diagnostics_text {
 namespace {
 
 using diagnostic_msgs::msg::dds_::DiagnosticArray_;
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 /// The names of the message's enumerations; those of the IDL have the same order.
 std::string_view word(diagnostics::DataQualifier qualifier) {
@@ -38,8 +37,9 @@ std::string_view level_word(std::uint8_t level) {
 std::string axis_text(std::string_view name, const diagnostics::AxisHealth& axis) {
   if (!axis.observable()) return {};
   return fmt::format("  {} {} ({} tolerance {:.2f}°)", name,
-                     text::with_std(axis.error_rad() * kDegrees, axis.std_rad() * kDegrees, "°", text::Sign::kAlways),
-                     axis.beyond_tolerance() ? "beyond" : "within", axis.tolerance_rad() * kDegrees);
+                     text::with_std(axis.error_rad() * kDegreesPerRadian, axis.std_rad() * kDegreesPerRadian, "°",
+                                    text::Sign::kAlways),
+                     axis.beyond_tolerance() ? "beyond" : "within", axis.tolerance_rad() * kDegreesPerRadian);
 }
 
 /// JSON knows no NaN.
@@ -64,8 +64,8 @@ std::string quoted(std::string_view text) {
 
 std::string axis_json(std::string_view name, const diagnostics::AxisHealth& axis) {
   return fmt::format(R"("{}":{{"error_deg":{},"std_deg":{},"tolerance_deg":{},"observable":{},"beyond_tolerance":{}}})",
-                     name, number(axis.error_rad() * kDegrees), number(axis.std_rad() * kDegrees),
-                     number(axis.tolerance_rad() * kDegrees), axis.observable(), axis.beyond_tolerance());
+                     name, number(axis.error_rad() * kDegreesPerRadian), number(axis.std_rad() * kDegreesPerRadian),
+                     number(axis.tolerance_rad() * kDegreesPerRadian), axis.observable(), axis.beyond_tolerance());
 }
 
 }  // namespace

@@ -5,13 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::monitor {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 enum class Ink { kPlain, kBold, kDim, kGood, kWarning, kBad };
 
@@ -84,7 +83,8 @@ bool is_estimated(const RadarSnapshot& radar) {
 std::string angle_text(const AngleEstimate& angle, bool known) {
   if (!known) return std::string(text::kUnknown);
   if (!angle.observable) return "not observable";
-  return text::with_std(angle.value_rad * kDegrees, angle.std_rad * kDegrees, "°", text::Sign::kAlways);
+  return text::with_std(angle.value_rad * kDegreesPerRadian, angle.std_rad * kDegreesPerRadian, "°",
+                        text::Sign::kAlways);
 }
 
 std::string direction(const TrackSnapshot& track) {
@@ -134,7 +134,7 @@ void put_radars(Page& page, const Snapshot& snapshot) {
     page.put(fmt::format("{:<12}", name_of(r.state)));
     page.put(fmt::format("{:<19}{:<19}", angle_text(d.pitch, known), angle_text(d.roll, known)));
     page.put(fmt::format("{:>8}{:>12}", text::fixed(d.yaw_seconds_to_95_percent, 1, " s"),
-                         text::fixed(d.yaw_drift_radpmin * kDegrees, 3, "°", text::Sign::kAlways)));
+                         text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°", text::Sign::kAlways)));
     page.line();
     if (const std::string text = complaint(r); !text.empty()) {
       page.put(fmt::format("{:<13}{}", "", text), Ink::kWarning);
@@ -151,9 +151,9 @@ void put_ego(Page& page, const Snapshot& snapshot) {
     const AngleEstimate& bias = found->details.yaw_rate_bias;
     const AngleEstimate& slip = found->details.slip;
     page.put("yaw-rate bias ");
-    page.put(bias.observable
-                 ? text::with_std(bias.value_rad * kDegrees, bias.std_rad * kDegrees, " °/s", text::Sign::kAlways)
-                 : "not observable");
+    page.put(bias.observable ? text::with_std(bias.value_rad * kDegreesPerRadian, bias.std_rad * kDegreesPerRadian,
+                                              " °/s", text::Sign::kAlways)
+                             : "not observable");
     page.put("   slip coefficient of the rear axle ");
     page.put(slip.observable ? text::with_std(slip.value_rad, slip.std_rad, " rad per m/s²") : "not observable");
   }
@@ -222,7 +222,7 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
   const auto seconds = static_cast<int>(options.elapsed_s);
   page.put("Boresight", Ink::kBold);
   page.put(fmt::format("   {:02}:{:02}   ego {:5.1f} m/s  {:+5.1f} °/s", seconds / 60, seconds % 60,
-                       snapshot.ego_speed_mps, snapshot.ego_yaw_rate_radps * kDegrees));
+                       snapshot.ego_speed_mps, snapshot.ego_yaw_rate_radps * kDegreesPerRadian));
   page.line();
   page.line();
   put_radars(page, snapshot);

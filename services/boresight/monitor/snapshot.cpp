@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/monitor/words.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::monitor {
 
@@ -113,21 +114,21 @@ std::string json_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
 }
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
 std::string axis_json(const char* name, const AngleEstimate& angle, double unit) {
   return fmt::format(R"("{}":{{"value":{},"std":{},"observable":{}}},)", name, json_number(angle.value_rad * unit),
                      json_number(angle.std_rad * unit), angle.observable);
 }
 
 std::string details_json(const AlignmentDetails& d) {
-  return axis_json("vehicle_yaw_deg", d.yaw, kDegrees) + axis_json("vehicle_pitch_deg", d.pitch, kDegrees) +
-         axis_json("vehicle_roll_deg", d.roll, kDegrees) + axis_json("yaw_rate_bias_degps", d.yaw_rate_bias, kDegrees) +
+  return axis_json("vehicle_yaw_deg", d.yaw, kDegreesPerRadian) +
+         axis_json("vehicle_pitch_deg", d.pitch, kDegreesPerRadian) +
+         axis_json("vehicle_roll_deg", d.roll, kDegreesPerRadian) +
+         axis_json("yaw_rate_bias_degps", d.yaw_rate_bias, kDegreesPerRadian) +
          axis_json("slip_coefficient_radps2pm", d.slip, 1.0) +
          fmt::format(R"("step_changes":{},"yaw_seconds_to_95_percent":{},"pitch_seconds_to_95_percent":{},)"
                      R"("yaw_drift_degpmin":{},"residual_rmse_mps":{},"nees":{})",
                      d.step_changes, json_number(d.yaw_seconds_to_95_percent),
-                     json_number(d.pitch_seconds_to_95_percent), json_number(d.yaw_drift_radpmin * kDegrees),
+                     json_number(d.pitch_seconds_to_95_percent), json_number(d.yaw_drift_radpmin * kDegreesPerRadian),
                      json_number(d.residual_rmse_mps), json_number(d.nees));
 }
 
@@ -238,9 +239,10 @@ std::string to_json(const Snapshot& snapshot) {
         R"("speed_scale_std":{},"data_qualifier":"{}","extended_qualifier":"{}","missed":{},"suspect":{},)"
         R"("conditions":"{}",)",
         separator, r.id, r.name, r.scans, r.lost, json_number(r.rate_hz), r.detections, r.moving, r.ghosts,
-        name_of(r.state), json_number(r.yaw.value_rad * kDegrees), json_number(r.yaw.std_rad * kDegrees),
-        json_number(r.pitch.value_rad * kDegrees), json_number(r.pitch.std_rad * kDegrees), json_number(r.speed_scale),
-        json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
+        name_of(r.state), json_number(r.yaw.value_rad * kDegreesPerRadian),
+        json_number(r.yaw.std_rad * kDegreesPerRadian), json_number(r.pitch.value_rad * kDegreesPerRadian),
+        json_number(r.pitch.std_rad * kDegreesPerRadian), json_number(r.speed_scale), json_number(r.speed_scale_std),
+        name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
         words_of_conditions(r.conditions));
     text += details_json(r.details) + "," + labels_json(r.labels) + "}";
     separator = ",";

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::report {
@@ -14,8 +15,6 @@ namespace {
 
 using monitor::RadarSnapshot;
 using monitor::Snapshot;
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 /// Sum of a counter that may have restarted at zero.
 class Counter {
@@ -287,7 +286,8 @@ bool has_estimate(const RadarSnapshot& radar) {
 std::string error_text(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad) {
   if (!truth_rad) return std::string(text::kUnknown);
   if (!estimate.observable) return "not observable";
-  return text::error_in_stds((estimate.value_rad - *truth_rad) * kDegrees, estimate.std_rad * kDegrees, "°");
+  return text::error_in_stds((estimate.value_rad - *truth_rad) * kDegreesPerRadian,
+                             estimate.std_rad * kDegreesPerRadian, "°");
 }
 
 std::string speed_scale_error_text(const RadarSummary& radar) {
@@ -297,13 +297,14 @@ std::string speed_scale_error_text(const RadarSummary& radar) {
 
 std::string yaw_text(const RadarSnapshot& radar) {
   if (!has_estimate(radar)) return std::string(text::kUnknown);
-  return text::with_std(radar.yaw.value_rad * kDegrees, radar.yaw.std_rad * kDegrees, "°", text::Sign::kAlways);
+  return text::with_std(radar.yaw.value_rad * kDegreesPerRadian, radar.yaw.std_rad * kDegreesPerRadian, "°",
+                        text::Sign::kAlways);
 }
 
 std::string true_yaw_text(const RadarSummary& radar) {
   if (!radar.true_yaw_rad) return std::string(text::kUnknown);
   const double std_rad = has_estimate(radar.last) ? radar.last.yaw.std_rad : 0.0;
-  return text::rounded(*radar.true_yaw_rad * kDegrees, std_rad * kDegrees, "°", text::Sign::kAlways);
+  return text::rounded(*radar.true_yaw_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, "°", text::Sign::kAlways);
 }
 
 std::string speed_scale_text(const RadarSnapshot& radar) {
@@ -314,7 +315,7 @@ std::string speed_scale_text(const RadarSnapshot& radar) {
 std::string verdict_line(const RadarSummary& radar) {
   const RadarSnapshot& last = radar.last;
   const std::string_view qualifier = name_of(last.data_qualifier);
-  const double tolerance_deg = last.yaw_tolerance_rad * kDegrees;
+  const double tolerance_deg = last.yaw_tolerance_rad * kDegreesPerRadian;
   if (radar.misaligned) {
     return fmt::format("{}: MISALIGNED, yaw {}, beyond the tolerance of {:.1f}°", last.name, yaw_text(last),
                        tolerance_deg);

@@ -7,6 +7,7 @@
 
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/names.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::dds {
@@ -15,8 +16,6 @@ namespace {
 
 using diagnostic_msgs::msg::dds_::DiagnosticStatus_;
 using diagnostic_msgs::msg::dds_::KeyValue_;
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
 
 std::string radar_name(const VehicleConfig& vehicle, std::uint32_t id) {
@@ -58,8 +57,9 @@ void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth
   }
   add_value(status, name,
             fmt::format("{}, tolerance {:.2f} deg{}{}",
-                        text::with_std(axis.error_rad * kDegrees, axis.std_rad * kDegrees, " deg", text::Sign::kAlways),
-                        axis.tolerance_rad * kDegrees, axis.beyond_tolerance != 0 ? ", beyond tolerance" : "",
+                        text::with_std(axis.error_rad * kDegreesPerRadian, axis.std_rad * kDegreesPerRadian, " deg",
+                                       text::Sign::kAlways),
+                        axis.tolerance_rad * kDegreesPerRadian, axis.beyond_tolerance != 0 ? ", beyond tolerance" : "",
                         axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
 }
 

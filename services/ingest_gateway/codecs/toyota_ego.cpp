@@ -3,16 +3,11 @@
 #include <cmath>
 
 #include "interfaces/wire/toyota.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::ingest {
 
 namespace layout = wire::toyota;
-
-namespace {
-
-constexpr double kRadiansPerDegree = M_PI / 180.0;
-
-}  // namespace
 
 void ToyotaEgo::take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) {
   const std::uint32_t id = frame.can_id;

@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 #include "services/ingest_gateway/mapping/resolver.hpp"
 
 namespace boresight::ingest {
 
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 class EgoReader {
  public:

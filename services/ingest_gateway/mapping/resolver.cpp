@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/near_names.hpp"
 
 namespace boresight::ingest {
@@ -20,7 +21,6 @@ struct Unit {
   Dimension dimension;
   double factor;
 };
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 /// Mapping files use the first word of each unit; DBC files also use the others.
 constexpr std::array kUnits = {
     Unit{"m", Dimension::kLength, 1.0},          Unit{"cm", Dimension::kLength, 0.01},

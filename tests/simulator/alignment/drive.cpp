@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/simulator/alignment/motion.hpp"
@@ -15,7 +16,6 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr auto kStart_ns = static_cast<std::int64_t>(AlignmentDrive::kStart_s * 1e9);
 
 std::int64_t stamp_ns(double since_start_s) {
@@ -34,8 +34,8 @@ struct View {
 /// it. For a radar mounted upside down, left and right of its own frame are swapped.
 View view_of(const RadarConfig& radar) {
   const FieldOfView& f = radar.field_of_view;
-  const double azimuth_margin = std::min(5.0 * kDegree, (f.azimuth_max_rad - f.azimuth_min_rad) / 12.0);
-  const double elevation_margin = std::min(3.0 * kDegree, (f.elevation_max_rad - f.elevation_min_rad) / 12.0);
+  const double azimuth_margin = std::min(5.0 * kRadiansPerDegree, (f.azimuth_max_rad - f.azimuth_min_rad) / 12.0);
+  const double elevation_margin = std::min(3.0 * kRadiansPerDegree, (f.elevation_max_rad - f.elevation_min_rad) / 12.0);
   View view{f.azimuth_min_rad + azimuth_margin, f.azimuth_max_rad - azimuth_margin,
             f.elevation_min_rad + elevation_margin, f.elevation_max_rad - elevation_margin};
   if (std::cos(radar.mounting_pose.roll_rad) < 0.0) {
@@ -124,10 +124,10 @@ double draw_elevation_rad(ElevationKind kind, const View& view, double range_m, 
   if (kind == ElevationKind::kUniform) elevation = stream.uniform(-0.02, 0.06);
   if (kind == ElevationKind::kScene) {
     elevation = std::asin(std::clamp(draw_height_m(stream) / range_m, -0.9, 0.9));
-    constexpr double kMargin_rad = 2.0 * kDegree;
+    constexpr double kMargin_rad = 2.0 * kRadiansPerDegree;
     const bool seen =
         elevation > view.elevation_min_rad + kMargin_rad && elevation < view.elevation_max_rad - kMargin_rad;
-    if (!seen) elevation = 3.0 * kDegree * stream.gaussian();
+    if (!seen) elevation = 3.0 * kRadiansPerDegree * stream.gaussian();
   }
   return std::clamp(elevation, view.elevation_min_rad, view.elevation_max_rad);
 }
@@ -135,7 +135,8 @@ double draw_elevation_rad(ElevationKind kind, const View& view, double range_m, 
 /// Azimuth of a detection: fewer towards the edge of the field of view, as by an antenna pattern.
 double draw_azimuth_rad(const View& view, Stream& stream) {
   if (stream.uniform() >= 0.35) return view.azimuth(stream.uniform());
-  return std::clamp(view.azimuth(0.5) + 25.0 * kDegree * stream.gaussian(), view.azimuth_min_rad, view.azimuth_max_rad);
+  return std::clamp(view.azimuth(0.5) + 25.0 * kRadiansPerDegree * stream.gaussian(), view.azimuth_min_rad,
+                    view.azimuth_max_rad);
 }
 
 double clamp_range_m(const RadarConfig& config, double range_m) {
@@ -285,7 +286,7 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
     const MovingObject* object = nullptr;
     if (is_outlier && sort < kMovingShare) {
       object = &radar.objects[object_of(sort)];
-      azimuth = std::clamp(radar.view.azimuth(0.5) + object->azimuth_rad.value() + 6.0 * kDegree * spread,
+      azimuth = std::clamp(radar.view.azimuth(0.5) + object->azimuth_rad.value() + 6.0 * kRadiansPerDegree * spread,
                            radar.view.azimuth_min_rad, radar.view.azimuth_max_rad);
       range_m = clamp_range_m(config, kMedianRange_m * std::exp(object->log_range.value()) + 2.0 * spread);
     }

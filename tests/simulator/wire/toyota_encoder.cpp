@@ -4,13 +4,12 @@
 #include <cmath>
 #include <span>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/wire/byte_writer.hpp"
 
 namespace boresight::simulator::wire {
 
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 void put_checksum(CanFrame& frame) {
   std::uint32_t sum = (frame.id & 0xFFu) + (frame.id >> 8) + 8u;

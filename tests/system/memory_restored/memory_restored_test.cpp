@@ -12,6 +12,7 @@
 
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
@@ -24,10 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using alignment::LoadedMemory;
 using alignment::Memory;
-
-constexpr double kDegree = M_PI / 180.0;
-constexpr std::uint32_t kMisaligned = 2;    // front_right, which the drive turns by …
-constexpr double kTrueYaw = 2.5 * kDegree;  // … this
+constexpr std::uint32_t kMisaligned = 2;              // front_right, which the drive turns by …
+constexpr double kTrueYaw = 2.5 * kRadiansPerDegree;  // … this
 const std::string kService = "alignment_estimator";
 const fs::path kState = "/tmp/state";
 const fs::path kConfig = "/tmp/config";
@@ -183,7 +182,7 @@ class IgnitionCycles : public testing::Test {
     EXPECT_EQ(std::string(status.last_fault.data()), "stored alignment is " + said);
     // It learns as on the first day, and remembers that.
     EXPECT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > 1.0; }));
-    EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kDegree);
+    EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kRadiansPerDegree);
     ignition_off();
     EXPECT_EQ(text_of(kState / "alignment.rejected"), content);
   }
@@ -194,7 +193,7 @@ class IgnitionCycles : public testing::Test {
     memory.number_of_radars = of.radars.size();
     for (std::size_t i = 0; i < of.radars.size(); ++i) {
       memory.radars[i].id = of.radars[i].id;
-      memory.radars[i].rotation_vehicle_rad = {0.0, 0.0, -5.0 * kDegree};
+      memory.radars[i].rotation_vehicle_rad = {0.0, 0.0, -5.0 * kRadiansPerDegree};
       memory.radars[i].seconds_of_drive = 3600.0;
     }
     const std::size_t size = memory.number_of_parameters();
@@ -218,7 +217,7 @@ TEST_F(IgnitionCycles, WhatWasLearntIsTakenUpWithMoreDoubt) {
   ignition_off();
   const LoadedMemory first = kept();
   ASSERT_EQ(first.kind, LoadedMemory::Kind::kTaken) << first.reason;
-  EXPECT_NEAR(first.memory.radars[kMisaligned - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kDegree);
+  EXPECT_NEAR(first.memory.radars[kMisaligned - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kRadiansPerDegree);
   EXPECT_NEAR(first.memory.radars[kMisaligned - 1].seconds_of_drive, witness_->last().kpis.seconds_of_drive, 0.3)
       << "the file is that of the end, not of the last period";
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/synthetic.hpp"
 
@@ -38,9 +39,9 @@ VehicleConfig car(const SyntheticDrive& left, const SyntheticDrive& right) {
 
 TEST(Estimator, EachRadarHasItsOwnEstimate) {
   SyntheticDrive left, right;
-  left.yaw_rad = 2.0 * kDegree;
-  right.yaw_rad = -1.0 * kDegree;
-  right.mount_yaw_rad = -135.0 * kDegree;
+  left.yaw_rad = 2.0 * kRadiansPerDegree;
+  right.yaw_rad = -1.0 * kRadiansPerDegree;
+  right.mount_yaw_rad = -135.0 * kRadiansPerDegree;
   Estimator estimator(car(left, right), Config{});
   Synthesizer a(left, 1), b(right, 2);
   for (int i = 0; i < 300; ++i) {
@@ -51,23 +52,23 @@ TEST(Estimator, EachRadarHasItsOwnEstimate) {
     static_cast<void>(estimator.add_scan(*a.scan));
     static_cast<void>(estimator.add_scan(*b.scan));
   }
-  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, left.yaw_rad, 0.03 * kDegree);
-  EXPECT_NEAR(written(estimator, 2).alignment_yaw_rad, right.yaw_rad, 0.03 * kDegree);
+  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, left.yaw_rad, 0.03 * kRadiansPerDegree);
+  EXPECT_NEAR(written(estimator, 2).alignment_yaw_rad, right.yaw_rad, 0.03 * kRadiansPerDegree);
   AlignmentEstimate out{};
   EXPECT_FALSE(estimator.write(3, out));
 }
 
 TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
   SyntheticDrive left, right;
-  left.yaw_rad = 2.0 * kDegree;
-  right.mount_yaw_rad = -135.0 * kDegree;
+  left.yaw_rad = 2.0 * kRadiansPerDegree;
+  right.mount_yaw_rad = -135.0 * kRadiansPerDegree;
   Config config, wrong;
   config.truth.emplace();
   config.truth->speed_scale = left.speed_scale;
   config.truth->radars[1] = {left.yaw_rad, 0.0, 0.0, {}};
   config.truth->radars[2].yaw_rad = right.yaw_rad;  // without pitch and roll
   wrong.truth = config.truth;
-  wrong.truth->radars[1].yaw_rad = 1.0 * kDegree;
+  wrong.truth->radars[1].yaw_rad = 1.0 * kRadiansPerDegree;
   Estimator estimator(car(left, right), config), deceived(car(left, right), wrong), unknowing(car(left, right), {});
   Synthesizer a(left, 1), b(right, 2);
   double sum = 0.0;
@@ -153,7 +154,7 @@ TEST(Estimator, WrongLengthsAndInvalidNumbersDoNoHarm) {
     ASSERT_TRUE(radar.sensor_to_vehicle.allFinite() && std::isfinite(radar.speed_scale)) << i;
     ASSERT_TRUE(radar.covariance.allFinite()) << i;
   }
-  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, drive.yaw_rad, 0.1 * kDegree);
+  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, drive.yaw_rad, 0.1 * kRadiansPerDegree);
   EXPECT_NEAR(written(estimator, 1).speed_scale, drive.speed_scale, 2e-3);
 }
 
@@ -193,9 +194,10 @@ TEST(Estimator, EveryMethodByItsNameRunsWithKeyFiguresAndAllocatesNothing) {
     EXPECT_FALSE(std::isnan(out.kpis.drift_per_minute[1])) << name;
     EXPECT_NE(std::isnan(out.kpis.nees), (out.observable & 0x71) != 0) << name;
     std::printf("%-17.*s yaw %+.3f° ± %.3f°, k_v %.4f, 95 %% after %.1f s, RMSE %.3f of %.3f m/s, NEES %.2f\n",
-                static_cast<int>(name.size()), name.data(), out.vehicle_yaw_rad / kDegree,
-                std::sqrt(out.vehicle_covariance[5]) / kDegree, out.speed_scale, out.kpis.seconds_to_95_percent[1],
-                out.kpis.residual_rmse_mps, out.kpis.uncorrected_residual_rmse_mps, out.kpis.nees);
+                static_cast<int>(name.size()), name.data(), out.vehicle_yaw_rad / kRadiansPerDegree,
+                std::sqrt(out.vehicle_covariance[5]) / kRadiansPerDegree, out.speed_scale,
+                out.kpis.seconds_to_95_percent[1], out.kpis.residual_rmse_mps, out.kpis.uncorrected_residual_rmse_mps,
+                out.kpis.nees);
     ASSERT_TRUE(estimator.write(2, out));
     EXPECT_TRUE(std::isnan(out.kpis.nees)) << "no NEES without truth";
   }

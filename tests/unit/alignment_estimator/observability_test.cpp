@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/alignment_estimator/synthetic.hpp"
 
 namespace boresight::alignment {
@@ -62,12 +63,13 @@ TEST(Observability, AnyMountingIsAsAccurate) {
   for (const Mount& mount : {Mount{0.0, 0.0, 0.0}, Mount{0.0, 0.0, 180.0}, Mount{135.0, 3.0, 0.0},
                              Mount{-135.0, -3.0, 2.0}, Mount{180.0, 1.0, 0.0}}) {
     SyntheticDrive drive;
-    drive.mount_yaw_rad = mount.yaw_deg * kDegree;
-    drive.mount_pitch_rad = mount.pitch_deg * kDegree;
-    drive.mount_roll_rad = mount.roll_deg * kDegree;
+    drive.mount_yaw_rad = mount.yaw_deg * kRadiansPerDegree;
+    drive.mount_pitch_rad = mount.pitch_deg * kRadiansPerDegree;
+    drive.mount_roll_rad = mount.roll_deg * kRadiansPerDegree;
     drive.elevation_limit_rad = 0.15;
     const AlignmentEstimate e = after(drive, 400, 2);
-    EXPECT_NEAR(e.alignment_yaw_rad, drive.yaw_rad, 0.06 * kDegree) << mount.yaw_deg << ", " << mount.roll_deg;
+    EXPECT_NEAR(e.alignment_yaw_rad, drive.yaw_rad, 0.06 * kRadiansPerDegree)
+        << mount.yaw_deg << ", " << mount.roll_deg;
     EXPECT_NEAR(e.speed_scale, drive.speed_scale, 5e-4) << mount.yaw_deg << ", " << mount.roll_deg;
     EXPECT_EQ(e.state, AlignmentState::kConverged);
     EXPECT_TRUE(e.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch));
@@ -79,7 +81,7 @@ TEST(Observability, AnUnmeasuredElevationStaysInTheSpeedScale) {
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
-  drive.elevation_limit_rad = 5.0 * kDegree;
+  drive.elevation_limit_rad = 5.0 * kRadiansPerDegree;
   const AlignmentEstimate measured = after(drive, 1000, 3);
   drive.measures_elevation = false;
   const AlignmentEstimate assumed = after(drive, 1000, 3);
@@ -99,7 +101,7 @@ TEST(Observability, AnUnmeasuredElevationStaysInTheSpeedScale) {
 SyntheticDrive one_azimuth(double from_ahead_deg) {
   SyntheticDrive drive;
   drive.turning_radps = 0.0;
-  drive.azimuth_centre_rad = from_ahead_deg * kDegree - drive.mount_yaw_rad;
+  drive.azimuth_centre_rad = from_ahead_deg * kRadiansPerDegree - drive.mount_yaw_rad;
   drive.azimuth_limit_rad = 0.0;
   return drive;
 }
@@ -141,9 +143,9 @@ TEST(Observability, AViewAheadDeterminesOnlySpeedAndAViewAsideOnlyYaw) {
 /// The angles' noise is a third of the field of view: least squares with exact angles would be off by 20 σ.
 SyntheticDrive narrow_view() {
   SyntheticDrive drive;
-  drive.azimuth_centre_rad = -40.0 * kDegree;
-  drive.azimuth_limit_rad = 2.0 * kDegree;
-  drive.azimuth_std_rad = 0.6 * kDegree;
+  drive.azimuth_centre_rad = -40.0 * kRadiansPerDegree;
+  drive.azimuth_limit_rad = 2.0 * kRadiansPerDegree;
+  drive.azimuth_std_rad = 0.6 * kRadiansPerDegree;
   return drive;
 }
 
@@ -189,7 +191,7 @@ TEST(Observability, WithoutAStationaryWorldNothingIsObservable) {
       run.synthesizer.ego = world.ego;
       run.take();
     }
-    EXPECT_NEAR(run.written().alignment_yaw_rad, standing.yaw_rad, 0.05 * kDegree)
+    EXPECT_NEAR(run.written().alignment_yaw_rad, standing.yaw_rad, 0.05 * kRadiansPerDegree)
         << "the stationary reflectors are found afterwards";
     EXPECT_EQ(run.written().state, AlignmentState::kConverged);
   }

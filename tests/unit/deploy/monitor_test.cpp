@@ -4,11 +4,10 @@
 
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::monitor {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 VehicleConfig vehicle() {
   VehicleConfig config;
@@ -36,16 +35,17 @@ void see_misaligned_radar(Accumulator& accumulator) {
   estimate.state = AlignmentState::kConverged;
   estimate.observable = alignment_axis::kYaw | alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale |
                         alignment_axis::kVehiclePitch | alignment_axis::kYawRateBias;
-  estimate.alignment_yaw_rad = estimate.vehicle_yaw_rad = static_cast<float>(2.5 * kDegree);
-  estimate.vehicle_pitch_rad = static_cast<float>(-0.7 * kDegree);
-  estimate.yaw_rate_bias_radps = static_cast<float>(0.1 * kDegree);
-  estimate.yaw_rate_bias_std_radps = static_cast<float>(0.02 * kDegree);
+  estimate.alignment_yaw_rad = estimate.vehicle_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
+  estimate.vehicle_pitch_rad = static_cast<float>(-0.7 * kRadiansPerDegree);
+  estimate.yaw_rate_bias_radps = static_cast<float>(0.1 * kRadiansPerDegree);
+  estimate.yaw_rate_bias_std_radps = static_cast<float>(0.02 * kRadiansPerDegree);
   estimate.step_change.count = 1;
   estimate.kpis.seconds_to_95_percent = {1.0F, 1.4F, std::nanf(""), std::nanf("")};
-  estimate.kpis.drift_per_minute[1] = static_cast<float>(0.004 * kDegree);
-  estimate.vehicle_covariance[5] = estimate.vehicle_covariance[10] = static_cast<float>(std::pow(0.04 * kDegree, 2));
+  estimate.kpis.drift_per_minute[1] = static_cast<float>(0.004 * kRadiansPerDegree);
+  estimate.vehicle_covariance[5] = estimate.vehicle_covariance[10] =
+      static_cast<float>(std::pow(0.04 * kRadiansPerDegree, 2));
   estimate.speed_scale = 1.03F;
-  estimate.covariance[5] = static_cast<float>(std::pow(0.04 * kDegree, 2));
+  estimate.covariance[5] = static_cast<float>(std::pow(0.04 * kRadiansPerDegree, 2));
   accumulator.observe(estimate);
   HealthReport report{};
   report.number_of_sensors = 2;

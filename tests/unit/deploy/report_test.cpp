@@ -4,6 +4,7 @@
 
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "tests/unit/deploy/synthetic_drive.hpp"
 
@@ -157,7 +158,8 @@ TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
   for (const std::uint32_t id : {1u, 2u}) {
     vehicle.radars.emplace_back();
     vehicle.radars.back().id = id;
-    vehicle.radars.back().mounting_pose = {{3.6, -0.7, 0.5}, -45.0 * kDegree, 2.0 * kDegree, 1.0 * kDegree};
+    vehicle.radars.back().mounting_pose = {
+        {3.6, -0.7, 0.5}, -45.0 * kRadiansPerDegree, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree};
   }
   const Truth truth = truth_of(drive, vehicle);
   EXPECT_EQ(truth.speed_scale, 1.012);
@@ -166,11 +168,12 @@ TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
   ASSERT_EQ(truth.vehicle_rad.size(), 1U) << "radar 1 lacks its pitch and roll";
   // R(actual) = R_x(roll)·R_y(−pitch)·R_z(yaw)·R(nominal), as AlignmentEstimate defines it.
   const auto& [yaw, pitch, roll] = truth.vehicle_rad.at(2);
-  const Eigen::Matrix3d turned = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()) *
-                                 Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
-                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                                 geometry::sensor_to_vehicle(-45.0 * kDegree, 2.0 * kDegree, 1.0 * kDegree);
-  const Eigen::Matrix3d actual = geometry::sensor_to_vehicle(-42.5 * kDegree, 2.4 * kDegree, 0.3 * kDegree);
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+      geometry::sensor_to_vehicle(-45.0 * kRadiansPerDegree, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree);
+  const Eigen::Matrix3d actual =
+      geometry::sensor_to_vehicle(-42.5 * kRadiansPerDegree, 2.4 * kRadiansPerDegree, 0.3 * kRadiansPerDegree);
   EXPECT_LT((turned - actual).norm(), 1e-12);
   std::istringstream nothing("");
   EXPECT_FALSE(truth_of(read_drive_truth(nothing), vehicle).known());
@@ -179,12 +182,12 @@ TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
 TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
   auto snapshots = synthetic_drive();
   Truth truth = synthetic_truth();
-  truth.vehicle_rad[2] = {kMisaligned_rad, 0.4 * kDegree, 0.0};
+  truth.vehicle_rad[2] = {kMisaligned_rad, 0.4 * kRadiansPerDegree, 0.0};
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     monitor::AlignmentDetails& d = snapshots[i].radars[1].details;
-    d.yaw = {kMisaligned_rad + 0.02 * kDegree, 0.04 * kDegree, true};
-    d.pitch = {0.1 * kDegree, 0.1 * kDegree, true};
-    d.roll = {0.0, 4.0 * kDegree, false};
+    d.yaw = {kMisaligned_rad + 0.02 * kRadiansPerDegree, 0.04 * kRadiansPerDegree, true};
+    d.pitch = {0.1 * kRadiansPerDegree, 0.1 * kRadiansPerDegree, true};
+    d.roll = {0.0, 4.0 * kRadiansPerDegree, false};
     d.nees = i < 10 ? NAN : (i % 2 == 0 ? 0.5 : 1.0);
   }
   const Summary summary = summarise(snapshots, truth);

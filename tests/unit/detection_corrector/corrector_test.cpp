@@ -8,23 +8,24 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 
 namespace boresight::corrector {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kTime = 1'000'000'000'000;
 
 VehicleConfig one_radar(double yaw_deg = 0.0, double pitch_deg = 0.0, double roll_deg = 0.0) {
   VehicleConfig vehicle;
   RadarConfig radar;
   radar.id = 2;
-  radar.mounting_pose = {{3.6, -0.7, 0.5}, yaw_deg * kDegree, pitch_deg * kDegree, roll_deg * kDegree};
+  radar.mounting_pose = {
+      {3.6, -0.7, 0.5}, yaw_deg * kRadiansPerDegree, pitch_deg * kRadiansPerDegree, roll_deg * kRadiansPerDegree};
   radar.noise = {.range_std_m = 0.1,
-                 .azimuth_std_rad = 0.2 * kDegree,
-                 .elevation_std_rad = 0.3 * kDegree,
+                 .azimuth_std_rad = 0.2 * kRadiansPerDegree,
+                 .elevation_std_rad = 0.3 * kRadiansPerDegree,
                  .range_rate_std_mps = 0.03};
   vehicle.radars.push_back(radar);
   return vehicle;
@@ -86,9 +87,9 @@ TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
   // A point of the vehicle frame, as a sensor with all three angles would see it.
   Corrector corrector(one_radar(-45.0, 3.0, -2.0), Config{});
   const Eigen::Vector3d point(20.0, -9.0, 1.2), mount(3.6, -0.7, 0.5);
-  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(-45.0 * kDegree, Eigen::Vector3d::UnitZ()) *
-                                    Eigen::AngleAxisd(-3.0 * kDegree, Eigen::Vector3d::UnitY()) *
-                                    Eigen::AngleAxisd(-2.0 * kDegree, Eigen::Vector3d::UnitX()))
+  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(-45.0 * kRadiansPerDegree, Eigen::Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(-3.0 * kRadiansPerDegree, Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(-2.0 * kRadiansPerDegree, Eigen::Vector3d::UnitX()))
                                        .toRotationMatrix();
   const Eigen::Vector3d seen = rotation.transpose() * (point - mount);
   add(seen.norm(), std::atan2(seen.y(), seen.x()), std::asin(seen.z() / seen.norm()), 0.0);
@@ -104,18 +105,18 @@ TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
 
 TEST_F(CorrectorTest, EstimateIsAppliedIfCertainEnough) {
   Corrector corrector(one_radar(), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kDegree, 1.01)));
+  ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kRadiansPerDegree, 1.01)));
   corrector.add_ego_motion(ego(20.0F, 0.0F));
-  add(50.0, 0.0, 0.0, -20.2 * std::cos(2.0 * kDegree));
+  add(50.0, 0.0, 0.0, -20.2 * std::cos(2.0 * kRadiansPerDegree));
   corrector.correct(*scan_, *out_);
-  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 2.0 * kDegree, 1e-6);
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 2.0 * kRadiansPerDegree, 1e-6);
   EXPECT_NEAR(out_->elevation_vehicle_rad[0], 0.0, 1e-6) << "pitch is not observable";
   EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-5);
   EXPECT_EQ(out_->alignment_sequence, 77u);
   EXPECT_EQ(out_->flags, 0u);
   EXPECT_NEAR(out_->geometry.ego_speed_mps, 20.2, 1e-5);
 
-  AlignmentEstimate unsure = estimate(3.0 * kDegree, 1.01);
+  AlignmentEstimate unsure = estimate(3.0 * kRadiansPerDegree, 1.01);
   unsure.covariance[5] = 1e-3F;  // 1.8°
   unsure.observable = alignment_axis::kYaw;
   Corrector other(one_radar(), Config{});
@@ -128,11 +129,12 @@ TEST_F(CorrectorTest, EstimateIsAppliedIfCertainEnough) {
 TEST_F(CorrectorTest, StationaryReflectorsHaveNoRangeRateOverGround) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> azimuth(-1.2, 1.2), elevation(-0.2, 0.2), angle(-3.0, 3.0);
-  const double yaw = 1.7 * kDegree, scale = 1.012;
+  const double yaw = 1.7 * kRadiansPerDegree, scale = 1.012;
   Corrector corrector(one_radar(135.0, 2.0, 1.0), Config{});
   ASSERT_TRUE(corrector.add_alignment(estimate(yaw, scale)));
   corrector.add_ego_motion(ego(14.0F, 0.4F));
-  const Eigen::Matrix3d rotation = geometry::sensor_to_vehicle(135.0 * kDegree + yaw, 2.0 * kDegree, 1.0 * kDegree);
+  const Eigen::Matrix3d rotation =
+      geometry::sensor_to_vehicle(135.0 * kRadiansPerDegree + yaw, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree);
   const Eigen::Vector3d velocity(scale * 14.0 + 0.4 * 0.7, 0.4 * 3.6, 0.0);
   for (int i = 0; i < 500; ++i) {
     const double a = azimuth(random), e = elevation(random);
@@ -158,7 +160,7 @@ TEST_F(CorrectorTest, MovingThresholdByHand) {
   add(50.0, 0.0, 0.0, -10.0 + threshold - 0.01);
   add(50.0, 0.0, 0.0, -10.0 + threshold + 0.01);
   add(50.0, 0.0, 0.0, -10.0 - threshold - 0.01);
-  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold + 0.01);  // here the noise of the azimuth has an effect too
+  add(50.0, 60.0 * kRadiansPerDegree, 0.0, -5.0 + threshold + 0.01);  // here the noise of the azimuth has an effect too
   corrector.correct(*scan_, *out_);
   EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kMoving);
@@ -181,7 +183,7 @@ TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreRemoved) {
   corrector.add_ego_motion(ego(20.0F, 0.22F));
   // True yaw rate 0.2 rad/s: the sensor moves by 20 + 0.2·0.7 ahead and 0.2·3.6 − 0.004·400·0.2 to the left.
   add(50.0, 0.0, 0.0, -20.14);
-  add(50.0, 90.0 * kDegree, 0.0, -0.4);
+  add(50.0, 90.0 * kRadiansPerDegree, 0.0, -0.4);
   corrector.correct(*scan_, *out_);
   EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-4);
   EXPECT_NEAR(out_->range_rate_over_ground_mps[1], 0.0, 1e-4);
@@ -195,10 +197,10 @@ TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
   Corrector corrector(one_radar(), config);
   corrector.add_ego_motion(ego(10.0F, 0.0F));
   add(50.0, 0.0, 0.0, -10.0);
-  add(250.0, 0.0, 0.0, -10.0);           // outside the box
-  add(30.0, 0.0, 20.0 * kDegree, -9.4);  // above it
-  add(10.0, 0.0, 0.0, -10.0, -6.0);      // limit −5 at 10 m
-  add(40.0, 0.0, 0.0, -10.0, -10.0);     // limit −11 at 40 m
+  add(250.0, 0.0, 0.0, -10.0);                     // outside the box
+  add(30.0, 0.0, 20.0 * kRadiansPerDegree, -9.4);  // above it
+  add(10.0, 0.0, 0.0, -10.0, -6.0);                // limit −5 at 10 m
+  add(40.0, 0.0, 0.0, -10.0, -10.0);               // limit −11 at 40 m
   add(50.0, 0.0, 0.0, -10.0);
   scan_->detection_flags[5] = detection_flag::kInvalid;
   add(50.0, 0.0, 0.0, -10.0);
@@ -267,8 +269,8 @@ TEST_F(CorrectorTest, QuarterTurnsByHand) {
   // behind, and one above it is above.
   Corrector corrector(one_radar(90.0), Config{});
   add(10.0, 0.0, 0.0, -1.0);
-  add(10.0, 90.0 * kDegree, 0.0, -1.0);
-  add(2.0, 0.0, 90.0 * kDegree, -1.0);
+  add(10.0, 90.0 * kRadiansPerDegree, 0.0, -1.0);
+  add(2.0, 0.0, 90.0 * kRadiansPerDegree, -1.0);
   corrector.correct(*scan_, *out_);
   const double expected[3][3] = {{3.6, 9.3, 0.5}, {-6.4, -0.7, 0.5}, {3.6, -0.7, 2.5}};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -276,7 +278,7 @@ TEST_F(CorrectorTest, QuarterTurnsByHand) {
     EXPECT_NEAR(out_->y_vehicle_m[i], expected[i][1], 1e-5) << i;
     EXPECT_NEAR(out_->z_vehicle_m[i], expected[i][2], 1e-5) << i;
   }
-  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 90.0 * kDegree, 1e-6);
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 90.0 * kRadiansPerDegree, 1e-6);
   EXPECT_NEAR(std::abs(out_->azimuth_vehicle_rad[1]), M_PI, 1e-6);
 }
 
@@ -286,8 +288,8 @@ TEST_F(CorrectorTest, LeverArmByHand) {
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(0.0F, 0.5F));
   add(20.0, 0.0, 0.0, -0.35);
-  add(20.0, 90.0 * kDegree, 0.0, -1.8);
-  add(20.0, -90.0 * kDegree, 0.0, 1.8);
+  add(20.0, 90.0 * kRadiansPerDegree, 0.0, -1.8);
+  add(20.0, -90.0 * kRadiansPerDegree, 0.0, 1.8);
   corrector.correct(*scan_, *out_);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(out_->range_rate_over_ground_mps[i], 0.0, 1e-5) << i;
   EXPECT_NEAR(out_->geometry.sensor_velocity_vehicle_mps[0], 0.35, 1e-6);
@@ -299,7 +301,7 @@ TEST_F(CorrectorTest, TheInverseGivesTheMeasuredValues) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> azimuth(-1.3, 1.3), elevation(-0.3, 0.3), range(1.0, 90.0), rate(-30.0, 30.0);
   Corrector corrector(one_radar(-135.0, -2.0, 4.0), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(-1.1 * kDegree, 0.99)));
+  ASSERT_TRUE(corrector.add_alignment(estimate(-1.1 * kRadiansPerDegree, 0.99)));
   corrector.add_ego_motion(ego(25.0F, -0.2F));
   for (int i = 0; i < 300; ++i) add(range(random), azimuth(random), elevation(random), rate(random));
   corrector.correct(*scan_, *out_);
@@ -328,10 +330,10 @@ TEST_F(CorrectorTest, TheInverseGivesTheMeasuredValues) {
 
 TEST_F(CorrectorTest, NonFiniteSideInputsAreNotApplied) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  add(50.0, 10.0 * kDegree, 0.0, -10.0 * std::cos(10.0 * kDegree));
+  add(50.0, 10.0 * kRadiansPerDegree, 0.0, -10.0 * std::cos(10.0 * kRadiansPerDegree));
   for (int what = 0; what < 4; ++what) {
     Corrector corrector(one_radar(), Config{});
-    AlignmentEstimate bad = estimate(2.0 * kDegree, 1.01);
+    AlignmentEstimate bad = estimate(2.0 * kRadiansPerDegree, 1.01);
     if (what == 0) bad.vehicle_yaw_rad = bad.speed_scale = nan;
     if (what == 1) bad.covariance[0] = bad.vehicle_covariance[5] = nan;
     if (what == 2) bad.covariance[0] = bad.vehicle_covariance[5] = -1.0F;
@@ -341,7 +343,7 @@ TEST_F(CorrectorTest, NonFiniteSideInputsAreNotApplied) {
     corrector.add_ego_motion(ego(nan, 0.0F, kTime + 10'000'000));
     corrector.correct(*scan_, *out_);
     EXPECT_EQ(out_->flags, pipeline_flag::kNoAlignment) << what;
-    EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 10.0 * kDegree, 1e-6) << what;
+    EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 10.0 * kRadiansPerDegree, 1e-6) << what;
     EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-5) << what;
     EXPECT_EQ(out_->detection_flags[0], corrected_flag::kStationary) << what;
   }

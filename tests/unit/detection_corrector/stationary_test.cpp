@@ -7,13 +7,13 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
 
 namespace boresight::corrector {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kTime = 1'000'000'000'000;
 
 /// Standard deviations of all errors.
@@ -40,12 +40,12 @@ struct Case {
 RadarConfig radar_of(const Case& c) {
   RadarConfig radar;
   radar.id = 2;
-  radar.mounting_pose = {{3.6, -0.7, 0.5}, c.mount_yaw_deg * kDegree, 0.0, 0.0};
-  radar.field_of_view.elevation_min_rad = -10.0 * kDegree;
-  radar.field_of_view.elevation_max_rad = 10.0 * kDegree;
+  radar.mounting_pose = {{3.6, -0.7, 0.5}, c.mount_yaw_deg * kRadiansPerDegree, 0.0, 0.0};
+  radar.field_of_view.elevation_min_rad = -10.0 * kRadiansPerDegree;
+  radar.field_of_view.elevation_max_rad = 10.0 * kRadiansPerDegree;
   radar.noise = {.range_std_m = 0.1,
-                 .azimuth_std_rad = 0.3 * kDegree,
-                 .elevation_std_rad = 0.5 * kDegree,
+                 .azimuth_std_rad = 0.3 * kRadiansPerDegree,
+                 .elevation_std_rad = 0.5 * kRadiansPerDegree,
                  .range_rate_std_mps = 0.04};
   return radar;
 }
@@ -68,7 +68,7 @@ class Simulation {
     for (int s = 0; s < scans; ++s) {
       Corrector corrector(vehicle_, config_);
       const Eigen::Matrix3d rotation = draw(corrector);
-      fill(*scan, per_scan, azimuth_limit_deg * kDegree, rotation, over_ground);
+      fill(*scan, per_scan, azimuth_limit_deg * kRadiansPerDegree, rotation, over_ground);
       corrector.correct(*scan, *out);
       for (int i = 0; i < per_scan; ++i) {
         const std::uint16_t flags = out->detection_flags[static_cast<std::size_t>(i)];
@@ -90,10 +90,10 @@ class Simulation {
   Eigen::Matrix3d draw(Corrector& corrector) {
     const RadarConfig& radar = vehicle_.radars[0];
     const Eigen::Vector3d std =
-        Eigen::Vector3d(case_.spread.roll_deg, case_.spread.pitch_deg, case_.spread.yaw_deg) * kDegree;
+        Eigen::Vector3d(case_.spread.roll_deg, case_.spread.pitch_deg, case_.spread.yaw_deg) * kRadiansPerDegree;
     const Eigen::Vector3d error(normal(std.x()), normal(std.y()), normal(std.z()));
     const double scale_error = normal(case_.spread.speed_scale), estimated_scale = 1.008;
-    Eigen::Vector3d turn = case_.turn_deg * kDegree;
+    Eigen::Vector3d turn = case_.turn_deg * kRadiansPerDegree;
     if (case_.draws_turn) turn += 0.5 * Eigen::Vector3d(normal(std.x()), normal(std.y()), normal(std.z()));
     const double bias = case_.has_estimate ? 0.003 + normal(2e-4) : 0.0;
     const double slip = case_.has_estimate ? 0.003 + normal(2e-4) : 0.0;
@@ -151,7 +151,7 @@ class Simulation {
         // Reflectors anywhere between the road and the top of an object on it, within the field of view.
         do {
           e = std::asin((4.7 * uniform(random_) * uniform(random_) - 0.5) / range);
-        } while (std::abs(e) > 10.0 * kDegree);
+        } while (std::abs(e) > 10.0 * kRadiansPerDegree);
       }
       const Eigen::Vector3d direction = rotation * geometry::direction(a, e);
       scan.range_m[i] = static_cast<float>(range);
@@ -228,7 +228,7 @@ TEST(StationaryTest, WithoutAnEstimateTheConfiguredStdsApply) {
   const Config config;
   Case c;
   c.has_estimate = false;
-  const double angle_deg = config.unknown_rotation_std_rad / kDegree;
+  const double angle_deg = config.unknown_rotation_std_rad / kRadiansPerDegree;
   c.spread = {angle_deg, angle_deg, angle_deg, config.unknown_speed_scale_std};
   expect_rate_of_sigma(c, "without an estimate");
 }

@@ -4,18 +4,20 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
+
 namespace boresight::health {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
-constexpr double kTolerance_rad = 1.5 * kDegree;
+constexpr double kTolerance_rad = 1.5 * kRadiansPerDegree;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Feeds the same estimate five times a second.
 std::int64_t feed(AxisJudge& judge, double error_deg, double std_deg, double seconds, std::int64_t from_ns) {
   const std::int64_t end_ns = from_ns + static_cast<std::int64_t>(seconds * 1e9);
   std::int64_t t = from_ns;
-  for (; t <= end_ns; t += kSecond / 5) judge.update(error_deg * kDegree, std_deg * kDegree, true, t);
+  for (; t <= end_ns; t += kSecond / 5)
+    judge.update(error_deg * kRadiansPerDegree, std_deg * kRadiansPerDegree, true, t);
   return t;
 }
 
@@ -32,7 +34,7 @@ TEST(AxisJudge, IsBeyondAfterItsTimeAndNotBefore) {
   feed(judge, -2.5, 0.02, 0.4, t);
   EXPECT_TRUE(judge.is_beyond());
   EXPECT_EQ(judge.health().beyond_tolerance, 1);
-  EXPECT_NEAR(judge.health().error_rad, -2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(judge.health().error_rad, -2.5 * kRadiansPerDegree, 1e-6);
 }
 
 TEST(AxisJudge, UncertainEstimateChangesNoVerdict) {
@@ -79,7 +81,7 @@ TEST(AxisJudge, UnobservableEstimateChangesNothing) {
   }
   EXPECT_TRUE(judge.is_beyond());
   EXPECT_EQ(judge.health().observable, 0);
-  EXPECT_NEAR(judge.health().error_rad, 2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(judge.health().error_rad, 2.5 * kRadiansPerDegree, 1e-6);
 }
 
 TEST(AxisJudge, IsInhibitedFarBeyondTolerance) {

@@ -6,14 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "interfaces/catalogue/catalogue.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 
 namespace boresight::health {
 namespace {
 
 using catalogue::Service;
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kStart = 1'000'000 * kMillisecond;
 
@@ -24,7 +23,8 @@ VehicleConfig two_radars() {
     RadarConfig radar;
     radar.id = id;
     radar.name = id == 1 ? "left" : "right";
-    radar.tolerance = {.yaw_rad = 1.5 * kDegree, .pitch_rad = 1.5 * kDegree, .roll_rad = 3.0 * kDegree};
+    radar.tolerance = {
+        .yaw_rad = 1.5 * kRadiansPerDegree, .pitch_rad = 1.5 * kRadiansPerDegree, .roll_rad = 3.0 * kRadiansPerDegree};
     radar.cycle_time_s = 0.05;
     radar.deadline_s = 0.25;
     vehicle.radars.push_back(radar);
@@ -48,7 +48,7 @@ class SupervisionTest : public testing::Test {
       estimate.observable = alignment_axis::kSpeedScale | alignment_axis::kYaw;
       estimate.speed_scale = 1.0F;
       estimate.covariance = {};
-      estimate.covariance[5] = static_cast<float>(0.02 * kDegree * 0.02 * kDegree);
+      estimate.covariance[5] = static_cast<float>(0.02 * kRadiansPerDegree * 0.02 * kRadiansPerDegree);
     }
     estimate_[0].header.source_id = 1;
     estimate_[1].header.source_id = 2;
@@ -165,23 +165,23 @@ TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
 
 TEST_F(SupervisionTest, MisalignedRadarIsReducedAndFarBeyondToleranceNotAvailable) {
   run(3.0);
-  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailableReduced);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
   EXPECT_EQ(radar(2).yaw.beyond_tolerance, 1);
-  EXPECT_NEAR(radar(2).lateral_displacement_m, 100.0 * std::sin(2.5 * kDegree), 1e-3);
+  EXPECT_NEAR(radar(2).lateral_displacement_m, 100.0 * std::sin(2.5 * kRadiansPerDegree), 1e-3);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
   EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced);
-  estimate_[1].alignment_yaw_rad = static_cast<float>(-8.0 * kDegree);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(-8.0 * kRadiansPerDegree);
   run(1.0);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
 }
 
 TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyObservableAxesCount) {
-  estimate_[0].alignment_pitch_rad = static_cast<float>(2.0 * kDegree);
-  estimate_[1].alignment_roll_rad = static_cast<float>(2.0 * kDegree);
+  estimate_[0].alignment_pitch_rad = static_cast<float>(2.0 * kRadiansPerDegree);
+  estimate_[1].alignment_roll_rad = static_cast<float>(2.0 * kRadiansPerDegree);
   run(5.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "pitch is not observable";
   estimate_[0].observable |= alignment_axis::kPitch;
@@ -194,26 +194,26 @@ TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyObservableAxesCount) {
 TEST_F(SupervisionTest, PitchThatIsObservableAboutTheVehicleAxisOnlyCounts) {
   // A radar that looks 45° to the side. On straight roads neither pitch nor roll about its own axes is observable.
   VehicleConfig vehicle = two_radars();
-  vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kDegree;
-  vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kDegree;
+  vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kRadiansPerDegree;
+  vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kRadiansPerDegree;
   supervision_ = Supervision(vehicle, Config{}, now_);
   run(3.0);
   for (auto& estimate : estimate_) {
     estimate.observable |= alignment_axis::kVehiclePitch | alignment_axis::kVehicleYaw;
-    estimate.vehicle_pitch_rad = static_cast<float>(2.0 * kDegree);
-    estimate.vehicle_covariance[10] = static_cast<float>(0.02 * kDegree * 0.02 * kDegree);
+    estimate.vehicle_pitch_rad = static_cast<float>(2.0 * kRadiansPerDegree);
+    estimate.vehicle_covariance[10] = static_cast<float>(0.02 * kRadiansPerDegree * 0.02 * kRadiansPerDegree);
   }
   run(3.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "a share of 0.71 is pitch of the sensor";
   EXPECT_EQ(radar(1).pitch.observable, 1);
   EXPECT_EQ(radar(1).pitch.about_vehicle_axis, 1);
-  EXPECT_NEAR(radar(1).pitch.tolerance_rad, 1.5 * std::sqrt(2.0) * kDegree, 1e-6);
-  EXPECT_NEAR(radar(2).pitch.tolerance_rad, 3.0 * kDegree, 1e-6) << "to the side it is the sensor's roll";
-  for (auto& estimate : estimate_) estimate.vehicle_pitch_rad = static_cast<float>(2.5 * kDegree);
+  EXPECT_NEAR(radar(1).pitch.tolerance_rad, 1.5 * std::sqrt(2.0) * kRadiansPerDegree, 1e-6);
+  EXPECT_NEAR(radar(2).pitch.tolerance_rad, 3.0 * kRadiansPerDegree, 1e-6) << "to the side it is the sensor's roll";
+  for (auto& estimate : estimate_) estimate.vehicle_pitch_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
   EXPECT_EQ(radar(1).pitch.beyond_tolerance, 1);
-  EXPECT_NEAR(radar(1).pitch.error_rad, 2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(radar(1).pitch.error_rad, 2.5 * kRadiansPerDegree, 1e-6);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
@@ -226,7 +226,7 @@ TEST_F(SupervisionTest, StepChangesAreCounted) {
 }
 
 TEST_F(SupervisionTest, EstimateOfAWaitingEstimatorIsIgnored) {
-  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   estimate_[1].state = AlignmentState::kWaiting;
   run(10.0);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
@@ -288,13 +288,13 @@ TEST_F(SupervisionTest, ConditionsReportedByTheSensorSetTheVerdict) {
 }
 
 TEST_F(SupervisionTest, WorstEffectIsReportedAndThenTheReasonThatAWorkshopMustRepair) {
-  estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
   source.conditions = source_condition::kPartlyBlocked;
   run(0.2);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
-  estimate_[0].alignment_yaw_rad = static_cast<float>(8.0 * kDegree);
+  estimate_[0].alignment_yaw_rad = static_cast<float>(8.0 * kRadiansPerDegree);
   source.conditions = source_condition::kBlocked | source_condition::kPartlyBlocked;
   run(1.0);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
@@ -269,17 +270,17 @@ TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
 TEST_F(Recording, TheTruthOfSensorsHasMountingBlockageInterferenceAndCountsOfEachScan) {
   const std::vector<Row> rows = table_of(files_.sensors);
   ASSERT_EQ(rows.size(), files_.scans);
-  constexpr double kDegrees = 180.0 / M_PI;
   std::size_t detections = 0;
   for (const Row& row : rows) {
     const double t = number(row, "t_s");
     const std::string& id = row.at("radar");
     const bool first = id == "1" && t >= 2.0, second = id == "1" && t >= 4.0;
-    EXPECT_NEAR(number(row, "alignment_yaw_deg"), ((id == "3" ? 0.02 : 0.0) + (first ? 0.03 : 0.0)) * kDegrees, 1e-5);
-    EXPECT_NEAR(number(row, "alignment_pitch_deg"), ((id == "3" ? -0.01 : 0.0) + (second ? 0.02 : 0.0)) * kDegrees,
+    EXPECT_NEAR(number(row, "alignment_yaw_deg"), ((id == "3" ? 0.02 : 0.0) + (first ? 0.03 : 0.0)) * kDegreesPerRadian,
                 1e-5);
-    EXPECT_NEAR(number(row, "alignment_roll_deg"), ((id == "3" ? 0.005 : 0.0) + (first ? -0.01 : 0.0)) * kDegrees,
-                1e-5);
+    EXPECT_NEAR(number(row, "alignment_pitch_deg"),
+                ((id == "3" ? -0.01 : 0.0) + (second ? 0.02 : 0.0)) * kDegreesPerRadian, 1e-5);
+    EXPECT_NEAR(number(row, "alignment_roll_deg"),
+                ((id == "3" ? 0.005 : 0.0) + (first ? -0.01 : 0.0)) * kDegreesPerRadian, 1e-5);
     EXPECT_EQ(number(row, "step_changes"), (first ? 1.0 : 0.0) + (second ? 1.0 : 0.0));
     const double blockage_db = id == "2" ? 10.0 * std::clamp(t - 1.0, 0.0, 3.0) : 0.0;
     EXPECT_NEAR(number(row, "blockage_max_db"), blockage_db, 1e-3);

@@ -7,25 +7,26 @@
 
 #include "services/alignment_estimator/core/filter/common_mode.hpp"
 #include "services/alignment_estimator/core/filter/small_maths.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 /// Lengths of the windows about x, y, z, in units of FilterConfig::step_change_window_s.
 constexpr std::array<std::int64_t, 3> kLengths{16, 1, 1};
 /// Roll is measured only in turns and while the body pitches. Up to this many windows are joined until σ is small
 /// enough.
 constexpr std::array<int, 3> kMostJoined{8, 1, 1};
-constexpr double kJoinedUntil_rad = 0.8 * kDegree;
+constexpr double kJoinedUntil_rad = 0.8 * kRadiansPerDegree;
 /// Roll is hardly above the noise even then. There are fewer windows and so fewer chances of a false alarm, so the
 /// limits are lower (shares of the configured σ).
 constexpr std::array<double, 3> kAsked{0.6, 1.0, 1.0};
 /// σ of unmodelled effects, such as the scene or the load: with other radars for comparison, and for a single radar, to
 /// which side slip and body pitch look like a change of its mounting.
-constexpr std::array<double, 3> kFloor_rad{0.2 * kDegree, 0.05 * kDegree, 0.02 * kDegree};
-constexpr std::array<double, 3> kAloneFloor_rad{1.0 * kDegree, 0.25 * kDegree, 0.1 * kDegree};
+constexpr std::array<double, 3> kFloor_rad{0.2 * kRadiansPerDegree, 0.05 * kRadiansPerDegree, 0.02 * kRadiansPerDegree};
+constexpr std::array<double, 3> kAloneFloor_rad{1.0 * kRadiansPerDegree, 0.25 * kRadiansPerDegree,
+                                                0.1 * kRadiansPerDegree};
 /// σ of the two axes beside the tested one. The std of the estimate does not bound them, because it does not include a
 /// change; the possible mountings do. The rotation about x, which a window hardly measures, keeps the estimate's std.
 constexpr double kLooseStd_rad = 0.07;

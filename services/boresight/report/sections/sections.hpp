@@ -12,6 +12,7 @@
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/summary.hpp"
 #include "services/boresight/svg/chart.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::report {
 
@@ -20,8 +21,6 @@ using monitor::Snapshot;
 using svg::Chart;
 using svg::escape;
 using svg::Point;
-
-inline constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 /// Seconds since the first scan, as far as it is known: of the record of scans, else of the first snapshot with one.
 class TimeBase {

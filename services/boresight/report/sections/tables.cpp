@@ -3,6 +3,7 @@
 
 #include "services/boresight/monitor/render.hpp"
 #include "services/boresight/report/sections/sections.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::report {
@@ -11,7 +12,8 @@ namespace {
 
 std::string angle_text(const monitor::AngleEstimate& angle) {
   if (!angle.observable) return "<span class=\"faint\">not observable</span>";
-  return text::with_std(angle.value_rad * kDegrees, angle.std_rad * kDegrees, "°", text::Sign::kAlways);
+  return text::with_std(angle.value_rad * kDegreesPerRadian, angle.std_rad * kDegreesPerRadian, "°",
+                        text::Sign::kAlways);
 }
 
 }  // namespace
@@ -61,19 +63,19 @@ std::string render_details(const Summary& summary) {
         "<td class=n>{}</td><td class=n>{}</td><td class=n>{}</td></tr>\n",
         escape(radar.last.name), angle(d.yaw), angle(d.pitch), angle(d.roll),
         text::fixed(d.yaw_seconds_to_95_percent, 1, " s"), text::fixed(d.pitch_seconds_to_95_percent, 1, " s"),
-        text::fixed(d.yaw_drift_radpmin * kDegrees, 3, "°"), text::fixed(d.residual_rmse_mps, 3, " m/s"),
+        text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°"), text::fixed(d.residual_rmse_mps, 3, " m/s"),
         d.step_changes);
   }
   text += "</table>\n";
   for (const RadarSummary& radar : summary.radars) {
     if (!has_estimate(radar.last)) continue;
     const monitor::AngleEstimate &bias = radar.last.details.yaw_rate_bias, &slip = radar.last.details.slip;
-    text += fmt::format(
-        "<p>Errors of the vehicle's signals: yaw-rate bias {}; slip coefficient of the rear axle {}.</p>\n",
-        bias.observable
-            ? text::with_std(bias.value_rad * kDegrees, bias.std_rad * kDegrees, " °/s", text::Sign::kAlways)
-            : "not observable",
-        slip.observable ? text::with_std(slip.value_rad, slip.std_rad, " rad per m/s²") : "not observable");
+    text +=
+        fmt::format("<p>Errors of the vehicle's signals: yaw-rate bias {}; slip coefficient of the rear axle {}.</p>\n",
+                    bias.observable ? text::with_std(bias.value_rad * kDegreesPerRadian,
+                                                     bias.std_rad * kDegreesPerRadian, " °/s", text::Sign::kAlways)
+                                    : "not observable",
+                    slip.observable ? text::with_std(slip.value_rad, slip.std_rad, " rad per m/s²") : "not observable");
     break;
   }
   return text;

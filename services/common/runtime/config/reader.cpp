@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/config/former_keys.hpp"
 #include "services/common/runtime/config/toml.hpp"
 #include "services/common/runtime/config/toml_text.hpp"
@@ -310,7 +311,6 @@ int Reader::choice_index(std::string_view key, const std::vector<std::string_vie
 }
 
 double Reader::angle_deg(std::string_view key, Range allowed_deg, double fallback_rad) {
-  constexpr double kRadiansPerDegree = M_PI / 180.0;
   return number(key, allowed_deg, fallback_rad / kRadiansPerDegree) * kRadiansPerDegree;
 }
 

@@ -1,4 +1,5 @@
 // Two minutes of clean drives on every kind of road.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -24,7 +25,7 @@ void clean(const Options& options, Report& report) {
     std::vector<std::string> row = {name_of(road)};
     for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
       const auto errors = final_errors(runs, parameter);
-      const double unit = parameter == kSpeedScale ? 1.0 : kDegree;
+      const double unit = parameter == kSpeedScale ? 1.0 : kRadiansPerDegree;
       worst[parameter] = std::max(worst[parameter], median(errors) / unit);
       row.push_back(number(median(errors) / unit) + " (" + number(quantile(errors, 0.95) / unit) + ")");
     }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -17,8 +18,8 @@ namespace {
 /// A drive may begin in a corner below that speed, which would hold most of its information about roll.
 constexpr alignment::FilterConfig kFilter;
 constexpr simulator::BoundPriors kPriors{.speed_scale_std = kFilter.prior_speed_scale_std,
-                                         .rotation_std_rad = 4.0 * kDegree,
-                                         .yaw_rate_bias_std_radps = 0.2 * kDegree,
+                                         .rotation_std_rad = 4.0 * kRadiansPerDegree,
+                                         .yaw_rate_bias_std_radps = 0.2 * kRadiansPerDegree,
                                          .slip_coefficient_std_radps2pm = kFilter.prior_slip_coefficient_std_radps2pm,
                                          .min_speed_mps = kFilter.min_speed_mps};
 
@@ -63,7 +64,7 @@ void cramer_rao(const Options& options, Report& report) {
         for (const auto& std : radars) stds.push_back(std(parameter));
       }
       const bool is_angle = parameter != kSpeedScale;
-      bound_row.push_back(number(median(stds) / (is_angle ? kDegree : 1.0)) + (is_angle ? "°" : ""));
+      bound_row.push_back(number(median(stds) / (is_angle ? kRadiansPerDegree : 1.0)) + (is_angle ? "°" : ""));
     }
     table.rows.push_back(bound_row);
     for (const bool oracle : {true, false}) {

@@ -1,4 +1,5 @@
 // Drives of three minutes with yaw-rate bias, rear-axle slip, body pitch and braking pitch, singly and all at once.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -52,7 +53,7 @@ void disturbed(const Options& options, Report& report) {
       std::vector<std::string> row = {std::string(one.name) + ", " + name_of(road)};
       for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
         const auto errors = final_errors(runs, parameter);
-        const double unit = parameter == kSpeedScale ? 1.0 : kDegree;
+        const double unit = parameter == kSpeedScale ? 1.0 : kRadiansPerDegree;
         row.push_back(number(median(errors) / unit) + " (" + number(quantile(errors, 0.95) / unit) + ")");
         if (!all) continue;
         if (parameter == kYaw) worst_yaw = std::max(worst_yaw, median(errors) / unit);

@@ -11,6 +11,7 @@
 #include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/align/run.hpp"
 #include "services/boresight/align/truth_file.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
@@ -107,7 +108,7 @@ void drive_1(const Options& options, Report& report) {
       double worst = 0.0;
       for (const align::RadarResult& radar : result.radars) {
         // 5 % of an initial error below half a degree disappears in the noise.
-        if (std::abs(radar.truth->mountings.front().values[place]) < 0.5 * kDegree) continue;
+        if (std::abs(radar.truth->mountings.front().values[place]) < 0.5 * kRadiansPerDegree) continue;
         const double s = radar.truth->seconds_to_95_percent[place];
         worst = std::isnan(s) ? std::numeric_limits<double>::infinity() : std::max(worst, s);
       }
@@ -116,9 +117,10 @@ void drive_1(const Options& options, Report& report) {
     const auto roll_of = [&](std::size_t first) {
       return std::max(std::abs(result.radars[first].truth->errors[kRollPlace]),
                       std::abs(result.radars[first + 1].truth->errors[kRollPlace])) /
-             kDegree;
+             kRadiansPerDegree;
     };
-    const double speed_scale = error(0), yaw = error(kYawPlace) / kDegree, pitch = error(kPitchPlace) / kDegree;
+    const double speed_scale = error(0), yaw = error(kYawPlace) / kRadiansPerDegree,
+                 pitch = error(kPitchPlace) / kRadiansPerDegree;
     table.rows.push_back(
         {result.method, number(speed_scale), number(yaw), number(pitch),
          number(roll_of(0)) + " / " + number(roll_of(2)),

@@ -1,4 +1,5 @@
 // Mounting errors of 5° about each axis, and up to 60 % outliers: detections of moving objects and ghosts.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -23,7 +24,7 @@ void outliers(const Options& options, Report& report) {
         simulator::AlignmentSpec spec = clean_drive(road, options.seconds(60.0), 2000 + seed);
         spec.outlier_share = share;
         simulator::Stream stream(spec.seed, "bench 5 degrees");
-        const auto five_degrees = [&] { return (stream.uniform() < 0.5 ? -5.0 : 5.0) * kDegree; };
+        const auto five_degrees = [&] { return (stream.uniform() < 0.5 ? -5.0 : 5.0) * kRadiansPerDegree; };
         for (auto& radar : spec.radars) radar.truth = {five_degrees(), five_degrees(), five_degrees()};
         specs.push_back(spec);
       }
@@ -31,8 +32,8 @@ void outliers(const Options& options, Report& report) {
       double captured = 0.0;
       for (const Run& run : runs) {
         const Snapshot& last = run.last();
-        captured += worst_radar(last, kYaw) < 0.1 * kDegree && worst_radar(last, kPitch) < 0.5 * kDegree &&
-                            worst_radar(last, kSpeedScale) < 1e-3
+        captured += worst_radar(last, kYaw) < 0.1 * kRadiansPerDegree &&
+                            worst_radar(last, kPitch) < 0.5 * kRadiansPerDegree && worst_radar(last, kSpeedScale) < 1e-3
                         ? 1.0
                         : 0.0;
       }

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 
 #include "services/alignment_estimator/core/batch_calibration/joint.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
@@ -155,7 +156,7 @@ Outcome outcome_of(const Truth& truth, Model model, std::size_t seeds, const Opt
       const Eigen::Vector3d error = x.segment<3>(alignment::batch_calibration::first_angle(r)) -
                                     Eigen::Vector3d(m.yaw_rad, m.pitch_rad, m.roll_rad);
       for (std::size_t p = 1; p < 4; ++p) {
-        outcome.bias[p] += std::abs(error(static_cast<Eigen::Index>(p) - 1)) / kDegree / (radars * runs);
+        outcome.bias[p] += std::abs(error(static_cast<Eigen::Index>(p) - 1)) / kRadiansPerDegree / (radars * runs);
       }
     }
   }

@@ -2,6 +2,7 @@
 // error afterwards, and whether the stated std covers that error. The bars for 0.5° yaw and 1° pitch are our own.
 #include <cmath>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -70,7 +71,7 @@ void step_change(const Options& options, Report& report) {
         AlignmentSpec spec = with_disturbances ? disturbed_drive(RoadKind::kMixed, 90.0, 3000 + seed)
                                                : clean_drive(RoadKind::kMixed, 90.0, 3000 + seed);
         const double sign = seed / 4 % 2 == 0 ? 1.0 : -1.0;  // measurement times start at 1 s
-        spec.step_changes.push_back({1.0 + kStepChangeAt_s, seed % 4, sign * one.rotation_deg * kDegree});
+        spec.step_changes.push_back({1.0 + kStepChangeAt_s, seed % 4, sign * one.rotation_deg * kRadiansPerDegree});
         specs.push_back(spec);
       }
       RunOptions run_options;
@@ -90,7 +91,7 @@ void step_change(const Options& options, Report& report) {
           errors.push_back(std::abs(radar.error(one.parameter)));
           normalised.push_back(radar.error(one.parameter) / radar.std(one.parameter));
         }
-        response.points.emplace_back(time_s, median(errors) / kDegree);
+        response.points.emplace_back(time_s, median(errors) / kRadiansPerDegree);
         if (time_s >= 20.0 && later.empty()) {
           later = errors;
           later_normalised = normalised;
@@ -103,7 +104,7 @@ void step_change(const Options& options, Report& report) {
                                                                     [](double d) { return std::isinf(d); })),
                                   0) +
                                 " of " + std::to_string(seeds),
-                            fixed(outcome.wrong_radar, 0), number(median(later) / kDegree),
+                            fixed(outcome.wrong_radar, 0), number(median(later) / kRadiansPerDegree),
                             number(std::pow(root_mean_square(later_normalised), 2))});
     }
     if (one.bar_s > 0.0) {

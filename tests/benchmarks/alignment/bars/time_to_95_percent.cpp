@@ -1,4 +1,5 @@
 // Time until an estimate has removed 95 % of the initial error, against truth.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -15,7 +16,7 @@ void time_to_95_percent(const Options& options, Report& report) {
               {"road", "k_v", "yaw", "pitch", "yaw, 90 %", "pitch, 90 %"},
               {}};
   // Initial errors of at least half a degree, or 0.5 % of k_v: 5 % of a smaller one disappears in the noise.
-  const auto least = [](int parameter) { return parameter == kSpeedScale ? 0.005 : 0.5 * kDegree; };
+  const auto least = [](int parameter) { return parameter == kSpeedScale ? 0.005 : 0.5 * kRadiansPerDegree; };
   double worst_yaw = 0.0, worst_pitch = 0.0;
   for (const RoadKind road : {RoadKind::kCity, RoadKind::kMotorway, RoadKind::kMixed}) {
     for (const bool with_disturbances : {false, true}) {

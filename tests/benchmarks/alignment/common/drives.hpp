@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/alignment/spec.hpp"
 
 namespace boresight::bench {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 /// Four corner radars with each angle wrong by 1…2.5° of either sign, k_v 0.98…1.02, a quarter of the detections moving
 /// or ghosts, no disturbance.

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
@@ -62,7 +63,7 @@ TEST(Runner, ErrorsAreAboutTheVehiclesAxes) {
     EXPECT_NEAR(radar.error(kYaw), 0.003, 1e-9);
   }
   // Before any data the error is the whole misalignment.
-  EXPECT_GT(run.snapshots.front().radars[0].error.tail<3>().norm(), 1.5 * kDegree);
+  EXPECT_GT(run.snapshots.front().radars[0].error.tail<3>().norm(), 1.5 * kRadiansPerDegree);
   // Ten scans of 50 ms, snapshots every 0.1 s.
   const TimeTo95 time = time_to_95(run, 0, kSpeedScale, 1e-4);
   EXPECT_NEAR(time.first_s, 0.5, 0.11);

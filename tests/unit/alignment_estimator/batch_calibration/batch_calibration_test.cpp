@@ -13,11 +13,10 @@
 #include "services/alignment_estimator/core/batch_calibration/gate.hpp"
 #include "services/alignment_estimator/core/batch_calibration/joint.hpp"
 #include "services/alignment_estimator/core/batch_calibration/judgement.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment::batch_calibration {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 struct World {
   double speed_scale = 1.01;
@@ -36,10 +35,10 @@ struct World {
     std::vector<Recording> all;
     for (std::size_t r = 0; r < truth.size(); ++r) {
       Recording& radar = all.emplace_back();
-      radar.nominal = {{x[r], y[r], 0.5}, yaw[r] * kDegree, 0.0, 0.0};
+      radar.nominal = {{x[r], y[r], 0.5}, yaw[r] * kRadiansPerDegree, 0.0, 0.0};
       radar.has_elevation = has_elevation;
       Eigen::Vector4d b;
-      b << speed_scale, truth[r] * kDegree;
+      b << speed_scale, truth[r] * kRadiansPerDegree;
       for (std::size_t i = 0; i < detections; ++i) {
         Detection d{1.1 * unit(random), 0.0, 0.0, 12.0 + 6.0 * unit(random), 0.2 * unit(random)};
         const double elevation = 0.02 + 0.04 * unit(random) + (has_elevation ? 0.1 * unit(random) : 0.0);
@@ -69,7 +68,7 @@ TEST(BatchCalibration, DefaultsArePublished) {
   const Config config;
   EXPECT_EQ(config.elevation_low_rad, -0.02);
   EXPECT_EQ(config.elevation_high_rad, 0.06);
-  EXPECT_NEAR(config.start_pitch_rad, 1.5 * kDegree, 1e-15);
+  EXPECT_NEAR(config.start_pitch_rad, 1.5 * kRadiansPerDegree, 1e-15);
   EXPECT_EQ(config.speed_scale_cost, 0.1);
   EXPECT_EQ(config.detections_per_iteration, 256u);
   EXPECT_EQ(config.rate, 1e-4);
@@ -116,7 +115,7 @@ TEST(BatchCalibration, WithElevationItFindsEverything) {
     const Parameter* found[] = {&radar.yaw, &radar.pitch, &radar.roll};
     const double tolerance[] = {0.03, 0.25, 0.25};
     for (Eigen::Index p = 0; p < 3; ++p) {
-      EXPECT_NEAR(found[p]->value / kDegree, world.truth[r](p), tolerance[p]) << r << ' ' << p;
+      EXPECT_NEAR(found[p]->value / kRadiansPerDegree, world.truth[r](p), tolerance[p]) << r << ' ' << p;
       EXPECT_EQ(found[p]->support, Support::kSupported);
       EXPECT_LT(found[p]->spread, 1e-6);
       EXPECT_LT(found[p]->made_up, 1e-6);
@@ -138,9 +137,10 @@ TEST(BatchCalibration, WithoutElevationOnlyYawAndSpeedScaleAreSupported) {
   EXPECT_EQ(result.speed_scale.support, Support::kSupported);
   for (std::size_t r = 0; r < 4; ++r) {
     const RadarResult& radar = result.radars[r];
-    EXPECT_NEAR(radar.yaw.value / kDegree, world.truth[r](0), 0.15) << r;
+    EXPECT_NEAR(radar.yaw.value / kRadiansPerDegree, world.truth[r](0), 0.15) << r;
     EXPECT_EQ(radar.yaw.support, Support::kSupported) << to_text(radar.yaw.support);
-    EXPECT_LT(std::abs(radar.yaw.value / kDegree - world.truth[r](0)), 3.0 * radar.yaw.made_up / kDegree + 0.02);
+    EXPECT_LT(std::abs(radar.yaw.value / kRadiansPerDegree - world.truth[r](0)),
+              3.0 * radar.yaw.made_up / kRadiansPerDegree + 0.02);
     EXPECT_NE(radar.pitch.support, Support::kSupported);
     EXPECT_NE(radar.roll.support, Support::kSupported);
     // The change equals that of the assumed elevations: the parameter follows them and is not measured.
@@ -193,7 +193,7 @@ TEST(BatchCalibration, MovingDetectionsAreRejected) {
   for (std::size_t r = 0; r < 4; ++r) {
     EXPECT_EQ(result.radars[r].offered, world.detections);
     EXPECT_NEAR(static_cast<double>(result.radars[r].used) / static_cast<double>(world.detections), 0.65, 0.05);
-    EXPECT_NEAR(result.radars[r].yaw.value / kDegree, world.truth[r](0), 0.2);
+    EXPECT_NEAR(result.radars[r].yaw.value / kRadiansPerDegree, world.truth[r](0), 0.2);
   }
   Config open = quick();
   open.gate_sigma = 0.0;
@@ -210,7 +210,7 @@ TEST(BatchCalibration, HistoryGoesFromThePublishedStartToTheResult) {
   EXPECT_EQ(first.iteration, 0u);
   EXPECT_EQ(first.parameters[0], 1.0);
   EXPECT_EQ(first.parameters[1], 0.0);
-  EXPECT_NEAR(first.parameters[2], 1.5 * kDegree, 1e-15);
+  EXPECT_NEAR(first.parameters[2], 1.5 * kRadiansPerDegree, 1e-15);
   const Step& last = result.history.back();
   EXPECT_EQ(last.iteration, config.iterations);
   EXPECT_EQ(last.parameters[0], result.speed_scale.value);
@@ -262,7 +262,7 @@ TEST(BatchCalibration, ARadarWithoutDataIsReported) {
     EXPECT_EQ(result.radars[r].pitch.value, 0.0);
     EXPECT_EQ(result.radars[r].used, 0u);
   }
-  EXPECT_NEAR(result.radars[0].yaw.value / kDegree, -1.0, 0.03);
+  EXPECT_NEAR(result.radars[0].yaw.value / kRadiansPerDegree, -1.0, 0.03);
   EXPECT_NEAR(result.speed_scale.value, 1.01, 2e-4);
 }
 

@@ -6,12 +6,11 @@
 #include <memory>
 
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 /// A drive, the vehicle's ego history, and the filter.
 class Bench {

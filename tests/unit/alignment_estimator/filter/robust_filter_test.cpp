@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/filter/bench.hpp"
 
@@ -22,7 +23,7 @@ TEST(RobustFilter, FindsFourCornerRadars) {
   bench.run(60.0);
   for (std::size_t r = 0; r < 4; ++r) {
     const RadarEstimate estimate = bench.filter->estimate(r);
-    const Eigen::Vector3d error = bench.error_rad(r) / kDegree;
+    const Eigen::Vector3d error = bench.error_rad(r) / kRadiansPerDegree;
     EXPECT_EQ(estimate.state, AlignmentState::kConverged) << r;
     EXPECT_NEAR(estimate.speed_scale, 1.01, 1e-4) << r;
     EXPECT_LT(std::abs(error.z()), 0.015) << r;
@@ -40,9 +41,9 @@ TEST(RobustFilter, StatedCovarianceMatchesTheErrors) {
   for (std::uint64_t seed = 21; seed < 33; ++seed) {
     simulator::AlignmentSpec spec = drive(seed, 40.0);
     if (seed % 2 == 0) {
-      spec.yaw_rate_bias_radps = 0.1 * kDegree;
+      spec.yaw_rate_bias_radps = 0.1 * kRadiansPerDegree;
       spec.slip_coefficient_radps2pm = 0.003;
-      spec.body_pitch_std_rad = 0.3 * kDegree;
+      spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
       spec.body_pitch_per_acceleration_radps2pm = 0.003;
     }
     Bench bench(spec);
@@ -212,7 +213,7 @@ TEST(RobustFilter, WithoutElevationYawAndSpeedOnly) {
     const RadarEstimate estimate = bench.filter->estimate(r);
     EXPECT_EQ(estimate.observable & (alignment_axis::kVehicleRoll | alignment_axis::kVehiclePitch), 0u) << r;
     EXPECT_NE(estimate.observable & alignment_axis::kVehicleYaw, 0u) << r;
-    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kRadiansPerDegree) << r;
     const double speed_scale_std = std::sqrt(estimate.covariance(0, 0));
     EXPECT_GT(speed_scale_std, 3e-4) << "the mean elevation is not known";
     EXPECT_LT(std::abs(estimate.speed_scale - spec.speed_scale), 3.0 * speed_scale_std) << r;
@@ -223,11 +224,11 @@ TEST(RobustFilter, ConvergesWithHalfOutliersAndFiveDegreesOfError) {
   for (std::uint64_t seed = 71; seed < 77; ++seed) {
     simulator::AlignmentSpec spec = drive(seed, 4.0);
     spec.outlier_share = 0.5;
-    const double side = seed % 2 == 0 ? 5.0 * kDegree : -5.0 * kDegree;
+    const double side = seed % 2 == 0 ? 5.0 * kRadiansPerDegree : -5.0 * kRadiansPerDegree;
     for (simulator::AlignmentRadar& radar : spec.radars) radar.truth = {side, -side, side};
     Bench bench(spec);
     bench.run(4.0);
-    for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.3 * kDegree) << seed;
+    for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.3 * kRadiansPerDegree) << seed;
   }
 }
 
@@ -241,8 +242,8 @@ TEST(RobustFilter, AmbiguousAndUnsynchronisedRadars) {
   Bench bench(spec);
   bench.run(40.0);
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.02 * kDegree) << r;
-    EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.12 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.02 * kRadiansPerDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.12 * kRadiansPerDegree) << r;
   }
 }
 
@@ -270,7 +271,7 @@ TEST(RobustFilter, InvalidInputsAreRejected) {
   };
   bench.run(20.0);
   EXPECT_TRUE(bench.filter->state().finite());
-  for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.05 * kDegree) << r;
+  for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.05 * kRadiansPerDegree) << r;
   EXPECT_EQ(bench.filter->estimate(99).state, AlignmentState::kNoData);
 }
 
@@ -287,19 +288,19 @@ TEST(RobustFilter, AMemoryHelpsAndIsDroppedIfWrong) {
   spec.road = simulator::RoadKind::kStraight;
   Bench same(spec);
   same.filter->restore(memory);
-  EXPECT_LT(std::abs(same.error_rad(0).z()), 0.02 * kDegree) << "before the first scan";
+  EXPECT_LT(std::abs(same.error_rad(0).z()), 0.02 * kRadiansPerDegree) << "before the first scan";
   EXPECT_EQ(same.filter->estimate(0).state, AlignmentState::kNoData);
   same.run(10.0);
   EXPECT_NE(same.filter->estimate(0).observable & alignment_axis::kVehicleRoll, 0u);
   // One radar was remounted while the car was parked.
   simulator::AlignmentSpec changed = drive(83, 10.0);
-  changed.radars[2].truth.yaw_rad += 3.0 * kDegree;
+  changed.radars[2].truth.yaw_rad += 3.0 * kRadiansPerDegree;
   Bench remounted(changed);
   remounted.filter->restore(memory);
   remounted.run(10.0);
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(std::abs(remounted.error_rad(r).z()), 0.05 * kDegree) << r;
-    EXPECT_LT(std::abs(remounted.error_rad(r).y()), 0.3 * kDegree) << r;
+    EXPECT_LT(std::abs(remounted.error_rad(r).z()), 0.05 * kRadiansPerDegree) << r;
+    EXPECT_LT(std::abs(remounted.error_rad(r).y()), 0.3 * kRadiansPerDegree) << r;
   }
   // A memory of another vehicle is ignored.
   simulator::AlignmentSpec fewer = drive(84, 1.0);
@@ -315,7 +316,8 @@ TEST(RobustFilter, AStepChangeIsReportedForItsRadarOnly) {
   };
   for (const Case& step_change : {Case{0.0, 1.0, 3.0}, Case{2.0, 0.0, 6.0}, Case{0.0, -5.0, 3.0}}) {
     simulator::AlignmentSpec spec = drive(91, 40.0);
-    spec.step_changes.push_back({26.2, 1, {0.0, step_change.pitch_deg * kDegree, step_change.yaw_deg * kDegree}});
+    spec.step_changes.push_back(
+        {26.2, 1, {0.0, step_change.pitch_deg * kRadiansPerDegree, step_change.yaw_deg * kRadiansPerDegree}});
     Bench bench(spec);
     bench.run(25.0);
     for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).step_change.count, 0u);
@@ -323,12 +325,12 @@ TEST(RobustFilter, AStepChangeIsReportedForItsRadarOnly) {
     EXPECT_EQ(bench.filter->estimate(1).step_change.count, 1u);
     bench.run(40.0);
     const AlignmentStepChange told = bench.filter->estimate(1).step_change;
-    EXPECT_NEAR(told.rotation_vehicle_rad[1], step_change.pitch_deg * kDegree, 0.5 * kDegree);
-    EXPECT_NEAR(told.rotation_vehicle_rad[2], step_change.yaw_deg * kDegree, 0.1 * kDegree);
+    EXPECT_NEAR(told.rotation_vehicle_rad[1], step_change.pitch_deg * kRadiansPerDegree, 0.5 * kRadiansPerDegree);
+    EXPECT_NEAR(told.rotation_vehicle_rad[2], step_change.yaw_deg * kRadiansPerDegree, 0.1 * kRadiansPerDegree);
     for (std::size_t r = 0; r < 4; ++r) {
       EXPECT_EQ(bench.filter->estimate(r).step_change.count, r == 1 ? 1u : 0u);
-      EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kDegree) << r;
-      EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.3 * kDegree) << r;
+      EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kRadiansPerDegree) << r;
+      EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.3 * kRadiansPerDegree) << r;
     }
   }
 }
@@ -337,7 +339,7 @@ TEST(RobustFilter, ASlowDriftIsNoStepChange) {
   // 0.6° in a minute, far faster than the random walk of the mounting.
   simulator::AlignmentSpec spec = drive(92, 90.0);
   for (int i = 0; i < 300; ++i) {
-    spec.step_changes.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
+    spec.step_changes.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kRadiansPerDegree}});
   }
   Bench bench(spec);
   bench.run(90.0);

@@ -8,19 +8,19 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/filter/small_step_change_detector.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kScan_s = 0.05;
 
 /// Scans of four radars with realistic information: σ over 2 s of 0.015° in yaw, 0.15° in pitch and 3° in roll.
 struct Drive {
   explicit Drive(std::size_t radars = 4) : number(radars), detector(radars, FilterConfig{}) {
-    const Eigen::Vector3d std_2s = Eigen::Vector3d(3.0, 0.15, 0.015) * kDegree;
+    const Eigen::Vector3d std_2s = Eigen::Vector3d(3.0, 0.15, 0.015) * kRadiansPerDegree;
     information = (std_2s.array().square() * 40.0).inverse().matrix().asDiagonal();
-    covariance = (Eigen::Vector3d(0.3, 0.02, 0.003) * kDegree).array().square().matrix().asDiagonal();
+    covariance = (Eigen::Vector3d(0.3, 0.02, 0.003) * kRadiansPerDegree).array().square().matrix().asDiagonal();
   }
 
   struct Found {
@@ -55,7 +55,7 @@ struct Drive {
 
 Eigen::Matrix<double, 3, 4> only(Eigen::Index radar, const Eigen::Vector3d& off_deg) {
   Eigen::Matrix<double, 3, 4> off = Eigen::Matrix<double, 3, 4>::Zero();
-  off.col(radar) = off_deg * kDegree;
+  off.col(radar) = off_deg * kRadiansPerDegree;
   return off;
 }
 const Eigen::Matrix<double, 3, 4> kQuiet = Eigen::Matrix<double, 3, 4>::Zero();
@@ -77,8 +77,8 @@ TEST(SmallStepChange, SmallStepsOfOneRadarAreFoundWithTheirAxisAndSize) {
     EXPECT_TRUE(drive.detector.changed(2, one.axis));
     EXPECT_FALSE(drive.detector.changed(2, 3 - one.axis));
     const double sigma_deg = one.axis == 1 ? 0.2 : 0.03;
-    EXPECT_NEAR(drive.detector.change(2)(static_cast<Eigen::Index>(one.axis)), one.off_deg * kDegree,
-                3.0 * sigma_deg * kDegree);
+    EXPECT_NEAR(drive.detector.change(2)(static_cast<Eigen::Index>(one.axis)), one.off_deg * kRadiansPerDegree,
+                3.0 * sigma_deg * kRadiansPerDegree);
   }
 }
 
@@ -97,13 +97,13 @@ TEST(SmallStepChange, NoiseAndCommonDeviationsAreNoChange) {
   Drive drive;
   EXPECT_FALSE(drive.run(3600.0, kQuiet));
   Eigen::Matrix<double, 3, 4> all;
-  all.colwise() = Eigen::Vector3d(0.0, 1.0, -0.3) * kDegree;
+  all.colwise() = Eigen::Vector3d(0.0, 1.0, -0.3) * kRadiansPerDegree;
   EXPECT_FALSE(drive.run(600.0, all));
 }
 
 TEST(SmallStepChange, ADeviationWithinTheCovarianceIsNoChange) {
   Drive drive;
-  drive.covariance = (Eigen::Vector3d(4.0, 4.0, 0.5) * kDegree).array().square().matrix().asDiagonal();
+  drive.covariance = (Eigen::Vector3d(4.0, 4.0, 0.5) * kRadiansPerDegree).array().square().matrix().asDiagonal();
   EXPECT_FALSE(drive.run(300.0, only(0, {3.0, 1.0, 0.25})));
 }
 

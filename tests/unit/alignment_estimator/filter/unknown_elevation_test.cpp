@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/alignment_estimator/filter/bench.hpp"
 
 namespace boresight::alignment {
@@ -40,7 +41,7 @@ TEST(FilterWithoutElevation, FourRadarsWithoutElevationStateConsistentSpeedAndYa
   EXPECT_LT(speed_nees, 2.0);
   EXPECT_LT(worst_speed, 2e-3) << "an assumed uniform elevation over the field of view gave an error of 0.01";
   EXPECT_LT(yaw_nees, 1.5);
-  EXPECT_LT(worst_yaw, 0.3 * kDegree);
+  EXPECT_LT(worst_yaw, 0.3 * kRadiansPerDegree);
 }
 
 TEST(FilterWithoutElevation, YawIsMoreCertainWhenRollAndPitchAreKnown) {
@@ -57,8 +58,8 @@ TEST(FilterWithoutElevation, YawIsMoreCertainWhenRollAndPitchAreKnown) {
   for (std::size_t r = 0; r < 4; ++r) {
     const double alone_std = std::sqrt(alone.filter->estimate(r).covariance(3, 3));
     const double seeded_std = std::sqrt(seeded.filter->estimate(r).covariance(3, 3));
-    EXPECT_GT(alone_std, 0.1 * kDegree) << r << ": it does not shrink with driving time";
-    EXPECT_LT(seeded_std, 0.05 * kDegree) << r;
+    EXPECT_GT(alone_std, 0.1 * kRadiansPerDegree) << r << ": it does not shrink with driving time";
+    EXPECT_LT(seeded_std, 0.05 * kRadiansPerDegree) << r;
   }
 }
 

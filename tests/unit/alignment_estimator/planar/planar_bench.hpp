@@ -7,11 +7,10 @@
 
 #include "services/alignment_estimator/core/planar/planar_filter.hpp"
 #include "services/common/estimation/ego_history.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment::planar {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 struct PlanarBench {
   explicit PlanarBench(const simulator::AlignmentSpec& s)

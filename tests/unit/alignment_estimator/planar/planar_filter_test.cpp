@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/planar/planar_bench.hpp"
@@ -28,8 +29,8 @@ TEST(PlanarFilter, FindsTheTruthWithoutNoise) {
   for (std::size_t r = 0; r < 4; ++r) {
     const Eigen::Vector4d error = bench.error(r);
     EXPECT_LT(std::abs(error(0)), 5e-6) << r;
-    EXPECT_LT(std::abs(error(1)), 5e-4 * kDegree) << r;
-    EXPECT_LT(error.tail<2>().norm(), 0.005 * kDegree) << r;
+    EXPECT_LT(std::abs(error(1)), 5e-4 * kRadiansPerDegree) << r;
+    EXPECT_LT(error.tail<2>().norm(), 0.005 * kRadiansPerDegree) << r;
     EXPECT_EQ(bench.filter->estimate(r).state, AlignmentState::kConverged);
   }
 }
@@ -42,7 +43,7 @@ TEST(PlanarFilter, FindsTiltedRolledAndUpsideDownRadars) {
   PlanarBench bench(spec);
   bench.run();
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(bench.error(r).tail<3>().norm(), 0.005 * kDegree) << r;
+    EXPECT_LT(bench.error(r).tail<3>().norm(), 0.005 * kRadiansPerDegree) << r;
     // The published angles are added to the nominal ones.
     const Eigen::Vector3d angles = geometry::euler_angles(bench.filter->estimate(r).sensor_to_vehicle);
     EXPECT_NEAR(angles(1), spec.radars[r].config.mounting_pose.pitch_rad + bench.truth(r)(2), 1e-4);
@@ -56,9 +57,9 @@ TEST(PlanarFilter, BiasOnAShortPublishedDriveReachesTheBoundAndItsStdIsConsisten
   for (std::size_t r = 0; r < 4; ++r) {
     const Eigen::Vector4d error = bench.error(r);
     EXPECT_LT(std::abs(error(0)), 2.99e-5) << r;
-    EXPECT_LT(std::abs(error(1)), 0.0106 / 2.0 * kDegree) << r;
-    EXPECT_LT(std::abs(error(2)), 0.0552 * kDegree) << r;  // 3 σ of the bound
-    EXPECT_LT(std::abs(error(3)), 0.0552 * kDegree) << r;
+    EXPECT_LT(std::abs(error(1)), 0.0106 / 2.0 * kRadiansPerDegree) << r;
+    EXPECT_LT(std::abs(error(2)), 0.0552 * kRadiansPerDegree) << r;  // 3 σ of the bound
+    EXPECT_LT(std::abs(error(3)), 0.0552 * kRadiansPerDegree) << r;
     nees += error.cwiseAbs2().cwiseQuotient(bench.filter->covariance(r).diagonal()) / 4.0;
   }
   EXPECT_LT(nees.tail<3>().mean(), 2.2);
@@ -122,8 +123,8 @@ TEST(PlanarFilter, ConvergesWithHalfOfTheDetectionsMoving) {
   PlanarBench bench(spec);
   bench.run();
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(std::abs(bench.error(r)(1)), 0.02 * kDegree) << r;
-    EXPECT_LT(bench.error(r).tail<2>().cwiseAbs().maxCoeff(), 0.25 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error(r)(1)), 0.02 * kRadiansPerDegree) << r;
+    EXPECT_LT(bench.error(r).tail<2>().cwiseAbs().maxCoeff(), 0.25 * kRadiansPerDegree) << r;
   }
 }
 
@@ -142,7 +143,7 @@ TEST(PlanarFilter, WithoutElevationPitchAndRollAreNotObservable) {
       const RadarEstimate estimate = bench.filter->estimate(r);
       EXPECT_EQ(estimate.observable & kVehiclePitchAndRoll, 0u) << r << ' ' << measured;
       EXPECT_NE(estimate.observable & alignment_axis::kVehicleYaw, 0u) << r;
-      EXPECT_LT(std::abs(bench.error(r)(1)), 0.05 * kDegree) << r << ' ' << measured;
+      EXPECT_LT(std::abs(bench.error(r)(1)), 0.05 * kRadiansPerDegree) << r << ' ' << measured;
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/published/planar_world.hpp"
@@ -17,7 +18,7 @@ double worst_angle_deg(const Method& method, const PlanarWorld& world, int first
   double worst = 0.0;
   for (std::size_t r = 0; r < world.vehicle.radars.size(); ++r) {
     const Eigen::Vector4d error = parameters(method, r) - world.truth[r];
-    for (int p = first; p <= last; ++p) worst = std::max(worst, std::abs(error(p)) / kDegree);
+    for (int p = first; p <= last; ++p) worst = std::max(worst, std::abs(error(p)) / kRadiansPerDegree);
   }
   return worst;
 }
@@ -122,7 +123,7 @@ TEST(PublishedMethods, UnsynchronisedRadarsGiveTheSameResult) {
     for (std::size_t r = 0; r < 4; ++r) {
       const Eigen::Vector4d difference = parameters(*a, r) - parameters(*b, r);
       EXPECT_LT(std::abs(difference(0)), 1e-5);
-      EXPECT_LT(difference.tail<3>().norm(), 0.01 * kDegree);
+      EXPECT_LT(difference.tail<3>().norm(), 0.01 * kRadiansPerDegree);
     }
   }
 }
@@ -207,7 +208,7 @@ TEST(PublishedMethods, TheStraightModelIsWrongInCurvesAndRightWhereItIsUsedOnStr
     config.straight_yaw_rate_radps = 0.002;
     const auto method = make_published(Kind::kLeastSquares, world.vehicle, config);
     world.drive(*method, 12'000);
-    return std::max(worst_angle_deg(*method, world), std::abs(parameters(*method, 0)(0) - 1.01) / kDegree);
+    return std::max(worst_angle_deg(*method, world), std::abs(parameters(*method, 0)(0) - 1.01) / kRadiansPerDegree);
   };
   EXPECT_GT(yaw_error(RoadModel::kStraight), 0.05);
   EXPECT_LT(yaw_error(RoadModel::kStraightWhereSlow), 0.02);

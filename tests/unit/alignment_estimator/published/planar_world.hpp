@@ -8,10 +8,9 @@
 
 #include "services/alignment_estimator/core/published/published.hpp"
 #include "services/alignment_estimator/core/published/published_method.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment::published {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 inline VehicleConfig four_corners() {
   VehicleConfig vehicle;
@@ -19,7 +18,7 @@ inline VehicleConfig four_corners() {
   for (std::uint32_t i = 0; i < 4; ++i) {
     RadarConfig radar;
     radar.id = i + 1;
-    radar.mounting_pose = {{x[i], y[i], 0.5}, yaw[i] * kDegree, 0.0, 0.0};
+    radar.mounting_pose = {{x[i], y[i], 0.5}, yaw[i] * kRadiansPerDegree, 0.0, 0.0};
     radar.cycle_time_s = 0.05;
     vehicle.radars.push_back(radar);
   }
@@ -30,7 +29,8 @@ inline VehicleConfig four_corners() {
 inline std::vector<Eigen::Vector4d> table_1() {
   const double deg[4][3] = {{-1, 1, 2}, {2, -1, 1}, {1, 2, -1}, {-2, -2, -2}};
   std::vector<Eigen::Vector4d> truth;
-  for (const auto& d : deg) truth.emplace_back(1.01, d[0] * kDegree, d[1] * kDegree, d[2] * kDegree);
+  for (const auto& d : deg)
+    truth.emplace_back(1.01, d[0] * kRadiansPerDegree, d[1] * kRadiansPerDegree, d[2] * kRadiansPerDegree);
   return truth;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
@@ -24,7 +25,7 @@ Eigen::Vector3d turn_of(const MountingPose& nominal, const Eigen::Vector3d& angl
 
 /// 0.05° about the vehicle's y and z axes, 0.5° about x, correlated.
 Eigen::Matrix3d plate_covariance() {
-  const Eigen::Vector3d stds = Eigen::Vector3d(0.5, 0.05, 0.05) * kDegree;
+  const Eigen::Vector3d stds = Eigen::Vector3d(0.5, 0.05, 0.05) * kRadiansPerDegree;
   Eigen::Matrix3d correlation = Eigen::Matrix3d::Identity();
   correlation(0, 1) = correlation(1, 0) = 0.4;
   return stds.asDiagonal() * correlation * stds.asDiagonal();
@@ -37,7 +38,7 @@ TEST(PublishedSeed, IsTheStartOfTheMethod) {
     world.vehicle.radars[1].mounting_pose.pitch_rad = 0.03;
     const auto method = make_published(kind, world.vehicle, as_published());
     const RadarEstimate other = method->estimate(0);
-    const Eigen::Vector3d angles = Eigen::Vector3d(1.2, -0.7, 0.4) * kDegree;
+    const Eigen::Vector3d angles = Eigen::Vector3d(1.2, -0.7, 0.4) * kRadiansPerDegree;
     {
       const runtime::CountAllocations counting;
       ASSERT_TRUE(method->seed(1, turn_of(world.vehicle.radars[1].mounting_pose, angles), plate_covariance()));
@@ -61,7 +62,7 @@ TEST(PublishedSeed, ReplacesTheEstimate) {
   PlanarWorld world;
   const auto method = make_published(Kind::kLeastSquares, world.vehicle, as_published());
   world.drive(*method, 1'000);
-  const Eigen::Vector3d angles = Eigen::Vector3d(-3.0, 2.0, 1.0) * kDegree;  // remounted at another angle
+  const Eigen::Vector3d angles = Eigen::Vector3d(-3.0, 2.0, 1.0) * kRadiansPerDegree;  // remounted at another angle
   ASSERT_TRUE(method->seed(2, turn_of(world.vehicle.radars[2].mounting_pose, angles), plate_covariance()));
   const RadarEstimate seeded = method->estimate(2);
   EXPECT_LT((parameters(*method, 2).tail<3>() - angles).norm(), 1e-12);
@@ -78,7 +79,8 @@ TEST(PublishedSeed, SavesTheDrivingThatTheMethodWouldNeed) {
   const auto seeded = make_published(Kind::kNelderMead, seeded_world.vehicle, as_published());
   const auto plain = make_published(Kind::kNelderMead, plain_world.vehicle, as_published());
   for (std::size_t r = 0; r < 4; ++r) {
-    const Eigen::Vector3d angles = seeded_world.truth[r].tail<3>() + Eigen::Vector3d(0.05, -0.05, 0.1) * kDegree;
+    const Eigen::Vector3d angles =
+        seeded_world.truth[r].tail<3>() + Eigen::Vector3d(0.05, -0.05, 0.1) * kRadiansPerDegree;
     ASSERT_TRUE(seeded->seed(r, turn_of(seeded_world.vehicle.radars[r].mounting_pose, angles), plate_covariance()));
   }
   seeded_world.drive(*seeded, 1'000);
@@ -87,7 +89,7 @@ TEST(PublishedSeed, SavesTheDrivingThatTheMethodWouldNeed) {
     double worst = 0.0;
     for (std::size_t r = 0; r < 4; ++r) {
       const Eigen::Vector3d error = (parameters(method, r) - world.truth[r]).tail<3>();
-      worst = std::max(worst, error.cwiseAbs().maxCoeff() / kDegree);
+      worst = std::max(worst, error.cwiseAbs().maxCoeff() / kRadiansPerDegree);
     }
     return worst;
   };
@@ -117,7 +119,7 @@ TEST(PublishedSeed, StaysIfTheSensorMeasuresNoElevation) {
   world.drive(*method, 4'000);
   EXPECT_NEAR(parameters(*method, 0)(2), world.truth[0](2), 1e-12);
   EXPECT_NEAR(parameters(*method, 0)(3), 0.0, 1e-12);
-  EXPECT_NEAR(parameters(*method, 0)(1), world.truth[0](1), 0.05 * kDegree);
+  EXPECT_NEAR(parameters(*method, 0)(1), world.truth[0](1), 0.05 * kRadiansPerDegree);
   EXPECT_NE(method->estimate(0).observable & alignment_axis::kVehiclePitch, 0u);
   EXPECT_EQ(method->estimate(1).observable & alignment_axis::kVehiclePitch, 0u) << "not seeded";
 }

@@ -13,13 +13,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::simulator {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 CramerRaoBound bound_of(const AlignmentSpec& spec, AlignmentDrive& drive, const BoundPriors& priors = {}) {
   CramerRaoBound bound(spec, drive, priors);
@@ -52,7 +51,7 @@ struct Model {
 TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
   AlignmentSpec spec = four_corner_radars();
   spec.radars.resize(2);
-  spec.radars[0].config.mounting_pose.pitch_rad = 5.0 * kDegree;
+  spec.radars[0].config.mounting_pose.pitch_rad = 5.0 * kRadiansPerDegree;
   spec.radars[1].config.mounting_pose.roll_rad = M_PI;
   spec.radars[1].first_scan_s = 0.02;  // shares ego motions with the other radar, but not instants
   spec.radars[1].noise_scale = 1.5;
@@ -60,9 +59,9 @@ TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
   spec.road = RoadKind::kCity;
   spec.seed = 3;
   spec.slip_coefficient_radps2pm = 0.003;
-  spec.body_pitch_std_rad = 0.3 * kDegree;
+  spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
   for (AlignmentRadar& radar : spec.radars) radar.mean_detections = 15.0;
-  const BoundPriors priors{0.02, 3.0 * kDegree, 0.003, 0.005};
+  const BoundPriors priors{0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005};
 
   AlignmentDrive drive(spec);
   CramerRaoBound bound(spec, drive, priors);
@@ -114,7 +113,7 @@ TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
   const double p2 = std::pow(spec.body_pitch_std_rad, -2);
   information.diagonal() << std::pow(0.02, -2), std::pow(0.003, -2), std::pow(0.005, -2),
-      Eigen::VectorXd::Constant(6, std::pow(3.0 * kDegree, -2)), Eigen::VectorXd::Zero(2 * egos + instants);
+      Eigen::VectorXd::Constant(6, std::pow(3.0 * kRadiansPerDegree, -2)), Eigen::VectorXd::Zero(2 * egos + instants);
   for (Eigen::Index i = 0; i < egos; ++i) {
     information(kParameters + 2 * i, kParameters + 2 * i) = std::pow(spec.speed_std_mps, -2);
     information(kParameters + 2 * i + 1, kParameters + 2 * i + 1) = std::pow(spec.yaw_rate_std_radps, -2);
@@ -169,7 +168,7 @@ TEST(CramerRaoBound, OfADriveLikeTheRecordedOneIsAsPublishedWithIt) {
   const CramerRaoBound bound = bound_of(spec, drive);
   EXPECT_NEAR(bound.speed_scale_std(), 1.89e-5, 0.19e-5);
   for (std::size_t r = 0; r < 4; ++r) {
-    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kDegree;
+    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kRadiansPerDegree;
     EXPECT_NEAR(std.x(), r < 2 ? 0.179 : 0.723, r < 2 ? 0.018 : 0.072);
     EXPECT_NEAR(std.y(), 0.0087, 0.00087);
     EXPECT_NEAR(std.z(), 0.0012, 0.00012);
@@ -233,7 +232,7 @@ TEST(CramerRaoBound, OfTheRecordedDriveIsThatOfItsTruthFile) {
   EXPECT_NEAR(bound.speed_scale_std() / 1.89e-5, 1.0, 0.05);
   const std::array<double, 4> roll_deg{0.1817, 0.1760, 0.7255, 0.7202};
   for (std::size_t r = 0; r < 4; ++r) {
-    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kDegree;
+    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kRadiansPerDegree;
     EXPECT_NEAR(std.x() / roll_deg[r], 1.0, 0.05);
     EXPECT_NEAR(std.y() / 0.0087, 1.0, 0.05);
     EXPECT_NEAR(std.z() / 0.0012, 1.0, 0.05);  // the file has two digits
@@ -245,7 +244,7 @@ TEST(CramerRaoBound, InformationGrowsAlongTheDrive) {
   spec.duration_s = 60.0;
   spec.road = RoadKind::kCity;
   AlignmentDrive drive(spec);
-  CramerRaoBound bound(spec, drive, {0.02, 3.0 * kDegree, 0.003, 0.005});
+  CramerRaoBound bound(spec, drive, {0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005});
   AlignmentEvent event;
   Eigen::MatrixXd before = bound.covariance();
   EXPECT_NEAR(std::sqrt(before(1, 1)), 0.003, 1e-12);
@@ -261,7 +260,7 @@ TEST(CramerRaoBound, InformationGrowsAlongTheDrive) {
     EXPECT_EQ(shifted.llt().info(), Eigen::Success) << "no parameter becomes less certain, at " << event.time_s << " s";
     before = now;
   }
-  EXPECT_LT(bound.rotation_std_rad(0).z(), 0.005 * kDegree);
+  EXPECT_LT(bound.rotation_std_rad(0).z(), 0.005 * kRadiansPerDegree);
 }
 
 TEST(CramerRaoBound, RollIsUnobservableOnAStraightRoad) {
@@ -271,8 +270,8 @@ TEST(CramerRaoBound, RollIsUnobservableOnAStraightRoad) {
   AlignmentDrive drive(spec);
   const CramerRaoBound bound = bound_of(spec, drive);
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_NEAR(bound.rotation_std_rad(r).x(), 3.0 * kDegree, 1e-6);
-    EXPECT_LT(bound.rotation_std_rad(r).z(), 0.01 * kDegree);
+    EXPECT_NEAR(bound.rotation_std_rad(r).x(), 3.0 * kRadiansPerDegree, 1e-6);
+    EXPECT_LT(bound.rotation_std_rad(r).z(), 0.01 * kRadiansPerDegree);
   }
 }
 
@@ -285,17 +284,17 @@ TEST(CramerRaoBound, DisturbancesAndMissingElevationRaiseIt) {
   spec.duration_s = 30.0;
   spec.road = RoadKind::kCity;
   const Eigen::Vector3d plain = yaw_of(spec, {});
-  const Eigen::Vector3d unknown = yaw_of(spec, {0.02, 3.0 * kDegree, 0.003, 0.005});
+  const Eigen::Vector3d unknown = yaw_of(spec, {0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005});
   EXPECT_GT(unknown.z(), 1.02 * plain.z());
   AlignmentSpec noisy = spec;
-  noisy.body_pitch_std_rad = 0.3 * kDegree;
+  noisy.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
   EXPECT_GT(yaw_of(noisy, {}).y(), 1.1 * plain.y());
   AlignmentSpec flat = spec;
   flat.radars[0].measures_elevation = false;
   const Eigen::Vector3d blind = yaw_of(flat, {});
-  EXPECT_NEAR(blind.x(), 3.0 * kDegree, 1e-9);
-  EXPECT_NEAR(blind.y(), 3.0 * kDegree, 1e-9);
-  EXPECT_LT(blind.z(), 0.02 * kDegree);
+  EXPECT_NEAR(blind.x(), 3.0 * kRadiansPerDegree, 1e-9);
+  EXPECT_NEAR(blind.y(), 3.0 * kRadiansPerDegree, 1e-9);
+  EXPECT_LT(blind.z(), 0.02 * kRadiansPerDegree);
 }
 
 TEST(CramerRaoBound, SlowScansCountOnlyAboveTheMinimumSpeed) {

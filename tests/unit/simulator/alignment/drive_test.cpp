@@ -9,12 +9,11 @@
 
 #include <Eigen/Core>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::simulator {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// The messages of a drive, as numbers.
 struct Heard {
@@ -99,7 +98,7 @@ TEST(AlignmentDrive, NoEffectChangesTheDrawsOfAnother) {
   };
   const std::vector<std::pair<const char*, Heard>> motions = {
       {"slip", with([](AlignmentSpec& s) { s.slip_coefficient_radps2pm = 0.003; })},
-      {"body pitch", with([](AlignmentSpec& s) { s.body_pitch_std_rad = 0.3 * kDegree; })},
+      {"body pitch", with([](AlignmentSpec& s) { s.body_pitch_std_rad = 0.3 * kRadiansPerDegree; })},
       {"brake pitch", with([](AlignmentSpec& s) { s.body_pitch_per_acceleration_radps2pm = 0.005; })},
   };
   for (const auto& [name, heard] : motions) {
@@ -156,13 +155,13 @@ double expected_range_rate(const MountingPose& nominal, const Misalignment& m, d
 
 TEST(AlignmentDrive, StationaryRangeRatesFollowAnyMounting) {
   AlignmentSpec spec = without_noise(short_drive());
-  spec.radars[0].config.mounting_pose.pitch_rad = 6.0 * kDegree;
+  spec.radars[0].config.mounting_pose.pitch_rad = 6.0 * kRadiansPerDegree;
   spec.radars[1].config.mounting_pose.roll_rad = M_PI;
-  spec.radars[2].config.mounting_pose.pitch_rad = -4.0 * kDegree;
+  spec.radars[2].config.mounting_pose.pitch_rad = -4.0 * kRadiansPerDegree;
   spec.radars[2].config.mounting_pose.roll_rad = M_PI;
-  spec.radars[3].config.mounting_pose.roll_rad = 20.0 * kDegree;
+  spec.radars[3].config.mounting_pose.roll_rad = 20.0 * kRadiansPerDegree;
   spec.slip_coefficient_radps2pm = 0.003;
-  spec.body_pitch_std_rad = 0.3 * kDegree;
+  spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
   spec.outlier_share = 0.2;
   double largest_yaw_rate = 0.0;
   for (const Heard::Scan& scan : hear(spec).scans) {
@@ -217,7 +216,7 @@ TEST(AlignmentDrive, NoisesAreIndependent) {
       const double rate =
           expected_range_rate(radar.config.mounting_pose, radar.truth, t.azimuth_rad, t.elevation_rad, scan);
       const Eigen::Vector3d z((scan.azimuth[i] - t.azimuth_rad) / scan.azimuth_std[i],
-                              (scan.elevation[i] - t.elevation_rad) / (0.6 * kDegree),
+                              (scan.elevation[i] - t.elevation_rad) / (0.6 * kRadiansPerDegree),
                               (scan.range_rate[i] - rate) / 0.03);
       sum += z * z.transpose();
       n += 1.0;
@@ -379,7 +378,7 @@ TEST(AlignmentDrive, StatesStdsOnlyWhereAsked) {
     EXPECT_EQ((scan.fields & scan_field::kStds) == 0, scan.radar == 0);
     for (std::size_t i = 0; i < scan.truth.size(); ++i) {
       const double expected =
-          scan.radar == 0 ? 0.0 : 0.3 * kDegree / std::max(std::cos(scan.truth[i].azimuth_rad), 0.35);
+          scan.radar == 0 ? 0.0 : 0.3 * kRadiansPerDegree / std::max(std::cos(scan.truth[i].azimuth_rad), 0.35);
       ASSERT_NEAR(scan.azimuth_std[i], expected, 1e-8);
     }
   }
@@ -425,7 +424,7 @@ TEST(AlignmentDrive, MoversLastFromScanToScan) {
     for (std::size_t k = back; k < scans.size(); ++k) {
       for (const auto& [azimuth, rate] : scans[k]) {
         const auto same = [&, a = azimuth, r = rate](const std::pair<double, double>& other) {
-          return std::abs(other.first - a) < 6.0 * kDegree && std::abs(other.second - r) < 1.0;
+          return std::abs(other.first - a) < 6.0 * kRadiansPerDegree && std::abs(other.second - r) < 1.0;
         };
         all += 1.0;
         if (std::any_of(scans[k - back].begin(), scans[k - back].end(), same)) matched += 1.0;
