@@ -117,7 +117,7 @@ TEST(Simulate, AWrongScenarioIsNamedWithItsLine) {
   EXPECT_THAT(errors(), HasSubstr("/tmp/own.toml:4: radars.step_change[0].radar: is missing; allowed: 1 … 16"));
   std::ofstream("/tmp/own.toml") << "name = \"own\"\nvehicle = \"submarine\"\n";
   EXPECT_EQ(simulate("--scenario /tmp/own.toml" + demo), 2);
-  EXPECT_THAT(errors(), HasSubstr("/vehicle/submarine.toml; name one by --vehicle"));
+  EXPECT_THAT(errors(), HasSubstr("no vehicle 'submarine' in " BORESIGHT_SOURCE_DIR "/config/vehicle"));
   EXPECT_FALSE(std::filesystem::exists("/tmp/wrong"));
 }
 
@@ -131,17 +131,17 @@ TEST(Simulate, WhatMakesNoSenseIsRefused) {
     EXPECT_EQ(simulate(arguments), 2) << arguments;
     EXPECT_FALSE(errors().empty()) << arguments;
   }
-  EXPECT_EQ(simulate("--out /tmp/a"), 2);
-  EXPECT_THAT(errors(), HasSubstr("--vehicle"));
+  EXPECT_EQ(simulate("--out /tmp/a --config /nowhere"), 2);
+  EXPECT_THAT(errors(), HasSubstr("configuration: /nowhere"));
   EXPECT_EQ(simulate("--alignment-drive moon --out /tmp/a"), 2);
   EXPECT_EQ(simulate("--alignment-drive city --scenario demo_drive --out /tmp/a"), 2);
   EXPECT_EQ(simulate("--slip 0.003 --vehicle v.toml --out /tmp/a"), 2) << "without --alignment-drive it means nothing";
-  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --step-change 1,2,3"), 0);
+  EXPECT_EQ(simulate("--alignment-drive city --out /tmp/a --step-change 1,2,3"), 2);
   EXPECT_THAT(errors(), HasSubstr("--step-change 1,2,3: "));
-  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --step-change 1,9,0,0,1"), 0);
+  EXPECT_EQ(simulate("--alignment-drive city --out /tmp/a --step-change 1,9,0,0,1"), 2);
   EXPECT_THAT(errors(), HasSubstr("no radar 9"));
-  EXPECT_NE(simulate("--alignment-drive city --out /tmp/a --no-elevation 5"), 0);
-  EXPECT_NE(simulate("--alignment-drive city --duration 1 --out /proc/nowhere"), 0);
+  EXPECT_EQ(simulate("--alignment-drive city --out /tmp/a --no-elevation 5"), 2);
+  EXPECT_EQ(simulate("--alignment-drive city --duration 1 --out /proc/nowhere"), 3);
 }
 
 }  // namespace
