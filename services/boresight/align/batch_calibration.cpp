@@ -18,7 +18,7 @@ namespace {
 
 namespace batch_calibration = alignment::batch_calibration;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kUnknownFloat = std::numeric_limits<float>::quiet_NaN();
 /// Replaces a standard deviation that is not finite.
 constexpr double kUnknownStd_rad = 1.0;
 
@@ -111,14 +111,15 @@ void solve_batch_calibration(const VehicleConfig& vehicle, const std::vector<con
       radar.estimate.state = r.used > 0 ? AlignmentState::kConverged : AlignmentState::kNoData;
       radar.estimate.observable = observable_of(found.speed_scale, r);
       radar.estimate.detections_used = r.used;
-      radar.estimate.inlier_ratio = r.offered > 0 ? static_cast<double>(r.used) / static_cast<double>(r.offered) : kNaN;
+      radar.estimate.inlier_ratio =
+          r.offered > 0 ? static_cast<double>(r.used) / static_cast<double>(r.offered) : kUnknownFloat;
       radar.support = {support_of(r.yaw, false), support_of(r.pitch, true), support_of(r.roll, true)};
     } else {
       radar.estimate = estimate_of(config.mounting_pose, 1.0, 0.0, 0.0, 0.0);
       radar.estimate.covariance = Eigen::Vector4d(1.0, 1.0, 1.0, 1.0).asDiagonal();
     }
     alignment::write_estimate(config, radar.estimate, 0.0, radar.message);
-    radar.message.kpis.seconds_to_95_percent.fill(kNaN);
+    radar.message.kpis.seconds_to_95_percent.fill(kUnknownFloat);
   }
   if (!found.ok) return;
   result.speed_scale = found.speed_scale.value;

@@ -8,12 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "services/common/estimation/unknown.hpp"
+
 namespace boresight::align {
 
 namespace {
 
 constexpr std::size_t kMaxLine = 4096;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view trim(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };

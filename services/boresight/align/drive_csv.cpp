@@ -11,7 +11,7 @@ namespace {
 enum : std::size_t { kT, kRadar, kRange, kAz, kEl, kVr, kAzStd, kElStd, kVrStd, kVrMin, kVrMax };
 
 constexpr double kPi = 3.1415926535897933, kFastest_mps = 500.0;
-constexpr std::array<Column, 11> kColumnList = {{
+constexpr std::array<Column, 11> kDriveColumns = {{
     {.name = "t", .min = TimeOrder::kMin_s, .max = TimeOrder::kMax_s, .unit = "s"},
     {.name = "radar", .min = 1, .max = kMaxRadars, .unit = "(the radar's id)"},
     {.name = "range", .min = -100.0, .max = 1e5, .unit = "m"},
@@ -38,7 +38,7 @@ std::string ids(const VehicleConfig& vehicle) {
 }  // namespace
 
 DriveReader::DriveReader(recording::ByteSource& source, const VehicleConfig& vehicle, Problems& problems)
-    : vehicle_(vehicle), table_(source, kColumnList, problems) {
+    : vehicle_(vehicle), table_(source, kDriveColumns, problems) {
   has_row_ = read_row();
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/svg/document.hpp"
+#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 using svg::Axis;
 using svg::Chart;
 using svg::Point;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kHead = 60.0;
 constexpr double kMargin = svg::Document::kMargin_px;
 constexpr std::size_t kColumns = 4;

@@ -9,6 +9,7 @@
 #include "services/alignment_estimator/core/write_estimate.hpp"
 #include "services/boresight/align/batch_calibration.hpp"
 #include "services/boresight/align/stds.hpp"
+#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -17,7 +18,6 @@ namespace boresight::align {
 namespace {
 
 constexpr std::string_view kBatchCalibration = "batch_calibration";
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// The origin on the estimator's clock. It leaves room for earlier times, because time 0 means "never".
 constexpr std::int64_t kOrigin_ns = 10'000'000'000;
 

@@ -8,6 +8,7 @@
 
 #include "services/boresight/calibrate/seed_json.hpp"
 #include "services/boresight/svg/document.hpp"
+#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
@@ -16,8 +17,6 @@ namespace boresight::calibrate {
 namespace plate = alignment::plate;
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const char* name_of(plate::FitMethod method) {
   return method == plate::FitMethod::kRobust ? "robust" : "published";

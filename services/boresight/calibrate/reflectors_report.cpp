@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/calibrate/seed_json.hpp"
+#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
@@ -14,8 +15,6 @@ namespace boresight::calibrate {
 namespace reflectors = alignment::reflectors;
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string angle(const char* name, double value_rad, double std_rad, bool observable) {
   if (!observable) return fmt::format("  {:6}not observable (±{:.2f} deg)\n", name, std_rad * kDegreesPerRadian);

@@ -15,7 +15,7 @@ namespace {
 
 // Longer blocks are skipped; the largest packets have 256 KiB.
 constexpr std::size_t kMaxBlock = 512 * 1024;
-constexpr std::size_t kBuffer = 2 * kMaxBlock;
+constexpr std::size_t kPcapngBuffer_bytes = 2 * kMaxBlock;
 constexpr std::size_t kMaxInterfaces = 64;
 
 constexpr std::uint32_t kSection = 0x0A0D0D0A, kInterface = 1, kObsoletePacket = 2, kSimplePacket = 3, kPacket = 6;
@@ -65,16 +65,16 @@ PcapngReader::PcapngReader(std::unique_ptr<ByteSource> source, OnProblem on_prob
     : source_(std::move(source)),
       decoder_(source_->name(), std::move(on_problem)),
       options_(options),
-      buffer_(new std::uint8_t[kBuffer]) {}
+      buffer_(new std::uint8_t[kPcapngBuffer_bytes]) {}
 
 bool PcapngReader::need(std::size_t size) {
   while (end_ - begin_ < size && !source_ended_) {
-    if (begin_ + size > kBuffer || begin_ > kMaxBlock) {
+    if (begin_ + size > kPcapngBuffer_bytes || begin_ > kMaxBlock) {
       std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
       end_ -= begin_;
       begin_ = 0;
     }
-    const std::ptrdiff_t got = source_->read(reinterpret_cast<char*>(buffer_.get() + end_), kBuffer - end_);
+    const std::ptrdiff_t got = source_->read(reinterpret_cast<char*>(buffer_.get() + end_), kPcapngBuffer_bytes - end_);
     if (got < 0) decoder_.problem(std::string("cannot be read further: ") + std::strerror(errno));
     source_ended_ = got <= 0;
     end_ += static_cast<std::size_t>(std::max<std::ptrdiff_t>(got, 0));

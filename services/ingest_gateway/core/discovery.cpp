@@ -6,7 +6,7 @@
 
 namespace boresight::ingest {
 
-namespace service = wire::boresight_service;
+namespace wire_service = wire::boresight_service;
 
 Discovery::Discovery(const SourceAddress& network, SomeIpReceiver& receiver, Sink& sink)
     : interface_(network.interface),
@@ -22,11 +22,11 @@ bool Discovery::is_on(const SourceAddress& network) const {
 
 void Discovery::add(std::size_t index, const SourceAddress& address, std::uint16_t eventgroup) {
   subscriptions_.push_back({.index = index,
-                            .service = service::kServiceId,
+                            .service = wire_service::kServiceId,
                             .instance = address.instance,
-                            .major = service::kMajorVersion,
+                            .major = wire_service::kMajorVersion,
                             .eventgroup = eventgroup,
-                            .ttl_s = service::discovery::kOfferTtl_s,
+                            .ttl_s = wire_service::discovery::kOfferTtl_s,
                             .local_port = address.port});
 }
 

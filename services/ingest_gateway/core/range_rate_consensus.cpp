@@ -16,7 +16,7 @@ constexpr double kScaleStep = 0.025;
 constexpr float kTolerance_mps = 0.3F;
 /// A predicted range rate that is nearly zero for all speeds has no information on the speed.
 constexpr float kLeastShareOfSpeed = 0.3F;
-constexpr std::size_t kLeastTested = 6;
+constexpr std::size_t kLeastTestedPairs = 6;
 /// With this share of support the search ends. In a tunnel most range rates are similar, so that two thirds fit even if
 /// assigned at random.
 constexpr double kEnough = 0.85;
@@ -53,7 +53,7 @@ RangeRateConsensus::Support RangeRateConsensus::test(const RadarScan& scan, cons
   ambiguity_mps_ = scan.has(scan_field::kAmbiguity) && interval > 1.0F && std::isfinite(interval) ? interval : 0.0F;
   Support support;
   const std::size_t tested = select(scan, vehicle_to_sensor_ * velocity.cast<float>());
-  if (tested < kLeastTested) return support;
+  if (tested < kLeastTestedPairs) return support;
   support.tested = tested;
   support.reported = reported_;
   const auto enough = static_cast<std::size_t>(kEnough * static_cast<double>(tested));

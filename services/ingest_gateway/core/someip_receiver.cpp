@@ -8,7 +8,7 @@
 
 namespace boresight::ingest {
 
-namespace service = wire::boresight_service;
+namespace wire_service = wire::boresight_service;
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr std::int64_t kReassemblyTimeout_ns = 100'000'000;
 std::size_t SomeIpReceiver::add(Source& source, std::uint16_t event, const E2eConfig& e2e) {
   // Messages have the E2E header also if the check is off.
   const std::size_t body_offset = e2e.protection.offset_bytes + e2e::header_bytes(e2e.protection.profile) -
-                                  (someip::kHeaderBytes - service::kProtectedFrom);
+                                  (someip::kHeaderBytes - wire_service::kProtectedFrom);
   subscriptions_.push_back({&source, event, e2e.required, body_offset, e2e::Checker(e2e.protection), std::nullopt});
   return subscriptions_.size() - 1;
 }
@@ -40,7 +40,7 @@ bool SomeIpReceiver::knows(const recording::Endpoint& server) const {
 void SomeIpReceiver::prepare() {
   // Two messages per source: a segment with a damaged header starts another message that never ends.
   if (!subscriptions_.empty()) {
-    reassembler_.emplace(2 * subscriptions_.size(), service::kMaxMessageBytes, kReassemblyTimeout_ns);
+    reassembler_.emplace(2 * subscriptions_.size(), wire_service::kMaxMessageBytes, kReassemblyTimeout_ns);
   }
 }
 
@@ -69,7 +69,7 @@ void SomeIpReceiver::take_datagram(const recording::Frame& datagram, const Frame
       fault_of_sender(datagram.source, someip::kind_of(result), someip::describe(result));
       continue;
     }
-    if (message.service != service::kServiceId) continue;  // other services of the same socket
+    if (message.service != wire_service::kServiceId) continue;  // other services of the same socket
     const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(), [&](const Subscription& s) {
       return s.event == message.method && s.server == datagram.source;
     });
@@ -95,7 +95,7 @@ void SomeIpReceiver::take_datagram(const recording::Frame& datagram, const Frame
 void SomeIpReceiver::take_message(Subscription& subscription, const someip::Message& message,
                                   const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken) {
   Source& source = *subscription.source;
-  if (message.interface_version != service::kMajorVersion || message.type != someip::MessageType::kNotification ||
+  if (message.interface_version != wire_service::kMajorVersion || message.type != someip::MessageType::kNotification ||
       message.return_code != 0) {
     source.fault(Fault::kWireValue, "SOME/IP: interface version, message type or return code is not 1, 0x02, 0");
     return;

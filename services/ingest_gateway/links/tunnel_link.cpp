@@ -18,7 +18,7 @@ namespace protocol = wire::replay_tunnel;
 
 namespace {
 
-constexpr int kFramesPerTurn = 64;
+constexpr int kTunnelFramesPerTurn = 64;
 
 /// Fills `frame` from a received record; false if the record is contradictory.
 bool parse_record(std::span<const std::uint8_t> record, recording::Frame& frame) {
@@ -94,7 +94,7 @@ void TunnelLink::accept_replay() {
 }
 
 void TunnelLink::read_records() {
-  for (int i = 0; i < kFramesPerTurn; ++i) {
+  for (int i = 0; i < kTunnelFramesPerTurn; ++i) {
     const ssize_t length = recv(replay_.get(), buffer_.data(), buffer_.size(), 0);
     if (length < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (length <= 0) {

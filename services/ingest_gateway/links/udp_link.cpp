@@ -17,9 +17,9 @@ namespace boresight::ingest {
 namespace {
 
 // Holds twenty detection lists of the largest radar, for each radar; the kernel's default of 208 KiB holds three.
-constexpr int kReceiveBuffer = 2 * 1024 * 1024;
+constexpr int kUdpReceiveBuffer_bytes = 2 * 1024 * 1024;
 constexpr unsigned kMaxReceiveBuffers = 16;
-constexpr int kFramesPerTurn = 32;
+constexpr int kDatagramsPerTurn = 32;
 
 std::string name_of(const recording::Endpoint& local) {
   const std::string address = recording::to_text(local.address);
@@ -79,13 +79,13 @@ void UdpLink::add_user() {
 }
 
 void UdpLink::reserve_receive_buffer() {
-  const int wanted = kReceiveBuffer * static_cast<int>(std::min(users_, kMaxReceiveBuffers));
+  const int wanted = kUdpReceiveBuffer_bytes * static_cast<int>(std::min(users_, kMaxReceiveBuffers));
   const int given = request_receive_buffer(socket_.get(), wanted);
   // At least the size for one burst; more for a burst of each source that shares the socket.
-  if (given < kReceiveBuffer && !buffer_reported_) {
+  if (given < kUdpReceiveBuffer_bytes && !buffer_reported_) {
     buffer_reported_ = true;
     events_.on_fault(Fault::kLink, name_ + ": receive buffer is " + std::to_string(given) + " of " +
-                                       std::to_string(kReceiveBuffer) +
+                                       std::to_string(kUdpReceiveBuffer_bytes) +
                                        " bytes needed; raise net.core.rmem_max");
   }
 }
@@ -175,7 +175,7 @@ bool UdpLink::send(const recording::Endpoint& to, std::span<const std::uint8_t> 
 }
 
 void UdpLink::read() {
-  for (int i = 0; i < kFramesPerTurn && socket_.is_open(); ++i) {
+  for (int i = 0; i < kDatagramsPerTurn && socket_.is_open(); ++i) {
     Reception reception{.sender = {}, .stamp = {}, .drops = kernel_drops_};
     const ssize_t length = receive(socket_, buffer_, reception);
     if (length < 0) {

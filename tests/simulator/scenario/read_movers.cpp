@@ -11,7 +11,7 @@ using config::Range;
 using config::Reader;
 
 constexpr Range kSpeed_mps{-80.0, 80.0};
-constexpr Range kLateral_m{-200.0, 200.0};
+constexpr Range kMoverLateral_m{-200.0, 200.0};
 
 /// Reads either one value under `constant`, or a list of tables under `list`, each with `at` and `constant`.
 Knots read_knots(Reader& reader, std::string_view constant, std::string_view list, std::string_view at, Range places,
@@ -43,7 +43,7 @@ Knots read_speed(Reader& reader, const Knots& fallback) {
   return read_knots(reader, "speed_mps", "speed", "t_s", {0.0, 36000.0}, kSpeed_mps, fallback);
 }
 Knots read_lateral(Reader& reader) {
-  return read_knots(reader, "lateral_m", "lateral", "at_m", kRoad_m, kLateral_m, {{0.0, 0.0}});
+  return read_knots(reader, "lateral_m", "lateral", "at_m", kRoad_m, kMoverLateral_m, {{0.0, 0.0}});
 }
 
 /// Reads the swing of an EgoSpec or a BodySpec. Its speed must have been read before.

@@ -9,8 +9,9 @@ namespace boresight::alignment {
 
 namespace {
 
-/// A lateral velocity counts fully up to a relative variance of 1/kDoubt, and not at all above twice that.
-constexpr double kDoubt = 8.0;
+/// A lateral velocity counts fully up to a relative variance of 1/kLateralVelocityDoubt, and not at all above twice
+/// that.
+constexpr double kLateralVelocityDoubt = 8.0;
 
 }  // namespace
 
@@ -55,7 +56,8 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
                           by_rate * by_rate *
                               (state.covariance(column::kYawRateBias, column::kYawRateBias) +
                                state.covariance(column::kYawRate, column::kYawRate));
-  const double lateral_share = std::clamp(2.0 - kDoubt * variance / (lateral * lateral + 1e-12), 0.0, 1.0);
+  const double lateral_share =
+      std::clamp(2.0 - kLateralVelocityDoubt * variance / (lateral * lateral + 1e-12), 0.0, 1.0);
   const double by_acceleration = state.pitch_per_acceleration_radps2pm;
   const double stds = std::abs(by_acceleration) /
                       std::sqrt(state.covariance(column::kPitchPerAcceleration, column::kPitchPerAcceleration) + 1e-12);

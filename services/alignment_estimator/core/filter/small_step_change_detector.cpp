@@ -21,7 +21,7 @@ constexpr std::array<int, 3> kMostJoined{8, 1, 1};
 constexpr double kJoinedUntil_rad = 0.8 * kRadiansPerDegree;
 /// Roll is hardly above the noise even then. There are fewer windows and so fewer chances of a false alarm, so the
 /// limits are lower (shares of the configured σ).
-constexpr std::array<double, 3> kAsked{0.6, 1.0, 1.0};
+constexpr std::array<double, 3> kLimitShare{0.6, 1.0, 1.0};
 /// σ of unmodelled effects, such as the scene or the load: with other radars for comparison, and for a single radar, to
 /// which side slip and body pitch look like a change of its mounting.
 constexpr std::array<double, 3> kFloor_rad{0.2 * kRadiansPerDegree, 0.05 * kRadiansPerDegree, 0.02 * kRadiansPerDegree};
@@ -39,7 +39,7 @@ constexpr double kMedianShare = 0.5;
 /// Factors of the sums: after each window, so that they decay, and after an unconfirmed suspicion.
 constexpr double kKept = 0.9, kKeptUnconfirmed = 0.5;
 /// Share of its limit beyond which a sum counts as doubt.
-constexpr double kDoubt = 0.5;
+constexpr double kSuspiciousShare = 0.5;
 
 }  // namespace
 
@@ -52,17 +52,17 @@ void SmallStepChangeDetector::clear(std::size_t radar) {
 
 double SmallStepChangeDetector::sum(std::size_t radar, std::size_t axis) const {
   const std::array<double, 2>& sums = radars_[radar].axes[axis].sums;
-  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kAsked[axis] * config_.step_change_small_sum_stds);
+  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kLimitShare[axis] * config_.step_change_small_sum_stds);
 }
 
 double SmallStepChangeDetector::confirming_stds(const FilterConfig& config, std::size_t axis) {
-  return kAsked[axis] * config.step_change_small_confirm_stds;
+  return kLimitShare[axis] * config.step_change_small_confirm_stds;
 }
 
 bool SmallStepChangeDetector::doubted(std::size_t radar) const {
   const auto& axes = radars_[radar].axes;
-  return axes[1].suspected != 0 || axes[2].suspected != 0 || std::abs(sum(radar, 1)) > kDoubt ||
-         std::abs(sum(radar, 2)) > kDoubt;
+  return axes[1].suspected != 0 || axes[2].suspected != 0 || std::abs(sum(radar, 1)) > kSuspiciousShare ||
+         std::abs(sum(radar, 2)) > kSuspiciousShare;
 }
 
 std::uint32_t SmallStepChangeDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
@@ -135,9 +135,9 @@ bool SmallStepChangeDetector::judge(std::size_t r, std::size_t a) {
     for (double& sum : axis.sums) sum *= kKeptUnconfirmed;
     return axis.confirmed;
   }
-  const double limit = kAsked[a] * config_.step_change_small_sum_stds;
+  const double limit = kLimitShare[a] * config_.step_change_small_sum_stds;
   for (std::size_t s = 0; s < 2; ++s) {
-    const double excess = (s == 0 ? axis.stds : -axis.stds) - kAsked[a] * config_.step_change_small_stds;
+    const double excess = (s == 0 ? axis.stds : -axis.stds) - kLimitShare[a] * config_.step_change_small_stds;
     // One window alone cannot reach the limit.
     axis.sums[s] = std::max(0.0, kKept * axis.sums[s] + std::min(excess, 0.7 * limit));
     if (axis.sums[s] > limit) axis.suspected = s == 0 ? 1 : -1;

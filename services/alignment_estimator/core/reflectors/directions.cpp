@@ -16,7 +16,7 @@ namespace {
 
 using Row23 = Eigen::Matrix<double, 2, 3>;
 
-constexpr double kTukey = 5.0;  // of the Mahalanobis distance of two angles
+constexpr double kTukeyOfDirections = 5.0;  // of the Mahalanobis distance of two angles
 
 /// Predicted direction of a position under a rotation, and its derivatives.
 struct Prediction {
@@ -118,7 +118,7 @@ class Fit {
     // Median of χ² with two and with one degree of freedom.
     const double expected = config_.has_elevation ? 1.386 : 0.455;
     scale_ = squares.empty() ? 1.0 : std::max(1.0, std::sqrt(estimation::median(squares) / expected));
-    const double gate = kTukey * scale_ * widen;
+    const double gate = kTukeyOfDirections * scale_ * widen;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       const double share = distance_[i] / (gate * gate);
       weight_[i] = right_range_[i] && share < 1.0 ? (1.0 - share) * (1.0 - share) : 0.0;

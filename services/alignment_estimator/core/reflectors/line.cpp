@@ -13,11 +13,11 @@ namespace boresight::alignment::reflectors {
 namespace {
 
 constexpr double kShortest_m = 5.0;
-constexpr double kTukey = 4.685;
+constexpr double kTukeyOfLine = 4.685;
 
 /// Tukey's weight of a residual in stds.
 double tukey(double residual) {
-  const double share = residual * residual / (kTukey * kTukey);
+  const double share = residual * residual / (kTukeyOfLine * kTukeyOfLine);
   return share < 1.0 ? (1.0 - share) * (1.0 - share) : 0.0;
 }
 

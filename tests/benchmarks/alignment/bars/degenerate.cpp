@@ -11,13 +11,13 @@ namespace {
 using simulator::AlignmentSpec;
 using simulator::RoadKind;
 
-struct Case {
+struct DegenerateCase {
   const char* name;
   AlignmentSpec (*make)(double duration_s, std::uint64_t seed);
   std::vector<std::size_t> not_observable;  ///< parameters
 };
 
-const std::vector<Case> kCases = {
+const std::vector<DegenerateCase> kDegenerateCases = {
     {"straight road: vehicle roll",
      [](double duration_s, std::uint64_t seed) { return clean_drive(RoadKind::kStraight, duration_s, seed); },
      {kRoll}},
@@ -49,7 +49,7 @@ const std::vector<Case> kCases = {
 
 void degenerate(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(6);
-  for (const Case& one : kCases) {
+  for (const DegenerateCase& one : kDegenerateCases) {
     std::vector<AlignmentSpec> specs;
     for (std::size_t seed = 0; seed < seeds; ++seed) specs.push_back(one.make(options.seconds(120.0), 1700 + seed));
     const auto runs = run_drives(specs, own_method().make, options);

@@ -11,7 +11,7 @@ namespace {
 
 using simulator::AlignmentSpec;
 
-struct Case {
+struct Disturbance {
   const char* name;
   void (*keep)(AlignmentSpec&);  ///< switches off the disturbances of the other cases
 };
@@ -23,7 +23,7 @@ void none_but(AlignmentSpec& spec, bool bias, bool slip, bool body_pitch, bool b
   if (!braking) spec.body_pitch_per_acceleration_radps2pm = 0.0;
 }
 
-const Case kCases[] = {
+const Disturbance kDisturbances[] = {
     {"yaw-rate bias", [](AlignmentSpec& s) { none_but(s, true, false, false, false); }},
     {"slip", [](AlignmentSpec& s) { none_but(s, false, true, false, false); }},
     {"body pitch", [](AlignmentSpec& s) { none_but(s, false, false, true, false); }},
@@ -41,7 +41,7 @@ void disturbed(const Options& options, Report& report) {
               {}};
   double worst_yaw = 0.0, worst_pitch = 0.0;
   const std::size_t all_seeds = options.seeds(24), single_seeds = options.seeds(8);
-  for (const Case& one : kCases) {
+  for (const Disturbance& one : kDisturbances) {
     const bool all = std::string(one.name) == "all";
     for (const RoadKind road : {RoadKind::kCity, RoadKind::kMixed}) {
       std::vector<AlignmentSpec> specs;

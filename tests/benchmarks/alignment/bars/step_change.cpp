@@ -17,14 +17,14 @@ using simulator::RoadKind;
 
 constexpr double kStepChangeAt_s = 60.0;
 
-struct Case {
+struct StepChangeCase {
   const char* name;
   int parameter;
   Eigen::Vector3d rotation_deg;  ///< about vehicle axes; the sign alternates from seed to seed
   double bar_s;                  ///< 0: not judged
 };
 
-const Case kCases[] = {
+const StepChangeCase kStepChangeCases[] = {
     {"1° yaw", kYaw, {0.0, 0.0, 1.0}, 3.0},       {"2° pitch", kPitch, {0.0, 2.0, 0.0}, 6.0},
     {"0.5° yaw", kYaw, {0.0, 0.0, 0.5}, 10.0},    {"1° pitch", kPitch, {0.0, 1.0, 0.0}, 10.0},
     {"0.25° yaw", kYaw, {0.0, 0.0, 0.25}, 0.0},   {"0.1° yaw", kYaw, {0.0, 0.0, 0.1}, 0.0},
@@ -32,13 +32,13 @@ const Case kCases[] = {
     {"5° yaw", kYaw, {0.0, 0.0, 5.0}, 0.0},
 };
 
-struct Outcome {
+struct StepChangeOutcome {
   std::vector<double> delays_s;  ///< infinite if it was never reported
   double wrong_radar = 0.0;      ///< reports for a radar that was not moved
 };
 
-Outcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Run>& runs) {
-  Outcome out;
+StepChangeOutcome outcome_of(const std::vector<AlignmentSpec>& specs, const std::vector<Run>& runs) {
+  StepChangeOutcome out;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const simulator::StepChange& step_change = specs[i].step_changes.front();
     double delay_s = std::numeric_limits<double>::infinity();
@@ -63,7 +63,7 @@ void step_change(const Options& options, Report& report) {
               {"step change", "road", "delay s", "never reported", "wrong radar reported", "error 20 s later °",
                "NEES 20 s later"},
               {}};
-  for (const Case& one : kCases) {
+  for (const StepChangeCase& one : kStepChangeCases) {
     std::vector<double> all_delays_s;
     for (const bool with_disturbances : {false, true}) {
       std::vector<AlignmentSpec> specs;
@@ -77,7 +77,7 @@ void step_change(const Options& options, Report& report) {
       RunOptions run_options;
       run_options.snapshot_period_s = 0.25;
       const auto runs = run_drives(specs, own_method().make, options, run_options);
-      const Outcome outcome = outcome_of(specs, runs);
+      const StepChangeOutcome outcome = outcome_of(specs, runs);
       all_delays_s.insert(all_delays_s.end(), outcome.delays_s.begin(), outcome.delays_s.end());
       std::vector<double> later, later_normalised;
       Curve response{"step_change", one.name, with_disturbances ? "disturbed" : "clean", {}};
