@@ -64,7 +64,7 @@ std::string to_markdown() {
   }
   text += "\n```mermaid\nflowchart LR\n";
   for (const Topic& t : kTopics) {
-    if (t.writers.size() != 1) continue;  // every service's heartbeat: arrows from everywhere say nothing
+    if (t.writers.size() != 1) continue;  // the heartbeat: every service writes it
     for (std::size_t writer = 0; writer < kNumberOfSupervisedServices; ++writer) {
       if (!t.writers.contains(static_cast<Service>(writer))) continue;
       for (std::size_t reader = 0; reader < kNumberOfSupervisedServices; ++reader) {

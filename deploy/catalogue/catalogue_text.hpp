@@ -1,4 +1,4 @@
-// The catalogue as people read it: a table for the terminal, a table and a picture for the documentation.
+// The catalogue as text: a table for the terminal; a table and a diagram for the documentation.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ namespace {
 using catalogue::Service;
 using catalogue::Topic;
 
-// A node hands its handler one message at a time.
+// A node passes one message at a time to its handler.
 constexpr std::size_t kHeldPerSubscriber = 1;
 
 std::size_t number_of_readers(const Topic& topic) {
@@ -20,12 +20,12 @@ std::size_t number_of_readers(const Topic& topic) {
   return topic.readers.size() - (monitors > 0 ? 1 : 0) + monitors;
 }
 
-/// Σ subscribers (queue + held): chunks that readers can keep from the writers, however slow they are.
+/// Σ subscribers (queue + held): the largest number of chunks that readers hold, however slow they are.
 std::size_t chunks_at_readers(const Topic& topic) {
   return number_of_readers(topic) * (catalogue::queue_capacity(topic) + kHeldPerSubscriber);
 }
 
-/// History, loans, and the one chunk that a publisher keeps for reuse.
+/// History, loans, and one chunk that a publisher keeps for reuse.
 std::size_t chunks_at_one_writer(const Topic& topic) {
   return topic.history + kLoansPerPublisher + 1;
 }

@@ -1,4 +1,4 @@
-// RouDi's shared memory, sized from the catalogue so that no pool can run empty while the catalogue is kept.
+// RouDi's shared memory. The catalogue's queue depths and histories determine its size, so that no pool can run empty.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct Pool {
   std::size_t count;
 };
 
-/// One shared memory. Empty groups mean the group of the user that runs RouDi, who may then do everything.
+/// One shared memory. An empty group means the group of the user that runs RouDi, with all rights.
 struct Segment {
   std::string writer_group;
   std::string reader_group;
@@ -23,14 +23,14 @@ struct Segment {
 
 /// Loans that one publisher may hold at the same time; iceoryx's own limit.
 inline constexpr std::size_t kLoansPerPublisher = 8;
-/// Group of everyone who may read the deployed system's topics, and of RouDi itself.
+/// Group of all users that may read the deployed system's topics, and of RouDi.
 inline constexpr std::string_view kDeployedReaderGroup = "boresight";
 
-/// Size of the chunk that holds a message: room for its alignment to a cache line, in steps that let small messages
-/// share a pool.
+/// Size of the chunk for a message, including its alignment to a cache line. Sizes are rounded up so that small
+/// messages share a pool.
 [[nodiscard]] std::size_t chunk_bytes_for(std::size_t payload_bytes);
 
-/// One segment for all, for the demo and the tests, which run as one user.
+/// One segment for all services: for the demo and the tests, which run as one user.
 [[nodiscard]] std::vector<Segment> single_segment();
 /// One segment per writing service, which only that service can write to: group `boresight-<service>`.
 [[nodiscard]] std::vector<Segment> segment_per_writer();

@@ -50,7 +50,7 @@ void end_processes(const Charge& charge) {
 [[noreturn]] void guard(int input) {
   setsid();
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(number, SIG_IGN);
-  // Whoever waits for the supervisor's output to end must not wait for the guardian too.
+  // A reader of the supervisor's output must not wait for the guardian's end as well.
   const int null = open("/dev/null", O_RDWR);
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, descriptor);
   input = dup2(input, STDERR_FILENO + 1);
@@ -95,30 +95,30 @@ Guardian::Guardian() {
 }
 
 Guardian::~Guardian() {
-  tell('.', "");
+  send_command('.', "");
   close(line_);
   waitpid(pid_, nullptr, 0);
 }
 
 void Guardian::watch_process(pid_t pid) {
-  tell('+', std::to_string(pid));
+  send_command('+', std::to_string(pid));
 }
 
 void Guardian::forget_process(pid_t pid) {
-  tell('-', std::to_string(pid));
+  send_command('-', std::to_string(pid));
 }
 
 void Guardian::watch_file(const std::filesystem::path& file) {
-  tell('f', file.string());
+  send_command('f', file.string());
 }
 
 void Guardian::watch_directory(const std::filesystem::path& directory) {
-  tell('d', directory.string());
+  send_command('d', directory.string());
 }
 
-void Guardian::tell(char what, const std::string& text) {
-  const std::string line = what + text + "\n";
-  // If the guardian was killed there is nobody to tell, and that is no reason to stop.
+void Guardian::send_command(char command, const std::string& text) {
+  const std::string line = command + text + "\n";
+  // The guardian may have been killed; the supervisor runs on without it.
   static_cast<void>(send(line_, line.data(), line.size(), MSG_NOSIGNAL));
 }
 

@@ -1,4 +1,4 @@
-// A second, tiny process that cleans up if the supervisor itself is killed.
+// A second, small process that cleans up if the supervisor is killed.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace boresight::supervisor {
 
-/// While it lives, a forked guardian knows every process and file of the domain. If the supervisor vanishes without a
-/// word, the guardian ends those processes (SIGTERM, then SIGKILL) and removes those files.
+/// Forks a guardian that has a list of the domain's processes and files. If the supervisor ends without dismissing the
+/// guardian, the guardian ends those processes (SIGTERM, then SIGKILL) and removes those files.
 class Guardian {
  public:
   Guardian();
@@ -20,11 +20,11 @@ class Guardian {
   void watch_process(pid_t pid);
   void forget_process(pid_t pid);
   void watch_file(const std::filesystem::path& file);
-  /// With everything in it.
+  /// Includes all files in it.
   void watch_directory(const std::filesystem::path& directory);
 
  private:
-  void tell(char what, const std::string& text);
+  void send_command(char command, const std::string& text);
   int line_ = -1;
   pid_t pid_ = -1;
 };

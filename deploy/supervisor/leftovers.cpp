@@ -13,7 +13,7 @@ std::optional<std::string> running_roudi(const Places& places) {
   const std::filesystem::path lock = places.sockets / "iox-unique-roudi.lock";
   const int descriptor = open(lock.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) {
-    if (errno == EACCES) return lock.string() + " belongs to another user, whose RouDi runs here or was killed";
+    if (errno == EACCES) return lock.string() + " belongs to another user, whose RouDi is running or was killed";
     return std::nullopt;
   }
   const bool held = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;

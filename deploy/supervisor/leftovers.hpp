@@ -1,4 +1,4 @@
-// What a domain of iceoryx leaves in the file system when it is killed, and what tells that one is running.
+// Files that a killed iceoryx domain leaves behind, and signs of a running domain.
 #pragma once
 
 #include <filesystem>
@@ -10,19 +10,20 @@
 
 namespace boresight::supervisor {
 
-/// Where iceoryx keeps its files; other folders only in tests.
+/// Folders of iceoryx's files; different only in tests.
 struct Places {
   std::filesystem::path shared_memory = "/dev/shm";
   std::filesystem::path sockets = "/tmp";
 };
 
-/// Why no RouDi may be started here, or nothing. RouDi holds a lock on <sockets>/iox-unique-roudi.lock while it lives.
+/// The reason why RouDi must not be started here, or nothing. A running RouDi holds a lock on
+/// <sockets>/iox-unique-roudi.lock while it lives.
 [[nodiscard]] std::optional<std::string> running_roudi(const Places& places);
 
 /// Identity of the management memory, which changes when another RouDi recreates it; 0 if there is none.
 [[nodiscard]] ino_t management_inode(const Places& places);
 
-/// Names of the shared memories that RouDi says it reserved, from what it printed.
+/// Names of the shared memories that RouDi reserved, from its output.
 [[nodiscard]] std::vector<std::string> reserved_segments(const std::string& roudi_output);
 
 /// Every file that a domain of these segments and runtime names may leave behind.

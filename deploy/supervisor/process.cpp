@@ -39,7 +39,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 [[noreturn]] void become(char* const* arguments, char* const* environment, int log, int report, pid_t parent) {
   setsid();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) _exit(127);  // the parent died before the line above could say so
+  if (getppid() != parent) _exit(127);  // the parent ended before the line above
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -83,7 +83,7 @@ pid_t spawn(const Command& command, const std::filesystem::path& log_file) {
   int error = pid < 0 ? errno : 0;
   close(report[1]);
   if (log >= 0) close(log);
-  // The pipe closes by itself when the program starts; anything in it is why it could not.
+  // The pipe closes when the program starts; its content is the error that prevented the start.
   if (pid > 0 && read(report[0], &error, sizeof(error)) == static_cast<ssize_t>(sizeof(error))) {
     waitpid(pid, nullptr, 0);
   }

@@ -1,4 +1,4 @@
-// Starting one child process so that it can never outlive its parent unnoticed.
+// Starts a child process that ends with its parent.
 #pragma once
 
 #include <filesystem>
@@ -16,10 +16,10 @@ struct Command {
   std::vector<std::pair<std::string, std::string>> environment;
 };
 
-/// Starts `command` in a session of its own (so that the terminal's Ctrl-C reaches only the supervisor), with default
-/// signal handling and SIGTERM as the signal it gets when the calling thread dies. Standard input is /dev/null; output
-/// and errors are appended to `log_file`, or shared with the caller if that is empty. Returns the process id, which is
-/// also its process group's. Throws std::system_error if the program cannot be executed.
+/// Starts `command` in a session of its own, so that the terminal's Ctrl-C reaches only the supervisor. The child has
+/// default signal handling and gets SIGTERM when the calling thread ends. Standard input is /dev/null. Output and
+/// errors are appended to `log_file`, or shared with the caller if `log_file` is empty. Returns the process id, which
+/// is also the id of its process group. Throws std::system_error if the program cannot be executed.
 [[nodiscard]] pid_t spawn(const Command& command, const std::filesystem::path& log_file);
 
 /// "exit code 3", "signal 9 (Killed)": the wait status in words.

@@ -23,8 +23,8 @@ namespace boresight::supervisor {
 namespace {
 
 constexpr std::string_view kRoudiReady = "RouDi is ready for clients";
-// Waiting for children has no descriptor of its own that also works for a thousand of them; looking this often is
-// cheap and keeps the answer to a death well under the time that a restart takes.
+// No descriptor reports the end of any child, so the supervisor polls. This period costs little and is short compared
+// with the duration of a restart.
 constexpr std::int64_t kLook_ns = 10'000'000;
 
 std::int64_t now_ns() {
@@ -38,7 +38,7 @@ void sleep_ns(std::int64_t duration_ns) {
   nanosleep(&duration, nullptr);
 }
 
-/// What the file holds from `offset` on; empty if it cannot be read.
+/// The file's content from `offset` on; empty if it cannot be read.
 std::string text_after(const std::filesystem::path& file, std::uintmax_t offset) {
   std::ifstream input(file, std::ios::binary);
   input.seekg(static_cast<std::streamoff>(offset));
@@ -47,7 +47,7 @@ std::string text_after(const std::filesystem::path& file, std::uintmax_t offset)
   return text.str();
 }
 
-/// A datagram socket bound to `path` that tells who sent; -1 and errno on failure.
+/// A datagram socket bound to `path` that reports the sender's process id; -1 and errno on failure.
 int bind_notifications(const std::filesystem::path& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -96,7 +96,7 @@ Supervisor::~Supervisor() {
   try {
     stop();
   } catch (const std::exception&) {
-    // A destructor has nobody to tell; what could be stopped is stopped.
+    // A destructor cannot report errors. All processes that could be stopped are stopped.
   }
   if (notifications_ >= 0) close(notifications_);
 }
@@ -171,7 +171,7 @@ void Supervisor::start_child(Child& child) {
   } catch (const std::system_error& error) {
     child.pid = 0;
     ++child.failures;
-    // A program that cannot be executed now will hardly be there at once.
+    // A program that cannot be executed now is not tried again at once.
     child.start_at_ns = now_ns() + restart_delay_ns(child.failures + 1);
     note(EventKind::kStartFailed, child.spec.name, 0, error.what());
     return;
@@ -279,7 +279,7 @@ void Supervisor::restart_domain(const std::string& reason) {
   note(EventKind::kDomainRestart, "", 0, reason);
   ++domain_restarts_;
   stop_domain(false);
-  // RouDi's exits count, whoever caused them: at once the first time, at most a second later after that.
+  // Every exit of RouDi counts, whatever its cause: at once the first time, at most a second later after that.
   sleep_ns(restart_delay_ns(std::min(roudi_.failures, 4U)));
   try {
     start_domain({});
@@ -309,7 +309,7 @@ void Supervisor::stop_domain(bool including_independent) {
     for (Child& child : independents_) children.push_back(&child);
   }
   terminate(children);
-  // RouDi last: it would itself terminate whoever is still registered, and keep their memory meanwhile.
+  // RouDi last: it would terminate all registered processes itself, and keep their memory meanwhile.
   terminate({&roudi_});
   remove_leftovers();
 }
@@ -323,7 +323,7 @@ void Supervisor::terminate(const std::vector<Child*>& children) {
   }
   const std::int64_t deadline_ns = now_ns() + config_.stop_timeout_ns;
   for (bool killed = false; any_runs(); sleep_ns(2'000'000)) {
-    read_notifications();  // a full socket would hold up those who say that they stop
+    read_notifications();  // a full socket would block services that report STOPPING
     for (Child* child : children) {
       int status = 0;
       if (child->pid != 0 && waitpid(child->pid, &status, WNOHANG) == child->pid) on_exit(*child, status);
@@ -341,7 +341,7 @@ void Supervisor::remove_leftovers() {
   for (const Child& child : services_) {
     if (!child.spec.runtime_name.empty()) runtime_names.push_back(child.spec.runtime_name);
   }
-  // Someone else's RouDi may have come up meanwhile; its lock says so, and its files are not ours.
+  // Another RouDi may have started meanwhile. It holds the lock, and the files are then its own.
   if (running_roudi(config_.places)) return;
   std::error_code ignored;
   for (const auto& file : leftovers(config_.places, segments_, runtime_names)) {

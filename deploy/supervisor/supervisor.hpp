@@ -1,5 +1,5 @@
-// Keeps one domain running: RouDi first, then every service as a process of its own, and after a failure exactly what
-// the middleware needs: a new service rejoins a living RouDi, but nobody rejoins a new RouDi.
+// Keeps one domain running: starts RouDi, then every service as a separate process, and restarts them after failures. A
+// restarted service can rejoin a running RouDi; no service can rejoin a new RouDi.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@
 
 namespace boresight::supervisor {
 
-/// What to do with a process when it or the domain ends.
+/// Determines the reaction to the end of a process or of the domain.
 enum class Role : std::uint8_t {
-  kService,      ///< member of the domain: started anew when it exits, and with every new RouDi
-  kSpectator,    ///< as a service, but optional: its readiness is not waited for (a monitor)
-  kIndependent,  ///< not on the bus: started by `start_independent`, outlives a domain restart, never started anew
+  kService,      ///< member of the domain: restarted when it exits, and with every new RouDi
+  kSpectator,    ///< as a service, but optional: the domain is ready without it (a monitor)
+  kIndependent,  ///< not on the bus: started by `start_independent`, survives a domain restart, never restarted
 };
 
 struct ProcessSpec {
   std::string name;  ///< "tracker": in events, and <log directory>/<name>.log
   Command command;
-  std::string runtime_name = {};  ///< on the bus, for cleaning up after it; empty if it is not on it
+  std::string runtime_name = {};  ///< on the bus, for removing its files; empty if it is not on the bus
   Role role = Role::kService;
   bool shares_terminal = false;  ///< writes to the supervisor's own standard output instead of a log file
 };
@@ -35,17 +35,17 @@ struct ProcessSpec {
 struct DomainConfig {
   Command roudi;
   std::vector<ProcessSpec> services;
-  /// Holds the notification socket, whose path may not be long. Removed at the end if it did not exist before.
+  /// Holds the notification socket, whose path must be short. Removed at the end if it did not exist before.
   std::filesystem::path run_directory;
   std::filesystem::path log_directory;  ///< <name>.log of every process; created, and kept
   Places places;
   std::int64_t roudi_ready_timeout_ns = 10'000'000'000;
-  /// A service that was started anew and has not said READY after this time makes the domain restart: a process killed
-  /// inside publish() leaves a mutex locked, on which registration hangs for ever.
+  /// The domain restarts if a restarted service does not report READY in this time: a process killed inside publish()
+  /// leaves a mutex locked, which blocks registration.
   std::int64_t service_ready_timeout_ns = 3'000'000'000;
-  std::int64_t first_start_timeout_ns = 20'000'000'000;  ///< the same for the first start, which reads cold files
+  std::int64_t first_start_timeout_ns = 20'000'000'000;  ///< the same for the first start, which reads files from disk
   std::int64_t stop_timeout_ns = 2'000'000'000;          ///< from SIGTERM to SIGKILL
-  std::int64_t stable_after_ns = 10'000'000'000;         ///< a process up for longer is restarted at once again
+  std::int64_t stable_after_ns = 10'000'000'000;         ///< a process that ran for longer is restarted at once
 };
 
 enum class EventKind : std::uint8_t {
@@ -64,14 +64,14 @@ struct Event {
   EventKind kind;
   std::string process;  ///< "roudi", or the service's name; empty for the domain
   pid_t pid;            ///< 0 for the domain
-  std::string detail;   ///< why, in words
+  std::string detail;   ///< reason as text
 };
 
-/// How long to wait before starting a process again that failed `failures` times in a row: nothing the first time,
-/// then 0.25 s, doubling up to 5 s.
+/// Delay before a process is started again that failed `failures` times in a row: none the first time, then 0.25 s,
+/// doubling up to 5 s.
 [[nodiscard]] std::int64_t restart_delay_ns(std::uint32_t failures);
 
-/// One thread; call poll() in a loop. Whatever happens to the object or its process, the domain's processes end.
+/// One thread; call poll() in a loop. The domain's processes end with the object, also if its process is killed.
 class Supervisor {
  public:
   explicit Supervisor(DomainConfig config);
@@ -83,12 +83,12 @@ class Supervisor {
   /// Starts RouDi, waits until it is ready, and starts the services, without waiting for them. Throws
   /// std::runtime_error if another RouDi runs, if ours does not become ready, or if `cancelled()` turns true meanwhile.
   void start(const std::function<bool()>& cancelled = {});
-  /// Handles what happened and waits up to `timeout_ns` for more. A domain restart happens inside this call.
+  /// Handles events and waits up to `timeout_ns` for more. A domain restart happens inside this call.
   void poll(std::int64_t timeout_ns);
-  /// SIGTERM to the services, then to RouDi, SIGKILL to who does not listen; then removes every leftover.
+  /// SIGTERM to the services, then to RouDi, SIGKILL after the time-out; then removes iceoryx's files.
   void stop();
 
-  /// True when every service (spectators apart) has said that it is ready.
+  /// True when every service except spectators has reported READY.
   [[nodiscard]] bool all_ready() const;
   /// Starts a process of role kIndependent; its end is an event. Throws std::system_error if it cannot be executed.
   void start_independent(const ProcessSpec& spec);
@@ -97,7 +97,7 @@ class Supervisor {
 
   [[nodiscard]] const std::vector<Event>& events() const;
   [[nodiscard]] std::uint32_t domain_restarts() const;
-  /// 0 if it does not run at the moment.
+  /// 0 if it is not running.
   [[nodiscard]] pid_t pid_of(std::string_view name) const;
   [[nodiscard]] pid_t roudi_pid() const;
 
@@ -136,7 +136,7 @@ class Supervisor {
   std::vector<std::string> segments_;
   std::vector<Event> events_;
   ino_t management_inode_ = 0;
-  int notifications_ = -1;  ///< datagram socket that the services know as $NOTIFY_SOCKET
+  int notifications_ = -1;  ///< datagram socket that the services get as $NOTIFY_SOCKET
   bool running_ = false;
   bool made_run_directory_ = false;
   bool domain_ready_ = false;

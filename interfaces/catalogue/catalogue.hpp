@@ -1,5 +1,5 @@
-// The whole system on one page: which process writes what, who reads it, how often, how late is too late, how much
-// may wait. Ports, RouDi's memory pools, health supervision and the picture in the documentation derive from here.
+// The whole system on one page: each topic with its writers, readers, period, deadline and queue depth. Ports, RouDi's
+// memory pools, health supervision and the diagram in the documentation are derived from this table.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ enum class Service : std::uint8_t {
   kMonitor = 6,  ///< `boresight monitor`, tests, recorders: reads everything, writes nothing, may be absent
 };
 inline constexpr std::size_t kNumberOfServices = 7;
-/// Services that are supervised: all but the optional monitor.
+/// Supervised services: all except the optional monitor.
 inline constexpr std::size_t kNumberOfSupervisedServices = 6;
 static_assert(kNumberOfServices <= kMaxServices);
 
@@ -41,7 +41,8 @@ inline constexpr std::array<std::string_view, kNumberOfServices> kServiceNames =
   return kServiceNames[static_cast<std::size_t>(service)];
 }
 
-/// Whether a scan waits for this service on its way to the tracks. The others give way where processor time is short.
+/// True for services that a scan passes before it updates the tracks. The others get less processor time if it is
+/// short.
 [[nodiscard]] constexpr bool is_on_data_path(Service service) {
   return service == Service::kIngestGateway || service == Service::kDetectionCorrector ||
          service == Service::kGhostFilter || service == Service::kTracker;
@@ -89,9 +90,9 @@ struct Topic {
   ServiceSet readers;
   bool per_radar;             ///< one message per radar and period, otherwise one per writer and period
   std::int64_t period_ns;     ///< nominal
-  std::int64_t deadline_ns;   ///< a source silent for longer is late
-  std::uint32_t queue_depth;  ///< messages that may wait per source in a reader's queue; the oldest is discarded
-  std::uint32_t history;      ///< messages a late reader gets on subscribing (iceoryx: at most 16 a writer)
+  std::int64_t deadline_ns;   ///< a source that is silent for longer is late
+  std::uint32_t queue_depth;  ///< messages per source that a reader's queue holds; the oldest is discarded
+  std::uint32_t history;      ///< messages that a late reader gets on subscribing (iceoryx: at most 16 per writer)
 };
 
 using enum Service;
@@ -191,15 +192,15 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
   return kTopics[static_cast<std::size_t>(id)];
 }
 
-/// How many monitors may read at the same time (live view, a recorder, a test).
+/// Number of monitors that may read at the same time (live view, recorder, test).
 inline constexpr std::size_t kMaxMonitors = 3;
 
-/// How many sources feed one reader of the topic: radars, or writing services.
+/// Number of sources of one reader of the topic: radars, or writing services.
 [[nodiscard]] constexpr std::size_t sources_of(const Topic& t) {
   return t.per_radar ? kMaxRadars : t.writers.size();
 }
 
-/// Length of one reader's queue, within iceoryx's 256.
+/// Length of one reader's queue; iceoryx allows 256.
 [[nodiscard]] constexpr std::size_t queue_capacity(const Topic& t) {
   const std::size_t wanted = t.queue_depth * sources_of(t);
   return wanted < 256 ? wanted : 256;

@@ -1,14 +1,14 @@
-// What the alignment estimator believes about one radar: how crooked it is, how wrong the speed signal is, how sure.
+// The alignment estimator's result for one radar: mounting error, speed-scale error and their covariance.
 #pragma once
 
 #include "interfaces/messages/header.hpp"
 
 namespace boresight {
 
-/// How far the estimate of one radar has come.
+/// Progress of one radar's estimate.
 enum class AlignmentState : std::uint8_t {
-  kNoData = 0,      ///< nothing usable received yet
-  kWaiting = 1,     ///< data arrive but the vehicle is too slow or the scene does not support an estimate
+  kNoData = 0,      ///< no usable data received yet
+  kWaiting = 1,     ///< data arrive, but the vehicle is too slow or the scene does not support an estimate
   kConverging = 2,  ///< estimating; the standard deviation is still above the configured one
   kConverged = 3,
 };
@@ -17,9 +17,9 @@ enum class AlignmentState : std::uint8_t {
 enum class AlignmentParameter : std::uint8_t { kSpeedScale = 0, kYaw = 1, kPitch = 2, kRoll = 3 };
 inline constexpr std::size_t kNumberOfAlignmentParameters = 4;
 
-/// Bits of `AlignmentEstimate::observable`: what the data support at all; the rest is NOT OBSERVABLE, its values are
-/// the prior's. A radar that looks to the side can have a pitch about the vehicle's axis that is known while neither
-/// pitch nor roll about its own axes is, so both triples have their bits.
+/// Bits of `AlignmentEstimate::observable`: the quantities that the data determine. The others are NOT OBSERVABLE and
+/// hold the prior's values. For a side-looking radar, the pitch about the vehicle's axis can be observable although
+/// neither pitch nor roll about its own axes is. Both triples therefore have their bits.
 namespace alignment_axis {
 inline constexpr std::uint32_t kSpeedScale = 1u << 0;
 inline constexpr std::uint32_t kYaw = 1u << 1;  ///< about the sensor's axes (α, β, γ)
@@ -32,20 +32,21 @@ inline constexpr std::uint32_t kYawRateBias = 1u << 7;
 inline constexpr std::uint32_t kSlip = 1u << 8;
 }  // namespace alignment_axis
 
-/// Key figures (Report A §8). What is not known (yet) is NaN, or 0 for counts.
+/// Key figures (Burza 2025, §8). Unknown values are NaN, unknown counts 0.
 struct AlignmentKpis {
-  float residual_rmse_mps;              ///< of the corrected range-rate residual of inliers over the sliding window
+  float residual_rmse_mps;  ///< root mean square of the inliers' corrected range-rate residual, sliding window
   float uncorrected_residual_rmse_mps;  ///< the same with k_v = 1 and no correction
   float residual_skewness;
   float residual_kurtosis;                     ///< 3 for a Gaussian
   float inlier_ratio;                          ///< 0…1
-  float seconds_of_drive;                      ///< time spent estimating (fast enough, data present)
-  std::array<float, 4> seconds_to_95_percent;  ///< of drive until 95 % of the way from the start to today's value;
+  float seconds_of_drive;                      ///< time with estimation: fast enough, data present
+  std::array<float, 4> seconds_to_95_percent;  ///< drive time until 95 % of the change from the start to today's value;
                                                ///< k_v, then yaw, pitch, roll about the vehicle's axes
-  std::array<std::uint32_t, 4> scans_to_95_percent;  ///< scans of this radar; 0: not known
+  std::array<std::uint32_t, 4> scans_to_95_percent;  ///< the same as a number of this radar's scans; 0: unknown
   std::array<float, 4> drift_per_minute;             ///< change over the last minute of drive: 1/min, then rad/min
-  float nees;  ///< over the observable of these four, divided by their number; 1 is honest.
-               ///< NaN unless the configuration knows the truth (simulated drives)
+  float nees;  ///< normalised estimation error squared, over the observable of these four, divided by their
+               ///< number; 1 if the covariance is consistent with the error. NaN unless the configuration has
+               ///< the true values (simulated drives)
   std::uint32_t reserved;
   std::uint64_t scans_used;
   std::uint64_t detections_used;
@@ -54,8 +55,8 @@ static_assert(sizeof(AlignmentKpis) == 96);
 
 /// A sudden change of one radar's mounting.
 struct AlignmentStepChange {
-  std::int64_t time_ns;                       ///< measurement time at which it was told; 0: never
-  std::array<float, 3> rotation_vehicle_rad;  ///< estimated turn about the vehicle's x, y, z axes (right-handed)
+  std::int64_t time_ns;                       ///< measurement time at which the change was reported; 0: never
+  std::array<float, 3> rotation_vehicle_rad;  ///< estimated rotation about the vehicle's x, y, z axes (right-handed)
   std::uint32_t count;                        ///< since the start of the service
 };
 static_assert(sizeof(AlignmentStepChange) == 24);
@@ -63,8 +64,8 @@ static_assert(sizeof(AlignmentStepChange) == 24);
 /// Mounting correction of the radar `header.source_id`, in two forms of the same rotation.
 /// Sensor form: actual mounting = nominal + correction, R(sensor→vehicle) = R_z(α_b+α_m)·R_y(−(β_b+β_m))·R_x(γ_b+γ_m),
 /// α yaw, β pitch (positive looks up), γ roll. Vehicle form: R(actual) = R_x(roll)·R_y(−pitch)·R_z(yaw)·R(nominal), a
-/// turn about the vehicle's axes, z first and x last: a roll that is not known leaves yaw and pitch alone. A positive
-/// pitch of a radar that looks ahead is up.
+/// rotation about the vehicle's axes, z first and x last, so that an unknown roll does not affect yaw and pitch. A
+/// positive pitch turns a forward-looking radar up.
 struct AlignmentEstimate {
   static constexpr std::uint32_t kVersion = 2;
 
@@ -83,7 +84,7 @@ struct AlignmentEstimate {
   float yaw_rate_bias_std_radps;
   float slip_coefficient_radps2pm;  ///< c of V_y = −c·V·(V·ω), rad per m/s²
   float slip_coefficient_std_radps2pm;
-  float angle_noise_scale;  ///< by which the sensor's angle stds must be multiplied to explain the residuals
+  float angle_noise_scale;  ///< factor on the sensor's angle standard deviations that explains the residuals
   /// Row-major 4 × 4 over (k_v, yaw, pitch, roll), units 1 and rad; rows of unobservable axes hold the prior.
   alignas(16) std::array<float, 16> covariance;
   std::array<float, 16> vehicle_covariance;  ///< the same over (k_v, vehicle yaw, pitch, roll)

@@ -1,4 +1,5 @@
-// One radar cycle with the provenance of each detection: real and moving, real and stationary, or a ghost.
+// One radar cycle with the provenance of each detection. Provenance is the detection's origin: direct echo of a moving
+// or stationary object, multipath ghost, or clutter.
 #pragma once
 
 #include "interfaces/messages/corrected_scan.hpp"
@@ -6,17 +7,18 @@
 
 namespace boresight {
 
-/// Where a detection comes from (Report B §2).
+/// Origin of a detection (Le Ba Thanh 2023, §2). A ghost is an echo that reached the radar over a reflector; its
+/// bounces are the reflections on the propagation path.
 enum class Provenance : std::uint8_t {
   kUnknown = 0,     ///< not classified: rejected earlier, or no ego motion
   kMoving = 1,      ///< direct reflection of a moving object
-  kStationary = 2,  ///< direct reflection of the stationary world
-  kGhostType1 = 3,  ///< last bounce on the target: its direction, but farther away
-  kGhostType2 = 4,  ///< last bounce on a reflector: mirrored behind it
+  kStationary = 2,  ///< direct reflection of a stationary object
+  kGhostType1 = 3,  ///< last bounce on the target: in the target's direction, but farther away
+  kGhostType2 = 4,  ///< last bounce on a reflector: mirrored behind the reflector
   kClutter = 5,
 };
 
-/// A straight piece of a stationary reflector (guard rail, wall) in the vehicle frame's x-y plane.
+/// A straight segment of a stationary reflector (guard rail, wall) in the vehicle frame's x-y plane.
 struct ReflectorSegment {
   std::array<float, 2> start_vehicle_m;
   std::array<float, 2> end_vehicle_m;
@@ -28,7 +30,7 @@ static_assert(sizeof(ReflectorSegment) == 24);
 inline constexpr std::size_t kMaxReflectorSegments = 64;
 
 /// Detections of one radar cycle, classified; same order as in the CorrectedScan. Detections that the corrector
-/// rejected have `kUnknown` provenance.
+/// rejected (`corrected_flag::kRejected`) have `kUnknown` provenance.
 struct ClassifiedScan {
   static constexpr std::uint32_t kVersion = 1;
 

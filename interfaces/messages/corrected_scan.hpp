@@ -1,19 +1,19 @@
-// One radar cycle in the vehicle frame: mounting and its error undone, the ego vehicle's motion taken out.
+// One radar cycle in the vehicle frame, corrected for mounting and mounting error, with ego motion compensated.
 #pragma once
 
 #include "interfaces/messages/header.hpp"
 
 namespace boresight {
 
-/// Bits of `CorrectedScan::flags` and `ClassifiedScan::flags`: what the stages had to do without.
+/// Bits of `CorrectedScan::flags` and `ClassifiedScan::flags`: inputs that a stage lacked.
 namespace pipeline_flag {
 inline constexpr std::uint32_t kNoAlignment = 1u << 0;     ///< no alignment estimate: nominal mounting, k_v = 1
 inline constexpr std::uint32_t kAlignmentStale = 1u << 1;  ///< the estimate is older than its topic's deadline
 inline constexpr std::uint32_t kNoEgoMotion = 1u << 2;     ///< no ego motion: range rates are not compensated
 inline constexpr std::uint32_t kEgoMotionStale = 1u << 3;  ///< the last ego motion is older than its deadline
-inline constexpr std::uint32_t kNoElevation = 1u << 4;     ///< the sensor measures none: z is the sensor's height
-inline constexpr std::uint32_t kNoTracks = 1u << 5;        ///< the ghost filter had no tracks: no type-1 test
-inline constexpr std::uint32_t kTracksStale = 1u << 6;     ///< its tracks were older than their deadline
+inline constexpr std::uint32_t kNoElevation = 1u << 4;  ///< the sensor measures no elevation: z is the sensor's height
+inline constexpr std::uint32_t kNoTracks = 1u << 5;     ///< the ghost filter had no tracks: no type-1 test
+inline constexpr std::uint32_t kTracksStale = 1u << 6;  ///< the ghost filter's tracks were older than their deadline
 }  // namespace pipeline_flag
 
 /// Bits of `CorrectedScan::detection_flags`, per detection.
@@ -22,9 +22,9 @@ inline constexpr std::uint16_t kInvalid = 1u << 0;        ///< carried over from
 inline constexpr std::uint16_t kAmbiguous = 1u << 1;      ///< carried over from the sensor
 inline constexpr std::uint16_t kOutsideRegion = 1u << 2;  ///< outside the region-of-interest box
 inline constexpr std::uint16_t kWeak = 1u << 3;           ///< under the range-dependent RCS threshold
-inline constexpr std::uint16_t kMoving = 1u << 4;         ///< else stationary; neither if the ego motion is unknown
+inline constexpr std::uint16_t kMoving = 1u << 4;         ///< no bit of motion if the ego motion is unknown
 inline constexpr std::uint16_t kStationary = 1u << 5;
-/// A detection with any of these takes no part in what follows.
+/// Rejected: the following stages ignore a detection with any of these bits.
 inline constexpr std::uint16_t kRejected = kInvalid | kOutsideRegion | kWeak;
 }  // namespace corrected_flag
 
@@ -52,12 +52,12 @@ struct CorrectedScan {
   std::uint32_t fields;              ///< scan_field bits of the RadarScan
   std::uint32_t flags;               ///< pipeline_flag bits
   std::uint32_t cycle_counter;       ///< of the RadarScan
-  std::uint64_t alignment_sequence;  ///< header.sequence of the estimate used; 0 if none
+  std::uint64_t alignment_sequence;  ///< header.sequence of the used estimate; 0 if none
   ScanGeometry geometry;
-  /// Of the turn by which `geometry.sensor_to_vehicle` may be wrong, about the vehicle's axes: xx, xy, xz, yy, yz, zz
-  /// in rad². Common to all detections of the radar, on top of their own stds.
+  /// Covariance of the rotation error of `geometry.sensor_to_vehicle` about the vehicle's axes: xx, xy, xz, yy, yz, zz
+  /// in rad². The error is common to all detections of the radar, in addition to their own standard deviations.
   std::array<float, 6> mounting_covariance;
-  float speed_scale_std;  ///< by which `geometry.speed_scale` may be wrong
+  float speed_scale_std;  ///< standard deviation of `geometry.speed_scale`
   std::array<std::uint32_t, 4> reserved;
 
   DetectionColumn<float> x_vehicle_m;
@@ -67,7 +67,7 @@ struct CorrectedScan {
   DetectionColumn<float> azimuth_vehicle_rad;    ///< direction of the line of sight in vehicle axes
   DetectionColumn<float> elevation_vehicle_rad;  ///< direction of the line of sight in vehicle axes
   DetectionColumn<float> range_rate_mps;         ///< as measured
-  /// Range rate over ground: measured minus what the sensor's own motion makes of a stationary reflector.
+  /// Range rate over ground: measured range rate minus that of a stationary reflector in the same direction.
   DetectionColumn<float> range_rate_over_ground_mps;
   DetectionColumn<float> rcs_dbsm;
   DetectionColumn<float> snr_db;

@@ -1,4 +1,4 @@
-// How the vehicle moves, as its own sensors say: raw, before the speed scale k_v is applied.
+// The vehicle's motion as measured by its own sensors, before the speed scale k_v is applied.
 #pragma once
 
 #include "interfaces/messages/header.hpp"
@@ -18,7 +18,7 @@ struct EgoMotion {
   static constexpr std::uint32_t kVersion = 1;
 
   MessageHeader header;  ///< source_id 0
-  std::uint32_t fields;  ///< ego_field bits: what has been received recently enough to be believed
+  std::uint32_t fields;  ///< ego_field bits: quantities whose last value is recent enough for use
   float speed_mps;       ///< + forward, as signalled (multiply by k_v for the true speed)
   float speed_std_mps;
   float yaw_rate_radps;  ///< + to the left

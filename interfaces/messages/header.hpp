@@ -1,5 +1,6 @@
-// What every message starts with: layout version, order, origin, time of measurement and the stamps of the stages
-// it passed, so that loss and latency can be measured in production without a second channel.
+// First part of every message: layout version, sequence numbers, origin (the radar or service that the data come from),
+// time of measurement, and the time stamps of the passed stages. With these, loss and latency are measurable in
+// production without a second channel. One measurement cycle of a radar is a scan.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace boresight {
 
-/// Stages a radar scan passes on its way; the index into `MessageHeader::stages`.
+/// Stages that a radar scan passes; the index into `MessageHeader::stages`.
 enum class Stage : std::uint8_t {
   kIngest = 0,
   kCorrector = 1,
@@ -18,20 +19,20 @@ enum class Stage : std::uint8_t {
 };
 inline constexpr std::size_t kNumberOfStages = 4;
 
-/// When a stage took the message from its input and when it published its output, CLOCK_MONOTONIC, ns.
-/// Zero in a stage that the data has not reached yet.
+/// Times at which a stage took the message from its input and published its output, CLOCK_MONOTONIC, ns.
+/// Zero for a stage that the data has not reached yet.
 struct StageStamp {
   std::int64_t begin_ns;
   std::int64_t end_ns;
 };
 
-/// Where `measurement_time_ns` comes from; arrival time is never taken silently for the time of measurement.
+/// Source of `measurement_time_ns`. If arrival time stands for the time of measurement, the source states so.
 enum class TimeSource : std::uint8_t {
   kUnknown = 0,
-  kSensorSynchronised = 1,  ///< stamp of the sensor, whose clock says it is synchronised and is plausible
-  kSensorFreeRunning = 2,   ///< stamp of the sensor, mapped to this ECU's clock by an estimated offset
-  kLinkArrival = 3,         ///< kernel's (or the recording's) receive stamp of the frame that completed the data
-  kUserArrival = 4,         ///< clock read by the gateway after receiving; the weakest
+  kSensorSynchronised = 1,  ///< stamp of the sensor; its clock reports synchronisation and is plausible
+  kSensorFreeRunning = 2,   ///< stamp of the sensor, converted to this ECU's clock by an estimated offset
+  kLinkArrival = 3,         ///< kernel's (or recording's) receive stamp of the frame that completed the data
+  kUserArrival = 4,         ///< clock read by the gateway after receiving; the least accurate
 };
 
 /// First member of every message. `sequence` counts the messages of one writer on one topic and `source_sequence`
@@ -53,9 +54,9 @@ struct MessageHeader {
 static_assert(sizeof(MessageHeader) == 104);
 static_assert(alignof(MessageHeader) == 8);
 
-/// Most radars one vehicle can have; radar ids are 1…kMaxRadars.
+/// Largest number of radars of a vehicle; radar ids are 1…kMaxRadars.
 inline constexpr std::size_t kMaxRadars = 16;
-/// Most detections a scan can carry; further ones are counted in `dropped_detections`, not lost silently.
+/// Largest number of detections of a scan; further ones are counted in `dropped_detections`.
 inline constexpr std::size_t kMaxDetections = 1024;
 
 /// One measured quantity of all detections of a scan, contiguous and cache-line aligned, so that

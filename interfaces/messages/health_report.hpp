@@ -1,23 +1,23 @@
-// The health service's verdict on every sensor and every service.
+// The health service's judgement of every sensor and every service.
 #pragma once
 
 #include "interfaces/messages/header.hpp"
 
 namespace boresight {
 
-/// OSI pair: the effect on whoever uses the data …
+/// Pair of qualifiers as in OSI (Open Simulation Interface): the effect on users of the data …
 enum class DataQualifier : std::uint8_t { kAvailable = 0, kAvailableReduced = 1, kNotAvailable = 2 };
 /// … and the reason.
 enum class ExtendedQualifier : std::uint8_t {
   kNormal = 0,
   kMisaligned = 1,
-  kNoData = 2,       ///< nothing within the deadline
+  kNoData = 2,       ///< no data within the deadline
   kRateReduced = 3,  ///< data arrive, but too rarely
-  kInvalidData = 4,  ///< too large a share is rejected or suspect, or the sensor says that it is defective
+  kInvalidData = 4,  ///< too large a share is rejected or suspect, or the sensor reports a defect
   kBlocked = 5,
   kBeginningBlockage = 6,
   kExternalDisturbance = 7,
-  kInitialising = 8,  ///< not yet long enough up to be judged
+  kInitialising = 8,  ///< not running long enough to be judged
 };
 
 /// Misalignment of one axis against its tolerance.
@@ -25,10 +25,10 @@ struct AxisHealth {
   float error_rad;  ///< actual − nominal mounting
   float std_rad;
   float tolerance_rad;
-  std::uint8_t observable;        ///< 1 if the estimator could see this axis
-  std::uint8_t beyond_tolerance;  ///< 1 after debouncing, by confidence
-  /// 1: of the turn about the vehicle's axis, because it is beyond its tolerance or the sensor's axis is not
-  /// observable; 0: about the sensor's own.
+  std::uint8_t observable;        ///< 1 if the data determine this axis
+  std::uint8_t beyond_tolerance;  ///< 1 if exceeded with the configured confidence, debounced
+  /// 1: the values are about the vehicle's axis, because that error is beyond its tolerance or the sensor's axis is
+  /// not observable; 0: about the sensor's own axis.
   std::uint8_t about_vehicle_axis;
   std::uint8_t reserved;
 };
@@ -48,28 +48,28 @@ struct SensorHealth {
   AxisHealth roll;
   float speed_scale;
   float speed_scale_std;
-  /// What the misalignment does (Report A §6): lateral displacement of a detection at the reference range.
+  /// Effect of the misalignment (Burza 2025, §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
-  std::uint32_t conditions;    ///< source_condition bits: what the sensor said of itself last
-  std::uint32_t step_changes;  ///< sudden changes of the mounting, since the estimator's start
+  std::uint32_t conditions;    ///< source_condition bits: the sensor's latest self-diagnosis
+  std::uint32_t step_changes;  ///< sudden changes of the mounting since the estimator's start
   std::uint64_t scans;
-  std::uint64_t lost_scans;     ///< published by the gateway, missing here
-  std::uint64_t missed_scans;   ///< sent by the sensor, by its own counter, and never complete at the gateway
-  std::uint64_t suspect_scans;  ///< published by the gateway with an integrity verdict against them
-  // Of the messages' end-to-end protection, where there is one:
-  std::uint64_t e2e_lost;      ///< messages that the counter stepped over
-  std::uint64_t e2e_repeated;  ///< messages with the counter of the one before, dropped
-  std::uint64_t e2e_wrong;     ///< messages of a wrong CRC, length, Data ID or sequence, dropped
+  std::uint64_t lost_scans;     ///< published by the gateway, not received by the health service
+  std::uint64_t missed_scans;   ///< sent according to the sensor's counter, but not received completely
+  std::uint64_t suspect_scans;  ///< published by the gateway with an integrity fault
+  // End-to-end protection of the radar's messages, if it has one:
+  std::uint64_t e2e_lost;      ///< messages missing by the counter
+  std::uint64_t e2e_repeated;  ///< messages with the previous counter, dropped
+  std::uint64_t e2e_wrong;     ///< messages with a wrong CRC, length, Data ID or sequence, dropped
 };
 static_assert(sizeof(SensorHealth) == 152);
 
 enum class ServiceCondition : std::uint8_t {
-  kUnknown = 0,  ///< never heard
+  kUnknown = 0,  ///< no heartbeat yet
   kAlive = 1,
-  kDegraded = 2,   ///< alive, but misses deadlines, loses input or says so itself
+  kDegraded = 2,   ///< alive, but misses deadlines, loses input or reports to be degraded
   kSilent = 3,     ///< heartbeat deadline missed
-  kRestarted = 4,  ///< alive again, with a new incarnation, within the last supervision window
+  kRestarted = 4,  ///< alive again after a restart within the last supervision window
 };
 
 struct ServiceHealth {

@@ -1,4 +1,4 @@
-// Words for the values of the messages' enumerations: the same in pictures, logs, records and diagnostics.
+// Names of the messages' enumeration values, the same in plots, logs, records and diagnostics.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 namespace boresight {
 
 namespace detail {
-/// The word of a value; "?" for one that is not among them, as after an update of one process only.
+/// The name of a value; "?" for an unknown value, as after an update of one process only.
 template <typename Enum, std::size_t N>
 [[nodiscard]] constexpr std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
   const auto index = static_cast<std::size_t>(value);
@@ -41,7 +41,7 @@ template <typename Enum, std::size_t N>
                                                       "INITIALISING"};
   return detail::word_of(kNames, qualifier);
 }
-/// What source_condition bits say, as "partly blocked, supply"; empty if nothing.
+/// The names of source_condition bits, as in "partly blocked, supply"; empty without bits.
 [[nodiscard]] inline std::string words_of_conditions(std::uint32_t bits) {
   constexpr std::array<std::string_view, 7> kNames = {"blocked",     "partly blocked", "defective",         "supply",
                                                       "temperature", "unsynchronised", "without ego motion"};

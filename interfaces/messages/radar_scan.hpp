@@ -1,48 +1,47 @@
-// One measurement cycle of one radar, in the sensor's own frame, exactly as the sensor said it.
+// A scan: all detections of one measurement cycle of one radar, in the sensor's own frame, as reported by the sensor.
 #pragma once
 
 #include "interfaces/messages/header.hpp"
 
 namespace boresight {
 
-/// Bits of `RadarScan::fields`: the quantities this sensor measures. A column whose bit is clear holds zeros that
-/// mean nothing.
+/// Bits of `RadarScan::fields`: the quantities that this sensor measures. A column whose bit is clear holds zeros
+/// without meaning.
 namespace scan_field {
 inline constexpr std::uint32_t kElevation = 1u << 0;
 inline constexpr std::uint32_t kRcs = 1u << 1;
 inline constexpr std::uint32_t kSnr = 1u << 2;
-inline constexpr std::uint32_t kStds = 1u << 3;       ///< the sensor states stds; else they are the configured ones
-inline constexpr std::uint32_t kExistence = 1u << 4;  ///< else existence is 1
+inline constexpr std::uint32_t kStds = 1u << 3;       ///< standard deviations by the sensor; else the configured ones
+inline constexpr std::uint32_t kExistence = 1u << 4;  ///< otherwise existence is 1
 inline constexpr std::uint32_t kAmbiguity = 1u << 5;  ///< range_rate_min/max_mps bound the unambiguous interval
 }  // namespace scan_field
 
 /// Bits of `RadarScan::detection_flags`, per detection.
 namespace detection_flag {
-inline constexpr std::uint16_t kInvalid = 1u << 0;    ///< the sensor itself marked a needed quantity invalid
+inline constexpr std::uint16_t kInvalid = 1u << 0;    ///< the sensor marked a needed quantity as invalid
 inline constexpr std::uint16_t kAmbiguous = 1u << 1;  ///< the range rate lies outside the unambiguous interval
 }  // namespace detection_flag
 
-/// Bits of `RadarScan::integrity`: what the gateway found wrong with the scan as a whole. Zero: nothing.
+/// Bits of `RadarScan::integrity`: faults of the scan as a whole that the gateway detected.
 namespace scan_integrity {
-inline constexpr std::uint16_t kCounterGap = 1u << 0;  ///< scans are missing before this one
-inline constexpr std::uint16_t kRepeated =
-    1u << 1;  ///< a list that came before: by the sensor's counter, else by its content and stamp
-inline constexpr std::uint16_t kFrozen = 1u << 2;          ///< the same detections as before, to the last bit
-inline constexpr std::uint16_t kStale = 1u << 3;           ///< measured too long before it came, or stamps stand still
-inline constexpr std::uint16_t kImplausible = 1u << 4;     ///< too many detections outside what the sensor can see
-inline constexpr std::uint16_t kContradictsEgo = 1u << 5;  ///< range rates fit no motion near that of the vehicle
-inline constexpr std::uint16_t kIncomplete = 1u << 6;      ///< frames of the cycle are missing
+inline constexpr std::uint16_t kCounterGap = 1u << 0;   ///< scans are missing before this one
+inline constexpr std::uint16_t kRepeated = 1u << 1;     ///< a list received before, by counter or by content and stamp
+inline constexpr std::uint16_t kFrozen = 1u << 2;       ///< bitwise the same detections as in the previous scan
+inline constexpr std::uint16_t kStale = 1u << 3;        ///< too old at reception, or the stamps do not advance
+inline constexpr std::uint16_t kImplausible = 1u << 4;  ///< too many detections beyond the sensor's limits
+inline constexpr std::uint16_t kContradictsEgo = 1u << 5;    ///< range rates contradict the vehicle's motion
+inline constexpr std::uint16_t kIncomplete = 1u << 6;        ///< frames of the cycle are missing
 inline constexpr std::uint16_t kImpossibleCopies = 1u << 7;  ///< many detections of the scan are copies of one another
 inline constexpr std::size_t kNumberOfBits = 8;
 }  // namespace scan_integrity
 
 /// Detections of one radar cycle in the sensor frame (x along boresight, y left, z up). The first
-/// `number_of_valid_detections` entries of each column count; what follows is undefined.
+/// `number_of_valid_detections` entries of each column are valid; the others are undefined.
 struct RadarScan {
   static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;
-  std::uint32_t cycle_counter;  ///< the sensor's own counter where it has one, else the gateway's
+  std::uint32_t cycle_counter;  ///< the sensor's own counter, or the gateway's if it has none
   std::uint32_t number_of_valid_detections;
   std::uint16_t dropped_detections;  ///< detections beyond kMaxDetections
   std::uint16_t integrity;           ///< scan_integrity bits

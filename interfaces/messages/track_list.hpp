@@ -1,4 +1,4 @@
-// The objects around the vehicle, one list a processed scan.
+// The objects around the vehicle: one list per processed scan.
 #pragma once
 
 #include "interfaces/messages/header.hpp"
@@ -6,7 +6,7 @@
 namespace boresight {
 
 enum class TrackStatus : std::uint8_t { kTentative = 0, kConfirmed = 1 };
-/// Whether the latest scan that could see the object confirmed it.
+/// Whether the latest scan with the object in its field of view detected it.
 enum class TrackUpdate : std::uint8_t { kMeasured = 0, kPredicted = 1 };
 enum class MovementState : std::uint8_t { kUnknown = 0, kMoving = 1, kStationary = 2, kStopped = 3 };
 enum class ObjectClass : std::uint8_t { kUnknown = 0, kCar = 1, kTruck = 2, kTwoWheeler = 3, kPedestrian = 4 };
@@ -41,7 +41,7 @@ static_assert(sizeof(Track) == 224);
 
 inline constexpr std::size_t kMaxTracks = 128;
 
-/// All tracks after the scan `header.source_id` / `header.source_sequence`; entries 0…number_of_tracks−1 count.
+/// All tracks after the scan `header.source_id` / `header.source_sequence`; entries 0…number_of_tracks−1 are valid.
 struct TrackList {
   static constexpr std::uint32_t kVersion = 1;
 
@@ -49,7 +49,7 @@ struct TrackList {
   std::uint32_t number_of_tracks;
   std::uint32_t number_of_confirmed_tracks;
   std::uint32_t flags;           ///< pipeline_flag bits of the scan
-  std::uint32_t dropped_tracks;  ///< objects that found no room
+  std::uint32_t dropped_tracks;  ///< objects beyond kMaxTracks
   std::uint64_t reserved;
   alignas(64) std::array<Track, kMaxTracks> tracks;
 };

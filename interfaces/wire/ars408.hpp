@@ -1,7 +1,7 @@
 // Continental ARS408 (long-range radar) on classic CAN: clusters, objects, configuration and ego motion. A sensor with
-// id n adds n · 0x10 to every id, so that eight of them can share a bus. No frame has a CRC or a counter of its own.
-// References: the manufacturer's public interface description ("Standardized ARS Interface") as its many open drivers
-// quote it; signal names are the manufacturer's.
+// id n adds n · 0x10 to every CAN id, so that eight sensors can share a bus. No frame has a CRC or a counter.
+// References: the manufacturer's public interface description ("Standardized ARS Interface") as quoted by open drivers;
+// signal names are the manufacturer's.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ inline constexpr std::size_t kEgoBytes = 2;
 /// First byte of every cluster and object frame.
 inline constexpr CanSignal kEntryId = motorola("ID", 7, 8);
 
-/// The sensor's word on itself. "Motion" is what it receives of the ego motion: bit 0 speed missing, bit 1 yaw rate.
+/// State reported by the sensor. "Motion" is its input of ego motion: bit 0 speed missing, bit 1 yaw rate missing.
 namespace state {
 inline constexpr CanSignal kMaxDistance_m = motorola("RadarState_MaxDistanceCfg", 15, 10, 2.0);
 inline constexpr CanSignal kPersistentError = motorola("RadarState_Persistent_Error", 21, 1);
@@ -84,7 +84,7 @@ inline constexpr CanSignal kDynamicProperty = motorola("DynProp", 50, 3);
 inline constexpr CanSignal kRcs_dbsm = motorola("RCS", 63, 8, 0.5, -64.0);
 }  // namespace general
 
-/// Codes of stds (see kRms), the same in clusters and objects as far as clusters have them.
+/// Codes of standard deviations (see kRms), the same in clusters and objects where clusters have them.
 namespace quality {
 inline constexpr CanSignal kLongitudinal = motorola("DistLong_rms", 15, 5);
 inline constexpr CanSignal kLateral = motorola("DistLat_rms", 10, 5);
@@ -124,24 +124,24 @@ inline constexpr std::uint8_t kForward = 1;
 inline constexpr std::uint8_t kBackward = 2;
 }  // namespace ego
 
-/// A code of a std of distance (m), velocity (m/s) or acceleration (m/s²) says that it lies below this value; code 31
-/// is "invalid".
+/// Upper bound of a standard deviation of distance (m), velocity (m/s) or acceleration (m/s²) by its code; code 31 is
+/// "invalid".
 inline constexpr std::array<double, 31> kRms{
     0.005, 0.006, 0.008, 0.011, 0.014, 0.018, 0.023, 0.029, 0.038, 0.049, 0.063, 0.081, 0.105, 0.135, 0.174, 0.224,
     0.288, 0.371, 0.478, 0.616, 0.794, 1.023, 1.317, 1.697, 2.187, 2.817, 3.630, 4.676, 6.025, 7.762, 10.0};
-/// A code of a probability says that it lies below this value and not below that of the code before; 0 is "invalid".
+/// Upper bound of a probability by its code; the lower bound is that of the previous code. Code 0 is "invalid".
 inline constexpr std::array<double, 8> kProbability{0.0, 0.25, 0.5, 0.75, 0.9, 0.99, 0.999, 1.0};
 
 /// Values of Cluster_AmbigState.
 inline constexpr std::uint8_t kAmbiguityStaggeredRamp = 2;  ///< resolved
 inline constexpr std::uint8_t kAmbiguityUnambiguous = 3;
-inline constexpr std::uint8_t kAmbiguityStationary = 4;  ///< resolved by taking it for stationary
-/// Bit n: Cluster_InvalidState n is one of the valid ones. Not: 1 low RCS, 2 near-field artefact, 3 far cluster not
-/// confirmed near, 6 mirror, 7 outside the field of view, 14 harmonics, and what is reserved.
+inline constexpr std::uint8_t kAmbiguityStationary = 4;  ///< resolved under the assumption of a stationary target
+/// Bit n: Cluster_InvalidState n is a valid state. Invalid are 1 low RCS, 2 near-field artefact, 3 far cluster not
+/// confirmed near, 6 mirror, 7 outside the field of view, 14 harmonics, and the reserved states.
 inline constexpr std::uint32_t kValidStates =
     1u << 0 | 1u << 4 | 1u << 8 | 1u << 9 | 1u << 10 | 1u << 11 | 1u << 12 | 1u << 15 | 1u << 16 | 1u << 17;
-/// Bit n: an object in Obj_MeasState n was measured in this cycle: 1 new, 2 measured, 5 new from merge. Not: 0 deleted,
-/// 3 predicted, 4 deleted for merge.
+/// Bit n: an object in Obj_MeasState n was measured in this cycle: 1 new, 2 measured, 5 new from merge. Not measured
+/// are 0 deleted, 3 predicted, 4 deleted for merge.
 inline constexpr std::uint32_t kMeasuredStates = 1u << 1 | 1u << 2 | 1u << 5;
 
 }  // namespace boresight::wire::ars408

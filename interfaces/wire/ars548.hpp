@@ -1,5 +1,5 @@
-// Continental ARS548 (4D radar): layout of the detection list and of the frames that come with it. Big endian, one UDP
-// datagram a message, framed like SOME/IP but without service discovery, transport protocol or checked E2E header.
+// Continental ARS548 (4D radar): layout of the detection list and of its other messages. Big endian, one UDP datagram
+// per message. Framed like SOME/IP, but without service discovery, transport protocol or checked E2E header.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ inline constexpr std::uint16_t kMethodObjectList = 329;
 inline constexpr std::uint16_t kMethodStatus = 380;
 inline constexpr std::uint16_t kMethodFilterStatus = 396;
 
-/// SOME/IP: service u16, method u16, length u32 (of what follows it), then 8 more bytes of header.
+/// SOME/IP: service u16, method u16, length u32 (bytes after this field), then 8 more bytes of header.
 inline constexpr std::size_t kShortHeaderBytes = 8;
 
 // --- detection list --------------------------------------------------------------------------------------------------
@@ -25,7 +25,8 @@ inline constexpr std::size_t kSyncStatus = 44;       // u8
 inline constexpr std::uint8_t kSyncOk = 1;
 inline constexpr std::uint8_t kSyncNever = 2;
 inline constexpr std::uint8_t kSyncLost = 3;
-inline constexpr std::size_t kOrigin = 52;  // f32: x, y, z, roll, pitch, yaw of the sensor, each with its std after it
+inline constexpr std::size_t kOrigin =
+    52;  // f32: x, y, z, roll, pitch, yaw of the sensor, each followed by its standard deviation
 inline constexpr std::size_t kDetections = 101;
 inline constexpr std::size_t kMaxDetectionRecords = 800;
 inline constexpr std::size_t kDetectionBytes = 44;
@@ -40,8 +41,8 @@ inline constexpr std::size_t kAlignmentStatus = 35321;          // u8
 // The same headers and stamp as the detection list; sequence counter, time and sync status are at its offsets.
 inline constexpr std::size_t kObjectListBytes = 9401;
 inline constexpr std::size_t kShortListRecords = 50;
-/// Newer firmware. Of its one byte more than 200 records need, no public source tells the place; it is taken to be the
-/// last.
+/// Newer firmware. It has one byte more than 200 records need. No public source states its place; the last byte is
+/// assumed.
 inline constexpr std::size_t kLongObjectListBytes = 37452;
 inline constexpr std::size_t kLongListRecords = 200;
 inline constexpr std::size_t kNumberOfObjects = 50;  // u8
@@ -56,7 +57,7 @@ inline constexpr std::size_t kMeasurementStatus = 8;   // u8: 0 measured, 1 pred
 inline constexpr std::size_t kMovementStatus = 9;      // u8: 0 moving, 1 stationary, 255 invalid
 inline constexpr std::size_t kPositionInvalid = 10;    // u16 bits
 inline constexpr std::size_t kPositionReference = 12;  // u8: which point of the box, 0 … 7, 255 invalid
-inline constexpr std::size_t kX_m = 13;                // f32, as is all below unless said otherwise
+inline constexpr std::size_t kX_m = 13;                // f32, as all fields below without a comment on their type
 inline constexpr std::size_t kXStd_m = 17;
 inline constexpr std::size_t kY_m = 21;
 inline constexpr std::size_t kYStd_m = 25;
@@ -99,10 +100,10 @@ inline constexpr std::uint8_t kBlockageLow = 3;
 inline constexpr std::uint8_t kSelfTestFailed = 0;
 }  // namespace status
 
-// --- motion of the vehicle, which the sensor needs: same short header, floats at the given offset
+// --- motion of the vehicle, an input of the sensor: same short header, floats at the given offset
 // ----------------------
 inline constexpr std::uint16_t kSensorPort = 42101;
-/// A message into the sensor: method, bytes in all, offset of its value.
+/// A message to the sensor: method, size in bytes, offset of its value.
 struct MotionInput {
   std::uint16_t method;
   std::size_t bytes;

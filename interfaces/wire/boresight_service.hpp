@@ -1,5 +1,5 @@
-// Boresight's own SOME/IP service for radars that have no protocol of their own to keep: identifiers and layouts of
-// boresight_service.md, which is the definition; this header only repeats its numbers. Everything is big endian.
+// Boresight's own SOME/IP service for radars that need not keep a protocol of their own: identifiers and layouts. The
+// definition is boresight_service.md; this header repeats its numbers. All fields are big endian.
 #pragma once
 
 #include <cstddef>
@@ -26,15 +26,15 @@ inline constexpr std::uint16_t kEventgroupEgoMotion = 0x0002;
 
 // --- message ---------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kSomeIpHeaderBytes = 16;
-/// What E2E protects begins at the Request ID; the profile 7 header follows the SOME/IP header, 64 bits later.
+/// The E2E-protected data begin at the Request ID; the profile 7 header follows the SOME/IP header, 64 bits later.
 inline constexpr std::size_t kProtectedFrom = 8;
 inline constexpr std::size_t kE2eOffsetBytes = 8;
 inline constexpr std::size_t kE2eHeaderBytes = 20;
-/// Of the body within the message; offsets below count from here.
+/// Offset of the body within the message; the offsets below count from here.
 inline constexpr std::size_t kBody = kSomeIpHeaderBytes + kE2eHeaderBytes;
-/// Longest whole message, header included, that a receiver has to put together.
+/// Longest message, header included, that a receiver has to reassemble.
 inline constexpr std::size_t kMaxMessageBytes = 131072;
-/// Payload behind the SOME/IP header above which a message is sent in segments, and the payload of such segments.
+/// Largest payload after the SOME/IP header of an unsegmented message, and the payload of a segment.
 inline constexpr std::size_t kMaxUnsegmentedPayloadBytes = 1392;
 inline constexpr std::size_t kSegmentBytes = 1392;
 

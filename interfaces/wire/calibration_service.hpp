@@ -1,6 +1,6 @@
-// The SOME/IP service by which an end-of-line station calibrates a radar with the tilting plate: identifiers and
-// layouts of calibration_service.md, which is the definition; this header only repeats its numbers. Everything is big
-// endian; offsets count from the beginning of the payload.
+// The SOME/IP service with which an end-of-line station calibrates a radar by a tilting plate: identifiers and layouts.
+// The definition is calibration_service.md; this header repeats its numbers. All fields are big endian; offsets count
+// from the beginning of the payload.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ enum class ReturnCode : std::uint8_t {
   kWrongMessageType = 0x0A,
 };
 
-/// Why a command was refused. Values below 16 are those of the state machine that obeys it.
+/// Reason for refusing a command. Values below 16 are those of the state machine that carries out the command.
 enum class Refusal : std::uint8_t {
   kNone = 0,
   kWrongState = 1,
@@ -94,7 +94,7 @@ inline constexpr std::uint16_t kLayoutVersionValue = 1;  ///< of every payload t
 inline constexpr std::size_t kLayoutVersion = 0;         // u16
 
 inline constexpr double kRadiansPerUnitOfTilt = 1.7453292519943296e-4;  ///< i16 in hundredths of a degree
-/// Longest time between a command and its repetition that is answered without being carried out again.
+/// Longest time from a command to its repetition; a repetition is answered, but not carried out again.
 inline constexpr double kRepetition_s = 5.0;
 
 // --- requests --------------------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ namespace boresight::wire {
 
 enum class ByteOrder : std::uint8_t { kMotorola, kIntel };
 
-/// What the bits mean: an integer, or an IEEE 754 number of 32 or 64 bits.
+/// Type of the bits: an integer, or an IEEE 754 number of 32 or 64 bits.
 enum class SignalKind : std::uint8_t { kInteger, kFloat32, kFloat64 };
 
 /// physical = raw · factor + offset. `start_bit` as in DBC files: Motorola signals start at their most significant
@@ -32,7 +32,7 @@ struct CanSignal {
 [[nodiscard]] constexpr bool fits(const CanSignal& signal, std::size_t bytes) {
   if (signal.length == 0 || signal.length > 64) return false;
   if (signal.order == ByteOrder::kIntel) return std::size_t{signal.start_bit} + signal.length <= bytes * 8;
-  // Motorola bits run down within a byte and on at bit 7 of the next one.
+  // Motorola bits run down within a byte and continue at bit 7 of the next byte.
   const std::size_t position = (signal.start_bit / 8u) * 8u + (7u - signal.start_bit % 8u);
   return position + signal.length <= bytes * 8;
 }
@@ -59,7 +59,7 @@ struct CanSignal {
   return bits;
 }
 
-/// Raw value, sign-extended; an unsigned signal of 64 bits comes as its two's complement. The caller has checked
+/// Raw value, sign-extended; an unsigned signal of 64 bits is returned as its two's complement. The caller has checked
 /// fits().
 [[nodiscard]] constexpr std::int64_t extract_raw(const CanSignal& signal, std::span<const std::uint8_t> payload) {
   std::uint64_t raw = extract_bits(signal, payload);
@@ -69,8 +69,8 @@ struct CanSignal {
   return static_cast<std::int64_t>(raw);
 }
 
-/// Physical value; NaN and infinity can come from signals that are IEEE numbers. The caller has checked fits(), and
-/// that those have 32 and 64 bits.
+/// Physical value; may be NaN or infinite if the signal is an IEEE number. The caller has checked fits(), and that
+/// IEEE numbers have 32 or 64 bits.
 [[nodiscard]] constexpr double extract(const CanSignal& signal, std::span<const std::uint8_t> payload) {
   double raw = 0.0;
   if (signal.kind == SignalKind::kFloat32) {

@@ -1,5 +1,5 @@
-// How the replay publisher hands recorded frames to the gateway: one record a message over a Unix socket of type
-// SOCK_SEQPACKET, so that a slow gateway slows the replay down instead of losing frames. Little endian.
+// Recorded frames on their way from the replay to the gateway: one record per message over a Unix socket of type
+// SOCK_SEQPACKET. A slow gateway slows the replay down instead of losing frames. Little endian.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
-// Toyota's radar tracks (as object tracks of one radar, 16 slots, 20 Hz) and the ego signals of the same cars.
-// Reference: the public DBC files toyota_adas.dbc and toyota_2017_ref_pt.dbc of the opendbc project; a test compares.
+// Toyota's radar tracks (object tracks of one radar, 16 slots, 20 Hz) and the ego signals of the same cars.
+// Reference: the public DBC files toyota_adas.dbc and toyota_2017_ref_pt.dbc of the opendbc project; a test compares
+// this header with them.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,7 @@ inline constexpr double kNoTrackDistance_m = 300.0;
 inline constexpr std::uint32_t kYawRateId = 0x024;
 inline constexpr std::uint32_t kSteeringId = 0x025;
 inline constexpr std::uint32_t kWheelSpeedsId = 0x0AA;
-inline constexpr std::uint32_t kSpeedId = 0x0B4;  ///< the speedometer's: reads 2 % high; not used
+inline constexpr std::uint32_t kSpeedId = 0x0B4;  ///< the speedometer's value, 2 % too high; not used
 
 inline constexpr CanSignal kYawRate_degps{"YR", 1, 10, ByteOrder::kMotorola, false, 0.244, -125.0};  ///< + left
 inline constexpr CanSignal kSteeringAngle_deg{"SSA", 3, 12, ByteOrder::kMotorola, true, 1.5, 0.0};   ///< + left
@@ -40,7 +41,7 @@ inline constexpr CanSignal kWheelFrontLeft_kmph{"VXFL", 22, 15, ByteOrder::kMoto
 inline constexpr CanSignal kWheelRearRight_kmph{"VXRR", 38, 15, ByteOrder::kMotorola, false, 0.01, -67.67};
 inline constexpr CanSignal kWheelRearLeft_kmph{"VXRL", 54, 15, ByteOrder::kMotorola, false, 0.01, -67.67};
 
-/// Sum over id, length and all bytes but the last; the last byte carries it. 0x0AA and the short frames have none.
+/// Sum over id, length and all bytes except the last, which holds the sum. 0x0AA and the short frames have none.
 [[nodiscard]] constexpr std::uint8_t checksum(std::uint32_t id, std::span<const std::uint8_t> payload) {
   std::uint32_t sum = (id & 0xFFu) + (id >> 8) + static_cast<std::uint32_t>(payload.size());
   for (std::size_t i = 0; i + 1 < payload.size(); ++i) sum += payload[i];

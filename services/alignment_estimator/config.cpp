@@ -124,7 +124,7 @@ std::optional<DriveTruth> read_truth(config::Reader& root) {
   std::ifstream file(path);
   DriveTruth truth = read_drive_truth(file);
   if (truth.known() && std::isfinite(truth.speed_scale)) return truth;
-  const std::string problem = "no truth of a drive in " + path;
+  const std::string problem = "no truth of a simulated drive in " + path;
   if (from_environment != nullptr) throw config::Error("$BORESIGHT_TRUTH: " + problem);
   root.reject("truth_file", problem);
   return std::nullopt;

@@ -1,4 +1,4 @@
-// config/services/alignment_estimator.toml → what the service runs with.
+// config/services/alignment_estimator.toml → settings of the service.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace boresight::alignment {
 
-/// What survives the ignition cycle, and where.
+/// The memory over ignition cycles, and its place.
 struct MemorySettings {
   bool enabled = true;
-  /// "": `alignment` in the folder that systemd names in $STATE_DIRECTORY; without one nothing is remembered.
+  /// "": the file `alignment` in systemd's $STATE_DIRECTORY; without that variable nothing is stored.
   std::string path;
   double period_s = 30.0;
 };
@@ -23,8 +23,8 @@ struct Settings {
   station::Settings station;
 };
 
-/// Reads the document, and the truth that it names; the environment variable BORESIGHT_TRUTH overrides `truth_file`.
-/// Throws config::Error.
+/// Reads the document and the truth file that it names; the environment variable BORESIGHT_TRUTH overrides
+/// `truth_file`. Throws config::Error.
 [[nodiscard]] Settings read_settings(config::Reader root);
 
 }  // namespace boresight::alignment

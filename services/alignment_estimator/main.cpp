@@ -1,4 +1,4 @@
-// boresight-alignment_estimator: ego motion and scans in, one estimate a radar and period out.
+// boresight-alignment_estimator: ego motion and scans in, one estimate per radar and period out.
 #include <cstdlib>
 
 #include "services/alignment_estimator/config.hpp"
@@ -20,7 +20,7 @@ std::optional<std::filesystem::path> memory_file(const alignment::MemorySettings
   return std::filesystem::path(folder) / "alignment";
 }
 
-/// Logs what is new; the publications carry it as well.
+/// Logs new step changes; the published estimates contain them as well.
 void report_step_changes(const VehicleConfig& vehicle, const alignment::Estimator& estimator,
                          std::array<std::uint32_t, kMaxRadars>& reported) {
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
@@ -30,8 +30,9 @@ void report_step_changes(const VehicleConfig& vehicle, const alignment::Estimato
     const auto degrees = [&step_change](std::size_t axis) {
       return step_change.rotation_vehicle_rad[axis] * 180.0 / M_PI;
     };
-    runtime::log::warning("radar {} was knocked: by {:+.2f}, {:+.2f}, {:+.2f} deg about the vehicle's x, y, z axes",
-                          vehicle.radars[i].name, degrees(0), degrees(1), degrees(2));
+    runtime::log::warning(
+        "radar {}: sudden misalignment of {:+.2f}, {:+.2f}, {:+.2f} deg about the vehicle's x, y, z axes",
+        vehicle.radars[i].name, degrees(0), degrees(1), degrees(2));
   }
 }
 
@@ -57,10 +58,10 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const alignment::Sett
       case alignment::ScanResult::kUsed:
         break;
       case alignment::ScanResult::kUnknownRadar:
-        node.fault(Fault::kWireUnknown, "scan of a radar that the vehicle file does not know");
+        node.fault(Fault::kWireUnknown, "scan of a radar that is not in the vehicle file");
         break;
       case alignment::ScanResult::kNoEgoMotion:
-        node.fault(Fault::kSideInputMissing, "scan without ego motion of its time");
+        node.fault(Fault::kSideInputMissing, "scan without ego motion for its measurement time");
         break;
       case alignment::ScanResult::kPublish: {
         const runtime::Origin origin{.source_id = id,

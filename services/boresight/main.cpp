@@ -1,13 +1,18 @@
 // `boresight`: the one command-line tool of the product.
-#include <cstdlib>
-
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/run_command.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Boresight, a radar perception pipeline", "boresight"};
+  CLI::App app{"Boresight, a radar perception pipeline: simulates, records, decodes, aligns, runs and watches it.",
+               "boresight"};
   app.set_version_flag("--version", std::string("boresight ") + BORESIGHT_VERSION);
   app.require_subcommand(1);
-  int exit_code = EXIT_SUCCESS;
+  app.get_formatter()->column_width(34);
+  app.footer(
+      "'boresight COMMAND --help' describes a command.\n"
+      "Exit codes: 0 success; 1 a finding, such as a failed check; 2 wrong command line or configuration;\n"
+      "3 an input cannot be read, or an output cannot be written; 130 ended by Ctrl-C.");
+  int exit_code = boresight::exit_code::kSuccess;
   boresight::add_align_command(app, exit_code);
   boresight::add_calibrate_command(app, exit_code);
   boresight::add_catalogue_command(app, exit_code);
@@ -22,8 +27,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    constexpr int kExitUsage = 2;
-    return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
+    return boresight::report_parse_error(app, error);
   }
   return exit_code;
 }

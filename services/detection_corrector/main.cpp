@@ -11,18 +11,20 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const corrector::Conf
   corrector::Corrector corrector(vehicle, config);
   runtime::Publisher<CorrectedScan> corrected(node);
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& estimate) {
-    if (!corrector.add_alignment(estimate)) node.fault(Fault::kWireUnknown, "alignment of an unknown radar");
+    if (!corrector.add_alignment(estimate))
+      node.fault(Fault::kWireUnknown, "alignment estimate of a radar that is not in the vehicle file");
   });
   node.on<EgoMotion>([&](const EgoMotion& motion) { corrector.add_ego_motion(motion); });
   node.on<RadarScan>([&](const RadarScan& scan) {
     if (!corrector.knows(scan.header.source_id)) {
-      node.fault(Fault::kWireUnknown, "scan of a radar that the vehicle file does not know");
+      node.fault(Fault::kWireUnknown, "scan of a radar that is not in the vehicle file");
       return;
     }
     corrected.publish_from(scan.header, Stage::kCorrector, [&](CorrectedScan& out) {
       corrector.correct(scan, out);
       constexpr std::uint32_t kMissing = pipeline_flag::kNoEgoMotion | pipeline_flag::kEgoMotionStale;
-      if ((out.flags & kMissing) != 0) node.fault(Fault::kSideInputMissing, "scan without ego motion of its time");
+      if ((out.flags & kMissing) != 0)
+        node.fault(Fault::kSideInputMissing, "scan without ego motion for its measurement time");
     });
   });
   return node.spin();

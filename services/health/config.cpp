@@ -7,7 +7,7 @@
 namespace boresight::health {
 
 namespace {
-constexpr std::uint32_t kHighestDomain = 232;  // beyond it the ports of UDP run out
+constexpr std::uint32_t kHighestDomain = 232;  // the UDP ports of higher domains exceed 65535
 }
 
 std::uint32_t domain_from_environment(std::uint32_t fallback) {

@@ -15,7 +15,7 @@ struct FileConfig {
 /// Throws config::Error. BORESIGHT_DDS_DOMAIN in the environment takes precedence over the file's domain.
 [[nodiscard]] FileConfig read_config(config::Reader root);
 
-/// The domain that the environment names, or `fallback`; throws config::Error if it is no number from 0 to 232.
+/// BORESIGHT_DDS_DOMAIN of the environment, or `fallback`. Throws config::Error if it is no number from 0 to 232.
 [[nodiscard]] std::uint32_t domain_from_environment(std::uint32_t fallback);
 
 }  // namespace boresight::health

@@ -1,4 +1,4 @@
-// boresight-health: what every process says and what every radar delivers in, a verdict out: on its topic and by DDS.
+// boresight-health: heartbeats of services and data of radars in; verdicts out, on a topic and by DDS.
 #include <memory>
 
 #include "services/common/runtime/clock.hpp"
@@ -22,26 +22,25 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const health::FileCon
   node.on<RadarScan>([&](const RadarScan& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
   node.on<TrackList>([&](const TrackList& m) { supervision.observe(m, runtime::monotonic_now_ns()); });
 
-  const auto said = std::make_unique<HealthReport>();
-  const auto seen = std::make_unique<HealthReport>();
+  const auto sent = std::make_unique<HealthReport>();
+  const auto current = std::make_unique<HealthReport>();
   const std::int64_t period_ns = catalogue::topic(catalogue::TopicId::kHealthReport).period_ns;
   std::int64_t next_ns = 0;
-  // A changed verdict goes out at once, so that a silent radar is said to be so within its deadline and not a period
-  // of the report later.
+  // A changed verdict is sent at once: otherwise a silent radar would be reported up to a period after its deadline.
   node.every(kJudgePeriod_ns, [&] {
     const std::int64_t now_ns = runtime::monotonic_now_ns();
-    supervision.judge(*seen, now_ns);
-    const bool changed = health::verdicts_differ(*seen, *said);
+    supervision.judge(*current, now_ns);
+    const bool changed = health::verdicts_differ(*current, *sent);
     if (!changed && now_ns < next_ns) return;
     next_ns = now_ns + period_ns - kJudgePeriod_ns / 2;
-    *said = *seen;
+    *sent = *current;
     const runtime::Origin origin{.source_id = static_cast<std::uint32_t>(node.self()),
                                  .measurement_time_ns = now_ns,
                                  .time_source = TimeSource::kUserArrival,
                                  .stage = std::nullopt,
                                  .begin_ns = 0};
-    reports.publish(origin, [&](HealthReport& out) { out = *said; });
-    outlet.write(*said, changed, now_ns);
+    reports.publish(origin, [&](HealthReport& out) { out = *sent; });
+    outlet.write(*sent, changed, now_ns);
   });
   return node.spin();
 }

@@ -1,4 +1,4 @@
-// The way off the ECU: when to send a report by DDS, and what to do while that is impossible.
+// Sends reports by DDS when they are due, and tries to join the domain again while that is impossible.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace boresight::health {
 
-/// DDS may be missing at the start, or never come: supervision on the ECU goes on without it. Each failure is a fault
-/// of the node, and joining the domain is tried again.
+/// Supervision on the ECU works without DDS. Each failure is reported as a fault of the node, and the participant is
+/// created again later.
 class Outlet {
  public:
   Outlet(runtime::Node& node, const VehicleConfig& vehicle, const dds::Config& config)

@@ -1,4 +1,4 @@
-// The gateway's products into shared memory.
+// Writes the gateway's output to shared memory.
 #pragma once
 
 #include "services/common/runtime/node.hpp"
@@ -30,9 +30,9 @@ class BusSink : public Sink {
     if (links_ != nullptr) links_->leave(group, interface);
   }
 
-  /// Live links, by which frames go out; without them, as with recordings, nobody hears.
+  /// Live links for outgoing frames; without links, as with recordings, frames are not sent.
   void use(Links& links) { links_ = &links; }
-  /// To be called when a frame is taken from its link: the stage of ingest begins.
+  /// Call when a frame is taken from its link: begins the ingest stage.
   void frame_begins(std::int64_t now_ns) { begin_ns_ = now_ns; }
 
  private:

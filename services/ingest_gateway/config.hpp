@@ -12,7 +12,7 @@ enum class Input : std::uint8_t { kLive, kReplay };
 
 struct Config {
   Input input = Input::kLive;
-  std::string tunnel_path;  ///< of the replay tunnel's socket
+  std::string tunnel_path;  ///< path of the replay tunnel's socket
 };
 
 /// $BORESIGHT_RUNTIME_DIR, else $RUNTIME_DIRECTORY (set by systemd), else /tmp/boresight-<uid>; plus "replay.sock".

@@ -17,7 +17,7 @@ void Links::add(std::unique_ptr<Link> link) {
 }
 
 void Links::add_live(const VehicleConfig& vehicle) {
-  // Not told of changes, a gateway whose interface was replaced would miss up to a second more of multicast.
+  // Without notice of changes, a gateway whose interface was replaced would miss up to one more second of multicast.
   add(std::make_unique<NetworkWatch>([this] { keep_open(); }, events_));
   std::vector<SourceAddress> sources{vehicle.ego.source};
   for (const RadarConfig& radar : vehicle.radars) sources.push_back(radar.source);
@@ -70,7 +70,7 @@ void Links::keep_open() {
   if (came_up && events_.on_network_up) events_.on_network_up();
 }
 
-/// True if one of them has come up.
+/// True if one of the interfaces has come up.
 bool Links::look_at_interfaces() {
   bool came_up = false;
   for (Interface& interface : interfaces_) {
@@ -132,7 +132,7 @@ void Links::leave(const recording::Endpoint& group, std::string_view interface) 
   if (found == udp_.end() || --found->users > 0) return;
   const auto entry = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const std::unique_ptr<Entry>& e) { return e->link.get() == found->link; });
-  // A datagram that came by this very link may have led here, or the time that it told: the link is only closed.
+  // A datagram of this same link may have caused this call, so the link is only closed, not destroyed.
   found->link->close();
   watch(**entry);
   retired_.push_back(std::move(*entry));

@@ -1,5 +1,5 @@
-// The links that a vehicle needs, opened and kept open: one a CAN interface and one a UDP address, however many sources
-// share it, and those of service discovery.
+// Opens the vehicle's links and keeps them open: one per CAN interface and UDP address, which several sources may
+// share, and those of service discovery.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace boresight::ingest {
 
-/// Owns the links and keeps the node waiting for the descriptors that they have at the moment.
+/// Owns the links and registers their current descriptors in the node.
 class Links {
  public:
   Links(runtime::Node& node, LinkEvents events) : node_(node), events_(std::move(events)) {}
@@ -21,13 +21,13 @@ class Links {
   void add(std::unique_ptr<Link> link);
   /// All links of the vehicle file.
   void add_live(const VehicleConfig& vehicle);
-  /// To be called each second: what is down is tried again. Called by itself, too, when the network has changed.
+  /// Call each second: opens closed links again. Also called internally when the network has changed.
   void keep_open();
 
-  /// To the CAN interface or from the local UDP endpoint that the frame names; UDP without a source leaves by a socket
-  /// of its own. What has no link is dropped: the link has reported why it is not there.
+  /// Sends to the CAN interface or from the local UDP endpoint of the frame; UDP without a source uses a separate
+  /// socket. A frame without an open link is dropped; the link has reported its fault.
   void send(const recording::Frame& frame);
-  /// A group that a peer announced; joined groups are counted, so that each join needs its leave.
+  /// A group that a peer announced. Joins are counted: each join needs one leave.
   void join(const recording::Endpoint& group, std::string_view interface);
   void leave(const recording::Endpoint& group, std::string_view interface);
 
@@ -55,7 +55,7 @@ class Links {
   std::vector<CanLink*> can_;
   std::vector<Udp> udp_;
   std::vector<Interface> interfaces_;            // of udp_
-  std::vector<std::unique_ptr<Entry>> retired_;  // closed; one of them may be what is being read
+  std::vector<std::unique_ptr<Entry>> retired_;  // closed; one of them may be in use by the caller
   Socket sender_v4_;
   Socket sender_v6_;
   bool sending_fails_ = false;

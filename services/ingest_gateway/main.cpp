@@ -1,4 +1,4 @@
-// boresight-ingest_gateway: frames from CAN, UDP or a replay in, scans and ego motions out.
+// boresight-ingest_gateway: decodes frames from CAN, UDP or a replay to scans and ego motions.
 #include <memory>
 #include <string>
 #include <vector>

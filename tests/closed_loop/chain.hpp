@@ -1,4 +1,4 @@
-// The cores one after the other, as the processes are.
+// The cores of the pipeline, connected in memory as the processes are.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace boresight::closed_loop {
 
-/// What goes before the ghost filter: alignment and correction.
+/// Alignment estimator and detection corrector: the stages before the ghost filter.
 class Front {
  public:
   explicit Front(const VehicleConfig& vehicle) : ego_(vehicle.ego), estimator_(vehicle, {}), corrector_(vehicle, {}) {}
@@ -47,7 +47,7 @@ class Front {
   std::uint64_t estimates_ = 0;
 };
 
-/// Ghost filter and tracker, which feeds it back.
+/// Ghost filter and tracker, whose tracks are fed back to the ghost filter.
 class Back {
  public:
   Back(const VehicleConfig& vehicle, std::unique_ptr<ghosts::Method> method)

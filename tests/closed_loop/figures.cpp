@@ -34,7 +34,7 @@ void Judge::judge_tracks(double t_s, const TrackList& tracks, const std::vector<
     const auto distance = [&](const Object& o) { return o.distance_m(position_of(track)); };
     const auto nearest = std::min_element(objects.begin(), objects.end(),
                                           [&](const Object& a, const Object& b) { return distance(a) < distance(b); });
-    if (nearest != objects.end() && distance(*nearest) < kNear_m) {
+    if (nearest != objects.end() && distance(*nearest) < kMaxTrackDistance_m) {
       figures_.twice += taken.insert(nearest->id).second ? 0 : 1;
       continue;
     }
@@ -55,7 +55,7 @@ void Judge::judge_object(double t_s, const Object& object, const TrackList& trac
   const Track* best = nullptr;
   for (std::size_t k = 0; k < tracks.number_of_confirmed_tracks; ++k) {
     const Track& track = tracks.tracks[k];
-    if (object.distance_m(position_of(track)) > kNear_m) continue;
+    if (object.distance_m(position_of(track)) > kMaxTrackDistance_m) continue;
     const auto distance = [&](const Track& t) { return (position_of(t) - object.position_m).norm(); };
     if (best == nullptr || distance(track) < distance(*best)) best = &track;
   }

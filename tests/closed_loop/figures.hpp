@@ -1,4 +1,4 @@
-// What the tracks of a simulated drive are worth, by the truth.
+// Quality of the tracks of a simulated drive, judged by the truth.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,28 @@
 
 namespace boresight::closed_loop {
 
-/// Of the vehicle's centre from the ego vehicle: what four corner radars shall see.
+/// Largest distance of an object's centre from the ego vehicle that four corner radars shall cover.
 constexpr double kFarthest_m = 60.0;
 using judge::kHidden_s;
-using judge::kNear_m;
-/// The alignment estimator, which here remembers nothing, takes over a second to find that a radar is 2.5° crooked;
-/// what such a radar makes up meanwhile is counted apart.
+using judge::kMaxTrackDistance_m;
+/// The alignment estimator starts without stored estimates here and needs more than 1 s to find a mounting error
+/// of 2.5°. False tracks caused meanwhile are counted separately.
 constexpr double kAligned_s = 1.5;
 
 struct Figures {
   std::size_t scans = 0;
-  /// Stays of over 3 s within reach, from the first detection on until the object leaves or is hidden; and how long the
-  /// longest was before it had a confirmed track.
+  /// Stays: intervals of more than 3 s in which an object is within reach, from its first detection until it leaves or
+  /// is hidden. `worst_delay_s`: longest time from the start of a stay to a confirmed track.
   std::size_t stays = 0, stays_found = 0;
   double worst_delay_s = 0.0;
-  std::size_t chances = 0, found = 0;  ///< scans of stays after 1.5 s, and with a confirmed track
-  std::size_t switches = 0;            ///< of the track's id during a stay
-  std::size_t twice = 0;               ///< further confirmed tracks at an object, each scan
+  std::size_t chances = 0, found = 0;  ///< scans of stays after 1.5 s; of these, with a confirmed track
+  std::size_t switches = 0;            ///< changes of the track's id during a stay
+  std::size_t twice = 0;               ///< second and further confirmed tracks at an object, summed over scans
   std::size_t ids = 0;
-  /// Confirmed tracks of which most is at no object, and those of them that began before kAligned_s; and their scans.
+  /// False tracks: confirmed tracks that are at no object in most of their scans. `early`: those that began before
+  /// kAligned_s. `scans`: number of scans with a track at no object.
   std::size_t false_ids = 0, early_false_ids = 0, false_scans = 0, early_false_scans = 0;
-  /// Of the track nearest to an object.
+  /// Errors of the track nearest to an object.
   double along_rms_m = 0.0, across_rms_m = 0.0, velocity_rms_mps = 0.0, heading_rms_rad = 0.0;
   double length_bias_m = 0.0, width_bias_m = 0.0;
 
@@ -41,7 +42,7 @@ struct Figures {
   [[nodiscard]] double twice_tracks() const { return static_cast<double>(twice) / static_cast<double>(scans); }
 };
 
-/// Collects the figures of one drive.
+/// Computes the figures of one drive.
 class Judge {
  public:
   /// After each scan.
@@ -51,7 +52,7 @@ class Judge {
 
  private:
   struct Stay {
-    double since_s = -1.0, seen_s = -1.0, found_s = -1.0;  // −1: not
+    double since_s = -1.0, seen_s = -1.0, found_s = -1.0;  // −1: never
     std::uint32_t track = 0;
   };
   struct Life {

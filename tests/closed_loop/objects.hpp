@@ -1,4 +1,4 @@
-// The simulated bodies that are not parked, as the ego vehicle would have them on its list.
+// The simulated bodies that are not parked, in the ego vehicle's frame.
 #pragma once
 
 #include <cmath>

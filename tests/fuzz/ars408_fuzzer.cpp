@@ -1,5 +1,5 @@
-// Fuzzer of the ARS408 codec. The input is a sequence of frames of their right lengths, unless it chooses otherwise, to
-// two sensors on one bus. Whatever is published must be a possible scan.
+// Fuzzer of the ARS408 codec. The input is a sequence of frames of two sensors on one bus. Frames have their right
+// length unless the input chooses another. Every published scan must be possible.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   };
   while (!rest.empty()) {
     const std::uint8_t choice = take(1)[0];
-    // Bits 0 … 2: the kind of frame; 3: the sensor; 4 … 7: now and then another length or a pause.
+    // Bits 0 … 2: kind of frame; 3: sensor; 4 … 7: sometimes another length or a pause.
     const auto& [id, length] = kKinds[choice & 7u];
     const bool other_length = choice >> 4 == 14 && !rest.empty();
     recording::Frame frame;

@@ -1,5 +1,6 @@
-// Fuzzer of the ARS548 codecs: detection lists, object lists and status. The first byte chooses which message of which
-// length the rest is laid into, so that the fuzzer gets behind the header; one choice passes the input as it is.
+// Fuzzer of the ARS548 codecs: detection lists, object lists and status. The first byte chooses a message and its
+// length; the rest of the input becomes its content, so that the fuzzer passes the header. One choice passes the input
+// unchanged.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -59,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
     datagram.resize(kind.bytes);
     boresight::write_u16(datagram.data() + 2, kind.method);
     boresight::write_u32(datagram.data() + 4, static_cast<std::uint32_t>(kind.bytes - layout::kShortHeaderBytes));
-    // The count lies behind all records, where a short input does not reach.
+    // The count is after all records, beyond the end of a short input.
     if (choice == 0) boresight::write_u32(datagram.data() + layout::kNumberOfDetections, 3u * input[0]);
   }
   static const auto scan = std::make_unique<RadarScan>();

@@ -1,5 +1,5 @@
 // Fuzzer of the Boresight service's event bodies: detection lists and ego motions. The first byte chooses whether the
-// header of the rest is made to agree with its length, so that the fuzzer gets behind it.
+// header is corrected for the length of the rest, so that the fuzzer passes the header.
 #include <vector>
 
 #include "interfaces/wire/boresight_service.hpp"
@@ -20,7 +20,7 @@ void make_list_agree(std::vector<std::uint8_t>& body) {
   const std::size_t record_bytes = list::kMinRecordBytes + body[1] % 2 * 4u;
   const std::size_t count = (body.size() - header_bytes) / record_bytes;
   body.resize(header_bytes + count * record_bytes);
-  body.shrink_to_fit();  // so that the sanitizer sees a byte read beyond it
+  body.shrink_to_fit();  // so that the sanitizer finds a read beyond its end
   boresight::write_u16(body.data() + list::kLayoutVersion, list::kLayoutVersionValue);
   boresight::write_u16(body.data() + list::kHeaderBytes, static_cast<std::uint16_t>(header_bytes));
   boresight::write_u16(body.data() + list::kNumberOfDetections, static_cast<std::uint16_t>(count));

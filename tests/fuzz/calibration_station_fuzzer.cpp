@@ -1,5 +1,5 @@
-// A station, or whoever reaches its port, sends anything to the calibration service: what it answers is sound and never
-// larger than a result, only requests are answered, and a run that nobody goes on with ends by itself.
+// A station sends any bytes to the calibration service. Answers must be valid and no larger than a result. Only
+// requests are answered. A run without further requests must end by a timeout.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -17,7 +17,7 @@ namespace service = wire::calibration_service;
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// Takes each answer apart.
+/// Parses each answer.
 class Judge : public station::Surroundings {
  public:
   void answer(std::span<const std::uint8_t> message) override {
@@ -57,8 +57,8 @@ void fill(fuzz::Input& input, RadarScan& scan, std::int64_t now_ns) {
 
 }  // namespace
 
-/// A series of: what comes (bits 0…3 the method, bit 4 the datagram as it is, bit 5 sixty scans first, bit 6 of another
-/// station, bit 7 thirty seconds pass), its length, and its bytes.
+/// The input is a series of datagrams. Each has a kind (bits 0…3 method, bit 4 datagram unchanged, bit 5 sixty scans
+/// before it, bit 6 another station, bit 7 thirty seconds pass), a length, and its bytes.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const VehicleConfig kVehicle = vehicle();
   static const auto scan = std::make_unique<RadarScan>();

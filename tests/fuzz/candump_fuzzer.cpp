@@ -1,4 +1,5 @@
-// Lines of candump: any bytes; what is accepted must be a frame of CAN, and must be written and read back the same.
+// Any bytes as lines of a candump log. An accepted line must be a CAN frame, and writing and reading it again must give
+// the same frame.
 #include <cstdlib>
 #include <cstring>
 #include <string_view>

@@ -1,4 +1,4 @@
-// A decoder's output that checks whatever comes.
+// A decoder output that checks every product.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@ namespace boresight::fuzz {
 
 class CheckedOutput : public ingest::DecoderOutput {
  public:
-  /// `always_finite`: flagged detections, too, hold nothing but numbers.
+  /// `always_finite`: flagged detections must hold finite numbers too.
   explicit CheckedOutput(bool always_finite = false) : always_finite_(always_finite) {}
   RadarScan* begin_scan() override {
     require(!std::exchange(begun_, true));
@@ -31,7 +31,7 @@ class CheckedOutput : public ingest::DecoderOutput {
   void fault(Fault fault, std::string_view what) override {
     require(static_cast<std::size_t>(fault) < kNumberOfFaults && !what.empty());
   }
-  /// After each frame: no scan is left half done.
+  /// Call after each frame: requires that no scan is unfinished.
   void require_at_rest() const { require(!begun_); }
 
  private:

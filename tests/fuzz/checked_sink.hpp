@@ -1,4 +1,4 @@
-// Where a gateway's products go in fuzz targets: checked and dropped.
+// Sink for a gateway's products in fuzz targets: it checks and drops them.
 #pragma once
 
 #include <array>

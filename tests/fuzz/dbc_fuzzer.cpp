@@ -1,4 +1,4 @@
-// Any text as a DBC file: what is read must be usable without a further check.
+// Any text as a DBC file. The result must be usable without a further check.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

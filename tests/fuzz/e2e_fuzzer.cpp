@@ -1,5 +1,6 @@
-// Fuzzer of E2E protection: the first bytes choose the configuration, wrong ones included, the rest is data. A check
-// never reads out of bounds (the sanitizers watch), and what a sender has protected its receiver accepts.
+// Fuzzer of E2E protection. The first bytes choose the configuration, which may be wrong; the rest is data. A check
+// must never read out of bounds (checked by the sanitizers), and the receiver must accept a message that its sender
+// protected.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,7 @@ using namespace boresight::e2e;
 using boresight::fuzz::NoAllocation;
 using boresight::fuzz::require;
 
-/// Hands out the leading bytes of the input; zeros when it is used up.
+/// Returns the next bytes of the input, and zeros after its end.
 class Choices {
  public:
   Choices(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -48,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   for (std::uint8_t& id : config.data_id_list) id = static_cast<std::uint8_t>(choices.next(1));
   const bool valid = !validate(config).has_value();
 
-  // As it came, twice: a message is never new the second time.
+  // The input unchanged, twice: the second time the message is a repetition.
   const std::vector<std::uint8_t> data = choices.rest();
   Checker receiver(config);
   const Status again = [&] {
@@ -58,11 +59,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
   }();
   if (valid && config.profile != Profile::kNone) require(!is_acceptable(again));
 
-  // Whole and in pieces that may end within the header.
-  Checker pieces(config);
+  // Truncated messages, some of which end within the header.
+  Checker truncated(config);
   for (std::size_t length = 0; length <= std::min<std::size_t>(data.size(), 40); ++length) {
-    const std::vector<std::uint8_t> piece(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(length));
-    pieces.check(piece);
+    const std::vector<std::uint8_t> part(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(length));
+    truncated.check(part);
   }
 
   std::vector<std::uint8_t> message = data;

@@ -1,4 +1,4 @@
-// A gateway with a radar of every profile hears frames of every kind on every link, in any order, with clocks that
+// A gateway with a radar of every profile receives frames of every kind on every link, in any order, with clocks that
 // jump.
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ RadarConfig radar(std::uint32_t id, RadarProfile profile, const char* interface)
   return radar;
 }
 
-/// `ego` is EgoProfile's number.
+/// `ego` is the number of an EgoProfile.
 VehicleConfig vehicle(unsigned ego) {
   VehicleConfig vehicle;
   vehicle.ego.profile = static_cast<EgoProfile>(ego);
@@ -53,7 +53,7 @@ VehicleConfig vehicle(unsigned ego) {
   service.address = "10.0.0.2";
   service.port = 30501;
   service.instance = 2;
-  // Reassembly takes a megabyte, so that only one vehicle has it; someip_receiver_fuzzer hears nothing else.
+  // Reassembly takes a megabyte, so that only one vehicle has it; someip_receiver_fuzzer tests it alone.
   if (vehicle.ego.profile == EgoProfile::kBoresight) {
     vehicle.ego.source = service;
     vehicle.radars.push_back(radar(7, RadarProfile::kBoresight, ""));
@@ -74,7 +74,7 @@ const ingest::Mappings& mappings() {
   return mappings;
 }
 
-/// A CAN id that somebody knows: bit 31 marks an extended one.
+/// A CAN id that a decoder uses; bit 31 marks an extended id.
 std::uint32_t id_of(std::uint8_t choice) {
   static const std::vector<std::uint32_t> ids = [] {
     std::vector<std::uint32_t> all(kIds.begin(), kIds.end());
@@ -88,7 +88,7 @@ std::uint32_t id_of(std::uint8_t choice) {
   return ids[choice % ids.size()];
 }
 
-/// An ARS548 message: list, objects or status, of its right length with content from the input at its beginning.
+/// An ARS548 message (detections, objects or status) of its right length; the input sets the content at its beginning.
 std::span<const std::uint8_t> ars548(std::uint8_t choice, std::span<const std::uint8_t> content) {
   namespace layout = wire::ars548;
   static std::array<std::uint8_t, layout::kDetectionListBytes> bytes;
@@ -103,8 +103,8 @@ std::span<const std::uint8_t> ars548(std::uint8_t choice, std::span<const std::u
   return message;
 }
 
-/// A gateway hears many inputs, some seconds apart, as it takes long to make one; it begins anew when an input says so,
-/// as the one that makes it fail may.
+/// One gateway receives many inputs, some seconds apart, since making a gateway takes long. An input can request a new
+/// gateway, so that a single failing input can be reproduced.
 struct Drive {
   explicit Drive(unsigned ego) : gateway(vehicle(ego), sink, mappings()) {}
   fuzz::CheckedSink sink;

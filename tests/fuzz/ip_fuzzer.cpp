@@ -1,4 +1,4 @@
-// Packets of every link layer, one after another through one decoder: the input is a list of packets, each led by its
+// Packets of every link layer, one after another through one decoder. The input is a list of packets, each after its
 // link layer and length.
 #include <cstdlib>
 
@@ -11,7 +11,7 @@ using namespace boresight::recording;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array<int, 9> kLinks = {DLT_EN10MB, DLT_RAW,        DLT_NULL,          DLT_LOOP, DLT_LINUX_SLL,
                                          DLT_IPV6,   DLT_LINUX_SLL2, DLT_CAN_SOCKETCAN, DLT_IPV4};
-  static UdpDecoder decoder;  // its memory is large; what one input leaves in it the next one has to cope with
+  static UdpDecoder decoder;  // static, since it is large; it keeps its state from input to input
   std::span<const std::uint8_t> rest(data, size);
   Frame frame;
   while (rest.size() >= 3) {
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (describe(result).empty()) std::abort();
     if (result == PacketResult::kFrame) {
       unsigned sum = 0;
-      for (const std::uint8_t byte : frame.payload) sum += byte;  // a view beyond the memory is found by the sanitizer
+      for (const std::uint8_t byte : frame.payload) sum += byte;  // the sanitizer finds a view beyond the memory
       if (frame.payload.size() > 65536 || sum > 255u * 65536u) std::abort();
       if (frame.kind != FrameKind::kUdp && frame.payload.size() > 64) std::abort();
     }

@@ -1,5 +1,5 @@
-// Any text as a mapping file: it is refused with an error, or makes a decoder that works. The first byte chooses the
-// kind.
+// Any text as a mapping file. It must be rejected with an error, or give a decoder that works. The first byte chooses
+// the kind.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,4 +1,4 @@
-// A DBC text with every kind of signal, and mappings to it, for the fuzz targets of mappings and their decoders.
+// A DBC text with every kind of signal, and mappings for it, used by the fuzz targets of mappings and mapped decoders.
 #pragma once
 
 #include <array>

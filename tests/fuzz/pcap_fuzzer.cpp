@@ -1,5 +1,5 @@
-// Whole recordings, as the reader finds out their format: captures, candump logs, and what is neither. Their stamps are
-// put on this ECU's clock.
+// Whole recordings whose format the reader detects: captures, candump logs, and other files. Their stamps are converted
+// to this ECU's clock.
 #include <cstdlib>
 
 #include <sys/mman.h>

@@ -1,6 +1,5 @@
-// The replay's server of service discovery hears anything at any time: what it answers is sound and never larger than
-// an offer and an acknowledgement for each entry, it remembers so many subscribers and no more, and forgets them in
-// time.
+// The replay's service-discovery server receives any bytes at any time. Answers must be valid and no larger than an
+// offer and an acknowledgement for each entry. The number of subscribers is limited, and subscriptions expire in time.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -47,8 +46,8 @@ void check_destinations(SdServer& server, std::int64_t now_ns, bool multicast) {
 
 }  // namespace
 
-/// The input is a series of datagrams, each after: how it came (bit 0 by multicast, bits 1…3 the sender, bit 4 time
-/// passes, bit 5 the SD header is put in front of it), its length, and its bytes.
+/// The input is a series of datagrams. Each has a kind (bit 0 multicast, bits 1…3 sender, bit 4 time passes, bit 5 the
+/// SD header is added), a length, and its bytes.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
   if (size == 0) return 0;
   const bool multicast = (input[0] & 1) != 0;
@@ -66,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
     at += 2 + length;
     std::vector<std::uint8_t> datagram;
     if ((how & 0x20) != 0) {
-      // A header that is right gets the fuzzer to the entries sooner.
+      // With a valid header the fuzzer gets to the entries sooner.
       ++session;
       datagram = {0xFF,
                   0xFF,
@@ -102,7 +101,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
     }
     check_destinations(server, now_ns, multicast);
   }
-  // Stopped, it knows nobody.
+  // A stopped server has no subscribers.
   server.stop(out);
   for (std::uint16_t instance = 1; instance <= 3; ++instance) require(server.destinations(instance, 1, 0).empty());
   return 0;

@@ -1,5 +1,5 @@
-// A client of service discovery that hears anything at any time: it never asks to be called in the past, never sends
-// more than it may, joins and leaves groups in pairs, and tells of subscriptions that begin and end in turn.
+// A service-discovery client receives any bytes at any time. It must never request a call in the past or send more than
+// allowed. It must join and leave groups in pairs, and report the begin and end of subscriptions in turn.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -60,8 +60,8 @@ class CheckedActions : public SdActions {
   std::array<std::optional<recording::Endpoint>, kSubscriptions> joined_;
 };
 
-/// Bytes after the action: how long the SD payload is, then the payload; session and header are made sound, because
-/// otherwise next to nothing would get through.
+/// Bytes after the action: length of the SD payload, then the payload. Session and header are made valid, since almost
+/// every input would be rejected without this.
 std::span<const std::uint8_t> sd_datagram(std::span<const std::uint8_t> payload, std::uint8_t session) {
   static std::array<std::uint8_t, kHeaderBytes + 255> bytes;
   Message header;

@@ -1,4 +1,4 @@
-// Any bytes as a datagram of SOME/IP messages: every message lies within it, and the reader comes to an end.
+// Any bytes as a datagram of SOME/IP messages. Every message must lie within the datagram, and the reader must finish.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

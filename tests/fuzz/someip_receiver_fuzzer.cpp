@@ -1,5 +1,5 @@
-// A gateway with sources of the Boresight service hears any datagrams: discovery, events in whole and in segments,
-// protected as they should be and not.
+// A gateway with sources of the Boresight service receives any datagrams: discovery, whole and segmented events, with
+// right and wrong protection.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -31,7 +31,7 @@ E2eConfig protection(std::uint16_t instance, std::uint16_t event) {
   return e2e;
 }
 
-/// Radar 1 of a known server, radar 2 and the ego motion of one that discovery finds.
+/// Radar 1 comes from a configured server; radar 2 and the ego motion come from a server found by discovery.
 VehicleConfig vehicle() {
   VehicleConfig vehicle;
   SourceAddress address;
@@ -57,10 +57,10 @@ VehicleConfig vehicle() {
   return vehicle;
 }
 
-/// What the input says is put behind a header that agrees with it.
+/// Adds a matching header to the payload from the input.
 class Sender {
  public:
-  /// An event with its E2E header; the body is from the input, made to agree with its length.
+  /// An event with its E2E header. The body is from the input, corrected for its length.
   std::span<const std::uint8_t> event(bool is_list, std::span<const std::uint8_t> content) {
     const std::size_t body_bytes =
         is_list ? service::detection_list::kMinHeaderBytes + content.size() / service::detection_list::kMinRecordBytes *
@@ -84,7 +84,7 @@ class Sender {
     (is_list ? list_protector_ : ego_protector_).protect(message.subspan(service::kProtectedFrom));
     return message;
   }
-  /// A segment: offset and length from the input.
+  /// A segment with offset and length from the input.
   std::span<const std::uint8_t> segment(bool is_list, std::uint16_t session, std::span<const std::uint8_t> content) {
     session_ = session;
     const auto message = begin(is_list ? service::kEventDetectionList : service::kEventEgoMotion, true, content.size());
@@ -169,8 +169,8 @@ class Sender {
   std::array<std::uint8_t, 4096> bytes_{};
 };
 
-/// Reassembly takes a megabyte, so that a gateway hears many inputs, some seconds apart; it begins anew when an input
-/// says so, as the one that makes it fail may.
+/// Reassembly takes a megabyte, so one gateway receives many inputs, some seconds apart. An input can request a new
+/// gateway, so that a single failing input can be reproduced.
 struct Drive {
   fuzz::CheckedSink sink;
   Sender sender;

@@ -1,4 +1,4 @@
-// Any payload as a service discovery message: what is accepted can be looked through without reading beyond it.
+// Any payload as a service-discovery message. An accepted message can be read without access beyond its end.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

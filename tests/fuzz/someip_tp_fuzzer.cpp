@@ -1,5 +1,5 @@
-// Any segments in any order, from two senders: what is delivered has the length that was counted, and the messages of
-// a third sender, sent in between, always arrive as they were.
+// Any segments in any order from two senders. A delivered message must have the announced length. The messages of a
+// third sender, sent in between, must always arrive unchanged.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -32,14 +32,14 @@ TpResult take_own(TpReassembler& tp, std::uint16_t session, std::uint8_t part, s
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // More assemblies than keys this fuzzer can make in between: the bystander is never the one to give way.
+  // More assemblies than the fuzzer can make keys in between, so the third sender's assembly is never evicted.
   TpReassembler tp(8, kMaxMessageBytes, 1000);
   std::int64_t now_ns = 0;
   std::uint16_t session = 0;
   Message complete;
   const fuzz::NoAllocation guard;
   while (size > 7) {
-    // A segment: kind, session, time, flags, then the TP header as the wire has it and up to 255 bytes.
+    // A segment: kind, session, time, flags, then the TP header in wire format and up to 255 bytes.
     Message segment;
     segment.method = data[0] & 1;
     segment.session = static_cast<std::uint16_t>(data[1] % 4);

@@ -1,5 +1,5 @@
-// Fuzzer of the SRR520 codec. The input is a sequence of frames; some bytes of it choose to close a list with the right
-// CRC or to fill it up, so that the fuzzer gets behind the checksum. Whatever is published must be a possible scan.
+// Fuzzer of the SRR520 codec. The input is a sequence of frames. Some bytes choose to close a list with the right CRC
+// or to fill it, so that the fuzzer passes the checksum. Every published scan must be possible.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -87,7 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
     } else if (choice < 232) {
       bus.wait(choice % 8 * 20'000'000);
     } else {
-      // A whole list, sound but for its fields: header and detections from the input, closed with the right CRC.
+      // A complete list: header and detections from the input, closed with the right CRC.
       const std::size_t kind = choice % layout::kLists.size();
       const layout::ListLayout& list = layout::kLists[kind];
       std::array<std::uint8_t, layout::kHeaderBytes + layout::kMaxRecordFrames * layout::kRecordFrameBytes> bytes{};

@@ -1,4 +1,4 @@
-// What the fuzz targets share: demands, the input taken apart, the guard against allocation, and what a scan must be.
+// Shared code of the fuzz targets: requirements, a parser of the input, a guard against allocation, checks of a scan.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,12 @@
 
 namespace boresight::fuzz {
 
-/// Ends the process, which libFuzzer takes for a crash and keeps the input of.
+/// Ends the process if the condition is false. libFuzzer treats this as a crash and keeps the input.
 inline void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// Hands out the input piece by piece; zeros and empty pieces when it is used up.
+/// Returns the input part by part. After its end it returns zeros and empty parts.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}
@@ -55,7 +55,8 @@ inline thread_local bool allocation_forbidden = false;
 inline thread_local bool allocation_seen = false;
 inline thread_local std::size_t allocations = 0;
 
-/// Does not end the process by itself: the report of another failure allocates, too, and must come to its end.
+/// Hook of the sanitizer. It does not end the process, since the report of another failure allocates too and must
+/// finish.
 inline void on_allocation(const volatile void*, std::size_t) {
   ++allocations;
   if (!allocation_forbidden) return;
@@ -67,11 +68,11 @@ inline void on_allocation(const volatile void*, std::size_t) {
 }
 inline void on_free(const volatile void*) {}
 
-/// Installs the hook before the first input, and makes sure that it is called.
+/// Installs the hook before the first input, and checks that it is called.
 inline const bool kHookInstalled = [] {
   require(__sanitizer_install_malloc_and_free_hooks(on_allocation, on_free) != 0);
   const std::size_t before = allocations;
-  void* (*volatile allocate)(std::size_t) = std::malloc;  // volatile: else the compiler leaves it out
+  void* (*volatile allocate)(std::size_t) = std::malloc;  // volatile, so that the compiler does not remove it
   std::free(allocate(1));
   require(allocations == before + 1);
   return true;
@@ -79,7 +80,8 @@ inline const bool kHookInstalled = [] {
 
 }  // namespace detail
 
-/// While one is alive, an allocation on this thread fails the input: what reads wire data may not allocate.
+/// During the lifetime of this object, an allocation on this thread fails the input: decoders of wire data must not
+/// allocate.
 class NoAllocation {
  public:
   NoAllocation() : before_(detail::allocation_forbidden) { detail::allocation_forbidden = detail::kHookInstalled; }
@@ -94,14 +96,14 @@ class NoAllocation {
   bool before_;
 };
 
-/// Memory for a message that holds nothing but NaN and absurd numbers: what a decoder does not write will show.
+/// Memory for a message, filled with NaN and absurd numbers, so that a field that the decoder omits is detected.
 template <typename Message>
 Message* stale(Message& message) {
   std::memset(reinterpret_cast<char*>(&message) + sizeof(MessageHeader), 0xFF, sizeof(Message) - sizeof(MessageHeader));
   return &message;
 }
 
-/// Whatever the wire said, a scan is within its capacity and its detections are possible or flagged.
+/// Requires that the scan is within its capacity and that each detection is physically possible or flagged.
 inline void require_possible(const RadarScan& scan) {
   constexpr float kPi = 3.1415928F;
   require(scan.number_of_valid_detections <= kMaxDetections);

@@ -1,5 +1,5 @@
-// Any frames to decoders made of mappings, radar and ego. The first byte chooses the mapping; each frame is a byte for
-// the message, one for the length, one for the time in ms since the last, and the payload.
+// Any frames to mapped decoders of radars and ego signals. The first byte chooses the mapping. Each frame has a byte
+// for the message, one for the length, one for the time in ms since the last frame, and the payload.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -39,7 +39,7 @@ void play(const Mapping& mapping, Decoder& decoder, std::span<const std::uint8_t
   const fuzz::NoAllocation guard;
   while (data.size() >= 3) {
     const auto& message = mapping.messages[data[0] % mapping.messages.size()].frame;
-    // Mostly the right length; the highest bits say otherwise.
+    // The right length, unless the highest bits choose another.
     const std::size_t wanted = data[1] < 192 ? message.length_bytes : data[1] & 63u;
     now_ns += (std::int64_t{data[2]} - 16) * 1'000'000;
     data = data.subspan(3);

@@ -1,5 +1,5 @@
-// Fuzzer of the Toyota radar and ego codecs: a sequence of frames on one bus, their check sums made right unless the
-// input chooses otherwise.
+// Fuzzer of the Toyota radar and ego codecs. The input is a sequence of frames on one bus. Checksums are corrected
+// unless the input chooses otherwise.
 #include <array>
 
 #include "interfaces/wire/toyota.hpp"
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fuzz::NoAllocation guard;
   std::int64_t now_ns = 1'000'000'000;
   while (!input.empty()) {
-    // Bits 0 … 4: the track frame; 5: an ego frame instead; 6, 7: check sum as it comes, another length, a pause.
+    // Bits 0 … 4: track frame; 5: an ego frame instead; 6, 7: checksum unchanged, another length, a pause.
     const std::uint8_t choice = input.u8();
     const unsigned special = choice >> 6;
     std::array<std::uint8_t, 64> bytes{};

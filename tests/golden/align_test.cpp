@@ -1,4 +1,4 @@
-// The recorded drive through the command as a user runs it: compressed tables in, JSON out, against the drive's truth.
+// Runs the command line on the recorded drive, from compressed tables to JSON, and compares the result with the truth.
 #include <cstdio>
 #include <cstdlib>
 
@@ -12,7 +12,7 @@ namespace {
 
 const std::filesystem::path kFolder = shared_data() / "alignment_drive";
 
-/// Of `"key":number`, at every place.
+/// The numbers of all `"key":number` in the text.
 std::vector<double> all_of(const std::string& json, const std::string& key) {
   std::vector<double> values;
   const std::string name = "\"" + key + "\":";
@@ -22,7 +22,7 @@ std::vector<double> all_of(const std::string& json, const std::string& key) {
   return values;
 }
 
-/// What the command prints; `exit_code` is set.
+/// Runs the command, sets `exit_code` and returns its output.
 std::string align(const std::string& method, int& exit_code) {
   const std::string command = "xz -dc '" + (kFolder / "drive_1.csv.xz").string() +
                               "' | " BORESIGHT_BINARY_DIR "/boresight align --drive - --ego '" +
@@ -48,7 +48,7 @@ TEST(Align, FindsTheTruthOfTheRecordedDrive) {
   const std::string json = align("boresight", exit_code);
   ASSERT_EQ(exit_code, 0);
   EXPECT_NE(json.find("\"detections\":864609"), std::string::npos) << "no line is lost";
-  // Of the radars in their order, the vehicle's own first for k_v.
+  // The first k_v_error is that of the vehicle; the other errors are those of the radars in their order.
   EXPECT_LT(std::abs(all_of(json, "k_v_error").at(0)), 1e-4);
   const auto yaw = all_of(json, "yaw_error_deg"), pitch = all_of(json, "pitch_error_deg");
   const auto roll = all_of(json, "roll_error_deg");
@@ -57,7 +57,7 @@ TEST(Align, FindsTheTruthOfTheRecordedDrive) {
     EXPECT_LT(std::abs(yaw[i]), 0.01) << i + 1;
     EXPECT_LT(std::abs(pitch.at(i)), 0.05) << i + 1;
     EXPECT_LT(std::abs(roll.at(i)), i < 2 ? 0.6 : 2.2) << i + 1 << ": three minutes; the bound is 0.18 and 0.73";
-    // Of the truth file: 0.4504 uncorrected in the mean of the radars, 0.0989 at the truth.
+    // The truth file has: 0.4504 uncorrected in the mean of the radars, 0.0989 at the truth.
     EXPECT_NEAR(all_of(json, "rmse_mps").at(2 * i), 0.0989, 0.003) << i + 1;
   }
   EXPECT_EQ(json.find("nan"), std::string::npos);

@@ -1,5 +1,5 @@
-// Three minutes of a simulated drive that another simulator made, with four radars crooked in all three angles: what
-// the one-dimensional reference method finds of it.
+// Three minutes of a drive by another simulator, with four radars misaligned in all three angles. The one-dimensional
+// reference method must find yaw and k_v.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -10,14 +10,13 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/golden/support/decoded.hpp"
 
 namespace boresight::golden {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kDegree = M_PI / 180.0;
 const fs::path kFolder = shared_data() / "alignment_drive";
 
 struct Truth {
@@ -39,18 +38,18 @@ Truth read_truth(const fs::path& file) {
     double mount_deg = 0.0, yaw_deg = 0.0;
     words >> radar.id >> unused >> mount_deg >> unused >> radar.mounting_pose.position_m[0] >> unused >>
         radar.mounting_pose.position_m[1] >> unused >> yaw_deg;
-    radar.mounting_pose.yaw_rad = mount_deg * kDegree;
+    radar.mounting_pose.yaw_rad = mount_deg * kRadiansPerDegree;
     radar.noise = {.range_std_m = 0.15,
-                   .azimuth_std_rad = 0.3 * kDegree,
-                   .elevation_std_rad = 0.6 * kDegree,
+                   .azimuth_std_rad = 0.3 * kRadiansPerDegree,
+                   .elevation_std_rad = 0.6 * kRadiansPerDegree,
                    .range_rate_std_mps = 0.05};
-    truth.yaw_rad[radar.id] = yaw_deg * kDegree;
+    truth.yaw_rad[radar.id] = yaw_deg * kRadiansPerDegree;
     truth.vehicle.radars.push_back(radar);
   }
   return truth;
 }
 
-/// The lines of a compressed file; empty if there is no program to unpack it.
+/// The lines of a compressed file; empty without a program to decompress it.
 std::vector<std::string> unpack(const fs::path& file) {
   std::vector<std::string> lines;
   FILE* const pipe = popen(("xz -dc '" + file.string() + "' 2>/dev/null").c_str(), "r");
@@ -125,11 +124,11 @@ TEST(AlignmentDrive, YawAndSpeedScaleAreFoundDespitePitchAndRoll) {
     AlignmentEstimate found{};
     ASSERT_TRUE(estimator.write(id, found));
     std::printf("radar %u: k_v %.5f (true %.5f), yaw %+.3f° ± %.3f° (true %+.3f°)\n", id, found.speed_scale,
-                truth.speed_scale, found.alignment_yaw_rad / kDegree, std::sqrt(found.covariance[5]) / kDegree,
-                yaw_rad / kDegree);
+                truth.speed_scale, found.alignment_yaw_rad / kRadiansPerDegree,
+                std::sqrt(found.covariance[5]) / kRadiansPerDegree, yaw_rad / kRadiansPerDegree);
     EXPECT_EQ(found.state, AlignmentState::kConverged) << id;
     EXPECT_NEAR(found.speed_scale, truth.speed_scale, 5e-4) << id;
-    EXPECT_NEAR(found.alignment_yaw_rad, yaw_rad, 0.05 * kDegree) << id;
+    EXPECT_NEAR(found.alignment_yaw_rad, yaw_rad, 0.05 * kRadiansPerDegree) << id;
   }
 }
 

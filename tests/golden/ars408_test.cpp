@@ -1,6 +1,6 @@
-// No recording of an ARS408 exists, so random frames are decoded by tshark's Signal-PDU dissector as well. It gets the
-// layouts as the public interface description draws them, as widths from the first bit to the last, while the codec has
-// them as start bits.
+// No recording of an ARS408 exists, so random frames are decoded by the codec and by tshark's Signal-PDU dissector. The
+// dissector gets the layouts in the form of the public interface description: widths from the first bit to the last.
+// The codec has start bits instead.
 #include "interfaces/wire/ars408.hpp"
 
 #include <array>
@@ -27,13 +27,13 @@ namespace fs = std::filesystem;
 namespace layout = wire::ars408;
 using ingest::ars408::CommandFrame;
 
-/// A signal as tshark gets it; without a name: bits that mean nothing.
+/// A signal in tshark's description; without a name: unused bits.
 struct Described {
   std::string name;
   unsigned bits;
   double factor = 1.0;
   double offset = 0.0;
-  const wire::CanSignal* ours = nullptr;  ///< what the codec extracts; null: tshark only
+  const wire::CanSignal* ours = nullptr;  ///< the codec's value; null: tshark only
 };
 
 struct Message {
@@ -169,7 +169,7 @@ CanFrame frame_of(const CommandFrame& command) {
   return {command.can_id, {command.payload().begin(), command.payload().end()}};
 }
 
-/// What tshark made of a frame: by "message.signal", the physical value and the code.
+/// A frame decoded by tshark: physical value and raw code by "message.signal".
 struct Value {
   double physical;
   double code;
@@ -190,7 +190,7 @@ class Tshark {
   Tshark(const Tshark&) = delete;
   Tshark& operator=(const Tshark&) = delete;
 
-  /// Of the form "4.0.17"; empty without tshark.
+  /// Version of tshark, such as "4.0.17"; empty without tshark.
   static std::string version() {
     const std::string text = output_of("tshark --version 2>/dev/null");
     const std::size_t begin = text.find_first_of("0123456789");

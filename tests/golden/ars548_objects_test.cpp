@@ -1,5 +1,5 @@
-// The object list that came with the real scan of an ARS548: field by field as the open-source driver nebula decodes
-// it.
+// The object list that came with the real scan of an ARS548. Each field is compared with the decoding by the
+// open-source driver nebula.
 #include "services/ingest_gateway/codecs/ars548_objects.hpp"
 
 #include <algorithm>
@@ -41,13 +41,13 @@ TEST_F(Ars548Objects, AreDecodedAsByNebulaFieldByField) {
   const auto expected = read_yaml_list(kExpected, head);
   ASSERT_EQ(expected.size(), 50u);
   ASSERT_EQ(list_->number_of_objects, 50u);
-  // The stamp of the detections that were measured with them; the file has the time of reception.
+  // The stamp is that of the detections of the same cycle; the file has the time of reception.
   EXPECT_EQ(list_->time.time_ns, 1'708'578'203'955'760'000);
   EXPECT_EQ(list_->time.synchronised, head.at("stamp_sync_status") == 1.0);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const Record& row = expected[i];
     const ingest::ars548::Object& o = list_->objects[i];
-    // Six significant digits are what the file has.
+    // The file has six significant digits.
     const auto expect = [&](double ours, const std::string& key, double factor = 1.0) {
       const double theirs = factor * row.at(key);
       EXPECT_NEAR(ours, theirs, 1e-5 * std::abs(theirs) + 1e-9) << i << ' ' << key;
@@ -83,7 +83,7 @@ TEST_F(Ars548Objects, AreDecodedAsByNebulaFieldByField) {
     }
     expect_vector(o.absolute_velocity_mps, "absolute_velocity");
     expect_vector(o.absolute_acceleration_mps2, "absolute_acceleration");
-    // That version of nebula writes the relative acceleration over the relative velocity, and then zeros for itself.
+    // That version of nebula overwrites the relative velocity with the relative acceleration, whose own field is zero.
     expect_vector(o.relative_acceleration_mps2, "relative_velocity");
     expect(o.orientation_rate_radps, "orientation_rate_mean");
     expect(o.orientation_rate_std_radps, "orientation_rate_std");
@@ -93,7 +93,7 @@ TEST_F(Ars548Objects, AreDecodedAsByNebulaFieldByField) {
 }
 
 TEST_F(Ars548Objects, RelativeVelocityIsTheAbsoluteOneLessTheVehicles) {
-  // No reference decoded it, see above; the detections of the same cycle say 6.18 m/s.
+  // No reference decoding exists, see above. The detections of the same cycle give 6.18 m/s.
   std::vector<double> ego_mps;
   for (std::size_t i = 0; i < list_->number_of_objects; ++i) {
     const ingest::ars548::Object& o = list_->objects[i];

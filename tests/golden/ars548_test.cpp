@@ -1,5 +1,5 @@
-// One real scan of an ARS548: field by field as the open-source driver nebula decodes it, and the motion of the sensor
-// that its stationary detections tell.
+// One real scan of an ARS548. Each field is compared with the decoding by the open-source driver nebula. The sensor's
+// motion is estimated from the stationary detections.
 #include "interfaces/wire/ars548.hpp"
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/common/someip/big_endian.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
@@ -22,7 +23,7 @@ const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
 const fs::path kRecording = kFolder / "ars548_real_2msgs_ipfrag.pcap";
 const fs::path kExpected = kFolder / "ars548/1708578204_202447652_detection.yaml";
 
-/// Six significant digits are what the file has.
+/// The file has six significant digits.
 bool close(double ours, double theirs) {
   return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 1e-9;
 }
@@ -42,7 +43,7 @@ class Ars548 : public testing::Test {
 };
 
 TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
-  // The capture was made anew years after the sensor's stamps, which claim to be synchronised.
+  // The packets were captured again years after the sensor's stamps, which are marked as synchronised.
   EXPECT_THAT(decoding_.faults, testing::ElementsAre(testing::HasSubstr("synchronised")));
   Record head;
   const auto expected = read_yaml_list(kExpected, head);
@@ -73,7 +74,7 @@ TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
   }
 }
 
-TEST_F(Ars548, WhatAScanDoesNotCarryLiesWhereItIsSaidToLie) {
+TEST_F(Ars548, FieldsThatTheScanOmitsAreAtTheirDocumentedOffsets) {
   namespace layout = wire::ars548;
   using boresight::read_f32, boresight::read_u16;
   Record head;
@@ -115,8 +116,8 @@ TEST_F(Ars548, WhatAScanDoesNotCarryLiesWhereItIsSaidToLie) {
   }
 }
 
-TEST_F(Ars548, StationaryDetectionsTellHowItIsMountedAndHowFastItGoes) {
-  // ṙ = −u·v for what stands still: v by iteratively trimmed least squares over all directions u.
+TEST_F(Ars548, StationaryDetectionsGiveMountingAndSpeed) {
+  // ṙ = −u·v for stationary detections: v by iteratively trimmed least squares over all directions u.
   const std::size_t count = scan_->number_of_valid_detections;
   Eigen::Vector3d velocity(6.0, 0.0, 0.0);
   std::size_t inliers = 0;
@@ -136,9 +137,8 @@ TEST_F(Ars548, StationaryDetectionsTellHowItIsMountedAndHowFastItGoes) {
     }
     velocity = normal.ldlt().solve(right);
   }
-  constexpr double kDegrees = 180.0 / M_PI;
-  const double yaw_deg = std::atan2(velocity.y(), velocity.x()) * kDegrees;
-  const double pitch_deg = std::atan2(velocity.z(), velocity.x()) * kDegrees;
+  const double yaw_deg = std::atan2(velocity.y(), velocity.x()) * kDegreesPerRadian;
+  const double pitch_deg = std::atan2(velocity.z(), velocity.x()) * kDegreesPerRadian;
   std::printf("%zu of %zu inliers, speed %.3f m/s, yaw %+.2f deg, pitch %+.2f deg\n", inliers, count, velocity.norm(),
               yaw_deg, pitch_deg);
   EXPECT_NEAR(velocity.norm(), 6.18, 0.02);

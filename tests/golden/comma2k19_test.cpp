@@ -1,5 +1,5 @@
-// 60 s of a highway drive with a Toyota radar: every row as the recording's own decoder has it, the ego signals beside
-// other sensors, and the speed scale beside the inertial reference.
+// 60 s of a highway drive with a Toyota radar. Every row is compared with the recording's own decoder, the ego signals
+// with other sensors, and the speed scale with the inertial reference.
 #include <algorithm>
 #include <cmath>
 
@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = shared_data() / "comma2k19_seg40";
 const fs::path kRecording = kFolder / "radar_ego.candump.log";
-/// The radar is mounted where the reference decoder counts 2.7 m more to.
+/// The reference decoder adds 2.7 m to the longitudinal distance.
 constexpr double kReferenceOffset_m = 2.7;
-/// It knew the upper 13 of the 15 bits of the longitudinal distance; the DBC of today knows all.
+/// The reference decoder used the upper 13 of the 15 bits of the longitudinal distance.
 constexpr double kReferenceStep_m = 0.04;
 
 class Comma2k19 : public testing::Test {
@@ -48,8 +48,8 @@ TEST_F(Comma2k19, NothingIsRejectedAndNoCycleIsLost) {
 }
 
 TEST_F(Comma2k19, EveryValidRowIsTheReferenceDecodersRow) {
-  // One line a row: x, y, range rate, two that are not given, id, new. The reference decoder closes its cycles at one
-  // of the frames, ours at the last one, so a row may be in the neighbouring cycle there.
+  // One line per row: x, y, range rate, two unused values, id, new. The reference decoder closes its cycle at one of
+  // the frames, ours at the last frame. So a row may be in the neighbouring cycle there.
   const auto table = read_npy(kFolder / "processed_log/CAN/radar/value");
   const auto times = read_npy(kFolder / "processed_log/CAN/radar/t");
   constexpr std::size_t kColumns = 7;
@@ -68,12 +68,12 @@ TEST_F(Comma2k19, EveryValidRowIsTheReferenceDecodersRow) {
       bool found = false;
       for (std::size_t k = first_open; k < end && !found; ++k) {
         const double* const theirs = &table[k * kColumns];
-        // A tenth of a least significant bit: what single precision of range and azimuth leaves.
+        // A tenth of a least significant bit: the accuracy of range and azimuth in single precision.
         found = !taken[k] && std::abs(theirs[0] - x) < 0.001 && std::abs(theirs[1] - y) < 0.001 &&
                 std::abs(theirs[2] - static_cast<double>(scan.range_rate_mps[i])) < 1e-5;
         if (found) taken[k] = true;
       }
-      ASSERT_TRUE(found) << "row " << rows << " is not the reference decoder's: " << x << ", " << y;
+      ASSERT_TRUE(found) << "row " << rows << " differs from the reference decoder's: " << x << ", " << y;
     }
   }
   EXPECT_EQ(rows, 10'100u);
@@ -131,8 +131,8 @@ TEST_F(Comma2k19, SpeedScaleIsThatOfTheInertialReference) {
   std::printf("k_v %.4f ± %.4f (inertial / signalled speed %.4f), yaw %+.2f° ± %.2f°\n", radar.speed_scale,
               std::sqrt(radar.covariance[0]), reference / signalled, radar.alignment_yaw_rad * 180.0 / M_PI,
               std::sqrt(radar.covariance[5]) * 180.0 / M_PI);
-  // 0.5 % was asked for and is missed: this radar's own scale of range rates is 0.994 (the median of what stands still
-  // says the same), and one radar's k_v holds it (README of the estimator, limits).
+  // The target of 0.5 % is missed. This radar's own scale of range rates is 0.994, as the median of stationary
+  // detections confirms, and the k_v of a single radar includes this scale (README of the estimator, limits).
   EXPECT_NEAR(radar.speed_scale / (reference / signalled), 1.0, 0.007);
 }
 

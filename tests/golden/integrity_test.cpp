@@ -1,5 +1,4 @@
-// The integrity verdict on real recordings: nothing to say of them as they are, and of the same data damaged what was
-// done to them.
+// The integrity verdict on real recordings: no fault in the original data, and the right fault in damaged data.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -20,7 +19,7 @@ const fs::path kDrive = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
 const fs::path kArs548 = shared_data() / "nebula_ars548_srr520/ars548_real_2msgs_ipfrag.pcap";
 constexpr std::int64_t kLatency_ns = 75'000'000;
 
-/// What becomes of a scan on its way to the judge; false: it does not arrive.
+/// Changes a scan before it gets to the judge; false: the scan does not arrive.
 using Damage = std::function<bool(RadarScan& scan, std::size_t index)>;
 
 class RealDriveIntegrity : public testing::Test {
@@ -56,7 +55,7 @@ class RealDriveIntegrity : public testing::Test {
   static inline Decoding decoding_;
 };
 
-TEST_F(RealDriveIntegrity, AsItIsNothingIsWrongWithIt) {
+TEST_F(RealDriveIntegrity, OriginalDataHasNoFault) {
   const auto counters = judge([](RadarScan&, std::size_t) { return true; });
   EXPECT_EQ(counters.scans, 1200u);
   for (const Decoded& message : decoding_.messages) {
@@ -70,7 +69,7 @@ TEST_F(RealDriveIntegrity, AsItIsNothingIsWrongWithIt) {
 
 TEST_F(RealDriveIntegrity, DroppedScansAreCounted) {
   const auto counters = judge([](RadarScan&, std::size_t index) {
-    const bool many = index >= 100 && index < 400;  // more than the 8-bit counter can tell
+    const bool many = index >= 100 && index < 400;  // more than the period of the 8-bit counter
     return !many && index % 97 != 50;
   });
   EXPECT_EQ(counters.lost_scans, 300u + 9u);
@@ -78,7 +77,7 @@ TEST_F(RealDriveIntegrity, DroppedScansAreCounted) {
   EXPECT_EQ(counters.by_bit[1], 0u);
 }
 
-TEST_F(RealDriveIntegrity, ARepeatedScanIsTold) {
+TEST_F(RealDriveIntegrity, RepeatedScanIsReported) {
   RadarScan before{};
   const auto counters = judge([&before](RadarScan& scan, std::size_t index) {
     if (index == 500) {
@@ -90,10 +89,10 @@ TEST_F(RealDriveIntegrity, ARepeatedScanIsTold) {
     return true;
   });
   EXPECT_EQ(counters.by_bit[1], 1u);
-  EXPECT_EQ(counters.by_bit[0], 1u) << "and the one in whose place it came is missing";
+  EXPECT_EQ(counters.by_bit[0], 1u) << "and the replaced scan is missing";
 }
 
-TEST_F(RealDriveIntegrity, AFrozenRadarIsTold) {
+TEST_F(RealDriveIntegrity, FrozenRadarIsReported) {
   RadarScan frozen{};
   const auto counters = judge([&frozen](RadarScan& scan, std::size_t index) {
     if (index == 600) frozen = scan;
@@ -106,10 +105,10 @@ TEST_F(RealDriveIntegrity, AFrozenRadarIsTold) {
     }
     return true;
   });
-  EXPECT_EQ(counters.by_bit[2], 597u) << "from the fourth on";
+  EXPECT_EQ(counters.by_bit[2], 597u) << "from the fourth equal scan on";
 }
 
-TEST_F(RealDriveIntegrity, AClockThatStandsStillIsTold) {
+TEST_F(RealDriveIntegrity, StoppedClockIsReported) {
   std::int64_t stop_ns = 0;
   ingest::ScanJudge judge(vehicle("comma2k19").radars.front());
   std::size_t index = 0;
@@ -123,8 +122,8 @@ TEST_F(RealDriveIntegrity, AClockThatStandsStillIsTold) {
   EXPECT_EQ(judge.counters().by_bit[3], 900u);
 }
 
-TEST_F(RealDriveIntegrity, RangeRatesOfAnotherSpeedAreTold) {
-  // A dozen tracks, mostly of traffic: it takes up to half a minute.
+TEST_F(RealDriveIntegrity, RangeRatesThatContradictTheSpeedAreReported) {
+  // The radar sends a dozen tracks, mostly of traffic, so the detection takes up to half a minute.
   for (const float factor : {1.5F, 0.7F, -1.0F}) {
     const auto counters = judge_rates(factor);
     EXPECT_GT(counters.by_bit[5], 300u) << factor;
@@ -132,7 +131,7 @@ TEST_F(RealDriveIntegrity, RangeRatesOfAnotherSpeedAreTold) {
   }
 }
 
-TEST(RealArs548Integrity, AsItIsNothingIsWrongWithIt) {
+TEST(RealArs548Integrity, OriginalDataHasNoFault) {
   REQUIRE_RECORDING(kArs548);
   const VehicleConfig car = vehicle("ars548_single");
   const Decoding decoding = decode(car, kArs548);
@@ -147,7 +146,7 @@ TEST(RealArs548Integrity, AsItIsNothingIsWrongWithIt) {
   EXPECT_EQ(judge.counters().scans, 1u);
 }
 
-TEST(RealArs548Integrity, ItsRangeRatesFitItsSpeedAndDamagedOnesDoNot) {
+TEST(RealArs548Integrity, RangeRatesFitTheSpeedAndScaledOnesDoNot) {
   REQUIRE_RECORDING(kArs548);
   const VehicleConfig car = vehicle("ars548_single");
   const Decoding decoding = decode(car, kArs548);
@@ -157,8 +156,8 @@ TEST(RealArs548Integrity, ItsRangeRatesFitItsSpeedAndDamagedOnesDoNot) {
   }
   EgoMotion ego{};
   ego.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
-  ego.speed_mps = 6.19F;  // what its own stationary detections say, see Ars548.StationaryDetectionsTell…
-  // As if it went on like that: the one scan there is, again and again, with its detections in another order.
+  ego.speed_mps = 6.19F;  // speed of the scan's own stationary detections, see Ars548.StationaryDetections…
+  // The one recorded scan is repeated, each time with its detections in another order.
   std::mt19937_64 random(1);
   const auto contradictions = [&](float factor) {
     ingest::ScanJudge judge(car.radars.front());

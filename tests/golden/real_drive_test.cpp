@@ -1,4 +1,4 @@
-// The comma2k19 drive: k_v is drawn from the range rates of what stands still, and from nothing else.
+// The comma2k19 drive: the estimate of k_v depends on the range rates of stationary detections only.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -22,7 +22,7 @@ struct Result {
   double yaw_std_rad;
 };
 
-/// The estimate at the end of the drive, whose speed signal is multiplied by `factor`.
+/// The estimate at the end of the drive with a speed signal multiplied by `factor`.
 Result estimate(const Decoding& drive, const VehicleConfig& car, const alignment::Config& config, double factor = 1.0) {
   alignment::Estimator estimator(car, config);
   for (const Decoded& message : drive.messages) {
@@ -53,8 +53,8 @@ class RealDrive : public testing::Test {
 };
 
 TEST_F(RealDrive, AWrongSpeedSignalIsFoundWhateverItsError) {
-  // True speed is k_v times the signal: a signal scaled by a factor must give k_v divided by it. A gate that pulls k_v
-  // to its start at 1 would show here.
+  // True speed is k_v times the signal, so a signal scaled by a factor must give k_v divided by the factor. A gate that
+  // pulls k_v to its start value of 1 would fail here.
   const Result as_it_is = estimate(drive_, car_, {});
   for (const double factor : {0.96, 0.98, 1.02, 1.04}) {
     const Result scaled = estimate(drive_, car_, {}, factor);
@@ -74,14 +74,14 @@ TEST_F(RealDrive, NeitherPriorNorStartDecide) {
   EXPECT_NEAR(changed([](auto& c) { c.filter.prior_speed_scale_std = 0.1; }), as_it_is.speed_scale, 5e-4);
   EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 1.0; }), as_it_is.speed_scale, 5e-4);
   EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 4.0; }), as_it_is.speed_scale, 5e-4);
-  // The gate does matter, since what passes it is not Gaussian: by what one per mille of the speed and a half is, from
-  // 2 to 8 stds.
+  // The gate matters, since the accepted residuals are not Gaussian: k_v changes by up to 1.5 per mille from 2 to 8
+  // stds.
   EXPECT_NEAR(changed([](auto& c) { c.filter.outlier_gate_sigma = 2.0; }), as_it_is.speed_scale, 1.5e-3);
   EXPECT_NEAR(changed([](auto& c) { c.filter.outlier_gate_sigma = 8.0; }), as_it_is.speed_scale, 1.5e-3);
 }
 
-TEST_F(RealDrive, IsTheMedianOfWhatStandsStill) {
-  // Without filter, noise model or weights: the median of range rate over signalled speed, of all within 5 %.
+TEST_F(RealDrive, SpeedScaleIsTheMedianOfStationaryDetections) {
+  // Reference without filter, noise model or weights: the median of range rate over signalled speed, of all within 5 %.
   EgoHistory history;
   std::vector<double> ratios;
   const double yaw_rad = estimate(drive_, car_, {}).yaw_rad;
@@ -103,7 +103,7 @@ TEST_F(RealDrive, IsTheMedianOfWhatStandsStill) {
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());
   const Result found = estimate(drive_, car_, {});
-  // The estimator adds what it assumes of elevations, which is in its σ.
+  // The estimator also models unknown elevations, and its σ includes their effect.
   std::printf("median %.4f of %zu, estimator %.4f ± %.4f\n", *middle, ratios.size(), found.speed_scale,
               found.speed_scale_std);
   EXPECT_NEAR(found.speed_scale, *middle, 2.0 * found.speed_scale_std);

@@ -1,5 +1,5 @@
-// One real cycle of an SRR520 on CAN FD: field by field as the open-source driver nebula decodes it, and the speed that
-// its stationary detections tell.
+// One real cycle of an SRR520 on CAN FD. Each field is compared with the decoding by the open-source driver nebula. The
+// speed is estimated from the stationary detections.
 #include "services/ingest_gateway/codecs/srr520.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ struct StoredScan {
   ingest::SensorStamp sensor;
 };
 
-/// Keeps every scan.
+/// Output that keeps every scan.
 class Output : public ingest::MemoryOutput {
  public:
   void publish_scan(const ingest::FrameStamp& reception, const std::optional<ingest::SensorStamp>& sensor,
@@ -44,7 +44,7 @@ class Output : public ingest::MemoryOutput {
   std::vector<StoredScan> stored;
 };
 
-/// Six significant digits are what the files have.
+/// The files have six significant digits.
 bool close(double ours, double theirs) {
   return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 2e-6;
 }
@@ -88,7 +88,7 @@ class Srr520 : public testing::Test {
       EXPECT_EQ(scan.detection_flags[i], 0u) << i;
     }
   }
-  /// What the scan does not carry: header fields and hypotheses, read from the frames of that list.
+  /// Header fields and hypotheses, which the scan omits, read from the frames of the list.
   void expect_rest_like(std::uint32_t header_id, const char* file) {
     Record head;
     const auto expected = read_yaml_list(kFolder / "srr520" / file, head);
@@ -126,10 +126,10 @@ TEST_F(Srr520, IsDecodedAsByNebulaFieldByField) {
   expect_like(output_.stored[1], "1708578209_76111685_hrr_detection.yaml");
   expect_rest_like(layout::kNearHeaderId, "1708578209_45566935_near_detection.yaml");
   expect_rest_like(layout::kHrrHeaderId, "1708578209_76111685_hrr_detection.yaml");
-  EXPECT_EQ(output_.conditions, 0u) << "the status frame's CRC is right, too, and it has nothing to complain of";
+  EXPECT_EQ(output_.conditions, 0u) << "the CRC of the status frame is right too, and the frame reports no fault";
 }
 
-TEST_F(Srr520, TellsTheEgoMotion) {
+TEST_F(Srr520, HeaderGivesTheEgoMotion) {
   decode();
   Record head;
   read_yaml_list(kFolder / "srr520/1708578208_992410284_object.yaml", head);
@@ -155,11 +155,11 @@ TEST_F(Srr520, EachListIsCheckedByItsOwnCrc) {
   EXPECT_EQ(output_.count(Fault::kWireValue), 3u);
 }
 
-TEST_F(Srr520, StationaryDetectionsTellTheSpeed) {
+TEST_F(Srr520, StationaryDetectionsGiveTheSpeed) {
   decode();
   ASSERT_EQ(output_.stored.size(), 2u);
   for (const StoredScan& stored : output_.stored) {
-    // ṙ = −u·v for what stands still: v by iteratively trimmed least squares over all directions u.
+    // ṙ = −u·v for stationary detections: v by iteratively trimmed least squares over all directions u.
     const RadarScan& scan = stored.scan;
     Eigen::Vector2d velocity(6.0, 0.0);
     std::size_t inliers = 0;

@@ -1,4 +1,4 @@
-// The signals that the project wrote down for itself, against the public DBC file.
+// The signals in the project's code agree with the public DBC file.
 #include <array>
 #include <cstdio>
 #include <fstream>

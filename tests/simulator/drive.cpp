@@ -32,7 +32,7 @@ Drive::Drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64
       scan_(std::make_unique<RadarScan>()) {
   for (std::size_t i = 0; i < vehicle.radars.size(); ++i) {
     const RadarConfig& radar = vehicle.radars[i];
-    // Unsynchronised: each radar starts its cycle at another phase.
+    // Radars are not synchronised: each starts its cycle at another phase.
     const double phase = radar.cycle_time_s * static_cast<double>(i) / static_cast<double>(vehicle.radars.size());
     radars_.push_back({radar, RadarSensor(radar, scenario.effects, ego_body(scenario.ego), seed), 0.02 + phase, 0});
   }
@@ -62,7 +62,7 @@ const Event* Drive::next() {
         kSteeringRatio * std::atan(kWheelbase_m * state.yaw_rate_radps / std::max(1.0, std::abs(state.speed_mps)));
     return &event_;
   }
-  world_.at(event_.t_s, std::min(World::kSight_m, due->config.field_of_view.range_max_m + kReserve_m), scene_);
+  world_.at(event_.t_s, std::min(World::kReach_m, due->config.field_of_view.range_max_m + kReserve_m), scene_);
   due->sensor.measure(scene_, due->cycle, *scan_, truth_);
   scan_->header = {};
   scan_->header.version = RadarScan::kVersion;

@@ -15,21 +15,21 @@
 
 namespace boresight::simulator {
 
-/// Wheel speeds, yaw rate and steering angle as the vehicle's sensors would signal them, unquantised.
+/// Speed, yaw rate and steering angle as the vehicle's sensors would signal them, unquantised.
 struct EgoSignals {
-  double speed_mps;  ///< signalled: true speed / k_v, plus noise
+  double speed_mps;  ///< true speed / k_v, plus noise
   double yaw_rate_radps;
   double steering_angle_rad;
 };
 
-/// What the drive hands out next: either ego signals or a scan.
+/// The next message of the drive: either ego signals or a scan.
 struct Event {
   double t_s = 0.0;
   std::int64_t time_ns = 0;  ///< t_s as stamp, from kStart_ns on
   EgoSignals ego{};
   const RadarScan* scan = nullptr;  ///< nullptr: ego signals; header: source_id, sequences, measurement time
   const std::vector<DetectionTruth>* truth = nullptr;
-  std::uint32_t condition = 0;  ///< of the scan's radar, as it says itself: source_condition bits
+  std::uint32_t condition = 0;  ///< condition that the scan's radar reports: source_condition bits
 };
 
 class Drive {
@@ -40,13 +40,13 @@ class Drive {
 
   Drive(const Scenario& scenario, const VehicleConfig& vehicle, std::uint64_t seed, double duration_s);
 
-  /// The next event, or nullptr at the end; valid until the next call. Ego signals come before scans of the same time.
+  /// The next event, or nullptr at the end; valid until the next call. Ego signals precede scans of the same time.
   [[nodiscard]] const Event* next();
 
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] EgoState ego(double t_s) const { return world_.ego(t_s); }
-  /// What the radar of the last scan was shown.
+  /// The scene of the last scan.
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
  private:
@@ -70,10 +70,10 @@ class Drive {
   Event event_;
 };
 
-/// What the ego vehicle's own body hides from its radars.
+/// Box of the ego vehicle, which hides targets from its own radars.
 [[nodiscard]] radar::EgoBody ego_body(const EgoSpec& ego);
 
-/// Ego signals as the message the gateway would make of them.
+/// Ego signals as the message that the gateway would publish.
 [[nodiscard]] EgoMotion to_message(const Event& event, const EgoConfig& config);
 
 }  // namespace boresight::simulator

@@ -31,7 +31,7 @@ wire::Endpoint endpoint(const std::string& address, std::uint16_t port) {
   return {ntohl(ip.s_addr), port};
 }
 
-/// A radar that the vehicle has not would be disturbed in vain.
+/// Refuses a radar id that the vehicle does not have: its disturbance would have no effect.
 void expect_radar(const VehicleConfig& vehicle, const RadarEffects& effects, std::uint32_t id,
                   const std::string& what) {
   if (vehicle.radar(id) != nullptr) return;
@@ -48,7 +48,7 @@ void check(const Scenario& scenario, const VehicleConfig& vehicle) {
   if (vehicle.radars.empty()) throw std::invalid_argument("the vehicle " + vehicle.name + " has no radar");
   for (const RadarConfig& radar : vehicle.radars) {
     if (radar.profile != RadarProfile::kArs548) {
-      throw std::invalid_argument("the simulator speaks the ARS548 profile only; radar " + radar.name + " has another");
+      throw std::invalid_argument("the simulator writes the ARS548 profile only; radar " + radar.name + " has another");
     }
     if (radar.e2e.required) {
       throw std::invalid_argument("the simulator writes no end-to-end protection, which radar " + radar.name +
@@ -58,7 +58,7 @@ void check(const Scenario& scenario, const VehicleConfig& vehicle) {
     static_cast<void>(endpoint(radar.source.address, radar.source.port));
   }
   if (vehicle.ego.profile != EgoProfile::kToyota) {
-    throw std::invalid_argument("the simulator speaks the Toyota profile of ego signals only; vehicle " + vehicle.name +
+    throw std::invalid_argument("the simulator writes the Toyota profile of ego signals only; vehicle " + vehicle.name +
                                 " has another");
   }
   const RadarEffects& e = scenario.effects;
@@ -82,35 +82,35 @@ void write_ego(const Event& event, const std::string& interface, std::FILE* log)
   }
 }
 
-/// The radars' side of the network.
+/// The recording of the radars' network.
 class RadarLog {
  public:
   explicit RadarLog(const std::filesystem::path& file) : pcap_(file) {}
 
-  /// A detection list; and after it a status message when the radar has something new to say of itself, and once a
-  /// second anyway.
+  /// Writes a detection list. A status message follows when the radar's condition has changed, and at least once a
+  /// second.
   void add(const Event& event, const RadarConfig& radar) {
     const wire::Endpoint from = endpoint(radar.source.sender, radar.source.port);
     const wire::Endpoint to = endpoint(radar.source.address, radar.source.port);
     const std::int64_t sent_ns = event.time_ns + kRadarLatency_ns;
     wire::encode_ars548(*event.scan, event.time_ns, *list_);
     pcap_.write(sent_ns, from, to, *list_);
-    Said& said = said_.at(radar.id);
-    if (said.at_ns != 0 && said.condition == event.condition && sent_ns < said.at_ns + kStatusPeriod_ns) return;
-    said = {sent_ns, event.condition};
+    Status& last = last_status_.at(radar.id);
+    if (last.sent_ns != 0 && last.condition == event.condition && sent_ns < last.sent_ns + kStatusPeriod_ns) return;
+    last = {sent_ns, event.condition};
     pcap_.write(sent_ns, from, to, wire::encode_ars548_status(event.condition));
   }
-  /// Throws std::runtime_error if anything of it is lost, as on a full disk.
+  /// Throws std::runtime_error if a write failed, as on a full disk.
   void finish() { pcap_.finish(); }
 
  private:
-  struct Said {
-    std::int64_t at_ns = 0;
+  struct Status {
+    std::int64_t sent_ns = 0;
     std::uint32_t condition = 0;
   };
   wire::PcapWriter pcap_;
   std::unique_ptr<wire::Ars548List> list_ = std::make_unique<wire::Ars548List>();
-  std::array<Said, kMaxRadars + 1> said_{};  // by radar id
+  std::array<Status, kMaxRadars + 1> last_status_{};  // by radar id
 };
 
 }  // namespace

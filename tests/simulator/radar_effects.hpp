@@ -1,4 +1,4 @@
-// What a scenario says about its radars: how they are mounted, what disturbs them, and which waves they get.
+// The radar settings of a scenario: misalignment, disturbances, propagation, resolution and sensitivity.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace boresight::simulator {
 
-/// Angles by which a radar is crooked, radians: actual = nominal + these.
+/// Mounting error of a radar, radians: actual = nominal + these angles.
 struct Misalignment {
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
@@ -18,7 +18,7 @@ struct Misalignment {
   [[nodiscard]] bool operator==(const Misalignment&) const = default;
 };
 
-/// From `time_s` on the radar is crooked by `by` more.
+/// A sudden misalignment: from `time_s` on the mounting error has changed by `by`.
 struct RadarStepChange {
   std::uint32_t radar = 0;
   double time_s = 0.0;
@@ -26,8 +26,8 @@ struct RadarStepChange {
   [[nodiscard]] bool operator==(const RadarStepChange&) const = default;
 };
 
-/// Dirt, snow or ice on a radar: its two-way loss grows linearly from 0 at `begin_s` to `loss_db` at `full_s` and
-/// stays. Within the azimuths only, in the sensor's frame; the defaults cover every view.
+/// Dirt, snow or ice on a radar. The two-way loss grows linearly from 0 at `begin_s` to `loss_db` at `full_s`, then it
+/// stays constant. The loss applies between the two azimuths (sensor frame); the defaults cover every field of view.
 struct RadarBlockage {
   std::uint32_t radar = 0;
   double begin_s = 0.0;
@@ -44,27 +44,28 @@ struct RadarInterference {
   double begin_s = 0.0;
   double duration_s = 0.0;
   double noise_rise_db = 0.0;
-  double detections_per_scan = 0.0;  ///< mean number of false ones, besides the clutter
+  double detections_per_scan = 0.0;  ///< mean number of false detections, in addition to clutter
   [[nodiscard]] bool operator==(const RadarInterference&) const = default;
 };
 
-/// Paths by way of mirrors.
+/// Propagation paths that include reflections from mirrors.
 struct MultipathSpec {
   bool on = true;
-  std::uint32_t max_bounces = 3;  ///< on anything, the target included: 2 and 3 make ghosts
-  bool ground_bounce = true;      ///< fades direct paths by height and adds images below the road
-  /// Per mirror bounce, on top of the surface's own: what its unevenness scatters elsewhere. The default gives Report
-  /// B's numbers of ghosts in highway_multipath.
+  std::uint32_t max_bounces = 3;  ///< reflections of a path, including the one at the target; 2 and 3 make ghosts
+  bool ground_bounce = true;      ///< two-ray interference with the road, and paths below an obstacle by the road
+  /// Loss per mirror reflection in addition to the surface's own, by scattering from its unevenness. The default is
+  /// fitted: with it, highway_multipath has about the numbers of ghosts that Le Ba Thanh 2023 reports.
   double extra_loss_db = 8.0;
-  /// A corner sends waves back to where they came from: 3 dB less at this angle between the ways out and back at the
-  /// target, at most 18 dB; 0: as much to everywhere.
+  /// A corner reflects mostly back to the transmitter. At this angle between incident and reflected path the echo is
+  /// 3 dB weaker; the loss grows to at most 18 dB. 0: no such loss.
   double bistatic_rad = 0.12;
-  bool of_stationary = false;  ///< also of what stands; by a standing mirror such a ghost looks as real as a wall
+  bool of_stationary =
+      false;  ///< ghosts of stationary targets too; behind a stationary mirror they look like real ones
   [[nodiscard]] bool operator==(const MultipathSpec&) const = default;
 };
 
-/// What is nearer than this to a stronger echo in all three is one detection with it, at the centroid of all. 0: no
-/// cell in that quantity.
+/// An echo that is nearer than this to a stronger echo in all three quantities merges with it into one detection at
+/// their centroid. 0: every difference in that quantity is resolved.
 struct ResolutionCell {
   double range_m = 0.4;
   double azimuth_rad = 0.035;
@@ -72,8 +73,8 @@ struct ResolutionCell {
   [[nodiscard]] bool operator==(const ResolutionCell&) const = default;
 };
 
-/// Detection probability: 0.5 where the power over that of a 0 dBsm reflector at 10 m equals `threshold_db`, falling
-/// with range to the fourth power.
+/// The detection probability is half of `max_probability` at a power of `threshold_db` relative to a 0 dBsm reflector
+/// at 10 m. The received power falls with the fourth power of range.
 struct SensitivitySpec {
   double threshold_db = -40.0;
   double max_probability = 0.95;
@@ -82,7 +83,7 @@ struct SensitivitySpec {
   [[nodiscard]] bool operator==(const SensitivitySpec&) const = default;
 };
 
-/// A radar that a scenario file names, and where it does so: "my.toml:7: radars.knock[0].radar".
+/// A radar id in a scenario file, and its place there: "my.toml:7: radars.step_change[0].radar".
 struct NamedRadar {
   std::uint32_t id = 0;
   std::string place;
@@ -91,7 +92,7 @@ struct NamedRadar {
 
 struct RadarEffects {
   double speed_scale = 1.0;                                 ///< k_v: true speed = k_v · signalled speed
-  bool noise = true;                                        ///< of measurements, ego signals and RCS
+  bool noise = true;                                        ///< noise of measurements, ego signals and RCS
   std::array<Misalignment, kMaxRadars + 1> misalignment{};  ///< by radar id
   std::vector<RadarStepChange> step_changes;
   std::vector<RadarBlockage> blockages;
@@ -100,8 +101,8 @@ struct RadarEffects {
   MultipathSpec multipath{};
   ResolutionCell resolution{};
   SensitivitySpec sensitivity{};
-  double unambiguous_mps = 80.0;  ///< range rates fold into ± this; 0: they do not fold
-  std::vector<NamedRadar> named;  ///< in the order of the file; for errors, as the vehicle is not known before
+  double unambiguous_mps = 80.0;  ///< range rates fold into ± this; 0: no folding
+  std::vector<NamedRadar> named;  ///< in the order of the file; for errors, since the vehicle is known only later
   [[nodiscard]] bool operator==(const RadarEffects&) const = default;
 };
 

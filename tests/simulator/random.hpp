@@ -1,4 +1,4 @@
-// Random numbers of which each effect has a stream of its own, so that adding one effect changes no other.
+// Random numbers. Each effect has a stream of its own, so that adding one effect changes no draw of another.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ class Stream {
   /// In [0, 1).
   [[nodiscard]] double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
   [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal (Box–Muller; the second value is not kept, so that draws stay aligned).
+  /// Standard normal (Box–Muller). The second value is dropped, so that every call uses two draws.
   [[nodiscard]] double gaussian() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * M_PI * uniform());

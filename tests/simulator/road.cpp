@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kStep_m = 0.25;
 
-/// The point `along_m` further, by the heading half way: its error is of third order in the step.
+/// The point `along_m` further, by the midpoint rule: the error is of third order in the step.
 RoadPoint advance(const RoadPoint& p, double along_m) {
   const double middle = p.heading_rad + 0.5 * along_m * (p.curvature_per_m + 0.25 * along_m * p.curvature_slope_per_m2);
   RoadPoint q = p;
@@ -24,7 +24,7 @@ RoadPoint advance(const RoadPoint& p, double along_m) {
 double curvature_at(const RoadSpec& spec, double arc_m) {
   double curvature = 0.0;
   for (const RoadWave& wave : spec.waves) curvature += wave.curvature_per_m * std::sin(arc_m / wave.length_m);
-  // Each border adds its change of curvature, spread over its clothoid.
+  // Each border of segments adds its change of curvature, spread over its clothoid.
   double border_m = 0.0;
   for (std::size_t i = 0; i < spec.segments.size(); ++i) {
     const RoadSegment& segment = spec.segments[i];

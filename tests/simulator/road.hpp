@@ -17,8 +17,8 @@ struct RoadPoint {
   double curvature_slope_per_m2;  ///< along the arc
 };
 
-/// Line of the road by arc length, precomputed from `begin_m` ≤ 0 to `end_m`; arc 0 is the world's origin and goes
-/// along its x axis. Beyond, the curvature of the end goes on.
+/// Line of the road by arc length, precomputed from `begin_m` ≤ 0 to `end_m`. Arc 0 is the world's origin, where the
+/// road runs along the x axis. Beyond either end the curvature stays constant.
 class Road {
  public:
   Road(const RoadSpec& spec, double begin_m, double end_m);
@@ -31,7 +31,7 @@ class Road {
   std::vector<RoadPoint> points_;
 };
 
-/// Curvature that the specification asks for at an arc length.
+/// Curvature at an arc length by the specification.
 [[nodiscard]] double curvature_at(const RoadSpec& spec, double arc_m);
 
 }  // namespace boresight::simulator

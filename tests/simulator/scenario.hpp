@@ -1,5 +1,5 @@
-// What a drive is made of, as plain data. Places are given along the road: `…_m` from its origin, where the ego vehicle
-// starts unless told otherwise, and `lateral_m` to the left of the road's line.
+// A scenario as plain data. Places are given along the road: `…_m` from its origin, where the ego vehicle starts by
+// default, and `lateral_m` to the left of the road's line.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace boresight::simulator {
 
-/// A value at a place or an instant; between knots values change smoothly, before the first and after the last they
-/// stay.
+/// A value at a place or an instant. Between knots the value changes smoothly; before the first and after the last knot
+/// it is constant.
 struct Knot {
   double at = 0.0;
   double value = 0.0;
@@ -36,8 +36,8 @@ struct RoadWave {
   [[nodiscard]] bool operator==(const RoadWave&) const = default;
 };
 
-/// Segments from the origin on; straight before the first, the last goes on for ever. The curvature changes linearly
-/// (a clothoid) over `transition_m` about each border, over less where a segment is shorter.
+/// Segments from the origin on. The road is straight before the first segment; the last segment has no end. The
+/// curvature changes linearly (a clothoid) over `transition_m` about each border, over less where a segment is shorter.
 struct RoadSpec {
   std::vector<RoadSegment> segments;
   double transition_m = 40.0;
@@ -47,11 +47,11 @@ struct RoadSpec {
 
 // ---------------------------------------------------------------- ego vehicle
 
-/// Follows the road at a lateral offset. Its box, for what its own body hides from its radars.
+/// The ego vehicle follows the road at a lateral offset. Its box is what hides targets from its own radars.
 struct EgoSpec {
   double start_m = 0.0;
   Knots speed_mps{{0.0, 15.0}};  ///< along the road, by time; negative: backwards
-  double swing_mps = 0.0;        ///< the speed swings about that by swing · sin(2π t / period)
+  double swing_mps = 0.0;        ///< amplitude added to the speed: swing · sin(2π t / period)
   double swing_period_s = 37.0;
   Knots lateral_m{{0.0, 0.0}};  ///< by road position
   double length_m = 4.7;
@@ -70,22 +70,22 @@ struct Gap {
   [[nodiscard]] bool operator==(const Gap&) const = default;
 };
 
-/// A thing that mirrors. It runs along the road from `from_m` to `to_m`; with `heading_rad` ≠ 0 it runs straight
-/// instead from (from_m, lateral_m) over to_m − from_m metres in that direction, relative to the road there.
+/// A structure that mirrors. It runs along the road from `from_m` to `to_m`. With `heading_rad` ≠ 0 it runs straight
+/// instead: from (from_m, lateral_m) over to_m − from_m metres, in that direction relative to the road there.
 struct StructureSpec {
   StructureKind kind = StructureKind::kGuardRail;
   double from_m = 0.0, to_m = 0.0;
   double lateral_m = 0.0;
   double heading_rad = 0.0;
-  double width_m = 0.0;  ///< tunnel: from the left wall, at lateral_m, to the right one; pillars: their side
+  double width_m = 0.0;  ///< tunnel: from the left wall, at lateral_m, to the right wall; pillars: length of a side
   double low_m = 0.4, high_m = 0.8;  ///< edges of the mirror; a tunnel's ceiling is at high_m
   double loss_db = 5.5;              ///< of power, per bounce
   bool opaque = true;
-  double spacing_m = 2.0;     ///< of the scatterers: posts, facets, pillars
-  double roughness_m = 0.05;  ///< standard deviation of the scatterers across it
+  double spacing_m = 2.0;     ///< between scatterers: posts, facets, pillars
+  double roughness_m = 0.05;  ///< standard deviation of the scatterers across the surface
   double rcs_min_dbsm = -8.0, rcs_max_dbsm = 2.0;
-  std::vector<Gap> gaps;     ///< road positions (or metres from its beginning, with a heading)
-  double gap_every_m = 0.0;  ///< and regular ones: 0 none
+  std::vector<Gap> gaps;     ///< road positions; with a heading, metres from the structure's beginning
+  double gap_every_m = 0.0;  ///< distance between regular gaps; 0: none
   double gap_length_m = 0.0;
   [[nodiscard]] bool operator==(const StructureSpec&) const = default;
 };
@@ -94,16 +94,16 @@ struct StructureSpec {
 
 enum class ScatterKind : std::uint8_t { kColumns, kVegetation, kKerb, kParkedCars };
 
-/// What stands about. Columns (poles, trees): points above each other. Vegetation: points anywhere between the road and
-/// `top_max_m`. Kerb: low points in a line. Parked cars: bodies along the road.
+/// Stationary scatter beside the road. Columns (poles, trees): points above each other. Vegetation: points anywhere
+/// between the road and `top_max_m`. Kerb: low points in a line. Parked cars: bodies along the road.
 struct ScatterSpec {
   ScatterKind kind = ScatterKind::kColumns;
   double from_m = 0.0, to_m = 0.0;
   double lateral_min_m = 0.0, lateral_max_m = 0.0;
-  bool both_sides = true;  ///< drawn with either sign of the lateral offset; else as given
+  bool both_sides = true;  ///< the lateral offset is drawn with either sign; false: as given
   double per_m = 0.2;      ///< mean number per metre of road
   double top_min_m = 1.0, top_max_m = 9.0;
-  double spacing_m = 1.7;  ///< of a column's points, upwards
+  double spacing_m = 1.7;  ///< vertical, between a column's points
   double rcs_min_dbsm = -5.0, rcs_max_dbsm = 10.0;
   double heading_rad = 0.0;  ///< of parked cars on the left side, relative to the road; mirrored on the right one
   [[nodiscard]] bool operator==(const ScatterSpec&) const = default;
@@ -111,8 +111,8 @@ struct ScatterSpec {
 
 // ---------------------------------------------------------------- bodies
 
-/// A body that follows the road, or with `heading_rad` ≠ 0 crosses it straight from (start_m, lateral_m.front()) in
-/// that direction relative to the road there. Sizes of 0 are those of its kind.
+/// A body that follows the road. With `heading_rad` ≠ 0 it crosses the road straight instead: from
+/// (start_m, lateral_m.front()), in that direction relative to the road there. A size of 0 is that of the kind.
 struct BodySpec {
   BodyKind kind = BodyKind::kCar;
   double start_m = 0.0;
@@ -123,7 +123,7 @@ struct BodySpec {
   double heading_rad = 0.0;
   bool parked = false;
   double length_m = 0.0, width_m = 0.0, height_m = 0.0;
-  double flank_low_m = 0.0;  ///< lower edge of flanks that mirror
+  double side_low_m = 0.0;  ///< lower edge of the sides that mirror
   [[nodiscard]] bool operator==(const BodySpec&) const = default;
 };
 
@@ -133,7 +133,7 @@ struct Scenario {
   std::string name;
   std::string about;
   std::string vehicle;       ///< name of the vehicle file it is meant for; may be empty
-  double duration_s = 45.0;  ///< how long it makes sense
+  double duration_s = 45.0;  ///< default length of the drive
   RoadSpec road;
   EgoSpec ego;
   std::vector<StructureSpec> structures;

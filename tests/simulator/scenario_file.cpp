@@ -13,7 +13,7 @@ namespace boresight::simulator {
 
 namespace {
 
-/// What drives beyond the centre of a bend would turn round; such an offset is a mistake.
+/// A body beyond the centre of a bend would reverse its direction; such an offset is a mistake in the scenario.
 bool passes_the_centre(const RoadSpec& road, const Knots& lateral_m, double from_m, double to_m) {
   constexpr double kStep_m = 1.0;
   constexpr double kLongest_m = 5000.0;
@@ -71,7 +71,7 @@ Scenario scenario(std::string_view name_or_file) {
     known += (known.empty() ? "" : ", ") + std::string(shipped.name);
   }
   throw std::invalid_argument("scenario \"" + std::string(name_or_file) + "\" is unknown; known: " + known +
-                              "; a file of your own is told by its path (a/b.toml)");
+                              "; name your own file by its path, such as ./my.toml");
 }
 
 }  // namespace boresight::simulator

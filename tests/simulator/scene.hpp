@@ -1,5 +1,5 @@
-// The world at an instant, as what a radar can see of it: the interface between the world, which knows roads and
-// trajectories, and the radar model, which knows waves.
+// The part of the world that a radar can see at an instant. This is the interface between the world model (roads and
+// trajectories) and the radar model (wave propagation).
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ struct EgoPose {
   double yaw_rate_radps;
 };
 
-/// A spot that reflects back: a corner, a wheel house, a leg. `facing`: unit vector out of the body's side, in which
-/// half-space it is seen; zero: from everywhere.
+/// A point that reflects back to the radar: a corner, a rim, a leg. `facing` is a unit vector out of the body's
+/// side: the point is visible from that half-space. A zero vector means visible from everywhere.
 struct ReflectionCentre {
   Eigen::Vector3d position_m;
-  Eigen::Vector3d velocity_mps;  ///< over ground, with turning and micro-motion (wheels, limbs)
+  Eigen::Vector3d velocity_mps;  ///< over ground, including rotation and micro-Doppler motion (rims, limbs)
   Eigen::Vector3d facing;
   double rcs_dbsm;
 };
@@ -40,23 +40,23 @@ struct Body {
   Eigen::Vector2d velocity_mps;
   double yaw_rate_radps;
   double length_m, width_m, height_m;
-  double clearance_m;                             ///< between road and underbody: where a radar sees through below
-  double flank_low_m;                             ///< lower edge of the flanks, of what mirrors
+  double clearance_m;                             ///< between road and underbody: a radar sees through this gap
+  double side_low_m;                              ///< lower edge of the sides that mirror
   std::uint32_t first_centre, number_of_centres;  ///< in Scene::centres
 };
 
-/// A vertical rectangle that mirrors: rail, wall, façade, side of a large vehicle. What lies on its left when one looks
-/// from `from_m` to `to_m` and what lies on its right are both mirrored.
+/// A vertical rectangle that mirrors: rail, wall, façade, side of a large vehicle. It mirrors targets on both of its
+/// faces.
 struct MirrorSurface {
   Eigen::Vector2d from_m, to_m;
   double low_m, high_m;  ///< heights of its edges
   double loss_db;        ///< of power, per bounce, ≥ 0
   Eigen::Vector2d velocity_mps;
   std::uint32_t body_id;  ///< of the body whose side it is; 0: a structure
-  bool opaque;            ///< hides what is behind, within its heights; a rail on posts does as well
+  bool opaque;            ///< hides targets behind it, within its heights; also for a rail on posts
 };
 
-/// Which table of its scenario something that stands comes from.
+/// The table of the scenario that a stationary thing comes from.
 struct Origin {
   enum class Kind : std::uint8_t { kNone, kStructure, kScatter };
   Kind kind = Kind::kNone;
@@ -71,14 +71,14 @@ struct Scatterer {
   Origin origin{};
 };
 
-/// Buffers are reused from instant to instant.
+/// The content of the world at one instant. Buffers are reused from instant to instant.
 struct Scene {
   double t_s = 0.0;
   EgoPose ego{};
   std::vector<Body> bodies;
   std::vector<ReflectionCentre> centres;
   std::vector<MirrorSurface> surfaces;
-  std::vector<Scatterer> scatterers;  ///< within the reach that was asked for
+  std::vector<Scatterer> scatterers;  ///< within the requested reach
 };
 
 }  // namespace boresight::simulator

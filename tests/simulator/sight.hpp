@@ -1,4 +1,4 @@
-// What a radar could see of each body at an instant, whether or not it detected it.
+// Visibility of each body from a radar at an instant, independent of detection.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace boresight::simulator {
 
-/// Reflection centres of a body, counted.
+/// Numbers of a body's reflection centres.
 struct BodySight {
   std::uint32_t body_id;
-  std::uint32_t centres;  ///< that it has
-  std::uint32_t in_view;  ///< of these within the field of view and its range
-  std::uint32_t seen;     ///< of these turned towards the radar with nothing in between
+  std::uint32_t centres;  ///< all of the body
+  std::uint32_t in_view;  ///< those within the field of view and its range
+  std::uint32_t seen;     ///< those in view that face the radar with a free line of sight
 };
 
-/// The lines of sight of one radar as it is really mounted at the time. Mirrors and the ground play no part.
+/// Lines of sight of one radar with its true mounting at the time. Paths by mirrors or the ground are not considered.
 class Sight {
  public:
   Sight(const RadarConfig& config, const RadarEffects& effects, const radar::EgoBody& ego_body);
 
-  /// Replaces `bodies` by those of the scene that are at least partly in view. Buffers are reused.
+  /// Replaces `bodies` by the bodies of the scene that are at least partly in view. Buffers are reused.
   void look(const Scene& scene, std::vector<BodySight>& bodies);
 
  private:

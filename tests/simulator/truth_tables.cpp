@@ -7,6 +7,7 @@
 #include <string>
 
 #include "interfaces/messages/service_status.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/judge/truth_files.hpp"
 #include "tests/simulator/radar/blockage.hpp"
 #include "tests/simulator/radar/false_echoes.hpp"
@@ -16,7 +17,6 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kObjectReach_m = 150.0;
 
 const char* name_of(BodyKind kind) {
@@ -40,7 +40,7 @@ const char* name_of_condition(std::uint32_t condition) {
   return (condition & source_condition::kPartlyBlocked) != 0 ? "partly_blocked" : "clear";
 }
 
-/// Where in the scenario its source is written.
+/// Source of the detection: its place in the scenario file.
 std::string name_of(const DetectionTruth& truth) {
   if (truth.object_id != 0) return "body";
   switch (truth.origin.kind) {
@@ -55,8 +55,8 @@ std::string name_of(const DetectionTruth& truth) {
 }
 
 struct View {
-  double most_db = 0.0;  // two-way loss where it is largest
-  double mean_db = 0.0;  // over the azimuths of the view
+  double max_db = 0.0;   // largest two-way loss over the azimuths of the field of view
+  double mean_db = 0.0;  // mean two-way loss over these azimuths
 };
 
 View dirt_over(const FieldOfView& view, std::span<const radar::Dirt> dirt) {
@@ -66,7 +66,7 @@ View dirt_over(const FieldOfView& view, std::span<const radar::Dirt> dirt) {
     const double part = (i + 0.5) / kSamples;
     const double loss =
         radar::loss_db(dirt, view.azimuth_min_rad + part * (view.azimuth_max_rad - view.azimuth_min_rad));
-    over.most_db = std::max(over.most_db, loss);
+    over.max_db = std::max(over.max_db, loss);
     over.mean_db += loss / kSamples;
   }
   return over;
@@ -82,7 +82,7 @@ struct Counts {
   }
 };
 
-/// Of all detections, or of those whose source is one body.
+/// Number of detections by provenance, of those that `wanted` accepts.
 template <typename Wanted>
 Counts count(const std::vector<DetectionTruth>& truth, const Wanted& wanted) {
   Counts counts;
@@ -155,16 +155,16 @@ void TruthTables::add_sensor(const Event& event, const RadarConfig& radar) {
   const radar::Disturbance other = radar::disturbance_at(effects_.interference, radar.id, event.t_s);
   const Counts n = count(*event.truth, [](const DetectionTruth&) { return true; });
   std::fprintf(sensors_.get(), "%.6f,%u,%llu,%.6f,%.6f,%.6f,%td,%.3f,%.3f,%s,%.3f,%.3f,%u,%u,%u,%u,%u,%u,%u\n",
-               event.t_s, radar.id, scan_number(event), m.yaw_rad * kDegrees, m.pitch_rad * kDegrees,
-               m.roll_rad * kDegrees, step_changes, loss.most_db, loss.mean_db, name_of_condition(event.condition),
-               other.noise_rise_db, other.detections_per_scan, n.sum(), event.scan->dropped_detections,
-               n[Provenance::kMoving], n[Provenance::kStationary], n[Provenance::kGhostType1],
-               n[Provenance::kGhostType2], n[Provenance::kClutter]);
+               event.t_s, radar.id, scan_number(event), m.yaw_rad * kDegreesPerRadian, m.pitch_rad * kDegreesPerRadian,
+               m.roll_rad * kDegreesPerRadian, step_changes, loss.max_db, loss.mean_db,
+               name_of_condition(event.condition), other.noise_rise_db, other.detections_per_scan, n.sum(),
+               event.scan->dropped_detections, n[Provenance::kMoving], n[Provenance::kStationary],
+               n[Provenance::kGhostType1], n[Provenance::kGhostType2], n[Provenance::kClutter]);
 }
 
 void TruthTables::add_visibility(const Drive& drive, const Event& event, Radar& radar) {
   radar.sight.look(drive.scene(), sights_);
-  // What is seen in a mirror only, or below what hides it, need not be in view.
+  // A body that is detected only by a mirror or below an obstacle need not be in view.
   for (const DetectionTruth& truth : *event.truth) {
     const auto is_it = [&](const BodySight& s) { return s.body_id == truth.object_id; };
     if (truth.object_id == 0 || std::any_of(sights_.begin(), sights_.end(), is_it)) continue;
@@ -200,7 +200,8 @@ void TruthTables::finish() {
     const std::uint32_t id = radar.config->id;
     const Misalignment& m = effects_.misalignment[id];
     std::fprintf(out.get(), "alignment_yaw,%u,%.6f,deg\nalignment_pitch,%u,%.6f,deg\nalignment_roll,%u,%.6f,deg\n", id,
-                 m.yaw_rad * kDegrees, id, m.pitch_rad * kDegrees, id, m.roll_rad * kDegrees);
+                 m.yaw_rad * kDegreesPerRadian, id, m.pitch_rad * kDegreesPerRadian, id,
+                 m.roll_rad * kDegreesPerRadian);
     std::fprintf(out.get(), "scans,%u,%zu,1\n", id, radar.scans);
   }
   out.finish();

@@ -1,4 +1,4 @@
-// What is true of a drive, as CSV tables beside its recordings. Columns: tests/simulator/README.md.
+// The truth of a drive as CSV tables beside its recordings. Columns: tests/simulator/README.md.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@ namespace boresight::simulator {
 
 class TruthTables {
  public:
-  /// Throws std::runtime_error where a file cannot be written; `folder` must exist.
+  /// Throws std::runtime_error if a file cannot be written; `folder` must exist.
   TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle);
 
-  /// Every body within 150 m at that time.
+  /// Adds every body within 150 m of the ego vehicle at that time.
   void add_objects(const Drive& drive, double t_s);
-  /// A scan that `drive` has just handed out: its detections, its radar's state, what the radar could see.
+  /// Adds the scan that `drive` has just returned: its detections, its radar's state, the visibility of bodies.
   void add_scan(const Drive& drive, const Event& event);
-  /// Writes what is true of the whole drive; throws std::runtime_error if anything was lost on the way.
+  /// Writes truth.csv. Throws std::runtime_error if any write failed.
   void finish();
 
  private:

@@ -12,13 +12,13 @@ namespace boresight::simulator {
 
 namespace {
 
-// Room for traffic that starts or ends far from the ego vehicle; beyond, roads go on without a table.
+// Margin of the precomputed road for traffic that starts or ends far from the ego vehicle.
 constexpr double kMargin_m = 1500.0;
-// What is `reach` away is at most so many times that far along the road: a right-angled turn makes √2.
-constexpr double kDetour = 1.5;
-// The longest stretch of a mirror from its middle, and of what leads off the road.
-constexpr double kHalfMirror_m = 60.0;
-constexpr double kSideLoss_db = 4.0;  // of a vehicle's flank: less plane than a wall
+// Largest ratio of the distance along the road to the straight distance; a right-angled turn gives √2.
+constexpr double kMaxDetour = 1.5;
+// Largest distance from a mirror's middle to its end, also for structures that lead off the road.
+constexpr double kMaxHalfMirror_m = 60.0;
+constexpr double kSideLoss_db = 4.0;  // mirror loss of a vehicle's side, which is less plane than a wall
 
 Gap widened(Gap extent, double by_m) {
   return {extent.from_m - by_m, extent.to_m + by_m};
@@ -35,7 +35,7 @@ void sort_by_arc(std::vector<Placed>& placed) {
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.arc_m < b.arc_m; });
 }
 
-/// Those with from ≤ arc < to, of a sorted list.
+/// Visits the entries of a sorted list with from ≤ arc < to.
 template <typename Placed, typename Visit>
 void for_arcs(const std::vector<Placed>& placed, Gap arcs, const Visit& visit) {
   const auto before = [](const Placed& p, double arc) { return p.arc_m < arc; };
@@ -43,17 +43,17 @@ void for_arcs(const std::vector<Placed>& placed, Gap arcs, const Visit& visit) {
   for (auto p = std::lower_bound(placed.begin(), last, arcs.from_m, before); p != last; ++p) visit(*p);
 }
 
-/// A typing error of a spacing must not eat all memory.
+/// Refuses a scenario with too many points, so that a typing error in a spacing does not exhaust the memory.
 void expect_moderate(const Scenario& scenario, Gap extent) {
   double sum = 0.0;
   const auto add = [&](const char* what, std::size_t index, double parts) {
     sum += parts;
-    if (sum <= World::kMostParts) return;
+    if (sum <= World::kMaxParts) return;
     throw std::invalid_argument("scenario " + scenario.name + ": " + what + "[" + std::to_string(index) +
-                                "] has some " + std::to_string(static_cast<long long>(parts)) +
-                                " points along the ego vehicle's way; with all before it at most " +
-                                std::to_string(static_cast<long long>(World::kMostParts)) +
-                                " are allowed: space them wider, or drive shorter");
+                                "] has about " + std::to_string(static_cast<long long>(parts)) +
+                                " points along the ego vehicle's path; all structures and scatter together may have " +
+                                std::to_string(static_cast<long long>(World::kMaxParts)) +
+                                ": choose a wider spacing or a shorter duration");
   };
   for (std::size_t i = 0; i < scenario.structures.size(); ++i) {
     add("structure", i, most_parts(scenario.structures[i], extent));
@@ -67,7 +67,7 @@ World::World(const Scenario& scenario, std::uint64_t seed, double duration_s)
     : ego_(scenario.ego),
       road_(scenario.road, std::min(0.0, ego_extent(scenario.ego, duration_s).from_m) - kMargin_m,
             std::max(0.0, ego_extent(scenario.ego, duration_s).to_m) + kMargin_m) {
-  const Gap extent = widened(ego_extent(scenario.ego, duration_s), kDetour * kSight_m);
+  const Gap extent = widened(ego_extent(scenario.ego, duration_s), kMaxDetour * kReach_m);
   expect_moderate(scenario, extent);
   for (std::size_t i = 0; i < scenario.structures.size(); ++i) {
     add_structure(scenario.structures[i], i, road_, extent, seed, roadside_);
@@ -101,7 +101,7 @@ void World::add_actor(const BodySpec& spec, std::uint32_t id, std::uint64_t seed
   body.width_m = spec.width_m > 0.0 ? spec.width_m : usual.width_m;
   body.height_m = spec.height_m > 0.0 ? spec.height_m : usual.height_m;
   body.clearance_m = usual.clearance_m;
-  body.flank_low_m = spec.flank_low_m > 0.0 ? spec.flank_low_m : usual.flank_low_m;
+  body.side_low_m = spec.side_low_m > 0.0 ? spec.side_low_m : usual.side_low_m;
   body = placed(actor, body_motion(actor.spec, road_, 0.0));
   actors_.push_back(std::move(actor));
 }
@@ -137,7 +137,7 @@ void World::at(double t_s, double reach_m, Scene& scene) const {
   scene.surfaces.clear();
   scene.scatterers.clear();
   for (const Actor& actor : actors_) {
-    // Parked bodies are where they are; only the rest need their place worked out.
+    // The place of a parked body is constant; only that of the others is computed.
     if (actor.spec.parked) {
       const double gap_m = (actor.body.position_m - ego.position_m).norm() - 0.5 * actor.body.length_m;
       if (gap_m > reach_m) continue;
@@ -149,7 +149,7 @@ void World::at(double t_s, double reach_m, Scene& scene) const {
     add_sides(body, kSideLoss_db, scene.surfaces);
     scene.bodies.push_back(body);
   }
-  const Gap arcs = widened({ego.arc_m, ego.arc_m}, kDetour * reach_m + kHalfMirror_m);
+  const Gap arcs = widened({ego.arc_m, ego.arc_m}, kMaxDetour * reach_m + kMaxHalfMirror_m);
   for_arcs(roadside_.surfaces, arcs, [&](const PlacedSurface& p) {
     if (distance_m(ego.position_m, p.surface) <= reach_m) scene.surfaces.push_back(p.surface);
   });

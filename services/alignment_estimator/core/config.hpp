@@ -1,4 +1,4 @@
-// Settings of the alignment estimator; the defaults are what config/services/alignment_estimator.toml ships.
+// Settings of the alignment estimator; the defaults equal config/services/alignment_estimator.toml.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace boresight::alignment {
 
-/// Estimators to choose from: Boresight's own, and those of the literature (Report A §8).
+/// The available estimators: Boresight's own, and those of Burza 2025, §8.
 enum class MethodName : std::uint8_t {
   kBoresight,
   kSteepestDescent,
@@ -24,7 +24,7 @@ enum class MethodName : std::uint8_t {
   kBoresightPlanar
 };
 
-/// As they are called in configuration and on the command line.
+/// Their names in the configuration and on the command line.
 inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodNames{{
     {"boresight", MethodName::kBoresight},
     {"steepest_descent", MethodName::kSteepestDescent},
@@ -32,24 +32,24 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodN
     {"tls", MethodName::kTls},
     {"nelder_mead", MethodName::kNelderMead},
     {"azimuth_1d", MethodName::kAzimuth1d},
-    // Boresight's filter with the planar roll model of Report A, for reproducing its tables only.
+    // Boresight's filter with the planar roll model of Burza 2025; it only reproduces the published tables.
     {"boresight_planar", MethodName::kBoresightPlanar},
 }};
 
 struct Config {
   MethodName method = MethodName::kBoresight;
-  FilterConfig filter;                   ///< of kBoresight
-  published::PublishedConfig published;  ///< of all others
+  FilterConfig filter;                   ///< settings of kBoresight
+  published::PublishedConfig published;  ///< settings of all other methods
   double publish_period_s = 0.2;
   double kpi_window_s = 20.0;        ///< time constant of the residual statistics
-  double residual_gate_sigma = 4.0;  ///< key figures: residuals beyond this many stds are no inliers
-  std::optional<DriveTruth> truth;   ///< for the NEES, of simulated drives
+  double residual_gate_sigma = 4.0;  ///< key figures: detections with larger residuals (in stds) are no inliers
+  std::optional<DriveTruth> truth;   ///< of simulated drives, for the NEES
 
-  /// How crooked a radar may be before anything was measured, as the chosen method takes it.
+  /// Std of the mounting error before any measurement, as the chosen method assumes it.
   [[nodiscard]] double prior_angle_std_rad() const {
     return method == MethodName::kBoresight ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
   }
-  /// Below it a drive tells nothing.
+  /// Scans at lower speed are not used.
   [[nodiscard]] double min_speed_mps() const {
     return method == MethodName::kBoresight ? filter.min_speed_mps : published.min_speed_mps;
   }

@@ -15,7 +15,7 @@ namespace boresight::alignment {
 
 namespace {
 
-/// R(sensor→vehicle) as really mounted; none if the truth does not name the radar with all its angles.
+/// True R(sensor→vehicle); none if the truth file lacks the radar or one of its angles.
 std::optional<Eigen::Matrix3d> actual_mounting(const RadarConfig& radar, const std::optional<DriveTruth>& truth) {
   if (!truth) return std::nullopt;
   const auto found = truth->radars.find(radar.id);
@@ -46,8 +46,8 @@ ScanResult Estimator::add_scan(const RadarScan& scan) {
   if (!radar->seen) begin(static_cast<std::size_t>(radar - radars_.begin()));
   if (moves) offer(static_cast<std::size_t>(radar - radars_.begin()), scan, ego);
   const auto period_ns = static_cast<std::int64_t>(config_.publish_period_s * 1e9);
-  // The measurement clock decides, so that a replay publishes the same estimates at any speed; a clock that went
-  // back publishes at once.
+  // By the measurement clock, so that a replay publishes the same estimates at any speed. If the clock went back, the
+  // estimate is published at once.
   if (time_ns >= radar->next_publish_ns || time_ns < radar->next_publish_ns - 2 * period_ns) {
     radar->next_publish_ns = time_ns + period_ns;
     return ScanResult::kPublish;
@@ -60,7 +60,7 @@ void Estimator::begin(std::size_t index) {
   const RadarEstimate e = method_->estimate(index);
   radar.seen = true;
   radar.scans_used = e.scans_used;
-  // Where the way to the estimate begins: the nominal mounting, or what was remembered.
+  // Start of the distance to the estimate: the nominal mounting or the restored memory.
   radar.convergence.add(0.0, 0, vehicle_form(radar.config, e).values, e.step_change.count);
 }
 
@@ -72,7 +72,7 @@ void Estimator::offer(std::size_t index, const RadarScan& scan, const EgoSample&
       radar.last_time_ns == 0 ? 0.0 : static_cast<double>(detections_.time_ns - radar.last_time_ns) * 1e-9;
   radar.last_time_ns = detections_.time_ns;
   if (std::abs(ego.speed_mps) < config_.min_speed_mps() || detections_.count == 0) return;
-  // A recording that starts again, or a pause, is no drive.
+  // A restarted recording, or a pause, does not count as driving.
   const double elapsed_s = since_s > 0.0 && since_s < 1.0 ? since_s : radar.config.cycle_time_s;
   radar.drive_s += elapsed_s;
   ++radar.drive_scans;
@@ -83,7 +83,7 @@ void Estimator::observe(std::size_t index, const EgoSample& ego, double elapsed_
   Radar& radar = radars_[index];
   const RadarEstimate e = method_->estimate(index);
   radar.convergence.add(radar.drive_s, radar.drive_scans, vehicle_form(radar.config, e).values, e.step_change.count);
-  // A scan that the method did not use is no evidence of how well it does.
+  // A scan that the method did not use does not count in the key figures.
   if (e.scans_used == radar.scans_used) return;
   radar.scans_used = e.scans_used;
   radar.residuals.fade(elapsed_s, config_.kpi_window_s);
@@ -94,7 +94,7 @@ void Estimator::observe(std::size_t index, const EgoSample& ego, double elapsed_
 
 RadarEstimate Estimator::estimate(std::size_t radar) const {
   RadarEstimate e = method_->estimate(radar);
-  // Methods are not asked to judge scans without ego motion.
+  // Methods do not receive scans without ego motion.
   if (radars_[radar].seen) e.state = std::max(e.state, AlignmentState::kWaiting);
   return e;
 }

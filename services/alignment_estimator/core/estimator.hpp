@@ -1,4 +1,4 @@
-// All radars of the vehicle under one method, fed in the order of the messages; estimates with their key figures out.
+// All radars of the vehicle under one method: messages in their order in, estimates with key figures out.
 #pragma once
 
 #include <cstdint>
@@ -17,45 +17,46 @@
 
 namespace boresight::alignment {
 
-/// What came of a scan.
+/// Result of a scan.
 enum class ScanResult : std::uint8_t {
   kUsed,          ///< processed; nothing to publish yet
   kPublish,       ///< processed, and the radar's estimate is due
-  kUnknownRadar,  ///< the vehicle file does not know this radar
+  kUnknownRadar,  ///< this radar is not in the vehicle file
   kNoEgoMotion,   ///< waiting: no ego motion at the time of the scan
 };
 
 /// No allocation after construction.
 class Estimator {
  public:
-  /// Throws std::invalid_argument for a method that is not on offer.
+  /// Throws std::invalid_argument for an unknown method.
   Estimator(const VehicleConfig& vehicle, const Config& config);
 
   void add_ego_motion(const EgoMotion& motion) { ego_.add(motion); }
   [[nodiscard]] ScanResult add_scan(const RadarScan& scan);
-  /// Everything but the header, key figures included; false for an unknown radar.
+  /// Writes everything but the header, key figures included; false for an unknown radar.
   [[nodiscard]] bool write(std::uint32_t radar_id, AlignmentEstimate& out) const;
 
-  /// By the place in the vehicle's list of radars.
+  /// By index in the vehicle's list of radars.
   [[nodiscard]] RadarEstimate estimate(std::size_t radar) const;
   [[nodiscard]] const ResidualStatistics& residuals(std::size_t radar) const { return radars_[radar].residuals; }
   [[nodiscard]] const Convergence& convergence(std::size_t radar) const { return radars_[radar].convergence; }
 
-  /// What shall survive the ignition cycle; without radars if the method remembers nothing.
+  /// Memory over ignition cycles; without radars if the method has none.
   [[nodiscard]] Memory memory() const;
   /// To be called before the first scan.
   void restore(const Memory& memory) { method_->restore(memory); }
-  /// A calibration's result, at any time: see Method::seed(). False for an unknown radar, too.
+  /// Applies the result of a static calibration, at any time: see Method::seed(). False also for an unknown radar.
   [[nodiscard]] bool seed(const RotationSeed& seed);
 
  private:
   struct Radar {
     RadarConfig config;
-    std::optional<Eigen::Matrix3d> actual;  ///< as really mounted, where the truth is known
+    std::optional<Eigen::Matrix3d> actual;  ///< true rotation, if the truth is known
     bool seen = false;
     std::int64_t next_publish_ns = 0;
     std::int64_t last_time_ns = 0;
-    double drive_s = 0.0;  ///< of scans that were offered to the method, fast enough: the clock of the key figures
+    double drive_s =
+        0.0;  ///< driving time of scans given to the method at sufficient speed: the clock of the key figures
     std::uint64_t drive_scans = 0;
     std::uint64_t scans_used = 0;
     ResidualStatistics residuals;

@@ -31,7 +31,7 @@ std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& 
       return std::make_unique<planar::PlanarFilter>(vehicle, planar);
     }
   }
-  throw std::invalid_argument("no such alignment method");
+  throw std::invalid_argument("unknown alignment method");
 }
 
 }  // namespace boresight::alignment

@@ -1,4 +1,4 @@
-// A method by its name.
+// Creates a method by its name.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace boresight::alignment {
 
-/// Throws std::invalid_argument for a name that is not on offer.
+/// Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& config);
 
 }  // namespace boresight::alignment

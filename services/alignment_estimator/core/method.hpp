@@ -1,5 +1,5 @@
-// What every alignment method offers, the product's own and the published ones, so that the service and the offline
-// tool run any of them by its name.
+// Interface of every alignment method, the product's own and the published ones. The service and the command-line tool
+// run any of them by its name.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@
 
 namespace boresight::alignment {
 
-/// What a method believes of one radar and of what it shares with the others. Parameters in this order: k_v, then the
-/// turn d about the vehicle's x (roll), y and z (yaw) axes, R(actual) = Exp(d)·R(nominal), right-handed.
+/// Estimate of one radar and of the parameters that all radars share. Parameters in this order: k_v, then the rotation
+/// d about the vehicle's x (roll), y and z (yaw) axes, R(actual) = Exp(d)·R(nominal), right-handed.
 struct RadarEstimate {
   AlignmentState state = AlignmentState::kNoData;
-  std::uint32_t observable = 0;  ///< alignment_axis bits but those about the sensor's axes
+  std::uint32_t observable = 0;  ///< alignment_axis bits, without those about the sensor's axes
   double speed_scale = 1.0;
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of (k_v, d_x, d_y, d_z), as errors Exp(d)·R
@@ -27,10 +27,10 @@ struct RadarEstimate {
   double slip_coefficient_radps2pm = 0.0;  ///< c of V_y = −c·V·(V·ω)
   double slip_coefficient_std_radps2pm = 0.0;
   double angle_noise_scale = 1.0;
-  double inlier_ratio = 0.0;  ///< share of the detections of recent scans that were believed stationary
+  double inlier_ratio = 0.0;  ///< share of stationary detections in recent scans
   std::uint64_t scans_used = 0;
   std::uint64_t detections_used = 0;
-  double seconds_of_drive = 0.0;  ///< spent estimating with this radar
+  double seconds_of_drive = 0.0;  ///< driving time with this radar
   AlignmentStepChange step_change{};
 };
 
@@ -41,20 +41,20 @@ class Method {
   Method(const Method&) = delete;
   Method& operator=(const Method&) = delete;
 
-  /// Takes one scan of the radar at `radar` in the vehicle's list, with the motion at its time. Scans come in the order
-  /// of arrival, radars in any order and not synchronised. Never allocates.
+  /// Processes one scan of the radar at index `radar` in the vehicle's list, with the motion at its time. Scans come in
+  /// the order of arrival; the radars need not be synchronised. Never allocates.
   virtual void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) = 0;
   [[nodiscard]] virtual RadarEstimate estimate(std::size_t radar) const = 0;
-  /// Range rates (m/s) that the method's model gives for the detections of a scan if they stand still; `out` has
+  /// Range rates (m/s) that the method's model predicts for the detections of a scan if they are stationary; `out` has
   /// scan.count places. Never allocates.
   virtual void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego,
                        std::span<double> out) const = 0;
-  /// What shall survive the ignition cycle, and taking it up again; a method that has nothing to remember does nothing.
+  /// Memory over ignition cycles: writing and restoring. A method without memory does nothing.
   virtual void save(Memory&) const {}
   virtual void restore(const Memory&) {}
-  /// A calibration has measured this radar's rotation now (vector d of R(actual) = Exp(d)·R(nominal), covariance of d,
-  /// rad²): it replaces what was believed of it, at full weight, unlike what is only remembered. False, and nothing
-  /// changes, if it is not finite or the method starts from nothing but the nominal mounting. Never allocates.
+  /// Starts this radar from the rotation of a static calibration (vector d of R(actual) = Exp(d)·R(nominal), covariance
+  /// of d in rad²). The rotation replaces the estimate at full weight, unlike a restored memory. Returns false and
+  /// changes nothing if it is not finite or the method always starts from the nominal mounting. Never allocates.
   virtual bool seed(std::size_t /*radar*/, const Eigen::Vector3d& /*rotation_vehicle_rad*/,
                     const Eigen::Matrix3d& /*covariance*/) {
     return false;

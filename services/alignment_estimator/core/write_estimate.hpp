@@ -1,4 +1,4 @@
-// What a method believes → the message: the same rotation about the vehicle's and about the sensor's axes.
+// Estimate of a method → message: the same rotation about the vehicle's and about the sensor's axes.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,11 +16,11 @@ struct VehicleForm {
 };
 [[nodiscard]] VehicleForm vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate);
 
-/// Yaw, pitch and roll of the correction from the nominal mounting to this one.
+/// Yaw, pitch and roll of the rotation from the nominal mounting to this one.
 [[nodiscard]] Eigen::Vector3d vehicle_angles(const RadarConfig& radar, const Eigen::Matrix3d& sensor_to_vehicle);
 
-/// Writes everything but the header and the key figures. An axis of the sensor is called observable once the data say
-/// clearly more of it than `prior_angle_std_rad` did.
+/// Writes everything but the header and the key figures. An axis of the sensor is observable once its std is clearly
+/// below `prior_angle_std_rad`.
 void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, double prior_angle_std_rad,
                     AlignmentEstimate& out);
 

@@ -15,10 +15,10 @@ namespace service = wire::calibration_service;
 
 namespace {
 
-/// The node looks at its inputs as often.
+/// The node polls its inputs with the same period.
 constexpr std::int64_t kServePeriod_ns = 10'000'000;
 constexpr std::int64_t kNetworkPeriod_ns = 1'000'000'000;
-/// Bounded, so that a flood of requests cannot hold scans up: a hundred microseconds at most.
+/// Limited, so that a flood of requests cannot delay scans by more than a hundred microseconds.
 constexpr int kDatagramsPerTurn = 16;
 
 double degrees(double angle_rad) {
@@ -103,9 +103,9 @@ bool CalibrationServer::take_over(std::uint32_t radar_id, const plate::PlateResu
   const bool taken_over = seed_from_plate(*radar, result.yaw_rad, result.yaw_std_rad, result.pitch_rad,
                                           result.pitch_std_rad, settings_.seed, seed) &&
                           take_over_(seed);
-  runtime::log::info("radar {} calibrated at the plate: yaw {:+.3f}, pitch {:+.3f} deg, confidence {:.2f}; {}",
+  runtime::log::info("radar {} calibrated with the plate: yaw {:+.3f}, pitch {:+.3f} deg, confidence {:.2f}; {}",
                      radar->name, degrees(result.yaw_rad), degrees(result.pitch_rad), result.self_consistency,
-                     taken_over ? "the estimator starts from it" : "the estimator's method cannot take it over");
+                     taken_over ? "the estimator starts from it" : "the estimator's method cannot start from it");
   return taken_over;
 }
 

@@ -1,5 +1,5 @@
-// Serves the calibration service (interfaces/wire/calibration_service.md) from the node's own loop: its sockets are
-// looked at between scans, never waited for.
+// Serves the calibration service (interfaces/wire/calibration_service.md) from the node's event loop. Its sockets are
+// polled between scans, without waiting.
 #pragma once
 
 #include <functional>
@@ -18,13 +18,13 @@ namespace boresight::alignment::station {
 
 class CalibrationServer : private Surroundings {
  public:
-  /// Hands a valid result to the dynamic estimator; true if it starts from it.
+  /// Passes a valid result to the dynamic estimator; true if the estimator starts from it.
   using TakeOver = std::function<bool(const RotationSeed&)>;
 
-  /// Does nothing at all unless the settings enable it. A network that is not there yet is a fault of the node (kLink),
-  /// and tried again every second.
+  /// Does nothing unless the settings enable it. A missing network is a fault of the node (kLink) and retried every
+  /// second.
   CalibrationServer(runtime::Node& node, const VehicleConfig& vehicle, const Settings& settings, TakeOver take_over);
-  /// Takes the offer back.
+  /// Withdraws the offer from service discovery.
   ~CalibrationServer() override;
   CalibrationServer(const CalibrationServer&) = delete;
   CalibrationServer& operator=(const CalibrationServer&) = delete;
@@ -45,7 +45,7 @@ class CalibrationServer : private Surroundings {
   void serve();
   void receive(std::int64_t now_ns);
   void send(const recording::Endpoint& to, std::span<const std::uint8_t> message);
-  /// Opens the sockets, or anew if the interface was replaced.
+  /// Opens the sockets; reopens them if the interface was replaced.
   void check_network();
   void close_network();
 
@@ -55,7 +55,7 @@ class CalibrationServer : private Surroundings {
   TakeOver take_over_;
   CalibrationService service_;
   std::unique_ptr<Network> network_;
-  recording::Endpoint asker_;  ///< whom answers go to
+  recording::Endpoint asker_;  ///< receiver of answers
   bool network_fault_reported_ = false;
   std::vector<std::uint8_t> buffer_;
 };

@@ -19,13 +19,13 @@ void read_network(config::Reader& table, Settings& s) {
   s.discovery_group.port = static_cast<std::uint16_t>(table.integer("discovery_port", {1, 65535}, discovery::kPort));
   s.multicast_hops = static_cast<int>(table.integer("multicast_hops", {0, 255}, s.multicast_hops));
   if (!s.enabled) return;
-  if (s.interface.empty()) table.reject("interface", "is needed where enabled = true");
+  if (s.interface.empty()) table.reject("interface", "is required with enabled = true");
   if (s.address.is_unspecified() || s.address.is_multicast()) {
     table.reject("address", "\"" + address + "\" is not an IP address of this machine");
   } else if (!s.discovery_group.address.is_multicast() || s.discovery_group.address.is_v4() != s.address.is_v4()) {
     table.reject("discovery_group", "\"" + group + "\" is not a multicast group of the same IP version as address");
   }
-  if (s.port == s.discovery_group.port) table.reject("port", "is that of discovery");
+  if (s.port == s.discovery_group.port) table.reject("port", "is the port of service discovery");
 }
 
 }  // namespace

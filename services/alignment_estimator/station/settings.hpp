@@ -1,4 +1,4 @@
-// Table [station] of config/services/alignment_estimator.toml → what the calibration service runs with.
+// Table [station] of config/services/alignment_estimator.toml → settings of the calibration service.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,16 @@ struct Settings {
   bool enabled = false;
   std::string interface;
   recording::IpAddress address;                                  ///< of this machine on that interface
-  std::uint16_t port = wire::calibration_service::kDefaultPort;  ///< where requests are taken
+  std::uint16_t port = wire::calibration_service::kDefaultPort;  ///< for requests
   std::uint16_t instance = wire::calibration_service::kDefaultInstance;
   recording::Endpoint discovery_group;
   int multicast_hops = 1;
-  double max_speed_mps = 0.1;  ///< signalled speed up to which the vehicle counts as standing
+  double max_speed_mps = 0.1;  ///< signalled speed up to which the vehicle counts as stationary
   plate::StationConfig plate;
   SeedConfig seed;
 };
 
-/// Notes errors in the reader. Only if enabled are interface and address demanded.
+/// Adds errors to the reader. Interface and address are required only if the service is enabled.
 [[nodiscard]] Settings read_settings(config::Reader table);
 
 }  // namespace boresight::alignment::station

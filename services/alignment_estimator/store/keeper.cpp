@@ -10,7 +10,7 @@ Keeper::Keeper(runtime::Node& node, Estimator& estimator, const VehicleConfig& v
                const std::optional<std::filesystem::path>& file, double period_s)
     : node_(node), estimator_(estimator) {
   if (!file) {
-    log::info("nothing is remembered from drive to drive: no file for it");
+    log::info("no memory over ignition cycles: no file is configured");
     return;
   }
   const Identity identity = identity_of(vehicle);
@@ -23,24 +23,26 @@ void Keeper::restore(const std::filesystem::path& file, const Identity& identity
   const LoadedMemory loaded = load_memory(file, identity);
   switch (loaded.kind) {
     case LoadedMemory::Kind::kMissing:
-      log::info("no alignment remembered in {}: starting from the nominal mounting", file.string());
+      log::info("no stored alignment in {}: starting from the nominal mounting", file.string());
       break;
     case LoadedMemory::Kind::kTaken:
       estimator_.restore(loaded.memory);
       kept_drive_s_ = drive_s(loaded.memory);
-      log::info("alignment of {} radars remembered from {}", loaded.memory.number_of_radars, file.string());
-      if (loaded.left_out > 0) {
-        log::warning("{} radars are mounted otherwise than remembered: they start anew", loaded.left_out);
+      log::info("alignment of {} radars restored from {}", loaded.memory.number_of_radars, file.string());
+      if (loaded.rejected_radars > 0) {
+        log::warning("{} radars have another mounting than the stored one: they start from the nominal mounting",
+                     loaded.rejected_radars);
       }
       break;
     case LoadedMemory::Kind::kRejected:
       node_.fault(loaded.verdict == MemoryVerdict::kOtherVersion ? Fault::kVersionMismatch : Fault::kWireValue,
-                  "remembered alignment is " + loaded.reason);
-      log::warning("{}: remembered alignment is {}; it is kept aside and not used", file.string(), loaded.reason);
+                  "stored alignment is " + loaded.reason);
+      log::warning("{}: stored alignment is {}; kept with the suffix .rejected and not used", file.string(),
+                   loaded.reason);
       break;
     case LoadedMemory::Kind::kUnreadable:
-      node_.fault(Fault::kLink, "remembered alignment cannot be read: " + loaded.reason);
-      log::warning("{}: remembered alignment cannot be read: {}", file.string(), loaded.reason);
+      node_.fault(Fault::kLink, "stored alignment cannot be read: " + loaded.reason);
+      log::warning("{}: stored alignment cannot be read: {}", file.string(), loaded.reason);
       break;
   }
 }
@@ -54,12 +56,11 @@ double Keeper::drive_s(const Memory& memory) {
 void Keeper::keep() {
   const std::uint64_t failures = writer_->failed();
   if (failures > reported_failures_) {
-    node_.fault(Fault::kLink, "alignment cannot be remembered: its file cannot be written",
-                failures - reported_failures_);
+    node_.fault(Fault::kLink, "alignment cannot be stored: its file cannot be written", failures - reported_failures_);
     reported_failures_ = failures;
   }
   const Memory memory = estimator_.memory();
-  // Standing still teaches nothing, and flash wears out.
+  // A stationary vehicle gives no new information, and flash memory wears out.
   if (drive_s(memory) == kept_drive_s_) return;
   if (writer_->offer(memory)) kept_drive_s_ = drive_s(memory);
 }
@@ -67,7 +68,7 @@ void Keeper::keep() {
 void Keeper::remember() {
   if (!writer_) return;
   const Memory memory = estimator_.memory();
-  // What the writer cannot take now, the next turn or the end does.
+  // If the writer is busy, the next turn or the end writes.
   kept_drive_s_ = writer_->offer(memory) ? drive_s(memory) : -1.0;
 }
 
@@ -76,7 +77,7 @@ void Keeper::finish() {
   const Memory memory = estimator_.memory();
   if (memory.number_of_radars == 0) return;
   if (const std::string problem = writer_->finish(memory); !problem.empty()) {
-    log::error("alignment cannot be remembered: {}", problem);
+    log::error("alignment cannot be stored: {}", problem);
   }
 }
 

@@ -1,4 +1,4 @@
-// What the service remembers from drive to drive: takes it up at start, puts it down every now and then and at the end.
+// The memory from drive to drive: restores it at start, writes it periodically and at the end.
 #pragma once
 
 #include <filesystem>
@@ -13,19 +13,19 @@ namespace boresight::alignment {
 
 class Keeper {
  public:
-  /// Without a file it keeps nothing and says so. Restores the estimator; a file that is refused is a fault of the node
-  /// (kWireValue, or kVersionMismatch), one that the file system refuses too (kLink).
+  /// Restores the estimator. Without a file nothing is stored, and a log line reports this. A rejected file is a fault
+  /// of the node (kWireValue or kVersionMismatch), an error of the file system as well (kLink).
   Keeper(runtime::Node& node, Estimator& estimator, const VehicleConfig& vehicle,
          const std::optional<std::filesystem::path>& file, double period_s);
-  /// Something was learnt that no drive taught, a calibration: it is put down at once.
+  /// Writes at once, after a static calibration.
   void remember();
-  /// The last memory, if there is something new in it; call it when the node has stopped.
+  /// Writes the last memory if it changed; call it after the node has stopped.
   void finish();
 
  private:
   void restore(const std::filesystem::path& file, const Identity& identity);
   void keep();
-  /// Of all radars together: it grows with every scan that taught something.
+  /// Sum over all radars; it grows with every scan used.
   [[nodiscard]] static double drive_s(const Memory& memory);
 
   runtime::Node& node_;

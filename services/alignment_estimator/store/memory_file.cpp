@@ -22,7 +22,7 @@ std::string failure(const char* what) {
   return std::string(what) + ": " + std::strerror(errno);
 }
 
-/// A descriptor that is closed whatever happens.
+/// A file descriptor that the destructor closes.
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags) : fd_(open(path.c_str(), flags | O_CLOEXEC, 0660)) {}
@@ -47,7 +47,7 @@ bool write_all(int fd, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// Reads up to the capacity; −1 on errors. A file that is longer shows as a full buffer.
+/// Reads up to the capacity; −1 on errors. A longer file fills the buffer.
 ssize_t read_all(int fd, std::span<std::uint8_t> into) {
   std::size_t size = 0;
   while (size < into.size()) {
@@ -82,8 +82,8 @@ LoadedMemory load_memory(const fs::path& file, const Identity& identity) {
       return loaded;
     }
   }
-  loaded.verdict =
-      decode_memory(std::span(bytes.data(), static_cast<std::size_t>(size)), identity, loaded.memory, loaded.left_out);
+  loaded.verdict = decode_memory(std::span(bytes.data(), static_cast<std::size_t>(size)), identity, loaded.memory,
+                                 loaded.rejected_radars);
   if (loaded.verdict == MemoryVerdict::kTaken) {
     loaded.kind = LoadedMemory::Kind::kTaken;
     return loaded;
@@ -91,7 +91,7 @@ LoadedMemory load_memory(const fs::path& file, const Identity& identity) {
   loaded.kind = LoadedMemory::Kind::kRejected;
   loaded.reason = describe(loaded.verdict);
   if (rename(file.c_str(), with_suffix(file, ".rejected").c_str()) != 0) {
-    loaded.reason += ", and cannot be kept aside: " + failure("rename");
+    loaded.reason += ", and the file cannot be renamed: " + failure("rename");
   }
   return loaded;
 }
@@ -101,7 +101,7 @@ std::string write_memory_file(const fs::path& file, std::span<const std::uint8_t
   {
     const Descriptor output(temporary, O_WRONLY | O_CREAT | O_TRUNC);
     if (output.get() < 0) return failure("open");
-    // What the name will stand for must be on the medium before the name does.
+    // The content must be on the medium before the rename.
     if (!write_all(output.get(), bytes)) return failure("write");
     if (fsync(output.get()) != 0) return failure("fsync");
   }

@@ -35,7 +35,7 @@ void MemoryWriter::run() {
   while (true) {
     order_.wait(Order::kNone);
     if (order_.load() == Order::kWrite) static_cast<void>(write(handed_over_));
-    // A write ordered just before the end is done; the end itself is remembered apart from the order.
+    // A write ordered just before the end is still done; the end is stored apart from the order.
     order_.store(Order::kNone);
     if (ends_.load()) return;
   }
@@ -52,7 +52,7 @@ std::string MemoryWriter::write(const Memory& memory) {
 void MemoryWriter::end() {
   if (!thread_.joinable()) return;
   ends_.store(true);
-  // Wakes the thread if it waits; if it writes, it sees `ends_` when it is done.
+  // Wakes a waiting thread; a writing thread reads `ends_` afterwards.
   Order none = Order::kNone;
   order_.compare_exchange_strong(none, Order::kEnd);
   order_.notify_one();

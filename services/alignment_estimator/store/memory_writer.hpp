@@ -1,4 +1,4 @@
-// Writes memories on a thread of its own: fsync may take a second on a worn flash chip, and scans do not wait for it.
+// Writes memories on a separate thread: fsync may take a second on a worn flash chip, and scans must not wait for it.
 #pragma once
 
 #include <atomic>
@@ -10,22 +10,22 @@
 
 namespace boresight::alignment {
 
-/// offer() and finish() belong to one thread, the node's.
+/// Call offer() and finish() from one thread, the node's.
 class MemoryWriter {
  public:
-  /// Starts the thread, in which all signals are blocked: they are the main thread's.
+  /// Starts the thread. It blocks all signals, which the main thread handles.
   MemoryWriter(std::filesystem::path file, const Identity& identity);
   ~MemoryWriter();
   MemoryWriter(const MemoryWriter&) = delete;
   MemoryWriter& operator=(const MemoryWriter&) = delete;
 
-  /// Copies the memory and leaves the rest to the thread; false, and nothing happens, while it still writes the one
-  /// before. Neither blocks nor allocates: a flag hands the copy over.
+  /// Copies the memory and passes it to the thread by a flag. Returns false and does nothing while the thread still
+  /// writes the previous one. Neither blocks nor allocates.
   bool offer(const Memory& memory);
-  /// Ends the thread and writes the last memory itself; empty if it worked, else what failed.
+  /// Ends the thread and writes the last memory; returns an empty string, or the failed operation.
   [[nodiscard]] std::string finish(const Memory& memory);
 
-  /// Files written and writes that failed, so far.
+  /// Numbers of written files and failed writes.
   [[nodiscard]] std::uint64_t written() const { return written_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t failed() const { return failed_.load(std::memory_order_relaxed); }
 
@@ -37,7 +37,7 @@ class MemoryWriter {
 
   std::filesystem::path file_;
   Identity identity_;
-  Memory handed_over_;  ///< the node's while the order is kNone, else the thread's
+  Memory handed_over_;  ///< owned by the node while the order is kNone, otherwise by the thread
   MemoryBytes bytes_;
   std::atomic<Order> order_{Order::kNone};
   std::atomic<bool> ends_{false};

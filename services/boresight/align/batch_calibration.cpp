@@ -18,16 +18,16 @@ namespace {
 
 namespace batch_calibration = alignment::batch_calibration;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-/// What stands for a std that is not finite.
-constexpr double kOpen_rad = 1.0;
+constexpr float kUnknownFloat = std::numeric_limits<float>::quiet_NaN();
+/// Replaces a standard deviation that is not finite.
+constexpr double kUnknownStd_rad = 1.0;
 
 bool is_supported(const batch_calibration::Parameter& parameter) {
   return parameter.support == batch_calibration::Support::kSupported;
 }
 
 double std_of(const batch_calibration::Parameter& parameter) {
-  return std::isfinite(parameter.std) ? std::hypot(parameter.std, parameter.spread) : kOpen_rad;
+  return std::isfinite(parameter.std) ? std::hypot(parameter.std, parameter.spread) : kUnknownStd_rad;
 }
 
 alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scale, double yaw, double pitch,
@@ -38,7 +38,7 @@ alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scal
   return e;
 }
 
-/// Of (k_v, d_x, d_y, d_z) from the stds of (α, β, γ), whose correlations the method does not tell.
+/// Covariance of (k_v, d_x, d_y, d_z) from the stds of (α, β, γ). The method gives no correlations, so they are zero.
 Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
                               const batch_calibration::RadarResult& radar, const Eigen::Matrix3d& sensor_to_vehicle) {
   const Eigen::Vector3d angles = geometry::euler_angles(sensor_to_vehicle);
@@ -50,8 +50,8 @@ Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
   return covariance;
 }
 
-/// Only k_v and yaw can be: the planar roll model is no rotation and leaves pitch and roll wrong by up to 1.5° each,
-/// whatever their stds (algorithms: Report A's (10)(11) against the exact rotation).
+/// Only k_v and yaw can be observable. The planar roll model is no rotation: pitch and roll may be wrong by up to 1.5°
+/// each, whatever their stds (docs/algorithms/published-alignment.md: (10)(11) against the exact rotation).
 std::uint32_t observable_of(const batch_calibration::Parameter& speed_scale,
                             const batch_calibration::RadarResult& radar) {
   std::uint32_t bits = 0;
@@ -111,14 +111,15 @@ void solve_batch_calibration(const VehicleConfig& vehicle, const std::vector<con
       radar.estimate.state = r.used > 0 ? AlignmentState::kConverged : AlignmentState::kNoData;
       radar.estimate.observable = observable_of(found.speed_scale, r);
       radar.estimate.detections_used = r.used;
-      radar.estimate.inlier_ratio = r.offered > 0 ? static_cast<double>(r.used) / static_cast<double>(r.offered) : kNaN;
+      radar.estimate.inlier_ratio =
+          r.offered > 0 ? static_cast<double>(r.used) / static_cast<double>(r.offered) : kUnknownFloat;
       radar.support = {support_of(r.yaw, false), support_of(r.pitch, true), support_of(r.roll, true)};
     } else {
       radar.estimate = estimate_of(config.mounting_pose, 1.0, 0.0, 0.0, 0.0);
       radar.estimate.covariance = Eigen::Vector4d(1.0, 1.0, 1.0, 1.0).asDiagonal();
     }
     alignment::write_estimate(config, radar.estimate, 0.0, radar.message);
-    radar.message.kpis.seconds_to_95_percent.fill(kNaN);
+    radar.message.kpis.seconds_to_95_percent.fill(kUnknownFloat);
   }
   if (!found.ok) return;
   result.speed_scale = found.speed_scale.value;

@@ -1,4 +1,4 @@
-// The post-factum calibration over a whole recording, as a result like that of the methods that go scan by scan.
+// The batch calibration over a whole recording; its result has the form of the methods that work scan by scan.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace boresight::align {
 
-/// Fills k_v, the radars' estimates and messages, what the data support, and the iterations as series. `result` has the
-/// radars of the vehicle file in its order, `samples` their detections. Takes seconds, of which `progress` hears.
+/// Fills k_v, the radars' estimates and messages, which parameters the data support, and the iterations as series.
+/// `result` has the radars of the vehicle file in its order, `samples` their detections. Takes seconds, so `progress`
+/// is called in between.
 void solve_batch_calibration(const VehicleConfig& vehicle, const std::vector<const ResidualSample*>& samples,
                              const alignment::batch_calibration::Config& settings,
                              const alignment::batch_calibration::Progress& progress, Result& result);

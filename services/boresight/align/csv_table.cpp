@@ -8,12 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "services/common/estimation/unknown.hpp"
+
 namespace boresight::align {
 
 namespace {
 
 constexpr std::size_t kMaxLine = 4096;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string_view trim(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -22,7 +23,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-/// For error messages: short, and nothing that would upset a terminal.
+/// Quotes a text for error messages: shortened, without control characters.
 std::string quote(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string result = "\"";
@@ -68,7 +69,7 @@ CsvTable::CsvTable(recording::ByteSource& source, std::span<const Column> column
       ignored_.emplace_back(quote(name));
     } else {
       const auto column = static_cast<std::size_t>(found - columns.begin());
-      if (has(column)) throw TableError(fmt::format("{}: column {} is there twice", place(begin), name));
+      if (has(column)) throw TableError(fmt::format("{}: column {} is given twice", place(begin), name));
       cell_of_[column] = static_cast<int>(column_of_.size());
       column_of_.push_back(static_cast<int>(column));
     }
@@ -95,7 +96,7 @@ bool CsvTable::next_line(std::string_view& line) {
     if (!text.empty() && text.front() != '#') return true;
   }
   if (lines_.error() != 0) {
-    throw TableError(fmt::format("{}: cannot be read on after line {}: {}", source_.name(), line_number_,
+    throw TableError(fmt::format("{}: cannot be read after line {}: {}", source_.name(), line_number_,
                                  std::strerror(lines_.error())));
   }
   return false;
@@ -135,7 +136,7 @@ bool CsvTable::parse(std::string_view line, std::span<double> values) {
       double value = kNaN;
       if (!text.empty() || !column.may_be_empty) {
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        // A number that is too small for a double is as good as zero.
+        // A number too small for a double counts as zero.
         const bool is_tiny = error == std::errc::result_out_of_range && text.find("e-") != std::string_view::npos;
         if (is_tiny) value = 0.0;
         if ((error != std::errc{} && !is_tiny) || stop != text.data() + text.size()) return wrong(), false;

@@ -1,4 +1,4 @@
-// Tables of numbers with a header line: columns by name in any order, each number checked against what is allowed.
+// Tables of numbers with a header line: columns by name in any order, each number checked against its allowed range.
 #pragma once
 
 #include <array>
@@ -15,38 +15,38 @@
 
 namespace boresight::align {
 
-/// A file that cannot be used at all; what() names file, line and cause.
+/// The whole file cannot be used; what() names file, line and cause.
 class TableError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A column that is read if the table has it.
+/// A column that is read if the table contains it.
 struct Column {
   std::string_view name;
   double min, max;  ///< of allowed values
   std::string_view unit;
-  bool required = true;       ///< else the table may lack it
+  bool required = true;       ///< false: the table need not contain it
   bool may_be_empty = false;  ///< an empty cell or "nan" is read as NaN
 };
 
 class CsvTable {
  public:
-  /// Reads the header; throws TableError if there is none or a required column is missing or twice there. Empty lines
-  /// and those that begin with '#' are passed over. `columns` must outlive the table.
+  /// Reads the header; throws TableError if there is none, or if a required column is missing or given twice. Skips
+  /// empty lines and comments ('#'). `columns` must outlive the table.
   CsvTable(recording::ByteSource& source, std::span<const Column> columns, Problems& problems);
 
-  /// The next row's values in the order of `columns`, NaN where there is none. Rows that cannot be read are problems
-  /// and passed over. False at the end; throws TableError if the file cannot be read on.
+  /// The next row's values in the order of `columns`, NaN for an absent or empty cell. Rows that cannot be read are
+  /// reported to `problems` and skipped. False at the end; throws TableError after a read error.
   [[nodiscard]] bool next(std::span<double> values);
 
-  /// Notes the row that next() gave last as bad after all.
+  /// Counts the row that next() returned last as bad.
   void reject(std::size_t column, const std::string& problem);
-  /// Tells that the row that next() gave last is good.
+  /// Counts the row that next() returned last as good.
   void accept() { problems_.good_line(); }
 
   [[nodiscard]] bool has(std::size_t column) const { return cell_of_[column] >= 0; }
-  /// Names of the table's columns that nobody reads.
+  /// Names of the table's columns that are not read.
   [[nodiscard]] const std::vector<std::string>& ignored() const { return ignored_; }
   [[nodiscard]] std::uint64_t line_number() const { return line_number_; }
 

@@ -11,7 +11,7 @@ namespace {
 enum : std::size_t { kT, kRadar, kRange, kAz, kEl, kVr, kAzStd, kElStd, kVrStd, kVrMin, kVrMax };
 
 constexpr double kPi = 3.1415926535897933, kFastest_mps = 500.0;
-constexpr std::array<Column, 11> kColumnList = {{
+constexpr std::array<Column, 11> kDriveColumns = {{
     {.name = "t", .min = TimeOrder::kMin_s, .max = TimeOrder::kMax_s, .unit = "s"},
     {.name = "radar", .min = 1, .max = kMaxRadars, .unit = "(the radar's id)"},
     {.name = "range", .min = -100.0, .max = 1e5, .unit = "m"},
@@ -38,7 +38,7 @@ std::string ids(const VehicleConfig& vehicle) {
 }  // namespace
 
 DriveReader::DriveReader(recording::ByteSource& source, const VehicleConfig& vehicle, Problems& problems)
-    : vehicle_(vehicle), table_(source, kColumnList, problems) {
+    : vehicle_(vehicle), table_(source, kDriveColumns, problems) {
   has_row_ = read_row();
 }
 
@@ -62,8 +62,9 @@ bool DriveReader::read_row() {
     }
     const double newest_s = order_.newest_s();
     if (!order_.accept(row_[kT])) {
-      table_.reject(kT, fmt::format("read {} s after {} s; times may go back by {} s and forward by {} s", row_[kT],
-                                    newest_s, TimeOrder::kBack_s, TimeOrder::kForward_s));
+      table_.reject(kT,
+                    fmt::format("read {} s after {} s; times may go back by at most {} s and forward by at most {} s",
+                                row_[kT], newest_s, TimeOrder::kBack_s, TimeOrder::kForward_s));
       continue;
     }
     table_.accept();
@@ -99,7 +100,7 @@ bool DriveReader::next(RadarScan& scan, double& time_s) {
     scan.elevation_std_rad[count] = or_zero(row_[kElStd]);
     scan.range_rate_std_mps[count] = or_zero(row_[kVrStd]);
     scan.existence_probability[count] = 1.0F;
-    // Where some detections of a scan have an elevation, those without are of no use.
+    // If some detections of a scan have an elevation, the others are invalid.
     const bool has_elevation = !std::isnan(row_[kEl]);
     scan.detection_flags[count] = has_elevation ? 0 : detection_flag::kInvalid;
     if (has_elevation) scan.fields |= scan_field::kElevation;

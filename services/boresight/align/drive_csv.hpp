@@ -1,4 +1,4 @@
-// Detections of a drive as a table, row by row, put together to scans.
+// Reads a table of detections and groups its rows into scans.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@
 namespace boresight::align {
 
 /// Columns t (s, any origin), radar (id), range (m), az and el (rad, + left, + up, sensor axes), vr (m/s, + receding).
-/// `el` may be absent or empty: the radar measures none. Optional: az_std, el_std (rad), vr_std (m/s), and vr_min,
-/// vr_max (m/s), the unambiguous interval of vr. Everything else is ignored; is_stationary, the truth, above all.
+/// `el` may be absent or empty if the radar measures no elevation. Optional: az_std, el_std (rad), vr_std (m/s), and
+/// vr_min, vr_max (m/s), the unambiguous interval of vr. Other columns are ignored, also the truth is_stationary.
 class DriveReader {
  public:
   /// Throws TableError as CsvTable does. All arguments must outlive the reader.
   DriveReader(recording::ByteSource& source, const VehicleConfig& vehicle, Problems& problems);
 
-  /// The next scan: consecutive rows of the same time and radar. `time_s` is that of the table; of the header only
-  /// source_id is written. `scan` must have been zeroed once. False at the end.
+  /// The next scan: consecutive rows of the same time and radar. `time_s` is the time of the table. Of the header only
+  /// source_id is written. The caller must have zeroed `scan` once. False at the end.
   [[nodiscard]] bool next(RadarScan& scan, double& time_s);
 
-  /// Columns that are ignored, but for is_stationary.
+  /// Ignored columns, without is_stationary.
   [[nodiscard]] std::vector<std::string> ignored_columns() const;
   [[nodiscard]] std::uint64_t dropped_detections() const { return dropped_; }
-  /// Rows of radars that the vehicle file does not have, by id; they count as bad lines as well.
+  /// Number of rows by id of radars that the vehicle file does not contain; these rows count as bad lines as well.
   [[nodiscard]] const std::map<std::uint32_t, std::uint64_t>& unknown_radars() const { return unknown_; }
 
  private:

@@ -1,4 +1,4 @@
-// The vehicle's motion as a table.
+// Reads a table of the vehicle's motion.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class EgoReader {
   /// `config` has the stds of the signals. Throws TableError as CsvTable does. All arguments must outlive the reader.
   EgoReader(recording::ByteSource& source, const EgoConfig& config, Problems& problems);
 
-  /// The next motion; `time_s` is that of the table, the header's is left alone. False at the end.
+  /// The next motion; `time_s` is the time of the table, the header is not written. False at the end.
   [[nodiscard]] bool next(EgoMotion& motion, double& time_s);
   [[nodiscard]] const std::vector<std::string>& ignored_columns() const { return table_.ignored(); }
 

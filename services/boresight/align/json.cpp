@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "services/boresight/align/json_writer.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::align {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 constexpr std::array<const char*, kParameters> kNames = {"k_v", "yaw", "pitch", "roll"};
 constexpr std::array<const char*, 3> kSensorNames = {"alpha", "beta", "gamma"};
 constexpr std::array<std::uint32_t, kParameters> kVehicleBits = {
@@ -20,7 +20,7 @@ constexpr std::array<std::uint32_t, 3> kSensorBits = {alignment_axis::kYaw, alig
 
 /// k_v as it is, angles in degrees.
 double shown(std::size_t parameter, double value) {
-  return parameter == 0 ? value : value * kDegrees;
+  return parameter == 0 ? value : value * kDegreesPerRadian;
 }
 
 std::string key_of(std::size_t parameter, const std::string& suffix = "") {
@@ -65,7 +65,7 @@ void write_truth(JsonWriter& json, const TruthComparison& truth) {
     json.field(key_of(i), shown(i, truth.mountings[truth.true_now].values.at(i)));
   for (std::size_t i = 0; i < kParameters; ++i) json.field(key_of(i, "_error"), shown(i, truth.errors.at(i)));
   for (std::size_t i = 0; i < 3; ++i) {
-    json.field(std::string(kSensorNames.at(i)) + "_error_deg", truth.sensor_errors_rad.at(i) * kDegrees);
+    json.field(std::string(kSensorNames.at(i)) + "_error_deg", truth.sensor_errors_rad.at(i) * kDegreesPerRadian);
   }
   json.key("nees").begin_object();
   for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.nees.at(i));
@@ -89,8 +89,8 @@ void write_radar(JsonWriter& json, const RadarResult& radar) {
   }
   const std::array<double, 3> sensor = {m.alignment_yaw_rad, m.alignment_pitch_rad, m.alignment_roll_rad};
   for (std::size_t i = 0; i < 3; ++i) {
-    json.field(std::string(kSensorNames.at(i)) + "_deg", sensor.at(i) * kDegrees);
-    json.field(std::string(kSensorNames.at(i)) + "_std_deg", std_of(m.covariance, i + 1) * kDegrees);
+    json.field(std::string(kSensorNames.at(i)) + "_deg", sensor.at(i) * kDegreesPerRadian);
+    json.field(std::string(kSensorNames.at(i)) + "_std_deg", std_of(m.covariance, i + 1) * kDegreesPerRadian);
   }
   write_observability(json, m);
   const Eigen::Vector3d turn =
@@ -122,7 +122,8 @@ void write_radar(JsonWriter& json, const RadarResult& radar) {
   json.key("step_changes").begin_array();
   for (const StepChangeEvent& step_change : radar.step_changes) {
     json.begin_object().field("t", step_change.time_s);
-    for (std::size_t i = 0; i < 3; ++i) json.field(key_of(i + 1), step_change.yaw_pitch_roll_rad.at(i) * kDegrees);
+    for (std::size_t i = 0; i < 3; ++i)
+      json.field(key_of(i + 1), step_change.yaw_pitch_roll_rad.at(i) * kDegreesPerRadian);
     json.end_object();
   }
   json.end_array();

@@ -1,4 +1,4 @@
-// A result as JSON; the schema is in services/boresight/README.md.
+// A result as JSON; services/boresight/README.md describes the keys.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace boresight::align {
 
-/// Where a result comes from.
+/// Origin of a result.
 struct Provenance {
   std::string tool_version;
   std::string drive, ego, vehicle, config, truth;  ///< files; "" where none was given

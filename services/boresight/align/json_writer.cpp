@@ -9,7 +9,7 @@ namespace boresight::align {
 
 namespace {
 
-/// Bytes of the UTF-8 character at the beginning of `text`; 0 if it is none.
+/// Number of bytes of the UTF-8 character at the beginning of `text`; 0 if it is not valid UTF-8.
 std::size_t character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -23,7 +23,7 @@ std::size_t character(std::string_view text) {
   for (std::size_t i = 1; i < size; ++i) {
     if ((byte(i) & 0xC0U) != 0x80U) return 0;
   }
-  // Too long for what they say, surrogates, beyond Unicode.
+  // Overlong forms, surrogates, and code points beyond Unicode.
   if (size == 3 && ((first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) >= 0xA0))) return 0;
   if (size == 4 && ((first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) >= 0x90))) return 0;
   return size;

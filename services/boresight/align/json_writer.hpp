@@ -1,4 +1,4 @@
-// JSON text, valid whatever comes: what is no number is null, what is no UTF-8 a question mark.
+// Writes JSON that is always valid: numbers that are not finite become null, invalid UTF-8 becomes a question mark.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Recordings through the gateway's core, frame by frame.
+// Plays recordings through the core of the ingest gateway, frame by frame.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace boresight::align {
 
-/// Scans that the gateway marks so are not believed, as the service does not.
+/// Scans with one of these integrity flags are rejected, as in the service.
 inline constexpr std::uint16_t kDoubtful =
     scan_integrity::kRepeated | scan_integrity::kFrozen | scan_integrity::kStale | scan_integrity::kImpossibleCopies;
 
-/// Plays recordings of one clock to their end. Frames count as lines, what cannot be read as bad ones. `look` is called
+/// Plays recordings of one clock completely. Frames count as lines, unreadable ones as bad lines. `look` is called
 /// every few hundred frames. Throws recording::OpenError.
 void play(const std::vector<std::filesystem::path>& recordings, ingest::Gateway& gateway, Problems& problems,
           const std::function<void(const recording::Progress&)>& look);

@@ -7,53 +7,35 @@
 
 #include <fmt/format.h>
 
-#include "services/boresight/report/svg_chart.hpp"
+#include "services/boresight/svg/document.hpp"
+#include "services/common/estimation/unknown.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
 
 namespace boresight::align {
 
 namespace {
 
-using report::Axis;
-using report::Point;
-using report::SvgChart;
-
-constexpr double kDegrees = 180.0 / M_PI;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kMargin = 14.0, kHead = 54.0;
+using svg::Axis;
+using svg::Chart;
+using svg::Point;
+constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kHead = 60.0;
+constexpr double kMargin = svg::Document::kMargin_px;
 constexpr std::size_t kColumns = 4;
 
-constexpr std::string_view kStyle = R"(<style>
-svg { --paper: #ffffff; --ink: #1c232d; --faint: #5d6a7a; --line: #dfe4ea; --blue: #2563b8; --band: #2563b833;
-  --truth: #8a3fb0; --warn: #b87400; --idle: #8d97a5; font-family: system-ui, sans-serif; }
-@media (prefers-color-scheme: dark) { svg { --paper: #14181e; --ink: #e4e8ee; --faint: #9aa5b4; --line: #323a46;
-  --blue: #6ea8ff; --band: #6ea8ff40; --truth: #d08cf2; --warn: #e5a63a; --idle: #7f8a99; } }
-.paper { fill: var(--paper); } .head { fill: var(--ink); font-size: 17px; font-weight: 600; }
-.title { fill: var(--ink); font-size: 12px; } .legend { fill: var(--faint); font-size: 12px; }
-.chart text { fill: var(--faint); font-size: 11px; }
-.grid { stroke: var(--line); stroke-width: 1; } .frame { fill: none; stroke: var(--line); }
-.estimate { stroke: var(--blue); stroke-width: 1.6; } .sigma { fill: var(--band); stroke: none; }
-.unknown { stroke: var(--idle); stroke-width: 1.6; stroke-dasharray: 2 3; }
-.truth { stroke: var(--truth); stroke-width: 1.5; stroke-dasharray: 6 4; }
-.knock { stroke: var(--warn); stroke-width: 1.2; stroke-dasharray: 4 3; } .chart .note { fill: var(--warn); }
-.before { stroke: var(--idle); stroke-width: 1.6; } .after { fill: var(--band); stroke: var(--blue); stroke-width: 1.2; }
-</style>
-)";
+constexpr svg::Style kNotObservable = svg::line_of(svg::kGrey, 1.6, "2 3");
+constexpr svg::Style kStepChange = svg::line_of(svg::kOrange, 1.2, "4 3");
+constexpr svg::Style kBefore = svg::line_of(svg::kGrey, 1.6);
+constexpr svg::Style kAfter = {.fill = svg::kBlue, .fill_opacity = 0.2, .stroke = svg::kBlue, .stroke_width_px = 1.2};
 
-/// What one chart of a parameter shows, in the unit of its axis.
+/// Content of one chart of a parameter, in the unit of its axis.
 struct Curve {
-  std::string title, unit, axis;  // the axis is called by its unit, unless it has a name of its own
-  int decimals = 3;
+  std::string title, unit, axis;  // the label of the axis is the unit, unless it is given
   double smallest_span = 0.01;
-  std::vector<Point> truth;  // (from when on, value); the last is true at the end
+  std::vector<Point> truth;  // (start, value) of each true value; the last holds at the end
   std::function<double(const Sample&)> value, std;
   std::function<bool(const Sample&)> observable;
 };
-
-std::string number(double value, int decimals, const std::string& unit, bool with_sign) {
-  const std::string text =
-      with_sign ? fmt::format("{:+.{}f}", value, decimals) : fmt::format("{:.{}f}", value, decimals);
-  return text + (unit.empty() || unit.front() == "°"[0] ? "" : " ") + unit;
-}
 
 class Picture {
  public:
@@ -64,12 +46,8 @@ class Picture {
   std::string draw() {
     shared();
     for (std::size_t i = 0; i < result_.radars.size(); ++i) radar(i);
-    const double width = kMargin + kColumns * (kWidth + kMargin);
-    const double height = kHead + static_cast<double>(row_ + (column_ > 0 ? 1 : 0)) * (kTitle + kHeight) + kMargin;
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-        "{1:.0f}\">\n{2}<rect class=\"paper\" width=\"{0:.0f}\" height=\"{1:.0f}\"/>\n{3}{4}</svg>\n",
-        width, height, kStyle, head(), body_);
+    head();
+    return document_.finish();
   }
 
  private:
@@ -81,37 +59,26 @@ class Picture {
             false};
   }
 
-  [[nodiscard]] std::string head() const {
-    std::string text = fmt::format("<text class=\"head\" x=\"{}\" y=\"24\">Alignment of {} by {}</text>\n", kMargin,
-                                   report::escape(result_.vehicle), report::escape(result_.method));
-    double at = kMargin;
-    const auto entry = [&](const std::string& sample, const std::string& meaning, double room) {
-      text +=
-          fmt::format("<g transform=\"translate({},36)\">{}</g><text class=\"legend\" x=\"{}\" y=\"44\">{}</text>\n",
-                      at, sample, at + 30.0, meaning);
-      at += room;
-    };
-    const auto line = [](const char* css_class) {
-      return fmt::format("<path class=\"{}\" d=\"M0,4H24\"/>", css_class);
-    };
-    entry(R"(<rect class="sigma" width="24" height="9"/>)" + line("estimate"), "estimate ± 2 σ", 140.0);
-    entry(line("unknown"), "not observable", 140.0);
+  void head() {
+    document_.title(fmt::format("Alignment of vehicle {}, method {}: rotations about the vehicle's axes",
+                                result_.vehicle, result_.method));
+    document_.legend_at(kMargin, 38.0);
+    document_.legend_entry(svg::area_sample(svg::kUncertainty) + svg::line_sample(svg::kEstimate), "estimate ± 2 σ");
+    document_.legend_entry(svg::line_sample(kNotObservable), "not observable");
     const bool has_truth = std::any_of(result_.radars.begin(), result_.radars.end(),
                                        [](const RadarResult& r) { return r.truth.has_value(); });
-    if (has_truth) entry(line("truth"), "truth", 80.0);
-    entry(line("step_change"), "step_change", 85.0);
-    entry(line("before"), "residuals with the nominal mounting", 275.0);
-    entry(R"(<rect class="after" width="24" height="9"/>)", "with the estimate", 150.0);
-    return text + "<text class=\"legend\" text-anchor=\"end\" x=\"" +
-           fmt::format("{:.0f}", kColumns * (kWidth + kMargin)) +
-           "\" y=\"24\">angles about the vehicle's axes</text>\n";
+    if (has_truth) document_.legend_entry(svg::line_sample(svg::kTruth), "truth");
+    const bool has_step_change = std::any_of(result_.radars.begin(), result_.radars.end(),
+                                             [](const RadarResult& r) { return !r.step_changes.empty(); });
+    if (has_step_change) document_.legend_entry(svg::line_sample(kStepChange), "sudden misalignment");
+    document_.legend_entry(svg::line_sample(kBefore), "residuals with the nominal mounting");
+    document_.legend_entry(svg::area_sample(kAfter), "residuals with the estimate");
   }
 
   void shared() {
-    curve({.title = "k_v",
+    curve({.title = "speed scale k_v",
            .unit = "",
-           .axis = " ",  // no room beside so many digits, and the title says it
-           .decimals = 6,
+           .axis = " ",  // no room beside so many digits; the title states it
            .smallest_span = 1e-4,
            .truth = constant(result_.true_speed_scale, 1.0),
            .value = [](const Sample& s) { return s.speed_scale; },
@@ -125,11 +92,10 @@ class Picture {
       curve({.title = "yaw-rate bias",
              .unit = "°/s",
              .axis = "",
-             .decimals = 4,
              .smallest_span = 0.01,
-             .truth = constant(result_.true_yaw_rate_bias_radps, kDegrees),
-             .value = [](const Sample& s) { return s.yaw_rate_bias_radps * kDegrees; },
-             .std = [](const Sample& s) { return s.yaw_rate_bias_std_radps * kDegrees; },
+             .truth = constant(result_.true_yaw_rate_bias_radps, kDegreesPerRadian),
+             .value = [](const Sample& s) { return s.yaw_rate_bias_radps * kDegreesPerRadian; },
+             .std = [](const Sample& s) { return s.yaw_rate_bias_std_radps * kDegreesPerRadian; },
              .observable = [](const Sample& s) { return any(s, alignment_axis::kYawRateBias); }},
             {});
     }
@@ -137,7 +103,6 @@ class Picture {
       curve({.title = "rear-axle slip",
              .unit = "mrad/(m/s²)",
              .axis = "",
-             .decimals = 3,
              .smallest_span = 0.1,
              .truth = constant(result_.true_slip_coefficient_radps2pm, 1e3),
              .value = [](const Sample& s) { return s.slip_coefficient_radps2pm * 1e3; },
@@ -159,11 +124,10 @@ class Picture {
       curve({.title = name + ", " + kNames.at(i),
              .unit = "°",
              .axis = "degrees",
-             .decimals = 3,
              .smallest_span = 0.02,
              .truth = mountings(radar, i),
-             .value = [index, i](const Sample& s) { return s.radars[index].values.at(i) * kDegrees; },
-             .std = [index, i](const Sample& s) { return s.radars[index].stds.at(i) * kDegrees; },
+             .value = [index, i](const Sample& s) { return s.radars[index].values.at(i) * kDegreesPerRadian; },
+             .std = [index, i](const Sample& s) { return s.radars[index].stds.at(i) * kDegreesPerRadian; },
              .observable = [index,
                             bit = kBits.at(i)](const Sample& s) { return (s.radars[index].observable & bit) != 0; }},
             radar.step_changes);
@@ -180,7 +144,7 @@ class Picture {
     if (!radar.truth) return points;
     for (const TruthComparison::Mounting& mounting : radar.truth->mountings) {
       const double from_s = std::max(0.0, mounting.from_s - result_.start_s);
-      points.push_back({result_.x_is_iteration ? 0.0 : from_s, mounting.values.at(parameter) * kDegrees});
+      points.push_back({result_.x_is_iteration ? 0.0 : from_s, mounting.values.at(parameter) * kDegreesPerRadian});
     }
     return points;
   }
@@ -189,7 +153,7 @@ class Picture {
                        [bit](const Sample::Radar& r) { return (r.observable & bit) != 0; });
   }
 
-  /// The axis shows how the estimate settles: what the first tenth of the drive has beyond that is cut off.
+  /// The axis covers the values after the first tenth of the drive, so that it shows how the estimate settles.
   [[nodiscard]] Axis y_axis(const Curve& curve) const {
     constexpr double kStartShare = 0.1, kRoom = 0.08;
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -215,16 +179,17 @@ class Picture {
 
   void curve(const Curve& curve, const std::vector<StepChangeEvent>& step_changes) {
     std::string title = curve.title;
+    const std::string unit = (curve.unit.empty() || curve.unit == "°" ? "" : " ") + curve.unit;
+    const text::Sign sign = curve.unit.empty() ? text::Sign::kMinusOnly : text::Sign::kAlways;
+    double std = 0.0;
     if (!result_.series.empty()) {
       const Sample& last = result_.series.back();
-      title += curve.observable(last) ? ": " + number(curve.value(last), curve.decimals, "", !curve.unit.empty()) +
-                                            " ± " + number(curve.std(last), curve.decimals, curve.unit, false)
-                                      : ": not observable";
+      std = curve.std(last);
+      title += curve.observable(last) ? ": " + text::with_std(curve.value(last), std, unit, sign) : ": not observable";
+      if (!curve.observable(last)) std = 0.0;
     }
-    if (!curve.truth.empty()) {
-      title += " (true " + number(curve.truth.back().y, curve.decimals, curve.unit, !curve.unit.empty()) + ")";
-    }
-    SvgChart chart(kWidth, kHeight, x_axis(), y_axis(curve));
+    if (!curve.truth.empty()) title += " (true " + text::rounded(curve.truth.back().y, std, unit, sign) + ")";
+    Chart chart(kWidth, kHeight, x_axis(), y_axis(curve));
     std::vector<Point> lower, upper, known, unknown;
     for (const Sample& sample : result_.series) {
       const double value = curve.value(sample), std = curve.std(sample);
@@ -233,17 +198,17 @@ class Picture {
       upper.push_back({x(sample), observable ? value + 2.0 * std : kNaN});
       (observable ? known : unknown).push_back({x(sample), value});
     }
-    chart.band(lower, upper, "sigma");
-    chart.line(unknown, "unknown");
-    chart.line(known, "estimate");
+    chart.band(lower, upper, svg::kUncertainty);
+    chart.line(unknown, kNotObservable);
+    chart.line(known, svg::kEstimate);
     std::vector<Point> truth;
     for (std::size_t i = 0; i < curve.truth.size(); ++i) {
       truth.push_back(curve.truth[i]);
       truth.push_back({i + 1 < curve.truth.size() ? curve.truth[i + 1].x : std::max(x_max_, 1.0), curve.truth[i].y});
     }
-    chart.line(truth, "truth");
+    chart.line(truth, svg::kTruth);
     for (const StepChangeEvent& step_change : step_changes)
-      chart.vertical(step_change.time_s - result_.start_s, "step_change", "step_change");
+      chart.vertical(step_change.time_s - result_.start_s, kStepChange, "");
     place(chart, title);
   }
 
@@ -253,8 +218,8 @@ class Picture {
     for (std::size_t i = 0; i < Histogram::kBins; ++i) most = std::max({most, h.before.at(i), h.after.at(i)});
     const std::uint64_t per = most >= 10'000 ? 1000 : 1;
     const auto scaled = [per](std::uint64_t count) { return static_cast<double>(count) / static_cast<double>(per); };
-    SvgChart chart(kWidth, kHeight, {-h.limit_mps, h.limit_mps, "residual of the range rate, m/s", false},
-                   {0.0, 1.08 * scaled(most), per == 1 ? "detections" : "1000 detections", false});
+    Chart chart(kWidth, kHeight, {-h.limit_mps, h.limit_mps, "residual of the range rate, m/s", false},
+                {0.0, 1.08 * scaled(most), per == 1 ? "detections" : "1000 detections", false});
     const auto outline = [&](const std::array<std::uint64_t, Histogram::kBins>& counts) {
       std::vector<Point> points;
       for (std::size_t i = 0; i < Histogram::kBins; ++i) {
@@ -265,8 +230,8 @@ class Picture {
       }
       return points;
     };
-    chart.band({{-h.limit_mps, 0.0}, {h.limit_mps, 0.0}}, outline(h.after), "after");
-    chart.line(outline(h.before), "before");
+    chart.band({{-h.limit_mps, 0.0}, {h.limit_mps, 0.0}}, outline(h.after), kAfter);
+    chart.line(outline(h.before), kBefore);
     std::string title = name + ", residuals";
     if (std::isfinite(residuals.after.rmse_mps)) {
       title += fmt::format(": RMSE {:.3f} → {:.3f} m/s, {:.0f} % inliers", residuals.before.rmse_mps,
@@ -275,12 +240,11 @@ class Picture {
     place(chart, title);
   }
 
-  void place(const SvgChart& chart, const std::string& title) {
+  void place(const Chart& chart, const std::string& title) {
     const double left = kMargin + static_cast<double>(column_) * (kWidth + kMargin);
     const double top = kHead + static_cast<double>(row_) * (kTitle + kHeight);
-    body_ += fmt::format("<text class=\"title\" x=\"{:.0f}\" y=\"{:.0f}\">{}</text>\n", left + 14.0, top + 16.0,
-                         report::escape(title));
-    body_ += chart.finish_at(left, top + kTitle);
+    document_.text(left + 14.0, top + 16.0, title);
+    document_.place(chart, left, top + kTitle);
     if (++column_ == kColumns) end_row();
   }
   void end_row() {
@@ -292,7 +256,7 @@ class Picture {
   const Result& result_;
   double x_max_ = 0.0;
   std::size_t column_ = 0, row_ = 0;
-  std::string body_;
+  svg::Document document_;
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace boresight::align {
 
-/// An SVG that needs nothing else, readable on light and dark ground: every parameter over time with ±2 σ, the truth
-/// where known, knocks, and each radar's residuals before and after.
+/// An SVG: every parameter over time with ±2 σ, the truth where known, sudden misalignments, and the residuals of each
+/// radar with the nominal mounting and with the estimate.
 [[nodiscard]] std::string to_svg(const Result& result);
 
 }  // namespace boresight::align

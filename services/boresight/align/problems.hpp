@@ -1,4 +1,4 @@
-// Lines that cannot be understood: the first few are told, all are counted, none stops the work.
+// Counts lines that cannot be read. The first few are reported; none stops the work.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@ namespace boresight::align {
 class Problems {
  public:
   static constexpr std::uint64_t kShown = 10;
-  /// `tell` gets one line of text, without its end, for each of the first kShown problems.
-  explicit Problems(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
+  /// Calls `report` with a line of text, without line feed, for each of the first kShown problems.
+  explicit Problems(std::function<void(const std::string&)> report) : report_(std::move(report)) {}
 
-  /// A line that was left out.
+  /// Counts a line that is skipped.
   void bad_line(const std::string& text) {
-    if (++bad_lines_ <= kShown) tell_(text);
+    if (++bad_lines_ <= kShown) report_(text);
   }
   void good_line() { ++good_lines_; }
 
   [[nodiscard]] std::uint64_t bad_lines() const { return bad_lines_; }
-  /// Of those that hold data: no header, comment or empty line.
+  /// Lines with data, without header, comments and empty lines.
   [[nodiscard]] std::uint64_t lines() const { return good_lines_ + bad_lines_; }
-  /// More than one line in a hundred is bad: what comes of the rest is not to be relied on.
+  /// More than one line in a hundred is bad: the result is doubtful.
   [[nodiscard]] bool too_many() const { return bad_lines_ * 100 > lines(); }
 
  private:
-  std::function<void(const std::string&)> tell_;
+  std::function<void(const std::string&)> report_;
   std::uint64_t bad_lines_ = 0;
   std::uint64_t good_lines_ = 0;
 };

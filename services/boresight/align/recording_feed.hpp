@@ -1,4 +1,4 @@
-// What the gateway decodes of a recording, fed to an alignment run in the order that interpolation needs.
+// Feeds the decoded messages of a recording to an alignment run in the order that interpolation needs.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace boresight::align {
 
-/// Scans wait until an ego motion after their own time has come, half a second of the recording at most. Scans that the
-/// gateway marks as repeated, frozen, stale or made of copies are left out, as the service does not believe them.
+/// A scan waits for an ego motion that is newer than the scan, at most half a second of the recording. Scans that the
+/// gateway marks as repeated, frozen, stale or made of copies are rejected, as in the service.
 class RecordingFeed : public ingest::Sink {
  public:
   /// `run` must outlive the feed.
@@ -28,9 +28,9 @@ class RecordingFeed : public ingest::Sink {
   void fault(Fault fault, std::string_view what, std::uint32_t radar_id) override;
   SourceStatistics& statistics(std::uint32_t radar_id) override;
 
-  /// Hands over what still waits.
+  /// Hands over the scans that still wait.
   void finish();
-  /// Messages that the gateway rejected, and scans of doubtful integrity.
+  /// Number of messages that the gateway rejected, and of scans with doubtful integrity.
   [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
   [[nodiscard]] std::uint64_t doubtful() const { return doubtful_; }
   [[nodiscard]] double newest_s() const { return newest_s_; }

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/frames.hpp"
 
 namespace boresight::align {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGate_sigma = 4.0;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Range-rate residuals of a whole drive, before and after the correction: a sample of scans is kept in bounded memory
-// and judged by the final estimate.
+// Range-rate residuals of a whole drive before and after the correction. A sample of scans is kept in bounded memory
+// and evaluated with the final estimate.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace boresight::align {
 
-/// Key figures of Report A §8; NaN where there are no residuals.
+/// Key figures of Burza 2025, §8; NaN where there are no residuals.
 struct Moments {
   double rmse_mps = 0.0;
   double skewness = 0.0;
@@ -22,7 +22,7 @@ struct Moments {
 };
 [[nodiscard]] Moments moments(const std::vector<double>& residuals);
 
-/// Equal bins over −limit … limit; what lies beyond counts in neither.
+/// Equal bins over −limit … limit; values beyond are not counted.
 struct Histogram {
   static constexpr std::size_t kBins = 81;
   double limit_mps = 0.0;
@@ -30,7 +30,7 @@ struct Histogram {
 };
 
 struct ResidualSummary {
-  /// Of detections that the final estimate takes for stationary: whose residual is within four stds of the noise.
+  /// Of detections that are stationary by the final estimate: their residual is within four stds of the noise.
   Moments before, after;
   double inlier_ratio = 0.0;  ///< NaN without detections
   std::uint64_t judged = 0;   ///< detections in the sample
@@ -40,7 +40,7 @@ struct ResidualSummary {
 class ResidualSample {
  public:
   void add(const alignment::ScanDetections& scan, const EgoSample& ego);
-  /// For the post-factum calibration, which takes all detections in a row.
+  /// The sample in the form of the batch calibration, which needs all detections at once.
   [[nodiscard]] alignment::batch_calibration::Recording recording(const MountingPose& nominal,
                                                                   bool has_elevation) const;
   /// `nominal` is R(sensor→vehicle) as configured.

@@ -1,4 +1,4 @@
-// What `boresight align` found: values only, from which JSON, picture and table are made.
+// The result of `boresight align` as values; JSON, plot and table are made from it.
 #pragma once
 
 #include <array>
@@ -34,24 +34,24 @@ struct Sample {
 
 struct StepChangeEvent {
   double time_s = 0.0;
-  std::array<double, 3> yaw_pitch_roll_rad{};  ///< of the turn, about the vehicle's axes
+  std::array<double, 3> yaw_pitch_roll_rad{};  ///< of the rotation, about the vehicle's axes
 };
 
-/// Errors are estimate − truth; of the angles those of the turn that is left, R(estimate) = Exp(e)·R(truth), about the
-/// vehicle's axes. The NEES is error²/variance.
+/// Errors are estimate − truth; angle errors are those of the remaining rotation, R(estimate) = Exp(e)·R(truth), about
+/// the vehicle's axes. The NEES (normalised estimation error squared) is error²/variance.
 struct TruthComparison {
-  /// A mounting that was true from some time on; several where the radar was knocked.
+  /// A true mounting from some time on; several if the mounting changed in a step.
   struct Mounting {
     double from_s = 0.0;  ///< −∞ for the first
     Eigen::Matrix3d sensor_to_vehicle;
-    std::array<double, kParameters> values{};  ///< as in Sample; k_v is NaN where it is not known
+    std::array<double, kParameters> values{};  ///< as in Sample; k_v is NaN if unknown
   };
   std::vector<Mounting> mountings;
-  std::size_t true_now = 0;  ///< which of them at the end
+  std::size_t true_now = 0;  ///< index of the mounting at the end
   std::array<double, kParameters> errors{}, nees{};
   std::array<double, 3> sensor_errors_rad{};  ///< of α, β, γ
-  /// Drive until the value stayed within 5 % of the way from nominal to truth, after a knock that changed it from the
-  /// knock and the truth before; NaN: never.
+  /// Seconds of drive until the value stayed within 5 % of the change from nominal to truth. After a step change they
+  /// count from the step, and the change from the truth before it. NaN: never.
   std::array<double, kParameters> seconds_to_95_percent{};
 };
 
@@ -64,9 +64,9 @@ struct RadarResult {
   std::array<double, kParameters> stds{};  ///< of k_v and the message's vehicle yaw, pitch, roll
   std::uint64_t scans = 0, scans_without_ego = 0, detections = 0;
   ResidualSummary residuals;
-  double cpu_us_per_scan = 0.0, max_cpu_us_per_scan = 0.0;  ///< NaN where no scan was processed one by one
+  double cpu_us_per_scan = 0.0, max_cpu_us_per_scan = 0.0;  ///< NaN if no scan was processed on its own
   std::vector<StepChangeEvent> step_changes;
-  /// batch_calibration: what the data say of α, β, γ: "supported" or why not.
+  /// batch_calibration: for α, β, γ "supported", or why the data do not support the parameter.
   std::vector<std::string> support;
   std::optional<TruthComparison> truth;
 };
@@ -80,7 +80,7 @@ struct Result {
   double speed_scale = 1.0, speed_scale_std = 0.0;
   bool speed_scale_observable = false;
   std::optional<double> true_speed_scale, true_yaw_rate_bias_radps, true_slip_coefficient_radps2pm;
-  std::string problem;              ///< why there is no result; "" where there is
+  std::string problem;              ///< why there is no result; "" if there is one
   std::string speed_scale_support;  ///< batch_calibration, as RadarResult::support
   std::vector<RadarResult> radars;
   bool x_is_iteration = false;

@@ -9,6 +9,7 @@
 #include "services/alignment_estimator/core/write_estimate.hpp"
 #include "services/boresight/align/batch_calibration.hpp"
 #include "services/boresight/align/stds.hpp"
+#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -17,16 +18,15 @@ namespace boresight::align {
 namespace {
 
 constexpr std::string_view kBatchCalibration = "batch_calibration";
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// The origin on the estimator's clock: what comes a little before it shall not be at 0, which means "never".
+/// The origin on the estimator's clock. It leaves room for earlier times, because time 0 means "never".
 constexpr std::int64_t kOrigin_ns = 10'000'000'000;
 
 std::array<double, kParameters> to_array(const Eigen::Vector4d& v) {
   return {v(0), v(1), v(2), v(3)};
 }
 
-/// k_v of the vehicle: that of the radars, weighted by their variances, where each has its own. Their errors have a
-/// common part, so the smallest std is not divided.
+/// k_v of the vehicle: the mean of the radars' k_v, weighted by variance, if each radar has its own. The errors have a
+/// common part, so the smallest std is used undivided.
 void share_speed_scale(Sample& sample) {
   double sum = 0.0, weights = 0.0, best_std = std::numeric_limits<double>::infinity();
   for (const Sample::Radar& radar : sample.radars) {
@@ -45,7 +45,7 @@ void share_speed_scale(Sample& sample) {
   }
 }
 
-/// In the order of time; none if the truth does not name the radar.
+/// The true mountings in the order of time; none if the truth does not contain the radar.
 std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const RadarConfig& config) {
   std::vector<TruthComparison::Mounting> mountings;
   const auto known = truth.radars.find(config.id);
@@ -95,7 +95,7 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     radar.config = config;
     radar.nominal = geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0);
     radar.seconds_to_95_percent.fill(kNaN);
-    radar.way_begin[0] = 1.0;
+    radar.change_begin[0] = 1.0;
     if (options_.truth) radar.truth = true_mountings(*options_.truth, config);
   }
 }
@@ -151,7 +151,7 @@ void Run::add_scan(RadarScan& scan, double time_s) {
 void Run::observe_step_changes(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s) {
   if (estimate.step_change.count == radar.step_changes_seen) return;
   radar.step_changes_seen = estimate.step_change.count;
-  // What was measured before is no longer to be explained by the mounting.
+  // The new mounting does not explain earlier measurements.
   radar.residuals = {};
   const auto& turn = estimate.step_change.rotation_vehicle_rad;
   radar.step_changes.push_back(
@@ -166,20 +166,20 @@ void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, 
     for (std::size_t i = 1; i < kParameters; ++i) {
       constexpr double kSame_rad = 1e-5;
       if (std::abs(after.at(i) - before.at(i)) < kSame_rad) continue;
-      radar.way_begin.at(i) = before.at(i);
-      radar.way_begin_s.at(i) = estimate.seconds_of_drive;
+      radar.change_begin.at(i) = before.at(i);
+      radar.change_begin_s.at(i) = estimate.seconds_of_drive;
       radar.seconds_to_95_percent.at(i) = kNaN;
     }
   }
   const auto values = to_array(alignment::vehicle_form(radar.config, estimate).values);
   for (std::size_t i = 0; i < kParameters; ++i) {
     const double goal = radar.truth[radar.true_now].values.at(i);
-    const bool is_there = std::abs(values.at(i) - goal) <= 0.05 * std::abs(goal - radar.way_begin.at(i));
+    const bool is_there = std::abs(values.at(i) - goal) <= 0.05 * std::abs(goal - radar.change_begin.at(i));
     double& reached_s = radar.seconds_to_95_percent.at(i);
     if (!is_there) {
       reached_s = kNaN;
     } else if (std::isnan(reached_s)) {
-      reached_s = estimate.seconds_of_drive - radar.way_begin_s.at(i);
+      reached_s = estimate.seconds_of_drive - radar.change_begin_s.at(i);
     }
   }
 }
@@ -187,7 +187,7 @@ void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, 
 void Run::observe_until(double time_s) {
   constexpr double kInterval_s = 1.0, kLongestGap_s = 10.0;
   if (!estimator_) return;
-  // While nothing comes nothing changes.
+  // Without input the estimates do not change.
   if (time_s > next_sample_s_ + kLongestGap_s) next_sample_s_ = time_s - kLongestGap_s;
   for (; next_sample_s_ <= time_s; next_sample_s_ += kInterval_s) series_.push_back(sample(next_sample_s_));
 }
@@ -199,13 +199,13 @@ Sample Run::sample(double time_s) {
     const alignment::RadarEstimate e = estimator_->estimate(i);
     const alignment::VehicleForm form = alignment::vehicle_form(radars_[i].config, e);
     sample.radars.push_back({e.state, e.observable, to_array(form.values), stds_of(form)});
-    // Shared by all radars, or known to one of them: the surest counts.
-    const auto is_surer = [](double std, double than) { return std > 0.0 && (than == 0.0 || std < than); };
-    if (is_surer(e.yaw_rate_bias_std_radps, sample.yaw_rate_bias_std_radps)) {
+    // Shared by all radars, or known to one of them: the smallest std counts.
+    const auto has_smaller_std = [](double std, double than) { return std > 0.0 && (than == 0.0 || std < than); };
+    if (has_smaller_std(e.yaw_rate_bias_std_radps, sample.yaw_rate_bias_std_radps)) {
       sample.yaw_rate_bias_radps = e.yaw_rate_bias_radps;
       sample.yaw_rate_bias_std_radps = e.yaw_rate_bias_std_radps;
     }
-    if (is_surer(e.slip_coefficient_std_radps2pm, sample.slip_coefficient_std_radps2pm)) {
+    if (has_smaller_std(e.slip_coefficient_std_radps2pm, sample.slip_coefficient_std_radps2pm)) {
       sample.slip_coefficient_radps2pm = e.slip_coefficient_radps2pm;
       sample.slip_coefficient_std_radps2pm = e.slip_coefficient_std_radps2pm;
     }

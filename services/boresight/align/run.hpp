@@ -1,4 +1,5 @@
-// One alignment method over one recording: the service's core, fed with ego motions and scans, observed once a second.
+// Runs an alignment method over a recording: the service's core gets ego motions and scans; its estimates are sampled
+// once a second.
 #pragma once
 
 #include <cstdint>
@@ -23,23 +24,23 @@
 
 namespace boresight::align {
 
-/// Names that --method takes: the estimator's, and batch_calibration.
+/// Values of --method: the methods of the estimator, and batch_calibration.
 [[nodiscard]] std::vector<std::string> method_names();
 
 class Run {
  public:
   struct Options {
     std::string method = "boresight";  ///< one of method_names()
-    alignment::Config config;          ///< its method is overruled
-    /// Time on the recording's clock that the estimator's clock counts from; not more than ten seconds after what comes
-    /// first. NaN: the time of what comes first.
+    alignment::Config config;          ///< its method is replaced by `method`
+    /// Origin of the estimator's clock on the recording's clock; at most ten seconds after the first input. NaN: the
+    /// time of the first input.
     double origin_s = std::numeric_limits<double>::quiet_NaN();
     alignment::batch_calibration::Config batch_calibration{};
     alignment::batch_calibration::Progress batch_calibration_progress{};  ///< called by finish()
     std::optional<Truth> truth;
     std::function<std::int64_t()> cpu_time_ns;  ///< of this thread, for the cost of a scan
   };
-  /// Throws std::invalid_argument for a method that is not on offer.
+  /// Throws std::invalid_argument for an unknown method.
   Run(const VehicleConfig& vehicle, Options options);
 
   /// In the order of time, ego motions before the scans of the same time; headers are written here.
@@ -58,9 +59,9 @@ class Run {
     ResidualSample residuals;
     std::uint32_t step_changes_seen = 0;
     std::vector<StepChangeEvent> step_changes;
-    std::vector<TruthComparison::Mounting> truth;  ///< none where it is not known
+    std::vector<TruthComparison::Mounting> truth;  ///< empty if unknown
     std::size_t true_now = 0;
-    std::array<double, kParameters> way_begin{}, way_begin_s{}, seconds_to_95_percent{};
+    std::array<double, kParameters> change_begin{}, change_begin_s{}, seconds_to_95_percent{};
   };
   [[nodiscard]] std::int64_t to_ns(double time_s);
   void observe_until(double time_s);
@@ -73,7 +74,7 @@ class Run {
 
   VehicleConfig vehicle_;
   Options options_;
-  std::unique_ptr<alignment::Estimator> estimator_;  ///< none for batch_calibration, which wants all at once
+  std::unique_ptr<alignment::Estimator> estimator_;  ///< null for batch_calibration, which needs all input at once
   EgoHistory ego_;
   std::vector<Radar> radars_;
   std::unique_ptr<alignment::ScanDetections> detections_;

@@ -1,4 +1,4 @@
-// What the covariance of an estimate says of its parameters.
+// Standard deviations of the parameters of an estimate.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace boresight::align {
 
-/// Of k_v, yaw, pitch and roll about the vehicle's axes.
+/// Standard deviations of k_v and of yaw, pitch and roll about the vehicle's axes.
 [[nodiscard]] std::array<double, kParameters> stds_of(const alignment::VehicleForm& form);
 
 }  // namespace boresight::align

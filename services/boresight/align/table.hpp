@@ -1,4 +1,4 @@
-// A result for the terminal.
+// A result as a table for the terminal.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace boresight::align {
 
-/// A line on the drive, one a radar, one on what they share; what the data do not support is "not observable".
+/// A line for the drive, a line for each radar, and a line for the shared parameters. A parameter that the data do not
+/// support is "not observable".
 [[nodiscard]] std::string to_table(const Result& result);
 
 }  // namespace boresight::align

@@ -1,4 +1,4 @@
-// Whether the times of a table's rows go forward, as far as they need to.
+// Checks that the times of a table's rows increase, within tolerances.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,9 @@
 
 namespace boresight::align {
 
-/// Times may go back by a second (radars are not synchronised) and forward by an hour (the car was parked). What is
-/// beyond is a mistake of a single line, unless the next line confirms it: then the drive goes on from there.
-/// Backwards nothing is confirmed, as what was estimated cannot be undone.
+/// Times may go back by a second (radars are not synchronised) and forward by an hour (the vehicle was parked). A
+/// larger step forward is an error of a single line, unless the next line confirms it: then the drive continues from
+/// there. A larger step back is never accepted, because estimates cannot be undone.
 class TimeOrder {
  public:
   static constexpr double kBack_s = 1.0, kForward_s = 3600.0;
@@ -29,7 +29,7 @@ class TimeOrder {
 
  private:
   double newest_s_ = NAN;
-  double doubtful_s_ = NAN;  // of the line before
+  double doubtful_s_ = NAN;  // time of the previous line
 };
 
 }  // namespace boresight::align

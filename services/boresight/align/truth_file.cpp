@@ -9,15 +9,14 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/header.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 
 namespace boresight::align {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-
-/// Of "a 1 b text 2" the pairs (a, 1); words that no number follows are passed over.
+/// The pairs of a word and the number after it: (a, 1) in "a 1 b text". Words without a number are skipped.
 std::map<std::string, double> pairs(std::istringstream& words) {
   std::map<std::string, double> result;
   std::string key;
@@ -37,7 +36,7 @@ std::optional<double> find(const std::map<std::string, double>& values, const st
 std::optional<std::array<double, 3>> sensor_angles(const std::map<std::string, double>& values) {
   const auto alpha = find(values, "alpha_deg"), beta = find(values, "beta_deg"), gamma = find(values, "gamma_deg");
   if (!alpha || !beta || !gamma) return std::nullopt;
-  return std::array<double, 3>{*alpha * kDegree, *beta * kDegree, *gamma * kDegree};
+  return std::array<double, 3>{*alpha * kRadiansPerDegree, *beta * kRadiansPerDegree, *gamma * kRadiansPerDegree};
 }
 
 }  // namespace
@@ -64,7 +63,7 @@ Truth read_truth(std::istream& input, const std::string& name) {
       Truth::Radar radar;
       constexpr std::array<const char*, 3> kMounts = {"mount_az_deg", "mount_pitch_deg", "mount_roll_deg"};
       for (std::size_t i = 0; i < 3; ++i) {
-        if (const auto mount = find(values, kMounts.at(i))) radar.mount_rad.at(i) = *mount * kDegree;
+        if (const auto mount = find(values, kMounts.at(i))) radar.mount_rad.at(i) = *mount * kRadiansPerDegree;
       }
       const auto angles = sensor_angles(values);
       if (!angles) fail(fmt::format("radar {}: alpha_deg, beta_deg and gamma_deg must follow, each with a number", id));

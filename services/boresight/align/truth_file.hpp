@@ -20,11 +20,11 @@ struct Truth {
   std::optional<double> yaw_rate_bias_radps;
   std::optional<double> slip_coefficient_radps2pm;
   struct Radar {
-    /// Nominal yaw, pitch and roll, as the file says.
+    /// Nominal yaw, pitch and roll, if the file states them.
     std::array<std::optional<double>, 3> mount_rad;
     std::array<double, 3> sensor_rad{};  ///< α, β, γ
   };
-  /// From `time_s` on a radar is mounted otherwise.
+  /// A new mounting of a radar from `time_s` on.
   struct StepChange {
     double time_s = 0.0;
     std::uint32_t radar = 0;
@@ -34,13 +34,12 @@ struct Truth {
   std::vector<StepChange> step_changes;   ///< in the order of time
 };
 
-/// Lines "k_v VALUE", and "radar ID", "step_change" and "disturbance" with pairs "key value"; others (and comments) are
-/// for other readers. /// Throws std::runtime_error naming line and cause if a number is missing or none of these lines
-/// is there.
+/// Reads lines "k_v VALUE", and lines "radar ID", "step_change" and "disturbance" with pairs "key value"; other lines
+/// are skipped. Throws std::runtime_error, which names line and cause, if a number is missing or no such line exists.
 [[nodiscard]] Truth read_truth(std::istream& input, const std::string& name);
 
-/// R(sensor→vehicle) = R_z(yaw_b+α)·R_y(−(pitch_b+β))·R_x(roll_b+γ); what the truth does not say of the nominal
-/// mounting is that of the vehicle file.
+/// R(sensor→vehicle) = R_z(yaw_b+α)·R_y(−(pitch_b+β))·R_x(roll_b+γ). Nominal angles that the truth does not state are
+/// taken from the vehicle file.
 [[nodiscard]] Eigen::Matrix3d true_mounting(const Truth::Radar& truth, const MountingPose& nominal);
 
 }  // namespace boresight::align

@@ -20,8 +20,8 @@ plate::Measurements read_plate(recording::ByteSource& source, align::Problems& p
   while (table.next(row)) {
     if (row[0] != tilt_deg) {
       if (run.number_of_tilts == plate::kMaxTilts) {
-        table.reject(0, fmt::format("{:g} deg is tilt number {}; a run has at most {} tilts, each in one piece", row[0],
-                                    run.number_of_tilts + 1, plate::kMaxTilts));
+        table.reject(0, fmt::format("{:g} deg is tilt number {}; a run has at most {} tilts, each in consecutive rows",
+                                    row[0], run.number_of_tilts + 1, plate::kMaxTilts));
         continue;
       }
       tilt_deg = row[0];

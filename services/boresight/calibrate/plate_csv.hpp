@@ -1,4 +1,4 @@
-// A recorded run of the tilting plate as a table.
+// Reads the table of a run of the tilting plate.
 #pragma once
 
 #include "services/alignment_estimator/core/plate/measurement.hpp"
@@ -7,8 +7,8 @@
 namespace boresight::calibrate {
 
 /// Columns tilt_deg (−20…20, positive = toward the ground), amplitude_db (−200…200) and azimuth_deg (−90…90, sensor
-/// frame, + left), a row a scan; other columns are ignored, such as the scan's number. Consecutive rows of the same
-/// tilt belong together. Rows that cannot be used are problems and left out; throws align::TableError as CsvTable does.
+/// frame, + left), a row for each scan; other columns are ignored. Consecutive rows of the same tilt belong together.
+/// Rows that cannot be used are reported to `problems` and skipped; throws align::TableError as CsvTable does.
 [[nodiscard]] alignment::plate::Measurements read_plate(recording::ByteSource& source, align::Problems& problems);
 
 }  // namespace boresight::calibrate

@@ -1,4 +1,4 @@
-// A recorded run of the tilting plate: the radar's own scans, and a table of when the plate stood at which tilt.
+// A recorded run of the tilting plate: the radar's scans, and a table of the time intervals of the tilts.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace boresight::calibrate {
 
-/// The plate stands still at that tilt, by the recording's clock.
+/// An interval of the recording's clock with the plate at rest at this tilt.
 struct TiltInterval {
   double tilt_rad;
   double begin_s;
@@ -21,12 +21,12 @@ struct TiltInterval {
 };
 
 /// Columns tilt_deg (−20…20, positive = toward the ground), begin_s and end_s (the recording's stamps: UNIX time where
-/// it was recorded live), a row a tilt, in the order of time and without overlap. Rows that cannot be used are problems
-/// and left out; throws align::TableError as CsvTable does.
+/// it was recorded live), a row for each tilt, in the order of time and without overlap. Rows that cannot be used are
+/// reported to `problems` and skipped; throws align::TableError as CsvTable does.
 [[nodiscard]] std::vector<TiltInterval> read_tilts(recording::ByteSource& source, align::Problems& problems);
 
-/// Takes what one radar sees of the plate: of each scan measured within an interval the echo that the service's station
-/// would take. Doubtful scans do not count, nor those beyond kMaxScansPerTilt at a tilt.
+/// Collects one radar's echoes of the plate. From each scan within an interval it takes the same echo as the station of
+/// the service. Scans of doubtful integrity and scans beyond kMaxScansPerTilt at a tilt are not used.
 class PlateFeed : public ingest::Sink {
  public:
   /// At most plate::kMaxTilts intervals.
@@ -41,14 +41,15 @@ class PlateFeed : public ingest::Sink {
   SourceStatistics& statistics(std::uint32_t radar_id) override;
 
   [[nodiscard]] const alignment::plate::Measurements& measurements() const { return measurements_; }
-  /// Of the radar: its scans in the recording, those within intervals, and those of them without the plate.
+  /// Number of the radar's scans in the recording, of those within intervals, and of those among them without the
+  /// plate.
   [[nodiscard]] std::uint64_t scans() const { return scans_; }
   [[nodiscard]] std::uint64_t within() const { return within_; }
   [[nodiscard]] std::uint64_t without_plate() const { return without_plate_; }
   [[nodiscard]] std::uint64_t doubtful() const { return doubtful_; }
-  /// Messages of the radar, or of nobody known, that the gateway rejected.
+  /// Number of messages from the radar, or from an unknown sender, that the gateway rejected.
   [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
-  /// When the radar's first and last scan were measured, s.
+  /// Measurement times of the radar's first and last scan, s.
   [[nodiscard]] double first_s() const { return first_s_; }
   [[nodiscard]] double last_s() const { return last_s_; }
 

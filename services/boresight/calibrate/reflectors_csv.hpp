@@ -1,4 +1,4 @@
-// Reflector positions, surveyed and measured, as a table.
+// Reads a table of reflector positions, surveyed and measured.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ struct ReflectorTable {
 };
 
 /// Columns x_m, y_m, z_m (surveyed, vehicle frame; ±100 m), range_m (0…100), azimuth_deg (±90) and, where the radar
-/// measures it, elevation_deg (±90), both in the sensor frame. Several rows of one surveyed position (scans of it)
-/// become one, of their medians; an elevation that is missing in any row makes a radar without elevation.
+/// measures it, elevation_deg (±90), both in the sensor frame. Several rows of one surveyed position (scans of it) are
+/// replaced by their medians. If any row lacks the elevation, the radar counts as one without elevation.
 [[nodiscard]] ReflectorTable read_reflectors(recording::ByteSource& source, align::Problems& problems);
 
 }  // namespace boresight::calibrate

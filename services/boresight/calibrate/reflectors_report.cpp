@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include "services/boresight/calibrate/seed_json.hpp"
+#include "services/common/estimation/unknown.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
 
 namespace boresight::calibrate {
 
@@ -13,18 +16,19 @@ namespace reflectors = alignment::reflectors;
 
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 std::string angle(const char* name, double value_rad, double std_rad, bool observable) {
-  if (!observable) return fmt::format("  {:6}not observable (±{:.2f} deg)\n", name, std_rad * kDegrees);
-  return fmt::format("  {:6}{:+.3f} ± {:.3f} deg\n", name, value_rad * kDegrees, std_rad * kDegrees);
+  if (!observable) return fmt::format("  {:6}not observable (±{:.2f} deg)\n", name, std_rad * kDegreesPerRadian);
+  return fmt::format(
+      "  {:6}{}\n", name,
+      text::with_std(value_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, " deg", text::Sign::kAlways));
 }
 
 void write_angle(align::JsonWriter& json, const std::string& name, bool known, double value_rad, double std_rad,
                  bool observable) {
-  json.key(name).begin_object().field("value_deg", known ? value_rad * kDegrees : kNaN);
-  json.field("std_deg", known ? std_rad * kDegrees : kNaN).field("observable", known && observable).end_object();
+  json.key(name).begin_object().field("value_deg", known ? value_rad * kDegreesPerRadian : kNaN);
+  json.field("std_deg", known ? std_rad * kDegreesPerRadian : kNaN)
+      .field("observable", known && observable)
+      .end_object();
 }
 
 }  // namespace
@@ -49,7 +53,7 @@ std::string problem_of(const ReflectorRun& run, reflectors::Problem problem, std
                         (place - Eigen::Vector3d(mount.data())).norm(), mount[0], mount[1], mount[2],
                         run.config.range_min_m, run.config.range_max_m);
   } else if (problem == Problem::kNotALine) {
-    text += fmt::format(", allowed are {:g} m beside it", run.config.line_tolerance_m);
+    text += fmt::format(", at most {:g} m beside the line are allowed", run.config.line_tolerance_m);
   }
   return text;
 }
@@ -64,10 +68,10 @@ std::string to_table(const ReflectorRun& run) {
       const reflectors::Position& position = run.table.positions[i];
       text += fmt::format("{:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6d} {:21.3f}", position.surveyed_m.x(),
                           position.surveyed_m.y(), position.surveyed_m.z(), position.range_m, position.scans,
-                          result.residual_azimuth_rad[i] * kDegrees);
-      text += run.config.has_elevation ? fmt::format(" {:14.3f}", result.residual_elevation_rad[i] * kDegrees)
+                          result.residual_azimuth_rad[i] * kDegreesPerRadian);
+      text += run.config.has_elevation ? fmt::format(" {:14.3f}", result.residual_elevation_rad[i] * kDegreesPerRadian)
                                        : std::string(15, ' ');
-      text += result.used[i] ? "\n" : "  left out\n";
+      text += result.used[i] ? "\n" : "  not used\n";
     }
   }
   if (result.ok()) {
@@ -113,8 +117,9 @@ std::string to_json(const ReflectorRun& run) {
     const reflectors::Position& position = run.table.positions[i];
     json.begin_object().field("x_m", position.surveyed_m.x()).field("y_m", position.surveyed_m.y());
     json.field("z_m", position.surveyed_m.z()).field("scans", std::uint64_t{position.scans});
-    json.field("residual_azimuth_deg", result.residual_azimuth_rad[i] * kDegrees);
-    json.field("residual_elevation_deg", run.config.has_elevation ? result.residual_elevation_rad[i] * kDegrees : kNaN);
+    json.field("residual_azimuth_deg", result.residual_azimuth_rad[i] * kDegreesPerRadian);
+    json.field("residual_elevation_deg",
+               run.config.has_elevation ? result.residual_elevation_rad[i] * kDegreesPerRadian : kNaN);
     json.field("used", static_cast<bool>(result.used[i])).end_object();
   }
   json.end_array();

@@ -1,4 +1,4 @@
-// A calibration with reflectors for people and programs: table and JSON.
+// The result of a calibration with reflectors as table and JSON.
 #pragma once
 
 #include <string>
@@ -18,12 +18,12 @@ struct ReflectorRun {
   alignment::reflectors::LineResult line;
 };
 
-/// What went wrong, with the place in the file and the values allowed; "" where nothing did.
+/// The problem with its place in the file and the allowed values; "" if there is none.
 [[nodiscard]] std::string problem_of(const ReflectorRun& run, alignment::reflectors::Problem problem,
                                      std::size_t position);
 
 [[nodiscard]] std::string to_table(const ReflectorRun& run);
-/// Angles in degrees; null for what there is not.
+/// Angles in degrees; null for unknown values.
 [[nodiscard]] std::string to_json(const ReflectorRun& run);
 
 }  // namespace boresight::calibrate

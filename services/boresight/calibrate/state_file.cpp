@@ -14,21 +14,21 @@ std::string seed_state_file(const std::filesystem::path& file, const VehicleConf
   using Kind = alignment::LoadedMemory::Kind;
   const alignment::Identity identity = alignment::identity_of(vehicle);
   const auto loaded = std::make_unique<alignment::LoadedMemory>(alignment::load_memory(file, identity));
-  std::string news;
+  std::string note;
   switch (loaded->kind) {
     case Kind::kTaken:
-      if (loaded->left_out > 0) {
-        news = file.string() +
-               ": radars mounted otherwise than remembered were left out: " + std::to_string(loaded->left_out);
+      if (loaded->rejected_radars > 0) {
+        note = file.string() + ": entries of radars whose nominal mounting has changed were rejected: " +
+               std::to_string(loaded->rejected_radars);
       }
       break;
     case Kind::kUnreadable:
       throw std::runtime_error(file.string() + ": " + loaded->reason);
     case Kind::kRejected:
-      news = file.string() + " was " + loaded->reason + "; it is kept aside with .rejected, and begun anew";
+      note = file.string() + " was " + loaded->reason + "; it is kept as .rejected, and a new file is written";
       [[fallthrough]];
     case Kind::kMissing:
-      // What the estimator believes before it has seen anything.
+      // The initial state of the estimator.
       std::make_unique<alignment::RobustFilter>(vehicle, alignment::FilterConfig{})->save(loaded->memory);
       break;
   }
@@ -38,7 +38,7 @@ std::string seed_state_file(const std::filesystem::path& file, const VehicleConf
   if (size == 0) throw std::runtime_error(file.string() + ": radar " + std::to_string(seed.radar_id) + " is unknown");
   const std::string problem = alignment::write_memory_file(file, std::span(bytes->data(), size));
   if (!problem.empty()) throw std::runtime_error(file.string() + ": " + problem);
-  return news;
+  return note;
 }
 
 }  // namespace boresight::calibrate

@@ -1,4 +1,4 @@
-// The seed's way into the file from which the alignment estimator starts.
+// Writes the result of a static calibration into the memory file from which the alignment estimator starts.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,10 @@
 
 namespace boresight::calibrate {
 
-/// Puts the seed into the estimator's memory file; what the file knows of the other radars and of the speed signal
-/// stays. A missing file is begun, with every other radar at its nominal mounting; a file that is damaged or another
-/// vehicle's is kept aside as the estimator does, and begun anew. The service must not be running: it would write its
-/// own over it. Returns what is worth telling, or ""; throws std::runtime_error where the file cannot be read or
-/// written.
+/// Writes the seed into the estimator's memory file; the entries of other radars and of the speed signal stay. A
+/// missing file is created with every other radar at its nominal mounting. A file that is damaged or belongs to another
+/// vehicle is renamed, as the estimator does, and replaced. The service must not run, because it would overwrite the
+/// file. Returns a note for the user, or ""; throws std::runtime_error if the file cannot be read or written.
 [[nodiscard]] std::string seed_state_file(const std::filesystem::path& file, const VehicleConfig& vehicle,
                                           const alignment::RotationSeed& seed);
 

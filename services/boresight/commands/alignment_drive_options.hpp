@@ -1,4 +1,4 @@
-// The options of `boresight simulate --alignment-drive` and the drive that they ask for.
+// The options of `boresight simulate --alignment-drive` and the drive that they specify.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,11 @@ struct AlignmentDriveOptions {
   std::vector<std::string> step_changes;
 };
 
-/// The returned option asks for an alignment drive; the others need it.
+/// Adds the options; the returned one selects an alignment drive, and the others need it.
 CLI::Option* add_alignment_drive_options(CLI::App& command, AlignmentDriveOptions& options);
 
 /// `vehicle`: whose radars are simulated, nullptr: four corner radars. Throws std::invalid_argument for a radar that
-/// the vehicle does not have and for knocks that cannot be read.
+/// the vehicle does not have and for step changes that cannot be read.
 [[nodiscard]] simulator::AlignmentSpec alignment_spec(const AlignmentDriveOptions& options,
                                                       const VehicleConfig* vehicle, std::uint64_t seed,
                                                       double duration_s);

@@ -1,12 +1,9 @@
 // `boresight demo`: a drive through the whole pipeline, process by process, watched, judged and cleaned up after.
 #include <algorithm>
 #include <csignal>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,10 +12,11 @@
 #include "deploy/supervisor/domain.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/detection_truths.hpp"
+#include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
+#include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/clock.hpp"
-#include "services/common/runtime/options.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 
 namespace boresight {
@@ -27,31 +25,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kExitInterrupted = 130;
 constexpr std::int64_t kReadyTimeout_ns = 30'000'000'000;
-// From the last frame to the last snapshot with what came of it: two periods of the monitor's record.
+// From the last frame to the last snapshot that contains its effect: two periods of the monitor's record.
 constexpr std::int64_t kLinger_ns = 1'000'000'000;
 constexpr const char* kSimulatedVehicle = "demo";
 
 struct DemoOptions {
-  runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
+  runtime::Configuration configuration;
   std::vector<std::string> recordings;
   double duration_s = 0.0;
   fs::path output = "demo_output";
 };
 
-/// Ctrl-C, as opposed to something that went wrong.
-struct Interrupted {};
-
-void stop_if_interrupted() {
-  if (runtime::stop_signalled()) throw Interrupted{};
-}
-
 fs::path own_program() {
   return fs::read_symlink("/proc/self/exe");
 }
 
-/// Runs another program of ours to its end; its output goes to `log`.
+/// Runs another program of the product until it ends; its output goes to `log`.
 void run_to_end(const supervisor::Command& command, const fs::path& log, const std::string& what) {
   const pid_t pid = supervisor::spawn(command, log);
   int status = 0;
@@ -61,11 +51,11 @@ void run_to_end(const supervisor::Command& command, const fs::path& log, const s
   }
   stop_if_interrupted();
   if (status != 0) {
-    throw std::runtime_error(what + " failed with " + supervisor::describe_exit(status) + "; see " + log.string());
+    throw Finding(what + " failed with " + supervisor::describe_exit(status) + "; see " + log.string());
   }
 }
 
-/// What is played, and what is known about it.
+/// The recordings that are played, and the truth that is known about them.
 struct Drive {
   std::string title;
   std::vector<std::string> recordings;
@@ -73,7 +63,7 @@ struct Drive {
   report::Truth truth;
 };
 
-Drive simulate(const DemoOptions& options, const VehicleConfig& vehicle, const fs::path& logs) {
+Drive simulate_drive(const DemoOptions& options, const VehicleConfig& vehicle, const fs::path& logs) {
   const fs::path directory = options.output / "drive";
   supervisor::Command command;
   command.arguments = {
@@ -82,27 +72,27 @@ Drive simulate(const DemoOptions& options, const VehicleConfig& vehicle, const f
   if (options.duration_s > 0.0) {
     command.arguments.insert(command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
   }
-  std::cout << "simulating a drive" << std::endl;
+  terminal::print("simulating a drive\n");
   run_to_end(command, logs / "simulate.log", "the simulation");
   Drive drive{.title = "simulated drive", .recordings = {}, .truth_file = directory / "truth.csv", .truth = {}};
-  std::ifstream truth(drive.truth_file);
+  InputFile truth(drive.truth_file.string());
   drive.truth = report::truth_of(read_drive_truth(truth), vehicle);
   if (!drive.truth.known()) throw std::runtime_error("the simulation left no truth in " + directory.string());
   for (const char* file : {"radars.pcap", "ego.candump.log"}) drive.recordings.push_back((directory / file).string());
   return drive;
 }
 
-Drive recorded(const DemoOptions& options) {
+Drive recorded_drive(const DemoOptions& options) {
   Drive drive;
   for (const std::string& file : options.recordings) {
-    if (!fs::exists(file)) throw std::runtime_error("no such recording: " + file);
+    InputFile readable(file);  // before anything is started
     drive.recordings.push_back(fs::absolute(file).string());
     drive.title += (drive.title.empty() ? "" : ", ") + fs::path(file).filename().string();
   }
   return drive;
 }
 
-/// What the monitor writes of the run.
+/// Records of the run by the monitor.
 struct Records {
   fs::path snapshots, scans;
 };
@@ -130,8 +120,8 @@ supervisor::ProcessSpec replay_of(const DemoOptions& options, const Drive& drive
   supervisor::ProcessSpec spec;
   spec.name = "replay";
   spec.command.arguments = {(binaries / "boresight-replay").string()};
-  // A simulated drive is as long as wanted; to cut it once more would lose the datagrams that arrive just after its
-  // end.
+  // A simulated drive already has the wanted duration. To cut it again would lose the datagrams that arrive just after
+  // its end.
   if (options.duration_s > 0.0 && !options.recordings.empty()) {
     spec.command.arguments.insert(spec.command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
   }
@@ -141,14 +131,14 @@ supervisor::ProcessSpec replay_of(const DemoOptions& options, const Drive& drive
   return spec;
 }
 
-/// A service that refuses its configuration will refuse it again; waiting for it would be in vain.
+/// A service that refuses its configuration once will refuse it again, so the demo does not wait for it.
 void throw_if_refused(const supervisor::Supervisor& domain, const fs::path& logs) {
   for (const supervisor::Event& event : domain.events()) {
     const bool refused = event.kind == supervisor::EventKind::kExited && event.detail == "exit code 2";
-    if (refused || event.kind == supervisor::EventKind::kStartFailed) {
-      throw std::runtime_error(event.process + " cannot run: " + event.detail + "; see " +
-                               (logs / (event.process + ".log")).string());
-    }
+    const std::string problem =
+        event.process + " cannot run: " + event.detail + "; see " + (logs / (event.process + ".log")).string();
+    if (refused) throw config::Error(problem);
+    if (event.kind == supervisor::EventKind::kStartFailed) throw std::runtime_error(problem);
   }
 }
 
@@ -160,20 +150,20 @@ std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& dri
     throw std::runtime_error(*shortage);
   }
   const fs::path pools = logs / "roudi.toml";
-  std::ofstream(pools) << roudi::to_toml(segments);
+  terminal::write_file(pools, roudi::to_toml(segments));
   supervisor::DomainOptions domain_options{.binaries = supervisor::binaries_folder(),
                                            .config_directory = options.configuration.directory,
                                            .vehicle = options.configuration.vehicle_name,
                                            .run_directory = supervisor::unused_run_directory(),
                                            .log_directory = logs,
                                            .environment = {{"BORESIGHT_INPUT", "replay"}}};
-  // For the estimator's key figures.
+  // The estimator compares its key figures with the truth.
   if (!drive.truth_file.empty()) domain_options.environment.emplace_back("BORESIGHT_TRUTH", drive.truth_file.string());
   supervisor::DomainConfig config = supervisor::domain_of_catalogue(domain_options, pools);
   config.services.push_back(monitor_of(options, records));
 
-  std::cout << "starting RouDi and " << catalogue::kNumberOfSupervisedServices << " services; their output is in "
-            << logs.string() << std::endl;
+  terminal::print(fmt::format("starting RouDi and {} services; their output is in {}\n",
+                              catalogue::kNumberOfSupervisedServices, logs.string()));
   supervisor::Supervisor domain(config);
   domain.start([] { return runtime::stop_signalled(); });
   const std::int64_t deadline_ns = runtime::monotonic_now_ns() + kReadyTimeout_ns;
@@ -182,7 +172,7 @@ std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& dri
     stop_if_interrupted();
     throw_if_refused(domain, logs);
     if (runtime::monotonic_now_ns() > deadline_ns) {
-      throw std::runtime_error("not every service became ready; see " + logs.string());
+      throw Finding("not every service became ready; see " + logs.string());
     }
   }
   domain.start_independent(replay_of(options, drive, domain_options.binaries, domain_options.run_directory));
@@ -199,14 +189,14 @@ std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& dri
   std::vector<supervisor::Event> events = domain.events();
   domain.stop();
   if (status != 0) {
-    throw std::runtime_error("the replay failed with " + supervisor::describe_exit(status) + "; see " +
-                             (logs / "replay.log").string());
+    throw Finding("the replay failed with " + supervisor::describe_exit(status) + "; see " +
+                  (logs / "replay.log").string());
   }
   return events;
 }
 
-/// What the health service cannot see: processes that ended while the drive was played.
-report::Check check_of(const std::vector<supervisor::Event>& events) {
+/// Processes that ended while the drive was played, which the health service cannot see.
+report::Check check_of_processes(const std::vector<supervisor::Event>& events) {
   const auto count = std::count_if(events.begin(), events.end(), [](const supervisor::Event& event) {
     return event.kind == supervisor::EventKind::kExited && event.process != "replay";
   });
@@ -223,33 +213,36 @@ std::vector<std::string> event_lines(const std::vector<supervisor::Event>& event
   return lines;
 }
 
-/// Processes append to their logs; only what an earlier demo wrote is removed, because the folder is the user's.
+/// Processes append to their logs, so the logs of an earlier demo are removed. Other files in the folder are the
+/// user's.
 void remove_earlier_logs(const fs::path& logs) {
   std::vector<std::string> names = {"roudi", "monitor", "replay", "simulate"};
   names.insert(names.end(), catalogue::kServiceNames.begin(), catalogue::kServiceNames.end());
   for (const std::string& name : names) fs::remove(logs / (name + ".log"));
 }
 
-int run(DemoOptions options) {
-  runtime::install_stop_signals();
+int run_demo(DemoOptions options) {
   const bool simulated = options.recordings.empty();
   if (simulated && options.configuration.vehicle_name.empty()) options.configuration.vehicle_name = kSimulatedVehicle;
   report::ReportInput input;
-  input.vehicle = options.configuration.vehicle();  // before anything else, because the user can mend it
-  options.configuration.vehicle_name = options.configuration.vehicle_file().stem().string();
+  input.vehicle = options.configuration.vehicle();  // a wrong configuration is reported before anything starts
+  // A file, so that every process finds it from any working directory.
+  options.configuration.vehicle_name = fs::absolute(options.configuration.vehicle_file()).string();
   options.configuration.directory = fs::absolute(options.configuration.directory);
   options.output = fs::absolute(options.output);
   const fs::path logs = options.output / "logs";
   const Records records{options.output / "record.txt", options.output / "scans.txt"};
-  fs::create_directories(logs);
+  std::error_code error;
+  fs::create_directories(logs, error);
+  if (error) throw terminal::OutputError(logs.string(), error.value());
   remove_earlier_logs(logs);
-  fs::remove(records.snapshots);
-  fs::remove(records.scans);
+  const fs::path page = options.output / "report.html";
+  for (const fs::path& earlier : {records.snapshots, records.scans, page}) fs::remove(earlier);
 
-  const Drive drive = simulated ? simulate(options, input.vehicle, logs) : recorded(options);
+  const Drive drive = simulated ? simulate_drive(options, input.vehicle, logs) : recorded_drive(options);
   const std::vector<supervisor::Event> events = play(options, drive, logs, records);
 
-  std::ifstream recorded_snapshots(records.snapshots), recorded_scans(records.scans);
+  InputFile recorded_snapshots(records.snapshots.string()), recorded_scans(records.scans.string());
   input.title = drive.title + ", vehicle " + input.vehicle.name;
   monitor::DamagedLines damaged;
   input.snapshots = monitor::read_record(recorded_snapshots, records.snapshots.string(), damaged);
@@ -259,42 +252,40 @@ int run(DemoOptions options) {
   input.ghosts = report::find_ghosts(recorded_scans, records.scans.string(), truths ? &*truths : nullptr);
   input.more_checks = report::ghost_checks(input.ghosts);
   input.more_checks.push_back(report::record_check("record", damaged));
-  input.more_checks.push_back(check_of(events));
+  input.more_checks.push_back(check_of_processes(events));
   report::Summary summary = report::summarise(input.snapshots, input.truth);
   summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
-  const fs::path page = options.output / "report.html";
-  std::ofstream(page) << report::render_html(input);
-  std::cout << report::render_summary(summary) << "\n  report: " << page.string() << std::endl;
-  return summary.all_passed() ? 0 : 1;
+  const std::string html = report::render_html(input);
+  stop_if_interrupted();
+  terminal::write_file(page, html);
+  terminal::print(report::render_summary(summary) + "\n  report: " + page.string() + "\n");
+  return summary.all_passed() ? exit_code::kSuccess : exit_code::kFinding;
 }
 
 }  // namespace
 
 void add_demo_command(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "demo", "play a drive through every process of the pipeline, watch it, and judge what came of it");
+      "demo", "Plays a drive through every process of the pipeline, shows it live, and judges the result.");
   auto options = std::make_shared<DemoOptions>();
-  command->add_option("--recording", options->recordings,
-                      "candump logs or pcap captures of one drive; a simulated drive if not given");
-  command->add_option("--config", options->configuration.directory, "folder with vehicle/ and services/")
+  command
+      ->add_option("--recording", options->recordings,
+                   "candump log or pcap capture of a drive; repeatable; default: a simulated drive")
+      ->type_name("FILE");
+  runtime::add_config_option(*command, options->configuration);
+  runtime::add_vehicle_option(*command, options->configuration)->envname("BORESIGHT_VEHICLE");
+  command->add_option("--duration", options->duration_s, "Plays so many seconds of the drive; 0: all of it")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  command->add_option("--out", options->output, "Folder for the report, the logs and the simulated drive")
+      ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--vehicle", options->configuration.vehicle_name, "vehicle file to use, without .toml")
-      ->envname("BORESIGHT_VEHICLE");
-  command->add_option("--duration", options->duration_s, "seconds of the drive to play; 0 is all of it")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--out", options->output, "folder for report, logs and the simulated drive")
-      ->capture_default_str();
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = run(*options);
-    } catch (const Interrupted&) {
-      std::cout << "\nstopped" << std::endl;
-      exit_code = kExitInterrupted;
-    } catch (const std::exception& error) {
-      std::cerr << "boresight demo: " << error.what() << '\n';
-      exit_code = runtime::stop_signalled() ? kExitInterrupted : 1;
-    }
-  });
+  on_call(
+      *command, exit_code,
+      {"demo --duration 20\n"
+       "demo --vehicle demo --recording drive/radars.pcap --recording drive/ego.candump.log",
+       "every check passed", "a check failed, or a process of the pipeline failed"},
+      [options] { return run_demo(*options); }, &options->configuration);
 }
 
 }  // namespace boresight

@@ -8,8 +8,8 @@
 
 namespace boresight {
 
-/// The tables beside a truth.csv; nothing where there are none. Throws std::runtime_error where one cannot be
-/// understood.
+/// Reads the tables beside a truth.csv; nothing if one of them does not exist. Throws std::runtime_error if one cannot
+/// be read.
 [[nodiscard]] std::optional<report::DetectionTruths> detection_truths_beside(const std::filesystem::path& truth_file);
 
 }  // namespace boresight

@@ -2,16 +2,18 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
+#include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 #include "services/health/dds/diagnostics_reader.hpp"
 
@@ -23,28 +25,46 @@ struct DiagnosticsOptions {
   dds::Config dds;
   bool array = false;
   bool all = false;
-  bool json = false;
+  std::string json;  ///< file, "-" for standard output; empty: text
   std::uint64_t count = 0;
   double seconds = 0.0;
 };
 
-/// Lines from two threads of the middleware, one after the other.
-class Printer {
+/// Writes lines from two threads of the middleware, one after the other. An error is kept for the main thread.
+class LinePrinter {
  public:
+  explicit LinePrinter(const std::string& file) : output_(file) {}
   void print(const std::string& text) {
     const std::lock_guard lock(mutex_);
-    std::cout << text << std::endl;  // at once: the reader of a pipe shall not wait
-    ++printed_;
+    if (failed_) return;
+    try {
+      output_.write(text + "\n");
+      output_.flush();  // the reader of a pipe shall not wait
+      ++printed_;
+    } catch (const terminal::OutputError&) {
+      error_ = std::current_exception();
+      failed_ = true;
+    }
   }
   [[nodiscard]] std::uint64_t printed() const { return printed_; }
+  [[nodiscard]] bool failed() const { return failed_; }
+  /// Throws OutputError if a line could not be written.
+  void commit() {
+    const std::lock_guard lock(mutex_);
+    if (error_) std::rethrow_exception(error_);
+    output_.commit();
+  }
 
  private:
   std::mutex mutex_;
+  terminal::OutputFile output_;
+  std::exception_ptr error_;
   std::atomic<std::uint64_t> printed_ = 0;
+  std::atomic<bool> failed_ = false;
 };
 
-/// Whether a sample says something new about its radar, beyond numbers that always change.
-class Changes {
+/// Whether the state of a radar differs from the one before; numbers that always change do not count.
+class StateChanges {
  public:
   bool observe(const diagnostics::SensorHealth& s) {
     const std::pair verdict(s.data_qualifier(), s.extended_qualifier());
@@ -59,68 +79,74 @@ class Changes {
   std::map<Radar, std::pair<diagnostics::DataQualifier, diagnostics::ExtendedQualifier>> verdicts_;
 };
 
-int run(const DiagnosticsOptions& options) {
-  runtime::install_stop_signals();
-  Printer printer;
-  Changes changes;
+int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) {
+  const bool is_json = !options.json.empty();
+  LinePrinter printer(is_json ? options.json : "-");
+  StateChanges changes;
   dds::DiagnosticsReader::OnSensorHealth on_sensor_health;
   dds::DiagnosticsReader::OnDiagnosticArray on_array;
   if (options.array) {
     on_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
-      printer.print(options.json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array));
+      printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array));
     };
   } else {
     on_sensor_health = [&](const diagnostics::SensorHealth& sensor) {
       if (!changes.observe(sensor) && !options.all) return;
-      printer.print(options.json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor));
+      printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor));
     };
   }
-  const dds::DiagnosticsReader reader(options.dds, on_sensor_health, on_array);
+  std::optional<dds::DiagnosticsReader> reader(std::in_place, options.dds, on_sensor_health, on_array);
   const auto begin = std::chrono::steady_clock::now();
   const auto is_over = [&] {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
     return options.seconds > 0.0 && elapsed.count() >= options.seconds;
   };
   const auto is_enough = [&] { return options.count > 0 && printer.printed() >= options.count; };
-  while (!runtime::stop_signalled() && !is_over() && !is_enough()) {
+  while (!runtime::stop_signalled() && !is_over() && !is_enough() && !printer.failed()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  if (printer.printed() >= std::max<std::uint64_t>(options.count, 1)) return 0;
-  std::cerr << "boresight diagnostics: "
-            << (printer.printed() == 0 ? "nothing received" : "fewer lines received than wanted") << " on DDS domain "
-            << options.dds.domain << '\n';
-  return 1;
+  reader.reset();  // no further lines
+  printer.commit();
+  int result = exit_code::kSuccess;
+  if (printer.printed() < std::max<std::uint64_t>(options.count, 1)) {
+    report_problem(
+        command, fmt::format("{} on DDS domain {}",
+                             printer.printed() == 0 ? "nothing was received" : "fewer lines were received than --count",
+                             options.dds.domain));
+    result = exit_code::kFinding;
+  }
+  return exit_code_after_signal(result);
 }
 
 }  // namespace
 
 void add_diagnostics_command(CLI::App& app, int& exit_code) {
-  CLI::App* const command =
-      app.add_subcommand("diagnostics", "what the health service says by DDS; a line when a radar's state changes");
+  CLI::App* const command = app.add_subcommand(
+      "diagnostics", "Prints what the health service publishes over DDS: a line when a radar's state changes.");
   auto options = std::make_shared<DiagnosticsOptions>();
   constexpr std::uint32_t kHighestDomain = 232;
   command->add_option("--domain", options->dds.domain, "DDS domain")
       ->envname("BORESIGHT_DDS_DOMAIN")
       ->check(CLI::Range(0U, kHighestDomain))
+      ->type_name("N")
       ->capture_default_str();
-  command->add_option("--interface", options->dds.interfaces,
-                      "IPv4 address of a network interface to use; default all");
+  command
+      ->add_option("--interface", options->dds.interfaces,
+                   "IPv4 address of a network interface to use; repeatable; all interfaces if not given")
+      ->type_name("ADDRESS");
   command->add_flag("--array", options->array,
-                    "subscribe to rt/diagnostics (ROS 2) instead of boresight/sensor_health");
-  command->add_flag("--all", options->all, "print every sample, not only changed states");
-  command->add_flag("--json", options->json, "one line of JSON a sample");
-  command->add_option("--count", options->count, "lines after which to stop; 0 is never");
-  command->add_option("--seconds", options->seconds, "seconds after which to stop; 0 is never")
-      ->check(CLI::NonNegativeNumber);
-  command->footer("Exit code 1 if nothing was received, or less than --count.");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = run(*options);
-    } catch (const std::exception& error) {
-      std::cerr << "boresight diagnostics: " << error.what() << '\n';
-      exit_code = 1;
-    }
-  });
+                    "Subscribes to rt/diagnostics (ROS 2) instead of boresight/sensor_health");
+  command->add_flag("--all", options->all, "Prints every sample, not only changed states");
+  add_json_option(*command, options->json,
+                  "A line of JSON for each sample; without FILE, or with \"-\": to standard output");
+  command->add_option("--count", options->count, "Ends after so many lines; 0: never")->type_name("N");
+  command->add_option("--seconds", options->seconds, "Ends after so many seconds; 0: never")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  on_call(*command, exit_code,
+          {"diagnostics --all --count 10", "as many lines as wanted were received",
+           "nothing was received, or fewer lines than --count"},
+          [options, command] { return run_diagnostics(*options, *command); });
 }
 
 }  // namespace boresight

@@ -1,26 +1,22 @@
 // `boresight monitor`: the running system on the terminal.
-#include <cstdio>
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
-#include <iostream>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
 #include "services/boresight/monitor/scan_record.hpp"
+#include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/clock.hpp"
-#include "services/common/runtime/config/reader.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/node.hpp"
-#include "services/common/runtime/options.hpp"
 
 namespace boresight {
 
@@ -32,19 +28,50 @@ constexpr std::int64_t kJsonPeriod_ns = 1'000'000'000;
 constexpr std::int64_t kLinePeriod_ns = 3'000'000'000;
 
 struct MonitorOptions {
-  runtime::Configuration configuration{.directory = "/etc/boresight", .vehicle_name = {}};
-  bool json = false;
+  runtime::Configuration configuration;
+  std::string json;  ///< file, "-" for standard output; empty: text
   std::string record_file;
   std::string scans_file;
   double duration_s = 0.0;
 };
 
-void write_out(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
-}
+/// A record that grows by whole lines. The first error is kept until check(), so that the live view goes on.
+class AppendedFile {
+ public:
+  /// An empty path is no file. Throws OutputError.
+  explicit AppendedFile(const std::string& path) : path_(path) {
+    if (path.empty()) return;
+    errno = 0;
+    stream_.open(path, std::ios::app);
+    if (!stream_) throw terminal::OutputError(path, errno);
+  }
+  [[nodiscard]] bool is_open() const { return stream_.is_open(); }
+  template <typename Write>
+  void append(const Write& write) {
+    if (!is_open() || error_ != 0) return;
+    errno = 0;
+    write(stream_);
+    note_error();
+  }
+  void flush() {
+    append([](std::ofstream& stream) { stream.flush(); });
+  }
+  /// Throws OutputError if anything was lost.
+  void check() {
+    flush();
+    if (error_ != 0) throw terminal::OutputError(path_, error_);
+  }
 
-/// Redraws in place: every line is cleared to its end, and what is left of a longer picture below.
+ private:
+  void note_error() {
+    if (!stream_) error_ = errno != 0 ? errno : EIO;
+  }
+  std::string path_;
+  std::ofstream stream_;
+  int error_ = 0;
+};
+
+/// Redraws in place: every line is cleared to its end, and the rest of a longer screen below.
 void draw(const monitor::Snapshot& snapshot, double elapsed_s) {
   winsize size{};
   const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -54,23 +81,17 @@ void draw(const monitor::Snapshot& snapshot, double elapsed_s) {
     if (c == '\n') text += "\x1b[K";
     text += c;
   }
-  write_out(text + "\x1b[J");
+  terminal::print(text + "\x1b[J");
 }
 
-int run(const MonitorOptions& options) {
-  // Log lines would tear the picture, and an onlooker may allocate as it likes.
+int run_monitor(const MonitorOptions& options) {
+  // Log lines would break the screen.
   setenv("BORESIGHT_LOG_LEVEL", "error", 0);
   runtime::log::initialise("boresight-monitor");
   const VehicleConfig vehicle = options.configuration.vehicle();
   monitor::Accumulator accumulator(vehicle);
-  std::ofstream record, scans;
-  const auto open = [](std::ofstream& file, const std::string& path) {
-    if (path.empty()) return;
-    file.open(path, std::ios::app);
-    if (!file) throw std::runtime_error("cannot write " + path);
-  };
-  open(record, options.record_file);
-  open(scans, options.scans_file);
+  AppendedFile record(options.record_file), scans(options.scans_file);
+  terminal::OutputFile output(options.json.empty() ? "-" : options.json);
 
   runtime::Node node(catalogue::Service::kMonitor, "-" + std::to_string(getpid()));
   node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { accumulator.observe(m); });
@@ -80,78 +101,70 @@ int run(const MonitorOptions& options) {
   node.on<RadarScan>([&](const RadarScan& m) { accumulator.observe(m, runtime::monotonic_now_ns()); });
   node.on<ClassifiedScan>([&](const ClassifiedScan& m) {
     accumulator.observe(m);
-    if (scans.is_open()) monitor::write_scan(scans, m);
+    scans.append([&m](std::ofstream& file) { monitor::write_scan(file, m); });
   });
   node.on<TrackList>([&](const TrackList& m) {
     accumulator.observe(m);
-    if (scans.is_open()) monitor::write_tracks(scans, m);
+    scans.append([&m](std::ofstream& file) { monitor::write_tracks(file, m); });
   });
 
   const std::int64_t begin_ns = runtime::monotonic_now_ns();
   const auto elapsed_s = [begin_ns] { return static_cast<double>(runtime::monotonic_now_ns() - begin_ns) * 1e-9; };
   const auto snapshot = [&accumulator] { return accumulator.snapshot(runtime::monotonic_now_ns()); };
-  const bool screen = !options.json && isatty(STDOUT_FILENO) != 0;
+  const bool screen = options.json.empty() && isatty(STDOUT_FILENO) != 0;
   const auto show = [&] {
-    if (options.json) {
-      write_out(monitor::to_json(snapshot()) + "\n");
-    } else if (screen) {
+    if (screen) {
       draw(snapshot(), elapsed_s());
-    } else {
-      write_out(monitor::render_line(snapshot(), elapsed_s()) + "\n");
+      return;
     }
+    output.write((options.json.empty() ? monitor::render_line(snapshot(), elapsed_s()) : monitor::to_json(snapshot())) +
+                 "\n");
+    output.flush();
   };
-  if (screen) write_out("\x1b[2J");
-  node.every(options.json ? kJsonPeriod_ns : (screen ? kScreenPeriod_ns : kLinePeriod_ns), show);
+  if (screen) terminal::print("\x1b[2J");
+  node.every(!options.json.empty() ? kJsonPeriod_ns : (screen ? kScreenPeriod_ns : kLinePeriod_ns), show);
   if (record.is_open()) {
     node.every(kRecordPeriod_ns, [&] {
-      monitor::write_record(record, snapshot());
+      record.append([&](std::ofstream& file) { monitor::write_record(file, snapshot()); });
       record.flush();
     });
   }
   if (options.duration_s > 0.0) {
     node.every(static_cast<std::int64_t>(options.duration_s * 1e9), [&node] { node.stop(); });
   }
-  const int exit_code = node.spin();
+  const int result = node.spin();
   if (screen) show();
-  if (record.is_open()) monitor::write_record(record, snapshot());
-  const auto check_written = [](std::ofstream& file, const std::string& path) {
-    if (file.is_open() && !file.flush())
-      throw std::runtime_error("cannot write " + path + ": what it holds is not whole");
-  };
-  check_written(record, options.record_file);
-  check_written(scans, options.scans_file);
-  return exit_code;
+  output.commit();
+  record.append([&](std::ofstream& file) { monitor::write_record(file, snapshot()); });
+  record.check();
+  scans.check();
+  return exit_code_after_signal(result);
 }
 
 }  // namespace
 
 void add_monitor_command(CLI::App& app, int& exit_code) {
   CLI::App* const command =
-      app.add_subcommand("monitor", "live view of the running system: radars, alignment, health, tracks, latencies");
+      app.add_subcommand("monitor", "Shows the running system live: radars, alignment, health, tracks, latencies.");
   auto options = std::make_shared<MonitorOptions>();
-  command->add_option("--config", options->configuration.directory, "folder with vehicle/ and services/")
-      ->capture_default_str();
-  command->add_option("--vehicle", options->configuration.vehicle_name, "vehicle file to use, without .toml")
-      ->envname("BORESIGHT_VEHICLE");
-  command->add_flag("--json", options->json, "one line of JSON a second instead of a picture");
-  command->add_option("--record", options->record_file, "append what is seen to this file, for `boresight report`");
-  command->add_option(
-      "--record-scans", options->scans_file,
-      "append every classified scan and track list to this file, for `boresight report --scans`; some 20 "
-      "MB a minute");
-  command->add_option("--duration", options->duration_s, "seconds after which to stop; 0 is never")
-      ->check(CLI::NonNegativeNumber);
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = run(*options);
-    } catch (const config::Error& error) {
-      std::cerr << error.what() << '\n';
-      exit_code = 2;
-    } catch (const std::exception& error) {
-      std::cerr << "boresight monitor: " << error.what() << '\n';
-      exit_code = 1;
-    }
-  });
+  runtime::add_config_option(*command, options->configuration);
+  runtime::add_vehicle_option(*command, options->configuration)->envname("BORESIGHT_VEHICLE");
+  add_json_option(*command, options->json,
+                  "A line of JSON each second instead of the screen; without FILE, or with \"-\": to standard output");
+  command
+      ->add_option("--record", options->record_file, "Appends two snapshots a second to FILE, for `boresight report`")
+      ->type_name("FILE");
+  command
+      ->add_option("--record-scans", options->scans_file,
+                   "Appends every classified scan and track list to FILE, for `boresight report --scans`; about 20 MB "
+                   "a minute")
+      ->type_name("FILE");
+  command->add_option("--duration", options->duration_s, "Ends after so many seconds; 0: never")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S");
+  on_call(
+      *command, exit_code, {"monitor --vehicle demo --record record.txt", "ended after --duration or by SIGTERM", ""},
+      [options] { return run_monitor(*options); }, &options->configuration);
 }
 
 }  // namespace boresight

@@ -1,14 +1,13 @@
 // `boresight supervise`: RouDi and every service, kept running in the foreground without systemd.
-#include <fstream>
-#include <iostream>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "deploy/roudi/pools.hpp"
 #include "deploy/supervisor/domain.hpp"
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/run_command.hpp"
+#include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 
 namespace boresight {
@@ -17,70 +16,69 @@ namespace {
 
 struct SuperviseOptions {
   supervisor::DomainOptions domain{.binaries = {},
-                                   .config_directory = "/etc/boresight",
+                                   .config_directory = {},
                                    .vehicle = {},
                                    .run_directory = {},
                                    .log_directory = "logs",
                                    .environment = {}};
+  runtime::Configuration configuration;
   bool replay = false;
 };
 
-int run(SuperviseOptions options) {
-  runtime::install_stop_signals();
+int run_supervise(SuperviseOptions options) {
+  static_cast<void>(options.configuration.vehicle());  // a wrong configuration is reported before anything starts
+  options.domain.config_directory = options.configuration.directory;
+  options.domain.vehicle = options.configuration.vehicle_name;
   if (options.domain.binaries.empty()) options.domain.binaries = supervisor::binaries_folder();
   if (options.domain.run_directory.empty()) options.domain.run_directory = supervisor::unused_run_directory();
   if (options.replay) options.domain.environment.emplace_back("BORESIGHT_INPUT", "replay");
-  std::filesystem::create_directories(options.domain.log_directory);
+  std::error_code error;
+  std::filesystem::create_directories(options.domain.log_directory, error);
+  if (error) throw terminal::OutputError(options.domain.log_directory.string(), error.value());
   const std::filesystem::path pools = options.domain.log_directory / "roudi.toml";
   if (const auto shortage =
           supervisor::shared_memory_shortage(roudi::total_bytes(roudi::single_segment()), "/dev/shm")) {
     throw std::runtime_error(*shortage);
   }
-  std::ofstream(pools) << roudi::to_toml(roudi::single_segment());
+  terminal::write_file(pools, roudi::to_toml(roudi::single_segment()));
 
   supervisor::Supervisor domain(supervisor::domain_of_catalogue(options.domain, pools));
-  std::size_t told = 0;
-  const auto tell = [&domain, &told] {
-    for (; told < domain.events().size(); ++told) {
-      const supervisor::Event& event = domain.events()[told];
-      std::cout << fmt::format("{:.3f} {} {} {} {}", static_cast<double>(event.time_ns) * 1e-9, name_of(event.kind),
-                               event.process.empty() ? "domain" : event.process, event.pid, event.detail)
-                << std::endl;
+  std::size_t printed = 0;
+  const auto print_new_events = [&domain, &printed] {
+    for (; printed < domain.events().size(); ++printed) {
+      const supervisor::Event& event = domain.events()[printed];
+      terminal::print(fmt::format("{:.3f} {} {} {} {}\n", static_cast<double>(event.time_ns) * 1e-9,
+                                  name_of(event.kind), event.process.empty() ? "domain" : event.process, event.pid,
+                                  event.detail));
     }
   };
   domain.start([] { return runtime::stop_signalled(); });
   while (!runtime::stop_signalled()) {
-    tell();
+    print_new_events();
     domain.poll(50'000'000);
   }
   domain.stop();
-  tell();
-  return 0;
+  print_new_events();
+  return exit_code_after_signal(exit_code::kSuccess);
 }
 
 }  // namespace
 
 void add_supervise_command(CLI::App& app, int& exit_code) {
-  CLI::App* const command =
-      app.add_subcommand("supervise", "start RouDi and every service and keep them running until SIGTERM or Ctrl-C");
+  CLI::App* const command = app.add_subcommand(
+      "supervise", "Starts RouDi and every service in the foreground and restarts them until SIGTERM or Ctrl-C.");
   auto options = std::make_shared<SuperviseOptions>();
-  command->add_option("--config", options->domain.config_directory, "folder with vehicle/ and services/")
+  runtime::add_config_option(*command, options->configuration);
+  runtime::add_vehicle_option(*command, options->configuration)->envname("BORESIGHT_VEHICLE");
+  command->add_option("--logs", options->domain.log_directory, "Folder for the output of each process")
+      ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--vehicle", options->domain.vehicle, "vehicle file to use, without .toml")
-      ->envname("BORESIGHT_VEHICLE");
-  command->add_option("--logs", options->domain.log_directory, "folder for each process's output")
-      ->capture_default_str();
-  command->add_option("--run-dir", options->domain.run_directory,
-                      "folder for sockets; a new one under /tmp if not given");
-  command->add_flag("--replay", options->replay, "the gateway listens to boresight-replay instead of the wires");
-  command->callback([options, &exit_code] {
-    try {
-      exit_code = run(*options);
-    } catch (const std::exception& error) {
-      std::cerr << "boresight supervise: " << error.what() << '\n';
-      exit_code = runtime::stop_signalled() ? 130 : 1;
-    }
-  });
+  command->add_option("--run-dir", options->domain.run_directory, "Folder for sockets; default: a new one in /tmp")
+      ->type_name("DIR");
+  command->add_flag("--replay", options->replay, "The gateway takes its input from boresight-replay");
+  on_call(
+      *command, exit_code, {"supervise --vehicle demo --replay", "stopped by SIGTERM", ""},
+      [options] { return run_supervise(*options); }, &options->configuration);
 }
 
 }  // namespace boresight

@@ -17,12 +17,12 @@ constexpr double kBinRatio = 1.05;
 constexpr double kGapFactor = 2.5;
 constexpr std::size_t kMaxReasons = 32;
 
-/// Reasons with other numbers in them are one reason.
+/// Reasons that differ only in their numbers count as one reason.
 std::string without_numbers(std::string_view text) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    // A digit within a word, as in ARS548, is part of its name.
+    // A digit within a word, as in ARS548, belongs to the word.
     const bool in_word = i > 0 && std::isalnum(static_cast<unsigned char>(text[i - 1])) != 0;
     if (!is_digit(text[i]) || in_word) {
       plain += text[i];
@@ -152,7 +152,7 @@ std::string Check::report(const std::array<SourceStatistics, kMaxRadars + 1>& st
   damaged = counts.problems > 0;
   bool anything = false;
   std::string text = fmt::format(
-      "recording: {} frames, {} unreadable, {} stamped before the one before, {} CAN error "
+      "recording: {} frames, {} unreadable, {} with a stamp before the previous one, {} CAN error "
       "frames, {} packets of other protocols\n",
       counts.frames, counts.problems, counts.backwards, counts.error_frames, counts.ignored);
   for (const auto& [id, f] : sources_) {
@@ -175,9 +175,9 @@ std::string Check::report(const std::array<SourceStatistics, kMaxRadars + 1>& st
       if (count > 0) text += fmt::format("  {} {}\n", count, what);
     };
     line(gaps(f), id == 0 ? "gaps in time" : "gaps in time: scans are missing");
-    line(s.lost, "scans lost, as the sensor's counter says");
-    line(f.backwards, "measured before the one before");
-    line(f.dropped_detections, "detections beyond what a scan can hold");
+    line(s.lost, "scans lost by the sensor's counter");
+    line(f.backwards, "measured before the previous one");
+    line(f.dropped_detections, "detections beyond the capacity of a scan");
     for (std::size_t bit = 0; bit < f.integrity.size(); ++bit) {
       line(f.integrity[bit], "scans: " + integrity_names(static_cast<std::uint16_t>(1u << bit)));
     }
@@ -185,7 +185,7 @@ std::string Check::report(const std::array<SourceStatistics, kMaxRadars + 1>& st
     for (const auto& [reason, count] : f.noted_by_reason) line(count, "noted: " + reason);
   }
   damaged = damaged || !anything;
-  text += damaged ? (anything ? "DAMAGED\n" : "DAMAGED: nothing of any source\n") : "SOUND\n";
+  text += damaged ? (anything ? "DAMAGED\n" : "DAMAGED: no message of any source\n") : "SOUND\n";
   return text;
 }
 

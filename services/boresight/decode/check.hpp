@@ -1,4 +1,4 @@
-// Judges what was decoded of a recording, source by source: sound, damaged, or absent.
+// Judges the decoded messages of a recording, source by source: sound, damaged, or absent.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@
 
 namespace boresight::decode {
 
-/// Times between scans, as counts in bins of five per cent, so that memory does not grow with the recording.
+/// Histogram of the times between scans in bins of five per cent, so that memory does not grow with the recording.
 class Intervals {
  public:
-  /// Ten microseconds and less … over an hour.
+  /// The bins cover ten microseconds and less to more than an hour.
   void add(std::int64_t interval_ns);
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  /// Seconds, within five per cent; 0 if there are none.
+  /// In seconds, accurate to five per cent; 0 without intervals.
   [[nodiscard]] double median_s() const;
   [[nodiscard]] std::uint64_t longer_than(double seconds) const;
 
@@ -32,7 +32,7 @@ class Intervals {
   std::uint64_t count_ = 0;
 };
 
-/// What came of one radar, or (id 0) of the ego signals and of frames that belong to no source.
+/// Findings for one radar, or (id 0) for the ego signals and for frames that belong to no source.
 struct SourceFindings {
   std::string name;
   std::uint64_t scans = 0;  ///< ego motions for id 0
@@ -43,11 +43,11 @@ struct SourceFindings {
   std::map<std::string, std::uint64_t, std::less<>> rejected_by_reason;
   std::map<std::string, std::uint64_t, std::less<>> noted_by_reason;     ///< likewise
   std::array<std::uint64_t, scan_integrity::kNumberOfBits> integrity{};  ///< scans with that bit
-  /// The first scan and the latest lack frames: a recording begins and ends in the middle of a cycle.
+  /// The first and the last scan may lack frames, because a recording begins and ends in the middle of a cycle.
   bool first_is_incomplete = false, last_is_incomplete = false;
   std::int64_t first_ns = 0, last_ns = 0;  ///< times of measurement
   Intervals intervals;
-  std::uint64_t backwards = 0;  ///< scans measured before the one before
+  std::uint64_t backwards = 0;  ///< scans with a measurement time before that of the previous scan
 };
 
 enum class Verdict : std::uint8_t { kSound, kDamaged, kAbsent };
@@ -59,18 +59,18 @@ class Check {
 
   void take_scan(std::uint32_t id, const RadarScan& scan, const ingest::MeasurementTime& time);
   void take_ego(const ingest::MeasurementTime& time);
-  /// A clock that jumps or is not synchronised is noted and no damage by itself: what matters of it is seen in the
-  /// times of the scans.
+  /// A clock that jumps or is not synchronised is noted, but is no damage: its effect shows in the times of the scans.
   void take_fault(std::uint32_t id, Fault fault, std::string_view what);
 
-  /// Intervals of more than two and a half median ones.
+  /// Number of intervals longer than two and a half medians.
   [[nodiscard]] static std::uint64_t gaps(const SourceFindings& findings);
-  /// Damaged: something was rejected, is missing or cannot be as the sensor sent it. A hundredth of the scans may be
-  /// implausible or contradict the ego motion, as such judgements err. Absent: nothing came and nothing was rejected.
+  /// Damaged: a message was rejected, is missing, or cannot have been sent by the sensor. One scan in a hundred may be
+  /// implausible or contradict the ego motion, because these judgements are uncertain. Absent: no message was received
+  /// and none was rejected.
   [[nodiscard]] static Verdict judge(const SourceFindings& findings, const SourceStatistics& statistics);
 
-  /// The report; `statistics` by radar id. `damaged` tells the verdict on the recording as a whole: damaged as soon as
-  /// a source is, or a line or packet could not be read, or nothing at all came.
+  /// The report; `statistics` by radar id. Sets `damaged`, the verdict on the whole recording: true if a source is
+  /// damaged, if a line or packet could not be read, or if there is no message at all.
   [[nodiscard]] std::string report(const std::array<SourceStatistics, kMaxRadars + 1>& statistics,
                                    const recording::Counts& counts, bool& damaged) const;
 

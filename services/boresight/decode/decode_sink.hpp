@@ -1,4 +1,4 @@
-// The gateway's products as rows of a table, or as findings.
+// Turns the gateway's decoded messages into rows of a table and into findings.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ class DecodeSink : public ingest::Sink {
   void fault(Fault fault, std::string_view what, std::uint32_t radar_id) override;
   SourceStatistics& statistics(std::uint32_t radar_id) override;
 
-  /// What came since the caller emptied it.
+  /// Rows since the caller cleared them.
   [[nodiscard]] std::string& rows() { return rows_; }
   [[nodiscard]] Check& check() { return check_; }
   [[nodiscard]] const std::array<SourceStatistics, kMaxRadars + 1>& all_statistics() const { return statistics_; }

@@ -13,7 +13,7 @@ namespace service = wire::boresight_service;
 namespace {
 
 constexpr std::uint16_t kArs548Port = 42102;
-// A name that no interface can have, for signals that are not known.
+// A name that no interface can have, for signals of unknown origin.
 constexpr const char* kNowhere = "-";
 
 std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -21,8 +21,8 @@ std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
          static_cast<std::uint32_t>(bytes[at + 2]) << 8 | bytes[at + 3];
 }
 
-/// The instance that a message of the event comes from; 0 if it is another message, or a later segment of one. The Data
-/// ID is the last field of the E2E header.
+/// The service instance that sent a message of the event; 0 for other messages and for later segments. The Data ID is
+/// the last field of the E2E header.
 std::uint16_t instance_of(std::span<const std::uint8_t> datagram, std::uint16_t event) {
   constexpr std::size_t kTypeAt = 14, kTpHeader = 4;
   constexpr std::uint8_t kTpFlag = 0x20;

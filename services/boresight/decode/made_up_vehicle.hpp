@@ -1,4 +1,4 @@
-// A vehicle for recordings of which nothing is known but the radars' profile.
+// A vehicle configuration for recordings of which only the radars' profile is known.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ namespace boresight::decode {
 /// A sender of radar data found in a recording.
 struct Sender {
   recording::Endpoint endpoint;
-  std::uint16_t instance = 0;  ///< kBoresight, as its E2E Data ID says
+  std::uint16_t instance = 0;  ///< kBoresight: from its E2E Data ID
 };
 
 struct Senders {
   std::vector<Sender> radars;  ///< in the order of their first message, 16 at most
-  std::optional<Sender> ego;   ///< kBoresight: who sends the vehicle's motion
+  std::optional<Sender> ego;   ///< kBoresight: the sender of the ego motion
 };
 
-/// Looks for senders in the first frames of a recording (ten thousand of UDP): an ARS548 by its port, a Boresight
+/// Searches the first ten thousand UDP frames of a recording for senders: an ARS548 is known by its port, a Boresight
 /// service by its events.
 [[nodiscard]] Senders find_senders(recording::Reader& reader, RadarProfile profile);
 
@@ -35,11 +35,11 @@ struct MadeUp {
   std::string interface {};     ///< of CAN; "": any
   std::uint32_t sensor_id = 0;  ///< kArs408
   std::string mapping{};        ///< kMapping
-  Senders senders{};            ///< a radar each; none for kArs548: one radar, from any sender
+  Senders senders{};            ///< a radar for each; if empty for kArs548: one radar, from any sender
 };
 
-/// Radars that may see anything anywhere and are as noisy as the default says. The vehicle's motion is taken from where
-/// the profile has it, if it does.
+/// The radars have an unlimited field of view and the default noise. The ego motion is taken from the profile's own
+/// messages, if it has any.
 [[nodiscard]] VehicleConfig made_up_vehicle(const MadeUp& options);
 
 }  // namespace boresight::decode

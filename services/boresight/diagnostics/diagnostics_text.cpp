@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/names.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
 
 namespace boresight::diagnostics_text {
 
@@ -15,9 +17,7 @@ namespace {
 
 using diagnostic_msgs::msg::dds_::DiagnosticArray_;
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
-/// The words of the message's enumerations, which the IDL's have in the same order.
+/// The names of the message's enumerations; those of the IDL have the same order.
 std::string_view word(diagnostics::DataQualifier qualifier) {
   return name_of(static_cast<DataQualifier>(qualifier));
 }
@@ -36,9 +36,10 @@ std::string_view level_word(std::uint8_t level) {
 
 std::string axis_text(std::string_view name, const diagnostics::AxisHealth& axis) {
   if (!axis.observable()) return {};
-  return fmt::format("  {} {:+.2f}° ± {:.2f}° (tolerance {:.2f}°{})", name, axis.error_rad() * kDegrees,
-                     axis.std_rad() * kDegrees, axis.tolerance_rad() * kDegrees,
-                     axis.beyond_tolerance() ? ", beyond" : "");
+  return fmt::format("  {} {} ({} tolerance {:.2f}°)", name,
+                     text::with_std(axis.error_rad() * kDegreesPerRadian, axis.std_rad() * kDegreesPerRadian, "°",
+                                    text::Sign::kAlways),
+                     axis.beyond_tolerance() ? "beyond" : "within", axis.tolerance_rad() * kDegreesPerRadian);
 }
 
 /// JSON knows no NaN.
@@ -63,8 +64,8 @@ std::string quoted(std::string_view text) {
 
 std::string axis_json(std::string_view name, const diagnostics::AxisHealth& axis) {
   return fmt::format(R"("{}":{{"error_deg":{},"std_deg":{},"tolerance_deg":{},"observable":{},"beyond_tolerance":{}}})",
-                     name, number(axis.error_rad() * kDegrees), number(axis.std_rad() * kDegrees),
-                     number(axis.tolerance_rad() * kDegrees), axis.observable(), axis.beyond_tolerance());
+                     name, number(axis.error_rad() * kDegreesPerRadian), number(axis.std_rad() * kDegreesPerRadian),
+                     number(axis.tolerance_rad() * kDegreesPerRadian), axis.observable(), axis.beyond_tolerance());
 }
 
 }  // namespace
@@ -76,9 +77,10 @@ std::string to_line(const diagnostics::SensorHealth& s) {
                   s.radar_name(), word(s.data_qualifier()), word(s.extended_qualifier()), s.rate_hz());
   line += axis_text("yaw", s.yaw()) + axis_text("pitch", s.pitch()) + axis_text("roll", s.roll());
   if (s.yaw().observable()) {
-    line += fmt::format("  {:+.2f} m sideways at {:.0f} m", s.lateral_displacement_m(), s.reference_range_m());
+    line += fmt::format("  lateral displacement {} at {:.0f} m",
+                        text::fixed(s.lateral_displacement_m(), 2, " m", text::Sign::kAlways), s.reference_range_m());
   }
-  if (s.conditions() != 0) line += "  says of itself: " + words_of_conditions(s.conditions());
+  if (s.conditions() != 0) line += "  reported by the sensor: " + words_of_conditions(s.conditions());
   return line;
 }
 

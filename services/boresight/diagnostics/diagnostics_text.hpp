@@ -1,4 +1,4 @@
-// What came by DDS, as lines for people or for programs.
+// Samples received by DDS, as lines for people or for programs.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace boresight::diagnostics_text {
 
-/// "12:34:56.7 front_right  AVAILABLE_REDUCED MISALIGNED  yaw +2.49° ± 0.02° (tolerance 1.50°, beyond)  …"
+/// "12:34:56.7 front_right  AVAILABLE_REDUCED MISALIGNED  yaw +2.490 ± 0.021° (beyond tolerance 1.50°)  …"
 [[nodiscard]] std::string to_line(const diagnostics::SensorHealth& sensor);
 [[nodiscard]] std::string to_json(const diagnostics::SensorHealth& sensor);
-/// One line for each status that is not OK, or one saying that all are.
+/// One line for each status that is not OK, or one line that all are OK.
 [[nodiscard]] std::string to_lines(const diagnostic_msgs::msg::dds_::DiagnosticArray_& array);
 [[nodiscard]] std::string to_json(const diagnostic_msgs::msg::dds_::DiagnosticArray_& array);
 

@@ -111,9 +111,9 @@ void Accumulator::observe(const ClassifiedScan& scan) {
     if (scan.provenance[i] == Provenance::kGhostType1 || scan.provenance[i] == Provenance::kGhostType2) ++seen.ghosts;
     const auto label = static_cast<std::size_t>(scan.provenance[i]);
     if ((scan.detection_flags[i] & corrected_flag::kRejected) != 0) {
-      ++seen.labels.left_out;
+      ++seen.labels.rejected;
     } else {
-      ++seen.labels.told[label < seen.labels.told.size() ? label : 0];
+      ++seen.labels.classified[label < seen.labels.classified.size() ? label : 0];
     }
   }
 }

@@ -1,4 +1,4 @@
-// Messages in, snapshots out: what `boresight monitor` keeps in mind between two pictures.
+// Messages in, snapshots out: the state of `boresight monitor` between two pictures.
 #pragma once
 
 #include <deque>
@@ -11,8 +11,8 @@
 
 namespace boresight::monitor {
 
-/// Pure but for its own memory; `now_ns` is CLOCK_MONOTONIC. Radars that the vehicle file does not know get a row under
-/// the name "radar <id>".
+/// Pure but for its own memory; `now_ns` is CLOCK_MONOTONIC. A radar that is not in the vehicle file gets a row with
+/// the name "radar_<id>".
 class Accumulator {
  public:
   explicit Accumulator(const VehicleConfig& vehicle);

@@ -1,4 +1,4 @@
-// What a record held that could not be read.
+// Lines of a record that could not be read.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace boresight::monitor {
 
-/// As an error shows it: what a damaged file holds may be long, and no text.
+/// A word as errors show it: at most 24 characters, and printable ones only.
 inline std::string quoted(std::string_view word) {
   constexpr std::size_t kMost = 24;
   std::string text(word.substr(0, kMost));
@@ -19,8 +19,8 @@ inline std::string quoted(std::string_view word) {
   return "'" + text + (word.size() > kMost ? "…'" : "'");
 }
 
-/// Lines of a record that are not whole. Nothing of them is used, and they are told, since what they held is missing
-/// from everything that is drawn from the record.
+/// Lines of a record that are not complete. Nothing of them is used. They are reported, because their content is
+/// missing from every result.
 struct DamagedLines {
   std::uint64_t count = 0;
   std::string first;  ///< "scans.txt:17: y of detection 3 is '1.x', allowed: a number"

@@ -5,11 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
+
 namespace boresight::monitor {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 enum class Ink { kPlain, kBold, kDim, kGood, kWarning, kBad };
 
@@ -74,19 +75,16 @@ Ink ink_of(ServiceCondition condition) {
   return condition == ServiceCondition::kUnknown ? Ink::kDim : Ink::kWarning;
 }
 
-bool has_estimate(const RadarSnapshot& radar) {
+bool is_estimated(const RadarSnapshot& radar) {
   return radar.state == AlignmentState::kConverging || radar.state == AlignmentState::kConverged;
 }
 
-/// "-" where nothing is estimated yet, "not observable" where the drive does not tell.
+/// A dash where nothing is estimated yet, "not observable" where the drive does not determine the angle.
 std::string angle_text(const AngleEstimate& angle, bool known) {
-  if (!known) return "-";
+  if (!known) return std::string(text::kUnknown);
   if (!angle.observable) return "not observable";
-  return fmt::format("{:+.2f}° ± {:.2f}°", angle.value_rad * kDegrees, angle.std_rad * kDegrees);
-}
-
-std::string seconds_text(double seconds) {
-  return std::isfinite(seconds) ? fmt::format("{:.1f} s", seconds) : "-";
+  return text::with_std(angle.value_rad * kDegreesPerRadian, angle.std_rad * kDegreesPerRadian, "°",
+                        text::Sign::kAlways);
 }
 
 std::string direction(const TrackSnapshot& track) {
@@ -104,39 +102,39 @@ std::size_t number_of_confirmed(const Snapshot& snapshot) {
       std::count_if(snapshot.tracks.begin(), snapshot.tracks.end(), [](const auto& t) { return t.confirmed; }));
 }
 
-/// What the sensor says of itself, and what was wrong with its scans; empty if nothing.
+/// Conditions that the sensor reports, and problems of its scans; empty if there are none.
 std::string complaint(const RadarSnapshot& radar) {
   std::string text = words_of_conditions(radar.conditions);
-  const auto add = [&text](std::uint64_t count, std::string_view what) {
-    if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  const auto add = [&text](std::uint64_t count, std::string_view one, std::string_view several) {
+    if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : several);
   };
-  add(radar.details.step_changes, "step_changes");
-  add(radar.missed, "scans missed on the wire");
-  add(radar.suspect, "suspect scans");
+  add(radar.details.step_changes, "sudden misalignment", "sudden misalignments");
+  add(radar.missed, "scan lost or incomplete at the gateway", "scans lost or incomplete at the gateway");
+  add(radar.suspect, "scan of doubtful integrity", "scans of doubtful integrity");
   return text;
 }
 
 void put_radars(Page& page, const Snapshot& snapshot) {
-  // What matters most comes first: a narrow terminal cuts the end.
-  page.put(fmt::format("{:<13}{:<32}{:<18}{:<17}{:>8}{:>5}{:>7}{:>6}  {:<12}{:<18}{:<18}{:>8}{:>12}", "RADAR", "HEALTH",
+  // The most important columns come first: a narrow terminal cuts the end.
+  page.put(fmt::format("{:<13}{:<32}{:<19}{:<21}{:>8}{:>5}{:>7}{:>6}  {:<12}{:<19}{:<19}{:>8}{:>12}", "RADAR", "HEALTH",
                        "YAW ± σ", "SPEED SCALE ± σ", "SCANS/S", "DET", "MOVING", "GHOST", "ALIGNMENT", "PITCH ± σ",
-                       "ROLL ± σ", "95 %", "DRIFT/MIN"),
+                       "ROLL ± σ", "SETTLED", "DRIFT/MIN"),
            Ink::kDim);
   page.line();
   for (const RadarSnapshot& r : snapshot.radars) {
-    const bool known = has_estimate(r);
+    const bool known = is_estimated(r);
     page.put(fmt::format("{:<13}", r.name), Ink::kBold);
     page.put(fmt::format("{:<32}", verdict(r)), ink_of(r));
     const bool beyond = r.extended_qualifier == ExtendedQualifier::kMisaligned;
     const AlignmentDetails& d = r.details;
-    page.put(fmt::format("{:<18}", angle_text(d.yaw, known)), beyond ? Ink::kBad : Ink::kPlain);
-    page.put(fmt::format("{:<17}", known ? fmt::format("{:.4f} ± {:.4f}", r.speed_scale, r.speed_scale_std) : "-"));
+    page.put(fmt::format("{:<19}", angle_text(d.yaw, known)), beyond ? Ink::kBad : Ink::kPlain);
+    page.put(
+        fmt::format("{:<21}", known ? text::with_std(r.speed_scale, r.speed_scale_std) : std::string(text::kUnknown)));
     page.put(fmt::format("{:>8.1f}{:>5}{:>7}{:>6}  ", r.rate_hz, r.detections, r.moving, r.ghosts));
     page.put(fmt::format("{:<12}", name_of(r.state)));
-    page.put(fmt::format("{:<18}{:<18}", angle_text(d.pitch, known), angle_text(d.roll, known)));
-    page.put(fmt::format(
-        "{:>8}{:>12}", seconds_text(d.yaw_seconds_to_95_percent),
-        std::isfinite(d.yaw_drift_radpmin) ? fmt::format("{:+.3f}°", d.yaw_drift_radpmin * kDegrees) : "-"));
+    page.put(fmt::format("{:<19}{:<19}", angle_text(d.pitch, known), angle_text(d.roll, known)));
+    page.put(fmt::format("{:>8}{:>12}", text::fixed(d.yaw_seconds_to_95_percent, 1, " s"),
+                         text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°", text::Sign::kAlways)));
     page.line();
     if (const std::string text = complaint(r); !text.empty()) {
       page.put(fmt::format("{:<13}{}", "", text), Ink::kWarning);
@@ -145,19 +143,19 @@ void put_radars(Page& page, const Snapshot& snapshot) {
   }
 }
 
-/// What all radars together say of the ego signals.
+/// Errors of the ego signals, estimated with all radars.
 void put_ego(Page& page, const Snapshot& snapshot) {
-  const auto found = std::find_if(snapshot.radars.begin(), snapshot.radars.end(), has_estimate);
+  const auto found = std::find_if(snapshot.radars.begin(), snapshot.radars.end(), is_estimated);
   page.put("EGO      ", Ink::kDim);
   if (found != snapshot.radars.end()) {
     const AngleEstimate& bias = found->details.yaw_rate_bias;
     const AngleEstimate& slip = found->details.slip;
-    page.put("yaw-rate bias " +
-             (bias.observable ? fmt::format("{:+.3f} ± {:.3f} °/s", bias.value_rad * kDegrees, bias.std_rad * kDegrees)
-                              : "not observable"));
-    page.put("   slip coefficient " + (slip.observable
-                                           ? fmt::format("{:.4f} ± {:.4f} rad per m/s²", slip.value_rad, slip.std_rad)
-                                           : "not observable"));
+    page.put("yaw-rate bias ");
+    page.put(bias.observable ? text::with_std(bias.value_rad * kDegreesPerRadian, bias.std_rad * kDegreesPerRadian,
+                                              " °/s", text::Sign::kAlways)
+                             : "not observable");
+    page.put("   slip coefficient of the rear axle ");
+    page.put(slip.observable ? text::with_std(slip.value_rad, slip.std_rad, " rad per m/s²") : "not observable");
   }
   page.line();
 }
@@ -203,7 +201,7 @@ void put_services(Page& page, const Snapshot& snapshot) {
     }
     page.put(fmt::format("{} ", catalogue::name_of(s.service)));
     page.put(std::string(name_of(s.condition)), ink_of(s.condition));
-    if (s.restarts > 0) page.put(fmt::format(" ({} restarts)", s.restarts), Ink::kWarning);
+    if (s.restarts > 0) page.put(fmt::format(" ({} restart{})", s.restarts, s.restarts == 1 ? "" : "s"), Ink::kWarning);
     page.put("  ");
   }
   page.line();
@@ -224,7 +222,7 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
   const auto seconds = static_cast<int>(options.elapsed_s);
   page.put("Boresight", Ink::kBold);
   page.put(fmt::format("   {:02}:{:02}   ego {:5.1f} m/s  {:+5.1f} °/s", seconds / 60, seconds % 60,
-                       snapshot.ego_speed_mps, snapshot.ego_yaw_rate_radps * kDegrees));
+                       snapshot.ego_speed_mps, snapshot.ego_yaw_rate_radps * kDegreesPerRadian));
   page.line();
   page.line();
   put_radars(page, snapshot);
@@ -240,7 +238,7 @@ std::string render_screen(const Snapshot& snapshot, const RenderOptions& options
 std::string render_line(const Snapshot& snapshot, double elapsed_s) {
   std::string text = fmt::format("{:5.0f} s  {:4.1f} m/s ", elapsed_s, snapshot.ego_speed_mps);
   for (const RadarSnapshot& r : snapshot.radars) {
-    text += fmt::format(" | {} {:.0f}/s yaw {} {}", r.name, r.rate_hz, angle_text(r.details.yaw, has_estimate(r)),
+    text += fmt::format(" | {} {:.0f}/s yaw {} {}", r.name, r.rate_hz, angle_text(r.details.yaw, is_estimated(r)),
                         verdict(r));
   }
   return text + fmt::format(" | {} tracks | latency p50 {}", number_of_confirmed(snapshot),

@@ -11,12 +11,12 @@ struct RenderOptions {
   bool colour = false;
   std::size_t width = 110;  ///< columns; longer lines are cut
   std::size_t tracks = 5;   ///< how many of the nearest tracks to list
-  double elapsed_s = 0.0;   ///< since the picture was opened
+  double elapsed_s = 0.0;   ///< since the monitor started
 };
 
-/// The whole picture, several lines, each ended by '\n'.
+/// The whole picture: several lines, each ended by '\n'.
 [[nodiscard]] std::string render_screen(const Snapshot& snapshot, const RenderOptions& options);
-/// The state of things in one line, without '\n', for output that is not a terminal.
+/// The state in one line, without '\n', for output that is not a terminal.
 [[nodiscard]] std::string render_line(const Snapshot& snapshot, double elapsed_s);
 /// "AVAILABLE", "AVAILABLE_REDUCED (MISALIGNED)".
 [[nodiscard]] std::string verdict(const RadarSnapshot& radar);

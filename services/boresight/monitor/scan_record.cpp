@@ -14,10 +14,10 @@ namespace boresight::monitor {
 
 namespace {
 
-/// A letter for each Provenance, in its order; and one for what the corrector rejected.
+/// A letter for each Provenance, in its order; and one for detections that the corrector rejected.
 constexpr std::string_view kLetters = "ums12c";
 constexpr char kRejected = 'x';
-/// Closes a line, so that one which was cut off is told from a whole one.
+/// Closes a line, so that a line that was cut off is detected.
 constexpr std::string_view kClosed = " .\n";
 
 char letter_of(const ClassifiedScan& scan, std::size_t i) {

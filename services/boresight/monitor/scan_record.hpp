@@ -1,5 +1,5 @@
-// Every scan as the ghost filter told it and every track list, as lines of text: what `boresight monitor
-// --record-scans` writes and a report is drawn from. About 20 MB a minute for four radars of 100 detections at 20 Hz.
+// Every classified scan and every track list as lines of text: written by `boresight monitor --record-scans`, read by
+// the report. About 20 MB per minute for four radars of 100 detections at 20 Hz.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace boresight::monitor {
 
-/// Numbers a line of the record holds of a scan: measurement time, flags, the sensor's place, of each detection place,
-/// range rate over ground, label and ghost probability, and the reflector segments.
+/// Writes measurement time, flags, position of the sensor, and the reflector segments; for each detection its position,
+/// range rate over ground, label and ghost probability.
 void write_scan(std::ostream& output, const ClassifiedScan& scan);
-/// Of the confirmed tracks: box, movement, number of detections.
+/// Writes box, movement and number of detections of each confirmed track.
 void write_tracks(std::ostream& output, const TrackList& list);
 
 /// Reads a record back, line by line.
 class ScanRecordReader {
  public:
   enum class Line { kScan, kTracks, kEnd };
-  /// `input` is read from until next() says that the end is reached; `name` is what errors call it.
+  /// `input` is read until next() returns kEnd. Errors name it `name`.
   ScanRecordReader(std::istream& input, std::string name) : input_(input), name_(std::move(name)) {}
-  /// What is on the next line that is whole; others are counted as damaged. What the record does not hold of a message
-  /// is 0; of what the corrector rejected the flag kWeak is set, whatever the reason was.
+  /// Reads the next complete line; other lines are counted as damaged. Fields that the record does not contain are 0.
+  /// Rejected detections get the flag kWeak, because the record does not contain the reason.
   [[nodiscard]] Line next(ClassifiedScan& scan, TrackList& tracks);
   /// Of the lines read so far.
   [[nodiscard]] const DamagedLines& damaged() const { return damaged_; }

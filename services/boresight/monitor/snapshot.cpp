@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/monitor/words.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::monitor {
 
@@ -64,8 +65,8 @@ RadarSnapshot read_radar(Words& words) {
   if (!words.more()) return r;  // a record of an earlier version
   read_details(words, r.details);
   if (!words.more()) return r;  // the same
-  for (std::uint64_t& told : r.labels.told) words.read("detections with a label", told);
-  words.read("detections left out", r.labels.left_out);
+  for (std::uint64_t& count : r.labels.classified) words.read("detections with a label", count);
+  words.read("detections rejected", r.labels.rejected);
   words.read("scans with labels", r.labels.scans);
   words.read("scans without tracks", r.labels.scans_without_tracks);
   return r;
@@ -113,31 +114,31 @@ std::string json_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
 }
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
 std::string axis_json(const char* name, const AngleEstimate& angle, double unit) {
   return fmt::format(R"("{}":{{"value":{},"std":{},"observable":{}}},)", name, json_number(angle.value_rad * unit),
                      json_number(angle.std_rad * unit), angle.observable);
 }
 
 std::string details_json(const AlignmentDetails& d) {
-  return axis_json("vehicle_yaw_deg", d.yaw, kDegrees) + axis_json("vehicle_pitch_deg", d.pitch, kDegrees) +
-         axis_json("vehicle_roll_deg", d.roll, kDegrees) + axis_json("yaw_rate_bias_degps", d.yaw_rate_bias, kDegrees) +
+  return axis_json("vehicle_yaw_deg", d.yaw, kDegreesPerRadian) +
+         axis_json("vehicle_pitch_deg", d.pitch, kDegreesPerRadian) +
+         axis_json("vehicle_roll_deg", d.roll, kDegreesPerRadian) +
+         axis_json("yaw_rate_bias_degps", d.yaw_rate_bias, kDegreesPerRadian) +
          axis_json("slip_coefficient_radps2pm", d.slip, 1.0) +
          fmt::format(R"("step_changes":{},"yaw_seconds_to_95_percent":{},"pitch_seconds_to_95_percent":{},)"
                      R"("yaw_drift_degpmin":{},"residual_rmse_mps":{},"nees":{})",
                      d.step_changes, json_number(d.yaw_seconds_to_95_percent),
-                     json_number(d.pitch_seconds_to_95_percent), json_number(d.yaw_drift_radpmin * kDegrees),
+                     json_number(d.pitch_seconds_to_95_percent), json_number(d.yaw_drift_radpmin * kDegreesPerRadian),
                      json_number(d.residual_rmse_mps), json_number(d.nees));
 }
 
-/// Sums since the monitor began.
+/// Sums since the start of the monitor.
 std::string labels_json(const LabelCounts& labels) {
-  const auto& told = labels.told;
-  return fmt::format(R"("told":{{"unknown":{},"moving":{},"stationary":{},"ghost_type_1":{},"ghost_type_2":{},)"
-                     R"("clutter":{},"left_out":{}}},"classified_scans":{},"classified_without_tracks":{})",
-                     told[0], told[1], told[2], told[3], told[4], told[5], labels.left_out, labels.scans,
-                     labels.scans_without_tracks);
+  const auto& by_label = labels.classified;
+  return fmt::format(R"("classified":{{"unknown":{},"moving":{},"stationary":{},"ghost_type_1":{},"ghost_type_2":{},)"
+                     R"("clutter":{},"rejected":{}}},"classified_scans":{},"classified_without_tracks":{})",
+                     by_label[0], by_label[1], by_label[2], by_label[3], by_label[4], by_label[5], labels.rejected,
+                     labels.scans, labels.scans_without_tracks);
 }
 
 }  // namespace
@@ -157,8 +158,8 @@ void write_record(std::ostream& output, const Snapshot& snapshot) {
     for (const AngleEstimate& angle : {d.yaw, d.pitch, d.roll, d.yaw_rate_bias, d.slip}) write_angle(output, angle);
     output << ' ' << d.step_changes << ' ' << d.yaw_seconds_to_95_percent << ' ' << d.pitch_seconds_to_95_percent << ' '
            << d.yaw_drift_radpmin << ' ' << d.residual_rmse_mps << ' ' << d.nees;
-    for (const std::uint64_t told : r.labels.told) output << ' ' << told;
-    output << ' ' << r.labels.left_out << ' ' << r.labels.scans << ' ' << r.labels.scans_without_tracks << '\n';
+    for (const std::uint64_t count : r.labels.classified) output << ' ' << count;
+    output << ' ' << r.labels.rejected << ' ' << r.labels.scans << ' ' << r.labels.scans_without_tracks << '\n';
   }
   for (const TrackSnapshot& t : snapshot.tracks) {
     output << "track " << t.id << ' ' << (t.confirmed ? 1 : 0) << ' ' << static_cast<int>(t.movement) << ' ' << t.x_m
@@ -185,7 +186,7 @@ std::vector<Snapshot> read_record(std::istream& input, const std::string& name, 
   std::vector<Snapshot> snapshots;
   Snapshot current;
   bool open = false;    // a snapshot has begun, and all its lines so far were read
-  bool spoilt = false;  // it had a line that could not be read, and is left out
+  bool spoilt = false;  // it has a damaged line and is skipped
   std::uint64_t number = 0;
   for (std::string line; std::getline(input, line);) {
     ++number;
@@ -238,9 +239,10 @@ std::string to_json(const Snapshot& snapshot) {
         R"("speed_scale_std":{},"data_qualifier":"{}","extended_qualifier":"{}","missed":{},"suspect":{},)"
         R"("conditions":"{}",)",
         separator, r.id, r.name, r.scans, r.lost, json_number(r.rate_hz), r.detections, r.moving, r.ghosts,
-        name_of(r.state), json_number(r.yaw.value_rad * kDegrees), json_number(r.yaw.std_rad * kDegrees),
-        json_number(r.pitch.value_rad * kDegrees), json_number(r.pitch.std_rad * kDegrees), json_number(r.speed_scale),
-        json_number(r.speed_scale_std), name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
+        name_of(r.state), json_number(r.yaw.value_rad * kDegreesPerRadian),
+        json_number(r.yaw.std_rad * kDegreesPerRadian), json_number(r.pitch.value_rad * kDegreesPerRadian),
+        json_number(r.pitch.std_rad * kDegreesPerRadian), json_number(r.speed_scale), json_number(r.speed_scale_std),
+        name_of(r.data_qualifier), name_of(r.extended_qualifier), r.missed, r.suspect,
         words_of_conditions(r.conditions));
     text += details_json(r.details) + "," + labels_json(r.labels) + "}";
     separator = ",";

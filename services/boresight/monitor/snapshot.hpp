@@ -1,4 +1,4 @@
-// What an onlooker knows about the running system at one moment: shown on the terminal, recorded, reported.
+// State of the running system at one moment as the monitor knows it: shown on the terminal, recorded, reported.
 #pragma once
 
 #include <array>
@@ -28,9 +28,9 @@ struct AngleEstimate {
   bool observable = false;
 };
 
-/// What the estimator says of the vehicle by way of this radar, and of how it came there.
+/// Details of the alignment estimate and of its convergence.
 struct AlignmentDetails {
-  // About the vehicle's axes; the plain yaw, pitch and roll of a radar are about its own.
+  // About the vehicle's axes; RadarSnapshot's yaw, pitch and roll are about the radar's own axes.
   AngleEstimate yaw, pitch, roll;
   AngleEstimate yaw_rate_bias;  ///< rad/s
   AngleEstimate slip;           ///< rad per m/s²
@@ -42,18 +42,18 @@ struct AlignmentDetails {
   double nees = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What the ghost filter told detections to be, of all its scans that the onlooker received.
+/// Labels of the detections in all scans of the ghost filter that the monitor received.
 struct LabelCounts {
-  std::array<std::uint64_t, 6> told{};  ///< by Provenance
-  std::uint64_t left_out = 0;           ///< by the corrector before; not among those told
+  std::array<std::uint64_t, 6> classified{};  ///< by Provenance
+  std::uint64_t rejected = 0;                 ///< by the corrector before; not classified
   std::uint64_t scans = 0;
-  std::uint64_t scans_without_tracks = 0;  ///< the filter had none of the tracker's, or too old ones
+  std::uint64_t scans_without_tracks = 0;  ///< classified without tracks, or with outdated ones
 
-  [[nodiscard]] std::uint64_t of(Provenance label) const { return told[static_cast<std::size_t>(label)]; }
-  /// Those left out included.
+  [[nodiscard]] std::uint64_t of(Provenance label) const { return classified[static_cast<std::size_t>(label)]; }
+  /// Classified and rejected ones.
   [[nodiscard]] std::uint64_t detections() const {
-    std::uint64_t sum = left_out;
-    for (const std::uint64_t count : told) sum += count;
+    std::uint64_t sum = rejected;
+    for (const std::uint64_t count : classified) sum += count;
     return sum;
   }
 };
@@ -61,8 +61,8 @@ struct LabelCounts {
 struct RadarSnapshot {
   std::uint32_t id = 0;
   std::string name;
-  std::uint64_t scans = 0;       ///< received by the onlooker
-  std::uint64_t lost = 0;        ///< gaps in the order of what it received
+  std::uint64_t scans = 0;       ///< received by the monitor
+  std::uint64_t lost = 0;        ///< by gaps in the sequence numbers
   double rate_hz = 0.0;          ///< over the last two seconds
   std::uint32_t detections = 0;  ///< of the latest scan, as are the next two
   std::uint32_t moving = 0;
@@ -77,9 +77,9 @@ struct RadarSnapshot {
   DataQualifier data_qualifier = DataQualifier::kNotAvailable;
   ExtendedQualifier extended_qualifier = ExtendedQualifier::kInitialising;
   double yaw_tolerance_rad = 0.0;
-  std::uint32_t conditions = 0;  ///< source_condition bits, as the sensor says; this and the next two by way of health
-  std::uint64_t missed = 0;      ///< sent by the sensor, never complete at the gateway
-  std::uint64_t suspect = 0;     ///< with an integrity verdict against them
+  std::uint32_t conditions = 0;  ///< source_condition bits of the sensor; this and the next two from health reports
+  std::uint64_t missed = 0;      ///< sent by the sensor, lost or incomplete at the gateway
+  std::uint64_t suspect = 0;     ///< of doubtful integrity
   LabelCounts labels;
 };
 
@@ -96,7 +96,7 @@ struct TrackSnapshot {
 
 struct ServiceSnapshot {
   catalogue::Service service = catalogue::Service::kMonitor;
-  ServiceCondition condition = ServiceCondition::kUnknown;  ///< the health service's word
+  ServiceCondition condition = ServiceCondition::kUnknown;  ///< reported by the health service
   std::uint32_t restarts = 0;
   std::uint64_t inputs = 0;
   std::uint64_t outputs = 0;
@@ -105,7 +105,7 @@ struct ServiceSnapshot {
   std::array<std::uint64_t, kNumberOfFaults> faults{};
 };
 
-/// Time spent in each stage (its input to its output), and last the whole way: reception to track list.
+/// Time spent in each stage (from its input to its output), and last the total: reception to track list.
 inline constexpr std::size_t kNumberOfLatencies = kNumberOfStages + 1;
 inline constexpr std::array<std::string_view, kNumberOfLatencies> kLatencyNames = {"ingest", "corrector",
                                                                                    "ghost filter", "tracker", "total"};
@@ -121,11 +121,11 @@ struct Snapshot {
   std::array<LatencyHistogram, kNumberOfLatencies> latencies;
 };
 
-/// Appends one snapshot to a record: lines of words, closed by a line "end", so that a record that was cut off in the
-/// middle of a snapshot is still readable.
+/// Appends one snapshot to a record: lines of words, closed by a line "end". A record that was cut off in the middle of
+/// a snapshot is still readable.
 void write_record(std::ostream& output, const Snapshot& snapshot);
-/// Reads the snapshots that are whole. One with a line that is damaged, or without its end, is left out and counted.
-/// `name` is what errors call the record.
+/// Reads the complete snapshots. A snapshot with a damaged line or without its end is skipped and counted. Errors name
+/// the record `name`.
 [[nodiscard]] std::vector<Snapshot> read_record(std::istream& input, const std::string& name, DamagedLines& damaged);
 
 /// One line of JSON.

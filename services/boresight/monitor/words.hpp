@@ -1,4 +1,4 @@
-// The fields of a record's line, words between blanks, and what is wrong with the first that cannot be read.
+// The fields of a record's line, words between blanks, and the error of the first field that cannot be read.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace boresight::monitor {
 
-/// As an error says what a number may be.
+/// The allowed numbers, as errors state them.
 template <typename T>
 std::string allowed_numbers(T most = std::numeric_limits<T>::max()) {
   if constexpr (std::is_floating_point_v<T>) return "a number";
@@ -67,7 +67,7 @@ class Words {
   [[nodiscard]] Enum value(std::string_view field, Enum last) {
     return static_cast<Enum>(at_most(field, static_cast<std::size_t>(last)));
   }
-  /// One word, whatever it is.
+  /// Any word.
   [[nodiscard]] std::string text(std::string_view field) {
     const std::string_view text = word();
     if (text.empty()) refuse(field, text, {});
@@ -80,7 +80,7 @@ class Words {
     error_ = word.empty() ? fmt::format("ends before {}", whose)
                           : fmt::format("{} is {}, allowed: {}", whose, quoted(word), allowed);
   }
-  /// Nothing but what closes a line is left.
+  /// Checks that only the closing mark is left.
   void close() {
     no_item();
     const std::string_view last = word();

@@ -33,7 +33,7 @@ void CanCapture::reopen() {
     socket_ = open_can(interface_);
     kernel_drops_ = 0;
   } catch (const CaptureError&) {
-    // It is tried again; that it failed was told when it was lost.
+    // It is tried again; the loss of the interface was already reported.
   }
 }
 
@@ -46,7 +46,8 @@ void CanCapture::read(recording::CandumpWriter& writer, std::string& problem) {
     if (length < 0) {
       if (errno == EAGAIN || errno == EINTR) return;
       problem = "can " + interface_ + ": " + ingest::last_error();
-      // ENETDOWN comes once when the interface goes down, and frames again when it is back up; else it is gone.
+      // ENETDOWN comes once when the interface goes down; frames come again when it is up. After other errors it is
+      // gone.
       if (errno != ENETDOWN) socket_.reset();
       return;
     }
@@ -58,7 +59,7 @@ void CanCapture::read(recording::CandumpWriter& writer, std::string& problem) {
     recording::Frame frame;
     const runtime::CanFrameKind kind = runtime::from_kernel(raw, length, frame);
     if (kind == runtime::CanFrameKind::kWrongLength) {
-      problem = "can " + interface_ + ": a frame of a wrong length was left out";
+      problem = "can " + interface_ + ": a frame with a wrong length was skipped";
       return;
     }
     frame.stamp_ns = reception.stamp.received_ns + reception.stamp.epoch_offset_ns;

@@ -1,4 +1,4 @@
-// Frames of one CAN interface into a candump log.
+// Records the frames of one CAN interface into a candump log.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ class CanCapture {
   /// Opens the interface for classic, FD and error frames, with kernel stamps and a large receive buffer. Throws
   /// CaptureError.
   explicit CanCapture(std::string interface);
-  /// Reads from a socket that delivers as a raw CAN socket does.
+  /// Reads from a socket that behaves like a raw CAN socket.
   CanCapture(std::string interface, ingest::Socket socket);
 
-  /// Takes what has come. Throws recording::WriteError. `problem` says what went wrong with the interface, or is
-  /// empty; the socket is closed if it is of no more use.
+  /// Writes the frames that have arrived. Throws recording::WriteError. Sets `problem` to the problem of the interface,
+  /// or to ""; closes the socket if it cannot be used any more.
   void read(recording::CandumpWriter& writer, std::string& problem);
-  /// Tries to open an interface again that was closed.
+  /// Tries to open a closed interface again.
   void reopen();
 
   [[nodiscard]] int descriptor() const { return socket_.get(); }

@@ -5,7 +5,7 @@
 
 namespace boresight::record {
 
-/// what() names the interface, the cause and, where there is one, the remedy.
+/// what() names the interface, the cause and, if there is one, the remedy.
 class CaptureError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -6,7 +6,7 @@ namespace boresight::record {
 
 namespace {
 
-/// Only the first fragment has a port, so of the others all are wanted that go to the same address.
+/// Only the first fragment has a port, so all later fragments to the same address are recorded.
 std::string filter_of(const SourceAddress& source) {
   const auto address = recording::parse_ip(source.address);
   const std::string port = "udp dst port " + std::to_string(source.port);
@@ -17,7 +17,7 @@ std::string filter_of(const SourceAddress& source) {
   return filter + ")";
 }
 
-/// Where events come to is settled by discovery: a port of this ECU, or a multicast group of the server's choice.
+/// Service discovery determines where events are sent: to a port of this ECU, or to a multicast group of the server.
 std::string someip_filter_of(const SourceAddress& source) {
   return "(udp and (dst host " + source.address + " or ip multicast or ip6 multicast))";
 }
@@ -61,7 +61,7 @@ CapturePlan plan_of(const VehicleConfig& vehicle) {
   for (const Collected& network : networks) {
     std::string any_of;
     for (const std::string& filter : network.filters) any_of += (any_of.empty() ? "" : " or ") + filter;
-    // `vlan` moves the offsets of all that follows it by the tag.
+    // `vlan` shifts the offsets of all later expressions by the tag.
     plan.packets.push_back({network.interface, "(" + any_of + ") or (vlan and (" + any_of + "))", network.multicast});
   }
   return plan;

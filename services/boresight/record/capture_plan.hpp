@@ -1,4 +1,4 @@
-// What to record of a vehicle: which CAN interfaces, and which datagrams of which network interfaces.
+// The inputs to record of a vehicle: CAN interfaces, and datagrams of network interfaces.
 #pragma once
 
 #include <string>
@@ -20,8 +20,8 @@ struct CapturePlan {
   std::vector<PacketSource> packets;
 };
 
-/// The datagrams that the vehicle's radars and ego signals arrive in, every fragment of them, tagged for a VLAN or not,
-/// and SOME/IP service discovery beside them.
+/// All fragments of the datagrams of the vehicle's radars and ego signals, with VLAN tag or without, and SOME/IP
+/// service discovery.
 [[nodiscard]] CapturePlan plan_of(const VehicleConfig& vehicle);
 
 }  // namespace boresight::record

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <stdexcept>
 
 #include <net/if.h>
 #include <netinet/in.h>
@@ -13,13 +14,13 @@ namespace boresight::record {
 
 namespace {
 
-// Larger than any IP packet with its link layer; packets take as much of the buffer as they are long.
+// Larger than any IP packet with its link layer; a packet takes only its own length in the buffer.
 constexpr int kSnapshotLength = 262144;
 constexpr int kBuffer_bytes = 64 * 1024 * 1024;
 constexpr int kTimeout_ms = 100;
 constexpr int kPacketsPerTurn = 1000;
 
-/// A socket that does nothing but keep this host a member of the group on the interface.
+/// A socket whose only purpose is this host's membership in the group on the interface.
 ingest::Socket join(const recording::IpAddress& group, const std::string& interface) {
   const auto index = interface == "any" ? 0u : if_nametoindex(interface.c_str());
   ingest::Socket made(socket(group.is_v4() ? AF_INET : AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0));
@@ -35,7 +36,7 @@ ingest::Socket join(const recording::IpAddress& group, const std::string& interf
     request.ipv6mr_interface = index;
     result = setsockopt(made.get(), IPPROTO_IPV6, IPV6_ADD_MEMBERSHIP, &request, sizeof(request));
   }
-  // Where all interfaces are recorded, the kernel has to choose one, and there may be no route to choose by.
+  // For "any", the kernel has to choose an interface, and there may be no route.
   if (result != 0 && interface != "any") {
     throw CaptureError(interface + ": cannot join " + recording::to_text(group) + ": " + ingest::last_error());
   }
@@ -78,7 +79,7 @@ void PacketCapture::open() {
   if (pcap_compile(pcap_, &program, source_.filter.c_str(), 1, PCAP_NETMASK_UNKNOWN) != 0) {
     const std::string cause = pcap_geterr(pcap_);
     close();
-    throw CaptureError(interface + ": filter \"" + source_.filter + "\": " + cause);
+    throw std::invalid_argument(interface + ": filter \"" + source_.filter + "\": " + cause);
   }
   const bool filtered = pcap_setfilter(pcap_, &program) == 0;
   pcap_freecode(&program);
@@ -102,10 +103,10 @@ void PacketCapture::reopen() {
   try {
     open();
   } catch (const CaptureError&) {
-    close();  // it is tried again; that it failed was told when it was lost
+    close();  // it is tried again; the loss of the interface was already reported
     return;
   }
-  // A file has one link type; an interface that comes back as another kind is another interface.
+  // A file has one link type, so an interface that returns with another one cannot be recorded into it.
   if (link_type_ != link_type) {
     link_type_ = link_type;
     close();

@@ -1,4 +1,4 @@
-// Packets of one network interface into a pcap file, by libpcap.
+// Records the packets of one network interface into a pcap file with libpcap.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,18 @@ namespace boresight::record {
 class PacketCapture {
  public:
   /// Opens the interface with whole packets, nanosecond stamps and a large buffer, and joins the source's multicast
-  /// groups. Throws CaptureError.
+  /// groups. Throws CaptureError, and std::invalid_argument for a filter that libpcap does not understand.
   explicit PacketCapture(PacketSource source);
   ~PacketCapture();
   PacketCapture(const PacketCapture&) = delete;
   PacketCapture& operator=(const PacketCapture&) = delete;
 
-  /// A file for what this captures.
+  /// Creates the file for the captured packets.
   [[nodiscard]] std::unique_ptr<recording::PcapWriter> make_writer(const std::filesystem::path& file) const;
-  /// Takes what has come. Throws recording::WriteError. `problem` says what went wrong with the interface, or is
-  /// empty; the capture is closed then.
+  /// Writes the packets that have arrived. Throws recording::WriteError. Sets `problem` to the problem of the
+  /// interface, and closes the capture then, or to "".
   void read(recording::PcapWriter& writer, std::string& problem);
-  /// Tries to open an interface again that was closed.
+  /// Tries to open a closed interface again.
   void reopen();
 
   [[nodiscard]] bool is_open() const { return pcap_ != nullptr; }
@@ -49,7 +49,7 @@ class PacketCapture {
   bool nanoseconds_ = false;
   std::vector<ingest::Socket> memberships_;
   std::uint64_t packets_ = 0;
-  std::uint64_t dropped_before_ = 0;  ///< by captures that were closed
+  std::uint64_t dropped_before_ = 0;  ///< by earlier captures of this interface
 };
 
 }  // namespace boresight::record

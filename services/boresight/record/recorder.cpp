@@ -1,5 +1,7 @@
 #include "services/boresight/record/recorder.hpp"
 
+#include <stdexcept>
+
 #include <poll.h>
 
 #include "services/boresight/record/capture_error.hpp"
@@ -22,10 +24,10 @@ OutputFiles name_files(const CapturePlan& plan, const std::filesystem::path& out
   OutputFiles files;
   if (is_file) {
     if (plan.can.empty() == plan.packets.empty() || plan.packets.size() > 1) {
-      throw CaptureError(out.string() + ": several files are needed; give a folder");
+      throw std::invalid_argument(out.string() + ": several files are needed; give a folder");
     }
     if ((extension == ".log") != plan.packets.empty()) {
-      throw CaptureError(out.string() + ": CAN goes into .log, packets go into .pcap");
+      throw std::invalid_argument(out.string() + ": CAN goes into .log, packets go into .pcap");
     }
     if (plan.packets.empty()) {
       files.can = unused(out);

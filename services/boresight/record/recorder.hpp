@@ -1,4 +1,4 @@
-// Several captures at a time: one candump log for all CAN interfaces, one pcap file a network interface.
+// Several captures at the same time: one candump log for all CAN interfaces, one pcap file for each network interface.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,9 @@
 
 namespace boresight::record {
 
-/// Names the files of a plan: `out` itself, if it has the extension of the one file needed (.log, .pcap), else files
-/// in the folder `out`, which is made. Throws CaptureError if one of them exists already.
+/// Names the files of a plan: `out` itself, if it has the extension of the single file (.log, .pcap), else files in the
+/// folder `out`, which is made. Throws CaptureError if one of them exists already, and std::invalid_argument if
+/// `out` does not fit the plan.
 struct OutputFiles {
   std::filesystem::path can;                   ///< empty if no CAN is recorded
   std::vector<std::filesystem::path> packets;  ///< as plan.packets
@@ -38,16 +39,17 @@ struct FileSummary {
 
 class Recorder {
  public:
-  /// Told when an interface is lost; recording goes on with the others, and with this one when it is back.
+  /// Called when an interface is lost. Recording goes on with the others, and with this one when it is back.
   using OnProblem = std::function<void(const std::string&)>;
 
-  /// Opens every interface, then every file. Throws CaptureError and recording::WriteError.
+  /// Opens every interface, then every file. Throws CaptureError, recording::WriteError, and std::invalid_argument for
+  /// a filter or an `out` that is wrong.
   Recorder(const CapturePlan& plan, const std::filesystem::path& out, const std::string& date_and_time,
            OnProblem on_problem);
 
-  /// Waits up to `timeout_ms` for input and writes what has come. Throws recording::WriteError.
+  /// Waits up to `timeout_ms` for input and writes it. Throws recording::WriteError.
   void turn(int timeout_ms);
-  /// To be called each second: what was written reaches the file, and lost interfaces are tried again.
+  /// To be called each second: flushes the files and tries lost interfaces again.
   void each_second();
 
   [[nodiscard]] std::vector<FileSummary> summaries() const;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/names.hpp"
+#include "services/common/text/measured.hpp"
 #include "tests/simulator/judge/matching.hpp"
 
 namespace boresight::report {
@@ -17,8 +18,8 @@ namespace {
 
 using Line = monitor::ScanRecordReader::Line;
 
-/// A scan of the record is a scan of the truth if their times agree this well: far less than any radar's cycle, far
-/// more than the gateway's mapping of a sensor's clock onto this ECU's wavers.
+/// A scan of the record is a scan of the truth if their times differ by less: far below the cycle time of any radar,
+/// far above the variation of the gateway's mapping from the sensor's clock to the ECU's.
 constexpr double kSameTime_s = 0.01;
 constexpr std::int64_t kView_ns = 100'000'000;  // scans that are shown together: two cycles of 50 ms
 
@@ -41,14 +42,14 @@ const judge::TrueScan* scan_at(const judge::TrueScans& truth, std::uint32_t rada
   return nullptr;
 }
 
-/// What to take from this ECU's stamps to have the seconds of the drive: of all places in the truth where the first
-/// scan could belong, the one where most of the others find theirs as well. The stamps say nothing of where a replay
-/// began, and sequence numbers would be off by every scan that was lost on the way.
+/// The ECU time at which the drive began. Stamps do not state where a replay began, and sequence numbers would be wrong
+/// by every lost scan. Each scan of the truth that may be the first recorded one is tried; the one that lets most of
+/// the other recorded scans find theirs is taken.
 std::optional<std::int64_t> beginning(const std::vector<SeenScan>& seen, const judge::TrueScans& truth) {
   if (seen.empty()) return std::nullopt;
   const auto of_radar = truth.find(seen.front().radar);
   if (of_radar == truth.end()) return std::nullopt;
-  constexpr std::size_t kTried = 400;  // of the scans: enough to tell one place from every other
+  constexpr std::size_t kTried = 400;  // of the scans: enough to distinguish one place from every other
   const std::size_t step = std::max<std::size_t>(1, seen.size() / kTried);
   std::int64_t best_ns = 0;
   std::size_t most = 0;
@@ -73,7 +74,7 @@ bool is_ghost(Provenance provenance) {
   return provenance == Provenance::kGhostType1 || provenance == Provenance::kGhostType2;
 }
 
-/// One scan with its truth, as long as it may be wanted.
+/// One scan with its truth, as long as a track list may refer to it.
 struct Recent {
   std::unique_ptr<ClassifiedScan> scan;
   const judge::TrueScan* truth;
@@ -97,12 +98,12 @@ class Finder {
     }
     if (truth_ != nullptr && count > 0) ++(recent.truth != nullptr ? out_.compared_scans : out_.unknown_scans);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool left_out = (scan.detection_flags[i] & corrected_flag::kRejected) != 0;
+      const bool rejected = (scan.detection_flags[i] & corrected_flag::kRejected) != 0;
       if (is_ghost(scan.provenance[i])) ++recent.ghosts;
       if (recent.truth == nullptr) continue;
       const Provenance is = recent.truth->detections[i].provenance;
-      out_.confusion->add(is, scan.provenance[i], left_out);
-      if (!left_out && is != scan.provenance[i]) ++recent.mistakes;
+      out_.confusion->add(is, scan.provenance[i], rejected);
+      if (!rejected && is != scan.provenance[i]) ++recent.mistakes;
     }
     std::deque<Recent>& of_radar = recent_[scan.header.source_id];
     of_radar.push_front(std::move(recent));
@@ -129,7 +130,7 @@ class Finder {
  private:
   static constexpr std::size_t kKept = 4;  // scans of a radar that a track list may come after
   [[nodiscard]] double seconds(std::int64_t time_ns) const { return static_cast<double>(time_ns - *begin_ns_) * 1e-9; }
-  /// The latest scan of each radar that is young enough.
+  /// The latest scan of each radar within kView_ns of the time.
   [[nodiscard]] std::vector<const Recent*> together(std::int64_t now_ns) const {
     std::vector<const Recent*> scans;
     for (const auto& [radar, of_radar] : recent_) {
@@ -237,27 +238,28 @@ std::vector<Check> ghost_checks(const GhostFindings& findings) {
   const std::uint64_t scans = findings.compared_scans + findings.unknown_scans;
   const double compared =
       scans == 0 ? 0.0 : 100.0 * static_cast<double>(findings.compared_scans) / static_cast<double>(scans);
-  checks.push_back({fmt::format("{} of {} recorded scans were found in the truth (at least {:.0f} %)",
-                                findings.compared_scans, scans, GhostBars::kScansCompared_percent),
-                    compared >= GhostBars::kScansCompared_percent, false});
+  checks.push_back(
+      {fmt::format("{} of {} recorded scans were found in the truth (at least {:.0f} %)",
+                   text::grouped(findings.compared_scans), text::grouped(scans), GhostBars::kScansCompared_percent),
+       compared >= GhostBars::kScansCompared_percent, false});
   const double moving = c.percent(Provenance::kMoving, Provenance::kMoving);
   if (c.count(Provenance::kMoving) > 0) {
     checks.push_back(
-        {fmt::format("of {} detections of moving objects {:.1f} % were told to be moving (at least {:.0f} %)",
-                     c.count(Provenance::kMoving), moving, GhostBars::kMovingToldMoving_percent),
-         moving >= GhostBars::kMovingToldMoving_percent, true});
+        {fmt::format("{:.1f} % of {} detections of moving objects were classified as moving (aim: at least {:.0f} %)",
+                     moving, text::grouped(c.count(Provenance::kMoving)), GhostBars::kMovingClassifiedMoving_percent),
+         moving >= GhostBars::kMovingClassifiedMoving_percent, true});
   }
   for (const Provenance type : {Provenance::kGhostType1, Provenance::kGhostType2}) {
     if (c.count(type) == 0) continue;
-    checks.push_back(
-        {fmt::format("of {} ghosts of {} {:.1f} % were told to be ghosts (at least {:.0f} %)", c.count(type),
-                     name_of(type), c.percent_ghost(type), GhostBars::kGhostsToldGhosts_percent),
-         c.percent_ghost(type) >= GhostBars::kGhostsToldGhosts_percent, true});
+    checks.push_back({fmt::format("{:.1f} % of {} ghosts of {} were classified as ghosts (aim: at least {:.0f} %)",
+                                  c.percent_ghost(type), text::grouped(c.count(type)), name_of(type),
+                                  GhostBars::kGhostsClassifiedGhosts_percent),
+                      c.percent_ghost(type) >= GhostBars::kGhostsClassifiedGhosts_percent, true});
   }
   const std::size_t tracks = findings.ghost_tracks.size();
-  checks.push_back(
-      {fmt::format("no track lived on ghosts for more than {} scans ({} did)", judge::FalseTracks::kLong_scans, tracks),
-       tracks == 0, true});
+  checks.push_back({fmt::format("no confirmed track followed a ghost for more than {} scans ({} did)",
+                                judge::FalseTracks::kMaxTolerated_scans, tracks),
+                    tracks == 0, true});
   return checks;
 }
 

@@ -1,5 +1,5 @@
-// What the ghost filter and the tracker of a run made of every detection, from the record of their messages; judged
-// where the drive's truth is known.
+// How the ghost filter and the tracker of a run classified and tracked every detection, from the record of their
+// messages; compared with the truth where it is known.
 #pragma once
 
 #include <cstdint>
@@ -32,14 +32,14 @@ struct PlanView {
     float x_m, y_m;  ///< vehicle frame at its scan's time
     float range_rate_over_ground_mps;
     float ghost_probability;
-    Provenance told;
-    bool left_out;  ///< by the corrector
+    Provenance label;
+    bool rejected;  ///< by the corrector
     std::optional<Provenance> truth;
   };
   struct Sensor {
     std::uint32_t radar;
     float x_m, y_m;
-    double age_s;  ///< how much older its scan is than the latest
+    double age_s;  ///< of its scan, against the latest scan
   };
   struct Box {
     std::uint32_t tracking_id;
@@ -50,40 +50,41 @@ struct PlanView {
   std::vector<Sensor> sensors;
   std::vector<ReflectorSegment> segments;  ///< of the latest scan
   std::vector<Box> tracks;                 ///< confirmed ones
-  double tracks_age_s = 0.0;               ///< how much older their list is than the latest scan
-  std::vector<judge::Object> objects;      ///< in truth; empty where it is not known
+  double tracks_age_s = 0.0;               ///< of the track list, against the latest scan
+  std::vector<judge::Object> objects;      ///< true objects; empty where the truth is not known
 };
 
 struct GhostFindings {
   std::uint64_t scans = 0;         ///< in the record; 0: there is none
   std::uint64_t track_lists = 0;   ///< the same
   std::int64_t first_scan_ns = 0;  ///< of measurement, of the earliest
-  monitor::DamagedLines damaged;   ///< what they held is in nothing below
-  PlanView most_ghosts;            ///< where most detections were told to be ghosts; no detections where none ever was
+  monitor::DamagedLines damaged;   ///< their content is missing below
+  PlanView most_ghosts;            ///< where most detections were classified as ghosts; empty if none ever was
   // With truth only:
-  std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that could be found in the truth
-  std::uint64_t compared_scans = 0;           ///< of the scans that hold detections
-  std::uint64_t unknown_scans = 0;  ///< the others of these: no scan of that time and number of detections in the truth
+  std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that were matched to the truth
+  std::uint64_t compared_scans = 0;           ///< matched scans with detections
+  std::uint64_t unknown_scans =
+      0;  ///< others with detections: the truth has no scan of that time and number of detections
   std::vector<judge::GhostTrack> ghost_tracks;  ///< times are CLOCK_MONOTONIC
   std::size_t other_false_tracks = 0;           ///< of clutter, or of the stationary world
-  /// Where most labels differ from the truth. It is always the first moments of a drive, when neither mirrors nor
-  /// tracks are known, so that those are passed over here (and nowhere else).
+  /// Where most labels differ from the truth. In the first moments of a drive neither reflectors nor tracks are known,
+  /// so most labels would differ there; only this view skips them.
   PlanView most_mistakes;
   static constexpr double kFirstMoments_s = 2.0;
 };
 
-/// `record` as monitor::write_scan and write_tracks wrote it; it is read twice. `name` is what errors call it. Null:
-/// nothing is known of the truth.
+/// `record` was written by monitor::write_scan and write_tracks; it is read twice. Errors name it `name`. `truth` is
+/// null where it is not known.
 [[nodiscard]] GhostFindings find_ghosts(std::istream& record, const std::string& name, const DetectionTruths* truth);
 
 /// What a filter must reach on a drive with truth: the bars of the ghost filter's scenarios (docs/ghosts.md).
 struct GhostBars {
-  static constexpr double kMovingToldMoving_percent = 97.0;
-  static constexpr double kGhostsToldGhosts_percent = 90.0;  ///< of each type
+  static constexpr double kMovingClassifiedMoving_percent = 97.0;
+  static constexpr double kGhostsClassifiedGhosts_percent = 90.0;  ///< of each type
   static constexpr double kScansCompared_percent = 99.0;
 };
-/// That the record is whole and that its scans are those of the truth are checks; the bars are aims, as one drive may
-/// miss what the median of many reaches. Without truth only the first; empty where nothing was recorded.
+/// Checks: the record is whole, and its scans are those of the truth. The bars are aims, because one drive may miss
+/// what the median of many drives reaches. Without truth only the first check; empty where nothing was recorded.
 [[nodiscard]] std::vector<Check> ghost_checks(const GhostFindings& findings);
 
 }  // namespace boresight::report

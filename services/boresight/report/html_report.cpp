@@ -19,6 +19,7 @@ std::string render_html(const ReportInput& input) {
       "</style></head><body>\n<h1>Boresight report</h1>\n<p class=\"faint\">{} · {:.0f} s · {} radars</p>\n",
       escape(input.title), summary.duration_s, summary.radars.size());
   text += render_verdict(input, summary);
+  text += render_terms();
   text += render_table(summary);
   text += render_details(summary);
   text += render_truth(input, time, summary);
@@ -30,7 +31,7 @@ std::string render_html(const ReportInput& input) {
   text += render_tracks(input);
   text += render_latencies(summary);
   if (!input.events.empty()) {
-    text += "<h2>Processes</h2>\n<pre>";
+    text += "<h2>Processes</h2>\n<p class=\"faint\">Events that the supervisor reported.</p>\n<pre>";
     for (const std::string& event : input.events) text += escape(event) + "\n";
     text += "</pre>\n";
   }

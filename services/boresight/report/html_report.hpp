@@ -12,16 +12,16 @@
 namespace boresight::report {
 
 struct ReportInput {
-  std::string title;                         ///< what was played
+  std::string title;                         ///< of the drive
   std::vector<monitor::Snapshot> snapshots;  ///< in the order of time
   Truth truth;
   VehicleConfig vehicle;            ///< for mounting positions and fields of view in the top view
   std::vector<Check> more_checks;   ///< besides those of summarise()
   GhostFindings ghosts;             ///< of the record of scans, where there is one
-  std::vector<std::string> events;  ///< what the supervisor has to tell
+  std::vector<std::string> events;  ///< of the supervisor
 };
 
-/// Needs nothing from outside the page: no script, font or image; follows the reader's light or dark theme.
+/// The page is complete in itself: it loads no script, font or picture.
 [[nodiscard]] std::string render_html(const ReportInput& input);
 
 }  // namespace boresight::report

@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
+
 namespace boresight::report {
 
 namespace {
@@ -13,9 +16,7 @@ namespace {
 using monitor::RadarSnapshot;
 using monitor::Snapshot;
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
-/// Sum of a counter that may have started anew.
+/// Sum of a counter that may have restarted at zero.
 class Counter {
  public:
   void see(std::uint64_t value) {
@@ -29,35 +30,35 @@ class Counter {
   std::uint64_t last_ = 0;
 };
 
-/// What is summed up over the drive.
+/// Sums over the drive.
 struct RadarSums {
   Counter scans;
   Counter lost;
-  std::array<Counter, 6> told;
-  Counter left_out, classified, without_tracks;
+  std::array<Counter, 6> classified;
+  Counter rejected, scans_with_labels, without_tracks;
   double nees = 0.0;
   int known_nees = 0;
 };
 
 void see_labels(const monitor::LabelCounts& labels, RadarSums& sums) {
-  for (std::size_t i = 0; i < labels.told.size(); ++i) sums.told[i].see(labels.told[i]);
-  sums.left_out.see(labels.left_out);
-  sums.classified.see(labels.scans);
+  for (std::size_t i = 0; i < labels.classified.size(); ++i) sums.classified[i].see(labels.classified[i]);
+  sums.rejected.see(labels.rejected);
+  sums.scans_with_labels.see(labels.scans);
   sums.without_tracks.see(labels.scans_without_tracks);
 }
 
 monitor::LabelCounts labels_of(const RadarSums& sums) {
   monitor::LabelCounts labels;
-  for (std::size_t i = 0; i < labels.told.size(); ++i) labels.told[i] = sums.told[i].total();
-  labels.left_out = sums.left_out.total();
-  labels.scans = sums.classified.total();
+  for (std::size_t i = 0; i < labels.classified.size(); ++i) labels.classified[i] = sums.classified[i].total();
+  labels.rejected = sums.rejected.total();
+  labels.scans = sums.scans_with_labels.total();
   labels.scans_without_tracks = sums.without_tracks.total();
   return labels;
 }
 
 void add_labels(const monitor::LabelCounts& labels, monitor::LabelCounts& sum) {
-  for (std::size_t i = 0; i < labels.told.size(); ++i) sum.told[i] += labels.told[i];
-  sum.left_out += labels.left_out;
+  for (std::size_t i = 0; i < labels.classified.size(); ++i) sum.classified[i] += labels.classified[i];
+  sum.rejected += labels.rejected;
   sum.scans += labels.scans;
   sum.scans_without_tracks += labels.scans_without_tracks;
 }
@@ -68,13 +69,13 @@ std::uint64_t number_of_scans(const Snapshot& snapshot) {
   return scans;
 }
 
-/// Latencies of the whole run: the last histogram of every incarnation of the onlooker.
+/// Latencies of the whole run: the last histogram before each restart of the monitor, and the last of all.
 void add_latencies(const std::vector<Snapshot>& snapshots, Summary& summary) {
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     const bool last = i + 1 == snapshots.size();
     for (std::size_t k = 0; k < monitor::kNumberOfLatencies; ++k) {
-      const bool starts_anew = !last && snapshots[i + 1].latencies[k].total() < snapshots[i].latencies[k].total();
-      if (last || starts_anew) summary.latencies[k].merge(snapshots[i].latencies[k]);
+      const bool restarts = !last && snapshots[i + 1].latencies[k].total() < snapshots[i].latencies[k].total();
+      if (last || restarts) summary.latencies[k].merge(snapshots[i].latencies[k]);
     }
   }
 }
@@ -118,7 +119,7 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
   std::uint64_t scans_before = 0;
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     const Snapshot& snapshot = snapshots[i];
-    // What is said after the last scan of the drive (NO_DATA) is no verdict on the drive.
+    // The health reports after the last scan of the drive (NO_DATA) are no verdict on the drive.
     const bool goes_on = i + 1 < snapshots.size() && number_of_scans(snapshots[i + 1]) != number_of_scans(snapshot);
     const double t_s = static_cast<double>(snapshot.time_ns - begin_ns) * 1e-9;
     for (const RadarSnapshot& seen : snapshot.radars) {
@@ -177,63 +178,56 @@ void add_checks(const Truth& truth, Summary& summary) {
     summary.checks.push_back({std::move(what), passed, false});
   };
   check("every radar delivered scans", all_heard);
-  check(fmt::format("no scan was lost ({} to the monitor, {} inputs to services)", lost, lost_inputs),
+  check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs)", lost, lost_inputs),
         lost + lost_inputs == 0);
-  check(fmt::format("objects were tracked ({} in all, up to {} at once)", summary.distinct_confirmed_tracks,
+  check(fmt::format("objects were tracked ({} in total, up to {} at the same time)", summary.distinct_confirmed_tracks,
                     summary.most_confirmed_tracks),
         summary.distinct_confirmed_tracks > 0);
   check(fmt::format("no service had to be restarted ({} restarts)", restarts), restarts == 0);
   for (const RadarSummary& radar : summary.radars) {
     const auto sent = truth.scans.find(radar.last.id);
     if (sent == truth.scans.end()) continue;
-    check(fmt::format("{}: {} of the {} scans that it sent arrived", radar.last.name, radar.last.scans, sent->second),
+    check(fmt::format("{}: {} of {} sent scans arrived", radar.last.name, radar.last.scans, sent->second),
           radar.last.scans == sent->second);
   }
   if (!truth.known()) return;
   for (const RadarSummary& radar : summary.radars) {
     if (radar.expected_to_be_misaligned) {
-      check(radar.last.name + " is crooked and was reported as MISALIGNED", radar.misaligned);
+      check(radar.last.name + " is misaligned in the truth and was reported as MISALIGNED", radar.misaligned);
     } else {
-      check(radar.last.name + " is within tolerance and was never reported as MISALIGNED",
+      check(radar.last.name + " is within tolerance in the truth and was never reported as MISALIGNED",
             radar.first_misaligned_s < 0);
     }
   }
 }
 
-double in_sigmas(double error, double std) {
-  return std > 0.0 ? std::abs(error) / std : 0.0;
-}
-
 std::string render_radars(const Summary& summary) {
-  std::string text = fmt::format("  {:<14}{:>7}{:>6}   {:<18}{:<9}{:<18}{}\n", "radar", "scans", "lost", "yaw ± σ",
-                                 "truth", "off by", "speed scale ± σ");
+  std::string text = fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", "radar", "scans", "lost", "yaw error ± σ",
+                                 "truth", "speed scale ± σ");
   for (const RadarSummary& radar : summary.radars) {
     const RadarSnapshot& last = radar.last;
-    text +=
-        fmt::format("  {:<14}{:>7}{:>6}   {:<18}{:<9}{:<18}{}\n", last.name, last.scans, last.lost, yaw_text(last),
-                    radar.true_yaw_rad ? fmt::format("{:+.2f}°", *radar.true_yaw_rad * kDegrees) : "-",
-                    has_estimate(last) ? off_by(last.yaw, radar.true_yaw_rad) : "-",
-                    has_estimate(last) ? fmt::format("{:.4f} ± {:.4f}", last.speed_scale, last.speed_scale_std) : "-");
+    text += fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", last.name, last.scans, last.lost, yaw_text(last),
+                        true_yaw_text(radar), speed_scale_text(last));
   }
   return text;
 }
 
-/// Every parameter against the truth, and whether σ is honest; nothing where no truth is known.
+/// The error of every parameter, and whether it agrees with its σ; nothing where no truth is known.
 std::string render_truth(const Summary& summary) {
   std::string text;
+  constexpr const char* kRow = "  {:<14}{:<22}{:<19}{:<19}{:<19}{:>6}{:>6}\n";
   for (const RadarSummary& radar : summary.radars) {
     if (!radar.true_vehicle_rad || !has_estimate(radar.last)) continue;
     const monitor::AlignmentDetails& d = radar.last.details;
     const std::array<double, 3>& truth = *radar.true_vehicle_rad;
-    const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; };
-    text += fmt::format("  {:<14}{:<20}{:<17}{:<17}{:<17}{:>6}{:>6}\n", radar.last.name, speed_scale_off_by(radar),
-                        off_by(d.yaw, truth[0]), off_by(d.pitch, truth[1]), off_by(d.roll, truth[2]), number(d.nees),
-                        number(radar.mean_nees));
+    text += fmt::format(fmt::runtime(kRow), radar.last.name, speed_scale_error_text(radar), error_text(d.yaw, truth[0]),
+                        error_text(d.pitch, truth[1]), error_text(d.roll, truth[2]), text::fixed(d.nees, 2),
+                        text::fixed(radar.mean_nees, 2));
   }
   if (text.empty()) return text;
-  return fmt::format("  {:<14}{:<20}{:<17}{:<17}{:<17}{:>6}{:>6}\n", "off by", "speed scale", "yaw (vehicle)", "pitch",
-                     "roll", "NEES", "mean") +
-         text + "\n";
+  return "  error = estimate - truth, about the vehicle's axes; in parentheses relative to the stated σ\n" +
+         fmt::format(fmt::runtime(kRow), "radar", "speed scale", "yaw", "pitch", "roll", "NEES", "mean") + text +
+         "  NEES: squared errors relative to the stated covariance, per parameter; 1 on average if σ is right\n\n";
 }
 
 std::string render_faults(const Summary& summary) {
@@ -245,7 +239,7 @@ std::string render_faults(const Summary& summary) {
                           name_of(static_cast<Fault>(f)));
     }
   }
-  return text.empty() ? "  faults: none\n" : "  faults:\n" + text;
+  return text.empty() ? "  faults reported by services: none\n" : "  faults reported by services:\n" + text;
 }
 
 }  // namespace
@@ -260,8 +254,8 @@ std::size_t Summary::missed_aims() const {
 }
 
 Check record_check(const std::string& record, const monitor::DamagedLines& damaged) {
-  std::string what = fmt::format("every line of the {} could be read ({} could not", record, damaged.count);
-  if (damaged.count > 0) what += fmt::format("; {}{}", damaged.count > 1 ? "the first: " : "", damaged.first);
+  std::string what = fmt::format("every line of the {} could be read ({} damaged", record, damaged.count);
+  if (damaged.count > 0) what += fmt::format("; {}{}", damaged.count > 1 ? "first: " : "", damaged.first);
   return {what + ")", damaged.count == 0, false};
 }
 
@@ -273,7 +267,7 @@ const char* word_of(const Check& check) {
 Summary summarise(const std::vector<Snapshot>& snapshots, const Truth& truth) {
   Summary summary;
   if (snapshots.empty()) {
-    summary.checks.push_back({"the system was seen running", false, false});
+    summary.checks.push_back({"the monitor received messages of the running system", false, false});
     return summary;
   }
   add_radars(snapshots, truth, summary);
@@ -289,28 +283,39 @@ bool has_estimate(const RadarSnapshot& radar) {
          (radar.state == AlignmentState::kConverged || radar.state == AlignmentState::kConverging);
 }
 
-std::string off_by(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad) {
-  if (!truth_rad) return "-";
+std::string error_text(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad) {
+  if (!truth_rad) return std::string(text::kUnknown);
   if (!estimate.observable) return "not observable";
-  const double error_rad = estimate.value_rad - *truth_rad;
-  return fmt::format("{:+.3f}° ({:.1f} σ)", error_rad * kDegrees, in_sigmas(error_rad, estimate.std_rad));
+  return text::error_in_stds((estimate.value_rad - *truth_rad) * kDegreesPerRadian,
+                             estimate.std_rad * kDegreesPerRadian, "°");
 }
 
-std::string speed_scale_off_by(const RadarSummary& radar) {
-  if (!radar.true_speed_scale || !has_estimate(radar.last)) return "-";
-  const double error = radar.last.speed_scale - *radar.true_speed_scale;
-  return fmt::format("{:+.1e} ({:.1f} σ)", error, in_sigmas(error, radar.last.speed_scale_std));
+std::string speed_scale_error_text(const RadarSummary& radar) {
+  if (!radar.true_speed_scale || !has_estimate(radar.last)) return std::string(text::kUnknown);
+  return text::error_in_stds(radar.last.speed_scale - *radar.true_speed_scale, radar.last.speed_scale_std);
 }
 
 std::string yaw_text(const RadarSnapshot& radar) {
-  if (!has_estimate(radar)) return "-";
-  return fmt::format("{:+.2f}° ± {:.2f}°", radar.yaw.value_rad * kDegrees, radar.yaw.std_rad * kDegrees);
+  if (!has_estimate(radar)) return std::string(text::kUnknown);
+  return text::with_std(radar.yaw.value_rad * kDegreesPerRadian, radar.yaw.std_rad * kDegreesPerRadian, "°",
+                        text::Sign::kAlways);
+}
+
+std::string true_yaw_text(const RadarSummary& radar) {
+  if (!radar.true_yaw_rad) return std::string(text::kUnknown);
+  const double std_rad = has_estimate(radar.last) ? radar.last.yaw.std_rad : 0.0;
+  return text::rounded(*radar.true_yaw_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, "°", text::Sign::kAlways);
+}
+
+std::string speed_scale_text(const RadarSnapshot& radar) {
+  if (!has_estimate(radar)) return std::string(text::kUnknown);
+  return text::with_std(radar.speed_scale, radar.speed_scale_std);
 }
 
 std::string verdict_line(const RadarSummary& radar) {
   const RadarSnapshot& last = radar.last;
   const std::string_view qualifier = name_of(last.data_qualifier);
-  const double tolerance_deg = last.yaw_tolerance_rad * kDegrees;
+  const double tolerance_deg = last.yaw_tolerance_rad * kDegreesPerRadian;
   if (radar.misaligned) {
     return fmt::format("{}: MISALIGNED, yaw {}, beyond the tolerance of {:.1f}°", last.name, yaw_text(last),
                        tolerance_deg);
@@ -321,7 +326,7 @@ std::string verdict_line(const RadarSummary& radar) {
   if (!has_estimate(last)) return fmt::format("{}: {}, no alignment estimate", last.name, qualifier);
   const bool within = std::abs(last.yaw.value_rad) <= last.yaw_tolerance_rad;
   return fmt::format("{}: {}, yaw {}, {} the tolerance of {:.1f}°", last.name, qualifier, yaw_text(last),
-                     within ? "within" : "not surely beyond", tolerance_deg);
+                     within ? "within" : "not significantly beyond", tolerance_deg);
 }
 
 std::string labels_text(const monitor::LabelCounts& labels) {
@@ -337,8 +342,8 @@ std::string labels_text(const monitor::LabelCounts& labels) {
     const bool ghost = label == Provenance::kGhostType1 || label == Provenance::kGhostType2;
     put((ghost ? "ghost " : "") + std::string(name_of(label)), labels.of(label));
   }
-  if (labels.of(Provenance::kUnknown) > 0) put("nothing", labels.of(Provenance::kUnknown));
-  if (labels.left_out > 0) put("left out by the corrector", labels.left_out);
+  if (labels.of(Provenance::kUnknown) > 0) put("not classified", labels.of(Provenance::kUnknown));
+  if (labels.rejected > 0) put("rejected by the corrector", labels.rejected);
   return text;
 }
 
@@ -346,23 +351,38 @@ std::string render_summary(const Summary& summary) {
   std::string text = fmt::format("\nSummary of {:.0f} s of driving\n\n", summary.duration_s);
   text += render_radars(summary) + "\n" + render_truth(summary);
   for (const RadarSummary& radar : summary.radars) text += "  " + verdict_line(radar) + "\n";
-  text += fmt::format("\n  {:<14}{:>10}{:>10}{:>10}\n", "latency, µs", "p50", "p99", "max");
+  text += fmt::format("\n  {:<20}{:>10}{:>10}{:>10}\n", "latency of a scan", "p50, µs", "p99, µs", "max, µs");
   for (std::size_t i = 0; i < monitor::kNumberOfLatencies; ++i) {
     const auto& h = summary.latencies[i];
-    text += fmt::format("  {:<14}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
+    text += fmt::format("  {:<20}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
                         h.percentile_us(0.99), h.max_us());
   }
   const std::string labels = labels_text(summary.labels);
   if (!labels.empty()) {
-    text += fmt::format("\n  {} detections told to be: {}\n", summary.labels.detections(), labels);
-    text += fmt::format("  told without tracks: {} of {} scans\n", summary.labels.scans_without_tracks,
-                        summary.labels.scans);
+    text += fmt::format("\n  {} detections classified: {}\n", text::grouped(summary.labels.detections()), labels);
+    text += fmt::format("  {} of {} scans were classified without tracks\n",
+                        text::grouped(summary.labels.scans_without_tracks), text::grouped(summary.labels.scans));
   }
   text += "\n" + render_faults(summary) + "\n";
   for (const Check& check : summary.checks) {
     text += fmt::format("  [{}] {}\n", word_of(check), check.what);
   }
-  return text;
+  return text + "\n  " + result_text(summary) + "\n";
+}
+
+std::string result_text(const Summary& summary) {
+  std::size_t checks = 0, failed = 0;
+  for (const Check& check : summary.checks) {
+    if (check.aim) continue;
+    ++checks;
+    failed += check.passed ? 0 : 1;
+  }
+  const std::size_t aims = summary.checks.size() - checks, missed = summary.missed_aims();
+  std::string text =
+      failed == 0 ? fmt::format("All {} checks passed", checks) : fmt::format("{} of {} checks FAILED", failed, checks);
+  if (aims > 0 && missed == 0) text += fmt::format(", all {} aims were reached", aims);
+  if (missed > 0) text += fmt::format(", {} of {} aims {} missed", missed, aims, missed == 1 ? "was" : "were");
+  return text + ".";
 }
 
 }  // namespace boresight::report

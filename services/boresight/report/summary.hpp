@@ -1,4 +1,4 @@
-// What a run has shown, judged: per radar against the truth where it is known, and whether everything worked.
+// Results of a run: estimates of each radar, compared with the truth where it is known, and checks.
 #pragma once
 
 #include <array>
@@ -13,28 +13,28 @@
 
 namespace boresight::report {
 
-/// What a simulated drive knows about itself; empty for recordings.
+/// The truth of a simulated drive; empty for recordings.
 struct Truth {
   std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
   std::optional<double> speed_scale;
-  std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: turned by yaw, pitch, roll about the
-                                                               ///< vehicle's axes, as AlignmentEstimate's
-  std::map<std::uint32_t, std::uint64_t> scans;                ///< by radar id: how many the radar sent
+  std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: yaw, pitch, roll of the rotation about
+                                                               ///< the vehicle's axes, as AlignmentEstimate's
+  std::map<std::uint32_t, std::uint64_t> scans;  ///< by radar id: how many the radar sent
   [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
 };
 
 struct RadarSummary {
-  monitor::RadarSnapshot last;  ///< while it was still sending; its counters are sums over the whole run
+  monitor::RadarSnapshot last;  ///< while the radar was sending; counters are sums over the whole run
   std::optional<double> true_yaw_rad;
   std::optional<double> true_speed_scale;
   std::optional<std::array<double, 3>> true_vehicle_rad;
-  double mean_nees = std::numeric_limits<double>::quiet_NaN();  ///< over the drive, where the estimator states it
-  bool misaligned = false;                                      ///< health's verdict while it was still sending
+  double mean_nees = std::numeric_limits<double>::quiet_NaN();  ///< over the drive, where the truth is known
+  bool misaligned = false;  ///< verdict of the health service while the radar was sending
   bool expected_to_be_misaligned = false;
   double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
 };
 
-/// One thing that had to be true; or that is aimed at, which is told when it is missed and fails nothing.
+/// A statement that must hold, or an aim: an aim that is missed is reported but fails nothing.
 struct Check {
   std::string what;
   bool passed;
@@ -54,26 +54,32 @@ struct Summary {
   std::vector<monitor::ServiceSnapshot> services;
   std::array<LatencyHistogram, monitor::kNumberOfLatencies> latencies;
   std::vector<Check> checks;
-  /// But for aims.
+  /// Checks only, without aims.
   [[nodiscard]] bool all_passed() const;
   [[nodiscard]] std::size_t missed_aims() const;
 };
 
-/// `snapshots` in the order of time; counters may start anew where the onlooker was restarted.
+/// `snapshots` in the order of time. Counters may begin at zero again where the monitor was restarted.
 [[nodiscard]] Summary summarise(const std::vector<monitor::Snapshot>& snapshots, const Truth& truth);
 
-/// "front_right: MISALIGNED, yaw +2.51° ± 0.03°, beyond the tolerance of 1.5°".
+/// "front_right: MISALIGNED, yaw +2.512 ± 0.031°, beyond the tolerance of 1.5°".
 [[nodiscard]] std::string verdict_line(const RadarSummary& radar);
-/// "+2.51° ± 0.03°", or "-" without an estimate.
+/// "+2.512 ± 0.031°", or a dash without an estimate.
 [[nodiscard]] std::string yaw_text(const monitor::RadarSnapshot& radar);
 /// Whether there is an estimate to compare with a truth.
 [[nodiscard]] bool has_estimate(const monitor::RadarSnapshot& radar);
-/// "+0.021° (0.5 σ)": estimate − truth; "not observable", or "-" where nothing is known.
-[[nodiscard]] std::string off_by(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad);
-/// Of k_v: "+1.2e-05 (0.3 σ)", or "-".
-[[nodiscard]] std::string speed_scale_off_by(const RadarSummary& radar);
-/// Shares of all detections: "moving 8.1 %, stationary 84.0 %, …"; empty where the ghost filter told nothing.
+/// The true yaw with the digits of the estimate, or a dash.
+[[nodiscard]] std::string true_yaw_text(const RadarSummary& radar);
+/// "1.01192 ± 0.00031", or a dash without an estimate.
+[[nodiscard]] std::string speed_scale_text(const monitor::RadarSnapshot& radar);
+/// "+0.021° (0.5 σ)": estimate − truth; "not observable", or a dash where the truth is not known.
+[[nodiscard]] std::string error_text(const monitor::AngleEstimate& estimate, std::optional<double> truth_rad);
+/// "+0.000012 (0.3 σ)", or a dash.
+[[nodiscard]] std::string speed_scale_error_text(const RadarSummary& radar);
+/// Shares of all detections: "moving 8.1 %, stationary 84.0 %, …"; empty without any detection.
 [[nodiscard]] std::string labels_text(const monitor::LabelCounts& labels);
+/// "All 19 checks passed, 1 of 4 aims was missed."
+[[nodiscard]] std::string result_text(const Summary& summary);
 /// For the terminal, several lines.
 [[nodiscard]] std::string render_summary(const Summary& summary);
 

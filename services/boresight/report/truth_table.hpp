@@ -1,4 +1,4 @@
-// The truth of a simulated drive in the terms in which estimates are shown.
+// The truth of a simulated drive in the quantities of the estimates.
 #pragma once
 
 #include "services/boresight/report/summary.hpp"
@@ -7,8 +7,8 @@
 
 namespace boresight::report {
 
-/// Radars that the vehicle does not know have no angles about its axes. What is not stated is left out, so the result
-/// may be empty (`known()` is false).
+/// Radars that are not in the vehicle file have no angles about the vehicle's axes. Values that the drive does not
+/// state are missing, so the result may be empty (`known()` is false).
 [[nodiscard]] Truth truth_of(const DriveTruth& drive, const VehicleConfig& vehicle);
 
 }  // namespace boresight::report

@@ -29,7 +29,7 @@ std::string render_bar(std::string_view label, double share, std::string_view te
     line += std::string(3 - percent.size(), ' ') + percent + " %";
   }
   if (!text.empty()) line += "  " + std::string(text);
-  // A line that wraps could not be overwritten.
+  // A wrapped line could not be overwritten.
   if (columns > 1 && line.size() >= static_cast<std::size_t>(columns))
     line.resize(static_cast<std::size_t>(columns) - 1);
   return line;

@@ -1,5 +1,5 @@
-// A bar on the terminal for work of known size, a running figure for work of unknown size; silent where the output is
-// no terminal.
+// A progress bar on the terminal, or a running text if the amount of work is unknown. Silent if the output is no
+// terminal.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,12 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Where it is not, one may say a few words in lines instead.
+  /// False: the caller may print a few lines of progress instead.
   [[nodiscard]] bool is_terminal() const { return is_terminal_; }
-  /// Whether anything is to be shown now: the terminal is redrawn ten times a second at most. Cheap enough to be asked
-  /// for every few hundred frames.
+  /// Whether to call show() now; limits it to ten times a second. Cheap enough for a call every few hundred frames.
   [[nodiscard]] bool is_due();
   void show(double share, std::string_view text = {});
-  /// Makes room for a line of other output; the bar comes back with the next show().
+  /// Clears the line for other output; the next show() draws the bar again.
   void wipe();
 
  private:

@@ -51,13 +51,13 @@ Status Checker::judge(std::span<const std::uint8_t> data) {
   return judge_counter(header.counter);
 }
 
-/// A message out of sequence is rejected, but it may tell of a sender that restarted or of a long gap. It must neither
-/// be ignored (everything after it would be rejected too) nor believed at once (one late message would then make the
-/// next good one look wrong; compare vsomeip issue 1055). So both readings are held: the next message is accepted if it
-/// follows the sequence as it was, or else if it follows the stray one.
+/// A message out of sequence is rejected, but its cause may be a restarted sender or a long gap. If it were ignored,
+/// all following messages would be rejected too. If its counter were accepted at once, one late message would make the
+/// next good one look wrong (compare vsomeip issue 1055). Therefore both counters are kept: the next message is
+/// accepted if it follows either the former sequence or the message out of sequence.
 Status Checker::judge_counter(std::uint32_t counter) {
   const std::uint64_t values = layout(config_.profile).counter_values;
-  if (counter >= values) return Status::kWrongSequence;  // 15 is no counter of P01 and P11
+  if (counter >= values) return Status::kWrongSequence;  // 15 is not a valid counter of P01 and P11
   if (!last_) {
     last_ = counter;
     return Status::kInitial;

@@ -10,7 +10,7 @@ namespace {
 template <typename Value>
 using Table = std::array<Value, 256>;
 
-/// What one byte does to a register whose highest bit leaves first.
+/// Effect of one byte on a register that is shifted out at its highest bit.
 template <typename Value>
 constexpr Table<Value> forward_table(Value polynomial) {
   constexpr int kBits = 8 * sizeof(Value);
@@ -37,8 +37,8 @@ constexpr Value reversed(Value value) {
 
 constexpr std::size_t kSlices = 8;
 
-/// Slicing by eight (Kounavis and Berry, 2005) for reflected registers: table k says what a byte does that k more bytes
-/// follow, so that eight independent look-ups take eight bytes instead of a chain of eight.
+/// Slicing by eight (Kounavis and Berry, 2005) for reflected registers: table k holds the effect of a byte that is
+/// followed by k more bytes. Eight independent look-ups then process eight bytes, instead of a chain of eight look-ups.
 template <typename Value>
 constexpr std::array<Table<Value>, kSlices> reflected_slices(Value polynomial) {
   std::array<Table<Value>, kSlices> slices{};
@@ -62,7 +62,7 @@ constexpr auto kCrc16 = forward_table<std::uint16_t>(0x1021);
 constexpr auto kCrc32P4 = reflected_slices<std::uint32_t>(0xF4ACFB13u);
 constexpr auto kCrc64 = reflected_slices<std::uint64_t>(0x42F0E1EBA9EA3693u);
 
-/// Written as shifts so that it means the same on every byte order; compilers make one load of it.
+/// Shifts give the same result for every byte order of the machine; compilers turn them into one load.
 std::uint64_t load_little_endian(const std::uint8_t* p) {
   std::uint64_t value = 0;
   for (int i = 7; i >= 0; --i) value = value << 8 | p[i];

@@ -35,8 +35,8 @@ Value around_crc(const Config& config, Value (*update)(Value, Bytes), Value stat
   return update(state, data.subspan(begin + fields.crc_bytes));
 }
 
-/// P01 and P11: the Data ID goes first, and the 8-bit CRC starts at 0 without a final XOR, unlike SAE J1850 itself
-/// (PRS_E2EProtocol, "CRC calculation" of profile 1; shown by the public vectors too).
+/// P01 and P11: the CRC covers the Data ID first. The 8-bit CRC starts at 0 without a final XOR, unlike SAE J1850
+/// itself (PRS_E2EProtocol, "CRC calculation" of profile 1; shown by the public vectors too).
 std::uint8_t crc_with_leading_id(const Config& config, std::uint32_t counter, Bytes data) {
   const auto low = static_cast<std::uint8_t>(config.data_id);
   const auto high = static_cast<std::uint8_t>(config.data_id >> 8);
@@ -53,19 +53,19 @@ std::uint8_t crc_with_leading_id(const Config& config, std::uint32_t counter, By
       break;
     case DataIdMode::kNibble:
       id_bytes = 2;
-      id[1] = 0;  // the high byte is sent, so that it need not be hidden in the CRC
+      id[1] = 0;  // the high byte is sent, so that the CRC does not cover it
       break;
   }
   return around_crc(config, update_crc8, update_crc8(0, Bytes{id}.first(id_bytes)), data);
 }
 
-/// P02 and P22: an identifier that changes with the counter goes last.
+/// P02 and P22: the CRC covers an identifier that changes with the counter last.
 std::uint8_t crc_with_listed_id(const Config& config, std::uint32_t counter, Bytes data) {
   const std::uint8_t id = config.data_id_list[counter % config.data_id_list.size()];
   return update_crc8_h2f(around_crc<std::uint8_t>(config, update_crc8_h2f, 0xFF, data), {&id, 1}) ^ 0xFFu;
 }
 
-/// P05 and P06: the Data ID goes last, in the byte order of the profile.
+/// P05 and P06: the CRC covers the Data ID last, in the byte order of the profile.
 std::uint16_t crc_with_trailing_id(const Config& config, Bytes data, bool low_byte_first) {
   std::array<std::uint8_t, 2> id;
   write_big_endian(id, low_byte_first ? swapped(config.data_id) : config.data_id);

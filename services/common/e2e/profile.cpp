@@ -14,7 +14,7 @@ bool has_data_id_mode(Profile profile) {
 }
 
 std::uint64_t greatest_data_id(const Config& config) {
-  // Of the high byte only the low nibble is sent, and the high nibble enters nothing: it must not seem to matter.
+  // Only the low nibble of the high byte is sent; the high nibble has no effect, so a value there is an error.
   if (has_data_id_mode(config.profile) && config.data_id_mode == DataIdMode::kNibble) return 0xFFF;
   return config.profile == Profile::kP04 || config.profile == Profile::kP07 ? 0xFFFFFFFF : 0xFFFF;
 }

@@ -1,5 +1,5 @@
-// End-to-end (E2E) protection profiles 1, 2, 4, 5, 6, 7, 11 and 22 of AUTOSAR (PRS_E2EProtocol): what is configured,
-// what a check can find, and where each profile keeps its fields.
+// End-to-end (E2E) protection profiles 1, 2, 4, 5, 6, 7, 11 and 22 of AUTOSAR (PRS_E2EProtocol): configuration,
+// results of a check, and layout of each profile.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace boresight::e2e {
 
 enum class Profile : std::uint8_t { kNone, kP01, kP02, kP04, kP05, kP06, kP07, kP11, kP22 };
 
-/// Which part of the 16-bit Data ID the CRC of P01 and P11 covers; P11 knows kBoth and kNibble only.
+/// Which part of the 16-bit Data ID the CRC of P01 and P11 covers; P11 has kBoth and kNibble only.
 enum class DataIdMode : std::uint8_t {
   kBoth,         ///< both bytes
   kAlternating,  ///< low byte at even counters, high byte at odd ones
@@ -30,16 +30,16 @@ struct Config {
   std::uint32_t max_delta_counter = 1;          ///< largest step of the counter that is still acceptable
 };
 
-/// What the check of one message found. A message is judged by its length first, then CRC, Data ID and counter, because
-/// each of these can only be trusted when the ones before it are right.
+/// Result of the check of one message. The order is length, CRC, Data ID, counter, because each of these can only be
+/// trusted if the previous ones are correct.
 enum class Status : std::uint8_t {
-  kInitial,        ///< sound, and the first one: nothing to compare its counter with
-  kOk,             ///< sound, counter one step on
-  kOkSomeLost,     ///< sound, counter more than one step on, within max_delta_counter
-  kRepeated,       ///< sound, but the counter stands still
-  kWrongSequence,  ///< sound, but the counter jumped further than max_delta_counter, or has an invalid value
+  kInitial,        ///< correct, and the first message: no counter to compare with
+  kOk,             ///< correct, counter increased by one
+  kOkSomeLost,     ///< correct, counter increased by more than one, within max_delta_counter
+  kRepeated,       ///< correct, but with the same counter
+  kWrongSequence,  ///< correct, but the counter jumped by more than max_delta_counter, or has an invalid value
   kWrongCrc,
-  kWrongLength,  ///< too short for the header, or not as long as its length field says
+  kWrongLength,  ///< too short for the header, or different from its length field
   kWrongDataId   ///< CRC right, but meant for another receiver
 };
 
@@ -48,10 +48,10 @@ enum class Status : std::uint8_t {
   return status == Status::kInitial || status == Status::kOk || status == Status::kOkSomeLost;
 }
 
-/// For messages to people: "wrong CRC".
+/// As text for logs: "wrong CRC".
 [[nodiscard]] std::string_view describe(Status status);
 
-/// Where a profile keeps its fields, in bytes from the start of its header. A width of 0 is a field that is not sent,
+/// Offsets of a profile's fields in bytes from the start of its header. A width of 0 is a field that is not sent,
 /// except for the counter, which is then the low nibble of its byte.
 struct Layout {
   std::uint8_t header_bytes = 0;
@@ -63,10 +63,10 @@ struct Layout {
   std::uint32_t first_counter = 0;   ///< of a sender that has just started
 };
 
-/// PRS_E2EProtocol, "Header layout" of each profile. All fields are big endian but the CRC of P05. P02 and P22 count up
-/// before they protect, so that a sender's first counter is 1. The recommended greatest length of the protected data is
-/// 30 to 32 bytes for the 8-bit CRCs (P01, P02, P11), 4 KB for P04 to P06, 4 MB for P07; it is not enforced, because
-/// sensors exceed it, but detection is weaker beyond.
+/// PRS_E2EProtocol, "Header layout" of each profile. All fields are big endian except the CRC of P05. P02 and P22
+/// increase the counter before protection, so that a sender's first counter is 1. The recommended maximum length of the
+/// protected data is 30 to 32 bytes for the 8-bit CRCs (P01, P02, P11), 4 KB for P04 to P06, 4 MB for P07. It is not
+/// enforced, because sensors exceed it; error detection is weaker for longer data.
 [[nodiscard]] constexpr Layout layout(Profile profile) {
   constexpr std::uint64_t kWide = std::uint64_t{1} << 32;
   switch (profile) {
@@ -113,7 +113,7 @@ struct Layout {
   return {};
 }
 
-/// Bytes of protected data that the profile takes for itself; 0 for kNone.
+/// Bytes of the profile's header; 0 for kNone.
 [[nodiscard]] constexpr std::size_t header_bytes(Profile profile) {
   return layout(profile).header_bytes;
 }
@@ -121,8 +121,8 @@ struct Layout {
 /// The greatest offset_bytes: the longest message of the profiles with a 16-bit length field (PRS_E2EProtocol).
 inline constexpr std::uint32_t kMaxOffsetBytes = 4096;
 
-/// Why a configuration is wrong, naming the field and the allowed range; nothing if it is right. Checker and Protector
-/// stay within bounds with a wrong one too, but their verdicts then mean nothing.
+/// The error of a configuration with field and allowed range; nothing if it is valid. With an invalid one, Checker and
+/// Protector stay within bounds, but their results have no meaning.
 [[nodiscard]] std::optional<std::string> validate(const Config& config);
 
 }  // namespace boresight::e2e

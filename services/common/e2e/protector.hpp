@@ -13,12 +13,12 @@ class Protector {
  public:
   explicit Protector(const Config& config);
 
-  /// Writes the header fields and the CRC into the data at offset_bytes, and advances the counter. False, with nothing
-  /// written and the counter as it was, if the header does not fit into the data, or the length of the data not into
-  /// the length field (P04 and P06: 65,535 bytes).
+  /// Writes the header fields and the CRC into the data at offset_bytes, and advances the counter. Returns
+  /// false without any change if the data are too short for the header, or too long for the length field (P04 and P06:
+  /// 65,535 bytes).
   bool protect(std::span<std::uint8_t> data);
 
-  /// The counter that the next protected message will carry.
+  /// The counter of the next protected message.
   [[nodiscard]] std::uint32_t counter() const { return counter_; }
 
  private:

@@ -34,7 +34,7 @@ EgoSample EgoHistory::at(std::int64_t time_ns) const {
     const Entry& before = newest(back);
     if (before.time_ns > time_ns) continue;
     const Entry& after = newest(back - 1);
-    // A gap in the signal is not bridged by a straight line.
+    // No interpolation across a gap in the signal.
     if (after.time_ns - before.time_ns > max_age_ns_) {
       return held(time_ns - before.time_ns < after.time_ns - time_ns ? before : after);
     }

@@ -1,4 +1,4 @@
-// The recent motion of the vehicle, so that a scan meets the motion of its own time and not of its arrival.
+// The recent motion of the vehicle, for the motion at a scan's time of measurement instead of its time of arrival.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace boresight {
 /// Motion at one instant; speed as signalled (without k_v).
 struct EgoSample {
   bool valid = false;  ///< speed and yaw rate are known
-  bool stale = false;  ///< nothing newer than the limit; the values are the nearest known
+  bool stale = false;  ///< no message within the limit; the values are those of the nearest message
   double speed_mps = 0.0;
   double speed_std_mps = 0.0;
   double yaw_rate_radps = 0.0;
@@ -22,14 +22,14 @@ struct EgoSample {
 /// Ring of the last 128 ego motions, ordered by measurement time. No allocation.
 class EgoHistory {
  public:
-  /// `max_age_ns`: how far from the nearest message an instant may be before the sample is stale.
+  /// `max_age_ns`: largest distance to the nearest message of a sample that is not stale.
   explicit EgoHistory(std::int64_t max_age_ns = 200'000'000) : max_age_ns_(max_age_ns) {}
 
-  /// Ignores messages without speed and yaw rate, with values that are not finite, and those that are not newer than
-  /// the newest by up to a second; a jump back by more empties the ring (a recording that started again).
+  /// Ignores messages without speed and yaw rate, with values that are not finite, and messages up to a second older
+  /// than the newest one. A jump back by more than a second empties the ring, as when a recording starts again.
   void add(const EgoMotion& motion);
 
-  /// Linear between two messages, held before the first and after the last one.
+  /// Linear between two messages; the nearest message's values before the first and after the last one.
   [[nodiscard]] EgoSample at(std::int64_t time_ns) const;
 
  private:

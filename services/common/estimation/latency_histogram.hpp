@@ -1,4 +1,4 @@
-// Counts durations in buckets of equal ratio, so that percentiles of a whole run fit in a few hundred numbers.
+// Histogram of durations with a constant ratio of bucket edges: percentiles of a whole run from a few hundred numbers.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +26,8 @@ class LatencyHistogram {
   [[nodiscard]] static double edge_us(std::size_t bucket) {
     return std::pow(10.0, static_cast<double>(bucket) / static_cast<double>(kBucketsPerDecade));
   }
-  /// The duration that `share` (0…1) of all do not exceed, at the geometric middle of its bucket (within 6 %), and
-  /// never beyond the maximum; 0 without data.
+  /// The quantile `share` (0…1), at the geometric middle of its bucket (within 6 %), at most the maximum; 0 without
+  /// data.
   [[nodiscard]] double percentile_us(double share) const {
     if (total_ == 0) return 0.0;
     const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
@@ -42,7 +42,7 @@ class LatencyHistogram {
   [[nodiscard]] std::uint64_t total() const { return total_; }
   [[nodiscard]] const std::array<std::uint64_t, kBuckets>& counts() const { return counts_; }
 
-  /// Sets one bucket, when a record is read.
+  /// Sets one bucket, for reading a record.
   void restore(std::size_t bucket, std::uint64_t count) {
     if (bucket >= kBuckets) return;
     total_ += count - counts_[bucket];

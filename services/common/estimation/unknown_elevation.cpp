@@ -8,15 +8,16 @@ namespace boresight {
 
 namespace {
 
-/// What stands beside and over roads is at most this high: the clearance of structures (German RAA: 4.70 m).
+/// Largest height of stationary objects beside and over roads: the clearance of structures (German RAA: 4.70 m).
 constexpr double kClearance_m = 4.7;
-/// Nothing is nearer, and no sensor looks up more steeply.
+/// Smallest range, and largest elevation of a sensor's view.
 constexpr double kNearest_m = 1.0, kSteepest_rad = 1.0;
-/// Share of the heights below which their density counts as constant.
+/// Interval of heights, as a share of the largest, below which their density is taken as constant.
 constexpr double kNarrow = 1e-3;
 
-/// Moments 0 to 4 over heights up to the share u: all things stand on the road, as likely of one height as of another,
-/// and reflect anywhere between the road and their top, so that the density of reflectors is −ln u.
+/// Moments 0 to 4 over heights up to the share u of the largest height. Model: all objects stand on the road, with
+/// uniformly distributed heights, and reflect uniformly between the road and their top. The density of reflectors is
+/// then −ln u.
 std::array<double, 5> moments(double u) {
   std::array<double, 5> out{};
   if (!(u > 0.0)) return out;
@@ -39,15 +40,15 @@ UnknownElevation::UnknownElevation(const RadarConfig& radar, double rotation_std
   const double half = usable ? 0.5 * std::abs(view.elevation_max_rad - view.elevation_min_rad) : M_PI;
   const double upright = std::cos(radar.mounting_pose.roll_rad) < 0.0 ? -1.0 : 1.0;
   const double axis = radar.mounting_pose.pitch_rad + upright * centre;
-  // Uniform over this has the variance of a direction in the view plus that of the axis.
+  // A uniform distribution over ±reach has the variance of a direction in the view plus that of the axis.
   const double reach = std::sqrt(half * half + 3.0 * rotation_std_rad * rotation_std_rad);
   lowest_sine_ = std::sin(std::clamp(axis - reach, -kSteepest_rad, kSteepest_rad));
   highest_sine_ = std::sin(std::clamp(axis + reach, -kSteepest_rad, kSteepest_rad));
 }
 
 UnknownElevation::Cosine UnknownElevation::at(double range_m) const {
-  const double range = range_m > kNearest_m ? range_m : kNearest_m;  // also of what is not a number
-  // Of shares u of the greatest height; the elevation's sine is (u − own)·steepness, its cosine 1 − sine²/2 − sine⁴/8.
+  const double range = range_m > kNearest_m ? range_m : kNearest_m;  // also for NaN
+  // Heights are shares u of the largest height; sine of elevation (u − own)·steepness, cosine 1 − sine²/2 − sine⁴/8.
   const double own = height_m_ / highest_m_, steepness = highest_m_ / range;
   const double low = std::clamp(own + lowest_sine_ / steepness, 0.0, 1.0);
   const double high = std::clamp(own + highest_sine_ / steepness, 0.0, 1.0);

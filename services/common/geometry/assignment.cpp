@@ -15,7 +15,7 @@ void Assignment::reset(std::size_t rows, std::size_t columns, double cost_alone)
 }
 
 void Assignment::solve() {
-  // Each row has a column of its own to be alone in, behind the real ones, so that a solution always exists.
+  // Each row has an extra column for staying unassigned, so that a solution always exists.
   constexpr std::size_t kWidth = 2 * kCapacity + 1;
   const std::size_t width = columns_ + rows_;
   const auto cost = [&](std::size_t row, std::size_t column) {

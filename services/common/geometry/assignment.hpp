@@ -18,10 +18,10 @@ class Assignment {
 
   Assignment();
 
-  /// Begins a problem of `rows` × `columns` (each at most kCapacity) with all pairs forbidden. A row that stays alone
-  /// costs `cost_alone`.
+  /// Begins a problem of `rows` × `columns` (each at most kCapacity) with all pairs forbidden. A row without a
+  /// column costs `cost_alone`.
   void reset(std::size_t rows, std::size_t columns, double cost_alone);
-  /// Cost of a pair; pairs that cost more than a row alone are never made.
+  /// Cost of a pair; pairs with a cost above that of an unassigned row are never chosen.
   void set(std::size_t row, std::size_t column, double cost) { cost_[row * stride_ + column] = cost; }
   /// Finds the assignment of least total cost.
   void solve();

@@ -1,6 +1,6 @@
-// Numbers to be found by place: the cells of a plane's grid repeat over a square of chains, like tiles on a floor, so
-// that nothing is hashed and all of it stays in the cache. What is a period away in the same chain is met as well, and
-// told apart by whoever looks at distances anyway.
+// Finds numbers by position: the cells of a plane's grid repeat periodically over a square of chains, like tiles on a
+// floor. This needs no hashing, and all data stay in the cache. A search also visits numbers a multiple of the period
+// away in the same chain; the caller rejects them by their distance.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace boresight::geometry {
 
 class CellChains {
  public:
-  static constexpr std::int32_t kSide = 32;  ///< cells after which the plane repeats
-  /// For numbers less than `capacity`.
+  static constexpr std::int32_t kSide = 32;  ///< period in cells
+  /// For numbers below `capacity`.
   CellChains(std::size_t capacity, double cell_m)
       : cell_m_(cell_m), first_(static_cast<std::size_t>(kSide) * kSide, kNone), next_(capacity, kNone) {}
 
@@ -28,7 +28,7 @@ class CellChains {
     std::fill(first_.begin(), first_.end(), kNone);
     filled_.fill(0);
   }
-  /// Enters a number at its place; numbers beyond the capacity are not entered. Once for each number after clear().
+  /// Enters a number at its position; ignores numbers beyond the capacity. At most once per number after clear().
   void link(const Eigen::Vector2d& position_m, std::uint32_t number) {
     if (number >= next_.size()) return;
     const GridCell at = grid_cell(position_m.x(), position_m.y(), cell_m_);
@@ -37,13 +37,13 @@ class CellChains {
     next_[number] = first;
     first = number;
   }
-  /// Calls `visit(number)` for those in the cell of a position and in the eight about it: all within `cell_m` of it.
-  /// And for those that many times kSide cells away.
+  /// Calls `visit(number)` for the numbers in the cell of a position and in its eight neighbours, which include all
+  /// within `cell_m`. Also visits numbers in the same chains a multiple of kSide cells away.
   template <typename Visit>
   void near(const Eigen::Vector2d& position_m, const Visit& visit) const {
     const GridCell at = grid_cell(position_m.x(), position_m.y(), cell_m_);
     for (std::int32_t column = at.column - 1; column <= at.column + 1; ++column) {
-      // Most cells are empty: that is told of three at once.
+      // Most cells are empty; one comparison finds this for three cells.
       Rows left = std::rotr(filled_[within(column)], static_cast<int>(within(at.row - 1))) & 7U;
       for (; left != 0; left &= left - 1) {
         const std::int32_t row = at.row - 1 + std::countr_zero(left);
@@ -62,7 +62,7 @@ class CellChains {
   }
   double cell_m_;
   std::vector<std::uint32_t> first_, next_;
-  std::array<Rows, kSide> filled_{};  // by column: in which rows there is anything
+  std::array<Rows, kSide> filled_{};  // by column: the rows with entries
 };
 
 }  // namespace boresight::geometry

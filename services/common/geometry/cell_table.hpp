@@ -1,4 +1,4 @@
-// A number for each cell of a plane's grid: hashing without allocation, emptied in constant time.
+// A number for each cell of a plane's grid: a hash table without allocation, emptied in constant time.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,11 @@ struct GridCell {
   [[nodiscard]] bool operator==(const GridCell&) const = default;
 };
 
-/// The cell of a position in a grid of `size_m`; positions beyond 1000 km are taken to be there, and so is what is not
-/// a number.
+/// The cell of a position in a grid of `size_m`; positions beyond 1000 km, and NaN, are set to 1000 km.
 [[nodiscard]] inline GridCell grid_cell(double x_m, double y_m, double size_m) {
   static constexpr double kFarthest_m = 1e6;
   const auto index = [size_m](double v) {
-    // In this order of the arguments what is not a number becomes the other one.
+    // With this order of the arguments, NaN becomes the other argument.
     const double cells = std::min(kFarthest_m, std::max(-kFarthest_m, v)) / size_m;
     const auto towards_zero = static_cast<std::int32_t>(cells);  // std::floor costs twice as much
     return towards_zero - (cells < towards_zero ? 1 : 0);
@@ -31,7 +30,7 @@ struct GridCell {
 
 class CellTable {
  public:
-  /// Room for `capacity` cells, which is not checked again.
+  /// For at most `capacity` cells, which is not checked.
   explicit CellTable(std::size_t capacity) : slots_(std::bit_ceil(2 * std::max<std::size_t>(capacity, 1))) {}
 
   void clear() {
@@ -40,7 +39,7 @@ class CellTable {
     round_ = 1;
   }
 
-  /// The cell's number; `fresh` becomes that of a cell that had none.
+  /// The cell's number; a cell without a number gets `fresh`.
   [[nodiscard]] std::uint32_t& at(GridCell cell, std::uint32_t fresh) {
     Slot& slot = slots_[find_slot(cell)];
     if (slot.round != round_) slot = {round_, fresh, cell};
@@ -51,7 +50,7 @@ class CellTable {
     const std::size_t mask = slots_.size() - 1;
     std::size_t hole = find_slot(cell);
     if (slots_[hole].round != round_) return;
-    // What was displaced by it moves up, so that searches find no hole before their goal (Knuth 6.4, algorithm R).
+    // Displaced entries move up, so that searches meet no empty slot before their goal (Knuth 6.4, algorithm R).
     for (std::size_t at = (hole + 1) & mask; slots_[at].round == round_; at = (at + 1) & mask) {
       if (((at - home(slots_[at].cell)) & mask) < ((at - hole) & mask)) continue;
       slots_[hole] = slots_[at];
@@ -72,7 +71,7 @@ class CellTable {
     GridCell cell{};
   };
   [[nodiscard]] std::size_t home(GridCell cell) const {
-    // Fibonacci hashing of both halves: neighbouring cells land far apart.
+    // Fibonacci hashing of both halves: neighbouring cells get distant slots.
     const std::uint64_t key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(cell.column)) << 32 |
                               static_cast<std::uint32_t>(cell.row);
     return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> 32) & (slots_.size() - 1);

@@ -1,4 +1,4 @@
-// Labelled items put together by their cluster: a counting sort, two passes without a comparison or an allocation.
+// Groups labelled items by cluster: a counting sort in two passes, without comparison or allocation.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,13 @@ class ClusterRuns {
     begins_.reserve(capacity + 1);
   }
 
-  /// Copies those items whose label is one of 0 … clusters − 1; others (noise) are left out, and so are items beyond
-  /// the capacity, those without a label, and clusters beyond the capacity.
+  /// Copies the items with a label 0 … clusters − 1. Skips others (noise), items without a label, and items and
+  /// clusters beyond the capacity.
   void sort(std::span<const Item> items, std::span<const std::int32_t> labels, std::size_t clusters) {
     clusters = std::min(clusters, capacity_);
     const std::size_t count = std::min({items.size(), labels.size(), capacity_});
     const auto is_in = [&](std::int32_t label) { return label >= 0 && static_cast<std::size_t>(label) < clusters; };
-    // Each cluster's end, which its items then push down to its begin.
+    // Each cluster's end first; entering the items moves it down to the begin.
     begins_.assign(clusters + 1, 0);
     for (const std::int32_t label : labels.first(count)) {
       if (is_in(label)) ++begins_[static_cast<std::size_t>(label)];
@@ -37,7 +37,7 @@ class ClusterRuns {
   }
 
   [[nodiscard]] std::size_t size() const { return begins_.empty() ? 0 : begins_.size() - 1; }
-  /// The items of a cluster of the last call, in the order in which they were given; to be changed at will.
+  /// The items of a cluster of the last call, in their given order. The caller may change them.
   [[nodiscard]] std::span<Item> operator[](std::size_t cluster) {
     return {items_.data() + begins_[cluster], begins_[cluster + 1] - begins_[cluster]};
   }

@@ -9,8 +9,7 @@ namespace {
 
 constexpr std::int32_t kUnvisited = -2;
 
-/// Buckets on a side of the square for so many points: two for each point at least, as most cells of a cloud have
-/// neighbours that are empty.
+/// Buckets per side of the square: at least two buckets per point, as most cells have empty neighbours.
 std::int32_t side_for(std::size_t points) {
   std::int32_t side = 4;  // three neighbouring cells are different buckets
   while (static_cast<std::size_t>(side) * static_cast<std::size_t>(side) < 2 * points) side *= 2;
@@ -34,8 +33,8 @@ Dbscan::Dbscan(std::size_t capacity)
 }
 
 void Dbscan::fill_buckets() {
-  // The plane's cells repeat over the square of buckets like tiles on a floor: that needs no hashing, neighbours stay
-  // neighbours, and what is far away in the same bucket the distance tells apart.
+  // The plane's cells repeat periodically over the square of buckets: no hashing, and neighbours stay neighbours.
+  // Distant points in the same bucket are rejected by their distance.
   side_ = side_for(count_);
   const std::size_t buckets = buckets_for(count_);
   std::fill_n(bucket_begin_.begin(), buckets + 1, 0U);
@@ -47,7 +46,7 @@ void Dbscan::fill_buckets() {
     cells_[i] = grid_cell(points_[i].x(), points_[i].y(), radius_m_);
     ++bucket_begin_[bucket_of(cells_[i])];
   }
-  // Each bucket's end, which its points then push down to its begin.
+  // Each bucket's end first; entering the points moves it down to the begin.
   for (std::size_t b = 1; b <= buckets; ++b) bucket_begin_[b] += bucket_begin_[b - 1];
   for (std::size_t i = 0; i < count_; ++i) {
     entries_[--bucket_begin_[bucket_of(cells_[i])]] = {points_[i], static_cast<std::uint32_t>(i)};
@@ -89,9 +88,9 @@ void Dbscan::take_around(std::size_t core, std::int32_t cluster) {
           continue;
         }
         const std::uint32_t point = entries_[k].point;
-        if (labels_[point] == kUnvisited) stack_.push_back(point);  // noise is no core
+        if (labels_[point] == kUnvisited) stack_.push_back(point);  // noise is not a core point
         labels_[point] = cluster;
-        // It need not be met again: in a dense cloud that is nearly all of the work.
+        // A point of a cluster is not visited again, which saves most of the work in a dense cloud.
         std::swap(entries_[k], entries_[--end]);
       }
     }
@@ -116,7 +115,8 @@ std::size_t Dbscan::cluster(std::span<const Eigen::Vector2d> points, double radi
     while (!stack_.empty()) {
       const std::uint32_t point = stack_.back();
       stack_.pop_back();
-      if (is_core(point, min_points)) take_around(point, clusters);  // others are reached, but do not reach further
+      if (is_core(point, min_points))
+        take_around(point, clusters);  // other points belong to the cluster, but do not extend it
     }
     ++clusters;
   }

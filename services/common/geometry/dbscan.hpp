@@ -1,5 +1,5 @@
-// Density-based clusters of points in the plane (Ester et al. 1996). Points are put together by the cells of a grid, so
-// that the cost grows linearly.
+// Density-based clusters of points in the plane (Ester et al. 1996). A grid groups the points, so that the
+// cost grows linearly.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,9 @@ class Dbscan {
   explicit Dbscan(std::size_t capacity);
 
   /// Labels each point with its cluster (0, 1, …) or kNoise. A point with at least `min_points` points (itself
-  /// included) within `radius_m` is a core; clusters are cores within reach of each other and what they reach. Points
-  /// must be finite; those beyond the capacity are ignored. Returns the number of clusters.
+  /// included) within `radius_m` is a core point. A cluster consists of core points within the radius of each other and
+  /// all points within the radius of these. Points must be finite; those beyond the capacity are ignored. Returns the
+  /// number of clusters.
   std::size_t cluster(std::span<const Eigen::Vector2d> points, double radius_m, std::size_t min_points);
 
   /// Labels of the points of the last call, in their order.
@@ -31,7 +32,7 @@ class Dbscan {
   void fill_buckets();
   /// Whether a point has at least `min_points` within the radius, itself included.
   [[nodiscard]] bool is_core(std::size_t point, std::size_t min_points) const;
-  /// Of the points within the radius of a core, gives those of no cluster to this one.
+  /// Assigns points without a cluster within the radius of a core point to this cluster.
   void take_around(std::size_t core, std::int32_t cluster);
 
   /// A point in the order of the buckets.
@@ -43,12 +44,12 @@ class Dbscan {
   double radius_m_ = 1.0;
   std::size_t count_ = 0;
   std::int32_t side_ = 0;  // of the square of buckets
-  /// In entries_: a bucket's begin, and the end of those in it that belong to no cluster yet.
+  /// In entries_: a bucket's begin, and the end of its points without a cluster.
   std::vector<std::uint32_t> bucket_begin_, free_end_;
   std::vector<GridCell> cells_;  // of the points, of the radius' size
   std::vector<Entry> entries_;
   std::vector<std::int32_t> labels_;
-  std::vector<std::uint32_t> stack_;  // reached, but not looked at yet
+  std::vector<std::uint32_t> stack_;  // assigned, but not expanded yet
 };
 
 }  // namespace boresight::geometry

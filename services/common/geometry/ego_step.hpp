@@ -1,4 +1,5 @@
-// Moves what is known in the vehicle frame along with the vehicle: from the frame of one scan to that of the next.
+// Transforms positions from the vehicle frame of one scan to that of the next.
+// Equations: docs/algorithms/frames.md (F11).
 #pragma once
 
 #include <cmath>
@@ -20,7 +21,7 @@ struct EgoStep {
 [[nodiscard]] inline EgoStep ego_step(double speed_mps, double yaw_rate_radps, double elapsed_s) {
   const double turn = yaw_rate_radps * elapsed_s;
   const double length = speed_mps * elapsed_s;
-  // Chord of the arc: sin(x)/x, by its series where the quotient would lose digits.
+  // Chord of the arc: sin(x)/x, by its series for small x, where the quotient would lose digits.
   const double half = 0.5 * turn;
   const double chord = length * (std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
   EgoStep step;

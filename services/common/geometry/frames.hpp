@@ -1,5 +1,5 @@
-// Rotations between the sensor's and the vehicle's frame and the range rate of a stationary reflector: the one place
-// where the signs of algorithms.md §0 are written down.
+// Rotations between the sensor's and the vehicle's frame, and the range rate of a stationary reflector. The only code
+// with the signs of docs/algorithms/frames.md (F1)–(F8).
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,8 @@ namespace boresight::geometry {
   return r;
 }
 
-/// The nominal mounting with a correction added angle by angle: α_b+α_m, β_b+β_m, γ_b+γ_m (algorithms.md §0).
+/// The nominal mounting with a correction added angle by angle: α_b+α_m, β_b+β_m, γ_b+γ_m (docs/algorithms/frames.md
+/// (F2)).
 [[nodiscard]] inline Eigen::Matrix3d sensor_to_vehicle(const MountingPose& nominal, double alignment_yaw_rad,
                                                        double alignment_pitch_rad, double alignment_roll_rad) {
   return sensor_to_vehicle(nominal.yaw_rad + alignment_yaw_rad, nominal.pitch_rad + alignment_pitch_rad,

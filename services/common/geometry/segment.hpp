@@ -1,4 +1,4 @@
-// Straight segments and ellipses in the plane, and what crosses them.
+// Intersections of segments, rays and ellipses in the plane.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,7 @@
 
 namespace boresight::geometry {
 
-/// Where the segment a→b crosses the segment c→d: the share of a→b that lies before the crossing, 0 … 1; nothing if
-/// they do not cross or are parallel.
+/// Intersection of the segments a→b and c→d as a share of a→b, 0 … 1; nothing if they do not cross or are parallel.
 [[nodiscard]] inline std::optional<double> crossing(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                                                     const Eigen::Vector2d& c, const Eigen::Vector2d& d) {
   const Eigen::Vector2d r = b - a, s = d - c;
@@ -30,8 +29,8 @@ struct Ellipse {
   double half_width_m;
 };
 
-/// The ray's stretch within an ellipse, as distances from `origin` along the unit vector `direction`; nothing if the
-/// ray misses it or it lies behind.
+/// The part of the ray within an ellipse, as distances from `origin` along the unit vector `direction`; nothing if the
+/// ray misses the ellipse or the ellipse lies behind the origin.
 struct Stretch {
   double enter_m;
   double leave_m;
@@ -39,7 +38,7 @@ struct Stretch {
 [[nodiscard]] inline std::optional<Stretch> stretch_within(const Ellipse& ellipse, const Eigen::Vector2d& origin,
                                                            const Eigen::Vector2d& direction) {
   const double c = std::cos(ellipse.heading_rad), s = std::sin(ellipse.heading_rad);
-  // In coordinates in which the ellipse is the unit circle.
+  // In coordinates in which the ellipse is a unit circle.
   const auto scale = [&](const Eigen::Vector2d& v) {
     return Eigen::Vector2d((c * v.x() + s * v.y()) / ellipse.half_length_m,
                            (-s * v.x() + c * v.y()) / ellipse.half_width_m);

@@ -1,4 +1,5 @@
 // Rotations as vectors: exponential, logarithm, and the Euler angles of a mounting.
+// Equations: docs/algorithms/frames.md (F9)(F10).
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace boresight::geometry {
 [[nodiscard]] inline Eigen::Matrix3d so3_exp(const Eigen::Vector3d& v) {
   const double angle = v.norm();
   const Eigen::Matrix3d k = cross_matrix(v);
-  // The quotients by their series where they would lose digits.
+  // The quotients by their series for small angles, where they would lose digits.
   const double a = angle < 1e-4 ? 1.0 - angle * angle / 6.0 : std::sin(angle) / angle;
   const double b = angle < 1e-4 ? 0.5 - angle * angle / 24.0 : (1.0 - std::cos(angle)) / (angle * angle);
   return Eigen::Matrix3d::Identity() + a * k + b * k * k;
@@ -35,15 +36,15 @@ namespace boresight::geometry {
   return angle * turn.axis();
 }
 
-/// Yaw, pitch (positive looks up) and roll of R = R_z(yaw)·R_y(−pitch)·R_x(roll); at a pitch of ±90° yaw and roll are
-/// one, and roll is taken to be 0.
+/// Yaw, pitch (positive looks up) and roll of R = R_z(yaw)·R_y(−pitch)·R_x(roll); at a pitch of ±90° yaw and roll
+/// are not distinguishable, and roll is set to 0.
 [[nodiscard]] inline Eigen::Vector3d euler_angles(const Eigen::Matrix3d& r) {
   const double pitch = std::asin(std::clamp(r(2, 0), -1.0, 1.0));
   if (std::abs(r(2, 0)) > 1.0 - 1e-12) return {std::atan2(-r(0, 1), r(1, 1)), pitch, 0.0};
   return {std::atan2(r(1, 0), r(0, 0)), pitch, std::atan2(r(2, 1), r(2, 2))};
 }
 
-/// C = R_x(roll)·R_y(−pitch)·R_z(yaw): a turn about fixed axes, z first and x last; pitch positive looks up.
+/// C = R_x(roll)·R_y(−pitch)·R_z(yaw): a rotation about fixed axes, z first and x last; positive pitch looks up.
 [[nodiscard]] inline Eigen::Matrix3d fixed_axes_rotation(double yaw_rad, double pitch_rad, double roll_rad) {
   return (Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()) *
           Eigen::AngleAxisd(-pitch_rad, Eigen::Vector3d::UnitY()) *
@@ -51,13 +52,13 @@ namespace boresight::geometry {
       .toRotationMatrix();
 }
 
-/// Yaw, pitch and roll of such a turn. A further turn about x changes the roll alone, so that a roll that is not known
-/// leaves the other two alone.
+/// Yaw, pitch and roll of such a rotation. A further rotation about x changes only the roll, so that an unknown roll
+/// does not affect the other two.
 [[nodiscard]] inline Eigen::Vector3d fixed_axes_angles(const Eigen::Matrix3d& c) {
   return {std::atan2(-c(0, 1), c(0, 0)), std::asin(std::clamp(-c(0, 2), -1.0, 1.0)), std::atan2(-c(1, 2), c(2, 2))};
 }
 
-/// Change of these angles by a small turn e, C ← Exp(e)·C; singular at a pitch of ±90°.
+/// Change of these angles by a small rotation e, C ← Exp(e)·C; singular at a pitch of ±90°.
 [[nodiscard]] inline Eigen::Matrix3d fixed_axes_gradient(double pitch_rad, double roll_rad) {
   const double cr = std::cos(roll_rad), sr = std::sin(roll_rad);
   const double cp = std::cos(pitch_rad), tp = std::tan(pitch_rad);
@@ -67,7 +68,7 @@ namespace boresight::geometry {
   return m;
 }
 
-/// Change of (yaw, pitch, roll) by a small turn d in vehicle axes, R ← Exp(d)·R; singular at a pitch of ±90°.
+/// Change of (yaw, pitch, roll) by a small rotation d in vehicle axes, R ← Exp(d)·R; singular at a pitch of ±90°.
 [[nodiscard]] inline Eigen::Matrix3d euler_gradient(double yaw_rad, double pitch_rad) {
   const double cy = std::cos(yaw_rad), sy = std::sin(yaw_rad);
   const double cp = std::cos(pitch_rad), tp = std::tan(pitch_rad);

@@ -14,12 +14,9 @@ namespace boresight::recording {
 
 namespace {
 
+/// Not repeated after a signal (EINTR): the only signals that are handled are those that end the program.
 std::ptrdiff_t read_some(int descriptor, void* buffer, std::size_t size) {
-  ssize_t got = 0;
-  do {
-    got = ::read(descriptor, buffer, size);
-  } while (got < 0 && errno == EINTR);
-  return got;
+  return ::read(descriptor, buffer, size);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The bytes of a recording in order, from a file or from standard input ("-"), with the position reached.
+// Reads the bytes of a recording, from a file or from standard input ("-"), and keeps the position.
 #pragma once
 
 #include <array>
@@ -18,14 +18,14 @@ class ByteSource {
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
 
-  /// The first bytes (fewer at the end of the file), which read() delivers all the same.
+  /// The first bytes (fewer at the end of the file); read() delivers them as well.
   [[nodiscard]] std::span<const std::uint8_t> head() const { return {head_.data(), head_size_}; }
-  /// Up to `size` bytes; 0 at the end, −1 with errno if the file cannot be read on.
+  /// Reads up to `size` bytes; returns 0 at the end, −1 with errno if reading fails.
   [[nodiscard]] std::ptrdiff_t read(char* buffer, std::size_t size);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t position() const { return position_; }
-  /// Bytes in all when it was opened; 0 if that is not known (a pipe).
+  /// Size in bytes when it was opened; 0 if unknown (a pipe).
   [[nodiscard]] std::uint64_t total() const { return total_; }
 
  private:

@@ -59,7 +59,7 @@ std::string_view without_colours(std::string_view line, std::span<char> buffer) 
   return {buffer.data(), size};
 }
 
-/// ".123456" to nanoseconds; more digits than nine are cut off.
+/// ".123456" to nanoseconds; digits after the ninth are ignored.
 bool parse_fraction(std::string_view text, std::int64_t& nanoseconds) {
   if (text.size() < 2 || text.front() != '.') return false;
   nanoseconds = 0;
@@ -126,7 +126,7 @@ bool parse_seconds(std::string_view text, std::int64_t& stamp_ns, std::size_t& d
   return true;
 }
 
-/// What stands before the data, common to both formats.
+/// The part before the data, common to both formats.
 enum class IdKind : std::uint8_t { kBad, kData, kError };
 
 IdKind parse_id(std::string_view digits, Frame& frame) {
@@ -139,7 +139,7 @@ IdKind parse_id(std::string_view digits, Frame& frame) {
   }
   frame.can_extended = digits.size() == 8;
   frame.can_id = id;
-  // candump leaves the kernel's error flag, bit 29, in the id of an error frame.
+  // The id of an error frame contains the kernel's error flag, bit 29.
   if (frame.can_extended && id >> 29 == 1) return IdKind::kError;
   return id <= (frame.can_extended ? 0x1FFFFFFFu : 0x7FFu) ? IdKind::kData : IdKind::kBad;
 }
@@ -167,7 +167,7 @@ bool parse_bytes(std::string_view digits, std::size_t max_bytes, CandumpLine& ou
   return true;
 }
 
-/// Cuts off "_9" … "_F": the raw data length code of a classic frame with eight bytes.
+/// Removes "_9" … "_F", the raw data length code of a classic frame with eight bytes.
 void cut_raw_length_code(std::string_view& digits) {
   if (digits.size() < 3 || digits[digits.size() - 2] != '_') return;
   const std::uint8_t code = hex_value(digits.back());
@@ -294,7 +294,7 @@ std::string_view describe(CandumpResult result) {
     case CandumpResult::kErrorFrame:
       return "error frame";
     case CandumpResult::kDropCount:
-      return "candump says that the kernel dropped frames here";
+      return "candump reports that the kernel dropped frames here";
     case CandumpResult::kCanXl:
       return "CAN XL is not supported";
     case CandumpResult::kNoStamp:
@@ -306,7 +306,7 @@ std::string_view describe(CandumpResult result) {
     case CandumpResult::kBadId:
       return "CAN id is not 3 (up to 7FF) or 8 (up to 1FFFFFFF) hexadecimal digits";
     case CandumpResult::kBadData:
-      return "data are not 0 … 8 (FD: 0 … 64) bytes in hexadecimal, or not as many as said";
+      return "data are not 0 … 8 (FD: 0 … 64) bytes in hexadecimal, or differ from the stated number";
     case CandumpResult::kTrailingText:
       return "text after the data";
     case CandumpResult::kTooLong:
@@ -331,7 +331,7 @@ CandumpResult parse_candump_line(std::string_view line, CandumpLine& out) {
   if (rest.empty()) return CandumpResult::kEmpty;
   if (rest.starts_with("DROPCOUNT: ")) return CandumpResult::kDropCount;
 
-  // Time cannot be made up, so nothing of a line without it is of use.
+  // A line without a time stamp is of no use.
   if (rest.front() != '(') return CandumpResult::kNoStamp;
   const std::size_t close = rest.find(')');
   if (close == std::string_view::npos) return CandumpResult::kBadStamp;
@@ -341,7 +341,7 @@ CandumpResult parse_candump_line(std::string_view line, CandumpLine& out) {
   if (!is_date && !parse_seconds(stamp, out.frame.stamp_ns, second_digits)) return CandumpResult::kBadStamp;
   rest.remove_prefix(close + 1);
   const std::string_view name = take_word(rest);
-  // A zero byte would end the name early.
+  // A zero byte would truncate the name.
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; };
   if (name.empty() || name.size() > 15 || std::any_of(name.begin(), name.end(), is_control)) {
     return CandumpResult::kBadName;

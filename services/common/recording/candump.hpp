@@ -1,4 +1,4 @@
-// Lines that candump (can-utils) writes, as log files and on the console.
+// Parses the lines of candump (can-utils), from log files and from the console.
 #pragma once
 
 #include <array>
@@ -13,29 +13,29 @@ namespace boresight::recording {
 enum class CandumpResult : std::uint8_t {
   kFrame,
   kEmpty,         ///< blank line, or the indented explanation that `candump -e` writes below an error frame
-  kErrorFrame,    ///< a well-formed error frame: news of the bus, not data
-  kDropCount,     ///< `candump -d` says that the kernel dropped frames here
-  kCanXl,         ///< a CAN XL frame, which nothing here decodes
+  kErrorFrame,    ///< a well-formed error frame: a state of the bus, not data
+  kDropCount,     ///< `candump -d` reports that the kernel dropped frames here
+  kCanXl,         ///< a CAN XL frame, which is not supported
   kNoStamp,       ///< a console line without a time stamp
   kBadStamp,      ///< a stamp that is neither `(seconds.fraction)` nor `(date time.fraction)`
   kBadName,       ///< no interface name, longer than 15 characters, or with control characters
   kBadId,         ///< CAN id not 3 or 8 hexadecimal digits, or out of range
-  kBadData,       ///< odd digits, no hexadecimal, or another number of bytes than the kind of frame carries
+  kBadData,       ///< odd or not hexadecimal digits, or a number of bytes that the kind of frame does not allow
   kTrailingText,  ///< something other than a direction (R, T) or the console's ASCII column after the data
   kTooLong        ///< longer than any line of candump
 };
 
 [[nodiscard]] std::string_view describe(CandumpResult result);
-/// Whether the line is to be reported: what was in it is lost.
+/// True for results to be reported: the line's content is lost.
 [[nodiscard]] bool is_problem(CandumpResult result);
 
-/// What a stamp counts from.
+/// Origin of a time stamp.
 enum class CandumpStamp : std::uint8_t {
-  kAbsolute,  ///< since the epoch, or whatever a log file says
-  kRelative   ///< console of `-tz` (since the first frame) or `-td` (since the frame before): the line cannot tell
+  kAbsolute,  ///< since the epoch, or the origin of the log file
+  kRelative   ///< console of `-tz` (since the first frame) or `-td` (since the previous one), which look alike
 };
 
-/// No line of candump is longer: 2048 bytes of CAN XL on the console.
+/// Longest line of candump: 2048 bytes of CAN XL on the console.
 constexpr std::size_t kMaxCandumpLine = 16384;
 
 struct CandumpLine {
@@ -48,7 +48,7 @@ struct CandumpLine {
 ///   log      `(1.5) can0 123#0102`, `12345678#…`, FD `123##<flags>…`, remote `123#R8`, raw DLC `…_9`, a direction
 ///   behind console  `(1.5)  can0  [RX B -]  123   [2]  01 02   '..'`, FD `[24]`, `remote request`, `ERRORFRAME`, `-i`,
 ///   `-S`,
-///            `-c` (colours), `-tA` (a date in an unsaid time zone, read as UTC)
+///            `-c` (colours), `-tA` (a date without time zone, read as UTC)
 /// with either kind of line ending. Any bytes are allowed in `line`; time is bounded by its length.
 [[nodiscard]] CandumpResult parse_candump_line(std::string_view line, CandumpLine& out);
 

@@ -24,7 +24,7 @@ bool CandumpReader::next(Frame& frame) {
       relative_known_ = true;
       deltas_ = are_intervals(std::string(text) + "\n" + std::string(lines_.peek()));
     }
-    // An interval counts even if the frame behind it cannot be read.
+    // An interval counts even if its frame cannot be decoded.
     if (line_.stamp == CandumpStamp::kRelative && deltas_) line_.frame.stamp_ns = sum_ns_ += line_.frame.stamp_ns;
     if (result != CandumpResult::kFrame) continue;
     if (line_.frame.stamp_ns < last_stamp_ns_) ++counts_.backwards;
@@ -36,7 +36,7 @@ bool CandumpReader::next(Frame& frame) {
   if (lines_.error() != 0 && !ended_) {
     ended_ = true;
     ++number_;
-    problem(std::string("cannot be read on: ") + std::strerror(lines_.error()));
+    problem(std::string("cannot be read further: ") + std::strerror(lines_.error()));
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// Logs and console captures of candump as frames.
+// Reads logs and console captures of candump as frames.
 #pragma once
 
 #include <memory>
@@ -28,14 +28,14 @@ class CandumpReader : public Reader {
   Counts counts_;
   std::int64_t last_stamp_ns_ = 0;
   bool relative_known_ = false;
-  bool deltas_ = false;  ///< relative stamps count from the frame before, not from the first
+  bool deltas_ = false;  ///< relative stamps count from the previous frame, not from the first
   std::int64_t sum_ns_ = 0;
   bool ended_ = false;
 };
 
-/// Whether relative stamps at the beginning of `text` are those of `candump -td` rather than -tz: of two stamps half
-/// the text apart, the second is the greater one if they count from the first frame, and as often as not the smaller or
-/// an equal one if they are intervals.
+/// True if relative stamps at the beginning of `text` are those of `candump -td`, not -tz. Two stamps half the text
+/// apart are compared: the second is always larger if stamps count from the first frame, but often not if they are
+/// intervals.
 [[nodiscard]] bool are_intervals(std::string_view text);
 
 }  // namespace boresight::recording

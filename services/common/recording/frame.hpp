@@ -1,4 +1,4 @@
-// One frame as a bus or a network carried it: what links deliver, recordings hold and the replay tunnel transports.
+// One frame of a bus or a network, as delivered by links, stored in recordings and sent through the replay tunnel.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace boresight::recording {
 
-/// The last second of stamps since the epoch, in 2255: a round number below those whose nanoseconds do not fit. Readers
-/// of every format and notation share it, so that what one of them takes can be written for the others.
+/// The last accepted second since the epoch, in 2255: a round number below those whose nanoseconds overflow. Readers of
+/// all formats share it, so that every frame that one accepts can be written in the other formats.
 inline constexpr std::int64_t kLastStamp_s = 9'000'000'000;
 
 enum class FrameKind : std::uint8_t { kCan = 1, kCanFd = 2, kUdp = 3 };

@@ -36,7 +36,7 @@ bool strip_ethernet(std::span<const std::uint8_t>& bytes, std::uint16_t& type) {
   return true;
 }
 
-/// What a packet's IP headers say; `data` is what follows them.
+/// Content of a packet's IP headers; `data` follows them.
 struct IpHeader {
   IpAddress source, destination;
   std::uint8_t protocol = 0;
@@ -55,8 +55,8 @@ struct UdpDecoder::Assembly {
   std::uint32_t identification = 0;
   std::int64_t stamp_ns = 0;  // of the newest fragment
   std::size_t received = 0;
-  std::size_t end = 0;    // of the fragment that reaches farthest
-  std::size_t total = 0;  // 0 until the last fragment has come
+  std::size_t end = 0;    // of the fragment with the largest offset
+  std::size_t total = 0;  // 0 before the last fragment
   std::bitset<kMaxDatagram / kBlock> blocks;
   std::array<std::uint8_t, kMaxDatagram> bytes;
 
@@ -117,11 +117,11 @@ std::string_view describe(PacketResult result) {
     case PacketResult::kIgnored:
       return "not UDP over IP";
     case PacketResult::kTruncated:
-      return "packet ends before its headers say";
+      return "packet is shorter than its headers state";
     case PacketResult::kBadHeader:
-      return "header contradicts itself";
+      return "header is contradictory";
     case PacketResult::kFragmentLost:
-      return "a datagram was given up: fragments are missing or contradict each other";
+      return "a datagram was dropped: fragments are missing or contradict each other";
     case PacketResult::kErrorFrame:
       return "CAN error frame";
     case PacketResult::kUnsupported:
@@ -164,7 +164,7 @@ PacketResult parse_ipv6(std::span<const std::uint8_t> ip, IpHeader& out) {
          .destination = IpAddress::v6(ip.subspan<24, 16>()),
          .protocol = ip[6],
          .data = ip.subspan(kHeader, length)};
-  // Each extension header takes eight bytes or more of what is left, so this ends.
+  // Each extension header has at least eight bytes, so the loop ends.
   while (out.protocol == kHopByHop || out.protocol == kRouting || out.protocol == kFragment ||
          out.protocol == kDestinationOptions) {
     if (out.data.size() < kBlock) return PacketResult::kTruncated;
@@ -182,7 +182,7 @@ PacketResult parse_ipv6(std::span<const std::uint8_t> ip, IpHeader& out) {
     const bool is_later_fragment = out.protocol == kFragment && out.offset > 0;
     out.protocol = extension[0];
     out.data = out.data.subspan(size);
-    // Further headers are in the first fragment only; here comes data, whose protocol is told after reassembly.
+    // Only the first fragment has further headers. Data follow here; their protocol is known after reassembly.
     if (is_later_fragment) break;
   }
   return PacketResult::kFrame;
@@ -228,7 +228,7 @@ PacketResult UdpDecoder::decode(std::span<const std::uint8_t> packet, LinkLayer 
     return PacketResult::kBadHeader;
   }
   if (!state_) state_ = std::make_unique<State>();
-  constexpr std::int64_t kTimeout_ns = 30'000'000'000;  // as Linux has it; identifications come again
+  constexpr std::int64_t kTimeout_ns = 30'000'000'000;  // as in Linux; identifications repeat
   const std::uint64_t given_up_before = state_->given_up;
   Assembly* assembly = nullptr;
   Assembly* oldest = &state_->assemblies.front();

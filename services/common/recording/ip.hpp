@@ -11,30 +11,30 @@
 
 namespace boresight::recording {
 
-/// What came of one packet.
+/// Result of one packet.
 enum class PacketResult : std::uint8_t {
-  kFrame,         ///< a whole UDP datagram, or a CAN frame, is in the frame
-  kIncomplete,    ///< a fragment; more are to come
+  kFrame,         ///< the frame holds a complete UDP datagram, or a CAN frame
+  kIncomplete,    ///< a fragment; others are missing
   kIgnored,       ///< well-formed, but not UDP over IP
   kTruncated,     ///< a header or length reaches beyond the captured bytes
-  kBadHeader,     ///< a header contradicts itself
-  kFragmentLost,  ///< the packet was taken, but a datagram was given up incomplete
-  kErrorFrame,    ///< a CAN error frame: news of the bus, not data
+  kBadHeader,     ///< a header is contradictory
+  kFragmentLost,  ///< the packet was accepted, but an incomplete datagram was dropped
+  kErrorFrame,    ///< a CAN error frame: a state of the bus, not data
   kUnsupported    ///< CAN XL
 };
 
 [[nodiscard]] std::string_view describe(PacketResult result);
-/// Whether the packet is to be reported: what was in it is lost.
+/// True for results to be reported: the packet's content is lost.
 [[nodiscard]] bool is_problem(PacketResult result);
 
 /// Link layer of a capture.
 enum class LinkLayer : std::uint8_t { kEthernet, kRawIp };
 
-/// Decodes packets one after another. Memory is fixed (a megabyte, taken at the first fragment): up to 16 datagrams are
-/// assembled at a time, the oldest gives
-/// way, as does one whose fragments are 30 s apart. A repeated fragment is ignored; where fragments contradict each
-/// other (they overlap, or reach beyond the last one), what was assembled is given up and the newest begins anew, so
-/// that a sender that uses an identification again is understood.
+/// Decodes packets one after another. Memory is fixed: a megabyte, allocated at the first fragment, for up to 16
+/// incomplete datagrams. A further datagram replaces the oldest one. A datagram is dropped if its fragments are more
+/// than 30 s apart. A repeated fragment is ignored. If fragments contradict each other (they overlap, or reach beyond
+/// the last one), the datagram is dropped and the newest fragment starts a new one: the sender may have used its
+/// identification again.
 class UdpDecoder {
  public:
   UdpDecoder();
@@ -42,13 +42,13 @@ class UdpDecoder {
   UdpDecoder(UdpDecoder&&) noexcept;
   UdpDecoder& operator=(UdpDecoder&&) noexcept;
 
-  /// On kFrame, `frame` holds addresses, ports and payload; stamp_ns is left alone, but is the time of the packet. The
-  /// payload is valid until the next call and views either `packet` or the decoder's memory.
+  /// On kFrame, `frame` holds addresses, ports and payload. The caller sets frame.stamp_ns to the time of the packet
+  /// before the call. The payload is valid until the next call and views either `packet` or the decoder's memory.
   [[nodiscard]] PacketResult decode(std::span<const std::uint8_t> packet, LinkLayer link, Frame& frame);
 
-  /// Datagrams that lack fragments at the moment.
+  /// Number of incomplete datagrams.
   [[nodiscard]] std::size_t unfinished() const;
-  /// Datagrams that were given up so far.
+  /// Number of dropped datagrams so far.
   [[nodiscard]] std::uint64_t given_up() const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace boresight::recording {
 
-/// Sixteen bytes as on the wire; IPv4 is held mapped (::ffff:a.b.c.d). All zero: unspecified.
+/// Sixteen bytes as on the wire; IPv4 is stored as mapped address (::ffff:a.b.c.d). All zero: unspecified.
 struct IpAddress {
   std::array<std::uint8_t, 16> bytes{};
 
@@ -33,7 +33,7 @@ struct IpAddress {
     return std::all_of(bytes.begin(), bytes.begin() + 10, [](std::uint8_t b) { return b == 0; }) && bytes[10] == 0xFF &&
            bytes[11] == 0xFF;
   }
-  /// Host byte order; 0 if it is none.
+  /// IPv4 address in host byte order; 0 for other addresses.
   [[nodiscard]] constexpr std::uint32_t to_v4() const {
     if (!is_v4()) return 0;
     return static_cast<std::uint32_t>(bytes[12]) << 24 | static_cast<std::uint32_t>(bytes[13]) << 16 |
@@ -48,7 +48,7 @@ struct IpAddress {
 
 /// "10.13.1.113" or "fd00::1"; nullopt if the text is neither.
 [[nodiscard]] std::optional<IpAddress> parse_ip(std::string_view text);
-/// The same for text that was checked before: unspecified for "" and what is no address.
+/// The same for text that was checked before: unspecified for "" and for invalid text.
 [[nodiscard]] inline IpAddress ip_or_unspecified(std::string_view text) {
   return parse_ip(text).value_or(IpAddress{});
 }

@@ -59,7 +59,7 @@ bool LineReader::next(std::string_view& line) {
       return size > 0;
     }
   }
-  // Too long: its beginning is kept at the front of the buffer while the rest is skipped.
+  // Too long: keeps its beginning at the front of the buffer and skips the rest.
   const std::size_t kept = max_line_ + 1;
   std::memmove(buffer_.get(), buffer_.get() + begin_, kept);
   line = {buffer_.get(), kept};

@@ -1,4 +1,4 @@
-// Lines of a text of any size in fixed memory.
+// Reads the lines of a text of any size in fixed memory.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,9 @@ class LineReader {
 
   /// The next line without its end; false at the end of the text or if reading failed. Valid until the next call.
   [[nodiscard]] bool next(std::string_view& line);
-  /// What is buffered and not yet delivered, after filling the buffer as far as the source gives: to look ahead.
+  /// Fills the buffer and returns its content that is not delivered yet: for look-ahead.
   [[nodiscard]] std::string_view peek();
-  /// errno if the text ended because it could not be read, else 0.
+  /// errno if the text ended because of a read error, else 0.
   [[nodiscard]] int error() const { return error_; }
   /// Bytes of the source that have been delivered or skipped.
   [[nodiscard]] std::uint64_t position() const { return source_.position() - (end_ - begin_); }

@@ -12,7 +12,7 @@ std::uint16_t read_u16(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
 }
 
-/// What a Linux cooked capture says that it carries: an EtherType, or the kernel's own numbers for CAN.
+/// Protocol field of a Linux cooked capture: an EtherType, or the kernel's numbers for CAN.
 PacketResult decode_cooked(std::span<const std::uint8_t> packet, std::uint16_t protocol, std::size_t header,
                            UdpDecoder& udp, Frame& frame) {
   constexpr std::uint16_t kCan = 0x000C, kCanFd = 0x000D, kCanXl = 0x000E;
@@ -69,7 +69,8 @@ PacketResult decode_packet(std::span<const std::uint8_t> packet, int link_type, 
       return udp.decode(packet, LinkLayer::kRawIp, frame);
     case DLT_NULL:
     case DLT_LOOP:
-      // The header is the address family, whose number differs from system to system; the packet says its version.
+      // The header is the address family, whose number depends on the operating system. The packet itself states its
+      // version.
       if (packet.size() < kLoopbackHeader) return PacketResult::kTruncated;
       return udp.decode(packet.subspan(kLoopbackHeader), LinkLayer::kRawIp, frame);
     case DLT_LINUX_SLL:

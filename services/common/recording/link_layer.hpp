@@ -1,4 +1,4 @@
-// What a capture's link layer wraps around CAN frames and IP packets.
+// Link layers of captures: extracts CAN frames and IP packets.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace boresight::recording {
 
-/// Whether captures of that link type (libpcap's DLT_…) can be decoded.
+/// True if captures with that link type (libpcap's DLT_…) can be decoded.
 [[nodiscard]] bool is_supported_link(int link_type);
-/// libpcap's DLT_… of the link type in a file, which differ for raw IP and the BSD loopback.
+/// libpcap's DLT_… of a file's link type; the two differ for raw IP and the BSD loopback.
 [[nodiscard]] int data_link_of(std::uint16_t link_type);
-/// For messages: "Ethernet, raw IP, …".
+/// For error texts: "Ethernet, raw IP, …".
 [[nodiscard]] std::string_view supported_links();
 
-/// Decodes one packet: a CAN frame or a UDP datagram, the latter perhaps by reassembly in `udp`. `frame` gets all but
-/// stamp and interface.
+/// Decodes one packet: a CAN frame, or a UDP datagram with reassembly in `udp`. `frame` gets all values except stamp
+/// and interface.
 [[nodiscard]] PacketResult decode_packet(std::span<const std::uint8_t> packet, int link_type, UdpDecoder& udp,
                                          Frame& frame);
 

@@ -39,7 +39,7 @@ bool PacketDecoder::take(CaptureInterface& interface, std::int64_t seconds, std:
 
 void PacketDecoder::end(const CaptureInterface& interface) {
   if (interface.udp.unfinished() == 0) return;
-  problem(std::to_string(interface.udp.unfinished()) + " datagrams lack fragments at the end of the capture");
+  problem(std::to_string(interface.udp.unfinished()) + " datagrams are incomplete at the end of the capture");
 }
 
 }  // namespace boresight::recording

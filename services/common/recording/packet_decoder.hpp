@@ -1,4 +1,4 @@
-// What readers of captures have in common: a packet with its stamp becomes a frame, or is counted and reported.
+// Common part of the readers of captures: decodes a packet with its stamp to a frame, or counts and reports it.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace boresight::recording {
 
-/// Where a packet was captured.
+/// The interface at which a packet was captured.
 struct CaptureInterface {
   int link_type = 0;     ///< libpcap's DLT_…
   std::string can_name;  ///< for CAN frames
-  UdpDecoder udp;        ///< of its own, as two interfaces may have captured the same fragments
+  UdpDecoder udp;        ///< one per interface, as two interfaces may have captured the same fragments
   std::uint64_t given_up = 0;
 };
 
@@ -23,12 +23,12 @@ class PacketDecoder {
  public:
   PacketDecoder(std::string file, OnProblem on_problem) : file_(std::move(file)), on_problem_(std::move(on_problem)) {}
 
-  /// The next packet begins: it is the one that problems are about.
+  /// The next packet begins; problems refer to this packet.
   void begin_packet() { ++number_; }
   /// True if `frame` is complete. `original_size` is the size on the wire.
   [[nodiscard]] bool take(CaptureInterface& interface, std::int64_t seconds, std::int64_t nanoseconds,
                           std::span<const std::uint8_t> packet, std::size_t original_size, Frame& frame);
-  /// The interface's capture has ended: says what is incomplete.
+  /// The interface's capture has ended; reports incomplete datagrams.
   void end(const CaptureInterface& interface);
   void problem(std::string_view text);
   [[nodiscard]] const Counts& counts() const { return counts_; }

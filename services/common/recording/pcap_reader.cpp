@@ -13,7 +13,7 @@ namespace boresight::recording {
 
 namespace {
 
-constexpr std::size_t kBuffer = 128 * 1024;
+constexpr std::size_t kPcapBuffer_bytes = 128 * 1024;
 
 ssize_t read_cookie(void* cookie, char* buffer, std::size_t size) {
   return static_cast<ByteSource*>(cookie)->read(buffer, size);
@@ -31,12 +31,14 @@ bool is_pcap(std::span<const std::uint8_t> head) {
 }
 
 PcapReader::PcapReader(std::unique_ptr<ByteSource> source, OnProblem on_problem, const ReadOptions& options)
-    : source_(std::move(source)), decoder_(source_->name(), std::move(on_problem)), buffer_(new char[kBuffer]) {
+    : source_(std::move(source)),
+      decoder_(source_->name(), std::move(on_problem)),
+      buffer_(new char[kPcapBuffer_bytes]) {
   interface_.can_name = options.can_interface;
-  // A stream of our own instead of a file name: it tells the position, takes a pipe and reads in large pieces.
+  // A stream instead of a file name: it has a position, accepts a pipe and reads large blocks.
   std::FILE* const stream = fopencookie(source_.get(), "r", {read_cookie, nullptr, nullptr, nullptr});
   if (stream == nullptr) throw OpenError(source_->name() + ": " + std::strerror(errno));
-  static_cast<void>(std::setvbuf(stream, buffer_.get(), _IOFBF, kBuffer));
+  static_cast<void>(std::setvbuf(stream, buffer_.get(), _IOFBF, kPcapBuffer_bytes));
   std::array<char, PCAP_ERRBUF_SIZE> error{};
   pcap_ = pcap_fopen_offline_with_tstamp_precision(stream, PCAP_TSTAMP_PRECISION_NANO, error.data());
   if (pcap_ == nullptr) {
@@ -64,7 +66,7 @@ bool PcapReader::next(Frame& frame) {
   int status = 0;
   while (!ended_ && (status = pcap_next_ex(pcap_, &header, &bytes)) == 1) {
     decoder_.begin_packet();
-    // tv_usec holds nanoseconds, as asked for.
+    // tv_usec holds nanoseconds, as requested.
     if (decoder_.take(interface_, header->ts.tv_sec, header->ts.tv_usec, {bytes, header->caplen}, header->len, frame)) {
       return true;
     }

@@ -1,4 +1,4 @@
-// Classic pcap captures as frames, by libpcap.
+// Reads classic pcap captures as frames, by libpcap.
 #pragma once
 
 #include <cstdio>
@@ -12,12 +12,12 @@ struct pcap;
 
 namespace boresight::recording {
 
-/// Whether a file that begins so is a pcap capture.
+/// True if these first bytes are those of a pcap capture.
 [[nodiscard]] bool is_pcap(std::span<const std::uint8_t> head);
 
 class PcapReader : public Reader {
  public:
-  /// Throws OpenError if libpcap does not understand the file or nothing here its link type.
+  /// Throws OpenError if libpcap cannot read the file, or if its link type is not supported.
   PcapReader(std::unique_ptr<ByteSource> source, OnProblem on_problem, const ReadOptions& options);
   ~PcapReader() override;
   PcapReader(const PcapReader&) = delete;

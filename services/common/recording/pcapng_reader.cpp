@@ -13,15 +13,15 @@ namespace boresight::recording {
 
 namespace {
 
-// Blocks beyond this are passed over; the largest packets have 256 KiB.
+// Longer blocks are skipped; the largest packets have 256 KiB.
 constexpr std::size_t kMaxBlock = 512 * 1024;
-constexpr std::size_t kBuffer = 2 * kMaxBlock;
+constexpr std::size_t kPcapngBuffer_bytes = 2 * kMaxBlock;
 constexpr std::size_t kMaxInterfaces = 64;
 
 constexpr std::uint32_t kSection = 0x0A0D0D0A, kInterface = 1, kObsoletePacket = 2, kSimplePacket = 3, kPacket = 6;
 constexpr std::size_t kBlockHeader = 8, kBlockTrailer = 4, kMinBlock = kBlockHeader + kBlockTrailer;
 
-/// Names, statistics, secrets and others' blocks may be of any size; a packet or interface of such a size is damage.
+/// Name, statistics, secret and custom blocks may have any size; a packet or interface block of such a size is damaged.
 bool may_be_huge(std::uint32_t type) {
   constexpr std::uint32_t kNames = 4, kStatistics = 5, kSecrets = 10, kCustom = 0xBAD, kCustomUncopied = 0x40000BAD;
   return type == kNames || type == kStatistics || type == kSecrets || type == kCustom || type == kCustomUncopied;
@@ -36,7 +36,7 @@ Stamp convert(std::uint64_t stamp, std::uint8_t resolution) {
   const unsigned exponent = resolution & 0x7Fu;
   if ((resolution & 0x80u) != 0) {
     const std::uint64_t fraction = exponent == 0 ? 0 : stamp & ((std::uint64_t{1} << exponent) - 1);
-    // Beyond 2^−30 s the digits are finer than a nanosecond and would overflow the product.
+    // Units below 2^−30 s are finer than a nanosecond, and the product would overflow.
     constexpr unsigned kFine = 30;
     const unsigned cut = exponent > kFine ? exponent - kFine : 0;
     return {static_cast<std::int64_t>(stamp >> exponent),
@@ -51,7 +51,7 @@ Stamp convert(std::uint64_t stamp, std::uint8_t resolution) {
 }
 
 bool is_resolution(std::uint8_t resolution) {
-  constexpr unsigned kMaxBinary = 63, kMaxDecimal = 19;  // what 64 bits can count
+  constexpr unsigned kMaxBinary = 63, kMaxDecimal = 19;  // limits of 64 bits
   return (resolution & 0x7Fu) <= ((resolution & 0x80u) != 0 ? kMaxBinary : kMaxDecimal);
 }
 
@@ -65,17 +65,17 @@ PcapngReader::PcapngReader(std::unique_ptr<ByteSource> source, OnProblem on_prob
     : source_(std::move(source)),
       decoder_(source_->name(), std::move(on_problem)),
       options_(options),
-      buffer_(new std::uint8_t[kBuffer]) {}
+      buffer_(new std::uint8_t[kPcapngBuffer_bytes]) {}
 
 bool PcapngReader::need(std::size_t size) {
   while (end_ - begin_ < size && !source_ended_) {
-    if (begin_ + size > kBuffer || begin_ > kMaxBlock) {
+    if (begin_ + size > kPcapngBuffer_bytes || begin_ > kMaxBlock) {
       std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
       end_ -= begin_;
       begin_ = 0;
     }
-    const std::ptrdiff_t got = source_->read(reinterpret_cast<char*>(buffer_.get() + end_), kBuffer - end_);
-    if (got < 0) decoder_.problem(std::string("cannot be read on: ") + std::strerror(errno));
+    const std::ptrdiff_t got = source_->read(reinterpret_cast<char*>(buffer_.get() + end_), kPcapngBuffer_bytes - end_);
+    if (got < 0) decoder_.problem(std::string("cannot be read further: ") + std::strerror(errno));
     source_ended_ = got <= 0;
     end_ += static_cast<std::size_t>(std::max<std::ptrdiff_t>(got, 0));
   }
@@ -106,7 +106,7 @@ std::uint32_t PcapngReader::read_u32(std::size_t at) const {
 
 std::optional<std::size_t> PcapngReader::block_size() {
   if (!need(kMinBlock)) return std::nullopt;
-  // The type of a section reads the same in both byte orders; what follows tells which one holds from here on.
+  // The type of a section block is the same in both byte orders; the next field gives the order of the section.
   if (read_u32(0) == kSection) {
     const bool was_big_endian = big_endian_;
     constexpr std::uint32_t kMagic = 0x1A2B3C4D;
@@ -139,7 +139,7 @@ void PcapngReader::add_interface(std::size_t block_size) {
   constexpr std::size_t kOptions = 16;
   constexpr std::uint16_t kName = 2, kResolution = 9, kOffset = 14;
   if (block_size < kOptions + kBlockTrailer || interfaces_.size() == kMaxInterfaces) {
-    decoder_.problem(interfaces_.size() == kMaxInterfaces ? "more than 64 interfaces" : "interface block is cut");
+    decoder_.problem(interfaces_.size() == kMaxInterfaces ? "more than 64 interfaces" : "interface block is truncated");
     return;
   }
   auto interface = std::make_unique<Interface>();
@@ -153,7 +153,7 @@ void PcapngReader::add_interface(std::size_t block_size) {
     if (code == 0 || at + size > end) break;
     const std::uint8_t* const value = buffer_.get() + begin_ + at;
     if (code == kName) {
-      // In a cooked capture this is the name of all interfaces together ("any").
+      // In a cooked capture this is the common name of all interfaces ("any").
       const std::string name(reinterpret_cast<const char*>(value), size);
       if (interface->capture.link_type == DLT_CAN_SOCKETCAN)
         interface->capture.can_name = name.substr(0, name.find('\0'));
@@ -168,14 +168,12 @@ void PcapngReader::add_interface(std::size_t block_size) {
   }
   interface->supported = is_supported_link(interface->capture.link_type);
   if (!interface->supported) {
-    decoder_.problem(
-        "interface " + interface->name + " has link type " + std::to_string(interface->capture.link_type) +
-        ", which is not supported: its packets are left out; supported: " + std::string(supported_links()));
+    decoder_.problem("interface " + interface->name + " has link type " + std::to_string(interface->capture.link_type) +
+                     ", which is not supported: its packets are skipped; supported: " + std::string(supported_links()));
   } else if (!is_resolution(interface->resolution) || interface->offset_s < -kLastStamp_s ||
              interface->offset_s > kLastStamp_s) {
     interface->supported = false;
-    decoder_.problem("interface " + interface->name +
-                     " has a unit or an offset of time that cannot be: its packets are left out");
+    decoder_.problem("interface " + interface->name + " has an invalid time unit or offset: its packets are skipped");
   }
   interfaces_.push_back(std::move(interface));
 }
@@ -188,7 +186,7 @@ bool PcapngReader::take_packet(std::uint32_t type, std::size_t block_size, Frame
     return false;
   }
   if (block_size < kData + kBlockTrailer) {
-    decoder_.problem("packet block is cut");
+    decoder_.problem("packet block is truncated");
     return false;
   }
   const std::uint32_t index = type == kPacket ? read_u32(kBlockHeader) : read_u16(kBlockHeader);
@@ -199,13 +197,13 @@ bool PcapngReader::take_packet(std::uint32_t type, std::size_t block_size, Frame
     return false;
   }
   if (index >= interfaces_.size()) {
-    decoder_.problem("packet of an interface that was not described");
+    decoder_.problem("packet of an unknown interface");
     return false;
   }
   Interface& interface = *interfaces_[index];
   if (!interface.supported) return false;
   const Stamp time = convert(stamp, interface.resolution);
-  // A stamp beyond all reason stays so with the offset, which is small.
+  // An invalid stamp remains invalid with the offset, which is small.
   const std::int64_t seconds =
       time.seconds < 0 || time.seconds > 100'000'000'000 ? -1 : time.seconds + interface.offset_s;
   return decoder_.take(interface.capture, seconds, time.nanoseconds, {buffer_.get() + begin_ + kData, captured},
@@ -218,7 +216,7 @@ bool PcapngReader::next(Frame& frame) {
     const std::optional<std::size_t> size = block_size();
     if (!size) {
       if (end_ == begin_) break;
-      if (!damaged_) decoder_.problem("damaged: no whole block follows");
+      if (!damaged_) decoder_.problem("damaged: no complete block follows");
       damaged_ = true;
       skip(4);  // blocks begin at multiples of four
       continue;

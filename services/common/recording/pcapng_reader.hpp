@@ -1,5 +1,5 @@
-// pcapng captures as frames. They are not left to libpcap, which hides the interfaces' names, by which CAN buses are
-// told apart, and refuses a capture of two kinds of interfaces, as dumpcap makes of CAN and Ethernet.
+// Reads pcapng captures as frames, without libpcap: libpcap hides the interfaces' names, which distinguish CAN buses,
+// and rejects captures of two kinds of interfaces, such as dumpcap's captures of CAN and Ethernet.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,11 @@
 
 namespace boresight::recording {
 
-/// Whether a file that begins so is a pcapng capture.
+/// True if these first bytes are those of a pcapng capture.
 [[nodiscard]] bool is_pcapng(std::span<const std::uint8_t> head);
 
-/// Reads sections of either byte order with up to 64 interfaces each, enhanced and obsolete packet blocks, and passes
-/// over all other blocks. Damage costs what it covers: reading goes on at the next block that is whole.
+/// Reads sections of either byte order with up to 64 interfaces each, and enhanced and obsolete packet blocks. Skips
+/// all other blocks. After damage, reading continues at the next complete block.
 class PcapngReader : public Reader {
  public:
   PcapngReader(std::unique_ptr<ByteSource> source, OnProblem on_problem, const ReadOptions& options);
@@ -33,12 +33,12 @@ class PcapngReader : public Reader {
     std::uint8_t resolution = 6;  // as in the option if_tsresol
     std::int64_t offset_s = 0;
   };
-  /// Makes `size` bytes available at begin_, if there are that many.
+  /// Makes `size` bytes available at begin_; false if the file ends before.
   bool need(std::size_t size);
   void skip(std::uint64_t size);
   [[nodiscard]] std::uint16_t read_u16(std::size_t at) const;
   [[nodiscard]] std::uint32_t read_u32(std::size_t at) const;
-  /// Size of the block at begin_; nullopt if there is no whole block.
+  /// Size of the block at begin_; nullopt if there is no complete block.
   [[nodiscard]] std::optional<std::size_t> block_size();
   void begin_section();
   void end_section();
@@ -50,9 +50,9 @@ class PcapngReader : public Reader {
   ReadOptions options_;
   std::unique_ptr<std::uint8_t[]> buffer_;
   std::size_t begin_ = 0, end_ = 0;
-  std::size_t delivered_ = 0;  // size of the block whose packet was handed out last
+  std::size_t delivered_ = 0;  // size of the block with the last delivered packet
   bool big_endian_ = false;
-  bool damaged_ = false;  // since the last whole block
+  bool damaged_ = false;  // since the last complete block
   bool source_ended_ = false;
   bool ended_ = false;
   std::vector<std::unique_ptr<Interface>> interfaces_;

@@ -20,7 +20,7 @@ class MergedReader : public Reader {
   bool next(Frame& frame) override {
     Source* earliest = nullptr;
     for (Source& source : sources_) {
-      // Only now: the payload handed out last must stay valid until this call.
+      // Only now: the last delivered payload stays valid until this call.
       if (!source.loaded && !source.ended) source.ended = !(source.loaded = source.reader->next(source.frame));
       if (source.loaded && (earliest == nullptr || source.frame.stamp_ns < earliest->frame.stamp_ns)) {
         earliest = &source;
@@ -66,7 +66,7 @@ class MergedReader : public Reader {
   std::vector<Source> sources_;
 };
 
-/// Formats that users may well try; a million problems with "lines" would not tell them what is wrong.
+/// Formats that are not supported but likely to be tried: one clear error instead of an error per line.
 std::string_view known_but_unsupported(std::span<const std::uint8_t> head) {
   struct Format {
     std::string_view magic, name;

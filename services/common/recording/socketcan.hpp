@@ -1,4 +1,4 @@
-// Frames of linktype 227 (SocketCAN), as libpcap and Wireshark write them.
+// Frames of linktype 227 (SocketCAN), as written by libpcap and Wireshark.
 #pragma once
 
 #include <bit>
@@ -9,10 +9,10 @@
 
 namespace boresight::recording {
 
-/// The kernel's can_frame or canfd_frame. The id is big-endian in linktype 227; in Linux cooked captures it is as the
-/// capturing machine had it, which libpcap turns into this machine's order (v1; v2 is taken to be of such a machine).
-/// Results: kFrame (`frame` holds all but stamp and interface), kErrorFrame, kTruncated, kBadHeader, kUnsupported (CAN
-/// XL).
+/// The kernel's can_frame or canfd_frame. The id is big-endian in linktype 227. In Linux cooked captures it
+/// has the byte order of the capturing machine. libpcap converts v1 to this machine's order; for v2 this order is
+/// assumed. Results: kFrame (`frame` holds all values except stamp and interface), kErrorFrame, kTruncated, kBadHeader,
+/// kUnsupported (CAN XL).
 [[nodiscard]] PacketResult decode_socketcan(std::span<const std::uint8_t> packet, std::endian id_order, Frame& frame);
 
 }  // namespace boresight::recording

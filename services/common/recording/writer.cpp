@@ -11,7 +11,7 @@ namespace boresight::recording {
 
 namespace {
 
-constexpr std::size_t kBuffer = 256 * 1024;
+constexpr std::size_t kWriteBuffer_bytes = 256 * 1024;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 char* put_hex(char* at, std::uint32_t value, int digits) {
@@ -32,7 +32,7 @@ char* put_text(char* at, std::string_view text) {
 std::FILE* open_file(const std::string& name, char* buffer) {
   std::FILE* const file = std::fopen(name.c_str(), "we");
   if (file == nullptr) throw WriteError(name + ": " + std::strerror(errno));
-  static_cast<void>(std::setvbuf(file, buffer, _IOFBF, kBuffer));
+  static_cast<void>(std::setvbuf(file, buffer, _IOFBF, kWriteBuffer_bytes));
   return file;
 }
 
@@ -69,7 +69,7 @@ std::size_t format_candump(const Frame& frame, bool error_frame, std::span<char,
 }
 
 CandumpWriter::CandumpWriter(const std::filesystem::path& file)
-    : name_(file.string()), buffer_(new char[kBuffer]), file_(open_file(name_, buffer_.get())) {}
+    : name_(file.string()), buffer_(new char[kWriteBuffer_bytes]), file_(open_file(name_, buffer_.get())) {}
 
 CandumpWriter::~CandumpWriter() {
   std::fclose(file_);
@@ -85,7 +85,7 @@ void CandumpWriter::append(std::string_view text) {
 void CandumpWriter::write(const Frame& frame, bool error_frame) {
   std::array<char, kMaxCandumpText> text;
   const std::size_t size = format_candump(frame, error_frame, text);
-  if (size == 0) throw WriteError(name_ + ": no candump line can hold the frame");
+  if (size == 0) throw WriteError(name_ + ": a candump line cannot hold the frame");
   append({text.data(), size});
 }
 
@@ -99,7 +99,7 @@ void CandumpWriter::flush() {
 }
 
 PcapWriter::PcapWriter(const std::filesystem::path& file, int link_type, int snapshot_length)
-    : name_(file.string()), buffer_(new char[kBuffer]) {
+    : name_(file.string()), buffer_(new char[kWriteBuffer_bytes]) {
   std::FILE* const stream = open_file(name_, buffer_.get());
   pcap_ = pcap_open_dead_with_tstamp_precision(link_type, snapshot_length, PCAP_TSTAMP_PRECISION_NANO);
   dumper_ = pcap_ == nullptr ? nullptr : pcap_dump_fopen(pcap_, stream);
@@ -122,11 +122,11 @@ void PcapWriter::write(std::int64_t stamp_ns, std::span<const std::uint8_t> pack
   constexpr std::uint64_t kPacketHeader = 16;
   pcap_pkthdr header{};
   header.ts.tv_sec = std::max<std::int64_t>(stamp_ns, 0) / kSecond_ns;
-  header.ts.tv_usec = std::max<std::int64_t>(stamp_ns, 0) % kSecond_ns;  // in fact nanoseconds, as asked for
+  header.ts.tv_usec = std::max<std::int64_t>(stamp_ns, 0) % kSecond_ns;  // in fact nanoseconds, as requested
   header.caplen = static_cast<bpf_u_int32>(packet.size());
   header.len = static_cast<bpf_u_int32>(std::max(original_size, packet.size()));
   pcap_dump(reinterpret_cast<u_char*>(dumper_), &header, packet.data());
-  // libpcap does not say whether it could write.
+  // libpcap does not report write errors.
   if (std::ferror(pcap_dump_file(dumper_)) != 0) throw WriteError(name_ + ": " + std::strerror(errno));
   bytes_ += kPacketHeader + packet.size();
 }

@@ -1,4 +1,4 @@
-// Recordings as files that the readers here, can-utils, tshark and Wireshark read: candump logs and pcap captures.
+// Writes recordings that the readers here, can-utils, tshark and Wireshark can read: candump logs and pcap captures.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,21 @@ struct pcap_dumper;
 
 namespace boresight::recording {
 
-/// A recording that cannot be written (on); what() names the file and the cause.
+/// A recording that cannot be written; what() names the file and the cause.
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The longest line that format_candump() makes, with its end.
+/// The longest line of format_candump(), with its line end.
 constexpr std::size_t kMaxCandumpText = 192;
 
-/// A CAN frame as a line of `candump -l`, microseconds as there; returns the number of characters. A remote frame's
-/// requested length is the size of its payload. `error_frame` says that can_id is an error class. Frames of UDP, and
-/// ids and payloads beyond what CAN has, give 0.
+/// Writes a CAN frame as a line of `candump -l`, with microseconds; returns the number of characters. A remote frame's
+/// requested length is the size of its payload. With `error_frame`, can_id is an error class. Returns 0 for UDP frames,
+/// and for ids and payloads beyond the limits of CAN.
 [[nodiscard]] std::size_t format_candump(const Frame& frame, bool error_frame, std::span<char, kMaxCandumpText> text);
 
-/// Writes through a buffer of its own; flush() from time to time bounds what a crash loses. All members throw
-/// WriteError.
+/// Writes through its own buffer; regular calls of flush() limit the loss at a crash. All members throw WriteError.
 class CandumpWriter {
  public:
   explicit CandumpWriter(const std::filesystem::path& file);
@@ -41,7 +40,7 @@ class CandumpWriter {
   CandumpWriter& operator=(const CandumpWriter&) = delete;
 
   void write(const Frame& frame, bool error_frame = false);
-  /// The line that `candump -d` writes where the kernel dropped frames.
+  /// The line of `candump -d` for frames that the kernel dropped.
   void write_drops(std::string_view interface, std::uint32_t frames, std::uint32_t total);
   void flush();
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
@@ -56,7 +55,7 @@ class CandumpWriter {
   std::uint64_t bytes_ = 0;
 };
 
-/// Raw packets of one link type (libpcap's DLT_…) into a pcap file with nanoseconds. All members throw WriteError.
+/// Writes raw packets of one link type (libpcap's DLT_…) to a pcap file with nanoseconds. All members throw WriteError.
 class PcapWriter {
  public:
   PcapWriter(const std::filesystem::path& file, int link_type, int snapshot_length);
@@ -64,7 +63,7 @@ class PcapWriter {
   PcapWriter(const PcapWriter&) = delete;
   PcapWriter& operator=(const PcapWriter&) = delete;
 
-  /// `original_size` is the packet's size on the wire, if less was captured.
+  /// `original_size` is the packet's size on the wire, if only a part was captured.
   void write(std::int64_t stamp_ns, std::span<const std::uint8_t> packet, std::size_t original_size);
   void flush();
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }

@@ -41,7 +41,7 @@ void note_allocation() {
 
 extern "C" {
 
-// glibc's own entry points, exported for those who stand before malloc.
+// glibc's own entry points, exported for replacements of malloc.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* pointer, std::size_t size);

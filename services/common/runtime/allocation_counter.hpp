@@ -1,12 +1,12 @@
-// Counts heap allocations of the thread that asks for it, by standing before malloc: "no allocation per scan" is then
-// a number in every heartbeat instead of a promise. Without effect (always 0) in sanitized builds, which own malloc.
+// Counts heap allocations of the calling thread by replacing malloc, so that every heartbeat reports the allocations on
+// the data path. Without effect (always 0) in builds with sanitizers, which replace malloc themselves.
 #pragma once
 
 #include <cstdint>
 
 namespace boresight::runtime {
 
-/// Allocations on this thread while a CountAllocations was alive and no AllowAllocations.
+/// Allocations on this thread during the life of a CountAllocations, except during that of an AllowAllocations.
 [[nodiscard]] std::uint64_t counted_allocations();
 
 /// Counts this thread's allocations during its life.
@@ -21,7 +21,7 @@ class CountAllocations {
   bool before_;
 };
 
-/// For what is not the data path though it runs inside it, such as re-opening a link.
+/// For work inside the data path that may allocate, such as re-opening a link.
 class AllowAllocations {
  public:
   AllowAllocations();

@@ -1,4 +1,4 @@
-// The one clock of the ECU's data path. Cores never include this: they get time as an argument.
+// The clock of the ECU's data path. Cores never include this header: they get time as an argument.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@ someip::SdServerConfig completed(someip::SdServerConfig config) {
   constexpr std::uint32_t kLeastTtl_s = 3;
   const double cycle_s = static_cast<double>(config.cycle_ns) * 1e-9;
   config.offer_ttl_s = std::max(kLeastTtl_s, static_cast<std::uint32_t>(std::ceil(3.0 * cycle_s)));
-  // So that ECUs that are switched on together do not offer together.
+  // Random, so that ECUs that are switched on together do not offer at the same time.
   std::random_device random;
   config.initial_wait_ns = std::uniform_int_distribution<std::int64_t>(10'000'000, 100'000'000)(random);
   return config;
@@ -45,7 +45,7 @@ void DiscoveryServer::receive() {
 }
 
 void DiscoveryServer::receive(const UdpSocket& socket, bool by_multicast) {
-  // Bounded, so that a storm of discovery does not hold the caller up.
+  // Bounded, so that many discovery messages do not delay the caller.
   constexpr int kDatagramsPerTurn = 32;
   for (int i = 0; i < kDatagramsPerTurn; ++i) {
     recording::Endpoint from;
@@ -63,7 +63,7 @@ void DiscoveryServer::receive(const UdpSocket& socket, bool by_multicast) {
 
 void DiscoveryServer::send() {
   for (const someip::SdOutgoing& message : outgoing_) {
-    // A link that is down loses it; the next offer repeats what matters.
+    // If the link is down, the message is lost; the next offer repeats its content.
     static_cast<void>(unicast_.send(message.to.value_or(options_.group), message.message));
   }
   outgoing_.clear();

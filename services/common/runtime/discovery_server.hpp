@@ -1,4 +1,4 @@
-// Offers a SOME/IP service on the network: the two sockets of service discovery, and what is said through them.
+// Offers a SOME/IP service on the network: the two sockets of service discovery and their messages.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct DiscoveryOptions {
   int multicast_hops = 1;
 };
 
-/// Whom it concerns; either may be empty.
+/// Callbacks; each may be empty.
 struct DiscoveryEvents {
   std::function<void(const recording::IpAddress& from, std::string_view what)> on_problem;
   std::function<void(const someip::SdServer::NewSubscriber&)> on_new_subscriber;  ///< its Ack has been sent
@@ -28,18 +28,18 @@ struct DiscoveryEvents {
 
 class DiscoveryServer {
  public:
-  /// Opens the sockets (throws std::runtime_error) and begins the initial wait, which is drawn here, as is the offers'
-  /// TTL computed from their cycle.
+  /// Opens the sockets (throws std::runtime_error) and begins the initial wait, which is random. The TTL of offers
+  /// follows from their cycle.
   DiscoveryServer(DiscoveryOptions options, someip::SdServerConfig config, DiscoveryEvents events);
 
-  /// To wait for.
+  /// Descriptors to wait for.
   [[nodiscard]] std::array<int, 2> descriptors() const { return {unicast_.descriptor(), multicast_.descriptor()}; }
   [[nodiscard]] std::int64_t next_due_ns() const { return server_.next_due_ns(); }
   /// Sends the offers that are due.
   void tick(std::int64_t now_ns);
-  /// Takes and answers what has arrived, some dozens of datagrams at most, without waiting.
+  /// Reads and answers received datagrams, some dozens at most, without waiting.
   void receive();
-  /// Takes the offers back.
+  /// Withdraws the offers.
   void stop();
 
   [[nodiscard]] std::span<const recording::Endpoint> destinations(std::uint16_t instance, std::uint16_t eventgroup,

@@ -29,7 +29,7 @@ spdlog::level::level_enum to_spdlog(Level level) {
 }  // namespace
 
 void initialise(std::string_view process_name) {
-  // systemd sets JOURNAL_STREAM when stderr is connected to the journal; priorities survive only by its own protocol.
+  // systemd sets JOURNAL_STREAM if stderr is connected to the journal; only its own protocol carries priorities.
   std::shared_ptr<spdlog::sinks::sink> sink;
   if (std::getenv("JOURNAL_STREAM") != nullptr) {
     sink = std::make_shared<spdlog::sinks::systemd_sink_mt>(std::string(process_name));

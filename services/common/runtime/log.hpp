@@ -1,5 +1,5 @@
-// Logging by spdlog behind a narrow door: to the terminal, or to the journal (with priorities) under systemd.
-// Never called per scan; faults are counted on the data path and logged by the heartbeat.
+// Logging by spdlog behind a small interface: to the terminal, or to the journal (with priorities) under systemd.
+// Never called per scan: the data path counts faults, and the heartbeat logs them.
 #pragma once
 
 #include <string_view>
@@ -10,7 +10,7 @@ namespace boresight::runtime::log {
 
 enum class Level { kDebug, kInfo, kWarning, kError };
 
-/// Sets the name that every line starts with. Level from $BORESIGHT_LOG_LEVEL (debug, info, warning, error).
+/// Sets the name at the start of every line. Level from $BORESIGHT_LOG_LEVEL (debug, info, warning, error).
 void initialise(std::string_view process_name);
 void write(Level level, std::string_view text);
 

@@ -26,14 +26,14 @@ namespace boresight::runtime {
 
 namespace {
 
-// Inputs of one kind that may allocate before the data path counts as warm: lazily made buffers, first-use caches.
+// Inputs of one kind that may allocate during warm-up: buffers and caches are created at first use.
 constexpr std::uint64_t kWarmUpInputs = 20;
-// A longer sleep would delay the answer to SIGTERM where the middleware swallows the interruption.
+// A longer sleep would delay the reaction to SIGTERM, as the middleware may hide the interruption.
 constexpr std::int64_t kLongestWait_ns = 50'000'000;
 constexpr std::int64_t kInputPollPeriod_ns = 10'000'000;
 
-/// Debian's iceoryx aborts on severe errors. What can be gone on with is counted by the callers (a failed loan); what
-/// cannot ends the process with a clear line and code, and the supervisor starts it anew.
+/// Debian's iceoryx aborts on severe errors. Here, callers count recoverable errors (a failed loan). Any other error
+/// ends the process with a log line and an exit code, and the supervisor restarts it.
 void install_error_handler() {
   static auto handler =
       iox::HandlerFunction([](const iox::Error error, const std::function<void()>&, const iox::ErrorLevel level) {
@@ -42,13 +42,13 @@ void install_error_handler() {
           log::debug("middleware: {}", name);
           return;
         }
-        log::error("middleware failed beyond repair: {}", name);
+        log::error("unrecoverable error of the middleware: {}", name);
         std::_Exit(70);
       });
   static auto guard = iox::ErrorHandler::setTemporaryErrorHandler(handler);
 }
 
-/// RouDi accepts datagrams at its socket as soon as it can register applications.
+/// True if RouDi accepts datagrams at its socket, which it does as soon as it can register applications.
 bool roudi_is_reachable() {
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return false;
@@ -61,20 +61,20 @@ bool roudi_is_reachable() {
   return reachable;
 }
 
-/// iceoryx itself aborts after a minute without RouDi; a service that is started first just waits.
+/// Waits for RouDi, so that a service may start first. iceoryx itself aborts after a minute without RouDi.
 void wait_for_roudi() {
-  bool said = false;
+  bool is_logged = false;
   while (!roudi_is_reachable()) {
     if (stop_signalled()) throw std::runtime_error("stopped while waiting for RouDi");
-    if (!said) log::info("waiting for RouDi");
-    said = true;
+    if (!is_logged) log::info("waiting for RouDi");
+    is_logged = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
-/// A scan wakes the corrector and every onlooker at the same time. Whoever is not on the data path steps back, or with
-/// few cores the scan would wait until they have looked at it. Needs no privilege; where it is forbidden (a unit's
-/// system call filter), the unit itself says `Nice=`.
+/// Lowers the priority of services outside the data path. A scan wakes the corrector and all other readers at the same
+/// time; on few cores the scan would wait for the other readers. Needs no privilege. If a unit's system call filter
+/// forbids it, the unit sets `Nice=`.
 void give_way_to_data_path(catalogue::Service self) {
   constexpr int kNice = 5;
   if (!catalogue::is_on_data_path(self)) static_cast<void>(setpriority(PRIO_PROCESS, 0, kNice));
@@ -120,8 +120,8 @@ void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, std::
   options.queueFullPolicy = iox::popo::QueueFullPolicy::DISCARD_OLDEST_DATA;
   impl_->inputs.push_back(std::make_unique<Input>(detail::service_description(topic), options, version,
                                                   topic.writers.size() > 1, std::move(handler)));
-  // Who is not on the data path looks at its queues by itself: to be woken would cost every writer a system call a
-  // message, and the scan would compete with its onlookers for a core.
+  // A service outside the data path polls its queues. Waking it would cost every writer a system call per message, and
+  // the scan would compete with the other readers for a core.
   if (!catalogue::is_on_data_path(impl_->self)) return;
   impl_->waitset->attachState(impl_->inputs.back()->port, iox::popo::SubscriberState::HAS_DATA).or_else([](auto) {
     throw std::logic_error("too many inputs for one node");
@@ -137,7 +137,7 @@ void Node::on_readable(int descriptor, std::function<void()> callback) {
 }
 
 void Node::remove_descriptor(int descriptor) {
-  // Only marked here: the callback that is running may be the one to be removed.
+  // Only marked here: the running callback may be the one to be removed.
   for (Descriptor& entry : impl_->descriptors) {
     if (entry.descriptor == descriptor) entry.descriptor = -1;
   }
@@ -219,8 +219,8 @@ bool Node::Impl::take_one(Input& input) {
 }
 
 void Node::Impl::take_all() {
-  // After every message the search starts at the first input again, so that a side input that came meanwhile is seen
-  // before the next scan; timers are served in between, so that a flood cannot stop the heartbeat.
+  // After every message the search starts at the first input again, so that a side input is handled before the next
+  // scan. Timers are served in between, so that many messages cannot stop the heartbeat.
   for (bool found = true; found && !stopping && !stop_signalled();) {
     found = false;
     for (auto& input : inputs) {
@@ -237,7 +237,7 @@ void Node::Impl::run_timers() {
   const std::int64_t now_ns = monotonic_now_ns();
   for (Timer& timer : timers) {
     if (now_ns < timer.next_ns) continue;
-    // A late timer is not made up for: the next period starts on the grid after now.
+    // Missed periods are skipped: the next one starts on the grid after now.
     timer.next_ns += ((now_ns - timer.next_ns) / timer.period_ns + 1) * timer.period_ns;
     timer.callback();
   }
@@ -308,8 +308,8 @@ void Node::Impl::heartbeat() {
 }
 
 void Node::Impl::log_new_faults() {
-  // At most one line a heartbeat and kind, with the sum since the last one; then each kind rests for a growing number
-  // of events (1, 2, 4, …), so that a permanent fault does not fill the journal.
+  // At most one line per heartbeat and kind of fault, with the sum since the last line. The next line of a kind comes
+  // after a growing number of events (1, 2, 4, …), so that a permanent fault does not fill the journal.
   for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
     const std::uint64_t total = status.faults[i];
     if (total == 0 || (logged_faults[i] != 0 && total < 2 * logged_faults[i])) continue;

@@ -12,12 +12,12 @@
 
 namespace boresight::runtime {
 
-/// The event loop of a service: woken by its inputs if the service is on the data path, else looking at them every 10
-/// ms. Construct it once, declare inputs and timers, then call spin().
+/// The event loop of a service. Inputs wake a service on the data path; other services poll their inputs every 10 ms.
+/// Construct it once, declare inputs and timers, then call spin().
 class Node {
  public:
-  /// Connects to RouDi, waiting for it as long as no stop is requested. Throws std::runtime_error if stopped first.
-  /// `name_suffix` tells several monitors apart.
+  /// Connects to RouDi and waits for it until a stop is requested; then throws std::runtime_error. `name_suffix`
+  /// distinguishes several monitors.
   explicit Node(catalogue::Service self, std::string_view name_suffix = {});
   ~Node();
   Node(const Node&) = delete;
@@ -25,9 +25,9 @@ class Node {
 
   [[nodiscard]] catalogue::Service self() const;
 
-  /// Calls `handler(const T&)` for every message of T, in the order of arrival. All waiting messages of inputs
-  /// declared earlier are handled before those declared later, so declare side inputs first. The message is read in
-  /// place; it is valid during the call. Messages of another layout version are counted and skipped; sequence gaps are
+  /// Calls `handler(const T&)` for every message of T, in the order of arrival. Waiting messages of inputs declared
+  /// earlier are handled before those declared later, so declare side inputs first. The message is read in place and
+  /// valid only during the call. Messages with another layout version are counted and skipped; sequence gaps are
   /// counted as Fault::kInputLost.
   template <typename T, typename Handler>
   void on(Handler handler) {
@@ -38,8 +38,8 @@ class Node {
   /// Calls `callback()` every `period_ns`.
   void every(std::int64_t period_ns, std::function<void()> callback);
 
-  /// Calls `callback()` when the descriptor is readable. A node with descriptors waits for them by poll() and looks
-  /// at its inputs, if any, at least every 10 ms: meant for the gateway, which has no inputs on the bus.
+  /// Calls `callback()` when the descriptor is readable. A node with descriptors waits for them by poll() and
+  /// checks its inputs, if any, at least every 10 ms: for the gateway, which has no inputs on the bus.
   void on_readable(int descriptor, std::function<void()> callback);
   void remove_descriptor(int descriptor);
 
@@ -50,11 +50,11 @@ class Node {
 
   /// Counts a fault; the heartbeat reports and logs it. Allocation-free; `what` is cut to 127 characters.
   void fault(Fault fault, std::string_view what, std::uint64_t count = 1);
-  /// For inputs that do not come through on(): counts one input and its processing time.
+  /// For inputs other than those of on(): counts one input and its processing time.
   void count_input(std::int64_t processing_ns);
   /// The gateway's per-radar statistics; the entry is created on first use.
   [[nodiscard]] SourceStatistics& source_statistics(std::uint32_t source_id);
-  /// A service is starting until spin() and then running; degraded is its own word, said and taken back here.
+  /// A service is starting until spin(), then running. This call reports or clears the degraded state.
   void set_degraded(bool degraded);
 
   struct Impl;

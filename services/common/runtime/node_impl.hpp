@@ -1,4 +1,4 @@
-// Inside of Node; for ports.cpp and node.cpp only.
+// Implementation of Node; for ports.cpp and node.cpp only.
 #pragma once
 
 #include <array>
@@ -19,12 +19,12 @@
 
 namespace boresight::runtime {
 
-/// Sees losses as gaps in the sequence numbers of each writer of a topic.
+/// Detects losses as gaps in the sequence numbers of each writer of a topic.
 class GapDetector {
  public:
   explicit GapDetector(bool several_writers) : several_writers_(several_writers) {}
 
-  /// Messages lost before this one. A number that does not grow is a restarted writer and no loss.
+  /// Messages lost before this one. A number that does not grow means a restarted writer, not a loss.
   [[nodiscard]] std::uint64_t observe(const MessageHeader& header) {
     const std::size_t slot = several_writers_ ? header.source_id % last_.size() : 0;
     const std::uint64_t number = several_writers_ ? header.source_sequence : header.sequence;

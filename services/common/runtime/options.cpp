@@ -1,38 +1,120 @@
 #include "services/common/runtime/options.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/common/text/near_names.hpp"
 
 namespace boresight::runtime {
 
-std::filesystem::path Configuration::service_file(std::string_view name) const {
-  return directory / "services" / fmt::format("{}.toml", name);
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInstalledConfiguration = "/etc/boresight";
+
+bool is_config_folder(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_directory(folder / "vehicle", ignored) && fs::is_directory(folder / "services", ignored);
 }
 
-std::filesystem::path Configuration::vehicle_file() const {
-  const std::filesystem::path folder = directory / "vehicle";
-  if (!vehicle_name.empty()) return folder / (vehicle_name + ".toml");
+/// The source tree that CMake noted in its cache; empty if there is none.
+fs::path source_of(std::ifstream& cache) {
+  constexpr std::string_view kKey = "CMAKE_HOME_DIRECTORY:INTERNAL=";
+  for (std::string line; std::getline(cache, line);) {
+    if (line.starts_with(kKey)) return line.substr(kKey.size());
+  }
+  return {};
+}
+
+/// Sorted names of the vehicle files in `folder`.
+std::vector<std::string> vehicle_names(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   }
   if (error) throw config::Error(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
   if (names.empty()) throw config::Error(fmt::format("{}: holds no vehicle (*.toml)", folder.string()));
-  if (names.size() > 1) {
-    std::sort(names.begin(), names.end());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+fs::path default_config_folder(const fs::path& binaries) {
+  const fs::path build = binaries.parent_path();
+  if (std::ifstream cache(build / "CMakeCache.txt"); cache) {
+    // Beside the build tree first: a checkout that was moved has an old path in its cache.
+    for (const fs::path& source : {build.parent_path(), source_of(cache)}) {
+      if (!source.empty() && is_config_folder(source / "config")) return source / "config";
+    }
+  }
+  return kInstalledConfiguration;
+}
+
+fs::path default_config_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path(kInstalledConfiguration) : default_config_folder(program.parent_path());
+}
+
+fs::path Configuration::service_file(std::string_view name) const {
+  return directory / "services" / fmt::format("{}.toml", name);
+}
+
+fs::path Configuration::vehicle_file() const {
+  const fs::path folder = directory / "vehicle";
+  if (vehicle_name.empty()) {
+    const std::vector<std::string> names = vehicle_names(folder);
+    if (names.size() == 1) return folder / (names.front() + ".toml");
     throw config::Error(fmt::format("{}: holds several vehicles; name one by --vehicle or $BORESIGHT_VEHICLE: {}",
                                     folder.string(), fmt::join(names, ", ")));
   }
-  return folder / (names.front() + ".toml");
+  std::error_code ignored;
+  const bool is_path = vehicle_name.find('/') != std::string::npos;
+  if (!is_path && fs::exists(folder / (vehicle_name + ".toml"), ignored)) return folder / (vehicle_name + ".toml");
+  if (fs::is_regular_file(vehicle_name, ignored)) return vehicle_name;
+  if (is_path) throw config::Error(fmt::format("--vehicle {}: no such file", vehicle_name));
+  const std::vector<std::string> names = vehicle_names(folder);
+  const std::vector<std::string> near = near_names(vehicle_name, names);
+  throw config::Error(fmt::format(
+      "no vehicle '{}' in {}{} --vehicle takes a file or one of the names there: {}", vehicle_name, folder.string(),
+      near.empty() ? "." : fmt::format("; did you mean '{}'?", near.front()), fmt::join(names, ", ")));
 }
 
-VehicleConfig Configuration::vehicle() const {
-  return config::read_vehicle_file(vehicle_file());
+VehicleConfig Configuration::vehicle(config::VehicleUse use) const {
+  return config::read_vehicle_file(vehicle_file(), use);
+}
+
+CLI::Option* add_config_option(CLI::App& app, Configuration& configuration) {
+  return app
+      .add_option_function<std::string>(
+          "--config",
+          [&configuration](const std::string& folder) {
+            std::error_code ignored;
+            if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored)) {
+              throw CLI::ValidationError("--config",
+                                         folder + " is a file; give the folder that holds vehicle/ and services/");
+            }
+            configuration.directory = folder;
+          },
+          "Folder with vehicle/ and services/")
+      ->type_name("DIR")
+      ->default_str(configuration.directory.string())
+      ->take_last();
+}
+
+CLI::Option* add_vehicle_option(CLI::App& app, Configuration& configuration, const std::string& about) {
+  return app
+      .add_option("--vehicle", configuration.vehicle_name,
+                  about.empty() ? "Vehicle: a name in the folder vehicle/, or a file" : about)
+      ->type_name("NAME|FILE")
+      ->take_last();
 }
 
 }  // namespace boresight::runtime

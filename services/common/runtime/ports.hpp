@@ -1,5 +1,5 @@
-// Typed ports over iceoryx: the only place, with node.hpp, that knows the middleware, so that a successor can replace
-// it. Queue depths and history come from the catalogue; a writer or reader that the catalogue does not list is refused.
+// Typed ports over iceoryx. Only this header and node.hpp depend on the middleware, so that another one can replace it.
+// The catalogue gives queue depths and history; a writer or reader that the catalogue does not list is refused.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace boresight::runtime {
 
 class Node;
 
-/// Origin of a message that does not derive from another message.
+/// Source and times of a message that does not derive from another message.
 struct Origin {
   std::uint32_t source_id = 0;
   std::int64_t measurement_time_ns = 0;
   TimeSource time_source = TimeSource::kUnknown;
-  std::optional<Stage> stage;  ///< the stage to stamp, if the message is a radar scan on its way
+  std::optional<Stage> stage;  ///< the stage to stamp, if the message derives from a radar scan
   std::int64_t begin_ns = 0;   ///< when this stage got its input; used with `stage`
 };
 
@@ -36,8 +36,8 @@ void send(PublisherPort&, void* payload, std::uint32_t version, const Origin&, c
 [[nodiscard]] std::unique_ptr<PublisherPort, PublisherPortDeleter> open_publisher(Node&, const catalogue::Topic&);
 }  // namespace detail
 
-/// A chunk of shared memory that this process may write until it is published or dropped. Its content is whatever an
-/// earlier message left there; the header is written when it is published.
+/// A chunk of shared memory that this process may write until it is published or dropped. It still has the content of
+/// an earlier message; publishing writes the header.
 template <typename T>
 class Loan {
  public:
@@ -75,17 +75,17 @@ class Publisher {
  public:
   explicit Publisher(Node& node) : port_(detail::open_publisher(node, catalogue::topic(catalogue::kTopicOf<T>))) {}
 
-  /// An empty loan if the pool is exhausted, which is counted.
+  /// An empty loan if the pool is exhausted, which is counted as a fault.
   [[nodiscard]] Loan<T> loan() { return Loan<T>(port_.get(), static_cast<T*>(detail::loan(*port_))); }
 
-  /// Writes version, sequence numbers, origin and stamps into the header and hands the chunk to the readers.
+  /// Writes version, sequence numbers, source and stamps into the header and passes the chunk to the readers.
   void publish(Loan<T>&& chunk, const Origin& origin) {
     if (chunk) detail::send(*port_, chunk.take(), T::kVersion, origin, nullptr);
   }
 
-  /// For a message that derives from `upstream`: source, measurement time and the stamps of earlier stages are taken
-  /// from it; this stage began when the node took `upstream` from its queue. `fill(T&)` writes everything but the
-  /// header. Returns false if no chunk could be had.
+  /// For a message that derives from `upstream`, with its source, measurement time and stamps of earlier stages. This
+  /// stage begins when the node takes `upstream` from its queue. `fill(T&)` writes everything except the header.
+  /// Returns false if no chunk is available.
   template <typename Fill>
   bool publish_from(const MessageHeader& upstream, Stage stage, Fill&& fill) {
     Loan<T> chunk = loan();
@@ -96,7 +96,7 @@ class Publisher {
     return true;
   }
 
-  /// For a message of its own: `fill(T&)` writes everything but the header.
+  /// For other messages: `fill(T&)` writes everything except the header.
   template <typename Fill>
   bool publish(const Origin& origin, Fill&& fill) {
     Loan<T> chunk = loan();

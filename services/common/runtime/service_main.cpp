@@ -1,6 +1,5 @@
 #include "services/common/runtime/service_main.hpp"
 
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -8,34 +7,29 @@
 #include <CLI/CLI.hpp>
 
 #include "services/common/runtime/config/reader.hpp"
+#include "services/common/runtime/exit_codes.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 
 namespace boresight::runtime {
 
-namespace {
-
-constexpr int kExitFailure = 1;
-constexpr int kExitUsage = 2;
-
-}  // namespace
-
 int service_main(catalogue::Service self, int argc, char** argv, const Load& load) {
   const std::string name = "boresight-" + std::string(catalogue::name_of(self));
   Configuration configuration;
-  configuration.directory = "/etc/boresight";
   bool check = false;
 
   CLI::App app{"Boresight service " + std::string(catalogue::name_of(self)), name};
-  app.add_option("--config", configuration.directory, "folder with vehicle/ and services/")->capture_default_str();
-  app.add_option("--vehicle", configuration.vehicle_name, "vehicle file to use, without .toml")
-      ->envname("BORESIGHT_VEHICLE");
-  app.add_flag("--check", check, "validate the configuration and exit");
+  add_config_option(app, configuration);
+  add_vehicle_option(app, configuration)->envname("BORESIGHT_VEHICLE");
+  app.add_flag("--check", check, "Checks the configuration and ends");
+  app.footer(
+      "Exit codes: 0 stopped by a signal, or the configuration is valid; 1 failure at run time; 2 wrong command line "
+      "or configuration");
   app.set_version_flag("--version", name + " " + BORESIGHT_VERSION);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
+    return app.exit(error) == 0 ? exit_code::kSuccess : exit_code::kUsage;
   }
 
   log::initialise(name);
@@ -44,20 +38,20 @@ int service_main(catalogue::Service self, int argc, char** argv, const Load& loa
     const Run run = load(configuration);
     if (check) {
       std::cout << name << ": configuration is valid (" << configuration.directory.string() << ")\n";
-      return EXIT_SUCCESS;
+      return exit_code::kSuccess;
     }
     Node node(self);
     log::info("started");
-    const int exit_code = run(node);
+    const int result = run(node);
     log::info("stopped");
-    return exit_code;
+    return result;
   } catch (const config::Error& error) {
     std::cerr << error.what() << '\n';
-    return kExitUsage;
+    return exit_code::kUsage;
   } catch (const std::exception& error) {
-    if (stop_signalled()) return EXIT_SUCCESS;
+    if (stop_signalled()) return exit_code::kSuccess;
     log::error("{}", error.what());
-    return kExitFailure;
+    return exit_code::kFinding;
   }
 }
 

@@ -1,4 +1,4 @@
-// What main() of every service does: parse the command line, check the configuration, connect, run.
+// The main function of every service: parses the command line, checks the configuration, connects to RouDi, runs.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,13 @@
 
 namespace boresight::runtime {
 
-/// Runs the service on a connected node until it is told to stop; returns the exit code (node.spin()).
+/// Runs the service on a connected node until a signal stops it; returns the exit code of node.spin().
 using Run = std::function<int(Node&)>;
 /// Reads the configuration (throws config::Error) and returns what to run with it.
 using Load = std::function<Run(const Configuration&)>;
 
-/// Handles --config DIR, --vehicle NAME, --check, --version, --help and SIGTERM. Exit codes: 0 stopped as asked,
-/// 2 wrong command line or configuration, 1 anything else.
+/// Handles --config DIR, --vehicle NAME|FILE, --check, --version, --help and SIGTERM. Returns an exit code of
+/// exit_codes.hpp.
 int service_main(catalogue::Service self, int argc, char** argv, const Load& load);
 
 }  // namespace boresight::runtime

@@ -1,4 +1,4 @@
-// Addresses as values ↔ the kernel's form of them.
+// Converts address values to and from the kernel's form.
 #pragma once
 
 #include <sys/socket.h>

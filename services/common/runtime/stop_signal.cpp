@@ -7,12 +7,12 @@ namespace boresight::runtime {
 
 namespace {
 
-/// The signal may be handled on any thread, the middleware's included, so that a sig_atomic_t would not do.
-std::atomic<bool> stop_flag{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "or a handler may not touch it");
+/// Any thread may handle the signal, also one of the middleware, so a sig_atomic_t is not enough.
+std::atomic<int> received_signal{0};
+static_assert(std::atomic<int>::is_always_lock_free, "required in a signal handler");
 
-void on_stop_signal(int) {
-  stop_flag = true;
+void on_stop_signal(int number) {
+  received_signal = number;
 }
 
 }  // namespace
@@ -29,7 +29,11 @@ void install_stop_signals() {
 }
 
 bool stop_signalled() {
-  return stop_flag;
+  return received_signal != 0;
+}
+
+int stop_signal() {
+  return received_signal;
 }
 
 }  // namespace boresight::runtime

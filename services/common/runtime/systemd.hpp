@@ -1,4 +1,4 @@
-// What systemd wants to hear from a service of Type=notify; without effect outside systemd.
+// Notifications of a service of Type=notify to systemd; without effect outside systemd.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ namespace boresight::runtime {
 
 namespace {
 
-/// The kernel's form of an address; those that are valid on one link only need its number with IPv6.
+/// The kernel's form of an address. IPv6 addresses that are valid on one link only need the interface's number.
 socklen_t kernel_address(const recording::Endpoint& endpoint, unsigned interface_index, sockaddr_storage& out) {
   const socklen_t size = to_sockaddr(endpoint, out);
   const auto& bytes = endpoint.address.bytes;
@@ -65,9 +65,9 @@ void UdpSocket::bind_to(const recording::Endpoint& local) const {
 UdpSocket UdpSocket::bound_to(const recording::Endpoint& local, const std::string& interface, int hops) {
   UdpSocket socket(local, interface);
   const int on = 1;
-  // Another stack on this machine may have the wildcard address of the same port.
+  // Another stack on this machine may use the wildcard address with the same port.
   socket.set(SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on), "share the address");
-  // A burst of all radars' longest lists; the kernel may give less.
+  // For a burst of all radars' longest lists; the kernel may grant less.
   const int send_buffer = 4 * 1024 * 1024;
   setsockopt(socket.descriptor_, SOL_SOCKET, SO_SNDBUF, &send_buffer, sizeof(send_buffer));
   if (socket.v4_) {
@@ -90,9 +90,9 @@ UdpSocket UdpSocket::bound_to(const recording::Endpoint& local, const std::strin
 UdpSocket UdpSocket::member_of(const recording::Endpoint& group, const std::string& interface) {
   UdpSocket socket(group, interface);
   const int on = 1, off = 0;
-  // No SO_REUSEPORT: of sockets that share so, Linux 6.18 picks one for what came by another one's interface.
+  // No SO_REUSEPORT: Linux 6.18 may deliver a datagram to a sharing socket of another interface.
   socket.set(SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on), "share the address");
-  // Bound to the group, the socket receives nothing that was sent to another address.
+  // Bound to the group, the socket receives no datagrams to other addresses.
   socket.bind_to(group);
   if (socket.v4_) {
     ip_mreqn request{};
@@ -112,7 +112,7 @@ UdpSocket UdpSocket::member_of(const recording::Endpoint& group, const std::stri
 }
 
 bool UdpSocket::send(const recording::Endpoint& to, std::span<const std::uint8_t> datagram) const {
-  // A receiver of the other IP version cannot be reached from here.
+  // A receiver with the other IP version is not reachable.
   if (to.address.is_v4() != v4_) return false;
   sockaddr_storage address{};
   const socklen_t size = kernel_address(to, interface_index_, address);

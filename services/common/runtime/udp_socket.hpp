@@ -13,9 +13,9 @@ namespace boresight::runtime {
 /// Owns a non-blocking UDP socket. All functions that open one throw std::runtime_error with the cause.
 class UdpSocket {
  public:
-  /// Bound to a local address, multicast goes out on `interface` with that time to live.
+  /// Bound to a local address; sends multicast on `interface` with that time to live.
   [[nodiscard]] static UdpSocket bound_to(const recording::Endpoint& local, const std::string& interface, int hops);
-  /// Receives what is sent to a multicast group on `interface`, and nothing else.
+  /// Receives only datagrams to a multicast group on `interface`.
   [[nodiscard]] static UdpSocket member_of(const recording::Endpoint& group, const std::string& interface);
 
   UdpSocket(UdpSocket&& other) noexcept;
@@ -23,9 +23,9 @@ class UdpSocket {
   ~UdpSocket();
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
-  /// False if the kernel did not take it: the link is down, or its queue is full.
+  /// False if the kernel did not accept it: the link is down, or its queue is full.
   [[nodiscard]] bool send(const recording::Endpoint& to, std::span<const std::uint8_t> datagram) const;
-  /// The next datagram, which is written into `buffer`; nothing if there is none.
+  /// The next datagram, written into `buffer`; nothing if there is none.
   [[nodiscard]] std::optional<std::span<const std::uint8_t>> receive(std::span<std::uint8_t> buffer,
                                                                      recording::Endpoint& from) const;
 

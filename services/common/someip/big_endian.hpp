@@ -1,4 +1,4 @@
-// Numbers as networks write them: most significant byte first. The caller has checked the length.
+// Big-endian numbers: most significant byte first. The caller has checked the length.
 #pragma once
 
 #include <bit>

@@ -8,8 +8,8 @@
 
 namespace boresight::someip {
 
-/// Writes one value after the other. What does not fit is left out and remembered, so that a caller asks once, at the
-/// end, instead of at each value.
+/// Writes one value after the other. A value that does not fit is not written, and overflowed() is true from then on,
+/// so that the caller checks only once, at the end.
 class ByteWriter {
  public:
   explicit ByteWriter(std::span<std::uint8_t> out) : out_(out) {}
@@ -38,7 +38,7 @@ class ByteWriter {
     for (std::size_t i = 0; i < count; ++i) u8(0);
   }
 
-  /// Bytes asked for so far; more than there was room for if overflowed().
+  /// Bytes of all values so far; more than the memory holds if overflowed().
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool overflowed() const { return size_ > out_.size(); }
 

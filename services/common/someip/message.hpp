@@ -1,4 +1,4 @@
-// SOME/IP messages of a datagram, looked at in place.
+// SOME/IP messages of a datagram, read in place.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 namespace boresight::someip {
 
 inline constexpr std::size_t kHeaderBytes = 16;
-/// What the length field counts besides the payload: Request ID, versions, type and return code.
+/// Bytes that the length field counts besides the payload: Request ID, versions, type and return code.
 inline constexpr std::size_t kLengthCountsBytes = 8;
 inline constexpr std::uint8_t kProtocolVersion = 1;
 inline constexpr std::uint8_t kTpBit = 0x20;
@@ -22,7 +22,7 @@ enum class MessageType : std::uint8_t {
   kError = 0x81,
 };
 
-/// One message; the spans point into the datagram (or the reassembly buffer) it was read from.
+/// One message; the spans point into its datagram or reassembly buffer.
 struct Message {
   std::uint16_t service = 0;
   std::uint16_t method = 0;  ///< of an event: its id, 0x8000 … 0xFFFE
@@ -31,34 +31,33 @@ struct Message {
   std::uint8_t protocol_version = 0;
   std::uint8_t interface_version = 0;
   MessageType type = MessageType::kNotification;  ///< without the TP bit
-  bool tp = false;                                ///< a segment: payload begins with the TP header
+  bool tp = false;                                ///< a segment, whose payload begins with the TP header
   std::uint8_t return_code = 0;
   std::span<const std::uint8_t> payload;
-  /// From the Request ID to the end: what E2E protection covers.
+  /// From the Request ID to the end: the data that E2E protection covers.
   std::span<const std::uint8_t> protected_data;
 };
 
 enum class ReadResult : std::uint8_t {
-  kMessage,          ///< the message is sound
-  kEnd,              ///< nothing is left of the datagram
-  kHeaderCut,        ///< fewer bytes than a header are left: the rest is given up
-  kLengthTooSmall,   ///< the length field does not even count the header's second half: the rest is given up
-  kBeyondDatagram,   ///< the length field reaches beyond the datagram: the rest is given up
-  kProtocolVersion,  ///< not protocol version 1: this message is skipped
-  kMessageType,      ///< a message type that does not exist: this message is skipped
+  kMessage,          ///< a valid message
+  kEnd,              ///< end of the datagram
+  kHeaderCut,        ///< fewer bytes than a header are left; the rest is dropped
+  kLengthTooSmall,   ///< length field below 8, the header's second half; the rest is dropped
+  kBeyondDatagram,   ///< the length field reaches beyond the datagram; the rest is dropped
+  kProtocolVersion,  ///< not protocol version 1; this message is skipped
+  kMessageType,      ///< a message type that does not exist; this message is skipped
 };
-/// What is wrong and what is allowed, for a fault; "" for kMessage and kEnd.
+/// Description of a fault with the allowed value; "" for kMessage and kEnd.
 [[nodiscard]] std::string_view describe(ReadResult result);
 
-/// Goes through the messages of one UDP datagram ("nPDU": several may share one). Messages before a bad one are
-/// delivered. After a message whose length cannot be right nothing says where the next begins, so that next() returns
-/// its fault once and then kEnd.
+/// Reads the messages of one UDP datagram, which may hold several ("nPDU"). Messages before a faulty one are delivered.
+/// After a message with a wrong length the begin of the next one is unknown: next() returns the fault once, then kEnd.
 class MessageReader {
  public:
   explicit MessageReader(std::span<const std::uint8_t> datagram) : rest_(datagram), at_end_(false) {}
 
-  /// Writes `message` if the result is kMessage, and also if it is one of those that skip a message, so that it can be
-  /// answered. An empty datagram is a fault (kHeaderCut).
+  /// Writes `message` if the result is kMessage, and also for results that skip a message, so that the caller can
+  /// answer the message. An empty datagram is a fault (kHeaderCut).
   [[nodiscard]] ReadResult next(Message& message);
 
  private:

@@ -13,7 +13,7 @@ constexpr std::size_t kSomeIpHeaderBytes = 16;
 constexpr std::uint8_t kUdp = 17;
 constexpr std::uint8_t kEndpointV4 = 0x04, kEndpointV6 = 0x06, kMulticastV4 = 0x14, kMulticastV6 = 0x16;
 
-/// Big-endian values at the front of a span; 0 once it is used up.
+/// Takes big-endian values from the front of a span; 0 at its end.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -76,7 +76,7 @@ bool read_options(std::span<const std::uint8_t> bytes, Options& options) {
   return true;
 }
 
-/// False if the entry refers to options that are not there.
+/// False if the entry refers to missing options.
 bool read_entry(std::span<const std::uint8_t> bytes, const Options& options, SdEntry& entry) {
   ByteReader reader(bytes);
   entry = SdEntry{};
@@ -110,7 +110,7 @@ std::optional<std::string_view> read_sd(std::span<const std::uint8_t> message, S
   if (message.size() < kSomeIpHeaderBytes + kFlagsBytes) return "SD message is too short";
   ByteReader header(message);
   if (header.take(4) != 0xFFFF8100) return "not an SD message";
-  if (header.take(4) != message.size() - 8) return "SD message: length is not that of the message";
+  if (header.take(4) != message.size() - 8) return "SD message: length field differs from the message's length";
   static_cast<void>(header.u16());
   out.session = header.u16();
   if (header.take(4) != 0x01010200) return "SD message: version, type or return code is wrong";
@@ -123,11 +123,11 @@ std::optional<std::string_view> read_sd(std::span<const std::uint8_t> message, S
   const auto options = counted_array(message.subspan(kSomeIpHeaderBytes + kFlagsBytes + 4 + entries->size()));
   if (!options) return "SD message: length of options is wrong";
   Options read;
-  if (!read_options(*options, read)) return "SD message: options are cut off or more than 64";
+  if (!read_options(*options, read)) return "SD message: options are truncated or more than 64";
   const std::size_t count = entries->size() / kEntryBytes;
   for (std::size_t i = 0; i < count; ++i) {
     if (!read_entry(entries->subspan(i * kEntryBytes, kEntryBytes), read, out.entries[i])) {
-      return "SD message: an entry refers to options that are not there";
+      return "SD message: an entry refers to missing options";
     }
   }
   out.number_of_entries = count;

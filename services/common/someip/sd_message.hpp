@@ -1,4 +1,4 @@
-// SOME/IP service discovery messages: what a server reads and writes (PRS_SOMEIPServiceDiscoveryProtocol, "Header
+// SOME/IP service discovery messages that a server reads and writes (PRS_SOMEIPServiceDiscoveryProtocol, "Header
 // format", "Entries", "Options").
 #pragma once
 
@@ -20,7 +20,7 @@ enum class SdEntryType : std::uint8_t {
   kSubscribeEventgroupAck = 0x07,
 };
 
-/// An entry as it came. Of the endpoint options it refers to, only the first usable one counts.
+/// A received entry. Only the first usable one of its endpoint options counts.
 struct SdEntry {
   std::uint8_t type = 0;
   std::uint16_t service = 0;
@@ -30,7 +30,7 @@ struct SdEntry {
   std::uint32_t minor = 0;       ///< service entries
   std::uint8_t counter = 0;      ///< eventgroup entries
   std::uint16_t eventgroup = 0;  ///< eventgroup entries
-  /// UDP endpoint (options 0x04, 0x06) that events can be sent to: unicast, port not 0.
+  /// UDP endpoint (options 0x04, 0x06) for events: unicast, port not 0.
   std::optional<recording::Endpoint> endpoint;
 };
 
@@ -44,11 +44,11 @@ struct SdMessage {
   std::size_t number_of_entries = 0;
 };
 
-/// Reads one whole SOME/IP message. Says what is wrong with it, nothing if it is sound. Messages of more than 64
-/// entries or options are refused whole.
+/// Reads one complete SOME/IP message. Returns its fault, or nothing if it is valid. Messages with more than 64 entries
+/// or options are rejected.
 [[nodiscard]] std::optional<std::string_view> read_sd(std::span<const std::uint8_t> message, SdMessage& out);
 
-/// Collects entries with their options and makes a message of them.
+/// Collects entries with their options and writes them as a message.
 class SdWriter {
  public:
   struct Service {
@@ -57,17 +57,17 @@ class SdWriter {
     std::uint8_t major = 0;
     std::uint32_t minor = 0;
   };
-  /// TTL 0 takes the offer back.
+  /// TTL 0 withdraws the offer.
   void offer(const Service& service, std::uint32_t ttl_s, const recording::Endpoint& endpoint);
-  /// Answer to `subscription`; TTL 0 refuses. `group` is where the events will go, if by multicast.
+  /// Answer to `subscription`; TTL 0 refuses. `group` is the destination of events sent by multicast.
   void acknowledge(const SdEntry& subscription, std::uint32_t ttl_s, const std::optional<recording::Endpoint>& group);
 
   [[nodiscard]] bool empty() const { return entries_.empty(); }
-  /// The message; what was collected stays.
+  /// The message; keeps the collected entries.
   [[nodiscard]] std::vector<std::uint8_t> finish(std::uint16_t session, bool reboot) const;
 
  private:
-  /// Writes the option unless it is there, and returns its index.
+  /// Writes the option if it is new, and returns its index.
   [[nodiscard]] std::uint8_t option(std::uint8_t type_v4, std::uint8_t type_v6, const recording::Endpoint& endpoint);
 
   std::vector<std::uint8_t> entries_;

@@ -36,7 +36,7 @@ void SdServer::start(std::int64_t now_ns) {
 }
 
 void SdServer::stop(std::vector<SdOutgoing>& out) {
-  // Nothing to take back before the first offer.
+  // Nothing to withdraw before the first offer.
   if (running_ && offers_sent_ > 0) offer_all(0, out);
   running_ = false;
   next_offer_ns_ = kNever;
@@ -50,7 +50,7 @@ void SdServer::tick(std::int64_t now_ns, std::vector<SdOutgoing>& out) {
   const std::int64_t wait_ns =
       offers_sent_ < config_.repetitions ? config_.repetition_base_ns << offers_sent_ : config_.cycle_ns;
   if (offers_sent_ <= config_.repetitions) ++offers_sent_;
-  // A cycle that was missed (a machine that slept) is not made up for.
+  // A missed cycle is not caught up, for example after suspension of the machine.
   next_offer_ns_ = std::max(next_offer_ns_ + wait_ns, now_ns + wait_ns / 2);
 }
 
@@ -76,7 +76,7 @@ std::optional<std::string_view> SdServer::receive(std::int64_t now_ns, std::span
       const std::size_t length = static_cast<std::size_t>(datagram[4]) << 24 |
                                  static_cast<std::size_t>(datagram[5]) << 16 |
                                  static_cast<std::size_t>(datagram[6]) << 8 | datagram[7];
-      // A length beyond the datagram is left to read_sd() to find.
+      // read_sd() detects a length beyond the datagram.
       bytes = std::min(bytes, kLengthEnd + length);
     }
     if (const auto problem = read_sd(datagram.first(bytes), received_)) {
@@ -115,7 +115,7 @@ void SdServer::take_message(const SdMessage& message, std::int64_t now_ns, const
   SdWriter answer;
   answer_finds(entries, answer);
   for (const SdEntry& entry : entries) {
-    // A subscription by multicast is against the protocol and may be meant for any server.
+    // The protocol does not allow a subscription by multicast; any server may be its destination.
     if (by_multicast || entry.type != static_cast<std::uint8_t>(SdEntryType::kSubscribeEventgroup)) continue;
     take_subscription(entry, now_ns, from, answer);
   }
@@ -126,7 +126,7 @@ void SdServer::take_message(const SdMessage& message, std::int64_t now_ns, const
 
 void SdServer::answer_finds(std::span<const SdEntry> entries, SdWriter& answer) const {
   if (offers_sent_ == 0) return;
-  // Each instance at most once, however many entries ask, so that a message never makes a larger answer than an offer.
+  // Each instance at most once for any number of entries, so that an answer is never larger than an offer.
   for (const OfferedInstance& own : config_.instances) {
     const bool wanted = std::any_of(entries.begin(), entries.end(),
                                     [&](const SdEntry& entry) { return asks_for(entry, own.instance); });

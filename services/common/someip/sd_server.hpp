@@ -1,6 +1,6 @@
 // The server's side of SOME/IP service discovery: offers, answers, subscriptions (interfaces/wire/boresight_service.md,
-// 5), for one service in one or several instances. Knows no socket and no clock: datagrams and times are arguments,
-// answers are returned.
+// 5), for one service in one or several instances. Independent of sockets and clocks: datagrams and times are
+// arguments, answers are return values.
 #pragma once
 
 #include <cstdint>
@@ -19,36 +19,36 @@ namespace boresight::someip {
 
 struct OfferedInstance {
   std::uint16_t instance = 1;
-  recording::Endpoint endpoint;  ///< where its events come from and where it takes requests
+  recording::Endpoint endpoint;  ///< source of its events and destination of requests
 };
 
-/// What every instance offers.
+/// The service that every instance offers.
 struct OfferedService {
   std::uint16_t id = 0;
   std::uint8_t major = 1;
   std::uint32_t minor = 0;
-  std::vector<std::uint16_t> eventgroups;  ///< others are refused
+  std::vector<std::uint16_t> eventgroups;  ///< subscriptions to others are refused
 };
 
 struct SdServerConfig {
   OfferedService service;
   std::vector<OfferedInstance> instances;
-  std::optional<recording::Endpoint> event_group;  ///< events go there instead of to the subscribers
-  std::int64_t initial_wait_ns = 50'000'000;       ///< the caller draws it between 10 and 100 ms
+  std::optional<recording::Endpoint> event_group;  ///< destination of events instead of the subscribers' endpoints
+  std::int64_t initial_wait_ns = 50'000'000;       ///< random between 10 and 100 ms, drawn by the caller
   std::int64_t repetition_base_ns = 200'000'000;   ///< doubles with each repetition
   int repetitions = 3;
   std::int64_t cycle_ns = 1'000'000'000;
   std::uint32_t offer_ttl_s = 3;
-  std::size_t max_subscribers = 16;  ///< of one eventgroup of one instance
+  std::size_t max_subscribers = 16;  ///< per eventgroup and instance
 };
 
 struct SdOutgoing {
-  std::optional<recording::Endpoint> to;  ///< nothing: the discovery's multicast group
+  std::optional<recording::Endpoint> to;  ///< nothing: the multicast group of discovery
   std::vector<std::uint8_t> message;
 };
 
 struct SdStatistics {
-  std::uint64_t malformed = 0;  ///< messages refused whole
+  std::uint64_t malformed = 0;  ///< rejected messages
   std::uint64_t acknowledged = 0;
   std::uint64_t refused = 0;
   std::uint64_t expired = 0;
@@ -61,24 +61,24 @@ class SdServer {
 
   /// The first offer follows after the initial wait.
   void start(std::int64_t now_ns);
-  /// Takes all offers and subscriptions back.
+  /// Withdraws all offers and ends all subscriptions.
   void stop(std::vector<SdOutgoing>& out);
 
-  /// When tick() is to be called next; never before start() and after stop().
+  /// Time of the next call of tick(); never before start() and after stop().
   [[nodiscard]] std::int64_t next_due_ns() const { return next_offer_ns_; }
-  /// Offers that are due; ends subscriptions that were not renewed.
+  /// Returns the offers that are due; ends subscriptions without renewal.
   void tick(std::int64_t now_ns, std::vector<SdOutgoing>& out);
 
-  /// One datagram to the discovery port, with one or several messages. Returns what was wrong with it, if anything.
+  /// One datagram to the discovery port, with one or several messages. Returns its fault, if any.
   std::optional<std::string_view> receive(std::int64_t now_ns, std::span<const std::uint8_t> datagram,
                                           const recording::Endpoint& from, bool by_multicast,
                                           std::vector<SdOutgoing>& out);
 
-  /// Where to send the events of an eventgroup: the group, or the subscribers' endpoints, each once; nothing without
-  /// subscribers. Valid until the next call of another function.
+  /// Destinations of an eventgroup's events: the multicast group, or the subscribers' endpoints, each once; empty
+  /// without subscribers. Valid until the next call of another function.
   [[nodiscard]] std::span<const recording::Endpoint> destinations(std::uint16_t instance, std::uint16_t eventgroup,
                                                                   std::int64_t now_ns);
-  /// Subscriptions that the last receive() has made, renewals aside: a field sends them its value.
+  /// New subscriptions of the last receive(), without renewals: a field sends them its value.
   struct NewSubscriber {
     std::uint16_t instance;
     std::uint16_t eventgroup;
@@ -99,7 +99,7 @@ class SdServer {
     recording::Endpoint endpoint;
     std::int64_t expires_ns;
   };
-  /// What was received last by one way, to see a reboot.
+  /// Last session id and flag from one sender, for detection of its reboot.
   struct Heard {
     bool any = false;
     bool reboot = false;

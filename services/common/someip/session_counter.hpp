@@ -1,4 +1,4 @@
-// Session ids of SOME/IP, of events and of service discovery alike.
+// Session ids of SOME/IP, for events and for service discovery.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace boresight::someip {
 /// SOME/IP session ids: 1, 2, … 0xFFFF, 1, …
 class SessionCounter {
  public:
-  /// The id to send next.
+  /// The next id to send.
   std::uint16_t take() {
     const std::uint16_t session = next_;
     next_ = next_ == 0xFFFF ? std::uint16_t{1} : static_cast<std::uint16_t>(next_ + 1);
@@ -16,7 +16,7 @@ class SessionCounter {
     started_ = true;
     return session;
   }
-  /// Whether the id taken last is of the second round or a later one: service discovery's reboot flag is then clear.
+  /// True after the first wrap of the id: service discovery's reboot flag is then clear.
   [[nodiscard]] bool wrapped() const { return wrapped_; }
 
  private:

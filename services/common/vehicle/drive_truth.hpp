@@ -1,4 +1,4 @@
-// What is true of a simulated drive: the truth.csv that `boresight simulate` puts beside its recordings.
+// True values of a simulated drive: the truth.csv that `boresight simulate` writes beside its recordings.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace boresight {
 
-/// What a table does not state is NaN, or absent.
+/// Values that a table does not state are NaN or absent.
 struct DriveTruth {
   struct Radar {
     /// Actual − nominal mounting, angle by angle: geometry::sensor_to_vehicle(nominal, yaw, pitch, roll).
     double yaw_rad = std::numeric_limits<double>::quiet_NaN();
     double pitch_rad = std::numeric_limits<double>::quiet_NaN();
     double roll_rad = std::numeric_limits<double>::quiet_NaN();
-    std::optional<std::uint64_t> scans;  ///< how many it sent
+    std::optional<std::uint64_t> scans;  ///< number of scans that the radar sent
   };
   double speed_scale = std::numeric_limits<double>::quiet_NaN();  ///< k_v
   std::map<std::uint32_t, Radar> radars;                          ///< by id
@@ -25,7 +25,7 @@ struct DriveTruth {
 };
 
 /// Lines "quantity,radar,value,unit" with quantities speed_scale, alignment_yaw, alignment_pitch, alignment_roll (deg)
-/// and scans; others are for other readers. What is not a number is left out, so the result may be empty.
+/// and scans; other quantities are ignored. Values that are not numbers are skipped, so the result may be empty.
 [[nodiscard]] DriveTruth read_drive_truth(std::istream& input);
 
 }  // namespace boresight

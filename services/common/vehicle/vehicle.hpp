@@ -1,4 +1,4 @@
-// The vehicle as configured: where each radar is mounted, what it sees, where its data come from, what is tolerated.
+// The vehicle's configuration: mounting, field of view, data source and tolerances of each radar.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace boresight {
 
-/// Nominal mounting in the vehicle frame (ISO 8855); rotation R_z(yaw)·R_y(−pitch)·R_x(roll), pitch positive looks up.
+/// Nominal mounting in the vehicle frame (ISO 8855); rotation R_z(yaw)·R_y(−pitch)·R_x(roll), positive pitch looks up.
 struct MountingPose {
   std::array<double, 3> position_m{0.0, 0.0, 0.5};
   double yaw_rad = 0.0;
@@ -18,7 +18,7 @@ struct MountingPose {
   double roll_rad = 0.0;
 };
 
-/// What the sensor can see, in its own frame around boresight; detections outside are not expected.
+/// The sensor's field of view, in its own frame around boresight; detections outside are not expected.
 struct FieldOfView {
   double azimuth_min_rad = -1.3;
   double azimuth_max_rad = 1.3;
@@ -27,7 +27,7 @@ struct FieldOfView {
   double range_max_m = 300.0;
 };
 
-/// Stds to use where the sensor states none.
+/// Standard deviations to use if the sensor states none.
 struct SensorNoise {
   double range_std_m = 0.2;
   double azimuth_std_rad = 0.0087;
@@ -35,7 +35,7 @@ struct SensorNoise {
   double range_rate_std_mps = 0.1;
 };
 
-/// Misalignment of an axis beyond which the sensor is degraded.
+/// Largest misalignment of an axis of a sensor that is not degraded.
 struct AlignmentTolerance {
   double yaw_rad = 0.02618;  // 1.5°: the alignment error criterion of field service manuals
   double pitch_rad = 0.02618;
@@ -43,20 +43,21 @@ struct AlignmentTolerance {
 };
 
 enum class LinkKind : std::uint8_t {
-  kCan,     ///< a CAN bus: SocketCAN interface or recorded bus name
+  kCan,     ///< a CAN bus: SocketCAN interface, or bus name of a recording
   kUdp,     ///< UDP datagrams to a fixed address
   kSomeIp,  ///< an instance of the Boresight service, found by SOME/IP service discovery
 };
 
-/// Names the radar protocols that the gateway speaks. kMapping: CAN signals of a DBC file, assigned by a mapping file.
+/// Radar protocols of the gateway. kMapping: CAN signals of a DBC file, assigned by a mapping file.
 enum class RadarProfile : std::uint8_t { kToyota, kArs548, kSrr520, kArs408, kMapping, kBoresight };
-/// Names the ego signal sets that the gateway speaks.
+/// Ego signal sets of the gateway.
 enum class EgoProfile : std::uint8_t { kToyota, kSrr520, kMapping, kBoresight };
 
-/// Where frames come from. For kCan: `interface` ("can1"; "" takes any, for tools). For kUdp: the local address to
-/// listen on or the multicast group to join, its port, and the sender whose datagrams are this sensor's ("" accepts any
-/// sender). For kSomeIp: the local address that takes part in service discovery and its port for events, the instance,
-/// and the group and port of discovery; with a `sender` its offer is not waited for.
+/// Source of frames.
+/// kCan: `interface` ("can1"; "" is any interface, for tools).
+/// kUdp: local address to listen on, or multicast group to join; its port; the sensor's address as `sender` ("": any).
+/// kSomeIp: local address for service discovery, and its port for events; instance; group and port of discovery. With a
+/// `sender`, the receiver does not wait for an offer.
 struct SourceAddress {
   LinkKind link = LinkKind::kCan;
   std::string interface;
@@ -75,7 +76,7 @@ struct E2eConfig {
   e2e::Config protection;
 };
 
-/// What an ARS408 is asked to send at start.
+/// Output that an ARS408 is configured to send at start.
 enum class Ars408Output : std::uint8_t { kAsItIs, kClusters, kObjects };
 
 struct RadarConfig {
@@ -88,15 +89,15 @@ struct RadarConfig {
   std::uint32_t sensor_id = 0;  ///< kArs408: 0…7, several share a bus
   Ars408Output output = Ars408Output::kAsItIs;
   bool ego_feed = false;         ///< kArs548, kArs408: the vehicle's motion is sent to the sensor
-  double steering_ratio = 15.0;  ///< steering wheel to front axle, for that
+  double steering_ratio = 15.0;  ///< angle of steering wheel / front axle, for `ego_feed`
   MountingPose mounting_pose;
   FieldOfView field_of_view;
   SensorNoise noise;
   AlignmentTolerance tolerance;
   double cycle_time_s = 0.05;
-  /// From measurement to reception, for a radar that does not stamp its data with a synchronised clock.
+  /// Time from measurement to reception, for a radar without stamps of a synchronised clock.
   double latency_s = 0.0;
-  double deadline_s = 0.25;  ///< silent for longer: NOT_AVAILABLE
+  double deadline_s = 0.25;  ///< NOT_AVAILABLE if silent for longer
 };
 
 struct EgoConfig {

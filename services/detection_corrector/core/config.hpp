@@ -1,4 +1,4 @@
-// Settings of the detection corrector; the defaults are what config/services/detection_corrector.toml ships.
+// Settings of the detection corrector; the defaults equal config/services/detection_corrector.toml.
 #pragma once
 
 #include <array>
@@ -6,24 +6,24 @@
 namespace boresight::corrector {
 
 struct Config {
-  /// Box in the vehicle frame; detections outside are flagged.
+  /// Box in the vehicle frame; detections outside get a flag.
   std::array<double, 3> region_min_m{-100.0, -60.0, -2.0};
   std::array<double, 3> region_max_m{200.0, 60.0, 6.0};
-  /// A detection at `range` is weak below rcs_near_dbsm + rcs_slope_db_per_decade · log10(range / 10 m): what is near
-  /// must reflect more to be real than what is far, since multipath and noise are near (Report D).
+  /// A detection at `range` is weak below rcs_near_dbsm + rcs_slope_db_per_decade · log10(range / 10 m): a near
+  /// detection needs more RCS, since multipath and noise are near (the 4D chain design).
   double rcs_near_dbsm = -25.0;
   double rcs_slope_db_per_decade = 0.0;
-  /// Moving if |range rate over ground| exceeds this many stds of what stands still would have.
+  /// Moving if |range rate over ground| exceeds this many stds of that of a stationary reflector.
   double moving_sigma = 4.0;
-  /// What no input's std holds: heave, pitching and rolling of the body, age of the ego motion, as range rate.
+  /// Range-rate error that no input's std contains: heave, pitch and roll of the body, and age of the ego motion.
   double body_motion_std_mps = 0.06;
   /// An azimuth std that the sensor does not state grows as 1/max(cos azimuth, this): an antenna's aperture shrinks
-  /// with the cosine. As the alignment estimator has it.
+  /// with the cosine. The same as in the alignment estimator.
   double azimuth_std_edge = 0.35;
-  /// An angle of the estimate is applied once its std is below this.
+  /// An angle of the estimate is applied if its std is smaller.
   double max_angle_std_to_apply_rad = 0.00873;  // 0.5°
   double max_speed_scale_std_to_apply = 0.02;
-  /// How wrong mounting, speed signal and motion may be of which no estimate says anything, 1 sigma.
+  /// Standard deviations of mounting, speed signal and motion without an estimate.
   double unknown_rotation_std_rad = 0.01745;  // 1°
   double unknown_speed_scale_std = 0.01;
   double unknown_yaw_rate_bias_std_radps = 0.0035;  // 0.2°/s

@@ -13,7 +13,7 @@ namespace boresight::corrector {
 
 namespace {
 
-/// Without compensation the vehicle's motion is written as none.
+/// Without compensation the motion of the vehicle is written as zero.
 void write_geometry(const RadarConfig& radar, const Mounting& mounting, const EgoSample& ego,
                     const EgoVelocity& velocity, CorrectedScan& scan) {
   ScanGeometry& out = scan.geometry;
@@ -152,9 +152,9 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
       const double limit = config_.rcs_near_dbsm + config_.rcs_slope_db_per_decade * std::log10(range / 10.0);
       if (!(scan.rcs_dbsm[i] >= limit)) flags |= corrected_flag::kWeak;
     }
-    // An aliased range rate is never believed: it says neither moving nor stationary.
+    // A detection with an ambiguous range rate is neither moving nor stationary.
     if (compensates && (flags & (corrected_flag::kInvalid | corrected_flag::kAmbiguous)) == 0) {
-      // An azimuth std that the sensor does not state is that of its boresight.
+      // A std that the sensor does not state comes from the vehicle file and holds at the boresight.
       const bool states_azimuth = has_stds && azimuth_std == scan.azimuth_std_rad[i];
       const double widening = states_azimuth ? 1.0 : 1.0 / std::max(ca, config_.azimuth_std_edge);
       const Sight sight{direction,

@@ -1,4 +1,4 @@
-// Sensor frame → vehicle frame, with the mounting error undone and the ego motion taken out.
+// Sensor frame → vehicle frame, with mounting error and ego motion removed.
 #pragma once
 
 #include <array>
@@ -22,14 +22,14 @@ class Corrector {
  public:
   Corrector(const VehicleConfig& vehicle, const Config& config);
 
-  /// Ignores estimates of unknown radars (returns false).
+  /// Returns false and ignores the estimate if the radar is unknown.
   bool add_alignment(const AlignmentEstimate& estimate);
   void add_ego_motion(const EgoMotion& motion) { ego_.add(motion); }
 
-  /// Whether the vehicle file knows the radar; correct() needs that.
+  /// Whether the radar is in the vehicle file, as correct() requires.
   [[nodiscard]] bool knows(std::uint32_t radar_id) const { return vehicle_.radar(radar_id) != nullptr; }
 
-  /// Writes everything of `out` but the header. Missing side inputs are in `out.flags`. A scan of an unknown radar
+  /// Writes everything of `out` except the header. `out.flags` names missing side inputs. A scan of an unknown radar
   /// gives an empty output.
   void correct(const RadarScan& scan, CorrectedScan& out) const;
 
@@ -41,7 +41,7 @@ class Corrector {
   VehicleConfig vehicle_;
   Config config_;
   EgoHistory ego_;
-  std::vector<UnknownElevation> unknown_elevations_;  // of the vehicle's radars, in their order
+  std::vector<UnknownElevation> unknown_elevations_;  // one per radar of the vehicle, in their order
   std::array<Latest, kMaxRadars + 1> alignment_{};
 };
 

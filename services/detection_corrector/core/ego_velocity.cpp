@@ -23,7 +23,7 @@ EgoVelocity ego_velocity(const EgoSample& sample, const EgoConfig& ego, const Mo
   const double yaw_rate = sample.yaw_rate_radps - mounting.yaw_rate_bias_radps;
   out.speed_mps = speed;
   out.yaw_rate_radps = yaw_rate;
-  // Leaning on its tyres the rear axle slides outwards: V_y = −c·V·(V·ω).
+  // In a turn the rear axle slides outwards: V_y = −c·V·(V·ω).
   out.sensor_mps = geometry::sensor_velocity(1.0, speed, yaw_rate, pose.position_m, -slip * speed * speed * yaw_rate);
 
   const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate, 0.0);

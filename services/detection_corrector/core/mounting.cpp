@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kSize = kNumberOfAlignmentParameters;
 
-/// Errors k_v and turn about the vehicle's x, y, z; those of the message are k_v, yaw, pitch, roll, of which the turn's
-/// x, y, z are roll, −pitch, yaw.
+/// Errors of k_v and of the rotation about the vehicle's x, y, z. The message has k_v, yaw, pitch and roll; the
+/// rotation about x, y, z is roll, −pitch, yaw.
 Eigen::Matrix4d covariance_of(const AlignmentEstimate& estimate) {
   constexpr std::array<std::size_t, kSize> kRow{0, 3, 2, 1};
   constexpr std::array<double, kSize> kSign{1.0, 1.0, -1.0, 1.0};
@@ -29,8 +29,8 @@ Eigen::Matrix4d covariance_of(const AlignmentEstimate& estimate) {
   return covariance;
 }
 
-/// Splits the turn along the principal axes of `covariance`: what is observable and sure is applied, the rest is left
-/// and widens the covariance, since the truth lies about the estimate and not about what is applied.
+/// Splits the rotation along the principal axes of `covariance`. The observable and certain part is applied. The rest
+/// widens the covariance, since the truth is distributed about the estimate and not about the applied part.
 struct Split {
   Eigen::Vector3d applied = Eigen::Vector3d::Zero();
   Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
@@ -39,7 +39,7 @@ Split split(const Eigen::Vector3d& turn, Eigen::Matrix3d covariance, const Align
             double max_std_rad) {
   constexpr std::array<std::uint32_t, 3> kAxis{alignment_axis::kVehicleRoll, alignment_axis::kVehiclePitch,
                                                alignment_axis::kVehicleYaw};
-  // An axis that is not observable may be off by anything, whatever its row says.
+  // An axis that is not observable has no bound, whatever its row of the covariance.
   constexpr double kAnything = 10.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) covariance(i, i) += kAnything;
@@ -54,13 +54,13 @@ Split split(const Eigen::Vector3d& turn, Eigen::Matrix3d covariance, const Align
   }
   Eigen::Vector3d rest = turn - out.applied;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) rest(i) = 0.0;  // a prior's value says nothing
+    if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) rest(i) = 0.0;  // the value is the prior's
   }
   out.left = rest * rest.transpose();
   return out;
 }
 
-/// Applies what the estimate says of yaw-rate bias and slip, where it says anything.
+/// Applies the estimated yaw-rate bias and slip, if the message contains them.
 void add_motion(const AlignmentEstimate& estimate, Mounting& mounting) {
   const auto known = [&](std::uint32_t axis, float value, float std) {
     return estimate.is_observable(axis) && std::isfinite(value) && std::isfinite(std) && std >= 0.0F;

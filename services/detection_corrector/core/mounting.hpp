@@ -1,4 +1,5 @@
-// The mounting of a radar and what else the alignment estimate knows, as far as it is sure, and how wrong that may be.
+// The corrected mounting of a radar and the other values of the alignment estimate, with their covariance.
+// Equations: docs/algorithms/correction.md (C1)(C2).
 #pragma once
 
 #include <cstdint>
@@ -16,19 +17,19 @@ struct Mounting {
   double speed_scale = 1.0;
   double yaw_rate_bias_radps = 0.0;        ///< signalled = true + bias
   double slip_coefficient_radps2pm = 0.0;  ///< c of V_y = −c·V·(V·ω)
-  double angle_noise_scale = 1.0;          ///< of the angles' stds, as they really are
-  /// Of errors that are left: k_v, then the turn about the vehicle's x, y, z (left error, Exp(θ)·R); 1 and rad. What is
-  /// estimated but not applied is in it as it would have been applied: E[θθᵀ] about the nominal mounting.
+  double angle_noise_scale = 1.0;          ///< estimated factor of the angles' stds
+  /// Covariance of the remaining errors: k_v, then the rotation about the vehicle's x, y, z (left error, Exp(θ)·R); 1
+  /// and rad. It contains an estimate that is not applied with its square: E[θθᵀ] about the nominal mounting.
   Eigen::Matrix4d covariance;
   double yaw_rate_bias_variance = 0.0;
   double slip_variance = 0.0;
   std::uint64_t alignment_sequence = 0;  ///< 0: nothing applied
 };
 
-/// The nominal mounting turned by that part of the estimated rotation (`estimate` may be null) which is observable and
-/// sure enough. The parts are the principal axes of its covariance about the vehicle's axes: of a radar that looks to
-/// the side straight driving tells the pitch about the vehicle's axis and not the roll, so that neither pitch nor roll
-/// about its own axes is known; a calibration plate tells the opposite.
+/// The nominal mounting, rotated by the part of the estimated rotation (`estimate` may be null) that is observable and
+/// certain enough. The parts are the principal axes of its covariance about the vehicle's axes. Straight driving, for
+/// example, determines the pitch of a corner radar about the vehicle's axis and not the roll, so neither its own pitch
+/// nor its own roll is known. With a calibration plate it is the opposite.
 [[nodiscard]] Mounting mounting_of(const RadarConfig& radar, const AlignmentEstimate* estimate, const Config& config);
 
 }  // namespace boresight::corrector

@@ -1,4 +1,5 @@
-// Whether what a detection says of its motion is what something that stands still could have said.
+// Tests whether the range rate of a detection agrees with a stationary reflector.
+// Equations: docs/algorithms/correction.md (C5)(C6).
 #pragma once
 
 #include <cmath>
@@ -12,7 +13,7 @@
 
 namespace boresight::corrector {
 
-/// A detection as the test needs it.
+/// The values of a detection that the test needs.
 struct Sight {
   Eigen::Vector3d direction;                                      ///< unit vector, vehicle axes
   double cos_azimuth, sin_azimuth, cos_elevation, sin_elevation;  ///< in the sensor's frame
@@ -21,12 +22,12 @@ struct Sight {
   double azimuth_std_rad, elevation_std_rad, range_rate_std_mps;
 };
 
-/// For the detections of one scan. The threshold is `moving_sigma` stds of the range rate over ground of what stands
-/// still: of the range rate, of the angles by the derivative of (R u)·v_s, of motion and mounting, and of the body's
-/// motion; no constant beside it.
+/// For the detections of one scan. The threshold is `moving_sigma` stds of the range rate over ground of a stationary
+/// reflector. The std combines the range rate, the angles by the derivative of (R u)·v_s, motion and mounting, and the
+/// motion of the body. There is no other constant in the threshold.
 class StationaryTest {
  public:
-  /// `unknown`: of a radar that measures no elevation, else nullptr.
+  /// `unknown`: for a radar that measures no elevation, otherwise nullptr.
   StationaryTest(const EgoVelocity& motion, const Mounting& mounting, const UnknownElevation* unknown,
                  const Config& config)
       : velocity_mps_(motion.sensor_mps),
@@ -47,8 +48,8 @@ class StationaryTest {
                       s.range_rate_std_mps * s.range_rate_std_mps + s.direction.dot(covariance_ * s.direction) + floor_;
     double residual = s.range_rate_over_ground_mps;
     if (unknown_ != nullptr) {
-      // What stands above or below the sensor closes in more slowly than its azimuth says: by a share that is anything
-      // from nothing to twice the expected one, of all radars and of this one.
+      // A stationary reflector above or below the sensor has a smaller range rate than its azimuth predicts. The
+      // reduction is between zero and twice the expected one, with a part common to all radars and an individual part.
       const UnknownElevation::Cosine cosine = unknown_->at(s.range_m);
       const double closing = s.direction.dot(velocity_mps_);
       const double excess_std = M_SQRT2 * kElevationExcessStd * cosine.lowering;

@@ -10,7 +10,7 @@ namespace boresight::ghosts {
 
 enum class MethodName : std::uint8_t {
   kMirror,     ///< mirror consistency: the product's own
-  kPublished,  ///< Report B: the baseline
+  kPublished,  ///< Le Ba Thanh 2023: the baseline
 };
 
 struct Config {

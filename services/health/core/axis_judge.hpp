@@ -1,4 +1,5 @@
-// Is a mounting angle beyond its tolerance? By confidence, debounced, with hysteresis.
+// Whether a mounting angle is beyond its tolerance: by confidence, debounced, with hysteresis.
+// Equations: docs/algorithms/downstream.md (D2)(D3).
 #pragma once
 
 #include <cmath>
@@ -15,8 +16,8 @@ class AxisJudge {
   AxisJudge() = default;
   AxisJudge(const Config& config, double tolerance_rad) : config_(config), tolerance_rad_(tolerance_rad) {}
 
-  /// One estimate of the axis at `time_ns` (its measurement time). Not observable or not finite: nothing is learnt,
-  /// what was known stays. An estimate that is neither clearly beyond nor clearly within restarts both clocks.
+  /// One estimate of the axis at `time_ns` (its measurement time). An estimate that is not observable or not finite
+  /// changes no verdict. An estimate that is neither clearly beyond nor clearly within restarts both times.
   void update(double error_rad, double std_rad, bool observable, std::int64_t time_ns) {
     observable_ = observable && std::isfinite(error_rad) && std::isfinite(std_rad) && std_rad >= 0.0;
     if (!observable_) return;
@@ -29,7 +30,7 @@ class AxisJudge {
       since_ns_ = kNever;
       return;
     }
-    // A clock that went back would otherwise hold the verdict for as long as it jumped.
+    // Without this a clock that jumped back would delay the verdict by the size of the jump.
     if (since_ns_ == kNever || time_ns < since_ns_) since_ns_ = time_ns;
     const double needed_s = beyond_ ? config_.clear_s : config_.set_s;
     if (static_cast<double>(time_ns - since_ns_) * 1e-9 < needed_s) return;
@@ -39,7 +40,7 @@ class AxisJudge {
 
   [[nodiscard]] bool is_observable() const { return observable_; }
   [[nodiscard]] bool is_beyond() const { return beyond_; }
-  /// Beyond tolerance, and so far that the sensor is of no use.
+  /// Beyond tolerance, and so far that the data are not usable.
   [[nodiscard]] bool is_inhibited() const { return beyond_ && std::abs(error_rad_) > config_.inhibit_rad; }
   [[nodiscard]] AxisHealth health() const {
     return {.error_rad = static_cast<float>(error_rad_),
@@ -59,7 +60,7 @@ class AxisJudge {
   double std_rad_ = 0.0;
   bool observable_ = false;
   bool beyond_ = false;
-  std::int64_t since_ns_ = kNever;  // since when the estimate contradicts the present verdict
+  std::int64_t since_ns_ = kNever;  // first estimate that contradicts the present verdict
 };
 
 }  // namespace boresight::health

@@ -1,4 +1,4 @@
-// How often something happened in the last seconds, in fixed memory.
+// Number and rate of events in the last seconds, in fixed memory.
 #pragma once
 
 #include <algorithm>
@@ -34,8 +34,8 @@ class RateWindow {
     }
     return total;
   }
-  /// Per second, over the window, or over the intervals since the first event while that is not a window ago; 0 before
-  /// the second event.
+  /// Events per second over the window. Before a whole window has passed: over the time since the first event, and 0
+  /// before the second event.
   [[nodiscard]] double rate_hz(std::int64_t now_ns) {
     if (is_full(now_ns)) return static_cast<double>(sum(now_ns)) / (kSlots * static_cast<double>(slot_ns_) * 1e-9);
     if (since_first_ < 2 || last_ns_ <= first_ns_) return 0.0;
@@ -46,7 +46,7 @@ class RateWindow {
     advance(now_ns);
     return first_slot_ >= 0 && slot_ - first_slot_ > kSlots;
   }
-  /// Forgets everything, for a source that begins anew.
+  /// Forgets everything: the source starts again.
   void clear() {
     counts_ = {};
     first_slot_ = -1;

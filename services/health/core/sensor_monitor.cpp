@@ -15,10 +15,10 @@ double std_of(const std::array<float, 16>& covariance, AlignmentParameter parame
   return std::sqrt(static_cast<double>(covariance[i * kNumberOfAlignmentParameters + i]));
 }
 
-/// The turn about a vehicle's axis (0 x, 1 y, 2 z) that alone takes one of the sensor's angles to its tolerance.
+/// The smallest rotation about a vehicle axis (0 x, 1 y, 2 z) that brings one of the sensor's angles to its tolerance.
 double vehicle_tolerance(const RadarConfig& radar, Eigen::Index axis) {
   const MountingPose& pose = radar.mounting_pose;
-  // Looking straight up or down yaw and roll are one: such a radar is judged by its own axes only.
+  // Yaw and roll are the same rotation for a radar that looks straight up or down: only its own axes are tested.
   if (std::abs(std::cos(pose.pitch_rad)) < 0.1) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3d angles = geometry::euler_gradient(pose.yaw_rad, pose.pitch_rad).col(axis).cwiseAbs();
   const AlignmentTolerance& t = radar.tolerance;
@@ -50,10 +50,10 @@ AxisHealth SensorMonitor::Angle::health() const {
 }
 
 void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
-  // After a silence the rate is judged by what comes now, or it would stay low for a window without reason.
+  // The rate restarts after a silence. Otherwise it would stay low for a window after the radar has returned.
   if (!delivers(now_ns)) rate_.clear();
   const std::uint64_t sequence = scan.header.source_sequence;
-  // A gateway that was restarted counts from 1 again: that is no loss.
+  // A restarted gateway counts from 1 again: no scan was lost.
   if (last_sequence_ != 0 && sequence > last_sequence_ + 1) lost_scans_ += sequence - last_sequence_ - 1;
   last_sequence_ = sequence;
   ++scans_;
@@ -88,7 +88,7 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
 }
 
 void SensorMonitor::observe(const SourceStatistics& statistics, std::int64_t now_ns) {
-  // Counters that went back are those of a new process and count from zero.
+  // A smaller counter is that of a new process, which counts from zero.
   const auto grown = [](std::uint64_t now, std::uint64_t before) { return now >= before ? now - before : now; };
   messages_.add(now_ns, grown(statistics.messages, last_statistics_.messages));
   rejected_.add(now_ns, grown(statistics.rejected, last_statistics_.rejected));
@@ -127,31 +127,32 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
   const double suspect = static_cast<double>(suspect_.sum(now_ns));
   const bool is_rejected = rejected > config_.max_rejected_ratio * (published + rejected);
   const bool is_suspect = suspect > config_.max_suspect_ratio * published;
-  const auto says = [&health](std::uint32_t condition) { return (health.conditions & condition) != 0; };
-  const auto say = [&health](DataQualifier effect, ExtendedQualifier reason) {
+  const auto reports = [&health](std::uint32_t condition) { return (health.conditions & condition) != 0; };
+  const auto verdict = [&health](DataQualifier effect, ExtendedQualifier reason) {
     health.data_qualifier = effect;
     health.extended_qualifier = reason;
     return health;
   };
-  // The worst effect first; of two reasons for the same effect the one that a workshop has to act on. What the sensor
-  // said of itself last also explains its silence.
-  if (says(source_condition::kDefective)) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
-  if (says(source_condition::kBlocked)) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kBlocked);
+  // The worst effect first; for equal effects the reason that a workshop must repair. The sensor's last status also
+  // explains its silence, so it is tested before the delivery.
+  if (reports(source_condition::kDefective))
+    return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
+  if (reports(source_condition::kBlocked)) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kBlocked);
   if (!delivers(now_ns)) {
-    if (is_rejected) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
+    if (is_rejected) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
     const bool young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
-    return say(DataQualifier::kNotAvailable, young ? ExtendedQualifier::kInitialising : ExtendedQualifier::kNoData);
+    return verdict(DataQualifier::kNotAvailable, young ? ExtendedQualifier::kInitialising : ExtendedQualifier::kNoData);
   }
-  if (inhibited) return say(DataQualifier::kNotAvailable, ExtendedQualifier::kMisaligned);
-  if (misaligned) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kMisaligned);
-  if (says(source_condition::kPartlyBlocked)) {
-    return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kBeginningBlockage);
+  if (inhibited) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kMisaligned);
+  if (misaligned) return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kMisaligned);
+  if (reports(source_condition::kPartlyBlocked)) {
+    return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kBeginningBlockage);
   }
-  if (is_rejected || is_suspect) return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kInvalidData);
+  if (is_rejected || is_suspect) return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kInvalidData);
   if (rate_.is_full(now_ns) && health.rate_hz < config_.min_rate_ratio * expected_rate_hz_) {
-    return say(DataQualifier::kAvailableReduced, ExtendedQualifier::kRateReduced);
+    return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kRateReduced);
   }
-  return say(DataQualifier::kAvailable, ExtendedQualifier::kNormal);
+  return verdict(DataQualifier::kAvailable, ExtendedQualifier::kNormal);
 }
 
 }  // namespace boresight::health

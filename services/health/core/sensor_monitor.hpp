@@ -1,4 +1,4 @@
-// One radar: does it deliver, at its rate, sound data, and is it straight?
+// Verdict on one radar: delivery, rate, data integrity, mounting error.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace boresight::health {
 
-/// Judged from data only: never from the middleware's opinion on who is connected. Times are CLOCK_MONOTONIC, ns.
+/// Uses received data only, not the middleware's state of connections. Times are CLOCK_MONOTONIC, ns.
 class SensorMonitor {
  public:
-  /// `start_ns`: when supervision began; until the radar's deadline has passed once, a silent radar is initialising.
+  /// `start_ns`: start of supervision. A silent radar is INITIALISING until its deadline has passed once.
   SensorMonitor(const RadarConfig& radar, const Config& config, std::int64_t start_ns);
 
   void observe(const RadarScan& scan, std::int64_t now_ns);
@@ -45,7 +45,7 @@ class SensorMonitor {
   RateWindow rejected_;
   RateWindow suspect_;
   SourceStatistics last_statistics_{};
-  /// One angle about the sensor's own axis and about the vehicle's: either may be known without the other.
+  /// One angle about the sensor's own axis and about the vehicle's axis. Either may be observable without the other.
   struct Angle {
     AxisJudge sensor;
     AxisJudge vehicle;

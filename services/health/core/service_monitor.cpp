@@ -42,14 +42,15 @@ ServiceMonitor::ServiceMonitor(std::uint32_t service, std::int64_t heartbeat_dea
       losses_(config.window_s) {}
 
 void ServiceMonitor::observe(const ServiceStatus& status, std::int64_t now_ns) {
-  if (last_ns_ != kNever && status.incarnation_ns < last_.incarnation_ns) return;  // the last word of a dead process
+  if (last_ns_ != kNever && status.incarnation_ns < last_.incarnation_ns)
+    return;  // a late heartbeat of a process that has ended
   const bool is_new = last_ns_ == kNever || status.incarnation_ns != last_.incarnation_ns;
   if (is_new) {
     if (last_ns_ != kNever) {
       ++restarts_;
       restarted_ns_ = now_ns;
     }
-    // Its counters start at zero. It gets its deadline once to deliver its first output.
+    // Its counters start at zero. Its first output is due one deadline after its start.
     last_.outputs = 0;
     last_.faults = {};
     last_output_ns_ = now_ns;
@@ -57,7 +58,7 @@ void ServiceMonitor::observe(const ServiceStatus& status, std::int64_t now_ns) {
   const std::uint64_t outputs = grown(status.outputs, last_.outputs);
   if (outputs > 0) last_output_ns_ = now_ns;
   outputs_.add(now_ns, outputs);
-  // What a new process missed before it was there is not its fault.
+  // Losses before its start do not count for a new process.
   losses_.add(now_ns, is_new ? 0 : grown(losses_of(status), losses_of(last_)));
   last_ = status;
   last_ns_ = now_ns;

@@ -1,4 +1,4 @@
-// One service: does it live, was it restarted, does it deliver, does it lose anything?
+// Verdict on one service: heartbeats, restarts, output deadline, lost inputs.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace boresight::health {
 
-/// Judged from its heartbeats only. Times are CLOCK_MONOTONIC, ns.
+/// Uses its heartbeats only. Times are CLOCK_MONOTONIC, ns.
 class ServiceMonitor {
  public:
-  /// `output_deadline_ns`: longest time between two outputs while its input flows; 0 if it is not to be judged by that.
+  /// `output_deadline_ns`: longest time between two outputs while input arrives; 0: not tested.
   ServiceMonitor(std::uint32_t service, std::int64_t heartbeat_deadline_ns, std::int64_t output_deadline_ns,
                  const Config& config);
 
   void observe(const ServiceStatus& status, std::int64_t now_ns);
-  /// `input_flows`: whether what the service works on has arrived lately.
+  /// `input_flows`: the input of the service has arrived within its deadline.
   [[nodiscard]] ServiceHealth judge(bool input_flows, std::int64_t now_ns);
 
   /// True if its output counter grew within the output deadline.

@@ -22,7 +22,7 @@ std::int64_t output_deadline_ns(Service service) {
     case Service::kTracker:
       return catalogue::topic(TopicId::kTrackList).deadline_ns;
     default:
-      return 0;  // the gateway's input is the wire, which the radars' own deadlines watch; health is this one
+      return 0;  // gateway: the deadlines of the radars cover its input; health: this service
   }
 }
 
@@ -32,7 +32,7 @@ DataQualifier overall_of(const HealthReport& report) {
   const auto is = [](DataQualifier wanted) {
     return [wanted](const SensorHealth& sensor) { return sensor.data_qualifier == wanted; };
   };
-  // Without the estimator the corrector goes on with what it has; without one of the others no track comes out.
+  // The corrector continues without the estimator. Without any other stage no track list is published.
   const bool chain_is_broken = std::any_of(report.services.begin(), services_end, [](const ServiceHealth& s) {
     const bool carries_data = s.service != static_cast<std::uint32_t>(Service::kAlignmentEstimator) &&
                               s.service != static_cast<std::uint32_t>(Service::kHealth);
@@ -107,7 +107,7 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
     out.sensors[i] = sensors_[i].judge(now_ns);
     scans_flow = scans_flow || sensors_[i].delivers(now_ns);
   }
-  // A stage is late only if the one before it is not: of a broken chain, the first link is named.
+  // A stage is late only if the stage before it delivers: a broken chain is reported at its first broken stage.
   const auto delivers = [&](Service s) { return services_[static_cast<std::size_t>(s)].delivers(now_ns); };
   for (std::size_t i = 0; i < services_.size(); ++i) {
     const auto service = static_cast<Service>(i);

@@ -1,4 +1,4 @@
-// The whole system's health: every radar, every service, and how long data take on their way.
+// Health of the whole system: every radar, every service, and the latency from reception to track list.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace boresight::health {
 
-/// Messages in, a report out. `now_ns` is CLOCK_MONOTONIC and does not go back. Data of radars that the vehicle file
-/// does not know are not judged.
+/// Messages in, a report out. `now_ns` is CLOCK_MONOTONIC and does not go back. Data of radars that are not in the
+/// vehicle file are ignored.
 class Supervision {
  public:
   Supervision(const VehicleConfig& vehicle, const Config& config, std::int64_t start_ns);
@@ -37,8 +37,8 @@ class Supervision {
   Config config_;
   std::vector<SensorMonitor> sensors_;
   std::vector<ServiceMonitor> services_;
-  LatencyHistogram latencies_;           // of the window that runs
-  LatencyHistogram complete_latencies_;  // of the one before
+  LatencyHistogram latencies_;           // of the current window
+  LatencyHistogram complete_latencies_;  // of the previous window
   std::int64_t window_begin_ns_;
 };
 

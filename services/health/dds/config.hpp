@@ -1,4 +1,4 @@
-// Where diagnostics go.
+// Domain, interfaces and topics of the diagnostics.
 #pragma once
 
 #include <cstdint>

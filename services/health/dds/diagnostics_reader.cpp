@@ -8,8 +8,8 @@
 namespace boresight::dds {
 
 namespace {
-constexpr int kLatestOfEachRadar = 1;
-constexpr int kArrays = 10;
+constexpr int kReadLatestOfEachRadar = 1;
+constexpr int kReadArrays = 10;
 }  // namespace
 
 template <typename Sample>
@@ -25,12 +25,12 @@ DiagnosticsReader::DiagnosticsReader(const Config& config, OnSensorHealth on_sen
     : sensor_health_(on_sensor_health), diagnostic_array_(on_diagnostic_array), participant_(config, "boresight") {
   using eprosima::fastdds::dds::TypeSupport;
   if (on_sensor_health) {
-    participant_.reader(kSensorHealthTopic, TypeSupport(new diagnostics::SensorHealthPubSubType()), kLatestOfEachRadar,
-                        sensor_health_);
+    participant_.reader(kSensorHealthTopic, TypeSupport(new diagnostics::SensorHealthPubSubType()),
+                        kReadLatestOfEachRadar, sensor_health_);
   }
   if (on_diagnostic_array) {
     participant_.reader(kDiagnosticsTopic, TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()),
-                        kArrays, diagnostic_array_);
+                        kReadArrays, diagnostic_array_);
   }
 }
 

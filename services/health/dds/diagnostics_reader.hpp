@@ -1,4 +1,4 @@
-// What a diagnosis tool sees: samples of both topics, delivered to callbacks.
+// Reader of a diagnosis tool: delivers samples of both topics to callbacks.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace boresight::dds {
 
-/// Callbacks run in the middleware's thread, one at a time for each topic. An empty callback leaves its topic alone.
+/// Callbacks run in the middleware's thread, one at a time for each topic. A topic with an empty callback is not read.
 class DiagnosticsReader {
  public:
   using OnSensorHealth = std::function<void(const diagnostics::SensorHealth&)>;
@@ -33,7 +33,7 @@ class DiagnosticsReader {
 
   Listener<diagnostics::SensorHealth> sensor_health_;
   Listener<diagnostic_msgs::msg::dds_::DiagnosticArray_> diagnostic_array_;
-  Participant participant_;  // last: its end stops the listeners
+  Participant participant_;  // last member: its destructor stops the listeners first
 };
 
 }  // namespace boresight::dds

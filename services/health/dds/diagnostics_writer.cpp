@@ -9,8 +9,8 @@
 namespace boresight::dds {
 
 namespace {
-constexpr int kLatestOfEachRadar = 1;
-constexpr int kArrays = 1;
+constexpr int kWrittenLatestOfEachRadar = 1;
+constexpr int kWrittenArrays = 1;
 }  // namespace
 
 DiagnosticsWriter::DiagnosticsWriter(const Config& config, const VehicleConfig& vehicle)
@@ -18,11 +18,11 @@ DiagnosticsWriter::DiagnosticsWriter(const Config& config, const VehicleConfig& 
       participant_(config, "boresight-health"),
       sensor_health_(participant_.writer(kSensorHealthTopic,
                                          eprosima::fastdds::dds::TypeSupport(new diagnostics::SensorHealthPubSubType()),
-                                         kLatestOfEachRadar)),
+                                         kWrittenLatestOfEachRadar)),
       diagnostics_(participant_.writer(
           kDiagnosticsTopic,
-          eprosima::fastdds::dds::TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()), kArrays)) {
-}
+          eprosima::fastdds::dds::TypeSupport(new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType()),
+          kWrittenArrays)) {}
 
 bool DiagnosticsWriter::write(const HealthReport& report, std::int64_t time_ns) {
   bool taken = true;

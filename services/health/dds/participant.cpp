@@ -15,7 +15,7 @@ namespace {
 
 template <typename T>
 T* made(T* thing, const std::string& what) {
-  if (thing == nullptr) throw std::runtime_error("DDS: cannot make " + what);
+  if (thing == nullptr) throw std::runtime_error("DDS: cannot create " + what);
   return thing;
 }
 
@@ -62,7 +62,7 @@ fast::DataWriter& Participant::writer(const std::string& name, fast::TypeSupport
   }
   fast::DataWriterQos qos = fast::DATAWRITER_QOS_DEFAULT;
   set_common(qos, depth);
-  // The one who sends is the main thread of a service: it never waits for a slow reader.
+  // The sender is the main thread of the service and must not wait for a slow reader.
   qos.publish_mode().kind = fast::ASYNCHRONOUS_PUBLISH_MODE;
   qos.reliability().max_blocking_time = {0, 1'000'000};
   return *made(publisher_->create_datawriter(&topic(name, type), qos), "a writer of " + name);

@@ -1,4 +1,4 @@
-// One participant of a DDS domain, over UDP only: participants that are killed leave nothing behind in /dev/shm.
+// One participant of a DDS domain, over UDP only: a killed participant leaves no file in /dev/shm.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace boresight::dds {
 
-/// Throws std::runtime_error, naming what could not be made, from the constructor and from the functions.
+/// The constructor and the functions throw std::runtime_error with the name of the entity that could not be created.
 class Participant {
  public:
   Participant(const Config& config, const std::string& name);
@@ -24,7 +24,7 @@ class Participant {
   /// Reliable and transient-local, the last `depth` samples of each instance.
   [[nodiscard]] eprosima::fastdds::dds::DataWriter& writer(const std::string& topic,
                                                            eprosima::fastdds::dds::TypeSupport type, int depth);
-  /// Calls `listener` from the middleware's thread; it has to outlive the participant.
+  /// Calls `listener` from the middleware's thread. The listener must outlive the participant.
   eprosima::fastdds::dds::DataReader& reader(const std::string& topic, eprosima::fastdds::dds::TypeSupport type,
                                              int depth, eprosima::fastdds::dds::DataReaderListener& listener);
 

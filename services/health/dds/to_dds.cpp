@@ -7,6 +7,8 @@
 
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/names.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
 
 namespace boresight::dds {
 
@@ -14,8 +16,6 @@ namespace {
 
 using diagnostic_msgs::msg::dds_::DiagnosticStatus_;
 using diagnostic_msgs::msg::dds_::KeyValue_;
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
 
 std::string radar_name(const VehicleConfig& vehicle, std::uint32_t id) {
@@ -55,11 +55,12 @@ void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth
     add_value(status, name, "not observable");
     return;
   }
-  add_value(
-      status, name,
-      fmt::format("{:+.2f} deg, std {:.3f} deg, tolerance {:.2f} deg{}{}", axis.error_rad * kDegrees,
-                  axis.std_rad * kDegrees, axis.tolerance_rad * kDegrees, axis.beyond_tolerance != 0 ? ", beyond" : "",
-                  axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
+  add_value(status, name,
+            fmt::format("{}, tolerance {:.2f} deg{}{}",
+                        text::with_std(axis.error_rad * kDegreesPerRadian, axis.std_rad * kDegreesPerRadian, " deg",
+                                       text::Sign::kAlways),
+                        axis.tolerance_rad * kDegreesPerRadian, axis.beyond_tolerance != 0 ? ", beyond tolerance" : "",
+                        axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
 }
 
 DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& vehicle) {
@@ -78,13 +79,14 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   add_value(status, "lateral displacement",
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
   add_value(status, "step_changes", fmt::format("{}", sensor.step_changes));
-  add_value(status, "speed scale", fmt::format("{:.4f}, std {:.4f}", sensor.speed_scale, sensor.speed_scale_std));
+  add_value(status, "speed scale", text::with_std(sensor.speed_scale, sensor.speed_scale_std));
   add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
-  add_value(status, "scans missed on the wire", fmt::format("{}", sensor.missed_scans));
+  add_value(status, "scans lost before the gateway", fmt::format("{}", sensor.missed_scans));
   add_value(status, "suspect scans", fmt::format("{}", sensor.suspect_scans));
   add_value(status, "end-to-end protection",
             fmt::format("{} lost, {} repeated, {} wrong", sensor.e2e_lost, sensor.e2e_repeated, sensor.e2e_wrong));
-  add_value(status, "says of itself", sensor.conditions == 0 ? "nothing" : words_of_conditions(sensor.conditions));
+  add_value(status, "reported by the sensor",
+            sensor.conditions == 0 ? "nothing" : words_of_conditions(sensor.conditions));
   return status;
 }
 

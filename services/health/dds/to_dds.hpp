@@ -1,4 +1,4 @@
-// A health report as the types that go out by DDS.
+// A health report as DDS types.
 #pragma once
 
 #include <cstdint>

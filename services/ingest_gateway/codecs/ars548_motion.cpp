@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "interfaces/wire/ars548.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/someip/big_endian.hpp"
 
 namespace boresight::ingest::ars548 {
@@ -11,8 +12,6 @@ namespace boresight::ingest::ars548 {
 namespace layout = wire::ars548;
 
 namespace {
-
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 // What the sensor accepts, as the open-source driver nebula has it.
 constexpr double kMaxAcceleration_mps2 = 65.0;
@@ -47,9 +46,11 @@ std::span<const MotionDatagram> MotionFeed::encode(const EgoMotion& ego, std::in
     *begin(layout::kDrivingDirection, datagrams_[count++]) = static_cast<std::uint8_t>(!moving_ ? 0 : backward ? 2 : 1);
     put(layout::kLongitudinalAcceleration_mps2, ego.longitudinal_acceleration_mps2, kMaxAcceleration_mps2);
   }
-  if (ego.has(ego_field::kYawRate)) put(layout::kYawRate_degps, ego.yaw_rate_radps * kDegrees, kMaxYawRate_degps);
+  if (ego.has(ego_field::kYawRate))
+    put(layout::kYawRate_degps, ego.yaw_rate_radps * kDegreesPerRadian, kMaxYawRate_degps);
   if (ego.has(ego_field::kSteeringAngle) && config_.steering_ratio > 0.0) {
-    put(layout::kSteeringAngle_deg, ego.steering_angle_rad * kDegrees / config_.steering_ratio, kMaxSteeringAngle_deg);
+    put(layout::kSteeringAngle_deg, ego.steering_angle_rad * kDegreesPerRadian / config_.steering_ratio,
+        kMaxSteeringAngle_deg);
   }
   if (count > 0) last_ns_ = now_ns;
   return std::span(datagrams_).first(count);

@@ -7,12 +7,12 @@
 
 namespace boresight::ingest {
 
-namespace layout = wire::srr520;
+namespace srr520_layout = wire::srr520;
 
 namespace {
 
-// A list takes some 5 ms on the bus; its frames follow one another.
-constexpr std::int64_t kSilence_ns = 50'000'000;
+// Time-out within a list, which takes some 5 ms on the bus.
+constexpr std::int64_t kSrr520Silence_ns = 50'000'000;
 
 std::uint16_t read_u16(const std::uint8_t* p) {
   return static_cast<std::uint16_t>(p[0] << 8 | p[1]);
@@ -23,52 +23,52 @@ std::uint32_t read_u32(const std::uint8_t* p) {
 }
 
 const char* name(std::size_t list) {
-  return layout::kLists[list].name.data();
+  return srr520_layout::kLists[list].name.data();
 }
 
-unsigned number_of_entries(const layout::ListLayout& list, const std::uint8_t* header) {
+unsigned number_of_entries(const srr520_layout::ListLayout& list, const std::uint8_t* header) {
   const std::uint8_t* const p = header + list.count_offset;
   return list.count_bytes == 2 ? read_u16(p) : *p;
 }
 
 }  // namespace
 
-Srr520Detection decode_srr520_detection(std::span<const std::uint8_t, layout::kDetectionBytes> record) {
+Srr520Detection decode_srr520_detection(std::span<const std::uint8_t, srr520_layout::kDetectionBytes> record) {
   Srr520Detection detection{};
-  detection.range_m = wire::extract(layout::kRange_m, record);
-  detection.azimuth_rad = wire::extract(layout::kAzimuth_rad, record);
-  detection.range_rate_mps = wire::extract(layout::kRangeRate_mps, record);
-  const bool has_rcs = wire::extract_raw(layout::kRcs_dbsm, record) != layout::kRcsUnavailable;
-  detection.rcs_dbsm = has_rcs ? wire::extract(layout::kRcs_dbsm, record) : 0.0;
-  detection.snr_db = wire::extract(layout::kSnr_db, record);
-  for (std::size_t i = 0; i < layout::kHypotheses.size(); ++i) {
-    const bool set = wire::extract_raw(layout::kHypotheses[i], record) != 0;
+  detection.range_m = wire::extract(srr520_layout::kRange_m, record);
+  detection.azimuth_rad = wire::extract(srr520_layout::kAzimuth_rad, record);
+  detection.range_rate_mps = wire::extract(srr520_layout::kRangeRate_mps, record);
+  const bool has_rcs = wire::extract_raw(srr520_layout::kRcs_dbsm, record) != srr520_layout::kRcsUnavailable;
+  detection.rcs_dbsm = has_rcs ? wire::extract(srr520_layout::kRcs_dbsm, record) : 0.0;
+  detection.snr_db = wire::extract(srr520_layout::kSnr_db, record);
+  for (std::size_t i = 0; i < srr520_layout::kHypotheses.size(); ++i) {
+    const bool set = wire::extract_raw(srr520_layout::kHypotheses[i], record) != 0;
     detection.hypotheses = static_cast<std::uint8_t>(detection.hypotheses | static_cast<unsigned>(set) << i);
   }
-  detection.valid = wire::extract_raw(layout::kAzimuth_rad, record) != layout::kAzimuthUnavailable &&
-                    wire::extract_raw(layout::kRangeRate_mps, record) != layout::kRangeRateUnavailable;
+  detection.valid = wire::extract_raw(srr520_layout::kAzimuth_rad, record) != srr520_layout::kAzimuthUnavailable &&
+                    wire::extract_raw(srr520_layout::kRangeRate_mps, record) != srr520_layout::kRangeRateUnavailable;
   return detection;
 }
 
 void Srr520::take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) {
   if (frame.kind == recording::FrameKind::kUdp || frame.can_extended || frame.can_remote) return;
   tick(stamp.received_ns, output);
-  if (frame.can_id == layout::kStatusId) return take_status(frame.payload, output);
-  if (frame.can_id == layout::kClosingId) return take_closing(frame.payload, output);
-  for (std::size_t i = 0; i < layout::kLists.size(); ++i) {
-    if (frame.can_id == layout::kLists[i].header_id) return take_header(i, frame.payload, stamp, output);
-    if (frame.can_id == layout::kLists[i].record_id) return take_records(i, frame.payload, stamp, output);
+  if (frame.can_id == srr520_layout::kStatusId) return take_status(frame.payload, output);
+  if (frame.can_id == srr520_layout::kClosingId) return take_closing(frame.payload, output);
+  for (std::size_t i = 0; i < srr520_layout::kLists.size(); ++i) {
+    if (frame.can_id == srr520_layout::kLists[i].header_id) return take_header(i, frame.payload, stamp, output);
+    if (frame.can_id == srr520_layout::kLists[i].record_id) return take_records(i, frame.payload, stamp, output);
   }
 }
 
 void Srr520::take_status(std::span<const std::uint8_t> payload, DecoderOutput& output) {
-  if (payload.size() != layout::kStatusBytes) {
+  if (payload.size() != srr520_layout::kStatusBytes) {
     report(output, Fault::kWireLength, "SRR520 status frame of %zu bytes, must be %zu", payload.size(),
-           layout::kStatusBytes);
+           srr520_layout::kStatusBytes);
     return;
   }
-  const unsigned crc = read_u16(&payload[layout::status::kCrc]);
-  const unsigned computed = e2e::crc16_ccitt_false(payload.first(layout::status::kCrc));
+  const unsigned crc = read_u16(&payload[srr520_layout::status::kCrc]);
+  const unsigned computed = e2e::crc16_ccitt_false(payload.first(srr520_layout::status::kCrc));
   if (crc != computed) {
     report(output, Fault::kWireValue, "SRR520 status frame: CRC %04x, computed %04x", crc, computed);
     return;
@@ -77,22 +77,25 @@ void Srr520::take_status(std::span<const std::uint8_t> payload, DecoderOutput& o
   const auto judge = [&](std::size_t offset, unsigned bits, std::uint32_t condition) {
     if ((payload[offset] & bits) != 0) conditions |= condition;
   };
-  judge(layout::status::kDefective, layout::status::kNow, source_condition::kDefective);
-  judge(layout::status::kSupplyVoltage, layout::status::kNowOfTwo, source_condition::kSupply);
-  judge(layout::status::kTemperature, layout::status::kNowOfTwo, source_condition::kTemperature);
-  judge(layout::status::kDynamicsInvalid, layout::status::kNowSpeedOrDirection, source_condition::kWithoutEgoMotion);
-  judge(layout::status::kYawRateInvalid, layout::status::kNowOfOne, source_condition::kWithoutEgoMotion);
-  if (payload[layout::status::kSyncStatus] != layout::kSyncOk) conditions |= source_condition::kUnsynchronised;
+  judge(srr520_layout::status::kDefective, srr520_layout::status::kNow, source_condition::kDefective);
+  judge(srr520_layout::status::kSupplyVoltage, srr520_layout::status::kNowOfTwo, source_condition::kSupply);
+  judge(srr520_layout::status::kTemperature, srr520_layout::status::kNowOfTwo, source_condition::kTemperature);
+  judge(srr520_layout::status::kDynamicsInvalid, srr520_layout::status::kNowSpeedOrDirection,
+        source_condition::kWithoutEgoMotion);
+  judge(srr520_layout::status::kYawRateInvalid, srr520_layout::status::kNowOfOne, source_condition::kWithoutEgoMotion);
+  if (payload[srr520_layout::status::kSyncStatus] != srr520_layout::kSyncOk)
+    conditions |= source_condition::kUnsynchronised;
   output.report_conditions(conditions);
 }
 
 void Srr520::tick(std::int64_t now_ns, DecoderOutput& output) {
-  if (open_ != kNone && now_ns - last_ns_ > kSilence_ns) reject_unclosed(output);
+  if (open_ != kNone && now_ns - last_ns_ > kSrr520Silence_ns) reject_unclosed(output);
 }
 
 void Srr520::reject_unclosed(DecoderOutput& output) {
-  report(output, Fault::kWireLength, "SRR520 %s list rejected: closing frame is missing, %zu of %zu record frames came",
-         name(open_), received_.count(), layout::kLists[open_].number_of_frames);
+  report(output, Fault::kWireLength,
+         "SRR520 %s list rejected: closing frame is missing, %zu of %zu record frames received", name(open_),
+         received_.count(), srr520_layout::kLists[open_].number_of_frames);
   rejected_ = open_;
   open_ = kNone;
 }
@@ -101,9 +104,9 @@ void Srr520::take_header(std::size_t list, std::span<const std::uint8_t> payload
                          DecoderOutput& output) {
   if (open_ != kNone) reject_unclosed(output);
   started_ = true;
-  if (payload.size() != layout::kHeaderBytes) {
+  if (payload.size() != srr520_layout::kHeaderBytes) {
     report(output, Fault::kWireLength, "SRR520 %s list rejected: header of %zu bytes, must be %zu", name(list),
-           payload.size(), layout::kHeaderBytes);
+           payload.size(), srr520_layout::kHeaderBytes);
     rejected_ = list;
     return;
   }
@@ -120,7 +123,7 @@ void Srr520::take_records(std::size_t list, std::span<const std::uint8_t> payloa
   if (list != open_) {
     if (list == rejected_ || !started_) return;
     report(output, Fault::kWireLength, "SRR520 %s list rejected: its header frame %u is missing", name(list),
-           layout::kLists[list].header_id);
+           srr520_layout::kLists[list].header_id);
     rejected_ = list;
     return;
   }
@@ -128,55 +131,57 @@ void Srr520::take_records(std::size_t list, std::span<const std::uint8_t> payloa
     rejected_ = open_;
     open_ = kNone;
   };
-  if (payload.size() != layout::kRecordFrameBytes) {
+  if (payload.size() != srr520_layout::kRecordFrameBytes) {
     report(output, Fault::kWireLength, "SRR520 %s list rejected: record frame of %zu bytes, must be %zu", name(list),
-           payload.size(), layout::kRecordFrameBytes);
+           payload.size(), srr520_layout::kRecordFrameBytes);
     return reject();
   }
-  const unsigned number = payload[layout::kFrameNumber];
-  const unsigned sequence = payload[layout::kFrameSequence];
-  if (number >= layout::kLists[list].number_of_frames) {
+  const unsigned number = payload[srr520_layout::kFrameNumber];
+  const unsigned sequence = payload[srr520_layout::kFrameSequence];
+  if (number >= srr520_layout::kLists[list].number_of_frames) {
     report(output, Fault::kWireValue, "SRR520 %s list rejected: frame number %u, allowed 0 … %zu", name(list), number,
-           layout::kLists[list].number_of_frames - 1);
+           srr520_layout::kLists[list].number_of_frames - 1);
     return reject();
   }
-  if (sequence != bytes_[layout::header::kSequenceCounter]) {
+  if (sequence != bytes_[srr520_layout::header::kSequenceCounter]) {
     report(output, Fault::kWireValue, "SRR520 %s list rejected: sequence counter %u in record frame %u, header has %u",
-           name(list), sequence, number, unsigned{bytes_[layout::header::kSequenceCounter]});
+           name(list), sequence, number, unsigned{bytes_[srr520_layout::header::kSequenceCounter]});
     return reject();
   }
   std::copy(payload.begin(), payload.end(),
-            bytes_.begin() + static_cast<std::ptrdiff_t>(layout::kHeaderBytes + number * layout::kRecordFrameBytes));
+            bytes_.begin() +
+                static_cast<std::ptrdiff_t>(srr520_layout::kHeaderBytes + number * srr520_layout::kRecordFrameBytes));
   received_.set(number);
   last_ns_ = stamp.received_ns;
 }
 
 void Srr520::take_closing(std::span<const std::uint8_t> payload, DecoderOutput& output) {
-  const bool readable = payload.size() == layout::kClosingBytes && payload[layout::closing::kListId] < kNone;
+  const bool readable =
+      payload.size() == srr520_layout::kClosingBytes && payload[srr520_layout::closing::kListId] < kNone;
   if (!readable) {
     if (!started_) return;
-    if (payload.size() != layout::kClosingBytes) {
+    if (payload.size() != srr520_layout::kClosingBytes) {
       report(output, Fault::kWireLength, "SRR520 closing frame of %zu bytes, must be %zu", payload.size(),
-             layout::kClosingBytes);
+             srr520_layout::kClosingBytes);
     } else {
       report(output, Fault::kWireValue, "SRR520 closing frame: list id %u, allowed 0 … %zu",
-             unsigned{payload[layout::closing::kListId]}, kNone - 1);
+             unsigned{payload[srr520_layout::closing::kListId]}, kNone - 1);
     }
     if (open_ != kNone) reject_unclosed(output);
     return;
   }
-  const std::size_t list = payload[layout::closing::kListId];
+  const std::size_t list = payload[srr520_layout::closing::kListId];
   if (list != open_) {
     if (open_ != kNone) reject_unclosed(output);
     if (list != rejected_ && started_) {
       report(output, Fault::kWireLength, "SRR520 %s list rejected: its header frame %u is missing", name(list),
-             layout::kLists[list].header_id);
+             srr520_layout::kLists[list].header_id);
     }
     rejected_ = kNone;
     return;
   }
-  if (is_sound(read_u16(&payload[layout::closing::kCrc]), output)) {
-    if (list == layout::kObjectList) {
+  if (is_sound(read_u16(&payload[srr520_layout::closing::kCrc]), output)) {
+    if (list == srr520_layout::kObjectList) {
       publish_ego(output);
     } else {
       publish_detections(output);
@@ -186,11 +191,12 @@ void Srr520::take_closing(std::span<const std::uint8_t> payload, DecoderOutput& 
 }
 
 std::span<const std::uint8_t> Srr520::collected() const {
-  return {bytes_.data(), layout::kHeaderBytes + layout::kLists[open_].number_of_frames * layout::kRecordFrameBytes};
+  return {bytes_.data(), srr520_layout::kHeaderBytes +
+                             srr520_layout::kLists[open_].number_of_frames * srr520_layout::kRecordFrameBytes};
 }
 
 bool Srr520::is_sound(std::uint16_t crc, DecoderOutput& output) const {
-  const layout::ListLayout& list = layout::kLists[open_];
+  const srr520_layout::ListLayout& list = srr520_layout::kLists[open_];
   if (received_.count() != list.number_of_frames) {
     std::size_t first = 0;
     while (received_[first]) ++first;
@@ -212,12 +218,12 @@ bool Srr520::is_sound(std::uint16_t crc, DecoderOutput& output) const {
            entries, capacity);
     return false;
   }
-  const unsigned sync = bytes_[layout::header::kSyncStatus];
-  if (sync < layout::kSyncOk || sync > layout::kSyncMax) {
+  const unsigned sync = bytes_[srr520_layout::header::kSyncStatus];
+  if (sync < srr520_layout::kSyncOk || sync > srr520_layout::kSyncMax) {
     report(output, Fault::kWireValue, "SRR520 %s list rejected: sync status %u, allowed 1 … 3", name(open_), sync);
     return false;
   }
-  const std::uint32_t nanoseconds = read_u32(&bytes_[layout::header::kNanoseconds]);
+  const std::uint32_t nanoseconds = read_u32(&bytes_[srr520_layout::header::kNanoseconds]);
   if (nanoseconds >= 1'000'000'000) {
     report(output, Fault::kWireValue, "SRR520 %s list rejected: nanoseconds of the stamp %u, allowed 0 … 999999999",
            name(open_), nanoseconds);
@@ -227,14 +233,14 @@ bool Srr520::is_sound(std::uint16_t crc, DecoderOutput& output) const {
 }
 
 SensorStamp Srr520::sensor_stamp() {
-  // The clock since power-up wraps every 71 minutes; differences of it do not.
-  const std::uint32_t clock_us = read_u32(&bytes_[layout::header::kSensorClock_us]);
+  // The clock since power-up wraps every 71 minutes; its differences are correct across the wrap.
+  const std::uint32_t clock_us = read_u32(&bytes_[srr520_layout::header::kSensorClock_us]);
   sensor_time_us_ = sensor_clock_us_ ? sensor_time_us_ + static_cast<std::int32_t>(clock_us - *sensor_clock_us_)
                                      : std::int64_t{clock_us};
   sensor_clock_us_ = clock_us;
-  if (bytes_[layout::header::kSyncStatus] != layout::kSyncOk) return {sensor_time_us_ * 1000, false};
-  return {static_cast<std::int64_t>(read_u32(&bytes_[layout::header::kSeconds])) * 1'000'000'000 +
-              read_u32(&bytes_[layout::header::kNanoseconds]),
+  if (bytes_[srr520_layout::header::kSyncStatus] != srr520_layout::kSyncOk) return {sensor_time_us_ * 1000, false};
+  return {static_cast<std::int64_t>(read_u32(&bytes_[srr520_layout::header::kSeconds])) * 1'000'000'000 +
+              read_u32(&bytes_[srr520_layout::header::kNanoseconds]),
           true};
 }
 
@@ -243,14 +249,15 @@ void Srr520::publish_detections(DecoderOutput& output) {
   RadarScan* const message = output.begin_scan();
   if (message == nullptr) return;
   RadarScan& scan = *message;
-  // The code of the range rate ends at ±15 m/s, while what is ambiguous by 21 … 23 m/s is not confined to that: the
-  // number can only be the period of the ambiguity, so that the interval is half of it to either side.
+  // The code of the range rate ends at ±15 m/s, but the ambiguity is 21 … 23 m/s. This number must therefore be the
+  // period of the ambiguity, and the unambiguous interval is ± half of it.
   const double ambiguous_mps =
-      read_u16(&bytes_[layout::header::kAmbiguousVelocity]) * layout::kSpeedFactor_mps + layout::kSpeedOffset_mps;
+      read_u16(&bytes_[srr520_layout::header::kAmbiguousVelocity]) * srr520_layout::kSpeedFactor_mps +
+      srr520_layout::kSpeedOffset_mps;
   const bool has_interval = ambiguous_mps > 0.0;
   const double limit_mps = has_interval ? 0.5 * ambiguous_mps : 0.0;
-  const std::size_t count = number_of_entries(layout::kLists[open_], bytes_.data());
-  scan.cycle_counter = read_u32(&bytes_[layout::header::kCycleCounter]);
+  const std::size_t count = number_of_entries(srr520_layout::kLists[open_], bytes_.data());
+  scan.cycle_counter = read_u32(&bytes_[srr520_layout::header::kCycleCounter]);
   scan.number_of_valid_detections = static_cast<std::uint32_t>(count);
   scan.dropped_detections = 0;
   scan.integrity = 0;
@@ -258,9 +265,10 @@ void Srr520::publish_detections(DecoderOutput& output) {
   scan.range_rate_min_mps = static_cast<float>(-limit_mps);
   scan.range_rate_max_mps = static_cast<float>(limit_mps);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = layout::kHeaderBytes + i / 10 * layout::kRecordFrameBytes + i % 10 * layout::kDetectionBytes;
+    const std::size_t at = srr520_layout::kHeaderBytes + i / 10 * srr520_layout::kRecordFrameBytes +
+                           i % 10 * srr520_layout::kDetectionBytes;
     const Srr520Detection detection =
-        decode_srr520_detection(std::span(bytes_).subspan(at).first<layout::kDetectionBytes>());
+        decode_srr520_detection(std::span(bytes_).subspan(at).first<srr520_layout::kDetectionBytes>());
     scan.range_m[i] = static_cast<float>(detection.range_m);
     scan.azimuth_rad[i] = static_cast<float>(detection.azimuth_rad);
     scan.elevation_rad[i] = 0.0F;
@@ -279,14 +287,14 @@ void Srr520::publish_detections(DecoderOutput& output) {
 
 void Srr520::publish_ego(DecoderOutput& output) const {
   EgoReading reading;
-  const std::uint16_t speed = read_u16(&bytes_[layout::header::kEgoSpeed]);
-  const std::uint16_t yaw_rate = read_u16(&bytes_[layout::header::kEgoYawRate]);
-  if (speed <= layout::kCodeMax) {
-    reading.speed_mps = speed * layout::kSpeedFactor_mps + layout::kSpeedOffset_mps;
+  const std::uint16_t speed = read_u16(&bytes_[srr520_layout::header::kEgoSpeed]);
+  const std::uint16_t yaw_rate = read_u16(&bytes_[srr520_layout::header::kEgoYawRate]);
+  if (speed <= srr520_layout::kCodeMax) {
+    reading.speed_mps = speed * srr520_layout::kSpeedFactor_mps + srr520_layout::kSpeedOffset_mps;
     reading.speed_is_signed = true;
   }
-  if (yaw_rate <= layout::kCodeMax) {
-    reading.yaw_rate_radps = yaw_rate * layout::kYawRateFactor_radps + layout::kYawRateOffset_radps;
+  if (yaw_rate <= srr520_layout::kCodeMax) {
+    reading.yaw_rate_radps = yaw_rate * srr520_layout::kYawRateFactor_radps + srr520_layout::kYawRateOffset_radps;
   }
   output.take_ego(reading, first_);
 }

@@ -5,54 +5,54 @@
 
 namespace boresight::ingest {
 
-namespace layout = wire::toyota;
+namespace toyota_layout = wire::toyota;
 
 namespace {
 
-// A cycle's frames come within some 10 ms of its 50 ms.
+// Time-out within a cycle. Its frames arrive within some 10 ms; a cycle takes 50 ms.
 constexpr std::int64_t kPauseBetweenCycles_ns = 20'000'000;
-constexpr std::uint32_t kAllTracks = (1u << layout::kNumberOfTracks) - 1;
+constexpr std::uint32_t kAllTracks = (1u << toyota_layout::kNumberOfTracks) - 1;
 
 }  // namespace
 
 void ToyotaRadar::take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) {
   const std::uint32_t id = frame.can_id;
   const std::span<const std::uint8_t> payload = frame.payload;
-  const bool is_a = id >= layout::kTrackA && id < layout::kTrackA + layout::kNumberOfTracks;
-  const bool is_b = id >= layout::kTrackB && id < layout::kTrackB + layout::kNumberOfTracks;
+  const bool is_a = id >= toyota_layout::kTrackA && id < toyota_layout::kTrackA + toyota_layout::kNumberOfTracks;
+  const bool is_b = id >= toyota_layout::kTrackB && id < toyota_layout::kTrackB + toyota_layout::kNumberOfTracks;
   if ((!is_a && !is_b) || frame.can_extended) return;
-  if (payload.size() < (is_a ? layout::kTrackABytes : layout::kTrackBMinBytes) || payload.size() > 8) {
+  if (payload.size() < (is_a ? toyota_layout::kTrackABytes : toyota_layout::kTrackBMinBytes) || payload.size() > 8) {
     output.fault(Fault::kWireLength,
                  is_a ? "Toyota TRACK_A: frame is not 8 bytes long" : "Toyota TRACK_B: frame is not 6 … 8 bytes long");
     return;
   }
-  if (layout::checksum(id, payload) != payload.back()) {
+  if (toyota_layout::checksum(id, payload) != payload.back()) {
     output.fault(Fault::kWireValue,
                  is_a ? "Toyota TRACK_A: checksum does not match" : "Toyota TRACK_B: checksum does not match");
     return;
   }
-  const std::uint32_t slot = id - (is_a ? layout::kTrackA : layout::kTrackB);
+  const std::uint32_t slot = id - (is_a ? toyota_layout::kTrackA : toyota_layout::kTrackB);
   const std::uint32_t bit = 1u << slot;
-  // A frame that comes again, or after a pause, belongs to the next cycle: the present one will not be completed any
-  // more. The order of the frames within a cycle says nothing: A and B frames of recorded cycles mix in any order.
+  // A repeated frame, or one after a pause, belongs to the next cycle; the current one remains incomplete. The order of
+  // frames within a cycle is not used: A and B frames of recorded cycles mix in any order.
   const bool came_before = ((is_a ? seen_a_ : seen_b_) & bit) != 0;
   if (came_before || (frames_ > 0 && stamp.received_ns - last_ns_ > kPauseBetweenCycles_ns)) finish(output);
   last_ns_ = stamp.received_ns;
   if (frames_++ == 0) {
     first_ = stamp;
-    counter_ = static_cast<std::uint32_t>(wire::extract_raw(layout::kCounter, payload));
+    counter_ = static_cast<std::uint32_t>(wire::extract_raw(toyota_layout::kCounter, payload));
   }
   Slot& track = slots_[slot];
   if (is_a) {
     seen_a_ |= bit;
-    track.valid = wire::extract_raw(layout::kValid, payload) != 0;
-    track.longitudinal_m = wire::extract(layout::kLongitudinalDistance_m, payload);
-    track.lateral_m = -wire::extract(layout::kLateralDistance_m, payload);
-    track.relative_speed_mps = wire::extract(layout::kRelativeSpeed_mps, payload);
+    track.valid = wire::extract_raw(toyota_layout::kValid, payload) != 0;
+    track.longitudinal_m = wire::extract(toyota_layout::kLongitudinalDistance_m, payload);
+    track.lateral_m = -wire::extract(toyota_layout::kLateralDistance_m, payload);
+    track.relative_speed_mps = wire::extract(toyota_layout::kRelativeSpeed_mps, payload);
   } else {
     seen_b_ |= bit;
     track.has_score = true;
-    track.score_percent = wire::extract(layout::kScore_percent, payload);
+    track.score_percent = wire::extract(toyota_layout::kScore_percent, payload);
   }
   if (seen_a_ == kAllTracks && seen_b_ == kAllTracks) finish(output);
 }
@@ -62,7 +62,7 @@ void ToyotaRadar::tick(std::int64_t now_ns, DecoderOutput& output) {
 }
 
 void ToyotaRadar::finish(DecoderOutput& output) {
-  const bool complete = frames_ == 2 * layout::kNumberOfTracks;
+  const bool complete = frames_ == 2 * toyota_layout::kNumberOfTracks;
   if (!complete) output.fault(Fault::kWireLength, "Toyota radar: frames of a cycle are missing");
   if (RadarScan* const scan = output.begin_scan()) {
     write_scan(*scan);

@@ -1,4 +1,4 @@
-// When live input may be told that time has passed.
+// Decides when the clock of live input may advance.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +6,21 @@
 
 namespace boresight::ingest {
 
-/// After a pause of the process the clock is ahead of the frames that waited, and of those on one link more than of
-/// those on another. What they complete must not be given up before they have been read.
+/// After a pause of the process the clock is ahead of the waiting frames, by a different time on each link. Cycles and
+/// messages that these frames complete must not be dropped before the frames have been read.
 class Backlog {
  public:
-  /// A frame was taken so long after its reception.
+  /// A frame was read with this delay after its reception.
   void frame_taken(std::int64_t age_ns) {
     constexpr std::int64_t kLate_ns = 10'000'000;
     behind_ = behind_ || age_ns > kLate_ns;
   }
-  /// To be asked every 5 ms or so: whether what had arrived has been read, so that time may go on. After 100 times no
-  /// the answer is yes in any case, as the stamps of a link may be late always.
+  /// Call about every 5 ms: true if all waiting frames have been read, so that time may advance. After 100 calls the
+  /// result is true in any case, as the stamps of a link may always be late.
   [[nodiscard]] bool is_read(std::int64_t now_ns) {
     constexpr std::int64_t kPaused_ns = 25'000'000;
     constexpr int kMostHeldBack = 100;
-    // What came during a pause may not even have been looked at.
+    // Frames that arrived during a pause may not have been read yet.
     const bool paused = now_ns - std::exchange(asked_ns_, now_ns) > kPaused_ns;
     const bool behind = std::exchange(behind_, false);
     const bool hold_back = (paused || behind) && held_back_ < kMostHeldBack;

@@ -7,7 +7,7 @@ namespace boresight::ingest {
 
 namespace {
 
-/// One round of a multiplicative hash; the shift carries the high bits, which the product mixes best, down.
+/// One round of a multiplicative hash; the shift moves the high bits, which the product mixes best, down.
 std::uint64_t mix(std::uint64_t state, std::uint64_t word) {
   const std::uint64_t product = (state ^ word) * 0x9E3779B97F4A7C15u;
   return product ^ (product >> 29);

@@ -1,4 +1,4 @@
-// Finds detections that are bit-identical to another one of the same scan.
+// Counts detections that are bitwise equal to another one of the same scan.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace boresight::ingest {
 
-/// A hash table that needs no clearing: entries of earlier scans are told by their mark. No allocation.
+/// A hash table without clearing: a mark distinguishes entries of earlier scans. No allocation.
 class CopyCounter {
  public:
-  /// Detections that agree to the last bit with an earlier one of the scan in range, azimuth and range rate.
+  /// Number of detections that equal an earlier one of the scan in every bit of range, azimuth and range rate.
   [[nodiscard]] std::size_t count(const RadarScan& scan, std::size_t detections);
 
  private:
@@ -26,7 +26,7 @@ class CopyCounter {
   std::uint64_t mark_ = 0;
 };
 
-/// Of all detections of the scan, to the last bit.
+/// Hash over every bit of all detections of the scan.
 [[nodiscard]] std::uint64_t fingerprint(const RadarScan& scan, std::size_t detections);
 
 }  // namespace boresight::ingest

@@ -6,7 +6,7 @@
 
 namespace boresight::ingest {
 
-namespace service = wire::boresight_service;
+namespace wire_service = wire::boresight_service;
 
 Discovery::Discovery(const SourceAddress& network, SomeIpReceiver& receiver, Sink& sink)
     : interface_(network.interface),
@@ -22,11 +22,11 @@ bool Discovery::is_on(const SourceAddress& network) const {
 
 void Discovery::add(std::size_t index, const SourceAddress& address, std::uint16_t eventgroup) {
   subscriptions_.push_back({.index = index,
-                            .service = service::kServiceId,
+                            .service = wire_service::kServiceId,
                             .instance = address.instance,
-                            .major = service::kMajorVersion,
+                            .major = wire_service::kMajorVersion,
                             .eventgroup = eventgroup,
-                            .ttl_s = service::discovery::kOfferTtl_s,
+                            .ttl_s = wire_service::discovery::kOfferTtl_s,
                             .local_port = address.port});
 }
 
@@ -50,7 +50,7 @@ void Discovery::network_is_up(std::int64_t now_ns) {
 }
 
 void Discovery::take(const recording::Frame& frame, std::int64_t now_ns) {
-  // What comes back of our own multicast says nothing new.
+  // Ignores copies of the gateway's own multicast.
   if (frame.source == recording::Endpoint{local_, group_.port}) return;
   client_->take(frame.payload, frame.source, frame.destination.address.is_multicast(), now_ns);
   tell_receiver();
@@ -67,8 +67,8 @@ void Discovery::event_received(std::size_t index, std::int64_t now_ns) {
 }
 
 void Discovery::tell_receiver() {
-  // As soon as the server is known, before it has acknowledged: its first events may come before the Ack, and the Ack
-  // may go to another stack of this host.
+  // As soon as the server is known, before its Ack: the first events may arrive before the Ack, and the Ack may go to
+  // another stack of this host.
   for (std::size_t i = 0; i < subscriptions_.size(); ++i) {
     const someip::SdSubscriptionState& state = client_->state(i);
     const bool known = state.phase != someip::SdSubscriptionState::Phase::kSeeking;
@@ -94,20 +94,20 @@ void Discovery::unsubscribed(std::size_t index, someip::UnsubscribeReason reason
       receiver_.fault(index, Fault::kLink, "SOME/IP: the server withdrew its offer");
       break;
     case Reason::kOfferExpired:
-      receiver_.fault(index, Fault::kLink, "SOME/IP: the server's offer expired: it is not heard any more");
+      receiver_.fault(index, Fault::kLink, "SOME/IP: the server's offer expired without a new one");
       break;
     case Reason::kServerReboot:
       receiver_.forget_sequence(index);
-      receiver_.fault(index, Fault::kLink, "SOME/IP: the server started again; subscribing anew");
+      receiver_.fault(index, Fault::kLink, "SOME/IP: the server restarted; subscribing again");
       break;
     case Reason::kServerChanged:
-      receiver_.fault(index, Fault::kLink, "SOME/IP: the server's endpoint changed; subscribing anew");
+      receiver_.fault(index, Fault::kLink, "SOME/IP: the server's endpoint changed; subscribing again");
       break;
     case Reason::kRefused:
       receiver_.fault(index, Fault::kLink, "SOME/IP: the server refused the subscription");
       break;
     case Reason::kNotAcknowledged:
-      receiver_.fault(index, Fault::kLink, "SOME/IP: neither acknowledgement nor events; subscribing anew");
+      receiver_.fault(index, Fault::kLink, "SOME/IP: neither acknowledgement nor events; subscribing again");
       break;
     case Reason::kLinkDown:
     case Reason::kStopped:

@@ -1,4 +1,4 @@
-// Service discovery on one network: keeps the receiver told from where the events of each source come.
+// Service discovery on one network: gives the receiver the endpoint of each source's events.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@ namespace boresight::ingest {
 
 class Discovery : private someip::SdActions {
  public:
-  /// The network is that of the address's local address, interface and discovery group.
+  /// `address` defines the network by local address, interface and discovery group.
   Discovery(const SourceAddress& network, SomeIpReceiver& receiver, Sink& sink);
 
   [[nodiscard]] bool is_on(const SourceAddress& network) const;
-  /// Before prepare(): an event that the receiver knows by `index`.
+  /// Before prepare(): adds an event; `index` is its number in the receiver.
   void add(std::size_t index, const SourceAddress& address, std::uint16_t eventgroup);
   void prepare();
 
-  /// Begins to look for the services. With a recording it only listens, as nothing is sent then.
+  /// Begins to search the services. With a recording it only listens and sends nothing.
   void start(std::int64_t now_ns);
   void stop(std::int64_t now_ns);
-  /// The network is back: does not wait for the next offers of what is missing.
+  /// The network is back: searches missing services without waiting for the next offers.
   void network_is_up(std::int64_t now_ns);
-  /// Whether the frame is one of service discovery on this network.
+  /// True if the frame belongs to service discovery on this network.
   [[nodiscard]] bool is_for(const recording::Frame& frame) const {
     return frame.destination.port == group_.port || frame.source.port == group_.port;
   }

@@ -7,8 +7,8 @@ namespace boresight::ingest {
 
 namespace {
 
-// A change is judged as if it had taken so long at least: frames queue, so that two speeds measured a period apart may
-// come at once, and wheels that roll over a bump do 0.85 m/s in 11 ms in a real drive (comma2k19).
+// Shortest time for which a change of speed is judged. Frames queue, so that two speeds measured a period apart may
+// arrive at the same time. A bump changes the wheel speed by 0.85 m/s in 11 ms in a recorded drive (comma2k19).
 constexpr double kShortestPeriod_s = 0.05;
 
 double seconds(std::int64_t ns) {
@@ -24,7 +24,7 @@ bool EgoAssembler::is_fresh(std::int64_t stamp_ns, std::int64_t now_ns, std::int
 EgoAssembler::Result EgoAssembler::take(const EgoReading& reading, const FrameStamp& stamp) {
   Result result;
   const std::int64_t now_ns = stamp.received_ns;
-  // Signals from before the jump would seem new for as long as the jump was.
+  // Signals from before the jump would seem new for the duration of the jump.
   const std::int64_t newest_ns = std::max(
       {signalled_speed_.stamp_ns, yaw_rate_.stamp_ns, steering_angle_.stamp_ns, reverse_.stamp_ns, step_.stamp_ns});
   if (newest_ns != kNever && now_ns < newest_ns - limits_.max_age_ns) {
@@ -35,14 +35,14 @@ EgoAssembler::Result EgoAssembler::take(const EgoReading& reading, const FrameSt
     if (std::abs(*reading.yaw_rate_radps) < limits_.yaw_rate_max_radps) {
       yaw_rate_ = {*reading.yaw_rate_radps, now_ns};
     } else {
-      result.rejected = "yaw rate is no number or beyond what a car can turn (3 rad/s)";
+      result.rejected = "yaw rate is not a number or 3 rad/s or more";
     }
   }
   if (reading.steering_angle_rad) {
     if (std::abs(*reading.steering_angle_rad) <= limits_.steering_angle_max_rad) {
       steering_angle_ = {*reading.steering_angle_rad, now_ns};
     } else {
-      result.rejected = "steering wheel angle is no number or beyond ±20 rad";
+      result.rejected = "steering wheel angle is not a number or beyond ±20 rad";
     }
   }
   if (reading.reverse) reverse_ = {*reading.reverse, now_ns};
@@ -65,10 +65,10 @@ bool EgoAssembler::agree(const Signal<double>& earlier, double speed_mps, std::i
 
 std::string_view EgoAssembler::check_speed(double speed_mps, std::int64_t stamp_ns) {
   if (!(speed_mps >= limits_.speed_min_mps && speed_mps <= limits_.speed_max_mps)) {
-    return "speed is no number or beyond -30 … 100 m/s";
+    return "speed is not a number or beyond -30 … 100 m/s";
   }
   const std::int64_t last_ns = signalled_speed_.stamp_ns;
-  if (last_ns != kNever && stamp_ns < last_ns) return "speed is older than the one before it";
+  if (last_ns != kNever && stamp_ns < last_ns) return "speed is older than the previous one";
   follows_a_step_ = false;
   if (!is_fresh(last_ns, stamp_ns, limits_.max_age_ns) || agree(signalled_speed_, speed_mps, stamp_ns)) {
     step_readings_ = 0;
@@ -97,14 +97,14 @@ void EgoAssembler::accept_speed(double speed_mps, bool is_signed, const FrameSta
     direction_ = reverse_.value ? Direction::kReverse : Direction::kForward;
     speed_.value = reverse_.value ? -std::abs(speed_mps) : std::abs(speed_mps);
   }
-  // The slope across a gap, a step, or a gear that turned the sign says nothing of the acceleration.
+  // The slope across a gap, a step or a change of sign by the gear is no acceleration.
   const bool turned = !is_signed && (direction_ == Direction::kReverse) != was_reverse;
   if (!is_fresh(before.stamp_ns, now_ns, limits_.max_age_ns) || follows_a_step_ || turned) {
     acceleration_mps2_ = 0.0;
     return;
   }
   const double elapsed_s = seconds(now_ns - before.stamp_ns);
-  if (elapsed_s <= 1e-4) return;  // two in one burst tell no slope
+  if (elapsed_s <= 1e-4) return;  // two speeds of one burst give no slope
   const double gain = elapsed_s / (elapsed_s + limits_.acceleration_filter_s);
   acceleration_mps2_ += gain * ((speed_.value - before.value) / elapsed_s - acceleration_mps2_);
 }

@@ -1,4 +1,4 @@
-// Ego signals of whatever source → EgoMotion: keeps the latest of each, drops what cannot be, says what is missing.
+// Assembles ego signals of all sources to EgoMotion: keeps the latest of each, rejects implausible values.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace boresight::ingest {
 
-/// What of an ego reading is believed.
+/// Limits of plausible ego readings.
 struct EgoLimits {
-  std::int64_t max_age_ns = 200'000'000;  ///< between the speed and a signal told with it
+  std::int64_t max_age_ns = 200'000'000;  ///< between the speed and a signal reported with it
   /// A gear position is a state that buses repeat at as little as 1 Hz, not a measurement.
   std::int64_t max_reverse_age_ns = 1'500'000'000;
   double speed_min_mps = -30.0;
   double speed_max_mps = 100.0;
-  double yaw_rate_max_radps = 3.0;         ///< a car spinning on ice turns half a circle in a second
+  double yaw_rate_max_radps = 3.0;         ///< a vehicle that spins on ice turns half a circle per second
   double steering_angle_max_rad = 20.0;    ///< three turns of the steering wheel
-  double acceleration_max_mps2 = 30.0;     ///< three times what tyres can do
-  unsigned readings_to_accept_a_step = 3;  ///< that agree on a new speed
+  double acceleration_max_mps2 = 30.0;     ///< three times the limit of tyres
+  unsigned readings_to_accept_a_step = 3;  ///< readings in a row that agree on a new speed
   double acceleration_filter_s = 0.2;      ///< time constant of the derived acceleration
 };
 
@@ -30,17 +30,17 @@ class EgoAssembler {
   explicit EgoAssembler(const EgoConfig& config, const EgoLimits& limits = {}) : config_(config), limits_(limits) {}
 
   struct Result {
-    bool complete = false;      ///< an ego motion is due: write() it
-    bool time_jumped = false;   ///< the clock went back by more than the greatest age: all signals were forgotten
-    std::string_view rejected;  ///< which signal was not taken and why (static text); empty if all were
+    bool complete = false;      ///< an ego motion is complete: call write()
+    bool time_jumped = false;   ///< the clock went back by more than max_age_ns: all signals were dropped
+    std::string_view rejected;  ///< rejected signal with its reason (static text); empty if none
   };
-  /// Takes the signals of one frame. A signal that is rejected does not stop the others of its frame.
+  /// Takes the signals of one frame. A rejected signal does not affect the others of its frame.
   [[nodiscard]] Result take(const EgoReading& reading, const FrameStamp& stamp);
 
-  /// Writes all fields but the header. Signals too old beside the speed are left out of `fields` and are zero.
+  /// Writes all fields except the header. Signals too old compared with the speed are zero and not in `fields`.
   void write(EgoMotion& out) const;
 
-  /// Of the latest accepted speed.
+  /// Time of the latest accepted speed.
   [[nodiscard]] MeasurementTime time() const { return {speed_.stamp_ns, speed_source_}; }
 
  private:
@@ -60,8 +60,8 @@ class EgoAssembler {
 
   EgoConfig config_;
   EgoLimits limits_;
-  Signal<double> signalled_speed_;  // as it came, before the direction was applied
-  Signal<double> speed_;            // with the direction of travel as sign where that is known
+  Signal<double> signalled_speed_;  // as received, before the direction was applied
+  Signal<double> speed_;            // with the direction of travel as sign, if known
   Signal<double> yaw_rate_, steering_angle_;
   Signal<bool> reverse_;
   TimeSource speed_source_ = TimeSource::kUnknown;

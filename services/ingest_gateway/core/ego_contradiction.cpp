@@ -7,27 +7,28 @@ namespace boresight::ingest {
 
 namespace {
 
-/// Below, range rates of what stands still are too alike those of slow traffic.
+/// Below, range rates of stationary reflectors are too similar to those of slow traffic.
 constexpr float kLeastSpeed_mps = 5.0F;
-/// No car goes faster backwards. Where the direction of travel is not signalled, a reversed sign may be true below.
+/// Highest speed in reverse. Without a signal of the direction of travel, the opposite sign may be true below it.
 constexpr float kFastestReverse_mps = 10.0F;
-/// Detections and scans that make a verdict: an object is seen in scan after scan, so that their number counts for less
-/// than it seems, and a lorry passes within a second. Tracks live longer than detections.
+/// Fewest detections and scans of a pool. The same object gives detections in many scans, so that they are not
+/// independent; a truck passes within a second. Tracks live longer than detections.
 constexpr std::size_t kLeastTested = 1500, kLeastTestedTracks = 3000, kLeastScans = 20;
 
-/// Contradicted if another scale of speed (or its opposite) has so much support, and so many times that of the true
-/// one. Oncoming and preceding traffic has support of its own, but beside more of the road, or less of itself.
+/// Contradiction if another scale of speed (or the opposite speed) has this share of support, and this multiple of the
+/// ego speed's support. Oncoming and preceding traffic also supports other speeds, but with a smaller share, or beside
+/// more stationary reflectors.
 constexpr double kOtherShare = 0.08, kOtherToEgo = 3.0;
-/// Or if most detections fit the opposite speed and so many more than fit the true one: folded into a narrow interval,
-/// both are alike where twice the speed is near a multiple of it.
+/// Or if most detections support the opposite speed, by this share more than the ego speed. Folded into a narrow
+/// unambiguous interval, both look alike if twice the speed is near a multiple of the interval.
 constexpr double kOppositeShare = 0.5, kOppositeBeyondEgo = 0.10;
-/// Contradicted if so few more are stationary than if range rates were dealt out at random …
+/// Or if the support exceeds that of randomly assigned range rates by less than this share …
 constexpr double kBeyondChance = 0.10;
-/// … where that makes a difference, as it does not for a radar that looks straight ahead …
+/// … provided that random assignment makes a difference, unlike for a radar that looks straight ahead …
 constexpr double kMostAlike = 0.80;
-/// … or if as good as nothing stands still, twice in a row …
+/// … or if the share of stationary detections is below this in two pools in a row …
 constexpr double kNothing = 0.03;
-/// … provided that the radar reports more than a few tracks, which may all be of traffic for a long time.
+/// … provided that the radar reports more than a few tracks, which may all be moving objects for a long time.
 constexpr std::size_t kDenseRadar = 20;
 
 }  // namespace
@@ -80,8 +81,8 @@ bool EgoContradiction::contradicts() {
   const auto opposite = static_cast<double>(pool_.by_other[RangeRateConsensus::kOpposite]);
   if (opposite > kOppositeShare * tested && opposite - by_ego > kOppositeBeyondEgo * tested) return true;
   const double beyond_chance = by_ego - static_cast<double>(pool_.by_chance);
-  const bool tells_chance = is_dense() && distinct > (1.0 - kMostAlike) * tested;
-  if (tells_chance && beyond_chance < kBeyondChance * distinct) return true;
+  const bool is_chance_distinct = is_dense() && distinct > (1.0 - kMostAlike) * tested;
+  if (is_chance_distinct && beyond_chance < kBeyondChance * distinct) return true;
   return nothing_stood_still_ && nothing_before;
 }
 

@@ -1,4 +1,4 @@
-// Whether a radar's range rates contradict the motion of the vehicle, judged over many scans.
+// Decides over many scans if a radar's range rates contradict the motion of the vehicle.
 #pragma once
 
 #include <array>
@@ -9,16 +9,16 @@
 
 namespace boresight::ingest {
 
-/// Pools the support of scans until some thousand detections have spoken, then decides and begins anew: one scan can be
-/// full of traffic, the second or two that this takes a radar of many detections can not. A radar of a dozen tracks
-/// takes half a minute. No allocation.
+/// Pools the support of scans over some thousand detections, then decides and starts a new pool. A single scan may
+/// contain mostly moving objects; a pool, one to two seconds for a radar of many detections, does not. A radar of a
+/// dozen tracks needs half a minute. No allocation.
 class EgoContradiction {
  public:
   explicit EgoContradiction(const RadarConfig& radar) : consensus_(radar) {}
 
-  /// Whether this scan is one of a series that contradicts the vehicle's motion. False where it cannot be tested: speed
-  /// or yaw rate unknown, below 5 m/s, too few detections. `ego.header.measurement_time_ns` is used to bring the speed
-  /// to the time of the scan by the acceleration.
+  /// True if this scan belongs to a series that contradicts the vehicle's motion. False if the test is not possible:
+  /// unknown speed or yaw rate, below 5 m/s, too few detections. The speed is extrapolated by the acceleration from
+  /// `ego.header.measurement_time_ns` to the time of the scan.
   [[nodiscard]] bool judge(const RadarScan& scan, std::int64_t measurement_time_ns, const EgoMotion& ego);
 
  private:
@@ -33,7 +33,7 @@ class EgoContradiction {
   RangeRateConsensus consensus_;
   Pool pool_;
   bool contradicts_ = false;
-  bool nothing_stood_still_ = false;  // in the pool before
+  bool nothing_stood_still_ = false;  // in the previous pool
 };
 
 }  // namespace boresight::ingest

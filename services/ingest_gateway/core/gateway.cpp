@@ -58,7 +58,7 @@ std::unique_ptr<Decoder> make_ego_decoder(const EgoConfig& ego, const Mappings& 
   return std::make_unique<service::EgoEvent>();
 }
 
-/// The radar whose lists carry the vehicle's motion and are decoded anyway.
+/// The radar whose lists carry the vehicle's motion and are decoded in any case.
 std::optional<std::uint32_t> radar_with_ego_signals(const VehicleConfig& vehicle) {
   if (vehicle.ego.profile != EgoProfile::kSrr520) return std::nullopt;
   for (const RadarConfig& radar : vehicle.radars) {
@@ -132,7 +132,7 @@ void Gateway::take(const recording::Frame& frame, const FrameStamp& stamp) {
     start(stamp.received_ns);
     stamps_tell_time_ = true;
   }
-  // A clock that went back ticks at once, so that nothing waits for the old time to come again.
+  // If the clock went back, ticks at once instead of waiting until the former time is reached again.
   if (stamps_tell_time_ && std::abs(stamp.received_ns - last_tick_ns_) >= kTick_ns) tick(stamp.received_ns);
   if (frame.kind == recording::FrameKind::kUdp) {
     take_udp(frame, stamp);
@@ -142,7 +142,7 @@ void Gateway::take(const recording::Frame& frame, const FrameStamp& stamp) {
 }
 
 void Gateway::finish() {
-  // Discovery is left alone: that a server is not heard after the end of a recording is nothing to complain of.
+  // No tick for discovery: a silent server after the end of a recording is no fault.
   constexpr std::int64_t kLong_ns = 10'000'000'000;
   tick_sources(last_tick_ns_ + kLong_ns);
 }
@@ -220,7 +220,7 @@ void Gateway::take_ego(std::uint32_t source_id, const EgoReading& reading, const
   if (!result.rejected.empty()) sink_.fault(Fault::kWireValue, result.rejected, source_id);
   if (!result.complete) return;
   EgoMotion* const out = sink_.begin_ego();
-  if (out == nullptr) return;  // counted where the memory was refused
+  if (out == nullptr) return;  // already counted as a failed loan
   ego_.write(*out);
   latest_ego_ = *out;
   latest_ego_.header.measurement_time_ns = ego_.time().time_ns;

@@ -1,4 +1,4 @@
-// Frames in, scans and ego motions out: finds the source that a frame belongs to and feeds its decoder.
+// From frames to scans and ego motions: finds the source of a frame and passes the frame to its decoder.
 #pragma once
 
 #include <cstdint>
@@ -25,21 +25,21 @@ class Gateway : private EgoReceiver {
   Gateway(const VehicleConfig& vehicle, Sink& sink, const Mappings& mappings = {});
   ~Gateway() override;
 
-  /// Frames of unknown ids on a known CAN bus are ignored, as buses carry much else; datagrams from unknown senders
-  /// to a radar's port are faults.
+  /// Frames with unknown ids on a known CAN bus are ignored, as buses carry other traffic. Datagrams from unknown
+  /// senders to a radar's port are faults.
   void take(const recording::Frame& frame, const FrameStamp& stamp);
-  /// Time passes, so that incomplete cycles end: to be called every 5 ms or so with live input, whose links do not hand
-  /// in their frames in the order of their stamps, while no old frames wait to be taken. With a recording, take() does
-  /// so by the stamps of the frames: the result does not depend on its speed.
+  /// Advances the time, so that incomplete cycles end. With live input, call about every 5 ms while no old frames wait:
+  /// links do not deliver their frames in the order of stamps. With a recording, take() advances the time by the stamps
+  /// of the frames, so that the result does not depend on the speed of the replay.
   void tick(std::int64_t now_ns);
-  /// Looks for the services of the vehicle file and tells sensors what they have to send. With a recording, take() does
-  /// so by itself, and nobody hears.
+  /// Searches the services of the vehicle file and configures sensors. With a recording, take() does this, and nothing
+  /// is sent.
   void start(std::int64_t now_ns);
   /// Ends subscriptions.
   void stop();
-  /// An interface or address of live input is back: looks for services that are missing.
+  /// An interface or address of live input is back: searches missing services.
   void network_is_up(std::int64_t now_ns);
-  /// No frame will come any more: ends what is incomplete.
+  /// End of input: ends incomplete cycles and messages.
   void finish();
 
  private:
@@ -66,7 +66,7 @@ class Gateway : private EgoReceiver {
   std::int64_t last_tick_ns_ = 0;
   EgoAssembler ego_;
   Source ego_source_;
-  std::uint32_t ego_source_id_ = 0;  // whose ego readings count
+  std::uint32_t ego_source_id_ = 0;  // source of the used ego readings
   std::vector<std::unique_ptr<Source>> sources_;
   std::vector<CanRoute> can_;
   std::vector<UdpRoute> udp_;
@@ -74,7 +74,7 @@ class Gateway : private EgoReceiver {
   std::vector<std::unique_ptr<Discovery>> discoveries_;
   std::vector<std::uint16_t> someip_ports_;  // at which events arrive
   bool started_ = false;
-  bool stamps_tell_time_ = false;  // nobody has called start(): a recording
+  bool stamps_tell_time_ = false;  // start() was not called: a recording
   SensorFeed feed_;
   EgoMotion latest_ego_{};
   bool has_ego_ = false;

@@ -1,4 +1,4 @@
-// The mapping files of a vehicle, read and looked up.
+// The mapping files of a vehicle, with their names resolved.
 #pragma once
 
 #include <cstdint>

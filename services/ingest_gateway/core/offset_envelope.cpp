@@ -8,14 +8,13 @@ namespace boresight::ingest {
 namespace {
 
 constexpr double kBucket_ns = 1e9;
-/// Quartz of a sensor beside that of the ECU.
+/// Largest drift of a sensor's quartz against that of the ECU.
 constexpr double kMaxDrift = 100e-6;
-/// What is told may run so much faster or slower than the clock: four times the drift to be followed, and 25 µs in a
-/// cycle of 50 ms.
+/// Largest rate of change of the smoothed offset: five times the largest drift, 25 µs in a cycle of 50 ms.
 constexpr double kMaxSlew = 500e-6;
-/// Before this much has been seen the estimate is corrected at once: it is only as good as the luckiest frame.
+/// Before this time the estimate is corrected at once, as it is only as good as the frame with the least delay.
 constexpr double kSettling_ns = 2e9;
-/// Over a shorter span jitter would be taken for drift.
+/// Over a shorter span, jitter would appear as drift.
 constexpr double kSpanForSlope_ns = 10e9;
 
 }  // namespace
@@ -37,14 +36,14 @@ void OffsetEnvelope::add(std::int64_t stamp_ns, std::int64_t offset_ns) {
   } else if (y < least_.y_ns) {
     least_ = {x, y};
   }
-  intercept_ns_ -= std::max(0.0, line(x) - y);  // nothing arrives early
+  intercept_ns_ -= std::max(0.0, line(x) - y);  // no frame arrives early
   const double step_ns = kMaxSlew * std::max(0.0, x - last_x_ns_);
-  told_ns_ = settled() ? std::clamp(line(x), told_ns_ - step_ns, told_ns_ + step_ns) : line(x);
+  smoothed_ns_ = settled() ? std::clamp(line(x), smoothed_ns_ - step_ns, smoothed_ns_ + step_ns) : line(x);
   last_x_ns_ = x;
 }
 
 std::int64_t OffsetEnvelope::offset_ns() const {
-  return anchor_offset_ns_ + std::llround(told_ns_);
+  return anchor_offset_ns_ + std::llround(smoothed_ns_);
 }
 
 std::int64_t OffsetEnvelope::lateness_ns(std::int64_t stamp_ns, std::int64_t offset_ns) const {
@@ -70,7 +69,7 @@ void OffsetEnvelope::fit_line() {
   }
 }
 
-/// Of the edge of the lower convex hull above which the points' centre lies: no line below all points comes closer to
+/// Fits the edge of the lower convex hull below the points' centre: of all lines below all points, it is the closest to
 /// them on average.
 double OffsetEnvelope::fit_slope() const {
   std::array<Point, kBuckets> hull;

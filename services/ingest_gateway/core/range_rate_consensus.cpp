@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kYawStep_rad = 2.0 * M_PI / 180.0;
 constexpr double kScaleStep = 0.025;
-/// Of a reflector that stands still, besides noise: micro motion, lateral slip, age of the ego motion.
+/// Tolerance for a stationary reflector besides noise: micro motion, lateral slip, age of the ego motion.
 constexpr float kTolerance_mps = 0.3F;
-/// Where the predicted range rate is nearly zero whatever the speed, it tells nothing of the speed.
+/// A predicted range rate that is nearly zero for all speeds has no information on the speed.
 constexpr float kLeastShareOfSpeed = 0.3F;
-constexpr std::size_t kLeastTested = 6;
-/// With that much support nobody asks for more. In a tube most range rates are alike, so that even dealt out at random
-/// two thirds of them fit.
+constexpr std::size_t kLeastTestedPairs = 6;
+/// With this share of support the search ends. In a tunnel most range rates are similar, so that two thirds fit even if
+/// assigned at random.
 constexpr double kEnough = 0.85;
 
 }  // namespace
@@ -53,14 +53,14 @@ RangeRateConsensus::Support RangeRateConsensus::test(const RadarScan& scan, cons
   ambiguity_mps_ = scan.has(scan_field::kAmbiguity) && interval > 1.0F && std::isfinite(interval) ? interval : 0.0F;
   Support support;
   const std::size_t tested = select(scan, vehicle_to_sensor_ * velocity.cast<float>());
-  if (tested < kLeastTested) return support;
+  if (tested < kLeastTestedPairs) return support;
   support.tested = tested;
   support.reported = reported_;
   const auto enough = static_cast<std::size_t>(kEnough * static_cast<double>(tested));
   last_best_ = best(tested, enough, support.by_ego);
   if (support.by_ego > enough) return support;
   for (std::size_t k = 0; k < kOtherScales; ++k) support.by_other[k] = count(others_[k], tested);
-  // As if each range rate had been measured in a direction far down the list: what is left is chance.
+  // Support if each range rate belonged to a detection half the list away: the support by chance.
   support.alike = count_alike(tested);
   std::rotate(rate_.begin(), rate_.begin() + tested / 2, rate_.begin() + tested);
   static_cast<void>(best(tested, tested, support.by_chance));
@@ -94,7 +94,7 @@ std::size_t RangeRateConsensus::select(const RadarScan& scan, const Eigen::Vecto
                          std::abs(along) * 0.5F * static_cast<float>(kScaleStep);
     ++tested;
   }
-  // The last block of lanes is filled with what supports nothing.
+  // Fills the last block of lanes with entries that support no candidate.
   for (std::size_t i = tested; i % kLanes != 0; ++i) {
     rate_[i] = by_along_[i] = by_across_[i] = 0.0F;
     tolerance_[i] = -1.0F;
@@ -111,7 +111,7 @@ std::size_t RangeRateConsensus::count(const Candidate& candidate, std::size_t te
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t k = i + lane;
       const float residual = rate_[k] + candidate.along * by_along_[k] + candidate.across * by_across_[k];
-      // Measured modulo the interval: the nearest of the values that it can mean.
+      // Measured modulo the unambiguous interval: the nearest of the possible values.
       const float intervals = (residual * inverse + kRounder) - kRounder;
       supporting[lane] += std::abs(residual - ambiguity_mps_ * intervals) < tolerance_[k] ? 1 : 0;
     }
@@ -120,7 +120,7 @@ std::size_t RangeRateConsensus::count(const Candidate& candidate, std::size_t te
 }
 
 std::size_t RangeRateConsensus::best(std::size_t tested, std::size_t enough, std::size_t& most) const {
-  // That of the last scan first: a crooked sensor stays crooked.
+  // The candidate of the last scan first: a misaligned sensor stays misaligned.
   std::size_t winner = last_best_;
   most = count(candidates_[winner], tested);
   for (std::size_t k = 0; k < kCandidates && most <= enough; ++k) {

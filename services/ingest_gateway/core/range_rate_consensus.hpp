@@ -1,4 +1,5 @@
-// Do the range rates of a scan fit any motion near that of the vehicle?
+// Tests if the range rates of a scan agree with a motion near that of the vehicle.
+// Equations: docs/algorithms/ingest.md (I2)–(I4).
 #pragma once
 
 #include <array>
@@ -13,26 +14,25 @@
 
 namespace boresight::ingest {
 
-/// Looks for the sensor velocity with the most detections that would stand still (Kellner et al.: "Instantaneous
-/// ego-motion estimation using Doppler radar", 2013, whose consensus this is), among those that a mounting crooked by
-/// up to 10° and a speed signal wrong by up to 5 % allow. The candidates form a fixed grid, so that the answer is
-/// always the same and the cost bounded. No allocation.
+/// Searches the sensor velocity with the most stationary detections (consensus of Kellner et al. 2013), for mounting
+/// errors of up to 10° and speed errors of up to 5 %. The candidates form a fixed grid, so that the result is
+/// deterministic and the cost bounded. No allocation.
 class RangeRateConsensus {
  public:
   explicit RangeRateConsensus(const RadarConfig& radar);
 
-  /// Wrong scales that are tried too: ±0.5 … 1.6 times the speed, but for what is near 1.
+  /// Other scales to test: ±0.5 … 1.6 times the speed, except near 1.
   static constexpr std::size_t kOtherScales = 21;
   static constexpr std::size_t kOpposite = 6;  ///< index of scale −1
 
   /// Numbers of detections.
   struct Support {
-    std::size_t reported = 0;  ///< that a radar of this kind reports, whether their range rate tells something or not
-    std::size_t tested = 0;    ///< whose range rate tells something; 0: the scan cannot be tested
-    std::size_t by_ego = 0;    ///< of these, stationary for the best velocity near the vehicle's
-    // The others are 0 if enough are stationary.
-    std::size_t by_chance = 0;  ///< the same if each range rate belonged to another detection
-    std::size_t alike = 0;      ///< whose predicted range rate is that of the detection they were confused with
+    std::size_t reported = 0;  ///< all detections, with or without information in their range rate
+    std::size_t tested = 0;    ///< with information on the speed in their range rate; 0: no test possible
+    std::size_t by_ego = 0;    ///< of the tested, stationary for the best velocity near the vehicle's
+    // The others are 0 if enough detections are stationary.
+    std::size_t by_chance = 0;                         ///< the same if each range rate belonged to another detection
+    std::size_t alike = 0;                             ///< with the same predicted range rate as the other detection
     std::array<std::size_t, kOtherScales> by_other{};  ///< stationary if the vehicle moved that much faster or slower
   };
   [[nodiscard]] Support test(const RadarScan& scan, const EgoMotion& ego);
@@ -41,11 +41,11 @@ class RangeRateConsensus {
   static constexpr std::size_t kMaxTested = 128, kLanes = 16;
   static_assert(kMaxTested % kLanes == 0);
   struct Candidate {
-    float along, across;  // the nominal velocity times these, and turned by a right angle
+    float along, across;  // velocity = along · nominal + across · nominal turned by 90°
   };
   [[nodiscard]] std::size_t select(const RadarScan& scan, const Eigen::Vector3f& velocity_mps);
   [[nodiscard]] std::size_t count(const Candidate& candidate, std::size_t tested) const;
-  /// Index of the candidate with the most support, or of the first with more than `enough`.
+  /// Index of the candidate with the most support, or of the first one with more than `enough`.
   [[nodiscard]] std::size_t best(std::size_t tested, std::size_t enough, std::size_t& most) const;
   [[nodiscard]] std::size_t count_alike(std::size_t tested) const;
 
@@ -60,7 +60,7 @@ class RangeRateConsensus {
   std::size_t last_best_ = 0;
   std::size_t reported_ = 0;
   float ambiguity_mps_ = 0.0F;  // width of the unambiguous interval, 0 if unknown
-  // Of the tested detections: range rate, its change with `along` and `across`, and what it may be off by.
+  // Of the tested detections: range rate, its derivatives by `along` and `across`, and its tolerance.
   alignas(64) std::array<float, kMaxTested> rate_, by_along_, by_across_, tolerance_;
 };
 

@@ -7,37 +7,37 @@ namespace boresight::ingest {
 
 namespace {
 
-/// Older data describe another place than the one where the vehicle is: 15 m further at 30 m/s.
+/// Largest age of usable data: at 30 m/s the vehicle moves 15 m in this time.
 constexpr double kStale_ns = 500e6;
-/// Frames that come closer together than this part of a cycle came in one burst.
+/// Frames closer together than this part of a cycle belong to one burst.
 constexpr double kBurst = 0.25;
-/// Without a counter, a scan is missing when the next one is due half a cycle ago.
+/// Without a counter, a scan is missing if it is late by half a cycle.
 constexpr double kCyclesToGap = 1.5;
-/// A counter that has not moved in so many scans since the start is none: some firmware leaves the field 0.
+/// A counter that is constant for this number of scans since the start is not used: some firmware leaves it at 0.
 constexpr std::uint64_t kScansToDisown = 10;
-/// Narrower counters wrap so often that time cannot tell how often.
+/// Narrower counters wrap so often that time does not give the number of wraps.
 constexpr unsigned kLeastBitsToUnwrap = 4;
 
-/// More lost scans than that beside the time that has passed: the sensor began to count anew.
+/// If more scans are lost than this, compared with the elapsed time, the sensor restarted its counter.
 constexpr double kMostLostToTime = 4.0, kMostLostAtOnce = 64.0;
 
 /// Few coarsely quantised tracks can be equal in two scans by chance; noise makes four such scans impossible …
 constexpr std::size_t kFrozenDetections = 4;
 constexpr std::uint64_t kFrozenRepeats = 3;
-/// … but for a radar that filters, in a car that stands.
+/// … except for a radar that filters, in a vehicle at standstill.
 constexpr std::size_t kFrozenDetectionsStanding = 8;
 constexpr std::uint64_t kFrozenRepeatsStanding = 10;
 constexpr float kStanding_mps = 1.0F;
 
-/// Beyond the field of view that the vehicle file states: edges of an antenna's pattern are soft.
+/// Tolerance beyond the field of view of the vehicle file: the edges of an antenna's pattern are not sharp.
 constexpr double kAngleMargin_rad = 10.0 * M_PI / 180.0;
 constexpr double kRangeMargin = 1.2;
-/// No radar sees so far, nothing on a road closes in so fast (two cars at 270 km/h each).
+/// Beyond the range of all radars, and beyond all range rates on roads (two cars at 270 km/h each).
 constexpr float kMaxRange_m = 1500.0F, kMaxRangeRate_mps = 150.0F;
-/// Single wild detections are clutter, a fifth of a scan is damage.
+/// Single implausible detections are clutter, a fifth of a scan is a fault.
 constexpr std::size_t kLeastImplausible = 3, kImplausiblePart = 5;
 
-/// Coarsely quantised clusters of one car may agree in pairs, a quarter of a scan may not.
+/// Coarsely quantised clusters of one car may be equal in pairs, but not a quarter of a scan.
 constexpr std::size_t kLeastCopies = 8, kCopiesPart = 4;
 
 }  // namespace
@@ -62,9 +62,9 @@ std::uint16_t ScanJudge::judge(const RadarScan& scan, std::int64_t measurement_t
   accuse(is_implausible(scan, detections), kImplausible);
   const std::size_t copies = copies_.count(scan, detections);
   accuse(copies >= kLeastCopies && copies * kCopiesPart >= detections, kImpossibleCopies);
-  // A scan that repeats or is no measurement says nothing of how it fits the motion.
-  const bool is_told = (verdict & (kRepeated | kFrozen | kStale | kImplausible | kImpossibleCopies)) == 0;
-  if (latest_ego != nullptr && is_told) {
+  // A repeated or implausible scan is not used for the comparison with the vehicle's motion.
+  const bool is_measurement = (verdict & (kRepeated | kFrozen | kStale | kImplausible | kImpossibleCopies)) == 0;
+  if (latest_ego != nullptr && is_measurement) {
     accuse(contradiction_.judge(scan, measurement_time_ns, *latest_ego), kContradictsEgo);
   }
 
@@ -80,7 +80,7 @@ std::uint16_t ScanJudge::judge(const RadarScan& scan, std::int64_t measurement_t
 
 std::uint16_t ScanJudge::judge_order(const RadarScan& scan, std::int64_t measurement_time_ns, unsigned bits) {
   const double cycles = (static_cast<double>(measurement_time_ns) - static_cast<double>(last_measured_ns_)) / cycle_ns_;
-  // A sensor whose counter passes 0 may seem to have none for one scan.
+  // A counter that passes 0 looks like a missing counter for one scan.
   const bool has_counter = bits > 0 && last_counter_bits_ > 0;
   if (has_counter) {
     const std::uint32_t mask = bits == 32 ? ~0u : (1u << bits) - 1;
@@ -89,7 +89,7 @@ std::uint16_t ScanJudge::judge_order(const RadarScan& scan, std::int64_t measure
     if (!counter_moves_) ++repeats_since_start_;
     if (counter_moves_ || repeats_since_start_ <= kScansToDisown) return judge_counter(steps, bits, cycles);
   }
-  // The same content with the same stamp has been sent, or read, twice.
+  // The same content with the same stamp was sent or read twice.
   if (equal_scans_ > 0 && measurement_time_ns <= last_measured_ns_ && scan.number_of_valid_detections > 0) {
     return scan_integrity::kRepeated;
   }
@@ -101,8 +101,8 @@ std::uint16_t ScanJudge::judge_order(const RadarScan& scan, std::int64_t measure
 std::uint16_t ScanJudge::judge_counter(std::uint32_t steps, unsigned bits, double cycles) {
   const double period = std::ldexp(1.0, static_cast<int>(bits));
   const double by_time = std::max(0.0, std::round(cycles) - 1.0);
-  double lost = static_cast<double>(steps) - 1.0;  // -1: the same again
-  // The counter tells the number modulo its period, the time about how many periods.
+  double lost = static_cast<double>(steps) - 1.0;  // -1: a repetition
+  // The counter gives the number modulo its period, the time the approximate number of periods.
   if (bits >= kLeastBitsToUnwrap) lost += period * std::max(0.0, std::round((by_time - lost) / period));
   if (lost == 0.0) return 0;
   if (lost < 0.0) return scan_integrity::kRepeated;
@@ -142,12 +142,12 @@ bool ScanJudge::is_implausible(const RadarScan& scan, std::size_t detections) co
   for (std::size_t i = 0; i < detections; ++i) {
     const float range = scan.range_m[i], azimuth = scan.azimuth_rad[i];
     const float elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
-    // What is no number fails every comparison.
+    // NaN fails every comparison.
     const bool possible = range >= 0.0F && range <= kMaxRange_m && std::abs(azimuth) <= kPi &&
                           std::abs(elevation) <= kPi / 2.0F && std::abs(scan.range_rate_mps[i]) <= kMaxRangeRate_mps;
     const bool visible = range <= range_max && azimuth >= azimuth_min && azimuth <= azimuth_max &&
                          elevation >= elevation_min && elevation <= elevation_max;
-    // A quantity that the sensor marks invalid may be anything that it can be.
+    // A quantity that the sensor marks as invalid may have any value.
     const bool marked = (scan.detection_flags[i] & detection_flag::kInvalid) != 0;
     implausible += possible && (visible || marked) ? 0u : 1u;
   }

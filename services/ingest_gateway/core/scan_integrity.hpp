@@ -1,4 +1,4 @@
-// The integrity verdict of one radar's scans.
+// The integrity bits of one radar's scans.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace boresight::ingest {
 
-/// What has been judged so far.
+/// Results so far.
 struct IntegrityCounters {
   std::uint64_t scans = 0;
-  std::uint64_t lost_scans = 0;  ///< by the sensor's counter, or by time if it has none
+  std::uint64_t lost_scans = 0;  ///< by the sensor's counter, or by time without one
   std::array<std::uint64_t, scan_integrity::kNumberOfBits> by_bit{};  ///< scans with that bit
 };
 
@@ -25,9 +25,9 @@ class ScanJudge {
  public:
   explicit ScanJudge(const RadarConfig& radar);
 
-  /// scan_integrity bits, those that the decoder has set in `scan.integrity` included. Nothing of `scan.header` is
-  /// read. `cycle_counter_bits`: width of the sensor's counter in `scan.cycle_counter`, 0 if it has none. `latest_ego`:
-  /// the newest ego motion, header set; nullptr if unknown or stale.
+  /// Returns scan_integrity bits, including those of the decoder in `scan.integrity`. Does not read `scan.header`.
+  /// `cycle_counter_bits`: width of the sensor's counter in `scan.cycle_counter`, 0 without a counter. `latest_ego`:
+  /// the newest ego motion with its header; nullptr if unknown or stale.
   [[nodiscard]] std::uint16_t judge(const RadarScan& scan, std::int64_t measurement_time_ns, std::int64_t received_ns,
                                     unsigned cycle_counter_bits, const EgoMotion* latest_ego);
 
@@ -51,7 +51,7 @@ class ScanJudge {
   std::uint32_t last_counter_ = 0;
   unsigned last_counter_bits_ = 0;
   std::int64_t last_measured_ns_ = 0, last_received_ns_ = 0;
-  std::uint64_t repeats_since_start_ = 0;  // of the counter, which has never moved
+  std::uint64_t repeats_since_start_ = 0;  // of the counter, which has not changed yet
   bool counter_moves_ = false;
   std::uint64_t last_fingerprint_ = 0;
   std::uint64_t equal_scans_ = 0;  // in a row, after the first of them

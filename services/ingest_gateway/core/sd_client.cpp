@@ -9,14 +9,14 @@ namespace {
 
 using recording::Endpoint;
 
-// Finds after the beginning; then offers are awaited passively.
+// Times of Find entries after the start; then the client waits for offers.
 constexpr std::array<std::int64_t, 4> kFindAt_ns{0, 200'000'000, 600'000'000, 1'400'000'000};
 constexpr std::int64_t kBetweenSubscribes_ns = 100'000'000;
-// Without Ack, Subscribe is repeated after so long even if the server does not offer again.
+// Without Ack, Subscribe is repeated after this time even without a new offer.
 constexpr std::int64_t kRepeatUnacknowledged_ns = 2 * kSecond_ns;
 constexpr std::int64_t kComplainUnacknowledged_ns = 2 * kSecond_ns;
-// Renewals are acknowledged after each offer, or after 2 s at the latest. A server of which neither Ack nor event came
-// for longer gives way to another that offers the same instance, whatever the time to live of its offer.
+// Renewals are acknowledged after each offer, or after 2 s at the latest. Without Ack and event for longer, another
+// server that offers the same instance replaces this one, whatever the time to live of its offer.
 constexpr std::int64_t kSilentFor_ns = 2'500'000'000;
 
 }  // namespace
@@ -25,12 +25,12 @@ SdClient::SdClient(const SdClientConfig& config, SdActions& actions)
     : local_address_(config.local_address),
       group_(config.group),
       actions_(actions),
-      // Peers that subscriptions depend on never give way to a storm of others.
+      // Messages of many other peers must not displace peers with subscriptions.
       peers_(kSparePeers + config.subscriptions.size()),
       next_find_(kFindAt_ns.size()) {
   subscriptions_.reserve(config.subscriptions.size());
   for (const SdSubscription& wanted : config.subscriptions) {
-    // Subscriptions that may come to be about the same eventgroup of the same instance.
+    // Subscriptions that may refer to the same eventgroup of the same instance.
     const auto is_alike = [&](const Subscription& s) {
       return s.config.service == wanted.service && s.config.eventgroup == wanted.eventgroup &&
              (s.config.instance == wanted.instance || s.config.instance == kAnyInstance ||
@@ -64,7 +64,7 @@ SdPeer& SdClient::peer_at(const Endpoint& endpoint, std::int64_t now_ns) {
   });
 }
 
-// --- Beginning and end -------------------------------------------------------------------------------------------
+// --- Start and stop -------------------------------------------------------------------------------------------
 
 void SdClient::seek_from(std::int64_t now_ns) {
   seeking_since_ns_ = now_ns;
@@ -100,7 +100,7 @@ void SdClient::link_down() {
 std::int64_t SdClient::link_up(std::int64_t now_ns) {
   link_is_up_ = true;
   seek_from(now_ns);
-  // A server that is still known may hold a subscription that has run out, or look for us under an old MAC address.
+  // A server that is still known may have an expired subscription, or an old MAC address of this host.
   for (Subscription& s : subscriptions_) {
     if (s.state.phase != Phase::kSeeking) subscribe_soon(s, now_ns);
   }
@@ -126,7 +126,7 @@ void SdClient::set_group(Subscription& s, const std::optional<Endpoint>& group) 
   if (group) actions_.join_multicast(s.config.index, *group);
 }
 
-/// Not subscribed any more; the server is still known.
+/// Ends the subscription; the server is still known.
 void SdClient::end(Subscription& s, UnsubscribeReason reason) {
   set_group(s, std::nullopt);
   s.group_stays_until_ns = std::numeric_limits<std::int64_t>::min();
@@ -136,10 +136,10 @@ void SdClient::end(Subscription& s, UnsubscribeReason reason) {
   actions_.unsubscribed(s.config.index, reason);
 }
 
-/// The server is not there any more.
+/// Forgets the server.
 void SdClient::lose(Subscription& s, UnsubscribeReason reason) {
   end(s, reason);
-  // A server that only the link separated from us may still have the old subscription.
+  // After a failure of the link only, the server may still have the old subscription.
   s.stop_first = reason == UnsubscribeReason::kLinkDown && (s.sent || s.stop_first);
   s.state = {};
   s.offer_expires_ns = s.subscribe_due_ns = s.complain_at_ns = kNever;
@@ -187,7 +187,7 @@ void SdClient::expire(std::int64_t now_ns) {
     if (s.offer_expires_ns <= now_ns) {
       ++statistics_.expired_offers;
       lose(s, UnsubscribeReason::kOfferExpired);
-      // Offers may have been lost, or another instance may be there: ask.
+      // Offers may have been lost, or another instance may exist: search.
       seek_from(now_ns);
       continue;
     }
@@ -208,7 +208,7 @@ void SdClient::expire(std::int64_t now_ns) {
 
 void SdClient::send_finds(std::int64_t now_ns) {
   bool due = false;
-  // Those missed are not made up for.
+  // Missed ones are not caught up.
   while (next_find_ < kFindAt_ns.size() && after(seeking_since_ns_, kFindAt_ns[next_find_]) <= now_ns) {
     due = true;
     ++next_find_;
@@ -245,7 +245,7 @@ void SdClient::send_subscribes(std::int64_t now_ns) {
   const auto is_due = [now_ns](const Subscription& s) {
     return s.state.phase != Phase::kSeeking && s.subscribe_due_ns != kNever && s.subscribe_due_ns <= now_ns;
   };
-  // What goes to the same peer shares a message, as far as it has room: the rest goes with the next.
+  // Entries to the same peer share a message if they fit; the others go with the next message.
   for (const Subscription& first : subscriptions_) {
     while (is_due(first)) {
       writer_.clear();
@@ -270,7 +270,7 @@ void SdClient::mark_sent(Subscription& s, std::int64_t now_ns) {
   const bool is_acknowledged = s.state.phase == Phase::kSubscribed;
   if (!is_acknowledged && !s.sent) s.complain_at_ns = after(now_ns, kComplainUnacknowledged_ns);
   s.sent = true;
-  // Servers that offer often are answered each time; for the others there is the timer.
+  // Each offer of a frequent server is answered; for other servers the timer renews.
   const std::int64_t half_ns = s.config.ttl_s == kForever_s ? kNever : s.config.ttl_s * kSecond_ns / 2;
   s.subscribe_due_ns = after(now_ns, is_acknowledged ? half_ns : std::min(half_ns, kRepeatUnacknowledged_ns));
 }

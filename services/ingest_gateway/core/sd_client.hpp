@@ -1,4 +1,4 @@
-// SOME/IP service discovery as a client sees it: finds services, subscribes to their eventgroups and keeps it so.
+// The client's side of SOME/IP service discovery: finds services, subscribes to their eventgroups and renews.
 #pragma once
 
 #include <cstddef>
@@ -19,85 +19,84 @@
 
 namespace boresight::ingest::someip {
 
-/// One eventgroup that is wanted.
+/// One required eventgroup.
 struct SdSubscription {
-  std::size_t index = 0;  ///< the caller's number for it
+  std::size_t index = 0;  ///< the caller's number of this subscription
   std::uint16_t service = 0;
-  std::uint16_t instance = kAnyInstance;  ///< any: the first that offers
+  std::uint16_t instance = kAnyInstance;  ///< any: the first offered one
   std::uint8_t major = kAnyMajor;
   std::uint16_t eventgroup = 0;
-  std::uint32_t ttl_s = 3;       ///< 1 … 0xFFFFFF (until the next reboot); taken to the nearest of these
-  std::uint16_t local_port = 0;  ///< UDP port on which its events are awaited
+  std::uint32_t ttl_s = 3;       ///< 1 … 0xFFFFFF (until the next reboot); other values are clamped
+  std::uint16_t local_port = 0;  ///< UDP port for its events
 };
 
 struct SdClientConfig {
-  recording::IpAddress local_address;  ///< unicast; its family is that of all endpoints
+  recording::IpAddress local_address;  ///< unicast; all endpoints have the same family
   recording::Endpoint group;           ///< multicast group and port of service discovery on this network
   std::vector<SdSubscription> subscriptions;
 };
 
 enum class UnsubscribeReason : std::uint8_t {
   kStopOffer,        ///< the server withdrew its offer
-  kOfferExpired,     ///< the server was not heard within its offer's time to live
-  kServerReboot,     ///< the server started again; subscribing anew
-  kServerChanged,    ///< the offer names another endpoint or version; subscribing anew
-  kRefused,          ///< the server refused the renewal; tried again later
-  kNotAcknowledged,  ///< neither Ack nor event within the time to live; subscribing anew
+  kOfferExpired,     ///< no message of the server within its offer's time to live
+  kServerReboot,     ///< the server restarted; subscribing again
+  kServerChanged,    ///< the offer names another endpoint or version; subscribing again
+  kRefused,          ///< the server refused the renewal; repeated later
+  kNotAcknowledged,  ///< neither Ack nor event within the time to live; subscribing again
   kLinkDown,
   kStopped,
 };
 
-/// What the client wants done. Functions must not call the client.
+/// Actions that the client requests. Functions must not call the client.
 class SdActions {
  public:
   virtual ~SdActions() = default;
-  /// Sends a datagram from the SD port of the client's interface; the bytes are not kept.
+  /// Sends a datagram from the SD port of the client's interface; the bytes are valid only during the call.
   virtual void send(std::span<const std::uint8_t> datagram, const recording::Endpoint& to) = 0;
-  /// The server has acknowledged, or its events arrive. `server`: from where they come, by its offer.
+  /// The server has acknowledged, or its events arrive. `server`: the source of the events, from its offer.
   virtual void subscribed(std::size_t index, const recording::Endpoint& server) = 0;
-  /// After subscribed(); the client goes on by itself.
+  /// After subscribed(); the client continues by itself.
   virtual void unsubscribed(std::size_t index, UnsubscribeReason reason) = 0;
-  /// Events come to this group and port, from now on.
+  /// Events are sent to this group and port from now on.
   virtual void join_multicast(std::size_t index, const recording::Endpoint& group) = 0;
   virtual void leave_multicast(std::size_t index, const recording::Endpoint& group) = 0;
   /// `what` is a constant.
   virtual void fault(Fault fault, std::string_view what) = 0;
 };
 
-/// Since construction.
+/// Counters since construction.
 struct SdStatistics {
-  std::uint64_t messages = 0;            ///< SD messages that came
-  std::uint64_t malformed_messages = 0;  ///< of these, refused whole
-  std::uint64_t malformed_entries = 0;   ///< refused entries of others
-  std::uint64_t foreign_entries = 0;     ///< of no concern to the client
+  std::uint64_t messages = 0;            ///< received SD messages
+  std::uint64_t malformed_messages = 0;  ///< of these, rejected
+  std::uint64_t malformed_entries = 0;   ///< rejected entries of other messages
+  std::uint64_t foreign_entries = 0;     ///< of other services
   std::uint64_t offers = 0, stop_offers = 0, expired_offers = 0;
-  std::uint64_t offers_by_others = 0;  ///< of an instance that is already bound to another server
+  std::uint64_t offers_by_others = 0;  ///< of an instance that another server already provides
   std::uint64_t acks = 0, refusals = 0, acknowledged_by_events = 0, not_acknowledged = 0;
   std::uint64_t reboots = 0;
   std::uint64_t finds_sent = 0, subscribes_sent = 0, stop_subscribes_sent = 0;  ///< entries
-  std::uint64_t subscribes_put_off = 0;                                         ///< wanted more often than allowed
+  std::uint64_t subscribes_put_off = 0;                                         ///< delayed by the limit of their rate
 };
 
-/// For status output.
+/// State for output.
 struct SdSubscriptionState {
   enum class Phase : std::uint8_t { kSeeking, kSubscribing, kSubscribed };
   Phase phase = Phase::kSeeking;
-  // Of no meaning while seeking:
+  // Without meaning while seeking:
   std::uint16_t instance = 0;
   std::uint8_t major = 0;
-  recording::Endpoint server;  ///< from where the events come
-  recording::Endpoint peer;    ///< with which service discovery is done
+  recording::Endpoint server;  ///< source of the events
+  recording::Endpoint peer;    ///< partner in service discovery
   std::optional<recording::Endpoint> group;
 };
 
-/// One network interface's client. Time is CLOCK_MONOTONIC in nanoseconds, as an argument. Nothing allocates after
-/// construction; what the network can make it do is bounded: fixed tables, and at most 10 Subscribes a second for each
-/// subscription, whatever arrives.
+/// The client of one network interface. Time is CLOCK_MONOTONIC in nanoseconds, as an argument. Nothing allocates after
+/// construction. Work is bounded for all input: fixed tables, and at most 10 Subscribes per second and subscription.
 ///
-/// Messages are seen by sessions of their sender, endpoints are taken from options: an offer's endpoint need not be
-/// where the offer came from. A server that answers
-/// keeps its place against others that offer the same instance; one that does not loses it to them. Because another
-/// program on this host may share the SD port and receive the Acks meant for us, arriving events count as an Ack.
+/// Reboots are detected by the sessions of each sender. Endpoints come from options: an offer's endpoint may differ
+/// from the sender of the offer. A server that answers keeps its subscription if others offer the same instance; a
+/// server that does not answer is replaced by another one. Another program on this host may share the SD port and
+/// receive the Acks for this client, so arriving events count as an Ack.
 class SdClient {
  public:
   static constexpr std::int64_t kNever = kNever_ns;
@@ -105,26 +104,26 @@ class SdClient {
 
   SdClient(const SdClientConfig& config, SdActions& actions);
 
-  /// Begins to seek. Returns, like the functions below, when tick() is due at the latest; kNever: not at all.
+  /// Begins to seek. Like the functions below, returns the latest time of the next tick(); kNever: no tick needed.
   std::int64_t start(std::int64_t now_ns);
   /// Withdraws all subscriptions.
   void stop(std::int64_t now_ns);
   void link_down();
-  /// Seeks again; a server that went on in between is subscribed to anew. Without link_down() before, what is known is
-  /// kept, and its subscriptions are renewed at once.
+  /// Seeks again, and subscribes again to a server that is still running. Without link_down() before, known servers are
+  /// kept and their subscriptions renewed at once.
   std::int64_t link_up(std::int64_t now_ns);
   std::int64_t tick(std::int64_t now_ns);
 
-  /// A datagram that came to the SD port. Messages of other services in it are ignored.
+  /// A datagram to the SD port. Messages of other services in it are ignored.
   std::int64_t take(std::span<const std::uint8_t> datagram, const recording::Endpoint& sender, bool by_multicast,
                     std::int64_t now_ns);
-  /// One message of it.
+  /// One message of such a datagram.
   std::int64_t take(const Message& message, const recording::Endpoint& sender, bool by_multicast, std::int64_t now_ns);
   /// An event of this subscription has arrived.
   void event_received(std::size_t index, std::int64_t now_ns);
 
   [[nodiscard]] const SdStatistics& statistics() const { return statistics_; }
-  /// By position in the configuration.
+  /// By index in the configuration.
   [[nodiscard]] const SdSubscriptionState& state(std::size_t position) const { return subscriptions_[position].state; }
   [[nodiscard]] std::size_t number_of_peers() const { return peers_.size(); }
 
@@ -132,18 +131,18 @@ class SdClient {
   using Phase = SdSubscriptionState::Phase;
   struct Subscription {
     SdSubscription config;
-    std::uint8_t counter = 0;  // tells subscriptions to the same eventgroup apart
+    std::uint8_t counter = 0;  // distinguishes subscriptions to the same eventgroup
     SdSubscriptionState state;
     std::int64_t offer_expires_ns = kNever;
     std::int64_t subscribe_due_ns = kNever;
-    std::int64_t next_allowed_ns = std::numeric_limits<std::int64_t>::min();   // not too often
+    std::int64_t next_allowed_ns = std::numeric_limits<std::int64_t>::min();   // limits the rate
     std::int64_t refused_until_ns = std::numeric_limits<std::int64_t>::min();  // after a Nack
     std::int64_t confirmed_until_ns = kNever;
-    std::int64_t complain_at_ns = kNever;  // that there is no Ack
-    std::int64_t alive_until_ns = 0;       // until then no other server takes this one's place
+    std::int64_t complain_at_ns = kNever;  // time of the report of a missing Ack
+    std::int64_t alive_until_ns = 0;       // until then no other server replaces this one
     std::int64_t group_stays_until_ns = std::numeric_limits<std::int64_t>::min();
-    bool sent = false;        // a Subscribe, since the offer
-    bool stop_first = false;  // withdraw what the server may still have of us before subscribing
+    bool sent = false;        // a Subscribe was sent since the offer
+    bool stop_first = false;  // end a possible old subscription before subscribing
     unsigned refusals = 0;
   };
 
@@ -186,7 +185,7 @@ class SdClient {
   SdStatistics statistics_;
   bool running_ = false;
   bool link_is_up_ = true;
-  bool entry_fault_told_ = false;  // of the present message
+  bool reported_entry_fault_ = false;  // of the current message
   std::int64_t seeking_since_ns_ = 0;
   std::size_t next_find_;
 };

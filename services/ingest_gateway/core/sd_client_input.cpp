@@ -1,4 +1,4 @@
-// What a service discovery client makes of what it hears.
+// Received messages of a service discovery client.
 #include <algorithm>
 
 #include "services/ingest_gateway/codecs/someip/fault_kinds.hpp"
@@ -11,12 +11,12 @@ namespace {
 using recording::Endpoint;
 
 constexpr unsigned kMaxRefusalsDoubling = 5;  // waits of 1, 2, 4 … 32 s
-// What offered for ever and started again has to offer again within this time.
+// After a reboot, a server with an offer without time limit must offer again within this time.
 constexpr std::int64_t kOfferAfterReboot_ns = 5 * kSecond_ns;
-// A server answers within 100 ms, and our Subscribe may have been put off for as long. One that has not after this time
-// may be one that does not exist: another that offers the instance takes its place.
+// A server answers within 100 ms, and the Subscribe may have been delayed for as long. A server without an answer after
+// this time may not exist: another one that offers the instance replaces it.
 constexpr std::int64_t kAnswersWithin_ns = 400'000'000;
-// Acks that name ever other groups must not open and close sockets as fast as they come.
+// Acks with changing groups must not open and close sockets at their own rate.
 constexpr std::int64_t kGroupStays_ns = kSecond_ns;
 
 Fault kind_of(SdFault fault) {
@@ -42,9 +42,9 @@ Fault kind_of(SdFault fault) {
 
 void SdClient::entry_fault(SdFault fault) {
   ++statistics_.malformed_entries;
-  // One a message is enough to say: a message of 64 bad entries would fill the log.
-  if (!entry_fault_told_) actions_.fault(kind_of(fault), describe(fault));
-  entry_fault_told_ = true;
+  // One fault per message is enough: a message with 64 bad entries would fill the log.
+  if (!reported_entry_fault_) actions_.fault(kind_of(fault), describe(fault));
+  reported_entry_fault_ = true;
 }
 
 std::int64_t SdClient::take(std::span<const std::uint8_t> datagram, const Endpoint& sender, bool by_multicast,
@@ -70,13 +70,13 @@ std::int64_t SdClient::take(const Message& message, const Endpoint& sender, bool
 void SdClient::take_sd(const Message& message, const Endpoint& sender, bool by_multicast, std::int64_t now_ns) {
   if (!running_ || !link_is_up_ || message.service != kSdService || message.method != kSdMethod) return;
   ++statistics_.messages;
-  entry_fault_told_ = false;
+  reported_entry_fault_ = false;
   if (const SdFault fault = message_.read(message); fault != SdFault::kNone) {
     ++statistics_.malformed_messages;
     actions_.fault(kind_of(fault), describe(fault));
     return;
   }
-  // The SD endpoint option stands for where the message came from; a bad one changes nothing.
+  // The SD endpoint option replaces the sender's address; an invalid option is ignored.
   Endpoint peer = sender;
   Endpoint stated;
   if (const SdFault fault = message_.sd_endpoint(family(), stated); fault == SdFault::kNone) {
@@ -100,11 +100,11 @@ void SdClient::take_sd(const Message& message, const Endpoint& sender, bool by_m
 
 void SdClient::take_session(const Message& message, const Endpoint& peer, bool by_multicast, std::int64_t now_ns) {
   if (message.session == 0) {
-    actions_.fault(Fault::kWireValue, "SOME/IP-SD: session id 0: a reboot of this server cannot be noticed");
+    actions_.fault(Fault::kWireValue, "SOME/IP-SD: session id 0: reboots of this server cannot be detected");
     return;
   }
-  // Programs on this host that share the SD port are one peer by address and port, but each counts for itself, and our
-  // own Finds come back, too. Only what servers say is of interest here.
+  // Programs on this host that share the SD port look like one peer, but have separate counters, and the client's own
+  // Finds come back as well. Only messages of servers count here.
   const auto is_of_server = [](const SdEntry& entry) {
     return entry.type == EntryType::kOffer || entry.type == EntryType::kSubscribeAck;
   };
@@ -130,7 +130,7 @@ void SdClient::take_reboot(const Endpoint& peer, std::int64_t now_ns) {
 
 void SdClient::take_offer(const SdEntry& entry, const Endpoint& peer, std::int64_t now_ns) {
   bool concerns_us = false;
-  std::optional<SdFault> endpoint_fault;  // judged when it is first needed
+  std::optional<SdFault> endpoint_fault;  // checked at first use
   Endpoint server;
   for (Subscription& s : subscriptions_) {
     const bool is_seeking = s.state.phase == Phase::kSeeking;
@@ -221,7 +221,8 @@ void SdClient::take_ack(const SdEntry& entry, const Endpoint& peer, std::int64_t
   ++statistics_.acks;
   const std::optional<Endpoint> wanted = fault == SdFault::kNone ? std::optional(group) : std::nullopt;
   if (wanted != s.state.group && now_ns < s.group_stays_until_ns) {
-    actions_.fault(Fault::kLink, "SOME/IP-SD: Acks name another multicast group within a second; the first one stays");
+    actions_.fault(Fault::kLink,
+                   "SOME/IP-SD: Acks name another multicast group within a second; the first group is kept");
   } else if (wanted != s.state.group) {
     set_group(s, wanted);
     s.group_stays_until_ns = after(now_ns, kGroupStays_ns);

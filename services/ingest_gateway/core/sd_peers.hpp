@@ -1,4 +1,4 @@
-// What a service discovery client remembers of those it talks with: session counters of both directions.
+// Peers of a service discovery client: session counters of both directions.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace boresight::ingest::someip {
 
-/// Our own counter towards one receiver (a peer, or the multicast group): 1 … 65535, and over again. The reboot flag
-/// is set until it wraps for the first time.
+/// The client's counter for one receiver (a peer, or the multicast group): 1 … 65535, then 1 again. The reboot flag is
+/// set until the first wrap.
 class SessionCounter {
  public:
   struct Stamp {
@@ -34,12 +34,13 @@ class SessionCounter {
   bool reboot_flag_ = true;
 };
 
-/// Detects that a peer has started again, from the sessions and flags of what it sends, separately for what comes by
-/// multicast and by unicast, as senders count them separately.
+/// Detects a peer's reboot by the sessions and flags of its messages. Multicast and unicast are separate, as senders
+/// count them separately.
 class RebootDetector {
  public:
-  /// True if this message is the first that shows a reboot. The other way's history is forgotten then: its next message
-  /// would show the same reboot again. The same session within 10 ms is the network's copy, not a reboot.
+  /// True if this message is the first that shows a reboot. The history of the other kind (multicast or unicast) is
+  /// then deleted, as its next message would show the same reboot again. The same session within 10 ms is a copy by the
+  /// network, not a reboot.
   [[nodiscard]] bool take(bool by_multicast, std::uint16_t session, bool reboot_flag, std::int64_t now_ns);
 
  private:
@@ -59,11 +60,11 @@ struct SdPeer {
   SessionCounter outgoing;
 };
 
-/// A fixed number of peers. When a new one finds no place, the one not heard for longest gives way, unless it is
+/// A fixed number of peers. If the table is full, a new peer replaces the one that is silent for longest and not
 /// needed.
 class SdPeers {
  public:
-  /// `capacity` of at least one more than are ever needed at once.
+  /// `capacity` must exceed the number of peers that are needed at the same time.
   explicit SdPeers(std::size_t capacity) { peers_.reserve(capacity > 0 ? capacity : 1); }
 
   /// The peer, created if it is new.

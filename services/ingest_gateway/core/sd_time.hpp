@@ -1,4 +1,4 @@
-// Times that may never come.
+// Times that may be infinite.
 #pragma once
 
 #include <cstdint>

@@ -7,23 +7,23 @@ namespace boresight::ingest {
 
 namespace {
 
-/// Stamps beyond are no times (146 years), and differences of those within do not overflow.
+/// Largest valid stamp (146 years); differences of valid stamps do not overflow.
 constexpr std::int64_t kMaxStamp_ns = std::int64_t{1} << 62;
 
-/// Free-running stamps are believed after so many scans that advanced as time does …
+/// Free-running stamps are used after this number of scans that advanced with time …
 constexpr unsigned kScansToBelieve = 8;
-/// … give or take what queues on the way do to the spacing of two frames.
+/// … with this tolerance for delays in queues between two frames.
 constexpr double kSpacingShare = 0.25;
 constexpr std::int64_t kSpacing_ns = 20'000'000;
-/// A frame can be late but never early; stamps that make it seem early by more than drift explains have jumped.
+/// A frame can be late but never early. If it seems earlier than drift explains, the stamps have jumped.
 constexpr std::int64_t kMaxEarly_ns = 20'000'000;
 constexpr double kDriftInSilence = 200e-6;
-/// Frames that all are late by that much for that long are not delayed: the sensor's clock was set back a little.
+/// If all frames are late by this amount for this time, they are not delayed: the sensor's clock was set back.
 constexpr std::int64_t kLate_ns = 20'000'000;
 constexpr std::int64_t kLateFor_ns = 2'000'000'000;
-/// After a longer silence what was known of the drift is worth nothing.
+/// After a longer silence the known drift is not valid any more.
 constexpr std::int64_t kMaxSilence_ns = 30'000'000'000;
-/// A clock that went back to less than this counts from the start of the sensor.
+/// A clock that goes back below this value counts from the start of the sensor.
 constexpr std::int64_t kStartOfSensor_ns = 60'000'000'000;
 
 }  // namespace
@@ -42,24 +42,24 @@ SensorClock::Result SensorClock::map(const std::optional<SensorStamp>& sensor, c
   const bool believed = usable && steady_scans_ >= kScansToBelieve;
   if (synchronised) {
     const std::int64_t time_ns = sensor->time_ns - reception.epoch_offset_ns;
-    // A synchronised clock may be corrected by any amount; only going back is a fault.
+    // A synchronised clock may be corrected by any amount; only a step back is a fault.
     result.clock_jumped = was_synchronised_ && has_last_time_ && time_ns < last_time_ns_;
     if (believed) latency_ns_ = std::max<std::int64_t>(0, envelope_.offset_ns() + reception.epoch_offset_ns);
     result.time = {time_ns, TimeSource::kSensorSynchronised};
-    told_sync_lost_ = false;
+    reported_sync_lost_ = false;
   } else if (believed) {
     result.time = {sensor->time_ns + envelope_.offset_ns() - latency_ns_, TimeSource::kSensorFreeRunning};
   }
   const bool claims_only = sensor && sensor->synchronised && !synchronised;
-  if (!synchronised && (was_synchronised_ || (claims_only && !told_sync_lost_))) {
-    result.sync_lost = told_sync_lost_ = true;
+  if (!synchronised && (was_synchronised_ || (claims_only && !reported_sync_lost_))) {
+    result.sync_lost = reported_sync_lost_ = true;
   }
   was_synchronised_ = synchronised;
   keep_order(result);
   return result;
 }
 
-/// Keeps the estimate of the clocks' offset; begins anew after a jump.
+/// Updates the estimate of the clocks' offset; starts again after a jump.
 void SensorClock::follow(std::int64_t stamp_ns, std::int64_t received_ns, Result& result) {
   if (envelope_.empty()) {
     begin_anew(stamp_ns, received_ns);
@@ -81,7 +81,7 @@ void SensorClock::follow(std::int64_t stamp_ns, std::int64_t received_ns, Result
   const std::int64_t offset_ns = received_ns - stamp_ns;
   const std::int64_t late_ns = envelope_.lateness_ns(stamp_ns, offset_ns);
   if (believed) {
-    // Before the estimate has settled the frame may just be luckier than all before it.
+    // Before the estimate has settled, a frame may have a smaller delay than all previous ones.
     const std::int64_t early_ns = envelope_.settled()
                                       ? kMaxEarly_ns + std::llround(kDriftInSilence * static_cast<double>(stamps_ns))
                                       : kMaxDelay_ns;
@@ -124,7 +124,7 @@ void SensorClock::keep_order(Result& result) {
     if (last_time_ns_ - result.time.time_ns > kMaxDelay_ns) {
       result.clock_jumped = true;
     } else {
-      // Another source of time took over, or a frame overtook another: held rather than turned round.
+      // The source of time changed, or a frame overtook another one: keeps the previous time instead of going back.
       result.time.time_ns = last_time_ns_;
     }
   }

@@ -8,7 +8,7 @@ namespace boresight::ingest {
 
 namespace {
 
-// Two frames a sensor share the bus with its detections.
+// Two frames per sensor share the bus with its detections.
 constexpr std::int64_t kCanPeriod_ns = 20'000'000;
 
 }  // namespace
@@ -42,7 +42,7 @@ void SensorFeed::send(const EgoMotion& ego, std::int64_t now_ns, Sink& sink) {
       sink.send(frame);
     }
   }
-  // A clock that went back begins anew.
+  // Starts again if the clock went back.
   if (has_sent_ && std::abs(now_ns - last_can_ns_) < kCanPeriod_ns) return;
   has_sent_ = true;
   last_can_ns_ = now_ns;

@@ -1,4 +1,4 @@
-// What goes back to the sensors: the vehicle's motion, and what they are told to send.
+// Messages to the sensors: the vehicle's motion, and the configuration of their output.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace boresight::ingest {
 
-/// Only for radars whose vehicle file asks for it.
+/// Only for radars with `ego_feed` or an output in the vehicle file.
 class SensorFeed {
  public:
   explicit SensorFeed(const VehicleConfig& vehicle);
 
-  /// Once, when the gateway starts: an ARS408 keeps its configuration in a memory that wears.
+  /// Once, when the gateway starts: an ARS408 stores its configuration in memory with a limited number of writes.
   void start(Sink& sink) const;
-  /// With each ego motion; sent no more often than the sensors want it.
+  /// With each ego motion; sent at most at the sensors' rate.
   void send(const EgoMotion& ego, std::int64_t now_ns, Sink& sink);
 
  private:

@@ -8,26 +8,26 @@
 
 namespace boresight::ingest {
 
-namespace service = wire::boresight_service;
+namespace wire_service = wire::boresight_service;
 
 namespace {
 
-// Segments of one message are sent within 5 ms; a message is given up long before the next cycle but one.
+// Segments of one message are sent within 5 ms; an incomplete message is dropped long before the second next cycle.
 constexpr std::int64_t kReassemblyTimeout_ns = 100'000'000;
 
 }  // namespace
 
 std::size_t SomeIpReceiver::add(Source& source, std::uint16_t event, const E2eConfig& e2e) {
-  // Without protection required the header still is there, as the service has it.
+  // Messages have the E2E header also if the check is off.
   const std::size_t body_offset = e2e.protection.offset_bytes + e2e::header_bytes(e2e.protection.profile) -
-                                  (someip::kHeaderBytes - service::kProtectedFrom);
+                                  (someip::kHeaderBytes - wire_service::kProtectedFrom);
   subscriptions_.push_back({&source, event, e2e.required, body_offset, e2e::Checker(e2e.protection), std::nullopt});
   return subscriptions_.size() - 1;
 }
 
 void SomeIpReceiver::set_server(std::size_t index, const std::optional<recording::Endpoint>& server) {
   Subscription& subscription = subscriptions_[index];
-  // A server that comes back counts anew; its first message is compared with nothing.
+  // A restarted server also restarts its counter; its first message has no predecessor.
   if (subscription.server != server) subscription.checker.reset();
   subscription.server = server;
 }
@@ -38,9 +38,9 @@ bool SomeIpReceiver::knows(const recording::Endpoint& server) const {
 }
 
 void SomeIpReceiver::prepare() {
-  // Two messages of each source: a segment whose header was damaged begins another that never ends.
+  // Two messages per source: a segment with a damaged header starts another message that never ends.
   if (!subscriptions_.empty()) {
-    reassembler_.emplace(2 * subscriptions_.size(), service::kMaxMessageBytes, kReassemblyTimeout_ns);
+    reassembler_.emplace(2 * subscriptions_.size(), wire_service::kMaxMessageBytes, kReassemblyTimeout_ns);
   }
 }
 
@@ -49,12 +49,12 @@ void SomeIpReceiver::tick(std::int64_t now_ns) {
   reassembler_->expire(now_ns);
   const std::uint64_t incomplete = reassembler_->statistics().dropped_incomplete;
   for (; incomplete_reported_ < incomplete; ++incomplete_reported_) {
-    sink_.fault(Fault::kWireLength, "SOME/IP-TP: a message was given up because segments are missing", 0);
+    sink_.fault(Fault::kWireLength, "SOME/IP-TP: a message was dropped because segments are missing", 0);
   }
 }
 
 void SomeIpReceiver::fault_of_sender(const recording::Endpoint& sender, Fault fault, std::string_view what) {
-  std::uint32_t radar_id = 0;  // where ego motion comes from the same endpoint, it is the radar that counts
+  std::uint32_t radar_id = 0;  // if ego motion has the same endpoint, faults count for the radar
   for (const Subscription& subscription : subscriptions_) {
     if (subscription.server == sender) radar_id = std::max(radar_id, subscription.source->id());
   }
@@ -69,14 +69,13 @@ void SomeIpReceiver::take_datagram(const recording::Frame& datagram, const Frame
       fault_of_sender(datagram.source, someip::kind_of(result), someip::describe(result));
       continue;
     }
-    if (message.service != service::kServiceId) continue;  // other services of the same socket
+    if (message.service != wire_service::kServiceId) continue;  // other services of the same socket
     const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(), [&](const Subscription& s) {
       return s.event == message.method && s.server == datagram.source;
     });
-    // Before segments take memory: strangers must not drive out what our servers have begun.
+    // Before segments use memory: unknown senders must not displace messages of known servers.
     if (found == subscriptions_.end()) {
-      sink_.fault(Fault::kWireUnknown, "SOME/IP: event of the Boresight service from a sender that nobody waits for",
-                  0);
+      sink_.fault(Fault::kWireUnknown, "SOME/IP: event of the Boresight service from an unknown sender", 0);
       continue;
     }
     if (!message.tp) {
@@ -96,7 +95,7 @@ void SomeIpReceiver::take_datagram(const recording::Frame& datagram, const Frame
 void SomeIpReceiver::take_message(Subscription& subscription, const someip::Message& message,
                                   const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken) {
   Source& source = *subscription.source;
-  if (message.interface_version != service::kMajorVersion || message.type != someip::MessageType::kNotification ||
+  if (message.interface_version != wire_service::kMajorVersion || message.type != someip::MessageType::kNotification ||
       message.return_code != 0) {
     source.fault(Fault::kWireValue, "SOME/IP: interface version, message type or return code is not 1, 0x02, 0");
     return;

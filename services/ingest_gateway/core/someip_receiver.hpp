@@ -1,4 +1,4 @@
-// Events of the Boresight service: datagrams → messages → whole messages → checked bodies → the source they belong to.
+// Events of the Boresight service: datagrams → messages → reassembled messages → checked bodies → their source.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ class SomeIpReceiver {
 
   /// Before any take(): adds a source of the event; returns its index.
   std::size_t add(Source& source, std::uint16_t event, const E2eConfig& e2e);
-  /// Where the source's events come from now, as its offer says; nullopt: it is not offered.
+  /// Current endpoint of the source's events, from its offer; nullopt: not offered.
   void set_server(std::size_t index, const std::optional<recording::Endpoint>& server);
-  /// The source's server started again: its first message is compared with nothing.
+  /// The source's server restarted: its first message has no predecessor.
   void forget_sequence(std::size_t index) { subscriptions_[index].checker.reset(); }
   [[nodiscard]] bool knows(const recording::Endpoint& server) const;
-  /// After the last add(): takes the memory for messages in segments.
+  /// After the last add(): allocates the memory for segmented messages.
   void prepare();
 
-  /// Takes one datagram; `on_event(index)` is called for each sound message of a source.
+  /// Takes one datagram; calls `on_event(index)` for each valid message of a source.
   template <typename OnEvent>
   void take(const recording::Frame& datagram, const FrameStamp& stamp, OnEvent on_event) {
     std::uint32_t taken = 0;
@@ -38,7 +38,7 @@ class SomeIpReceiver {
     }
   }
   void tick(std::int64_t now_ns);
-  /// For the source of that index.
+  /// Reports a fault of the source with that index.
   void fault(std::size_t index, Fault fault, std::string_view what) {
     subscriptions_[index].source->fault(fault, what);
   }
@@ -55,7 +55,7 @@ class SomeIpReceiver {
   void take_datagram(const recording::Frame& datagram, const FrameStamp& stamp, std::uint32_t& taken);
   void take_message(Subscription& subscription, const someip::Message& message, const recording::Frame& datagram,
                     const FrameStamp& stamp, std::uint32_t& taken);
-  /// Counted for the source whose server sent it, if it is one.
+  /// Counts a fault for the source with this sender, if there is one.
   void fault_of_sender(const recording::Endpoint& sender, Fault fault, std::string_view what);
   [[nodiscard]] bool passes_e2e(Subscription& subscription, const someip::Message& message);
 

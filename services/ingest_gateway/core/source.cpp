@@ -13,7 +13,7 @@ Source::Source(const RadarConfig* radar, std::unique_ptr<Decoder> decoder, EgoRe
       sink_(sink) {}
 
 RadarScan* Source::begin_scan() {
-  // A radar may be there for its ego signals only.
+  // A radar may be configured for its ego signals only.
   if (id_ == 0) return nullptr;
   scan_ = sink_.begin_scan();
   return scan_;
@@ -29,14 +29,14 @@ void Source::publish_scan(const FrameStamp& reception, const std::optional<Senso
                                 ego_.latest_ego(time.time.time_ns));
   SourceStatistics& statistics = sink_.statistics(id_);
   statistics.lost = judge_.counters().lost_scans;
-  // What is missing before a scan is no fault of the scan.
+  // Missing scans before this one are no fault of this scan.
   if ((scan.integrity & ~scan_integrity::kCounterGap) != 0) ++statistics.suspect;
   sink_.publish_scan(id_, time.time);
 }
 
 void Source::report(const SensorClock::Result& time) {
   if (time.sensor_reset) {
-    fault(Fault::kTimeJump, "the sensor's clock began anew: it was reset");
+    fault(Fault::kTimeJump, "the sensor's clock restarted: the sensor was reset");
   } else if (time.clock_jumped) {
     fault(Fault::kTimeJump, "the sensor's clock, or that of its frames, jumped");
   }

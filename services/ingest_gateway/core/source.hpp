@@ -1,4 +1,4 @@
-// One source of the vehicle file: its decoder, its place in time, and where its products go.
+// One source of the vehicle file: its decoder, its clock, and the receiver of its output.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace boresight::ingest {
 
-/// Takes what sources say of the vehicle's motion, if they are the ones that the vehicle file names.
+/// Takes ego readings of the sources that the vehicle file names.
 class EgoReceiver {
  public:
   virtual ~EgoReceiver() = default;
   virtual void take_ego(std::uint32_t source_id, const EgoReading& reading, const FrameStamp& reception) = 0;
-  /// The motion to judge scans by; nullptr if unknown or too old at that time.
+  /// The motion for the check of scans; nullptr if unknown or too old at that time.
   [[nodiscard]] virtual const EgoMotion* latest_ego(std::int64_t time_ns) const = 0;
 };
 
-/// Gives every scan of its decoder a time of measurement and a verdict.
+/// Adds a time of measurement and integrity bits to every scan of its decoder.
 class Source : public DecoderOutput {
  public:
   /// `radar` nullptr for the source of ego signals, whose id is 0.

@@ -67,7 +67,7 @@ class Parser {
     Scanner scanner(line);
     if (scanner.at_end()) return;
     const std::string_view keyword = scanner.take_name();
-    // The keywords below NS_ are a table of contents: each stands alone in its line.
+    // The keywords below NS_ are a table of contents: one per line.
     if (scanner.at_end()) return;
     if (keyword == "BO_") {
       take_message(scanner);
@@ -78,14 +78,14 @@ class Parser {
     } else if (keyword == "SG_MUL_VAL_") {
       take_extended_multiplexing(scanner);
     } else {
-      // What follows a statement that should have been a BO_ must not end up in the message before.
+      // Signals after an invalid BO_ must not be added to the previous message.
       current_ = std::nullopt;
       skip_signals_ = false;
       skip_strings(line);
     }
   }
 
-  /// A string of a statement of no interest may go on over many lines, which then are none of ours.
+  /// Skips the lines of a string in an ignored statement; such a string may have many lines.
   void skip_strings(std::string_view line) {
     const std::size_t first_line = line_;
     std::size_t at = line_begin_;
@@ -97,7 +97,7 @@ class Parser {
       const std::size_t close = closing_quote(open);
       if (close == std::string_view::npos) {
         problem(first_line, "string is not closed");
-        return;  // go on with the next line
+        return;  // continue with the next line
       }
       at = close + 1;
       while (position_ <= close) {
@@ -112,19 +112,19 @@ class Parser {
     if (is_last_unclosed_) return std::string_view::npos;
     std::size_t at = text_.find('"', open + 1);
     while (at != std::string_view::npos && text_[at - 1] == '\\') at = text_.find('"', at + 1);
-    // Nothing further down closes a string either; it is not searched a second time.
+    // No later line closes a string either; avoids a second search.
     is_last_unclosed_ = at == std::string_view::npos;
     return at;
   }
 
   void take_message(Scanner& scanner) {
     current_ = std::nullopt;
-    skip_signals_ = true;  // of a message that is not taken
+    skip_signals_ = true;  // of an ignored message
     const auto id = scanner.take_unsigned();
     const std::string_view name = scanner.take_name();
     const bool has_colon = scanner.take(':');
     const auto length = scanner.take_unsigned();
-    if (!id || name.empty() || !has_colon || !length) return problem("BO_ wants: BO_ ID NAME: LENGTH SENDER");
+    if (!id || name.empty() || !has_colon || !length) return problem("BO_ must be: BO_ ID NAME: LENGTH SENDER");
     if ((*id & kNotOnTheBusBit) != 0) return;
     const bool extended = (*id & kExtendedBit) != 0;
     const std::uint64_t bus_id = extended ? *id & ~kExtendedBit : *id;
@@ -133,11 +133,11 @@ class Parser {
     }
     if (*length > kMaxLength_bytes) return problem("message is too long; allowed: 0 … 64 bytes");
     if (!messages_by_id_.emplace(*id, database_.messages.size()).second) {
-      return problem("message id comes twice; the first message counts");
+      return problem("message id occurs twice; the first message counts");
     }
     if (!message_names_.insert(name).second) {
       messages_by_id_.erase(*id);
-      return problem("message name comes twice; the first message counts");
+      return problem("message name occurs twice; the first message counts");
     }
     skip_signals_ = false;
     current_ = database_.messages.size();
@@ -150,19 +150,19 @@ class Parser {
 
   void take_signal(Scanner& scanner) {
     if (!current_) {
-      if (!skip_signals_) problem("signal follows no message");
+      if (!skip_signals_) problem("signal without a message");
       return;
     }
     const std::string_view name = scanner.take_name();
     Signal signal;
     if (name.empty() || !take_role(scanner, signal) || !take_layout(scanner, signal)) {
-      return problem("SG_ wants: SG_ NAME [M|m<N>] : START|LENGTH@ORDER SIGN (FACTOR,OFFSET) [MIN|MAX] \"UNIT\" ...");
+      return problem("SG_ must be: SG_ NAME [M|m<N>] : START|LENGTH@ORDER SIGN (FACTOR,OFFSET) [MIN|MAX] \"UNIT\" ...");
     }
     Message& message = database_.messages[*current_];
     if (signal.factor == 0.0) return problem("factor of a signal must not be 0");
-    if (!wire::fits(signal.can_signal(), message.length_bytes)) return problem("signal does not lie in its message");
+    if (!wire::fits(signal.can_signal(), message.length_bytes)) return problem("signal reaches beyond its message");
     if (!signals_.emplace(SignalKey{*current_, name}, Place{*current_, message.signals.size()}).second) {
-      return problem("signal name comes twice in a message; the first signal counts");
+      return problem("signal name occurs twice in a message; the first signal counts");
     }
     signal.name = name;
     message.signals.push_back(std::move(signal));
@@ -208,7 +208,7 @@ class Parser {
     if (!maximum || !scanner.take(']')) return false;
     const auto unit = scanner.take_string();
     if (!unit) return false;
-    // What is too large for the type is too large for any message: fits() is told so by a length of 0.
+    // A value too large for the type is too large for any message: a length of 0 makes fits() fail.
     const bool is_possible = *start < kMaxLength_bytes * 8 && *length <= 64;
     signal.start_bit = static_cast<std::uint16_t>(is_possible ? *start : 0);
     signal.length = static_cast<std::uint8_t>(is_possible ? *length : 0);
@@ -221,7 +221,7 @@ class Parser {
     return true;
   }
 
-  /// The signal that a statement further down speaks of. nullptr without a problem for a message on no bus.
+  /// The signal that a later statement refers to. nullptr without a problem for a message that is on no bus.
   Signal* take_signal_reference(Scanner& scanner, Place& place) {
     const auto id = scanner.take_unsigned();
     const std::string_view name = scanner.take_name();
@@ -245,9 +245,9 @@ class Parser {
     Place place;
     Signal* const signal = take_signal_reference(scanner, place);
     if (signal == nullptr) return;
-    static_cast<void>(scanner.take(':'));  // some tools leave it out
+    static_cast<void>(scanner.take(':'));  // some tools omit it
     const auto kind = scanner.take_unsigned();
-    if (!kind || *kind > 2) return problem("SIG_VALTYPE_ wants: 0 for an integer, 1 for a float, 2 for a double");
+    if (!kind || *kind > 2) return problem("SIG_VALTYPE_ must be: 0 for an integer, 1 for a float, 2 for a double");
     if (*kind == 0) return;
     if (signal->length != (*kind == 1 ? 32 : 64)) return problem("a float has 32 bits, a double 64");
     signal->kind = *kind == 1 ? wire::SignalKind::kFloat32 : wire::SignalKind::kFloat64;
@@ -264,7 +264,8 @@ class Parser {
       const auto last = scanner.take_unsigned();
       if (extended.switch_name.empty() || !first || !has_dash || !last || *first > *last ||
           extended.values.size() == kMaxRanges) {
-        return problem("SG_MUL_VAL_ wants: SG_MUL_VAL_ ID SIGNAL SWITCH FIRST-LAST[, FIRST-LAST …]; at most 64 ranges");
+        return problem(
+            "SG_MUL_VAL_ must be: SG_MUL_VAL_ ID SIGNAL SWITCH FIRST-LAST[, FIRST-LAST …]; at most 64 ranges");
       }
       extended.values.push_back({*first, *last});
     } while (scanner.take(','));
@@ -305,7 +306,7 @@ class Parser {
     }
   }
 
-  /// How many switches a signal hangs on; more than allowed if that never ends at a plain one.
+  /// Number of switches that a signal depends on; more than allowed for a cycle of switches.
   static std::size_t switches_above(const Message& message, const Signal& signal) {
     std::size_t count = 0;
     for (const Signal* at = &signal; at->is_multiplexed() && count <= kMaxSwitches; ++count) {
@@ -315,7 +316,7 @@ class Parser {
     return count;
   }
 
-  /// Takes out signals whose condition is not known; those that hang on them hang on nothing either.
+  /// Removes signals with an unknown condition, and the signals that depend on them.
   void drop_unresolved() {
     for (std::size_t m = 0; m < database_.messages.size(); ++m) {
       Message& message = database_.messages[m];
@@ -324,7 +325,8 @@ class Parser {
       for (std::size_t s = 0; s < message.signals.size(); ++s) {
         if (switches_above(message, message.signals[s]) > kMaxSwitches) {
           if (message.signals[s].switch_index != kNoSignal) {
-            problem(lines_[m][s], "signal hangs on more than 4 switches, on itself or on one that hangs on none");
+            problem(lines_[m][s],
+                    "signal depends on more than 4 switches, on itself or on a switch without a valid condition");
           }
           continue;
         }

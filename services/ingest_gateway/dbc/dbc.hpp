@@ -1,4 +1,4 @@
-// A DBC file: the messages of a CAN bus and where each signal lies in them.
+// A DBC file: the messages of a CAN bus and the layout of their signals.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace boresight::ingest::dbc {
 
-/// Part that a signal plays in multiplexing.
+/// Role of a signal in multiplexing.
 enum class MultiplexRole : std::uint8_t {
-  kNone,            ///< always there
-  kSwitch,          ///< "M": always there; its raw value says which others are
-  kValue,           ///< "m<N>": there when its switch has a value in its ranges
+  kNone,            ///< always present
+  kSwitch,          ///< "M": always present; its raw value selects others
+  kValue,           ///< "m<N>": present if its switch has a value in its ranges
   kValueAndSwitch,  ///< "m<N>M": both
 };
 
@@ -35,15 +35,15 @@ struct Signal {
   bool is_signed = false;
   double factor = 1.0;
   double offset = 0.0;
-  double minimum = 0.0;  ///< as the file says; 0 and 0 often stand for "not stated"
+  double minimum = 0.0;  ///< as in the file; 0 and 0 often mean "not stated"
   double maximum = 0.0;
   wire::SignalKind kind = wire::SignalKind::kInteger;
   std::string unit;
   MultiplexRole role = MultiplexRole::kNone;
   std::size_t switch_index = kNoSignal;   ///< of a multiplexed signal: its switch, within the same message
-  std::vector<ValueRange> switch_values;  ///< of a multiplexed signal: when it is there; never empty
+  std::vector<ValueRange> switch_values;  ///< of a multiplexed signal: values for which it is present; never empty
 
-  /// For extraction; carries no name, so that it may outlive this signal.
+  /// For extraction; without a name, so that it may outlive this signal.
   [[nodiscard]] wire::CanSignal can_signal() const {
     return {{}, start_bit, length, order, is_signed, factor, offset, kind};
   }
@@ -68,8 +68,8 @@ struct Message {
 
 struct Database {
   std::vector<Message> messages;
-  /// What could not be used, "file:line: …"; the rest of the file is in `messages`. At most kMaxProblems, the last of
-  /// which says that there are more.
+  /// Lines that could not be used, "file:line: …"; the rest of the file is in `messages`. At most kMaxProblems, the
+  /// last of which states that there are more.
   std::vector<std::string> problems;
 
   /// The message of that name, or nullptr.
@@ -77,13 +77,13 @@ struct Database {
 };
 
 inline constexpr std::size_t kMaxProblems = 200;
-/// A multiplexed signal under a switch that is itself multiplexed, and so on: at most so many switches.
+/// Largest depth of multiplexing: signals under switches that are themselves multiplexed.
 inline constexpr std::size_t kMaxSwitches = 4;
 
 /// Reads the text of a DBC file. Messages, signals, their float kinds (SIG_VALTYPE_) and extended multiplexing
-/// (SG_MUL_VAL_) are understood, all other statements skipped. Nothing in the text is trusted: a bad line is reported
-/// and left out; time grows as n·log n with the text. Messages with bit 30 of their id set are CANdb++'s place for
-/// signals that are on no bus, and are left out without a problem.
+/// (SG_MUL_VAL_) are read, all other statements are skipped. The text is not trusted: an invalid line is reported and
+/// skipped. Time grows as n·log n with the text. Messages with bit 30 of their id set hold CANdb++'s signals that are
+/// on no bus, and are skipped without a problem.
 [[nodiscard]] Database parse_dbc(std::string_view text, std::string_view file_name);
 
 }  // namespace boresight::ingest::dbc

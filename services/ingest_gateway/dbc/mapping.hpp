@@ -1,5 +1,5 @@
-// What a mapping file says of a CAN radar or of the vehicle's signals, with every name of the DBC file looked up: plain
-// tables for the decoders codecs/table_radar and codecs/table_ego.
+// A mapping file of a CAN radar or of the vehicle's signals with all names of the DBC file resolved: plain tables for
+// the decoders codecs/table_radar and codecs/table_ego.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace boresight::ingest::dbc {
 
-/// A multiplexed signal is there only if its switch has one of these raw values.
+/// A multiplexed signal is present only if its switch has one of these raw values.
 struct SwitchCondition {
   wire::CanSignal signal;
   std::vector<ValueRange> values;
@@ -37,8 +37,8 @@ struct SwitchCondition {
   });
 }
 
-/// value = physical · factor + offset, in the unit that the quantity is wanted in; all conditions must hold. The
-/// payloads below are at least as long as the signal's message.
+/// value = physical · factor + offset, in the quantity's unit; all conditions must hold. The payloads below are at
+/// least as long as the signal's message.
 struct MappedSignal {
   wire::CanSignal signal{{}, 0, 1, wire::ByteOrder::kIntel, false, 1.0, 0.0};
   double factor = 1.0;
@@ -54,17 +54,17 @@ struct MappedSignal {
   }
 };
 
-/// Check sums that makers of vehicles use instead of E2E protection.
+/// Checksums of vehicle manufacturers instead of E2E protection.
 enum class Checksum : std::uint8_t {
   kNone,
   kToyota,  ///< last byte: sum over id, length and the other bytes
 };
 
-/// A CAN message as it must come to be used.
+/// A CAN message and the checks that it must pass.
 struct MappedMessage {
   std::uint32_t id = 0;
   bool extended = false;
-  std::string name;  ///< for reports
+  std::string name;  ///< for fault texts
   std::uint16_t length_bytes = 0;
   Checksum checksum = Checksum::kNone;
   e2e::Config protection;  ///< Profile::kNone: unprotected; else over the message's length
@@ -76,18 +76,18 @@ struct MappedMessage {
   }
 };
 
-/// A signal that says something by some of its raw values.
+/// A condition that holds for some raw values of a signal.
 struct MappedState {
   MappedSignal signal;
   std::vector<std::int64_t> values;
-  bool except = false;  ///< all other values say it
+  bool except = false;  ///< the condition holds for all other values
 
   [[nodiscard]] bool holds(std::span<const std::uint8_t> payload) const {
     return (std::find(values.begin(), values.end(), signal.raw(payload)) != values.end()) != except;
   }
 };
 
-/// What a signal of a detection measures, in metres, radians, m/s, dB and dBsm; signs as in RadarScan.
+/// Quantity of a detection's signal, in metres, radians, m/s, dB and dBsm; signs as in RadarScan.
 enum class Quantity : std::uint8_t {
   kRange,
   kLongitudinal,
@@ -111,20 +111,20 @@ inline constexpr std::size_t kNumberOfQuantities = 15;
   return 1u << static_cast<unsigned>(quantity);
 }
 
-/// How the place of a detection among those of its cycle is told.
+/// Source of a detection's index within its cycle.
 enum class SlotBy : std::uint8_t {
-  kIndex,    ///< by the message, or by the signals' names within it
-  kSignal,   ///< by a signal of the message, which comes once for each detection
-  kArrival,  ///< by the order of arrival of the messages
+  kIndex,    ///< the message, or the signals' names within it
+  kSignal,   ///< a signal of the message, which is sent once per detection
+  kArrival,  ///< the order of arrival of the messages
 };
 
-/// One of the conditions for a detection to be there.
+/// One of the conditions for a valid detection.
 struct Validity {
   MappedState state;
   std::uint8_t bit = 1;  ///< 1 << number of the condition
 };
 
-/// What one message says of one detection; further parts of the same detection may come in other messages.
+/// The signals of one message for one detection; other messages may hold further parts of the same detection.
 struct DetectionPart {
   SlotBy slot_by = SlotBy::kIndex;
   std::uint16_t slot = 0;     ///< of the detection, or of the first one of its group
@@ -133,8 +133,8 @@ struct DetectionPart {
   MappedSignal slot_signal;   ///< kSignal: raw value − slot_signal_first = place in the group
   std::int64_t slot_signal_first = 0;
   std::vector<std::pair<Quantity, MappedSignal>> quantities;
-  std::vector<Validity> valid;  ///< all must have come and hold, or there is no detection
-  /// When the part is in the frame: the conditions that all of its signals share.
+  std::vector<Validity> valid;  ///< a detection is valid if all were received and hold
+  /// The part is in the frame if these hold: the conditions that all of its signals share.
   std::vector<SwitchCondition> conditions;
 };
 
@@ -150,8 +150,8 @@ struct RadarMessage {
 enum class CycleEnd : std::uint8_t {
   kAllMessages,  ///< with the last part of the last detection
   kLastMessage,  ///< with the message that is_last
-  kCount,        ///< with as many detections as the header says
-  kTimeout,      ///< when nothing has come for the time-out
+  kCount,        ///< with the number of detections in the header
+  kTimeout,      ///< after a pause of the time-out
 };
 
 struct RadarMapping {
@@ -168,7 +168,7 @@ struct RadarMapping {
 /// A quantity made of the signals of one message.
 struct EgoQuantity {
   std::vector<MappedSignal> signals;
-  bool sum = false;  ///< of the signals; else their mean
+  bool sum = false;  ///< sum of the signals; else their mean
   double plausible_min = 0.0;
   double plausible_max = 0.0;
 };
@@ -182,7 +182,7 @@ struct EgoPulses {
   double plausible_max_mps = 0.0;
 };
 
-/// What one message says of the motion; units as in EgoMotion.
+/// The signals of one message for the vehicle's motion; units as in EgoMotion.
 struct EgoMessage {
   MappedMessage frame;
   std::optional<EgoQuantity> speed_mps;

@@ -31,7 +31,7 @@ class Scanner {
     while (length < rest_.size() && is_name_character(rest_[length], length == 0)) ++length;
     return take_front(length);
   }
-  /// What comes before the next blank.
+  /// The text before the next blank.
   [[nodiscard]] std::string_view take_word() {
     skip_blanks();
     std::size_t length = 0;

@@ -10,8 +10,8 @@ namespace boresight::ingest {
 
 namespace {
 
-constexpr int kReceiveBuffer = 1024 * 1024;
-constexpr int kFramesPerTurn = 64;
+constexpr int kCanReceiveBuffer_bytes = 1024 * 1024;
+constexpr int kCanFramesPerTurn = 64;
 
 }  // namespace
 
@@ -29,25 +29,25 @@ bool CanLink::open() {
   socket_ = Socket(runtime::open_can_socket(interface_, false, problem));
   if (!socket_.is_open()) return fail(problem);
   request_stamps_and_drops(socket_.get());
-  static_cast<void>(request_receive_buffer(socket_.get(), kReceiveBuffer));
+  static_cast<void>(request_receive_buffer(socket_.get(), kCanReceiveBuffer_bytes));
   kernel_drops_ = 0;
   return true;
 }
 
 void CanLink::read() {
-  for (int i = 0; i < kFramesPerTurn; ++i) {
+  for (int i = 0; i < kCanFramesPerTurn; ++i) {
     canfd_frame raw{};
     Reception reception{.sender = {}, .stamp = {}, .drops = kernel_drops_};
     const ssize_t length = receive(socket_, {reinterpret_cast<std::uint8_t*>(&raw), sizeof(raw)}, reception);
     if (length < 0) {
-      // ENETDOWN comes once when the interface goes down; it is opened anew until it is back.
+      // ENETDOWN comes once when the interface goes down; the link is opened again until the interface is back.
       if (errno != EAGAIN && errno != EINTR) fail("receiving failed: " + last_error());
       return;
     }
     report_drops(reception, kernel_drops_, "CAN frames", events_);
     recording::Frame frame;
     if (runtime::from_kernel(raw, length, frame) != runtime::CanFrameKind::kData) {
-      events_.on_fault(Fault::kWireLength, "CAN frame of a wrong length");
+      events_.on_fault(Fault::kWireLength, "CAN frame with a wrong length");
       continue;
     }
     frame.stamp_ns = reception.stamp.received_ns;

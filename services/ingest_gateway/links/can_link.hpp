@@ -16,7 +16,7 @@ class CanLink : public Link {
   [[nodiscard]] int descriptor() const override { return socket_.get(); }
   void read() override;
   [[nodiscard]] const std::string& interface() const { return interface_; }
-  /// What cannot be sent is a fault, once until it can.
+  /// A failed send is a fault, reported once until a send succeeds.
   void send(const recording::Frame& frame);
   [[nodiscard]] const std::string& name() const override { return name_; }
 

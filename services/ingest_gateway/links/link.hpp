@@ -1,4 +1,4 @@
-// Where frames come from: one interface for CAN buses, UDP sockets and the replay tunnel.
+// Sources of frames: one interface for CAN buses, UDP sockets and the replay tunnel.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,11 @@
 
 namespace boresight::ingest {
 
-/// Receivers of what a link has to tell.
+/// Callbacks of a link.
 struct LinkEvents {
   std::function<void(const recording::Frame&, const FrameStamp&)> on_frame;
   std::function<void(Fault, std::string_view)> on_fault;
-  std::function<void()> on_end;         ///< a recording has been played to its end, or its replay has died
+  std::function<void()> on_end;         ///< a recording is complete, or its replay has died
   std::function<void()> on_network_up;  ///< an interface or address is back; may be empty
 };
 
@@ -26,13 +26,13 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  /// Opens or re-opens; false, with a fault, if that is not possible now. Called again each second until it succeeds.
+  /// Opens or re-opens; false, with a fault, on failure. Called again each second until it succeeds.
   virtual bool open() = 0;
   /// Descriptor to wait for, −1 while closed.
   [[nodiscard]] virtual int descriptor() const = 0;
-  /// Takes what has arrived, some dozens of frames at most, so that the other links get their turn.
+  /// Reads waiting frames, some dozens at most, so that the other links get their turn.
   virtual void read() = 0;
-  /// Called each second and when the network has changed: closes the link if what it is built on was replaced.
+  /// Called each second and when the network has changed: closes the link if its interface was replaced.
   virtual void check() {}
   [[nodiscard]] virtual const std::string& name() const = 0;
 };

@@ -32,7 +32,7 @@ bool NetworkWatch::open() {
   }
   if (!failure_reported_) {
     failure_reported_ = true;
-    events_.on_fault(Fault::kLink, name_ + ": " + last_error() + "; interfaces are looked at once a second only");
+    events_.on_fault(Fault::kLink, name_ + ": " + last_error() + "; interfaces are checked only once a second");
   }
   socket_.reset();
   return false;
@@ -41,7 +41,7 @@ bool NetworkWatch::open() {
 void NetworkWatch::read() {
   std::array<char, 8192> news;
   bool any = false;
-  // Bounded: what is left wakes us again. ENOBUFS says that news were lost, which is news, too.
+  // Bounded: remaining messages wake the node again. ENOBUFS means lost messages, which is a change as well.
   for (int i = 0; i < 64; ++i) {
     const ssize_t length = recv(socket_.get(), news.data(), news.size(), 0);
     if (length < 0 && errno != ENOBUFS) break;

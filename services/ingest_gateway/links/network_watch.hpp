@@ -1,4 +1,4 @@
-// Tells at once when interfaces or addresses of this host come, go or change.
+// Reports changes of this host's interfaces and addresses at once.
 #pragma once
 
 #include <functional>
@@ -9,11 +9,11 @@
 
 namespace boresight::ingest {
 
-/// Whether the interface is there, switched on and has a carrier.
+/// True if the interface exists, is up and has a carrier.
 [[nodiscard]] bool is_running(const std::string& interface);
 
-/// The kernel's news of its network interfaces (rtnetlink). Their content does not matter: who is told looks for
-/// itself.
+/// The kernel's messages about its network interfaces (rtnetlink). Their content is not used: the callback reads the
+/// state itself.
 class NetworkWatch : public Link {
  public:
   NetworkWatch(std::function<void()> on_change, LinkEvents events)

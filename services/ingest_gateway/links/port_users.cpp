@@ -20,7 +20,7 @@ bool parse(std::string_view text, int base, Number& value) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-/// The kernel prints addresses as words in its own byte order, each of which lies in network order in memory.
+/// The kernel prints addresses as words in its own byte order; in memory each word is in network order.
 bool parse_address(std::string_view text, recording::IpAddress& address) {
   constexpr std::size_t kDigits = 8;
   std::array<std::uint32_t, 4> words{};

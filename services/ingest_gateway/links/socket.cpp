@@ -32,7 +32,7 @@ int request_receive_buffer(int descriptor, int bytes) {
   int given = 0;
   socklen_t length = sizeof(given);
   getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &given, &length);
-  return given / 2;  // the kernel reports twice what it was asked for, for its own book-keeping
+  return given / 2;  // the kernel reports twice the requested size, for its own book-keeping
 }
 
 namespace {

@@ -1,4 +1,4 @@
-// What the links' sockets have in common.
+// Common part of the links' sockets.
 #pragma once
 
 #include <cstdint>
@@ -35,23 +35,22 @@ class Socket {
   int descriptor_ = -1;
 };
 
-/// Asks for kernel receive stamps and for the counter of frames the kernel dropped.
+/// Requests kernel receive stamps and the counter of frames that the kernel dropped.
 void request_stamps_and_drops(int descriptor);
 
-/// Asks for a receive buffer of that size, by privilege if the process has it; returns what the kernel gave.
+/// Requests a receive buffer of that size, with privilege if available; returns the granted size.
 [[nodiscard]] int request_receive_buffer(int descriptor, int bytes);
 
-/// What comes with a received message.
+/// Data of a received message.
 struct Reception {
   sockaddr_storage sender{};
-  FrameStamp stamp;  ///< the kernel's; without one, the time of the call, and it says so
-  std::uint32_t drops =
-      0;  ///< by the kernel since the socket was opened; keeps its value where the kernel says nothing
+  FrameStamp stamp;         ///< the kernel's stamp; without one, the time of the call, marked as such
+  std::uint32_t drops = 0;  ///< by the kernel since the socket was opened; unchanged without a report of the kernel
 };
-/// Takes one message without waiting: its length, or −1 as recvmsg().
+/// Reads one message without waiting: returns its length, or −1 as recvmsg().
 [[nodiscard]] ssize_t receive(const Socket& socket, std::span<std::uint8_t> buffer, Reception& reception);
 
-/// For a link: what the kernel has dropped since `drops`, which follows it, is a fault.
+/// For a link: reports frames that the kernel dropped since `drops` as a fault, and updates `drops`.
 void report_drops(const Reception& reception, std::uint32_t& drops, std::string_view of_what, const LinkEvents& events);
 
 [[nodiscard]] std::string last_error();

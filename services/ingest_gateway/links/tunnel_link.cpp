@@ -18,9 +18,9 @@ namespace protocol = wire::replay_tunnel;
 
 namespace {
 
-constexpr int kFramesPerTurn = 64;
+constexpr int kTunnelFramesPerTurn = 64;
 
-/// Fills `frame` from a received record; false if the record contradicts itself.
+/// Fills `frame` from a received record; false if the record is contradictory.
 bool parse_record(std::span<const std::uint8_t> record, recording::Frame& frame) {
   protocol::RecordHeader header;
   if (record.size() < sizeof(header)) return false;
@@ -69,7 +69,7 @@ bool TunnelLink::open() {
   std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), error);
   listener_ = Socket(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!listener_.is_open()) return fail("cannot make a socket: " + last_error());
-  ::unlink(path_.c_str());  // what a killed gateway left behind
+  ::unlink(path_.c_str());  // left by a killed gateway
   if (bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 ||
       listen(listener_.get(), 1) != 0) {
     return fail("cannot listen: " + last_error());
@@ -94,7 +94,7 @@ void TunnelLink::accept_replay() {
 }
 
 void TunnelLink::read_records() {
-  for (int i = 0; i < kFramesPerTurn; ++i) {
+  for (int i = 0; i < kTunnelFramesPerTurn; ++i) {
     const ssize_t length = recv(replay_.get(), buffer_.data(), buffer_.size(), 0);
     if (length < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (length <= 0) {
@@ -104,12 +104,12 @@ void TunnelLink::read_records() {
     }
     recording::Frame frame;
     if (!parse_record({buffer_.data(), static_cast<std::size_t>(length)}, frame)) {
-      events_.on_fault(Fault::kWireValue, "record of the replay tunnel contradicts itself");
+      events_.on_fault(Fault::kWireValue, "record of the replay tunnel is contradictory");
       continue;
     }
     bool jumped = false;
     const FrameStamp stamp = clock_.map(frame.stamp_ns, runtime::monotonic_now_ns(), jumped);
-    if (jumped) events_.on_fault(Fault::kTimeJump, "the recording's time jumped; anchored anew");
+    if (jumped) events_.on_fault(Fault::kTimeJump, "the recording's time jumped; its clock was set again");
     events_.on_frame(frame, stamp);
   }
 }

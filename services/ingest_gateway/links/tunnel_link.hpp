@@ -1,4 +1,4 @@
-// Receiving end of the replay tunnel: frames of a recording as if they came from the network.
+// Receiving end of the replay tunnel: frames of a recording instead of those of the network.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace boresight::ingest {
 
-/// Listens on a Unix socket; serves one replay at a time, the next one waits until it has ended.
+/// Listens on a Unix socket; serves one replay at a time, the next one waits until the first has ended.
 class TunnelLink : public Link {
  public:
   TunnelLink(std::string path, LinkEvents events);
   ~TunnelLink() override;
 
   bool open() override;
-  /// The connected replay while there is one, else the listening socket.
+  /// The connection to a replay if there is one, else the listening socket.
   [[nodiscard]] int descriptor() const override;
   void read() override;
   [[nodiscard]] const std::string& name() const override { return name_; }

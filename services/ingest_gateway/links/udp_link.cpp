@@ -16,18 +16,17 @@ namespace boresight::ingest {
 
 namespace {
 
-// Twenty queued detection lists of the largest radar, for each radar; the kernel's default of 208 KiB kept three of
-// them.
-constexpr int kReceiveBuffer = 2 * 1024 * 1024;
+// Holds twenty detection lists of the largest radar, for each radar; the kernel's default of 208 KiB holds three.
+constexpr int kUdpReceiveBuffer_bytes = 2 * 1024 * 1024;
 constexpr unsigned kMaxReceiveBuffers = 16;
-constexpr int kFramesPerTurn = 32;
+constexpr int kDatagramsPerTurn = 32;
 
 std::string name_of(const recording::Endpoint& local) {
   const std::string address = recording::to_text(local.address);
   return "udp " + (local.address.is_v4() ? address : "[" + address + "]") + ":" + std::to_string(local.port);
 }
 
-/// The kernel's form of an address. Those of IPv6 that mean something on one link only need its number.
+/// The kernel's form of an address. IPv6 addresses that are valid on one link only need the interface's number.
 socklen_t to_kernel(const recording::Endpoint& endpoint, unsigned interface_index, sockaddr_storage& out) {
   const socklen_t length = runtime::to_sockaddr(endpoint, out);
   const auto& bytes = endpoint.address.bytes;
@@ -80,14 +79,14 @@ void UdpLink::add_user() {
 }
 
 void UdpLink::reserve_receive_buffer() {
-  const int wanted = kReceiveBuffer * static_cast<int>(std::min(users_, kMaxReceiveBuffers));
+  const int wanted = kUdpReceiveBuffer_bytes * static_cast<int>(std::min(users_, kMaxReceiveBuffers));
   const int given = request_receive_buffer(socket_.get(), wanted);
-  // What one burst needs is the least; more makes room for a burst of each of the sources that share the socket.
-  if (given < kReceiveBuffer && !buffer_reported_) {
+  // At least the size for one burst; more for a burst of each source that shares the socket.
+  if (given < kUdpReceiveBuffer_bytes && !buffer_reported_) {
     buffer_reported_ = true;
     events_.on_fault(Fault::kLink, name_ + ": receive buffer is " + std::to_string(given) + " of " +
-                                       std::to_string(kReceiveBuffer) +
-                                       " bytes wanted at least; raise net.core.rmem_max");
+                                       std::to_string(kUdpReceiveBuffer_bytes) +
+                                       " bytes needed; raise net.core.rmem_max");
   }
 }
 
@@ -111,15 +110,15 @@ bool UdpLink::bind_local() {
     if (!sharing_reported_) {
       sharing_reported_ = true;
       events_.on_fault(Fault::kLink, name_ +
-                                         ": another stack has this port; discovery is by multicast and from a port "
-                                         "of its own");
+                                         ": another stack uses this port; discovery uses multicast and a separate "
+                                         "port");
     }
   }
   const int on = 1;
   setsockopt(socket_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
   if (local_.address.is_multicast()) {
-    // Else the group would be heard on every interface on which any program of this host has joined it. And no
-    // SO_REUSEPORT: kernels of 2025 hand what one member alone may hear to any socket that shares the port that way.
+    // Otherwise the socket would receive the group on every interface on which any program of this host joined it. No
+    // SO_REUSEPORT: kernels of 2025 then deliver a member's datagram to any socket that shares the port.
     const int off = 0;
     if (is_v6()) {
       setsockopt(socket_.get(), IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof(off));
@@ -128,7 +127,7 @@ bool UdpLink::bind_local() {
     }
   }
   sockaddr_storage address{};
-  // Bound to the group itself, a socket does not receive what is sent to other groups or hosts on the same port.
+  // Bound to the group, a socket receives no datagrams to other groups or hosts on the same port.
   const socklen_t length = to_kernel(bound, interface_index_, address);
   return bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0;
 }
@@ -153,11 +152,11 @@ void UdpLink::choose_outgoing_interface(unsigned interface_index) {
 }
 
 void UdpLink::check() {
-  // An interface that was removed and made anew has another index, and the kernel has forgotten the membership.
+  // An interface that was removed and created again has another index, and the kernel has dropped the membership.
   if (socket_.is_open() && !interface_.empty() && if_nametoindex(interface_.c_str()) != interface_index_) {
     fail("interface " + interface_ + " was removed or replaced");
   }
-  // Another stack has come or gone: opened again, the link makes room for it or takes the port back.
+  // Another stack has started or ended: opened again, the link leaves the port to it or uses the port again.
   if (!socket_.is_open() || sharing_ != Sharing::kPolite) return;
   if (has_own_port_ ? !is_taken_by_another() : is_shared_with_another()) socket_.reset();
 }
@@ -176,11 +175,11 @@ bool UdpLink::send(const recording::Endpoint& to, std::span<const std::uint8_t> 
 }
 
 void UdpLink::read() {
-  for (int i = 0; i < kFramesPerTurn && socket_.is_open(); ++i) {
+  for (int i = 0; i < kDatagramsPerTurn && socket_.is_open(); ++i) {
     Reception reception{.sender = {}, .stamp = {}, .drops = kernel_drops_};
     const ssize_t length = receive(socket_, buffer_, reception);
     if (length < 0) {
-      // ECONNREFUSED tells that a peer refused what was sent before; ENETDOWN passes when the interface is back.
+      // ECONNREFUSED: a peer refused an earlier datagram. ENETDOWN ends when the interface is back.
       if (errno != EAGAIN && errno != EINTR && errno != ECONNREFUSED && errno != ENETDOWN) {
         fail("receiving failed: " + last_error());
       }

@@ -1,4 +1,4 @@
-// One UDP socket: what is sent to a local address or a multicast group, and what goes out from there.
+// One UDP socket: receives datagrams to a local address or a multicast group, and sends from there.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace boresight::ingest {
 
-/// How a socket shares its address with those of other processes.
+/// Sharing of a socket's address with sockets of other processes.
 enum class Sharing : std::uint8_t {
   kOrdinary,
-  /// The unicast port of service discovery: while another stack of this host has it, too, the port is left to that one,
-  /// whoever came first, as the kernel hands unicast to one socket only, and this link uses a port of its own.
+  /// The unicast port of service discovery. The kernel delivers unicast to one socket only. While another stack of this
+  /// host uses the port, whichever started first, this link leaves the port to it and uses a separate one.
   kPolite,
 };
 
@@ -34,10 +34,11 @@ class UdpLink : public Link {
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] const recording::Endpoint& local() const { return local_; }
 
-  /// One more source uses this link: its bursts get room of their own in the receive buffer.
+  /// One more source uses this link; the receive buffer grows for its bursts.
   void add_user();
 
-  /// Sends one datagram; multicast leaves by the link's interface. What cannot be sent is a fault, once until it can.
+  /// Sends one datagram; multicast leaves by the link's interface. A failed send is a
+  /// fault, reported once until a send succeeds.
   bool send(const recording::Endpoint& to, std::span<const std::uint8_t> payload);
 
  private:
@@ -59,7 +60,7 @@ class UdpLink : public Link {
   std::uint32_t kernel_drops_ = 0;
   unsigned users_ = 1;
   bool buffer_reported_ = false;
-  bool has_own_port_ = false;  // because another stack has the one wanted
+  bool has_own_port_ = false;  // because another stack uses the configured one
   bool sharing_reported_ = false;
   bool sending_fails_ = false;
   std::vector<std::uint8_t> buffer_;

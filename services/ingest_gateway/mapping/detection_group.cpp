@@ -48,7 +48,7 @@ constexpr std::size_t kMaxParts = 8;
 struct Group {
   SlotBy slot_by = SlotBy::kIndex;
   unsigned first_index = 0;
-  std::size_t instances = 1;  // of messages or of signals in them; 1 if the slot is not told by the index
+  std::size_t instances = 1;  // of messages or of signals in them; 1 unless the index gives the slot
   std::size_t first_slot = 0;
   std::size_t slots = 1;
   std::vector<std::vector<const dbc::Message*>> messages;  // [instance][number in the table]
@@ -68,7 +68,7 @@ class GroupReader {
     const std::vector<std::int64_t> index = table.integers("index", {2, 2}, {0, 9999}, {0, 0});
     const auto slots = static_cast<std::size_t>(table.integer("slots", kSlots, 1));
     if (group.slot_by == SlotBy::kIndex) {
-      if (table.has("slots")) table.reject("slots", "is of use with slot_by = \"signal\" or \"arrival\" only");
+      if (table.has("slots")) table.reject("slots", "is allowed with slot_by = \"signal\" or \"arrival\" only");
       if (index[1] < index[0] || index[1] - index[0] >= static_cast<std::int64_t>(kMaxDetections)) {
         table.reject("index", fmt::format("must be [first, last] with at most {} numbers", kMaxDetections));
       } else {
@@ -76,9 +76,9 @@ class GroupReader {
         group.slots = group.instances = static_cast<std::size_t>(index[1] - index[0]) + 1;
       }
     } else {
-      if (table.has("index")) table.reject("index", "is of use with slot_by = \"index\" only");
+      if (table.has("index")) table.reject("index", "is allowed with slot_by = \"index\" only");
       if (radar_.mapping().cycle_end == CycleEnd::kAllMessages) {
-        table.reject("slot_by", "a cycle that ends with all_messages wants \"index\"");
+        table.reject("slot_by", "a cycle that ends with all_messages needs \"index\"");
       }
       table.require("slots");
       group.slots = slots;
@@ -108,7 +108,7 @@ class GroupReader {
     const std::string pattern = table.text("name", "");
     Protection protection(table, group.instances);
     if (table.has("name") == table.has("names")) {
-      table.reject("", "wants either name, which may have {} for the index, or names");
+      table.reject("", "needs either name, which may have {} for the index, or names");
       return false;
     }
     if (table.has("names") && names.size() != group.instances) {
@@ -156,7 +156,7 @@ class GroupReader {
     std::uint32_t mapped = 0;
     for (const QuantityKey& key : kQuantityKeys) {
       if (!signals.has(key.key)) {
-        static_cast<void>(signals.table(key.key));  // known, but absent
+        static_cast<void>(signals.table(key.key));  // a known key, but absent
         continue;
       }
       mapped |= dbc::bit_of(key.quantity);
@@ -238,17 +238,17 @@ class GroupReader {
     const bool any_polar = has(Quantity::kRange) || has(Quantity::kAzimuth) || has(Quantity::kElevation);
     const bool any_cartesian = has(Quantity::kLongitudinal) || has(Quantity::kLateral);
     if (polar == cartesian || (any_polar && any_cartesian)) {
-      signals.reject("", "wants either range and azimuth (and elevation), or longitudinal and lateral");
+      signals.reject("", "needs either range and azimuth (and elevation), or longitudinal and lateral");
     }
     if (has(Quantity::kRangeRate) == has(Quantity::kVelocityLongitudinal)) {
-      signals.reject("", "wants either range_rate or velocity_longitudinal");
+      signals.reject("", "needs either range_rate or velocity_longitudinal");
     }
     if (has(Quantity::kVelocityLateral) && !has(Quantity::kVelocityLongitudinal)) {
-      signals.reject("", "velocity_lateral wants velocity_longitudinal");
+      signals.reject("", "velocity_lateral needs velocity_longitudinal");
     }
   }
 
-  /// A counter may be in several messages of a detection; that of the frame that comes first in a cycle counts.
+  /// Several messages of a detection may have a counter; the first frame of a cycle gives the value.
   void read_counter(config::Reader& table, const Group& group, const std::string& pattern) {
     for (std::size_t i = 0; i < group.instances; ++i) {
       const auto name = expand(table, "counter", pattern, group, i);
@@ -267,13 +267,14 @@ class GroupReader {
     }
   }
 
-  /// What can be checked and set only when all signals are known.
+  /// Checks and values that need all signals.
   void finish_message(config::Reader& table, const Group& group, std::size_t number, bool has_messages) {
     const bool by_signal = group.slot_by == SlotBy::kSignal;
     if (by_signal) table.require("slot_signal");
     const std::string slot_signal = table.text("slot_signal", "");
     const std::int64_t first = table.integer("slot_first", {-1e6, 1e6}, 0);
-    if (!by_signal && table.has("slot_signal")) table.reject("slot_signal", "is of use with slot_by = \"signal\" only");
+    if (!by_signal && table.has("slot_signal"))
+      table.reject("slot_signal", "is allowed with slot_by = \"signal\" only");
     for (std::size_t i = 0; has_messages && i < group.instances; ++i) {
       const dbc::Message& message = *group.messages[i][number];
       dbc::RadarMessage& mapped = radar_.known(message);

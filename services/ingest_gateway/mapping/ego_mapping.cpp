@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 #include "services/ingest_gateway/mapping/resolver.hpp"
 
@@ -11,16 +12,14 @@ namespace boresight::ingest {
 
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-
 class EgoReader {
  public:
   EgoReader(config::Reader root, const LoadDatabase& load) : root_(std::move(root)), names_(root_, "ego", load) {}
 
   dbc::EgoMapping run() {
-    // The bounds are those of what a road vehicle does.
+    // The limits are those of a road vehicle.
     const bool has_speed = root_.has("speed"), has_pulses = root_.has("pulses");
-    if (has_speed == has_pulses) root_.reject("", "wants either a table speed or a table pulses");
+    if (has_speed == has_pulses) root_.reject("", "needs either a table speed or a table pulses");
     if (has_speed) read_speed(root_.table("speed"));
     if (has_pulses) read_pulses(root_.table("pulses"));
     if (root_.has("yaw_rate")) {
@@ -61,7 +60,7 @@ class EgoReader {
       return &mapping_.messages.back();
     }
     if (table.has("checksum") || table.has("e2e")) {
-      table.reject("message", fmt::format("\"{}\" is named before; say its checksum and e2e there", name));
+      table.reject("message", fmt::format("\"{}\" is named above; give its checksum and e2e there", name));
     }
     return &*found;
   }

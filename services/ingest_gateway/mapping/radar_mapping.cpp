@@ -14,7 +14,7 @@ namespace {
 
 using dbc::CycleEnd;
 
-/// The cycle and its header; the detections are read by themselves.
+/// Reads the cycle and its header; the detections are read separately.
 class RadarReader {
  public:
   RadarReader(config::Reader root, const LoadDatabase& load)
@@ -34,11 +34,11 @@ class RadarReader {
     if (radar_.mapping().cycle_end == CycleEnd::kLastMessage) cycle.require("last_message");
     last_message = cycle.text("last_message", "");
     if (!last_message.empty() && radar_.mapping().cycle_end != CycleEnd::kLastMessage) {
-      cycle.reject("last_message", "is of use with end = \"last_message\" only");
+      cycle.reject("last_message", "is allowed with end = \"last_message\" only");
     }
     if (root_.has("header")) read_header(root_.table("header"), last_message);
     if (radar_.mapping().cycle_end == CycleEnd::kCount && !radar_.has_counts()) {
-      cycle.reject("end", "\"count\" wants a table header with counts");
+      cycle.reject("end", "\"count\" needs a table header with counts");
     }
     root_.require("detections");
     for (config::Reader& group : root_.tables("detections")) read_detection_group(group, names_, radar_);
@@ -64,7 +64,7 @@ class RadarReader {
     dbc::RadarMessage& header = radar_.entry(table, "message", *message);
     header.is_header = true;
     protection.apply(header.frame, 0);
-    // A header that comes last is a trailer.
+    // A header in the last message is a trailer.
     radar_.mapping().header_begins_cycle = name != last_message;
     if (!radar_.mapping().header_begins_cycle && radar_.mapping().cycle_end == CycleEnd::kCount) {
       table.reject("message", "a count must come before the detections");

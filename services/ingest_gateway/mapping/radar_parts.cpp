@@ -6,7 +6,7 @@ namespace boresight::ingest {
 
 namespace {
 
-/// Conditions run from the signal's own switch to the outermost one: those of what is further out are the last ones.
+/// Conditions are ordered from the signal's own switch to the outermost one; outer switches have the last ones.
 bool is_below(const std::vector<dbc::SwitchCondition>& inner, const std::vector<dbc::SwitchCondition>& outer) {
   return inner.size() > outer.size() && std::equal(outer.rbegin(), outer.rend(), inner.rbegin());
 }

@@ -9,7 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "services/ingest_gateway/dbc/names.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/near_names.hpp"
 
 namespace boresight::ingest {
 
@@ -20,8 +21,7 @@ struct Unit {
   Dimension dimension;
   double factor;
 };
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-/// The first word of each is the one that mapping files use; DBC files write the others as well.
+/// Mapping files use the first word of each unit; DBC files also use the others.
 constexpr std::array kUnits = {
     Unit{"m", Dimension::kLength, 1.0},          Unit{"cm", Dimension::kLength, 0.01},
     Unit{"mm", Dimension::kLength, 0.001},       Unit{"km", Dimension::kLength, 1000.0},
@@ -66,7 +66,7 @@ template <typename Items>
 std::string near_text(const std::string& name, const Items& items) {
   std::vector<std::string> candidates;
   for (const auto& item : items) candidates.push_back(item.name);
-  const std::vector<std::string> near = dbc::near_names(name, candidates);
+  const std::vector<std::string> near = near_names(name, candidates);
   return near.empty() ? "" : fmt::format("; similar: {}", quoted(near));
 }
 
@@ -80,7 +80,7 @@ Resolver::Resolver(config::Reader& root, std::string_view kind, const LoadDataba
   root.require("kind");
   const std::string stated = root.text("kind", kind);
   if (stated != kind)
-    root.reject("kind", fmt::format("is \"{}\", but a mapping of kind \"{}\" is wanted", stated, kind));
+    root.reject("kind", fmt::format("is \"{}\", but a mapping of kind \"{}\" is needed", stated, kind));
   root.require("dbc");
   const std::string file = root.text("dbc", "");
   id_offset_ = static_cast<std::uint32_t>(root.integer("id_offset", {0, 0x1FFFFFFF}, 0));
@@ -118,7 +118,7 @@ const dbc::Signal* Resolver::signal(config::Reader& at, std::string_view key,
     const dbc::Signal* const here = messages[i]->find(name);
     if (here == nullptr) continue;
     if (found != nullptr) {
-      at.reject(key, fmt::format("signal \"{}\" is in the messages \"{}\" and \"{}\"; say which: message = {} or {}",
+      at.reject(key, fmt::format("signal \"{}\" is in the messages \"{}\" and \"{}\"; choose one: message = {} or {}",
                                  name, messages[found_in]->name, messages[i]->name, found_in + 1, i + 1));
       return nullptr;
     }
@@ -208,7 +208,7 @@ dbc::MappedState read_state(config::Reader& table) {
   constexpr config::Range kRaw{-9.2e18, 9.2e18};
   dbc::MappedState state;
   state.except = table.has("is_not");
-  if (table.has("is") == table.has("is_not")) table.reject("", "wants either is or is_not: a list of raw values");
+  if (table.has("is") == table.has("is_not")) table.reject("", "needs either is or is_not: a list of raw values");
   state.values = table.integers("is", kCount, kRaw, {});
   std::vector<std::int64_t> excepted = table.integers("is_not", kCount, kRaw, {});
   if (state.except) state.values = std::move(excepted);
@@ -246,9 +246,9 @@ Protection::Protection(config::Reader& table, std::size_t messages) : table_(tab
   for (std::size_t i = 0; i < several.size(); ++i) data_ids_[i] = static_cast<std::uint32_t>(several[i]);
   const bool uses_list = e2e_.profile == Profile::kP02 || e2e_.profile == Profile::kP22;
   if (uses_list != table_.has("data_id_list")) {
-    table_.reject("", "profiles P02 and P22 want data_id_list, the others data_id or data_ids");
+    table_.reject("", "profiles P02 and P22 need data_id_list, the others data_id or data_ids");
   } else if (!uses_list && table_.has("data_id") == table_.has("data_ids")) {
-    table_.reject("", "wants either data_id, or data_ids with one for each message");
+    table_.reject("", "needs either data_id, or data_ids with one for each message");
   }
 }
 

@@ -1,4 +1,4 @@
-// Names of a mapping file looked up in a DBC file, for radars and ego motion alike. Every error is noted at its key.
+// Resolves names of a mapping file in a DBC file, for radars and ego motion. Every error is noted at its key.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace boresight::ingest {
 
-/// What a unit is a unit of.
+/// Physical dimension of a unit.
 enum class Dimension : std::uint8_t { kNone, kLength, kSpeed, kAngle, kAngularRate, kRatio };
 
-/// How to get from a signal's physical value to the unit that the quantity is wanted in (m, m/s, rad, rad/s, 1).
+/// Conversion of a signal's physical value to the quantity's unit (m, m/s, rad, rad/s, 1).
 struct Conversion {
   Dimension dimension = Dimension::kNone;
-  std::optional<double> unit;  ///< as the mapping file says; else the DBC file's unit counts
+  std::optional<double> unit;  ///< of the mapping file; without it, the DBC file's unit applies
   double factor = 1.0;
   double offset = 0.0;
 };
@@ -31,8 +31,8 @@ class Resolver {
 
   /// The message of that name, or nullptr with the error noted at `key`; nullptr for an empty name.
   [[nodiscard]] const dbc::Message* message(config::Reader& at, std::string_view key, const std::string& name) const;
-  /// The signal of that name in one of the messages, or nullptr with the error noted; `found_in` becomes the message's
-  /// place in the list. A name that is in several messages is an error.
+  /// The signal of that name in one of the messages, or nullptr with the error noted; `found_in` becomes the index of
+  /// the message. A name in several messages is an error.
   [[nodiscard]] const dbc::Signal* signal(config::Reader& at, std::string_view key,
                                           const std::vector<const dbc::Message*>& messages, const std::string& name,
                                           std::size_t& found_in) const;
@@ -45,23 +45,23 @@ class Resolver {
 
  private:
   dbc::Database database_;
-  bool is_loaded_ = false;  // else no name can be looked up, and that is one error
+  bool is_loaded_ = false;  // otherwise no name can be resolved, which is one error
   std::uint32_t id_offset_ = 0;
 };
 
 /// Reads the keys unit, factor, offset of a table.
 [[nodiscard]] Conversion read_conversion(config::Reader& table, Dimension dimension);
-/// Without a conversion, for raw values.
+/// Without conversion, for raw values.
 [[nodiscard]] dbc::MappedSignal map_signal(const dbc::Message& message, const dbc::Signal& signal);
-/// Notes an error at `table` if neither file says a unit.
+/// Notes an error at `table` if neither file has a unit.
 [[nodiscard]] dbc::MappedSignal map_signal(const dbc::Message& message, const dbc::Signal& signal,
                                            const Conversion& conversion, config::Reader& table);
 [[nodiscard]] std::vector<dbc::SwitchCondition> map_conditions(const dbc::Message& message, const dbc::Signal& signal);
 
-/// Reads the keys `is` or `is_not` beside a signal that says something by its raw values.
+/// Reads the keys `is` or `is_not` of a condition on a signal's raw values.
 [[nodiscard]] dbc::MappedState read_state(config::Reader& table);
 
-/// Reads the keys `checksum` and `e2e` of a table for so many messages of one pattern.
+/// Reads the keys `checksum` and `e2e` of a table for the messages of one pattern.
 class Protection {
  public:
   Protection(config::Reader& table, std::size_t messages);
@@ -69,7 +69,7 @@ class Protection {
   [[nodiscard]] bool is_stated() const {
     return checksum_ != dbc::Checksum::kNone || e2e_.profile != e2e::Profile::kNone;
   }
-  /// Sets what protects the message number `index` of the pattern; notes an error if it does not fit.
+  /// Sets the protection of message number `index` of the pattern; notes an error if it does not fit.
   void apply(dbc::MappedMessage& message, std::size_t index);
 
  private:
@@ -79,7 +79,7 @@ class Protection {
   std::vector<std::uint32_t> data_ids_;
 };
 
-/// For words in errors: "A", "B" or "C".
+/// For lists in error texts: "A", "B".
 [[nodiscard]] std::string quoted(const std::vector<std::string>& names);
 
 }  // namespace boresight::ingest

@@ -10,7 +10,7 @@ namespace boresight::tracking {
 namespace {
 
 constexpr double kLeast_m = 5.0, kMost_rad = 0.5;
-constexpr double kRough_m = 0.25;  // reflections lie beside the flank by so much
+constexpr double kSideScatter_m = 0.25;  // reflections lie beside the flank by so much
 
 using Points = std::array<Eigen::Vector2d, std::tuple_size_v<decltype(Cluster::outline)>>;
 using Mask = std::uint32_t;
@@ -65,7 +65,7 @@ std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad, co
   const std::size_t all = cluster.number_on_outline;
   Points points;  // in axes along and across the heading
   for (std::size_t i = 0; i < all; ++i) points[i] = along_heading(cluster.outline[i]);
-  const Mask flank = on_line(points, all, kRough_m + std::sqrt(variance_across(0.0)), along_heading(sensor_m));
+  const Mask flank = on_line(points, all, kSideScatter_m + std::sqrt(variance_across(0.0)), along_heading(sensor_m));
   std::size_t number = 0;
   Eigen::Vector2d sum(0.0, 0.0);
   for (std::size_t i = 0; i < all; ++i) {
@@ -86,7 +86,7 @@ std::optional<Turn> turn_of_flank(const Cluster& cluster, double heading_rad, co
   const double along2 = middle + half, across2 = std::max(0.0, middle - half);
   if (std::abs(turn) > kMost_rad) return std::nullopt;
   // That few points lie in a line may be chance: the radar's noise turns them, too.
-  return Turn{turn, (across2 + kRough_m * kRough_m + variance_across(turn)) / (along2 * n)};
+  return Turn{turn, (across2 + kSideScatter_m * kSideScatter_m + variance_across(turn)) / (along2 * n)};
 }
 
 }  // namespace boresight::tracking

@@ -1,5 +1,5 @@
 // Constant-acceleration Kalman filter in the plane: state (x, y, v_x, v_y, a_x, a_y), position in the vehicle frame,
-// velocity and acceleration over ground in vehicle axes (Report D; algorithms.md §3.3).
+// velocity and acceleration over ground in vehicle axes (the 4D chain design; docs/algorithms/tracking.md (T1)–(T5)).
 #pragma once
 
 #include <Eigen/Core>

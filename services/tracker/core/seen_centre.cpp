@@ -10,7 +10,7 @@ namespace boresight::tracking {
 
 namespace {
 
-constexpr double kRough_m = 0.2;  // corners are round, wheel houses deep
+constexpr double kOutlineScatter_m = 0.2;  // corners are round, wheel houses deep
 /// What is farther off than that, while something else is not, is of the next vehicle or a ghost.
 constexpr double kUsual_m = 0.5;
 
@@ -44,7 +44,7 @@ SeenCentre seen_centre(const Cluster& cluster, const Extent& extent, const Eigen
                        const Eigen::Matrix2d& position_m2, const Eigen::Vector2d& sensor_m) {
   if (extent.is_small) return {cluster.position_m, cluster.covariance_m2};
   const VisibleFaces faces = extent.visible_faces(centre_m, sensor_m);
-  const double length_m = extent.length_m, width_m = extent.width_m, rough_m2 = kRough_m * kRough_m;
+  const double length_m = extent.length_m, width_m = extent.width_m, rough_m2 = kOutlineScatter_m * kOutlineScatter_m;
   Eigen::Matrix2d to_body;
   to_body.col(0) = extent.to_body({1.0, 0.0});
   to_body.col(1) = extent.to_body({0.0, 1.0});

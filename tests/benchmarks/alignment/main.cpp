@@ -1,5 +1,5 @@
-// boresight-bench-alignment_bars: the accuracy, honesty and cost that the alignment estimator is held to, each figure
-// with its bar. See README.md.
+// boresight-bench-alignment_bars: the accuracy, consistency and cost of the alignment estimator; each figure with
+// the bar that it must meet. See README.md.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/common/bars_main.hpp"
 
@@ -12,7 +12,7 @@ constexpr BarGroup kGroups[] = {
     {"clean", clean},
     {"disturbed", disturbed},
     {"roll", roll},
-    {"honesty", honesty},
+    {"consistency", consistency},
     {"degenerate", degenerate},
     {"cramer_rao", cramer_rao},
     {"time_to_95", time_to_95_percent},
@@ -32,7 +32,7 @@ constexpr BarGroup kGroups[] = {
 
 int main(int argc, char** argv) {
   return bars_main(argc, argv,
-                   {"Each bar of the alignment estimator with its figure.", "docs/alignment.md", "--drive-data",
-                    "folder of drive_1.csv.xz, ego_1.csv and truth_1.txt"},
+                   {"Each bar (limit) of the alignment estimator with the measured figure.", "docs/alignment.md",
+                    "--drive-data", "folder of drive_1.csv.xz, ego_1.csv and truth_1.txt"},
                    kGroups);
 }

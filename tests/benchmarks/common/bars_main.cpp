@@ -25,16 +25,16 @@ bool write(const std::string& path, const Report& report, void (Report::*writer)
 int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGroup> groups) {
   Options options;
   std::string json, markdown;
-  CLI::App app{std::string(program.about) + " Exit code 0 whatever passes, 1 on an error."};
+  CLI::App app{std::string(program.about) + " Exit code 0 also if bars fail, 1 on an error."};
   std::vector<std::string> names;
   for (const BarGroup& group : groups) names.emplace_back(group.name);
-  app.add_flag("--quick", options.quick, "two seeds and short drives: shows that it runs, not how good it is");
-  app.add_option("--most-seeds", options.most_seeds, "no more seeds than these, for a quick look");
-  app.add_option("--only", options.only, "one group of bars")->check(CLI::IsMember(names));
+  app.add_flag("--quick", options.quick, "two seeds and short drives: a check that it runs, not a measurement");
+  app.add_option("--most-seeds", options.most_seeds, "upper limit of the number of seeds, for a quick look");
+  app.add_option("--only", options.only, "run one group of bars only")->check(CLI::IsMember(names));
   app.add_option("--jobs", options.jobs, "threads")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--json", json, "file for bars, tables and curves");
+  app.add_option("--json", json, "write bars, tables and curves to this file");
   app.add_option("--markdown", markdown,
-                 "file for the tables, between the marks that " + std::string(program.document) + " has");
+                 "write the tables to this file, between the marks of " + std::string(program.document));
   if (program.data_option != nullptr) {
     app.add_option(program.data_option, options.data_folder, program.data_about)->check(CLI::ExistingDirectory);
   }

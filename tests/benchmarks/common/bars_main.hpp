@@ -1,4 +1,4 @@
-// The program that all benchmarks with bars are: groups of bars by name, run and reported.
+// Common main program of the benchmarks with bars (required values): runs groups of bars by name and reports them.
 #pragma once
 
 #include <span>
@@ -15,13 +15,13 @@ struct BarGroup {
 
 struct BarsProgram {
   const char* about;
-  const char* document;               ///< whose tables --markdown writes
-  const char* data_option = nullptr;  ///< option for Options::data_folder; nullptr: there is none
+  const char* document;               ///< document that receives the tables of --markdown
+  const char* data_option = nullptr;  ///< option for Options::data_folder; nullptr: no such option
   const char* data_about = nullptr;
-  const char* first_seed_about = nullptr;  ///< of --first-seed; nullptr: there is no such option
+  const char* first_seed_about = nullptr;  ///< help text of --first-seed; nullptr: no such option
 };
 
-/// For main(): exit code 0 whatever passes, 1 on an error.
+/// For main(). Exit code 0 also if bars fail, 1 on an error.
 [[nodiscard]] int bars_main(int argc, char** argv, const BarsProgram& program, std::span<const BarGroup> groups);
 
 }  // namespace boresight::bench

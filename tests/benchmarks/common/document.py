@@ -1,4 +1,4 @@
-"""Rewrites a document between its marks with the tables that a benchmark's --markdown wrote."""
+"""Replaces the tables of a document, between its marks, by those that a benchmark's --markdown wrote."""
 import json
 import pathlib
 import re
@@ -10,7 +10,7 @@ REGION = re.compile(r"<!-- begin: ([\w ]+) -->\n(.*?)<!-- end: \1 -->", re.DOTAL
 
 
 def read_results(folder):
-    """Curves by figure, the tables as Markdown by name, and the rows of the table of bars in order."""
+    """Returns the curves and the Markdown tables by name; rows of several tables of bars are joined in order."""
     curves, regions = [], {}
     for file in sorted(folder.rglob("bars.json")):
         curves += json.loads(file.read_text())["curves"]
@@ -25,18 +25,18 @@ def machine():
     model = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
     commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
                             check=False).stdout.strip()
-    return f"Commit {commit or 'unknown'}; times on {model.group(1) if model else 'an unknown processor'}.\n"
+    return f"Measured at commit {commit or 'unknown'}; CPU times on {model.group(1) if model else 'an unknown processor'}.\n"
 
 
 def rewrite(document, regions):
-    """Says on stderr which tables have no place and which places have no table."""
+    """Replaces the tables. Reports on stderr the tables that the document does not show, and places without a new table."""
     regions = {**regions, "measured": machine()}
     text = document.read_text()
     marks = {name for name, _ in REGION.findall(text)}
     where = document.relative_to(ROOT)
     for name in sorted(set(regions) - marks):
-        print(f"{where} has no place for the table '{name}'", file=sys.stderr)
+        print(f"not shown in {where}: table '{name}'", file=sys.stderr)
     for name in sorted(marks - set(regions)):
-        print(f"left as it was, not measured: '{name}'", file=sys.stderr)
+        print(f"unchanged in {where}, not measured: '{name}'", file=sys.stderr)
     document.write_text(REGION.sub(
         lambda found: f"<!-- begin: {found[1]} -->\n{regions.get(found[1], found[2])}<!-- end: {found[1]} -->", text))

@@ -1,4 +1,4 @@
-// How much of a benchmark is run.
+// Extent of a benchmark run.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 namespace boresight::bench {
 
 struct Options {
-  bool quick = false;            ///< two seeds and short drives: whether it runs, not how good it is
-  std::string only;              ///< group of bars; empty: all
+  bool quick = false;            ///< two seeds and short drives: a check that it runs, not a measurement
+  std::string only;              ///< group of bars; empty: all groups
   std::size_t jobs = 2;          ///< threads
-  std::size_t most_seeds = 0;    ///< 0: as many as a bar asks for
-  std::uint64_t first_seed = 1;  ///< of benchmarks whose bars are for fixed seeds: others are for tuning
-  std::string data_folder;       ///< of recordings that a group of bars needs; empty: such groups are left out
+  std::size_t most_seeds = 0;    ///< 0: as many as a bar requires
+  std::uint64_t first_seed = 1;  ///< benchmarks with fixed seeds for their bars: other seeds are for tuning
+  std::string data_folder;       ///< folder of recordings; empty: groups of bars that need recordings are skipped
 
   [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
     const std::size_t most = quick ? 2 : most_seeds != 0 ? most_seeds : wanted;

@@ -1,5 +1,5 @@
-// The same work for every index, spread over threads; results belong into places of their own, so that the outcome
-// does not depend on how many threads there are.
+// The same work for every index, spread over threads. Each index writes its own result, so the outcome does not depend
+// on the number of threads.
 #pragma once
 
 #include <atomic>

@@ -18,7 +18,7 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-/// A JSON string; our texts have no control characters.
+/// A JSON string; the benchmarks' texts have no control characters.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -38,7 +38,7 @@ std::string json_strings(const std::vector<std::string>& texts) {
   return out + "]";
 }
 
-/// Characters, not bytes: our texts are UTF-8.
+/// Number of characters, not bytes: the texts are UTF-8.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
@@ -66,7 +66,7 @@ void print_table(const Table& table, std::ostream& out) {
 std::string number(double value) {
   if (std::isnan(value)) return "—";
   if (std::isinf(value)) return "never";
-  // Whole, as 1.81e+03 is hard to read.
+  // As a whole number: 1.81e+03 is hard to read.
   if (std::abs(value) >= 999.5 && std::abs(value) < 1e7) return fixed(value, 0);
   return formatted("%.3g", value);
 }
@@ -111,7 +111,7 @@ void Report::beside(std::string group, std::string what, double figure, std::str
 }
 
 Table Report::bars_table() const {
-  Table table{"bars", "bars", {"", "what", "figure", "bar", "", "how"}, {}};
+  Table table{"bars", "bars", {"group", "figure", "measured", "required", "result", "conditions"}, {}};
   std::string group;
   for (const Bar& bar : bars_) {
     const std::string unit = bar.unit.empty() ? "" : " " + bar.unit;

@@ -1,4 +1,5 @@
-// What a benchmark found: bars with PASS or FAIL, tables, and curves for the figures; as text, Markdown and JSON.
+// Result of a benchmark: bars (required values) with PASS or FAIL, tables, and curves for the figures; written as text,
+// Markdown and JSON.
 #pragma once
 
 #include <cmath>
@@ -13,12 +14,12 @@ struct Bar {
   std::string group;
   std::string what;
   double figure = 0.0;
-  double low = 0.0;  ///< passes in low…high; infinite where there is no such limit, both where there is no bar
+  double low = 0.0;  ///< passes in low…high; infinite: no such limit; both infinite: no bar
   double high = 0.0;
   std::string unit;
   std::string how;  ///< drives, seeds, statistic
 
-  /// False for a figure that stands there for comparison only.
+  /// False for a figure without a bar, reported for comparison.
   [[nodiscard]] bool is_judged() const { return std::isfinite(low) || std::isfinite(high); }
   [[nodiscard]] bool passes() const { return figure >= low && figure <= high; }
   [[nodiscard]] const char* verdict() const;
@@ -46,14 +47,14 @@ class Report {
   void at_least(std::string group, std::string what, double figure, double bar, std::string unit, std::string how);
   void within(std::string group, std::string what, double figure, double low, double high, std::string unit,
               std::string how);
-  /// A figure without a bar, among the bars, for comparison.
+  /// Adds a figure without a bar for comparison.
   void beside(std::string group, std::string what, double figure, std::string unit, std::string how);
   void add(Table table) { tables_.push_back(std::move(table)); }
   void add(Curve curve) { curves_.push_back(std::move(curve)); }
 
   [[nodiscard]] const std::vector<Bar>& bars() const { return bars_; }
   void print(std::ostream& out) const;
-  /// Each table between the marks that the document has, <!-- begin: NAME --> and <!-- end: NAME -->.
+  /// Each table between the marks of the document, <!-- begin: NAME --> and <!-- end: NAME -->.
   void write_markdown(std::ostream& out) const;
   void write_json(std::ostream& out) const;
 

@@ -10,7 +10,7 @@
 
 namespace boresight::bench {
 
-/// NaN of nothing; infinite values (never reached) sort last.
+/// NaN without values; infinite values (never reached) sort last.
 [[nodiscard]] inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());

@@ -1,19 +1,15 @@
-"""Pictures for documents: SVG that stands alone and follows the reader's light or dark theme."""
+"""SVG pictures for documents: black on white, plain style classes only, so that every viewer and converter can show them."""
 import math
 
-LIGHT = {"c0": "#1f5fbf", "c1": "#c23b4e", "c2": "#d9820f", "c3": "#2e8b57", "c4": "#7d4fa8", "c5": "#7a7a7a"}
-DARK = {"c0": "#6ea8ff", "c1": "#ff8595", "c2": "#ffb454", "c3": "#6fd09b", "c4": "#c79bf2", "c5": "#a8a8a8"}
+COLOURS = {"c0": "#1f5fbf", "c1": "#c23b4e", "c2": "#d9820f", "c3": "#2e8b57", "c4": "#7d4fa8", "c5": "#7a7a7a"}
 
-
-def rules(colours):
-    return "".join(f".{k}{{stroke:{v}}}.f{k}{{fill:{v}}}" for k, v in colours.items())
-
-
-STYLE = ("<style>text{font:12px system-ui,sans-serif;fill:#333}.t{font-weight:600}.s{font-size:11px;fill:#666}"
-         ".bg{fill:#fff}.g{stroke:#e3e3e3}.a{stroke:#999}.l{fill:none;stroke-width:1.5}.own{stroke-width:2.6}"
-         ".bar{stroke:#b00020;stroke-dasharray:5 4}.ok{fill:#2e8b57;opacity:.13}.d{stroke-dasharray:5 3}" + rules(LIGHT) +
-         "@media(prefers-color-scheme:dark){text{fill:#ddd}.s{fill:#aaa}.bg{fill:#15181c}.g{stroke:#2c3138}"
-         ".a{stroke:#777}.bar{stroke:#ff7b8a}.ok{fill:#6fd09b;opacity:.16}" + rules(DARK) + "}</style>")
+# t: title, s: small text, bg: background, g: grid, a: axis, l: line, own: emphasised line, bar: required value,
+# ok: range of accepted values, d: dashed; c0 … c5: line colour, fc0 … fc5: fill colour.
+STYLE = ("<style>text{font-family:Arial,Helvetica,sans-serif;font-size:12px;fill:#333}.t{font-weight:bold}"
+         ".s{font-size:11px;fill:#555}.bg{fill:#fff}.g{stroke:#e3e3e3}.a{stroke:#999}.l{fill:none;stroke-width:1.5}"
+         ".own{stroke-width:2.6}.bar{stroke:#b00020;stroke-dasharray:5 4}.ok{fill:#2e8b57;opacity:0.13}"
+         ".d{stroke-dasharray:5 3}" + "".join(f".{k}{{stroke:{v}}}.f{k}{{fill:{v}}}" for k, v in COLOURS.items()) +
+         "</style>")
 
 
 def escape(text):
@@ -34,7 +30,7 @@ def tick_text(value, logarithmic):
 
 
 class Panel:
-    """Axes at a place of the picture; values are clipped to them."""
+    """Axes at a position of the picture; values are clipped to the axes."""
 
     def __init__(self, box, x_range, y_range, title, x_label="", log_x=False, log_y=False):
         self.left, self.top, self.width, self.height = box
@@ -101,10 +97,10 @@ class Panel:
 
 
 def legend(entries, left, top, width):
-    """Of (css, label); wraps."""
+    """Entries are (css, label); the legend wraps at `width`."""
     parts, x, y = [], left, top
     for css, label in entries:
-        needed = 34 + 7 * len(label)
+        needed = 40 + 7.5 * len(label)
         if x + needed > left + width:
             x, y = left, y + 18
         parts.append(f'<path class="l {css}" d="M{x} {y - 4}h22"/>' + text(x + 28, y, label))

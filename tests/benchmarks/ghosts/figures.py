@@ -14,39 +14,39 @@ def inside(point):
 
 
 def clipped(points):
-    """The part of a straight line that lies in the picture, or nothing."""
+    """The part of a straight line inside the picture; empty if there is none."""
     (x0, y0), (x1, y1) = points
     begin, end = 0.0, 1.0
-    for start, way, (low, high) in ((x0, x1 - x0, REACH["x"]), (y0, y1 - y0, REACH["y"])):
-        if abs(way) < 1e-9:
+    for start, length, (low, high) in ((x0, x1 - x0, REACH["x"]), (y0, y1 - y0, REACH["y"])):
+        if abs(length) < 1e-9:
             if not low <= start <= high:
                 return []
             continue
-        enter, leave = sorted(((low - start) / way, (high - start) / way))
+        enter, leave = sorted(((low - start) / length, (high - start) / length))
         begin, end = max(begin, enter), min(end, leave)
     if begin >= end:
         return []
-    # Rounded, an end may lie beyond the edge by the last digit, and a panel leaves out what does.
+    # Rounding may move an end beyond the edge by the last digit, and a panel does not draw such points.
     return [tuple(min(max(value, low), high) for value, (low, high) in
                   zip((x0 + s * (x1 - x0), y0 + s * (y1 - y0)), REACH.values())) for s in (begin, end)]
 
 
-def marks(panel, points, css, is_told):
-    """Where a detection was told wrong it has a ring."""
+def marks(panel, points, css, is_correct):
+    """Dots of detections; those classified wrongly have a ring."""
     parts = []
     for point in filter(inside, map(tuple, points)):
         parts.append(dot(panel, point, css, 1.6 if css == "c5" else 2.8))
-        if not is_told:
+        if not is_correct:
             parts.append(f'<circle class="l a" cx="{panel.x(point[0]):.1f}" cy="{panel.y(point[1]):.1f}" r="5"/>')
     return parts
 
 
 def plan(curves):
-    """From above: what detections are, and what each method told them to be."""
-    views = [("truth", "mirror", "What they are, with the true mirrors (dashed)"),
-             ("mirror", "mirror", "What the mirror method tells them to be, with its reflectors; ringed: wrong"),
-             ("published", "published", "What the published method tells them to be, with its reflectors; ringed: wrong")]
-    parts = [text(20, 24, "One cycle of four radars of highway_multipath from above, m; the own vehicle at 0, driving to the right", "t"),
+    """View from above: true provenance of the detections, and their classification by each method."""
+    views = [("truth", "mirror", "Truth, with the true mirrors (dashed)"),
+             ("mirror", "mirror", "Classified by the mirror method, with its estimated reflectors; ring: classified wrongly"),
+             ("published", "published", "Classified by the published method, with its estimated reflectors; ring: classified wrongly")]
+    parts = [text(20, 24, "highway_multipath: one cycle of four radars from above, m. Ego vehicle at (0, 0), driving to the right", "t"),
              legend([(COLOURS[k] + " own", k) for k in ("moving", "stationary", "type 1", "type 2", "clutter")], 20, 46, 840)]
     top = 90
     for view, method, title in views:
@@ -62,20 +62,21 @@ def plan(curves):
         for c in mine:
             truth = c["panel"].partition("|")[2]
             if truth:
-                told = c["label"]
-                panel.parts += marks(panel, c["points"], COLOURS[truth if view == "truth" else told],
-                                     view == "truth" or truth == told)
+                label = c["label"]
+                panel.parts += marks(panel, c["points"], COLOURS[truth if view == "truth" else label],
+                                     view == "truth" or truth == label)
         parts += panel.parts
         top += 410
     return picture(890, top - 20, parts)
 
 
-WHO = {"Report B": "c5", "published": "c2", "mirror": "c0"}
-NAMES = {"Report B": "published method, as printed in Report B", "published": "published method, here", "mirror": "mirror method"}
+SOURCES_CSS = {"Le Ba Thanh 2023": "c5", "published": "c2", "mirror": "c0"}
+NAMES = {"Le Ba Thanh 2023": "published method, figures of Le Ba Thanh (2023)", "published": "published method, measured here",
+         "mirror": "mirror method, measured here"}
 
 
 def compare_panel(box, title, rows):
-    """Bars side by side for each row."""
+    """One group of bars per row."""
     left, top, width, height = box
     panel = Panel(box, (0.0, 100.0), (0.0, 1.0), title)
     # Rows are names, not numbers.
@@ -83,11 +84,11 @@ def compare_panel(box, title, rows):
     y = top + 5
     for what, values in rows.items():
         first = y
-        for who, css in WHO.items():
-            if who not in values:
+        for source, css in SOURCES_CSS.items():
+            if source not in values:
                 continue
-            panel.parts.append(f'<rect class="f{css}" x="{left}" y="{y}" width="{panel.x(values[who]) - left:.1f}" height="10"/>'
-                               + text(left + width + 36, y + 9, f"{values[who]:.1f}", "s", "end"))
+            panel.parts.append(f'<rect class="f{css}" x="{left}" y="{y}" width="{panel.x(values[source]) - left:.1f}" height="10"/>'
+                               + text(left + width + 36, y + 9, f"{values[source]:.1f}", "s", "end"))
             y += 12
         panel.parts.append(text(left - 8, (first + y) / 2 + 3, what, "", "end"))
         panel.parts.append(f'<path class="bar" d="M{panel.x(values["bar"]):.1f} {first}V{y - 2}"/>')
@@ -96,18 +97,18 @@ def compare_panel(box, title, rows):
 
 
 def compare(curves):
-    """A panel for each scenario, a group of bars for each truth and label; a red mark is what is asked."""
+    """One panel per scenario, one group of bars per truth and classification; a red mark is the required value."""
     groups = {}
     for c in curves:
         scenario, what = c["panel"].split("|")
         percent = c["points"][0][1]
         if percent is not None:
             groups.setdefault(scenario, {}).setdefault(what, {})[c["label"]] = percent
-    # Of what does not occur there is only the bar.
+    # Ghost types that do not occur in a scenario have a required value only: they are not drawn.
     groups = {name: {what: v for what, v in rows.items() if "mirror" in v} for name, rows in groups.items()}
-    parts = [text(20, 24, "Told as they should be, %, median over drives; red: what is asked of the mirror method", "t"),
-             legend([(css + " own", NAMES[who]) for who, css in WHO.items()], 20, 46, 840)]
-    heights = {name: sum(12 * sum(who in v for who in WHO) + 10 for v in rows.values()) for name, rows in groups.items()}
+    parts = [text(20, 24, "Truth → classification, % of each truth, median over drives. Red: required of the mirror method", "t"),
+             legend([(css + " own", NAMES[source]) for source, css in SOURCES_CSS.items()], 20, 46, 840)]
+    heights = {name: sum(12 * sum(source in v for source in SOURCES_CSS) + 10 for v in rows.values()) for name, rows in groups.items()}
     top = 90
     if "highway_multipath" in groups:
         height = heights["highway_multipath"]
@@ -123,16 +124,16 @@ def compare(curves):
 
 
 def reliability(curves):
-    """Of what was told with a probability: how often it was so. On the diagonal the probability is one."""
-    parts = [text(20, 24, "Of detections with this ghost_probability, % that were a ghost or clutter", "t"),
-             legend([("c2", NAMES["published"]), ("c0 own", NAMES["mirror"]), ("bar", "as told")], 20, 46, 840)]
+    """Reliability diagram: true share of ghosts and clutter against ghost_probability; calibrated on the diagonal."""
+    parts = [text(20, 24, "Reliability of ghost_probability: true share of ghosts and clutter, %", "t"),
+             legend([("c2", NAMES["published"]), ("c0 own", NAMES["mirror"]), ("bar", "perfectly calibrated")], 20, 46, 840)]
     for i, name in enumerate(dict.fromkeys(c["panel"] for c in curves)):
         panel = Panel((70 + 420 * i, 90, 340, 340), (0.0, 100.0), (0.0, 100.0), name, "ghost_probability, %")
         panel.parts.append(f'<path class="bar" d="M{panel.x(0)} {panel.y(0)}L{panel.x(100)} {panel.y(100)}"/>')
         for c in curves:
             if c["panel"] != name:
                 continue
-            css = WHO[c["label"]]
+            css = SOURCES_CSS[c["label"]]
             if c["label"] == "mirror":
                 panel.line(c["points"], css + " own")
             panel.parts += [dot(panel, p, css, 3.2) for p in c["points"]]
@@ -141,7 +142,7 @@ def reliability(curves):
 
 
 def draw_all(curves, folder):
-    """Draws those of which there are curves."""
+    """Draws the figures that have curves."""
     folder.mkdir(exist_ok=True)
     for name, draw in {"plan": plan, "compare": compare, "reliability": reliability}.items():
         mine = of_figure(curves, name)

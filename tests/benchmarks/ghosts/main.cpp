@@ -1,5 +1,5 @@
-// boresight-bench-ghosts_bars: how well ghosts are told, by the published method and by the product's own, and what it
-// costs, each figure with its bar. See README.md.
+// boresight-bench-ghosts_bars: classification quality and cost of the published method and of the product's own, each
+// figure with its bar (required value). See README.md.
 #include "tests/benchmarks/common/bars_main.hpp"
 #include "tests/benchmarks/ghosts/bars/bars.hpp"
 
@@ -13,9 +13,10 @@ constexpr BarGroup kGroups[] = {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return bars_main(argc, argv,
-                   {.about = "Each bar of the ghost filter with its figure.",
-                    .document = "docs/ghosts.md",
-                    .first_seed_about = "seeds from here on; the bars are for 1 on, so tune on others, such as 101"},
-                   kGroups);
+  return bars_main(
+      argc, argv,
+      {.about = "Measures the ghost filter on simulated drives and compares each figure with its bar (required value).",
+       .document = "docs/ghosts.md",
+       .first_seed_about = "first seed; the bars use seeds from 1 on, so tune on others, such as 101"},
+      kGroups);
 }

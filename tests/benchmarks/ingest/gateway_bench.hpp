@@ -1,4 +1,4 @@
-// The gateway in memory, fed with traffic cycle after cycle.
+// The gateway in memory, supplied with traffic cycle by cycle.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace boresight::bench {
 
-/// Where the traffic comes from and goes to.
+/// Sources and destinations of the traffic.
 inline const recording::Endpoint kArs548Sensor{recording::IpAddress::v4(0x0A0D0171), 42102};
 inline const recording::Endpoint kArs548Group{recording::IpAddress::v4(0xE0000202), 42102};
 inline const recording::Endpoint kServer{recording::IpAddress::v4(0x0A0D0201), 30601};
 inline const recording::Endpoint kEcu{recording::IpAddress::v4(0x0A0D0002), 30600};
 
-/// A vehicle with Toyota's ego signals on can0, and a radar that is still to be filled in.
+/// A vehicle with Toyota's ego signals on can0 and the given radar.
 [[nodiscard]] inline VehicleConfig vehicle_with(const RadarConfig& radar) {
   VehicleConfig vehicle;
   vehicle.ego.source.interface = "can0";
@@ -50,7 +50,7 @@ struct GatewayBench {
   explicit GatewayBench(const VehicleConfig& vehicle, const ingest::Mappings& mappings = {})
       : gateway(vehicle, sink, mappings) {}
 
-  /// Hands in one cycle that ends now; the sensors' clock is kEpochOffset_ns ahead.
+  /// Passes in one cycle that ends now; the sensors' clock is kEpochOffset_ns ahead.
   void take(const Traffic& traffic) {
     for (const recording::Frame& frame : traffic.frames()) {
       gateway.take(frame, {now_ns, kEpochOffset_ns, TimeSource::kLinkArrival});

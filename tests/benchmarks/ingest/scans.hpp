@@ -1,4 +1,5 @@
-// Scans and what carries them, for benchmarks: a stationary world seen from a car at 10 m/s, as the replay makes it up.
+// Synthetic scans and their datagrams for benchmarks: stationary objects as seen from a car at 10 m/s, from the
+// replay's generator.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,7 @@ namespace boresight::bench {
   return {list->begin(), list->end()};
 }
 
-/// The list of the next cycle: counter and stamp go on, the detections stay.
+/// Turns a list into that of the next cycle: new counter and time stamp, same detections.
 inline void advance_ars548(std::span<std::uint8_t> list, std::int64_t epoch_ns, std::uint32_t counter) {
   namespace layout = wire::ars548;
   boresight::write_u32(list.data() + layout::kSeconds, static_cast<std::uint32_t>(epoch_ns / 1'000'000'000));

@@ -1,4 +1,4 @@
-// Frames of one cycle of one or more sources, with the bytes that they view.
+// Frames of one cycle of one or more sources, and the bytes that they refer to.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ using Bytes = std::vector<std::uint8_t>;
 class Traffic {
  public:
   Traffic() = default;
-  Traffic(const Traffic&) = delete;  // frames view the bytes of their own traffic
+  Traffic(const Traffic&) = delete;  // frames refer to the bytes of their own traffic
   Traffic& operator=(const Traffic&) = delete;
   Traffic(Traffic&&) = default;
   Traffic& operator=(Traffic&&) = default;
@@ -41,7 +41,7 @@ class Traffic {
     bytes_.clear();
   }
   [[nodiscard]] std::span<const recording::Frame> frames() const { return frames_; }
-  /// For stamps and counters that go on from cycle to cycle.
+  /// For time stamps and counters that change from cycle to cycle.
   [[nodiscard]] std::span<std::uint8_t> bytes(std::size_t frame) { return bytes_[frame]; }
 
  private:

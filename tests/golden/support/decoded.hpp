@@ -1,4 +1,4 @@
-// A recording through the gateway's core, in memory.
+// Decodes a recording by the gateway's core, in memory.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +29,11 @@ struct Decoding {
 [[nodiscard]] VehicleConfig vehicle(const std::string& name);
 [[nodiscard]] Decoding decode(const VehicleConfig& vehicle, const std::filesystem::path& recording);
 
-/// Where recordings lie, and whether they do.
+/// Folder of the recordings, and whether a recording exists.
 [[nodiscard]] std::filesystem::path shared_data();
 
 }  // namespace boresight::golden
 
-/// Recordings lie beside the checkout or nowhere.
+/// Skips the test where the shared data is absent.
 #define REQUIRE_RECORDING(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no shared data"

@@ -1,4 +1,4 @@
-// Reads the arrays of doubles that lie beside the recording.
+// Reads the arrays of doubles beside the recording.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace boresight::golden {
 
-/// All numbers of a version 1 .npy file of little-endian doubles as they lie in it; throws if it is another one.
+/// All numbers of a version 1 .npy file of little-endian doubles, in file order. Throws for any other format.
 inline std::vector<double> read_npy(const std::filesystem::path& path, const std::string& order = "False") {
   std::ifstream file(path, std::ios::binary);
   unsigned char start[10] = {};
@@ -27,7 +27,7 @@ inline std::vector<double> read_npy(const std::filesystem::path& path, const std
   return values;
 }
 
-/// The same of a file that holds one column after the other.
+/// The same for a file in column order.
 inline std::vector<double> read_npy_columns(const std::filesystem::path& path) {
   return read_npy(path, "True");
 }

@@ -1,4 +1,4 @@
-// The little of YAML that the expected decodings are written in.
+// Reads the subset of YAML that the expected decodings use.
 #pragma once
 
 #include <cstdlib>
@@ -12,8 +12,8 @@ namespace boresight::golden {
 
 using Record = std::map<std::string, double>;
 
-/// The `key: number` lines of a list; what precedes the first `- ` goes to `head`; true and false are 1 and 0. Within
-/// the list, the numbers of a nested mapping are named "mapping.key".
+/// The `key: number` lines of a list. Lines before the first `- ` go to `head`. True and false are 1 and 0. Within the
+/// list, the numbers of a nested mapping are named "mapping.key".
 inline std::vector<Record> read_yaml_list(const std::filesystem::path& file, Record& head) {
   std::vector<Record> records;
   std::ifstream input(file);

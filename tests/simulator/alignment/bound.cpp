@@ -95,7 +95,7 @@ void CramerRaoBound::add(const AlignmentEvent& event) {
   const Eigen::Vector3d velocity(speed - yaw_rate * position[1], event.lateral_speed_mps + yaw_rate * position[0],
                                  event.vertical_speed_mps);
   const Eigen::Vector3d seen = rotation.transpose() * velocity;  // the sensor's motion in its own axes
-  // How the sensor's velocity changes with the vehicle's true speed and yaw rate.
+  // Derivatives of the sensor's velocity by the vehicle's true speed and yaw rate.
   const double slip = spec_.slip_coefficient_radps2pm;
   const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate, event.vertical_speed_mps / speed);
   const Eigen::Vector3d by_yaw_rate(-position[1], position[0] - slip * speed * speed, 0.0);

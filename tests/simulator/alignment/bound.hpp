@@ -1,5 +1,5 @@
-// The Cramér–Rao bound of a drive: how well any unbiased estimator can know the alignment after what was driven, if it
-// were told which detections stand still.
+// The Cramér–Rao bound of a drive: the smallest variance that any unbiased alignment estimator can reach on it, given
+// which detections are stationary.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace boresight::simulator {
 
-/// What is known before the drive; 0: the parameter is known exactly.
+/// Prior standard deviations; 0: the parameter is known exactly.
 struct BoundPriors {
   double speed_scale_std = 0.02;
-  double rotation_std_rad = 3.0 * M_PI / 180.0;  ///< about each axis of the vehicle, of every radar
+  double rotation_std_rad = 3.0 * M_PI / 180.0;  ///< about each vehicle axis, for every radar
   double yaw_rate_bias_std_radps = 0.0;
   double slip_coefficient_std_radps2pm = 0.0;
-  double min_speed_mps = 0.0;  ///< signalled; slower scans do not count, as estimators leave them out (Report A §8)
+  double min_speed_mps = 0.0;  ///< signalled; slower scans do not count, as estimators leave them out (Burza 2025, §8)
 };
 
 /// Sums the information of a drive's stationary detections at the truth, each with the variance
@@ -26,20 +26,21 @@ struct BoundPriors {
 /// the order of alignment::Memory: k_v, yaw-rate bias, slip coefficient, then of each radar the turn about the
 /// vehicle's x, y and z axes.
 ///
-/// What it takes as known, so that it stays a bound: what body pitch owes to acceleration; and for radars without
-/// elevation their roll and pitch, which keep their prior. Knocks turn the truth only.
+/// Taken as known, so that the result stays a lower bound: the part of body pitch that acceleration causes. For radars
+/// without elevation, roll and pitch keep their prior. Step changes of the mounting change the truth only.
 class CramerRaoBound {
  public:
   static constexpr Eigen::Index kShared = 3;
 
-  /// Throws std::invalid_argument for drives of the planar model, whose truth is no rotation. `drive` must outlive it.
+  /// Throws std::invalid_argument for drives of the planar model, whose truth is no rotation. `drive` must outlive this
+  /// object.
   CramerRaoBound(const AlignmentSpec& spec, const AlignmentDrive& drive, const BoundPriors& priors = {});
 
-  /// Takes the drive's events in their order.
+  /// Adds the next event of the drive, in order.
   void add(const AlignmentEvent& event);
   /// Square, 3 + 3 × radars rows.
   [[nodiscard]] Eigen::MatrixXd covariance() const;
-  /// Stds of a radar's turn about the vehicle's x, y and z axes (rad).
+  /// Standard deviations of a radar's rotation about the vehicle's x, y and z axes (rad).
   [[nodiscard]] Eigen::Vector3d rotation_std_rad(std::size_t radar) const;
   [[nodiscard]] double speed_scale_std() const;
 

@@ -16,7 +16,7 @@ namespace boresight::simulator {
 
 namespace {
 
-/// Range rates of stationary detections against a model, as root of the mean square.
+/// Root mean square of the range-rate residuals of stationary detections against a model.
 class Rmse {
  public:
   void add(double residual) {
@@ -30,7 +30,7 @@ class Rmse {
   std::uint64_t count_ = 0;
 };
 
-/// What range rate a stationary detection of given angles has by the signalled motion.
+/// Range rate of a stationary detection at given angles, predicted from the signalled motion.
 class Expectation {
  public:
   Expectation(MountingModel model, const Eigen::Matrix3d& rotation, const RadarConfig& radar, double speed_mps,
@@ -44,7 +44,7 @@ class Expectation {
       return geometry::stationary_range_rate(rotation_ * geometry::direction(azimuth, elevation), velocity_);
     }
     const double c = std::cos(angles_.z()), s = std::sin(angles_.z());
-    return geometry::stationary_range_rate(  // Report A (10)–(12)
+    return geometry::stationary_range_rate(  // Burza 2025, (10)–(12)
         geometry::direction(angles_.x() + azimuth * c - elevation * s, angles_.y() + elevation * c + azimuth * s),
         velocity_);
   }
@@ -116,7 +116,7 @@ AlignmentFiles write_alignment_drive(const AlignmentSpec& spec, const std::files
   std::filesystem::create_directories(folder);
   AlignmentFiles files{folder / "drive.csv", folder / "ego.csv", folder / "vehicle.toml", folder / "truth.txt"};
   AlignmentDrive drive(spec);
-  // What disturbs the drive is not told to whom the bound is for.
+  // An estimator does not know the disturbances of the drive: the bound has a prior for each.
   BoundPriors priors;
   if (spec.yaw_rate_bias_radps != 0.0) priors.yaw_rate_bias_std_radps = 0.003;
   if (spec.slip_coefficient_radps2pm != 0.0) priors.slip_coefficient_std_radps2pm = 0.005;

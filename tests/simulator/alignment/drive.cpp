@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/simulator/alignment/motion.hpp"
@@ -15,14 +16,13 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr auto kStart_ns = static_cast<std::int64_t>(AlignmentDrive::kStart_s * 1e9);
 
 std::int64_t stamp_ns(double since_start_s) {
   return kStart_ns + std::llround(since_start_s * 1e9);
 }
 
-/// Where detections are drawn, around the horizon ahead of the radar's nominal boresight.
+/// Directions in which detections are drawn, relative to the horizon ahead of the radar's nominal boresight.
 struct View {
   double azimuth_min_rad, azimuth_max_rad, elevation_min_rad, elevation_max_rad;
   [[nodiscard]] double azimuth(double share) const {
@@ -30,12 +30,12 @@ struct View {
   }
 };
 
-/// A little inside the field of view, so that a crooked radar still measures within it; what lies left for a radar
-/// that stands on its head lies right in its own frame.
+/// The range of directions is a little smaller than the field of view, so that a misaligned radar still measures within
+/// it. For a radar mounted upside down, left and right of its own frame are swapped.
 View view_of(const RadarConfig& radar) {
   const FieldOfView& f = radar.field_of_view;
-  const double azimuth_margin = std::min(5.0 * kDegree, (f.azimuth_max_rad - f.azimuth_min_rad) / 12.0);
-  const double elevation_margin = std::min(3.0 * kDegree, (f.elevation_max_rad - f.elevation_min_rad) / 12.0);
+  const double azimuth_margin = std::min(5.0 * kRadiansPerDegree, (f.azimuth_max_rad - f.azimuth_min_rad) / 12.0);
+  const double elevation_margin = std::min(3.0 * kRadiansPerDegree, (f.elevation_max_rad - f.elevation_min_rad) / 12.0);
   View view{f.azimuth_min_rad + azimuth_margin, f.azimuth_max_rad - azimuth_margin,
             f.elevation_min_rad + elevation_margin, f.elevation_max_rad - elevation_margin};
   if (std::cos(radar.mounting_pose.roll_rad) < 0.0) {
@@ -60,7 +60,7 @@ class Wander {
   double decay_, kick_, value_;
 };
 
-/// Something that moves in a radar's view: its reflections share direction, range and velocity, and it lasts.
+/// A moving object in a radar's field of view. Its reflections share direction, range and velocity, from scan to scan.
 struct MovingObject {
   enum class Kind : std::uint8_t { kWithTraffic, kAgainstTraffic, kWalker };
   Kind kind;
@@ -111,7 +111,7 @@ RadarState make_radar(const AlignmentRadar& spec, std::uint64_t seed, std::size_
   return radar;
 }
 
-/// Height of what reflects, relative to the radar: kerbs and cars, fences, façades.
+/// Height of a reflector relative to the radar: kerbs and cars, fences, façades.
 double draw_height_m(Stream& stream) {
   const double sort = stream.uniform();
   if (sort < 0.35) return stream.uniform(-0.55, 0.3);
@@ -124,28 +124,29 @@ double draw_elevation_rad(ElevationKind kind, const View& view, double range_m, 
   if (kind == ElevationKind::kUniform) elevation = stream.uniform(-0.02, 0.06);
   if (kind == ElevationKind::kScene) {
     elevation = std::asin(std::clamp(draw_height_m(stream) / range_m, -0.9, 0.9));
-    constexpr double kMargin_rad = 2.0 * kDegree;
+    constexpr double kMargin_rad = 2.0 * kRadiansPerDegree;
     const bool seen =
         elevation > view.elevation_min_rad + kMargin_rad && elevation < view.elevation_max_rad - kMargin_rad;
-    if (!seen) elevation = 3.0 * kDegree * stream.gaussian();
+    if (!seen) elevation = 3.0 * kRadiansPerDegree * stream.gaussian();
   }
   return std::clamp(elevation, view.elevation_min_rad, view.elevation_max_rad);
 }
 
-/// Fewer towards the edge of the view, as the antenna's pattern has it.
+/// Azimuth of a detection: fewer towards the edge of the field of view, as by an antenna pattern.
 double draw_azimuth_rad(const View& view, Stream& stream) {
   if (stream.uniform() >= 0.35) return view.azimuth(stream.uniform());
-  return std::clamp(view.azimuth(0.5) + 25.0 * kDegree * stream.gaussian(), view.azimuth_min_rad, view.azimuth_max_rad);
+  return std::clamp(view.azimuth(0.5) + 25.0 * kRadiansPerDegree * stream.gaussian(), view.azimuth_min_rad,
+                    view.azimuth_max_rad);
 }
 
 double clamp_range_m(const RadarConfig& config, double range_m) {
   return std::clamp(range_m, kNearest_m, std::max(kNearest_m, config.field_of_view.range_max_m));
 }
 
-constexpr double kMostDetections = 600.0;  // of the mean: the Poisson draw ends at e^−700
-constexpr double kMovingShare = 0.85;      // of outliers; the others are ghosts
+constexpr double kMostDetections = 600.0;  // largest mean number, since the Poisson draw needs e^−mean > 0
+constexpr double kMovingShare = 0.85;      // share of moving objects among the outliers; the others are ghosts
 
-/// Of outliers 40 % go with the traffic, 25 % against it, 20 % walk.
+/// Index of the object of an outlier. 40 % of the outliers move with the traffic, 25 % against it, 20 % walk.
 std::size_t object_of(double sort) {
   constexpr std::array<double, 4> kEdges{0.0, 0.40, 0.65, kMovingShare};
   std::size_t kind = 0;
@@ -154,7 +155,7 @@ std::size_t object_of(double sort) {
   return kind * kObjectsOfAKind + std::min(static_cast<std::size_t>(within * kObjectsOfAKind), kObjectsOfAKind - 1);
 }
 
-/// A sensor without noise still states some.
+/// Standard deviation that the sensor states; greater than 0 even without noise.
 double stated_speed_std_mps(const AlignmentSpec& spec) {
   return std::max(spec.speed_std_mps, 1e-4);
 }
@@ -162,7 +163,7 @@ double stated_yaw_rate_std_radps(const AlignmentSpec& spec) {
   return std::max(spec.yaw_rate_std_radps, 1e-6);
 }
 
-/// Mounting angles of the radar as it really is: nominal plus misalignment plus knocks.
+/// True mounting angles of the radar: nominal plus misalignment plus step changes.
 struct Mounting {
   Eigen::Matrix3d rotation;
   Eigen::Vector3d yaw_pitch_roll_rad;
@@ -236,7 +237,7 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
   const double yaw = mount.yaw_pitch_roll_rad.x(), pitch = mount.yaw_pitch_roll_rad.y();
   const double cos_roll = std::cos(mount.yaw_pitch_roll_rad.z()), sin_roll = std::sin(mount.yaw_pitch_roll_rad.z());
 
-  // A stream of its own for each effect of each scan: no effect shifts the draws of another.
+  // Each effect of each scan has a random stream of its own: no effect shifts the draws of another.
   const auto stream = [&](std::string_view effect) { return Stream(spec.seed, effect, index, radar.cycle); };
   Stream scene = stream("alignment scene"), outliers = stream("alignment outliers");
   Stream azimuth_noise = stream("alignment azimuth noise"), elevation_noise = stream("alignment elevation noise");
@@ -279,13 +280,13 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
     double range_m = clamp_range_m(config, kMedianRange_m * std::exp(0.75 * scene.gaussian()));
     const double elevation = draw_elevation_rad(spec.elevation, radar.view, range_m, scene);
 
-    // Every detection takes the same number of draws, so that more outliers are the same ones and others.
+    // Every detection takes the same number of draws, so that a larger outlier share only adds outliers.
     const bool is_outlier = outliers.uniform() < spec.outlier_share;
     const double sort = outliers.uniform(), place = outliers.uniform(), spread = outliers.uniform(-1.0, 1.0);
     const MovingObject* object = nullptr;
     if (is_outlier && sort < kMovingShare) {
       object = &radar.objects[object_of(sort)];
-      azimuth = std::clamp(radar.view.azimuth(0.5) + object->azimuth_rad.value() + 6.0 * kDegree * spread,
+      azimuth = std::clamp(radar.view.azimuth(0.5) + object->azimuth_rad.value() + 6.0 * kRadiansPerDegree * spread,
                            radar.view.azimuth_min_rad, radar.view.azimuth_max_rad);
       range_m = clamp_range_m(config, kMedianRange_m * std::exp(object->log_range.value()) + 2.0 * spread);
     }
@@ -299,12 +300,12 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
       const Eigen::Vector3d u = to_sensor * sight;
       seen_azimuth = std::atan2(u.y(), u.x());
       seen_elevation = std::asin(std::clamp(u.z(), -1.0, 1.0));
-    } else {  // Report A (10)(11), solved for the angles that the sensor sees
+    } else {  // Burza 2025, (10)(11), solved for the angles that the sensor sees
       const double a = geometry::wrap_angle(azimuth_vehicle - yaw), b = elevation - pitch;
       seen_azimuth = cos_roll * a + sin_roll * b;
       seen_elevation = -sin_roll * a + cos_roll * b;
     }
-    // A ghost: the path's length changes as that of a wall's reflection does, but it comes from elsewhere.
+    // A ghost: its range rate is that of a stationary reflection, but its azimuth is another.
     if (is_outlier && object == nullptr) {
       seen_azimuth = radar.view.azimuth(place) * (cos_roll < 0.0 ? -1.0 : 1.0);
     }

@@ -1,4 +1,4 @@
-// Makes the messages of a statistical alignment drive, in the order of measurement.
+// The messages of a statistical alignment drive, in the order of measurement.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace boresight::simulator {
 /// Truth of one detection.
 struct AlignmentDetectionTruth {
   bool stationary = true;
-  double azimuth_rad = 0.0;  ///< without noise
+  double azimuth_rad = 0.0;  ///< both angles without noise
   double elevation_rad = 0.0;
 };
 
@@ -25,7 +25,7 @@ struct AlignmentEvent {
   const RadarScan* scan = nullptr;
   std::size_t radar = 0;  ///< index of the scan's radar
   const std::vector<AlignmentDetectionTruth>* truth = nullptr;
-  /// Real motion at this instant: speed, yaw rate, lateral speed at the rear axle, vertical speed by body pitch.
+  /// True motion at this instant: speed, yaw rate, lateral speed at the rear axle, vertical speed by body pitch.
   double speed_mps = 0.0, yaw_rate_radps = 0.0, lateral_speed_mps = 0.0, vertical_speed_mps = 0.0;
 };
 
@@ -38,11 +38,11 @@ class AlignmentDrive {
   AlignmentDrive(const AlignmentDrive&) = delete;
   AlignmentDrive& operator=(const AlignmentDrive&) = delete;
 
-  /// False at the end. An ego motion comes before the scans of the same time. Measurement times start at kStart_s.
+  /// False at the end. An ego motion precedes the scans of the same time. Measurement times start at kStart_s.
   [[nodiscard]] bool next(AlignmentEvent& event);
   /// The vehicle as configured (nominal), for the estimator.
   [[nodiscard]] VehicleConfig vehicle() const;
-  /// R(sensor→vehicle) of a radar as really mounted at that time.
+  /// R(sensor→vehicle) of a radar's true mounting at that time.
   [[nodiscard]] Eigen::Matrix3d sensor_to_vehicle(std::size_t radar, double time_s) const;
 
  private:

@@ -9,12 +9,12 @@ namespace boresight::simulator {
 namespace {
 
 constexpr double kStep_s = 0.01;
-constexpr double kSlowest_mps = 5.0;  // Report A: slower driving tells nothing
+constexpr double kSlowest_mps = 5.0;  // Burza 2025: slower scans carry too little information
 
 enum class Shape : std::uint8_t { kStraight, kWide, kCurve, kCorner };
 
 struct Habit {
-  std::array<double, 4> shares;  // of straight, wide, curve, corner
+  std::array<double, 4> shares;  // by Shape
   double slowest_mps, fastest_mps;
 };
 
@@ -118,7 +118,7 @@ AlignmentMotion AlignmentRoad::at(double time_s) {
   AlignmentMotion motion;
   motion.speed_mps = blend(before_.speed_mps, after_.speed_mps);
   motion.acceleration_mps2 = blend(before_.acceleration_mps2, after_.acceleration_mps2);
-  constexpr double kGrip_mps2 = 3.2;  // bounds what is left of a curvature that was entered too fast
+  constexpr double kGrip_mps2 = 3.2;  // largest lateral acceleration
   const double speed = std::max(motion.speed_mps, 1.0), sharpest_per_m = kGrip_mps2 / (speed * speed);
   motion.yaw_rate_radps = motion.speed_mps * std::clamp(blend(before_.curvature_per_m, after_.curvature_per_m),
                                                         -sharpest_per_m, sharpest_per_m);

@@ -1,4 +1,4 @@
-// How the vehicle of an alignment drive moves: segments of road with speed and curvature, and its body's pitch.
+// Motion of the vehicle in an alignment drive: road segments with speed and curvature, and body pitch.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace boresight::simulator {
 
-/// Real motion of the rear axle's centre.
+/// True motion of the rear axle's centre.
 struct AlignmentMotion {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
@@ -17,12 +17,12 @@ struct AlignmentMotion {
   double vertical_speed_mps = 0.0;  ///< in body axes; positive while the nose is down
 };
 
-/// The road is drawn segment by segment while it is driven, so that a drive of hours needs no memory.
+/// The road is drawn segment by segment during the drive, so that a long drive needs no more memory.
 class AlignmentRoad {
  public:
   explicit AlignmentRoad(const AlignmentSpec& spec);
 
-  /// Motion at a time since the start (s), which must not decrease from call to call.
+  /// Motion at a time since the start (s). The time must not decrease from call to call.
   [[nodiscard]] AlignmentMotion at(double time_s);
 
  private:

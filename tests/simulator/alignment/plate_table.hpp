@@ -1,4 +1,4 @@
-// How far each way of evaluating a plate's run is off: the settings of the bars and Monte-Carlo runs over them.
+// Errors of the evaluation methods of a plate run: the settings of the benchmark, and Monte-Carlo runs over them.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct PlateSetting {
   PlateSpec spec;
 };
 
-/// Clean; one bad tilt and 5 % bad scans; two bad tilts and 20 % bad scans.
+/// The three settings of the benchmark.
 [[nodiscard]] inline std::array<PlateSetting, 3> plate_settings() {
   std::array<PlateSetting, 3> settings{
       {{"clean", {}}, {"one bad tilt, 5 % bad scans", {}}, {"two bad tilts, 20 % bad scans", {}}}};
@@ -28,10 +28,11 @@ struct PlateSetting {
   return settings;
 }
 
-/// RMSE over the runs in degrees; NEES: mean of (error / std)², 1 if the std is honest.
+/// RMSE over the runs in degrees. NEES (normalised estimation error squared): mean of (error / std)², which is 1 if the
+/// stated std is right.
 struct PlateRow {
   std::size_t runs = 0;
-  std::size_t published_failed = 0, robust_failed = 0;  ///< left out of the RMSE and reported instead
+  std::size_t published_failed = 0, robust_failed = 0;  ///< runs without a result, not part of the RMSE
   double published_pitch_deg = 0.0;                     ///< weighted least squares
   double triples_pitch_deg = 0.0;                       ///< median of the random triples' maxima
   double robust_pitch_deg = 0.0;                        ///< RANSAC and least squares on medians
@@ -40,7 +41,7 @@ struct PlateRow {
   double robust_pitch_nees = 0.0, robust_yaw_nees = 0.0;
 };
 
-/// Truth drawn evenly within ±2° for each run.
+/// Runs the evaluation with pitch and yaw drawn uniformly within ±2° for each run.
 [[nodiscard]] inline PlateRow plate_errors(PlateSpec spec, std::size_t runs, std::uint64_t seed) {
   namespace plate = alignment::plate;
   std::mt19937_64 random(seed);

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <string>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/random.hpp"
 
 namespace boresight::simulator {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-
-/// Report A, Table 1: (α, β, γ) of the radars in degrees.
+/// Burza 2025, Table 1: (α, β, γ) of the radars in degrees.
 constexpr std::array<std::array<double, 3>, 4> kTable1_deg{
     {{-1.0, 1.0, 2.0}, {2.0, -1.0, 1.0}, {1.0, 2.0, -1.0}, {-2.0, -2.0, -2.0}}};
 
@@ -30,7 +29,7 @@ void add_radar(AlignmentSpec& spec, const RadarConfig& config) {
   AlignmentRadar radar;
   radar.config = config;
   set_source(radar.config);
-  radar.truth = {angles[0] * kDegree, angles[1] * kDegree, angles[2] * kDegree};
+  radar.truth = {angles[0] * kRadiansPerDegree, angles[1] * kRadiansPerDegree, angles[2] * kRadiansPerDegree};
   radar.states_stds = true;
   spec.radars.push_back(radar);
 }
@@ -40,10 +39,11 @@ RadarConfig corner_radar(std::uint32_t id, const char* name, double x_m, double 
   radar.id = id;
   radar.name = name;
   radar.mounting_pose.position_m = {x_m, y_m, 0.5};
-  radar.mounting_pose.yaw_rad = yaw_deg * kDegree;
+  radar.mounting_pose.yaw_rad = yaw_deg * kRadiansPerDegree;
   // Detections are drawn 5° and 3° inside: ±65° and ±15° as in the prototype.
-  radar.field_of_view = {-70.0 * kDegree, 70.0 * kDegree, -18.0 * kDegree, 18.0 * kDegree, 120.0};
-  radar.noise = {0.15, 0.3 * kDegree, 0.6 * kDegree, 0.03};
+  radar.field_of_view = {-70.0 * kRadiansPerDegree, 70.0 * kRadiansPerDegree, -18.0 * kRadiansPerDegree,
+                         18.0 * kRadiansPerDegree, 120.0};
+  radar.noise = {0.15, 0.3 * kRadiansPerDegree, 0.6 * kRadiansPerDegree, 0.03};
   radar.cycle_time_s = 0.05;
   return radar;
 }
@@ -70,8 +70,8 @@ AlignmentSpec published_setup() {
   for (AlignmentRadar& radar : spec.radars) {
     radar.mean_detections = 64.0;
     radar.config.noise.range_rate_std_mps = 0.022;
-    radar.config.noise.azimuth_std_rad = 0.15 * kDegree;
-    radar.config.noise.elevation_std_rad = 0.3 * kDegree;
+    radar.config.noise.azimuth_std_rad = 0.15 * kRadiansPerDegree;
+    radar.config.noise.elevation_std_rad = 0.3 * kRadiansPerDegree;
   }
   return spec;
 }
@@ -89,7 +89,7 @@ void draw_truth(AlignmentSpec& spec) {
   spec.speed_scale = stream.uniform(0.97, 1.03);
   for (AlignmentRadar& radar : spec.radars) {
     for (double* angle : {&radar.truth.yaw_rad, &radar.truth.pitch_rad, &radar.truth.roll_rad}) {
-      *angle = stream.uniform(-3.0, 3.0) * kDegree;
+      *angle = stream.uniform(-3.0, 3.0) * kRadiansPerDegree;
     }
   }
 }

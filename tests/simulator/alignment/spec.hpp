@@ -1,6 +1,6 @@
-// What a statistical alignment drive is made of: detections drawn independently scan by scan, with a truth that is
-// known to the last digit and disturbances that can be switched on one by one. For the alignment estimators' accuracy;
-// the world with objects that persist is the other simulator.
+// Specification of a statistical alignment drive. Detections are drawn independently scan by scan from an exactly known
+// truth. Disturbances can be switched on one by one. This simulator measures the accuracy of alignment estimators; the
+// simulator of the folder above has a world with persistent objects.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,28 @@ namespace boresight::simulator {
 enum class RoadKind : std::uint8_t { kCity, kMotorway, kStraight, kSlow, kMixed };
 [[nodiscard]] const char* name_of(RoadKind road);
 
-/// How range rates follow from angles: the exact rotation, or the planar roll model of Report A (10)(11), for
-/// reproducing its tables.
+/// Model of range rates as a function of the angles: the exact rotation, or the planar roll model of Burza 2025, (10)
+/// and (11), which reproduces its tables.
 enum class MountingModel : std::uint8_t { kExact, kPlanar };
 
-/// How elevations are drawn: reflectors at heights seen from the road, Report A's uniform −0.02…0.06 rad, or none.
+/// Distribution of elevations: from heights of reflectors, uniform −0.02…0.06 rad as in Burza 2025, or all zero.
 enum class ElevationKind : std::uint8_t { kScene, kUniform, kZero };
 
 struct AlignmentRadar {
-  RadarConfig config;              ///< nominal mounting, field of view, noise stds as the estimator is told them
+  RadarConfig config;              ///< nominal mounting, field of view, noise stds as given to the estimator
   Misalignment truth;              ///< α, β, γ added to the nominal angles
-  bool measures_elevation = true;  ///< else scans lack the field
+  bool measures_elevation = true;  ///< false: scans lack the field
   bool states_stds = false;        ///< scans carry the stds
-  double first_scan_s = 0.0;       ///< radars whose first scans differ are not synchronised
-  double mean_detections = 60.0;   ///< a scan
-  double ambiguity_mps = 0.0;      ///< width of the unambiguous interval, around 0; 0: none
-  double noise_scale = 1.0;        ///< real angle noise over the stated one
+  double first_scan_s = 0.0;       ///< radars with different values are not synchronised
+  double mean_detections = 60.0;   ///< per scan
+  double ambiguity_mps = 0.0;      ///< width of the unambiguous interval, around 0; 0: no folding
+  double noise_scale = 1.0;        ///< true angle noise relative to the stated one
 };
 
 struct StepChange {
   double time_s = 0.0;                                  ///< of measurement, as AlignmentEvent::time_s
   std::size_t radar = 0;                                ///< index
-  Eigen::Vector3d rotation_vehicle_rad{0.0, 0.0, 0.0};  ///< turn about vehicle axes, Exp(d)·R
+  Eigen::Vector3d rotation_vehicle_rad{0.0, 0.0, 0.0};  ///< rotation d about the vehicle axes: Exp(d)·R
 };
 
 struct AlignmentSpec {
@@ -46,14 +46,14 @@ struct AlignmentSpec {
   RoadKind road = RoadKind::kMixed;
   std::uint64_t seed = 1;
   double speed_scale = 1.01;           ///< k_v
-  std::vector<AlignmentRadar> radars;  ///< their ids need not be 1, 2, …; `config.noise` is also the real noise
+  std::vector<AlignmentRadar> radars;  ///< with any ids; `config.noise` is also the true noise
   MountingModel model = MountingModel::kExact;
   ElevationKind elevation = ElevationKind::kScene;
   double ego_rate_hz = 20.0;
-  /// Share of detections that do not stand still: vehicles with and against the traffic, slow walkers, ghosts.
+  /// Share of detections that are not stationary: vehicles with and against the traffic, slow walkers, ghosts.
   double outlier_share = 0.25;
-  double azimuth_std_edge = 0.35;  ///< azimuth noise grows as 1/max(cos α, this); 1: it does not
-  double speed_std_mps = 0.02;     ///< white, a message
+  double azimuth_std_edge = 0.35;  ///< azimuth noise grows as 1/max(cos α, this); 1: constant
+  double speed_std_mps = 0.02;     ///< white noise per message
   double yaw_rate_std_radps = 0.001;
   double yaw_rate_bias_radps = 0.0;        ///< signalled = true + bias
   double slip_coefficient_radps2pm = 0.0;  ///< V_y = −c·V·(V·ω)
@@ -63,14 +63,14 @@ struct AlignmentSpec {
   std::vector<StepChange> step_changes;
 };
 
-/// Four corner radars, as in drive_1: noise, mounting and truth of Report A's Table 1.
+/// Four corner radars, as in drive_1: noise, mounting and truth of Burza 2025, Table 1.
 [[nodiscard]] AlignmentSpec four_corner_radars();
 /// The published set-up: planar truth, slow drive, no outliers, residuals of 0.20 → 0.027 m/s.
 [[nodiscard]] AlignmentSpec published_setup();
-/// The radars of a vehicle, with its stds of the ego signals; misaligned as those of Table 1 in turn. Their sources
-/// become those of ARS548, which the drive's files are written for.
+/// The radars of a vehicle, with its stds of the ego signals. Their misalignments are those of Table 1 in turn. Their
+/// sources become those of ARS548, since the drive's files use that profile.
 [[nodiscard]] AlignmentSpec radars_of(const VehicleConfig& vehicle);
-/// Another truth by the seed: k_v in 0.97…1.03, each angle within ±3°.
+/// Draws the truth from the seed: k_v in 0.97…1.03, each angle within ±3°.
 void draw_truth(AlignmentSpec& spec);
 
 }  // namespace boresight::simulator

@@ -13,8 +13,8 @@ struct AlignmentResiduals {
   double uncorrected_mps, at_truth_mps;
 };
 
-/// Lines of a key and pairs of name and value, angles in degrees: k_v, a line a radar with α, β, γ before any knock,
-/// noise, disturbance, a line a knock with α, β, γ after it, residuals, and the bound where there is one.
+/// Lines of a key and pairs of name and value, angles in degrees: k_v; one line per radar with α, β, γ at the start;
+/// noise; disturbance; one line per step change with α, β, γ after it; residuals; and the bound if there is one.
 [[nodiscard]] std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive,
                                      const AlignmentResiduals& residuals, const CramerRaoBound* bound);
 

@@ -8,12 +8,12 @@ namespace boresight::simulator {
 
 namespace {
 
-/// Without the last digits, which radians lose.
+/// Angle in degrees, without the last digits, which the conversion from radians spoils.
 std::string degrees(double angle_rad) {
   return fmt::format("{:.12g}", angle_rad * (180.0 / M_PI));
 }
 
-/// As a basic string of TOML; names come from a file that could hold them, so no control characters do.
+/// A basic string of TOML. Names come from a TOML file, so they hold no control characters.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -53,7 +53,7 @@ std::string radar_toml(const RadarConfig& radar) {
 
 std::string vehicle_toml(const VehicleConfig& vehicle) {
   std::string text = fmt::format(
-      "# The vehicle of a simulated alignment drive, as it was meant to be.\nname = {}\n\n[ego]\n"
+      "# The nominal vehicle of a simulated alignment drive.\nname = {}\n\n[ego]\n"
       "profile = \"toyota\"\nsource = {{link = \"can\", interface = \"{}\"}}\nspeed_std_mps = {}\n"
       "yaw_rate_std_radps = {}\n",
       quoted(vehicle.name), vehicle.ego.source.interface, vehicle.ego.speed_std_mps, vehicle.ego.yaw_rate_std_radps);

@@ -1,4 +1,4 @@
-// A vehicle as the file that the services read.
+// A vehicle as a file for the services.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace boresight::simulator {
 
-/// As config/schema/vehicle.md has it: radars of the profile ARS548 over UDP and ego signals of the profile Toyota.
+/// The format is that of config/schema/vehicle.md, with radars of profile ARS548 over UDP and ego signals of profile
+/// Toyota.
 [[nodiscard]] std::string vehicle_toml(const VehicleConfig& vehicle);
 
 }  // namespace boresight::simulator

@@ -1,4 +1,4 @@
-// What detections are in truth beside what they were told to be.
+// Confusion matrix: the true provenance of detections against their classification.
 #pragma once
 
 #include <array>
@@ -15,18 +15,18 @@ inline constexpr std::array<Provenance, 5> kTruths = {Provenance::kMoving, Prove
 
 class Confusion {
  public:
-  /// `rejected`: the corrector left it out (invalid, weak, outside of the region); it is counted apart.
+  /// `rejected`: the corrector rejected the detection (invalid, weak, outside of the region). It is counted separately.
   void add(Provenance truth, Provenance label, bool rejected);
 
-  /// That were not rejected.
+  /// Detections of this true provenance, without the rejected ones.
   [[nodiscard]] std::uint64_t count(Provenance truth) const;
   [[nodiscard]] std::uint64_t count(Provenance truth, Provenance label) const {
     return counts_[index(truth)][index(label)];
   }
   [[nodiscard]] std::uint64_t rejected(Provenance truth) const { return rejected_[index(truth)]; }
-  /// Percent of those of one truth that were not rejected; NaN if there are none.
+  /// Percent of count(truth) that got this label; NaN if the count is 0.
   [[nodiscard]] double percent(Provenance truth, Provenance label) const;
-  /// Told to be a ghost of either type.
+  /// Percent classified as a ghost of either type.
   [[nodiscard]] double percent_ghost(Provenance truth) const {
     return percent(truth, Provenance::kGhostType1) + percent(truth, Provenance::kGhostType2);
   }

@@ -12,9 +12,9 @@ void FalseTracks::add(double t_s, const ClassifiedScan& scan, const std::vector<
     const Object box{track.tracking_id, place_of(track), {0.0, 0.0}, track.heading_rad, track.length_m, track.width_m};
     std::size_t ghosts = 0, moving = 0, others = 0;
     for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
-      // What the tracker never got made no track.
+      // The tracker gets only detections classified as moving.
       if (scan.provenance[i] != Provenance::kMoving) continue;
-      if (box.distance_m({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}) > kEvidence_m) continue;
+      if (box.distance_m({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}) > kEvidenceDistance_m) continue;
       const Provenance is = truth[i].provenance;
       ++(is == Provenance::kGhostType1 || is == Provenance::kGhostType2 ? ghosts
          : is == Provenance::kMoving                                    ? moving
@@ -35,7 +35,7 @@ void FalseTracks::add(double t_s, const ClassifiedScan& scan, const std::vector<
 std::vector<GhostTrack> FalseTracks::long_ghost_tracks() const {
   std::vector<GhostTrack> tracks;
   for (const auto& [id, track] : on_ghosts_) {
-    if (track.scans > kLong_scans) tracks.push_back(track);
+    if (track.scans > kMaxTolerated_scans) tracks.push_back(track);
   }
   return tracks;
 }
@@ -48,7 +48,7 @@ std::size_t FalseTracks::longest_ghost_track_scans() const {
 
 std::size_t FalseTracks::long_other_tracks() const {
   return static_cast<std::size_t>(std::count_if(on_others_.begin(), on_others_.end(),
-                                                [](const auto& entry) { return entry.second > kLong_scans; }));
+                                                [](const auto& entry) { return entry.second > kMaxTolerated_scans; }));
 }
 
 }  // namespace boresight::judge

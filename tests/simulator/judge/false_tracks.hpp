@@ -1,4 +1,4 @@
-// Confirmed tracks that are no object's.
+// Confirmed tracks that match no object.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace boresight::judge {
 
-/// A confirmed track that lived on ghosts, where and when it did so last.
+/// A confirmed track that lived on ghosts, with its position and time when it last did.
 struct GhostTrack {
   std::uint32_t tracking_id;
   std::size_t scans;
@@ -22,18 +22,19 @@ struct GhostTrack {
 
 class FalseTracks {
  public:
-  static constexpr std::size_t kLong_scans = 5;
+  static constexpr std::size_t kMaxTolerated_scans = 5;
 
-  /// A track counts as living on ghosts in a scan in which it is confirmed, has detections, is no object's
-  /// (matching.hpp), and most of what lies within kEvidence_m of its box and was told to be moving is a ghost in truth.
-  static constexpr double kEvidence_m = 2.0;
+  /// A confirmed track lives on ghosts in a scan if it has detections, matches no object (matching.hpp), and most
+  /// detections near its box are ghosts in truth. Counted are detections within kEvidenceDistance_m of the box that
+  /// were classified as moving.
+  static constexpr double kEvidenceDistance_m = 2.0;
   void add(double t_s, const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth,
            const TrackList& tracks, const Matching& matching);
 
-  /// That lived on ghosts for more than kLong_scans scans, in a row or not.
+  /// Tracks that lived on ghosts for more than kMaxTolerated_scans scans, consecutive or not.
   [[nodiscard]] std::vector<GhostTrack> long_ghost_tracks() const;
   [[nodiscard]] std::size_t longest_ghost_track_scans() const;
-  /// The number of those of what is neither a ghost nor moving: clutter, or the stationary world.
+  /// Number of tracks that lived on clutter or stationary detections for more than kMaxTolerated_scans scans.
   [[nodiscard]] std::size_t long_other_tracks() const;
 
  private:

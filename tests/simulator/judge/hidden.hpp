@@ -1,4 +1,4 @@
-// Which objects no radar sees at present.
+// Objects that are hidden from all radars.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace boresight::judge {
 
-/// An object that no radar had a reflection of for so long is hidden, and no tracker can know of it.
+/// An object is hidden if no radar has had a direct reflection of it for longer than this. No tracker can know of it.
 inline constexpr double kHidden_s = 0.5;
 
-/// When each object last had a reflection of its own, told right or not.
+/// Time of the last direct reflection of each object, whatever its classification.
 class LastSeen {
  public:
-  /// Takes the truth of a scan and marks those of the objects that are hidden then.
+  /// Takes the truth of a scan and marks the objects that are hidden at its time.
   void mark(double t_s, const std::vector<simulator::DetectionTruth>& truth, std::vector<Object>& objects) {
     for (const simulator::DetectionTruth& is : truth) {
       if (is.provenance == Provenance::kMoving || is.provenance == Provenance::kStationary) last_s_[is.object_id] = t_s;

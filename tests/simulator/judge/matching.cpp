@@ -7,7 +7,8 @@ namespace boresight::judge {
 
 Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<Object>& objects) {
   Matching out{std::vector<std::size_t>(objects.size(), kNone), std::vector<std::size_t>(number_of_tracks, kNone)};
-  // A long vehicle's track may lie at either of its ends, so the box comes first; inside of it the middle decides.
+  // The track of a long vehicle may lie at either end. So pairs are ordered by the distance from the box first, and
+  // inside the box by the distance from its centre.
   std::vector<std::tuple<bool, double, double, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < number_of_tracks; ++k) {
     const Eigen::Vector2d place = place_of(tracks.tracks[k]);
@@ -16,7 +17,7 @@ Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std:
     });
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const double distance_m = objects[o].distance_m(place);
-      if (!(distance_m < kNear_m) || (in_box && distance_m > 0.0)) continue;
+      if (!(distance_m < kMaxTrackDistance_m) || (in_box && distance_m > 0.0)) continue;
       pairs.emplace_back(objects[o].is_hidden, distance_m, (objects[o].position_m - place).norm(), k, o);
     }
   }

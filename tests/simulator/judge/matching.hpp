@@ -1,4 +1,4 @@
-// Which track is which object's, one to one.
+// One-to-one assignment of tracks to objects.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace boresight::judge {
 
-/// Farther than this from an object's box a track cannot be the object's.
-inline constexpr double kNear_m = 3.0;
+/// Largest distance of a track from the box of its object.
+inline constexpr double kMaxTrackDistance_m = 3.0;
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 struct Matching {
-  std::vector<std::size_t> track_of_object;  ///< kNone: it has none
-  std::vector<std::size_t> object_of_track;  ///< of the first tracks of the list, as many as were asked for
+  std::vector<std::size_t> track_of_object;  ///< kNone: the object has no track
+  std::vector<std::size_t> object_of_track;  ///< of the first `number_of_tracks` tracks of the list
 };
 
-/// The first `number_of_tracks` of the list (the confirmed ones come first) with the objects, nearest pairs first: one
-/// vehicle's track is not its neighbour's as well, and a second track beside a vehicle is nobody's; one in a vehicle's
-/// box is that vehicle's or nobody's. Those objects that are hidden come last: they take no track from what is seen
-/// beside them.
+/// Assigns the first `number_of_tracks` tracks of the list (confirmed tracks come first) to objects, nearest pair
+/// first. Each track has at most one object and each object at most one track; further tracks near an object have none.
+/// A track inside an object's box is assigned to that object or to none. Hidden objects come last, so that they take no
+/// track from a visible object.
 [[nodiscard]] Matching match(const TrackList& tracks, std::size_t number_of_tracks, const std::vector<Object>& objects);
 
 [[nodiscard]] inline Eigen::Vector2d place_of(const Track& track) {

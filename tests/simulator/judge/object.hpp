@@ -1,4 +1,4 @@
-// What is on the road in truth, as the ego vehicle would have it on its list.
+// A true object, in the form of an entry of the ego vehicle's track list.
 #pragma once
 
 #include <cmath>
@@ -8,14 +8,14 @@
 
 namespace boresight::judge {
 
-/// In the vehicle's frame and axes; velocity over ground.
+/// Position in the vehicle frame; velocity over ground, in the vehicle's axes.
 struct Object {
   std::uint32_t id;
   Eigen::Vector2d position_m;  ///< centre
   Eigen::Vector2d velocity_mps;
   double heading_rad;
   double length_m, width_m;
-  bool is_hidden = false;  ///< from all radars (hidden.hpp)
+  bool is_hidden = false;  ///< hidden from all radars (hidden.hpp)
 
   /// Distance of a point from the object's box, 0 inside.
   [[nodiscard]] double distance_m(const Eigen::Vector2d& point) const {

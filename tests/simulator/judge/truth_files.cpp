@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 6> kWords = {"unknown",      "moving",       "stationary",
                                                     "ghost_type_1", "ghost_type_2", "clutter"};
 
-/// Calls `row(cells)` for every line below the header.
+/// Calls `row(cells)` for every line below the header; a line is not valid if it returns false.
 template <std::size_t N, typename Row>
 void for_each_row(std::istream& table, const char* name, const Row& row) {
   std::string line;

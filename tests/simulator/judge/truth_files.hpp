@@ -1,4 +1,4 @@
-// The tables of truth that `boresight simulate` writes beside a drive, read back. Columns: tests/simulator/README.md.
+// Reads the tables of truth that `boresight simulate` writes beside a drive. Columns: tests/simulator/README.md.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,28 @@
 
 namespace boresight::judge {
 
-/// The tables' word: "ghost_type_1". Unlike name_of's words for people it is part of a file format.
+/// The word for a provenance in the tables, such as "ghost_type_1". It is part of a file format, unlike name_of().
 [[nodiscard]] std::string_view table_word(Provenance provenance);
 
 struct TrueScan {
-  double t_s = 0.0;                                   ///< since the drive's beginning
+  double t_s = 0.0;                                   ///< since the beginning of the drive
   std::vector<simulator::DetectionTruth> detections;  ///< in the order of the list; provenance, object, bounces, mirror
 };
-/// By radar, in the order of time. Scans without any detection are not in the table.
+/// Scans by radar, in the order of time. Scans without any detection are not in the table.
 using TrueScans = std::map<std::uint32_t, std::vector<TrueScan>>;
 
-/// Reads truth_detections.csv; throws std::runtime_error with the line that cannot be understood.
+/// Reads truth_detections.csv. Throws std::runtime_error with file and line if a line is not valid.
 [[nodiscard]] TrueScans read_true_scans(std::istream& table);
 
 /// The bodies that are not parked.
 class TrueObjects {
  public:
   TrueObjects() = default;
-  /// Reads truth_objects.csv; throws std::runtime_error with the line that cannot be understood.
+  /// Reads truth_objects.csv. Throws std::runtime_error with file and line if a line is not valid.
   explicit TrueObjects(std::istream& table);
-  /// In the vehicle's frame at that time, on a straight line between the table's instants; those that the table has at
-  /// both, and none where it has neither.
+  /// Objects in the vehicle frame at that time, interpolated linearly between the two neighbouring instants of the
+  /// table. Only objects present at both instants are returned. Outside the table, the first or last instant is
+  /// returned.
   [[nodiscard]] std::vector<Object> at(double t_s) const;
 
  private:

@@ -1,4 +1,4 @@
-// The antenna: what it sees, how much less off boresight, and what dirt in front of it takes away.
+// The antenna: field of view, pattern, and losses by dirt in front of it.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace boresight::simulator::radar {
 
-/// A direction as the antenna has it.
+/// A direction in the antenna's frame.
 struct Look {
   double azimuth_rad, elevation_rad;
   double loss_db;  ///< one way
   bool inside;     ///< the field of view
 };
 
-/// One-way gain over that on boresight, dB: a parabola (the main lobe) that is 3 dB down at the view's edges.
+/// One-way gain relative to boresight, dB: a parabola (the main lobe) with −3 dB at the edges of the field of view.
 [[nodiscard]] inline double pattern_db(double azimuth_rad, double elevation_rad, const FieldOfView& view) {
   constexpr double kEdge_db = -3.0;
   const double width = std::max(std::abs(view.azimuth_min_rad), std::abs(view.azimuth_max_rad));
@@ -32,7 +32,7 @@ class Antenna {
  public:
   explicit Antenna(const FieldOfView& view) : view_(view) {}
 
-  /// For a scan: the dirt that is there now.
+  /// Sets the dirt of a scan.
   void set_dirt(std::span<const Dirt> dirt) { dirt_ = dirt; }
 
   /// `direction`: unit vector, sensor frame.

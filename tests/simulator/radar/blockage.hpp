@@ -1,4 +1,4 @@
-// Dirt, snow or ice that builds up on a radar, and what the sensor says of it.
+// Dirt, snow or ice that builds up on a radar, and the blockage that the sensor reports.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace boresight::simulator::radar {
 /// Blockage at an instant, within azimuths of the sensor's frame.
 struct Dirt {
   double azimuth_min_rad, azimuth_max_rad;
-  double loss_db;  ///< two ways
+  double loss_db;  ///< two-way
 };
 
-/// Two-way loss at `t_s`: linear from 0 at `begin_s` to all of it at `full_s`; a `full_s` that is not later is a jump.
+/// Two-way loss at `t_s`: linear from 0 at `begin_s` to `loss_db` at `full_s`; a jump if `full_s` is not later.
 [[nodiscard]] inline double built_up_db(const RadarBlockage& blockage, double t_s) {
   if (t_s < blockage.begin_s) return 0.0;
   const double span = blockage.full_s - blockage.begin_s;
@@ -35,7 +35,7 @@ inline void dirt_at(std::span<const RadarBlockage> blockages, std::uint32_t rada
   }
 }
 
-/// Two-way loss in a direction; layers add up.
+/// Two-way loss in a direction; the losses of several layers add up.
 [[nodiscard]] inline double loss_db(std::span<const Dirt> dirt, double azimuth_rad) {
   double loss = 0.0;
   for (const Dirt& d : dirt) {
@@ -44,9 +44,9 @@ inline void dirt_at(std::span<const RadarBlockage> blockages, std::uint32_t rada
   return loss;
 }
 
-/// What the sensor states: source_condition bits. It measures its cover's loss itself, and says "partly blocked" where
-/// a tenth of the view or more loses 3 dB (a sixth of its range), "blocked" where nine tenths lose 15 dB or more (over
-/// half of it).
+/// The condition that the sensor reports: source_condition bits. The sensor measures the loss of its cover itself.
+/// Partly blocked: a tenth of the field of view or more loses at least 3 dB (a sixth of the range). Blocked: nine
+/// tenths lose at least 15 dB (over half of the range).
 [[nodiscard]] inline std::uint32_t stated_condition(std::span<const Dirt> dirt, const FieldOfView& view) {
   constexpr int kSamples = 64;
   int reduced = 0, blind = 0;

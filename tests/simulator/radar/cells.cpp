@@ -12,7 +12,7 @@ double size_of(double cell) {
   return cell > 0.0 ? cell : 1e-6;
 }
 
-/// The centroid by power of what is one detection.
+/// The centroid, weighted by power, of the echoes of one detection.
 class Centroid {
  public:
   void add(const Echo& e) {

@@ -1,4 +1,4 @@
-// Resolution: echoes nearer to each other than a cell in range, azimuth and range rate are one detection.
+// Resolution: echoes that differ by less than a cell in range, azimuth and range rate make one detection.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace boresight::simulator::radar {
 
-/// Whether two echoes can be told apart: they differ by a cell's size or more in any of the three. Quantities without a
-/// cell (size 0) are told apart to the sixth digit.
+/// Whether two echoes are resolved: they differ by a cell's size or more in at least one of the three quantities. A
+/// quantity without a cell (size 0) is resolved from a difference of 1e-6.
 [[nodiscard]] bool resolved(const ResolutionCell& cell, const Echo& a, const Echo& b);
 
-/// Merges what is not resolved. There is no grid: neighbours are not parted because a border happens to lie between
-/// them. The strongest echo takes all that is within a cell of it, then the strongest of those left, and so on. Powers
-/// add up, range, angles and range rate are the centroid by power, truth and key those of the strongest.
+/// Merges echoes that are not resolved. There is no grid, so no cell border can separate neighbours. The strongest echo
+/// takes all echoes within a cell of it; then the strongest remaining echo does the same, and so on. Powers add up.
+/// Range, angles and range rate are the centroid weighted by power. Truth and key are those of the strongest echo.
 class Cells {
  public:
   explicit Cells(const ResolutionCell& cell) : cell_(cell) {}
-  /// The result is ordered by the power of the strongest. Costs a sort, and for each result a look at what lies within
-  /// a cell of range.
+  /// The result is ordered by the power of the strongest echo in each detection. The cost is a sort, and for each
+  /// detection a visit of the echoes within a cell of range.
   void merge(std::vector<Echo>& echoes);
 
  private:

@@ -1,4 +1,4 @@
-// Doppler ambiguity: the radar samples the phase chirp by chirp and cannot tell range rates apart that differ by the
+// Doppler ambiguity: the radar samples the phase chirp by chirp. It cannot distinguish range rates that differ by the
 // width of its unambiguous interval.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace boresight::simulator::radar {
 
-/// Into [−limit, limit); 0: the radar resolves the ambiguity, nothing folds.
+/// Folds a range rate into [−limit, limit). A limit of 0 means no folding: the radar resolves the ambiguity.
 [[nodiscard]] inline double fold(double range_rate_mps, double limit_mps) {
   if (limit_mps <= 0.0) return range_rate_mps;
   const double width = 2.0 * limit_mps;

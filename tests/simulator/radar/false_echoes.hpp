@@ -1,4 +1,4 @@
-// Detections of nothing: clutter, and what another radar's transmission leaves behind.
+// False detections: clutter, and interference by another radar.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace boresight::simulator::radar {
 
-/// Interference at an instant; several transmitters add up.
+/// Interference at an instant, summed over all transmitters.
 struct Disturbance {
   double noise_rise_db = 0.0;
   double detections_per_scan = 0.0;
@@ -32,8 +32,8 @@ struct Disturbance {
   return sum;
 }
 
-/// Appends a Poisson-distributed number of echoes at random cells of the view, just over the threshold: what is
-/// detected falsely is weak. Range rates are spread over the unambiguous interval, but no wider than ±`rate_max_mps`.
+/// Appends a Poisson-distributed number of echoes at random places of the field of view, just above the threshold,
+/// since false detections are weak. Range rates are uniform within ±`rate_max_mps`.
 inline void add_false(Stream& stream, double mean, double mean_excess_db, double threshold_db, double rate_max_mps,
                       const FieldOfView& view, std::vector<Echo>& echoes) {
   const unsigned count = stream.poisson(mean);

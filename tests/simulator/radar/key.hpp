@@ -1,4 +1,4 @@
-// Names of things that have random draws of their own: the same thing has the same key whatever else is in the scene.
+// Keys of random draws. A target or path has the same key whatever else is in the scene.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace boresight::simulator::radar {
   return z ^ (z >> 27);
 }
 
-/// A place to the millimetre: what stands has no number that stays from scene to scene.
+/// Key of a stationary reflector: its place, rounded to a millimetre, since its index changes from scene to scene.
 [[nodiscard]] inline std::uint64_t key_of(const Eigen::Vector3d& place_m) {
   std::uint64_t key = 0;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -23,7 +23,7 @@ namespace boresight::simulator::radar {
   return key;
 }
 
-/// Of everything that one radar draws in one cycle.
+/// Key of all random draws of one radar in one cycle.
 [[nodiscard]] inline std::uint64_t cycle_key(std::uint32_t radar, std::uint32_t cycle) {
   return (static_cast<std::uint64_t>(radar) << 32) | cycle;
 }

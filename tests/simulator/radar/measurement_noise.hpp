@@ -1,4 +1,5 @@
-// How well a detection is measured: worse off boresight, where the aperture is seen from the side, and when it is weak.
+// Measurement noise of a detection. It grows off boresight, where the projected aperture is smaller, and for weak
+// echoes.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +9,9 @@
 
 namespace boresight::simulator::radar {
 
-/// Stds of a detection `excess_db` above the detection threshold. The configured ones hold on boresight at 10 dB; by
-/// the Cramér–Rao bound they fall with the root of the power, down to half, and are at most twice as large.
+/// Standard deviations of a detection `excess_db` above the detection threshold. The configured values hold on
+/// boresight at 10 dB. By the Cramér–Rao bound they fall with the root of the power, between half and twice the
+/// configured value.
 [[nodiscard]] inline SensorNoise noise_of(const SensorNoise& nominal, double azimuth_rad, double elevation_rad,
                                           double excess_db) {
   const double weakness = std::clamp(std::pow(10.0, 0.05 * (10.0 - excess_db)), 0.5, 2.0);
@@ -18,7 +20,7 @@ namespace boresight::simulator::radar {
   noise.range_std_m = nominal.range_std_m * weakness;
   noise.azimuth_std_rad = nominal.azimuth_std_rad * weakness / sideways;
   noise.elevation_std_rad = nominal.elevation_std_rad * weakness / upwards;
-  // Range rate suffers less: the aspect smears it over the beam's width only.
+  // The effect of the aspect on range rate is smaller.
   noise.range_rate_std_mps = nominal.range_rate_std_mps * weakness / std::sqrt(sideways);
   return noise;
 }

@@ -1,4 +1,4 @@
-// A vertical rectangle as a mirror: images of points, and where a path bounces.
+// A vertical rectangle as a mirror: mirror images of points, and specular points of paths.
 #pragma once
 
 #include <algorithm>
@@ -14,19 +14,20 @@ namespace boresight::simulator::radar {
 struct Mirror {
   Eigen::Vector2d origin_m, tangent, normal;  ///< unit vectors, normal to the left
   double length_m, low_m, high_m, loss_db;
-  double outer;  ///< side that mirrors: +1 where the normal points, −1 the other, 0 both (a structure)
+  double outer;  ///< face that mirrors: +1 the one that the normal points to, −1 the other, 0 both (a structure)
   std::uint32_t body_id;
   Eigen::Vector2d velocity_mps, pivot_m;  ///< the surface at p moves with velocity + yaw rate × (p − pivot)
   double yaw_rate_radps;
-  std::uint64_t key;  ///< of random draws
+  std::uint64_t key;  ///< for random draws
 
-  /// Across the mirror's plane, metres, + to the left.
+  /// Signed distance from the mirror's plane, metres, positive to the left.
   [[nodiscard]] double across(const Eigen::Vector3d& p) const { return normal.dot(p.head<2>() - origin_m); }
-  /// Along it from its origin, metres.
+  /// Distance along the mirror from its origin, metres.
   [[nodiscard]] double along(const Eigen::Vector3d& p) const { return tangent.dot(p.head<2>() - origin_m); }
-  /// Whether what lies `across_m` of its plane is mirrored at all.
+  /// Whether the mirror reflects a point at this signed distance from its plane.
   [[nodiscard]] bool faces(double across_m) const { return outer == 0.0 ? across_m != 0.0 : across_m * outer > 0.0; }
 
+  /// Mirror image of a point.
   [[nodiscard]] Eigen::Vector3d image(const Eigen::Vector3d& p) const {
     const Eigen::Vector2d flat = p.head<2>() - 2.0 * across(p) * normal;
     return {flat.x(), flat.y(), p.z()};
@@ -37,7 +38,8 @@ struct Mirror {
   }
 };
 
-/// `body`: whose side it is; nullptr: a structure. A body's side turns with the body and mirrors on its outside only.
+/// Makes the mirror of a body's side, or of a structure (`body` is nullptr). A body's side rotates with the body and
+/// mirrors on its outer face only.
 [[nodiscard]] inline Mirror make_mirror(const MirrorSurface& surface, const Body* body) {
   Mirror m{};
   m.origin_m = surface.from_m;
@@ -60,8 +62,9 @@ struct Mirror {
   return m;
 }
 
-/// Where the straight line from `source_m` (a sensor, or its image in another mirror) to the image of `target_m` meets
-/// the mirror. False if that is beside the rectangle, above or below it, or if they are not on one mirroring side.
+/// Specular point `at_m` of the path from `source_m` (a sensor, or its mirror image in another mirror) to `target_m`:
+/// the straight line from the source to the target's mirror image crosses the mirror there. False if that point lies
+/// outside the rectangle, or if source and target are not on the same mirroring face.
 [[nodiscard]] inline bool bounce(const Mirror& mirror, const Eigen::Vector3d& source_m, const Eigen::Vector3d& target_m,
                                  Eigen::Vector3d& at_m) {
   const double source = mirror.across(source_m), target = mirror.across(target_m);
@@ -76,14 +79,15 @@ struct Mirror {
   return true;
 }
 
-/// Whether a point within `radius_m` of `centre_m` might bounce; never false if one does.
+/// Whether a target within `radius_m` of `centre_m` may have a specular point. Never false if one has.
 [[nodiscard]] inline bool may_bounce(const Mirror& mirror, const Eigen::Vector3d& source_m,
                                      const Eigen::Vector3d& centre_m, double radius_m) {
   const double source = mirror.across(source_m);
   if (!mirror.faces(source)) return false;
   const double sign = source > 0.0 ? 1.0 : -1.0, height = sign * source, middle = sign * mirror.across(centre_m);
   if (middle + radius_m <= 0.0) return false;
-  // The place is monotone in the target's place along and across the mirror: its extremes are at the corners.
+  // The specular point is monotone in the target's position along and across the mirror: its extremes are at the
+  // corners.
   const double near = height / (height + std::max(0.0, middle - radius_m)), far = height / (height + middle + radius_m);
   const double begin = mirror.along(source_m), shift = mirror.along(centre_m) - begin;
   const double low = shift - radius_m, high = shift + radius_m;

@@ -1,4 +1,4 @@
-// How a radar is really mounted at a time: crooked from the start, and knocked since.
+// The true mounting of a radar at a time: initial mounting error and sudden misalignments.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace boresight::simulator::radar {
 
-/// Misalignment at `t_s`; knocks add up from their times on.
+/// Mounting error at `t_s`: the initial error and the step changes up to then.
 [[nodiscard]] inline Misalignment misalignment_at(const RadarEffects& effects, std::uint32_t radar, double t_s) {
   Misalignment m = radar < effects.misalignment.size() ? effects.misalignment[radar] : Misalignment{};
   for (const RadarStepChange& step_change : effects.step_changes) {
@@ -21,7 +21,7 @@ namespace boresight::simulator::radar {
   return m;
 }
 
-/// R(sensor→vehicle) as really mounted.
+/// R(sensor→vehicle) of the true mounting.
 [[nodiscard]] inline Eigen::Matrix3d actual_mounting(const MountingPose& nominal, const RadarEffects& effects,
                                                      std::uint32_t radar, double t_s) {
   const Misalignment m = misalignment_at(effects, radar, t_s);

@@ -7,7 +7,7 @@ namespace boresight::simulator::radar {
 
 namespace {
 
-constexpr double kSkin_m = 0.01;  // boxes are smaller by this, so that what lies on their sides is outside
+constexpr double kSkin_m = 0.01;  // boxes are smaller by this, so that points on their sides are outside
 constexpr std::uint32_t kEgo = 0xFFFFFFFFu;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

@@ -1,4 +1,4 @@
-// What is hidden behind what.
+// Occlusion of targets by bodies, structures and the ego vehicle.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace boresight::simulator::radar {
 
 class Occlusion {
  public:
-  /// Takes what stands in the way within `reach_m` of `centre_m`: bodies as boxes from clearance to height, opaque
-  /// structures within their heights, the ego vehicle's box. Buffers are reused.
+  /// Takes the obstacles within `reach_m` of `centre_m`: bodies as boxes from clearance to height, opaque structures
+  /// within their heights, and the ego vehicle's box. Buffers are reused.
   void prepare(const Scene& scene, const Eigen::Vector2d& centre_m, double reach_m, const EgoBox& ego);
 
-  /// Whether nothing is between the two points. `own_body`: of which `to_m` is a part, and which does not hide it (its
-  /// reflection centres face somewhere instead). `embedded_m`: `to_m` may lie behind a structure's surface by so much
-  /// and still be a part of it.
+  /// Whether the line between two points is free. `own_body` is the body that `to_m` belongs to: it does not hide its
+  /// own reflection centres, whose `facing` limits their visibility instead. `embedded_m`: a point at most this far
+  /// behind a structure's surface is part of the structure and not hidden by it.
   [[nodiscard]] bool clear(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, std::uint32_t own_body = 0,
                            double embedded_m = 0.05) const;
 

@@ -11,14 +11,14 @@ namespace boresight::simulator::radar {
 
 namespace {
 
-/// A corner of a path: where it bounces and how that place moves.
+/// A corner of a path: an end or a specular point, and the velocity of the sensor, mirror or target there.
 struct Corner {
   Eigen::Vector3d position, velocity;
 };
 
-/// Length of the path and its time derivative. By Fermat's principle only the ends' motion and the mirrors' motion
-/// across themselves change the length: how the bounces glide along the mirrors does not matter, so any velocity along
-/// them serves.
+/// Length of the path and its time derivative. By Fermat's principle, the motion of a specular point along its mirror
+/// does not change the length to first order. Only the motion of the ends and the mirrors' motion along their normals
+/// count, so any tangential velocity of the specular points will do.
 template <std::size_t N>
 void measure(const std::array<Corner, N>& corners, OneWay& path) {
   path.length_m = path.rate_mps = 0.0;
@@ -42,7 +42,7 @@ void Propagation::add_mirrors(const Scene& scene) {
   std::uint32_t of_body = 0;
   std::uint64_t side = 0;
   for (const MirrorSurface& surface : scene.surfaces) {
-    // A body's sides are told by their order, as the body's place changes; structures by their place.
+    // Keys: a body's sides are numbered in their order, since the body moves; structures are named by their place.
     side = surface.body_id == of_body ? side + 1 : 0;
     of_body = surface.body_id;
     const Eigen::Vector2d along = surface.to_m - surface.from_m;
@@ -66,8 +66,8 @@ bool Propagation::sees(const Source& source, const Mirror& mirror) const {
   if (source.mirror < 0) return mirror.faces(mirror.across(source.position));
   const Mirror& first = mirrors_[static_cast<std::size_t>(source.mirror)];
   if (&first == &mirror || !mirror.faces(mirror.across(source.position))) return false;
-  // The image sees through its mirror as through a window: a wedge, on the sensor's side. The piece of the other mirror
-  // inside it must not be empty.
+  // Rays from the sensor's mirror image that pass through the first mirror fill a wedge on the sensor's side. Some part
+  // of the other mirror must lie inside this wedge.
   const double sign = first.across(view_.position_m) > 0.0 ? 1.0 : -1.0;
   const Eigen::Vector2d from = source.position.head<2>();
   const Eigen::Vector2d a = first.origin_m - from, b = a + first.length_m * first.tangent;
@@ -187,7 +187,7 @@ void Propagation::mirrored(const Target& target, std::vector<OneWay>& paths) con
       if (target.body_id != 0 && first.body_id == target.body_id) continue;
       Eigen::Vector3d before;
       if (!bounce(first, view_.position_m, at, before)) continue;
-      // Seen from the last mirror, the bounce before it and the target must lie on one side, in front of it.
+      // The specular point on the first mirror and the target must lie on the same face of the last mirror.
       if (last.across(before) * last.across(target.position_m) <= 0.0) continue;
       measure(std::array<Corner, 4>{sensor, {before, first.velocity_at(before)}, corner, end}, path);
       if (path.length_m > 2.0 * range_max_m_ || !occlusion_.clear(sensor.position, before) ||

@@ -15,9 +15,9 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kNearlyStill_mps = 0.1;  // a body that moves by less in all its parts is stationary
-constexpr double kEmbedded_m = 0.5;       // scatterers so deep in a wall are its facets
-constexpr double kFaintest_db = 15.0;     // echoes so far below the threshold are never detected, alone or together
+constexpr double kNearlyStill_mps = 0.1;  // a body is stationary if all its parts are slower
+constexpr double kEmbedded_m = 0.5;       // scatterers at most this deep in a wall are facets of the wall
+constexpr double kFaintest_db = 15.0;     // echoes this far below the threshold are never detected, alone or together
 constexpr double kFalseRate_mps = 30.0;
 constexpr double kClutterExcess_db = 3.0, kInterferenceExcess_db = 5.0;
 
@@ -62,7 +62,7 @@ void RadarSensor::add_bodies(const Scene& scene, const Eigen::Matrix3d& world_to
   for (const Body& body : scene.bodies) {
     const double radius = 0.5 * std::hypot(body.length_m, body.width_m) + 0.5;
     const Eigen::Vector3d centre(body.position_m.x(), body.position_m.y(), 0.0);
-    // No path is shorter than the straight one.
+    // No path is shorter than the direct one.
     if ((centre - view_.position_m).head<2>().norm() > config_.field_of_view.range_max_m + radius) continue;
     const bool moving = moves(body);
     const bool with_mirrors = moving || effects_.multipath.of_stationary;
@@ -77,7 +77,7 @@ void RadarSensor::add_bodies(const Scene& scene, const Eigen::Matrix3d& world_to
 
 void RadarSensor::add_scatterers(const Scene& scene, const Eigen::Matrix3d& world_to_sensor) {
   const FieldOfView& fov = config_.field_of_view;
-  // Ground and fluctuation together add at most some 15 dB; what is weaker still needs no look at what hides it.
+  // Ground and fluctuation together add at most about 15 dB. Weaker scatterers need no test of occlusion.
   const double faintest = effects_.sensitivity.threshold_db - 2.0 * kFaintest_db;
   for (const Scatterer& s : scene.scatterers) {
     const Eigen::Vector3d sight = s.position_m - view_.position_m;
@@ -127,7 +127,7 @@ void RadarSensor::add_false_detections(std::uint64_t cycle_key, double interfere
                    false_echoes_);
   radar::add_false(interference, interference_per_scan, kInterferenceExcess_db, threshold, rate_max,
                    config_.field_of_view, false_echoes_);
-  // Within a cell there is one detection: what is real stays.
+  // A cell holds one detection: a false echo in the cell of a real one is dropped.
   const std::size_t real = echoes_.size();
   for (const radar::Echo& e : false_echoes_) {
     const auto end = echoes_.begin() + static_cast<std::ptrdiff_t>(real);
@@ -152,7 +152,7 @@ void RadarSensor::write(std::uint64_t cycle_key, RadarScan& scan, std::vector<De
     const double azimuth = echo.azimuth_rad + on * noise.azimuth_std_rad * stream.gaussian();
     const double elevation = echo.elevation_rad + on * noise.elevation_std_rad * stream.gaussian();
     const double rate = radar::fold(echo.range_rate_mps + on * noise.range_rate_std_mps * stream.gaussian(), limit);
-    // The sensor knows its pattern, not its dirt nor the detour of what it takes for a straight path.
+    // The sensor corrects for its pattern and range. It does not know the loss by dirt or the true length of the path.
     const double rcs = echo.power_db + 40.0 * std::log10(echo.range_m / 10.0) -
                        2.0 * radar::pattern_db(echo.azimuth_rad, echo.elevation_rad, config_.field_of_view);
     scan.range_m[i] = static_cast<float>(std::max(0.1, range));

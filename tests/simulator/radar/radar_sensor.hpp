@@ -1,4 +1,4 @@
-// What one radar measures of the world at an instant: propagation, detection, measurement.
+// The measurement of one radar at an instant: propagation, detection, noise.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ class RadarSensor {
   RadarSensor(const RadarConfig& config, const RadarEffects& effects, const radar::EgoBody& ego_body,
               std::uint64_t seed);
 
-  /// Measures the scene in the given cycle. Writes everything of `scan` but the header, strongest detection first, and
-  /// `truth` per detection. What does not fit is counted in `dropped_detections`. The same seed, scene and cycle give
-  /// the same scan whatever was measured before.
+  /// Measures the scene in the given cycle. Writes all of `scan` except the header, strongest detection first, and the
+  /// truth of each detection. Detections beyond the capacity are counted in `dropped_detections`. The same seed, scene
+  /// and cycle give the same scan, whatever was measured before.
   void measure(const Scene& scene, std::uint32_t cycle, RadarScan& scan, std::vector<DetectionTruth>& truth);
 
-  /// What the sensor says of itself at that time: source_condition bits.
+  /// The condition that the sensor reports at that time: source_condition bits.
   [[nodiscard]] std::uint32_t condition(double t_s) const;
 
  private:

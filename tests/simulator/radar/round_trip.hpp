@@ -1,4 +1,4 @@
-// Out by one path and back by the same or another: what the radar receives.
+// Echoes: the wave travels out by one path and back by the same or another path.
 #pragma once
 
 #include <algorithm>
@@ -19,29 +19,30 @@ struct Echo {
   double range_m;
   double azimuth_rad, elevation_rad;  ///< of arrival, sensor frame as really mounted
   double range_rate_mps;
-  double power_db;  ///< over that of a 0 dBsm reflector at 10 m on boresight
+  double power_db;  ///< relative to a 0 dBsm reflector at 10 m on boresight
   DetectionTruth truth;
   std::uint64_t key;  ///< of its random draws
 };
 
-/// The radar equation, two ways of different length: power falls with the square of each, dB over 0 dBsm at 10 m.
+/// The radar equation for paths of different length out and back: the power falls with the square of each length. In dB
+/// relative to 0 dBsm at 10 m.
 [[nodiscard]] inline double radar_equation_db(double rcs_dbsm, double out_m, double back_m) {
   return rcs_dbsm - 20.0 * std::log10(out_m * back_m / 100.0);
 }
 
-/// What a reflection centre loses when it is lit from one side and looked at from another, dB ≥ 0: parabolic, 3 dB at
-/// `half_power_rad`. Corners, the strong centres of vehicles, are retroreflectors, so that the three-bounce path there
-/// and back by one mirror is stronger than its bounces tell.
+/// Bistatic loss of a reflection centre, dB ≥ 0: parabolic in the angle between incident and reflected path, 3 dB at
+/// `half_power_rad`, at most 18 dB. Corners, the strong centres of vehicles, are retroreflectors. The path out and back
+/// by the same mirror has no bistatic loss, so it can be stronger than a path with fewer bounces.
 [[nodiscard]] inline double bistatic_loss_db(const Eigen::Vector3d& lit_from, const Eigen::Vector3d& seen_from,
                                              double half_power_rad) {
-  constexpr double kMost_db = 18.0;
+  constexpr double kMaxLoss_db = 18.0;
   if (half_power_rad <= 0.0) return 0.0;
   const double angle = std::acos(std::clamp(lit_from.dot(seen_from), -1.0, 1.0)) / half_power_rad;
-  return std::min(kMost_db, 3.0 * angle * angle);
+  return std::min(kMaxLoss_db, 3.0 * angle * angle);
 }
 
-/// Truth of an echo (algorithms.md §2): the last bounce decides. On the target itself: its own direction, type 1 if the
-/// way there was longer. On a mirror: type 2.
+/// Truth of an echo (docs/algorithms/ghosts.md): the last reflection before the sensor decides. At the target, the echo
+/// has the target's direction; it is a ghost of type 1 if the path out includes a mirror. At a mirror it is of type 2.
 [[nodiscard]] inline DetectionTruth truth_of(const Target& target, const OneWay& out, const OneWay& back) {
   DetectionTruth truth;
   truth.object_id = target.body_id;
@@ -59,8 +60,8 @@ struct Echo {
   return truth;
 }
 
-/// Appends every combination of ways out and back with at most `spec.max_bounces`, the target's included, that leaves
-/// and arrives within the antenna's view.
+/// Appends every combination of paths out and back that leaves and arrives within the antenna's field of view. The
+/// number of reflections, including the one at the target, is at most `spec.max_bounces`.
 inline void combine(const Target& target, std::span<const OneWay> paths, const MultipathSpec& spec,
                     const Antenna& antenna, const Eigen::Matrix3d& world_to_sensor, std::vector<Echo>& echoes) {
   for (const OneWay& back : paths) {

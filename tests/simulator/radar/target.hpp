@@ -1,4 +1,4 @@
-// A spot that reflects back, of a body or of the stationary world.
+// A point reflector of a body or of the stationary world.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace boresight::simulator::radar {
 
 struct Target {
   Eigen::Vector3d position_m, velocity_mps;
-  Eigen::Vector3d facing;  ///< half-space in which it is seen; zero: from everywhere
+  Eigen::Vector3d facing;  ///< half-space from which it is visible; zero: from everywhere
   double rcs_dbsm;
   std::uint32_t body_id;  ///< 0: a scatterer
   bool moving;

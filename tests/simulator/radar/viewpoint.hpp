@@ -1,4 +1,4 @@
-// The sensor in the world at an instant.
+// Position, velocity and orientation of the sensor in the world at an instant.
 #pragma once
 
 #include <cmath>
@@ -15,10 +15,10 @@ namespace boresight::simulator::radar {
 struct Viewpoint {
   Eigen::Vector3d position_m;       ///< world
   Eigen::Vector3d velocity_mps;     ///< over ground, world axes
-  Eigen::Matrix3d sensor_to_world;  ///< as really mounted
+  Eigen::Matrix3d sensor_to_world;  ///< with the true mounting
 };
 
-/// `sensor_to_vehicle`: as really mounted, not as configured.
+/// `sensor_to_vehicle`: the true mounting, not the configured one.
 [[nodiscard]] inline Viewpoint viewpoint(const EgoPose& ego, const MountingPose& mounting,
                                          const Eigen::Matrix3d& sensor_to_vehicle) {
   const double c = std::cos(ego.heading_rad), s = std::sin(ego.heading_rad);

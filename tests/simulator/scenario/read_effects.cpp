@@ -35,7 +35,7 @@ RadarBlockage read_blockage(Reader reader, RadarEffects& effects) {
   b.azimuth_min_rad = reader.angle_deg("azimuth_min_deg", kView_deg, b.azimuth_min_rad);
   b.azimuth_max_rad = reader.angle_deg("azimuth_max_deg", kView_deg, b.azimuth_max_rad);
   if (b.full_s < b.begin_s) reader.reject("full_s", "must not be before begin_s");
-  if (b.azimuth_max_rad < b.azimuth_min_rad) reader.reject("azimuth_max_deg", "must not be under azimuth_min_deg");
+  if (b.azimuth_max_rad < b.azimuth_min_rad) reader.reject("azimuth_max_deg", "must not be less than azimuth_min_deg");
   return b;
 }
 

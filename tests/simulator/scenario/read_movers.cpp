@@ -11,28 +11,26 @@ using config::Range;
 using config::Reader;
 
 constexpr Range kSpeed_mps{-80.0, 80.0};
-constexpr Range kLateral_m{-200.0, 200.0};
+constexpr Range kMoverLateral_m{-200.0, 200.0};
 
-/// A value that is the same everywhere under `constant`, or a list of tables under `list`, each with `at` and
-/// `constant`.
+/// Reads either one value under `constant`, or a list of tables under `list`, each with `at` and `constant`.
 Knots read_knots(Reader& reader, std::string_view constant, std::string_view list, std::string_view at, Range places,
                  Range values, Knots fallback) {
-  // Both are asked for in any case, so that both are known keys.
+  // Both getters are called in any case, so that both keys are known.
   const double everywhere = reader.number(constant, values, fallback.front().value);
   std::vector<Reader> tables = reader.tables(list);
   if (!reader.has(list)) {
     if (!reader.has(constant)) return fallback;
     return {{0.0, everywhere}};
   }
-  if (reader.has(constant))
-    reader.reject(constant, std::string("stands beside ") + std::string(list) + ": one of both");
+  if (reader.has(constant)) reader.reject(constant, "cannot be given together with " + std::string(list));
   Knots knots;
   for (Reader& r : tables) {
     r.require(at);
     r.require(constant);
     knots.push_back({r.number(at, places, 0.0), r.number(constant, values, 0.0)});
     if (knots.size() > 1 && !(knots.back().at > knots[knots.size() - 2].at))
-      r.reject(at, "must be beyond the one before");
+      r.reject(at, "must be greater than in the entry before");
   }
   if (knots.empty()) {
     reader.reject(list, "must not be empty");
@@ -45,10 +43,10 @@ Knots read_speed(Reader& reader, const Knots& fallback) {
   return read_knots(reader, "speed_mps", "speed", "t_s", {0.0, 36000.0}, kSpeed_mps, fallback);
 }
 Knots read_lateral(Reader& reader) {
-  return read_knots(reader, "lateral_m", "lateral", "at_m", kRoad_m, kLateral_m, {{0.0, 0.0}});
+  return read_knots(reader, "lateral_m", "lateral", "at_m", kRoad_m, kMoverLateral_m, {{0.0, 0.0}});
 }
 
-/// Of an EgoSpec or a BodySpec, whose speed is known.
+/// Reads the swing of an EgoSpec or a BodySpec. Its speed must have been read before.
 template <typename Mover>
 void read_swing(Reader& reader, Mover& mover) {
   mover.swing_mps = reader.number("swing_mps", {0.0, 40.0}, mover.swing_mps);
@@ -107,11 +105,13 @@ void read_body(Reader reader, std::vector<BodySpec>& bodies) {
   read_swing(reader, body);
   body.heading_rad = reader.angle_deg("heading_deg", {-180.0, 180.0}, body.heading_rad);
   body.parked = reader.boolean("parked", body.parked);
-  if (body.parked && (reader.has("speed_mps") || reader.has("speed"))) reader.reject("parked", "with a speed");
+  if (body.parked && (reader.has("speed_mps") || reader.has("speed"))) {
+    reader.reject("parked", "a parked body has no speed");
+  }
   body.length_m = reader.number("length_m", {0.1, 30.0}, body.length_m);
   body.width_m = reader.number("width_m", {0.1, 5.0}, body.width_m);
   body.height_m = reader.number("height_m", {0.1, 5.0}, body.height_m);
-  body.flank_low_m = reader.number("flank_low_m", {0.05, 5.0}, body.flank_low_m);
+  body.side_low_m = reader.number("side_low_m", {0.05, 5.0}, body.side_low_m);
   Reader repeat = reader.table("repeat");
   const auto count = repeat.integer("count", {1, 1000}, 1);
   const double every_m = repeat.number("every_m", {-1e4, 1e4}, 0.0);

@@ -12,7 +12,7 @@ constexpr Range kHeight_m{0.0, 50.0};
 constexpr Range kSpacing_m{0.05, 100.0};
 constexpr Range kRcs_dbsm{-60.0, 60.0};
 
-/// What is usual of a kind; a file says the rest. Losses: metal mirrors nearly all, concrete and brick a tenth or less.
+/// Defaults of a kind, for keys that the file does not set. The values are choices, not measurements.
 StructureSpec usual(StructureKind kind) {
   StructureSpec s;
   s.kind = kind;
@@ -60,16 +60,16 @@ ScatterSpec usual(ScatterKind kind) {
 void read_rcs(Reader& reader, double& min_dbsm, double& max_dbsm) {
   min_dbsm = reader.number("rcs_min_dbsm", kRcs_dbsm, min_dbsm);
   max_dbsm = reader.number("rcs_max_dbsm", kRcs_dbsm, max_dbsm);
-  if (max_dbsm < min_dbsm) reader.reject("rcs_max_dbsm", "must not be under rcs_min_dbsm");
+  if (max_dbsm < min_dbsm) reader.reject("rcs_max_dbsm", "must not be less than rcs_min_dbsm");
 }
 
-/// Sizes that are sums need their order.
+/// Reads the two ends of a stretch of road, in this order.
 void read_extent(Reader& reader, double& from_m, double& to_m) {
   reader.require("from_m");
   reader.require("to_m");
   from_m = reader.number("from_m", kRoad_m, 0.0);
   to_m = reader.number("to_m", kRoad_m, 1.0);
-  if (to_m <= from_m) reader.reject("to_m", "must be beyond from_m");
+  if (to_m <= from_m) reader.reject("to_m", "must be greater than from_m");
 }
 
 }  // namespace
@@ -89,12 +89,12 @@ StructureSpec read_structure(Reader reader) {
   s.lateral_m = reader.number("lateral_m", kLateral_m, 0.0);
   s.heading_rad = reader.angle_deg("heading_deg", {-180.0, 180.0}, 0.0);
   if (s.heading_rad != 0.0 && s.to_m - s.from_m > 100.0) {
-    reader.reject("heading_deg", "what leads off the road is at most 100 m long");
+    reader.reject("heading_deg", "a structure that leads off the road is at most 100 m long");
   }
   s.width_m = reader.number("width_m", {0.0, 100.0}, s.width_m);
   s.low_m = reader.number("low_m", kHeight_m, s.low_m);
   s.high_m = reader.number("high_m", kHeight_m, s.high_m);
-  if (s.high_m <= s.low_m) reader.reject("high_m", "must be over low_m");
+  if (s.high_m <= s.low_m) reader.reject("high_m", "must be greater than low_m");
   s.loss_db = reader.number("loss_db", {0.0, 60.0}, s.loss_db);
   s.opaque = reader.boolean("opaque", s.opaque);
   s.spacing_m = reader.number("spacing_m", kSpacing_m, s.spacing_m);
@@ -124,12 +124,12 @@ ScatterSpec read_scatter(Reader reader) {
   reader.require("lateral_max_m");
   s.lateral_min_m = reader.number("lateral_min_m", kLateral_m, 0.0);
   s.lateral_max_m = reader.number("lateral_max_m", kLateral_m, s.lateral_min_m);
-  if (s.lateral_max_m < s.lateral_min_m) reader.reject("lateral_max_m", "must not be under lateral_min_m");
+  if (s.lateral_max_m < s.lateral_min_m) reader.reject("lateral_max_m", "must not be less than lateral_min_m");
   s.both_sides = reader.boolean("both_sides", s.both_sides);
   s.per_m = reader.number("per_m", {0.0, 20.0}, s.per_m);
   s.top_min_m = reader.number("top_min_m", kHeight_m, s.top_min_m);
   s.top_max_m = reader.number("top_max_m", kHeight_m, s.top_max_m);
-  if (s.top_max_m < s.top_min_m) reader.reject("top_max_m", "must not be under top_min_m");
+  if (s.top_max_m < s.top_min_m) reader.reject("top_max_m", "must not be less than top_min_m");
   s.spacing_m = reader.number("spacing_m", kSpacing_m, s.spacing_m);
   read_rcs(reader, s.rcs_min_dbsm, s.rcs_max_dbsm);
   s.heading_rad = reader.angle_deg("heading_deg", {-180.0, 180.0}, s.heading_rad);

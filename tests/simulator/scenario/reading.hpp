@@ -10,11 +10,11 @@ namespace boresight::simulator {
 [[nodiscard]] EgoSpec read_ego(config::Reader reader);
 [[nodiscard]] StructureSpec read_structure(config::Reader reader);
 [[nodiscard]] ScatterSpec read_scatter(config::Reader reader);
-/// One [[body]]; more of them if it has `repeat`.
+/// Reads one [[body]]; appends several bodies if it has `repeat`.
 void read_body(config::Reader reader, std::vector<BodySpec>& bodies);
 [[nodiscard]] RadarEffects read_effects(config::Reader reader);
 
-/// Where a thing may be along the road, in metres.
+/// Allowed positions along the road, in metres.
 inline constexpr config::Range kRoad_m{-1e5, 1e5};
 
 }  // namespace boresight::simulator

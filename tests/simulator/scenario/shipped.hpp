@@ -1,4 +1,4 @@
-// The files of config/scenarios/ as they were when the program was built.
+// The files of config/scenarios/, compiled into the program.
 #pragma once
 
 #include <span>

@@ -1,8 +1,11 @@
 #include "tests/simulator/wire/pcap_writer.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <pcap/pcap.h>
@@ -41,9 +44,9 @@ PcapWriter::~PcapWriter() {
 }
 
 void PcapWriter::finish() {
-  if (pcap_dump_flush(dumper_) != 0 || std::ferror(pcap_dump_file(dumper_)) != 0) {
-    throw std::runtime_error(name_.string() + ": cannot be written to its end");
-  }
+  errno = 0;
+  if (pcap_dump_flush(dumper_) == 0 && std::ferror(pcap_dump_file(dumper_)) == 0) return;
+  throw std::runtime_error(name_.string() + ": cannot be written: " + std::strerror(errno != 0 ? errno : EIO));
 }
 
 void PcapWriter::write(std::int64_t stamp_ns, const Endpoint& source, const Endpoint& destination,

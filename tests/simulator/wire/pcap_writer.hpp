@@ -1,4 +1,4 @@
-// UDP datagrams into a pcap file, fragmented as on Ethernet.
+// Writes UDP datagrams to a pcap file, fragmented as on Ethernet.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct Endpoint {
 
 class PcapWriter {
  public:
-  /// Throws std::runtime_error if the file cannot be made. `mtu` 1500 as on Ethernet.
+  /// Throws std::runtime_error if the file cannot be made. The default of `mtu` is that of Ethernet.
   explicit PcapWriter(const std::filesystem::path& file, std::size_t mtu = 1500);
   ~PcapWriter();
   PcapWriter(const PcapWriter&) = delete;
@@ -25,7 +25,7 @@ class PcapWriter {
 
   void write(std::int64_t stamp_ns, const Endpoint& source, const Endpoint& destination,
              std::span<const std::uint8_t> payload);
-  /// Throws std::runtime_error if anything of what was written is lost, as on a full disk.
+  /// Throws std::runtime_error if a write failed, as on a full disk.
   void finish();
 
  private:

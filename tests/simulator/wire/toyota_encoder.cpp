@@ -4,13 +4,12 @@
 #include <cmath>
 #include <span>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/wire/byte_writer.hpp"
 
 namespace boresight::simulator::wire {
 
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
 void put_checksum(CanFrame& frame) {
   std::uint32_t sum = (frame.id & 0xFFu) + (frame.id >> 8) + 8u;
@@ -40,7 +39,7 @@ std::array<CanFrame, 3> encode_ego(const EgoSignals& ego, double track_width_m) 
   put_checksum(steering);
 
   CanFrame wheels{0x0AA, {}};
-  const double difference = 0.5 * track_width_m * ego.yaw_rate_radps;  // the right wheels are faster in a left bend
+  const double difference = 0.5 * track_width_m * ego.yaw_rate_radps;  // wheel speeds: right is faster in a left bend
   const std::uint32_t right = wheel(ego.speed_mps + difference), left = wheel(ego.speed_mps - difference);
   put_bits(wheels.bytes, 6, 15, right);
   put_bits(wheels.bytes, 22, 15, left);

@@ -1,4 +1,4 @@
-// Ego signals as Toyota's CAN frames, from the public DBC, independently of the gateway's decoder.
+// Ego signals as Toyota's CAN frames. Written from the public DBC file, independently of the gateway's decoder.
 #pragma once
 
 #include <array>

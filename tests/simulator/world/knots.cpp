@@ -15,7 +15,7 @@ double from_first(const Knots& knots, double x) {
     const double width = b.at - a.at;
     if (width <= 0.0) continue;
     const double u = std::clamp((x - a.at) / width, 0.0, 1.0);
-    const double step = u * u * u * u * (u * (u - 3.0) + 2.5);  // of 6u⁵ − 15u⁴ + 10u³
+    const double step = u * u * u * u * (u * (u - 3.0) + 2.5);  // integral of 6u⁵ − 15u⁴ + 10u³
     sum += width * (a.value * u + (b.value - a.value) * step);
     if (x <= b.at) return sum;
   }

@@ -11,11 +11,12 @@ struct Smooth {
   double curvature = 0.0;  ///< second derivative
 };
 
-/// At `x`: between two knots by the quintic step, whose first and second derivative vanish at both ends; before the
-/// first and after the last knot constant. Knots are sorted by `at`; of none the value is 0.
+/// The value at `x`. Between two knots it follows the quintic step, whose first and second derivative vanish at both
+/// ends. Before the first and after the last knot it is constant. Knots are sorted by `at`; without knots the value
+/// is 0.
 [[nodiscard]] Smooth smooth(const Knots& knots, double x);
 
-/// Integral of it from 0 to `x`, which may be negative.
+/// Integral of the value from 0 to `x`, which may be negative.
 [[nodiscard]] double integral(const Knots& knots, double x);
 
 }  // namespace boresight::simulator

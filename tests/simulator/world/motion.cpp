@@ -12,7 +12,7 @@ struct Progress {
   double travelled_m, speed_mps, acceleration_mps2;
 };
 
-/// Of an EgoSpec or a BodySpec.
+/// Progress along the path of an EgoSpec or a BodySpec.
 template <typename Mover>
 Progress progress(const Mover& mover, double t_s) {
   const Smooth v = smooth(mover.speed_mps, t_s);
@@ -40,7 +40,7 @@ Motion along_road(const Road& road, double arc_m, double arc_speed_mps, double a
   // left-hand bend is shorter.
   const double g = 1.0 - p.curvature_per_m * l.value;
   const double g_slope = -p.curvature_slope_per_m2 * l.value - p.curvature_per_m * l.slope;
-  // At the centre of the bend the path has no direction; all stays finite there.
+  // At the centre of the bend the path has no direction; the limit keeps all values finite.
   const double h = std::max(1e-6, std::hypot(g, l.slope));
   const double h_slope = (g * g_slope + l.slope * l.curvature) / h;
   const double turn = p.curvature_per_m + (l.curvature * g - l.slope * g_slope) / (h * h);

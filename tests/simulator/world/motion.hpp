@@ -1,4 +1,4 @@
-// How things move along the road.
+// Motion along the road.
 #pragma once
 
 #include <cmath>
@@ -10,10 +10,10 @@
 
 namespace boresight::simulator {
 
-/// A rigid body's motion in the plane, without slip: the velocity points where it heads, or away from there.
+/// Motion of a rigid body in the plane, without slip: the velocity points along the heading or against it.
 struct Motion {
-  double arc_m;      ///< road position; of what crosses, where it began
-  double lateral_m;  ///< off the road's line
+  double arc_m;      ///< road position; for crossing bodies, that of the start
+  double lateral_m;  ///< from the road's line, positive to the left
   double arc_speed_mps;
   double travelled_m;  ///< since the drive began, along the heading
   Eigen::Vector2d position_m;
@@ -27,14 +27,14 @@ struct Motion {
   }
 };
 
-/// Along the road at an offset that depends on the place. `against`: heads against the road's direction.
+/// Motion along the road at a lateral offset that depends on the road position. `against`: heading against the road.
 [[nodiscard]] Motion along_road(const Road& road, double arc_m, double arc_speed_mps, double arc_acceleration_mps2,
                                 const Knots& lateral_m, bool against);
 
 [[nodiscard]] Motion ego_motion(const EgoSpec& ego, const Road& road, double t_s);
 [[nodiscard]] Motion body_motion(const BodySpec& body, const Road& road, double t_s);
 
-/// Road positions between which the ego vehicle stays until `duration_s`.
+/// Smallest and largest road position of the ego vehicle until `duration_s`.
 [[nodiscard]] Gap ego_extent(const EgoSpec& ego, double duration_s);
 
 }  // namespace boresight::simulator

@@ -8,17 +8,17 @@ namespace boresight::simulator {
 
 namespace {
 
-/// What a spot does besides going along with its body.
+/// Motion of a spot relative to its body.
 enum class Micro : std::uint8_t { kNone, kWheel, kLimb, kPedal };
 
-/// A spot in shares of half the length and half the width, ahead and to the left of the centre.
+/// A reflection centre on a body. `ahead` and `left` are shares of half the length and half the width.
 struct Spot {
   double ahead, left;
   double height_m;
   double facing_ahead, facing_left;
   double rcs_dbsm;
   Micro micro = Micro::kNone;
-  double phase = 0.0;  ///< of its cycle, beside the body's
+  double phase = 0.0;  ///< added to the body's phase
 };
 
 constexpr double kDiagonal = 0.70710678118654752;
@@ -26,10 +26,10 @@ constexpr double kWheelRadius_m = 0.32;
 constexpr double kGaitLength_m = 1.4;  // two steps
 constexpr double kGaitSwing = 0.9;     // a limb's speed swings by this share of the body's
 constexpr double kPedalRadius_m = 0.17;
-constexpr double kPedalGear_m = 5.0;  // way per turn of the cranks
+constexpr double kPedalGear_m = 5.0;  // distance travelled per turn of the cranks
 
-// Corners and middles as point reflectors and their strengths follow the usual extended-target models of automotive
-// radar: ends and corners strong, wheel houses weaker.
+// Point reflectors at corners and middles, as usual in extended-target models of automotive radar: ends and corners are
+// strong, rims are weaker.
 constexpr std::array<Spot, 12> kCar = {{{1, 1, 0.6, kDiagonal, kDiagonal, 7},
                                         {1, -1, 0.6, kDiagonal, -kDiagonal, 7},
                                         {-1, 1, 0.6, -kDiagonal, kDiagonal, 7},
@@ -89,15 +89,15 @@ std::span<const Spot> spots_of(BodyKind kind) {
   return {};
 }
 
-/// Displacement ahead and up, and its rate.
+/// Displacement of a spot ahead and up, and its rate.
 struct Swing {
   double ahead_m = 0.0, up_m = 0.0, ahead_mps = 0.0, up_mps = 0.0;
 };
 
-/// A point that turns at `radius_m` about an axle, once per `way_m`, as a wheel rolling ahead does.
-Swing turning(double radius_m, double way_m, double travelled_m, double speed_mps, double phase) {
-  const double angle = 2.0 * M_PI * (travelled_m / way_m + phase);
-  const double rim_mps = 2.0 * M_PI * radius_m / way_m * speed_mps;
+/// A point that rotates at `radius_m` about an axle, once per `turn_m` of distance travelled.
+Swing turning(double radius_m, double turn_m, double travelled_m, double speed_mps, double phase) {
+  const double angle = 2.0 * M_PI * (travelled_m / turn_m + phase);
+  const double rim_mps = 2.0 * M_PI * radius_m / turn_m * speed_mps;
   return {radius_m * std::sin(angle), radius_m * std::cos(angle), rim_mps * std::cos(angle),
           -rim_mps * std::sin(angle)};
 }
@@ -108,7 +108,7 @@ Swing swing_of(const Spot& spot, double travelled_m, double speed_mps, GaitPhase
     case Micro::kNone:
       return {};
     case Micro::kWheel:
-      // The rim, a little inside the tyre.
+      // The rim lies a little inside the tyre.
       return turning(0.85 * kWheelRadius_m, 2.0 * M_PI * kWheelRadius_m, travelled_m, speed_mps, phase);
     case Micro::kPedal:
       return turning(kPedalRadius_m, kPedalGear_m, travelled_m, speed_mps, phase);
@@ -130,8 +130,8 @@ Dimensions dimensions_of(BodyKind kind) {
     case BodyKind::kVan:
       return {5.5, 2.0, 2.4, 0.25, 0.25};
     case BodyKind::kTruck:
-      // Guards against driving under it hang at most 0.55 m above the road (UN regulations 58 and 73): its flanks
-      // mirror at the height of radars and cars, though waves get through below its body.
+      // Underrun guards hang at most 0.55 m above the road (UN regulations 58 and 73). The sides therefore mirror at
+      // the height of radars and cars, although waves pass below the body.
       return {12.0, 2.5, 3.8, 0.8, 0.5};
     case BodyKind::kPedestrian:
       return {0.5, 0.5, 1.75, 0.0};
@@ -171,7 +171,7 @@ void add_sides(const Body& body, double loss_db, std::vector<MirrorSurface>& sur
   const std::array<Eigen::Vector2d, 4> corners = {body.position_m + along + across, body.position_m - along + across,
                                                   body.position_m - along - across, body.position_m + along - across};
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    surfaces.push_back({corners[i], corners[(i + 1) % corners.size()], body.flank_low_m, body.height_m, loss_db,
+    surfaces.push_back({corners[i], corners[(i + 1) % corners.size()], body.side_low_m, body.height_m, loss_db,
                         body.velocity_mps, body.id, true});
   }
 }

@@ -9,11 +9,11 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kCell_m = 2.0;  // of road, each with a stream of its own
+constexpr double kCell_m = 2.0;  // length of a road cell; each cell has a random stream of its own
 constexpr double kLowest_m = 0.4;
 constexpr double kKerb_m = 0.1;
 
-/// Visits the cells of the scatter within `extent` with how many things stand in them.
+/// Visits the cells of the scatter within `extent`, each with its random stream and its number.
 template <typename Visit>
 void for_cells(const ScatterSpec& spec, std::uint64_t index, Gap extent, std::uint64_t seed, double cell_m,
                const Visit& visit) {
@@ -51,7 +51,7 @@ void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road,
       const double top_m = draw.uniform(spec.top_min_m, spec.top_max_m);
       switch (spec.kind) {
         case ScatterKind::kColumns:
-          // The spread sideways is that of a tree's limbs or a pole's arms.
+          // Horizontal spread of a tree's branches or a pole's arms.
           for (double z = kLowest_m; z < top_m; z += spec.spacing_m) {
             add(arc + 0.3 * draw.gaussian(), lateral_m + 0.3 * draw.gaussian(), z, draw);
           }
@@ -72,7 +72,7 @@ void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road,
 std::vector<ParkedCar> parked_cars(const ScatterSpec& spec, std::uint64_t index, Gap extent, std::uint64_t seed) {
   std::vector<ParkedCar> cars;
   if (spec.kind != ScatterKind::kParkedCars) return cars;
-  // One place each, with room to get out of it; `per_m` decides which of them are taken.
+  // Each car has a parking place of its own; `per_m` sets the share of places that are taken.
   const Dimensions size = dimensions_of(BodyKind::kCar);
   const bool crosswise = spec.heading_rad != 0.0;
   const double place_m = crosswise ? size.width_m + 0.7 : size.length_m + 1.2;

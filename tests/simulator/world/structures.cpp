@@ -9,10 +9,10 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr double kSagitta_m = 0.02;  // of a curved mirror over the chord that stands for it
+constexpr double kSagitta_m = 0.02;  // of a curved mirror over the plane mirror that approximates it
 constexpr double kShortestChord_m = 1.0, kLongestChord_m = 25.0;
 
-/// The line a structure stands on: along the road, or straight off it.
+/// The line of a structure: along the road, or straight off the road.
 class Line {
  public:
   Line(const StructureSpec& spec, const Road& road, double lateral_m)
@@ -27,7 +27,7 @@ class Line {
     return origin_ + (at_m - spec_.from_m) * direction_ + aside_m * Eigen::Vector2d(-direction_.y(), direction_.x());
   }
   [[nodiscard]] double arc_of(double at_m) const { return is_straight() ? spec_.from_m : at_m; }
-  /// How far one mirror may reach from here.
+  /// Length of the plane mirror that begins here.
   [[nodiscard]] double chord_m(double at_m) const {
     if (is_straight()) return kLongestChord_m;
     double curvature = 0.0;
@@ -46,7 +46,7 @@ class Line {
   Eigen::Vector2d origin_;
 };
 
-/// Where the structure stands: its extent without its gaps.
+/// The extent of the structure without its gaps.
 std::vector<Gap> stretches(const StructureSpec& spec, Gap extent) {
   const bool straight = spec.heading_rad != 0.0;
   const double shift_m = straight ? spec.from_m : 0.0;
@@ -86,7 +86,7 @@ void add_mirrors(const StructureSpec& spec, const Line& line, Gap stretch, Roads
   }
 }
 
-/// The k-th multiples of the spacing within a stretch.
+/// Multiples of the spacing within a stretch.
 template <typename Visit>
 void for_spots(const StructureSpec& spec, Gap stretch, const Visit& visit) {
   const double first = std::ceil((stretch.from_m - spec.from_m) / spec.spacing_m);

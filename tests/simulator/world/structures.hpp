@@ -1,4 +1,4 @@
-// What stands beside the road: mirrors and scatterers, sorted by the road position they are found by.
+// Stationary structures beside the road: mirrors and scatterers, with the road position for the search.
 #pragma once
 
 #include <cstdint>
@@ -23,26 +23,26 @@ struct Roadside {
   std::vector<PlacedScatterer> scatterers;
 };
 
-/// Appends one structure, as far as it stands within `extent`. Its scatterers are drawn from the seed and `index`, each
-/// from a stream of its own, so that they are the same whatever the extent.
+/// Appends the part of one structure that lies within `extent`. Each scatterer has a random stream of its own, made
+/// from the seed, `index` and its number. So it does not depend on the extent.
 void add_structure(const StructureSpec& spec, std::uint64_t index, const Road& road, Gap extent, std::uint64_t seed,
                    Roadside& roadside);
 
-/// Appends the points of a scatter; of parked cars, which are bodies, none.
+/// Appends the points of a scatter; none for parked cars, which are bodies.
 void add_scatter(const ScatterSpec& spec, std::uint64_t index, const Road& road, Gap extent, std::uint64_t seed,
                  Roadside& roadside);
 
-/// A car that stands in one of a scatter's places.
+/// A parked car of a scatter.
 struct ParkedCar {
   BodySpec spec;
-  std::uint32_t place;  ///< its number, which depends on nothing but where it is
+  std::uint32_t place;  ///< number of its parking place, which depends on the position only
 };
 
 /// The parked cars of a scatter.
 [[nodiscard]] std::vector<ParkedCar> parked_cars(const ScatterSpec& spec, std::uint64_t index, Gap extent,
                                                  std::uint64_t seed);
 
-/// How many points, mirrors and cars at most the seed may draw of it within `extent`.
+/// Estimated number of points, mirrors and cars within `extent`.
 [[nodiscard]] double most_parts(const StructureSpec& spec, Gap extent);
 [[nodiscard]] double most_parts(const ScatterSpec& spec, Gap extent);
 

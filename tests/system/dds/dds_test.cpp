@@ -1,4 +1,4 @@
-// What the health service says by DDS arrives, in our own reader and in another implementation's.
+// Reports of the health service arrive by DDS at our own reader and at another implementation's.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -68,7 +68,7 @@ HealthReport report() {
   return r;
 }
 
-/// What came, by radar, and the latest array.
+/// The latest sample of each radar, and the latest array.
 struct Received {
   std::mutex mutex;
   std::map<std::uint32_t, diagnostics::SensorHealth> sensors;
@@ -96,10 +96,10 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   old.sensors[1].extended_qualifier = ExtendedQualifier::kNoData;
   ASSERT_TRUE(writer.write(old, kTime_ns - 1'000'000'000));
   ASSERT_TRUE(writer.write(report(), kTime_ns));
-  // Nobody was there when it was written.
+  // The reader starts after the writing.
   Received received;
   const DiagnosticsReader reader(kConfig, received.on_sensor, received.on_array);
-  ASSERT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); })) << "nothing came";
+  ASSERT_TRUE(harness::eventually(10.0, [&] { return received.is_complete(); })) << "no sample arrived";
   const std::lock_guard lock(received.mutex);
   EXPECT_EQ(received.samples, 2u) << "one instance a radar, the latest only";
   const diagnostics::SensorHealth& s = received.sensors.at(2);
@@ -132,8 +132,8 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(statuses[2].level_(), 1);
   std::map<std::string, std::string> values;
   for (const auto& value : statuses[2].values_()) values[value.key_()] = value.value_();
-  EXPECT_EQ(values["says of itself"], "supply, without ego motion");
-  EXPECT_EQ(values["scans missed on the wire"], "23456789012");
+  EXPECT_EQ(values["reported by the sensor"], "supply, without ego motion");
+  EXPECT_EQ(values["scans lost before the gateway"], "23456789012");
   EXPECT_EQ(values["suspect scans"], "34");
   EXPECT_EQ(statuses[7].name_(), "boresight/service/tracker");
   EXPECT_EQ(statuses[7].level_(), 2) << "silent";
@@ -151,7 +151,7 @@ TEST(Dds, LeavesNothingInSharedMemory) {
   EXPECT_TRUE(fs::is_empty("/dev/shm"));
 }
 
-TEST(Dds, OtherDomainsHearNothing) {
+TEST(Dds, OtherDomainsReceiveNothing) {
   DiagnosticsWriter writer(kConfig, vehicle());
   Received received;
   Config other = kConfig;
@@ -177,12 +177,12 @@ TEST(Dds, AnotherImplementationReadsBothTopics) {
   EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436 suspect 34 conditions 72"), std::string::npos) << output;
 }
 
-TEST(DiagnosticsText, SaysWhatAWorkshopNeeds) {
+TEST(DiagnosticsText, StatesVerdictErrorsAndDisplacement) {
   const diagnostics::SensorHealth s = to_sensor_health(report().sensors[1], vehicle(), kTime_ns);
   const std::string line = diagnostics_text::to_line(s);
   for (const char* part :
-       {"front_right", "AVAILABLE_REDUCED MISALIGNED", "yaw +2.50° ± 0.02° (tolerance 1.50°, beyond)",
-        "+4.36 m sideways at 100 m", "20.0 Hz", "says of itself: supply, without ego motion"}) {
+       {"front_right", "AVAILABLE_REDUCED MISALIGNED", "yaw +2.498 ± 0.023° (beyond tolerance 1.50°)",
+        "lateral displacement +4.36 m at 100 m", "20.0 Hz", "reported by the sensor: supply, without ego motion"}) {
     EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
   }
   EXPECT_EQ(line.find("pitch"), std::string::npos) << "not observable";
@@ -198,7 +198,7 @@ TEST(DiagnosticsText, SaysWhatAWorkshopNeeds) {
   const std::string lines = diagnostics_text::to_lines(array);
   EXPECT_NE(lines.find("WARN  boresight/radar/front_right: AVAILABLE_REDUCED MISALIGNED"), std::string::npos) << lines;
   EXPECT_NE(lines.find("ERROR boresight/service/tracker: silent"), std::string::npos) << lines;
-  EXPECT_EQ(lines.find("front_left"), std::string::npos) << "what is well is not listed";
+  EXPECT_EQ(lines.find("front_left"), std::string::npos) << "statuses that are OK are not listed";
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ def started_again(r):
         r.sd_session = 0
         r.offer()
         for radar in (1, 2):
-            r.fault(("link", "started again"), radar=radar)
+            r.fault(("link", "server restarted"), radar=radar)
         r.cycle(count=20)
         r.cycle()
 
@@ -118,7 +118,7 @@ def moved_by_reboot_storm(r):
     """A hundred reboots and withdrawals within half a second; then all is as before."""
     r.cycle(count=20)
     r.at_least = True
-    r.fault(("link", "started again"))
+    r.fault(("link", "server restarted"))
     for n in range(100):
         r.sd_session = 0
         r.offer(ttl=0 if n % 10 == 9 else 3)

@@ -12,6 +12,7 @@
 
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
@@ -24,10 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using alignment::LoadedMemory;
 using alignment::Memory;
-
-constexpr double kDegree = M_PI / 180.0;
-constexpr std::uint32_t kMisaligned = 2;    // front_right, which the drive turns by …
-constexpr double kTrueYaw = 2.5 * kDegree;  // … this
+constexpr std::uint32_t kMisaligned = 2;              // front_right, which the drive turns by …
+constexpr double kTrueYaw = 2.5 * kRadiansPerDegree;  // … this
 const std::string kService = "alignment_estimator";
 const fs::path kState = "/tmp/state";
 const fs::path kConfig = "/tmp/config";
@@ -156,7 +155,7 @@ class IgnitionCycles : public testing::Test {
     EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "or nothing was inflated";
     EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
     EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kMisaligned - 1].seconds_of_drive, 0.1);
-    EXPECT_NE(log().find("alignment of 4 radars remembered from " + file_.string()), std::string::npos) << log();
+    EXPECT_NE(log().find("alignment of 4 radars restored from " + file_.string()), std::string::npos) << log();
   }
 
   static void expect_from_the_prior(const AlignmentEstimate& first) {
@@ -174,15 +173,16 @@ class IgnitionCycles : public testing::Test {
     expect_from_the_prior(ignition_on());
     EXPECT_FALSE(fs::exists(file_)) << "it is not in the way of the next";
     EXPECT_EQ(text_of(kState / "alignment.rejected"), content) << "kept for who wants to know";
-    EXPECT_NE(log().find("remembered alignment is " + said + "; it is kept aside and not used"), std::string::npos)
+    EXPECT_NE(log().find("stored alignment is " + said + "; kept with the suffix .rejected and not used"),
+              std::string::npos)
         << log();
     EXPECT_TRUE(domain_.until(3.0, [&] { return witness_->rejected_inputs() == 1; })) << "health has not heard of it";
     const ServiceStatus& status = witness_->status();
     EXPECT_EQ(status.faults[static_cast<std::size_t>(Fault::kWireValue)], 1u);
-    EXPECT_EQ(std::string(status.last_fault.data()), "remembered alignment is " + said);
+    EXPECT_EQ(std::string(status.last_fault.data()), "stored alignment is " + said);
     // It learns as on the first day, and remembers that.
     EXPECT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > 1.0; }));
-    EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kDegree);
+    EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kRadiansPerDegree);
     ignition_off();
     EXPECT_EQ(text_of(kState / "alignment.rejected"), content);
   }
@@ -193,7 +193,7 @@ class IgnitionCycles : public testing::Test {
     memory.number_of_radars = of.radars.size();
     for (std::size_t i = 0; i < of.radars.size(); ++i) {
       memory.radars[i].id = of.radars[i].id;
-      memory.radars[i].rotation_vehicle_rad = {0.0, 0.0, -5.0 * kDegree};
+      memory.radars[i].rotation_vehicle_rad = {0.0, 0.0, -5.0 * kRadiansPerDegree};
       memory.radars[i].seconds_of_drive = 3600.0;
     }
     const std::size_t size = memory.number_of_parameters();
@@ -217,7 +217,7 @@ TEST_F(IgnitionCycles, WhatWasLearntIsTakenUpWithMoreDoubt) {
   ignition_off();
   const LoadedMemory first = kept();
   ASSERT_EQ(first.kind, LoadedMemory::Kind::kTaken) << first.reason;
-  EXPECT_NEAR(first.memory.radars[kMisaligned - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kDegree);
+  EXPECT_NEAR(first.memory.radars[kMisaligned - 1].rotation_vehicle_rad[2], kTrueYaw, 0.2 * kRadiansPerDegree);
   EXPECT_NEAR(first.memory.radars[kMisaligned - 1].seconds_of_drive, witness_->last().kpis.seconds_of_drive, 0.3)
       << "the file is that of the end, not of the last period";
 

@@ -1,4 +1,4 @@
-// `boresight monitor` beside the running system: what it records can be read back, and what cannot be recorded is told.
+// `boresight monitor` beside the running system: its records can be read back, and write errors are reported.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -37,7 +37,7 @@ std::string text_of(const std::string& file) {
   return text.str();
 }
 
-TEST(Monitor, RecordsWhatCanBeReadBackAndSaysWhatItCouldNotWrite) {
+TEST(Monitor, RecordsCanBeReadBackAndWriteErrorsAreReported) {
   const auto recordings = harness::simulated_drive(3.0);
   harness::Domain domain("demo");
   domain.start();

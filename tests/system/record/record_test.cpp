@@ -92,7 +92,7 @@ TEST_F(Record, EveryDatagramOfALargeRadarIsInTheFileBitByBit) {
   for (int i = 0; i < kDatagrams; ++i) send(std::string(kSize, static_cast<char>(i)));
   harness::sleep_s(0.3);
   recorder->send(SIGINT);
-  EXPECT_EQ(recorder->wait_for(5.0), 0) << text_of("/tmp/output");
+  EXPECT_EQ(recorder->wait_for(5.0), 130) << text_of("/tmp/output");
   const std::string output = text_of("/tmp/output");
   EXPECT_NE(output.find("1200 frames of lo"), std::string::npos) << output;
   EXPECT_NE(output.find(" 0 dropped by the kernel"), std::string::npos) << output;
@@ -134,17 +134,23 @@ TEST_F(Record, EndsByDurationAndBySize) {
 }
 
 TEST_F(Record, WhatCannotBeRecordedIsSaidAndNoFileIsLeft) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-      {{"--interface", "absent0", "--out", "/tmp/none.pcap"}, "absent0: no such interface"},
-      {{"--interface", "lo", "--filter", "no filter", "--out", "/tmp/none.pcap"}, "filter \"no filter\""},
-      {{"--can", "absent0", "--out", "/tmp/none.log"}, "can absent0: "},
-      {{"--interface", "lo", "--can", "can0", "--out", "/tmp/none.pcap"}, "can0"},
-      {{"--out", "/tmp/none.pcap"}, "nothing to record"}};
-  for (const auto& [options, message] : cases) {
+  struct Case {
+    std::vector<std::string> options;
+    std::string message;
+    int exit_code;
+  };
+  const std::vector<Case> cases = {
+      {{"--interface", "absent0", "--out", "/tmp/none.pcap"}, "absent0: no such interface", 3},
+      {{"--interface", "lo", "--filter", "no filter", "--out", "/tmp/none.pcap"}, "filter \"no filter\"", 2},
+      {{"--can", "absent0", "--out", "/tmp/none.log"}, "can absent0: ", 3},
+      {{"--interface", "lo", "--can", "can0", "--out", "/tmp/none.pcap"}, "can0", 3},
+      {{"--interface", "lo", "--out", "/tmp/none.log"}, "packets go into .pcap", 2},
+      {{"--out", "/tmp/none.pcap"}, "nothing to record", 2}};
+  for (const auto& [options, message, exit_code] : cases) {
     std::vector<std::string> arguments = {"record"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const auto recorder = run_boresight(arguments);
-    EXPECT_EQ(recorder->wait_for(5.0), 2) << message;
+    EXPECT_EQ(recorder->wait_for(5.0), exit_code) << message;
     EXPECT_NE(text_of("/tmp/output").find(message), std::string::npos) << text_of("/tmp/output");
   }
   EXPECT_FALSE(std::filesystem::exists("/tmp/none.pcap"));

@@ -33,7 +33,7 @@ struct Read {
     std::vector<std::uint16_t> flags;
   };
   std::vector<Scan> scans;
-  std::vector<std::string> told, ignored;
+  std::vector<std::string> reported, ignored;
   std::uint64_t bad = 0, lines = 0, dropped = 0;
   std::map<std::uint32_t, std::uint64_t> unknown;
   std::string error;
@@ -47,7 +47,7 @@ class Tables : public ::testing::Test {
   Read drive(const std::string& text, std::initializer_list<std::uint32_t> ids = {1, 2}) {
     testing::write_text(file_, text);
     Read read;
-    Problems problems([&](const std::string& problem) { read.told.push_back(problem); });
+    Problems problems([&](const std::string& problem) { read.reported.push_back(problem); });
     const VehicleConfig vehicle = vehicle_of(ids);
     try {
       recording::ByteSource source(file_);
@@ -73,12 +73,12 @@ class Tables : public ::testing::Test {
     read.lines = problems.lines();
     return read;
   }
-  /// A drive with that row between two good ones; what was told of it without the file's name.
-  std::string told_of(const std::string& row) {
+  /// A drive with that row between two good ones; the report on it without the file's name.
+  std::string report_on(const std::string& row) {
     const Read read = drive("t,radar,range,az,el,vr\n0,1,9,0.1,0,-1\n" + row + "\n0.1,1,9,0.1,0,-2\n");
     EXPECT_EQ(read.scans.size(), 2u) << "the rows about it are kept";
     EXPECT_EQ(read.bad, 1u);
-    return read.told.size() == 1 ? read.told[0].substr(file_.string().size()) : "";
+    return read.reported.size() == 1 ? read.reported[0].substr(file_.string().size()) : "";
   }
 };
 
@@ -121,26 +121,26 @@ TEST_F(Tables, StatedStdsAndAmbiguityAreTakenOver) {
   EXPECT_THAT(read.scans[0].azimuth_stds, ElementsAre(0.01F, 0.0F)) << "0: not stated";
 }
 
-TEST_F(Tables, BadRowsAreToldByPlaceAndReasonAndLeftOut) {
-  EXPECT_EQ(told_of("0.05,1,9,0.1,0,fast"), ":3:16: vr: read \"fast\", allowed is a number -500 … 500 m/s");
-  EXPECT_THAT(told_of("0.05,1,9,0.1,0,"), HasSubstr("3:16: vr: read \"\""));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,0,nan"), HasSubstr("vr: read \"nan\""));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,0,inf"), HasSubstr("vr: read \"inf\""));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,inf,1"), HasSubstr("el: read \"inf\""));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,0,1e999"), HasSubstr("vr: read \"1e999\""));
-  EXPECT_THAT(told_of("0.05,1,9,45.0,0,1"),
+TEST_F(Tables, BadRowsAreReportedByPlaceAndReasonAndSkipped) {
+  EXPECT_EQ(report_on("0.05,1,9,0.1,0,fast"), ":3:16: vr: read \"fast\", allowed is a number -500 … 500 m/s");
+  EXPECT_THAT(report_on("0.05,1,9,0.1,0,"), HasSubstr("3:16: vr: read \"\""));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,0,nan"), HasSubstr("vr: read \"nan\""));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,0,inf"), HasSubstr("vr: read \"inf\""));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,inf,1"), HasSubstr("el: read \"inf\""));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,0,1e999"), HasSubstr("vr: read \"1e999\""));
+  EXPECT_THAT(report_on("0.05,1,9,45.0,0,1"),
               HasSubstr("3:10: az: read \"45.0\", allowed is a number -3.14159 … 3.14159 rad"));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,2,1"), HasSubstr("or nothing"));
-  EXPECT_THAT(told_of("0.05,17,9,0.1,0,1"), HasSubstr("radar: read \"17\", allowed is a number 1 … 16"));
-  EXPECT_THAT(told_of("0.05,1.5,9,0.1,0,1"), HasSubstr("allowed is a whole number 1 … 16"));
-  EXPECT_THAT(told_of("0.05,3,9,0.1,0,1"), HasSubstr("radar 3 is not in the vehicle file, which has 1, 2"));
-  EXPECT_THAT(told_of("1.7e18,1,9,0.1,0,1"), HasSubstr("t: read"));
-  EXPECT_THAT(told_of("0.05,1,9"), HasSubstr("has 3 columns, the header has 6"));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,0,1,7"), HasSubstr("has 7 columns, the header has 6"));
-  EXPECT_THAT(told_of("0.05,1,9,0.1,0,1x"), HasSubstr("vr: read \"1x\""));
-  EXPECT_THAT(told_of(std::string("0.05,1,9,0.1,0,\x1b[31m")), HasSubstr("\"?[31m\"")) << "nothing upsets a terminal";
-  EXPECT_THAT(told_of(std::string(6000, '7')), HasSubstr("longer than 4096 characters"));
-  EXPECT_THAT(told_of(std::string("\0\0,1", 4)), HasSubstr("t: read \"??\""));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,2,1"), HasSubstr("or nothing"));
+  EXPECT_THAT(report_on("0.05,17,9,0.1,0,1"), HasSubstr("radar: read \"17\", allowed is a number 1 … 16"));
+  EXPECT_THAT(report_on("0.05,1.5,9,0.1,0,1"), HasSubstr("allowed is a whole number 1 … 16"));
+  EXPECT_THAT(report_on("0.05,3,9,0.1,0,1"), HasSubstr("radar 3 is not in the vehicle file, which has 1, 2"));
+  EXPECT_THAT(report_on("1.7e18,1,9,0.1,0,1"), HasSubstr("t: read"));
+  EXPECT_THAT(report_on("0.05,1,9"), HasSubstr("has 3 columns, the header has 6"));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,0,1,7"), HasSubstr("has 7 columns, the header has 6"));
+  EXPECT_THAT(report_on("0.05,1,9,0.1,0,1x"), HasSubstr("vr: read \"1x\""));
+  EXPECT_THAT(report_on(std::string("0.05,1,9,0.1,0,\x1b[31m")), HasSubstr("\"?[31m\"")) << "nothing upsets a terminal";
+  EXPECT_THAT(report_on(std::string(6000, '7')), HasSubstr("longer than 4096 characters"));
+  EXPECT_THAT(report_on(std::string("\0\0,1", 4)), HasSubstr("t: read \"??\""));
 }
 
 TEST_F(Tables, NumbersOfEveryWritingAreRead) {
@@ -153,7 +153,7 @@ TEST_F(Tables, NumbersOfEveryWritingAreRead) {
 TEST_F(Tables, TimesMayGoBackByASecondAndForwardByAnHour) {
   const std::string header = "t,radar,range,az,vr\n";
   EXPECT_EQ(drive(header + "10,1,9,0,1\n9.1,2,9,0,1\n10.05,1,9,0,1\n").bad, 0u) << "radars are not synchronised";
-  EXPECT_THAT(drive(header + "10,1,9,0,1\n8.9,2,9,0,1\n").told[0], HasSubstr("read 8.9 s after 10 s"));
+  EXPECT_THAT(drive(header + "10,1,9,0,1\n8.9,2,9,0,1\n").reported[0], HasSubstr("read 8.9 s after 10 s"));
   const Read spike = drive(header + "10,1,9,0,1\n99999,1,9,0,1\n10.05,1,9,0,1\n10.1,1,9,0,1\n");
   EXPECT_EQ(spike.bad, 1u) << "a single wrong time must not make all that follow wrong";
   EXPECT_EQ(spike.scans.size(), 3u);
@@ -162,11 +162,11 @@ TEST_F(Tables, TimesMayGoBackByASecondAndForwardByAnHour) {
   EXPECT_EQ(parked.scans.size(), 3u);
 }
 
-TEST_F(Tables, OnlyTheFirstTenProblemsAreTold) {
+TEST_F(Tables, OnlyTheFirstTenProblemsAreReported) {
   std::string text = "t,radar,range,az,vr\n";
   for (int i = 0; i < 25; ++i) text += "x,1,9,0,1\n";
   const Read read = drive(text);
-  EXPECT_EQ(read.told.size(), 10u);
+  EXPECT_EQ(read.reported.size(), 10u);
   EXPECT_EQ(read.bad, 25u);
 }
 

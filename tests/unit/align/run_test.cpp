@@ -1,4 +1,4 @@
-// The tool as it is called: methods, exit codes, and that only what may count counts.
+// The command as users call it: methods, exit codes, and independence of the truth in the table.
 #include "services/boresight/align/run.hpp"
 
 #include <cstdlib>
@@ -42,7 +42,7 @@ std::vector<double> numbers_of(const std::string& json, const std::string& key) 
   return numbers;
 }
 
-/// What does not depend on the machine: without the cost of a scan.
+/// The JSON without the cost of a scan, which depends on the machine.
 std::string without_cost(std::string json) {
   for (const std::string key : {"\"cpu_us_per_scan\":", "\"max_cpu_us_per_scan\":"}) {
     for (std::size_t at = json.find(key); at != std::string::npos; at = json.find(key, at)) {
@@ -146,7 +146,7 @@ TEST(BatchCalibration, SaysWhatTheDataSupportAndHowItIterated) {
   EXPECT_THAT(to_table(result), HasSubstr("beta not supported"));
 }
 
-TEST_F(Align, BatchCalibrationTellsWhereItIs) {
+TEST_F(Align, BatchCalibrationReportsItsProgress) {
   std::string one_radar;  // a quarter of the time
   std::istringstream lines(tables_.drive);
   for (std::string line; std::getline(lines, line);) {
@@ -159,7 +159,7 @@ TEST_F(Align, BatchCalibrationTellsWhereItIs) {
       << errors();
   // No terminal: no bar, a line a step.
   EXPECT_EQ(errors(),
-            "boresight align: batch_calibration, step 1 of 3: finding what stands still …\n"
+            "boresight align: batch_calibration, step 1 of 3: finding stationary detections …\n"
             "boresight align: batch_calibration, step 2 of 3: iterating …\n"
             "boresight align: batch_calibration, step 3 of 3: judging what the data support …\n");
   EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
@@ -237,11 +237,11 @@ TEST_F(Align, TheTruthIsComparedWith) {
   EXPECT_THAT(json(), HasSubstr("\"nees\":{\"k_v\":"));
   EXPECT_THAT(json(), HasSubstr("\"k_v_error\":"));
   EXPECT_THAT(out(), HasSubstr("error"));
-  ASSERT_EQ(align(kInputs + "--method azimuth_1d --truth vehicle.toml"), 1);
+  ASSERT_EQ(align(kInputs + "--method azimuth_1d --truth vehicle.toml"), 3);
   EXPECT_THAT(errors(), HasSubstr("holds no truth"));
 }
 
-TEST_F(Align, AFewBadLinesAreToldAndManyMakeItFail) {
+TEST_F(Align, AFewBadLinesAreReportedAndManyMakeItFail) {
   std::string few = tables_.drive;
   few.insert(few.find('\n') + 1, "1,1,x,0,0,0,1\n");
   EXPECT_EQ(align_drive(few), 0);
@@ -256,34 +256,34 @@ TEST_F(Align, AFewBadLinesAreToldAndManyMakeItFail) {
   EXPECT_TRUE(testing::JsonCheck::is_valid(json())) << "what is there is written all the same";
 }
 
-TEST_F(Align, UnknownRadarsAreToldAndMakeItFail) {
+TEST_F(Align, UnknownRadarsAreReportedAndMakeItFail) {
   EXPECT_EQ(align_drive(tables_.drive + "30,9,9,0,0,1,1\n"), 1);
   EXPECT_THAT(errors(), HasSubstr("radar 9 (1 lines) is not in vehicle.toml"));
   EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
 }
 
-TEST_F(Align, ADriveWithoutDetectionsOrEgoMotionIsToldAndFails) {
+TEST_F(Align, ADriveWithoutDetectionsOrEgoMotionIsReportedAndFails) {
   EXPECT_EQ(align_drive("t,radar,range,az,el,vr\n"), 1);
   EXPECT_THAT(errors(), HasSubstr("there is no detection in the drive"));
   EXPECT_TRUE(testing::JsonCheck::is_valid(json()));
-  EXPECT_EQ(align_drive(""), 1);
+  EXPECT_EQ(align_drive(""), 3);
   EXPECT_THAT(errors(), HasSubstr("changed.csv: is empty"));
   testing::write_text(folder_ / "other_clock.csv", "t,v,yaw_rate\n1.7e9,20,0\n1700000000.05,20,0\n");
   EXPECT_EQ(align("--drive drive.csv --ego other_clock.csv --vehicle vehicle.toml --method azimuth_1d"), 1);
   EXPECT_THAT(errors(), HasSubstr("scans have no ego motion near their time"));
 }
 
-TEST_F(Align, WrongCommandLinesAndFilesAreTold) {
+TEST_F(Align, WrongCommandLinesAndFilesAreReported) {
   EXPECT_EQ(align("--drive drive.csv --ego ego.csv"), 2);
   EXPECT_EQ(align(kInputs + "--method magic"), 2);
   EXPECT_EQ(align("--drive - --ego - --vehicle vehicle.toml"), 2);
   EXPECT_EQ(align("--drive drive.csv --ego ego.csv --vehicle drive.csv"), 2);
   EXPECT_EQ(align(kInputs + "--method azimuth_1d --config vehicle.toml"), 2);
-  EXPECT_EQ(align("--drive nowhere.csv --ego ego.csv --vehicle vehicle.toml --method azimuth_1d"), 1);
+  EXPECT_EQ(align("--drive nowhere.csv --ego ego.csv --vehicle vehicle.toml --method azimuth_1d"), 3);
   EXPECT_THAT(errors(), HasSubstr("nowhere.csv: No such file"));
-  EXPECT_EQ(align("--drive . --ego ego.csv --vehicle vehicle.toml --method azimuth_1d"), 1);
-  EXPECT_EQ(align("--drive drive.csv --ego ego.csv --vehicle vehicle.toml --method azimuth_1d --json no/out.json"), 1);
-  EXPECT_THAT(errors(), HasSubstr("no/out.json: No such file"));
+  EXPECT_EQ(align("--drive . --ego ego.csv --vehicle vehicle.toml --method azimuth_1d"), 3);
+  EXPECT_EQ(align("--drive drive.csv --ego ego.csv --vehicle vehicle.toml --method azimuth_1d --json no/out.json"), 3);
+  EXPECT_THAT(errors(), HasSubstr("no/out.json: cannot be written: No such file"));
 }
 
 TEST_F(Align, RecordingsOfTheWireAreAlignedAsTheServiceDoes) {
@@ -299,20 +299,22 @@ TEST_F(Align, RecordingsOfTheWireAreAlignedAsTheServiceDoes) {
   EXPECT_THAT(json(), HasSubstr("CONVERG"));
   EXPECT_THAT(json(), HasSubstr("\"scans_without_ego_motion\":0"));
   EXPECT_EQ(align("--recording a --drive drive.csv --ego ego.csv --vehicle vehicle.toml"), 2);
-  EXPECT_EQ(align("--recording nowhere.pcap --vehicle " + demo.string() + " --method azimuth_1d"), 1);
+  EXPECT_EQ(align("--recording nowhere.pcap --vehicle " + demo.string() + " --method azimuth_1d"), 3);
   EXPECT_EQ(align("--recording " + files.radars.string() + " --vehicle vehicle.toml --method azimuth_1d"), 2)
       << "this vehicle has no links";
 }
 
-TEST_F(Align, SettingsAreTakenFromAFile) {
+TEST_F(Align, SettingsAreTakenFromTheConfigurationFolder) {
   ASSERT_EQ(align(kInputs + "--method azimuth_1d"), 0) << errors();
   const double by_default = numbers_of(json(), "yaw_deg").back();
-  const std::string shipped = BORESIGHT_SOURCE_DIR "/config/services/alignment_estimator.toml";
+  const std::string shipped = BORESIGHT_SOURCE_DIR "/config";
   ASSERT_EQ(align(kInputs + "--method azimuth_1d --config " + shipped), 0) << errors();
   EXPECT_NEAR(numbers_of(json(), "yaw_deg").back(), by_default, 1e-4) << "what is shipped are the defaults";
-  testing::write_text(folder_ / "settings.toml", "publish_period_s = -1.0\n");
-  EXPECT_EQ(align(kInputs + "--method azimuth_1d --config settings.toml"), 2);
-  EXPECT_THAT(errors(), HasSubstr("settings.toml:1: publish_period_s"));
+  fs::create_directories(folder_ / "mine/services");
+  testing::write_text(folder_ / "mine/services/alignment_estimator.toml", "publish_period_s = -1.0\n");
+  EXPECT_EQ(align(kInputs + "--method azimuth_1d --config mine"), 2);
+  EXPECT_THAT(errors(), HasSubstr("mine/services/alignment_estimator.toml:1: publish_period_s"));
+  EXPECT_THAT(errors(), HasSubstr("configuration: mine"));
 }
 
 }  // namespace

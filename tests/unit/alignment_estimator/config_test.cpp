@@ -1,4 +1,4 @@
-// The shipped file: every key, with the default's value.
+// The shipped file: every key, with the value of the default.
 #include "services/alignment_estimator/config.hpp"
 
 #include <cstdio>
@@ -97,7 +97,7 @@ TEST(Config, TheShippedFileHasTheDefaults) {
   const std::vector<double> read = numbers(shipped), expected = numbers(Settings{});
   ASSERT_EQ(read.size(), expected.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
-    // Angles are written in degrees, to two digits at least.
+    // Angles are written in degrees, with at least two digits.
     EXPECT_NEAR(read[i], expected[i], 0.02 * std::abs(expected[i]) + 1e-12) << "number " << i;
   }
   EXPECT_EQ(shipped.estimator.method, MethodName::kBoresight);
@@ -110,7 +110,7 @@ TEST(Config, EveryKeyOfTheShippedFileIsReadIntoItsPlace) {
   const auto read = [](const std::string& text) {
     return numbers(read_settings(config::Reader::parse(text, "x.toml")));
   };
-  // The station's settings have tests of their own.
+  // station/settings_test.cpp tests the station's settings.
   EXPECT_GT(test::expect_each_number_is_read(kShipped, read, "station"), 50u);
 }
 
@@ -128,9 +128,9 @@ TEST(Config, ErrorsAreNamed) {
   EXPECT_NE(problem("[filter]\nmin_sped_mps = 5.0\n").find("min_sped_mps"), std::string::npos);
   EXPECT_NE(problem("[filter.step_change]\nyaw_deg = -1.0\n").find("yaw_deg"), std::string::npos);
   EXPECT_NE(problem("[published]\nnls_rate = [1.0, 2.0]\n").find("nls_rate"), std::string::npos);
-  EXPECT_NE(
-      problem("truth_file = \"/nowhere/truth.csv\"\n").find("truth_file: no truth of a drive in /nowhere/truth.csv"),
-      std::string::npos);
+  EXPECT_NE(problem("truth_file = \"/nowhere/truth.csv\"\n")
+                .find("truth_file: no truth of a simulated drive in /nowhere/truth.csv"),
+            std::string::npos);
 }
 
 TEST(Config, TheTruthOfASimulatedDrive) {

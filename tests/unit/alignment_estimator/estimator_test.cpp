@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/synthetic.hpp"
 
@@ -38,9 +39,9 @@ VehicleConfig car(const SyntheticDrive& left, const SyntheticDrive& right) {
 
 TEST(Estimator, EachRadarHasItsOwnEstimate) {
   SyntheticDrive left, right;
-  left.yaw_rad = 2.0 * kDegree;
-  right.yaw_rad = -1.0 * kDegree;
-  right.mount_yaw_rad = -135.0 * kDegree;
+  left.yaw_rad = 2.0 * kRadiansPerDegree;
+  right.yaw_rad = -1.0 * kRadiansPerDegree;
+  right.mount_yaw_rad = -135.0 * kRadiansPerDegree;
   Estimator estimator(car(left, right), Config{});
   Synthesizer a(left, 1), b(right, 2);
   for (int i = 0; i < 300; ++i) {
@@ -51,23 +52,23 @@ TEST(Estimator, EachRadarHasItsOwnEstimate) {
     static_cast<void>(estimator.add_scan(*a.scan));
     static_cast<void>(estimator.add_scan(*b.scan));
   }
-  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, left.yaw_rad, 0.03 * kDegree);
-  EXPECT_NEAR(written(estimator, 2).alignment_yaw_rad, right.yaw_rad, 0.03 * kDegree);
+  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, left.yaw_rad, 0.03 * kRadiansPerDegree);
+  EXPECT_NEAR(written(estimator, 2).alignment_yaw_rad, right.yaw_rad, 0.03 * kRadiansPerDegree);
   AlignmentEstimate out{};
   EXPECT_FALSE(estimator.write(3, out));
 }
 
 TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
   SyntheticDrive left, right;
-  left.yaw_rad = 2.0 * kDegree;
-  right.mount_yaw_rad = -135.0 * kDegree;
+  left.yaw_rad = 2.0 * kRadiansPerDegree;
+  right.mount_yaw_rad = -135.0 * kRadiansPerDegree;
   Config config, wrong;
   config.truth.emplace();
   config.truth->speed_scale = left.speed_scale;
   config.truth->radars[1] = {left.yaw_rad, 0.0, 0.0, {}};
-  config.truth->radars[2].yaw_rad = right.yaw_rad;  // of which pitch and roll are not stated
+  config.truth->radars[2].yaw_rad = right.yaw_rad;  // without pitch and roll
   wrong.truth = config.truth;
-  wrong.truth->radars[1].yaw_rad = 1.0 * kDegree;
+  wrong.truth->radars[1].yaw_rad = 1.0 * kRadiansPerDegree;
   Estimator estimator(car(left, right), config), deceived(car(left, right), wrong), unknowing(car(left, right), {});
   Synthesizer a(left, 1), b(right, 2);
   double sum = 0.0;
@@ -86,7 +87,7 @@ TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
     if (i >= 100) sum += written(estimator, 1).kpis.nees / 200.0;
   }
   EXPECT_GT(sum, 0.05);
-  EXPECT_LT(sum, 4.0) << "one drive; its errors are those of a few draws";
+  EXPECT_LT(sum, 4.0) << "one drive has only a few independent errors";
   EXPECT_GT(written(deceived, 1).kpis.nees, 10.0F);
   EXPECT_TRUE(std::isnan(written(estimator, 2).kpis.nees));
   EXPECT_TRUE(std::isnan(written(unknowing, 1).kpis.nees));
@@ -103,18 +104,18 @@ TEST(Estimator, PublishesByTheMeasurementClock) {
     if (estimator.add_scan(*synthesizer.scan) == ScanResult::kPublish) published.push_back(i);
   }
   EXPECT_EQ(published, (std::vector<int>{0, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40})) << "every 0.2 s of 0.05 s";
-  // A recording that starts again.
+  // A recording that restarts.
   synthesizer.scan->header.measurement_time_ns = 1'000'000'000;
   EXPECT_EQ(estimator.add_scan(*synthesizer.scan), ScanResult::kPublish);
 }
 
-TEST(Estimator, SaysWhatItCannotUse) {
+TEST(Estimator, ReportsScansThatItCannotUse) {
   const SyntheticDrive drive;
   Estimator estimator(car(drive, drive), Config{});
   Synthesizer synthesizer(drive, 4);
   synthesizer.next();
   RadarScan& scan = *synthesizer.scan;
-  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kPublish) << "even without ego motion: that it waits";
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kPublish) << "the waiting state, even without ego motion";
   scan.header.measurement_time_ns += 50'000'000;
   EXPECT_EQ(estimator.add_scan(scan), ScanResult::kNoEgoMotion);
   EXPECT_EQ(written(estimator, 1).state, AlignmentState::kWaiting);
@@ -122,7 +123,7 @@ TEST(Estimator, SaysWhatItCannotUse) {
   bad.speed_mps = std::numeric_limits<float>::quiet_NaN();
   estimator.add_ego_motion(bad);
   scan.header.measurement_time_ns += 50'000'000;
-  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kNoEgoMotion) << "a speed that is no number";
+  EXPECT_EQ(estimator.add_scan(scan), ScanResult::kNoEgoMotion) << "a speed that is not a number";
   estimator.add_ego_motion(motion(scan.header.measurement_time_ns, synthesizer.ego));
   scan.header.measurement_time_ns += 30'000'000;
   EXPECT_EQ(estimator.add_scan(scan), ScanResult::kUsed);
@@ -130,7 +131,7 @@ TEST(Estimator, SaysWhatItCannotUse) {
   EXPECT_EQ(estimator.add_scan(scan), ScanResult::kUnknownRadar);
 }
 
-TEST(Estimator, LyingLengthsAndWildNumbersDoNotSpoilIt) {
+TEST(Estimator, WrongLengthsAndInvalidNumbersDoNoHarm) {
   const SyntheticDrive drive;
   Estimator estimator(car(drive, drive), Config{});
   Synthesizer synthesizer(drive, 5);
@@ -146,14 +147,14 @@ TEST(Estimator, LyingLengthsAndWildNumbersDoNotSpoilIt) {
     scan.range_rate_mps[0] = huge;
     scan.range_rate_mps[1] = -huge;
     scan.azimuth_rad[2] = huge;
-    // Beyond what is valid there are stale rows; a count beyond the capacity must not be believed.
+    // Stale rows follow the valid ones; a count beyond the capacity must not be used.
     if (i % 10 == 7) scan.number_of_valid_detections = 0xFFFFFFFF;
     static_cast<void>(estimator.add_scan(scan));
     const RadarEstimate radar = estimator.estimate(0);
     ASSERT_TRUE(radar.sensor_to_vehicle.allFinite() && std::isfinite(radar.speed_scale)) << i;
     ASSERT_TRUE(radar.covariance.allFinite()) << i;
   }
-  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, drive.yaw_rad, 0.1 * kDegree);
+  EXPECT_NEAR(written(estimator, 1).alignment_yaw_rad, drive.yaw_rad, 0.1 * kRadiansPerDegree);
   EXPECT_NEAR(written(estimator, 1).speed_scale, drive.speed_scale, 2e-3);
 }
 
@@ -183,7 +184,7 @@ TEST(Estimator, EveryMethodByItsNameRunsWithKeyFiguresAndAllocatesNothing) {
     EXPECT_GT(out.kpis.scans_used, 1000u) << name;
     EXPECT_GT(out.kpis.residual_rmse_mps, 0.0F) << name;
     EXPECT_LT(out.kpis.residual_rmse_mps, 1.01F * out.kpis.uncorrected_residual_rmse_mps) << name;
-    EXPECT_GT(out.kpis.inlier_ratio, 0.3F) << name;  // that which does not converge on this drive
+    EXPECT_GT(out.kpis.inlier_ratio, 0.3F) << name;  // even of the method that does not converge on this drive
     EXPECT_LT(out.kpis.inlier_ratio, 0.9F) << name;
     if (method == MethodName::kBoresight) {
       EXPECT_NEAR(out.kpis.inlier_ratio, 0.8F, 0.05F);
@@ -193,11 +194,12 @@ TEST(Estimator, EveryMethodByItsNameRunsWithKeyFiguresAndAllocatesNothing) {
     EXPECT_FALSE(std::isnan(out.kpis.drift_per_minute[1])) << name;
     EXPECT_NE(std::isnan(out.kpis.nees), (out.observable & 0x71) != 0) << name;
     std::printf("%-17.*s yaw %+.3f° ± %.3f°, k_v %.4f, 95 %% after %.1f s, RMSE %.3f of %.3f m/s, NEES %.2f\n",
-                static_cast<int>(name.size()), name.data(), out.vehicle_yaw_rad / kDegree,
-                std::sqrt(out.vehicle_covariance[5]) / kDegree, out.speed_scale, out.kpis.seconds_to_95_percent[1],
-                out.kpis.residual_rmse_mps, out.kpis.uncorrected_residual_rmse_mps, out.kpis.nees);
+                static_cast<int>(name.size()), name.data(), out.vehicle_yaw_rad / kRadiansPerDegree,
+                std::sqrt(out.vehicle_covariance[5]) / kRadiansPerDegree, out.speed_scale,
+                out.kpis.seconds_to_95_percent[1], out.kpis.residual_rmse_mps, out.kpis.uncorrected_residual_rmse_mps,
+                out.kpis.nees);
     ASSERT_TRUE(estimator.write(2, out));
-    EXPECT_TRUE(std::isnan(out.kpis.nees)) << "no truth, no NEES";
+    EXPECT_TRUE(std::isnan(out.kpis.nees)) << "no NEES without truth";
   }
 }
 

@@ -1,10 +1,11 @@
-// What the service may claim to know: by the geometry of what it sees, not by how often it sees it.
+// Which parameters the service may report as observable: decided by the geometry of the detections, not their number.
 #include <memory>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/estimator.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/alignment_estimator/synthetic.hpp"
 
 namespace boresight::alignment {
@@ -24,7 +25,7 @@ class Drive {
       take();
     }
   }
-  /// Takes the synthesizer's present scan.
+  /// Processes the synthesizer's present scan.
   void take() {
     EgoMotion m{};
     m.header.measurement_time_ns = synthesizer.scan->header.measurement_time_ns;
@@ -55,38 +56,39 @@ double std_of(const AlignmentEstimate& e, std::size_t parameter) {
   return std::sqrt(static_cast<double>(e.covariance[5 * parameter]));
 }
 
-TEST(Observability, AnyMountingIsAsGood) {
+TEST(Observability, AnyMountingIsAsAccurate) {
   struct Mount {
     double yaw_deg, pitch_deg, roll_deg;
   };
   for (const Mount& mount : {Mount{0.0, 0.0, 0.0}, Mount{0.0, 0.0, 180.0}, Mount{135.0, 3.0, 0.0},
                              Mount{-135.0, -3.0, 2.0}, Mount{180.0, 1.0, 0.0}}) {
     SyntheticDrive drive;
-    drive.mount_yaw_rad = mount.yaw_deg * kDegree;
-    drive.mount_pitch_rad = mount.pitch_deg * kDegree;
-    drive.mount_roll_rad = mount.roll_deg * kDegree;
+    drive.mount_yaw_rad = mount.yaw_deg * kRadiansPerDegree;
+    drive.mount_pitch_rad = mount.pitch_deg * kRadiansPerDegree;
+    drive.mount_roll_rad = mount.roll_deg * kRadiansPerDegree;
     drive.elevation_limit_rad = 0.15;
     const AlignmentEstimate e = after(drive, 400, 2);
-    EXPECT_NEAR(e.alignment_yaw_rad, drive.yaw_rad, 0.06 * kDegree) << mount.yaw_deg << ", " << mount.roll_deg;
+    EXPECT_NEAR(e.alignment_yaw_rad, drive.yaw_rad, 0.06 * kRadiansPerDegree)
+        << mount.yaw_deg << ", " << mount.roll_deg;
     EXPECT_NEAR(e.speed_scale, drive.speed_scale, 5e-4) << mount.yaw_deg << ", " << mount.roll_deg;
     EXPECT_EQ(e.state, AlignmentState::kConverged);
     EXPECT_TRUE(e.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch));
   }
 }
 
-TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
-  // How high reflectors stand is assumed; no number of scans tells whether that is so on this road.
+TEST(Observability, AnUnmeasuredElevationStaysInTheSpeedScale) {
+  // The height of the reflectors is assumed; no number of scans can verify it on this road.
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
-  drive.elevation_limit_rad = 5.0 * kDegree;
+  drive.elevation_limit_rad = 5.0 * kRadiansPerDegree;
   const AlignmentEstimate measured = after(drive, 1000, 3);
   drive.measures_elevation = false;
   const AlignmentEstimate assumed = after(drive, 1000, 3);
-  // Spread over the view at every range: a little higher than what stands on roads.
+  // Spread over the field of view at every range: a little higher than real reflectors.
   EXPECT_NEAR(assumed.speed_scale, drive.speed_scale, 2.0 * std_of(assumed, 0));
   EXPECT_LT(std_of(measured, 0), 4e-4);
-  // The cosine of ±5° lacks 1/6·0.0873² in the mean: what is not known is of that size.
+  // The mean cosine over ±5° is 1 − 1/6·0.0873²; the uncertainty has this size.
   EXPECT_GT(std_of(assumed, 0), 4e-4);
   EXPECT_LT(std_of(assumed, 0), 1.3e-3);
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kVehiclePitch));
@@ -95,17 +97,17 @@ TEST(Observability, AnElevationThatIsNotMeasuredStaysInTheSpeedScale) {
   EXPECT_FALSE(assumed.is_observable(alignment_axis::kRoll));
 }
 
-/// Straight on, everything seen at one angle from the direction of travel.
+/// Straight driving, all detections at one angle from the direction of travel.
 SyntheticDrive one_azimuth(double from_ahead_deg) {
   SyntheticDrive drive;
   drive.turning_radps = 0.0;
-  drive.azimuth_centre_rad = from_ahead_deg * kDegree - drive.mount_yaw_rad;
+  drive.azimuth_centre_rad = from_ahead_deg * kRadiansPerDegree - drive.mount_yaw_rad;
   drive.azimuth_limit_rad = 0.0;
   return drive;
 }
 
-TEST(Observability, OneAzimuthCannotTellYawFromSpeed) {
-  // The noise of the azimuth makes it look like a spread of azimuths; taken for one, it moved k_v by 65 times its σ.
+TEST(Observability, OneAzimuthCannotSeparateYawFromSpeed) {
+  // Noise of the azimuth looks like a spread of azimuths. Without correction it moved k_v by 65 times its σ.
   for (const double from_ahead_deg : {30.0, 45.0, -60.0}) {
     for (unsigned seed = 1; seed <= 6; ++seed) {
       const SyntheticDrive drive = one_azimuth(from_ahead_deg);
@@ -120,7 +122,7 @@ TEST(Observability, OneAzimuthCannotTellYawFromSpeed) {
   }
 }
 
-TEST(Observability, AheadTellsOnlySpeedAndSidewaysOnlyYaw) {
+TEST(Observability, AViewAheadDeterminesOnlySpeedAndAViewAsideOnlyYaw) {
   const double prior_yaw = Config{}.filter.prior_rotation_std_rad, prior_scale = Config{}.filter.prior_speed_scale_std;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const AlignmentEstimate ahead = after(one_azimuth(0.0), 1000, seed);
@@ -138,12 +140,12 @@ TEST(Observability, AheadTellsOnlySpeedAndSidewaysOnlyYaw) {
   }
 }
 
-/// The angles' noise is a third of the view: least squares that takes angles for exact is off by 20 σ.
+/// The angles' noise is a third of the field of view: least squares with exact angles would be off by 20 σ.
 SyntheticDrive narrow_view() {
   SyntheticDrive drive;
-  drive.azimuth_centre_rad = -40.0 * kDegree;
-  drive.azimuth_limit_rad = 2.0 * kDegree;
-  drive.azimuth_std_rad = 0.6 * kDegree;
+  drive.azimuth_centre_rad = -40.0 * kRadiansPerDegree;
+  drive.azimuth_limit_rad = 2.0 * kRadiansPerDegree;
+  drive.azimuth_std_rad = 0.6 * kRadiansPerDegree;
   return drive;
 }
 
@@ -151,7 +153,7 @@ TEST(Observability, ANarrowViewWithCoarseAnglesIsNotBiased) {
   double normalised = 0.0;
   constexpr int kRuns = 40;
   Config config;
-  config.filter.azimuth_std_edge = 1.0;  // as this drive's noise is
+  config.filter.azimuth_std_edge = 1.0;  // as for the noise of this drive
   for (unsigned seed = 1; seed <= kRuns; ++seed) {
     const SyntheticDrive drive = narrow_view();
     const AlignmentEstimate e = after(drive, 300, seed, config);
@@ -160,12 +162,12 @@ TEST(Observability, ANarrowViewWithCoarseAnglesIsNotBiased) {
     covariance << e.covariance[0], e.covariance[1], e.covariance[4], e.covariance[5];
     normalised += error.dot(covariance.inverse() * error);
   }
-  // 2 for a linear problem. The line along which k_v and yaw can hardly be told apart is bent, and where on it the
-  // estimate began is known to degrees: the covariance is a little too thin across it.
+  // 2 for a linear problem. k_v and yaw are hardly separable along a curved line, and the start of the estimate on it
+  // is known to degrees only: the covariance is a little too thin across the line.
   EXPECT_LT(normalised / kRuns, 8.0);
 }
 
-TEST(Observability, WithoutAStationaryWorldNothingIsClaimed) {
+TEST(Observability, WithoutAStationaryWorldNothingIsObservable) {
   SyntheticDrive moving;
   moving.outliers = 1.0;
   const SyntheticDrive standing;
@@ -189,13 +191,14 @@ TEST(Observability, WithoutAStationaryWorldNothingIsClaimed) {
       run.synthesizer.ego = world.ego;
       run.take();
     }
-    EXPECT_NEAR(run.written().alignment_yaw_rad, standing.yaw_rad, 0.05 * kDegree) << "what then stands still is found";
+    EXPECT_NEAR(run.written().alignment_yaw_rad, standing.yaw_rad, 0.05 * kRadiansPerDegree)
+        << "the stationary reflectors are found afterwards";
     EXPECT_EQ(run.written().state, AlignmentState::kConverged);
   }
 }
 
 TEST(Observability, AConvoyIsNoStationaryWorld) {
-  // All that a radar sees ahead drives on, the car closes in on it at 5 m/s.
+  // All objects ahead move, and the car approaches them at 5 m/s.
   SyntheticDrive drive;
   drive.mount_yaw_rad = 0.0;
   drive.azimuth_limit_rad = 0.5;
@@ -212,7 +215,7 @@ TEST(Observability, AConvoyIsNoStationaryWorld) {
   EXPECT_EQ(run.written().observable, 0u);
 }
 
-TEST(Observability, StandingStillOrAloneItWaits) {
+TEST(Observability, WaitsAtAStandstillOrWithoutDetections) {
   const SyntheticDrive drive;
   for (const char* what : {"too slow", "too few detections", "nothing but NaN"}) {
     Drive run(drive, 1);

@@ -1,4 +1,5 @@
-// A radar with a known error on a drive at a known speed: stationary points all around, outliers, noise as stated.
+// A radar with a known error on a drive at a known speed: stationary points all around, outliers, and noise with the
+// stated std.
 #pragma once
 
 #include <cmath>
@@ -7,15 +8,14 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/estimation/ego_history.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
 namespace boresight::alignment {
 
-inline constexpr double kDegree = M_PI / 180.0;
-
 struct SyntheticDrive {
-  double yaw_rad = 2.0 * kDegree;
+  double yaw_rad = 2.0 * kRadiansPerDegree;
   double speed_scale = 1.01;
   double outliers = 0.2;
   std::uint32_t detections = 60;
@@ -24,10 +24,10 @@ struct SyntheticDrive {
   double elevation_limit_rad = 0.0;
   bool measures_elevation = true;
   double turning_radps = 0.08;  ///< amplitude of the yaw rate
-  double mount_yaw_rad = 45.0 * kDegree;
+  double mount_yaw_rad = 45.0 * kRadiansPerDegree;
   double mount_pitch_rad = 0.0;
   double mount_roll_rad = 0.0;
-  double azimuth_std_rad = 0.2 * kDegree;
+  double azimuth_std_rad = 0.2 * kRadiansPerDegree;
   double range_rate_std_mps = 0.05;
   double speed_std_mps = 0.0;  ///< of each scan's speed signal
   double yaw_rate_std_radps = 0.0;
@@ -40,7 +40,7 @@ struct SyntheticDrive {
     r.mounting_pose = {{3.6, side * 0.7, 0.5}, side * mount_yaw_rad, mount_pitch_rad, side * mount_roll_rad};
     r.noise = {.range_std_m = 0.1,
                .azimuth_std_rad = azimuth_std_rad,
-               .elevation_std_rad = 0.2 * kDegree,
+               .elevation_std_rad = 0.2 * kRadiansPerDegree,
                .range_rate_std_mps = range_rate_std_mps};
     r.cycle_time_s = 0.05;
     r.field_of_view.elevation_min_rad = -elevation_limit_rad;

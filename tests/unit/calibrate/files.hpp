@@ -12,6 +12,7 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "tests/simulator/alignment/plate.hpp"
@@ -19,8 +20,6 @@
 #include "tests/simulator/wire/pcap_writer.hpp"
 
 namespace boresight::calibrate::testing {
-
-inline constexpr double kDegrees = 180.0 / M_PI;
 
 /// A folder that lives as long as this does.
 class Folder {
@@ -55,8 +54,8 @@ inline std::string plate_table(const simulator::PlateSpec& spec, std::uint64_t s
   for (std::size_t i = 0; i < run.number_of_tilts; ++i) {
     const alignment::plate::TiltMeasurement& tilt = run.tilts[i];
     for (std::size_t k = 0; k < tilt.scans; ++k) {
-      text += fmt::format("{},{},{},{}\n", tilt.tilt_rad * kDegrees, k, tilt.amplitude_db[k],
-                          tilt.azimuth_rad[k] * kDegrees);
+      text += fmt::format("{},{},{},{}\n", tilt.tilt_rad * kDegreesPerRadian, k, tilt.amplitude_db[k],
+                          tilt.azimuth_rad[k] * kDegreesPerRadian);
     }
   }
   return text;
@@ -103,7 +102,8 @@ inline std::string record_plate(const simulator::PlateSpec& spec, const VehicleC
     const auto seconds = [](std::int64_t ns) {
       return fmt::format("{}.{:03}", ns / 1'000'000'000, ns / 1'000'000 % 1000);
     };
-    tilts += fmt::format("{},{},{}\n", tilt.tilt_rad * kDegrees, seconds(begin_ns), seconds(time_ns - kCycle_ns / 2));
+    tilts += fmt::format("{},{},{}\n", tilt.tilt_rad * kDegreesPerRadian, seconds(begin_ns),
+                         seconds(time_ns - kCycle_ns / 2));
   }
   return tilts;
 }
@@ -113,13 +113,14 @@ inline std::string reflector_table(const MountingPose& pose, double yaw_deg, dou
                                    bool with_elevation = true) {
   std::string text =
       with_elevation ? "x_m,y_m,z_m,range_m,azimuth_deg,elevation_deg\n" : "x_m,y_m,z_m,range_m,azimuth_deg\n";
-  const Eigen::Matrix3d actual = geometry::sensor_to_vehicle(pose, yaw_deg / kDegrees, pitch_deg / kDegrees, 0.0);
+  const Eigen::Matrix3d actual =
+      geometry::sensor_to_vehicle(pose, yaw_deg / kDegreesPerRadian, pitch_deg / kDegreesPerRadian, 0.0);
   for (int i = 0; i < 12; ++i) {
     const Eigen::Vector3d place(10.0 + 3.0 * i, beside_m, pose.position_m[2]);
     const Eigen::Vector3d way = actual.transpose() * (place - Eigen::Vector3d(pose.position_m.data()));
     text += fmt::format("{},{},{},{},{}", place.x(), place.y(), place.z(), way.norm(),
-                        std::atan2(way.y(), way.x()) * kDegrees);
-    text += with_elevation ? fmt::format(",{}\n", std::asin(way.z() / way.norm()) * kDegrees) : "\n";
+                        std::atan2(way.y(), way.x()) * kDegreesPerRadian);
+    text += with_elevation ? fmt::format(",{}\n", std::asin(way.z() / way.norm()) * kDegreesPerRadian) : "\n";
   }
   return text;
 }

@@ -143,10 +143,10 @@ SG_MUL_VAL_ 1 A A 3-1;
   EXPECT_THAT(database.problems,
               testing::UnorderedElementsAre(HasSubstr("t.dbc:22: there is no such switch"),
                                             HasSubstr("t.dbc:23: signal is not multiplexed"),
-                                            HasSubstr("t.dbc:24: SG_MUL_VAL_ wants"),
+                                            HasSubstr("t.dbc:24: SG_MUL_VAL_ must be"),
                                             HasSubstr("t.dbc:19: multiplexed signal, but its message has no"),
-                                            HasSubstr("t.dbc:14: signal hangs on more than 4 switches"),
-                                            HasSubstr("t.dbc:15: signal hangs on more than 4 switches")));
+                                            HasSubstr("t.dbc:14: signal depends on more than 4 switches"),
+                                            HasSubstr("t.dbc:15: signal depends on more than 4 switches")));
 }
 
 TEST(Dbc, FloatKinds) {
@@ -223,14 +223,15 @@ BOO_ 4 G: 8 X
   EXPECT_THAT(names_of(database.messages[1]), ElementsAre("ALSO_GOOD"));
   EXPECT_THAT(
       database.problems,
-      ElementsAre(HasSubstr("t.dbc:13: signal follows no message"), HasSubstr("t.dbc:16: signal name comes twice"),
-                  HasSubstr("t.dbc:17: SG_ wants"), HasSubstr("t.dbc:18: SG_ wants"), HasSubstr("t.dbc:19: SG_ wants"),
-                  HasSubstr("t.dbc:20: factor"), HasSubstr("t.dbc:21: signal does not lie"),
-                  HasSubstr("t.dbc:22: signal does not lie"), HasSubstr("t.dbc:23: signal does not lie"),
-                  HasSubstr("t.dbc:24: SG_ wants"), HasSubstr("t.dbc:25: SG_ wants"),
-                  HasSubstr("t.dbc:26: message id comes twice"), HasSubstr("t.dbc:28: message name comes twice"),
-                  HasSubstr("t.dbc:29: message id is out of range"), HasSubstr("t.dbc:30: message is too long"),
-                  HasSubstr("t.dbc:31: BO_ wants"), HasSubstr("t.dbc:35: signal follows no message")));
+      ElementsAre(HasSubstr("t.dbc:13: signal without a message"), HasSubstr("t.dbc:16: signal name occurs twice"),
+                  HasSubstr("t.dbc:17: SG_ must be"), HasSubstr("t.dbc:18: SG_ must be"),
+                  HasSubstr("t.dbc:19: SG_ must be"), HasSubstr("t.dbc:20: factor"),
+                  HasSubstr("t.dbc:21: signal reaches beyond"), HasSubstr("t.dbc:22: signal reaches beyond"),
+                  HasSubstr("t.dbc:23: signal reaches beyond"), HasSubstr("t.dbc:24: SG_ must be"),
+                  HasSubstr("t.dbc:25: SG_ must be"), HasSubstr("t.dbc:26: message id occurs twice"),
+                  HasSubstr("t.dbc:28: message name occurs twice"), HasSubstr("t.dbc:29: message id is out of range"),
+                  HasSubstr("t.dbc:30: message is too long"), HasSubstr("t.dbc:31: BO_ must be"),
+                  HasSubstr("t.dbc:35: signal without a message")));
 }
 
 TEST(Dbc, SignalsOnNoBusAreNoProblem) {

@@ -142,9 +142,10 @@ TEST(MappingFile, NameThatIsNotThereIsNamedWithSimilarOnes) {
 }
 
 TEST(MappingFile, SignalInTwoMessagesMustSayWhich) {
-  EXPECT_THAT(radar_error("\"SCORE\"", "\"COUNTER\""),
-              HasSubstr("signal \"COUNTER\" is in the messages \"TRACK_A_0\" and \"TRACK_B_0\"; say which: message = 1 "
-                        "or 2"));
+  EXPECT_THAT(
+      radar_error("\"SCORE\"", "\"COUNTER\""),
+      HasSubstr("signal \"COUNTER\" is in the messages \"TRACK_A_0\" and \"TRACK_B_0\"; choose one: message = 1 "
+                "or 2"));
   EXPECT_THAT(radar_error("\"SCORE\", unit", "\"COUNTER\", message = 2, unit"), IsEmpty());
   EXPECT_THAT(radar_error("\"SCORE\"", "\"SCORE\", message = 3"), HasSubstr("existence.message: must be 1 … 2"));
 }
@@ -166,20 +167,20 @@ TEST(MappingFile, UnknownKeysAreErrors) {
 }
 
 TEST(MappingFile, QuantitiesMustMakeAPositionAndARangeRate) {
-  EXPECT_THAT(radar_error("lateral", "range"), HasSubstr("wants either range and azimuth (and elevation), or"));
+  EXPECT_THAT(radar_error("lateral", "range"), HasSubstr("needs either range and azimuth (and elevation), or"));
   EXPECT_THAT(radar_error("range_rate =", "velocity_lateral ="),
-              HasSubstr("wants either range_rate or velocity_longitudinal"));
-  EXPECT_THAT(radar_error("range_rate =", "velocity_lateral ="), HasSubstr("velocity_lateral wants"));
-  EXPECT_THAT(radar_error("existence =", "elevation ="), HasSubstr("wants either range and azimuth"));
+              HasSubstr("needs either range_rate or velocity_longitudinal"));
+  EXPECT_THAT(radar_error("range_rate =", "velocity_lateral ="), HasSubstr("velocity_lateral needs"));
+  EXPECT_THAT(radar_error("existence =", "elevation ="), HasSubstr("needs either range and azimuth"));
 }
 
 TEST(MappingFile, CycleMustBeAbleToEnd) {
-  EXPECT_THAT(radar_error("all_messages", "count"), HasSubstr("m.toml:4: cycle.end: \"count\" wants a table header"));
+  EXPECT_THAT(radar_error("all_messages", "count"), HasSubstr("m.toml:4: cycle.end: \"count\" needs a table header"));
   EXPECT_THAT(radar_error("all_messages", "last_message"), HasSubstr("cycle.last_message: is missing"));
   EXPECT_THAT(radar_error("end = \"all_messages\"", "end = \"timeout\"\nlast_message = \"TRACK_A_0\""),
-              HasSubstr("cycle.last_message: is of use with end = \"last_message\" only"));
+              HasSubstr("cycle.last_message: is allowed with end = \"last_message\" only"));
   EXPECT_THAT(radar_error("index = [0, 1]", "slot_by = \"arrival\"\nslots = 4"),
-              HasSubstr("a cycle that ends with all_messages wants \"index\""));
+              HasSubstr("a cycle that ends with all_messages needs \"index\""));
   EXPECT_THAT(radar_error("[[detections]]", "[header]\nmessage = \"TRACK_A_0\"\ncounts = [\"NO\"]\n[[detections]]"),
               HasSubstr("header.counts: there is no signal \"NO\""));
   const std::string trailer = with(kRadar, "end = \"all_messages\"", "end = \"count\"");
@@ -192,7 +193,7 @@ TEST(MappingFile, SlotsMustFit) {
   EXPECT_THAT(radar_error("[0, 1]", "[0, 1024]"), HasSubstr("must be [first, last] with at most 1024 numbers"));
   EXPECT_THAT(radar_error("[0, 1]", "[1, 0]"), HasSubstr("must be [first, last]"));
   EXPECT_THAT(radar_error("[0, 1]", "[0]"), HasSubstr("index: has 1 elements; must be"));
-  EXPECT_THAT(radar_error("index = [0, 1]", "slots = 2"), HasSubstr("slots: is of use with slot_by"));
+  EXPECT_THAT(radar_error("index = [0, 1]", "slots = 2"), HasSubstr("slots: is allowed with slot_by"));
   EXPECT_THAT(radar_error("name = \"TRACK_B_{}\"", "names = [\"TRACK_B_0\"]"), HasSubstr("has 1 names for 2 indices"));
   EXPECT_THAT(radar_error("name = \"TRACK_B_{}\"", "names = [\"TRACK_B_0\", \"TRACK_B_1\"]"), IsEmpty());
   EXPECT_THAT(radar_error("TRACK_B_{}", "TRACK_B_{x}"), HasSubstr("braces must be {}"));
@@ -208,8 +209,8 @@ TEST(MappingFile, ProtectionMustFitItsMessage) {
   EXPECT_THAT(protect("profile = \"P05\", data_id = 1, offset_bytes = 4"),
               HasSubstr("E2E header does not fit into \"TRACK_B_0\""));
   EXPECT_THAT(protect("profile = \"P05\", data_ids = [1]"), HasSubstr("data_ids: has 1 elements"));
-  EXPECT_THAT(protect("profile = \"P05\""), HasSubstr("wants either data_id, or data_ids"));
-  EXPECT_THAT(protect("profile = \"P02\", data_id = 1"), HasSubstr("profiles P02 and P22 want data_id_list"));
+  EXPECT_THAT(protect("profile = \"P05\""), HasSubstr("needs either data_id, or data_ids"));
+  EXPECT_THAT(protect("profile = \"P02\", data_id = 1"), HasSubstr("profiles P02 and P22 need data_id_list"));
   EXPECT_THAT(protect("profile = \"P07\", data_id = 1"), HasSubstr("must be one of \"P01\", \"P02\", \"P05\""));
   EXPECT_THAT(protect("profile = \"P11\", data_id = 1, data_id_mode = \"low\""),
               HasSubstr("data_id_mode of profile 11"));
@@ -224,8 +225,8 @@ TEST(MappingFile, IdOffsetMovesEveryMessage) {
 
 TEST(MappingFile, EgoMappingMustBeWhole) {
   EXPECT_THAT(error_of(std::string(kEgo)), IsEmpty());
-  EXPECT_THAT(ego_error("[speed]", "[yaw_rate]"), HasSubstr("wants either a table speed or a table pulses"));
-  EXPECT_THAT(ego_error("is = [1, 2]", ""), HasSubstr("reverse: wants either is or is_not"));
+  EXPECT_THAT(ego_error("[speed]", "[yaw_rate]"), HasSubstr("needs either a table speed or a table pulses"));
+  EXPECT_THAT(ego_error("is = [1, 2]", ""), HasSubstr("reverse: needs either is or is_not"));
   EXPECT_THAT(ego_error("\"x.dbc\"", "\"\""), HasSubstr("m.toml:2: dbc: is empty"));
   EXPECT_THAT(ego_error("\"TRACK_A_0\"", "\"\""), HasSubstr("speed.message: is empty"));
   EXPECT_THAT(ego_error("\"COUNTER\"", "\"\""), HasSubstr("reverse.signal: there is no signal \"\""));
@@ -236,7 +237,7 @@ TEST(MappingFile, EgoMappingMustBeWhole) {
   EXPECT_THAT(ego_error("[speed]", "[pulses]\nmetres_per_pulse = 0.1"),
               HasSubstr("\"REL_SPEED\" must be an unsigned integer"));
   EXPECT_THAT(ego_error("message = \"TRACK_A_1\"", "message = \"TRACK_A_0\"\nchecksum = \"toyota\""),
-              HasSubstr("\"TRACK_A_0\" is named before; say its checksum and e2e there"));
+              HasSubstr("\"TRACK_A_0\" is named above; give its checksum and e2e there"));
   EXPECT_THAT(ego_error("\"TRACK_A_1\"", "\"EMPTY\""), HasSubstr("message \"EMPTY\" has no bytes"));
 }
 
@@ -249,12 +250,12 @@ TEST(MappingFile, WrongKindOrMissingDatabaseIsOneError) {
     EXPECT_STREQ(error.what(), "m.toml:2: dbc: x.dbc cannot be read");
   }
   EXPECT_THAT(radar_error("\"radar\"", "\"camera\""),
-              HasSubstr("m.toml:1: kind: is \"camera\", but a mapping of kind \"radar\" is wanted"));
+              HasSubstr("m.toml:1: kind: is \"camera\", but a mapping of kind \"radar\" is needed"));
   try {
     static_cast<void>(read_ego_mapping(kExamples / "example_radar.toml"));
     FAIL();
   } catch (const config::Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("but a mapping of kind \"ego\" is wanted"));
+    EXPECT_THAT(error.what(), HasSubstr("but a mapping of kind \"ego\" is needed"));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "services/common/e2e/protector.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 #include "tests/unit/dbc/bus.hpp"
 
@@ -20,8 +21,6 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 const std::filesystem::path kExamples = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings";
 
 /// The ego signals that are shipped as an example.
@@ -147,14 +146,14 @@ TEST_F(ExampleEgo, OneFrameCarriesSeveralQuantities) {
   bus.send("DYNAMICS", {{"YAW_RATE", -12.5}, {"STEERING_WHEEL", 90.0}});
   ASSERT_THAT(bus.out.egos, SizeIs(1));
   const EgoReading& reading = bus.out.egos[0].reading;
-  EXPECT_NEAR(reading.yaw_rate_radps.value(), -12.5 * kDegree, 1e-9);
-  EXPECT_NEAR(reading.steering_angle_rad.value(), 90.0 * kDegree, 1e-9);
+  EXPECT_NEAR(reading.yaw_rate_radps.value(), -12.5 * kRadiansPerDegree, 1e-9);
+  EXPECT_NEAR(reading.steering_angle_rad.value(), 90.0 * kRadiansPerDegree, 1e-9);
   EXPECT_FALSE(reading.speed_mps || reading.reverse);
   bus.send("DYNAMICS", {{"YAW_RATE", 200.0}, {"STEERING_WHEEL", -5.0}});
   EXPECT_THAT(bus.out.faults, ElementsAre("yaw rate is outside its plausible range"));
   ASSERT_THAT(bus.out.egos, SizeIs(2));
   EXPECT_FALSE(bus.out.egos[1].reading.yaw_rate_radps);
-  EXPECT_NEAR(bus.out.egos[1].reading.steering_angle_rad.value(), -5.0 * kDegree, 1e-9);
+  EXPECT_NEAR(bus.out.egos[1].reading.steering_angle_rad.value(), -5.0 * kRadiansPerDegree, 1e-9);
 }
 
 struct OwnEgo {

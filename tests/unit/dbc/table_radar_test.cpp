@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "services/common/e2e/protector.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 #include "tests/unit/dbc/bus.hpp"
 
@@ -20,8 +21,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 dbc::Database example_database() {
   std::ifstream stream(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings/example_radar.dbc");
@@ -77,8 +76,8 @@ TEST_F(ExampleRadar, DetectionsOfBothPagesMakeAScan) {
   ASSERT_EQ(scan.number_of_valid_detections, 2u);  // in the order of their numbers
   EXPECT_FLOAT_EQ(scan.range_m[0], 20.0F);
   EXPECT_FLOAT_EQ(scan.range_m[1], 123.45F);
-  EXPECT_NEAR(scan.azimuth_rad[1], 10.0 * kDegree, 1e-6);  // this radar counts to the right
-  EXPECT_NEAR(scan.elevation_rad[1], 2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(scan.azimuth_rad[1], 10.0 * kRadiansPerDegree, 1e-6);  // this radar counts to the right
+  EXPECT_NEAR(scan.elevation_rad[1], 2.5 * kRadiansPerDegree, 1e-6);
   EXPECT_FLOAT_EQ(scan.range_rate_mps[1], -3.25F);
   EXPECT_FLOAT_EQ(scan.rcs_dbsm[1], -4.5F);
   EXPECT_FLOAT_EQ(scan.snr_db[1], 17.5F);
@@ -385,7 +384,7 @@ range_rate = { signal = "V_{}" }
   const RadarScan& scan = *radar.bus.out.scans[0];
   ASSERT_EQ(scan.number_of_valid_detections, 3u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(scan.range_m[i], 10.0F + static_cast<float>(i)) << i;
-  EXPECT_NEAR(scan.azimuth_rad[2], 2.0 * kDegree, 1e-6);
+  EXPECT_NEAR(scan.azimuth_rad[2], 2.0 * kRadiansPerDegree, 1e-6);
   EXPECT_FLOAT_EQ(scan.range_rate_mps[2], 1e-3F);
 }
 

@@ -1,4 +1,4 @@
-// What a report says of ghosts, from a record of scans and the truth of a drive.
+// What a report states about ghosts, from a record of scans and the truth of a drive.
 #include <memory>
 #include <sstream>
 
@@ -11,9 +11,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr std::int64_t kBegin_ns = 77'000'000'123'456;  // this ECU's clock at the drive's beginning
+constexpr std::int64_t kBegin_ns = 77'000'000'123'456;  // the ECU's clock at the start of the drive
 
-/// Twenty seconds of two radars; each scan has one detection of a car, its ghost of type 2, and `k % 3` of the ground.
+/// Twenty seconds of two radars; each scan has one detection of a car, its ghost of type 2, and `k % 3` stationary
+/// ones.
 class Drive {
  public:
   Drive() {
@@ -38,7 +39,7 @@ class Drive {
     return kBegin_ns + static_cast<std::int64_t>(time_s(radar, k) * 1e9) + (k % 2 == 0 ? 400'000 : -400'000);
   }
 
-  /// The scan as it was published, with the ghost at 20, 9 told to be `label`; and then the tracks, one on it.
+  /// The scan as it was published, with the ghost at (20, 9) classified as `label`; then two tracks, one on the ghost.
   void publish(std::uint32_t radar, int k, Provenance label) {
     ClassifiedScan& scan = *scan_;
     scan = {};
@@ -70,7 +71,7 @@ class Drive {
     }
     monitor::write_tracks(record, list);
   }
-  /// All scans but those that were lost; the ghost told to be moving in the first `mistakes` of each radar.
+  /// All scans except the lost ones; the ghost is classified as moving in the first `mistakes` scans of each radar.
   void publish_all(int mistakes) {
     constexpr int kLost = 7;
     for (int k = kLost; k < kScans; ++k) {
@@ -97,7 +98,7 @@ const Check& check_about(const std::vector<Check>& checks, const std::string& pa
   return none;
 }
 
-TEST(GhostFindings, AreFoundInTheTruthWhenTheFirstScansAreMissingAndClocksDiffer) {
+TEST(GhostFindings, ScansAreMatchedToTheTruthWhenTheFirstAreMissingAndClocksDiffer) {
   Drive drive;
   drive.publish_all(0);
   const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
@@ -109,7 +110,7 @@ TEST(GhostFindings, AreFoundInTheTruthWhenTheFirstScansAreMissingAndClocksDiffer
   EXPECT_EQ(c.count(Provenance::kMoving, Provenance::kMoving), 786u);
   EXPECT_EQ(c.count(Provenance::kGhostType2, Provenance::kGhostType2), 786u);
   EXPECT_EQ(c.rejected(Provenance::kStationary), 262u);
-  EXPECT_TRUE(found.ghost_tracks.empty()) << "what was told to be a ghost made no track";
+  EXPECT_TRUE(found.ghost_tracks.empty()) << "a detection classified as a ghost is no evidence of a track";
   EXPECT_TRUE(found.most_mistakes.detections.empty());
   for (const Check& check : ghost_checks(found)) EXPECT_TRUE(check.passed) << check.what;
 }
@@ -129,15 +130,15 @@ TEST(GhostFindings, MistakesAndTracksOfGhostsAreCountedAndFail) {
   EXPECT_EQ(found.most_mistakes.objects.size(), 1u);
   const std::vector<Check> checks = ghost_checks(found);
   const Check& ghosts = check_about(checks, "ghosts of type 2");
-  EXPECT_EQ(ghosts.what, "of 786 ghosts of type 2 84.7 % were told to be ghosts (at least 90 %)");
+  EXPECT_EQ(ghosts.what, "84.7 % of 786 ghosts of type 2 were classified as ghosts (aim: at least 90 %)");
   EXPECT_FALSE(ghosts.passed);
-  const Check& tracks = check_about(checks, "lived on ghosts");
-  EXPECT_EQ(tracks.what, "no track lived on ghosts for more than 5 scans (1 did)");
+  const Check& tracks = check_about(checks, "followed a ghost");
+  EXPECT_EQ(tracks.what, "no confirmed track followed a ghost for more than 5 scans (1 did)");
   EXPECT_FALSE(tracks.passed);
   EXPECT_TRUE(check_about(checks, "moving objects").passed);
 }
 
-TEST(GhostFindings, ScansThatTheTruthHasNotAreNotJudged) {
+TEST(GhostFindings, ScansThatAreMissingInTheTruthAreNotCompared) {
   Drive drive;
   drive.publish_all(0);
   for (auto& scan : drive.truth.scans[2]) scan.detections.emplace_back();
@@ -156,17 +157,17 @@ TEST(GhostFindings, WithoutTruthThereAreViewsAndNoVerdict) {
   EXPECT_TRUE(ghost_checks(found)[0].passed);
   ASSERT_EQ(found.most_ghosts.sensors.size(), 2u);
   EXPECT_FALSE(found.most_ghosts.detections.at(1).truth);
-  EXPECT_EQ(found.most_ghosts.detections.at(1).told, Provenance::kGhostType2);
+  EXPECT_EQ(found.most_ghosts.detections.at(1).label, Provenance::kGhostType2);
   EXPECT_EQ(found.most_ghosts.tracks.size(), 2u);
   EXPECT_NEAR(found.most_ghosts.sensors[0].age_s, 0.0125, 1e-6);
   EXPECT_TRUE(found.most_ghosts.objects.empty());
 }
 
-TEST(GhostFindings, LinesThatCannotBeReadAreToldWithFileAndLine) {
+TEST(GhostFindings, DamagedLinesAreReportedWithFileAndLine) {
   Drive drive;
   drive.publish_all(0);
   const std::string whole = drive.record.str();
-  // Of the first scan the y of its second detection, and the end of the last track list.
+  // Damages the y of the second detection of the first scan, and the end of the last track list.
   std::string text = whole.substr(0, whole.size() - 20);
   const std::size_t at = text.find(" 9.00 ");
   ASSERT_NE(at, std::string::npos);
@@ -182,21 +183,21 @@ TEST(GhostFindings, LinesThatCannotBeReadAreToldWithFileAndLine) {
   EXPECT_FALSE(check.passed);
   EXPECT_FALSE(check.aim);
   EXPECT_EQ(check.what,
-            "every line of the record of scans could be read (2 could not; the first: out/scans.txt:1: y of detection "
+            "every line of the record of scans could be read (2 damaged; first: out/scans.txt:1: y of detection "
             "2 is '9<0', allowed: a number)");
   ReportInput input;
   input.ghosts = found;
   const std::string page = render_html(input);
   EXPECT_THAT(page, HasSubstr("2 lines of the record of scans could not be read"));
-  EXPECT_THAT(page, HasSubstr("The first: <code>out/scans.txt:1: y of detection 2 is '9&lt;0'"));
+  EXPECT_THAT(page, HasSubstr("The first line: <code>out/scans.txt:1: y of detection 2 is '9&lt;0'"));
 
   std::istringstream nothing_whole("scan 1\n");
   input.ghosts = find_ghosts(nothing_whole, "scans.txt", nullptr);
   EXPECT_FALSE(check_about(ghost_checks(input.ghosts), "could be read").passed);
   const std::string empty_page = render_html(input);
-  EXPECT_THAT(empty_page, HasSubstr("A line of the record of scans could not be read"));
+  EXPECT_THAT(empty_page, HasSubstr("One line of the record of scans could not be read"));
   EXPECT_THAT(empty_page, HasSubstr("scans.txt:1: ends before source sequence"));
-  EXPECT_THAT(empty_page, Not(HasSubstr("Scans were not recorded")));
+  EXPECT_THAT(empty_page, Not(HasSubstr("no record of its scans")));
 }
 
 TEST(GhostPage, ShowsMatrixTracksAndViews) {
@@ -206,15 +207,15 @@ TEST(GhostPage, ShowsMatrixTracksAndViews) {
   input.ghosts = find_ghosts(drive.record, "scans.txt", &drive.truth);
   const std::string page = render_html(input);
   for (const char* part :
-       {"title=\"120\">15.27 %</td>", "<td>#5</td><td class=n>120</td>", "Most ghosts told: at ",
-        "Most labels wrong after the first 2 s: at ",
-        "radar 1: ghost type 2, in truth ghost type 2; 20.0 m ahead, 9.0 m left", "object 1 in truth", "track #5"}) {
+       {"title=\"120\">15.27 %</td>", "<td>#5</td><td class=n>120</td>", "Most detections classified as ghosts: at ",
+        "Most wrong labels after the first 2 s: at ",
+        "radar 1: ghost type 2, truth: ghost type 2; 20.0 m ahead, 9.0 m left", "true object 1", "track #5"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   EXPECT_THAT(page, Not(HasSubstr("nan")));
 }
 
-TEST(GhostPage, SaysWhatIsFartherOffThanItDraws) {
+TEST(GhostPage, StatesHowManyDetectionsLieOutsideTheView) {
   ReportInput input;
   input.ghosts.scans = 1;
   input.ghosts.most_ghosts.detections = {{1, 20.0F, 0.0F, 5.0F, 0.1F, Provenance::kMoving, false, std::nullopt},
@@ -222,22 +223,23 @@ TEST(GhostPage, SaysWhatIsFartherOffThanItDraws) {
                                          {1, NAN, 0.0F, 5.0F, 0.9F, Provenance::kGhostType2, false, std::nullopt},
                                          {1, 300.0F, 0.0F, 0.0F, 0.0F, Provenance::kStationary, false, std::nullopt}};
   const std::string page = render_html(input);
-  EXPECT_THAT(page,
-              HasSubstr("detections: 4, 2 of them told to be ghosts; 2 of what does not stand still lie farther"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("detections: 4, 2 of them classified as ghosts; 2 detections that are not stationary lie outside"));
   EXPECT_THAT(page, Not(HasSubstr("nan")));
 }
 
-TEST(GhostPage, SaysWhatIsMissing) {
-  EXPECT_THAT(render_html({}), HasSubstr("Scans were not recorded, so there is nothing to compare"));
-  EXPECT_THAT(render_html({}), HasSubstr("No scan of the ghost filter was seen."));
+TEST(GhostPage, StatesThatTheRecordOrTheTruthIsMissing) {
+  EXPECT_THAT(render_html({}), HasSubstr("This run has no record of its scans, so there is no comparison"));
+  EXPECT_THAT(render_html({}), HasSubstr("No scan of the ghost filter was received."));
   Drive drive;
   drive.publish_all(0);
   ReportInput input;
   input.ghosts = find_ghosts(drive.record, "scans.txt", nullptr);
   const std::string page = render_html(input);
-  EXPECT_THAT(page, HasSubstr("No truth is known of this drive's detections"));
+  EXPECT_THAT(page, HasSubstr("The true provenance of this drive's detections is not known"));
   EXPECT_THAT(page, Not(HasSubstr("differs from the truth")));
-  EXPECT_THAT(page, Not(HasSubstr("Tracks of ghosts")));
+  EXPECT_THAT(page, Not(HasSubstr("Tracks that followed ghosts")));
 }
 
 }  // namespace

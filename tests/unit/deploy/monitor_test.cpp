@@ -4,11 +4,10 @@
 
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::monitor {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 VehicleConfig vehicle() {
   VehicleConfig config;
@@ -36,16 +35,17 @@ void see_misaligned_radar(Accumulator& accumulator) {
   estimate.state = AlignmentState::kConverged;
   estimate.observable = alignment_axis::kYaw | alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale |
                         alignment_axis::kVehiclePitch | alignment_axis::kYawRateBias;
-  estimate.alignment_yaw_rad = estimate.vehicle_yaw_rad = static_cast<float>(2.5 * kDegree);
-  estimate.vehicle_pitch_rad = static_cast<float>(-0.7 * kDegree);
-  estimate.yaw_rate_bias_radps = static_cast<float>(0.1 * kDegree);
-  estimate.yaw_rate_bias_std_radps = static_cast<float>(0.02 * kDegree);
+  estimate.alignment_yaw_rad = estimate.vehicle_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
+  estimate.vehicle_pitch_rad = static_cast<float>(-0.7 * kRadiansPerDegree);
+  estimate.yaw_rate_bias_radps = static_cast<float>(0.1 * kRadiansPerDegree);
+  estimate.yaw_rate_bias_std_radps = static_cast<float>(0.02 * kRadiansPerDegree);
   estimate.step_change.count = 1;
   estimate.kpis.seconds_to_95_percent = {1.0F, 1.4F, std::nanf(""), std::nanf("")};
-  estimate.kpis.drift_per_minute[1] = static_cast<float>(0.004 * kDegree);
-  estimate.vehicle_covariance[5] = estimate.vehicle_covariance[10] = static_cast<float>(std::pow(0.04 * kDegree, 2));
+  estimate.kpis.drift_per_minute[1] = static_cast<float>(0.004 * kRadiansPerDegree);
+  estimate.vehicle_covariance[5] = estimate.vehicle_covariance[10] =
+      static_cast<float>(std::pow(0.04 * kRadiansPerDegree, 2));
   estimate.speed_scale = 1.03F;
-  estimate.covariance[5] = static_cast<float>(std::pow(0.04 * kDegree, 2));
+  estimate.covariance[5] = static_cast<float>(std::pow(0.04 * kRadiansPerDegree, 2));
   accumulator.observe(estimate);
   HealthReport report{};
   report.number_of_sensors = 2;
@@ -121,7 +121,7 @@ void see_labels(Accumulator& accumulator, std::uint32_t radar, std::uint32_t fla
   accumulator.observe(*scan);
 }
 
-TEST(Accumulator, SumsWhatDetectionsWereToldToBe) {
+TEST(Accumulator, SumsTheLabelsOfDetections) {
   Accumulator accumulator(vehicle());
   see_labels(accumulator, 2, pipeline_flag::kNoTracks);
   see_labels(accumulator, 2, 0);
@@ -130,14 +130,14 @@ TEST(Accumulator, SumsWhatDetectionsWereToldToBe) {
   EXPECT_EQ(labels.of(Provenance::kGhostType2), 2u);
   EXPECT_EQ(labels.of(Provenance::kClutter), 2u);
   EXPECT_EQ(labels.of(Provenance::kUnknown), 0u);
-  EXPECT_EQ(labels.left_out, 2u);
+  EXPECT_EQ(labels.rejected, 2u);
   EXPECT_EQ(labels.detections(), 10u);
   EXPECT_EQ(labels.scans, 2u);
   EXPECT_EQ(labels.scans_without_tracks, 1u);
   EXPECT_EQ(accumulator.snapshot(0).radars[0].labels.scans, 0u);
 }
 
-TEST(Accumulator, MeasuresStagesAndTheWholeWayFromTheStamps) {
+TEST(Accumulator, MeasuresStagesAndTheTotalFromTheStamps) {
   Accumulator accumulator(vehicle());
   see_tracks(accumulator);
   const Snapshot snapshot = accumulator.snapshot(0);
@@ -186,17 +186,19 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
               ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
   EXPECT_THAT(to_json(written),
               ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7,"std":0.04,"observable":true})"));
-  EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("step_changes":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
-  EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("told":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
-                                   R"("clutter":1,"left_out":1},"classified_scans":1,"classified_without_tracks":1})"));
+  EXPECT_THAT(
+      to_json(written),
+      ::testing::HasSubstr(R"("step_changes":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
+  EXPECT_THAT(
+      to_json(written),
+      ::testing::HasSubstr(R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
+                           R"("clutter":1,"rejected":1},"classified_scans":1,"classified_without_tracks":1})"));
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
 }
 
-TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
+TEST(MonitorRecord, DamagedSnapshotIsSkippedAndReported) {
   std::ostringstream one;
   write_record(one, Snapshot());
   const std::string whole = one.str();
@@ -236,28 +238,30 @@ TEST(MonitorRecord, ASnapshotThatIsNotWholeIsLeftOutAndTold) {
   EXPECT_THAT(damaged.first, ::testing::EndsWith(": the snapshot has no end"));
 }
 
-TEST(Render, SaysWhichRadarIsMisalignedAndHowSure) {
+TEST(Render, ShowsWhichRadarIsMisalignedWithItsUncertainty) {
   Accumulator accumulator(vehicle());
   see_misaligned_radar(accumulator);
   see_tracks(accumulator);
   RenderOptions options;
   options.width = 190;
   const std::string screen = render_screen(accumulator.snapshot(0), options);
-  EXPECT_THAT(screen, ::testing::HasSubstr("+2.50° ± 0.04°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("+2.500 ± 0.040°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("AVAILABLE_REDUCED (MISALIGNED)"));
-  EXPECT_THAT(screen,
-              ::testing::HasSubstr(
-                  "\n             partly blocked, unsynchronised, 1 knocks, 12 scans missed on the wire, 3 suspect "
-                  "scans\n"));
-  EXPECT_THAT(screen, ::testing::HasSubstr("-0.70° ± 0.04°"));
+  EXPECT_THAT(
+      screen,
+      ::testing::HasSubstr(
+          "\n             partly blocked, unsynchronised, 1 sudden misalignment, 12 scans lost or incomplete at "
+          "the gateway, 3 scans of doubtful integrity\n"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("-0.700 ± 0.040°"));
   EXPECT_THAT(screen, ::testing::HasSubstr("not observable"));
   EXPECT_THAT(screen, ::testing::HasSubstr("1.4 s     +0.004°"));
-  EXPECT_THAT(screen, ::testing::HasSubstr("yaw-rate bias +0.100 ± 0.020 °/s   slip coefficient not observable"));
+  EXPECT_THAT(screen, ::testing::HasSubstr(
+                          "yaw-rate bias +0.100 ± 0.020 °/s   slip coefficient of the rear axle not observable"));
   EXPECT_THAT(screen, ::testing::HasSubstr("1 confirmed, 1 tentative"));
   EXPECT_THAT(screen, ::testing::HasSubstr("10.0 m behind"));
-  EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restarts)"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("restarted (1 restart)"));
   EXPECT_THAT(screen, ::testing::Not(::testing::HasSubstr("\x1b"))) << "no colour unless asked for";
-  EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0), ::testing::HasSubstr("front_right 0/s yaw +2.50° ± 0.04°"));
+  EXPECT_THAT(render_line(accumulator.snapshot(0), 3.0), ::testing::HasSubstr("front_right 0/s yaw +2.500 ± 0.040°"));
 }
 
 TEST(Render, CutsLinesByCharactersNotBytes) {

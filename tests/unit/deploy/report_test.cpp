@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 
 #include "services/boresight/report/html_report.hpp"
-#include "services/boresight/report/svg_chart.hpp"
 #include "services/boresight/report/truth_table.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "tests/unit/deploy/synthetic_drive.hpp"
 
@@ -36,17 +36,17 @@ TEST(Summary, MissedMisalignmentFails) {
   auto snapshots = synthetic_drive();
   for (auto& s : snapshots) s.radars[1].extended_qualifier = ExtendedQualifier::kNormal;
   const Summary summary = summarise(snapshots, synthetic_truth());
-  EXPECT_FALSE(passed(summary, "front_right is crooked"));
+  EXPECT_FALSE(passed(summary, "front_right is misaligned in the truth"));
   EXPECT_FALSE(summary.all_passed());
 }
 
-TEST(Summary, FalseAlarmFailsEvenIfItWasTakenBack) {
+TEST(Summary, FalseAlarmFailsEvenIfItWasWithdrawn) {
   auto snapshots = synthetic_drive();
   snapshots[30].radars[2].extended_qualifier = ExtendedQualifier::kMisaligned;
-  EXPECT_FALSE(passed(summarise(snapshots, synthetic_truth()), "rear_left is within tolerance"));
+  EXPECT_FALSE(passed(summarise(snapshots, synthetic_truth()), "rear_left is within tolerance in the truth"));
 }
 
-TEST(Summary, ScansThatNeverArrivedAreMissedThoughNoSequenceHasAGap) {
+TEST(Summary, ScansThatNeverArrivedFailThoughNoSequenceHasAGap) {
   const auto snapshots = synthetic_drive();
   Truth truth = synthetic_truth();
   truth.scans[1] = snapshots.back().radars[0].scans;
@@ -91,7 +91,7 @@ TEST(Summary, VerdictIsThatOfTheDriveNotOfTheSilenceAfterIt) {
   EXPECT_NEAR(summary.duration_s, 59.5, 0.01);
 }
 
-TEST(Summary, CountersThatStartAnewAreAddedUp) {
+TEST(Summary, CountersThatBeginAgainAreAddedUp) {
   auto snapshots = synthetic_drive();
   for (std::size_t i = 60; i < snapshots.size(); ++i) {
     for (auto& radar : snapshots[i].radars) radar.scans -= 600;
@@ -102,27 +102,29 @@ TEST(Summary, CountersThatStartAnewAreAddedUp) {
   EXPECT_EQ(summary.latencies[0].total(), 4800U);
 }
 
-TEST(Summary, AnAimThatIsMissedIsToldAndFailsNothing) {
+TEST(Summary, MissedAimIsReportedAndFailsNothing) {
   Summary summary = summarise(synthetic_drive(), synthetic_truth());
   summary.checks.push_back({"an aim", false, true});
   EXPECT_TRUE(summary.all_passed());
   EXPECT_EQ(summary.missed_aims(), 1u);
   EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("  [MISSED] an aim\n"));
+  EXPECT_THAT(result_text(summary), ::testing::EndsWith("checks passed, 1 of 1 aims was missed."));
   ReportInput input;
   input.snapshots = synthetic_drive();
   input.more_checks = {{"an aim", false, true}};
   EXPECT_THAT(render_html(input), ::testing::HasSubstr("missed:</span> an aim"));
   summary.checks.push_back({"a check", false, false});
   EXPECT_FALSE(summary.all_passed());
+  EXPECT_THAT(result_text(summary), ::testing::MatchesRegex("1 of [0-9]+ checks FAILED, 1 of 1 aims was missed\\."));
 }
 
-TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheOnlooker) {
+TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheMonitor) {
   auto snapshots = synthetic_drive();
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     for (auto& radar : snapshots[i].radars) {
-      const std::uint64_t n = i < 60 ? i : i - 60;  // it began anew
-      radar.labels.told = {0, 10 * n, 80 * n, n, 3 * n, n};
-      radar.labels.left_out = 5 * n;
+      const std::uint64_t n = i < 60 ? i : i - 60;  // the monitor was restarted
+      radar.labels.classified = {0, 10 * n, 80 * n, n, 3 * n, n};
+      radar.labels.rejected = 5 * n;
       radar.labels.scans = n;
     }
   }
@@ -130,16 +132,16 @@ TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheOnlooker) {
   EXPECT_EQ(summary.radars[0].last.labels.of(Provenance::kMoving), 1180u);
   EXPECT_EQ(summary.labels.scans, 4u * 118u);
   EXPECT_EQ(labels_text(summary.labels),
-            "moving 10.0 %, stationary 80.0 %, ghost type 1 1.0 %, ghost type 2 3.0 %, clutter 1.0 %, left out by the "
-            "corrector 5.0 %");
-  EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("47200 detections told to be: moving 10.0 %"));
+            "moving 10.0 %, stationary 80.0 %, ghost type 1 1.0 %, ghost type 2 3.0 %, clutter 1.0 %, rejected by "
+            "the corrector 5.0 %");
+  EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("47,200 detections classified: moving 10.0 %"));
   const std::string page = render_html(
       {.title = "", .snapshots = snapshots, .truth = {}, .vehicle = {}, .more_checks = {}, .ghosts = {}, .events = {}});
   EXPECT_THAT(page, ::testing::HasSubstr("<td class=n title=\"4720\">10.00 %</td>"));
   EXPECT_THAT(page, ::testing::HasSubstr("of all detections, %"));
 }
 
-TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
+TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
   std::istringstream table(
       "quantity,radar,value,unit\nspeed_scale,,1.012,1\n"
       "alignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\nalignment_roll,2,-0.7,deg\nscans,2,899,1\n"
@@ -156,20 +158,22 @@ TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
   for (const std::uint32_t id : {1u, 2u}) {
     vehicle.radars.emplace_back();
     vehicle.radars.back().id = id;
-    vehicle.radars.back().mounting_pose = {{3.6, -0.7, 0.5}, -45.0 * kDegree, 2.0 * kDegree, 1.0 * kDegree};
+    vehicle.radars.back().mounting_pose = {
+        {3.6, -0.7, 0.5}, -45.0 * kRadiansPerDegree, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree};
   }
   const Truth truth = truth_of(drive, vehicle);
   EXPECT_EQ(truth.speed_scale, 1.012);
   EXPECT_EQ(truth.scans.at(2), 899u);
   EXPECT_EQ(truth.yaw_rad.size(), 2U);
-  ASSERT_EQ(truth.vehicle_rad.size(), 1U) << "of radar 1 not all is stated";
+  ASSERT_EQ(truth.vehicle_rad.size(), 1U) << "radar 1 lacks its pitch and roll";
   // R(actual) = R_x(roll)·R_y(−pitch)·R_z(yaw)·R(nominal), as AlignmentEstimate defines it.
   const auto& [yaw, pitch, roll] = truth.vehicle_rad.at(2);
-  const Eigen::Matrix3d turned = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()) *
-                                 Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
-                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                                 geometry::sensor_to_vehicle(-45.0 * kDegree, 2.0 * kDegree, 1.0 * kDegree);
-  const Eigen::Matrix3d actual = geometry::sensor_to_vehicle(-42.5 * kDegree, 2.4 * kDegree, 0.3 * kDegree);
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+      geometry::sensor_to_vehicle(-45.0 * kRadiansPerDegree, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree);
+  const Eigen::Matrix3d actual =
+      geometry::sensor_to_vehicle(-42.5 * kRadiansPerDegree, 2.4 * kRadiansPerDegree, 0.3 * kRadiansPerDegree);
   EXPECT_LT((turned - actual).norm(), 1e-12);
   std::istringstream nothing("");
   EXPECT_FALSE(truth_of(read_drive_truth(nothing), vehicle).known());
@@ -178,12 +182,12 @@ TEST(TruthTable, TakesWhatIsStatedAndNothingThatIsNoNumber) {
 TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
   auto snapshots = synthetic_drive();
   Truth truth = synthetic_truth();
-  truth.vehicle_rad[2] = {kMisaligned_rad, 0.4 * kDegree, 0.0};
+  truth.vehicle_rad[2] = {kMisaligned_rad, 0.4 * kRadiansPerDegree, 0.0};
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     monitor::AlignmentDetails& d = snapshots[i].radars[1].details;
-    d.yaw = {kMisaligned_rad + 0.02 * kDegree, 0.04 * kDegree, true};
-    d.pitch = {0.1 * kDegree, 0.1 * kDegree, true};
-    d.roll = {0.0, 4.0 * kDegree, false};
+    d.yaw = {kMisaligned_rad + 0.02 * kRadiansPerDegree, 0.04 * kRadiansPerDegree, true};
+    d.pitch = {0.1 * kRadiansPerDegree, 0.1 * kRadiansPerDegree, true};
+    d.roll = {0.0, 4.0 * kRadiansPerDegree, false};
     d.nees = i < 10 ? NAN : (i % 2 == 0 ? 0.5 : 1.0);
   }
   const Summary summary = summarise(snapshots, truth);
@@ -193,7 +197,7 @@ TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
   EXPECT_THAT(
       text,
       ::testing::ContainsRegex(
-          "front_right +\\+2\\.0e-04 \\(0\\.4 σ\\) +\\+0\\.020° \\(0\\.5 σ\\) +-0\\.300° \\(3\\.0 σ\\) +not observable "
+          "front_right +\\+0\\.00020 \\(0\\.4 σ\\) +\\+0\\.020° \\(0\\.5 σ\\) +-0\\.30° \\(3\\.0 σ\\) +not observable "
           "+0\\.50 +0\\.75"));
   const std::string page = render_html({.title = "",
                                         .snapshots = snapshots,
@@ -202,8 +206,8 @@ TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
                                         .more_checks = {},
                                         .ghosts = {},
                                         .events = {}});
-  EXPECT_THAT(page, ::testing::HasSubstr("Against the truth"));
-  EXPECT_THAT(page, ::testing::HasSubstr("-0.300° (3.0 σ)"));
+  EXPECT_THAT(page, ::testing::HasSubstr("Estimation errors"));
+  EXPECT_THAT(page, ::testing::HasSubstr("-0.30° (3.0 σ)"));
   EXPECT_THAT(page, ::testing::HasSubstr("0.75</td>"));
   EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("nan")));
   EXPECT_THAT(render_html({.title = "",
@@ -213,7 +217,7 @@ TEST(Summary, ErrorsAgainstTheTruthInSigmasWithTheMeanNees) {
                            .more_checks = {},
                            .ghosts = {},
                            .events = {}}),
-              ::testing::Not(::testing::HasSubstr("Against the truth")));
+              ::testing::Not(::testing::HasSubstr("Estimation errors")));
 }
 
 TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
@@ -228,14 +232,14 @@ TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
   for (const char* name : {"front_left", "front_right", "rear_left", "rear_right"}) {
     EXPECT_THAT(page, ::testing::HasSubstr("<h3>" + std::string(name) + "</h3>"));
   }
-  EXPECT_THAT(page, ::testing::HasSubstr("Everything worked."));
+  EXPECT_THAT(page, ::testing::HasSubstr("All checks passed."));
   EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("http")));
   EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("nan")));
   EXPECT_THAT(page, ::testing::Not(::testing::HasSubstr("inf")));
 }
 
 TEST(HtmlReport, SurvivesARunWithoutAnyData) {
-  EXPECT_THAT(render_html({}), ::testing::HasSubstr("Not everything worked."));
+  EXPECT_THAT(render_html({}), ::testing::HasSubstr("Not all checks passed."));
   EXPECT_THAT(render_html({.title = "",
                            .snapshots = {monitor::Snapshot()},
                            .truth = {},
@@ -244,30 +248,6 @@ TEST(HtmlReport, SurvivesARunWithoutAnyData) {
                            .ghosts = {},
                            .events = {}}),
               ::testing::HasSubstr("No scan reached the tracker."));
-}
-
-TEST(SvgChart, TicksAreRoundAndCoverTheRange) {
-  EXPECT_THAT(SvgChart::ticks(0.0, 60.0, 6), ::testing::ElementsAre(0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0));
-  const auto ticks = SvgChart::ticks(-1.3, 1.3, 5);
-  ASSERT_EQ(ticks.size(), 3U);
-  EXPECT_DOUBLE_EQ(ticks[0], -1.0);
-  EXPECT_DOUBLE_EQ(ticks[1], 0.0);
-  EXPECT_THAT(SvgChart::ticks(1.0, 1.0, 5), ::testing::IsEmpty());
-}
-
-TEST(SvgChart, NumbersAtTheEdgeLieInThePicture) {
-  const SvgChart chart(520, 250, {.min = 100.0, .max = 10000.0, .label = "x", .logarithmic = true}, {.label = "y"});
-  const std::string text = chart.finish();
-  EXPECT_THAT(text, ::testing::ContainsRegex("text-anchor=\"middle\"[^<]*>1000<"));
-  EXPECT_THAT(text, ::testing::ContainsRegex("text-anchor=\"end\"[^<]*>10000<"));
-}
-
-TEST(SvgChart, LeavesOutWhatIsNotANumber) {
-  SvgChart chart(100, 100, {.label = "x"}, {.label = "y"});
-  chart.line({{0.0, 0.0}, {0.5, NAN}, {1.0, 1.0}}, "estimate");
-  chart.dot({INFINITY, 0.0}, 2.0, "head");
-  EXPECT_THAT(chart.finish(), ::testing::Not(::testing::HasSubstr("nan")));
-  EXPECT_THAT(chart.finish(), ::testing::Not(::testing::HasSubstr("<circle")));
 }
 
 }  // namespace

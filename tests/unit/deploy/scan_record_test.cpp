@@ -86,7 +86,7 @@ TEST_F(ScanRecord, IsReadAsItWasWritten) {
   EXPECT_EQ(reader.next(*read_scan_, *read_tracks_), Line::kEnd);
 }
 
-TEST_F(ScanRecord, CutAnywhereGivesWhatIsWhole) {
+TEST_F(ScanRecord, CutAnywhereYieldsTheWholeLines) {
   std::stringstream record;
   write_scan(record, *scan_);
   const std::size_t first = record.str().size();
@@ -101,7 +101,7 @@ TEST_F(ScanRecord, CutAnywhereGivesWhatIsWhole) {
   }
 }
 
-TEST_F(ScanRecord, WhatNoMonitorWritesIsCountedAndNothingElseIsLost) {
+TEST_F(ScanRecord, DamagedLinesAreCountedAndNoOtherLineIsLost) {
   std::istringstream record(
       "scan 1 1 1 0 0 0 0 4000000000 .\nscan 1 1 1 0 0 0 0 0 0 .\nscan 1 1 1 0 0 0 0 1 q 0 0 0 0 0 .\n\n"
       "scan 1 1 1 0 0 0 0 0 0 .\n");
@@ -117,7 +117,7 @@ TEST_F(ScanRecord, WhatNoMonitorWritesIsCountedAndNothingElseIsLost) {
       << "the first is kept";
 }
 
-TEST_F(ScanRecord, ADamagedLineIsToldWithFieldAndWhatIsAllowed) {
+TEST_F(ScanRecord, DamagedLineIsReportedWithFieldAndAllowedValues) {
   struct {
     const char* line;
     const char* why;

@@ -198,7 +198,7 @@ TEST_F(SupervisorTest, RoudiThatHangsAfterARestartIsTriedAgain) {
 
 TEST_F(SupervisorTest, SpectatorIsNotWaitedForAndIndependentOutlivesARestart) {
   ProcessSpec spectator = service("eyes", "hang_later");
-  std::ofstream(bus() / "socket-eyes.started") << "";  // so that it never says it is ready
+  std::ofstream(bus() / "socket-eyes.started") << "";  // so that it never reports itself ready
   spectator.role = Role::kSpectator;
   Supervisor supervisor(domain({service("a"), spectator}));
   supervisor.start();

@@ -1,4 +1,4 @@
-// Snapshots as a monitor would have recorded them on a drive with one crooked radar.
+// Snapshots as a monitor would have recorded them on a drive with one misaligned radar.
 #pragma once
 
 #include <cmath>
@@ -6,14 +6,13 @@
 
 #include "services/boresight/monitor/snapshot.hpp"
 #include "services/boresight/report/summary.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::report {
-
-inline constexpr double kDegree = 3.14159265358979323846 / 180.0;
-inline constexpr double kMisaligned_rad = 2.5 * kDegree;
+inline constexpr double kMisaligned_rad = 2.5 * kRadiansPerDegree;
 
 inline Truth synthetic_truth() {
-  return {.yaw_rad = {{1, 0.1 * kDegree}, {2, kMisaligned_rad}, {3, -0.3 * kDegree}, {4, 0.0}},
+  return {.yaw_rad = {{1, 0.1 * kRadiansPerDegree}, {2, kMisaligned_rad}, {3, -0.3 * kRadiansPerDegree}, {4, 0.0}},
           .speed_scale = 1.03,
           .vehicle_rad = {},
           .scans = {}};
@@ -33,8 +32,8 @@ inline std::vector<monitor::Snapshot> synthetic_drive() {
       radar.name = kNames[id - 1];
       radar.scans = static_cast<std::uint64_t>(10 * step + 10);
       radar.rate_hz = 20.0;
-      radar.yaw_tolerance_rad = 1.5 * kDegree;
-      const double std_rad = 0.6 * kDegree / std::sqrt(1.0 + t_s);
+      radar.yaw_tolerance_rad = 1.5 * kRadiansPerDegree;
+      const double std_rad = 0.6 * kRadiansPerDegree / std::sqrt(1.0 + t_s);
       const double wobble_rad = std_rad * std::sin(0.7 * t_s + id);
       radar.state = t_s < 8 ? AlignmentState::kConverging : AlignmentState::kConverged;
       radar.yaw = {synthetic_truth().yaw_rad.at(id) + wobble_rad, std_rad, true};

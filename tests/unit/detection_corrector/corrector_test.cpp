@@ -8,23 +8,24 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 
 namespace boresight::corrector {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kTime = 1'000'000'000'000;
 
 VehicleConfig one_radar(double yaw_deg = 0.0, double pitch_deg = 0.0, double roll_deg = 0.0) {
   VehicleConfig vehicle;
   RadarConfig radar;
   radar.id = 2;
-  radar.mounting_pose = {{3.6, -0.7, 0.5}, yaw_deg * kDegree, pitch_deg * kDegree, roll_deg * kDegree};
+  radar.mounting_pose = {
+      {3.6, -0.7, 0.5}, yaw_deg * kRadiansPerDegree, pitch_deg * kRadiansPerDegree, roll_deg * kRadiansPerDegree};
   radar.noise = {.range_std_m = 0.1,
-                 .azimuth_std_rad = 0.2 * kDegree,
-                 .elevation_std_rad = 0.3 * kDegree,
+                 .azimuth_std_rad = 0.2 * kRadiansPerDegree,
+                 .elevation_std_rad = 0.3 * kRadiansPerDegree,
                  .range_rate_std_mps = 0.03};
   vehicle.radars.push_back(radar);
   return vehicle;
@@ -86,9 +87,9 @@ TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
   // A point of the vehicle frame, as a sensor with all three angles would see it.
   Corrector corrector(one_radar(-45.0, 3.0, -2.0), Config{});
   const Eigen::Vector3d point(20.0, -9.0, 1.2), mount(3.6, -0.7, 0.5);
-  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(-45.0 * kDegree, Eigen::Vector3d::UnitZ()) *
-                                    Eigen::AngleAxisd(-3.0 * kDegree, Eigen::Vector3d::UnitY()) *
-                                    Eigen::AngleAxisd(-2.0 * kDegree, Eigen::Vector3d::UnitX()))
+  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(-45.0 * kRadiansPerDegree, Eigen::Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(-3.0 * kRadiansPerDegree, Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(-2.0 * kRadiansPerDegree, Eigen::Vector3d::UnitX()))
                                        .toRotationMatrix();
   const Eigen::Vector3d seen = rotation.transpose() * (point - mount);
   add(seen.norm(), std::atan2(seen.y(), seen.x()), std::asin(seen.z() / seen.norm()), 0.0);
@@ -102,20 +103,20 @@ TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
   EXPECT_NEAR(out_->geometry.sensor_position_vehicle_m[1], -0.7, 1e-6);
 }
 
-TEST_F(CorrectorTest, EstimateIsAppliedWhereItIsSure) {
+TEST_F(CorrectorTest, EstimateIsAppliedIfCertainEnough) {
   Corrector corrector(one_radar(), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kDegree, 1.01)));
+  ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kRadiansPerDegree, 1.01)));
   corrector.add_ego_motion(ego(20.0F, 0.0F));
-  add(50.0, 0.0, 0.0, -20.2 * std::cos(2.0 * kDegree));
+  add(50.0, 0.0, 0.0, -20.2 * std::cos(2.0 * kRadiansPerDegree));
   corrector.correct(*scan_, *out_);
-  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 2.0 * kDegree, 1e-6);
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 2.0 * kRadiansPerDegree, 1e-6);
   EXPECT_NEAR(out_->elevation_vehicle_rad[0], 0.0, 1e-6) << "pitch is not observable";
   EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-5);
   EXPECT_EQ(out_->alignment_sequence, 77u);
   EXPECT_EQ(out_->flags, 0u);
   EXPECT_NEAR(out_->geometry.ego_speed_mps, 20.2, 1e-5);
 
-  AlignmentEstimate unsure = estimate(3.0 * kDegree, 1.01);
+  AlignmentEstimate unsure = estimate(3.0 * kRadiansPerDegree, 1.01);
   unsure.covariance[5] = 1e-3F;  // 1.8°
   unsure.observable = alignment_axis::kYaw;
   Corrector other(one_radar(), Config{});
@@ -125,14 +126,15 @@ TEST_F(CorrectorTest, EstimateIsAppliedWhereItIsSure) {
   EXPECT_TRUE(out_->flags & pipeline_flag::kNoAlignment);
 }
 
-TEST_F(CorrectorTest, WhatStandsStillHasNoRangeRateOverGround) {
+TEST_F(CorrectorTest, StationaryReflectorsHaveNoRangeRateOverGround) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> azimuth(-1.2, 1.2), elevation(-0.2, 0.2), angle(-3.0, 3.0);
-  const double yaw = 1.7 * kDegree, scale = 1.012;
+  const double yaw = 1.7 * kRadiansPerDegree, scale = 1.012;
   Corrector corrector(one_radar(135.0, 2.0, 1.0), Config{});
   ASSERT_TRUE(corrector.add_alignment(estimate(yaw, scale)));
   corrector.add_ego_motion(ego(14.0F, 0.4F));
-  const Eigen::Matrix3d rotation = geometry::sensor_to_vehicle(135.0 * kDegree + yaw, 2.0 * kDegree, 1.0 * kDegree);
+  const Eigen::Matrix3d rotation =
+      geometry::sensor_to_vehicle(135.0 * kRadiansPerDegree + yaw, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree);
   const Eigen::Vector3d velocity(scale * 14.0 + 0.4 * 0.7, 0.4 * 3.6, 0.0);
   for (int i = 0; i < 500; ++i) {
     const double a = azimuth(random), e = elevation(random);
@@ -147,8 +149,8 @@ TEST_F(CorrectorTest, WhatStandsStillHasNoRangeRateOverGround) {
 }
 
 TEST_F(CorrectorTest, MovingThresholdByHand) {
-  // Straight ahead at 10 m/s with k_v known to 0.001, ego speed to 0.03 and range rates to 0.03 m/s: angles do not
-  // count.
+  // Straight ahead at 10 m/s with σ of 0.001 for k_v and 0.03 m/s for ego speed and range rates: angles have no
+  // effect.
   const Config config;
   const double std = std::sqrt(0.03 * 0.03 + 0.03 * 0.03 + 0.01 * 0.01 + std::pow(config.body_motion_std_mps, 2));
   const double threshold = config.moving_sigma * std;
@@ -158,19 +160,19 @@ TEST_F(CorrectorTest, MovingThresholdByHand) {
   add(50.0, 0.0, 0.0, -10.0 + threshold - 0.01);
   add(50.0, 0.0, 0.0, -10.0 + threshold + 0.01);
   add(50.0, 0.0, 0.0, -10.0 - threshold - 0.01);
-  add(50.0, 60.0 * kDegree, 0.0, -5.0 + threshold + 0.01);  // here the azimuth's noise counts as well
+  add(50.0, 60.0 * kRadiansPerDegree, 0.0, -5.0 + threshold + 0.01);  // here the noise of the azimuth has an effect too
   corrector.correct(*scan_, *out_);
   EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary);
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kMoving);
   EXPECT_TRUE(out_->detection_flags[2] & corrected_flag::kMoving);
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kStationary);
-  // The covariance of what is left of the mounting goes on.
+  // The covariance of the remaining mounting error is published.
   EXPECT_NEAR(out_->speed_scale_std, 1e-3, 1e-6);
   EXPECT_NEAR(out_->mounting_covariance[5], 1e-7, 1e-9);
   EXPECT_NEAR(out_->mounting_covariance[3], 0.005, 1e-6);
 }
 
-TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreTakenOut) {
+TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreRemoved) {
   Corrector corrector(one_radar(), Config{});
   AlignmentEstimate e = estimate(0.0, 1.0);
   e.observable |= alignment_axis::kYawRateBias | alignment_axis::kSlip;
@@ -181,7 +183,7 @@ TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreTakenOut) {
   corrector.add_ego_motion(ego(20.0F, 0.22F));
   // True yaw rate 0.2 rad/s: the sensor moves by 20 + 0.2·0.7 ahead and 0.2·3.6 − 0.004·400·0.2 to the left.
   add(50.0, 0.0, 0.0, -20.14);
-  add(50.0, 90.0 * kDegree, 0.0, -0.4);
+  add(50.0, 90.0 * kRadiansPerDegree, 0.0, -0.4);
   corrector.correct(*scan_, *out_);
   EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-4);
   EXPECT_NEAR(out_->range_rate_over_ground_mps[1], 0.0, 1e-4);
@@ -195,10 +197,10 @@ TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
   Corrector corrector(one_radar(), config);
   corrector.add_ego_motion(ego(10.0F, 0.0F));
   add(50.0, 0.0, 0.0, -10.0);
-  add(250.0, 0.0, 0.0, -10.0);           // beyond the box
-  add(30.0, 0.0, 20.0 * kDegree, -9.4);  // above it
-  add(10.0, 0.0, 0.0, -10.0, -6.0);      // limit −5 at 10 m
-  add(40.0, 0.0, 0.0, -10.0, -10.0);     // limit −11 at 40 m
+  add(250.0, 0.0, 0.0, -10.0);                     // outside the box
+  add(30.0, 0.0, 20.0 * kRadiansPerDegree, -9.4);  // above it
+  add(10.0, 0.0, 0.0, -10.0, -6.0);                // limit −5 at 10 m
+  add(40.0, 0.0, 0.0, -10.0, -10.0);               // limit −11 at 40 m
   add(50.0, 0.0, 0.0, -10.0);
   scan_->detection_flags[5] = detection_flag::kInvalid;
   add(50.0, 0.0, 0.0, -10.0);
@@ -210,10 +212,10 @@ TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kWeak);
   EXPECT_FALSE(out_->detection_flags[4] & corrected_flag::kWeak);
   EXPECT_EQ(out_->detection_flags[5], corrected_flag::kInvalid);
-  EXPECT_EQ(out_->detection_flags[6], corrected_flag::kAmbiguous) << "an aliased range rate says nothing of motion";
+  EXPECT_EQ(out_->detection_flags[6], corrected_flag::kAmbiguous) << "an aliased range rate determines no motion";
 }
 
-TEST_F(CorrectorTest, MissingSideInputsAreSaid) {
+TEST_F(CorrectorTest, MissingSideInputsAreFlagged) {
   Corrector corrector(one_radar(), Config{});
   add(50.0, 0.0, 0.0, -10.0);
   corrector.correct(*scan_, *out_);
@@ -230,7 +232,7 @@ TEST_F(CorrectorTest, MissingSideInputsAreSaid) {
   EXPECT_EQ(out_->geometry.ego_speed_mps, 0.0F);
 }
 
-TEST_F(CorrectorTest, NumbersThatAreNoneAreInvalidAndHarmNobodyElse) {
+TEST_F(CorrectorTest, NonFiniteValuesAreInvalidAndDoNotAffectOthers) {
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(10.0F, 0.0F));
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
@@ -254,7 +256,7 @@ TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
   unknown.header.source_id = 9;
   EXPECT_FALSE(corrector.add_alignment(unknown));
   for (std::uint32_t i = 0; i < kMaxDetections; ++i) add(20.0, 0.0, 0.0, -10.0);
-  scan_->number_of_valid_detections = 5000;  // a scan that lies about its length
+  scan_->number_of_valid_detections = 5000;  // a scan with a wrong length
   corrector.correct(*scan_, *out_);
   EXPECT_EQ(out_->number_of_valid_detections, kMaxDetections);
   scan_->header.source_id = 9;
@@ -263,12 +265,12 @@ TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
 }
 
 TEST_F(CorrectorTest, QuarterTurnsByHand) {
-  // Mounted to the left at (3.6, −0.7, 0.5): what it sees ahead of itself is at the vehicle's left, what it sees to its
-  // left is behind, and what it sees above is above.
+  // Mounted to the left at (3.6, −0.7, 0.5): a reflector ahead of it is at the vehicle's left, one at its left is
+  // behind, and one above it is above.
   Corrector corrector(one_radar(90.0), Config{});
   add(10.0, 0.0, 0.0, -1.0);
-  add(10.0, 90.0 * kDegree, 0.0, -1.0);
-  add(2.0, 0.0, 90.0 * kDegree, -1.0);
+  add(10.0, 90.0 * kRadiansPerDegree, 0.0, -1.0);
+  add(2.0, 0.0, 90.0 * kRadiansPerDegree, -1.0);
   corrector.correct(*scan_, *out_);
   const double expected[3][3] = {{3.6, 9.3, 0.5}, {-6.4, -0.7, 0.5}, {3.6, -0.7, 2.5}};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -276,7 +278,7 @@ TEST_F(CorrectorTest, QuarterTurnsByHand) {
     EXPECT_NEAR(out_->y_vehicle_m[i], expected[i][1], 1e-5) << i;
     EXPECT_NEAR(out_->z_vehicle_m[i], expected[i][2], 1e-5) << i;
   }
-  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 90.0 * kDegree, 1e-6);
+  EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 90.0 * kRadiansPerDegree, 1e-6);
   EXPECT_NEAR(std::abs(out_->azimuth_vehicle_rad[1]), M_PI, 1e-6);
 }
 
@@ -286,20 +288,20 @@ TEST_F(CorrectorTest, LeverArmByHand) {
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(0.0F, 0.5F));
   add(20.0, 0.0, 0.0, -0.35);
-  add(20.0, 90.0 * kDegree, 0.0, -1.8);
-  add(20.0, -90.0 * kDegree, 0.0, 1.8);
+  add(20.0, 90.0 * kRadiansPerDegree, 0.0, -1.8);
+  add(20.0, -90.0 * kRadiansPerDegree, 0.0, 1.8);
   corrector.correct(*scan_, *out_);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(out_->range_rate_over_ground_mps[i], 0.0, 1e-5) << i;
   EXPECT_NEAR(out_->geometry.sensor_velocity_vehicle_mps[0], 0.35, 1e-6);
   EXPECT_NEAR(out_->geometry.sensor_velocity_vehicle_mps[1], 1.8, 1e-6);
 }
 
-TEST_F(CorrectorTest, ThereAndBackIsWhatWasMeasured) {
-  // From the output alone, with the geometry that it states, back to what the sensor said.
+TEST_F(CorrectorTest, TheInverseGivesTheMeasuredValues) {
+  // From the output alone, with the geometry that it states, back to the values of the sensor.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> azimuth(-1.3, 1.3), elevation(-0.3, 0.3), range(1.0, 90.0), rate(-30.0, 30.0);
   Corrector corrector(one_radar(-135.0, -2.0, 4.0), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(-1.1 * kDegree, 0.99)));
+  ASSERT_TRUE(corrector.add_alignment(estimate(-1.1 * kRadiansPerDegree, 0.99)));
   corrector.add_ego_motion(ego(25.0F, -0.2F));
   for (int i = 0; i < 300; ++i) add(range(random), azimuth(random), elevation(random), rate(random));
   corrector.correct(*scan_, *out_);
@@ -326,12 +328,12 @@ TEST_F(CorrectorTest, ThereAndBackIsWhatWasMeasured) {
   }
 }
 
-TEST_F(CorrectorTest, SideInputsThatAreNoNumbersAreNotApplied) {
+TEST_F(CorrectorTest, NonFiniteSideInputsAreNotApplied) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  add(50.0, 10.0 * kDegree, 0.0, -10.0 * std::cos(10.0 * kDegree));
+  add(50.0, 10.0 * kRadiansPerDegree, 0.0, -10.0 * std::cos(10.0 * kRadiansPerDegree));
   for (int what = 0; what < 4; ++what) {
     Corrector corrector(one_radar(), Config{});
-    AlignmentEstimate bad = estimate(2.0 * kDegree, 1.01);
+    AlignmentEstimate bad = estimate(2.0 * kRadiansPerDegree, 1.01);
     if (what == 0) bad.vehicle_yaw_rad = bad.speed_scale = nan;
     if (what == 1) bad.covariance[0] = bad.vehicle_covariance[5] = nan;
     if (what == 2) bad.covariance[0] = bad.vehicle_covariance[5] = -1.0F;
@@ -341,13 +343,13 @@ TEST_F(CorrectorTest, SideInputsThatAreNoNumbersAreNotApplied) {
     corrector.add_ego_motion(ego(nan, 0.0F, kTime + 10'000'000));
     corrector.correct(*scan_, *out_);
     EXPECT_EQ(out_->flags, pipeline_flag::kNoAlignment) << what;
-    EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 10.0 * kDegree, 1e-6) << what;
+    EXPECT_NEAR(out_->azimuth_vehicle_rad[0], 10.0 * kRadiansPerDegree, 1e-6) << what;
     EXPECT_NEAR(out_->range_rate_over_ground_mps[0], 0.0, 1e-5) << what;
     EXPECT_EQ(out_->detection_flags[0], corrected_flag::kStationary) << what;
   }
 }
 
-TEST_F(CorrectorTest, StatedStdsAreUsedWhereTheyAreNumbers) {
+TEST_F(CorrectorTest, StatedStdsAreUsedIfTheyAreNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Corrector corrector(one_radar(), Config{});
   corrector.add_ego_motion(ego(10.0F, 0.0F));
@@ -360,7 +362,7 @@ TEST_F(CorrectorTest, StatedStdsAreUsedWhereTheyAreNumbers) {
   }
   corrector.correct(*scan_, *out_);
   EXPECT_EQ(out_->range_rate_std_mps[0], 0.7F);
-  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary) << "1.5 m/s is within three of its stds";
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kStationary) << "1.5 m/s is within three stds";
   for (std::size_t i = 1; i < 3; ++i) {
     EXPECT_EQ(out_->range_rate_std_mps[i], 0.03F) << "that of the vehicle file";
     EXPECT_EQ(out_->range_std_m[i], 0.1F);
@@ -393,13 +395,13 @@ TEST_F(CorrectorTest, EachFaceOfTheBoxIsALimit) {
   }
 }
 
-TEST_F(CorrectorTest, RcsIsComparedOnlyWhereItIsKnown) {
+TEST_F(CorrectorTest, RcsIsComparedOnlyIfKnown) {
   const Corrector corrector(one_radar(), Config{});
   add(50.0, 0.0, 0.0, 0.0, std::numeric_limits<double>::quiet_NaN());
   add(50.0, 0.0, 0.0, 0.0, -25.1);
   add(50.0, 0.0, 0.0, 0.0, -24.9);
   corrector.correct(*scan_, *out_);
-  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kWeak) << "no number is no evidence";
+  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kWeak) << "an RCS that is not a number sets no flag";
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kWeak);
   EXPECT_FALSE(out_->detection_flags[2] & corrected_flag::kWeak);
   scan_->fields = scan_field::kElevation;

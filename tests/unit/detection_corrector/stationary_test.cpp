@@ -1,5 +1,5 @@
-// What stands still is told as moving as often as the configured sigma says, whatever is known of the mounting; and a
-// slow mover is told where its range rate can tell it.
+// The share of stationary reflectors that are classified as moving matches the configured sigma, whatever the certainty
+// of the mounting; and a slow object is classified as moving if its range rate shows it.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -7,16 +7,16 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
 
 namespace boresight::corrector {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kTime = 1'000'000'000'000;
 
-/// How wrong everything is, 1 sigma.
+/// Standard deviations of all errors.
 struct Spread {
   double yaw_deg, pitch_deg, roll_deg;  // of the estimate, about the vehicle's axes
   double speed_scale;
@@ -27,9 +27,9 @@ struct Case {
   double yaw_rate_radps = 0.0;
   double mount_yaw_deg = -45.0;
   double sigma = 2.5;
-  Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();  // roll about x, about y, about z: as estimated
+  Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();  // estimated rotation about x, y, z
   Spread spread{0.05, 0.1, 0.3, 5e-4};
-  bool draws_turn = false;  // the estimate is itself wrong by its spread: nothing is known yet
+  bool draws_turn = false;  // the error of the estimate is drawn from its covariance: nothing is known yet
   bool has_estimate = true;
   bool has_elevation = true;
   std::uint32_t observable = alignment_axis::kVehicleYaw | alignment_axis::kVehiclePitch |
@@ -40,17 +40,17 @@ struct Case {
 RadarConfig radar_of(const Case& c) {
   RadarConfig radar;
   radar.id = 2;
-  radar.mounting_pose = {{3.6, -0.7, 0.5}, c.mount_yaw_deg * kDegree, 0.0, 0.0};
-  radar.field_of_view.elevation_min_rad = -10.0 * kDegree;
-  radar.field_of_view.elevation_max_rad = 10.0 * kDegree;
+  radar.mounting_pose = {{3.6, -0.7, 0.5}, c.mount_yaw_deg * kRadiansPerDegree, 0.0, 0.0};
+  radar.field_of_view.elevation_min_rad = -10.0 * kRadiansPerDegree;
+  radar.field_of_view.elevation_max_rad = 10.0 * kRadiansPerDegree;
   radar.noise = {.range_std_m = 0.1,
-                 .azimuth_std_rad = 0.3 * kDegree,
-                 .elevation_std_rad = 0.5 * kDegree,
+                 .azimuth_std_rad = 0.3 * kRadiansPerDegree,
+                 .elevation_std_rad = 0.5 * kRadiansPerDegree,
                  .range_rate_std_mps = 0.04};
   return radar;
 }
 
-/// Drives with errors drawn from what the messages state; a fraction of detections told as moving.
+/// Drives with errors drawn from the stds in the messages; returns the share of detections classified as moving.
 class Simulation {
  public:
   explicit Simulation(const Case& c, std::uint64_t seed = 1) : case_(c), random_(seed) {
@@ -59,7 +59,7 @@ class Simulation {
     config_.region_max_m[2] = 50.0;
   }
 
-  /// `over_ground`: velocity of what is seen, of its line of sight (vehicle axes).
+  /// `over_ground`: velocity of the object as a function of its line of sight (vehicle axes).
   template <typename Velocity>
   double moving_rate(int scans, int per_scan, double azimuth_limit_deg, Velocity&& over_ground) {
     std::size_t moving = 0, all = 0;
@@ -68,7 +68,7 @@ class Simulation {
     for (int s = 0; s < scans; ++s) {
       Corrector corrector(vehicle_, config_);
       const Eigen::Matrix3d rotation = draw(corrector);
-      fill(*scan, per_scan, azimuth_limit_deg * kDegree, rotation, over_ground);
+      fill(*scan, per_scan, azimuth_limit_deg * kRadiansPerDegree, rotation, over_ground);
       corrector.correct(*scan, *out);
       for (int i = 0; i < per_scan; ++i) {
         const std::uint16_t flags = out->detection_flags[static_cast<std::size_t>(i)];
@@ -86,14 +86,14 @@ class Simulation {
  private:
   double normal(double std) { return std * std::normal_distribution<double>()(random_); }
 
-  /// Gives the corrector its side inputs; returns the true rotation and keeps the true velocity of the sensor.
+  /// Passes the side inputs to the corrector; returns the true rotation and stores the true velocity of the sensor.
   Eigen::Matrix3d draw(Corrector& corrector) {
     const RadarConfig& radar = vehicle_.radars[0];
     const Eigen::Vector3d std =
-        Eigen::Vector3d(case_.spread.roll_deg, case_.spread.pitch_deg, case_.spread.yaw_deg) * kDegree;
+        Eigen::Vector3d(case_.spread.roll_deg, case_.spread.pitch_deg, case_.spread.yaw_deg) * kRadiansPerDegree;
     const Eigen::Vector3d error(normal(std.x()), normal(std.y()), normal(std.z()));
     const double scale_error = normal(case_.spread.speed_scale), estimated_scale = 1.008;
-    Eigen::Vector3d turn = case_.turn_deg * kDegree;
+    Eigen::Vector3d turn = case_.turn_deg * kRadiansPerDegree;
     if (case_.draws_turn) turn += 0.5 * Eigen::Vector3d(normal(std.x()), normal(std.y()), normal(std.z()));
     const double bias = case_.has_estimate ? 0.003 + normal(2e-4) : 0.0;
     const double slip = case_.has_estimate ? 0.003 + normal(2e-4) : 0.0;
@@ -148,10 +148,10 @@ class Simulation {
       const double a = azimuth(random_), range = 6.0 + 50.0 * uniform(random_);
       double e = elevation(random_);
       if (!case_.has_elevation) {
-        // Reflects anywhere between the road and the top of something that stands on it, inside of the view.
+        // Reflectors anywhere between the road and the top of an object on it, within the field of view.
         do {
           e = std::asin((4.7 * uniform(random_) * uniform(random_) - 0.5) / range);
-        } while (std::abs(e) > 10.0 * kDegree);
+        } while (std::abs(e) > 10.0 * kRadiansPerDegree);
       }
       const Eigen::Vector3d direction = rotation * geometry::direction(a, e);
       scan.range_m[i] = static_cast<float>(range);
@@ -186,7 +186,7 @@ void expect_rate_of_sigma(const Case& c, const char* what) {
   EXPECT_LT(rate, 2.0 * rate_of(c.sigma)) << what;
 }
 
-TEST(StationaryTest, AlignedRadarsAreWrongAsOftenAsSigmaSays) {
+TEST(StationaryTest, ErrorRateOfAlignedRadarsMatchesSigma) {
   for (const double mount_yaw_deg : {0.0, -45.0, 90.0, 135.0}) {
     for (const double speed_mps : {1.0, 10.0, 35.0}) {
       for (const double sigma : {2.0, 3.0}) {
@@ -201,49 +201,51 @@ TEST(StationaryTest, AlignedRadarsAreWrongAsOftenAsSigmaSays) {
   }
 }
 
-TEST(StationaryTest, MisalignedRadarsThatHaveConvergedAsWell) {
+TEST(StationaryTest, ErrorRateOfConvergedMisalignedRadarsMatchesSigma) {
   for (const double mount_yaw_deg : {0.0, -45.0, 135.0}) {
     Case c;
     c.mount_yaw_deg = mount_yaw_deg;
     c.turn_deg = {1.5, -2.0, 2.5};
     c.yaw_rate_radps = 0.2;
-    expect_rate_of_sigma(c, "crooked, converged");
+    expect_rate_of_sigma(c, "misaligned, converged");
   }
 }
 
-TEST(StationaryTest, BeforeTheEstimateHasConvergedItsSpreadWidensTheThreshold) {
+TEST(StationaryTest, BeforeConvergenceTheCovarianceWidensTheThreshold) {
   for (const double mount_yaw_deg : {0.0, -45.0, 135.0}) {
     Case c;
     c.mount_yaw_deg = mount_yaw_deg;
     c.spread = {2.0, 2.0, 3.0, 0.015};
     c.draws_turn = true;
     expect_rate_of_sigma(c, "not yet converged");
-    c.observable = 0;  // the prior alone
+    c.observable = 0;  // only the prior
     c.draws_turn = false;
     expect_rate_of_sigma(c, "not observable");
   }
 }
 
-TEST(StationaryTest, WithoutAnEstimateWhatIsUnknownIsThatOfTheConfiguration) {
+TEST(StationaryTest, WithoutAnEstimateTheConfiguredStdsApply) {
   const Config config;
   Case c;
   c.has_estimate = false;
-  const double angle_deg = config.unknown_rotation_std_rad / kDegree;
+  const double angle_deg = config.unknown_rotation_std_rad / kRadiansPerDegree;
   c.spread = {angle_deg, angle_deg, angle_deg, config.unknown_speed_scale_std};
   expect_rate_of_sigma(c, "without an estimate");
 }
 
-TEST(StationaryTest, ElevationsThatAreNotMeasuredMakeNothingMove) {
+TEST(StationaryTest, UnmeasuredElevationsAreNotMotion) {
   Case c;
   c.has_elevation = false;
   for (const double speed_mps : {10.0, 30.0}) {
     c.speed_mps = speed_mps;
-    // Of what is expected of them they may have none or twice as much: wider than this world, hence no lower bound.
+    // The model admits from zero to twice the expected reduction. This is wider than in this world, so there is no
+    // lower
+    // bound.
     EXPECT_LT(Simulation(c).stationary_rate(), 2.0 * rate_of(c.sigma)) << speed_mps;
   }
 }
 
-TEST(StationaryTest, AMoverAtWalkingPaceIsToldWhereItsRangeRateTellsIt) {
+TEST(StationaryTest, AWalkingPaceIsDetectedAlongTheLineOfSight) {
   Case c;
   c.sigma = Config{}.moving_sigma;
   c.speed_mps = 10.0;
@@ -253,14 +255,14 @@ TEST(StationaryTest, AMoverAtWalkingPaceIsToldWhereItsRangeRateTellsIt) {
       return sign * Eigen::Vector3d(-sight.y(), sight.x(), 0.0).normalized();
     };
     EXPECT_GT(Simulation(c).moving_rate(300, 40, 60.0, along), 0.99);
-    // Across the line of sight nothing tells it.
+    // Motion across the line of sight cannot be measured.
     EXPECT_LT(Simulation(c).moving_rate(300, 40, 60.0, across), 0.01);
-    // On a course of its own, forward: along the line of sight of a radar that looks ahead.
+    // Motion forward, along the line of sight of a radar that looks ahead.
     Case ahead = c;
     ahead.mount_yaw_deg = 0.0;
     const auto forward = [&](const Eigen::Vector3d&) -> Eigen::Vector3d { return {sign, 0.0, 0.0}; };
     EXPECT_GT(Simulation(ahead).moving_rate(300, 40, 30.0, forward), 0.99);
-    // To the left, seen by a radar that looks to the left.
+    // Motion to the left, along the line of sight of a radar that looks to the left.
     Case left = c;
     left.mount_yaw_deg = 90.0;
     const auto leftward = [&](const Eigen::Vector3d&) -> Eigen::Vector3d { return {0.0, sign, 0.0}; };
@@ -268,7 +270,7 @@ TEST(StationaryTest, AMoverAtWalkingPaceIsToldWhereItsRangeRateTellsIt) {
   }
 }
 
-TEST(StationaryTest, AnUnknownMountingAdmitsThatItCannotTellToTheSide) {
+TEST(StationaryTest, AnUnknownMountingWidensTheThresholdToTheSide) {
   Case c;
   c.sigma = Config{}.moving_sigma;
   c.speed_mps = 20.0;

@@ -4,16 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
+
 namespace boresight {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 RadarConfig radar_of(double height_m, double half_view_deg) {
   RadarConfig radar;
   radar.mounting_pose.position_m = {3.6, 0.0, height_m};
-  radar.field_of_view.elevation_min_rad = -half_view_deg * kDegree;
-  radar.field_of_view.elevation_max_rad = half_view_deg * kDegree;
+  radar.field_of_view.elevation_min_rad = -half_view_deg * kRadiansPerDegree;
+  radar.field_of_view.elevation_max_rad = half_view_deg * kRadiansPerDegree;
   return radar;
 }
 
@@ -28,7 +28,7 @@ TEST(UnknownElevation, IsTheMeanOverThingsThatStandOnTheRoad) {
       const double top = kTop_m * (i + 0.5) / kSteps;
       for (int j = 0; j < kSteps; ++j) {
         const double sine = (top * (j + 0.5) / kSteps - kHeight_m) / range_m;
-        if (std::abs(sine) > std::sin(12.0 * kDegree)) continue;
+        if (std::abs(sine) > std::sin(12.0 * kRadiansPerDegree)) continue;
         const double cosine = std::sqrt(1.0 - sine * sine);
         sum += cosine;
         square += cosine * cosine;

@@ -5,12 +5,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/ego_step.hpp"
 
 namespace boresight::geometry {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 TEST(Frames, RotationIsTheProductOfItsThreeAxes) {
   std::mt19937 random(1);
@@ -59,7 +58,7 @@ TEST(Frames, SensorVelocityIsTheDerivativeOfItsPlace) {
 
 TEST(Frames, AnglesWrap) {
   EXPECT_NEAR(wrap_angle(3.5 * M_PI), -0.5 * M_PI, 1e-12);
-  EXPECT_NEAR(wrap_angle(-181.0 * kDegree), 179.0 * kDegree, 1e-12);
+  EXPECT_NEAR(wrap_angle(-181.0 * kRadiansPerDegree), 179.0 * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(wrap_angle(0.3), 0.3, 1e-15);
   EXPECT_EQ(wrap_angle(-M_PI), M_PI) << "the interval is open at −π";
   EXPECT_EQ(wrap_angle(M_PI), M_PI);

@@ -164,7 +164,7 @@ TEST_F(PublishedMethod, FartherAlongTheLineToATrackIsAType1Ghost) {
 }
 
 TEST_F(PublishedMethod, EvenWhatIsTrackedBehindARailIsTakenForAGhost) {
-  // Report B's test asks for nothing but the crossing: the baseline must not be better than what was published.
+  // Le Ba Thanh's test asks for nothing but the crossing: the baseline must not be better than what was published.
   add_rail();
   add_track(30.0, -12.0);
   const auto real = add(30.5, -12.2, corrected_flag::kMoving, 8.0);

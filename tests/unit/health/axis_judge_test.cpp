@@ -4,38 +4,40 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
+
 namespace boresight::health {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
-constexpr double kTolerance_rad = 1.5 * kDegree;
+constexpr double kTolerance_rad = 1.5 * kRadiansPerDegree;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Feeds the same estimate five times a second.
 std::int64_t feed(AxisJudge& judge, double error_deg, double std_deg, double seconds, std::int64_t from_ns) {
   const std::int64_t end_ns = from_ns + static_cast<std::int64_t>(seconds * 1e9);
   std::int64_t t = from_ns;
-  for (; t <= end_ns; t += kSecond / 5) judge.update(error_deg * kDegree, std_deg * kDegree, true, t);
+  for (; t <= end_ns; t += kSecond / 5)
+    judge.update(error_deg * kRadiansPerDegree, std_deg * kRadiansPerDegree, true, t);
   return t;
 }
 
-TEST(AxisJudge, SaysNothingWithinTolerance) {
+TEST(AxisJudge, IsNotBeyondWithinTolerance) {
   AxisJudge judge(Config{}, kTolerance_rad);
   feed(judge, 1.4, 0.01, 60.0, kSecond);
   EXPECT_FALSE(judge.is_beyond());
 }
 
-TEST(AxisJudge, SaysSoAfterItsTimeAndNotBefore) {
+TEST(AxisJudge, IsBeyondAfterItsTimeAndNotBefore) {
   AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
   const std::int64_t t = feed(judge, -2.5, 0.02, 0.8, kSecond);
   EXPECT_FALSE(judge.is_beyond());
   feed(judge, -2.5, 0.02, 0.4, t);
   EXPECT_TRUE(judge.is_beyond());
   EXPECT_EQ(judge.health().beyond_tolerance, 1);
-  EXPECT_NEAR(judge.health().error_rad, -2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(judge.health().error_rad, -2.5 * kRadiansPerDegree, 1e-6);
 }
 
-TEST(AxisJudge, AnUnsureEstimateIsNoVerdict) {
+TEST(AxisJudge, UncertainEstimateChangesNoVerdict) {
   AxisJudge judge(Config{.confidence_sigma = 2.33}, kTolerance_rad);
   feed(judge, 2.5, 0.5, 60.0, kSecond);  // 2.5° − 2.33 · 0.5° < 1.5°
   EXPECT_FALSE(judge.is_beyond());
@@ -43,7 +45,7 @@ TEST(AxisJudge, AnUnsureEstimateIsNoVerdict) {
   EXPECT_TRUE(judge.is_beyond());
 }
 
-TEST(AxisJudge, AShortExcursionIsForgotten) {
+TEST(AxisJudge, ShortExcursionChangesNoVerdict) {
   AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
   std::int64_t t = kSecond;
   for (int i = 0; i < 20; ++i) {
@@ -65,7 +67,7 @@ TEST(AxisJudge, HysteresisKeepsTheVerdictAtTheTolerance) {
   EXPECT_FALSE(judge.is_beyond());
 }
 
-TEST(AxisJudge, WhatIsNotSeenChangesNothing) {
+TEST(AxisJudge, UnobservableEstimateChangesNothing) {
   AxisJudge judge(Config{}, kTolerance_rad);
   std::int64_t t = feed(judge, 2.5, 0.02, 2.0, kSecond);
   ASSERT_TRUE(judge.is_beyond());
@@ -79,10 +81,10 @@ TEST(AxisJudge, WhatIsNotSeenChangesNothing) {
   }
   EXPECT_TRUE(judge.is_beyond());
   EXPECT_EQ(judge.health().observable, 0);
-  EXPECT_NEAR(judge.health().error_rad, 2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(judge.health().error_rad, 2.5 * kRadiansPerDegree, 1e-6);
 }
 
-TEST(AxisJudge, FarBeyondTheSensorIsOfNoUse) {
+TEST(AxisJudge, IsInhibitedFarBeyondTolerance) {
   AxisJudge judge(Config{}, kTolerance_rad);
   feed(judge, 7.2, 0.02, 2.0, kSecond);
   EXPECT_TRUE(judge.is_beyond());
@@ -91,7 +93,7 @@ TEST(AxisJudge, FarBeyondTheSensorIsOfNoUse) {
   EXPECT_TRUE(judge.is_inhibited());
 }
 
-TEST(AxisJudge, AClockThatWentBackHoldsNothingUp) {
+TEST(AxisJudge, ClockThatJumpedBackDelaysNothing) {
   AxisJudge judge(Config{.set_s = 1.0}, kTolerance_rad);
   feed(judge, 2.5, 0.02, 0.6, 1000 * kSecond);
   feed(judge, 2.5, 0.02, 1.2, kSecond);

@@ -26,7 +26,7 @@ TEST(RateWindow, ForgetsWhatIsOlderThanTheWindow) {
   EXPECT_GE(window.sum(2000 * kMillisecond), 90u);
   EXPECT_EQ(window.sum(4300 * kMillisecond), 0u);
   EXPECT_EQ(window.rate_hz(4300 * kMillisecond), 0.0);
-  // A jump by far more than the window leaves nothing behind either.
+  // The same after a jump of far more than the window.
   window.add(1'000'000 * kMillisecond, 7);
   EXPECT_EQ(window.sum(1'000'300 * kMillisecond), 7u);
 }
@@ -39,7 +39,7 @@ TEST(RateWindow, HalfTheRateShowsWithinAWindow) {
   EXPECT_NEAR(window.rate_hz(t), 10.0, 0.6);
 }
 
-TEST(RateWindow, ClearBeginsAnew) {
+TEST(RateWindow, ClearForgetsAllEvents) {
   RateWindow window(2.0);
   for (int i = 0; i < 100; ++i) window.add(i * 20 * kMillisecond);
   window.clear();

@@ -6,14 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "interfaces/catalogue/catalogue.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 
 namespace boresight::health {
 namespace {
 
 using catalogue::Service;
-
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kStart = 1'000'000 * kMillisecond;
 
@@ -24,7 +23,8 @@ VehicleConfig two_radars() {
     RadarConfig radar;
     radar.id = id;
     radar.name = id == 1 ? "left" : "right";
-    radar.tolerance = {.yaw_rad = 1.5 * kDegree, .pitch_rad = 1.5 * kDegree, .roll_rad = 3.0 * kDegree};
+    radar.tolerance = {
+        .yaw_rad = 1.5 * kRadiansPerDegree, .pitch_rad = 1.5 * kRadiansPerDegree, .roll_rad = 3.0 * kRadiansPerDegree};
     radar.cycle_time_s = 0.05;
     radar.deadline_s = 0.25;
     vehicle.radars.push_back(radar);
@@ -32,7 +32,7 @@ VehicleConfig two_radars() {
   return vehicle;
 }
 
-/// A sound system of two radars and six services, of which a test takes parts away.
+/// A healthy system of two radars and six services. A test stops parts of it.
 class SupervisionTest : public testing::Test {
  protected:
   SupervisionTest() {
@@ -48,7 +48,7 @@ class SupervisionTest : public testing::Test {
       estimate.observable = alignment_axis::kSpeedScale | alignment_axis::kYaw;
       estimate.speed_scale = 1.0F;
       estimate.covariance = {};
-      estimate.covariance[5] = static_cast<float>(0.02 * kDegree * 0.02 * kDegree);
+      estimate.covariance[5] = static_cast<float>(0.02 * kRadiansPerDegree * 0.02 * kRadiansPerDegree);
     }
     estimate_[0].header.source_id = 1;
     estimate_[1].header.source_id = 2;
@@ -58,7 +58,7 @@ class SupervisionTest : public testing::Test {
   const ServiceHealth& service(Service s) const { return report_->services[static_cast<std::size_t>(s)]; }
   const SensorHealth& radar(std::uint32_t id) const { return report_->sensors[id - 1]; }
 
-  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, whatever is not muted.
+  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, except muted ones.
   void run(double seconds) {
     const std::int64_t end_ns = now_ + static_cast<std::int64_t>(seconds * 1e9);
     for (; now_ < end_ns; now_ += 10 * kMillisecond, ++step_) {
@@ -103,7 +103,7 @@ class SupervisionTest : public testing::Test {
   std::uint64_t step_ = 0;
 };
 
-TEST_F(SupervisionTest, ASoundSystemIsAvailable) {
+TEST_F(SupervisionTest, HealthySystemIsAvailable) {
   run(5.0);
   EXPECT_EQ(report_->overall, DataQualifier::kAvailable);
   EXPECT_EQ(report_->number_of_sensors, 2u);
@@ -121,7 +121,7 @@ TEST_F(SupervisionTest, ASoundSystemIsAvailable) {
   }
 }
 
-TEST_F(SupervisionTest, NothingHeardYetIsInitialisingAndThenNoData) {
+TEST_F(SupervisionTest, RadarWithoutAScanIsInitialisingAndThenNoData) {
   supervision_.judge(*report_, kStart + 100 * kMillisecond);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kInitialising);
@@ -133,7 +133,7 @@ TEST_F(SupervisionTest, NothingHeardYetIsInitialisingAndThenNoData) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
 
-TEST_F(SupervisionTest, ASilentRadarIsNotAvailableAtItsDeadlineAndBackWithItsFirstScan) {
+TEST_F(SupervisionTest, SilentRadarIsNotAvailableAtItsDeadlineAndAvailableWithItsNextScan) {
   run(5.0);
   silent_radar_ = 2;
   run(0.2);
@@ -143,7 +143,7 @@ TEST_F(SupervisionTest, ASilentRadarIsNotAvailableAtItsDeadlineAndBackWithItsFir
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNoData);
   EXPECT_EQ(radar(2).rate_hz, 0.0F);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kAvailable);
-  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced) << "the other radar goes on";
+  EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced) << "the other radar is available";
   run(10.0);
   silent_radar_ = 0;
   run(0.1);
@@ -163,25 +163,25 @@ TEST_F(SupervisionTest, HalfTheRateIsRateReduced) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
-TEST_F(SupervisionTest, AMisalignedRadarIsReducedAndFarBeyondNotAvailable) {
+TEST_F(SupervisionTest, MisalignedRadarIsReducedAndFarBeyondToleranceNotAvailable) {
   run(3.0);
-  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kAvailableReduced);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
   EXPECT_EQ(radar(2).yaw.beyond_tolerance, 1);
-  EXPECT_NEAR(radar(2).lateral_displacement_m, 100.0 * std::sin(2.5 * kDegree), 1e-3);
+  EXPECT_NEAR(radar(2).lateral_displacement_m, 100.0 * std::sin(2.5 * kRadiansPerDegree), 1e-3);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
   EXPECT_EQ(report_->overall, DataQualifier::kAvailableReduced);
-  estimate_[1].alignment_yaw_rad = static_cast<float>(-8.0 * kDegree);
+  estimate_[1].alignment_yaw_rad = static_cast<float>(-8.0 * kRadiansPerDegree);
   run(1.0);
   EXPECT_EQ(radar(2).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kMisaligned);
 }
 
-TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyWhatIsObservableCounts) {
-  estimate_[0].alignment_pitch_rad = static_cast<float>(2.0 * kDegree);
-  estimate_[1].alignment_roll_rad = static_cast<float>(2.0 * kDegree);
+TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyObservableAxesCount) {
+  estimate_[0].alignment_pitch_rad = static_cast<float>(2.0 * kRadiansPerDegree);
+  estimate_[1].alignment_roll_rad = static_cast<float>(2.0 * kRadiansPerDegree);
   run(5.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "pitch is not observable";
   estimate_[0].observable |= alignment_axis::kPitch;
@@ -191,29 +191,29 @@ TEST_F(SupervisionTest, EachAxisHasItsToleranceAndOnlyWhatIsObservableCounts) {
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal) << "2° of roll are within 3°";
 }
 
-TEST_F(SupervisionTest, APitchThatIsKnownAboutTheVehiclesAxisOnlyCounts) {
-  // A radar that looks 45° to the side: of its own axes neither pitch nor roll is observable on straight roads.
+TEST_F(SupervisionTest, PitchThatIsObservableAboutTheVehicleAxisOnlyCounts) {
+  // A radar that looks 45° to the side. On straight roads neither pitch nor roll about its own axes is observable.
   VehicleConfig vehicle = two_radars();
-  vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kDegree;
-  vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kDegree;
+  vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kRadiansPerDegree;
+  vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kRadiansPerDegree;
   supervision_ = Supervision(vehicle, Config{}, now_);
   run(3.0);
   for (auto& estimate : estimate_) {
     estimate.observable |= alignment_axis::kVehiclePitch | alignment_axis::kVehicleYaw;
-    estimate.vehicle_pitch_rad = static_cast<float>(2.0 * kDegree);
-    estimate.vehicle_covariance[10] = static_cast<float>(0.02 * kDegree * 0.02 * kDegree);
+    estimate.vehicle_pitch_rad = static_cast<float>(2.0 * kRadiansPerDegree);
+    estimate.vehicle_covariance[10] = static_cast<float>(0.02 * kRadiansPerDegree * 0.02 * kRadiansPerDegree);
   }
   run(3.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal) << "a share of 0.71 is pitch of the sensor";
   EXPECT_EQ(radar(1).pitch.observable, 1);
   EXPECT_EQ(radar(1).pitch.about_vehicle_axis, 1);
-  EXPECT_NEAR(radar(1).pitch.tolerance_rad, 1.5 * std::sqrt(2.0) * kDegree, 1e-6);
-  EXPECT_NEAR(radar(2).pitch.tolerance_rad, 3.0 * kDegree, 1e-6) << "to the side it is the sensor's roll";
-  for (auto& estimate : estimate_) estimate.vehicle_pitch_rad = static_cast<float>(2.5 * kDegree);
+  EXPECT_NEAR(radar(1).pitch.tolerance_rad, 1.5 * std::sqrt(2.0) * kRadiansPerDegree, 1e-6);
+  EXPECT_NEAR(radar(2).pitch.tolerance_rad, 3.0 * kRadiansPerDegree, 1e-6) << "to the side it is the sensor's roll";
+  for (auto& estimate : estimate_) estimate.vehicle_pitch_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
   EXPECT_EQ(radar(1).pitch.beyond_tolerance, 1);
-  EXPECT_NEAR(radar(1).pitch.error_rad, 2.5 * kDegree, 1e-6);
+  EXPECT_NEAR(radar(1).pitch.error_rad, 2.5 * kRadiansPerDegree, 1e-6);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
@@ -225,8 +225,8 @@ TEST_F(SupervisionTest, StepChangesAreCounted) {
   EXPECT_EQ(radar(2).step_changes, 2u);
 }
 
-TEST_F(SupervisionTest, AnEstimatorThatWaitsIsNotBelieved) {
-  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+TEST_F(SupervisionTest, EstimateOfAWaitingEstimatorIsIgnored) {
+  estimate_[1].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   estimate_[1].state = AlignmentState::kWaiting;
   run(10.0);
   EXPECT_EQ(radar(2).extended_qualifier, ExtendedQualifier::kNormal);
@@ -265,7 +265,7 @@ TEST_F(SupervisionTest, SuspectScansBeyondTheirShareAreInvalidData) {
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNormal);
 }
 
-TEST_F(SupervisionTest, WhatTheSensorSaysOfItselfIsBelieved) {
+TEST_F(SupervisionTest, ConditionsReportedByTheSensorSetTheVerdict) {
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
   const auto verdict_with = [&](std::uint32_t conditions) {
@@ -283,31 +283,31 @@ TEST_F(SupervisionTest, WhatTheSensorSaysOfItselfIsBelieved) {
   EXPECT_EQ(verdict_with(c::kDefective), std::pair(kNotAvailable, kInvalidData));
   EXPECT_EQ(verdict_with(c::kSupply | c::kTemperature | c::kUnsynchronised | c::kWithoutEgoMotion),
             std::pair(kAvailable, kNormal))
-      << "told, and no reason to distrust its data";
+      << "reported, but no reason to distrust its data";
   EXPECT_EQ(verdict_with(0), std::pair(kAvailable, kNormal));
 }
 
-TEST_F(SupervisionTest, OfTwoReasonsTheWorseEffectIsSaidAndThenWhatAWorkshopHasToActOn) {
-  estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kDegree);
+TEST_F(SupervisionTest, WorstEffectIsReportedAndThenTheReasonThatAWorkshopMustRepair) {
+  estimate_[0].alignment_yaw_rad = static_cast<float>(2.5 * kRadiansPerDegree);
   run(3.0);
   SourceStatistics& source = status_[0].sources[0];
   source.conditions = source_condition::kPartlyBlocked;
   run(0.2);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kMisaligned);
-  estimate_[0].alignment_yaw_rad = static_cast<float>(8.0 * kDegree);
+  estimate_[0].alignment_yaw_rad = static_cast<float>(8.0 * kRadiansPerDegree);
   source.conditions = source_condition::kBlocked | source_condition::kPartlyBlocked;
   run(1.0);
   EXPECT_EQ(radar(1).data_qualifier, DataQualifier::kNotAvailable);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked);
   silent_radar_ = 1;
   run(1.0);
-  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked) << "which is why it is silent";
+  EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kBlocked) << "the blockage explains the silence";
   source.conditions = 0;
   run(0.2);
   EXPECT_EQ(radar(1).extended_qualifier, ExtendedQualifier::kNoData);
 }
 
-TEST_F(SupervisionTest, ScansThatNeverCameAreTold) {
+TEST_F(SupervisionTest, ScansLostBeforeTheGatewayAreReported) {
   status_[0].sources[0].lost = 7;
   status_[0].sources[0].e2e_lost = 8;
   status_[0].sources[0].e2e_repeated = 9;
@@ -342,7 +342,7 @@ TEST_F(SupervisionTest, AServiceWithoutHeartbeatIsSilentAndBreaksTheChain) {
   EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
 }
 
-TEST_F(SupervisionTest, WithoutTheEstimatorDataGoOn) {
+TEST_F(SupervisionTest, DataAreAvailableWithoutTheEstimator) {
   run(3.0);
   mute_[static_cast<std::size_t>(Service::kAlignmentEstimator)] = true;
   run(1.0);
@@ -369,7 +369,7 @@ TEST_F(SupervisionTest, ANewIncarnationIsARestartForAWhile) {
 TEST_F(SupervisionTest, TheFirstStageThatDoesNotDeliverIsNamed) {
   run(3.0);
   for (const Service s : {Service::kDetectionCorrector, Service::kGhostFilter, Service::kTracker}) {
-    idle_[static_cast<std::size_t>(s)] = true;  // alive, but nothing comes out
+    idle_[static_cast<std::size_t>(s)] = true;  // alive, but without output
   }
   run(2.0);
   EXPECT_EQ(service(Service::kDetectionCorrector).deadline_missed, 1);
@@ -409,7 +409,7 @@ TEST_F(SupervisionTest, LatencyIsFromReceptionToTrackList) {
   EXPECT_NEAR(report_->latency_max_ms, 4.0, 1e-3);
 }
 
-TEST_F(SupervisionTest, RadarsAndServicesItDoesNotKnowAreLeftAlone) {
+TEST_F(SupervisionTest, UnknownRadarsAndServicesAreIgnored) {
   scan_->header.source_id = 9;
   supervision_.observe(*scan_, now_);
   estimate_[0].header.source_id = 16;

@@ -79,7 +79,7 @@ TEST_F(CanCaptureTest, StampsAreSecondsSinceTheEpoch) {
   EXPECT_NEAR(stamp_s, static_cast<double>(std::time(nullptr)), 5.0);
 }
 
-TEST_F(CanCaptureTest, AFrameOfAWrongLengthIsToldAndLeftOut) {
+TEST_F(CanCaptureTest, AFrameOfAWrongLengthIsReportedAndSkipped) {
   send(0x123, "AB", 10);
   capture_->read(*writer_, problem_);
   EXPECT_THAT(problem_, testing::HasSubstr("can7: a frame of a wrong length"));

@@ -136,9 +136,9 @@ TEST(OutputFiles, OneFileOrAFolderAndNothingIsOverwritten) {
   const auto& name = name_files;
   EXPECT_EQ(name(can, folder / "a.log", "T").can, folder / "a.log");
   EXPECT_EQ(name(network, folder / "a.pcap", "T").packets.at(0), folder / "a.pcap");
-  EXPECT_THROW(static_cast<void>(name(can, folder / "a.pcap", "T")), CaptureError);
-  EXPECT_THROW(static_cast<void>(name(network, folder / "a.log", "T")), CaptureError);
-  EXPECT_THROW(static_cast<void>(name(both, folder / "a.pcap", "T")), CaptureError);
+  EXPECT_THROW(static_cast<void>(name(can, folder / "a.pcap", "T")), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(name(network, folder / "a.log", "T")), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(name(both, folder / "a.pcap", "T")), std::invalid_argument);
   const OutputFiles files = name(both, folder, "20261121T080000Z");
   EXPECT_EQ(files.can, folder / "boresight-20261121T080000Z.log");
   EXPECT_EQ(files.packets.at(0), folder / "boresight-20261121T080000Z-eth0.pcap");

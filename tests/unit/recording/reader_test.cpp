@@ -351,7 +351,7 @@ TEST_F(Captures, StampsThatGoBackAreCountedAndMissingFragmentsAreSaid) {
   EXPECT_EQ(c.frames.size(), 2u);
   EXPECT_EQ(c.counts.backwards, 1u);
   ASSERT_EQ(problems_.size(), 1u);
-  EXPECT_NE(problems_[0].find("1 datagrams lack fragments"), std::string::npos) << problems_[0];
+  EXPECT_NE(problems_[0].find("1 datagrams are incomplete"), std::string::npos) << problems_[0];
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/common/runtime/config/former_keys.hpp"
+
 namespace boresight::config {
 namespace {
 
@@ -52,17 +54,39 @@ TEST(Reader, NotANumberIsOutOfRange) {
   EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("x.toml:1: limit: nan is out of range"));
 }
 
-TEST(Reader, WrongTypeSaysWhatIsWanted) {
+TEST(Reader, WrongTypeNamesTheRequiredType) {
   Reader root = Reader::parse("limit = \"5\"\n", "x.toml");
   EXPECT_EQ(root.integer("limit", {0, 5}, 1), 1);
   EXPECT_THAT(error_of([&] { root.finish(); }),
               HasSubstr("x.toml:1: limit: must be an integer (0 … 5), but is a string"));
 }
 
-TEST(Reader, UnknownKeyIsAnErrorWithTheKnownOnes) {
-  Reader root = Reader::parse("[t]\nlimitt = 5\n", "x.toml");
-  static_cast<void>(root.table("t").number("limit", {}, 1));
-  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:2: t.limitt: unknown key; known here: limit");
+TEST(Reader, UnknownKeyIsAnErrorThatNamesTheNearestAndAllKnownKeys) {
+  Reader root = Reader::parse("[t]\nlimitt = 5\ncolour = 1\n", "x.toml");
+  Reader t = root.table("t");
+  static_cast<void>(t.number("limit", {}, 1));
+  static_cast<void>(t.number("size", {}, 1));
+  EXPECT_EQ(error_of([&] { root.finish(); }),
+            "x.toml:2: t.limitt: unknown key; similar: 'limit'; known here: limit, size\n"
+            "x.toml:3: t.colour: unknown key; known here: limit, size");
+}
+
+TEST(Reader, RenamedKeyIsAnErrorThatNamesTheKeyOfToday) {
+  for (const RenamedKey& key : kRenamedKeys) {
+    const std::string former(key.former), current(key.current);
+    Reader root = Reader::parse("[filter." + former + "]\na = 1\n[[radars." + former + "]]\na = 1\n", "x.toml");
+    static_cast<void>(root.table("filter").table(current).number("a", {}, 1));
+    static_cast<void>(root.table("radars").tables(current));
+    EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:1: filter." + former + ": is called '" + current + "' now\n" +
+                                                    "x.toml:3: radars." + former + ": is called '" + current + "' now");
+  }
+}
+
+TEST(Reader, FormerKeyIsAnOrdinaryUnknownKeyWhereTheNewOneIsNotKnown) {
+  const std::string former(kRenamedKeys.front().former);
+  Reader root = Reader::parse(former + " = 1\n", "x.toml");
+  static_cast<void>(root.number("limit", {}, 1));
+  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:1: " + former + ": unknown key; known here: limit");
 }
 
 TEST(Reader, UnknownTableIsAnError) {
@@ -84,7 +108,7 @@ TEST(Reader, MissingRequiredKeyNamesTheTablesLine) {
   EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:3: t.id: is missing");
 }
 
-TEST(Reader, MissingRequiredKeySaysWhatIsAllowed) {
+TEST(Reader, MissingRequiredKeyNamesTheAllowedValues) {
   Reader root = Reader::parse("\n[t]\n", "x.toml");
   Reader t = root.table("t");
   for (const char* key : {"n", "i", "c"}) t.require(key);
@@ -97,7 +121,7 @@ TEST(Reader, MissingRequiredKeySaysWhatIsAllowed) {
             "x.toml:2: t.c: is missing; must be one of \"red\", \"blue\"");
 }
 
-TEST(Reader, TellsThePlaceOfAKey) {
+TEST(Reader, PlaceOfAKeyNamesFileLineAndTable) {
   Reader root = Reader::parse("[[r]]\n[[r]]\nn = 1\n", "x.toml");
   std::vector<Reader> readers = root.tables("r");
   EXPECT_EQ(readers[1].place("n"), "x.toml:3: r[1].n");
@@ -116,7 +140,7 @@ TEST(Reader, BrokenTomlNamesTheLine) {
 }
 
 // Found by fuzzing: the parser asserts, or runs into undefined behaviour.
-TEST(Reader, WhatTheParserDoesNotRefuseIsRefused) {
+TEST(Reader, MalformedTextThatTheParserAcceptsIsRejected) {
   for (const std::string_view text : {"[, a = 1", "[[= 1", "[[[a]]]"}) {
     EXPECT_THAT(error_of([&] { static_cast<void>(Reader::parse(text, "x.toml")); }), HasSubstr("not valid TOML"))
         << text;

@@ -1,4 +1,4 @@
-// highway_multipath has Report B's numbers of detections.
+// highway_multipath has about the numbers of detections of Le Ba Thanh 2023.
 #include <array>
 #include <filesystem>
 
@@ -12,7 +12,7 @@ namespace {
 
 TEST(HighwayMultipath, HasThePublishedCountsWithinAFifth) {
   const VehicleConfig vehicle =
-      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/report_b.toml");
+      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/highway_multipath.toml");
   const Scenario highway = scenario("highway_multipath");
   for (const std::uint64_t seed : {1, 2, 3}) {
     Drive drive(highway, vehicle, seed, highway.duration_s);

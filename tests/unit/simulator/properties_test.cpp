@@ -1,5 +1,5 @@
-// What holds of every drive: effects do not disturb each other's random draws, a shorter drive is the beginning of a
-// longer one, and what stands has the range rate that the ego vehicle's motion gives it.
+// Properties of every drive: effects do not change each other's random draws, a shorter drive is the beginning of a
+// longer one, and stationary detections have the range rate that follows from the ego vehicle's motion.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -24,7 +24,7 @@ VehicleConfig vehicle_named(const std::string& name) {
   return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle" / (name + ".toml"));
 }
 
-/// Everything that a scan says of a detection, to the last bit, and what is true of it.
+/// All values of a detection, to the last bit, and its truth.
 struct Row {
   double t_s;
   std::uint32_t radar;
@@ -108,7 +108,7 @@ TEST_P(Shipped, FalseDetectionsChangeNoOther) {
   EXPECT_TRUE(same_ego(with, without));
 }
 
-TEST_P(Shipped, WhatHappensToOneRadarChangesNoOther) {
+TEST_P(Shipped, EffectsOnOneRadarChangeNoOther) {
   const Scenario s = scenario(GetParam());
   const Seen as_it_is = drive(s);
   const auto others = [](const Row& r) { return r.radar != 2; };
@@ -140,7 +140,7 @@ TEST_P(Shipped, WhatHappensToOneRadarChangesNoOther) {
   EXPECT_EQ(only(drive(misaligned).rows, others), only(as_it_is.rows, others));
 }
 
-TEST_P(Shipped, ASpeedSignalThatIsWrongChangesNoScanAndNoNoise) {
+TEST_P(Shipped, AScaledSpeedSignalChangesNoScanAndNoNoise) {
   Scenario s = scenario(GetParam());
   s.effects.speed_scale = 1.0;
   const Seen right = drive(s);
@@ -155,7 +155,7 @@ TEST_P(Shipped, ASpeedSignalThatIsWrongChangesNoScanAndNoNoise) {
   }
 }
 
-/// Without cells, in which things share a detection, and without the images of one in another.
+/// Without resolution cells, in which targets share a detection, and without mirrors.
 Scenario apart(const std::string& name) {
   Scenario s = scenario(name);
   s.effects.resolution = {0.0, 0.0, 0.0};
@@ -166,11 +166,11 @@ Scenario apart(const std::string& name) {
   return s;
 }
 
-TEST_P(Shipped, MoreThingsChangeNoneOfThoseThatWereThere) {
+TEST_P(Shipped, AddedTargetsDoNotChangeExistingOnes) {
   const Scenario s = apart(GetParam());
   const Seen before = drive(s);
   EXPECT_TRUE(std::all_of(before.rows.begin(), before.rows.end(), [](const Row& r) { return r.bounces == 0; }));
-  // Another vehicle hides some of it; what is left is as it was. Parked cars keep their numbers.
+  // Another vehicle hides some targets; the other detections do not change. Parked cars keep their numbers.
   Scenario another = s;
   BodySpec car;
   car.start_m = s.ego.start_m + 12.0;
@@ -233,8 +233,8 @@ TEST_P(Shipped, FoldingChangesRangeRatesByWholeIntervalsOnly) {
   EXPECT_GT(changed, folded.rows.size() / 20);
 }
 
-/// Direct echoes of what stands, as the propagation hands them on, in full precision.
-TEST_P(Shipped, WhatStandsHasTheRangeRateOfTheEgoMotionEquation) {
+/// Direct echoes of stationary targets from the propagation, in full precision.
+TEST_P(Shipped, StationaryDetectionsHaveTheRangeRateOfTheEgoMotion) {
   Scenario s = apart(GetParam());
   s.effects.noise = false;
   s.effects.unambiguous_mps = 0.0;
@@ -244,7 +244,7 @@ TEST_P(Shipped, WhatStandsHasTheRangeRateOfTheEgoMotionEquation) {
   std::size_t compared = 0;
   const auto expected = [&](const RadarConfig& radar, double azimuth, double elevation) {
     const Eigen::Matrix3d rotation = radar::actual_mounting(radar.mounting_pose, s.effects, radar.id, scene.t_s);
-    // (12) of Report A in three dimensions: ṙ = −(R u)·v_s with the velocity of the place where the radar sits.
+    // (12) of Burza 2025 in three dimensions: ṙ = −(R u)·v_s with the velocity of the radar's place.
     const auto& p = radar.mounting_pose.position_m;
     const Eigen::Vector3d velocity(scene.ego.speed_mps - scene.ego.yaw_rate_radps * p[1],
                                    scene.ego.yaw_rate_radps * p[0], 0.0);
@@ -274,7 +274,7 @@ TEST_P(Shipped, WhatStandsHasTheRangeRateOfTheEgoMotionEquation) {
         ASSERT_NEAR(e.range_rate_mps, expected(radar, e.azimuth_rad, e.elevation_rad), 1e-9);
       }
       compared += echoes.size();
-      // And in the scan, which has 32-bit floats: half a unit in the last place of the rate and of both angles.
+      // The scan has 32-bit floats: half a unit in the last place of the rate and of both angles.
       RadarSensor sensor(radar, s.effects, ego_body(s.ego), 3);
       RadarScan scan;
       std::vector<DetectionTruth> truth;
@@ -308,7 +308,7 @@ TEST_P(Shipped, IsFasterThanRealTime) {
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(scenario_names()));
 
-/// What the ego vehicle does in a scenario.
+/// Motion of the ego vehicle in a scenario.
 struct Course {
   double fastest_mps = -1e9, slowest_mps = 1e9, hardest_braking_mps2 = 0.0, turned_rad = 0.0;
   double stood_s = 0.0;  // between driving and driving
@@ -335,7 +335,7 @@ Course course_of(const std::string& name) {
   return c;
 }
 
-TEST(ShippedScenarios, ShowTheWaysOfDrivingThatTheirNamesSay) {
+TEST(ShippedScenarios, ContainTheirDescribedManoeuvres) {
   for (const char* motorway : {"highway_multipath", "truck_overtaking"}) {
     const Course c = course_of(motorway);
     EXPECT_GT(c.slowest_mps, 14.0) << motorway;
@@ -353,12 +353,12 @@ TEST(ShippedScenarios, ShowTheWaysOfDrivingThatTheirNamesSay) {
   EXPECT_LT(braking.hardest_braking_mps2, 9.0);
   EXPECT_GT(braking.stood_s, 4.0);
   EXPECT_NEAR(garage.turned_rad, -0.5 * M_PI, 0.15) << "turns right";
-  EXPECT_LT(garage.slowest_mps, -1.0) << "backs";
+  EXPECT_LT(garage.slowest_mps, -1.0) << "reverses";
   EXPECT_GT(bends.turned_rad, -0.5);
   EXPECT_GT(bends.hardest_braking_mps2, 3.0);
 }
 
-/// A car on the right that drives a little faster than the ego vehicle, and one thing on the left.
+/// A car on the right that drives a little faster than the ego vehicle, and one mirror on the left.
 std::map<std::pair<Provenance, unsigned>, std::size_t> ghosts_by(const std::string& thing, bool of_body) {
   const Scenario s = read_scenario(
       config::Reader::parse("name = \"x\"\nvehicle = \"demo\"\n[[body]]\nkind = \"car\"\nstart_m = 4.0\nlateral_m = "

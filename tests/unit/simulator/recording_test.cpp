@@ -1,5 +1,5 @@
-// The files of a drive agree with each other and with the drive: what the gateway makes of the recordings is what was
-// measured, and the tables beside them tell the truth of exactly that.
+// The files of a drive agree with each other and with the drive: the gateway decodes the recordings to the measured
+// scans, and the tables hold the truth of these scans.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
@@ -30,7 +31,7 @@ VehicleConfig demo() {
   return config::read_vehicle_file(fs::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
 }
 
-/// A street with everything that a scenario can do to its radars.
+/// A street with all effects on radars that a scenario can have.
 Scenario disturbed() {
   Scenario s = scenario("city_canyon");
   s.effects.speed_scale = 1.01;
@@ -50,7 +51,7 @@ std::string text_of(const fs::path& file) {
 
 using Row = std::map<std::string, std::string>;
 
-/// A CSV table by its column names; every row must have them all.
+/// A CSV table by its column names; every row must have all columns.
 std::vector<Row> table_of(const fs::path& file) {
   std::istringstream lines(text_of(file));
   const auto cells_of = [](const std::string& line) {
@@ -82,7 +83,7 @@ ScanKey scan_of(const Row& row) {
   return {static_cast<std::uint32_t>(std::stoul(row.at("radar"))), std::stoull(row.at("scan"))};
 }
 
-/// What the gateway hands on, kept.
+/// Keeps the messages of the gateway.
 class Kept : public ingest::Sink {
  public:
   RadarScan* begin_scan() override { return (open_ = std::make_unique<RadarScan>()).get(); }
@@ -129,7 +130,7 @@ TEST_F(Recording, TheSameSeedGivesTheSameBytesAndAnotherDoesNot) {
     const std::string text = text_of(all(files_)[i]);
     EXPECT_FALSE(text.empty());
     EXPECT_TRUE(text == text_of(all(same)[i])) << all(files_)[i];
-    // What is told of the whole drive is not drawn.
+    // The truth of the whole drive does not depend on the seed.
     if (all(files_)[i] == files_.truth) continue;
     EXPECT_FALSE(text == text_of(all(other)[i])) << all(files_)[i];
   }
@@ -163,7 +164,7 @@ TEST_F(Recording, TheGatewayReadsWhatWasMeasured) {
     EXPECT_EQ(got.range_rate_min_mps, sent.range_rate_min_mps);
     EXPECT_EQ(got.range_rate_max_mps, sent.range_rate_max_mps);
     for (std::size_t i = 0; i < sent.number_of_valid_detections; ++i) {
-      // The wire has these as 32-bit floats: nothing is lost.
+      // These are 32-bit floats on the wire too: nothing is lost.
       ASSERT_EQ(got.range_m[i], sent.range_m[i]);
       ASSERT_EQ(got.azimuth_rad[i], sent.azimuth_rad[i]);
       ASSERT_EQ(got.elevation_rad[i], sent.elevation_rad[i]);
@@ -203,7 +204,7 @@ TEST_F(Recording, EgoSignalsAreThoseOfTheDriveWithinTheirQuantisation) {
   }
 }
 
-TEST_F(Recording, ABlockedRadarSaysSoOnTheWireAndNoOtherDoes) {
+TEST_F(Recording, OnlyTheBlockedRadarReportsBlockageOnTheWire) {
   Kept kept;
   const VehicleConfig vehicle = demo();
   ingest::Gateway gateway(vehicle, kept);
@@ -213,8 +214,8 @@ TEST_F(Recording, ABlockedRadarSaysSoOnTheWireAndNoOtherDoes) {
   gateway.finish();
   for (const auto& [id, conditions] : kept.conditions) {
     for (std::size_t i = 1; i < conditions.size(); ++i) {
-      // A scan's status follows it: the next scan is published after it. Of 30 dB by 4 s, 3 dB are there at 1.3 s and
-      // 15 dB at 2.5 s.
+      // A scan's status message follows it, so it applies to the next scan. The loss grows to 30 dB by 4 s: it is 3 dB
+      // at 1.3 s and 15 dB at 2.5 s.
       const double before_s =
           1e-9 * static_cast<double>(kept.scans[id][i - 1]->header.measurement_time_ns - Drive::kStart_ns);
       const std::uint32_t expected = id != 2 || before_s < 1.3 ? 0u
@@ -266,20 +267,20 @@ TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
   for (const auto& [name, kind] : names) EXPECT_GT(kinds[kind], 20u) << name;
 }
 
-TEST_F(Recording, TheTruthOfSensorsTellsMountingBlockageInterferenceAndCountsAtEachScan) {
+TEST_F(Recording, TheTruthOfSensorsHasMountingBlockageInterferenceAndCountsOfEachScan) {
   const std::vector<Row> rows = table_of(files_.sensors);
   ASSERT_EQ(rows.size(), files_.scans);
-  constexpr double kDegrees = 180.0 / M_PI;
   std::size_t detections = 0;
   for (const Row& row : rows) {
     const double t = number(row, "t_s");
     const std::string& id = row.at("radar");
     const bool first = id == "1" && t >= 2.0, second = id == "1" && t >= 4.0;
-    EXPECT_NEAR(number(row, "alignment_yaw_deg"), ((id == "3" ? 0.02 : 0.0) + (first ? 0.03 : 0.0)) * kDegrees, 1e-5);
-    EXPECT_NEAR(number(row, "alignment_pitch_deg"), ((id == "3" ? -0.01 : 0.0) + (second ? 0.02 : 0.0)) * kDegrees,
+    EXPECT_NEAR(number(row, "alignment_yaw_deg"), ((id == "3" ? 0.02 : 0.0) + (first ? 0.03 : 0.0)) * kDegreesPerRadian,
                 1e-5);
-    EXPECT_NEAR(number(row, "alignment_roll_deg"), ((id == "3" ? 0.005 : 0.0) + (first ? -0.01 : 0.0)) * kDegrees,
-                1e-5);
+    EXPECT_NEAR(number(row, "alignment_pitch_deg"),
+                ((id == "3" ? -0.01 : 0.0) + (second ? 0.02 : 0.0)) * kDegreesPerRadian, 1e-5);
+    EXPECT_NEAR(number(row, "alignment_roll_deg"),
+                ((id == "3" ? 0.005 : 0.0) + (first ? -0.01 : 0.0)) * kDegreesPerRadian, 1e-5);
     EXPECT_EQ(number(row, "step_changes"), (first ? 1.0 : 0.0) + (second ? 1.0 : 0.0));
     const double blockage_db = id == "2" ? 10.0 * std::clamp(t - 1.0, 0.0, 3.0) : 0.0;
     EXPECT_NEAR(number(row, "blockage_max_db"), blockage_db, 1e-3);
@@ -327,7 +328,7 @@ TEST_F(Recording, TheTruthOfVisibilityAgreesWithDetectionsAndObjects) {
   EXPECT_GT(states["occluded"], 500u);
 }
 
-TEST_F(Recording, TheTruthOfObjectsIsWhereTheWorldHasThem) {
+TEST_F(Recording, TheTruthOfObjectsIsThatOfTheWorld) {
   const Drive drive(disturbed(), demo(), kSeed, kDuration_s);
   std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < drive.world().number_of_bodies(); ++i) {
@@ -353,7 +354,7 @@ TEST_F(Recording, TheTruthOfObjectsIsWhereTheWorldHasThem) {
   for (const char* kind : {"car", "van", "pedestrian", "cyclist"}) EXPECT_GT(kinds[kind], 20u) << kind;
 }
 
-TEST(DriveWriter, RefusesWhatItCannotWrite) {
+TEST(DriveWriter, RefusesUnsupportedVehiclesAndUnwritableFolders) {
   const fs::path folder = fs::temp_directory_path() / ("boresight-refused-" + std::to_string(::getpid()));
   const auto problem = [&](const Scenario& scenario, const VehicleConfig& vehicle) -> std::string {
     try {
@@ -380,7 +381,7 @@ TEST(DriveWriter, RefusesWhatItCannotWrite) {
   EXPECT_NE(problem(scenario("tunnel"), other).find("sender"), std::string::npos);
   other.radars.clear();
   EXPECT_NE(problem(scenario("tunnel"), other).find("no radar"), std::string::npos);
-  EXPECT_FALSE(fs::exists(folder)) << "nothing is written before all is known to be right";
+  EXPECT_FALSE(fs::exists(folder)) << "nothing is written for a wrong scenario";
   EXPECT_THROW(write_drive(scenario("tunnel"), demo(), 1, 0.1, "/proc/nowhere", [](double) {}), std::runtime_error);
 }
 

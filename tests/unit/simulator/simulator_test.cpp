@@ -18,7 +18,7 @@ VehicleConfig demo() {
   return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
 }
 
-/// Sums up everything that a drive hands out, so that two drives can be compared.
+/// Sums up all events of a drive, so that two drives can be compared.
 struct Digest {
   std::size_t scans = 0, egos = 0, detections = 0;
   double sum = 0.0;
@@ -69,7 +69,7 @@ TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
   quiet.effects.noise = false;
   quiet.effects.clutter_per_scan = 0.0;
   quiet.effects.resolution = {0.0, 0.0, 0.0};     // a centroid lies between points
-  quiet.effects.multipath.ground_bounce = false;  // which bends the apparent elevation
+  quiet.effects.multipath.ground_bounce = false;  // the ground changes the apparent elevation
   const VehicleConfig vehicle = demo();
   Drive drive(quiet, vehicle, 1, 3.0);
   std::size_t compared = 0;
@@ -93,7 +93,7 @@ TEST(Simulator, WithoutNoiseStationaryPointsHaveTheRangeRateOfTheTruth) {
   EXPECT_GT(compared, 2000u);
 }
 
-TEST(Simulator, TheSpeedSignalIsWrongByTheScaleOnly) {
+TEST(Simulator, TheSpeedSignalDiffersByTheScaleOnly) {
   Scenario quiet = scenario("demo_drive");
   quiet.effects.noise = false;
   Drive drive(quiet, demo(), 1, 3.0);
@@ -120,7 +120,7 @@ TEST(Simulator, TruthNamesEveryKindOfDetection) {
   EXPECT_EQ(kinds[static_cast<std::size_t>(Provenance::kUnknown)], 0u);
 }
 
-TEST(Simulator, ABlockedRadarSaysSoAndSeesLess) {
+TEST(Simulator, ABlockedRadarReportsBlockageAndDetectsLess) {
   Scenario blocked = scenario("straight_rail");
   blocked.effects.blockages = {{1, 1.0, 2.0, 40.0, -3.2, 3.2}};
   Drive drive(blocked, demo(), 1, 3.0);

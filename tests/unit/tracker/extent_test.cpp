@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/tracker/scene.hpp"
 
 namespace boresight::tracking {
@@ -14,7 +15,7 @@ namespace {
 
 TEST(Extent, HidesWhatLiesBehindIt) {
   Extent car;
-  car.heading_rad = 90.0 * kDegree;
+  car.heading_rad = 90.0 * kRadiansPerDegree;
   car.length_m = 4.0;
   car.width_m = 2.0;
   const Eigen::Vector2d centre(10.0, 0.0);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/tracker/scene.hpp"
 
 namespace boresight::tracking {
@@ -183,8 +184,8 @@ TEST(Creeping, TrucksKeepTheirHeading) {
     }
   });
   const auto settled = std::span(found_rad).subspan(kSettles);
-  EXPECT_LT(rms(settled), 3.0 * kDegree);
-  for (const double heading_rad : settled) EXPECT_NEAR(heading_rad, 0.0, 6.0 * kDegree);
+  EXPECT_LT(rms(settled), 3.0 * kRadiansPerDegree);
+  for (const double heading_rad : settled) EXPECT_NEAR(heading_rad, 0.0, 6.0 * kRadiansPerDegree);
 }
 
 }  // namespace

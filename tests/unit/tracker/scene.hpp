@@ -12,12 +12,11 @@
 #include <gtest/gtest.h>
 
 #include "interfaces/messages/radar_scan.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/tracker/core/tracker.hpp"
 
 namespace boresight::tracking {
-
-constexpr double kDegree = M_PI / 180.0;
 constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// Radar 1 looks ahead, radar 2 is turned by 90° to the left.
@@ -26,9 +25,9 @@ inline VehicleConfig two_radars() {
   for (std::uint32_t id : {1u, 2u}) {
     RadarConfig radar;
     radar.id = id;
-    radar.mounting_pose = {{3.6, 0.0, 0.5}, id == 1 ? 0.0 : 90.0 * kDegree, 0.0, 0.0};
-    radar.field_of_view.azimuth_min_rad = -60.0 * kDegree;
-    radar.field_of_view.azimuth_max_rad = 60.0 * kDegree;
+    radar.mounting_pose = {{3.6, 0.0, 0.5}, id == 1 ? 0.0 : 90.0 * kRadiansPerDegree, 0.0, 0.0};
+    radar.field_of_view.azimuth_min_rad = -60.0 * kRadiansPerDegree;
+    radar.field_of_view.azimuth_max_rad = 60.0 * kRadiansPerDegree;
     radar.field_of_view.range_max_m = 100.0;
     vehicle.radars.push_back(radar);
   }
@@ -49,7 +48,7 @@ class Scene {
     scan->geometry = {};
     scan->geometry.sensor_position_vehicle_m = {3.6F, 0.0F, 0.5F};
     Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(scan->geometry.sensor_to_vehicle.data()) =
-        geometry::sensor_to_vehicle(radar_id == 1 ? 0.0 : 90.0 * kDegree, 0.0, 0.0).cast<float>();
+        geometry::sensor_to_vehicle(radar_id == 1 ? 0.0 : 90.0 * kRadiansPerDegree, 0.0, 0.0).cast<float>();
     scan->geometry.speed_scale = 1.0F;
   }
   void add(const Eigen::Vector2d& position_m, const Eigen::Vector2d& velocity_mps,

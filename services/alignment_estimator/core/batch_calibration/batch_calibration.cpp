@@ -12,7 +12,7 @@ namespace boresight::alignment::batch_calibration {
 
 namespace {
 
-/// A step of more than this is no step but a sign that there is no solution.
+/// A larger step means that there is no solution.
 constexpr double kMaxStep = 0.02;
 
 class Moments {
@@ -58,8 +58,8 @@ void add_residuals(const Recording& radar, const Eigen::Vector4d& b, bool elevat
 Eigen::VectorXd iterate(std::span<const Recording> radars, Eigen::VectorXd x, const Config& config, Result& result,
                         const std::function<void(double)>& progress) {
   published::Draw draw(config.seed);
-  // An iteration's detections lie all over a recording that no cache holds: copied in a row without a use in between,
-  // they are fetched many at a time, else one by one, which would be most of the time.
+  // The drawn detections lie anywhere in a recording that exceeds the cache. Copying all of them before the first use
+  // overlaps the cache misses; fetching them one by one would take most of the time.
   std::vector<Detection> drawn(config.detections_per_iteration);
   JointEquations joint(radars.size());
   for (std::size_t i = 0; i <= config.iterations; ++i) {
@@ -77,7 +77,7 @@ Eigen::VectorXd iterate(std::span<const Recording> radars, Eigen::VectorXd x, co
         for (const Detection& d : drawn) add(d, model, equations);
       }
       joint.add(r, equations);
-      // A radar without data has no gradient: something in its place keeps the equations regular and it where it is.
+      // A radar without data has no gradient. A unit diagonal keeps the equations regular and its parameters unchanged.
       if (radar.detections.empty()) joint.jtj.diagonal().segment<3>(first_angle(r)).setOnes();
     }
     joint.jtr(0) += config.speed_scale_cost;  // (31): its derivative to k_v is 0.1 + Σ R·∂R/∂k_v
@@ -107,11 +107,11 @@ Result calibrate(std::span<const Recording> recordings, const Config& config, co
     result.radars[r].offered = recordings[r].detections.size();
     result.radars[r].used = radars[r].detections.size();
     any = any || result.radars[r].used > 0;
-    // Drawn once and for all, as a recording with elevation has one of each detection.
+    // Drawn once, since a recording with elevation has one elevation per detection too.
     fill_in(radars[r], config, config.seed * 1000 + r);
   }
   if (!any) {
-    result.problem = "no radar has enough detections of a world that stands still";
+    result.problem = "no radar has enough stationary detections";
     return result;
   }
   Eigen::VectorXd start = Eigen::VectorXd::Zero(first_angle(radars.size()));
@@ -127,7 +127,7 @@ Result calibrate(std::span<const Recording> recordings, const Config& config, co
 
   const std::vector<Parameter> judged = judge(radars, found, config, of(Phase::kJudgement));
   result.speed_scale = judged[0];
-  // The same without what was made up: k_v and yaw alone, elevation 0.
+  // The same without assumed elevations: k_v and yaw alone, elevation 0.
   std::vector<Recording> flat = radars;
   std::vector<Eigen::Index> held;
   for (std::size_t r = 0; r < flat.size(); ++r) {
@@ -168,9 +168,9 @@ const char* to_text(Support support) {
     case Support::kSupported:
       return "supported";
     case Support::kFollowsFillIn:
-      return "not supported: follows the made-up elevations";
+      return "not supported: follows the assumed elevations";
     case Support::kSpreads:
-      return "not supported: differs from draw to draw of the made-up elevations";
+      return "not supported: differs between draws of the assumed elevations";
     case Support::kUncertain:
       return "not supported: too uncertain";
     case Support::kNoData:

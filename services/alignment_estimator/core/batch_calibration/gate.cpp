@@ -64,7 +64,7 @@ Eigen::VectorXd robust_yaw_fit(std::span<const Recording> radars, double floor_m
       const Recording& radar = radars[static_cast<std::size_t>(r)];
       const Eigen::Vector4d b = of_radar(x, static_cast<std::size_t>(r));
       const Centre centre = centre_of(residuals_of(radar, b));
-      // The first rounds look further, since the fit is not there yet.
+      // The first rounds use a wider gate, since the fit has not converged yet.
       const double limit = kTukey * std::max(centre.std, floor_mps) * (round < 5 ? 2.0 : 1.0);
       for (const Detection& d : radar.detections) {
         const published::RangeRate p =

@@ -1,4 +1,4 @@
-// Which detections of a recording stand still: RadarScenes says so of each, other recordings do not.
+// Finds the stationary detections of a recording: RadarScenes labels them, other recordings do not.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace boresight::alignment::batch_calibration {
 
-/// The recordings with what can be used: finite, fast enough and, if the gate is on, near what a robust fit of k_v and
-/// of each radar's yaw expects of a world that stands still (Tukey weights, joint over radars; missing elevation 0).
-/// Same radars in the same order; a radar with fewer than `config.min_detections` comes out empty.
-/// `progress` hears the share that is done.
+/// Returns the usable detections: finite, fast enough and, if the gate is on, close to the range rate of a stationary
+/// reflector under a robust fit of k_v and each radar's yaw (Tukey weights, joint over radars; missing elevation 0).
+/// Same radars in the same order; a radar with fewer than `config.min_detections` becomes empty.
+/// `progress` receives the completed share.
 [[nodiscard]] std::vector<Recording> gated(std::span<const Recording> radars, const Config& config,
                                            const std::function<void(double)>& progress = {});
 

@@ -96,7 +96,7 @@ Solution solve(std::span<const Recording> radars, const Eigen::VectorXd& start, 
       now = std::move(next);
       damping = std::max(1e-9, 0.1 * damping);
     } else {
-      // At the minimum rounding decides which of two costs is the smaller one.
+      // At the minimum, rounding decides which of two costs is smaller.
       solution.converged = step.cwiseAbs().maxCoeff() < 1e-7;
       damping *= 10.0;
     }

@@ -21,7 +21,7 @@ namespace boresight::alignment::batch_calibration {
   return b;
 }
 
-/// Normal equations over 1 + 3·K_r parameters; the stacked Jacobian of Report A §9 has as many columns, most of its
+/// Normal equations over 1 + 3·K_r parameters; the stacked Jacobian of Burza 2025, §9 has as many columns, most of its
 /// entries zero.
 struct JointEquations {
   explicit JointEquations(std::size_t radars)
@@ -37,7 +37,7 @@ struct JointEquations {
   std::size_t count = 0;
 };
 
-/// Adds one detection to those of its radar's `model`, which it moves.
+/// Adds one detection; moves `model`, that of its radar, to the motion of the detection.
 void add(const Detection& detection, published::PlanarModel& model, published::NormalEquations& equations);
 
 /// V_JR·V_RR⁻¹ of the SVD of [J, ηR] (26)(27), by inverse iteration on its Gram matrix: the smallest singular value is
@@ -50,13 +50,13 @@ struct Solution {
   bool converged = false;
 };
 
-/// Least squares by Gauss–Newton (Levenberg's damping) from `start` over all detections; `held`: parameters that stay,
-/// by index.
+/// Least squares by Gauss–Newton (Levenberg's damping) from `start` over all detections; `held`: indices of fixed
+/// parameters.
 [[nodiscard]] Solution solve(std::span<const Recording> radars, const Eigen::VectorXd& start,
                              std::span<const Eigen::Index> held = {});
 
-/// Stds of the parameters by the information matrix of the detections, for residuals of that std, and what is known
-/// before: that angles are within `prior_angle_std_rad`. ∞ for those held.
+/// Stds of the parameters by the information matrix of the detections, for residuals of that std, with the prior
+/// `prior_angle_std_rad` of the angles. ∞ for fixed parameters.
 [[nodiscard]] Eigen::VectorXd stds(std::span<const Recording> radars, const Eigen::VectorXd& parameters,
                                    std::span<const Eigen::Index> held, double residual_std_mps,
                                    double prior_angle_std_rad);

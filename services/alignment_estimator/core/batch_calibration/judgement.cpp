@@ -54,7 +54,7 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
     if (!thin[r].has_elevation) roll(first_angle(r) + 2) = config.judgement_roll_rad;
   }
   const std::size_t draws = std::max<std::size_t>(config.judgement_draws, 2);
-  const std::size_t problems = draws + 8;  // with shift and tilt either way, two widths, two rolls
+  const std::size_t problems = draws + 8;  // shift and tilt in both directions, two widths, two rolls
   std::size_t solved_problems = 0;
   const auto solve_next = [&](const Eigen::VectorXd& start, std::span<const Eigen::Index> held) {
     if (progress) progress(static_cast<double>(solved_problems++) / static_cast<double>(problems));
@@ -77,13 +77,13 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
   const double d = config.judgement_shift_rad;
   const Eigen::VectorXd by_shift =
       0.5 * (solved(config.seed, {.shift_rad = d}).parameters - solved(config.seed, {.shift_rad = -d}).parameters);
-  // Without width: what is drawn makes a roll look like noise and hides that it is minus the tilt.
+  // With zero width: drawn elevations make a roll look like noise and hide that it is minus the tilt.
   const Eigen::VectorXd by_tilt = 0.5 * (solved(config.seed, {.tilt = d, .width = 0.0}).parameters -
                                          solved(config.seed, {.tilt = -d, .width = 0.0}).parameters);
   const Solution wide = solved(config.seed, {.width = config.judgement_width});
   const Solution usual = solved(config.seed, {});
   const Eigen::VectorXd by_width = wide.parameters - usual.parameters;
-  // Another roll tells only together with another pitch: their product is what yaw feels.
+  // Another roll acts only together with another pitch: their product changes yaw.
   Eigen::VectorXd by_roll = Eigen::VectorXd::Zero(found.size());
   for (std::size_t r = 0; r < thin.size(); ++r) fill_in(thin[r], config, config.seed * 1000 + r, {.shift_rad = d});
   for (const double side : {-1.0, 1.0})
@@ -91,7 +91,7 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
 
   for (std::size_t r = 0; r < thin.size(); ++r) fill_in(thin[r], config, config.seed, {.width = 0.0});
   const std::size_t all = count(radars);
-  // All detections know more than those looked at.
+  // All detections contain more information than the selected ones.
   const double more = count(thin) > 0 ? static_cast<double>(all) / static_cast<double>(count(thin)) : 1.0;
   const Eigen::VectorXd std = stds(thin, found, empty, usual.rmse_mps / std::sqrt(more), config.prior_angle_std_rad);
 
@@ -103,7 +103,7 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
     p.std = std(i);
     p.spread = spread(i);
     p.response = (std::abs(by_shift(i)) >= std::abs(by_tilt(i)) ? by_shift(i) : by_tilt(i)) / d;
-    // A roll that is moved answers with nothing but that.
+    // A shifted roll changes itself by the shift only.
     const double other_roll = roll(i) > 0.0 ? 0.0 : by_roll(i);
     p.made_up = Eigen::Vector4d(by_shift(i), by_tilt(i), by_width(i), other_roll).norm();
     const double believable = i == 0 ? config.believable_speed_scale : config.believable_angle_rad;

@@ -1,4 +1,5 @@
-// What the radars of a vehicle deviate by together: an error of speed, yaw rate or body moves all of them, a knock one.
+// The deviation that the radars of a vehicle have in common. An error of speed, yaw rate or body moves all radars, a
+// step change of a mounting only one.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +14,9 @@ struct Deviation {
   double variance = 0.0;
 };
 
-/// Median of the others (sorted in place; of an even number the smaller of the middle two), which is what a radar that
-/// deviates by `own_rad` has in common with them; nothing if there are none. Of two radars the one that deviates more
-/// is the one that moved: the other's common part is all of its own.
+/// Median of the other radars' deviations: the part that a radar with the deviation `own_rad` has in common with them.
+/// Sorts in place; for an even number the smaller of the middle two; zero without other radars. With two radars, the
+/// one with the larger deviation is taken as moved: for the other one all of its deviation is common.
 [[nodiscard]] inline Deviation common_mode(std::span<Deviation> others, double own_rad) {
   if (others.empty()) return {};
   std::sort(others.begin(), others.end(),

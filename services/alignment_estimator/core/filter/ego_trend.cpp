@@ -52,7 +52,7 @@ void EgoTrend::fit() {
     wt += t * e.yaw_rate_radps;
   }
   const double spread = n * t2 - t1 * t1;
-  // A slope over less than four values says more of their noise than of the motion.
+  // The slope of fewer than four values is dominated by their noise.
   if (n < 4.0 || !(spread > 1e-6)) {
     acceleration_mps2_ = yaw_acceleration_radps2_ = 0.0;
     return;

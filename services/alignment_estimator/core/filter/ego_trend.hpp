@@ -1,5 +1,5 @@
-// Acceleration of the vehicle, and its motion between messages of the ego sensors: a scan that arrives before the next
-// message is given the last one's values, which by then are old.
+// Acceleration of the vehicle, and extrapolation of its motion between ego messages. A scan that arrives before the
+// next message has only the values of the last one, which are old by then.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace boresight::alignment {
 
 class EgoTrend {
  public:
-  /// The motion at the time of a scan, with the rates of speed and yaw rate by a straight line through the last 0.4 s;
-  /// values that are repeated to the last bit at a later time are taken on along it.
+  /// The motion at the time of a scan. A straight line through the last 0.4 s gives the rates of speed and yaw rate.
+  /// Values that are bit-identical to earlier ones are extrapolated along it.
   [[nodiscard]] ScanMotion3d at(std::int64_t time_ns, const EgoSample& ego);
 
  private:

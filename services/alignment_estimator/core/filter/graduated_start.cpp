@@ -13,10 +13,10 @@ namespace boresight::alignment {
 namespace {
 
 constexpr std::size_t kColumns = 11;
-/// One pass each this often, so that slow radars start as soon as fast ones.
+/// Interval between passes, so that slow radars start as soon as fast ones.
 constexpr double kPassPeriod_s = 0.02;
 constexpr double kMinScale_mps = 0.02;
-/// Nothing is believed that lies further from the prior than this many of its stds.
+/// A result further from the prior than this many of its stds is rejected.
 constexpr double kPlausibleStds = 3.5;
 
 }  // namespace
@@ -33,7 +33,7 @@ void GraduatedStart::clear() {
 
 void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
   if (number_of_scans_ == kMaxScans || s.count == 0) return;
-  // Every n-th detection of a long scan: sensors sort by range or angle, the first ones are no sample.
+  // Every n-th detection of a long scan: sensors sort by range or angle, so the first ones are no fair sample.
   const std::size_t stride = (s.count + kMaxPerScan - 1) / kMaxPerScan;
   const std::size_t count = (s.count + stride - 1) / stride;
   if (number_of_sightings_ + count > kCapacity) return;
@@ -142,7 +142,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
   normal(0, 0) =
       1.0 / (prior_.speed_scale_variance + model_.lowering[0] * model_.lowering[0] * prior_.elevation_excess_variance);
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior_.rotation_variance);
-  // The data count less than their noise would let them, throughout: what is hardly known must not follow it.
+  // The information is reduced throughout, so that a poorly known parameter does not follow the noise.
   const double counts = 1.0 / config_.start_inflation;
   Eigen::Vector4d right = -normal * off_;
   Eigen::Matrix<double, 4, column::kTouched> cross = Eigen::Matrix<double, 4, column::kTouched>::Zero();
@@ -191,8 +191,8 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
 }
 
 GraduatedStart::Verdict GraduatedStart::judge() const {
-  // The gate must hold clearly more than its neighbourhood, twice as wide, lets expect of a background: five stds of
-  // the counts, and most of what it holds.
+  // The gate must hold clearly more detections than a uniform background would give, which its neighbourhood, twice as
+  // wide, shows: five stds of the counts more, and most of those in the gate.
   const double excess = inliers_ - 0.5 * near_;
   const bool stands_out = excess > 0.5 * inliers_ && excess * excess > 25.0 * (inliers_ + 0.25 * near_);
   const double rotation_limit = kPlausibleStds * std::sqrt(prior_.rotation_variance);

@@ -1,5 +1,6 @@
-// Finds where a radar looks from its first scans alone, whatever moves around it: graduated non-convexity over a
-// window of scans, a pass a scan, so that no scan costs much more than another.
+// Finds the rotation of a radar from its first scans alone, among any number of moving objects: graduated non-convexity
+// over a window of scans. One pass per scan keeps the cost of every scan similar.
+// Equations: docs/algorithms/alignment.md (A23).
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@
 
 namespace boresight::alignment {
 
-/// Where the search begins and how far it may go.
+/// Start and extent of the search.
 struct StartPrior {
   double speed_scale = 1.0;
   double speed_scale_variance = 1.0;
@@ -27,22 +28,23 @@ struct StartPrior {
   double elevation_excess = 0.0, elevation_excess_variance = 0.0;  ///< where elevations are not measured
 };
 
-/// Pitch and yaw about the vehicle's axes, and k_v; roll shows too little in half a second and is taken for known, and
-/// so is pitch where the directions seen do not span three dimensions.
+/// Pitch and yaw about the vehicle's axes, and k_v. Half a second contains too little information about roll, which is
+/// taken as known. So is pitch if the directions of the detections do not span three dimensions.
 struct StartResult {
   double speed_scale = 1.0;
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
   std::array<bool, 3> searched{};                        ///< axes of the vehicle
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes, inflated
-  /// By how much what the search took for known (columns of VelocityGradient) turned the result, d rotation / d column,
-  /// and the covariance of the rotation were all that known, inflated. The same of k_v.
+  /// Sensitivity of the rotation to the parameters that the search took as known (columns of VelocityGradient):
+  /// d rotation / d column. Below: the covariance of the rotation if all of these were known, inflated; likewise of
+  /// k_v.
   Eigen::Matrix<double, 3, column::kTouched> by_known = Eigen::Matrix<double, 3, column::kTouched>::Zero();
   Eigen::Matrix<double, 1, column::kTouched> speed_scale_by_known = Eigen::Matrix<double, 1, column::kTouched>::Zero();
-  Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< the first four of these columns as the search took them
+  Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< values that the search used for the first four of these columns
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
   Spread spread;           ///< of the window
-  double lowering = 0.0;   ///< of range rates by elevations that are not measured, as assumed
-  double mean_sine = 0.0;  ///< of these elevations
+  double lowering = 0.0;   ///< assumed reduction of range rates by unmeasured elevations
+  double mean_sine = 0.0;  ///< mean sine of these elevations
   double seconds = 0.0;    ///< of the window
   double inlier_ratio = 0.0;
 };
@@ -51,7 +53,7 @@ class GraduatedStart {
  public:
   enum class Verdict {
     kSearching,
-    kNothing,  ///< no stationary world stands out; the window is empty again
+    kNothing,  ///< no stationary world found; the window is empty again
     kFound,
   };
 
@@ -59,8 +61,8 @@ class GraduatedStart {
 
   /// Empties the window.
   void clear();
-  /// Takes a scan into the window while there is room and makes the passes that are due. The prior is that of the
-  /// first pass: what other radars find meanwhile is taken over with the result.
+  /// Adds a scan to the window while there is room, and makes the passes that are due. The prior is that of the first
+  /// pass; results of other radars meanwhile are applied together with the result.
   [[nodiscard]] Verdict add(const Sightings& sightings, const std::array<double, 3>& position_m,
                             const ScanMotion3d& motion, double elapsed_s, const StartPrior& prior, double angle_scale);
   [[nodiscard]] const StartResult& result() const { return result_; }
@@ -81,7 +83,7 @@ class GraduatedStart {
   [[nodiscard]] Verdict judge() const;
 
   FilterConfig config_;
-  std::vector<double> columns_;  ///< eleven columns of kCapacity
+  std::vector<double> columns_;  ///< eleven columns of kCapacity values
   std::array<Scan, kMaxScans> scans_;
   std::size_t number_of_scans_ = 0;
   std::size_t number_of_sightings_ = 0;

@@ -47,7 +47,7 @@ bool JointState::update(const Eigen::Matrix3d& information, const Eigen::Vector3
   const Eigen::Vector3d reduced = score - x * (c_ * score);
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, column::kMax, 1> step = pg_.lazyProduct(reduced);
   if (!x.allFinite() || !step.allFinite()) return false;
-  // No scan turns a radar by more than half a radian.
+  // An update of more than half a radian is not plausible.
   for (std::size_t r = 0; r < radars_; ++r) {
     if (!(step.segment<3>(column::of_radar(r)).cwiseAbs().maxCoeff() < 0.5)) return false;
   }

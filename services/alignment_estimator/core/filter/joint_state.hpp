@@ -1,5 +1,6 @@
-// Mean and covariance of everything that the radars of a vehicle have in common and of each radar's rotation, and the
-// update by what a scan says of one sensor's velocity: three numbers, however many detections.
+// Mean and covariance of the parameters that all radars share and of each radar's rotation. A scan updates them by its
+// measurement of one sensor's velocity: three numbers, however many detections.
+// Equations: docs/algorithms/alignment.md (A16).
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 namespace boresight::alignment {
 
 /// Columns of the joint covariance that all radars share. The last four are errors of the motion at the instant of the
-/// last scan, with statistics of their own (NuisanceModel).
+/// last scan; NuisanceModel holds their statistics.
 namespace column {
 inline constexpr Eigen::Index kSpeedScale = 0;
 inline constexpr Eigen::Index kYawRateBias = 1;
@@ -20,15 +21,17 @@ inline constexpr Eigen::Index kSlip = 2;
 inline constexpr Eigen::Index kPitchPerAcceleration = 3;
 inline constexpr Eigen::Index kSpeed = 4;      ///< δV, true = signalled + δV, m/s
 inline constexpr Eigen::Index kYawRate = 5;    ///< δω, rad/s
-inline constexpr Eigen::Index kBodyPitch = 6;  ///< rad; moves the body's velocity by V·θ upwards
-inline constexpr Eigen::Index kSideSlip = 7;   ///< rad; by V·ψ to the left
+inline constexpr Eigen::Index kBodyPitch = 6;  ///< rad; adds V·θ upwards to the velocity
+inline constexpr Eigen::Index kSideSlip = 7;   ///< rad; adds V·ψ to the left
 inline constexpr Eigen::Index kShared = 8;
 inline constexpr Eigen::Index kNuisances = kSpeed;
 inline constexpr Eigen::Index kNumberOfNuisances = 4;
-/// Of each radar: rotation about the vehicle's x, y, z (left error, Exp(d)·R), excess of what unknown elevations take
-/// off its range rates over what is assumed of them (1: twice as much), logarithm of what the variance of its angles is
-/// over what is taken for it: noise of angles passes for a spread of angles, and how much of the spread is noise
-/// decides what g is.
+/// Columns of each radar:
+/// - rotation about the vehicle's x, y, z (left error, Exp(d)·R);
+/// - relative excess of the reduction of range rates by unknown elevations over the assumed one (1: twice as much);
+/// - logarithm of the ratio of real to assumed variance of its angles. Noise of the angles looks like a spread of
+/// angles,
+///   and its share of the spread determines g.
 inline constexpr Eigen::Index kPerRadar = 5;
 inline constexpr Eigen::Index kElevations = 3, kAngleNoise = 4;
 inline constexpr Eigen::Index kTouched = kShared + kPerRadar;
@@ -38,7 +41,7 @@ inline constexpr Eigen::Index kMax = kShared + kPerRadar * static_cast<Eigen::In
 }
 }  // namespace column
 
-/// d g/d(column) of one scan: the shared columns, then the radar's five.
+/// ∂g/∂(column) of one scan: the shared columns, then the radar's five.
 using VelocityGradient = Eigen::Matrix<double, column::kTouched, 3>;
 
 class JointState {
@@ -51,23 +54,23 @@ class JointState {
   double pitch_per_acceleration_radps2pm = 0.0;
   Eigen::Vector4d nuisances = Eigen::Vector4d::Zero();  ///< δV, δω, θ, ψ
   std::array<Eigen::Matrix3d, kMaxRadars> sensor_to_vehicle;
-  /// Where a radar's derivatives are taken. Were they to follow the estimate along what is not observable, every place
-  /// it comes by would lend another direction to the same information (first-estimates Jacobian).
+  /// Rotation at which a radar's derivatives are taken (first-estimates Jacobian). If it followed the estimate along an
+  /// unobservable direction, the same information would seem to come from several directions.
   std::array<Eigen::Matrix3d, kMaxRadars> linearised;
   double linearised_speed_scale = 1.0;
   std::array<double, kMaxRadars> elevation_excess{};
-  /// By how much elevations that a radar does not measure shorten g as assumed; 0 where it measures them.
+  /// Assumed relative reduction of g by unmeasured elevations; 0 for radars that measure elevation.
   std::array<double, kMaxRadars> lowering{};
   std::array<double, kMaxRadars> log_angle_noise{};
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] double covariance(Eigen::Index row, Eigen::Index column) const { return p_(row, column); }
-  /// Of a radar's turn about the vehicle's axes, rad².
+  /// Covariance of a radar's rotation about the vehicle's axes, rad².
   [[nodiscard]] Eigen::Matrix3d rotation_covariance(std::size_t radar) const {
     const Eigen::Index first = column::of_radar(radar);
     return p_.block<3, 3>(first, first);
   }
-  /// Sets a diagonal entry and cuts the column's correlations.
+  /// Sets a diagonal entry and clears the column's correlations.
   void set_variance(Eigen::Index index, double variance);
   void set_covariance(Eigen::Index row, Eigen::Index column, double value) {
     p_(row, column) = p_(column, row) = value;
@@ -81,11 +84,11 @@ class JointState {
   /// P·G over the touched columns, and the covariance Gᵀ·P·G of the sensor's velocity in its frame.
   void project(std::size_t radar, const VelocityGradient& gradient);
   [[nodiscard]] const Eigen::Matrix3d& velocity_covariance() const { return c_; }
-  /// Takes up an information and a score of g, by the last projection. False, and nothing changes, if the result were
-  /// not finite or not plausible.
+  /// Updates with an information and a score of g, by the last projection. Returns false and changes nothing if the
+  /// result would not be finite or not plausible.
   [[nodiscard]] bool update(const Eigen::Matrix3d& information, const Eigen::Vector3d& score);
-  /// Takes up what others found of one column: its mean moves by `shift`, its variance shrinks to `variance` (no more
-  /// than it is), all else moves by its correlation with it.
+  /// Applies external knowledge of one column: its mean moves by `shift`, its variance shrinks to `variance` at most,
+  /// all other columns move by their correlation with it.
   void condition(Eigen::Index index, double shift, double variance);
 
   [[nodiscard]] bool finite() const { return p_.allFinite(); }

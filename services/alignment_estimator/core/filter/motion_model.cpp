@@ -9,8 +9,9 @@ namespace boresight::alignment {
 
 namespace {
 
-/// A lateral velocity counts fully up to a relative variance of one over this, and not at all from twice that on.
-constexpr double kDoubt = 8.0;
+/// A lateral velocity counts fully up to a relative variance of 1/kLateralVelocityDoubt, and not at all above twice
+/// that.
+constexpr double kLateralVelocityDoubt = 8.0;
 
 }  // namespace
 
@@ -32,8 +33,8 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   const double lowering = state.lowering[radar], scale = std::exp(-lowering * state.elevation_excess[radar]);
   const Eigen::Matrix3d to_sensor = scale * state.linearised[radar].transpose();
   SensorVelocity out;
-  // What the rotation differs from there counts in proportion: the turn's second order, of what is only the prior's,
-  // would pass for a change of speed. Axes that are known are never far off.
+  // The difference to that rotation enters linearly. Its second order would look like a change of speed although it
+  // comes from the prior alone. Known axes are never far from it.
   const Eigen::Vector3d off = geometry::so3_log(state.sensor_to_vehicle[radar] * state.linearised[radar].transpose());
   out.g = to_sensor * (velocity(state.speed_scale * signalled) + v.cross(off));
   Eigen::Matrix<double, 3, column::kTouched> by;
@@ -47,15 +48,16 @@ SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& n
   by.col(column::kSideSlip) << 0.0, speed, 0.0;
   // (Exp(d)·R)ᵀ·v = Rᵀ·(v − d × v) = Rᵀ·(v + v × d).
   by.middleCols<3>(column::kShared) = geometry::cross_matrix(v);
-  // Roll acts through the small lateral and vertical velocities alone. Where these are no better known than their
-  // size, noise in them would pass for the motion that makes roll observable.
+  // Roll acts only through the small lateral and vertical velocities. If their errors are as large as they are, the
+  // noise would look like the motion that makes roll observable.
   const double lateral = (x - slip * speed * speed) * (motion.yaw_rate_radps - state.yaw_rate_bias_radps);
   const double by_slip = speed * speed * yaw_rate, by_rate = x - slip * speed * speed;
   const double variance = by_slip * by_slip * state.covariance(column::kSlip, column::kSlip) +
                           by_rate * by_rate *
                               (state.covariance(column::kYawRateBias, column::kYawRateBias) +
                                state.covariance(column::kYawRate, column::kYawRate));
-  const double lateral_share = std::clamp(2.0 - kDoubt * variance / (lateral * lateral + 1e-12), 0.0, 1.0);
+  const double lateral_share =
+      std::clamp(2.0 - kLateralVelocityDoubt * variance / (lateral * lateral + 1e-12), 0.0, 1.0);
   const double by_acceleration = state.pitch_per_acceleration_radps2pm;
   const double stds = std::abs(by_acceleration) /
                       std::sqrt(state.covariance(column::kPitchPerAcceleration, column::kPitchPerAcceleration) + 1e-12);

@@ -1,4 +1,5 @@
-// Velocity of a sensor over ground and its derivatives to everything that is estimated (algorithms.md §0).
+// Velocity of a sensor over ground and its derivatives to all estimated parameters (docs/algorithms/alignment.md
+// (A1)–(A3)).
 #pragma once
 
 #include <array>
@@ -10,7 +11,7 @@
 
 namespace boresight::alignment {
 
-/// Motion as signalled at the time of a scan; the acceleration is that of the speed signal.
+/// Signalled motion at the time of a scan; the acceleration is that of the speed signal.
 struct ScanMotion3d {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
@@ -21,12 +22,13 @@ struct ScanMotion3d {
 struct SensorVelocity {
   Eigen::Vector3d g;
   VelocityGradient gradient;
-  /// By what the radar sees: the angles' noise (Support::by_angle_noise) at ln(real/assumed variance)
-  /// `log_angle_noise`; and of reflectors in a plane, which do not tell how it is tilted, neither pitch nor roll is
-  /// believed: they would act through the tilt of the estimate, not through that of the radar.
+  /// Adapts the gradient to the directions that the radar sees. Adds the effect of the angles' noise
+  /// (Support::by_angle_noise) at ln(real/assumed variance) = `log_angle_noise`. Reflectors in one plane do not
+  /// determine its tilt, so the gradients to pitch and roll are removed: they would come from the estimate, not from
+  /// the radar.
   void seen(const Support& support, double log_angle_noise);
 };
-/// `nuisances`: δV, δω, body pitch, side slip; those of the state at the instant of its last scan, or none.
+/// `nuisances`: δV, δω, body pitch, side slip of the state at the instant of its last scan, or zero.
 /// `pitch_share`: NuisanceModel::pitch_share.
 [[nodiscard]] SensorVelocity sensor_velocity(const JointState& state, const Eigen::Vector4d& nuisances,
                                              std::size_t radar, const std::array<double, 3>& position_m,

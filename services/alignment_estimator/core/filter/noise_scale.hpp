@@ -1,4 +1,4 @@
-// By how much a radar's real noise differs from what is stated, learnt from its residuals.
+// Ratio of a radar's real noise to the stated noise, learnt from its residuals.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace boresight::alignment {
 
-/// Factors of the variances of range rates and of angles: Fisher scoring on sliding sums of the residuals' squares,
-/// which is possible because the angles' share of a residual grows with speed and angle.
+/// Factors of the variances of range rates and of angles, by Fisher scoring on sliding sums of squared residuals. The
+/// two can be separated because the angles' share of a residual grows with speed and angle.
 class NoiseScale {
  public:
   void add(const ScanSums& sums, double keep) {
@@ -18,7 +18,7 @@ class NoiseScale {
     rate_rate_ = keep * rate_rate_ + sums.noise_rate_rate;
     rate_angle_ = keep * rate_angle_ + sums.noise_rate_angle;
     angle_angle_ = keep * angle_angle_ + sums.noise_angle_angle;
-    // The stated noise counts like this many detections.
+    // Weight of the stated noise, in detections.
     constexpr double kPrior = 100.0;
     constexpr double kRate = 0.1;
     const double a = rate_rate_ + kPrior, b = rate_angle_, c = angle_angle_ + kPrior;
@@ -34,7 +34,8 @@ class NoiseScale {
   [[nodiscard]] double rate_variance_factor() const { return std::exp(log_rate_); }
   [[nodiscard]] double angle_variance_factor() const { return std::exp(log_angle_); }
   [[nodiscard]] double log_angle_variance_factor() const { return log_angle_; }
-  /// Of the above: from the Fisher information of the sums, as far as range rates' noise does not explain the same.
+  /// Variance of the logarithm above, by the Fisher information of the sums without the part that noise of the range
+  /// rates explains too.
   [[nodiscard]] double log_angle_variance(double prior_variance) const {
     const double information = angle_angle_ - rate_angle_ * rate_angle_ / (rate_rate_ + 1.0);
     return 1.0 / (1.0 / prior_variance + 0.5 * std::max(information, 0.0));

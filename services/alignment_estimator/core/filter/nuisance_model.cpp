@@ -9,17 +9,17 @@ namespace boresight::alignment {
 
 namespace {
 
-/// Instants further apart say nothing of each other.
+/// Instants further apart are treated as independent.
 constexpr double kMaxStep_s = 0.3;
-/// The first estimates count like this many instants (in units of Fisher information of ln σ²).
+/// Weight of the start values, in instants (units of Fisher information of ln σ²).
 constexpr double kPriorInformation = 10.0;
 constexpr double kCorrelationInformation = 60.0;
 constexpr double kRecent_s = 10.0;
-/// Stds by which the test of presence must stand out.
+/// Stds that the test for the presence of an error must exceed.
 constexpr double kSignificant = 2.0;
 constexpr double kMinCorrelation_s = 0.005, kMaxCorrelation_s = 1.5;
-/// A body on its springs swings at 1 to 2 Hz, and its dampers stop that within a swing. What lasts longer is not the
-/// body's: it is the error of a mounting.
+/// A body on its springs oscillates at 1 to 2 Hz, and its dampers stop this within one oscillation. A longer deviation
+/// is not body motion but a mounting error.
 constexpr double kMinBodyCorrelation_s = 0.2, kMaxBodyCorrelation_s = 0.6;
 
 }  // namespace
@@ -74,7 +74,7 @@ void NuisanceModel::step(JointState& state, double elapsed_s) {
     const Eigen::Index index = column::kNuisances + static_cast<Eigen::Index>(i);
     const double mean = state.nuisances(static_cast<Eigen::Index>(i));
     if (p.armed && elapsed < kMaxStep_s) learn(p, mean, state.covariance(index, index), elapsed);
-    // The process is the same backwards in time: a scan that comes late is no special case.
+    // The process is symmetric in time: a late scan is no special case.
     p.keep = std::exp(-elapsed / p.correlation_s);
     state.decay(index, p.keep, (1.0 - p.keep * p.keep) * p.variance);
     p.previous_mean = mean;
@@ -87,7 +87,7 @@ void NuisanceModel::step(JointState& state, double elapsed_s) {
 }
 
 void NuisanceModel::learn(Process& p, double mean, double variance, double elapsed_s) {
-  // Gain of this instant's data; what they said of the error, free of the prediction, is the innovation over it.
+  // Gain of this instant's data. The measurement of the error without the prediction is the innovation over the gain.
   const double gain = 1.0 - variance / p.predicted_variance;
   if (!(gain > 1e-6) || !(gain <= 1.0) || !std::isfinite(mean)) return;
   const double moved = mean - p.predicted_mean;
@@ -103,7 +103,7 @@ void NuisanceModel::learn(Process& p, double mean, double variance, double elaps
   const double weight = gain / p.predicted_variance;  // inverse variance of the innovation
   p.product = fade * p.product + weight * (moved / gain) * p.previous_mean;
   p.square = fade * p.square + weight * p.previous_mean * p.previous_mean;
-  // Small steps of Newton's kind; the sums are reduced by what the step takes off.
+  // Small Newton steps; the sums are reduced by the part that the step removes.
   const double rate = std::min(1.0, elapsed_s / 1.0);
   const double change = std::clamp(rate * p.score / (p.fisher + kPriorInformation), -0.2, 0.2);
   p.variance = std::clamp(p.variance * std::exp(change), p.min_variance, p.max_variance);

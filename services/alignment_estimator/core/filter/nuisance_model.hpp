@@ -1,4 +1,5 @@
-// How large the errors of the motion are and how long they last, learnt from what they turn out to be.
+// Size and duration of the errors of the motion, learnt from their estimates.
+// Equations: docs/algorithms/alignment.md (A18)(A19).
 #pragma once
 
 #include <array>
@@ -8,23 +9,23 @@
 
 namespace boresight::alignment {
 
-/// Ornstein–Uhlenbeck processes of δV, δω, body pitch and side slip, as states of the joint filter: scans of one
-/// instant share them, scans of later instants as far as their correlation reaches. Variance and correlation time
-/// follow the score of the innovations' likelihood, so that errors that last count once and not once a scan, and
-/// errors that do not occur cost nothing.
+/// Ornstein–Uhlenbeck processes of δV, δω, body pitch and side slip, as states of the joint filter. Scans of one
+/// instant share them; scans of later instants share them within the correlation time. Variance and correlation time
+/// follow the score of the innovations' likelihood. A lasting error then counts once and not once per scan, and an
+/// absent error does not widen σ.
 class NuisanceModel {
  public:
   explicit NuisanceModel(const FilterConfig& config);
 
-  /// What the ego signals state of themselves; takes effect until there is experience.
+  /// Stds that the ego signals state; used until the learnt ones replace them.
   void state_stds(double speed_std_mps, double yaw_rate_std_radps);
-  /// From one instant to another: learns from the first one and takes the state to the next.
+  /// Steps from one instant to the next: learns from the first and predicts the state to the next.
   void step(JointState& state, double elapsed_s);
-  /// Stationary variances into the state, uncorrelated.
+  /// Writes the stationary variances into the state, uncorrelated.
   void reset(JointState& state);
 
   [[nodiscard]] double variance(std::size_t i) const { return processes_[i].variance; }
-  /// 1 if the body is known to pitch, 0 if what is estimated of it may as well be noise, and between.
+  /// 1 if body pitch is significant, 0 if its estimate may be noise, with values between.
   [[nodiscard]] double pitch_share() const;
   [[nodiscard]] double correlation_s(std::size_t i) const { return processes_[i].correlation_s; }
 
@@ -38,7 +39,7 @@ class NuisanceModel {
     // Since the last step of the state.
     double predicted_mean = 0.0, predicted_variance = 0.0, previous_mean = 0.0, keep = 0.0;
     bool armed = false;
-    // Sliding sums of a test whether there is such an error at all.
+    // Sliding sums of the test for the presence of this error.
     double presence = 0.0, presence_variance = 0.0;
     // Sliding sums: score and information of ln variance and of the correlation.
     double score = 0.0, fisher = 0.0, product = 0.0, square = 0.0;

@@ -15,7 +15,7 @@ constexpr double kSameInstant_s = 5e-4;
 constexpr double kMaxGap_s = 1.0;
 /// Time constants of a radar's sliding statistics.
 constexpr double kSpreadMemory_s = 20.0, kNoiseMemory_s = 60.0, kInlierMemory_s = 10.0, kLoweringMemory_s = 10.0;
-/// A scan in which so much less than usual stands still is not used.
+/// A scan whose share of stationary detections is below this part of the usual one is not used.
 constexpr double kStrangeShare = 0.4;
 constexpr double kStepChangeMeasured_s = 20.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
@@ -46,8 +46,8 @@ RobustFilter::RobustFilter(const VehicleConfig& vehicle, const FilterConfig& con
     reopen(r);
     state_.set_variance(column::of_radar(r) + column::kAngleNoise, square(config.prior_angle_noise_log_std));
   }
-  // What is higher or lower than assumed is so to all radars of a vehicle: many know the speed little better than one.
-  // As much again is each radar's own: what stands on its side, and what its roll and pitch make of elevations.
+  // A deviation of the real elevations from the assumed ones is common to all radars of a vehicle: many radars know the
+  // speed little better than one. An equal part is individual: objects on the radar's side, and its own roll and pitch.
   for (std::size_t r = 0; r < count; ++r) {
     for (std::size_t s = 0; s < count; ++s) {
       state_.set_covariance(column::of_radar(r) + column::kElevations, column::of_radar(s) + column::kElevations,
@@ -77,7 +77,7 @@ void RobustFilter::advance(std::int64_t time_ns) {
   } else {
     return;
   }
-  // What a parked car's mounting does is no matter of the time that passed.
+  // The mounting of a parked car does not drift with time: a gap counts as kMaxGap_s at most.
   const double drift_s = std::clamp(elapsed_s, 0.0, kMaxGap_s);
   state_.add_variance(column::kSpeedScale, square(config_.speed_scale_drift_per_sqrt_s) * drift_s);
   state_.add_variance(column::kYawRateBias, square(config_.yaw_rate_bias_drift_radps_per_sqrt_s) * drift_s);
@@ -171,7 +171,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
       strange ? 0 : small_step_changes_.add(index, time_ns, by_turn, turn_score, state_.rotation_covariance(index));
   if (suspicious != 0) watch(suspicious, time_ns);
   if (changed != 0) follow(changed, time_ns);
-  // What this scan says was said of the rotation before a change.
+  // The information of this scan refers to the rotation before the change.
   if ((changed >> index & 1u) != 0) return;
   if (strange || radar.phase != Phase::kRunning || small_step_changes_.doubted(index)) return;
   if (!state_.update(information, score)) return;
@@ -182,13 +182,13 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
     radar.earlier = {radar.earlier[1], radar.earlier[2], now(index)};
     radar.since_earlier_s = 0.0;
   }
-  // How large a knock was becomes clearer for a while.
+  // The size of a step change becomes more accurate for a while.
   if (radar.step_change.count > 0 && radar.since_start_s < kStepChangeMeasured_s) measure_step_change(index);
   ++radar.scans_used;
   radar.detections_used += static_cast<std::uint64_t>(sums.inliers);
 }
 
-/// The angles' noise as the residuals show it is a measurement of that column as well.
+/// The noise of the angles as estimated from the residuals is a measurement of its column of the state.
 void RobustFilter::learn_noise(std::size_t index, const ScanSums& sums, double elapsed_s) {
   NoiseScale& noise = radars_[index].noise;
   const double before = noise.log_angle_variance_factor();

@@ -1,5 +1,5 @@
 // Boresight's own alignment estimator: a robust recursive information filter over all radars of the vehicle
-// (algorithms.md §1.4).
+// (docs/algorithms/alignment.md).
 #pragma once
 
 #include <cstdint>
@@ -40,20 +40,20 @@ class RobustFilter : public Method {
   [[nodiscard]] const SmallStepChangeDetector& small_step_change_detector() const { return small_step_changes_; }
 
  private:
-  /// χ² of three degrees of freedom that is passed once in 10⁴: a rotation that is another one.
+  /// χ² of three degrees of freedom, exceeded once in 10⁴: beyond it two rotations differ.
   static constexpr double kAnother = 21.1;
-  static constexpr double kEarlier_s = 5.0;  ///< apart are the rotations of Radar::earlier
+  static constexpr double kEarlier_s = 5.0;  ///< interval between the rotations of Radar::earlier
   enum class Phase : std::uint8_t {
-    kStarting,   ///< searching; the estimate is the prior, or what was remembered
+    kStarting,   ///< searching; the estimate is the prior or the restored memory
     kRunning,    //
-    kSuspected,  ///< the estimate stands still while a new start is made beside it
+    kSuspected,  ///< the estimate is frozen while a new start runs beside it
   };
   struct Radar {
     RadarConfig config;
     Eigen::Matrix3d nominal;
     UnknownElevation unknown;
     Phase phase = Phase::kStarting;
-    bool remembered = false;  ///< the state holds what a memory said
+    bool remembered = false;  ///< the state holds a restored memory
     AlignmentState state = AlignmentState::kNoData;
     GraduatedStart start;
     Spread spread;
@@ -62,22 +62,22 @@ class RobustFilter : public Method {
     double seconds_of_drive = 0.0;
     double since_start_s = 0.0;
     Efficiency efficiency;
-    double mean_sine = 0.0;      ///< sliding, of elevations that are not measured; 0 where they are
+    double mean_sine = 0.0;      ///< sliding, of unmeasured elevations; 0 if they are measured
     double inlier_ratio = -1.0;  ///< sliding
     std::uint64_t scans_used = 0, detections_used = 0;
     std::int64_t suspected_ns = 0;
     bool drifted = false;
     AlignmentStepChange step_change{};
     Eigen::Matrix3d before_step_change = Eigen::Matrix3d::Identity();
-    /// The rotation a few seconds ago: what a knock did to the estimate before it was told is undone.
+    /// The rotation a few seconds ago: it undoes the effect of a step change on the estimate before its detection.
     struct Earlier {
       Eigen::Matrix3d sensor_to_vehicle;
       Eigen::Vector3d variance;
     };
     std::array<Earlier, 3> earlier;
     double since_earlier_s = 0.0;
-    double since_change_s = 0.0;  ///< until the rotations a few seconds ago are none from before a change
-    /// Variances of the rotation when derivatives were last taken to where it was.
+    double since_change_s = 0.0;  ///< the earlier rotations are valid once this exceeds their age
+    /// Variances of the rotation at the last change of the point of linearisation.
     Eigen::Vector3d linearised_variance = Eigen::Vector3d::Zero();
     Radar(const RadarConfig& radar, const FilterConfig& filter);
   };

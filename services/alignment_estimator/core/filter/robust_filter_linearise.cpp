@@ -1,4 +1,5 @@
-// Where derivatives are taken (first-estimates Jacobian; Huang, Mourikis and Roumeliotis 2010).
+// Point of linearisation (first-estimates Jacobian; Huang, Mourikis and Roumeliotis 2010;
+// docs/algorithms/alignment.md (A17)).
 #include <cmath>
 
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
@@ -13,8 +14,8 @@ constexpr double kKnownShare = 0.05, kLinearStep_rad = 5e-4;
 
 }  // namespace
 
-/// Derivatives follow the estimate about axes that are known, and there only by steps that matter; about others
-/// whenever the data have halved what is unknown, which noise along an unobservable direction never does.
+/// About known axes, the point of linearisation follows the estimate in steps large enough to matter. About other axes
+/// it moves whenever the data have halved the σ. Noise along an unobservable direction never does that.
 void RobustFilter::linearise(std::size_t index) {
   Eigen::Matrix3d& at = state_.linearised[index];
   const Eigen::Vector3d off = geometry::so3_log(state_.sensor_to_vehicle[index] * at.transpose());

@@ -1,4 +1,4 @@
-// What is kept from one drive to the next, and what a calibration at rest says.
+// Memory from one drive to the next, and the start from a static calibration.
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +43,7 @@ void RobustFilter::restore(const Memory& memory) {
   state_.speed_scale = state_.linearised_speed_scale = memory.speed_scale;
   state_.yaw_rate_bias_radps = memory.yaw_rate_bias_radps;
   state_.slip_radps2pm = memory.slip_coefficient_radps2pm;
-  // Correlations are not taken over: a block of twice the variance and more bounds them.
+  // Correlations are not restored; the inflation of at least the variance bounds their effect.
   const auto remembered = [&](double v, double floor_std, double prior_std) {
     if (!usable_variance(v, prior_std)) return square(prior_std);
     return std::min(config_.memory_inflation * v + square(floor_std), square(prior_std));

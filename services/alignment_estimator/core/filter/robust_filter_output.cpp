@@ -1,4 +1,4 @@
-// What is published of a radar, and the range rates that follow from it.
+// The published estimate of a radar, and the range rates that it predicts.
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +10,14 @@ namespace boresight::alignment {
 
 namespace {
 
-/// An axis is known with this share of the prior's σ; derivatives are as good within this angle.
+/// An axis counts as known below this share of the prior's σ.
 constexpr double kLearntShare = 1.0 / 3.0;
 
 }  // namespace
 
-/// What is learnt of yaw is yaw as it shows: with a roll r and a pitch p (about the vehicle's axes) that are not known
-/// it differs by r·p/2 from that of the rotation, and by ε·(r·cos ψ + p·sin ψ) if what is seen at ψ from the vehicle's
-/// x axis stands at a mean elevation ε which nobody measures. Both stay the same however long the car drives.
+/// Variance of the difference between the observed yaw and the yaw of the rotation. With an unknown roll r and pitch p
+/// (about the vehicle's axes) they differ by r·p/2. Reflectors at ψ from the vehicle's x axis with an unmeasured mean
+/// elevation ε add ε·(r·cos ψ + p·sin ψ). Neither error decreases with driving time.
 double RobustFilter::second_order_yaw_variance(std::size_t index) const {
   const Eigen::Index first = column::of_radar(index);
   const double roll = state_.covariance(first, first), pitch = state_.covariance(first + 1, first + 1);
@@ -26,7 +26,7 @@ double RobustFilter::second_order_yaw_variance(std::size_t index) const {
       (ahead.x() * ahead.x() * roll + 2.0 * ahead.x() * ahead.y() * state_.covariance(first, first + 1) +
        ahead.y() * ahead.y() * pitch) /
       std::max(ahead.squaredNorm(), 1e-6);
-  // That mean is as uncertain as the lowering.
+  // The mean elevation is as uncertain as the reduction of the range rates.
   const double mean_square = square(radars_[index].mean_sine) * (1.0 + square(kElevationExcessStd));
   return mean_square * std::max(tilt, 0.0) + 0.25 * roll * pitch;
 }
@@ -46,7 +46,7 @@ RadarEstimate RobustFilter::estimate(std::size_t index) const {
     }
   }
   out.covariance(3, 3) += second_order_yaw_variance(index);
-  // An axis counts as observable once the data say clearly more than the prior did.
+  // An axis is observable once the data have reduced its σ clearly below the prior.
   const auto learnt = [&](Eigen::Index row, double prior_std) {
     return state_.covariance(row, row) < square(kLearntShare * prior_std);
   };

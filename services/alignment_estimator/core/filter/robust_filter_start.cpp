@@ -1,4 +1,4 @@
-// How a radar's rotation begins: the prior of its search, and what of the result is taken over.
+// Start of a radar's rotation: the prior of its search, and the use of the result.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace boresight::alignment {
 
 namespace {
 
-/// A suspicion that no new start confirms or refutes within this time is dropped.
+/// A suspicion that is neither confirmed nor refuted within this time is dropped.
 constexpr double kMaxSuspicion_s = 20.0;
 
 /// Column of the joint state for one of VelocityGradient.
@@ -25,12 +25,12 @@ Eigen::Index column_of(std::size_t radar, Eigen::Index touched) {
 StartPrior RobustFilter::start_prior(std::size_t index) const {
   const Radar& radar = radars_[index];
   StartPrior prior;
-  // Others know the speed by now; what a radar that is alone knows of it may be as wrong as the rest of its estimate.
+  // Other running radars know the speed. The speed scale of a single radar may be as wrong as its other estimates.
   const bool known = any_running_but(index);
   prior.speed_scale = known ? state_.speed_scale : 1.0;
   prior.speed_scale_variance = known ? state_.covariance(column::kSpeedScale, column::kSpeedScale) + square(1e-3)
                                      : square(config_.prior_speed_scale_std);
-  // What the window does not tell stays as it was.
+  // Parameters that the window does not determine keep their values.
   prior.sensor_to_vehicle =
       radar.phase == Phase::kSuspected ? radar.before_step_change : state_.sensor_to_vehicle[index];
   prior.rotation_variance = square(config_.prior_rotation_std_rad);
@@ -71,7 +71,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
     const double variance = found.covariance(0, 0);
     const double difference = found.speed_scale - state_.speed_scale;
     const double expected = variance + state_.covariance(column::kSpeedScale, column::kSpeedScale);
-    // A memory that agrees is better than the start; the prior is not, and a seed leaves k_v at it.
+    // A consistent memory is better than the start; the prior is not, and a calibration leaves k_v at the prior.
     const bool scale_is_known = radar.remembered && state_.covariance(column::kSpeedScale, column::kSpeedScale) <
                                                         0.25 * square(config_.prior_speed_scale_std);
     if (!scale_is_known || square(difference) > 16.0 * expected) {
@@ -103,7 +103,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
   forget_deviations(index);
 }
 
-/// k_v is as wrong as what the search took for known.
+/// The error of k_v includes that of the parameters that the search took as known.
 void RobustFilter::place_speed_scale(std::size_t index, const StartResult& found) {
   state_.speed_scale = state_.linearised_speed_scale = found.speed_scale;
   state_.set_variance(column::kSpeedScale, 0.0);
@@ -121,9 +121,9 @@ void RobustFilter::place_speed_scale(std::size_t index, const StartResult& found
   state_.set_covariance(column::kSpeedScale, column::kSpeedScale, variance);
 }
 
-/// The rotation is as wrong as what the search took for known: speed scale, slip, yaw-rate bias, roll and the angles'
-/// noise stay correlated with it, and what the car's body did in that window is in it for good. Axes that were not
-/// searched stay what they were.
+/// The error of the rotation includes that of the parameters that the search took as known. Speed scale, slip, yaw-rate
+/// bias, roll and the angles' noise stay correlated with it; the body motion during the window stays in it. Axes that
+/// were not searched keep their values.
 void RobustFilter::place(std::size_t index, const StartResult& found) {
   const Eigen::Index first = column::of_radar(index);
   const auto& by = found.by_known;
@@ -172,7 +172,7 @@ void RobustFilter::place(std::size_t index, const StartResult& found) {
   }
 }
 
-/// Nothing of its rotation is known any more.
+/// Resets the covariance of the rotation to the prior.
 void RobustFilter::reopen(std::size_t index) {
   for (Eigen::Index i = 0; i < 3; ++i) {
     state_.set_variance(column::of_radar(index) + i, square(config_.prior_rotation_std_rad));

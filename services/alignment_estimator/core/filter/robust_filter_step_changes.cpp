@@ -1,4 +1,4 @@
-// What is done about a change of a mounting: suspicion, confirmation by a new start, or following a small one.
+// Reaction to a change of a mounting: suspicion, confirmation by a new start, or following a small change.
 #include <algorithm>
 
 #include <Eigen/Cholesky>
@@ -11,9 +11,9 @@ namespace boresight::alignment {
 
 namespace {
 
-/// A rotation that is confirmed as a knock is at least this large.
+/// Smallest rotation that is confirmed as a step change.
 constexpr double kMinStepChange_rad = 0.0044;
-/// Slow mean of a radar's deviation, as a share of what it is now, beyond which it has been growing.
+/// Ratio of the slow mean of a radar's deviation to its present value, beyond which the deviation is a drift.
 constexpr double kDriftShare = 0.4;
 
 }  // namespace
@@ -36,8 +36,8 @@ void RobustFilter::watch(std::uint32_t suspicious, std::int64_t time_ns) {
 void RobustFilter::verify(std::size_t index, const StartResult& found, std::int64_t time_ns) {
   Radar& radar = radars_[index];
   const Eigen::Vector3d off = geometry::so3_log(found.sensor_to_vehicle * radar.before_step_change.transpose());
-  // Twice the statistical σ: what inflates a start is for the estimate that follows it, whereas two rotations are
-  // compared here, and a start that is wrong by more only begins anew.
+  // Twice the statistical σ instead of start_inflation, which serves the estimate that follows a start. Here two
+  // rotations are compared, and a start with a larger error is only repeated.
   const Eigen::Matrix3d covariance =
       4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>() + state_.rotation_covariance(index);
   const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
@@ -60,9 +60,10 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
   forget_deviations(index);
 }
 
-/// A small change needs no new start: from where the estimate was before, turned by what the last window showed, the
-/// data lead it on once its covariance admits the change. About an axis that was not seen to change there may be one as
-/// large that is not seen yet; but roll is seen last, and what else moved with it would have been seen long before.
+/// A small change needs no new start. The estimate returns to its earlier rotation, turned by the change in the last
+/// window, with a covariance that admits the change; then the data move it on. The covariance also grows about axes
+/// without a detected change, which may have changed as much. A detected roll is the exception: roll is detected last,
+/// so a change of another axis would have been detected before.
 void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if ((changed >> r & 1u) == 0 || radars_[r].phase != Phase::kRunning) continue;
@@ -73,7 +74,7 @@ void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
       if (small_step_changes_.changed(r, a))
         size_squared += square(small_step_changes_.change(r)(static_cast<Eigen::Index>(a)));
     }
-    // After a change a few seconds ago, what was before is no better.
+    // Shortly after another change, the earlier rotation is no better.
     const bool again = radar.since_change_s < static_cast<double>(radar.earlier.size()) * kEarlier_s;
     const Radar::Earlier before = again ? now(r) : radar.earlier[0];
     if (tilted) {
@@ -93,7 +94,7 @@ void RobustFilter::follow(std::uint32_t changed, std::int64_t time_ns) {
       state_.add_variance(row, std::max(0.0, wanted - variance));
     }
     note_linearised(r);
-    // Sudden or not does not show in roll, for which a window lasts too long.
+    // A window for roll is too long to separate a sudden change from a drift.
     if (tilted && size_squared > square(config_.step_change_least_rad) && !drifts(r)) {
       radar.before_step_change = before.sensor_to_vehicle;
       radar.since_start_s = 0.0;
@@ -116,7 +117,7 @@ void RobustFilter::measure_step_change(std::size_t index) {
   }
 }
 
-/// What grew over a minute is a drift: followed, but not reported as a knock.
+/// A deviation that grew over a minute is a drift: followed, but not reported as a step change.
 bool RobustFilter::drifts(std::size_t index) const {
   const Eigen::Vector2d& own = step_changes_.deviation(index);
   return !step_changes_.collapsed(index) && own.dot(step_changes_.drift(index)) > kDriftShare * own.squaredNorm();

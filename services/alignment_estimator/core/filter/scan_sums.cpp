@@ -26,7 +26,7 @@ struct Symmetric {
   }
 };
 
-/// E[w z²]/E[w] of a Gaussian residual z under Tukey's weight w: what z² is compared with for the noise's scale.
+/// E[w z²]/E[w] of a Gaussian residual z under Tukey's weight w: the reference for z² in the noise scale.
 double weighted_square(double gate) {
   const double b = 1.0 / (gate * gate);
   return (1.0 - 6.0 * b + 15.0 * b * b) / (1.0 - 2.0 * b + 3.0 * b * b);
@@ -66,7 +66,7 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     const double x = run.x[i], y = run.y[i], z = run.z[i];
     const double along = x * gx + y * gy + z * gz;
     double e = run.range_rate_mps[i] + along;
-    // Unfolded to the multiple of the unambiguous interval that is nearest to the prediction.
+    // Unfolds to the multiple of the unambiguous interval nearest to the prediction.
     if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
     // Derivatives of the line of sight to azimuth (−y, x, 0) and elevation, and of the range rate.
     const double ce = std::sqrt(x * x + y * y), tx = -x * z / ce, ty = -y * z / ce;
@@ -97,9 +97,10 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     sums.raised += weight * along * along * run.mean_sine[i];
     feigned.add(weight * va, -y, x, 0.0);
     feigned.add(weight * ve, tx, ty, ce);
-    // The noise of the angles is in the residual and in the gradient: E[ψ(e)·ε] = Cov(e, ε)·E[ψ′] (Stein) is taken off.
-    // So are the next terms: variances were computed from noisy angles (s2a, s2b are their derivatives), and the range
-    // rate is curved, so that residuals are skewed and a weight that falls with their size prefers one side.
+    // Errors in variables: the noise ε of the angles is in the residual and in the gradient, so E[ψ(e)·ε] =
+    // Cov(e, ε)·E[ψ′] (Stein) is subtracted. Two more terms are subtracted: variances are computed from noisy angles
+    // (s2a, s2b are their derivatives), and the curvature of the range rate skews the residuals, so that the robust
+    // weight prefers one side.
     const double daa = -along + z * gz, dab = -(gy * x - gx * y) * z / ce;
     const double s2a = 2.0 * (da * daa * va + da * da * va * run.azimuth_std_slope[i] + db * dab * ve);
     const double s2b = 2.0 * (da * dab * va - db * along * ve);

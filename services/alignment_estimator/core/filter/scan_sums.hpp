@@ -1,6 +1,6 @@
-// What a scan says of the sensor's velocity in its own frame. The range rate of what stands still is −u·g with
-// g = Rᵀv, so that all parameters act through the three components of g: a scan is summed into a 3 × 3 information and
-// a score whatever the number of parameters.
+// Measurement of the sensor's velocity in its own frame by one scan. The range rate of a stationary reflector is −u·g
+// with g = Rᵀv, so all parameters act through the three components of g. A scan is summed into a 3 × 3 information and
+// a score, whatever the number of parameters. Equations: docs/algorithms/alignment.md (A4)–(A12).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace boresight::alignment {
 
-/// A run of sightings inside their columns.
+/// A contiguous range of sightings inside their columns.
 struct SightingRun {
   const double* x;
   const double* y;
@@ -27,7 +27,7 @@ struct SightingRun {
 };
 [[nodiscard]] SightingRun run_of(const Sightings& sightings);
 
-/// How residuals are judged.
+/// Weights and scales of the residuals.
 struct Judgement {
   double gate = 5.0;                  ///< Tukey's constant
   double min_std_mps = 0.0;           ///< residual σ of the gate is at least this (graduated start)
@@ -38,14 +38,14 @@ struct Judgement {
 
 struct ScanSums {
   Eigen::Matrix3d information;  ///< Σ W u uᵀ, W Tukey's weight over the residual's variance; with the angles' noise
-  Eigen::Matrix3d feigned;      ///< the part of it that the angles' noise feigns
-  Eigen::Vector3d score;        ///< of g, corrected for errors in variables: no expectation at the true g
+  Eigen::Matrix3d feigned;      ///< the part of it that comes from the angles' noise only
+  Eigen::Vector3d score;        ///< of g, corrected for errors in variables: zero mean at the true g
   double weights = 0.0, curvature = 0.0;  ///< Σ w and Σ ψ′
   double squares = 0.0;                   ///< Σ ψ² of normalised residuals
   double inliers = 0.0;                   ///< residuals in the gate
-  double near = 0.0;                      ///< beyond, but within three times of it
-  double standing = 0.0;                  ///< with weights over 0.2
-  /// Σ W (u·g)², and the same times what unknown elevations take off range rates, and times the mean sine of these.
+  double near = 0.0;                      ///< residuals beyond the gate, but within three times of it
+  double standing = 0.0;                  ///< residuals with weights over 0.2
+  /// Σ W (u·g)²; the same times the reduction of range rates by unknown elevations; the same times their mean sine.
   double along = 0.0, lowered = 0.0, raised = 0.0;
   // Scores and Fisher information of the logarithms of the two variance factors.
   double noise_score_rate = 0.0, noise_score_angle = 0.0;

@@ -7,7 +7,7 @@ namespace boresight::alignment {
 
 namespace {
 
-/// No relative speed on a road is beyond.
+/// Larger than any relative speed on a road.
 constexpr double kMaxRangeRate_mps = 200.0;
 
 }  // namespace
@@ -20,14 +20,14 @@ void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const 
   const std::size_t count = std::min(scan.count, kMaxDetections);
   for (std::size_t i = 0; i < count; ++i) {
     const double azimuth = scan.azimuth_rad[i], elevation = scan.elevation_rad[i], rate = scan.range_rate_mps[i];
-    // Written so that what is not a number is left out as well.
+    // This form also rejects values that are not numbers.
     if (!(std::abs(azimuth) <= M_PI && std::abs(elevation) < 1.5 && std::abs(rate) < kMaxRangeRate_mps)) continue;
     double azimuth_std = scan.azimuth_std_rad[i];
     const double elevation_std = scan.elevation_std_rad[i], rate_std = scan.range_rate_std_mps[i];
     if (!(azimuth_std > 0.0 && elevation_std > 0.0 && rate_std > 0.0)) continue;
     const double ca = std::cos(azimuth), sa = std::sin(azimuth);
     double slope = 0.0;
-    // An antenna's aperture shrinks with the cosine; sensors that state σ have that in them.
+    // The effective aperture shrinks with the cosine. A σ stated by the sensor already contains this.
     if (azimuth_std == radar.noise.azimuth_std_rad && edge < 1.0) {
       azimuth_std /= std::max(ca, edge);
       if (ca > edge) slope = sa / ca;

@@ -1,4 +1,4 @@
-// Detections as unit vectors with variances: what the sums over a scan read.
+// Detections as unit vectors with variances: the input of the sums over a scan.
 #pragma once
 
 #include <array>
@@ -21,14 +21,14 @@ struct Sightings {
   std::array<double, kMaxDetections> elevation_variance;
   std::array<double, kMaxDetections> range_rate_variance;
   std::array<double, kMaxDetections> azimuth_std_slope;  ///< d ln σ(azimuth) / d azimuth
-  // Of elevations that are not measured: 1 − the mean of their cosine, and its variance over the square of that mean.
+  // For unmeasured elevations: 1 − mean cosine, and its variance over the square of the mean cosine.
   std::array<double, kMaxDetections> lowering;
   std::array<double, kMaxDetections> lowering_variance;
   std::array<double, kMaxDetections> mean_sine;  ///< of the elevation
 };
 
-/// Fills `out`. `edge`: see FilterConfig::azimuth_std_edge; `angle_scale`: factor of the angles' variances as they
-/// really are. Leaves out angles and range rates that nothing on a road has. No allocation.
+/// Fills `out`. `edge`: see FilterConfig::azimuth_std_edge; `angle_scale`: estimated factor of the angles' variances.
+/// Rejects angles and range rates that are impossible on a road. No allocation.
 void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const UnknownElevation& unknown, double edge,
                     double angle_scale, Sightings& out);
 

@@ -1,4 +1,4 @@
-// Shorthands of the filter.
+// Short mathematical helpers of the filter.
 #pragma once
 
 #include <cstdint>

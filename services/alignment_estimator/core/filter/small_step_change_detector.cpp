@@ -7,37 +7,39 @@
 
 #include "services/alignment_estimator/core/filter/common_mode.hpp"
 #include "services/alignment_estimator/core/filter/small_maths.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 /// Lengths of the windows about x, y, z, in units of FilterConfig::step_change_window_s.
 constexpr std::array<std::int64_t, 3> kLengths{16, 1, 1};
-/// Roll shows only in turns and when the body pitches: windows are joined, up to so many, until they know it this well.
+/// Roll is measured only in turns and while the body pitches. Up to this many windows are joined until σ is small
+/// enough.
 constexpr std::array<int, 3> kMostJoined{8, 1, 1};
-constexpr double kJoinedUntil_rad = 0.8 * kDegree;
-/// Even then it is hardly beyond noise; there are fewer windows to be wrong in, so that less is asked of each (shares
-/// of the configured σ).
-constexpr std::array<double, 3> kAsked{0.6, 1.0, 1.0};
-/// σ of what deviates for reasons that no model holds (a scene, a load), beside others and for a radar that is alone,
-/// to which a side slip and the body's pitch look like changes of its own.
-constexpr std::array<double, 3> kFloor_rad{0.2 * kDegree, 0.05 * kDegree, 0.02 * kDegree};
-constexpr std::array<double, 3> kAloneFloor_rad{1.0 * kDegree, 0.25 * kDegree, 0.1 * kDegree};
-/// What a window says of the axes beside the one that is looked at is not bounded by the estimate, whose std knows
-/// nothing of a change, but by what mountings can be; the turn about x, of which it says little, is.
+constexpr double kJoinedUntil_rad = 0.8 * kRadiansPerDegree;
+/// Roll is hardly above the noise even then. There are fewer windows and so fewer chances of a false alarm, so the
+/// limits are lower (shares of the configured σ).
+constexpr std::array<double, 3> kLimitShare{0.6, 1.0, 1.0};
+/// σ of unmodelled effects, such as the scene or the load: with other radars for comparison, and for a single radar, to
+/// which side slip and body pitch look like a change of its mounting.
+constexpr std::array<double, 3> kFloor_rad{0.2 * kRadiansPerDegree, 0.05 * kRadiansPerDegree, 0.02 * kRadiansPerDegree};
+constexpr std::array<double, 3> kAloneFloor_rad{1.0 * kRadiansPerDegree, 0.25 * kRadiansPerDegree,
+                                                0.1 * kRadiansPerDegree};
+/// σ of the two axes beside the tested one. The std of the estimate does not bound them, because it does not include a
+/// change; the possible mountings do. The rotation about x, which a window hardly measures, keeps the estimate's std.
 constexpr double kLooseStd_rad = 0.07;
-/// Another radar that knows the axis so much less (variance) is no comparison.
+/// A radar whose variance of the axis is larger by this factor is not used for comparison.
 constexpr double kComparable = 9.0;
 
 /// A median of three or more has at most this share of the variance of one.
 constexpr double kMedianShare = 0.5;
 
-/// What is left of a sum after a window, so that no doubt lasts; of the sums after a suspicion that was not confirmed.
+/// Factors of the sums: after each window, so that they decay, and after an unconfirmed suspicion.
 constexpr double kKept = 0.9, kKeptUnconfirmed = 0.5;
-/// Share of its limit beyond which a sum is a doubt.
-constexpr double kDoubt = 0.5;
+/// Share of its limit beyond which a sum counts as doubt.
+constexpr double kSuspiciousShare = 0.5;
 
 }  // namespace
 
@@ -50,24 +52,24 @@ void SmallStepChangeDetector::clear(std::size_t radar) {
 
 double SmallStepChangeDetector::sum(std::size_t radar, std::size_t axis) const {
   const std::array<double, 2>& sums = radars_[radar].axes[axis].sums;
-  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kAsked[axis] * config_.step_change_small_sum_stds);
+  return (sums[0] >= sums[1] ? sums[0] : -sums[1]) / (kLimitShare[axis] * config_.step_change_small_sum_stds);
 }
 
 double SmallStepChangeDetector::confirming_stds(const FilterConfig& config, std::size_t axis) {
-  return kAsked[axis] * config.step_change_small_confirm_stds;
+  return kLimitShare[axis] * config.step_change_small_confirm_stds;
 }
 
 bool SmallStepChangeDetector::doubted(std::size_t radar) const {
   const auto& axes = radars_[radar].axes;
-  return axes[1].suspected != 0 || axes[2].suspected != 0 || std::abs(sum(radar, 1)) > kDoubt ||
-         std::abs(sum(radar, 2)) > kDoubt;
+  return axes[1].suspected != 0 || axes[2].suspected != 0 || std::abs(sum(radar, 1)) > kSuspiciousShare ||
+         std::abs(sum(radar, 2)) > kSuspiciousShare;
 }
 
 std::uint32_t SmallStepChangeDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
                                            const Eigen::Vector3d& score, const Eigen::Matrix3d& covariance) {
   std::uint32_t changed = 0;
   for (std::size_t a = 0; a < 3; ++a) {
-    // A common grid of windows, so that radars are compared over the same time.
+    // All radars use the same time grid of windows, so that they can be compared.
     const auto length_ns = kLengths[a] * static_cast<std::int64_t>(config_.step_change_window_s * 1e9);
     const std::int64_t window = time_ns / length_ns;
     if (window != window_[a]) {
@@ -133,10 +135,10 @@ bool SmallStepChangeDetector::judge(std::size_t r, std::size_t a) {
     for (double& sum : axis.sums) sum *= kKeptUnconfirmed;
     return axis.confirmed;
   }
-  const double limit = kAsked[a] * config_.step_change_small_sum_stds;
+  const double limit = kLimitShare[a] * config_.step_change_small_sum_stds;
   for (std::size_t s = 0; s < 2; ++s) {
-    const double excess = (s == 0 ? axis.stds : -axis.stds) - kAsked[a] * config_.step_change_small_stds;
-    // One wild window alone is no change.
+    const double excess = (s == 0 ? axis.stds : -axis.stds) - kLimitShare[a] * config_.step_change_small_stds;
+    // One window alone cannot reach the limit.
     axis.sums[s] = std::max(0.0, kKept * axis.sums[s] + std::min(excess, 0.7 * limit));
     if (axis.sums[s] > limit) axis.suspected = s == 0 ? 1 : -1;
   }

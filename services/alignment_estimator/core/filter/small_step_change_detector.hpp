@@ -1,4 +1,5 @@
-// Finds changes of one radar's mounting that KnockDetector is too coarse for: they take longer to tell from noise.
+// Finds changes of one radar's mounting that are too small for StepChangeDetector; separating them from noise takes
+// longer.
 #pragma once
 
 #include <array>
@@ -13,36 +14,36 @@
 namespace boresight::alignment {
 
 /// Cumulative sums of each radar's own deviation from its estimate about the vehicle's x, y and z axes, in units of its
-/// own σ: that of the window's data, of the estimate, of what the others are compared by, and of what no model holds.
-/// An axis of which a window says little thus needs more windows, however small the change that is looked for. The
-/// median of the other radars is taken off, as in KnockDetector. A sum beyond its limit is a suspicion; the window
-/// after it, whose data had no part in the sum, confirms or drops it.
+/// σ. That σ combines the window's data, the estimate, the comparison with other radars, and unmodelled effects. An
+/// axis that a window hardly measures therefore needs more windows. The median of the other radars is subtracted, as in
+/// StepChangeDetector. A sum beyond its limit is a suspicion; the next window, whose data are not in the sum, confirms
+/// or drops it.
 class SmallStepChangeDetector {
  public:
   SmallStepChangeDetector(std::size_t radars, const FilterConfig& config);
 
-  /// Takes what one scan of a running radar says: information and score about the vehicle's axes at the present
-  /// estimate, and the covariance of that estimate (rad²). Returns a set of radars (bit by index) whose mounting
-  /// changed, whenever a window ends.
+  /// Adds one scan of a running radar: information and score about the vehicle's axes at the present estimate, and the
+  /// covariance of that estimate (rad²). At the end of a window, returns the set of radars (bit by index) whose
+  /// mounting changed.
   [[nodiscard]] std::uint32_t add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix3d& information,
                                   const Eigen::Vector3d& score, const Eigen::Matrix3d& covariance);
-  /// Starts a radar's sums anew (new estimate).
+  /// Clears a radar's sums (new estimate).
   void clear(std::size_t radar);
 
-  /// By how much the radar deviated in the window that confirmed the change, about x, y, z in rad; and which axes did.
+  /// Deviation of the radar in the window that confirmed the change, about x, y, z in rad; and the axes that changed.
   [[nodiscard]] const Eigen::Vector3d& change(std::size_t radar) const { return radars_[radar].own; }
   [[nodiscard]] bool changed(std::size_t radar, std::size_t axis) const { return radars_[radar].axes[axis].confirmed; }
-  /// Whether a change of yaw or pitch is so likely that the estimate should rather stand still until it is told or not.
+  /// Whether a change of yaw or pitch is so likely that the estimate should be frozen until the decision.
   [[nodiscard]] bool doubted(std::size_t radar) const;
-  /// The larger of the axis's two sums with its sign, over the limit of a suspicion; and the last window's deviation in
-  /// its own σ.
+  /// The larger of the axis's two sums with its sign, over the limit of a suspicion; and the deviation of the last
+  /// window in its σ.
   [[nodiscard]] double sum(std::size_t radar, std::size_t axis) const;
   [[nodiscard]] double deviation(std::size_t radar, std::size_t axis) const { return radars_[radar].axes[axis].stds; }
-  /// Beyond how many σ the window after a suspicion confirms it.
+  /// Deviation in σ of the window after a suspicion that confirms it.
   [[nodiscard]] static double confirming_stds(const FilterConfig& config, std::size_t axis);
 
  private:
-  /// What the present window of an axis holds; axes have windows of their own length.
+  /// The present window of an axis; each axis has its own window length.
   struct Axis {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d score = Eigen::Vector3d::Zero();

@@ -10,10 +10,10 @@ namespace boresight::alignment {
 
 namespace {
 
-/// What the angles' noise feigns is taken for so many of its stds larger before anything counts as real: where one
-/// azimuth is all there is, no residual tells it from the noise of range rates.
+/// The information that comes from the angles' noise is increased by this many of its stds before the rest counts as
+/// real. If all detections are at one azimuth, residuals cannot separate it from the noise of range rates.
 constexpr double kDoubtfulStds = 1.0;
-/// Where less than this share of the spread is real then, the noise's own statistics decide, not the scene.
+/// Below this real share of the spread the direction is not supported: the statistics of the noise would decide.
 constexpr double kMinRealShare = 0.1;
 
 }  // namespace
@@ -59,7 +59,7 @@ Support Spread::support(bool has_elevation, double log_noise_std) const {
   const Eigen::Matrix3d axes = l * solver.eigenvectors();  // m = axes·axesᵀ
   const Eigen::Matrix3d inverse_axes = solver.eigenvectors().transpose() * inverse;
   out.share = axes * real.asDiagonal() * inverse_axes;
-  // The score of g is taken for −(m − f)·(g − true) + f·g − f·g; were the last f exp(δ)·f, its zero would lie off by
+  // The corrected score of g is −(m − f)·(g − true) + f·g − f·g. If the last f were exp(δ)·f, its zero would move by
   // −(m − f)⁻¹·f·g·δ.
   out.by_angle_noise = -inverse_axes.transpose() * feigned_of_real.asDiagonal() * axes.transpose();
   return out;

@@ -1,5 +1,6 @@
-// Which components of the sensor's velocity the directions of the detections really span, and how much of that the
-// noise of the angles only feigns.
+// Components of the sensor's velocity that the directions of the detections span, without the part that comes from the
+// noise of the angles only.
+// Equations: docs/algorithms/alignment.md (A13)(A14).
 #pragma once
 
 #include <Eigen/Core>
@@ -7,23 +8,23 @@
 namespace boresight::alignment {
 
 struct Support {
-  /// The matrix T by which scores are multiplied, information becomes T·M·Tᵀ: a share 1 − f of the score along each
-  /// principal direction, f the feigned share, and nothing where next to all is feigned. Score and information agree
-  /// then: E[T·m] = T·M·Tᵀ·δg, and noise alone never adds up to information.
+  /// The matrix T that multiplies scores; information becomes T·M·Tᵀ. Along each principal direction, T keeps the share
+  /// 1 − f of the score, with f the share that comes from noise, and nothing if f is close to 1. Score and information
+  /// then agree: E[T·m] = T·M·Tᵀ·δg, and noise alone never accumulates as information.
   Eigen::Matrix3d share = Eigen::Matrix3d::Zero();
-  /// A: where the angles' variance is exp(δ) times what is assumed, the velocity that is measured is g + δ·A·g (to
-  /// first order): so much more of the spread is noise.
+  /// A: if the angles' variance is exp(δ) times the assumed one, more of the spread is noise, and the measured velocity
+  /// is g + δ·A·g to first order.
   Eigen::Matrix3d by_angle_noise = Eigen::Matrix3d::Zero();
-  int directions = 0;  ///< that are supported; two, a plane, say nothing of how it is tilted
+  int directions = 0;  ///< number of supported directions; two form a plane, whose tilt is not determined
 };
 
-/// Sliding means of a radar's information and of its feigned part (ScanSums).
+/// Sliding means of a radar's information and of the part that comes from noise (ScanSums).
 class Spread {
  public:
-  /// `has_elevation`: else the third component is never supported.
+  /// Without `has_elevation` the third component is never supported.
   void add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& feigned, double inliers, double keep);
   void clear() { *this = {}; }
-  /// `log_noise_std`: σ of ln of what the angles' variance really is over what was taken for it.
+  /// `log_noise_std`: σ of ln(real / assumed variance of the angles).
   [[nodiscard]] Support support(bool has_elevation, double log_noise_std) const;
 
  private:

@@ -11,17 +11,17 @@ namespace boresight::alignment {
 
 namespace {
 
-/// A block says something of an axis if its σ is below this share of the step that is looked for.
+/// A block counts for an axis if its σ is below this share of the step change looked for.
 constexpr double kMaxStdShare = 0.35;
-/// Blocks that say too little are joined, up to this many.
+/// Blocks with a larger σ are joined, up to this many.
 constexpr int kMaxJoined = 8;
 constexpr double kPriorStd_rad = 0.07;
-/// Blocks over which drift and usual share are averaged.
+/// Number of blocks over which the drift and the usual share of stationary detections are averaged.
 constexpr double kSlowBlocks = 60.0;
 constexpr double kCollapse = 0.5;
-/// Detections without which a share is no share.
+/// Fewest detections for a share of stationary ones.
 constexpr double kMinDetections = 20.0;
-/// A radar that is alone cannot take off what is common: its deviation must be larger.
+/// A single radar cannot subtract the common part: its limit is higher by this factor.
 constexpr double kAlone = 1.25;
 
 }  // namespace
@@ -39,7 +39,7 @@ double StepChangeDetector::sum(std::size_t radar) const {
 
 std::uint32_t StepChangeDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
                                       const Eigen::Vector2d& score, double standing, double detections) {
-  // A common grid of blocks, so that radars are compared over the same time.
+  // All radars use the same time grid of blocks, so that they can be compared.
   const auto length_ns = static_cast<std::int64_t>(config_.step_change_block_s * 1e9);
   const std::int64_t block = time_ns / length_ns;
   std::uint32_t suspicious = 0;
@@ -79,7 +79,7 @@ void StepChangeDetector::close(Radar& radar) const {
     radar.known[a] = std::sqrt(covariance(axis, axis)) < kMaxStdShare * limit[a] && radar.deviation.allFinite();
     all = all && radar.known[a];
   }
-  // The share of a collapsed block is what is believed of it, not where its few survivors lie.
+  // In a block whose share collapsed, only the share counts, not the deviation of its few remaining detections.
   if (radar.collapsed) radar.known = {};
   if (all || radar.collapsed || radar.known[1] || radar.blocks >= kMaxJoined) {
     radar.information.setZero();
@@ -116,14 +116,14 @@ std::uint32_t StepChangeDetector::judge() {
       radar.own(axis) = radar.deviation(axis) - common(r, axis);
       const double limit = others == 0 ? kAlone * limits[a] : limits[a];
       const double d = radar.own(axis) / limit;
-      // One wild block alone is no knock: it counts as much as a step of twice the limit.
+      // One block alone is no step change: it counts at most like a deviation of twice the limit.
       double& up = radar.sums[2 * a];
       double& down = radar.sums[2 * a + 1];
       up = std::max(0.0, up + std::min(d - 1.0, 1.0));
       down = std::max(0.0, down + std::min(-d - 1.0, 1.0));
       if (std::abs(d) < 1.0) radar.drift(axis) += (radar.own(axis) - radar.drift(axis)) / kSlowBlocks;
     }
-    // What jams all radars at once is no knock of one.
+    // A collapse of all radars at once is not a step change of one radar.
     double& collapse = radar.sums[4];
     const bool alone = radar.collapsed && 2 * others_collapsed <= others;
     collapse = std::max(0.0, collapse + (alone ? 1.0 : -1.0));

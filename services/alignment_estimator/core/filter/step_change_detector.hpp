@@ -1,4 +1,5 @@
-// Tells a sudden change of one radar's mounting from noise, from drift and from what moves all radars alike.
+// Detects a sudden change of one radar's mounting, as distinct from noise, drift and effects common to all radars.
+// Equations: docs/algorithms/alignment.md (A24).
 #pragma once
 
 #include <array>
@@ -13,24 +14,25 @@
 namespace boresight::alignment {
 
 /// Cumulative sums over short blocks of each radar's own deviation from its estimate, in yaw and pitch about the
-/// vehicle's axes. What the other radars deviate by is taken off (their median): an error of speed, yaw rate or body
-/// moves all of them. A step so large that its detections fall out of the gate shows in the share of stationary
-/// detections, which collapses for one radar only.
+/// vehicle's axes. The median deviation of the other radars is subtracted, since an error of speed, yaw rate or body
+/// moves all radars. After a very large step change the detections fall outside the gate; the share of stationary
+/// detections then collapses for this radar only.
 class StepChangeDetector {
  public:
   StepChangeDetector(std::size_t radars, const FilterConfig& config);
 
-  /// Takes what one scan of a running radar says: information and score about the vehicle's y and z axes at the present
-  /// estimate, and the detections that were believed stationary. Returns a set of radars (bit by index) whose sums are
-  /// beyond the threshold, whenever a block ends.
+  /// Adds one scan of a running radar: information and score about the vehicle's y and z axes at the present estimate,
+  /// and the number of stationary detections. At the end of a block, returns the set of radars (bit by index) whose
+  /// sums exceed the limit.
   [[nodiscard]] std::uint32_t add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
                                   const Eigen::Vector2d& score, double standing, double detections);
-  /// Starts a radar's sums anew (new estimate).
+  /// Clears a radar's sums (new estimate).
   void clear(std::size_t radar);
 
-  /// Largest of the radar's sums, in units of blocks; a suspicion above FilterConfig::step_change_sum_blocks.
+  /// Largest of the radar's sums, in units of blocks; above FilterConfig::step_change_sum_blocks it is a suspicion.
   [[nodiscard]] double sum(std::size_t radar) const;
-  /// Own deviation of the radar in its last block, (pitch axis, yaw axis) in rad; and its slow mean: that of a drift.
+  /// Own deviation of the radar in its last block, (pitch axis, yaw axis) in rad; and its slow mean, which shows a
+  /// drift.
   [[nodiscard]] const Eigen::Vector2d& deviation(std::size_t radar) const { return radars_[radar].own; }
   [[nodiscard]] const Eigen::Vector2d& drift(std::size_t radar) const { return radars_[radar].drift; }
   /// Whether the share of stationary detections is far below the radar's usual one.

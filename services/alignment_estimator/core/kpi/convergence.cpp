@@ -35,13 +35,13 @@ Convergence::Settled Convergence::to_95_percent(AlignmentParameter parameter, do
   const Settled unknown{std::numeric_limits<double>::quiet_NaN(), 0};
   if (number_kept_ == 0) return unknown;
   const auto i = static_cast<Eigen::Index>(parameter);
-  const double today = latest_.values(i);
-  const double way = std::abs(today - kept_[0].values(i));
-  if (!(way > kSignificance * std)) return unknown;
-  // Backwards from today to the last value that was still outside.
+  const double present = latest_.values(i);
+  const double distance = std::abs(present - kept_[0].values(i));
+  if (!(distance > kSignificance * std)) return unknown;
+  // Backwards from the present to the last value outside the limit.
   const Entry* settled = &latest_;
   for (std::size_t k = number_kept_; k-- > 0;) {
-    if (std::abs(kept_[k].values(i) - today) > kLeft * way) break;
+    if (std::abs(kept_[k].values(i) - present) > kLeft * distance) break;
     settled = &kept_[k];
   }
   return {settled->seconds - kept_[0].seconds, static_cast<std::uint32_t>(settled->scans - kept_[0].scans)};

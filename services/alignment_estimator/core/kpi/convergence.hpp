@@ -1,4 +1,4 @@
-// How fast an estimate came to where it is, and whether it moves on: without truth, from its own history.
+// Convergence time and present drift of an estimate, from its own history and without truth.
 #pragma once
 
 #include <array>
@@ -11,25 +11,25 @@
 
 namespace boresight::alignment {
 
-/// History of (k_v, yaw, pitch, roll), the angles about the vehicle's axes, of one radar. It thins itself with age: the
-/// time since the start grows by 2 % from one kept value to the next, so that times are known to 2 % from 0.1 s to
-/// years with constant memory. No allocation.
+/// History of (k_v, yaw, pitch, roll) of one radar, the angles about the vehicle's axes. It thins with age: the time
+/// since the start grows by 2 % from one kept value to the next. Times are exact to 2 % from 0.1 s to years, with
+/// constant memory. No allocation.
 class Convergence {
  public:
-  /// Time and scans until 95 % of the way; NaN and 0 if not known.
+  /// Time and scans until 95 % of the initial error is removed; NaN and 0 if unknown.
   struct Settled {
     double seconds;
     std::uint32_t scans;
   };
 
-  /// Takes the estimate after a scan. The first one is where the way starts, and a growing count of knocks starts a new
-  /// way at the value before the knock.
+  /// Adds the estimate after a scan. The distance starts at the first value. A step change starts a new distance at the
+  /// value before it.
   void add(double seconds_of_drive, std::uint64_t scans, const Eigen::Vector4d& values, std::uint32_t step_changes);
 
-  /// Drive until the value stayed within 5 % of the way from the start to today's value (Report A §8; the truth is not
-  /// known). Not known while the way is shorter than five times `std`: then it may be all noise.
+  /// Driving until the value stayed within 5 % of the distance from the start to the present value (Burza 2025, §8; the
+  /// truth is unknown). Unknown while the distance is below five times `std`, where it may be noise.
   [[nodiscard]] Settled to_95_percent(AlignmentParameter parameter, double std) const;
-  /// Change over the last minute of drive; NaN before that.
+  /// Change over the last minute of driving; NaN before that.
   [[nodiscard]] double drift_per_minute(AlignmentParameter parameter) const;
 
  private:
@@ -47,7 +47,7 @@ class Convergence {
   std::size_t number_kept_ = 0;
   Entry latest_;
   std::uint32_t step_changes_ = 0;
-  /// One value a second of drive.
+  /// One value per second of driving.
   std::array<Entry, kMinute + 1> minute_{};
   std::size_t minute_next_ = 0;
   std::size_t minute_size_ = 0;

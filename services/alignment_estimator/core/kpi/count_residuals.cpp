@@ -13,7 +13,7 @@ void count_residuals(const RadarConfig& radar, const RadarEstimate& estimate, co
   const Eigen::Matrix3d to_sensor = estimate.sensor_to_vehicle.transpose();
   const Eigen::Vector3d velocity =
       to_sensor * geometry::sensor_velocity(estimate.speed_scale, ego.speed_mps, ego.yaw_rate_radps, position);
-  // What the errors of the two ego signals add, per unit.
+  // Range-rate error per unit error of the two ego signals.
   const Eigen::Vector3d by_speed = to_sensor.col(0) * ego.speed_std_mps;
   const Eigen::Vector3d by_yaw_rate =
       to_sensor * Eigen::Vector3d(-position[1], position[0], 0.0) * ego.yaw_rate_std_radps;
@@ -31,7 +31,7 @@ void count_residuals(const RadarConfig& radar, const RadarEstimate& estimate, co
     const double azimuth_std = scale * scan.azimuth_std_rad[i], elevation_std = scale * scan.elevation_std_rad[i];
     const double by_azimuth = velocity.dot(Eigen::Vector3d(-ce * sa, ce * ca, 0.0)) * azimuth_std;
     const double by_elevation = velocity.dot(Eigen::Vector3d(-se * ca, -se * sa, ce)) * elevation_std;
-    // Of second order, and all there is if the elevation is not measured: 1 − cos β.
+    // Second-order term, 1 − cos β; the only one if the elevation is not measured.
     const double by_cosine = 0.7 * velocity.dot(direction) * elevation_std * elevation_std;
     const double variance = scan.range_rate_std_mps[i] * scan.range_rate_std_mps[i] + by_azimuth * by_azimuth +
                             by_elevation * by_elevation + by_cosine * by_cosine + std::pow(by_speed.dot(direction), 2) +

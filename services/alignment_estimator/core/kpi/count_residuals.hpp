@@ -1,4 +1,4 @@
-// The residuals of one scan: which detections stand still by today's estimate, and how well it explains them.
+// The residuals of one scan: which detections are stationary by the present estimate, and how well it fits them.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace boresight::alignment {
 
-/// `predicted`: Method::predict of the scan (m/s). A residual is an inlier's within `gate_sigma` stds: of the range
-/// rate, of the angles by way of the model, of the ego signals. Both residuals are wrapped into the unambiguous
-/// interval, where one is known. No allocation.
+/// `predicted`: Method::predict of the scan (m/s). A detection is an inlier if its residual is within `gate_sigma`
+/// stds. The std combines the range rate, the angles through the model, and the ego signals. Both residuals are wrapped
+/// into the unambiguous interval, if it is known. No allocation.
 void count_residuals(const RadarConfig& radar, const RadarEstimate& estimate, const ScanDetections& scan,
                      const EgoSample& ego, std::span<const double> predicted, double gate_sigma,
                      ResidualStatistics& statistics);

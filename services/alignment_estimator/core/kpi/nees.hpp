@@ -1,4 +1,5 @@
-// Normalised estimation error squared: is an estimate as wrong as it says?
+// Normalised estimation error squared (NEES): compares the error of an estimate with its stated covariance.
+// Equations: docs/algorithms/alignment.md (A25).
 #pragma once
 
 #include <cmath>
@@ -14,9 +15,9 @@
 
 namespace boresight::alignment {
 
-/// eᵀP⁻¹e over those of (k_v, turns about the vehicle's axes) that are observable, divided by their number: 1 is
-/// honest. `actual`: R(sensor→vehicle) as really mounted. NaN if nothing is observable or the covariance is none. No
-/// allocation.
+/// eᵀP⁻¹e over the observable ones of (k_v, rotations about the vehicle's axes), divided by their number; 1 if the
+/// covariance is right. `actual`: true R(sensor→vehicle). NaN if nothing is observable or the matrix is not a
+/// covariance. No allocation.
 [[nodiscard]] inline double nees(const RadarEstimate& estimate, double speed_scale, const Eigen::Matrix3d& actual) {
   Eigen::Vector4d error;
   error << speed_scale - estimate.speed_scale, geometry::so3_log(actual * estimate.sensor_to_vehicle.transpose());
@@ -29,7 +30,7 @@ namespace boresight::alignment {
   }
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   if (count == 0) return kUnknown;
-  // What is not observable keeps an identity row, which adds nothing with an error of 0.
+  // An unobservable parameter keeps a row of the identity, which adds nothing with an error of 0.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
   Eigen::Vector4d known = Eigen::Vector4d::Zero();
   for (Eigen::Index r = 0; r < count; ++r) {

@@ -1,4 +1,4 @@
-// Moments and histograms of the range-rate residual over an exponential window: the key figures of Report A §8, with
+// Moments and histograms of the range-rate residual over an exponential window: the key figures of Burza 2025, §8, with
 // constant memory, whatever the method.
 #pragma once
 
@@ -11,20 +11,20 @@ namespace boresight::alignment {
 
 class ResidualStatistics {
  public:
-  /// Bins of equal width over ±kRange_mps; what lies beyond is in the first and last one.
+  /// Bins of equal width over ±kRange_mps; values beyond are in the first and the last bin.
   static constexpr std::size_t kBins = 81;
   static constexpr double kRange_mps = 1.0;
   using Histogram = std::array<double, kBins>;
 
-  /// Fades what is known by the time that passed; `window_s` is the time constant.
+  /// Decays the sums by the elapsed time; `window_s` is the time constant.
   void fade(double elapsed_s, double window_s);
   /// One inlier's residual (measured − predicted) with and without correction, m/s.
   void add_inlier(double residual_mps, double uncorrected_mps);
   void add_outlier() { all_ += 1.0; }
 
-  /// Number of inliers in the window; it fades.
+  /// Number of inliers in the window; it decays.
   [[nodiscard]] double inliers() const { return inliers_; }
-  /// Counts of the inliers' residuals with and without correction; they fade.
+  /// Counts of the inliers' residuals with and without correction; they decay.
   [[nodiscard]] const Histogram& after() const { return after_; }
   [[nodiscard]] const Histogram& before() const { return before_; }
   /// Centre of a bin, m/s.

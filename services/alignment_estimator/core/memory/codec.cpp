@@ -34,7 +34,7 @@ class Writer {
   std::size_t size_ = 0;
 };
 
-/// Reads within a length that was checked before.
+/// Reads within a length that the caller has checked.
 class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -57,7 +57,7 @@ std::size_t length_of(std::size_t radars) {
   return kMemoryHeaderBytes + radars * kMemoryRadarBytes + n * (n + 1) / 2 * 8 + 4;
 }
 
-/// Values that an estimator can have had; its own gates are much narrower.
+/// Whether an estimator can produce these values; its own gates are much narrower.
 bool is_plausible(const Memory& m) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   if (!within(m.speed_scale, 0.5, 2.0) || !within(m.yaw_rate_bias_radps, -1.0, 1.0) ||
@@ -71,7 +71,7 @@ bool is_plausible(const Memory& m) {
     }
     if (!within(r.angle_noise_scale, 1e-3, 1e3) || !within(r.seconds_of_drive, 0.0, 1e10)) return false;
   }
-  // Positive definite as correlations, but for rounding.
+  // Positive definite as a correlation matrix, except for rounding.
   const auto n = static_cast<Eigen::Index>(m.number_of_parameters());
   Eigen::MatrixXd covariance = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
       m.covariance.data(), n, n);
@@ -84,7 +84,7 @@ bool is_plausible(const Memory& m) {
   return Eigen::LLT<Eigen::MatrixXd>(covariance).info() == Eigen::Success;
 }
 
-/// Takes out the radars that are not `kept`.
+/// Removes the radars that are not `kept`.
 void reduce(Memory& m, const std::array<bool, kMaxRadars>& kept) {
   std::array<std::size_t, Memory::kMaxParameters> from{};
   std::size_t n = 0, radars = 0;
@@ -94,7 +94,7 @@ void reduce(Memory& m, const std::array<bool, kMaxRadars>& kept) {
     m.radars[radars++] = m.radars[i];
     for (std::size_t k = 0; k < 3; ++k) from[n++] = Memory::kShared + 3 * i + k;
   }
-  // Entries move towards the beginning only, so that none is overwritten before it was read.
+  // Entries move only towards the beginning, so none is overwritten before it is read.
   const std::size_t old_n = m.number_of_parameters();
   for (std::size_t r = 0; r < n; ++r) {
     for (std::size_t c = 0; c < n; ++c) m.covariance[r * n + c] = m.covariance[from[r] * old_n + from[c]];
@@ -152,7 +152,7 @@ std::size_t encode_memory(const Memory& memory, const Identity& identity, Memory
 }
 
 MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity& identity, Memory& out,
-                            std::size_t& left_out) {
+                            std::size_t& rejected_radars) {
   // The frame of magic, version, length and checksum is the same in every version.
   if (bytes.size() < 20 || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin())) return MemoryVerdict::kCorrupt;
   Reader reader(bytes);
@@ -191,7 +191,7 @@ MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity&
     for (std::size_t c = r; c < n; ++c) m.covariance[r * n + c] = m.covariance[c * n + r] = reader.f64();
   }
   if (!is_plausible(m)) return MemoryVerdict::kImplausible;
-  left_out = m.number_of_radars - number_kept;
+  rejected_radars = m.number_of_radars - number_kept;
   reduce(m, kept);
   out = m;
   return MemoryVerdict::kTaken;

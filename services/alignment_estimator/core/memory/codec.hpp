@@ -1,7 +1,7 @@
 // Memory ↔ bytes. Layout, little-endian: "BORALIGN", version (u32), length of all (u32), fingerprint of the vehicle
 // (u64), number of radars (u32), reserved (u32), k_v, yaw-rate bias, slip coefficient (f64); per radar id (u32),
-// reserved (u32), fingerprint (u64), turn about x, y, z, angle-noise scale, seconds of drive (f64); upper triangle of
-// the covariance row by row (f64); CRC-32/AUTOSAR of all before (u32).
+// reserved (u32), fingerprint (u64), rotation about x, y, z, angle-noise scale, seconds of drive (f64); upper triangle
+// of the covariance row by row (f64); CRC-32/AUTOSAR of all before (u32).
 #pragma once
 
 #include <array>
@@ -21,25 +21,25 @@ inline constexpr std::size_t kMaxMemoryBytes = kMemoryHeaderBytes + kMaxRadars *
                                                Memory::kMaxParameters * (Memory::kMaxParameters + 1) / 2 * 8 + 4;
 using MemoryBytes = std::array<std::uint8_t, kMaxMemoryBytes>;
 
-/// What came of reading.
+/// Result of reading.
 enum class MemoryVerdict : std::uint8_t {
   kTaken,
-  kCorrupt,       ///< cut, changed, or never one
-  kOtherVersion,  ///< sound, of a version that this program does not know
-  kForeign,       ///< sound, of another vehicle
-  kImplausible,   ///< sound, but no state of an estimator: values not finite or far off, a covariance that is none
+  kCorrupt,       ///< truncated, changed, or another kind of file
+  kOtherVersion,  ///< intact, of a version unknown to this program
+  kForeign,       ///< intact, of another vehicle
+  kImplausible,   ///< intact, but values not finite or out of range, or an invalid covariance
 };
 
-/// The words for a log line.
+/// Text for a log line.
 [[nodiscard]] const char* describe(MemoryVerdict verdict);
 
-/// Returns the number of bytes written; 0 for a memory that claims more radars than there can be, or that holds one
-/// which the identity does not know. No allocation.
+/// Returns the number of bytes written; 0 for a memory with more radars than possible, or with a radar that is not in
+/// the identity. No allocation.
 [[nodiscard]] std::size_t encode_memory(const Memory& memory, const Identity& identity, MemoryBytes& out);
 
-/// Radars whose mounting or profile is not that of `identity`, or that the vehicle has no more, are left out together
-/// with their rows and columns of the covariance; `left_out` counts them. `out` is written only with kTaken.
+/// Removes radars whose mounting or profile differs from `identity`, or that the vehicle no longer has, together with
+/// their rows and columns of the covariance. `rejected_radars` counts them. `out` is written only with kTaken.
 [[nodiscard]] MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity& identity, Memory& out,
-                                          std::size_t& left_out);
+                                          std::size_t& rejected_radars);
 
 }  // namespace boresight::alignment

@@ -1,4 +1,4 @@
-// Whose memory it is: what an alignment was learnt for, and is worth nothing without.
+// Identity of a memory: the vehicle and the radars that an alignment is valid for.
 #pragma once
 
 #include <array>

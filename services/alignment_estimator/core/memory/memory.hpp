@@ -1,4 +1,4 @@
-// What the estimator knows and keeps across ignition cycles.
+// The estimate that is kept over ignition cycles.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace boresight::alignment {
 
 /// State of the vehicle's alignment. Parameters of the covariance in this order: k_v, yaw-rate bias (rad/s), slip
-/// coefficient (rad per m/s²), then of each radar the turn about the vehicle's x, y and z axes.
+/// coefficient (rad per m/s²), then per radar the rotation about the vehicle's x, y and z axes.
 struct Memory {
   static constexpr std::size_t kShared = 3;
   static constexpr std::size_t kMaxParameters = kShared + 3 * kMaxRadars;

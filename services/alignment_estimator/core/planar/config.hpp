@@ -1,27 +1,27 @@
-// Settings of Boresight's filter with the planar roll model of Report A; for reproducing its tables only.
+// Settings of Boresight's filter with the planar roll model of Burza 2025, which only reproduces the published tables.
 #pragma once
 
 namespace boresight::alignment::planar {
 
 struct PlanarConfig {
-  double min_speed_mps = 5.0;  ///< slower driving tells nothing (Report A §8)
+  double min_speed_mps = 5.0;  ///< scans at lower speed are not used (Burza 2025, §8)
 
-  // How wrong everything may be before anything was measured (1 σ).
+  // Standard deviations before any measurement.
   double prior_speed_scale_std = 0.03;
   double prior_angle_std_rad = 0.0698;  ///< 4°, of α, β and γ each
 
-  // Random walks. Report A's truth stands still, so these are smaller than a real mounting's.
+  // Random walks. Burza's truth is constant, so these are smaller than for a real mounting.
   double angle_drift_rad_per_sqrt_s = 1e-7;
   double speed_scale_drift_per_sqrt_s = 5e-8;
 
   double outlier_gate_sigma = 5.0;  ///< Tukey's constant
 
   // Graduated start of a radar (graduated non-convexity).
-  double start_seconds = 1.0;  ///< of scans that the start is made from
+  double start_seconds = 1.0;  ///< of scans in the window of the start
   int start_passes = 16;
   double start_scale_mps = 2.0;  ///< added σ of the first pass; times `start_shrink` each pass, none in the last three
   double start_shrink = 0.6;
-  double start_inflation = 2.0;  ///< of the start's covariance: errors of the motion are not modelled there
+  double start_inflation = 2.0;  ///< of the covariance of the start, which does not model errors of the motion
 
   // Convergence as published.
   double converged_yaw_std_rad = 0.00175;  ///< 0.1°

@@ -17,14 +17,15 @@ constexpr std::size_t kMinDetections = 4;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 constexpr double kMaxGap_s = 1.0, kSameInstant_s = 5e-4;
 constexpr double kSpreadMemory_s = 60.0, kStatisticsMemory_s = 10.0;
-/// Scans in which so much less than usual stands still are not used; after so many of them the radar starts anew.
+/// A scan whose share of stationary detections is below this part of the usual one is not used; after the given number
+/// of such scans the radar starts again.
 constexpr double kStrangeShare = 0.4;
 constexpr int kMaxStrangeScans = 60;
 constexpr int kScansToRenewal = 16;
-/// A scan's linearisation is made again until the step changes by less than this share of a std, but so often.
+/// A scan is linearised again until the step changes by less than this share of a std, or up to the maximum.
 constexpr int kMaxIterations = 3;
 constexpr double kSmallStep = 0.02;
-/// E[ψ′] and E[ψ²] of Gaussian residuals by Tukey's constant 5, until the data tell.
+/// E[ψ′] and E[ψ²] of Gaussian residuals with Tukey's constant 5: start values.
 constexpr double kGaussianSlope = 0.784, kGaussianSquare = 0.66;
 
 double square(double v) {
@@ -74,7 +75,7 @@ void PlanarFilter::advance(std::int64_t time_ns, const EgoSample& ego) {
   state_(kSpeedColumn) = state_(kYawRateColumn) = 0.0;
   set_variance(kSpeedColumn, square(ego.speed_std_mps > 0.0 ? ego.speed_std_mps : speed_std_mps_));
   set_variance(kYawRateColumn, square(ego.yaw_rate_std_radps > 0.0 ? ego.yaw_rate_std_radps : yaw_rate_std_radps_));
-  // What a parked car's mounting does is no matter of the time that passed.
+  // The mounting of a parked car does not drift with time: a gap counts as kMaxGap_s at most.
   const double drift_s = std::clamp(elapsed_s, 0.0, kMaxGap_s);
   covariance_(kSpeedScaleColumn, kSpeedScaleColumn) += square(config_.speed_scale_drift_per_sqrt_s) * drift_s;
   covariance_.diagonal().tail(covariance_.rows() - kShared).array() +=
@@ -143,7 +144,7 @@ void PlanarFilter::search(std::size_t index, const ScanDetections& scan, const S
   Parameters prior = Parameters::Zero();
   prior(parameter::kSpeedScale) = state_(kSpeedScaleColumn);
   if (radar.start.add(scan, setting, elapsed_s, prior) != PlanarStart::Verdict::kFound) return;
-  // As one measurement with a linear model around what was found.
+  // The start counts as one measurement with a linear model around the result.
   const Square information = radar.start.information() / config_.start_inflation;
   Parameters at = local(index, setting.speed_mps);
   at(parameter::kSpeedScale) = state_(kSpeedScaleColumn);
@@ -163,7 +164,8 @@ void PlanarFilter::update(std::size_t index, const ScanDetections& scan, const S
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;
   judgement.covariance = covariance;
-  // The least variance that Tukey's weights allow: with the gain 1/E[ψ′] it is E[ψ²]/E[ψ′]² of that without outliers.
+  // Smallest variance with Tukey's weights: with the gain 1/E[ψ′] it is E[ψ²]/E[ψ′]² times the variance without
+  // outliers.
   const double of_score = radar.slope / radar.square, of_information = of_score * radar.slope;
   Parameters at = before, score = Parameters::Zero();
   Square information = Square::Zero();
@@ -190,7 +192,7 @@ void PlanarFilter::update(std::size_t index, const ScanDetections& scan, const S
     }
     information = of_information * radar.support.information(sums.information);
     score = of_score * radar.support.score(sums.score) + information * (at - before);
-    // The step that this linearisation gives, of what the scan depends on.
+    // The step of this linearisation, for the parameters that the scan depends on.
     const Square system = Square::Identity() + covariance * information;
     const Parameters step = system.partialPivLu().solve(covariance * score);
     const Parameters moved = before + step - at;
@@ -245,7 +247,7 @@ Eigen::Matrix4d PlanarFilter::covariance(std::size_t radar) const {
   out.block<3, 1>(1, 0) = covariance_.block<3, 1>(first, kSpeedScaleColumn);
   out.block<1, 3>(0, 1) = covariance_.block<1, 3>(kSpeedScaleColumn, first);
   out.bottomRightCorner<3, 3>() = covariance_.block<3, 3>(first, first);
-  // Without elevation the cosine of an unknown pitch is in what was taken for k_v.
+  // Without elevation, k_v contains the cosine of an unknown pitch.
   if (!radars_[radar].has_elevation) out(0, 0) += square(0.5 * square(config_.prior_angle_std_rad));
   return out;
 }
@@ -277,7 +279,7 @@ RadarEstimate PlanarFilter::estimate(std::size_t index) const {
   to_vehicle.bottomRightCorner<3, 3>() =
       geometry::euler_gradient(radar.nominal.yaw_rad + b(1), radar.nominal.pitch_rad + b(2)).inverse();
   out.covariance = to_vehicle * covariance(index) * to_vehicle.transpose();
-  // An axis counts as observable once the data say clearly more than the prior did.
+  // An axis is observable once the data have reduced its σ clearly below the prior.
   const auto learnt = [&](Eigen::Index i, double prior_std) {
     return radar.running && out.covariance(i, i) < 0.25 * square(prior_std);
   };

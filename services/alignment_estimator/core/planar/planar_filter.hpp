@@ -1,4 +1,4 @@
-// Boresight's filter with the planar roll model of Report A, for reproducing its tables only.
+// Boresight's filter with the planar roll model of Burza 2025; it only reproduces the published tables.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 namespace boresight::alignment::planar {
 
 /// A robust recursive information filter like RobustFilter, for data that follow (10)–(12) instead of a rotation: one
-/// k_v, and α, β, γ of each radar. Errors of the speed and yaw-rate signals are white from instant to instant and
-/// shared by scans of the same one. It has no knock detector, no memory, no estimate of the angles' noise, and takes no
-/// calibration's seed: it starts by a search and is for reproducing tables.
+/// k_v, and α, β, γ of each radar. Errors of the speed and yaw-rate signals are white over time and shared by scans of
+/// the same instant. It has no detector of step changes, no memory and no estimate of the angles' noise. It starts by a
+/// search and refuses the result of a calibration.
 class PlanarFilter : public Method {
  public:
   PlanarFilter(const VehicleConfig& vehicle, const PlanarConfig& config);
@@ -68,7 +68,7 @@ class PlanarFilter : public Method {
   void reopen(std::size_t radar);
 
   PlanarConfig config_;
-  double speed_std_mps_, yaw_rate_std_radps_;  ///< where the ego signals state none
+  double speed_std_mps_, yaw_rate_std_radps_;  ///< used if the ego signals state none
   std::vector<Radar> radars_;
   State state_;
   Covariance covariance_;

@@ -9,7 +9,7 @@ namespace boresight::alignment::planar {
 
 namespace {
 
-/// The passes at the end, at the detections' own stds.
+/// Number of final passes, which use the detections' own stds.
 constexpr int kLastPasses = 3;
 constexpr double kMinInlierRatio = 0.25;
 
@@ -32,7 +32,7 @@ void PlanarStart::store(const ScanDetections& scan, const Setting& setting) {
       &scan.azimuth_std_rad, &scan.elevation_std_rad, &scan.range_rate_std_mps};
   for (std::size_t c = 0; c < kColumns; ++c) {
     double* const to = columns_.data() + c * kCapacity + number_of_detections_;
-    // Spread over the scan, which sensors may have sorted.
+    // Evenly spread over the scan, because sensors may sort their detections.
     for (std::size_t i = 0; i < count; ++i) to[i] = (*from[c])[i * usable / count];
   }
   scans_[number_of_scans_++] = {number_of_detections_, count, setting.speed_mps, setting.yaw_rate_radps,

@@ -1,5 +1,5 @@
-// Finds a radar's parameters from its first scans alone: graduated non-convexity over a window of scans, a pass a scan,
-// so that no scan costs much more than another.
+// Finds a radar's parameters from its first scans alone: graduated non-convexity over a window of scans. One pass per
+// scan keeps the cost of every scan similar.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ class PlanarStart {
  public:
   enum class Verdict {
     kSearching,
-    kNothing,  ///< no stationary world stands out; the window is empty again
+    kNothing,  ///< no stationary world found; the window is empty again
     kFound,
   };
 
@@ -25,14 +25,14 @@ class PlanarStart {
   explicit PlanarStart(const PlanarConfig& config);
 
   void clear();
-  /// Fills the window with this scan, or makes a pass if it is full. The prior is around `prior_mean`, with the stds of
-  /// the configuration.
+  /// Adds this scan to the window, or makes a pass if the window is full. The prior has the mean `prior_mean` and the
+  /// stds of the configuration.
   [[nodiscard]] Verdict add(const ScanDetections& scan, const Setting& setting, double elapsed_s,
                             const Parameters& prior_mean);
 
   // Once found:
   [[nodiscard]] const Parameters& parameters() const { return at_; }
-  /// Of the window's detections without the prior, at parameters().
+  /// Information of the window's detections without the prior, at parameters().
   [[nodiscard]] const Square& information() const { return information_; }
   [[nodiscard]] double inlier_ratio() const { return inlier_ratio_; }
 

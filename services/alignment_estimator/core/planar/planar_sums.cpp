@@ -101,7 +101,7 @@ Sums sum_rows(const Rows& rows, const Setting& setting, const Parameters& at, co
     const Parameters ga = p.gradient_by_a(model), ge = p.gradient_by_e(model);
     const double variance_by_a = 2.0 * (ka * p.by_aa + ke * p.by_ae),
                  variance_by_e = 2.0 * (ka * p.by_ae + ke * p.by_ee);
-    // Of ψ·(1/s): by Stein's lemma for the derivative of ψ(e/s)/s to s².
+    // Term of ψ·(1/s): Stein's lemma for the derivative of ψ(e/s)/s to s².
     const double of_variance = 0.5 * slope * (1.0 + z2) * inverse * (variance_by_a * ka + variance_by_e * ke);
     sums.score += inverse * ((weight * e - of_variance) * g + slope * (ka * ga + ke * ge));
     sums.information.selfadjointView<Eigen::Lower>().rankUpdate(g, inverse);

@@ -39,7 +39,7 @@ void Support::renew(bool has_elevation) {
   kept_.setZero();
   share_(parameter::kYawRateError, parameter::kYawRateError) = 1.0;
   kept_(parameter::kYawRateError, parameter::kYawRateError) = 1.0;
-  // Of no information the largest quotient is 1 and some stds of a mean square.
+  // Without information the largest quotient is 1 plus some stds of a mean square.
   const double limit = 1.0 + std::max(0.25, 5.0 * std::sqrt(2.0 / std::max(inliers_, 1.0)));
   has_elevation_ = has_elevation && inliers_ > 0.0 &&
                    elevation_square_ - elevation_ * elevation_ / inliers_ > limit * elevation_variance_;
@@ -47,7 +47,7 @@ void Support::renew(bool has_elevation) {
     for (const Eigen::Index i : {parameter::kSpeedScale, parameter::kAlpha}) share_(i, i) = kept_(i, i) = 1.0;
     return;
   }
-  // In units in which the information has a unit diagonal; never singular, even for noise-free angles.
+  // Units in which the information has a unit diagonal; never singular, even for noise-free angles.
   const Eigen::Vector4d scale = (information_.diagonal().array() + 1e-12).sqrt();
   const Eigen::Vector4d inverse = scale.cwiseInverse();
   const Eigen::Matrix4d real = inverse.asDiagonal() * information_ * inverse.asDiagonal();

@@ -1,4 +1,4 @@
-// Which of k_v, α, β, γ the detections of a radar really tell apart, and which are only feigned by their noise.
+// Which of k_v, α, β, γ the detections of a radar determine, as distinct from the effect of their noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,15 +7,15 @@
 
 namespace boresight::alignment::planar {
 
-/// Noise of the angles makes equal directions look different, and so β and γ look measured where all that is seen lies
-/// at one elevation. Directions of the parameters whose information does not clearly exceed what that noise makes of
-/// none are left out; of the others the noise's part is taken off.
+/// Noise of the angles makes equal directions look different, so β and γ look measured even if all detections lie at
+/// one elevation. Parameter directions whose information does not clearly exceed that of noise alone are excluded. The
+/// part of the noise is subtracted from the others.
 class Support {
  public:
   /// Sums fade by `keep` (0…1).
   void add(const Sums& sums, double keep);
-  /// For scans from now on, from what was added until now. Without elevation, or if all is seen at one, β and γ are
-  /// left out: what their rows hold then comes of the estimate's own error.
+  /// Updates the support for the next scans from the sums so far. Without elevation, or with all detections at one
+  /// elevation, β and γ are excluded: their rows then come from the error of the estimate.
   void renew(bool has_elevation);
   /// Whether elevations are measured and spread by more than their noise.
   [[nodiscard]] bool has_elevation() const { return has_elevation_; }

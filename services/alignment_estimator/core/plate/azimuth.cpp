@@ -13,8 +13,8 @@ namespace {
 
 using Pool = std::array<double, kMaxTilts * kMaxScansPerTilt>;
 
-constexpr double kSmallestStd_rad = 1e-5;  // below any radar's resolution of azimuth
-constexpr double kReach = 3.0;             // stds by the MAD
+constexpr double kSmallestStd_rad = 1e-5;  // below the azimuth resolution of any radar
+constexpr double kReach = 3.0;             // in stds by the MAD
 
 struct AzimuthMean {
   double mean = 0.0, std = 0.0;  ///< std of the mean
@@ -37,12 +37,12 @@ AzimuthMean two_sigma_mean(std::span<const double> samples) {
   for (int round = 0; round < 2; ++round) {
     const double sigma = mean.std * std::sqrt(static_cast<double>(mean.used));
     const AzimuthMean kept = mean_within(samples, mean.mean, 2.0 * sigma);
-    if (kept.used > 0) mean = kept;  // none by rounding alone, where all are equal
+    if (kept.used > 0) mean = kept;  // none only by rounding, if all are equal
   }
   return mean;
 }
 
-/// Two rounds, each keeping what lies within 3 MAD of the median.
+/// Two rounds, each keeping the samples within 3 MAD of the median.
 AzimuthMean three_mad_mean(std::span<double> samples) {
   Pool scratch;
   AzimuthMean mean;
@@ -54,15 +54,15 @@ AzimuthMean three_mad_mean(std::span<double> samples) {
     }
     centre = estimation::median({scratch.data(), kept});
     reach = kReach * estimation::mad_std({scratch.data(), kept}, centre);
-    // Coarsely quantised angles may be equal for most scans; then the MAD tells nothing.
+    // Coarsely quantised angles may be equal in most scans; the MAD is then 0.
     if (!(reach > 0.0)) return two_sigma_mean(samples);
     mean = mean_within(samples, centre, reach);
   }
   return mean;
 }
 
-/// Tilts whose azimuth agrees with that of most: elsewhere something beside the plate was seen. A tilt whose amplitude
-/// contradicts the others is under suspicion, and its azimuth must agree more closely.
+/// Tilts whose azimuth agrees with the majority: at the others the radar saw another object. A tilt whose amplitude
+/// contradicts the others must agree more closely in azimuth.
 std::array<bool, kMaxTilts> agreeing_azimuths(const Measurements& measurements, const PlateResult& result) {
   const std::size_t count = measurements.number_of_tilts;
   const Locations azimuths = locate(measurements, kSmallestStd_rad, [](const TiltMeasurement& tilt) {

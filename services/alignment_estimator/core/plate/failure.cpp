@@ -37,7 +37,7 @@ std::string_view name_of(Failure failure) {
 std::string_view explain(Failure failure) {
   switch (failure) {
     case Failure::kNone:
-      return "the run is good";
+      return "the run succeeded";
     case Failure::kAborted:
       return "the station aborted the run";
     case Failure::kPositioningTimeout:
@@ -45,7 +45,7 @@ std::string_view explain(Failure failure) {
     case Failure::kNoPlateSeen:
       return "no detection of the plate in its window for too long";
     case Failure::kMeasuringTimeout:
-      return "too few scans showed the plate in time";
+      return "too few scans contained the plate in time";
     case Failure::kDecisionTimeout:
       return "the station did not go on after a tilt";
     case Failure::kTooFewTilts:
@@ -53,13 +53,13 @@ std::string_view explain(Failure failure) {
     case Failure::kTooFewScans:
       return "a tilt has fewer than 10 or more than 50 scans";
     case Failure::kTiltsNotMonotonic:
-      return "the tilts neither rise nor fall throughout";
+      return "the tilts neither increase nor decrease throughout";
     case Failure::kNotFinite:
       return "a measured value is not a number";
     case Failure::kNoMaximum:
       return "the amplitude has no maximum over the tilt";
     case Failure::kMaximumOutsideTilts:
-      return "the amplitude's maximum lies beyond the tilts that were measured";
+      return "the amplitude's maximum lies beyond the measured tilts";
     case Failure::kAmplitudeTooLow:
       return "the amplitude at its maximum is below the limit: the bumper transmits too little";
   }

@@ -13,10 +13,10 @@ namespace boresight::alignment::plate {
 
 namespace {
 
-constexpr double kSmallestStd_db = 0.01;  // below any radar's resolution of amplitude
+constexpr double kSmallestStd_db = 0.01;  // below the amplitude resolution of any radar
 constexpr double kGate = 3.0;             // stds
 
-/// Repeatable choice of triples (splitmix64): results do not depend on the library's distributions.
+/// Repeatable choice of triples (splitmix64), independent of the distributions of the standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -32,7 +32,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// The tilts as points to fit.
+/// The tilts as points of the fit.
 struct Points {
   std::size_t count = 0;
   Column tilt{}, amplitude{}, std{};
@@ -74,8 +74,8 @@ struct Solution {
   double cost = HUGE_VAL;
 };
 
-/// The parabola of three tilts, refined by least squares over those that agree with it, so that the noise of the three
-/// does not decide. A maximum stays a maximum, none stays none. False if the three do not make a parabola.
+/// The parabola of three tilts, refined by least squares over the tilts that agree with it. The refinement reduces the
+/// effect of noise in the three, and keeps the sign of the curvature. False if the three do not determine a parabola.
 bool refined_triple(const Points& points, std::size_t i, std::size_t j, std::size_t k, Solution& out) {
   if (!fit_triple(points, i, j, k, out.parabola)) return false;
   out.cost = consensus(points, out.parabola, out.used);
@@ -90,10 +90,10 @@ bool refined_triple(const Points& points, std::size_t i, std::size_t j, std::siz
   return true;
 }
 
-/// RANSAC over every triple (at most 165: no need to draw). The best solution has a maximum unless one without explains
-/// more than one tilt better: plates do have maxima. `rivals_variance`: of the place of the maximum (rad²) over all
-/// solutions, weighted by how likely each is: two bad tilts that agree may be told from good ones only just, and a
-/// rival nearly as likely widens the std by its distance.
+/// RANSAC over every triple (at most 165, so none are drawn). A solution without a maximum is taken only if its cost is
+/// lower by more than that of one rejected tilt, since the echo of a plate has a maximum. `rivals_variance`: variance
+/// of the place of the maximum (rad²) over all solutions, weighted by their likelihood. Two bad tilts that agree are
+/// hard to distinguish from good ones; a rival of similar likelihood then widens the std by its distance.
 Solution fit_robust(const Points& points, double& rivals_variance) {
   constexpr std::size_t kMostTriples = kMaxTilts * (kMaxTilts - 1) * (kMaxTilts - 2) / 6;
   std::array<double, kMostTriples> costs{}, maxima{};
@@ -120,13 +120,13 @@ Solution fit_robust(const Points& points, double& rivals_variance) {
   }
   rivals_variance = count > 0 ? squares / weights : 0.0;
   Solution result = best_without.cost + kGate * kGate < best.cost ? best_without : best;
-  // Always least squares over what is used in the end, for its covariance.
+  // Least squares over the tilts finally used, for the covariance.
   Parabola refitted;
   if (std::isfinite(result.cost) && fit_used(points, result.used, refitted)) result.parabola = refitted;
   return result;
 }
 
-/// Maxima of M random triples, Report A §7: how far the tilts agree with one another.
+/// Maxima of M random triples, Burza 2025, §7: agreement of the tilts with one another.
 void judge_by_triples(const Points& points, const FitConfig& config, PlateResult& result) {
   std::array<double, kMaxTriples> maxima{};
   std::size_t count = 0;
@@ -152,7 +152,7 @@ void judge_by_triples(const Points& points, const FitConfig& config, PlateResult
   result.self_consistency = static_cast<double>(agreeing) / static_cast<double>(wanted);
   const std::span<double> found{maxima.data(), count};
   result.triples_median_rad = estimation::median(found);
-  // By the MAD: three tilts close together have their maximum anywhere, and a plain spread would tell only of those.
+  // By the MAD: the maximum of three neighbouring tilts may be anywhere and would dominate a plain spread.
   result.triples_std_rad = estimation::mad_std(found, result.triples_median_rad);
 }
 
@@ -164,7 +164,7 @@ bool is_finite(const TiltMeasurement& tilt) {
   return finite;
 }
 
-/// What makes a run unfit to be evaluated at all.
+/// Conditions under which a run cannot be evaluated.
 Failure check(const Measurements& measurements, const FitConfig& config) {
   const std::size_t count = measurements.number_of_tilts;
   if (count < std::max(config.min_tilts, kFewestTilts) || count > kMaxTilts) return Failure::kTooFewTilts;
@@ -197,7 +197,7 @@ void summarise(const Measurements& measurements, PlateResult& result) {
   }
 }
 
-/// Means with the variances of the samples, as published (3).
+/// Means weighted with the variances of the samples, as published (3).
 Points published_points(const PlateResult& result) {
   Points points{.count = result.number_of_tilts};
   for (std::size_t i = 0; i < points.count; ++i) {
@@ -253,7 +253,7 @@ PlateResult evaluate(const Measurements& measurements, const FitConfig& config) 
     std::fill_n(solution.used.begin(), points.count, true);
     if (fit_used(points, solution.used, solution.parabola)) solution.cost = 0.0;
   }
-  // Tilts so close together that no parabola can be told.
+  // The tilts are too close together to determine a parabola.
   if (!std::isfinite(solution.cost)) {
     result.failure = Failure::kNoMaximum;
     return result;
@@ -269,7 +269,7 @@ PlateResult evaluate(const Measurements& measurements, const FitConfig& config) 
   result.parabola = {parabola.b[0], parabola.b[1], parabola.b[2]};
   const bool azimuths_agree = find_azimuth(measurements, config.method, result);
   const double widen = robust ? excess(points, parabola, used) : 1.0;
-  // A curvature within its own noise tells of no maximum either; the published condition is b₁ ≥ 0 alone.
+  // A curvature within its noise gives no maximum either; the published condition is b₁ ≥ 0 alone.
   const bool flat = robust && parabola.b[0] + 2.0 * std::sqrt(parabola.covariance(0, 0) * widen) >= 0.0;
   if (!parabola.has_maximum() || flat) {
     result.failure = Failure::kNoMaximum;

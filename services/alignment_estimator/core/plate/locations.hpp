@@ -1,4 +1,4 @@
-// What the scans of each tilt say together, whatever some of them say.
+// Robust location of the scans of each tilt.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,15 @@ namespace boresight::alignment::plate {
 
 using Column = std::array<double, kMaxTilts>;
 
-/// What a tilt's scans say together.
+/// Robust location of a tilt's scans.
 struct Location {
   double value = 0.0;
   double scan_variance = 0.0;  ///< of one scan: `scans` times that of the value
 };
 
-/// Tukey's biweight about the median, c = 4.685 σ by the MAD: as little moved by bad scans as the median itself, and
-/// nearly as sharp as the mean on good ones, which decides whether two bad tilts can be told from good ones.
-/// `all` are the same samples; their std stands in where most samples are equal, and the MAD tells nothing.
+/// Tukey's biweight about the median, c = 4.685 σ by the MAD. It is as robust against bad scans as the median and
+/// nearly as efficient as the mean on good ones; this efficiency helps to distinguish two bad tilts from good ones.
+/// `all` are the same samples; their std is used if most samples are equal and the MAD is 0.
 inline Location biweight(const std::array<double, kMaxScansPerTilt>& samples, const Welford& all, double smallest_std) {
   const std::size_t count = all.count();
   std::array<double, kMaxScansPerTilt> scratch = samples;
@@ -46,9 +46,9 @@ inline Location biweight(const std::array<double, kMaxScansPerTilt>& samples, co
   return result;
 }
 
-/// Locations of all tilts with the std that the scatter of the scans gives each. The noise of the radar is the same at
-/// every tilt: the usual scatter keeps a tilt that scatters little by chance from ruling the fit. One that scatters far
-/// more is believed to.
+/// Locations of all tilts with a std from the scatter of their scans. The noise of the radar is the same at every tilt,
+/// so the usual scatter is a lower limit: a tilt with a small scatter by chance does not dominate the fit. A much
+/// larger scatter is used as it is.
 struct Locations {
   Column value{}, std{};
 };

@@ -1,4 +1,4 @@
-// What the radar saw of the plate at each of its tilts.
+// Measurements of the plate at each of its tilts.
 #pragma once
 
 #include <array>
@@ -6,13 +6,13 @@
 
 namespace boresight::alignment::plate {
 
-inline constexpr std::size_t kMaxTilts = 11;         ///< Report A §7: N ≤ 11
-inline constexpr std::size_t kMinScansPerTilt = 10;  ///< Report A §7: K = 10…50
+inline constexpr std::size_t kMaxTilts = 11;         ///< Burza 2025, §7: N ≤ 11
+inline constexpr std::size_t kMinScansPerTilt = 10;  ///< Burza 2025, §7: K = 10…50
 inline constexpr std::size_t kMaxScansPerTilt = 50;
 inline constexpr std::size_t kFewestTilts = 3;      ///< a parabola has three coefficients
-inline constexpr double kLargestTilt_rad = 0.3491;  ///< 20°: beyond, no plate is seen in the main lobe
+inline constexpr double kLargestTilt_rad = 0.3491;  ///< 20°: beyond, the plate is outside the main lobe
 
-/// Mean and variance one sample at a time (Welford), so that nothing cancels however large the mean is.
+/// Running mean and variance (Welford), without cancellation for a large mean.
 class Welford {
  public:
   void add(double sample) {
@@ -23,7 +23,7 @@ class Welford {
   }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] double mean() const { return mean_; }
-  /// Of a sample (divided by n − 1); 0 with fewer than two.
+  /// Sample variance (divided by n − 1); 0 with fewer than two samples.
   [[nodiscard]] double variance() const { return count_ < 2 ? 0.0 : squares_ / static_cast<double>(count_ - 1); }
 
  private:
@@ -32,18 +32,18 @@ class Welford {
   double squares_ = 0.0;
 };
 
-/// The scans at one tilt. Positive tilt = toward the ground: the ray that meets the plate squarely falls by that angle
-/// on its way from the radar, which is so when the plate's upper edge leans away from the radar. Tilts count from the
-/// position in which the plate is square to the radar's nominal boresight.
+/// The scans at one tilt. A positive tilt is toward the ground: the ray that meets the plate squarely descends by that
+/// angle on its way from the radar, and the plate's upper edge leans away from the radar. Tilts count from the position
+/// in which the plate is square to the radar's nominal boresight.
 struct TiltMeasurement {
   double tilt_rad = 0.0;
-  std::size_t scans = 0;  ///< entries that count in the columns
+  std::size_t scans = 0;  ///< number of valid entries in the columns
   std::array<double, kMaxScansPerTilt> amplitude_db{};
   std::array<double, kMaxScansPerTilt> azimuth_rad{};  ///< sensor frame, + left
   Welford amplitude;
   Welford azimuth;
 
-  /// One scan's plate; finite values only. False, and nothing is taken, when kMaxScansPerTilt are held.
+  /// Adds one scan's plate; finite values only. False, and nothing is added, if kMaxScansPerTilt scans are stored.
   bool add(double scan_amplitude_db, double scan_azimuth_rad) {
     if (scans == kMaxScansPerTilt) return false;
     amplitude_db[scans] = scan_amplitude_db;

@@ -1,4 +1,4 @@
-// Weighted least squares of a parabola, Report A §7 (2)–(8).
+// Weighted least squares of a parabola, Burza 2025, §7 (2)–(8).
 #pragma once
 
 #include <cstddef>
@@ -17,15 +17,15 @@ struct Parabola {
   [[nodiscard]] bool has_maximum() const { return b[0] < 0.0; }
   [[nodiscard]] double argmax() const { return -b[1] / (2.0 * b[0]); }
   [[nodiscard]] double maximum() const { return b[2] - b[1] * b[1] / (4.0 * b[0]); }
-  /// Of argmax(), to first order.
+  /// Variance of argmax(), to first order.
   [[nodiscard]] double argmax_variance() const {
     const Eigen::Vector3d gradient(b[1] / (2.0 * b[0] * b[0]), -1.0 / (2.0 * b[0]), 0.0);
     return gradient.dot(covariance * gradient);
   }
 };
 
-/// Minimises Σ w (a − A(t))². All three of one length; points of weight 0 do not count. False where fewer than three
-/// different t have weight.
+/// Minimises Σ w (a − A(t))². All three spans have one length; points of weight 0 do not count. False if fewer than
+/// three different t have weight.
 [[nodiscard]] bool fit_parabola(std::span<const double> t, std::span<const double> a, std::span<const double> weights,
                                 Parabola& out);
 

@@ -14,7 +14,7 @@ bool seed_from_plate(const RadarConfig& radar, double yaw_rad, double yaw_std_ra
   const bool usable = std::isfinite(yaw_rad) && std::isfinite(pitch_rad) && std::isfinite(yaw_std_rad) &&
                       std::isfinite(pitch_std_rad) && yaw_std_rad >= 0.0 && pitch_std_rad >= 0.0;
   if (!usable || !(std::abs(cos_roll) >= 0.5)) return false;
-  // The sensor's azimuth of the plate, −yaw, is turned by its roll against that about an upright boresight, (10):
+  // The sensor's azimuth of the plate, −yaw, is rotated by its roll against that of an upright sensor, (10):
   // azimuth' = azimuth cos γ − elevation sin γ, where elevation' = azimuth sin γ + elevation cos γ = −pitch is known.
   const double yaw_upright = (yaw_rad - pitch_rad * sin_roll) / cos_roll;
   const double yaw_std = std::hypot(yaw_std_rad, pitch_std_rad * sin_roll) / std::abs(cos_roll);
@@ -40,7 +40,7 @@ bool put_seed(const RotationSeed& seed, Memory& memory) {
   if (radar == kMaxRadars) return false;
   if (radar == memory.number_of_radars) {
     ++memory.number_of_radars;
-    // Rows become longer: moved from the last to the first, so that none is overwritten before it is read.
+    // Rows become longer: they are moved from the last to the first, so that none is overwritten before it is read.
     const std::size_t after = memory.number_of_parameters();
     for (std::size_t row = before; row-- > 0;) {
       for (std::size_t column = before; column-- > 0;) {

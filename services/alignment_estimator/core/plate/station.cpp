@@ -11,7 +11,7 @@ double seconds(std::int64_t duration_ns) {
   return static_cast<double>(duration_ns) * 1e-9;
 }
 
-/// Whether the tilts rise or fall throughout.
+/// Whether the tilts increase or decrease throughout.
 bool is_monotonic(std::span<const double> tilts) {
   const bool rises = tilts.size() > 1 && tilts[1] > tilts[0];
   for (std::size_t i = 1; i < tilts.size(); ++i) {
@@ -92,7 +92,7 @@ PlateEcho find_plate(const RadarScan& scan, const PlateWindow& window) {
   for (std::size_t i = 0; i < count; ++i) {
     if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) continue;
     const double amplitude = amplitudes[i], azimuth = scan.azimuth_rad[i], range = scan.range_m[i];
-    // Written so that what is not a number is never inside.
+    // This form also rejects values that are not numbers.
     const bool in_window = range >= window.range_min_m && range <= window.range_max_m &&
                            std::abs(azimuth) <= window.azimuth_half_width_rad &&
                            std::abs(static_cast<double>(scan.range_rate_mps[i])) <= window.max_range_rate_mps;
@@ -160,7 +160,7 @@ Refusal PlateStation::measure(double tilt_rad, std::int64_t time_ns) {
   if (state_ != State::kPositioning) return Refusal::kWrongState;
   if (!(std::abs(tilt_rad) <= kLargestTilt_rad)) return Refusal::kTiltOutOfRange;
   if (std::abs(tilt_rad - plan_.tilts_rad[tilt_index_]) > config_.tilt_tolerance_rad) return Refusal::kWrongTilt;
-  // Tilts asked for closer together than the tolerance may come in the wrong order.
+  // Requested tilts that are closer than the tolerance may come in the wrong order.
   if (tilt_index_ > 0) {
     const double step = tilt_rad - measurements_.tilts[tilt_index_ - 1].tilt_rad;
     const bool rises = plan_.tilts_rad[1] > plan_.tilts_rad[0];
@@ -233,7 +233,7 @@ void PlateStation::add_scan(const RadarScan& scan, std::int64_t time_ns) {
 }
 
 void PlateStation::tick(std::int64_t time_ns) {
-  // A clock that went back starts the state's time anew instead of stretching it without end.
+  // If the clock went back, the time of the state restarts; otherwise the state could last forever.
   entered_ns_ = std::min(entered_ns_, time_ns);
   last_echo_ns_ = std::min(last_echo_ns_, time_ns);
   const double limit_s = timeout_s();

@@ -21,7 +21,7 @@ class Draw {
   /// 0 ≤ draw < 1.
   double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// 0 ≤ draw < count; 0 for none. Unevenness of a modulo is 2^-50 here.
+  /// 0 ≤ draw < count; 0 if count is 0. The modulo bias is 2^-50 here.
   std::size_t below(std::size_t count) { return count == 0 ? 0 : static_cast<std::size_t>(next() % count); }
   /// Moves `wanted` entries, drawn without replacement, to the front; all of them if there are no more.
   template <class Column>

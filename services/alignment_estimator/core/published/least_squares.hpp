@@ -1,4 +1,4 @@
-// Report A (24)(25): damped nonlinear least squares, and the 1-D reference of the literature in the same way.
+// Burza 2025, (24)(25): damped nonlinear least squares, also used for the 1-D reference of the literature.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -15,8 +15,8 @@ namespace boresight::alignment::published {
   return -rate.cwiseProduct(damped.ldlt().solve(equations.jtr));
 }
 
-/// All four parameters (`Kind::kLeastSquares`), or k_v and α with β = γ = 0 (`Kind::kAzimuth1d`), for which Report A
-/// names no algorithm: it gets the same one.
+/// All four parameters (`Kind::kLeastSquares`), or k_v and α with β = γ = 0 (`Kind::kAzimuth1d`), for which Burza 2025
+/// names no algorithm: the same one is used.
 class LeastSquares final : public PublishedMethod {
  public:
   LeastSquares(const VehicleConfig& vehicle, const PublishedConfig& config, bool azimuth_only)

@@ -1,4 +1,4 @@
-// Report A (28): the simplex of Nelder and Mead on a few detections of each scan, filtered over time.
+// Burza 2025, (28): the simplex of Nelder and Mead on a few detections of each scan, filtered over time.
 #pragma once
 
 #include "services/alignment_estimator/core/published/published_method.hpp"

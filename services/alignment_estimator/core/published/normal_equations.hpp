@@ -1,4 +1,4 @@
-// What the gradient methods need of the detections of a scan.
+// Sums over the detections of a scan, the input of the gradient methods.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Report A (10)–(16): the range rate of a stationary reflector by the planar roll model, with its gradient.
+// Burza 2025, (10)–(16): the range rate of a stationary reflector by the planar roll model, with its gradient.
 #pragma once
 
 #include <cmath>
@@ -15,9 +15,10 @@ struct RangeRate {
   Eigen::Vector4d gradient;
 };
 
-/// The full model for one scan of one radar. The planar roll model is not a rotation (algorithms.md §1.4): it agrees
-/// with R_z·R_y·R_x where pitch and roll are zero, and is off by up to degrees elsewhere. What is printed as α_b in
-/// (11) is β_b. A nominal roll, which Report A does not have, adds to γ_m; so an upside-down radar is right as well.
+/// The full model for one scan of one radar. The planar roll model is not a rotation
+/// (docs/algorithms/published-alignment.md): it agrees with R_z·R_y·R_x where pitch and roll are zero, and is off by up
+/// to degrees elsewhere. The symbol printed as α_b in (11) is β_b. A nominal roll, which Burza 2025 does not have,
+/// adds to γ_m, so that an upside-down radar is modelled too.
 class PlanarModel {
  public:
   /// `speed_mps` as signalled, at the rear axle. The straight-road model (17)–(21) is this with a yaw rate of 0.

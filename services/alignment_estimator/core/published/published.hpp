@@ -1,4 +1,4 @@
-// The published methods by name.
+// Creates the published methods.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace boresight::alignment::published {
 
-/// For the start of the program: allocates. Radars in the order of the vehicle's list.
+/// For the start of the program: it allocates. Radars in the order of the vehicle's list.
 [[nodiscard]] std::unique_ptr<Method> make_published(Kind kind, const VehicleConfig& vehicle,
                                                      const PublishedConfig& config = {});
 
-/// Report A's simulation: the constants as published and, since nothing moves in it, no gate.
+/// For Burza's simulation: the published constants, and no gate because it has no moving objects.
 [[nodiscard]] inline PublishedConfig as_published() {
   PublishedConfig config;
   config.gate = false;

@@ -12,9 +12,9 @@ namespace boresight::alignment::published {
 namespace {
 
 constexpr double kMadToStd = 1.4826;
-/// A radar that was silent for so long does not count among those that share k_v.
+/// A radar without scans for this time does not count among those that share k_v.
 constexpr std::int64_t kSilent_ns = 1'000'000'000;
-/// Gaps in the data are no drive: at most so many cycles of a radar lie between two scans of one.
+/// A gap in the data does not count as driving: at most this many radar cycles count between two scans.
 constexpr double kMaxCyclesBetween = 4.0;
 
 /// Median of the first `count` of `values`, which it reorders; 0 for none.
@@ -132,7 +132,7 @@ void PublishedMethod::process(std::size_t index, const ScanDetections& detection
   radar.count = keep * radar.count + static_cast<double>(used);
   radar.offered = keep * radar.offered + static_cast<double>(std::min(detections.count, kMaxDetections));
   radar.believed = keep * radar.believed + static_cast<double>(believed);
-  // Without elevation pitch and roll stay as seeded.
+  // Without elevation, pitch and roll keep the calibrated values.
   if (scan.parameters == 4) radar.seeded *= keep;
   move(radar, scan, step(scan));
 }
@@ -172,14 +172,14 @@ RadarEstimate PublishedMethod::estimate(std::size_t index) const {
   prior_std(0) = config_.prior_speed_scale_std;
   Eigen::Matrix4d information = prior_std.cwiseAbs2().cwiseInverse().asDiagonal();
   const double variance = radar.count > 0.0 ? radar.rtr / radar.count : 0.0;
-  // Noise-free data would make the formal covariance vanish and the matrix singular.
+  // Noise-free data would give a zero covariance and a singular matrix.
   const double floored = std::max(variance, 1e-8);
   information += radar.jtj / floored;
   information.bottomRightCorner<3, 3>() += radar.seeded;
   const Eigen::LLT<Eigen::Matrix4d> factor(information);
   Eigen::Matrix4d covariance = factor.solve(Eigen::Matrix4d::Identity());
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
-  // What Gauss–Newton would still move by: the distance to the optimum of the data of the window.
+  // The remaining Gauss–Newton step: the distance to the optimum of the window's data.
   const Eigen::Vector4d distance = factor.solve(radar.jtr / floored);
   Eigen::Matrix4d to_vehicle = Eigen::Matrix4d::Identity();
   to_vehicle.bottomRightCorner<3, 3>() =
@@ -193,7 +193,7 @@ RadarEstimate PublishedMethod::estimate(std::size_t index) const {
   };
   if (known(0)) out.observable |= alignment_axis::kSpeedScale;
   if (known(3)) out.observable |= alignment_axis::kVehicleYaw;
-  // A method or a sensor without elevation says nothing of the other two, but a calibration may have.
+  // A method or a sensor without elevation does not determine pitch and roll, but a static calibration may have.
   const bool has_pitch_and_roll = radar.has_elevation || is_seeded;
   if (has_pitch_and_roll && known(2)) out.observable |= alignment_axis::kVehiclePitch;
   if (has_pitch_and_roll && known(1)) out.observable |= alignment_axis::kVehicleRoll;
@@ -249,7 +249,7 @@ bool PublishedMethod::seed(std::size_t index, const Eigen::Vector3d& rotation_ve
           .inverse();
   radar.seeded = to_vehicle.transpose() * factor.solve(to_vehicle);
   radar.seeded = 0.5 * (radar.seeded + radar.seeded.transpose()).eval();
-  // What was measured before was measured at another mounting.
+  // The earlier sums belong to another mounting.
   radar.jtj.setZero();
   radar.jtr.setZero();
   radar.rtr = radar.count = radar.offered = radar.believed = 0.0;

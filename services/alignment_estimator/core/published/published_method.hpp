@@ -1,4 +1,4 @@
-// What the published methods have in common: from a scan to the sums over its detections, and the book-keeping.
+// Common base of the published methods: from a scan to the sums over its detections, and the book-keeping.
 #pragma once
 
 #include <array>
@@ -15,58 +15,60 @@
 
 namespace boresight::alignment::published {
 
-/// The scan that a method takes its step from.
+/// Input of a method for one step.
 struct ScanView {
   const MountingPose& nominal;
   const ScanDetections& detections;
   double speed_mps;
-  double yaw_rate_radps;                    ///< 0 for the straight-road model
-  int parameters;                           ///< of (k_v, α, β, γ) the first so many are estimated: 2 or 4
-  Eigen::Vector4d b;                        ///< the estimate before the step
+  double yaw_rate_radps;  ///< 0 for the straight-road model
+  int parameters;         ///< number of estimated parameters of (k_v, α, β, γ): the first 2 or all 4
+  Eigen::Vector4d b;      ///< the estimate before the step
   std::span<const std::uint16_t> selected;  ///< indices of the detections to use
-  NormalEquations equations;                ///< over these, at b; gradients of parameters held are 0
+  NormalEquations equations;                ///< over these, at b; gradients of fixed parameters are 0
 
   [[nodiscard]] PlanarModel model(const Eigen::Vector4d& at) const { return {nominal, at, speed_mps, yaw_rate_radps}; }
-  /// Model − measured, m/s; the nearest one if the sensor's range rates are ambiguous.
+  /// Model − measured, m/s; for ambiguous range rates the residual to the nearest multiple.
   [[nodiscard]] double residual(double model_mps, std::size_t detection) const {
     const double r = model_mps - detections.range_rate_mps[detection];
     return detections.ambiguity_mps > 0.0 ? std::remainder(r, detections.ambiguity_mps) : r;
   }
 };
 
-/// Every radar has its angles, all share k_v. Report A steps all radars at once, with the mean of their steps of k_v;
-/// here scans come one radar at a time, and each moves k_v by its own step divided by the number of radars that
-/// currently deliver. For synchronised radars that is the same but for terms of second order in the step.
+/// Every radar has its own angles, all share k_v. Burza 2025 steps all radars at once, with the mean of their steps of
+/// k_v. Here scans come one radar at a time, and each moves k_v by its own step divided by the number of radars that
+/// currently deliver. For synchronised radars both agree to first order in the step.
 ///
-/// A radar without elevation has it taken as 0, and only k_v and α are estimated; β and γ stay as they started. Range
-/// rates of a sensor with a known unambiguous interval are compared modulo it.
+/// A radar without elevation gets elevation 0, and only k_v and α are estimated; β and γ keep their start values. Range
+/// rates of a sensor with a known unambiguous interval are compared modulo this interval.
 class PublishedMethod : public Method {
  public:
   void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) final;
-  /// The published methods know no covariance. Given is that of Gauss–Newton: the inverse of the normal equations of
-  /// the last minute with the variance of the residuals. It is not honest: detections of a scan share the errors of the
+  /// The published methods have no covariance. Returned is that of Gauss–Newton: the inverse of the normal equations of
+  /// the last minute with the variance of the residuals. It is too small: detections of a scan share the errors of the
   /// ego signals, angles are noisy, the model is not a rotation, and the step is not a Gauss–Newton step.
   [[nodiscard]] RadarEstimate estimate(std::size_t radar) const final;
   void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego, std::span<double> out) const final;
 
-  /// The estimate with the covariance of estimate(); what these methods do not estimate has a variance of 0.
+  /// The estimate with the covariance of estimate(); parameters that these methods do not estimate have a variance of
+  /// 0.
   void save(Memory& memory) const final;
-  /// Starts from what was remembered of the radars whose identity is the same. The covariance starts anew: these
-  /// methods weight nothing by it.
+  /// Starts from the stored angles of radars with the same identity. The stored covariance is not used, because these
+  /// methods do not weight by it.
   void restore(const Memory& memory) final;
-  /// Starts this radar from the calibration's angles; its covariance stands for the estimate as one more scan would and
-  /// is forgotten with the window, since the next steps weight nothing by it. Refused by a method of azimuth only,
-  /// which cannot hold the pitch that was measured.
+  /// Starts this radar from the angles of a static calibration. Their covariance counts in estimate() like that of one
+  /// more scan and fades with the window, since the steps do not weight by it. A method of azimuth only refuses,
+  /// because it has no pitch.
   bool seed(std::size_t radar, const Eigen::Vector3d& rotation_vehicle_rad, const Eigen::Matrix3d& covariance) final;
 
   /// (k_v, α_m, β_m, γ_m).
   [[nodiscard]] Eigen::Vector4d parameters(std::size_t radar) const;
 
  protected:
-  /// `parameters`: 2 for a method of azimuth only, else 4. `detections_per_scan`: drawn among the usable; 0: all.
+  /// `parameters`: 2 for a method of azimuth only, otherwise 4. `detections_per_scan`: number of drawn detections; 0:
+  /// all.
   PublishedMethod(const VehicleConfig& vehicle, const PublishedConfig& config, int parameters,
                   std::size_t detections_per_scan);
-  /// What to add to the estimate; entries beyond `scan.parameters` are ignored. A step that is not finite is not taken.
+  /// The increment of the estimate; entries beyond `scan.parameters` are ignored, and so is a step that is not finite.
   [[nodiscard]] virtual Eigen::Vector4d step(const ScanView& scan) = 0;
 
   [[nodiscard]] const PublishedConfig& config() const { return config_; }
@@ -83,7 +85,7 @@ class PublishedMethod : public Method {
     bool has_elevation = false;
     double seconds_of_drive = 0.0;
     std::uint64_t scans_used = 0, detections_used = 0;
-    // Over the window, faded:
+    // Decaying sums over the window:
     Eigen::Matrix4d jtj = Eigen::Matrix4d::Zero();
     Eigen::Vector4d jtr = Eigen::Vector4d::Zero();
     double rtr = 0.0, count = 0.0, offered = 0.0, believed = 0.0;

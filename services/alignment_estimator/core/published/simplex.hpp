@@ -9,11 +9,11 @@
 namespace boresight::alignment::published {
 
 /// Vertices are sorted by cost after every call, the best first. Reflection 1, expansion 2, contraction and shrinkage
-/// 1/2. `cost` takes a point whose entries beyond `dimension` are those of the start. Costs that are not numbers count
-/// as the worst.
+/// 1/2. `cost` receives a point whose entries beyond `dimension` are those of the start. A cost that is not a number
+/// counts as the worst.
 class Simplex {
  public:
-  /// The start and one vertex more per dimension, moved by that entry of `edge`.
+  /// The start, and one vertex per dimension, moved by that entry of `edge`.
   template <class Cost>
   Simplex(const Eigen::Vector4d& start, const Eigen::Vector4d& edge, int dimension, const Cost& cost)
       : dimension_(dimension) {
@@ -68,7 +68,7 @@ class Simplex {
   [[nodiscard]] Vertex& at(int i) { return vertices_[static_cast<std::size_t>(i)]; }
   void sort() {
     for (int i = 1; i <= dimension_; ++i) {
-      // Written so that a cost that is not a number moves to the end.
+      // This form moves a cost that is not a number to the end.
       for (int j = i; j > 0 && (at(j).cost < at(j - 1).cost || at(j - 1).cost != at(j - 1).cost); --j)
         std::swap(at(j), at(j - 1));
     }

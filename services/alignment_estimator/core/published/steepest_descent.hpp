@@ -1,12 +1,12 @@
-// Report A (22)(23): steepest descent.
+// Burza 2025, (22)(23): steepest descent.
 #pragma once
 
 #include "services/alignment_estimator/core/published/published_method.hpp"
 
 namespace boresight::alignment::published {
 
-/// −η ∘ (JᵀR) / N. It diverges where η times the mean square of a gradient exceeds 2: with the published η_α = 1e-3
-/// where the vehicle drives about 60 m/s.
+/// −η ∘ (JᵀR) / N. It diverges if η times the mean square of a gradient exceeds 2: with the published η_α = 1e-3 at a
+/// speed of about 60 m/s.
 [[nodiscard]] inline Eigen::Vector4d steepest_descent_step(const NormalEquations& equations,
                                                            const Eigen::Vector4d& rate) {
   if (equations.count == 0) return Eigen::Vector4d::Zero();

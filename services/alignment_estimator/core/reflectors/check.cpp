@@ -10,7 +10,7 @@ namespace boresight::alignment::reflectors {
 std::string_view explain(Problem problem) {
   switch (problem) {
     case Problem::kNone:
-      return "nothing is wrong";
+      return "no problem";
     case Problem::kTooFewPositions:
       return "too few reflector positions";
     case Problem::kNotFinite:
@@ -18,11 +18,11 @@ std::string_view explain(Problem problem) {
     case Problem::kOutOfRange:
       return "a reflector is nearer or farther than allowed";
     case Problem::kOutOfView:
-      return "a reflector is behind the radar as it is mounted";
+      return "a reflector is behind the nominally mounted radar";
     case Problem::kTooFewAgree:
-      return "no more than half of the positions fit one rotation of the radar";
+      return "at most half of the positions fit one rotation of the radar";
     case Problem::kNotALine:
-      return "a reflector stands beside the line of the others";
+      return "a reflector is not on the line of the others";
     case Problem::kLineTooShort:
       return "the line of reflectors is shorter than 5 m";
     case Problem::kSkewLine:
@@ -51,7 +51,7 @@ std::pair<Problem, std::size_t> check(std::span<const Position> positions, const
 }
 
 double median_factor(std::size_t scans) {
-  // √(π/2)/√n for many; a single value, and the mean of two, are their own.
+  // √(π/2)/√n for many values; one value, and the mean of two, are special cases.
   const double n = static_cast<double>(std::max<std::size_t>(scans, 1));
   return n <= 2.0 ? 1.0 / std::sqrt(n) : std::sqrt(M_PI / 2.0 / n);
 }

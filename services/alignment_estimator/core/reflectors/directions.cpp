@@ -16,9 +16,9 @@ namespace {
 
 using Row23 = Eigen::Matrix<double, 2, 3>;
 
-constexpr double kTukey = 5.0;  // of the Mahalanobis distance of two angles
+constexpr double kTukeyOfDirections = 5.0;  // of the Mahalanobis distance of two angles
 
-/// Where a position should be seen with a rotation, and how that changes.
+/// Predicted direction of a position under a rotation, and its derivatives.
 struct Prediction {
   Eigen::Vector2d angles;  ///< azimuth, elevation
   Row23 by_turn;           ///< ∂angles/∂δ of R ← Exp(δ)·R
@@ -47,7 +47,7 @@ class Fit {
     const Eigen::Matrix3d upright = geometry::sensor_to_vehicle(pose.yaw_rad, pose.pitch_rad, 0.0);
     const Eigen::Vector3d stds(config.prior_roll_std_rad, config.prior_pitch_std_rad, config.prior_yaw_std_rad);
     prior_ = upright * stds.cwiseAbs2().asDiagonal() * upright.transpose();
-    // Nobody may be believed who saw another reflector.
+    // Positions with a wrong range belong to another reflector and are rejected.
     for (const Position& position : positions) {
       const double expected_m = (position.surveyed_m - place_).norm();
       right_range_.push_back(std::abs(position.range_m - expected_m) <= config.range_gate_m);
@@ -59,7 +59,7 @@ class Fit {
   Result run() {
     Result result;
     start();
-    // Wide gates first, so that the start, which medians made, need not be exact.
+    // Wide gates first, because the start from medians is not exact.
     for (const double widen : {8.0, 4.0, 2.0, 1.0}) {
       for (int round = 0; round < 8; ++round) {
         weigh(widen);
@@ -77,7 +77,7 @@ class Fit {
     return {azimuth, config_.has_elevation ? position.elevation_rad - prediction.angles[1] : 0.0};
   }
 
-  /// Inverse covariance of the residual: the radar's noise and the surveyor's.
+  /// Inverse covariance of the residual: noise of the radar and errors of the survey.
   [[nodiscard]] Eigen::Matrix2d information(const Position& position, const Prediction& prediction) const {
     const double factor = median_factor(position.scans);
     const Eigen::Vector2d noise(radar_.noise.azimuth_std_rad * factor, radar_.noise.elevation_std_rad * factor);
@@ -91,7 +91,7 @@ class Fit {
     return only_azimuth;
   }
 
-  /// The turn that brings the medians of the residuals to 0; azimuth and elevation apart.
+  /// Rotation that brings the medians of the residuals to 0, separately in azimuth and elevation.
   void start() {
     rotation_ = nominal_;
     std::vector<double> azimuths, elevations;
@@ -102,7 +102,7 @@ class Fit {
       elevations.push_back(r[1]);
     }
     if (azimuths.empty()) return;
-    // What is seen too far left is seen by a sensor that is turned to its right.
+    // A sensor turned to its right sees reflectors too far left.
     rotation_ =
         nominal_ * geometry::sensor_to_vehicle(-estimation::median(azimuths), -estimation::median(elevations), 0.0);
   }
@@ -118,14 +118,14 @@ class Fit {
     // Median of χ² with two and with one degree of freedom.
     const double expected = config_.has_elevation ? 1.386 : 0.455;
     scale_ = squares.empty() ? 1.0 : std::max(1.0, std::sqrt(estimation::median(squares) / expected));
-    const double gate = kTukey * scale_ * widen;
+    const double gate = kTukeyOfDirections * scale_ * widen;
     for (std::size_t i = 0; i < positions_.size(); ++i) {
       const double share = distance_[i] / (gate * gate);
       weight_[i] = right_range_[i] && share < 1.0 ? (1.0 - share) * (1.0 - share) : 0.0;
     }
   }
 
-  /// One step of Gauss–Newton; its length in rad.
+  /// One step of Gauss–Newton; returns its length in rad.
   double step() {
     Eigen::Matrix3d normal;
     Eigen::Vector3d right;
@@ -160,7 +160,7 @@ class Fit {
       result.used.push_back(used);
       result.positions_used += used ? 1 : 0;
       if (!used) continue;
-      // For the covariance a believed position counts in full: Tukey's weights of good data lose five percent only.
+      // For the covariance an accepted position counts in full: Tukey's weights of good data lose only five percent.
       weight_[i] = 1.0;
       by_mounting += prediction.by_turn.transpose() * information(positions_[i], prediction) * prediction.by_place /
                      (scale_ * scale_);
@@ -169,7 +169,7 @@ class Fit {
     Eigen::Vector3d right;
     accumulate(normal, right);
     const Eigen::Matrix3d covariance = normal.inverse();
-    // One error of the radar's place moves all directions together.
+    // An error of the radar's position moves all directions together.
     const Eigen::Matrix3d common = config_.mounting_std_m * covariance * by_mounting;
     result.noise_scale = scale_;
     result.rotation.radar_id = radar_.id;

@@ -13,21 +13,21 @@ namespace boresight::alignment::reflectors {
 namespace {
 
 constexpr double kShortest_m = 5.0;
-constexpr double kTukey = 4.685;
+constexpr double kTukeyOfLine = 4.685;
 
 /// Tukey's weight of a residual in stds.
 double tukey(double residual) {
-  const double share = residual * residual / (kTukey * kTukey);
+  const double share = residual * residual / (kTukeyOfLine * kTukeyOfLine);
   return share < 1.0 ? (1.0 - share) * (1.0 - share) : 0.0;
 }
 
-/// Scatter of residuals (in stds) over 1, at least 1.
+/// Scatter of residuals (in stds), at least 1.
 double scatter(const std::vector<double>& residuals) {
   std::vector<double> sizes = residuals;
   return std::max(1.0, estimation::mad_std(sizes, 0.0));
 }
 
-/// A value with its std; a std of 0: there is none.
+/// A value with its std; a std of 0: no value.
 struct Slope {
   double value = 0.0, std = 0.0;
 };
@@ -86,7 +86,7 @@ Slope robust_mean(const std::vector<double>& values, const std::vector<double>& 
   return result;
 }
 
-/// The surveyed line: middle and direction on the ground; what is wrong with it.
+/// The surveyed line: middle and direction on the ground, and its problem if any.
 struct SurveyedLine {
   Eigen::Vector2d middle, direction, normal;
   Problem problem = Problem::kNone;
@@ -107,7 +107,7 @@ SurveyedLine surveyed_line(std::span<const Position> positions, const Config& co
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread);
   line.direction = axes.eigenvectors().col(1);
   line.across = std::abs(line.direction.y()) > std::abs(line.direction.x());
-  // Forward, or to the left.
+  // The direction points forward, or to the left.
   if (line.direction[line.across ? 1 : 0] < 0.0) line.direction = -line.direction;
   line.normal = {-line.direction.y(), line.direction.x()};
   double first = HUGE_VAL, last = -HUGE_VAL, farthest = 0.0;
@@ -143,8 +143,7 @@ LineResult fit_line(std::span<const Position> positions, const RadarConfig& rada
   result.across = line.across;
   if (!result.ok()) return result;
 
-  // Measured positions as if the radar were mounted as it should be: turned against the surveyed ones by what it is
-  // mounted wrongly.
+  // Measured positions under the nominal mounting: they are rotated against the surveyed ones by the mounting error.
   const Eigen::Vector3d place = place_of(radar);
   const Eigen::Matrix3d nominal = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
   std::vector<double> along, beside, beside_std, pitches, pitch_stds;
@@ -160,7 +159,7 @@ LineResult fit_line(std::span<const Position> positions, const RadarConfig& rada
     const double by_azimuth = position.range_m * radar.noise.azimuth_std_rad * factor * aside.dot(line.normal);
     beside_std.push_back(std::hypot(by_range, by_azimuth, config.survey_std_m));
     const Eigen::Vector3d way = position.surveyed_m - place;
-    // Elevation against the height difference; what is seen too low is seen by a radar that looks up.
+    // Elevation against the height difference; a radar that looks up sees reflectors too low.
     pitches.push_back(std::atan2(way.z(), way.head<2>().norm()) - std::asin(std::clamp(seen.z(), -1.0, 1.0)));
     pitch_stds.push_back(std::hypot(radar.noise.elevation_std_rad * factor, config.height_std_m / way.norm()));
   }
@@ -169,7 +168,7 @@ LineResult fit_line(std::span<const Position> positions, const RadarConfig& rada
     result.problem = Problem::kTooFewAgree;
     return result;
   }
-  // The measured line is turned by minus the yaw error against the surveyed one.
+  // The measured line is rotated by minus the yaw error against the surveyed one.
   result.yaw_rad = -std::atan(slope.value);
   result.yaw_std_rad = slope.std;
   if (config.has_elevation) {

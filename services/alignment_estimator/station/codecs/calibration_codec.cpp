@@ -12,7 +12,7 @@ namespace service = wire::calibration_service;
 
 namespace {
 
-// The wire's numbers are fixed; the state machine's enumerations, which may grow, keep to them.
+// The numbers on the wire are fixed; the enumerations of the state machine may grow but keep these values.
 template <typename Wire, typename Own>
 constexpr bool same(Wire wire, Own own) {
   return static_cast<unsigned>(wire) == static_cast<unsigned>(own);
@@ -73,7 +73,7 @@ std::uint16_t count_code(Number count) {
   return static_cast<std::uint16_t>(std::min<std::uint64_t>(count, 0xFFFF));
 }
 
-/// Infinite values do not occur on the wire: what could not be computed is NaN.
+/// The wire has no infinite values: a value that could not be computed is NaN.
 float number_code(double value) {
   const auto narrow = static_cast<float>(value);
   return std::isfinite(narrow) ? narrow : std::numeric_limits<float>::quiet_NaN();

@@ -11,7 +11,7 @@ namespace service = wire::calibration_service;
 
 namespace {
 
-/// A speed signal that has not come for so long says nothing of now.
+/// An older speed signal is not used.
 constexpr std::int64_t kSpeedIsOld_ns = 1'000'000'000;
 constexpr auto kRepetition_ns = static_cast<std::int64_t>(service::kRepetition_s * 1e9);
 
@@ -42,7 +42,7 @@ std::string_view describe(service::ReturnCode code) {
     case service::ReturnCode::kWrongInterfaceVersion:
       return "calibration request: interface version is not 1";
     case service::ReturnCode::kMalformedMessage:
-      return "calibration request: payload is not of its method's length or layout version";
+      return "calibration request: wrong payload length or layout version for its method";
     case service::ReturnCode::kWrongMessageType:
       return "calibration request: segmented, or with a return code";
     default:
@@ -95,7 +95,7 @@ service::ReturnCode CalibrationService::judge_header(const someip::Message& mess
 
 void CalibrationService::take(const Request& request, someip::ReadResult read) {
   if (!is_request(request.message.type)) {
-    // Whoever answers an answer may never come to an end.
+    // An answer to an answer could cause an endless exchange.
     request.surroundings.fault(Fault::kWireValue, "calibration request: not a request");
     return;
   }
@@ -125,7 +125,7 @@ void CalibrationService::answer(const Request& request, ReturnCode code, std::si
   someip::write_header(header, payload_bytes, std::span<std::uint8_t>(answer_).first<someip::kHeaderBytes>());
   const auto message = std::span<const std::uint8_t>(answer_).first(someip::kHeaderBytes + payload_bytes);
   if (obeyed_.answer_bytes == 0) {
-    // The command of this very request has just been obeyed.
+    // The command of this request has just been executed.
     std::copy(message.begin(), message.end(), obeyed_.answer.begin());
     obeyed_.answer_bytes = message.size();
   }
@@ -228,7 +228,7 @@ service::Refusal CalibrationService::start(const StartRequest& wanted, const Req
     if (!std::isfinite(*wanted.min_amplitude_db)) return Refusal::kLimitOutOfRange;
     config.fit.min_amplitude_db = *wanted.min_amplitude_db;
   }
-  // The limits are this run's; a refused one leaves the result of the run before alone.
+  // The limits are those of this run. A refused request keeps the result of the previous run.
   plate::PlateStation candidate(config);
   const plate::Refusal refusal = candidate.start(wanted.plan, request.now_ns);
   if (refusal != plate::Refusal::kNone) return on_wire(refusal);

@@ -1,5 +1,5 @@
 // The calibration service without its sockets: requests of stations and scans in, answers and events out
-// (interfaces/wire/calibration_service.md). Knows neither network nor clock, and never allocates.
+// (interfaces/wire/calibration_service.md). It uses neither network nor clock, and never allocates.
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@
 
 namespace boresight::alignment::station {
 
-/// What the service needs from where it lives.
+/// Functions that the service needs from its surroundings.
 class Surroundings {
  public:
   virtual ~Surroundings() = default;
-  /// Sends an answer to whom the request in work came from.
+  /// Sends an answer to the sender of the current request.
   virtual void answer(std::span<const std::uint8_t> message) = 0;
-  /// A request that is wrong by itself; commands that are refused are none.
+  /// A malformed request; a refused command is no fault.
   virtual void fault(Fault kind, std::string_view what) = 0;
-  /// A valid result; true if the dynamic estimator starts from it now.
+  /// Passes a valid result; true if the dynamic estimator now starts from it.
   virtual bool take_over(std::uint32_t radar_id, const plate::PlateResult& result) = 0;
 };
 
 class CalibrationService {
  public:
-  /// `max_speed_mps`: signalled speed up to which the vehicle counts as standing.
+  /// `max_speed_mps`: signalled speed up to which the vehicle counts as stationary.
   CalibrationService(const VehicleConfig& vehicle, const plate::StationConfig& config, double max_speed_mps);
 
   /// One datagram with one or several requests. Times are nanoseconds of one steady clock in all functions.
@@ -44,11 +44,11 @@ class CalibrationService {
   /// Every scan of every radar; those of the run's radar are used while a tilt is measured.
   void add_scan(const RadarScan& scan, std::int64_t now_ns);
   void add_ego_motion(const EgoMotion& motion, std::int64_t now_ns);
-  /// Lets time-outs happen; call at least a few times a second.
+  /// Checks time-outs; call at least a few times per second.
   void tick(std::int64_t now_ns) { station_.tick(now_ns); }
 
-  /// The event that is due, as a whole message, because the state has changed since the last call; else empty. Valid
-  /// until the next call of another function.
+  /// The event as a whole message if the state has changed since the last call, otherwise empty. Valid until the next
+  /// call of another function.
   [[nodiscard]] std::span<const std::uint8_t> event_if_changed(std::int64_t now_ns);
   /// The event for a new subscriber.
   [[nodiscard]] std::span<const std::uint8_t> event(std::int64_t now_ns);
@@ -62,13 +62,13 @@ class CalibrationService {
   static constexpr std::size_t kMaxRequestPayloadBytes = 1400;
   static constexpr std::int64_t kNeverHeard = -1;
 
-  /// A station, as far as a run can belong to one.
+  /// The station that a run belongs to.
   struct Client {
     recording::IpAddress address;
     std::uint16_t id = 0;
     friend constexpr bool operator==(const Client&, const Client&) = default;
   };
-  /// The last command obeyed, so that its repetition, after a lost answer, gets that answer again.
+  /// The last executed command. Its repetition after a lost answer gets the same answer.
   struct Obeyed {
     recording::Endpoint from;
     std::uint16_t client = 0, session = 0, method = 0;
@@ -77,7 +77,7 @@ class CalibrationService {
     std::array<std::uint8_t, kMaxRequestPayloadBytes> payload{};
     std::array<std::uint8_t, kMaxAnswerBytes> answer{};
   };
-  /// What a change of makes an event.
+  /// Values whose change causes an event.
   struct Signature {
     std::uint32_t run = 0;
     plate::State state = plate::State::kIdle;
@@ -85,7 +85,7 @@ class CalibrationService {
     std::size_t tilt_index = 0;
     friend constexpr bool operator==(const Signature&, const Signature&) = default;
   };
-  /// One request in work.
+  /// The current request.
   struct Request {
     const someip::Message& message;
     const recording::Endpoint& from;
@@ -95,7 +95,7 @@ class CalibrationService {
 
   void take(const Request& request, someip::ReadResult read);
   [[nodiscard]] ReturnCode judge_header(const someip::Message& message, someip::ReadResult read) const;
-  /// Does what the method asks for; writes the payload of the answer if the result is kOk.
+  /// Executes the method; writes the payload of the answer if the result is kOk.
   [[nodiscard]] ReturnCode serve(const Request& request, someip::ByteWriter& out);
   [[nodiscard]] ReturnCode command(const Request& request, someip::ByteWriter& out);
   [[nodiscard]] Refusal start(const StartRequest& wanted, const Request& request);
@@ -104,7 +104,7 @@ class CalibrationService {
   [[nodiscard]] Refusal repeat_tilt(std::size_t tilt_index, const Request& request);
   [[nodiscard]] Refusal repeat_run(const Request& request);
   [[nodiscard]] Refusal abort(const Request& request);
-  /// A new run of this client.
+  /// Begins a new run of this client.
   void begin_run(std::uint32_t radar_id, const Request& request);
 
   [[nodiscard]] bool is_running() const;

@@ -1,30 +1,35 @@
 // How labels look, wherever the page shows them: colours of the Okabe–Ito palette, which most colour-blind people can
-// tell apart, and a shape of its own for each.
+// distinguish, and a shape of its own for each.
 #pragma once
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "interfaces/messages/classified_scan.hpp"
-#include "services/boresight/report/svg_chart.hpp"
+#include "services/boresight/svg/chart.hpp"
 
 namespace boresight::report {
 
 struct LabelStyle {
   Provenance label;
   const char* words;
-  const char* css;   ///< of a symbol
-  const char* area;  ///< of a surface
-  SvgChart::Shape shape;
+  std::string_view colour;
+  svg::Shape shape;
+  bool is_outline;  ///< shapes without a surface
+  [[nodiscard]] constexpr svg::Style symbol() const {
+    return is_outline ? svg::line_of(colour, 1.6) : svg::area_of(colour);
+  }
+  [[nodiscard]] constexpr svg::Style area() const { return svg::area_of(colour); }
 };
 
 inline constexpr std::array<LabelStyle, 6> kLabelStyles = {{
-    {Provenance::kMoving, "moving", "l1", "l1", SvgChart::Shape::kCircle},
-    {Provenance::kStationary, "stationary", "l2", "l2", SvgChart::Shape::kDash},
-    {Provenance::kGhostType1, "ghost type 1", "l3", "l3", SvgChart::Shape::kTriangle},
-    {Provenance::kGhostType2, "ghost type 2", "l4", "l4", SvgChart::Shape::kDiamond},
-    {Provenance::kClutter, "clutter", "l5", "area5", SvgChart::Shape::kCross},
-    {Provenance::kUnknown, "told nothing", "l0", "l0", SvgChart::Shape::kSquare},
+    {Provenance::kMoving, "moving", "#0072b2", svg::Shape::kCircle, false},
+    {Provenance::kStationary, "stationary", svg::kGrey, svg::Shape::kDash, true},
+    {Provenance::kGhostType1, "ghost type 1", "#d98200", svg::Shape::kTriangle, false},
+    {Provenance::kGhostType2, "ghost type 2", "#b8478f", svg::Shape::kDiamond, false},
+    {Provenance::kClutter, "clutter", "#00805f", svg::Shape::kCross, true},
+    {Provenance::kUnknown, "not classified", svg::kInk, svg::Shape::kSquare, true},
 }};
 
 [[nodiscard]] inline const LabelStyle& style_of(Provenance label) {
@@ -35,7 +40,7 @@ inline constexpr std::array<LabelStyle, 6> kLabelStyles = {{
 }
 
 [[nodiscard]] inline std::string key_of(const LabelStyle& style) {
-  return SvgChart::key(style.shape, style.css) + style.words;
+  return svg::page_key(svg::symbol_sample(style.shape, style.symbol())) + style.words;
 }
 
 }  // namespace boresight::report

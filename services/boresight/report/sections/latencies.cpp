@@ -17,8 +17,9 @@ std::string render_latencies(const Summary& summary) {
                         monitor::kLatencyNames[i], h.percentile_us(0.5), h.percentile_us(0.99), h.max_us());
   }
   text +=
-      "</table>\n<p class=\"faint\">A stage is from taking its input to publishing its output; the total is from the "
-      "reception of the scan's last frame to the published track list, with all waiting in between.</p></div><div>\n";
+      "</table>\n<p class=\"faint\">A stage is measured from taking its input to publishing its output. The total is "
+      "measured "
+      "from reception of the scan's last frame to the published track list and includes all waiting.</p></div><div>\n";
   const LatencyHistogram& total = summary.latencies.back();
   std::size_t first = LatencyHistogram::kBuckets;
   std::size_t last = 0;
@@ -30,20 +31,21 @@ std::string render_latencies(const Summary& summary) {
     highest = std::max(highest, total.counts()[i]);
   }
   if (first > last) return text + "<p>No scan reached the tracker.</p></div></div>\n";
-  SvgChart chart(520, 250,
-                 {.min = LatencyHistogram::edge_us(first > 2 ? first - 2 : 0),
-                  .max = LatencyHistogram::edge_us(last + 3),
-                  .label = "reception to track list, µs",
-                  .logarithmic = true},
-                 {.min = 0, .max = 1.15 * static_cast<double>(highest), .label = "scans"});
+  Chart chart(520, 250,
+              {.min = LatencyHistogram::edge_us(first > 2 ? first - 2 : 0),
+               .max = LatencyHistogram::edge_us(last + 3),
+               .label = "reception to track list, µs",
+               .logarithmic = true},
+              {.min = 0, .max = 1.15 * static_cast<double>(highest), .label = "scans"});
   for (std::size_t i = first; i <= last; ++i) {
     chart.rectangle({LatencyHistogram::edge_us(i), 0},
-                    {LatencyHistogram::edge_us(i + 1), static_cast<double>(total.counts()[i])}, "bar",
+                    {LatencyHistogram::edge_us(i + 1), static_cast<double>(total.counts()[i])},
+                    svg::area_of(svg::kBlue),
                     fmt::format("{:.0f} to {:.0f} µs: {}", LatencyHistogram::edge_us(i),
                                 LatencyHistogram::edge_us(i + 1), total.counts()[i]));
   }
-  chart.vertical(total.percentile_us(0.5), "mark", "p50");
-  chart.vertical(total.percentile_us(0.99), "mark", "p99");
+  chart.vertical(total.percentile_us(0.5), svg::kMark, "p50");
+  chart.vertical(total.percentile_us(0.99), svg::kMark, "p99");
   return text + chart.finish() + "</div></div>\n";
 }
 

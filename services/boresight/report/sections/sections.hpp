@@ -11,14 +11,16 @@
 
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/summary.hpp"
-#include "services/boresight/report/svg_chart.hpp"
+#include "services/boresight/svg/chart.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::report {
 
 using monitor::RadarSnapshot;
 using monitor::Snapshot;
-
-inline constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+using svg::Chart;
+using svg::escape;
+using svg::Point;
 
 /// Seconds since the first scan, as far as it is known: of the record of scans, else of the first snapshot with one.
 class TimeBase {
@@ -51,12 +53,9 @@ class TimeBase {
   return nullptr;
 }
 
-/// A dash if it is not known.
-[[nodiscard]] inline std::string known_number(double value, const char* unit, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}{}", value, digits, unit) : "–";
-}
-
 [[nodiscard]] std::string render_verdict(const ReportInput& input, const Summary& summary);
+/// Terms of the page, explained.
+[[nodiscard]] std::string render_terms();
 [[nodiscard]] std::string render_table(const Summary& summary);
 /// About the vehicle's axes, with the key figures.
 [[nodiscard]] std::string render_details(const Summary& summary);
@@ -64,9 +63,9 @@ class TimeBase {
 [[nodiscard]] std::string render_truth(const ReportInput& input, const TimeBase& time, const Summary& summary);
 [[nodiscard]] std::string render_alignment(const ReportInput& input, const TimeBase& time, const Summary& summary);
 [[nodiscard]] std::string render_health(const ReportInput& input, const TimeBase& time, const Summary& summary);
-/// What the ghost filter told detections to be, in total and over time.
+/// How the ghost filter classified detections, in total and over time.
 [[nodiscard]] std::string render_labels(const ReportInput& input, const TimeBase& time, const Summary& summary);
-/// The same beside the truth, and tracks of ghosts; what is missing for it where something is.
+/// Labels beside the truth, and tracks that followed ghosts; a hint where the record or the truth is missing.
 [[nodiscard]] std::string render_confusion(const ReportInput& input, const TimeBase& time);
 /// Scans seen from above.
 [[nodiscard]] std::string render_plan_views(const ReportInput& input, const TimeBase& time);

@@ -3,36 +3,40 @@
 
 #include "services/boresight/monitor/render.hpp"
 #include "services/boresight/report/sections/sections.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/text/measured.hpp"
 
 namespace boresight::report {
 
 namespace {
 
-std::string known_angle(const monitor::AngleEstimate& angle) {
+std::string angle_text(const monitor::AngleEstimate& angle) {
   if (!angle.observable) return "<span class=\"faint\">not observable</span>";
-  return fmt::format("{:+.2f}° ± {:.2f}°", angle.value_rad * kDegrees, angle.std_rad * kDegrees);
+  return text::with_std(angle.value_rad * kDegreesPerRadian, angle.std_rad * kDegreesPerRadian, "°",
+                        text::Sign::kAlways);
 }
 
 }  // namespace
 
 std::string render_table(const Summary& summary) {
   std::string text =
-      "<h2>Radars</h2>\n<table><tr><th>radar</th><th class=n>scans</th><th class=n>lost</th><th class=n>yaw ± σ</th>"
-      "<th class=n>truth</th><th class=n>error</th><th class=n>speed scale ± σ</th><th>verdict</th></tr>\n";
+      "<h2>Radars</h2>\n<p class=\"faint\">Mounting error in yaw and scale of the speed signal (true speed / signalled "
+      "speed), estimated while driving. σ is the standard deviation that the estimator states. Values are those at the "
+      "end of the drive.</p>\n<table><tr><th>radar</th><th class=n>scans</th><th class=n>lost</th>"
+      "<th class=n>yaw error ± σ</th><th class=n>true yaw error</th><th class=n>deviation</th>"
+      "<th class=n>speed scale ± σ</th><th>verdict</th></tr>\n";
   for (const RadarSummary& radar : summary.radars) {
     const RadarSnapshot& last = radar.last;
-    const bool known = yaw_text(last) != "-";
-    std::string error = "–";
+    const bool known = has_estimate(last);
+    std::string deviation(text::kUnknown);
     if (known && radar.true_yaw_rad) {
-      error = fmt::format("{:+.2f}°", (last.yaw.value_rad - *radar.true_yaw_rad) * kDegrees);
+      deviation = error_text(last.yaw, radar.true_yaw_rad);
     }
     text += fmt::format(
         "<tr><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td>"
         "<td class=n>{}</td><td class=\"{}\">{}</td></tr>\n",
-        escape(last.name), last.scans, last.lost, yaw_text(last),
-        radar.true_yaw_rad ? fmt::format("{:+.2f}°", *radar.true_yaw_rad * kDegrees) : "–", error,
-        known ? fmt::format("{:.4f} ± {:.4f}", last.speed_scale, last.speed_scale_std) : "–",
-        last.data_qualifier == DataQualifier::kAvailable ? "good" : "bad",
+        escape(last.name), last.scans, last.lost, yaw_text(last), true_yaw_text(radar), deviation,
+        speed_scale_text(last), last.data_qualifier == DataQualifier::kAvailable ? "good" : "bad",
         radar.misaligned ? "MISALIGNED" : escape(monitor::verdict(last)));
   }
   return text + "</table>\n";
@@ -41,31 +45,37 @@ std::string render_table(const Summary& summary) {
 /// About the vehicle's axes, with the key figures.
 std::string render_details(const Summary& summary) {
   std::string text =
-      "<h2>Alignment at the end</h2>\n<p class=\"faint\">Turns about the vehicle's axes. Time of driving until the "
-      "estimate stayed within 5 % of its way.</p>\n"
+      "<h2>Alignment at the end</h2>\n<p class=\"faint\">Mounting errors as rotations about the vehicle's axes. "
+      "Settling time: driving time until the estimate stays within 5 % of its whole change. Residual: RMS of measured "
+      "minus predicted range rate. Sudden misalignments: step changes of the mounting that the estimator "
+      "reported.</p>\n"
       "<table><tr><th>radar</th><th class=n>yaw ± σ</th><th class=n>pitch ± σ</th><th class=n>roll ± σ</th>"
-      "<th class=n>95 % of yaw</th><th class=n>of pitch</th><th class=n>yaw drift/min</th><th class=n>residual, "
-      "m/s</th><th class=n>knocks</th></tr>\n";
+      "<th class=n>settling time, yaw</th><th class=n>pitch</th><th class=n>yaw drift per minute</th>"
+      "<th class=n>residual</th><th class=n>sudden misalignments</th></tr>\n";
   for (const RadarSummary& radar : summary.radars) {
     const monitor::AlignmentDetails& d = radar.last.details;
-    const bool known = yaw_text(radar.last) != "-";
-    const auto angle = [known](const monitor::AngleEstimate& a) { return known ? known_angle(a) : "–"; };
+    const bool known = has_estimate(radar.last);
+    const auto angle = [known](const monitor::AngleEstimate& a) {
+      return known ? angle_text(a) : std::string(text::kUnknown);
+    };
     text += fmt::format(
         "<tr><td>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td><td class=n>{}</td>"
         "<td class=n>{}</td><td class=n>{}</td><td class=n>{}</td></tr>\n",
         escape(radar.last.name), angle(d.yaw), angle(d.pitch), angle(d.roll),
-        known_number(d.yaw_seconds_to_95_percent, " s", 1), known_number(d.pitch_seconds_to_95_percent, " s", 1),
-        known_number(d.yaw_drift_radpmin * kDegrees, "°", 3), known_number(d.residual_rmse_mps, "", 3), d.step_changes);
+        text::fixed(d.yaw_seconds_to_95_percent, 1, " s"), text::fixed(d.pitch_seconds_to_95_percent, 1, " s"),
+        text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°"), text::fixed(d.residual_rmse_mps, 3, " m/s"),
+        d.step_changes);
   }
   text += "</table>\n";
   for (const RadarSummary& radar : summary.radars) {
-    if (yaw_text(radar.last) == "-") continue;
+    if (!has_estimate(radar.last)) continue;
     const monitor::AngleEstimate &bias = radar.last.details.yaw_rate_bias, &slip = radar.last.details.slip;
-    text += fmt::format(
-        "<p>Of the vehicle: yaw-rate bias {}, slip coefficient {}.</p>\n",
-        bias.observable ? fmt::format("{:+.3f} ± {:.3f} °/s", bias.value_rad * kDegrees, bias.std_rad * kDegrees)
-                        : "not observable",
-        slip.observable ? fmt::format("{:.4f} ± {:.4f} rad per m/s²", slip.value_rad, slip.std_rad) : "not observable");
+    text +=
+        fmt::format("<p>Errors of the vehicle's signals: yaw-rate bias {}; slip coefficient of the rear axle {}.</p>\n",
+                    bias.observable ? text::with_std(bias.value_rad * kDegreesPerRadian,
+                                                     bias.std_rad * kDegreesPerRadian, " °/s", text::Sign::kAlways)
+                                    : "not observable",
+                    slip.observable ? text::with_std(slip.value_rad, slip.std_rad, " rad per m/s²") : "not observable");
     break;
   }
   return text;

@@ -8,7 +8,7 @@ namespace boresight::report {
 std::string render_verdict(const ReportInput& input, const Summary& summary) {
   const std::size_t missed = summary.missed_aims();
   std::string text = fmt::format("<div class=\"verdict{}\"><b>{}</b>", summary.all_passed() ? "" : " bad",
-                                 summary.all_passed() ? "Everything worked." : "Not everything worked.");
+                                 summary.all_passed() ? "All checks passed." : "Not all checks passed.");
   if (missed > 0)
     text += fmt::format(" <span class=\"warn\">{} {} missed.</span>", missed, missed == 1 ? "aim was" : "aims were");
   text += "<ul>\n";
@@ -18,7 +18,8 @@ std::string render_verdict(const ReportInput& input, const Summary& summary) {
                     check.passed ? "✓" : (check.aim ? "missed:" : "✗"), escape(check.what));
   }
   text += "</ul></div>\n";
-  if (!input.truth.known()) text += "<p class=\"faint\">No truth is known for this drive.</p>\n";
+  if (!input.truth.known())
+    text += "<p class=\"faint\">No truth is known for this drive, so estimates are not compared with it.</p>\n";
   return text;
 }
 

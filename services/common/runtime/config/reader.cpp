@@ -10,8 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "services/common/geometry/angles.hpp"
+#include "services/common/runtime/config/former_keys.hpp"
 #include "services/common/runtime/config/toml.hpp"
 #include "services/common/runtime/config/toml_text.hpp"
+#include "services/common/text/near_names.hpp"
 
 namespace boresight::config {
 
@@ -49,9 +52,20 @@ std::string_view type_name(toml::node_type type) {
   }
 }
 
-/// What a string of the document says; empty if it is none.
+/// The text of a node; empty if the node is no string.
 std::string string_of(const toml::node& node) {
   return decode_ascii(node.value<std::string>().value_or(""));
+}
+
+std::string problem_of_unknown_key(const std::string& key, const std::set<std::string, std::less<>>& known) {
+  for (const RenamedKey& renamed : kRenamedKeys) {
+    if (renamed.former == key && known.contains(renamed.current)) {
+      return fmt::format("is called '{}' now", renamed.current);
+    }
+  }
+  const std::vector<std::string> near = near_names(key, {known.begin(), known.end()});
+  return fmt::format("unknown key; {}known here: {}", near.empty() ? "" : fmt::format("similar: '{}'; ", near.front()),
+                     fmt::join(known, ", "));
 }
 
 }  // namespace
@@ -82,8 +96,8 @@ struct Reader::Node {
   void expect(const toml::node& node, std::string_view key, std::string_view wanted) const {
     note(node.source().begin.line, key, fmt::format("must be {}, but is {}", wanted, type_name(node.type())));
   }
-  /// Of a required key that is absent, as soon as it is known.
-  void say_what_is_allowed(std::string_view key, std::string_view allowed);
+  /// Completes the error of a required key that is absent.
+  void add_what_is_allowed(std::string_view key, std::string_view allowed);
   [[nodiscard]] std::uint32_t line_of(std::string_view key) const {
     const toml::node* found = table == nullptr || key.empty() ? nullptr : table->get(key);
     return found == nullptr ? line : found->source().begin.line;
@@ -103,7 +117,7 @@ void Reader::Node::note(std::uint32_t at_line, std::string_view key, std::string
   document->errors.emplace_back(at_line, fmt::format("{}:{}: {}: {}", document->file, at_line, key_path(key), problem));
 }
 
-void Reader::Node::say_what_is_allowed(std::string_view key, std::string_view allowed) {
+void Reader::Node::add_what_is_allowed(std::string_view key, std::string_view allowed) {
   const auto found = missing.find(key);
   if (found == missing.end()) return;
   document->errors[found->second].second += fmt::format("; {}", allowed);
@@ -155,7 +169,7 @@ Reader Reader::open(const std::filesystem::path& file) {
 double Reader::number(std::string_view key, Range allowed, double fallback) {
   const toml::node* node = node_->find(key);
   if (node == nullptr) {
-    node_->say_what_is_allowed(key, "allowed: " + describe(allowed));
+    node_->add_what_is_allowed(key, "allowed: " + describe(allowed));
     return fallback;
   }
   if (!node->is_number()) {
@@ -173,7 +187,7 @@ double Reader::number(std::string_view key, Range allowed, double fallback) {
 std::int64_t Reader::integer(std::string_view key, Range allowed, std::int64_t fallback) {
   const toml::node* node = node_->find(key);
   if (node == nullptr) {
-    node_->say_what_is_allowed(key, "allowed: " + describe(allowed));
+    node_->add_what_is_allowed(key, "allowed: " + describe(allowed));
     return fallback;
   }
   if (!node->is_integer()) {
@@ -280,7 +294,7 @@ int Reader::choice_index(std::string_view key, const std::vector<std::string_vie
   const toml::node* node = node_->find(key);
   const std::string wanted = fmt::format("one of \"{}\"", fmt::join(words, "\", \""));
   if (node == nullptr) {
-    node_->say_what_is_allowed(key, "must be " + wanted);
+    node_->add_what_is_allowed(key, "must be " + wanted);
     return -1;
   }
   if (!node->is_string()) {
@@ -297,7 +311,6 @@ int Reader::choice_index(std::string_view key, const std::vector<std::string_vie
 }
 
 double Reader::angle_deg(std::string_view key, Range allowed_deg, double fallback_rad) {
-  constexpr double kRadiansPerDegree = M_PI / 180.0;
   return number(key, allowed_deg, fallback_rad / kRadiansPerDegree) * kRadiansPerDegree;
 }
 
@@ -355,8 +368,8 @@ void Reader::finish() {
     if (node.table == nullptr) continue;
     for (const auto& [key, value] : *node.table) {
       if (node.known.contains(key.str())) continue;
-      node.note(key.source().begin.line, decode_ascii(key.str()),
-                fmt::format("unknown key; known here: {}", fmt::join(node.known, ", ")));
+      const std::string name = decode_ascii(key.str());
+      node.note(key.source().begin.line, name, problem_of_unknown_key(name, node.known));
     }
   }
   auto& errors = node_->document->errors;

@@ -15,7 +15,7 @@
 
 namespace boresight::config {
 
-/// What is wrong with a configuration; what() has one line per error, each "file:line: key: problem".
+/// Errors of a configuration; what() has one line per error, each "file:line: key: problem".
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,8 +27,9 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
 };
 
-/// One TOML table. Getters return the value, or `fallback` if the key is absent; with errors they note the error and
-/// return the fallback, so that one run shows all errors. `Reader::finish` of the ROOT throws if any were noted.
+/// One TOML table. Getters return the value, or `fallback` if the key is absent. If the value is not allowed, they note
+/// an error and return the fallback, so that one run shows all errors. `Reader::finish` of the ROOT throws if any error
+/// was noted.
 class Reader {
  public:
   /// Parses a file; throws Error if it cannot be read or is not TOML.
@@ -60,7 +61,7 @@ class Reader {
   [[nodiscard]] double angle_deg(std::string_view key, Range allowed_deg, double fallback_rad);
 
   [[nodiscard]] bool has(std::string_view key) const;
-  /// Notes an error if the key is absent; what is allowed is told if a getter asks for it afterwards.
+  /// Notes an error if the key is absent. A getter called afterwards adds the allowed values to the error.
   void require(std::string_view key);
   /// Sub-table; an empty one if absent.
   [[nodiscard]] Reader table(std::string_view key);
@@ -69,10 +70,10 @@ class Reader {
 
   /// Notes an error at this key (or at the table, with an empty key), for checks across keys.
   void reject(std::string_view key, std::string_view problem);
-  /// "file:line: key" as in errors, for those that are found only when the file was read.
+  /// "file:line: key" as in errors, for errors that are found after the file was read.
   [[nodiscard]] std::string place(std::string_view key) const;
-  /// Call on the root after everything was read: unknown keys of every table visited are errors; throws Error if
-  /// anything was noted.
+  /// Call on the root after everything was read. Unknown keys of every table visited are errors: the error of a renamed
+  /// key names the key of today, that of any other key lists the known keys. Throws Error if anything was noted.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
-// toml++, with its assertions as exceptions: version 3.3 asserts on some malformed documents ("[,", its pull request
-// 301), which are to be refused like any other; without assertions it would take what they say for granted.
+// toml++ with its assertions as exceptions. Version 3.3 asserts on some malformed documents ("[,", its pull request
+// 301), which must be rejected like any other; without assertions it would accept them.
 #pragma once
 
 #include <stdexcept>

@@ -1,5 +1,4 @@
-// TOML texts as the parser gets them: toml++ 3.3 runs into undefined behaviour where characters outside ASCII stand in
-// wrong places, so it gets none.
+// Encodes TOML texts as ASCII for the parser: toml++ 3.3 has undefined behaviour for other characters in wrong places.
 #pragma once
 
 #include <string>
@@ -7,11 +6,11 @@
 
 namespace boresight::config {
 
-/// The text with each byte outside ASCII, and each "~", as "~x" and two hexadecimal digits. Those are allowed where
-/// TOML allows any character (strings and comments), and refused where it does not.
+/// Replaces each byte outside ASCII, and each "~", by "~x" and two hexadecimal digits. TOML allows these characters
+/// where it allows any character (strings and comments), and rejects them elsewhere.
 [[nodiscard]] std::string encode_ascii(std::string_view text);
 
-/// What was encoded so.
+/// The inverse of encode_ascii().
 [[nodiscard]] std::string decode_ascii(std::string_view text);
 
 }  // namespace boresight::config

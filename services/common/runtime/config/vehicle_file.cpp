@@ -62,7 +62,7 @@ SourceAddress read_source(Reader reader) {
   return source.link == LinkKind::kCan ? read_can(reader, source) : read_ip(reader, source);
 }
 
-/// `fallback` is what the profile's definition says.
+/// `fallback` is the definition of the radar's profile.
 E2eConfig read_e2e(Reader reader, E2eConfig e2e) {
   using e2e::Profile;
   e2e.required = reader.choice<bool>("mode", {{"off", false}, {"required", true}}, e2e.required);
@@ -78,7 +78,7 @@ E2eConfig read_e2e(Reader reader, E2eConfig e2e) {
   return e2e;
 }
 
-/// A message follows its SOME/IP header by the E2E header; the gap that lost messages leave is bridged for a second.
+/// The E2E header follows the SOME/IP header. A gap by lost messages is accepted for one second.
 E2eConfig default_e2e(bool required, std::uint32_t data_id) {
   E2eConfig e2e;
   e2e.required = required;
@@ -96,7 +96,7 @@ std::string read_mapping(Reader& reader, bool needed) {
   return mapping;
 }
 
-/// Offline a source may be left out; one that is there is checked all the same.
+/// Offline a source is optional; a given one is checked as well.
 bool has_source(const Reader& reader, VehicleUse use) {
   return use == VehicleUse::kLive || reader.has("source");
 }

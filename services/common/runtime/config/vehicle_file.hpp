@@ -9,10 +9,10 @@
 
 namespace boresight::config {
 
-/// kOffline: for tables of detections instead of links; `ego`, `profile` and `source` may be left out.
+/// kOffline: for tables of detections instead of links; `ego`, `profile` and `source` are optional.
 enum class VehicleUse : std::uint8_t { kLive, kOffline };
 
-/// Reads the open document; throws Error with every problem found (see config/schema/vehicle.md).
+/// Reads the open document; throws Error with all problems (see config/schema/vehicle.md).
 [[nodiscard]] VehicleConfig read_vehicle(Reader root, VehicleUse use = VehicleUse::kLive);
 [[nodiscard]] VehicleConfig read_vehicle_file(const std::filesystem::path& file, VehicleUse use = VehicleUse::kLive);
 

@@ -32,7 +32,7 @@ constexpr std::uint32_t kOftenEnough = 30;
 
 /// Images of what is so slow look as if they stood, from many directions; of others only when they cross the line of
 /// sight.
-constexpr double kSlow_mps = 3.0, kLeastSlow = 0.3;
+constexpr double kSlowObject_mps = 3.0, kLeastSlow = 0.3;
 
 /// What is so much less likely than all else cannot change a verdict.
 constexpr double kNegligible = 1e-3;
@@ -75,7 +75,7 @@ void Judge::begin(const Surroundings& surroundings) {
   pairs_left_of_scan_ = kMostPairsOfScan;
   walls_left_of_scan_ = kMostWallsOfScan;
   has_slow_ = std::any_of(s_.objects.begin(), s_.objects.end(), [](const Object& o) {
-    return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlow_mps);
+    return !o.own && o.weight > kLeastSlow && o.velocity_mps.squaredNorm() < square(kSlowObject_mps);
   });
   unmoved_ = unheard_ = 0;
   for (const Object& o : s_.objects) {

@@ -10,7 +10,7 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kLeastRest_m = 0.3;  // behind a mirror
+constexpr double kLeastRestBehindMirror_m = 0.3;  // behind a mirror
 // Of one object's type-2 ghosts by one mirror, shares by the way out: by the same mirror, directly, by another mirror.
 constexpr double kSameWay = 0.5, kDirectly = 0.3, kOtherMirror = 0.2;
 constexpr double kAround_m = 2.0;  // of a track's box
@@ -164,7 +164,7 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
   const double carried = (m.direction - d).dot(crossing.mirror->velocity_mps);
   double density = config_.lone_ghost_density *
                    likelihood(kGhostStrength, m.rcs_dbsm - kUsualRcs_dbsm, kUsualRcsStd_db, config_.strength_doubt);
-  if (const double rest = rest_of_three_bounces(turn, m.range_m); rest > kLeastRest_m) {
+  if (const double rest = rest_of_three_bounces(turn, m.range_m); rest > kLeastRestBehindMirror_m) {
     Target t = target_of(m, crossing, rest, 1.0);
     t.q = d;
     t.known_mps = carried;
@@ -173,7 +173,7 @@ double Judge::type2(const Measured& m, const Crossing& crossing, std::uint32_t i
     const double share = kSameWay * config_.type2_per_object;
     density += share * ghosts_of(t, m, but_object, index, least / (share * sure));
   }
-  if (const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m); rest > kLeastRest_m) {
+  if (const double rest = rest_of_two_bounces(turn, s_.sensor_m, m.range_m); rest > kLeastRestBehindMirror_m) {
     const Eigen::Vector2d e = (turn.point_m + rest * d - s_.sensor_m).normalized();
     // A track may have been seen by another radar than the one from whose place it is judged.
     if (but_object == kNobody && !sees_both(m.direction, e)) return sure * density;
@@ -212,7 +212,7 @@ double Judge::type2_of_two(const Measured& m, const Crossing& crossing, std::uin
     const double across = m.azimuth_std_rad * (far + 2.0 * std::abs(way->rest_m) * turn.distance_m * turn.focus_per_m);
     const double by_mirror = square(2.0 * way->rest_m * turn.angle_std_rad) + square(2.0 * turn.offset_std_m);
     if (!may_be_at(turn.point_m, d, *way, m, square(across) + by_mirror)) continue;
-    const auto met = ways.meet(way->arc_m, turn.point_m, d, length, kLeastRest_m);
+    const auto met = ways.meet(way->arc_m, turn.point_m, d, length, kLeastRestBehindMirror_m);
     if (!met || sure * met->probability < kLeastPair) continue;
     if (pairs_left_ == 0) break;
     --pairs_left_;

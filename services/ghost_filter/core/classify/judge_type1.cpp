@@ -10,8 +10,8 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kHiddenRate_mps = 5.0;  // by which a ghost's range rate differs from its object's
-constexpr double kLeastRest_m = 0.5;     // of the target from the sensor
+constexpr double kHiddenRate_mps = 5.0;      // by which a ghost's range rate differs from its object's
+constexpr double kLeastTargetRange_m = 0.5;  // of the target from the sensor
 constexpr double kLeastDetour_m = 0.3;
 /// Share of ghosts whose very spot was detected directly; of the others another spot of the same vehicle was.
 constexpr double kSameSpot = 0.6;
@@ -47,7 +47,7 @@ void Judge::find_fronts(const Measured& m, std::uint32_t index) {
     // Written so that what is not measured is not too weak.
     if (m.rcs_dbsm > echo.rcs_dbsm || echo.index == index || echo.weight < RecentMovers::kLeastWeight) return;
     const double depth_m = echo.range_m * echo.direction.dot(m.direction);
-    if (depth_m < kLeastRest_m || depth_m > m.range_m + kFar * config_.extent_std_m) return;
+    if (depth_m < kLeastTargetRange_m || depth_m > m.range_m + kFar * config_.extent_std_m) return;
     const double beside_m = echo.range_m * echo.direction.dot(left);
     const double across2 = square(depth_m) * (echo.azimuth_variance_rad2 + azimuth2);
     if (square(beside_m) > square(kFar) * (across2 + extent2) || fronts_.size() == fronts_.capacity()) return;
@@ -157,7 +157,7 @@ double Judge::type1(const Measured& m, std::uint32_t index, std::uint32_t but_ob
         is_track ? Ahead{0.0, may_be_at(s_.sensor_m, m.direction, *way, m, square(way->rest_m * m.azimuth_std_rad))}
                  : ahead_on(*way, m, in_all);
     if (!ahead.silent && mirror.existence * ahead.most <= std::max(density, least)) continue;
-    const auto met = ways.meet(way->arc_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastRest_m);
+    const auto met = ways.meet(way->arc_m, s_.sensor_m, m.direction, 2.0 * m.range_m, kLeastTargetRange_m);
     if (!met || met->rest_m > m.range_m - kLeastDetour_m || met->probability < kLeastChance) continue;
     const double along2 = variance_along(m, *met);
     Target t = target_of(m, *met, along2, mirror);
@@ -205,7 +205,7 @@ double Judge::type1_of_two(const Measured& m, double least) {
     if (walls_left_of_scan_ == 0) return density;
     --walls_left_of_scan_;
     const auto met = ways.meet(m.direction, 2.0 * m.range_m);
-    if (!met || met->rest_m < kLeastRest_m || met->rest_m > m.range_m - kLeastDetour_m) continue;
+    if (!met || met->rest_m < kLeastTargetRange_m || met->rest_m > m.range_m - kLeastDetour_m) continue;
     if (met->probability < kLeastChance) continue;
     const double along2 = variance_along(m, *met);
     Target t = target_of(m, *met, along2, ways.second());

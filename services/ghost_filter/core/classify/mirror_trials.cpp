@@ -21,7 +21,7 @@ constexpr double kSurePlace = 0.7, kGap = 0.5;     // that there is something of
 constexpr double kInReach = 0.6;                   // of the farthest detection: images are weak
 constexpr double kBefore_m = 2.0;                  // as far before a mirror what is detected of it may be
 constexpr double kHides_m = 2.0;                   // beside the way
-constexpr double kSlow_mps = 2.0;                  // what shows less may be taken for what stands
+constexpr double kSlowPlace_mps = 2.0;             // what shows less may be taken for what stands
 constexpr double kLeastRate_mps = 0.7;             // and less still is rather that than the image
 constexpr double kBeside_m = 3.0, kOff_mps = 1.5;  // of an image
 constexpr double kTold = 2.0;                      // standard deviations of its place that must be within that
@@ -85,7 +85,7 @@ MirrorTrials::Outcome MirrorTrials::look_for(const Object& o, const Mirror& mirr
                                        (image->departure - e).dot(scan.sensor_velocity_mps))}}};
   for (const Place& place : places) {
     if (std::abs(place.rate_mps) < kLeastRate_mps) return Outcome::kUnknown;
-    must_show = must_show && std::abs(place.rate_mps) > kSlow_mps;
+    must_show = must_show && std::abs(place.rate_mps) > kSlowPlace_mps;
   }
   const Object* const body = mirror.body == kNobody ? nullptr : &scan.objects[mirror.body];
   for (const Object& other : scan.objects) {

@@ -15,7 +15,7 @@ constexpr double kEdge = 0.15;    // of a face that only one of the two ends of 
 /// Wheels and what else turns are at the flank, as far as it is seen, of what is as long as a car; else anywhere.
 constexpr double kWheelsAtFlank = 0.5, kHalfCar_m = 1.9;
 
-constexpr double kSlow_mps = 0.5;  // what is slower may as well stand
+constexpr double kStanding_mps = 0.5;  // what is slower may as well stand
 
 constexpr double kLeastHalf_m = 0.05;  // of a face
 
@@ -159,7 +159,7 @@ Reflections reflections_at(const Object& object, const Eigen::Vector2d& place_m,
 bool moves_surely(const Object& object) {
   const Eigen::Matrix2d& p = object.velocity_covariance;
   const Eigen::Vector2d& v = object.velocity_mps;
-  if (v.squaredNorm() < square(kSlow_mps)) return false;
+  if (v.squaredNorm() < square(kStanding_mps)) return false;
   // vᵀP⁻¹v against three standard deviations.
   const double determinant = p(0, 0) * p(1, 1) - p(0, 1) * p(1, 0);
   return p(1, 1) * square(v.x()) - 2.0 * p(0, 1) * v.x() * v.y() + p(0, 0) * square(v.y()) > 9.0 * determinant;
@@ -168,9 +168,10 @@ bool moves_surely(const Object& object) {
 double moving_of(const Object& object) {
   if (moves_surely(object)) return 1.0;
   const double speed_mps = object.velocity_mps.norm();
-  if (speed_mps <= kSlow_mps) return 0.0;
+  if (speed_mps <= kStanding_mps) return 0.0;
   const Eigen::Vector2d course = object.velocity_mps / speed_mps;
-  return below((speed_mps - kSlow_mps) / std::sqrt(std::max(1e-9, course.dot(object.velocity_covariance * course))));
+  return below((speed_mps - kStanding_mps) /
+               std::sqrt(std::max(1e-9, course.dot(object.velocity_covariance * course))));
 }
 
 double body_rate_at(const Object& object, double rate_mps, const Eigen::Vector2d& q, double noise_variance) {

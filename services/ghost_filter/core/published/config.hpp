@@ -5,9 +5,9 @@
 
 namespace boresight::ghosts::published {
 
-/// What the public example states from which Report B's scene comes (MathWorks, "Highway Vehicle Tracking with
+/// What the public example states from which Le Ba Thanh's scene comes (MathWorks, "Highway Vehicle Tracking with
 /// Multipath Radar Reflections"): both thresholds of range rate, the clusters' ellipse and number, no margins. The
-/// report names the tests but not their constants.
+/// publication names the tests but not their constants.
 struct Config {
   double max_range_rate_mps = 2.0;           ///< over ground: what is faster moves
   double min_expected_range_rate_mps = 2.0;  ///< standing things at right angles to the drive, where no speed shows,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kGhost = 0.95F;
 constexpr float kReal = 0.05F;
-/// What is not told by its speed lies within about this angle (rad) of right angles to the drive at most. Report B's
+/// What is not told by its speed lies within about this angle (rad) of right angles to the drive at most. Le Ba Thanh's
 /// scene is faster; at walking pace its constant would make everything move.
 constexpr double kAbeam = 0.15;
 

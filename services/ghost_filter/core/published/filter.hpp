@@ -1,7 +1,7 @@
-// The published method (Report B), the baseline that others are compared with: what stands still is told by a constant
-// threshold; a moving detection whose line of sight crosses a reflector segment is a type-2 ghost, else one whose line
-// of sight passes through a predicted track a type-1 ghost. It asks for no mirrored object, knows no clutter, and does
-// not spare what is tracked behind a rail.
+// The published method (Le Ba Thanh 2023), the baseline that others are compared with: what stands still is told by a
+// constant threshold; a moving detection whose line of sight crosses a reflector segment is a type-2 ghost, else one
+// whose line of sight passes through a predicted track a type-1 ghost. It asks for no mirrored object, knows no
+// clutter, and does not spare what is tracked behind a rail.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ class Filter final : public Method {
     float ghost_probability;
   };
   [[nodiscard]] bool takes_part(const CorrectedScan& scan, std::size_t i) const;
-  /// By a constant threshold, Report B (1)(2), whatever the corrector makes of the detection's uncertainty.
+  /// By a constant threshold, Le Ba Thanh 2023, (1)(2), whatever the corrector makes of the detection's uncertainty.
   [[nodiscard]] bool is_stationary(const CorrectedScan& scan, std::size_t i) const;
   /// The segments in the vehicle frame of this scan: found anew when they are due, moved otherwise.
   void update_segments(const CorrectedScan& scan, std::size_t count);

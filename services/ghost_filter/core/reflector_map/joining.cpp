@@ -7,8 +7,8 @@ namespace boresight::ghosts {
 
 namespace {
 
-constexpr double kGate = 2.0;         // standard deviations
-constexpr double kMostSlack_m = 0.4;  // by which uncertain curves may be farther apart than the tolerance
+constexpr double kJoiningGate = 2.0;         // standard deviations
+constexpr double kMostJoiningSlack_m = 0.4;  // by which uncertain curves may be farther apart than the tolerance
 constexpr double kTurn_rad = 0.1;
 
 }  // namespace
@@ -20,14 +20,14 @@ bool runs_along(const Reflector& longer, const Reflector& shorter, const MapConf
   // from each other, nearly all in a large map; the rest is for the others.
   const double farthest_m = std::max(-longer.begin_m(), longer.end_m()) +
                             std::max(-shorter.begin_m(), shorter.end_m()) + 2.0 * half + config.max_gap_m +
-                            config.tolerance_m + kMostSlack_m;
+                            config.tolerance_m + kMostJoiningSlack_m;
   if ((longer.curve.origin_m - shorter.curve.origin_m).squaredNorm() > farthest_m * farthest_m) return false;
   const auto apart = [&](double arc) {
     const Eigen::Vector2d p = shorter.curve.at(arc);
     const double there = longer.curve.arc(p);
     const double within = std::clamp(there, longer.begin_m(), longer.end_m());
-    const double slack = kGate * std::sqrt(longer.variance_at(within) + shorter.variance_at(arc));
-    return std::abs(longer.curve.distance(p)) - std::min(kMostSlack_m, slack);
+    const double slack = kJoiningGate * std::sqrt(longer.variance_at(within) + shorter.variance_at(arc));
+    return std::abs(longer.curve.distance(p)) - std::min(kMostJoiningSlack_m, slack);
   };
   // The middle first: it tells nearly all pairs apart.
   const double middle = 0.5 * (shorter.begin_m() + shorter.end_m());
@@ -35,7 +35,8 @@ bool runs_along(const Reflector& longer, const Reflector& shorter, const MapConf
   const double arc = longer.curve.arc(there);
   if (arc + half < begin || arc - half > end) return false;
   const double apart_there = config.tolerance_m + 0.05 * half;
-  if (std::abs(longer.curve.distance(there)) > apart_there + kMostSlack_m || apart(middle) > apart_there) return false;
+  if (std::abs(longer.curve.distance(there)) > apart_there + kMostJoiningSlack_m || apart(middle) > apart_there)
+    return false;
   const double first = longer.curve.arc(shorter.curve.at(shorter.begin_m()));
   const double last = longer.curve.arc(shorter.curve.at(shorter.end_m()));
   if (std::max(first, last) < begin || std::min(first, last) > end) return false;

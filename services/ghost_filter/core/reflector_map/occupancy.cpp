@@ -10,7 +10,7 @@ constexpr float kUnseen = -1.0F;
 constexpr float kHit = 1.2F;
 /// A rail reflects at its posts, of which a scan shows a part only: a miss says far less than a hit.
 constexpr float kMiss = -0.12F;
-constexpr float kSurest = 4.0F, kLeastSure = -3.0F, kDriven = -5.0F;
+constexpr float kSurestCell = 4.0F, kLeastSure = -3.0F, kDriven = -5.0F;
 
 float to_probability(float log_odds) {
   return 1.0F / (1.0F + std::exp(-log_odds));
@@ -64,7 +64,7 @@ void Occupancy::settle(const HiddenStretches& hidden, double shift_m) {
   }
   for (std::int32_t bin = from; bin <= to; ++bin) {
     if (!hit_[index(bin)] && hidden.contains((bin + 0.5) * bin_m_ - shift_m)) continue;
-    set(bin, std::clamp(log_odds_[index(bin)] + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurest));
+    set(bin, std::clamp(log_odds_[index(bin)] + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurestCell));
     hit_[index(bin)] = false;
   }
 }

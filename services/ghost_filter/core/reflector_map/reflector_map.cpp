@@ -12,11 +12,11 @@ namespace {
 constexpr double kBehind_m = 130.0;  // what lies farther from the vehicle is forgotten
 constexpr double kBirthLogOdds = 0.0;
 constexpr double kSeenLogOdds = 0.7, kUnseenLogOdds = -0.12, kImpureLogOdds = -0.7;
-constexpr double kSurest = 5.0, kDead = -2.0;
-constexpr double kGate = 3.0;         // standard deviations
-constexpr double kMostSlack_m = 0.5;  // by which the gate of an uncertain curve is wider than the tolerance
-constexpr double kScatter_m = 0.15;   // of a rail's reflections about its middle line
-constexpr double kBeside = 4.0;       // what lies off the line, but within so many tolerances, speaks against it
+constexpr double kSurestReflector = 5.0, kDead = -2.0;
+constexpr double kGate = 3.0;            // standard deviations
+constexpr double kMostSlack_m = 0.5;     // by which the gate of an uncertain curve is wider than the tolerance
+constexpr double kRailScatter_m = 0.15;  // of a rail's reflections about its middle line
+constexpr double kBeside = 4.0;          // what lies off the line, but within so many tolerances, speaks against it
 /// Share of the purity of a new reflector that a known one must show.
 constexpr double kStillPure = 0.6;
 /// Errors of a radar's azimuth in one place, and a post's depth, are common to many detections: they count for less.
@@ -82,7 +82,8 @@ std::uint32_t ReflectorMap::add(const Eigen::Vector2d& position_m, double varian
   const bool is_exact = variance_m2 < config_.tolerance_m * config_.tolerance_m;
   if (r != nullptr && r->occupancy.extend(arc + r->arc_shift_m)) {
     const Eigen::Vector2d q = r->curve.local(position_m);
-    r->evidence.add_local(q, r->curve.distance_of_local(q), kInCommon * (kScatter_m * kScatter_m + variance_m2));
+    r->evidence.add_local(q, r->curve.distance_of_local(q),
+                          kInCommon * (kRailScatter_m * kRailScatter_m + variance_m2));
     r->occupancy.hit(arc + r->arc_shift_m);
   }
   return grid_.add(position_m, time_ns, r != nullptr, is_exact, cell);
@@ -164,7 +165,7 @@ void ReflectorMap::refine(Reflector& r, const Odometry& odometry, const DriftStd
     r.log_odds += kUnseenLogOdds;
   } else {
     const bool is_pure = evidence.on >= kStillPure * config_.min_purity * (evidence.on + evidence.beside);
-    r.log_odds = std::min(kSurest, r.log_odds + (is_pure ? kSeenLogOdds : kImpureLogOdds));
+    r.log_odds = std::min(kSurestReflector, r.log_odds + (is_pure ? kSeenLogOdds : kImpureLogOdds));
     r.residual_m += 0.1 * (std::sqrt(evidence.squares_m2 / evidence.points) - r.residual_m);
     CurveFit fit(r.curve, r.covariance.inverse());
     fit.add(evidence);

@@ -1,4 +1,4 @@
-// The groups of bars, each in a file of its name.
+// The groups of bars (limits that figures must meet); each group has a source file of its name.
 #pragma once
 
 #include "tests/benchmarks/common/options.hpp"
@@ -9,7 +9,7 @@ namespace boresight::bench {
 void clean(const Options& options, Report& report);
 void disturbed(const Options& options, Report& report);
 void roll(const Options& options, Report& report);
-void honesty(const Options& options, Report& report);
+void consistency(const Options& options, Report& report);
 void degenerate(const Options& options, Report& report);
 void cramer_rao(const Options& options, Report& report);
 void time_to_95_percent(const Options& options, Report& report);

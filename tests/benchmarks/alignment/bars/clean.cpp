@@ -1,4 +1,5 @@
 // Two minutes of clean drives on every kind of road.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -24,14 +25,14 @@ void clean(const Options& options, Report& report) {
     std::vector<std::string> row = {name_of(road)};
     for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
       const auto errors = final_errors(runs, parameter);
-      const double unit = parameter == kSpeedScale ? 1.0 : kDegree;
+      const double unit = parameter == kSpeedScale ? 1.0 : kRadiansPerDegree;
       worst[parameter] = std::max(worst[parameter], median(errors) / unit);
       row.push_back(number(median(errors) / unit) + " (" + number(quantile(errors, 0.95) / unit) + ")");
     }
     table.rows.push_back(row);
   }
   const std::string how =
-      "worst of 5 road kinds; " + std::to_string(seeds) + " seeds each, 120 s, worst radar of each, median over seeds";
+      "120 s: median over " + std::to_string(seeds) + " seeds of the worst radar; worst of 5 road kinds";
   report.at_most("clean", "k_v", worst[kSpeedScale], 5e-5, "", how);
   report.at_most("clean", "yaw", worst[kYaw], 0.005, "°", how);
   report.at_most("clean", "pitch", worst[kPitch], 0.03, "°", how);

@@ -1,4 +1,4 @@
-// Time and memory that methods take. On one thread, whatever --jobs says.
+// Computing time and heap allocations of the methods. Always on one thread; --jobs has no effect.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/load.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
@@ -9,8 +9,8 @@ void cost(const Options& options, Report& report) {
   const std::size_t cycles = options.quick ? 50 : 2000;
   const double load_s = options.seconds(30.0);
   Table methods{"cost",
-                "four radars × 60 detections: µs a cycle of four scans, ns a detection (medians of " +
-                    std::to_string(cycles) + " cycles after warming up), allocations",
+                "four radars × 60 detections: µs per cycle of four scans, ns per detection (medians of " +
+                    std::to_string(cycles) + " cycles after warm-up), heap allocations",
                 {"method", "µs / cycle", "ns / detection", "allocations"},
                 {}};
   std::vector<NamedMethod> all = published_methods();
@@ -30,8 +30,8 @@ void cost(const Options& options, Report& report) {
   report.add(std::move(methods));
 
   Table growth{"cost_growth",
-               "own estimator: µs a cycle of all radars (ns a detection)",
-               {"radars", "60 detections a scan", "300 detections a scan"},
+               "method `boresight`: µs per cycle of all radars (ns per detection)",
+               {"radars", "60 detections per scan", "300 detections per scan"},
                {}};
   for (const std::size_t radars : {1u, 4u, 8u, 16u}) {
     std::vector<std::string> row = {std::to_string(radars)};

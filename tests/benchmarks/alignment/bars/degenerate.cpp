@@ -1,4 +1,4 @@
-// What the data do not support must not be stated.
+// Drives that leave an axis unobservable: the estimator must not report that axis as observable.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -11,13 +11,13 @@ namespace {
 using simulator::AlignmentSpec;
 using simulator::RoadKind;
 
-struct Case {
+struct DegenerateCase {
   const char* name;
   AlignmentSpec (*make)(double duration_s, std::uint64_t seed);
   std::vector<std::size_t> not_observable;  ///< parameters
 };
 
-const std::vector<Case> kCases = {
+const std::vector<DegenerateCase> kDegenerateCases = {
     {"straight road: vehicle roll",
      [](double duration_s, std::uint64_t seed) { return clean_drive(RoadKind::kStraight, duration_s, seed); },
      {kRoll}},
@@ -35,7 +35,7 @@ const std::vector<Case> kCases = {
        return spec;
      },
      {kPitch, kRoll}},
-    // The signal says less than 5 m/s throughout: the slow drive has 5…11.5 m/s.
+    // The signalled speed stays below 5 m/s: the slow drive has 5…11.5 m/s, the signal a third of that.
     {"signalled speed below 5 m/s: anything",
      [](double duration_s, std::uint64_t seed) {
        AlignmentSpec spec = clean_drive(RoadKind::kSlow, duration_s, seed);
@@ -49,7 +49,7 @@ const std::vector<Case> kCases = {
 
 void degenerate(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(6);
-  for (const Case& one : kCases) {
+  for (const DegenerateCase& one : kDegenerateCases) {
     std::vector<AlignmentSpec> specs;
     for (std::size_t seed = 0; seed < seeds; ++seed) specs.push_back(one.make(options.seconds(120.0), 1700 + seed));
     const auto runs = run_drives(specs, own_method().make, options);
@@ -64,8 +64,8 @@ void degenerate(const Options& options, Report& report) {
         }
       }
     }
-    report.at_most("not observable", std::string(one.name) + " stated to be observable", 100.0 * stated / all, 0.0, "%",
-                   "of estimates once a second; " + std::to_string(seeds) + " seeds, 120 s");
+    report.at_most("not observable", std::string(one.name) + " reported as observable", 100.0 * stated / all, 0.0, "%",
+                   "share of estimates, one per second; " + std::to_string(seeds) + " seeds of 120 s");
   }
 }
 

@@ -1,4 +1,5 @@
-// Three minutes with a yaw-rate bias, rear-axle slip, body pitch and braking pitch, one by one and all at once.
+// Drives of three minutes with yaw-rate bias, rear-axle slip, body pitch and braking pitch, singly and all at once.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -10,9 +11,9 @@ namespace {
 
 using simulator::AlignmentSpec;
 
-struct Case {
+struct Disturbance {
   const char* name;
-  void (*keep)(AlignmentSpec&);  ///< switches off what does not belong to the case
+  void (*keep)(AlignmentSpec&);  ///< switches off the disturbances of the other cases
 };
 
 void none_but(AlignmentSpec& spec, bool bias, bool slip, bool body_pitch, bool braking) {
@@ -22,7 +23,7 @@ void none_but(AlignmentSpec& spec, bool bias, bool slip, bool body_pitch, bool b
   if (!braking) spec.body_pitch_per_acceleration_radps2pm = 0.0;
 }
 
-const Case kCases[] = {
+const Disturbance kDisturbances[] = {
     {"yaw-rate bias", [](AlignmentSpec& s) { none_but(s, true, false, false, false); }},
     {"slip", [](AlignmentSpec& s) { none_but(s, false, true, false, false); }},
     {"body pitch", [](AlignmentSpec& s) { none_but(s, false, false, true, false); }},
@@ -40,7 +41,7 @@ void disturbed(const Options& options, Report& report) {
               {}};
   double worst_yaw = 0.0, worst_pitch = 0.0;
   const std::size_t all_seeds = options.seeds(24), single_seeds = options.seeds(8);
-  for (const Case& one : kCases) {
+  for (const Disturbance& one : kDisturbances) {
     const bool all = std::string(one.name) == "all";
     for (const RoadKind road : {RoadKind::kCity, RoadKind::kMixed}) {
       std::vector<AlignmentSpec> specs;
@@ -52,7 +53,7 @@ void disturbed(const Options& options, Report& report) {
       std::vector<std::string> row = {std::string(one.name) + ", " + name_of(road)};
       for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
         const auto errors = final_errors(runs, parameter);
-        const double unit = parameter == kSpeedScale ? 1.0 : kDegree;
+        const double unit = parameter == kSpeedScale ? 1.0 : kRadiansPerDegree;
         row.push_back(number(median(errors) / unit) + " (" + number(quantile(errors, 0.95) / unit) + ")");
         if (!all) continue;
         if (parameter == kYaw) worst_yaw = std::max(worst_yaw, median(errors) / unit);
@@ -61,8 +62,8 @@ void disturbed(const Options& options, Report& report) {
       table.rows.push_back(row);
     }
   }
-  const std::string how = "all disturbances at once; worst of city and mixed roads, " + std::to_string(all_seeds) +
-                          " seeds each, 180 s, worst radar of each, median over seeds";
+  const std::string how = "all disturbances at once, 180 s: median over " + std::to_string(all_seeds) +
+                          " seeds of the worst radar; worst of city and mixed roads";
   report.at_most("disturbed", "yaw", worst_yaw, 0.01, "°", how);
   report.at_most("disturbed", "pitch", worst_pitch, 0.05, "°", how);
   report.add(std::move(table));

@@ -1,5 +1,5 @@
-// A drive that another simulator wrote, three minutes with four radars, through every method as `boresight align` runs
-// them.
+// A three-minute drive of four radars, recorded by another simulator, through every method as `boresight align` runs
+// it.
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
@@ -11,6 +11,7 @@
 #include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/align/run.hpp"
 #include "services/boresight/align/truth_file.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
@@ -22,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The table, unpacked for as long as this lives.
+/// The unpacked table; removed by the destructor.
 class Unpacked {
  public:
   explicit Unpacked(const fs::path& packed) {
@@ -74,7 +75,7 @@ align::Result align_drive(const std::string& method, const fs::path& table, cons
   return run.finish();
 }
 
-/// Largest over radars of what `of` says.
+/// Largest absolute value of `of` over the radars.
 template <typename Of>
 double largest(const align::Result& result, Of&& of) {
   double value = 0.0;
@@ -94,9 +95,9 @@ void drive_1(const Options& options, Report& report) {
   parallel_for(methods.size(), options.jobs,
                [&](std::size_t i) { results[i] = align_drive(methods[i], unpacked.table(), folder); });
   Table table{"drive_1",
-              "drive_1, 180 s: errors at the end about the vehicle's axes, worst radar",
-              {"method", "k_v", "yaw °", "pitch °", "roll front / rear °", "seconds to 95 % for good, yaw / pitch",
-               "RMSE m/s", "µs a scan"},
+              "drive_1: errors after 180 s about the vehicle's axes, worst radar",
+              {"method", "k_v", "yaw °", "pitch °", "roll front / rear °", "seconds to 95 %, permanently, yaw / pitch",
+               "RMSE m/s", "µs per scan"},
               {}};
   constexpr std::size_t kYawPlace = 1, kPitchPlace = 2, kRollPlace = 3;  // as in align::Sample
   for (const align::Result& result : results) {
@@ -106,8 +107,8 @@ void drive_1(const Options& options, Report& report) {
     const auto seconds = [&](std::size_t place) {
       double worst = 0.0;
       for (const align::RadarResult& radar : result.radars) {
-        // Of a way of less than half a degree, 5 % is not to be seen in the noise.
-        if (std::abs(radar.truth->mountings.front().values[place]) < 0.5 * kDegree) continue;
+        // 5 % of an initial error below half a degree disappears in the noise.
+        if (std::abs(radar.truth->mountings.front().values[place]) < 0.5 * kRadiansPerDegree) continue;
         const double s = radar.truth->seconds_to_95_percent[place];
         worst = std::isnan(s) ? std::numeric_limits<double>::infinity() : std::max(worst, s);
       }
@@ -116,9 +117,10 @@ void drive_1(const Options& options, Report& report) {
     const auto roll_of = [&](std::size_t first) {
       return std::max(std::abs(result.radars[first].truth->errors[kRollPlace]),
                       std::abs(result.radars[first + 1].truth->errors[kRollPlace])) /
-             kDegree;
+             kRadiansPerDegree;
     };
-    const double speed_scale = error(0), yaw = error(kYawPlace) / kDegree, pitch = error(kPitchPlace) / kDegree;
+    const double speed_scale = error(0), yaw = error(kYawPlace) / kRadiansPerDegree,
+                 pitch = error(kPitchPlace) / kRadiansPerDegree;
     table.rows.push_back(
         {result.method, number(speed_scale), number(yaw), number(pitch),
          number(roll_of(0)) + " / " + number(roll_of(2)),

@@ -1,22 +1,22 @@
-// How often a knock would be told where there was none. No simulation lasts 1000 h, so the rate is extrapolated, for
-// each of the two detectors in two steps, as the estimator has two.
-// Large changes (KnockDetector):
-// 1. The detector sums by how much a radar's deviation in a block exceeds its limit, at most one limit a block, and
-//    suspects a knock at 1.5 limits: so at least two blocks in a row lie, on average, 1.3 limits or more off in one
-//    direction. Taken is the largest such average of each minute of each radar.
-// 2. A suspicion is told only if a new start, on data that come after it, lies off the estimate by more than its
-//    covariance allows. Taken is the squared distance of fresh starts from the truth, without yaw-rate bias and slip,
-//    as these are known by then.
-// Small changes (SmallKnockDetector):
-// 1. Taken is the largest sum of each minute of each radar, over the limit of a suspicion.
-// 2. A suspicion is told only if the next window deviates in the same direction. Taken is what windows deviate by in
+// Rate of reported step changes on drives without one. No simulation lasts 1000 h, so the rate is extrapolated. The
+// estimator decides in two steps, suspicion and confirmation; the rate of each detector is the product of both.
+// Large changes (StepChangeDetector):
+// 1. Suspicion. The detector sums the excess of a radar's deviation over the limit, at most one limit per block, and
+//    suspects a change at a sum of 1.5 limits. At least two successive blocks must then deviate by 1.3 limits or more
+//    on average, in one direction. The statistic is the largest such average per minute and radar.
+// 2. Confirmation. A new start on later data must differ from the estimate by more than its covariance allows. The
+//    statistic is the squared distance of new starts from the truth. Yaw-rate bias and slip are set to zero, because
+//    the estimator knows them by then.
+// Small changes (SmallStepChangeDetector):
+// 1. Suspicion. The statistic is the largest sum per minute and radar, divided by the limit of a suspicion.
+// 2. Confirmation. The next window must deviate in the same direction. The statistic is the deviation of a window in
 // the
-//    direction of the sum before them where there was one, over what confirms: what two windows in a row may have in
-//    common, an error of the estimate or of the scene, is in it.
-// Of all the largest tenth are fitted by an exponential distribution, which falls more slowly than noise does, and
-// tell how often the limit is exceeded, unless more was seen to exceed it. The data of the two steps are not the same,
-// so that their rates are multiplied. That changes of yaw and pitch below a least size are not told is not counted on;
-// a change of roll is never told, only followed, and has a line of its own.
+//    direction of the sum before it, divided by the confirming limit. It includes any error of the estimate or of the
+//    scene that two successive windows have in common.
+// An exponential distribution is fitted to the largest tenth of each statistic; it falls more slowly than noise. It
+// gives the share beyond the limit, unless the observed share is larger. The two steps use different data, so their
+// rates are multiplied. The lower limit on reported changes of yaw and pitch is not credited. A change of roll is never
+// reported, only followed; it has a table row of its own.
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -38,20 +38,20 @@ namespace {
 using simulator::AlignmentSpec;
 using simulator::RoadKind;
 
-/// Largest average of two blocks in a row, in units of the limit, that a suspicion needs.
+/// Average of two successive blocks, in units of the limit, that a suspicion needs at least.
 constexpr double kNeeded = 1.3;
 /// Squared distance, 3 degrees of freedom, beyond which a new start confirms a suspicion (RobustFilter).
 constexpr double kConfirms = 21.1;
-/// That start's covariance counts this many times there; the estimate's, which follows from it, is start_inflation
-/// times the statistical one.
+/// RobustFilter multiplies the statistical covariance of that start by this factor when it compares. The estimate
+/// that begins from the start carries start_inflation instead.
 constexpr double kConfirmInflation = 4.0;
 constexpr RoadKind kRoads[] = {RoadKind::kCity, RoadKind::kMotorway, RoadKind::kMixed};
 
 struct Tail {
   double largest = 0.0;
-  double level = 0.0;         ///< u₀, exceeded by a tenth of the values
+  double level = 0.0;         ///< u₀: a tenth of the values exceed it
   double mean_excess = 0.0;   ///< over u₀
-  double share_beyond = 0.0;  ///< of the values beyond 1: extrapolated, or as seen if that is more
+  double share_beyond = 0.0;  ///< share of values above 1: the extrapolated or the observed one, whichever is larger
 
   [[nodiscard]] std::string shape() const {
     return fixed(largest, 2) + ", " + fixed(level, 2) + ", " + fixed(mean_excess, 3);
@@ -83,10 +83,10 @@ AlignmentSpec drive_of(bool with_disturbances, RoadKind road, double duration_s,
   return with_disturbances ? disturbed_drive(road, duration_s, seed) : clean_drive(road, duration_s, seed);
 }
 
-/// Of what one detector saw, ascending.
+/// Statistics of one detector, ascending.
 struct Seen {
-  std::vector<double> maxima;  ///< of each minute and radar, over what a suspicion needs
-  std::vector<double> then;    ///< what came after, over what confirms
+  std::vector<double> maxima;  ///< largest per minute and radar, over the limit of a suspicion
+  std::vector<double> then;    ///< the following window or start, over the confirming limit
 
   void take(const Seen& other) {
     maxima.insert(maxima.end(), other.maxima.begin(), other.maxima.end());
@@ -100,10 +100,10 @@ struct Seen {
 
 struct Quiet {
   Seen large, small, roll;
-  double told = 0.0;
+  double reported = 0.0;
 };
 
-/// Follows the windows of one axis of one radar.
+/// Reads the small detector's windows of one axis of one radar.
 class SmallWatch {
  public:
   explicit SmallWatch(double confirms_stds) : confirms_stds_(confirms_stds) {}
@@ -144,7 +144,7 @@ Quiet drive_quietly(const std::vector<AlignmentSpec>& specs, const Options& opti
     run_options.look = [&](const alignment::Method& method, double time_s) {
       const auto& filter = dynamic_cast<const alignment::RobustFilter&>(method);
       const std::size_t minute = std::min(static_cast<std::size_t>(time_s / 60.0), minutes - 1);
-      own.told = 0.0;
+      own.reported = 0.0;
       for (std::size_t r = 0; r < radars; ++r) {
         const std::size_t at = minute * radars + r;
         const Eigen::Array2d now = filter.step_change_detector().deviation(r).array();
@@ -155,7 +155,7 @@ Quiet drive_quietly(const std::vector<AlignmentSpec>& specs, const Options& opti
           Seen& seen = axis == 0 ? own.roll : own.small;
           watches[3 * r + axis].look(filter.small_step_change_detector(), r, axis, seen.maxima[at], seen.then);
         }
-        own.told += filter.estimate(r).step_change.count;
+        own.reported += filter.estimate(r).step_change.count;
       }
     };
     static_cast<void>(run_drive(specs[i], own_method().make, run_options));
@@ -163,20 +163,20 @@ Quiet drive_quietly(const std::vector<AlignmentSpec>& specs, const Options& opti
     quiet.large.take(own.large);
     quiet.small.take(own.small);
     quiet.roll.take(own.roll);
-    quiet.told += own.told;
+    quiet.reported += own.reported;
   });
   for (Seen* const seen : {&quiet.large, &quiet.small, &quiet.roll}) seen->sort();
   return quiet;
 }
 
-/// Squared distances of fresh starts from the truth, over kConfirms; ascending.
+/// Squared distances of new starts from the truth, over kConfirms; ascending.
 std::vector<double> start_distances(bool with_disturbances, std::size_t seeds, const Options& options) {
   const alignment::FilterConfig config;
   std::vector<double> distances;
   std::mutex lock;
   parallel_for(seeds, options.jobs, [&](std::size_t i) {
     AlignmentSpec spec = drive_of(with_disturbances, kRoads[i % std::size(kRoads)], 4.0, 6000 + i);
-    // A start that is to confirm a suspicion is made with the yaw-rate bias and slip that the estimator knows by then.
+    // A confirming start uses the yaw-rate bias and slip that the estimator knows by then.
     spec.yaw_rate_bias_radps = spec.slip_coefficient_radps2pm = 0.0;
     std::vector<double> found(spec.radars.size(), -1.0);
     RunOptions run_options;
@@ -216,12 +216,12 @@ Curve curve_of(const std::string& name, const std::vector<double>& maxima) {
 void false_alarms(const Options& options, Report& report) {
   const double drive_s = options.quick ? 30.0 : 3600.0;
   Table table{"false_alarms",
-              "drives without a knock: extrapolation from the largest deviations of two blocks in a row or the largest "
-              "sums (1: suspicion) and from new starts or the next windows (1: confirmed); u₀ is exceeded by a tenth",
+              "drives without a step change: tails of the suspicion statistic (a suspicion starts at 1) and of the "
+              "confirmation statistic (confirmed at 1); a tenth of the values exceed u₀",
               {"change", "drives", "hours", "suspicion: largest, u₀, mean excess", "suspicions per 1000 h",
-               "then: number, largest, u₀, mean excess", "share that confirm", "told per 1000 h"},
+               "confirmation: number, largest, u₀, mean excess", "confirmed share", "reported per 1000 h"},
               {}};
-  double worst = 0.0, told = 0.0, all_hours = 0.0;
+  double worst = 0.0, reported = 0.0, all_hours = 0.0;
   for (const bool with_disturbances : {false, true}) {
     std::vector<AlignmentSpec> specs;
     for (std::size_t seed = 0; seed < options.seeds(2); ++seed) {
@@ -231,29 +231,29 @@ void false_alarms(const Options& options, Report& report) {
     Quiet quiet = drive_quietly(specs, options);
     quiet.large.then = start_distances(with_disturbances, options.seeds(600), options);
     const std::string name = with_disturbances ? "disturbed" : "clean";
-    const auto rate_of = [&](const char* change, const Seen& seen, bool is_told) {
+    const auto rate_of = [&](const char* change, const Seen& seen, bool is_reported) {
       const Tail first = tail_of(seen.maxima), then = tail_of(seen.then);
       const double suspicions = 1000.0 * first.share_beyond * static_cast<double>(seen.maxima.size()) / hours;
       const double rate = suspicions * then.share_beyond;
       table.rows.push_back({change, name, fixed(hours, 1), first.shape(), number(suspicions),
                             std::to_string(seen.then.size()) + ", " + then.shape(), number(then.share_beyond),
-                            is_told ? number(rate) : "0 (" + number(rate) + " followed)"});
-      return is_told ? rate : 0.0;
+                            is_reported ? number(rate) : "0 (" + number(rate) + " followed)"});
+      return is_reported ? rate : 0.0;
     };
     const double rate =
         rate_of("large", quiet.large, true) + rate_of("small", quiet.small, true) + rate_of("roll", quiet.roll, false);
     worst = std::max(worst, rate);
-    told += quiet.told;
+    reported += quiet.reported;
     all_hours += hours;
     report.add(curve_of(name, quiet.large.maxima));
     report.add(curve_of(name + ", small", quiet.small.maxima));
   }
-  report.at_most("step_change", "false alarms told", told, 0.0, "",
-                 "in " + fixed(all_hours, 1) + " h without a knock, half of them disturbed");
+  report.at_most("step change", "false alarms reported", reported, 0.0, "",
+                 "in " + fixed(all_hours, 1) + " h without a step change, half of them disturbed");
   report.at_most(
-      "step_change", "false alarms per 1000 h of a vehicle of four radars", worst, 1.0, "",
-      "the worse of clean and disturbed; extrapolated suspicions × share that would be confirmed, of large and small "
-      "changes together, all from exponential tails, or as seen where that is more");
+      "step change", "false alarms per 1000 h of a vehicle with four radars", worst, 1.0, "",
+      "suspicion rate × confirmed share, large and small changes added, larger of clean and disturbed; exponential "
+      "tails, or the observed share where it is larger");
   report.add(std::move(table));
 }
 

@@ -1,4 +1,5 @@
-// Radars crooked by 5° about each axis, and every second detection moves or is a ghost.
+// Mounting errors of 5° about each axis, and up to 60 % outliers: detections of moving objects and ghosts.
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
@@ -12,7 +13,7 @@ void outliers(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(40);
   double worst = 100.0;
   Table table{"outliers",
-              "share of runs captured, 5° errors about each axis",
+              "share of runs that converge, mounting errors of 5° about each axis",
               {"share of outliers", "city", "motorway", "mixed"},
               {}};
   for (const double share : {0.25, 0.5, 0.6}) {
@@ -23,7 +24,7 @@ void outliers(const Options& options, Report& report) {
         simulator::AlignmentSpec spec = clean_drive(road, options.seconds(60.0), 2000 + seed);
         spec.outlier_share = share;
         simulator::Stream stream(spec.seed, "bench 5 degrees");
-        const auto five_degrees = [&] { return (stream.uniform() < 0.5 ? -5.0 : 5.0) * kDegree; };
+        const auto five_degrees = [&] { return (stream.uniform() < 0.5 ? -5.0 : 5.0) * kRadiansPerDegree; };
         for (auto& radar : spec.radars) radar.truth = {five_degrees(), five_degrees(), five_degrees()};
         specs.push_back(spec);
       }
@@ -31,8 +32,8 @@ void outliers(const Options& options, Report& report) {
       double captured = 0.0;
       for (const Run& run : runs) {
         const Snapshot& last = run.last();
-        captured += worst_radar(last, kYaw) < 0.1 * kDegree && worst_radar(last, kPitch) < 0.5 * kDegree &&
-                            worst_radar(last, kSpeedScale) < 1e-3
+        captured += worst_radar(last, kYaw) < 0.1 * kRadiansPerDegree &&
+                            worst_radar(last, kPitch) < 0.5 * kRadiansPerDegree && worst_radar(last, kSpeedScale) < 1e-3
                         ? 1.0
                         : 0.0;
       }
@@ -42,9 +43,9 @@ void outliers(const Options& options, Report& report) {
     }
     table.rows.push_back(row);
   }
-  report.at_least("outliers", "captured with 50 % movers and ghosts, 5° errors", worst, 95.0, "%",
+  report.at_least("outliers", "runs that converge, 50 % outliers, mounting errors of 5°", worst, 95.0, "%",
                   "worst of 3 road kinds, " + std::to_string(seeds) +
-                      " runs each, 60 s; captured: all radars' yaw within 0.1°, pitch 0.5°, k_v 1e-3");
+                      " runs each of 60 s; all radars within 0.1° of yaw, 0.5° of pitch, 1e-3 of k_v");
   report.add(std::move(table));
 }
 

@@ -1,4 +1,4 @@
-// Static calibration with the tilting plate: how far each way of evaluating a run is off.
+// Static calibration with the tilting plate: error of each evaluation method.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/simulator/alignment/plate_table.hpp"
 

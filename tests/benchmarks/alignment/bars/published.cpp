@@ -1,4 +1,4 @@
-// The set-up of Report A's tables: planar truth, slow drive, no outliers. Every published method, and ours beside them.
+// The set-up of Burza's tables: planar truth, slow drive, no outliers. All published methods and our own.
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
@@ -41,22 +41,19 @@ Curve histogram(const std::string& label, const Moments& moments) {
   return curve;
 }
 
-/// Nelder–Mead's bias over that of ours, an axis each; a figure without a bar where the comparison is not like with
-/// like.
+/// Bias of Nelder–Mead over that of our method, per parameter; no bar where the two methods assume different models.
 void compare(const PublishedResult& nelder_mead, const PublishedResult& own, const std::string& name, bool planar_truth,
              const std::string& drives, Report& report) {
   const bool like_with_like = planar_truth == (name == "boresight_planar");
   for (std::size_t p = 0; p < 4; ++p) {
-    const std::string what = std::string(kSensorParameters[p]) + ": Nelder–Mead's bias over that of " + name +
+    const std::string what = std::string(kSensorParameters[p]) + ": bias of Nelder–Mead / bias of " + name +
                              (planar_truth ? ", planar truth" : ", truth a rotation");
     const double ratio = nelder_mead.bias[p] / own.bias[p];
     if (like_with_like) {
       report.at_least("published set-up", what, ratio, 5.0, "×", drives);
     } else {
       report.beside("published set-up", what + " (for comparison)", ratio, "×",
-                    "no bar: the truth is no rotation, " + name +
-                        " takes it for one; an error of the model, which any "
-                        "estimator of rotations has (table of optima)");
+                    "no bar: this truth is not a rotation; see the table of optima");
     }
   }
 }
@@ -71,7 +68,7 @@ void published(const Options& options, Report& report) {
   run_options.residuals = true;
   run_options.snapshot_period_s = 2.0;
   const std::string drives = "mean |bias| over the last fifth of " + fixed(duration_s, 0) + " s, " +
-                             std::to_string(seeds) + " seeds × 4 radars, both on the same drives";
+                             std::to_string(seeds) + " seeds × 4 radars, same drives for both";
   for (const bool planar_truth : {true, false}) {
     simulator::AlignmentSpec setup = simulator::published_setup();
     if (!planar_truth) setup.model = simulator::MountingModel::kExact;
@@ -80,8 +77,9 @@ void published(const Options& options, Report& report) {
     Table table{figure,
                 std::string("the published set-up, truth ") +
                     (planar_truth ? "by the planar roll model (10)(11)" : "a rotation") +
-                    ": iterations (scans of a radar) to 95 %, bias, residual; last fifth of " + fixed(duration_s, 0) +
-                    " s, mean over " + std::to_string(seeds) + " seeds × 4 radars",
+                    ": iterations (scans of a radar) until 95 % of the initial error is removed; bias and residual "
+                    "over the last fifth of " +
+                    fixed(duration_s, 0) + " s; mean over " + std::to_string(seeds) + " seeds × 4 radars",
                 published_header("method"),
                 {}};
     PublishedResult nelder_mead;
@@ -108,7 +106,7 @@ void published(const Options& options, Report& report) {
       table.rows.push_back({"*published:* Nelder–Mead", "6971", "", "", "", "2.99e-05", "0.0106", "0.1380", "0.0912",
                             "0.0272", "−0.0201 / 3.2126"});
     }
-    // The bar is for ours with the model that the truth has: Report A's planar rows on planar truth, a rotation on one.
+    // The bar compares under the model of the truth: Burza's planar rows on planar truth, the rotation on a rotation.
     std::vector<NamedMethod> ours = {own_method()};
     if (planar_truth) ours.insert(ours.begin(), own_method_with_planar_rows());
     for (const NamedMethod& own : ours) {

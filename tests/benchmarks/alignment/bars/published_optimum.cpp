@@ -1,10 +1,11 @@
-// Where the least squares of each model lie, by Gauss–Newton over all detections of a drive: a method of that model may
-// get there sooner or later, but no further. Tells which errors are the model's and not the method's.
+// The least-squares optimum of each model, by Gauss–Newton over all detections of a drive. Every method of that model
+// ends there at best. The group separates errors of the model from errors of the method.
 #include <memory>
 
 #include <Eigen/Cholesky>
 
 #include "services/alignment_estimator/core/batch_calibration/joint.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
@@ -22,7 +23,7 @@ using alignment::batch_calibration::Solution;
 
 enum class Model : std::uint8_t { kAzimuth, kPlanar, kRotation };
 
-/// What of Table 1's mounting errors there is, and how reality follows from it.
+/// Which of Table 1's mounting errors apply, and the model that generates the detections.
 struct Truth {
   const char* name;
   bool has_pitch, has_roll;
@@ -46,7 +47,7 @@ simulator::AlignmentSpec spec_of(const Truth& truth) {
   return spec;
 }
 
-/// The drive's detections, of every third scan.
+/// The detections of every third scan.
 std::vector<Recording> recordings_of(const simulator::AlignmentSpec& spec) {
   simulator::AlignmentDrive drive(spec);
   const VehicleConfig vehicle = drive.vehicle();
@@ -155,7 +156,7 @@ Outcome outcome_of(const Truth& truth, Model model, std::size_t seeds, const Opt
       const Eigen::Vector3d error = x.segment<3>(alignment::batch_calibration::first_angle(r)) -
                                     Eigen::Vector3d(m.yaw_rad, m.pitch_rad, m.roll_rad);
       for (std::size_t p = 1; p < 4; ++p) {
-        outcome.bias[p] += std::abs(error(static_cast<Eigen::Index>(p) - 1)) / kDegree / (radars * runs);
+        outcome.bias[p] += std::abs(error(static_cast<Eigen::Index>(p) - 1)) / kRadiansPerDegree / (radars * runs);
       }
     }
   }
@@ -167,8 +168,8 @@ Outcome outcome_of(const Truth& truth, Model model, std::size_t seeds, const Opt
 void published_optimum(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(3);
   Table table{"published_optimum",
-              "least squares of a model over all detections of a drive: mean of |error| over " + std::to_string(seeds) +
-                  " seeds of " + fixed(options.seconds(600.0), 0) + " s × 4 radars, whatever the method",
+              "least-squares optimum of each model over all detections of a drive: mean |error| over " +
+                  std::to_string(seeds) + " seeds of " + fixed(options.seconds(600.0), 0) + " s × 4 radars",
               {"model", "truth", "k_v", "α °", "β °", "γ °", "RMSE m/s"},
               {}};
   const auto add = [&](const char* name, Model model, const Truth& truth) {

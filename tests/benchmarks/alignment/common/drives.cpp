@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/random.hpp"
 
 namespace boresight::bench {
@@ -22,18 +23,18 @@ void misalign(AlignmentSpec& spec) {
   Stream stream(spec.seed, "bench truth");
   spec.speed_scale = stream.uniform(0.98, 1.02);
   for (AlignmentRadar& radar : spec.radars) {
-    radar.truth.yaw_rad = either_sign(stream, 1.0, 2.5) * kDegree;
-    radar.truth.pitch_rad = either_sign(stream, 1.0, 2.5) * kDegree;
-    radar.truth.roll_rad = either_sign(stream, 1.0, 2.5) * kDegree;
+    radar.truth.yaw_rad = either_sign(stream, 1.0, 2.5) * kRadiansPerDegree;
+    radar.truth.pitch_rad = either_sign(stream, 1.0, 2.5) * kRadiansPerDegree;
+    radar.truth.roll_rad = either_sign(stream, 1.0, 2.5) * kRadiansPerDegree;
   }
 }
 
 void disturb(AlignmentSpec& spec) {
   Stream stream(spec.seed, "bench disturbances");
-  spec.yaw_rate_bias_radps = (stream.uniform() < 0.5 ? -0.1 : 0.1) * kDegree;
+  spec.yaw_rate_bias_radps = (stream.uniform() < 0.5 ? -0.1 : 0.1) * kRadiansPerDegree;
   spec.slip_coefficient_radps2pm = stream.uniform(0.003, 0.006);
-  spec.body_pitch_std_rad = 0.3 * kDegree;
-  spec.body_pitch_per_acceleration_radps2pm = 0.2 * kDegree;
+  spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
+  spec.body_pitch_per_acceleration_radps2pm = 0.2 * kRadiansPerDegree;
 }
 
 AlignmentRadar radar_at(const AlignmentRadar& like, std::uint32_t id, double x_m, double y_m, double yaw_deg) {
@@ -41,7 +42,7 @@ AlignmentRadar radar_at(const AlignmentRadar& like, std::uint32_t id, double x_m
   radar.config.id = id;
   radar.config.name = "radar_" + std::to_string(id);
   radar.config.mounting_pose.position_m = {x_m, y_m, 0.5};
-  radar.config.mounting_pose.yaw_rad = yaw_deg * kDegree;
+  radar.config.mounting_pose.yaw_rad = yaw_deg * kRadiansPerDegree;
   return radar;
 }
 
@@ -64,8 +65,8 @@ AlignmentSpec unsynchronised(double duration_s, std::uint64_t seed) {
   return spec;
 }
 
-/// Ahead, at the corners, and behind; the second on its head, the third with an ambiguity of range rates, the fourth
-/// without elevation, none of the last two with stated stds.
+/// One ahead, two at corners and one behind. The second is upside down, the third has ambiguous range rates, the fourth
+/// measures no elevation; the last two state no stds.
 AlignmentSpec mixed_radars(double duration_s, std::uint64_t seed) {
   AlignmentSpec spec = clean_drive(RoadKind::kMixed, duration_s, seed);
   const AlignmentRadar like = spec.radars[0];
@@ -92,7 +93,8 @@ AlignmentSpec sixteen_radars(double duration_s, std::uint64_t seed) {
   spec.radars.clear();
   for (std::uint32_t i = 0; i < kMaxRadars; ++i) {
     const double yaw_deg = -180.0 + 22.5 * static_cast<double>(i);
-    const double x_m = 1.4 + 2.3 * std::cos(yaw_deg * kDegree), y_m = 0.8 * std::sin(yaw_deg * kDegree);
+    const double x_m = 1.4 + 2.3 * std::cos(yaw_deg * kRadiansPerDegree),
+                 y_m = 0.8 * std::sin(yaw_deg * kRadiansPerDegree);
     spec.radars.push_back(radar_at(like, i + 1, x_m, y_m, yaw_deg));
     spec.radars.back().mean_detections = 30.0;
   }

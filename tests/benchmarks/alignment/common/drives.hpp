@@ -5,21 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/alignment/spec.hpp"
 
 namespace boresight::bench {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 /// Four corner radars with each angle wrong by 1…2.5° of either sign, k_v 0.98…1.02, a quarter of the detections moving
 /// or ghosts, no disturbance.
 [[nodiscard]] simulator::AlignmentSpec clean_drive(simulator::RoadKind road, double duration_s, std::uint64_t seed);
 
-/// The same with what real vehicles do: yaw-rate bias ±0.1°/s, rear-axle slip 0.003…0.006 rad per m/s², body pitch 0.3°
-/// (Ornstein–Uhlenbeck, 0.3 s), nose down by 0.2° per m/s² of braking.
+/// The same with the disturbances of real vehicles: yaw-rate bias ±0.1°/s, rear-axle slip 0.003…0.006 rad per m/s²,
+/// body pitch 0.3° (Ornstein–Uhlenbeck, 0.3 s), nose down by 0.2° per m/s² of braking.
 [[nodiscard]] simulator::AlignmentSpec disturbed_drive(simulator::RoadKind road, double duration_s, std::uint64_t seed);
 
-/// A kind of drive for the honesty of covariances: name and maker.
+/// A kind of drive for the consistency of covariances: name and maker.
 struct DriveKind {
   std::string name;
   simulator::AlignmentSpec (*make)(double duration_s, std::uint64_t seed);

@@ -41,7 +41,7 @@ std::size_t Load::give_cycle(alignment::Method& method) {
     Entry& entry = entries_[next_];
     method.process(entry.radar, *entry.detections, entry.ego);
     detections += entry.detections->count;
-    entry.detections->time_ns += duration_ns_;  // for the next time round
+    entry.detections->time_ns += duration_ns_;  // for the next repetition
     next_ = (next_ + 1) % entries_.size();
   }
   return detections;

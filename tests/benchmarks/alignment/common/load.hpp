@@ -1,4 +1,4 @@
-// The same minute of driving over and over, ready in memory as methods take it: for measuring what they cost.
+// A repeated stretch of driving, prepared in memory in the form that methods read: for measuring their cost.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class Load {
   [[nodiscard]] const VehicleConfig& vehicle() const { return vehicle_; }
   /// Gives the method one scan of each radar; returns the number of detections.
   std::size_t give_cycle(alignment::Method& method);
-  /// Once through all scans, so that start-up is over.
+  /// Runs through all scans once, so that the method has started.
   void warm_up(alignment::Method& method);
 
  private:
@@ -41,7 +41,7 @@ struct CycleCost {
   std::size_t allocations;
 };
 [[nodiscard]] CycleCost measure_cycles(Load& load, alignment::Method& method, std::size_t cycles);
-/// Without warming up.
+/// Number of heap allocations; does not warm up.
 [[nodiscard]] std::size_t count_allocations(Load& load, alignment::Method& method, std::size_t cycles);
 
 }  // namespace boresight::bench

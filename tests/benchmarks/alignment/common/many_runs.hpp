@@ -1,4 +1,4 @@
-// One method on many drives, and what is read from the runs.
+// One method on many drives, and statistics over the runs.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ namespace boresight::bench {
   return worst;
 }
 
-/// Over runs: the error at the end of the worst radar of each.
+/// The final error of the worst radar of each run.
 [[nodiscard]] inline std::vector<double> final_errors(const std::vector<Run>& runs, int parameter,
                                                       const std::vector<std::size_t>& radars = {}) {
   std::vector<double> errors;

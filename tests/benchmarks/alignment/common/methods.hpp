@@ -16,11 +16,12 @@ struct NamedMethod {
 
 /// Boresight's own estimator with its shipped settings.
 [[nodiscard]] NamedMethod own_method();
-/// Boresight's filter with the rows of Report A's planar model, for data that follow it.
+/// Boresight's filter with the rows of Burza's planar model, for data that follow it.
 [[nodiscard]] NamedMethod own_method_with_planar_rows();
-/// The published ones with their published constants, in the order of Report A; with the gate that keeps movers out.
+/// The published methods with their published constants, in the order of Burza 2025; with the gate against moving
+/// objects.
 [[nodiscard]] std::vector<NamedMethod> published_methods();
-/// As published: every detection counts.
+/// The published methods without that gate: every detection counts.
 [[nodiscard]] std::vector<NamedMethod> published_methods_without_gate();
 
 }  // namespace boresight::bench

@@ -8,7 +8,7 @@
 
 namespace boresight::bench {
 
-/// Of range-rate residuals in m/s, with a histogram over ±kReach_mps.
+/// Moments of range-rate residuals (m/s), with a histogram over ±kReach_mps.
 class Moments {
  public:
   static constexpr double kReach_mps = 0.6;

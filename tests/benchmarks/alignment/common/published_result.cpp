@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "services/common/geometry/angles.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/report.hpp"
 
@@ -23,7 +24,7 @@ double bias_of(const Run& run, std::size_t radar, std::size_t parameter, double 
 
 double published_error(const RadarError& radar, std::size_t parameter) {
   return parameter == 0 ? radar.error(kSpeedScale)
-                        : radar.sensor_error_rad(static_cast<Eigen::Index>(parameter) - 1) / kDegree;
+                        : radar.sensor_error_rad(static_cast<Eigen::Index>(parameter) - 1) / kRadiansPerDegree;
 }
 
 PublishedResult published_result(const std::vector<Run>& runs, double duration_s) {
@@ -34,7 +35,7 @@ PublishedResult published_result(const std::vector<Run>& runs, double duration_s
     for (const Run& run : runs) {
       for (std::size_t r = 0; r < run.last().radars.size(); ++r) {
         const TimeTo95 time = p == 0 ? time_to_95(run, r, kSpeedScale, 1e-4)
-                                     : time_to_95_sensor(run, r, static_cast<int>(p) - 1, 0.1 * kDegree);
+                                     : time_to_95_sensor(run, r, static_cast<int>(p) - 1, 0.1 * kRadiansPerDegree);
         iterations.push_back(time.first_iterations);
         bias += bias_of(run, r, p, duration_s);
         count += 1.0;

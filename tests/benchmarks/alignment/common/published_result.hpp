@@ -1,4 +1,4 @@
-// Outcome of a method on drives like those of Report A's tables, over seeds and radars, in its terms.
+// Outcome of a method on drives like those of Burza's tables, over seeds and radars, with the quantities of the tables.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace boresight::bench {
 inline constexpr std::array<const char*, 4> kSensorParameters = {"k_v", "α", "β", "γ"};
 
 struct PublishedResult {
-  std::array<double, 4> iterations{};  ///< to 95 % of the distance: median
+  std::array<double, 4> iterations{};  ///< until 95 % of the initial error is removed: median
   std::array<double, 4> bias{};        ///< mean of |error averaged over the last fifth|; 1, degrees
   Moments corrected, uncorrected;
 };
@@ -20,7 +20,7 @@ struct PublishedResult {
 /// Error of (k_v, α, β, γ) by place; 1, degrees.
 [[nodiscard]] double published_error(const RadarError& radar, std::size_t parameter);
 
-/// Converged estimates wander; their mean over the last fifth of the drive is what Report A's tables call bias.
+/// A converged estimate still varies; Burza's tables call its mean error over the last fifth of the drive the bias.
 [[nodiscard]] PublishedResult published_result(const std::vector<Run>& runs, double duration_s);
 
 /// Cells for the header below: name, iterations, biases, residuals.

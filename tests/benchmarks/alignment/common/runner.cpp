@@ -30,7 +30,7 @@ RadarError error_of(const alignment::RadarEstimate& estimate, const Eigen::Matri
   return e;
 }
 
-/// Range rate of a standing reflector if the signals and the nominal mounting were right.
+/// Range rate of a stationary reflector under the signalled motion and the nominal mounting.
 double nominal_range_rate(const alignment::ScanDetections& scan, std::size_t i, const RadarConfig& radar,
                           const EgoSample& ego) {
   const Eigen::Vector3d u = geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0) *
@@ -84,7 +84,7 @@ Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make, cons
     run.snapshots.push_back(std::move(snapshot));
     if (options.look) options.look(*method, time_s);
   };
-  // Before any data, a method believes in the nominal mounting.
+  // Before any data, the estimate of a method is the nominal mounting.
   take_snapshot(0.0, 0.0, 0);
 
   EgoHistory ego;
@@ -99,7 +99,7 @@ Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make, cons
     const double now_s = event.time_s - kStart_s;
     if (event.speed_mps >= kMinSpeed_mps) driven_s += now_s - previous_s;
     previous_s = now_s;
-    // What was known before this event: all scans up to now.
+    // The estimate before this event, after all earlier scans.
     if (now_s >= next_s && iterations > 0) {
       take_snapshot(now_s, driven_s, iterations);
       next_s +=

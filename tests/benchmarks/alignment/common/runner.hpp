@@ -1,4 +1,4 @@
-// One method on one simulated drive, beside the truth.
+// One method on one simulated drive, compared with the truth.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ enum : int { kSpeedScale = 0, kRoll = 1, kPitch = 2, kYaw = 3 };
 
 struct Snapshot {
   double time_s = 0.0;           ///< since the first message
-  double driven_s = 0.0;         ///< of that at 5 m/s or more
+  double driven_s = 0.0;         ///< part of it at 5 m/s or more
   std::uint64_t iterations = 0;  ///< scans of radar 0 until then
   std::vector<RadarError> radars;
 };
@@ -59,18 +59,18 @@ struct Run {
 struct RunOptions {
   double snapshot_period_s = 1.0;
   double fine_period_s = 0.1;    ///< in the first 12 s
-  bool only_stationary = false;  ///< oracle inliers: detections that do not stand still are marked invalid
+  bool only_stationary = false;  ///< true inliers: all other detections are marked invalid
   bool residuals = false;        ///< fill Run::corrected and uncorrected
-  /// Called with each snapshot; for what only one method has.
+  /// Called with each snapshot; for data that only one method has.
   std::function<void(const alignment::Method&, double time_s)> look;
 };
 
 [[nodiscard]] Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make,
                             const RunOptions& options = {});
 
-/// Seconds of driving and iterations to 95 % of the distance, against truth: first time at which the error of the
-/// parameter is 5 % of the initial one or less, and the time from which on it stays so. Infinite if never; NaN if the
-/// initial error is less than `least` (1 or rad), since there is no distance to speak of.
+/// Seconds of driving and iterations until 95 % of the initial error is removed, against truth: the first time at which
+/// the error of the parameter is 5 % of the initial one or less, and the time from which it stays so. Infinite if
+/// never; NaN if the initial error is less than `least` (1 or rad), too small for this measure.
 struct TimeTo95 {
   double first_s, stays_s;
   double first_iterations;

@@ -1,5 +1,5 @@
-// boresight-bench-alignment_cost: what a cycle of all radars' scans takes, for the product's own estimator by number of
-// radars and detections, and for every method with four radars of 60 detections.
+// boresight-bench-alignment_cost: computing time per cycle of all radars' scans. The product's own estimator by number
+// of radars and detections; every method with four radars of 60 detections.
 #include <chrono>
 
 #include <benchmark/benchmark.h>

@@ -1,4 +1,4 @@
-// No method touches the heap once it is made, however many radars there are.
+// No method allocates on the heap after construction, whatever the number of radars.
 #include <gtest/gtest.h>
 
 #include "tests/benchmarks/alignment/common/load.hpp"

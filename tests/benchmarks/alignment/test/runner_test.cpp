@@ -1,10 +1,11 @@
-// The benchmark's own arithmetic: a method that tells the truth must come out as one that does.
+// The benchmark's own arithmetic, checked with a method that returns the truth.
 #include "tests/benchmarks/alignment/common/runner.hpp"
 
 #include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
@@ -14,7 +15,7 @@
 namespace boresight::bench {
 namespace {
 
-/// Knows the mounting, off by `error`, from its tenth scan of a radar on.
+/// Returns the true mounting plus `error`, from the tenth scan of a radar on.
 class Oracle : public alignment::Method {
  public:
   Oracle(const VehicleConfig& vehicle, const simulator::AlignmentSpec& spec, Eigen::Vector3d error)
@@ -61,13 +62,13 @@ TEST(Runner, ErrorsAreAboutTheVehiclesAxes) {
     EXPECT_NEAR(radar.error(kPitch), -0.002, 1e-9);
     EXPECT_NEAR(radar.error(kYaw), 0.003, 1e-9);
   }
-  // Before any data, all of the misalignment is left.
-  EXPECT_GT(run.snapshots.front().radars[0].error.tail<3>().norm(), 1.5 * kDegree);
-  // Ten scans of 50 ms, looked at every 0.1 s.
+  // Before any data the error is the whole misalignment.
+  EXPECT_GT(run.snapshots.front().radars[0].error.tail<3>().norm(), 1.5 * kRadiansPerDegree);
+  // Ten scans of 50 ms, snapshots every 0.1 s.
   const TimeTo95 time = time_to_95(run, 0, kSpeedScale, 1e-4);
   EXPECT_NEAR(time.first_s, 0.5, 0.11);
   EXPECT_DOUBLE_EQ(time.first_s, time.stays_s);
-  EXPECT_TRUE(std::isnan(time_to_95(run, 0, kSpeedScale, 0.5).first_s)) << "no distance to speak of";
+  EXPECT_TRUE(std::isnan(time_to_95(run, 0, kSpeedScale, 0.5).first_s)) << "initial error too small";
   // Residuals at the truth are the noise: of range rate 0.03 m/s and of the angles.
   EXPECT_GT(run.corrected.count(), 1000.0);
   EXPECT_LT(run.corrected.rmse(), 0.12);
@@ -77,7 +78,7 @@ TEST(Runner, ErrorsAreAboutTheVehiclesAxes) {
 TEST(Runner, OracleInliersHaveNoOutliers) {
   auto spec = clean_drive(simulator::RoadKind::kCity, 6.0, 2);
   spec.outlier_share = 0.5;
-  /// Counts what it is given.
+  /// Counts the detections that it receives.
   class Counter : public Oracle {
    public:
     Counter(const VehicleConfig& vehicle, const simulator::AlignmentSpec& s, double& count)

@@ -1,4 +1,4 @@
-// What each idea of the product's own method buys: the method without it, on the same drives.
+// Ablation of the mirror method: the same drives with one part of the method switched off at a time.
 #include <cmath>
 
 #include "tests/benchmarks/ghosts/bars/bars.hpp"
@@ -9,47 +9,48 @@ namespace boresight::bench {
 
 namespace {
 
-/// Densities beside which all others are nothing, and the other way round.
-constexpr double kNever = 1e-15, kAlways = 1e3;
+/// Expected densities of detections: negligible beside all other origins, and larger than all other origins.
+constexpr double kNegligibleDensity = 1e-15, kDominantDensity = 1e3;
 
 struct Variant {
   const char* name;
   void (*change)(NamedGhostMethod&);
 };
-/// Each switches one idea off and leaves the rest as it is.
+/// Each variant switches one part off and leaves the rest unchanged.
 constexpr Variant kVariants[] = {
-    {"as it is", [](NamedGhostMethod&) {}},
-    {"what stands still by a constant of 2 m/s", [](NamedGhostMethod& m) { m.change.stationary_below_mps = 2.0; }},
-    {"without tracks", [](NamedGhostMethod& m) { m.change.gets_tracks = false; }},
-    {"the tracker gets labels, not probabilities", [](NamedGhostMethod& m) { m.change.tells_probabilities = false; }},
-    {"reflectors of 0.1 s instead of accumulated ones",
-     [](NamedGhostMethod& m) { m.config.mirror.map.memory_s = 0.1; }},
-    {"no reflector with a radius under 1 km",
+    {"complete method", [](NamedGhostMethod&) {}},
+    {"stationary: fixed threshold of 2 m/s", [](NamedGhostMethod& m) { m.change.stationary_below_mps = 2.0; }},
+    {"no tracks from the tracker", [](NamedGhostMethod& m) { m.change.gets_tracks = false; }},
+    {"tracker receives labels instead of probabilities",
+     [](NamedGhostMethod& m) { m.change.passes_probabilities = false; }},
+    {"reflector map: 0.1 s of memory instead of 1 s", [](NamedGhostMethod& m) { m.config.mirror.map.memory_s = 0.1; }},
+    {"reflectors: no radius of curvature below 1 km",
      [](NamedGhostMethod& m) { m.config.mirror.map.max_curvature_per_m = 1e-3; }},
-    {"reflectors without openings", [](NamedGhostMethod& m) { m.config.mirror.map.bin_m = 200.0; }},
-    {"vehicles are no mirrors", [](NamedGhostMethod& m) { m.config.mirror.classes.min_mirror_length_m = 1e9; }},
-    {"every reflector mirrors", [](NamedGhostMethod& m) { m.config.mirror.classes.mirror_doubt = 0.0; }},
-    {"type 2: to be behind a reflector is proof",
-     [](NamedGhostMethod& m) { m.config.mirror.classes.lone_ghost_density = kAlways; }},
-    {"type 2: only of objects that are seen",
-     [](NamedGhostMethod& m) { m.config.mirror.classes.lone_ghost_density = kNever; }},
-    {"type 1: to be behind an object is proof",
-     [](NamedGhostMethod& m) { m.config.mirror.classes.hidden_ghost_density = kAlways; }},
-    {"type 1: by path lengths only",
-     [](NamedGhostMethod& m) { m.config.mirror.classes.hidden_ghost_density = kNever; }},
-    {"type 1: of tracks that were not heard, too",
+    {"reflectors: no openings along them", [](NamedGhostMethod& m) { m.config.mirror.map.bin_m = 200.0; }},
+    {"vehicle sides are no mirrors", [](NamedGhostMethod& m) { m.config.mirror.classes.min_mirror_length_m = 1e9; }},
+    {"every reflector counts as a mirror", [](NamedGhostMethod& m) { m.config.mirror.classes.mirror_doubt = 0.0; }},
+    {"type 2: any moving detection behind a reflector",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.lone_ghost_density = kDominantDensity; }},
+    {"type 2: only of objects that are detected directly",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.lone_ghost_density = kNegligibleDensity; }},
+    {"type 1: any moving detection behind an object",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.hidden_ghost_density = kDominantDensity; }},
+    {"type 1: only over known reflectors",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.hidden_ghost_density = kNegligibleDensity; }},
+    {"type 1: also of tracks without a direct echo in the scan",
      [](NamedGhostMethod& m) { m.config.mirror.classes.type1_unheard = 1.0; }},
-    {"type 1: not by path lengths", [](NamedGhostMethod& m) { m.config.mirror.classes.type1_per_object = kNever; }},
-    {"no images of the stationary world",
-     [](NamedGhostMethod& m) { m.config.mirror.classes.stationary_image_density = kNever; }},
-    {"strength (RCS) tells nothing", [](NamedGhostMethod& m) { m.config.mirror.classes.strength_doubt = 1.0; }},
-    {"radars that measure no RCS", [](NamedGhostMethod& m) { m.change.gets_rcs = false; }},
-    {"no wheels and limbs of other range rates",
+    {"type 1: not over known reflectors",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.type1_per_object = kNegligibleDensity; }},
+    {"no mirror images of stationary objects",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.stationary_image_density = kNegligibleDensity; }},
+    {"echo strength (RCS) ignored by the method",
+     [](NamedGhostMethod& m) { m.config.mirror.classes.strength_doubt = 1.0; }},
+    {"radars without RCS measurement", [](NamedGhostMethod& m) { m.change.gets_rcs = false; }},
+    {"no micro-Doppler echoes of vehicles and pedestrians",
      [](NamedGhostMethod& m) { m.config.mirror.classes.wheel_share = 0.0; }},
-    {"confirmed tracks only", [](NamedGhostMethod& m) { m.config.mirror.classes.tentative_weight = 0.0; }},
-    {"what is seen now and then is forgotten in between",
-     [](NamedGhostMethod& m) { m.config.mirror.classes.sighting_s = 0.0; }},
-    {"no class for clutter", [](NamedGhostMethod& m) { m.config.mirror.classes.clutter_density = kNever; }},
+    {"tentative tracks ignored", [](NamedGhostMethod& m) { m.config.mirror.classes.tentative_weight = 0.0; }},
+    {"no memory of sporadic detections", [](NamedGhostMethod& m) { m.config.mirror.classes.sighting_s = 0.0; }},
+    {"no clutter class", [](NamedGhostMethod& m) { m.config.mirror.classes.clutter_density = kNegligibleDensity; }},
 };
 
 constexpr const char* kScenarios[] = {"highway_multipath", "tunnel",           "city_canyon",
@@ -60,12 +61,12 @@ struct Figures {
 };
 
 Figures figures_of(const std::vector<Outcome>& outcomes) {
-  return {percent_told(outcomes, Provenance::kMoving, Provenance::kMoving).median,
-          percent_told_ghost(outcomes, Provenance::kGhostType1).median,
-          percent_told_ghost(outcomes, Provenance::kGhostType2).median};
+  return {percent_classified(outcomes, Provenance::kMoving, Provenance::kMoving).median,
+          percent_classified_ghost(outcomes, Provenance::kGhostType1).median,
+          percent_classified_ghost(outcomes, Provenance::kGhostType2).median};
 }
 
-/// With its sign; nothing where there is nothing to tell.
+/// With its sign; a dash where the percentage is undefined.
 std::string change(double from, double to) {
   const double by = to - from;
   if (std::isnan(by)) return "—";
@@ -81,12 +82,11 @@ void ablation(const Options& options, Report& report) {
   std::vector<NamedGhostMethod> variants;
   Table table{
       "ablation",
-      "the mirror method without one of its ideas, medians over " + how +
-          ": moving told to be moving / type 1 told to be a ghost / type 2 told to be a ghost, %, and by how many "
-          "points that changes; last columns: of clutter in highway_multipath, % told to be moving; and sums over "
-          "these "
-          "scenarios",
-      {"", "clutter moving, %", "ghost tracks", "other false tracks", "lost object seconds"},
+      "mirror method with one part switched off, medians over " + how +
+          ": moving classified as moving / type 1 as ghost / type 2 as ghost. First row in %, other rows in "
+          "percentage points of change. Clutter: % classified as moving in highway_multipath. Last three columns: "
+          "sums over these scenarios.",
+      {"switched off", "clutter as moving", "ghost tracks", "other false tracks", "object seconds lost"},
       {}};
   std::vector<TrackFaults> faults;
   std::vector<double> clutter;

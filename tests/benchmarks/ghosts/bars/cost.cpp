@@ -1,4 +1,4 @@
-// What the ghost filter takes, and how it grows. On one thread, whatever --jobs says.
+// CPU time of the ghost filter and its growth with the number of detections. Always on one thread, whatever --jobs is.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,7 +30,7 @@ double exponent(const std::vector<std::pair<double, double>>& points) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-/// Of one method with a load of one size.
+/// Repeated runs of one method with a load of one size.
 struct Runs {
   GhostCost quickest{};
   double slowest_us = 0.0;
@@ -48,7 +48,7 @@ struct Series {
   NamedGhostMethod method;
   Surroundings surroundings;
   [[nodiscard]] std::string name() const {
-    return method.name + (surroundings == Surroundings::kSame ? "" : ", surroundings as much larger");
+    return method.name + (surroundings == Surroundings::kSame ? "" : ", larger surroundings");
   }
 };
 
@@ -57,15 +57,16 @@ std::vector<Series> all_series() {
   for (const Surroundings surroundings : {Surroundings::kSame, Surroundings::kLarger}) {
     for (const NamedGhostMethod& method : ghost_methods()) {
       all.push_back({method, surroundings});
-      // Room for the largest load's map, so that none is cheap because it is full. (The published one's is fixed.)
+      // Capacity for the largest load's map: a full map would reject points and be cheaper. (The published method's
+      // capacity is fixed.)
       all.back().method.config.mirror.map.capacity = 32768;
     }
   }
   return all;
 }
 
-/// What else runs on the processor adds to what a run takes, for seconds at a time, and never takes away: so the
-/// quickest of several tells, with all sizes in each round.
+/// Other load on the processor only ever lengthens a run, for seconds at a time. So the fastest of several rounds is
+/// the estimate, and each round contains all sizes.
 std::vector<RunsBySize> measure(const std::vector<Series>& series, std::size_t cycles, std::size_t rounds) {
   std::vector<RunsBySize> all(series.size());
   for (std::size_t round = 0; round < rounds; ++round) {
@@ -79,7 +80,7 @@ std::vector<RunsBySize> measure(const std::vector<Series>& series, std::size_t c
   return all;
 }
 
-/// By which power of its size the cost of a cycle grows.
+/// Exponent of the growth of a cycle's cost with its number of detections.
 double growth_of(const RunsBySize& runs) {
   std::vector<std::pair<double, double>> points;
   for (std::size_t k = 0; k < std::size(kSizes); ++k) {
@@ -106,23 +107,22 @@ void judge(const RunsBySize& runs, const RunsBySize& published, const RunsBySize
   static_assert(kSizes[kJudged].radars == 4 && kSizes[kJudged].detections == 300);
   const Runs& judged = runs[kJudged];
   const double mean_us = judged.quickest.mean_us;
-  report.at_most("cost", "four radars × 300 detections, mean", mean_us, 300.0, "µs a scan",
-                 "the slowest run " + fixed(judged.slowest_us, 0) + "; " + fixed(judged.quickest.map_points, 0) +
-                     " points in the map; " + fixed(mean_us / published[kJudged].quickest.mean_us, 2) +
-                     " times the published method's in the same run; " + how);
+  report.at_most("cost", "4 radars × 300 detections: mean", mean_us, 300.0, "µs per scan",
+                 "slowest run: " + fixed(judged.slowest_us, 0) + " µs; " + fixed(judged.quickest.map_points, 0) +
+                     " map points; " + fixed(mean_us / published[kJudged].quickest.mean_us, 2) +
+                     " × the published method in the same run; " + how);
   const auto points = [](const RunsBySize& of) {
-    return fixed(of[kJudged].quickest.map_points, 0) + " to " + fixed(of.back().quickest.map_points, 0) +
-           " points in the map";
+    return fixed(of[kJudged].quickest.map_points, 0) + " to " + fixed(of.back().quickest.map_points, 0) + " map points";
   };
-  const std::string what = "of the cost of a cycle in its size; ";
-  report.at_most("cost", "growth to 8 radars × 800: exponent", growth_of(runs), 1.1, "", what + points(runs));
-  report.at_most("cost", "the same where the surroundings grow as much", growth_of(larger), 1.1, "",
-                 what + points(larger));
+  const std::string what = "cost of a cycle ∝ (detections per cycle)^exponent; ";
+  report.at_most("cost", "growth exponent, up to 8 radars × 800 detections", growth_of(runs), 1.1, "",
+                 what + points(runs));
+  report.at_most("cost", "growth exponent with larger surroundings", growth_of(larger), 1.1, "", what + points(larger));
   std::uint64_t allocations = 0;
   for (const RunsBySize* all : {&runs, &larger}) {
     for (const Runs& run : *all) allocations += run.allocations;
   }
-  report.at_most("cost", "allocations", static_cast<double>(allocations), 0.0, "", "in all runs");
+  report.at_most("cost", "heap allocations", static_cast<double>(allocations), 0.0, "", "sum over all runs");
 }
 
 }  // namespace
@@ -130,14 +130,13 @@ void judge(const RunsBySize& runs, const RunsBySize& published, const RunsBySize
 void cost(const Options& options, Report& report) {
   const std::size_t cycles = options.quick ? 20 : 400, rounds = options.quick ? 1 : 5;
   const std::string how = std::to_string(cycles) +
-                          " cycles after the map is full, CPU time of one thread, tracks handed over after each scan, "
-                          "the quickest of " +
+                          " cycles with a full map, thread CPU time, tracks handed over after each scan, fastest of " +
                           std::to_string(rounds) + " runs";
-  Table table{"cost", "µs a scan: mean / 99 % / most (points in the map), " + how, {"method"}, {}};
+  Table table{"cost", "µs per scan: mean / 99th percentile / maximum (map points); " + how, {"method"}, {}};
   for (const Size& size : kSizes) {
     table.header.push_back(std::to_string(size.radars) + " × " + std::to_string(size.detections));
   }
-  table.header.insert(table.header.end(), {"exponent", "allocations"});
+  table.header.insert(table.header.end(), {"growth exponent", "heap allocations"});
   const std::vector<Series> series = all_series();
   const std::vector<RunsBySize> measured = measure(series, cycles, rounds);
   for (std::size_t k = 0; k < series.size(); ++k) table.rows.push_back(row_of(series[k], measured[k]));

@@ -1,5 +1,5 @@
-// One cycle of all radars of Report B's scene from above, for a figure: what detections are, and what they were told to
-// be, with the true mirrors and the reflectors that were found. It judges nothing.
+// One cycle of all radars of Le Ba Thanh's scene, seen from above, for a figure: true provenance and classification of
+// each detection, true mirrors and estimated reflectors. Nothing is judged.
 #include <map>
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@ constexpr double kReach_m = 75.0;  // of the radars
 
 using Points = std::vector<std::pair<double, double>>;
 
-/// Between the vehicle's frame at one time and at another.
+/// Transforms between the vehicle frame at one time and the world.
 class Frame {
  public:
   explicit Frame(const simulator::EgoState& ego) : origin_m_(ego.position_m), turn_(ego.heading_rad) {}
@@ -44,7 +44,7 @@ class PlanView {
       if ((scan.detection_flags[i] & corrected_flag::kRejected) != 0) continue;
       const simulator::DetectionTruth& truth = (*observed.event.truth)[i];
       Eigen::Vector2d world = now.to_world({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
-      // What moves goes on until the end of the cycle; along a straight rail its images go as far.
+      // Moving objects are moved on to the end of the cycle. Along a straight rail their mirror images move as far.
       for (const closed_loop::Object& o : observed.objects) {
         if (o.id == truth.object_id) world += (kEnd_s - observed.event.t_s) * now.axes_to_world(o.velocity_mps);
       }

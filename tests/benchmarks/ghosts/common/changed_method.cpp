@@ -12,17 +12,17 @@ void ChangedMethod::add_tracks(const TrackList& tracks) {
 }
 
 const CorrectedScan& ChangedMethod::changed(const CorrectedScan& scan) {
-  constexpr std::uint16_t kTold = corrected_flag::kMoving | corrected_flag::kStationary;
+  constexpr std::uint16_t kMotionFlags = corrected_flag::kMoving | corrected_flag::kStationary;
   if (change_.gets_rcs && !change_.stationary_below_mps) return scan;
   *scan_ = scan;
   if (!change_.gets_rcs) scan_->fields &= ~scan_field::kRcs;
   if (change_.stationary_below_mps) {
     for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
       std::uint16_t& flags = scan_->detection_flags[i];
-      if ((flags & kTold) == 0) continue;
+      if ((flags & kMotionFlags) == 0) continue;
       const bool moves =
           std::abs(static_cast<double>(scan.range_rate_over_ground_mps[i])) >= *change_.stationary_below_mps;
-      flags = static_cast<std::uint16_t>((flags & ~kTold) |
+      flags = static_cast<std::uint16_t>((flags & ~kMotionFlags) |
                                          (moves ? corrected_flag::kMoving : corrected_flag::kStationary));
     }
   }
@@ -31,10 +31,10 @@ const CorrectedScan& ChangedMethod::changed(const CorrectedScan& scan) {
 
 void ChangedMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   method_->classify(changed(scan), out);
-  if (change_.tells_probabilities) return;
+  if (change_.passes_probabilities) return;
   for (std::size_t i = 0; i < out.number_of_valid_detections; ++i) {
-    const Provenance told = out.provenance[i];
-    const bool direct = told == Provenance::kMoving || told == Provenance::kStationary;
+    const Provenance label = out.provenance[i];
+    const bool direct = label == Provenance::kMoving || label == Provenance::kStationary;
     out.ghost_probability[i] = direct ? 0.0F : 1.0F;
   }
 }

@@ -1,4 +1,4 @@
-// A method with something changed around it, for the ablation.
+// A method with changed inputs or outputs, for the ablation.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,10 @@
 namespace boresight::bench {
 
 struct Change {
-  bool gets_tracks = true;          ///< false: as when the tracker is not there; it tracks all the same, for the record
-  bool gets_rcs = true;             ///< false: as of radars that measure none; the corrector had it all the same
-  bool tells_probabilities = true;  ///< false: the tracker gets labels, as probabilities of 0 and 1
-  /// What is slower over ground stands still, whatever the corrector found.
+  bool gets_tracks = true;           ///< false: the method runs without tracks; the tracker still runs and is judged
+  bool gets_rcs = true;              ///< false: radars without RCS measurement; the corrector still used RCS
+  bool passes_probabilities = true;  ///< false: the tracker gets labels as probabilities 0 and 1
+  /// Detections with a smaller range rate over ground are stationary, whatever the corrector decided.
   std::optional<double> stationary_below_mps{};
 };
 

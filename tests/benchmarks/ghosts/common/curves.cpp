@@ -4,8 +4,8 @@ namespace boresight::bench {
 
 namespace {
 
-/// Fewer say nothing of a share.
-constexpr std::uint64_t kEnough = 50;
+/// Bins with fewer detections are not drawn: their share is too uncertain.
+constexpr std::uint64_t kMinDetections = 50;
 
 Reliability together(const std::vector<Outcome>& outcomes) {
   Reliability sum;
@@ -22,25 +22,22 @@ void add_reliability(const std::string& name, const std::string& title, const st
     const Reliability reliability = together(outcomes[m]);
     Curve curve{"reliability", title, methods[m].name, {}};
     for (const Reliability::Bin& bin : reliability.bins()) {
-      if (bin.count >= kEnough) curve.points.emplace_back(100.0 * bin.mean_told(), 100.0 * bin.share());
+      if (bin.count >= kMinDetections) curve.points.emplace_back(100.0 * bin.mean_probability(), 100.0 * bin.share());
     }
     report.add(std::move(curve));
-    report.beside("probability", title + ", " + methods[m].name + ": mean error of the probability",
+    report.beside("probability", title + ", " + methods[m].name + ": expected calibration error",
                   100.0 * reliability.calibration_error(), "%",
                   how + "; " + std::to_string(reliability.count()) + " detections; Brier score " +
                       fixed(reliability.brier_score(), 4));
     if (m + 1 < methods.size()) continue;
     Table table{name,
-                title + ", " + methods[m].name +
-                    ": of detections with this ghost_probability, % that were a ghost or "
-                    "clutter; " +
-                    how,
-                {"told", "detections", "mean told, %", "were, %"},
+                title + ", " + methods[m].name + ": ghost_probability and the true share of ghosts and clutter; " + how,
+                {"ghost_probability", "detections", "mean probability, %", "true share, %"},
                 {}};
     for (std::size_t b = 0; b < Reliability::kBins; ++b) {
       const Reliability::Bin& bin = reliability.bins()[b];
       table.rows.push_back({number(Reliability::kEdges[b]) + "–" + number(Reliability::kEdges[b + 1]),
-                            std::to_string(bin.count), fixed(100.0 * bin.mean_told(), 1),
+                            std::to_string(bin.count), fixed(100.0 * bin.mean_probability(), 1),
                             fixed(100.0 * bin.share(), 1)});
     }
     report.add(std::move(table));

@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 50'000'000;
 constexpr double kSpeed_mps = 25.0, kRail_m = 7.5;
-constexpr double kRoad_m = 100.0;         // of world, which repeats: kCycles periods at kSpeed_mps
-constexpr std::size_t kMovingOf100 = 13;  // ghosts among them: Report B has 12 % moving, half of them real
-/// Places of the standing world per kRoad_m in the condition. Noise and the angles of view spread each of them
-/// over several points of the map.
+constexpr double kRoad_m = 100.0;         // period of the world's repetition: kCycles cycles at kSpeed_mps
+constexpr std::size_t kMovingOf100 = 13;  // ghosts among them: Le Ba Thanh 2023 has 12 % moving, half of them real
+/// Stationary reflection points per kRoad_m for a map of kMapPoints. Noise and changing aspect angles spread each of
+/// them over several points of the map.
 constexpr double kPlaces = 890.0;
 constexpr double kAzimuthStd_rad = 0.003, kRangeStd_m = 0.1;
 
@@ -34,7 +34,7 @@ double seconds(clockid_t clock) {
 
 GhostLoad::GhostLoad(std::size_t radars, std::size_t detections, Surroundings surroundings)
     : radars_(radars), detections_(std::min(detections, kMaxDetections)) {
-  // In a larger area as much stands on each square metre.
+  // A larger area has the same density of stationary reflection points.
   const double scale =
       surroundings == Surroundings::kSame ? 1.0 : std::sqrt(static_cast<double>(radars_ * detections_) / 1200.0);
   reach_m_ = 100.0 * scale;
@@ -79,7 +79,7 @@ void GhostLoad::build_world() {
     }
   }
   for (double x = 0.0; x < kRoad_m; x += 25.0) world_.emplace_back(x, 9.0);
-  // Bushes: dense clumps beyond all this.
+  // Bushes: dense clusters farther from the road.
   const auto places = static_cast<std::size_t>(kPlaces * half_width_m_ / 40.0);
   while (world_.size() < places) {
     const Eigen::Vector2d middle(random.uniform(0.0, kRoad_m),
@@ -115,7 +115,7 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
     Eigen::Vector2d p;
     double along_mps = 0.0, rcs_dbsm = random.uniform(-10.0, 10.0);
     if (i % 100 >= kMovingOf100) {
-      // Any of the repetitions in view: those in front of the vehicle, or behind it.
+      // One of the repetitions in the field of view, ahead of the vehicle or behind it.
       const double low = ahead > 0.0 ? 0.0 : -reach_m_;
       const double repetitions = std::ceil(reach_m_ / kRoad_m);
       do {
@@ -125,12 +125,12 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
       } while (p.x() > low + reach_m_);
     } else {
       p = vehicles_[random.next() % vehicles_.size()];
-      // Of the faces that look to the own vehicle.
+      // On the faces that point towards the ego vehicle.
       const bool at_end = p.y() == 0.0 || random.uniform() < 0.5;
       p += at_end ? Eigen::Vector2d(p.x() > 0.0 ? -2.2 : 2.2, random.uniform(-0.9, 0.9))
                   : Eigen::Vector2d(random.uniform(-2.2, 2.2), -0.9);
       const double kind = random.uniform();
-      // Each of the two times that it met a mirror cost an image 13 dB.
+      // A mirror image loses 13 dB at each of its two bounces on a mirror.
       rcs_dbsm = 5.0 + 6.0 * random.gaussian() - (kind > 0.5 ? 26.0 : 0.0);
       if (kind > 0.5) p.y() = (kind > 0.75 ? 2.0 : -2.0) * kRail_m - p.y();
       along_mps = kSpeed_mps;

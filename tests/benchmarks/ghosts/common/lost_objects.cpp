@@ -33,19 +33,19 @@ void LostObjects::add_second(double until_s, const TrackedObjects& with_perfect_
     if (second.detections == 0 || !second.is_long_in_sight()) continue;
     const TrackedObjects::Second& filtered = with_filter.seconds().at(id);
     const double with_labels = filtered.share();
-    if (second.share() < kHasItNot && with_labels >= kHasIt) ++gained;
-    if (second.share() < kHasIt) continue;
+    if (second.share() < kLostShare && with_labels >= kHeldShare) ++gained;
+    if (second.share() < kHeldShare) continue;
     ++object_seconds;
     ++of_object[id].held;
-    if (with_labels >= kHasItNot) continue;
+    if (with_labels >= kLostShare) continue;
     ++of_object[id].lost;
     lost.push_back({until_s, id});
     const auto own = static_cast<double>(second.detections);
-    lost_though_told += static_cast<double>(filtered.detections) >= kToldRight * own ? 1 : 0;
+    lost_though_correct += static_cast<double>(filtered.detections) >= kMinCorrectShare * own ? 1 : 0;
   }
 }
 
-std::size_t LostObjects::rather_lost() const {
+std::size_t LostObjects::mostly_lost() const {
   const auto is_lost = [](const auto& object) { return 2 * object.second.lost > object.second.held; };
   return static_cast<std::size_t>(std::count_if(of_object.begin(), of_object.end(), is_lost));
 }

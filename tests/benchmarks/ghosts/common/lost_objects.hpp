@@ -1,4 +1,4 @@
-// Objects that a filter takes away: those which the same tracker has when it is given perfect labels.
+// Objects lost because of a ghost filter: the same tracker holds a track of them when it is given perfect labels.
 #pragma once
 
 #include <array>
@@ -18,13 +18,14 @@ using judge::kNone;
 using judge::match;
 using judge::Matching;
 
-/// In how many of those scans of a second in which it was not hidden each object had a confirmed track, and how many
-/// detections it had.
+/// For each object and second: number of scans in which the object was not hidden, number of these with a confirmed
+/// track, and number of detections.
 class TrackedObjects {
  public:
   struct Second {
     std::size_t scans = 0, tracked = 0, detections = 0, hidden = 0;
-    /// Of who comes into sight as the second ends no tracker can know in it: what lies there is something else's track.
+    /// False for an object that comes into sight at the end of the second: no tracker can confirm it in time, and a
+    /// track at its place belongs to another object.
     [[nodiscard]] bool is_long_in_sight() const {
       constexpr double kLeast = 0.25;
       return static_cast<double>(scans) >= kLeast * static_cast<double>(scans + hidden);
@@ -32,8 +33,8 @@ class TrackedObjects {
     [[nodiscard]] double share() const { return static_cast<double>(tracked) / static_cast<double>(scans); }
   };
   void add(const Matching& matching, const std::vector<closed_loop::Object>& objects);
-  /// Of an object's own detections, those that are told to be what they are: moving, or, of what came to a stand,
-  /// stationary.
+  /// Counts an object's direct detections that are classified correctly: moving, or stationary after the object
+  /// stopped.
   void add_detections(const ClassifiedScan& scan, const std::vector<simulator::DetectionTruth>& truth);
   void clear() { seconds_.clear(); }
   [[nodiscard]] const std::map<std::uint32_t, Second>& seconds() const { return seconds_; }
@@ -42,39 +43,40 @@ class TrackedObjects {
   std::map<std::uint32_t, Second> seconds_;
 };
 
-/// A second of an object's.
+/// One lost second of one object.
 struct LostSecond {
   double until_s;
   std::uint32_t object_id;
 };
 
 struct LostObjects {
-  static constexpr double kHasIt = 0.9, kHasItNot = 0.5;  ///< shares of the scans of a second
-  /// In which perfect labels have the object all through. What is not seen is not the filter's to lose: the track that
-  /// lies there is as likely another object's.
+  static constexpr double kHeldShare = 0.9, kLostShare = 0.5;  ///< shares of a second's scans with a track
+  /// Seconds in which the tracker with perfect labels holds the object throughout. Hidden objects are not counted: a
+  /// track at their place is as likely another object's.
   std::size_t object_seconds = 0;
-  std::vector<LostSecond> lost;  ///< of these: the filter's labels have it for less than half
-  /// The other way round. Where both are many, what is lost is so by the tracker's chance and not by the filter.
+  std::vector<LostSecond> lost;  ///< of these: the tracker with the filter's labels holds it for less than half
+  /// Seconds held only with the filter's labels. If both numbers are large, losses are chance of the tracker rather
+  /// than errors of the filter.
   std::size_t gained = 0;
-  /// Of those lost: with at least kToldRight of the object's own detections told to move. What took it away then was
-  /// told wrong elsewhere or before, or is the tracker's chance.
-  static constexpr double kToldRight = 0.9;
-  std::size_t lost_though_told = 0;
-  /// Each object's seconds of both kinds, over the drive.
+  /// Of the lost seconds: those with at least kMinCorrectShare of the object's direct detections classified correctly.
+  /// The cause is then an error at another place or time, or chance of the tracker.
+  static constexpr double kMinCorrectShare = 0.9;
+  std::size_t lost_though_correct = 0;
+  /// Seconds held with perfect labels, and lost with the filter's labels, per object over the drive.
   struct Seconds {
     std::size_t held = 0, lost = 0;
   };
   std::map<std::uint32_t, Seconds> of_object;
-  /// Objects that are lost for over half of the seconds in which perfect labels have them.
-  [[nodiscard]] std::size_t rather_lost() const;
+  /// Objects that are lost in over half of the seconds in which perfect labels hold them.
+  [[nodiscard]] std::size_t mostly_lost() const;
   void add_second(double until_s, const TrackedObjects& with_perfect_labels, const TrackedObjects& with_filter);
 };
 
-/// Seconds that are lost where perfect labels miss but so large a share of what moves, by chance: as many as the
-/// bar on moving detections allows. It is for comparison: a tracker has chances of its own where objects are hardly
-/// seen or close together.
+/// Seconds lost with perfect labels of which a random share of the moving detections is labelled as ghosts: as large a
+/// share as the bar on moving detections allows. For comparison: where objects are rarely detected or close together, a
+/// track depends on single detections.
 struct LostByChance {
-  static constexpr double kThrownOut = 0.03;
+  static constexpr double kMislabelledShare = 0.03;
   static constexpr std::size_t kDraws = 5;
   std::array<std::size_t, kDraws> seconds{};
   LostByChance& operator+=(const LostByChance& other);

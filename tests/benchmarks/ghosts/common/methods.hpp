@@ -1,4 +1,4 @@
-// The methods that are compared, by name.
+// The compared methods by name.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct NamedGhostMethod {
   Change change{};
 };
 
-/// All that the configuration offers; the product's own, which the bars are for, is the last.
+/// All methods of the configuration. The last one is the product's own, to which the bars apply.
 [[nodiscard]] inline std::vector<NamedGhostMethod> ghost_methods() {
   std::vector<NamedGhostMethod> methods;
   ghosts::Config published;

@@ -11,7 +11,7 @@ void Reliability::add(double probability, bool is_so) {
   Bin& bin = bins_[static_cast<std::size_t>(above - kEdges.begin()) - 1];
   ++bin.count;
   bin.so += is_so ? 1 : 0;
-  bin.told += p;
+  bin.probability_sum += p;
   squares_ += (p - (is_so ? 1.0 : 0.0)) * (p - (is_so ? 1.0 : 0.0));
 }
 
@@ -19,7 +19,7 @@ void Reliability::add(const Reliability& other) {
   for (std::size_t i = 0; i < kBins; ++i) {
     bins_[i].count += other.bins_[i].count;
     bins_[i].so += other.bins_[i].so;
-    bins_[i].told += other.bins_[i].told;
+    bins_[i].probability_sum += other.bins_[i].probability_sum;
   }
   squares_ += other.squares_;
 }
@@ -33,7 +33,7 @@ std::uint64_t Reliability::count() const {
 double Reliability::calibration_error() const {
   double sum = 0.0;
   for (const Bin& bin : bins_) {
-    if (bin.count > 0) sum += static_cast<double>(bin.count) * std::abs(bin.mean_told() - bin.share());
+    if (bin.count > 0) sum += static_cast<double>(bin.count) * std::abs(bin.mean_probability() - bin.share());
   }
   return sum / static_cast<double>(count());
 }

@@ -24,15 +24,15 @@ Matching match_confirmed(const Back& back, const std::vector<Object>& objects) {
   return match(*back.tracks, back.tracks->number_of_confirmed_tracks, objects);
 }
 
-/// The tracker that is given perfect labels.
+/// The tracker with perfect labels.
 struct Perfect {
   explicit Perfect(const VehicleConfig& vehicle) : Perfect(vehicle, std::make_unique<TruthMethod>()) {}
-  /// … of which a share is thrown out by chance.
+  /// … of which a random share of the moving detections is labelled as ghosts.
   Perfect(const VehicleConfig& vehicle, std::uint64_t seed)
-      : Perfect(vehicle, std::make_unique<TruthMethod>(LostByChance::kThrownOut, seed)) {}
+      : Perfect(vehicle, std::make_unique<TruthMethod>(LostByChance::kMislabelledShare, seed)) {}
 
   void take(const CorrectedScan& scan, const std::vector<DetectionTruth>& truth, const std::vector<Object>& objects) {
-    labels.tell(truth);
+    labels.set_truth(truth);
     back.take(scan);
     tracked.add(match_confirmed(back, objects), objects);
   }
@@ -40,14 +40,14 @@ struct Perfect {
   TruthMethod& labels;
   Back back;
   TrackedObjects tracked;
-  LostObjects lost;  ///< beside the labels of which nothing is thrown out
+  LostObjects lost;  ///< compared with unchanged perfect labels
 
  private:
   Perfect(const VehicleConfig& vehicle, std::unique_ptr<TruthMethod> method)
       : labels(*method), back(vehicle, std::move(method)) {}
 };
 
-/// One method with its tracker, and what is counted of them.
+/// One method with its tracker, and the counts of both.
 struct Lane {
   Lane(const VehicleConfig& vehicle, const NamedGhostMethod& method)
       : back(vehicle, std::make_unique<ChangedMethod>(method.config, method.change)) {}
@@ -80,12 +80,12 @@ void count_apart(const ClassifiedScan& scan, const std::vector<DetectionTruth>& 
     if (object == objects.end()) continue;
     if (object->distance_m({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}) <= ApartGhosts::kApart_m) continue;
     ++out.apart;
-    const Provenance told = scan.provenance[i];
-    out.apart_told += told == Provenance::kGhostType1 || told == Provenance::kGhostType2 ? 1 : 0;
+    const Provenance label = scan.provenance[i];
+    out.apart_classified_ghost += label == Provenance::kGhostType1 || label == Provenance::kGhostType2 ? 1 : 0;
   }
 }
 
-/// The vehicle that a scenario is meant for.
+/// The vehicle that a scenario names, or the demo vehicle.
 VehicleConfig vehicle_of(const simulator::Scenario& scenario) {
   const std::string name = scenario.vehicle.empty() ? "demo" : scenario.vehicle;
   return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle" / (name + ".toml"));
@@ -98,7 +98,7 @@ std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const Na
   const simulator::Scenario scenario = simulator::scenario(name);
   const VehicleConfig vehicle = vehicle_of(scenario);
   simulator::Drive drive(scenario, vehicle, seed, std::min(duration_s, scenario.duration_s));
-  // What comes before the ghost filter is the same for all methods and done once.
+  // The stages before the ghost filter are the same for all methods and run once.
   closed_loop::Front front(vehicle);
   Perfect perfect(vehicle);
   std::vector<std::unique_ptr<Perfect>> by_chance;

@@ -1,4 +1,4 @@
-// Methods on a simulated drive, through corrector, ghost filter and tracker, judged by the truth.
+// Runs methods on a simulated drive through corrector, ghost filter and tracker, and judges them by the truth.
 #pragma once
 
 #include <functional>
@@ -24,38 +24,39 @@ using judge::GhostTrack;
 using judge::kTruths;
 
 /// Type-1 ghosts farther than kApart_m from the box of their object. The others lie where a part of the object itself
-/// could: no test of places can tell them.
+/// could be: no test of positions can distinguish them.
 struct ApartGhosts {
   static constexpr double kApart_m = 0.5;
-  std::uint64_t all = 0, apart = 0, apart_told = 0;  ///< not left out; of these apart; of these told to be a ghost
+  std::uint64_t all = 0, apart = 0,
+                apart_classified_ghost = 0;  ///< not rejected; of these apart; of these classified as ghost
 };
 
-/// What one method made of one drive, from its first scan on.
+/// Result of one method on one drive, from its first scan on.
 struct Outcome {
   Confusion confusion;
   ApartGhosts type1;
-  Reliability reliability;  ///< of ghost_probability, of detections that the corrector found moving
+  Reliability reliability;  ///< of ghost_probability, for detections that the corrector classified as moving
   LostObjects lost;
-  LostByChance lost_by_chance;  ///< on the same drive, whatever the method
+  LostByChance lost_by_chance;  ///< on the same drive, the same for all methods
   std::uint64_t scans = 0;
   std::vector<GhostTrack> long_ghost_tracks;
   std::size_t longest_ghost_track_scans = 0;
-  std::size_t long_other_tracks = 0;  ///< of clutter or the stationary world
+  std::size_t long_other_tracks = 0;  ///< caused by clutter or stationary objects
 };
 
-/// One scan with what a method made of it.
+/// One scan with the output of one method.
 struct Observed {
   const simulator::Drive& drive;
   const simulator::Event& event;
   const std::vector<closed_loop::Object>& objects;  ///< at the scan's time
   const ClassifiedScan& scan;
   const TrackList& tracks;  ///< after the scan
-  std::size_t method;       ///< which of those that were given
+  std::size_t method;       ///< index of the method
 };
 using Observer = std::function<void(const Observed&)>;
 
-/// All methods on the same drive, each with a tracker of its own: one outcome a method. `name`: of a scenario or its
-/// file; at most as long as that makes sense. `observe` is called for each scan and method, if given.
+/// All methods on the same drive, each with a tracker of its own: one outcome per method. `name`: a scenario or its
+/// file; the drive is at most as long as the scenario states. `observe` is called for each scan and method, if given.
 [[nodiscard]] std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const NamedGhostMethod> methods,
                                                    std::uint64_t seed, double duration_s, const Observer& observe = {});
 
@@ -65,7 +66,7 @@ using Observer = std::function<void(const Observed&)>;
                                                                  std::size_t seeds, double duration_s,
                                                                  const Options& options);
 
-/// Of a drive: --quick shows that it runs.
+/// Duration of a drive; --quick shortens it.
 [[nodiscard]] inline double drive_seconds(const Options& options, double wanted) {
   return options.quick ? std::min(wanted, 2.0) : wanted;
 }

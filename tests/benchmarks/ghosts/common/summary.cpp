@@ -30,11 +30,11 @@ Percent shares(const std::vector<Outcome>& outcomes, Of&& of) {
 
 }  // namespace
 
-Percent percent_told(const std::vector<Outcome>& outcomes, Provenance truth, Provenance label) {
+Percent percent_classified(const std::vector<Outcome>& outcomes, Provenance truth, Provenance label) {
   return over_seeds(outcomes, truth, [&](const Confusion& c) { return c.percent(truth, label); });
 }
 
-Percent percent_told_ghost(const std::vector<Outcome>& outcomes, Provenance truth) {
+Percent percent_classified_ghost(const std::vector<Outcome>& outcomes, Provenance truth) {
   return over_seeds(outcomes, truth, [&](const Confusion& c) { return c.percent_ghost(truth); });
 }
 
@@ -42,10 +42,10 @@ Percent percent_not_moving(const std::vector<Outcome>& outcomes, Provenance trut
   return over_seeds(outcomes, truth, [&](const Confusion& c) { return 100.0 - c.percent(truth, Provenance::kMoving); });
 }
 
-Percent percent_left_out(const std::vector<Outcome>& outcomes, Provenance truth) {
+Percent percent_rejected(const std::vector<Outcome>& outcomes, Provenance truth) {
   return over_seeds(outcomes, truth, [&](const Confusion& c) {
-    const auto left_out = static_cast<double>(c.rejected(truth));
-    return 100.0 * left_out / (left_out + static_cast<double>(c.count(truth)));
+    const auto rejected = static_cast<double>(c.rejected(truth));
+    return 100.0 * rejected / (rejected + static_cast<double>(c.count(truth)));
   });
 }
 
@@ -53,8 +53,8 @@ Percent percent_apart(const std::vector<Outcome>& outcomes) {
   return shares(outcomes, [](const ApartGhosts& g) { return std::pair{g.apart, g.all}; });
 }
 
-Percent percent_apart_told(const std::vector<Outcome>& outcomes) {
-  return shares(outcomes, [](const ApartGhosts& g) { return std::pair{g.apart_told, g.apart}; });
+Percent percent_apart_classified_ghost(const std::vector<Outcome>& outcomes) {
+  return shares(outcomes, [](const ApartGhosts& g) { return std::pair{g.apart_classified_ghost, g.apart}; });
 }
 
 double median_count(const std::vector<Outcome>& outcomes, Provenance truth) {
@@ -71,7 +71,7 @@ TrackFaults& TrackFaults::operator+=(const TrackFaults& other) {
   other_tracks += other.other_tracks;
   object_seconds += other.object_seconds;
   lost_seconds += other.lost_seconds;
-  lost_though_told_seconds += other.lost_though_told_seconds;
+  lost_though_correct_seconds += other.lost_though_correct_seconds;
   gained_seconds += other.gained_seconds;
   objects += other.objects;
   lost_objects += other.lost_objects;
@@ -91,10 +91,10 @@ TrackFaults track_faults(const std::vector<Outcome>& outcomes) {
             .other_tracks = o.long_other_tracks,
             .object_seconds = o.lost.object_seconds,
             .lost_seconds = o.lost.lost.size(),
-            .lost_though_told_seconds = o.lost.lost_though_told,
+            .lost_though_correct_seconds = o.lost.lost_though_correct,
             .gained_seconds = o.lost.gained,
             .objects = o.lost.of_object.size(),
-            .lost_objects = o.lost.rather_lost(),
+            .lost_objects = o.lost.mostly_lost(),
             .lasting_ghost_tracks = static_cast<std::size_t>(lasting),
             .lost_by_chance = o.lost_by_chance};
   }

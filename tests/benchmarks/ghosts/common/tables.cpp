@@ -5,14 +5,14 @@ namespace boresight::bench {
 Table confusion_table(const std::string& name, const std::string& caption, const std::vector<Outcome>& outcomes) {
   Table table{name, caption, {"truth (count)"}, {}};
   for (const Provenance label : kTruths) table.header.emplace_back(name_of(label));
-  table.header.insert(table.header.end(), {"not told", "ghost, either", "left out"});
+  table.header.insert(table.header.end(), {"unclassified", "ghost, either type", "rejected"});
   for (const Provenance truth : kTruths) {
     std::vector<std::string> row = {std::string(name_of(truth)) +
                                     (" (" + fixed(median_count(outcomes, truth), 0) + ")")};
-    for (const Provenance label : kTruths) row.push_back(fixed(percent_told(outcomes, truth, label).median, 2));
-    row.push_back(fixed(percent_told(outcomes, truth, Provenance::kUnknown).median, 2));
-    row.push_back(fixed(percent_told_ghost(outcomes, truth).median, 2));
-    row.push_back(fixed(percent_left_out(outcomes, truth).median, 1));
+    for (const Provenance label : kTruths) row.push_back(fixed(percent_classified(outcomes, truth, label).median, 2));
+    row.push_back(fixed(percent_classified(outcomes, truth, Provenance::kUnknown).median, 2));
+    row.push_back(fixed(percent_classified_ghost(outcomes, truth).median, 2));
+    row.push_back(fixed(percent_rejected(outcomes, truth).median, 1));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -26,19 +26,19 @@ void judge_percent(const std::string& group, const std::string& what, Percent pe
 void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes, bool judged, const std::string& how,
                   Report& report) {
   const TrackFaults faults = track_faults(outcomes);
-  const std::string what_tracks = "ghost tracks of over five scans", what_objects = "objects lost to the filter",
-                    what_seconds = "seconds of objects lost to the filter";
-  const std::string how_tracks = how + ", sum; " + std::to_string(faults.lasting_ghost_tracks) +
-                                 " last half a second, the longest has " +
-                                 std::to_string(faults.longest_ghost_track_scans) + " scans";
-  const std::string how_objects = how + ", sum; of " + std::to_string(faults.objects) +
-                                  " that perfect labels have; lost for over half of the seconds in which they do";
-  const std::string how_seconds = how + ", sum; of " + std::to_string(faults.object_seconds) +
-                                  " with perfect labels; " + std::to_string(faults.lost_though_told_seconds) +
-                                  " of those lost though at least 90 % of the object's detections were told right; " +
-                                  std::to_string(faults.gained_seconds) + " the other way; by chance " +
-                                  std::to_string(faults.lost_by_chance.least()) + " to " +
-                                  std::to_string(faults.lost_by_chance.most());
+  const std::string what_tracks = "ghost tracks of more than five scans", what_objects = "objects lost",
+                    what_seconds = "object seconds lost";
+  const std::string how_tracks = "sum over " + how +
+                                 "; lasting at least 0.5 s: " + std::to_string(faults.lasting_ghost_tracks) +
+                                 "; longest: " + std::to_string(faults.longest_ghost_track_scans) + " scans";
+  const std::string how_objects = "sum over " + how + "; of " + std::to_string(faults.objects) +
+                                  "; lost in over half of the seconds in which perfect labels hold a track";
+  const std::string how_seconds = "sum over " + how + "; of " + std::to_string(faults.object_seconds) +
+                                  "; of these with ≥ 90 % of the object's detections classified correctly: " +
+                                  std::to_string(faults.lost_though_correct_seconds) +
+                                  "; gained: " + std::to_string(faults.gained_seconds) +
+                                  "; lost with 3 % random errors: " + std::to_string(faults.lost_by_chance.least()) +
+                                  " to " + std::to_string(faults.lost_by_chance.most());
   const auto tracks = static_cast<double>(faults.ghost_tracks), objects = static_cast<double>(faults.lost_objects),
              seconds = static_cast<double>(faults.lost_seconds);
   if (judged) {

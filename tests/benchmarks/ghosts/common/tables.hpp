@@ -9,15 +9,17 @@
 
 namespace boresight::bench {
 
-/// Rows of truth, columns of labels in percent (medians over the drives) of what the corrector did not leave out.
+/// Rows: truth. Columns: classification, in percent of the detections that the corrector did not reject (medians over
+/// the drives).
 [[nodiscard]] Table confusion_table(const std::string& name, const std::string& caption,
                                     const std::vector<Outcome>& outcomes);
 
-/// A bar on the median; the worst seed is told beside.
+/// A bar on the median; the note names the worst seed's figure.
 void judge_percent(const std::string& group, const std::string& what, Percent percent, double bar,
                    const std::string& how, Report& report);
 
-/// Bars on what is left of ghosts, and of objects, after the tracker: none in any drive. Not `judged`: beside.
+/// Bars on the tracker's output: no ghost track and no lost object in any drive. Not `judged`: figures without a bar.
+/// `how`: "20 seeds of 20 s".
 void judge_tracks(const std::string& group, const std::vector<Outcome>& outcomes, bool judged, const std::string& how,
                   Report& report);
 

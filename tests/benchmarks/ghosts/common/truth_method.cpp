@@ -4,9 +4,9 @@
 
 namespace boresight::bench {
 
-bool TruthMethod::is_thrown_out() {
-  // The library's distributions differ from one standard library to the next.
-  return static_cast<double>(random_() >> 11U) * 0x1p-53 < thrown_out_;
+bool TruthMethod::is_mislabelled() {
+  // The standard library's distributions differ between implementations.
+  return static_cast<double>(random_() >> 11U) * 0x1p-53 < mislabelled_share_;
 }
 
 void TruthMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
@@ -21,7 +21,7 @@ void TruthMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
       continue;
     }
     out.provenance[i] = (*truth_)[i].provenance;
-    if (out.provenance[i] == Provenance::kMoving && is_thrown_out()) out.provenance[i] = Provenance::kGhostType1;
+    if (out.provenance[i] == Provenance::kMoving && is_mislabelled()) out.provenance[i] = Provenance::kGhostType1;
     const bool is_direct = out.provenance[i] == Provenance::kMoving || out.provenance[i] == Provenance::kStationary;
     out.ghost_probability[i] = is_direct ? 0.0f : 1.0f;
   }

@@ -1,4 +1,4 @@
-// The filter that knows: what the chain behind it makes of perfect labels is what a real method can lose.
+// A ghost filter with perfect labels from the truth: the tracker's result with it is the reference for lost objects.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@ namespace boresight::bench {
 class TruthMethod final : public ghosts::Method {
  public:
   TruthMethod() = default;
-  /// Such a share of what moves is thrown out by chance, as likely of one object as of another: 0 … 1.
-  TruthMethod(double thrown_out, std::uint64_t seed) : thrown_out_(thrown_out), random_(seed) {}
-  /// Of the scan that is classified next; kept by the caller.
-  void tell(const std::vector<simulator::DetectionTruth>& truth) { truth_ = &truth; }
+  /// A random share (0 … 1) of the moving detections, the same for all objects, is labelled as ghosts.
+  TruthMethod(double mislabelled_share, std::uint64_t seed) : mislabelled_share_(mislabelled_share), random_(seed) {}
+  /// Truth of the scan that is classified next; the caller keeps it alive.
+  void set_truth(const std::vector<simulator::DetectionTruth>& truth) { truth_ = &truth; }
   void add_tracks(const TrackList&) override {}
-  /// What the corrector calls stationary stays stationary: to say otherwise is not the filter's to do.
+  /// Detections that the corrector classified as stationary stay stationary: a filter does not change them.
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
   [[nodiscard]] std::size_t map_points() const override { return 0; }
 
  private:
-  [[nodiscard]] bool is_thrown_out();
+  [[nodiscard]] bool is_mislabelled();
   const std::vector<simulator::DetectionTruth>* truth_ = nullptr;
-  double thrown_out_ = 0.0;
+  double mislabelled_share_ = 0.0;
   std::mt19937_64 random_;
 };
 

@@ -1,4 +1,4 @@
-// boresight-bench-ghosts_cost: what a scan takes, by method, number of radars and detections.
+// boresight-bench-ghosts_cost: time per scan by method, number of radars and number of detections.
 #include <chrono>
 #include <string>
 
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
           ->Unit(benchmark::kMicrosecond);
     }
   }
-  std::puts("us/scan: median; a cycle is one scan of each radar");
+  std::puts("us/scan: median time of one scan. One iteration is a cycle: one scan of each radar.");
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

@@ -1,4 +1,4 @@
-// Boxes over time: the tracks after each scan, and where objects truly were.
+// Boxes over time: the tracks after each scan, and the true objects.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// One detection with all that is known of it, as a row of CSV and as a count in the summary.
+// One detection with truth, classification, object and track: a CSV row, and a count in the summary.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace boresight::bench {
 
-/// Whether the tracks that the filter had (those after the scan before) had the detection's object.
+/// Whether the tracks known to the filter (those after the previous scan) contain the detection's object.
 enum class ObjectTrack : std::uint8_t { kNone, kTentative, kConfirmed };
 
 struct Explained {
@@ -24,7 +24,7 @@ struct Explained {
   bool rejected, found_moving;  ///< by the corrector
   double ghost_probability;
   double x_vehicle_m, y_vehicle_m, range_m, azimuth_vehicle_rad, range_rate_over_ground_mps, rcs_dbsm;
-  double object_distance_m;  ///< from the true box of its object; of nothing's from the nearest; NaN: there is none
+  double object_distance_m;  ///< from the true box of its object, without one from the nearest box; NaN: no box
   ObjectTrack object_track;
 };
 

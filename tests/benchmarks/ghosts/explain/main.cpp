@@ -1,4 +1,4 @@
-// boresight-bench-ghosts_explain: what was told wrong, detection by detection, with all that is known of it.
+// boresight-bench-ghosts_explain: lists each detection that was classified wrongly, with its truth, object and track.
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -36,7 +36,7 @@ NamedGhostMethod method_of(const Arguments& arguments) {
 void print_faults(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
   for (const Outcome& outcome : outcomes) {
     for (const GhostTrack& track : outcome.long_ghost_tracks) {
-      std::printf("seed %llu: ghost track %u, %zu scans in %.2f–%.2f s, at the end at (%.1f, %.1f)\n",
+      std::printf("seed %llu: ghost track %u, %zu scans from %.2f to %.2f s, last position (%.1f, %.1f) m\n",
                   static_cast<unsigned long long>(seed), track.tracking_id, track.scans, track.since_s, track.until_s,
                   track.x_vehicle_m, track.y_vehicle_m);
     }
@@ -48,7 +48,7 @@ void print_faults(const std::vector<Outcome>& outcomes, std::uint64_t seed) {
   }
 }
 
-/// A file that begins with that line; without a name one that is not open.
+/// Opens a file and writes the header line; without a name the stream stays closed.
 std::ofstream table(const std::string& name, const char* header) {
   std::ofstream out;
   if (!name.empty()) {
@@ -87,9 +87,8 @@ void run(const Arguments& arguments) {
   report.add(confusion_table("", arguments.scenario + ", " + arguments.method + ": % of each truth, " + how, outcomes));
   judge_tracks(arguments.scenario, outcomes, false, how, report);
   report.print(std::cout);
-  std::cout
-      << "\ndetections by distance from the box of their object, which the filter had as a confirmed track or not; "
-         "of what has no object: from the nearest\n";
+  std::cout << "\nNumber of detections by distance from their object's box (without an object: from the nearest box). "
+               "tracked: the filter had a confirmed track of the object.\n";
   summary.print(std::cout);
   std::cout << std::endl;
   print_faults(outcomes, arguments.seed);
@@ -99,24 +98,24 @@ void run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"What the ghost filter tells wrong on a simulated drive."};
+  CLI::App app{"Lists the detections that the ghost filter classifies wrongly on a simulated drive."};
   app.add_option("scenario", arguments.scenario, "name, or a scenario file")->capture_default_str();
-  app.add_option("--method", arguments.method, "how ghosts are told")
+  app.add_option("--method", arguments.method, "ghost filter method")
       ->check(CLI::IsMember({"mirror", "published"}))
       ->capture_default_str();
   app.add_option("--config", arguments.config_file,
                  "file like config/services/ghost_filter.toml; its method is not used")
       ->check(CLI::ExistingFile);
-  app.add_option("--seed", arguments.seed, "the first; the bars are for 1 to 20, so look at others")
+  app.add_option("--seed", arguments.seed, "first seed; the bars use 1 to 20, so use others for tuning")
       ->capture_default_str();
-  app.add_option("--seeds", arguments.seeds, "how many")->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--duration", arguments.duration_s, "s, at most what the scenario has")
+  app.add_option("--seeds", arguments.seeds, "number of seeds")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--duration", arguments.duration_s, "s, at most the scenario's duration")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  app.add_option("--csv", arguments.csv_file, "file with a row for each detection that was told wrong");
+  app.add_option("--csv", arguments.csv_file, "file with a row for each detection classified wrongly");
   app.add_option("--boxes", arguments.boxes_file,
                  "file with a row for each track and each true object after each scan");
-  app.add_flag("--all", arguments.all, "rows of those told right and of those left out as well");
+  app.add_flag("--all", arguments.all, "also rows for detections classified correctly or rejected by the corrector");
   CLI11_PARSE(app, argc, argv);
   try {
     run(arguments);

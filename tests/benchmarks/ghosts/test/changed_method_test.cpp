@@ -25,33 +25,33 @@ class ChangedMethodTest : public testing::Test {
   std::unique_ptr<ClassifiedScan> out_ = std::make_unique<ClassifiedScan>();
 };
 
-TEST_F(ChangedMethodTest, TellsByAConstantWhatStandsStill) {
+TEST_F(ChangedMethodTest, FixedThresholdDecidesWhatIsStationary) {
   ChangedMethod(config_, {.stationary_below_mps = 2.0}).classify(*scan_, *out_);
   EXPECT_EQ(out_->detection_flags[0], corrected_flag::kStationary);
   EXPECT_EQ(out_->detection_flags[1], corrected_flag::kMoving);
   EXPECT_EQ(scan_->detection_flags[0], corrected_flag::kMoving);
 }
 
-TEST_F(ChangedMethodTest, WithoutRcsItsFigureChangesNothing) {
+TEST_F(ChangedMethodTest, WithoutRcsTheProbabilityDoesNotDependOnIt) {
   scan_->fields = scan_field::kRcs;
-  const auto told_at = [&](bool gets_rcs, float rcs_dbsm) {
+  const auto probability_at = [&](bool gets_rcs, float rcs_dbsm) {
     scan_->rcs_dbsm[1] = rcs_dbsm;
     ChangedMethod(config_, {.gets_rcs = gets_rcs}).classify(*scan_, *out_);
     return out_->ghost_probability[1];
   };
-  EXPECT_NE(told_at(true, 5.0f), told_at(true, -30.0f));
-  EXPECT_EQ(told_at(false, 5.0f), told_at(false, -30.0f));
+  EXPECT_NE(probability_at(true, 5.0f), probability_at(true, -30.0f));
+  EXPECT_EQ(probability_at(false, 5.0f), probability_at(false, -30.0f));
   EXPECT_EQ(scan_->fields, scan_field::kRcs);
 }
 
-TEST_F(ChangedMethodTest, TellsTheTrackerLabelsOnly) {
+TEST_F(ChangedMethodTest, PassesOnlyLabelsToTheTracker) {
   ChangedMethod(config_, {}).classify(*scan_, *out_);
   EXPECT_GT(out_->ghost_probability[1], 0.0f);
   EXPECT_LT(out_->ghost_probability[1], 1.0f);
-  const Provenance told = out_->provenance[1];
-  ChangedMethod(config_, {.tells_probabilities = false}).classify(*scan_, *out_);
-  EXPECT_EQ(out_->provenance[1], told);
-  EXPECT_EQ(out_->ghost_probability[1], told == Provenance::kMoving ? 0.0f : 1.0f);
+  const Provenance label = out_->provenance[1];
+  ChangedMethod(config_, {.passes_probabilities = false}).classify(*scan_, *out_);
+  EXPECT_EQ(out_->provenance[1], label);
+  EXPECT_EQ(out_->ghost_probability[1], label == Provenance::kMoving ? 0.0f : 1.0f);
 }
 
 TEST_F(ChangedMethodTest, KeepsTracksFromTheMethod) {

@@ -1,4 +1,4 @@
-// How figures are written in tables and documents.
+// Number formats in tables and documents.
 #include "tests/benchmarks/common/report.hpp"
 
 #include <limits>

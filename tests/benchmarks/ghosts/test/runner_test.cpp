@@ -13,7 +13,7 @@ TEST(GhostRunner, ADriveIsTheSameWhateverTheThreads) {
   const std::vector<NamedGhostMethod> methods = ghost_methods();
   const auto a = run_ghost_drives("straight_rail", {methods.data(), 1}, 2, 3.0, one).front();
   const auto b = run_ghost_drives("straight_rail", {methods.data(), 1}, 2, 3.0, two).front();
-  // Another method on the same drive changes nothing of the first.
+  // A second method on the same drive does not change the first one's result.
   const auto c = run_ghost_drives("straight_rail", methods, 2, 3.0, one).front();
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_GT(a[i].scans, 200u);

@@ -1,4 +1,4 @@
-// What counts as a lost object.
+// Definition of a lost object.
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@ using closed_loop::Object;
 
 constexpr std::uint32_t kFirst = 1;
 
-TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
+TEST(Tracks, SecondIsLostWhenOnlyPerfectLabelsHoldTheObject) {
   const std::vector<Object> objects = {{1, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8},
                                        {2, {60.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
-  // Never the second car, and the first in `share` of ten scans.
+  // The second car is never tracked, the first one in `share` of ten scans.
   const auto second_with = [&objects](int share, bool is_seen = true) {
     const auto tracks = std::make_unique<TrackList>();
     tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
@@ -38,18 +38,18 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   EXPECT_EQ(lost.object_seconds, 1u);
   EXPECT_EQ(lost.lost.size(), 1u);
   // The filter's label of its detection is right.
-  EXPECT_EQ(lost.lost_though_told, 1u);
+  EXPECT_EQ(lost.lost_though_correct, 1u);
   lost.add_second(1.0, second_with(10), second_with(10));
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
-  // Not told to move by whoever knows the truth, though a ghost of it is: it was not seen to move.
+  // With perfect labels none of its detections is classified as moving (a ghost of it is): the second does not count.
   lost.add_second(1.0, second_with(10, false), second_with(4));
   EXPECT_EQ(lost.object_seconds, 2u);
   EXPECT_EQ(lost.lost.size(), 1u);
   EXPECT_EQ(lost.gained, 0u);
   lost.add_second(1.0, second_with(10), second_with(4, false));
   EXPECT_EQ(lost.lost.size(), 2u);
-  EXPECT_EQ(lost.lost_though_told, 1u);
+  EXPECT_EQ(lost.lost_though_correct, 1u);
   lost.add_second(1.0, second_with(4), second_with(10));
   EXPECT_EQ(lost.gained, 1u);
   EXPECT_EQ(lost.object_seconds, 3u);
@@ -58,7 +58,7 @@ TEST(Tracks, AnObjectIsLostWhenOnlyPerfectLabelsHaveIt) {
   EXPECT_EQ(lost.of_object[kFirst].lost, 2u);
 }
 
-TEST(Tracks, AnObjectIsJudgedWhileItIsSeenMovingOrStanding) {
+TEST(Tracks, ObjectIsJudgedWhileDetectedMovingOrStopped) {
   std::vector<Object> objects = {{kFirst, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
   const auto tracks = std::make_unique<TrackList>();
   tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
@@ -77,10 +77,10 @@ TEST(Tracks, AnObjectIsJudgedWhileItIsSeenMovingOrStanding) {
   moves.object_id = stands.object_id = kFirst;
   scan->provenance[2] = Provenance::kGhostType1;
   tracked.add_detections(*scan, {moves, stands, stands});
-  EXPECT_EQ(tracked.seconds().at(kFirst).detections, 2u) << "one of the three is told wrong";
+  EXPECT_EQ(tracked.seconds().at(kFirst).detections, 2u) << "one of the three is classified wrongly";
 }
 
-TEST(Tracks, OfWhoComesIntoSightAsASecondEndsItTellsNothing) {
+TEST(Tracks, SecondDoesNotCountIfTheObjectAppearsAtItsEnd) {
   std::vector<Object> objects = {{kFirst, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
   const auto tracks = std::make_unique<TrackList>();
   tracks->tracks[0].position_vehicle_m = {20.0F, 0.0F, 0.0F};
@@ -106,14 +106,14 @@ TEST(Tracks, OfWhoComesIntoSightAsASecondEndsItTellsNothing) {
   EXPECT_EQ(lost.lost.size(), 1u);
 }
 
-TEST(Tracks, AnObjectIsRatherLostIfItIsSoForOverHalfOfItsSeconds) {
+TEST(Tracks, ObjectIsLostIfOverHalfOfItsSecondsAre) {
   LostObjects lost;
   lost.of_object = {{1, {4, 2}}, {2, {3, 2}}, {3, {1, 1}}, {4, {9, 0}}};
-  EXPECT_EQ(lost.rather_lost(), 2u);
-  EXPECT_EQ(LostObjects{}.rather_lost(), 0u);
+  EXPECT_EQ(lost.mostly_lost(), 2u);
+  EXPECT_EQ(LostObjects{}.mostly_lost(), 0u);
 }
 
-TEST(Tracks, WhatIsLostByChanceIsSummedDrawByDraw) {
+TEST(Tracks, LossesByChanceAreSummedPerDraw) {
   LostByChance sum;
   sum += {{1, 0, 2, 0, 0}};
   sum += {{1, 3, 1, 0, 0}};

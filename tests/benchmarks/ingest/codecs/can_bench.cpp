@@ -1,4 +1,4 @@
-// CAN radars, frame by frame, and frames that concern nobody.
+// CAN radars, frame by frame, and frames with ids of no source.
 #include <filesystem>
 
 #include "interfaces/wire/srr520.hpp"
@@ -14,7 +14,7 @@
 namespace boresight::bench {
 namespace {
 
-/// `scans`: how many a cycle of the traffic has to bring.
+/// `scans`: expected number of scans per cycle of the traffic.
 void measure_can(benchmark::State& state, GatewayBench& bench, const Traffic& cycle, std::size_t scans) {
   std::size_t cycles = 0;
   const auto prepare = [&] {
@@ -22,7 +22,7 @@ void measure_can(benchmark::State& state, GatewayBench& bench, const Traffic& cy
     ++cycles;
   };
   measure(state, static_cast<double>(cycle.frames().size()), cycle.frames(), prepare, [&] { bench.take(cycle); });
-  if (bench.sink.scans != scans * cycles) state.SkipWithError("a cycle was not understood");
+  if (bench.sink.scans != scans * cycles) state.SkipWithError("a cycle was not decoded");
 }
 
 void can_toyota_per_frame(benchmark::State& state) {
@@ -82,7 +82,7 @@ void can_ars408_per_frame(benchmark::State& state) {
 }
 BENCHMARK(can_ars408_per_frame)->UseManualTime();
 
-/// The example of a radar that only a DBC file describes: 64 detections, each in two pages.
+/// The example radar described by a DBC file only: 64 detections, each in two pages.
 void can_mapped_per_frame(benchmark::State& state) {
   ingest::Mappings mappings;
   const std::filesystem::path folder = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config" / "mappings";
@@ -118,7 +118,7 @@ void can_toyota_ego_per_frame(benchmark::State& state) {
 }
 BENCHMARK(can_toyota_ego_per_frame)->UseManualTime();
 
-/// Frames of ids that no source knows, on a bus with radar: most of what a bus carries.
+/// Frames with ids of no source, on a bus with a radar: most frames of a bus are of this kind.
 void can_foreign_id_per_frame(benchmark::State& state) {
   GatewayBench bench(can_vehicle(RadarProfile::kToyota));
   Traffic cycle;
@@ -141,7 +141,7 @@ void candump_line(benchmark::State& state, std::string_view line) {
       state, 100.0, text.frames(), [] {}, take);
   // The references copied one line, not a hundred.
   for (const char* ratio : {"x_copy", "x_bswap"}) state.counters[ratio].value /= 100.0;
-  if (bad != 0) state.SkipWithError("a line was not understood");
+  if (bad != 0) state.SkipWithError("a line was not decoded");
 }
 void candump_line_can(benchmark::State& state) {
   candump_line(state, "(1536574931.237846) can0 210#8003C0FE0000A7C2");

@@ -1,4 +1,4 @@
-// The verdict on one scan.
+// Cost of the integrity checks of one scan.
 #include <bit>
 
 #include "services/ingest_gateway/core/scan_integrity.hpp"
@@ -8,7 +8,7 @@
 namespace boresight::bench {
 namespace {
 
-/// The columns that the verdict reads, as frames for the references to copy.
+/// The columns that the checks read, as frames for the reference copies.
 std::vector<recording::Frame> columns_of(const RadarScan& scan) {
   std::vector<recording::Frame> columns;
   for (const auto* column : {&scan.range_m, &scan.azimuth_rad, &scan.elevation_rad, &scan.range_rate_mps}) {
@@ -34,7 +34,7 @@ void judge(benchmark::State& state, std::uint16_t expected, void (*damage)(Radar
     now_ns += 50'000'000;
     ego.header.measurement_time_ns = now_ns - 20'000'000;
     ++scan->cycle_counter;
-    // The same to the last bit would be a frozen scan.
+    // A scan that is identical to the previous one would count as frozen.
     moves = !moves;
     const auto bits = std::bit_cast<std::uint32_t>(scan->range_m[0]);
     scan->range_m[0] = std::bit_cast<float>((bits & ~1u) | (moves ? 1u : 0u));
@@ -42,7 +42,7 @@ void judge(benchmark::State& state, std::uint16_t expected, void (*damage)(Radar
   const auto take = [&] { verdict = judge.judge(*scan, now_ns, now_ns, 32, &ego); };
   const auto columns = columns_of(*scan);
   measure(state, detections, columns, prepare, take);
-  if (verdict != expected) state.SkipWithError("another verdict than expected");
+  if (verdict != expected) state.SkipWithError("unexpected result of the integrity checks");
 }
 
 void integrity_of_sound_scan_per_detection(benchmark::State& state) {

@@ -1,4 +1,4 @@
-// boresight-bench-ingest_codecs: what the gateway takes to understand each kind of input, in memory, without sockets.
+// boresight-bench-ingest_codecs: decoding cost of each kind of input, in memory, without sockets.
 #include <cstdio>
 
 #include <benchmark/benchmark.h>
@@ -14,7 +14,7 @@ void print(const char* what, const boresight::bench::Copies& copies) {
 }
 
 void print_copies() {
-  std::puts("copies of a detection between received datagrams and scan, found by a search of the process's memory:");
+  std::puts("Copies of a detection between received datagrams and scan, found by searching the process's memory:");
   print("ARS548 list, 800 detections, one datagram", boresight::bench::count_ars548_copies());
   print("SOME/IP-TP list, 1024 detections, 36 segments", boresight::bench::count_someip_copies());
 }
@@ -24,9 +24,10 @@ void print_copies() {
 int main(int argc, char** argv) {
   if (boresight::bench::kCanFindSentinels) print_copies();
   std::puts(
-      "median; ns/item: time for what the name says \"per\"; x_copy, x_bswap: the whole beside a copy of the same "
-      "frames,\n"
-      "and beside turning their words to host order");
+      "Medians. ns/item: time per detection, frame, segment, fragment or offer, as named. x_copy: time in relation to "
+      "a "
+      "copy\n"
+      "of the same frames; x_bswap: in relation to converting their words to host order.");
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

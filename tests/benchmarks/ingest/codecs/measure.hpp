@@ -1,5 +1,5 @@
-// One way to measure all of the gateway's input, beside a reference that makes the figure a ratio: copying the same
-// frames, and turning every four bytes of them from network to host order.
+// Measures the decoding of all kinds of input in the same way, in relation to two references: copying the same frames,
+// and converting every four bytes of them from network to host order.
 #pragma once
 
 #include <algorithm>
@@ -62,9 +62,10 @@ double reference_ns(Reference&& reference) {
   return median(rounds_ns);
 }
 
-/// Measures `take()`, once after each `prepare()`, which is not measured; `frames` are what take() takes. States the ns
-/// for each of the `items` that an iteration has (their names are in the benchmark's), and two ratios of the time. They
-/// are of the median iteration, so that what else the machine does is left out; the columns before are of the mean.
+/// Measures `take()`, once after each unmeasured `prepare()`; `frames` are the input of take(). Reports the ns per
+/// item, for `items` items per iteration (the benchmark's name states their kind), and two ratios of the time. These
+/// figures use the median iteration, which other load on the machine hardly affects; Google Benchmark's own columns use
+/// the mean.
 template <typename Prepare, typename Take>
 void measure(benchmark::State& state, double items, Frames frames, Prepare&& prepare, Take&& take) {
   std::vector<double> each_ns;

@@ -1,4 +1,4 @@
-// Detection lists of the Boresight service in segments, and its discovery.
+// Detection lists of the Boresight service in segments, and service discovery.
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/someip/sd_message.hpp"
 #include "tests/benchmarks/ingest/codecs/measure.hpp"
@@ -23,7 +23,7 @@ void someip_list(benchmark::State& state, bool protection, bool per_segment) {
   };
   const auto segments = static_cast<double>(reference.frames().size());
   measure(state, per_segment ? segments : detections, reference.frames(), prepare, [&] { bench.take(traffic); });
-  if (bench.sink.scans != scan->cycle_counter) state.SkipWithError("a list was not understood");
+  if (bench.sink.scans != scan->cycle_counter) state.SkipWithError("a list was not decoded");
 }
 void someip_tp_list_e2e_per_detection(benchmark::State& state) {
   someip_list(state, true, false);
@@ -68,7 +68,7 @@ void someip_sd_per_offer(benchmark::State& state) {
   };
   measure(state, kRadars, traffic.frames(), prepare, [&] { bench.take(traffic); });
   if (bench.sink.count(Fault::kWireValue) + bench.sink.count(Fault::kWireLength) != 0) {
-    state.SkipWithError("an offer was not understood");
+    state.SkipWithError("an offer was not decoded");
   }
 }
 BENCHMARK(someip_sd_per_offer)->UseManualTime();

@@ -1,4 +1,4 @@
-// Detection lists of an ARS548, whole and from their fragments.
+// Detection lists of an ARS548: whole datagrams and IP fragments.
 #include "interfaces/wire/ars548.hpp"
 #include "services/common/recording/ip.hpp"
 #include "tests/benchmarks/ingest/codecs/measure.hpp"
@@ -19,11 +19,11 @@ void ars548_list_per_detection(benchmark::State& state) {
     advance_ars548(traffic.bytes(0), bench.epoch_ns(), ++counter);
   };
   measure(state, detections, traffic.frames(), prepare, [&] { bench.take(traffic); });
-  if (bench.sink.scans != counter) state.SkipWithError("a list was not understood");
+  if (bench.sink.scans != counter) state.SkipWithError("a list was not decoded");
 }
 BENCHMARK(ars548_list_per_detection)->Arg(300)->Arg(800)->UseManualTime();
 
-/// A list whose length field is wrong: what rejecting costs.
+/// Cost of rejecting a list with a wrong length field.
 void ars548_rejected_list(benchmark::State& state) {
   GatewayBench bench(ars548_vehicle());
   Traffic traffic;
@@ -31,11 +31,11 @@ void ars548_rejected_list(benchmark::State& state) {
   traffic.bytes(0)[7] = 1;
   measure(
       state, 1.0, traffic.frames(), [&] { bench.next_cycle(); }, [&] { bench.take(traffic); });
-  if (bench.sink.scans != 0) state.SkipWithError("a damaged list was taken");
+  if (bench.sink.scans != 0) state.SkipWithError("a damaged list was accepted");
 }
 BENCHMARK(ars548_rejected_list)->UseManualTime();
 
-/// Ethernet packets of one list as IPv4 sends it with an MTU of 1500.
+/// Ethernet packets of one list, fragmented by IPv4 for an MTU of 1500.
 Traffic fragments_of(std::span<const std::uint8_t> payload) {
   constexpr std::size_t kUdpHeader = 8, kIpHeader = 20, kEthernetHeader = 14, kPerFragment = 1480;
   Bytes datagram(kUdpHeader + payload.size());
@@ -83,7 +83,7 @@ void ip_reassembly_per_fragment(benchmark::State& state) {
     }
   };
   measure(state, static_cast<double>(packets.frames().size()), packets.frames(), prepare, take);
-  if (whole != static_cast<std::size_t>(state.iterations())) state.SkipWithError("a datagram was not put together");
+  if (whole != static_cast<std::size_t>(state.iterations())) state.SkipWithError("a datagram was not reassembled");
 }
 BENCHMARK(ip_reassembly_per_fragment)->UseManualTime();
 

@@ -1,4 +1,4 @@
-// Detections are decoded straight into the memory that leaves the process: nothing in between is a copy of them.
+// Detections are decoded directly into the memory that leaves the process, without intermediate copies.
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -18,23 +18,23 @@ class CopiesTest : public testing::Test {
   }
 };
 
-TEST_F(CopiesTest, AnArs548ListGoesFromItsDatagramIntoTheScan) {
+TEST_F(CopiesTest, Ars548ListIsDecodedFromItsDatagramIntoTheScan) {
   const Copies copies = count_ars548_copies();
   EXPECT_EQ(copies.intermediate, 0u);
   EXPECT_EQ(copies.decoded, 1u);
   EXPECT_TRUE(copies.into_the_sinks_memory);
 }
 
-TEST_F(CopiesTest, SegmentsArePutTogetherOnceAndDecodedFromThere) {
+TEST_F(CopiesTest, SegmentsAreAssembledOnceAndDecodedFromThere) {
   const Copies copies = count_someip_copies();
   EXPECT_EQ(copies.intermediate, 1u);
   EXPECT_EQ(copies.decoded, 1u);
   EXPECT_TRUE(copies.into_the_sinks_memory);
 }
 
-TEST_F(CopiesTest, ACopyIsSeenWhereverItIs) {
+TEST_F(CopiesTest, CopiesAreFoundAnywhereInMemory) {
   constexpr std::size_t kDetections = 700;
-  // Memory first: what is freed and taken anew may hold sentinels of an earlier test.
+  // Allocate first: reused memory may hold sentinels of an earlier test.
   std::vector<float> numbers(kDetections), same_numbers(kDetections);
   std::vector<std::uint8_t> unaligned(1 + 4 * kDetections);
   const SentinelPlaces before = find_sentinels(kDetections);

@@ -1,4 +1,4 @@
-// How often the bytes of a detection are written between the received datagram and the scan.
+// Counts how often the bytes of a detection are written between the received datagram and the scan.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,13 @@ namespace boresight::bench {
 
 struct Copies {
   std::size_t intermediate = 0;        ///< copies of the datagrams' bytes
-  std::size_t decoded = 0;             ///< places where the detections stand as numbers: the scan, and nothing else
-  bool into_the_sinks_memory = false;  ///< those are in the memory that Sink::begin_scan() gave
+  std::size_t decoded = 0;             ///< places with the detections as float values: the scan only
+  bool into_the_sinks_memory = false;  ///< those are in the memory from Sink::begin_scan()
 };
 
-/// Lists of 800 detections of an ARS548, a datagram each.
+/// A list of 800 detections of an ARS548 in one datagram.
 [[nodiscard]] Copies count_ars548_copies();
-/// Lists of 1024 detections of the Boresight service, in segments and protected.
+/// A list of 1024 detections of the Boresight service, in segments and with E2E protection.
 [[nodiscard]] Copies count_someip_copies();
 
 }  // namespace boresight::bench

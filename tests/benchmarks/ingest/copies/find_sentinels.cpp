@@ -22,7 +22,7 @@ struct Region {
   std::uintptr_t begin, end;
 };
 
-/// Memory that can hold a copy: what this process can write.
+/// Memory that can hold a copy: the writable regions of this process.
 std::vector<Region> writable_regions() {
   std::vector<Region> regions;
   std::ifstream maps("/proc/self/maps");

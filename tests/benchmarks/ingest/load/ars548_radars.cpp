@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int64_t kEgoPeriod_ns = 20'000'000;
 constexpr auto kListPeriod_ns = static_cast<std::int64_t>(1e9 / kRate_hz / kRadars);
-// Lists that differ, so that they are not taken for frozen.
+// Lists that differ, so that they do not count as frozen.
 constexpr std::uint32_t kDifferentCycles = 4;
 
 int open_socket(const recording::Endpoint& local) {
@@ -49,7 +49,7 @@ bool send_to(int descriptor, const recording::Endpoint& to, std::span<const std:
          static_cast<ssize_t>(datagram.size());
 }
 
-/// The sensors' side of the wire.
+/// The sensors' side of the network.
 class Sensors {
  public:
   Sensors() : ego_socket_(open_socket(kEgoServer)), ego_encoder_({0x42530101, 0x42530102}) {
@@ -105,7 +105,7 @@ int Ars548Radars::run() {
     std::int64_t now_ns = runtime::monotonic_now_ns();
     const bool at_once = control_->at_once;
     if (control_->lists_to_send > 0 && (at_once || now_ns >= next_list_ns)) {
-      // A period that begins now, if none is under way.
+      // The period starts now if the previous one has ended.
       next_list_ns = std::max(next_list_ns, now_ns - kListPeriod_ns) + kListPeriod_ns;
       if (sensors.send_list()) {
         control_->sent = control_->sent + 1;
@@ -120,7 +120,7 @@ int Ars548Radars::run() {
       next_ego_ns += kEgoPeriod_ns;
     }
     now_ns = runtime::monotonic_now_ns();
-    // An order is seen within a millisecond.
+    // A command takes effect within a millisecond.
     const std::int64_t until_ns =
         std::min({next_ego_ns, now_ns + 1'000'000, control_->lists_to_send > 0 ? next_list_ns : next_ego_ns});
     if (until_ns > now_ns) harness::sleep_s(static_cast<double>(until_ns - now_ns) * 1e-9);

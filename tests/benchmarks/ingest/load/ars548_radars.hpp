@@ -10,22 +10,22 @@ namespace boresight::bench {
 
 class Ars548Radars {
  public:
-  /// Encodes what they will send, opens their sockets and begins to send ego motion at 50 Hz.
+  /// Encodes the lists, opens the sockets and starts to send ego motion at 50 Hz.
   Ars548Radars();
 
-  /// Each of them sends for that long, their cycles evenly apart. Returns at once.
+  /// Each radar sends for `seconds`, their cycles evenly spaced. Returns immediately.
   void send_for(double seconds);
-  /// `lists` lists of all radars in turn, as fast as they go; ego motion pauses. Returns at once.
+  /// Sends `lists` lists of all radars in turn as fast as possible; ego motion pauses. Returns immediately.
   void send_burst(std::uint32_t lists);
   [[nodiscard]] bool is_done() const { return control_->lists_to_send == 0; }
 
   [[nodiscard]] std::uint64_t sent() const { return control_->sent; }
-  /// Lists that the kernel would not send.
+  /// Lists that the kernel refused to send.
   [[nodiscard]] std::uint64_t refused() const { return control_->refused; }
 
  private:
   struct Control {
-    volatile std::uint32_t lists_to_send;  // written last by the bench, counted down to 0 by the radars
+    volatile std::uint32_t lists_to_send;  // written last by the benchmark, counted down to 0 by the radars
     volatile bool at_once;
     volatile std::uint64_t sent, refused;
   };
@@ -35,8 +35,7 @@ class Ars548Radars {
   std::unique_ptr<harness::Child> process_;
 };
 
-/// A process that does nothing but receive what the ARS548 send, with the gateway's receive buffer: what the kernel
-/// alone costs a receiver.
+/// A process that only receives the ARS548 datagrams, with the gateway's receive buffer: the cost of the kernel alone.
 [[nodiscard]] std::unique_ptr<harness::Child> start_bare_receiver();
 
 }  // namespace boresight::bench

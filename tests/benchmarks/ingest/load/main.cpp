@@ -1,5 +1,5 @@
-// boresight-bench-ingest_load [SECONDS = 10]: eight radars into the real gateway over a network of two namespaces; run
-// it by tests/system/isolated and on_wire.
+// boresight-bench-ingest_load [SECONDS = 10]: load of eight radars on the real gateway, over two network namespaces.
+// Run it with tests/system/isolated and on_wire.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -32,7 +32,7 @@ void send_output_to(const std::string& file) {
   dup2(descriptor, STDERR_FILENO);
 }
 
-/// The real process, listening to the network.
+/// The gateway process, receiving from the network.
 class Gateway {
  public:
   Gateway(const std::string& configuration, const std::string& vehicle, const ScanLog& log)
@@ -54,17 +54,17 @@ class Gateway {
   [[nodiscard]] double cpu_s() const { return cpu_time_s(process_.pid()); }
   void stop_for_a_moment() { process_.send(SIGSTOP); }
   void go_on() { process_.send(SIGCONT); }
-  /// Scans that it says it has published, once that number stands still.
+  /// Number of published scans reported by the gateway, once that number no longer changes.
   [[nodiscard]] std::uint64_t published() const {
     std::uint64_t last = ~std::uint64_t{0};
-    // Longer than the period of the heartbeat that tells it.
+    // Longer than the period of the heartbeat that carries the number.
     while (last != sum()) {
       last = sum();
       harness::sleep_s(0.35);
     }
     return last;
   }
-  /// But for those of links: that a server which ends withdraws its offers is none of the load's.
+  /// Faults except link faults: a server that ends withdraws its offers, which is not caused by the load.
   [[nodiscard]] std::uint64_t faults() const {
     std::uint64_t all = 0;
     for (const std::uint64_t n : log_.gateway().faults) all += n;
@@ -119,7 +119,7 @@ class SomeIpServer {
           return 127;
         }) {}
 
-  /// Waits for its end; returns the lists that it says it has sent.
+  /// Waits for the server's end; returns the number of sent lists that it reports.
   std::uint64_t sent(double seconds) {
     const auto code = process_.wait_for(seconds);
     std::ifstream output(kOutput);
@@ -127,7 +127,7 @@ class SomeIpServer {
       unsigned long long lists = 0;
       if (std::sscanf(line.c_str(), "served %llu detection lists", &lists) == 1) return lists;
     }
-    throw std::runtime_error("boresight-replay did not end as it should: " + std::to_string(code.value_or(-1)));
+    throw std::runtime_error("boresight-replay ended with an error: " + std::to_string(code.value_or(-1)));
   }
 
  private:
@@ -160,10 +160,10 @@ struct Counts {
 void print_counts(const Counts& counts, const Gateway& gateway) {
   print_row("lists sent", text(counts.sent));
   print_row("scans published", text(counts.published));
-  print_row("lost", text(counts.sent - counts.published), "0");
+  print_row("lists lost", text(counts.sent - counts.published), "0");
   print_row("datagrams dropped by the kernel", text(counts.kernel_drops), "0");
-  print_row("scans with a verdict against them", text(gateway.suspect()));
-  print_row("faults but of links, heap allocations", text(gateway.faults()) + ", " + text(gateway.allocations()),
+  print_row("scans that failed an integrity check", text(gateway.suspect()));
+  print_row("faults except link faults, heap allocations", text(gateway.faults()) + ", " + text(gateway.allocations()),
             "0, 0");
   if (gateway.faults() != 0) print_row("latest fault:", gateway.last_fault());
 }
@@ -176,9 +176,8 @@ void print_latency(const ScanLog& log, std::size_t from) {
     if (scan.time_source != TimeSource::kSensorSynchronised) continue;
     since_sent_us.push_back(static_cast<double>(scan.published_ns - scan.measured_ns) * 1e-3);
   }
-  for (const auto& [what, us] :
-       {std::pair{"radar begins to send -> scan published, p50 / p99", &since_sent_us},
-        std::pair{"gateway has all datagrams -> scan published, p50 / p99", &since_taken_us}}) {
+  for (const auto& [what, us] : {std::pair{"radar starts to send -> scan published, p50 / p99", &since_sent_us},
+                                 std::pair{"last datagram received -> scan published, p50 / p99", &since_taken_us}}) {
     print_row(what, fixed(quantile(*us, 0.5), "/") + " " + fixed(quantile(*us, 0.99), "us"));
   }
 }
@@ -186,11 +185,12 @@ void print_latency(const ScanLog& log, std::size_t from) {
 class Bench {
  public:
   explicit Bench(double seconds) : seconds_(seconds), configuration_(write_configuration()) {
-    if (!harness::eventually(10.0, [&] { return log_.is_attached(); })) throw std::runtime_error("no monitor");
+    if (!harness::eventually(10.0, [&] { return log_.is_attached(); }))
+      throw std::runtime_error("the monitor did not attach");
   }
 
   void ars548() {
-    std::printf("ARS548: one datagram of 35336 bytes a list, in 24 fragments, by multicast to one socket\n");
+    std::printf("ARS548: one datagram of 35336 bytes per list, in 24 fragments, by multicast to one socket\n");
     Gateway gateway(configuration_, "ars548", log_);
     Ars548Radars radars;
     const auto bare = start_bare_receiver();
@@ -204,35 +204,37 @@ class Bench {
     static_cast<void>(bare->stop());
     finish(radars);
     print_counts({radars.sent(), gateway.published(), kernel_drops() - drops}, gateway);
-    print_row("processor time of the gateway", fixed(gateway_percent, "% of a core"), "below 10 %");
-    print_row("  of a process that only receives, beside it", fixed(bare_percent, "% of a core"));
+    print_row("CPU time of the gateway", fixed(gateway_percent, "% of a core"), "below 10 %");
+    print_row("CPU time of a process that only receives", fixed(bare_percent, "% of a core"));
     print_latency(log_, first);
     for (const std::uint32_t lists : {20u, kRadars * 20u}) burst(gateway, radars, lists);
   }
 
   void someip() {
-    std::printf("SOME/IP: 28 datagrams a list, discovered, subscribed, unicast to one socket, E2E profile 7\n");
+    std::printf("SOME/IP: 28 datagrams per list, discovered, subscribed, unicast to one socket, E2E profile 7\n");
     Gateway gateway(configuration_, "someip", log_);
     const std::size_t first = log_.size();
     const std::uint64_t drops = kernel_drops();
-    // Ends between two cycles, so that its last lists are not on their way when it takes its offers back.
+    // Ends between two cycles, so that no list is in transit when the server withdraws its offers.
     SomeIpServer server(seconds_ + 1.62, false);
-    if (!harness::eventually(5.0, [&] { return log_.size() > first; })) throw std::runtime_error("no events");
+    if (!harness::eventually(5.0, [&] { return log_.size() > first; }))
+      throw std::runtime_error("no scan was published");
     const double gateway_percent = cpu_percent(gateway);
     const std::uint64_t sent = server.sent(5.0);
     print_counts({sent, gateway.published(), kernel_drops() - drops}, gateway);
-    print_row("processor time of the gateway", fixed(gateway_percent, "% of a core"), "below 10 %");
+    print_row("CPU time of the gateway", fixed(gateway_percent, "% of a core"), "below 10 %");
     print_latency(log_, first);
   }
 
-  /// Eight radars that send together, while the gateway does not run for three cycles, so that 24 lists wait, and then
-  /// for twenty: 160 lists.
+  /// Eight radars that send together while the gateway is stopped: for three cycles, so that 24 lists wait, and then
+  /// for twenty cycles (160 lists).
   void someip_burst() {
     Gateway gateway(configuration_, "someip", log_);
     const std::size_t first = log_.size();
     const std::uint64_t drops = kernel_drops();
     SomeIpServer server(4.52, true);
-    if (!harness::eventually(5.0, [&] { return log_.size() > first; })) throw std::runtime_error("no events");
+    if (!harness::eventually(5.0, [&] { return log_.size() > first; }))
+      throw std::runtime_error("no scan was published");
     for (const double pause_s : {0.15, 0.15, 0.15, 0.15, 1.0}) {
       harness::sleep_s(0.25);
       gateway.stop_for_a_moment();
@@ -251,7 +253,8 @@ class Bench {
     return 100.0 * (gateway.cpu_s() - before_s) / seconds_;
   }
   static void finish(const Ars548Radars& radars) {
-    if (!harness::eventually(30.0, [&] { return radars.is_done(); })) throw std::runtime_error("radars do not end");
+    if (!harness::eventually(30.0, [&] { return radars.is_done(); }))
+      throw std::runtime_error("the radars did not finish sending");
     if (radars.refused() != 0)
       std::printf("  %s lists were refused by the sending kernel\n", text(radars.refused()).c_str());
   }
@@ -283,14 +286,13 @@ std::string load_average() {
 
 int main(int argc, char** argv) {
   if (!has_network()) {
-    std::puts("skipped: to be run by tests/benchmarks/ingest/load/on_wire");
+    std::puts("skipped: run it with tests/benchmarks/ingest/load/on_wire");
     return 77;
   }
   try {
     const double seconds = std::max(0.5, argc > 1 ? std::atof(argv[1]) : 10.0);
-    std::printf(
-        "%u radars x %u detections x %.0f Hz for %.1f s; load average before: %s; right column: what is asked\n",
-        kRadars, kDetections, kRate_hz, seconds, load_average().c_str());
+    std::printf("%u radars x %u detections x %.0f Hz for %.1f s; load average before: %s; right column: required\n",
+                kRadars, kDetections, kRate_hz, seconds, load_average().c_str());
     Bench bench(seconds);
     bench.ars548();
     bench.someip();

@@ -74,7 +74,7 @@ std::string write_configuration() {
     std::ofstream file(folder / "vehicle" / (name + ".toml"));
     file << "name = \"" << name << "\"\n[ego]\nprofile = \"boresight\"\n"
          << "source = {link = \"someip\", address = \"10.13.0.1\", interface = \"ecu0\", instance = 1";
-    // The ARS548 have no service that offers ego motion: it comes from an endpoint that is known.
+    // No service offers ego motion beside the ARS548: it comes from a configured endpoint.
     if (ars548) file << ", sender = \"10.13.2.1\", sender_port = " << kEgoServer.port;
     file << "}\n";
     for (std::uint32_t id = 1; id <= kRadars; ++id) {

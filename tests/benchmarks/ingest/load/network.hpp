@@ -1,4 +1,4 @@
-// The made-up network of on_wire, and what the kernel counts in it.
+// The virtual network of on_wire, and the kernel's counters in it.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ inline constexpr std::uint32_t kFirstArs548Address = 0x0A0D0101;  // 10.13.1.1
 inline constexpr recording::Endpoint kEgoServer{recording::IpAddress::v4(0x0A0D0201), 30700};
 inline constexpr recording::Endpoint kEcuEvents{recording::IpAddress::v4(0x0A0D0001), 30600};
 
-/// Whether on_wire has prepared the network.
+/// True if on_wire has prepared the network.
 [[nodiscard]] bool has_network();
-/// Moves the calling process, which has one thread, to the radars' side. Throws std::runtime_error.
+/// Moves the calling single-threaded process to the radars' side. Throws std::runtime_error.
 void enter_radars_network();
 
-/// Datagrams that the kernel gave up since the network was made: full receive buffers, fragments that did not fit.
+/// Datagrams dropped by the kernel since the network was created: full receive buffers, failed fragment reassembly.
 [[nodiscard]] std::uint64_t kernel_drops();
 
 /// Processor time that a process has used, in user and system mode.

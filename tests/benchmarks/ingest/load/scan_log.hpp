@@ -1,4 +1,4 @@
-// What leaves the gateway, written down by a process that is not on the data path.
+// Records the gateway's output in a process that is not on the data path.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ struct LoggedScan {
   std::uint32_t radar;
   std::uint16_t integrity;
   TimeSource time_source;
-  std::int64_t measured_ns;  ///< by the stamp of the radar, whose clock is this machine's
-  std::int64_t taken_ns;     ///< the gateway had the last datagram
+  std::int64_t measured_ns;  ///< time stamp of the radar, whose clock is this machine's
+  std::int64_t taken_ns;     ///< the gateway received the last datagram
   std::int64_t published_ns;
 };
 
@@ -26,7 +26,7 @@ class ScanLog {
   [[nodiscard]] bool is_attached() const { return log_->attached; }
   [[nodiscard]] std::size_t size() const { return log_->size; }
   [[nodiscard]] const LoggedScan& operator[](std::size_t i) const { return log_->scans[i]; }
-  /// The latest word of the gateway on itself; `pid` 0 before the first.
+  /// Latest status of the gateway; `pid` is 0 before the first one.
   [[nodiscard]] const ServiceStatus& gateway() const { return log_->gateway; }
 
  private:

@@ -1,4 +1,4 @@
-// The post-factum calibration on recordings of a planar world: what it finds, and what it says it cannot know.
+// Batch calibration of recordings of a planar world: its results, and the parameters that it reports as unsupported.
 #include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 
 #include <algorithm>
@@ -13,15 +13,14 @@
 #include "services/alignment_estimator/core/batch_calibration/gate.hpp"
 #include "services/alignment_estimator/core/batch_calibration/joint.hpp"
 #include "services/alignment_estimator/core/batch_calibration/judgement.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment::batch_calibration {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-
 struct World {
   double speed_scale = 1.01;
-  // Table 1 of Report A; front and rear radars of both sides.
+  // Table 1 of Burza 2025; front and rear radars of both sides.
   std::vector<Eigen::Vector3d> truth = {{-1, 1, 2}, {2, -1, 1}, {1, 2, -1}, {-2, -2, -2}};
   std::size_t detections = 3'000;
   double noise_mps = 0.02, movers = 0.0;
@@ -36,10 +35,10 @@ struct World {
     std::vector<Recording> all;
     for (std::size_t r = 0; r < truth.size(); ++r) {
       Recording& radar = all.emplace_back();
-      radar.nominal = {{x[r], y[r], 0.5}, yaw[r] * kDegree, 0.0, 0.0};
+      radar.nominal = {{x[r], y[r], 0.5}, yaw[r] * kRadiansPerDegree, 0.0, 0.0};
       radar.has_elevation = has_elevation;
       Eigen::Vector4d b;
-      b << speed_scale, truth[r] * kDegree;
+      b << speed_scale, truth[r] * kRadiansPerDegree;
       for (std::size_t i = 0; i < detections; ++i) {
         Detection d{1.1 * unit(random), 0.0, 0.0, 12.0 + 6.0 * unit(random), 0.2 * unit(random)};
         const double elevation = 0.02 + 0.04 * unit(random) + (has_elevation ? 0.1 * unit(random) : 0.0);
@@ -55,7 +54,7 @@ struct World {
   }
 };
 
-/// The published iteration needs 60,000 rounds at its η; a larger η gets there sooner.
+/// The published iteration needs 60,000 rounds at its η; a larger η converges sooner.
 Config quick() {
   Config config;
   config.rate = 5e-3;
@@ -69,7 +68,7 @@ TEST(BatchCalibration, DefaultsArePublished) {
   const Config config;
   EXPECT_EQ(config.elevation_low_rad, -0.02);
   EXPECT_EQ(config.elevation_high_rad, 0.06);
-  EXPECT_NEAR(config.start_pitch_rad, 1.5 * kDegree, 1e-15);
+  EXPECT_NEAR(config.start_pitch_rad, 1.5 * kRadiansPerDegree, 1e-15);
   EXPECT_EQ(config.speed_scale_cost, 0.1);
   EXPECT_EQ(config.detections_per_iteration, 256u);
   EXPECT_EQ(config.rate, 1e-4);
@@ -116,7 +115,7 @@ TEST(BatchCalibration, WithElevationItFindsEverything) {
     const Parameter* found[] = {&radar.yaw, &radar.pitch, &radar.roll};
     const double tolerance[] = {0.03, 0.25, 0.25};
     for (Eigen::Index p = 0; p < 3; ++p) {
-      EXPECT_NEAR(found[p]->value / kDegree, world.truth[r](p), tolerance[p]) << r << ' ' << p;
+      EXPECT_NEAR(found[p]->value / kRadiansPerDegree, world.truth[r](p), tolerance[p]) << r << ' ' << p;
       EXPECT_EQ(found[p]->support, Support::kSupported);
       EXPECT_LT(found[p]->spread, 1e-6);
       EXPECT_LT(found[p]->made_up, 1e-6);
@@ -128,7 +127,7 @@ TEST(BatchCalibration, WithElevationItFindsEverything) {
   EXPECT_LT(result.after.rmse_mps, 0.9 * result.yaw_only.rmse_mps);
 }
 
-TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest) {
+TEST(BatchCalibration, WithoutElevationOnlyYawAndSpeedScaleAreSupported) {
   World world;
   world.has_elevation = false;
   const Config config = quick();
@@ -138,21 +137,22 @@ TEST(BatchCalibration, WithoutElevationItFindsYawAndSpeedScaleAndDisownsTheRest)
   EXPECT_EQ(result.speed_scale.support, Support::kSupported);
   for (std::size_t r = 0; r < 4; ++r) {
     const RadarResult& radar = result.radars[r];
-    EXPECT_NEAR(radar.yaw.value / kDegree, world.truth[r](0), 0.15) << r;
+    EXPECT_NEAR(radar.yaw.value / kRadiansPerDegree, world.truth[r](0), 0.15) << r;
     EXPECT_EQ(radar.yaw.support, Support::kSupported) << to_text(radar.yaw.support);
-    EXPECT_LT(std::abs(radar.yaw.value / kDegree - world.truth[r](0)), 3.0 * radar.yaw.made_up / kDegree + 0.02);
+    EXPECT_LT(std::abs(radar.yaw.value / kRadiansPerDegree - world.truth[r](0)),
+              3.0 * radar.yaw.made_up / kRadiansPerDegree + 0.02);
     EXPECT_NE(radar.pitch.support, Support::kSupported);
     EXPECT_NE(radar.roll.support, Support::kSupported);
-    // As large a change as the made-up elevations': it is their mirror and no measurement.
+    // The change equals that of the assumed elevations: the parameter follows them and is not measured.
     EXPECT_GT(radar.pitch.made_up, 0.8 * config.judgement_shift_rad);
     EXPECT_GT(std::abs(radar.pitch.response), 0.5);
   }
-  // Pitch and roll are worth nothing to the residuals (algorithms.md §1.4).
+  // Pitch and roll do not change the residuals (docs/algorithms/batch-calibration.md).
   EXPECT_GT(result.after.rmse_mps, 0.97 * result.yaw_only.rmse_mps);
   EXPECT_LT(result.after.rmse_mps, 0.5 * result.before.rmse_mps);
 }
 
-TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
+TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfTheAssumedElevations) {
   World world;
   world.has_elevation = false;
   world.truth = {{-1, 0, 0}, {2, 0, 0}, {1, 0, 0}, {-2, 0, 0}};
@@ -169,7 +169,7 @@ TEST(BatchCalibration, TheEstimatedPitchIsMinusTheMeanOfWhatWasMadeUp) {
   EXPECT_NEAR(pitch[1] - pitch[0], -0.04, 0.01);
 }
 
-TEST(BatchCalibration, TheSpeedScaleCostsWhatItSays) {
+TEST(BatchCalibration, TheSpeedScaleCostLowersTheSpeedScale) {
   // (31): the minimum moves by −cost / Σ(∂R/∂k_v)², with yaw free; far less with the published 0.1 than its std.
   World world;
   world.noise_mps = 0.0;
@@ -182,7 +182,7 @@ TEST(BatchCalibration, TheSpeedScaleCostsWhatItSays) {
   EXPECT_NEAR(free, 1.01, 1e-4);
 }
 
-TEST(BatchCalibration, MoversAreLeftOut) {
+TEST(BatchCalibration, MovingDetectionsAreRejected) {
   World world;
   world.has_elevation = false;
   world.movers = 0.35;
@@ -193,7 +193,7 @@ TEST(BatchCalibration, MoversAreLeftOut) {
   for (std::size_t r = 0; r < 4; ++r) {
     EXPECT_EQ(result.radars[r].offered, world.detections);
     EXPECT_NEAR(static_cast<double>(result.radars[r].used) / static_cast<double>(world.detections), 0.65, 0.05);
-    EXPECT_NEAR(result.radars[r].yaw.value / kDegree, world.truth[r](0), 0.2);
+    EXPECT_NEAR(result.radars[r].yaw.value / kRadiansPerDegree, world.truth[r](0), 0.2);
   }
   Config open = quick();
   open.gate_sigma = 0.0;
@@ -210,7 +210,7 @@ TEST(BatchCalibration, HistoryGoesFromThePublishedStartToTheResult) {
   EXPECT_EQ(first.iteration, 0u);
   EXPECT_EQ(first.parameters[0], 1.0);
   EXPECT_EQ(first.parameters[1], 0.0);
-  EXPECT_NEAR(first.parameters[2], 1.5 * kDegree, 1e-15);
+  EXPECT_NEAR(first.parameters[2], 1.5 * kRadiansPerDegree, 1e-15);
   const Step& last = result.history.back();
   EXPECT_EQ(last.iteration, config.iterations);
   EXPECT_EQ(last.parameters[0], result.speed_scale.value);
@@ -250,10 +250,10 @@ TEST(BatchCalibration, ProgressGoesThroughThePhasesAndChangesNothing) {
   EXPECT_EQ(calibrate(radars, quick()).radars[1].pitch.value, result.radars[1].pitch.value);
 }
 
-TEST(BatchCalibration, ARadarWithoutDataIsSaidToHaveNone) {
+TEST(BatchCalibration, ARadarWithoutDataIsReported) {
   std::vector<Recording> radars = World{}.recordings();
   radars[1].detections.clear();
-  radars[2].detections.resize(127);  // one fewer than it takes
+  radars[2].detections.resize(127);  // one fewer than required
   const Result result = calibrate(radars, quick());
   ASSERT_TRUE(result.ok);
   for (const std::size_t r : {1u, 2u}) {
@@ -262,11 +262,11 @@ TEST(BatchCalibration, ARadarWithoutDataIsSaidToHaveNone) {
     EXPECT_EQ(result.radars[r].pitch.value, 0.0);
     EXPECT_EQ(result.radars[r].used, 0u);
   }
-  EXPECT_NEAR(result.radars[0].yaw.value / kDegree, -1.0, 0.03);
+  EXPECT_NEAR(result.radars[0].yaw.value / kRadiansPerDegree, -1.0, 0.03);
   EXPECT_NEAR(result.speed_scale.value, 1.01, 2e-4);
 }
 
-TEST(BatchCalibration, WhatCannotBeUsedIsNotUsed) {
+TEST(BatchCalibration, UnusableDetectionsAreRejected) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   World world;
   world.detections = 400;
@@ -283,7 +283,7 @@ TEST(BatchCalibration, WhatCannotBeUsedIsNotUsed) {
   EXPECT_EQ(kept[1].detections.size(), 400u);
 }
 
-TEST(BatchCalibration, NothingComesOfNothing) {
+TEST(BatchCalibration, WithoutDataThereIsNoResult) {
   EXPECT_FALSE(calibrate({}, quick()).ok);
   std::vector<Recording> radars(3);
   const Result result = calibrate(radars, quick());
@@ -293,7 +293,7 @@ TEST(BatchCalibration, NothingComesOfNothing) {
   EXPECT_EQ(result.radars[0].yaw.support, Support::kNoData);
 }
 
-TEST(BatchCalibration, AVehicleThatSeesOneDirectionOnlyIsNotBelieved) {
+TEST(BatchCalibration, OneDirectionOnlyIsNotSupported) {
   World world;
   std::vector<Recording> radars = world.recordings();
   radars.resize(1);

@@ -1,4 +1,4 @@
-// Drives a filter along a simulated drive and tells how far it is from the truth.
+// Runs a filter along a simulated drive and compares it with the truth.
 #pragma once
 
 #include <cmath>
@@ -6,20 +6,19 @@
 #include <memory>
 
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment {
 
-inline constexpr double kDegree = M_PI / 180.0;
-
-/// A drive, the vehicle's ego history and a filter along it.
+/// A drive, the vehicle's ego history, and the filter.
 class Bench {
  public:
   explicit Bench(const simulator::AlignmentSpec& spec, const FilterConfig& config = {})
       : drive(spec), vehicle(drive.vehicle()), filter(std::make_unique<RobustFilter>(vehicle, config)) {}
 
-  /// Goes on until the drive's time (s since its start); `after` is called after each scan.
+  /// Runs until the given time of the drive (s since its start); `after` is called after each scan.
   void run(double until_s, const std::function<void(const simulator::AlignmentEvent&)>& after = {}) {
     simulator::AlignmentEvent event;
     while (time_s < until_s && drive.next(event)) {

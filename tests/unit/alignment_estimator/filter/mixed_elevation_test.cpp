@@ -1,8 +1,9 @@
-// Vehicles of which some radars measure elevation and others do not: the former know k_v so well that a pitch of the
-// latter would show in the length of their velocity, were it not for elevations that nobody knows.
+// Vehicles whose radars measure elevation only in part. The radars with elevation determine k_v so well that a pitch of
+// the others would change the length of their velocity, if the unmeasured elevations were known.
 #include <gtest/gtest.h>
 
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/alignment_estimator/filter/bench.hpp"
 
 namespace boresight::alignment {
@@ -19,13 +20,13 @@ TEST(MixedElevation, PitchAndRollOfRadarsWithoutElevationStayOpen) {
     const RadarEstimate e = bench.filter->estimate(r);
     EXPECT_EQ(e.observable & (alignment_axis::kVehiclePitch | alignment_axis::kVehicleRoll), 0u) << r;
     EXPECT_EQ(e.observable & alignment_axis::kVehicleYaw, alignment_axis::kVehicleYaw) << r;
-    EXPECT_GT(std::sqrt(e.covariance(2, 2)), 3.0 * kDegree) << r << ": the prior's";
-    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kDegree) << r;
+    EXPECT_GT(std::sqrt(e.covariance(2, 2)), 3.0 * kRadiansPerDegree) << r << ": that of the prior";
+    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kRadiansPerDegree) << r;
   }
   for (const std::size_t r : {2u, 3u}) {
     const RadarEstimate e = bench.filter->estimate(r);
     EXPECT_EQ(e.observable & alignment_axis::kVehiclePitch, alignment_axis::kVehiclePitch) << r;
-    EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.1 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.1 * kRadiansPerDegree) << r;
   }
   EXPECT_NEAR(bench.filter->estimate(0).speed_scale, spec.speed_scale, 3e-4) << "not misled by the others";
 }

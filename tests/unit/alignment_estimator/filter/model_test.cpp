@@ -1,4 +1,4 @@
-// The parts of the filter, each against something that is not it.
+// The parts of the filter, each against an independent reference.
 #include <random>
 
 #include <Eigen/Dense>
@@ -55,7 +55,7 @@ TEST(MotionModel, EveryColumnIsTheNumericalGradient) {
           to.elevation_excess[1] += h;
           break;
         case column::kShared + column::kAngleNoise:
-          break;  // acts through what is seen (SensorVelocity::seen)
+          break;  // acts through SensorVelocity::seen
         default:
           to.sensor_to_vehicle[1] =
               geometry::so3_exp(h * Eigen::Vector3d::Unit(column - column::kShared)) * to.sensor_to_vehicle[1];
@@ -98,7 +98,7 @@ TEST(JointState, UpdateIsThatOfTheDenseInformationFilter) {
   EXPECT_LT((geometry::so3_log(state.sensor_to_vehicle[1]) - step.segment<3>(column::of_radar(1))).norm(), 1e-12);
 }
 
-/// Detections of one radar that moves with g, with noise in everything.
+/// Detections of one radar that moves with g, with noise in all values.
 struct Cloud {
   Sightings sightings;
   Eigen::Vector3d g;
@@ -122,7 +122,7 @@ struct Cloud {
   }
 };
 
-TEST(ScanSums, ScoreHasNoExpectationAtTheTruth) {
+TEST(ScanSums, ScoreHasZeroMeanAtTheTruth) {
   // Without the corrections for errors in variables the third component is off by dozens of its σ.
   std::mt19937 random(2);
   auto cloud = std::make_unique<Cloud>();
@@ -143,7 +143,7 @@ TEST(ScanSums, ScoreHasNoExpectationAtTheTruth) {
   EXPECT_LT(off.norm(), 5e-3) << "m/s of 24";
 }
 
-TEST(Spread, NoiseOfAnglesIsNoSpreadOfAngles) {
+TEST(Spread, NoiseOfAnglesDoesNotCountAsSpread) {
   std::mt19937 random(3);
   auto cloud = std::make_unique<Cloud>();
   cloud->g = {20.0, -14.0, 0.0};

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/filter/bench.hpp"
 
@@ -22,7 +23,7 @@ TEST(RobustFilter, FindsFourCornerRadars) {
   bench.run(60.0);
   for (std::size_t r = 0; r < 4; ++r) {
     const RadarEstimate estimate = bench.filter->estimate(r);
-    const Eigen::Vector3d error = bench.error_rad(r) / kDegree;
+    const Eigen::Vector3d error = bench.error_rad(r) / kRadiansPerDegree;
     EXPECT_EQ(estimate.state, AlignmentState::kConverged) << r;
     EXPECT_NEAR(estimate.speed_scale, 1.01, 1e-4) << r;
     EXPECT_LT(std::abs(error.z()), 0.015) << r;
@@ -33,16 +34,16 @@ TEST(RobustFilter, FindsFourCornerRadars) {
   }
 }
 
-TEST(RobustFilter, IsAsSureAsItMayBe) {
-  // χ² of all drives and radars, per axis; the radars' pitch errors have the body's in common.
+TEST(RobustFilter, StatedCovarianceMatchesTheErrors) {
+  // χ² of all drives and radars, per axis; the pitch errors of the radars share that of the body.
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   int count = 0;
   for (std::uint64_t seed = 21; seed < 33; ++seed) {
     simulator::AlignmentSpec spec = drive(seed, 40.0);
     if (seed % 2 == 0) {
-      spec.yaw_rate_bias_radps = 0.1 * kDegree;
+      spec.yaw_rate_bias_radps = 0.1 * kRadiansPerDegree;
       spec.slip_coefficient_radps2pm = 0.003;
-      spec.body_pitch_std_rad = 0.3 * kDegree;
+      spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
       spec.body_pitch_per_acceleration_radps2pm = 0.003;
     }
     Bench bench(spec);
@@ -61,7 +62,7 @@ TEST(RobustFilter, IsAsSureAsItMayBe) {
   }
 }
 
-/// Two filters on the same data, the second one's changed.
+/// Two filters on the same data; the data of the second are modified.
 void compare(const std::function<VehicleConfig(VehicleConfig)>& other_vehicle,
              const std::function<std::size_t(std::size_t)>& other_radar,
              const std::function<void(ScanDetections&, EgoSample&)>& change, const Eigen::Vector3d& signs) {
@@ -106,7 +107,7 @@ TEST(RobustFilter, AMirroredVehicleHasAMirroredEstimate) {
       {-1.0, 1.0, -1.0});
 }
 
-TEST(RobustFilter, ARadarOnItsHeadIsAsGood) {
+TEST(RobustFilter, AnUpsideDownRadarIsAsAccurate) {
   compare(
       [](VehicleConfig v) {
         for (RadarConfig& radar : v.radars) radar.mounting_pose.roll_rad += M_PI;
@@ -122,7 +123,7 @@ TEST(RobustFilter, ARadarOnItsHeadIsAsGood) {
       {1.0, 1.0, 1.0});
 }
 
-TEST(RobustFilter, TheOrderInTheVehicleFileIsNoMatter) {
+TEST(RobustFilter, TheOrderInTheVehicleFileDoesNotMatter) {
   compare(
       [](VehicleConfig v) {
         std::reverse(v.radars.begin(), v.radars.end());
@@ -132,8 +133,8 @@ TEST(RobustFilter, TheOrderInTheVehicleFileIsNoMatter) {
 }
 
 TEST(RobustFilter, DenseLeastSquaresFindsTheSame) {
-  // Nearly exact angles, no outliers and exact ego signals: then the estimate is that of weighted least squares over
-  // all detections at once, here with numerical derivatives.
+  // With nearly exact angles, no outliers and exact ego signals the estimate must equal weighted least squares over all
+  // detections at once, here with numerical derivatives.
   simulator::AlignmentSpec spec = drive(51, 12.0);
   spec.radars.resize(1);
   spec.outlier_share = 0.0;
@@ -212,22 +213,22 @@ TEST(RobustFilter, WithoutElevationYawAndSpeedOnly) {
     const RadarEstimate estimate = bench.filter->estimate(r);
     EXPECT_EQ(estimate.observable & (alignment_axis::kVehicleRoll | alignment_axis::kVehiclePitch), 0u) << r;
     EXPECT_NE(estimate.observable & alignment_axis::kVehicleYaw, 0u) << r;
-    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.15 * kRadiansPerDegree) << r;
     const double speed_scale_std = std::sqrt(estimate.covariance(0, 0));
     EXPECT_GT(speed_scale_std, 3e-4) << "the mean elevation is not known";
     EXPECT_LT(std::abs(estimate.speed_scale - spec.speed_scale), 3.0 * speed_scale_std) << r;
   }
 }
 
-TEST(RobustFilter, HalfOfAllMovesAndRadarsAreFiveDegreesOff) {
+TEST(RobustFilter, ConvergesWithHalfOutliersAndFiveDegreesOfError) {
   for (std::uint64_t seed = 71; seed < 77; ++seed) {
     simulator::AlignmentSpec spec = drive(seed, 4.0);
     spec.outlier_share = 0.5;
-    const double side = seed % 2 == 0 ? 5.0 * kDegree : -5.0 * kDegree;
+    const double side = seed % 2 == 0 ? 5.0 * kRadiansPerDegree : -5.0 * kRadiansPerDegree;
     for (simulator::AlignmentRadar& radar : spec.radars) radar.truth = {side, -side, side};
     Bench bench(spec);
     bench.run(4.0);
-    for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.3 * kDegree) << seed;
+    for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.3 * kRadiansPerDegree) << seed;
   }
 }
 
@@ -241,12 +242,12 @@ TEST(RobustFilter, AmbiguousAndUnsynchronisedRadars) {
   Bench bench(spec);
   bench.run(40.0);
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.02 * kDegree) << r;
-    EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.12 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.02 * kRadiansPerDegree) << r;
+    EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.12 * kRadiansPerDegree) << r;
   }
 }
 
-TEST(RobustFilter, BadInputsAreLeftOut) {
+TEST(RobustFilter, InvalidInputsAreRejected) {
   Bench bench(drive(64, 20.0));
   const double nan = std::numeric_limits<double>::quiet_NaN(), huge = std::numeric_limits<double>::max();
   int n = 0;
@@ -259,7 +260,7 @@ TEST(RobustFilter, BadInputsAreLeftOut) {
     if (n % 7 == 0) scan.time_ns -= 5'000'000'000;
     if (n % 11 == 0) scan.time_ns = std::numeric_limits<std::int64_t>::max() / 2;
     if (n % 13 == 0) scan.count = 0;
-    // Wild ego motions beside the good ones.
+    // Invalid ego motions between the good ones.
     for (const EgoSample& ego :
          {EgoSample{}, EgoSample{true, true, 20.0, 0.1, 0.0, 0.01}, EgoSample{true, false, nan, 0.1, 0.0, 0.01},
           EgoSample{true, false, 1e6, nan, 1e9, nan}, EgoSample{true, false, 4.0, 0.1, 0.0, 0.01}}) {
@@ -270,11 +271,11 @@ TEST(RobustFilter, BadInputsAreLeftOut) {
   };
   bench.run(20.0);
   EXPECT_TRUE(bench.filter->state().finite());
-  for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.05 * kDegree) << r;
+  for (std::size_t r = 0; r < 4; ++r) EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.05 * kRadiansPerDegree) << r;
   EXPECT_EQ(bench.filter->estimate(99).state, AlignmentState::kNoData);
 }
 
-TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
+TEST(RobustFilter, AMemoryHelpsAndIsDroppedIfWrong) {
   Memory memory;
   {
     Bench before(drive(81, 60.0));
@@ -282,26 +283,26 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
     before.filter->save(memory);
   }
   ASSERT_EQ(memory.number_of_radars, 4u);
-  // On a straight road roll is known from the last drive only.
+  // On a straight road only the memory of the last drive contains roll.
   simulator::AlignmentSpec spec = drive(82, 10.0);
   spec.road = simulator::RoadKind::kStraight;
   Bench same(spec);
   same.filter->restore(memory);
-  EXPECT_LT(std::abs(same.error_rad(0).z()), 0.02 * kDegree) << "before the first scan";
+  EXPECT_LT(std::abs(same.error_rad(0).z()), 0.02 * kRadiansPerDegree) << "before the first scan";
   EXPECT_EQ(same.filter->estimate(0).state, AlignmentState::kNoData);
   same.run(10.0);
   EXPECT_NE(same.filter->estimate(0).observable & alignment_axis::kVehicleRoll, 0u);
-  // One radar was mounted anew while the car was parked.
+  // One radar was remounted while the car was parked.
   simulator::AlignmentSpec changed = drive(83, 10.0);
-  changed.radars[2].truth.yaw_rad += 3.0 * kDegree;
+  changed.radars[2].truth.yaw_rad += 3.0 * kRadiansPerDegree;
   Bench remounted(changed);
   remounted.filter->restore(memory);
   remounted.run(10.0);
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(std::abs(remounted.error_rad(r).z()), 0.05 * kDegree) << r;
-    EXPECT_LT(std::abs(remounted.error_rad(r).y()), 0.3 * kDegree) << r;
+    EXPECT_LT(std::abs(remounted.error_rad(r).z()), 0.05 * kRadiansPerDegree) << r;
+    EXPECT_LT(std::abs(remounted.error_rad(r).y()), 0.3 * kRadiansPerDegree) << r;
   }
-  // Of another vehicle: ignored.
+  // A memory of another vehicle is ignored.
   simulator::AlignmentSpec fewer = drive(84, 1.0);
   fewer.radars.resize(2);
   Bench foreign(fewer);
@@ -309,13 +310,14 @@ TEST(RobustFilter, WhatIsRememberedHelpsAndIsGivenUpIfWrong) {
   EXPECT_EQ(foreign.filter->estimate(0).speed_scale, 1.0);
 }
 
-TEST(RobustFilter, AStepChangeIsToldOfItsRadarOnly) {
+TEST(RobustFilter, AStepChangeIsReportedForItsRadarOnly) {
   struct Case {
     double pitch_deg, yaw_deg, within_s;
   };
   for (const Case& step_change : {Case{0.0, 1.0, 3.0}, Case{2.0, 0.0, 6.0}, Case{0.0, -5.0, 3.0}}) {
     simulator::AlignmentSpec spec = drive(91, 40.0);
-    spec.step_changes.push_back({26.2, 1, {0.0, step_change.pitch_deg * kDegree, step_change.yaw_deg * kDegree}});
+    spec.step_changes.push_back(
+        {26.2, 1, {0.0, step_change.pitch_deg * kRadiansPerDegree, step_change.yaw_deg * kRadiansPerDegree}});
     Bench bench(spec);
     bench.run(25.0);
     for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(bench.filter->estimate(r).step_change.count, 0u);
@@ -323,21 +325,21 @@ TEST(RobustFilter, AStepChangeIsToldOfItsRadarOnly) {
     EXPECT_EQ(bench.filter->estimate(1).step_change.count, 1u);
     bench.run(40.0);
     const AlignmentStepChange told = bench.filter->estimate(1).step_change;
-    EXPECT_NEAR(told.rotation_vehicle_rad[1], step_change.pitch_deg * kDegree, 0.5 * kDegree);
-    EXPECT_NEAR(told.rotation_vehicle_rad[2], step_change.yaw_deg * kDegree, 0.1 * kDegree);
+    EXPECT_NEAR(told.rotation_vehicle_rad[1], step_change.pitch_deg * kRadiansPerDegree, 0.5 * kRadiansPerDegree);
+    EXPECT_NEAR(told.rotation_vehicle_rad[2], step_change.yaw_deg * kRadiansPerDegree, 0.1 * kRadiansPerDegree);
     for (std::size_t r = 0; r < 4; ++r) {
       EXPECT_EQ(bench.filter->estimate(r).step_change.count, r == 1 ? 1u : 0u);
-      EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kDegree) << r;
-      EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.3 * kDegree) << r;
+      EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kRadiansPerDegree) << r;
+      EXPECT_LT(std::abs(bench.error_rad(r).y()), 0.3 * kRadiansPerDegree) << r;
     }
   }
 }
 
-TEST(RobustFilter, SlowlyBentIsNoStepChange) {
-  // 0.6° in a minute, far faster than the random walk of the mounting lets expect.
+TEST(RobustFilter, ASlowDriftIsNoStepChange) {
+  // 0.6° in a minute, far faster than the random walk of the mounting.
   simulator::AlignmentSpec spec = drive(92, 90.0);
   for (int i = 0; i < 300; ++i) {
-    spec.step_changes.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kDegree}});
+    spec.step_changes.push_back({16.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kRadiansPerDegree}});
   }
   Bench bench(spec);
   bench.run(90.0);
@@ -357,7 +359,7 @@ TEST(RobustFilter, AllocatesNothingWhileDriving) {
   });
 }
 
-TEST(RobustFilter, PredictsWhatStandsStill) {
+TEST(RobustFilter, PredictsTheRangeRatesOfStationaryReflectors) {
   Bench bench(drive(13, 20.0));
   double square = 0.0;
   std::size_t count = 0;

@@ -8,26 +8,26 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/filter/small_step_change_detector.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kScan_s = 0.05;
 
-/// Four radars' scans; each says of yaw and pitch what real ones do (σ of 2 s: 0.015° and 0.15°), of roll 3°.
+/// Scans of four radars with realistic information: σ over 2 s of 0.015° in yaw, 0.15° in pitch and 3° in roll.
 struct Drive {
   explicit Drive(std::size_t radars = 4) : number(radars), detector(radars, FilterConfig{}) {
-    const Eigen::Vector3d std_2s = Eigen::Vector3d(3.0, 0.15, 0.015) * kDegree;
+    const Eigen::Vector3d std_2s = Eigen::Vector3d(3.0, 0.15, 0.015) * kRadiansPerDegree;
     information = (std_2s.array().square() * 40.0).inverse().matrix().asDiagonal();
-    covariance = (Eigen::Vector3d(0.3, 0.02, 0.003) * kDegree).array().square().matrix().asDiagonal();
+    covariance = (Eigen::Vector3d(0.3, 0.02, 0.003) * kRadiansPerDegree).array().square().matrix().asDiagonal();
   }
 
   struct Found {
     std::size_t radar;
     double after_s;
   };
-  /// The first change that is confirmed within `seconds`, while the radars deviate by the columns of `off_rad`.
+  /// The first confirmed change within `seconds`, while the radars deviate by the columns of `off_rad`.
   std::optional<Found> run(double seconds, const Eigen::Matrix<double, 3, 4>& off_rad) {
     const double begin_s = time_s;
     for (; time_s < begin_s + seconds; time_s += kScan_s) {
@@ -55,7 +55,7 @@ struct Drive {
 
 Eigen::Matrix<double, 3, 4> only(Eigen::Index radar, const Eigen::Vector3d& off_deg) {
   Eigen::Matrix<double, 3, 4> off = Eigen::Matrix<double, 3, 4>::Zero();
-  off.col(radar) = off_deg * kDegree;
+  off.col(radar) = off_deg * kRadiansPerDegree;
   return off;
 }
 const Eigen::Matrix<double, 3, 4> kQuiet = Eigen::Matrix<double, 3, 4>::Zero();
@@ -77,12 +77,12 @@ TEST(SmallStepChange, SmallStepsOfOneRadarAreFoundWithTheirAxisAndSize) {
     EXPECT_TRUE(drive.detector.changed(2, one.axis));
     EXPECT_FALSE(drive.detector.changed(2, 3 - one.axis));
     const double sigma_deg = one.axis == 1 ? 0.2 : 0.03;
-    EXPECT_NEAR(drive.detector.change(2)(static_cast<Eigen::Index>(one.axis)), one.off_deg * kDegree,
-                3.0 * sigma_deg * kDegree);
+    EXPECT_NEAR(drive.detector.change(2)(static_cast<Eigen::Index>(one.axis)), one.off_deg * kRadiansPerDegree,
+                3.0 * sigma_deg * kRadiansPerDegree);
   }
 }
 
-TEST(SmallStepChange, RollIsFoundAsLateAsTheDataSayOfIt) {
+TEST(SmallStepChange, RollIsFoundLaterBecauseItsDataAreWeaker) {
   Drive drive;
   ASSERT_FALSE(drive.run(60.0, kQuiet));
   const auto found = drive.run(600.0, only(1, {3.0, 0.0, 0.0}));
@@ -93,21 +93,21 @@ TEST(SmallStepChange, RollIsFoundAsLateAsTheDataSayOfIt) {
   EXPECT_FALSE(drive.detector.doubted(1));
 }
 
-TEST(SmallStepChange, NoiseAndWhatMovesAllAlikeAreNoChange) {
+TEST(SmallStepChange, NoiseAndCommonDeviationsAreNoChange) {
   Drive drive;
   EXPECT_FALSE(drive.run(3600.0, kQuiet));
   Eigen::Matrix<double, 3, 4> all;
-  all.colwise() = Eigen::Vector3d(0.0, 1.0, -0.3) * kDegree;
+  all.colwise() = Eigen::Vector3d(0.0, 1.0, -0.3) * kRadiansPerDegree;
   EXPECT_FALSE(drive.run(600.0, all));
 }
 
-TEST(SmallStepChange, WhatTheEstimateDoesNotKnowIsNoChange) {
+TEST(SmallStepChange, ADeviationWithinTheCovarianceIsNoChange) {
   Drive drive;
-  drive.covariance = (Eigen::Vector3d(4.0, 4.0, 0.5) * kDegree).array().square().matrix().asDiagonal();
+  drive.covariance = (Eigen::Vector3d(4.0, 4.0, 0.5) * kRadiansPerDegree).array().square().matrix().asDiagonal();
   EXPECT_FALSE(drive.run(300.0, only(0, {3.0, 1.0, 0.25})));
 }
 
-TEST(SmallStepChange, AWildWindowOrAShortDeviationIsDroppedAgain) {
+TEST(SmallStepChange, OneLargeWindowOrAShortDeviationIsDropped) {
   Drive drive;
   drive.time_s = 10.0;
   EXPECT_FALSE(drive.run(2.0, only(0, {0.0, 0.0, 5.0})));
@@ -121,13 +121,13 @@ TEST(SmallStepChange, AWildWindowOrAShortDeviationIsDroppedAgain) {
   EXPECT_FALSE(drive.detector.doubted(0));
 }
 
-TEST(SmallStepChange, ARadarThatIsAloneIsAskedForMore) {
+TEST(SmallStepChange, ASingleRadarNeedsALargerDeviation) {
   Drive alone(1);
   EXPECT_FALSE(alone.run(300.0, only(0, {0.0, 0.2, 0.1})));
   EXPECT_TRUE(alone.run(30.0, only(0, {0.0, 0.0, 0.5})));
 }
 
-TEST(SmallStepChange, OfTwoRadarsTheOneThatDeviatesIsNamed) {
+TEST(SmallStepChange, WithTwoRadarsTheDeviatingOneIsReported) {
   Drive two(2);
   const auto found = two.run(30.0, only(1, {0.0, 0.0, 0.25}));
   ASSERT_TRUE(found);
@@ -145,7 +145,7 @@ TEST(SmallStepChange, NotANumberSpoilsNothingElse) {
   EXPECT_EQ(after->radar, 3u);
 }
 
-TEST(SmallStepChange, ANewEstimateBeginsAnew) {
+TEST(SmallStepChange, ANewEstimateClearsTheSums) {
   Drive drive;
   EXPECT_FALSE(drive.run(4.1, only(0, {0.0, 0.0, 0.3})));
   EXPECT_TRUE(drive.detector.doubted(0));

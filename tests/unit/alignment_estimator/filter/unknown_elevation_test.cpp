@@ -1,8 +1,9 @@
-// Radars that measure no elevation: that k_v and yaw are as wrong as they say.
+// Radars that measure no elevation: the errors of k_v and yaw match their stated σ.
 
 #include <gtest/gtest.h>
 
 #include "interfaces/messages/alignment_estimate.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/alignment_estimator/filter/bench.hpp"
 
 namespace boresight::alignment {
@@ -17,7 +18,7 @@ simulator::AlignmentSpec without_elevation(std::uint64_t seed) {
   return spec;
 }
 
-TEST(FilterWithoutElevation, FourRadarsWithoutElevationKnowTheSpeedAndYawAsWellAsTheySay) {
+TEST(FilterWithoutElevation, FourRadarsWithoutElevationStateConsistentSpeedAndYaw) {
   double speed_nees = 0.0, worst_speed = 0.0, yaw_nees = 0.0, worst_yaw = 0.0;
   constexpr std::uint64_t kSeeds = 8;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -38,12 +39,12 @@ TEST(FilterWithoutElevation, FourRadarsWithoutElevationKnowTheSpeedAndYawAsWellA
     EXPECT_LT(std::sqrt(e.covariance(0, 0)), 1e-3);
   }
   EXPECT_LT(speed_nees, 2.0);
-  EXPECT_LT(worst_speed, 2e-3) << "a uniform elevation over the field of view was wrong by a hundredth";
+  EXPECT_LT(worst_speed, 2e-3) << "an assumed uniform elevation over the field of view gave an error of 0.01";
   EXPECT_LT(yaw_nees, 1.5);
-  EXPECT_LT(worst_yaw, 0.3 * kDegree);
+  EXPECT_LT(worst_yaw, 0.3 * kRadiansPerDegree);
 }
 
-TEST(FilterWithoutElevation, YawIsSurerWhereRollAndPitchAreKnownFromElsewhere) {
+TEST(FilterWithoutElevation, YawIsMoreCertainWhenRollAndPitchAreKnown) {
   const simulator::AlignmentSpec spec = without_elevation(1);
   Bench alone(spec), seeded(spec);
   const Eigen::Matrix3d known = Eigen::Vector3d(1e-6, 1e-6, 1e-4).asDiagonal();
@@ -57,8 +58,8 @@ TEST(FilterWithoutElevation, YawIsSurerWhereRollAndPitchAreKnownFromElsewhere) {
   for (std::size_t r = 0; r < 4; ++r) {
     const double alone_std = std::sqrt(alone.filter->estimate(r).covariance(3, 3));
     const double seeded_std = std::sqrt(seeded.filter->estimate(r).covariance(3, 3));
-    EXPECT_GT(alone_std, 0.1 * kDegree) << r << ": however long it drives";
-    EXPECT_LT(seeded_std, 0.05 * kDegree) << r;
+    EXPECT_GT(alone_std, 0.1 * kRadiansPerDegree) << r << ": it does not shrink with driving time";
+    EXPECT_LT(seeded_std, 0.05 * kRadiansPerDegree) << r;
   }
 }
 

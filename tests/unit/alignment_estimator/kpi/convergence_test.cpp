@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kCycle_s = 0.05;
 
-/// 1 − exp(−t/τ) of `way` in yaw, steady elsewhere.
-void drive(Convergence& convergence, double from_s, double to_s, double begin, double way, double tau_s,
+/// Yaw moves by `distance` as 1 − exp(−t/τ); the other values are constant.
+void drive(Convergence& convergence, double from_s, double to_s, double begin, double distance, double tau_s,
            std::uint32_t step_changes = 0) {
   const auto first = static_cast<int>(std::lround(from_s / kCycle_s)), last = static_cast<int>(to_s / kCycle_s);
   for (int i = first; i < last; ++i) {
     const double t = kCycle_s * (i + 1);
-    const double yaw = begin + way * (1.0 - std::exp(-(t - from_s - kCycle_s) / tau_s));
+    const double yaw = begin + distance * (1.0 - std::exp(-(t - from_s - kCycle_s) / tau_s));
     convergence.add(t, static_cast<std::uint64_t>(i + 1), {1.0, yaw, 0.01, 0.0}, step_changes);
   }
 }
@@ -30,7 +30,7 @@ TEST(Convergence, TimeTo95PercentOfAnExponential) {
   }
 }
 
-TEST(Convergence, AWayThatMayBeNoiseHasNoTime) {
+TEST(Convergence, ADistanceThatMayBeNoiseHasNoTime) {
   Convergence convergence;
   EXPECT_TRUE(std::isnan(convergence.to_95_percent(AlignmentParameter::kYaw, 1e-4).seconds));
   drive(convergence, 0.0, 60.0, 0.0, 0.03, 3.0);
@@ -40,15 +40,15 @@ TEST(Convergence, AWayThatMayBeNoiseHasNoTime) {
   EXPECT_EQ(convergence.to_95_percent(AlignmentParameter::kPitch, 1e-9).scans, 0u);
 }
 
-TEST(Convergence, AnExcursionPutsOffTheTime) {
+TEST(Convergence, AnExcursionDelaysTheTime) {
   Convergence convergence;
   drive(convergence, 0.0, 10.0, 0.0, 0.03, 0.1);
-  drive(convergence, 10.0, 20.0, 0.01, 0.0, 1.0);  // away for ten seconds
+  drive(convergence, 10.0, 20.0, 0.01, 0.0, 1.0);  // an excursion of ten seconds
   drive(convergence, 20.0, 100.0, 0.03, 0.0, 1.0);
   EXPECT_NEAR(convergence.to_95_percent(AlignmentParameter::kYaw, 1e-4).seconds, 20.0, 0.5);
 }
 
-TEST(Convergence, AStepChangeBeginsAnew) {
+TEST(Convergence, AStepChangeStartsANewDistance) {
   Convergence convergence;
   drive(convergence, 0.0, 300.0, 0.0, 0.03, 2.0);
   drive(convergence, 300.0, 400.0, 0.03, 0.0175, 1.0, 1);
@@ -76,7 +76,7 @@ TEST(Convergence, YearsFitAndNothingIsAllocated) {
     double t = 0.0;
     for (std::uint64_t i = 0; i < 200'000; ++i) {
       convergence.add(t, i, {1.0, t < 1.0 ? 0.0 : 0.03, 0.0, 0.0}, 0);
-      t += kCycle_s + 1e-4 * t;  // after a while scans are far apart: a fast way to 24 million seconds
+      t += kCycle_s + 1e-4 * t;  // growing intervals reach 24 million seconds with few scans
     }
     convergence.add(std::nan(""), 1, {1.0, 0.0, 0.0, 0.0}, 0);
   }

@@ -10,7 +10,7 @@
 namespace boresight::alignment {
 namespace {
 
-TEST(Nees, IsOneOnAverageForErrorsAsStatedAndCountsOnlyWhatIsObservable) {
+TEST(Nees, IsOneOnAverageForConsistentErrorsAndCountsOnlyObservableAxes) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, 1.0);
   Eigen::Matrix4d root = Eigen::Matrix4d::Zero();

@@ -39,7 +39,8 @@ TEST(ResidualStatistics, FadesWithTheTimeConstant) {
   for (int i = 0; i < 100; ++i) statistics.add_inlier(1.5, -1.5);
   statistics.fade(20.0, 20.0);
   EXPECT_NEAR(statistics.inliers(), 100.0 / std::exp(1.0), 1e-9);
-  EXPECT_NEAR(statistics.after().back(), 100.0 / std::exp(1.0), 1e-9) << "beyond the histogram: in its last bin";
+  EXPECT_NEAR(statistics.after().back(), 100.0 / std::exp(1.0), 1e-9)
+      << "a value beyond the histogram is in its last bin";
   EXPECT_NEAR(statistics.before().front(), 100.0 / std::exp(1.0), 1e-9);
   for (int i = 0; i < 100; ++i) statistics.add_inlier(0.0, 0.0);
   EXPECT_NEAR(written(statistics).residual_rmse_mps, 1.5 * std::sqrt(36.79 / 136.79), 1e-3);

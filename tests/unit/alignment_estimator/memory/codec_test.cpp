@@ -17,7 +17,7 @@ std::vector<std::uint8_t> encoded(const Memory& memory, const Identity& identity
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
-/// Puts the right checksum under changed content.
+/// Writes the right checksum for changed content.
 void seal(std::vector<std::uint8_t>& bytes) {
   const std::uint32_t crc = e2e::crc32_p4({bytes.data(), bytes.size() - 4});
   for (std::size_t i = 0; i < 4; ++i) bytes[bytes.size() - 4 + i] = static_cast<std::uint8_t>(crc >> (8 * i));
@@ -25,20 +25,20 @@ void seal(std::vector<std::uint8_t>& bytes) {
 
 MemoryVerdict verdict(const std::vector<std::uint8_t>& bytes, const Identity& identity) {
   Memory out;
-  std::size_t left_out = 0;
-  return decode_memory(bytes, identity, out, left_out);
+  std::size_t rejected_radars = 0;
+  return decode_memory(bytes, identity, out, rejected_radars);
 }
 
-TEST(MemoryCodec, WhatGoesInComesOutForOneToSixteenRadars) {
+TEST(MemoryCodec, RoundTripForOneToSixteenRadars) {
   for (const std::size_t radars : {1u, 4u, 16u}) {
     const Identity identity = identity_of(example_vehicle(radars));
     const Memory memory = example_memory(radars);
     const auto bytes = encoded(memory, identity);
     ASSERT_FALSE(bytes.empty());
     Memory out;
-    std::size_t left_out = 99;
-    ASSERT_EQ(decode_memory(bytes, identity, out, left_out), MemoryVerdict::kTaken);
-    EXPECT_EQ(left_out, 0u);
+    std::size_t rejected_radars = 99;
+    ASSERT_EQ(decode_memory(bytes, identity, out, rejected_radars), MemoryVerdict::kTaken);
+    EXPECT_EQ(rejected_radars, 0u);
     EXPECT_EQ(out.number_of_radars, radars);
     EXPECT_EQ(out.speed_scale, memory.speed_scale);
     EXPECT_EQ(out.slip_coefficient_radps2pm, memory.slip_coefficient_radps2pm);
@@ -71,12 +71,12 @@ TEST(MemoryCodec, EveryCutAndEveryFlippedBitIsRefused) {
   EXPECT_EQ(verdict(longer, identity), MemoryVerdict::kCorrupt);
 }
 
-TEST(MemoryCodec, NoiseAndSealedNoiseAreRefused) {
+TEST(MemoryCodec, NoiseIsRefusedWithAndWithoutARightChecksum) {
   const Identity identity = identity_of(example_vehicle(2));
   const auto bytes = encoded(example_memory(2), identity);
   std::mt19937 random(1);
   for (int i = 0; i < 20'000; ++i) {
-    // The content of a file whose checksum is right: a bug elsewhere, or somebody's attempt.
+    // Random content with a right checksum: a bug elsewhere, or an attack.
     auto changed = bytes;
     const std::size_t first = i % 2 == 0 ? 16 : kMemoryHeaderBytes;
     for (int k = 0; k <= i % 7; ++k) {
@@ -84,8 +84,8 @@ TEST(MemoryCodec, NoiseAndSealedNoiseAreRefused) {
     }
     seal(changed);
     Memory out;
-    std::size_t left_out = 0;
-    if (decode_memory(changed, identity, out, left_out) != MemoryVerdict::kTaken) continue;
+    std::size_t rejected_radars = 0;
+    if (decode_memory(changed, identity, out, rejected_radars) != MemoryVerdict::kTaken) continue;
     ASSERT_LE(out.number_of_radars, kMaxRadars);
     ASSERT_TRUE(std::isfinite(out.speed_scale));
     const std::size_t n = out.number_of_parameters();
@@ -93,7 +93,7 @@ TEST(MemoryCodec, NoiseAndSealedNoiseAreRefused) {
   }
 }
 
-TEST(MemoryCodec, AnotherVersionIsToldFromDamage) {
+TEST(MemoryCodec, AnotherVersionIsDistinguishedFromDamage) {
   const Identity identity = identity_of(example_vehicle(2));
   auto bytes = encoded(example_memory(2), identity);
   bytes[8] = 2;
@@ -108,7 +108,7 @@ TEST(MemoryCodec, AnotherVehicleIsForeign) {
   EXPECT_EQ(verdict(bytes, identity_of(other)), MemoryVerdict::kForeign);
 }
 
-TEST(MemoryCodec, ARadarThatWasMountedAnewIsLeftOutAlone) {
+TEST(MemoryCodec, OnlyTheRemountedRadarIsRejected) {
   const Memory memory = example_memory(4);
   const auto bytes = encoded(memory, identity_of(example_vehicle(4)));
   std::vector<VehicleConfig> changed(5, example_vehicle(4));
@@ -119,9 +119,9 @@ TEST(MemoryCodec, ARadarThatWasMountedAnewIsLeftOutAlone) {
   changed[4].radars.erase(changed[4].radars.begin() + 1);
   for (const VehicleConfig& vehicle : changed) {
     Memory out;
-    std::size_t left_out = 0;
-    ASSERT_EQ(decode_memory(bytes, identity_of(vehicle), out, left_out), MemoryVerdict::kTaken);
-    EXPECT_EQ(left_out, 1u);
+    std::size_t rejected_radars = 0;
+    ASSERT_EQ(decode_memory(bytes, identity_of(vehicle), out, rejected_radars), MemoryVerdict::kTaken);
+    EXPECT_EQ(rejected_radars, 1u);
     ASSERT_EQ(out.number_of_radars, 3u);
     EXPECT_EQ(out.radars[0].id, 1u);
     EXPECT_EQ(out.radars[1].id, 3u);
@@ -139,7 +139,7 @@ TEST(MemoryCodec, ARadarThatWasMountedAnewIsLeftOutAlone) {
   }
 }
 
-TEST(MemoryCodec, StatesThatNoEstimatorHasAreRefused) {
+TEST(MemoryCodec, ImplausibleStatesAreRefused) {
   const Identity identity = identity_of(example_vehicle(2));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Memory> wrong(8, example_memory(2));
@@ -156,7 +156,7 @@ TEST(MemoryCodec, StatesThatNoEstimatorHasAreRefused) {
   }
 }
 
-TEST(MemoryCodec, WhatIsNotOfThisVehicleIsNotWritten) {
+TEST(MemoryCodec, ARadarOfAnotherVehicleIsNotWritten) {
   Memory memory = example_memory(2);
   memory.radars[1].id = 7;
   EXPECT_TRUE(encoded(memory, identity_of(example_vehicle(2))).empty());

@@ -1,4 +1,4 @@
-// A vehicle and what an estimator may have learnt on it.
+// A vehicle, and a memory that an estimator may have learnt on it.
 #pragma once
 
 #include "services/alignment_estimator/core/memory/identity.hpp"
@@ -18,7 +18,7 @@ inline VehicleConfig example_vehicle(std::size_t radars = 4) {
   return vehicle;
 }
 
-/// `mark` makes it distinguishable. The covariance is correlated throughout: D (0.5 I + 0.5 · 1 1ᵀ) D.
+/// `mark` makes the memory distinguishable. The covariance is correlated throughout: D (0.5 I + 0.5 · 1 1ᵀ) D.
 inline Memory example_memory(std::size_t radars = 4, double mark = 0.0) {
   Memory m;
   m.number_of_radars = radars;

@@ -54,15 +54,15 @@ TEST_F(MemoryFile, IsReplacedAsAWhole) {
   EXPECT_FALSE(fs::exists(folder_ / "memory.tmp"));
 }
 
-TEST_F(MemoryFile, WhatAKilledWriterLeftIsRemovedAndNotRead) {
+TEST_F(MemoryFile, TheTemporaryFileOfAKilledWriterIsRemovedAndNotRead) {
   ASSERT_EQ(write(1.0), "");
   std::ofstream(folder_ / "memory.tmp") << "half of it";
   EXPECT_NEAR(mark(), 1.0, 1e-9);
   EXPECT_FALSE(fs::exists(folder_ / "memory.tmp"));
-  ASSERT_EQ(write(2.0), "") << "and is not in the way";
+  ASSERT_EQ(write(2.0), "") << "the temporary file of a killed writer does no harm";
 }
 
-TEST_F(MemoryFile, ARefusedFileIsKeptAside) {
+TEST_F(MemoryFile, ARejectedFileIsRenamed) {
   for (const std::string& content : {std::string(), std::string("BORALIGN"), std::string(100'000, 'x')}) {
     put(content);
     const LoadedMemory loaded = load_memory(file_, identity_);
@@ -75,7 +75,7 @@ TEST_F(MemoryFile, ARefusedFileIsKeptAside) {
   }
 }
 
-TEST_F(MemoryFile, WhatCannotBeReadStaysWhereItIs) {
+TEST_F(MemoryFile, AnUnreadableFileStaysInPlace) {
   fs::create_directories(file_);
   const LoadedMemory loaded = load_memory(file_, identity_);
   EXPECT_EQ(loaded.kind, LoadedMemory::Kind::kUnreadable);
@@ -83,7 +83,7 @@ TEST_F(MemoryFile, WhatCannotBeReadStaysWhereItIs) {
   EXPECT_TRUE(fs::exists(file_));
 }
 
-TEST_F(MemoryFile, AFullMediumLeavesTheOldOne) {
+TEST_F(MemoryFile, AFullMediumKeepsTheOldFile) {
   ASSERT_EQ(write(1.0), "");
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -97,7 +97,7 @@ TEST_F(MemoryFile, AFullMediumLeavesTheOldOne) {
   EXPECT_NEAR(mark(), 1.0, 1e-9);
 }
 
-TEST_F(MemoryFile, AFolderThatIsNotThereIsSaid) {
+TEST_F(MemoryFile, AMissingFolderIsReported) {
   MemoryBytes bytes;
   const std::size_t size = encode_memory(example_memory(), identity_, bytes);
   EXPECT_NE(write_memory_file(folder_ / "none" / "memory", std::span(bytes.data(), size)).find("open: "),
@@ -111,13 +111,13 @@ TEST_F(MemoryFile, TheWriterTakesOneAtATimeAndTheLastOneWins) {
     for (int i = 0; i < 2000; ++i) taken += writer.offer(example_memory(4, i)) ? 1 : 0;
     EXPECT_GE(taken, 1);
     EXPECT_EQ(writer.finish(example_memory(4, 5000.0)), "");
-    EXPECT_EQ(writer.written(), static_cast<std::uint64_t>(taken) + 1) << "none taken is lost";
+    EXPECT_EQ(writer.written(), static_cast<std::uint64_t>(taken) + 1) << "no accepted memory is lost";
     EXPECT_EQ(writer.failed(), 0u);
   }
   EXPECT_NEAR(mark(), 5000.0, 1e-6);
 }
 
-TEST_F(MemoryFile, TheWriterCountsWhatFails) {
+TEST_F(MemoryFile, TheWriterCountsFailures) {
   MemoryWriter writer(folder_ / "none" / "memory", identity_);
   EXPECT_NE(writer.finish(example_memory()), "");
   EXPECT_EQ(writer.failed(), 1u);

@@ -1,4 +1,4 @@
-// Drives the planar filter along a simulated drive that follows the planar model.
+// Runs the planar filter along a simulated drive that follows the planar model.
 #pragma once
 
 #include <cmath>
@@ -7,18 +7,17 @@
 
 #include "services/alignment_estimator/core/planar/planar_filter.hpp"
 #include "services/common/estimation/ego_history.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment::planar {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 struct PlanarBench {
   explicit PlanarBench(const simulator::AlignmentSpec& s)
       : spec(s), drive(s), vehicle(drive.vehicle()), filter(std::make_unique<PlanarFilter>(vehicle, PlanarConfig{})) {}
 
   using Look = std::function<void(const simulator::AlignmentEvent&)>;
-  /// To the end of the drive; `before` may change the scan and the motion, `after` looks at the filter.
+  /// Runs to the end of the drive; `before` may change the scan and the motion, `after` reads the filter.
   void run(const Look& before = {}, const Look& after = {}) {
     simulator::AlignmentEvent event;
     while (drive.next(event)) {
@@ -37,7 +36,7 @@ struct PlanarBench {
     const auto& angles = spec.radars[radar].truth;
     return {spec.speed_scale, angles.yaw_rad, angles.pitch_rad, angles.roll_rad};
   }
-  /// Of (k_v, α, β, γ).
+  /// Error of (k_v, α, β, γ).
   [[nodiscard]] Eigen::Vector4d error(std::size_t radar) const { return filter->parameters(radar) - truth(radar); }
 
   simulator::AlignmentSpec spec;

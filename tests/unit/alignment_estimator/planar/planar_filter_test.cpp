@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/planar/planar_bench.hpp"
@@ -28,13 +29,13 @@ TEST(PlanarFilter, FindsTheTruthWithoutNoise) {
   for (std::size_t r = 0; r < 4; ++r) {
     const Eigen::Vector4d error = bench.error(r);
     EXPECT_LT(std::abs(error(0)), 5e-6) << r;
-    EXPECT_LT(std::abs(error(1)), 5e-4 * kDegree) << r;
-    EXPECT_LT(error.tail<2>().norm(), 0.005 * kDegree) << r;
+    EXPECT_LT(std::abs(error(1)), 5e-4 * kRadiansPerDegree) << r;
+    EXPECT_LT(error.tail<2>().norm(), 0.005 * kRadiansPerDegree) << r;
     EXPECT_EQ(bench.filter->estimate(r).state, AlignmentState::kConverged);
   }
 }
 
-TEST(PlanarFilter, FindsARadarThatIsMountedTiltedRolledAndOnItsHead) {
+TEST(PlanarFilter, FindsTiltedRolledAndUpsideDownRadars) {
   simulator::AlignmentSpec spec = without_noise(published_drive(20.0, 4));
   spec.radars[0].config.mounting_pose.pitch_rad = 0.06;
   spec.radars[1].config.mounting_pose.roll_rad = 0.2;
@@ -42,23 +43,23 @@ TEST(PlanarFilter, FindsARadarThatIsMountedTiltedRolledAndOnItsHead) {
   PlanarBench bench(spec);
   bench.run();
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(bench.error(r).tail<3>().norm(), 0.005 * kDegree) << r;
+    EXPECT_LT(bench.error(r).tail<3>().norm(), 0.005 * kRadiansPerDegree) << r;
     // The published angles are added to the nominal ones.
     const Eigen::Vector3d angles = geometry::euler_angles(bench.filter->estimate(r).sensor_to_vehicle);
     EXPECT_NEAR(angles(1), spec.radars[r].config.mounting_pose.pitch_rad + bench.truth(r)(2), 1e-4);
   }
 }
 
-TEST(PlanarFilter, BiasOnAShortPublishedDriveIsThatOfTheBoundAndItsStdIsHonest) {
+TEST(PlanarFilter, BiasOnAShortPublishedDriveReachesTheBoundAndItsStdIsConsistent) {
   PlanarBench bench(published_drive(120.0, 7));
   bench.run();
   Eigen::Vector4d nees = Eigen::Vector4d::Zero();
   for (std::size_t r = 0; r < 4; ++r) {
     const Eigen::Vector4d error = bench.error(r);
     EXPECT_LT(std::abs(error(0)), 2.99e-5) << r;
-    EXPECT_LT(std::abs(error(1)), 0.0106 / 2.0 * kDegree) << r;
-    EXPECT_LT(std::abs(error(2)), 0.0552 * kDegree) << r;  // 3 σ of the bound
-    EXPECT_LT(std::abs(error(3)), 0.0552 * kDegree) << r;
+    EXPECT_LT(std::abs(error(1)), 0.0106 / 2.0 * kRadiansPerDegree) << r;
+    EXPECT_LT(std::abs(error(2)), 0.0552 * kRadiansPerDegree) << r;  // 3 σ of the bound
+    EXPECT_LT(std::abs(error(3)), 0.0552 * kRadiansPerDegree) << r;
     nees += error.cwiseAbs2().cwiseQuotient(bench.filter->covariance(r).diagonal()) / 4.0;
   }
   EXPECT_LT(nees.tail<3>().mean(), 2.2);
@@ -66,8 +67,8 @@ TEST(PlanarFilter, BiasOnAShortPublishedDriveIsThatOfTheBoundAndItsStdIsHonest) 
 }
 
 TEST(PlanarFilter, AgreesWithADenseBatchOfTheSameDetections) {
-  // Gauss–Newton over all detections at once, k_v and twelve angles, uncorrected for noise of angles, of which there is
-  // next to none here.
+  // Gauss–Newton over all detections at once, k_v and twelve angles, without correction for the noise of angles, which
+  // is almost zero here.
   simulator::AlignmentSpec spec = published_drive(12.0, 8);
   for (simulator::AlignmentRadar& radar : spec.radars) {
     radar.config.noise.azimuth_std_rad = radar.config.noise.elevation_std_rad = 1e-5;
@@ -109,28 +110,28 @@ TEST(PlanarFilter, AgreesWithADenseBatchOfTheSameDetections) {
     for (Eigen::Index i = 0; i < 4; ++i) {
       const Eigen::Index at = i == 0 ? 0 : 3 * static_cast<Eigen::Index>(r) + i;
       const double std = std::sqrt(covariance(at, at));
-      // The start gives away most of a second and a half of twelve, and Tukey's weights some.
+      // The start loses the information of most of a second and a half of twelve; Tukey's weights lose some more.
       EXPECT_NEAR(bench.filter->parameters(r)(i), x(at), 1.0 * std) << r << ' ' << i;
       EXPECT_NEAR(std::sqrt(bench.filter->covariance(r)(i, i)), std, 0.15 * std) << r << ' ' << i;
     }
   }
 }
 
-TEST(PlanarFilter, HalfOfTheDetectionsMayMove) {
+TEST(PlanarFilter, ConvergesWithHalfOfTheDetectionsMoving) {
   simulator::AlignmentSpec spec = published_drive(40.0, 9);
   spec.outlier_share = 0.5;
   PlanarBench bench(spec);
   bench.run();
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_LT(std::abs(bench.error(r)(1)), 0.02 * kDegree) << r;
-    EXPECT_LT(bench.error(r).tail<2>().cwiseAbs().maxCoeff(), 0.25 * kDegree) << r;
+    EXPECT_LT(std::abs(bench.error(r)(1)), 0.02 * kRadiansPerDegree) << r;
+    EXPECT_LT(bench.error(r).tail<2>().cwiseAbs().maxCoeff(), 0.25 * kRadiansPerDegree) << r;
   }
 }
 
 TEST(PlanarFilter, WithoutElevationPitchAndRollAreNotObservable) {
   for (const bool measured : {true, false}) {
     simulator::AlignmentSpec spec = published_drive(30.0, 10);
-    // At one elevation: where it is measured, its noise must not pass for a spread.
+    // All reflectors at one elevation: the noise of a measured elevation must not count as spread.
     spec.elevation = simulator::ElevationKind::kZero;
     for (simulator::AlignmentRadar& radar : spec.radars) {
       radar.measures_elevation = measured;
@@ -142,12 +143,12 @@ TEST(PlanarFilter, WithoutElevationPitchAndRollAreNotObservable) {
       const RadarEstimate estimate = bench.filter->estimate(r);
       EXPECT_EQ(estimate.observable & kVehiclePitchAndRoll, 0u) << r << ' ' << measured;
       EXPECT_NE(estimate.observable & alignment_axis::kVehicleYaw, 0u) << r;
-      EXPECT_LT(std::abs(bench.error(r)(1)), 0.05 * kDegree) << r << ' ' << measured;
+      EXPECT_LT(std::abs(bench.error(r)(1)), 0.05 * kRadiansPerDegree) << r << ' ' << measured;
     }
   }
 }
 
-TEST(PlanarFilter, LearnsNothingAtAStandstillNorFromNonsense) {
+TEST(PlanarFilter, IgnoresAStandstillAndInvalidScans) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const int kind : {0, 1, 2, 3}) {
     PlanarBench bench(published_drive(4.0, 11));
@@ -180,7 +181,7 @@ TEST(PlanarFilter, AllocatesNothing) {
       static_cast<void>(bench.filter->estimate(e.radar));
     }
     allocations += runtime::counted_allocations() - before;
-    bench.scan->count = 0;  // what the bench itself gives to the filter is empty
+    bench.scan->count = 0;  // the bench itself passes an empty scan
   });
   EXPECT_EQ(allocations, 0u);
   EXPECT_NE(bench.filter->estimate(0).observable & alignment_axis::kVehicleYaw, 0u);

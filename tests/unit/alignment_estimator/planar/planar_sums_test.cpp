@@ -1,4 +1,4 @@
-// The rows of the planar filter: derivatives, and a score that is zero in expectation at the truth.
+// The rows of the planar filter: derivatives, and a score with zero mean at the truth.
 #include "services/alignment_estimator/core/planar/planar_sums.hpp"
 
 #include <random>
@@ -46,7 +46,7 @@ TEST(PlanarRow, IsThatOfTheEquationsAndItsGradientTheNumericOne) {
 }
 
 TEST(PlanarSums, ScoreHasNoBiasByTheNoiseOfTheAngles) {
-  // At the truth the corrected score is zero in expectation; uncorrected, Σ g·e/s², it is many of its stds away.
+  // At the truth the corrected score has zero mean; the uncorrected one, Σ g·e/s², is many stds away.
   constexpr std::size_t kCount = 400'000;
   constexpr double kAngleStd = 0.01, kRateStd = 0.02;
   std::mt19937 random(5);

@@ -1,4 +1,4 @@
-// The plate's fit against closed forms, its invariances, what it must refuse, and its error over many simulated runs.
+// The fit of the plate: closed forms, invariances, refused runs, and the error over many simulated runs.
 #include "services/alignment_estimator/core/plate/fit.hpp"
 
 #include <algorithm>
@@ -131,13 +131,13 @@ TEST_P(EitherMethod, finds_the_truth_of_a_perfect_run_with_its_sign) {
     EXPECT_THAT(result.triples_median_rad / kDeg, DoubleNear(pitch_deg, 1e-6));
     EXPECT_EQ(result.self_consistency, 1.0);
     EXPECT_EQ(result.tilts_used, 11u);
-    // Two ways, each 3.01 dB at half the width: b₁ = −8·10·log₁₀2 / width².
+    // Transmit and receive path, each 3.01 dB at half the width: b₁ = −8·10·log₁₀2 / width².
     EXPECT_NEAR(result.parabola[0], -80.0 * std::log10(2.0) / (0.192 * 0.192), 1e-3);
   }
 }
 
-TEST_P(EitherMethod, a_boresight_that_looks_up_is_met_squarely_by_a_plate_that_leans_forward) {
-  // Positive tilt = toward the ground; looking up is the opposite: the strongest tilt is negative.
+TEST_P(EitherMethod, a_boresight_that_looks_up_is_square_to_a_plate_that_leans_forward) {
+  // A positive tilt is toward the ground. For a radar that looks up the strongest tilt is therefore negative.
   const PlateResult result = evaluated(run_of(exact(0.0, 2.0)), GetParam());
   const auto strongest = std::max_element(result.tilts.begin(), result.tilts.begin() + 11,
                                           [](const auto& a, const auto& b) { return a.mean_db < b.mean_db; });
@@ -165,7 +165,7 @@ TEST_P(EitherMethod, is_shifted_by_a_shift_of_the_tilts_and_of_the_azimuths_and_
   EXPECT_NEAR(shifted.pitch_std_rad, before.pitch_std_rad, 1e-9);
 }
 
-TEST_P(EitherMethod, turns_its_sign_with_the_tilts_and_does_not_care_for_their_order) {
+TEST_P(EitherMethod, changes_its_sign_with_the_tilts_and_does_not_depend_on_their_order) {
   const Measurements run = run_of(PlateSpec{}, 12);
   const PlateResult before = evaluated(run, GetParam());
   const PlateResult mirrored = evaluated(
@@ -175,7 +175,7 @@ TEST_P(EitherMethod, turns_its_sign_with_the_tilts_and_does_not_care_for_their_o
   Measurements backwards = run;
   std::reverse(backwards.tilts.begin(), backwards.tilts.begin() + 11);
   EXPECT_NEAR(evaluated(backwards, GetParam()).pitch_rad, before.pitch_rad, 1e-9);
-  EXPECT_EQ(evaluated(run, GetParam()).triples_median_rad, before.triples_median_rad) << "the same choice of triples";
+  EXPECT_EQ(evaluated(run, GetParam()).triples_median_rad, before.triples_median_rad) << "the same triples";
 }
 
 TEST(PlateFit, published_azimuth_drops_what_is_over_two_sigma_twice) {
@@ -190,7 +190,7 @@ TEST(PlateFit, published_azimuth_drops_what_is_over_two_sigma_twice) {
 }
 
 TEST(PlateFit, published_weights_follow_the_scatter) {
-  // A tilt that is wrong but scatters a hundred times more hardly matters.
+  // A wrong tilt with a hundredfold scatter has hardly any effect.
   Measurements run = run_of(exact(0.0, 1.0));
   for (std::size_t i = 0; i < run.number_of_tilts; ++i) {
     const double middle = run.tilts[i].amplitude_db[0], half = i == 2 ? 50.0 : 0.5;
@@ -202,7 +202,7 @@ TEST(PlateFit, published_weights_follow_the_scatter) {
   EXPECT_NEAR(evaluated(run, FitMethod::kPublished).pitch_rad / kDeg, 1.0, 0.001);
 }
 
-TEST(PlateFit, robust_leaves_out_the_bad_tilts_and_says_which) {
+TEST(PlateFit, robust_rejects_the_bad_tilts_and_reports_them) {
   Measurements run = run_of(exact(0.5, -1.0));
   for (const std::size_t bad : {0u, 8u}) {
     TiltMeasurement spoilt;
@@ -224,11 +224,11 @@ TEST_P(EitherMethod, without_a_maximum_the_run_failed) {
   const PlateResult bowl = evaluated(
       changed(run_of(PlateSpec{}, 3), [](double&, double& amplitude, double&) { amplitude = -amplitude; }), GetParam());
   EXPECT_EQ(bowl.failure, Failure::kNoMaximum);
-  EXPECT_GT(bowl.parabola[0], 0.0) << "the fit is shown";
+  EXPECT_GT(bowl.parabola[0], 0.0) << "the fit is still reported";
   EXPECT_EQ(bowl.number_of_tilts, 11u);
 }
 
-TEST(PlateFit, robust_calls_noise_no_maximum) {
+TEST(PlateFit, robust_finds_no_maximum_in_noise) {
   int found = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     PlateSpec flat;
@@ -250,10 +250,10 @@ TEST_P(EitherMethod, an_amplitude_below_the_limit_fails_the_bumper) {
   config.min_amplitude_db = 20.1;
   const PlateResult result = evaluate(run_of(exact(0.0, 1.0)), config);
   EXPECT_EQ(result.failure, Failure::kAmplitudeTooLow);
-  EXPECT_NEAR(result.pitch_rad / kDeg, 1.0, 1e-6) << "known all the same";
+  EXPECT_NEAR(result.pitch_rad / kDeg, 1.0, 1e-6) << "still computed";
 }
 
-TEST_P(EitherMethod, refuses_what_is_no_run) {
+TEST_P(EitherMethod, refuses_invalid_runs) {
   const Measurements good = run_of(PlateSpec{});
   Measurements run = good;
   run.number_of_tilts = 4;
@@ -297,7 +297,7 @@ TEST(PlateFit, robust_needs_tilts_that_agree) {
   EXPECT_EQ(evaluate(run, config).failure, Failure::kTooFewTilts);
 }
 
-TEST(PlateFit, robust_does_not_choose_between_two_halves_that_saw_the_plate_elsewhere) {
+TEST(PlateFit, robust_fails_if_two_halves_see_the_plate_at_different_azimuths) {
   PlateSpec spec;
   spec.number_of_tilts = 10;
   const Measurements halves = changed(run_of(spec, 8), [](double& tilt, double&, double& azimuth) {
@@ -343,7 +343,7 @@ TEST(PlateFit, every_failure_has_a_name_and_a_sentence_of_its_own) {
   }
 }
 
-/// The bars with fewer runs than the benchmark's, so with a little room for chance.
+/// The bars (limits) with fewer runs than in the benchmark, and so with a small margin.
 TEST(PlateMonteCarlo, meets_the_bars) {
   const auto settings = simulator::plate_settings();
   const simulator::PlateRow clean = plate_errors(settings[0].spec, 300, 21);
@@ -354,7 +354,8 @@ TEST(PlateMonteCarlo, meets_the_bars) {
   EXPECT_LE(two.robust_yaw_deg, 0.021);
   EXPECT_EQ(clean.robust_failed + one.robust_failed, 0u);
   EXPECT_LE(two.robust_failed, 3u);
-  // As hard as the setting that the bars were found in: the plain fit at about 0.40°, the triples at about 0.20°.
+  // As difficult as the setting that the bars were derived from: the plain fit at about 0.40°, the triples at about
+  // 0.20°.
   EXPECT_THAT(one.published_pitch_deg, DoubleNear(0.42, 0.12));
   EXPECT_THAT(one.triples_pitch_deg, DoubleNear(0.20, 0.06));
   EXPECT_THAT(two.published_yaw_deg, DoubleNear(0.055, 0.01));
@@ -362,7 +363,7 @@ TEST(PlateMonteCarlo, meets_the_bars) {
     EXPECT_THAT(row.robust_pitch_nees, DoubleNear(1.0, 0.35));
     EXPECT_THAT(row.robust_yaw_nees, DoubleNear(1.0, 0.45));
   }
-  // Without outliers robustness costs little.
+  // Without outliers the robust fit loses little accuracy.
   EXPECT_LE(clean.robust_pitch_deg, 1.1 * clean.published_pitch_deg);
 }
 

@@ -1,4 +1,4 @@
-// What the plate tells the dynamic estimator: checked by looking along the boresight of radars mounted in every way.
+// Start value of the dynamic estimator from the plate: checked along the boresight of radars in various mountings.
 #include "services/alignment_estimator/core/plate/seed.hpp"
 
 #include <limits>
@@ -40,7 +40,7 @@ TEST(PlateSeed, is_the_alignment_angles_of_a_radar_that_is_mounted_upright) {
   }
 }
 
-TEST(PlateSeed, explains_what_a_radar_mounted_in_any_way_would_see) {
+TEST(PlateSeed, explains_the_view_of_a_radar_in_any_mounting) {
   // Actual boresight and the azimuth at which the plate, on the nominal boresight, would be seen: computed from the
   // rotation alone, then read as the station does.
   for (const double roll_deg : {0.0, 180.0, 20.0, -30.0, 150.0}) {
@@ -57,7 +57,7 @@ TEST(PlateSeed, explains_what_a_radar_mounted_in_any_way_would_see) {
   }
 }
 
-TEST(PlateSeed, knows_least_about_the_turn_around_boresight) {
+TEST(PlateSeed, is_least_certain_about_the_roll_around_boresight) {
   const RadarConfig radar = mounted(45.0, 0.0, 180.0);
   SeedConfig config;
   RotationSeed seed;
@@ -82,7 +82,7 @@ TEST(PlateSeed, refuses_what_it_cannot_turn_into_angles) {
   EXPECT_EQ(seed.radar_id, 99u);
 }
 
-/// A memory whose covariance names row and column in its values, to see what was moved where.
+/// A memory whose covariance values encode row and column, to check where they were moved.
 std::unique_ptr<Memory> numbered(std::size_t radars) {
   auto memory = std::make_unique<Memory>();
   memory->number_of_radars = radars;
@@ -141,7 +141,7 @@ TEST(PlateSeed, adds_a_radar_that_the_memory_does_not_know) {
   expect_only_changed(*memory, 2);
 }
 
-TEST(PlateSeed, a_full_or_damaged_memory_is_left_alone) {
+TEST(PlateSeed, a_full_or_damaged_memory_is_unchanged) {
   auto memory = numbered(kMaxRadars);
   EXPECT_FALSE(put_seed(some_seed(99), *memory));
   EXPECT_TRUE(put_seed(some_seed(16), *memory));

@@ -1,4 +1,4 @@
-// The station's hand-shake: every command in every state, time-outs, wrong plans, and the scans that count.
+// The dialogue with the station: every command in every state, time-outs, wrong plans, and the scans that count.
 #include "services/alignment_estimator/core/plate/station.hpp"
 
 #include <functional>
@@ -101,7 +101,7 @@ TEST_F(Plate, a_run_from_start_to_result) {
   EXPECT_NEAR(station_.result().maximum_db, 20.0, 1e-4);
 }
 
-/// Every command in every state: whether it is obeyed, and the state after it.
+/// Every command in every state: whether it is executed, and the state after it.
 TEST_F(Plate, every_command_in_every_state) {
   using Command = std::function<Refusal()>;
   const std::vector<std::pair<std::string, Command>> commands{
@@ -115,7 +115,7 @@ TEST_F(Plate, every_command_in_every_state) {
   constexpr State kIdle = State::kIdle, kPositioning = State::kPositioning, kMeasuring = State::kMeasuring,
                   kTiltDone = State::kTiltDone, kFinished = State::kFinished, kFailed = State::kFailed;
   const std::vector<std::pair<State, std::vector<State>>> after{
-      // start, measure, next, repeat_tilt, repeat_run, abort; the same state: refused, but where said otherwise
+      // start, measure, next, repeat_tilt, repeat_run, abort; an unchanged state means refused, unless stated
       {kIdle, {kPositioning, kIdle, kIdle, kIdle, kIdle, kIdle}},
       {kPositioning, {kPositioning, kMeasuring, kPositioning, kPositioning, kPositioning, kFailed}},
       {kMeasuring, {kMeasuring, kMeasuring, kMeasuring, kPositioning, kPositioning, kFailed}},
@@ -145,7 +145,7 @@ TEST_F(Plate, every_command_in_every_state) {
   }
 }
 
-TEST_F(Plate, refuses_plans_that_cannot_be_and_stays_idle) {
+TEST_F(Plate, refuses_impossible_plans_and_stays_idle) {
   EXPECT_EQ(start(plan_of(4)), Refusal::kTooFewTilts);
   EXPECT_EQ(start(plan_of(0)), Refusal::kTooFewTilts);
   EXPECT_EQ(start(plan_of(12)), Refusal::kTooManyTilts);
@@ -166,16 +166,16 @@ TEST_F(Plate, refuses_plans_that_cannot_be_and_stays_idle) {
   EXPECT_EQ(station_.repeat_run(time_), Refusal::kNoRun);
   plan = plan_of();
   std::reverse(plan.tilts_rad.begin(), plan.tilts_rad.end());
-  EXPECT_EQ(start(plan), Refusal::kNone) << "falling tilts are as good as rising ones";
+  EXPECT_EQ(start(plan), Refusal::kNone) << "decreasing tilts are permitted too";
 }
 
-TEST_F(Plate, a_plate_at_another_tilt_than_asked_for_is_not_measured) {
+TEST_F(Plate, a_plate_at_another_tilt_than_requested_is_not_measured) {
   ASSERT_EQ(start(), Refusal::kNone);
   EXPECT_EQ(station_.measure(-4.0 * kDeg, time_), Refusal::kWrongTilt);
   EXPECT_EQ(station_.measure(std::numeric_limits<double>::quiet_NaN(), time_), Refusal::kTiltOutOfRange);
   EXPECT_EQ(station_.state(), State::kPositioning);
   EXPECT_EQ(station_.measure(-4.8 * kDeg, time_), Refusal::kNone);
-  EXPECT_NEAR(station_.progress(time_).tilt_rad, -4.8 * kDeg, 1e-12) << "what the station measured counts";
+  EXPECT_NEAR(station_.progress(time_).tilt_rad, -4.8 * kDeg, 1e-12) << "the tilt measured by the station counts";
 }
 
 TEST_F(Plate, tilts_that_pass_one_another_within_the_tolerance_are_refused) {
@@ -211,7 +211,7 @@ TEST_F(Plate, every_waiting_state_times_out_with_its_reason) {
   wait(3.1);
   EXPECT_EQ(station_.progress(time_).failure, Failure::kNoPlateSeen);
 
-  // A plate that is seen now and then keeps silence away, but not the limit of the whole tilt.
+  // A plate that is seen at intervals prevents the silence time-out, but not the time-out of the tilt.
   bring_to(State::kMeasuring);
   for (int i = 0; i < 20 && station_.state() == State::kMeasuring; ++i) {
     wait(2.9);
@@ -226,12 +226,12 @@ TEST_F(Plate, every_waiting_state_times_out_with_its_reason) {
   for (const State state : {State::kIdle, State::kFinished, State::kFailed}) {
     bring_to(state);
     wait(1e6);
-    EXPECT_EQ(station_.state(), state) << "nothing is waited for";
+    EXPECT_EQ(station_.state(), state) << "this state has no time-out";
     EXPECT_EQ(station_.progress(time_).seconds_left, 0.0);
   }
 }
 
-TEST_F(Plate, a_command_that_comes_too_late_finds_the_run_failed) {
+TEST_F(Plate, a_late_command_is_refused_because_the_run_failed) {
   bring_to(State::kTiltDone);
   time_ += 61 * kSecond;
   EXPECT_EQ(station_.next(time_), Refusal::kWrongState);
@@ -249,7 +249,7 @@ TEST_F(Plate, a_clock_that_goes_back_does_not_stretch_a_time_out) {
   EXPECT_EQ(station_.state(), State::kFailed);
 }
 
-TEST_F(Plate, an_abort_is_told_and_forgets_the_result) {
+TEST_F(Plate, an_abort_is_reported_and_deletes_the_result) {
   config_.settle_s = 0.0;
   bring_to(State::kMeasuring);
   EXPECT_EQ(station_.abort(time_), Refusal::kNone);
@@ -257,7 +257,7 @@ TEST_F(Plate, an_abort_is_told_and_forgets_the_result) {
   EXPECT_FALSE(station_.result().ok());
 }
 
-TEST_F(Plate, a_repeated_tilt_forgets_what_was_collected) {
+TEST_F(Plate, a_repeated_tilt_deletes_its_scans) {
   ASSERT_EQ(start(), Refusal::kNone);
   ASSERT_EQ(measure(), Refusal::kNone);
   for (int i = 0; i < 15; ++i) scan(3.0);
@@ -291,7 +291,7 @@ TEST_F(Plate, only_new_scans_after_the_plate_settled_count) {
   }
   EXPECT_EQ(station_.progress(time_).scans_collected, 1u);
   EXPECT_EQ(station_.progress(time_).scans_without_plate, 0u);
-  scan(20.0, 0.3);  // 17° off straight ahead
+  scan(20.0, 0.3);  // 17° from straight ahead
   EXPECT_EQ(station_.progress(time_).scans_collected, 1u);
   EXPECT_EQ(station_.progress(time_).scans_without_plate, 1u);
 }
@@ -306,13 +306,13 @@ TEST_F(Plate, a_run_without_a_maximum_failed_and_can_be_repeated) {
   }
   EXPECT_EQ(station_.state(), State::kFailed);
   EXPECT_EQ(station_.progress(time_).failure, Failure::kNoMaximum);
-  EXPECT_EQ(station_.result().number_of_tilts, 11u) << "what was measured can be looked at";
+  EXPECT_EQ(station_.result().number_of_tilts, 11u) << "the measurements can be read";
   ASSERT_EQ(station_.repeat_run(time_), Refusal::kNone);
   EXPECT_EQ(station_.progress(time_).number_of_tilts, 11u);
   EXPECT_EQ(station_.result().number_of_tilts, 0u);
 }
 
-TEST(FindPlate, takes_the_strongest_detection_that_stands_still_in_the_window) {
+TEST(FindPlate, takes_the_strongest_stationary_detection_in_the_window) {
   const auto scan = std::make_unique<RadarScan>();
   *scan = {};
   scan->fields = scan_field::kRcs | scan_field::kSnr;
@@ -326,8 +326,8 @@ TEST(FindPlate, takes_the_strongest_detection_that_stands_still_in_the_window) {
       {4.2F, -0.02F, 0.0F, 8.0F, 35.0F, 0},                        // weaker by RCS, stronger by SNR
       {0.5F, 0.0F, 0.0F, 40.0F, 60.0F, 0},                         // too near
       {20.0F, 0.0F, 0.0F, 40.0F, 60.0F, 0},                        // too far
-      {4.0F, 0.2F, 0.0F, 40.0F, 60.0F, 0},                         // aside
-      {4.0F, 0.0F, 1.0F, 40.0F, 60.0F, 0},                         // a walker
+      {4.0F, 0.2F, 0.0F, 40.0F, 60.0F, 0},                         // outside the azimuth window
+      {4.0F, 0.0F, 1.0F, 40.0F, 60.0F, 0},                         // a moving pedestrian
       {4.0F, 0.0F, 0.0F, 40.0F, 60.0F, detection_flag::kInvalid},  // invalid
       {kNan, 0.0F, 0.0F, 40.0F, 60.0F, 0},
       {4.0F, kNan, 0.0F, 40.0F, 60.0F, 0},
@@ -352,7 +352,7 @@ TEST(FindPlate, takes_the_strongest_detection_that_stands_still_in_the_window) {
   EXPECT_FLOAT_EQ(static_cast<float>(find_plate(*scan, window).amplitude_db), 35.0F);
   scan->fields = scan_field::kSnr;
   window.amplitude = Amplitude::kAny;
-  EXPECT_FLOAT_EQ(static_cast<float>(find_plate(*scan, window).amplitude_db), 35.0F) << "SNR where there is no RCS";
+  EXPECT_FLOAT_EQ(static_cast<float>(find_plate(*scan, window).amplitude_db), 35.0F) << "SNR without RCS";
   window.amplitude = Amplitude::kRcs;
   EXPECT_FALSE(find_plate(*scan, window).seen);
   scan->fields = 0;

@@ -1,8 +1,9 @@
-// The published methods as methods: where they end, what they do not touch, what they survive.
+// The published methods: their results, the parameters that they leave unchanged, and invalid inputs.
 #include <limits>
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/published/planar_world.hpp"
@@ -17,7 +18,7 @@ double worst_angle_deg(const Method& method, const PlanarWorld& world, int first
   double worst = 0.0;
   for (std::size_t r = 0; r < world.vehicle.radars.size(); ++r) {
     const Eigen::Vector4d error = parameters(method, r) - world.truth[r];
-    for (int p = first; p <= last; ++p) worst = std::max(worst, std::abs(error(p)) / kDegree);
+    for (int p = first; p <= last; ++p) worst = std::max(worst, std::abs(error(p)) / kRadiansPerDegree);
   }
   return worst;
 }
@@ -30,8 +31,8 @@ TEST(PublishedMethods, LeastSquaresFindsTheTruthWithItsPublishedConstants) {
   EXPECT_LT(worst_angle_deg(*method, world), 0.005);
 }
 
-TEST(PublishedMethods, SteepestDescentFindsTheAnglesAndIsOnItsWayToTheSpeedScale) {
-  // η = 1e-6 of k_v times a mean square gradient of some 60 (m/s)²: 95 % of the way takes about 50,000 scans.
+TEST(PublishedMethods, SteepestDescentFindsTheAnglesAndApproachesTheSpeedScale) {
+  // η = 1e-6 of k_v times a mean square gradient of some 60 (m/s)²: 95 % of the distance needs about 50,000 scans.
   PlanarWorld world;
   world.detections = 16;
   const auto method = make_published(Kind::kSteepestDescent, world.vehicle, as_published());
@@ -65,8 +66,8 @@ TEST(PublishedMethods, TotalLeastSquaresFindsTheTruth) {
 }
 
 TEST(PublishedMethods, NelderMeadFindsTheTruthInNoise) {
-  // Without noise it would stop where no vertex of the simplex is better than the estimate: within about a quarter of
-  // its edge. Noise makes it move both ways, by as much as it is wrong.
+  // Without noise it stops where no vertex of the simplex is better than the estimate, within about a quarter of the
+  // edge. Noise moves the estimate in both directions, in proportion to its error.
   PlanarWorld world;
   world.noise_mps = 0.03;
   const auto method = make_published(Kind::kNelderMead, world.vehicle, as_published());
@@ -76,7 +77,7 @@ TEST(PublishedMethods, NelderMeadFindsTheTruthInNoise) {
   EXPECT_LT(worst_angle_deg(*method, world), 0.3);
 }
 
-TEST(PublishedMethods, TheReferenceFindsAzimuthsOfARadarThatIsOnlyTurned) {
+TEST(PublishedMethods, TheReferenceFindsTheYawOfARadarWithoutPitchAndRoll) {
   PlanarWorld world;
   for (Eigen::Vector4d& truth : world.truth) truth(2) = truth(3) = 0.0;
   const auto method = make_published(Kind::kAzimuth1d, world.vehicle, as_published());
@@ -112,7 +113,7 @@ TEST(PublishedMethods, TheEstimateIsTheMountingWithTheAnglesAdded) {
   }
 }
 
-TEST(PublishedMethods, RadarsThatAreNotSynchronisedEndAtTheSame) {
+TEST(PublishedMethods, UnsynchronisedRadarsGiveTheSameResult) {
   for (const Kind kind : {Kind::kLeastSquares, Kind::kSteepestDescent}) {
     PlanarWorld together, apart;
     const auto a = make_published(kind, together.vehicle, as_published());
@@ -122,7 +123,7 @@ TEST(PublishedMethods, RadarsThatAreNotSynchronisedEndAtTheSame) {
     for (std::size_t r = 0; r < 4; ++r) {
       const Eigen::Vector4d difference = parameters(*a, r) - parameters(*b, r);
       EXPECT_LT(std::abs(difference(0)), 1e-5);
-      EXPECT_LT(difference.tail<3>().norm(), 0.01 * kDegree);
+      EXPECT_LT(difference.tail<3>().norm(), 0.01 * kRadiansPerDegree);
     }
   }
 }
@@ -143,7 +144,7 @@ TEST(PublishedMethods, ARadarOfHalfTheRateSharesTheSpeedScale) {
 }
 
 TEST(PublishedMethods, ASingleRadarTakesTheWholeStep) {
-  // As fast as the others: 1 − exp(−3) after 3 / η scans, whatever the number of radars in the vehicle file.
+  // As fast as with the others: 1 − exp(−3) after 3 / η scans, whatever the number of radars in the vehicle file.
   PlanarWorld world;
   const auto method = make_published(Kind::kLeastSquares, world.vehicle, as_published());
   for (int i = 0; i < 4'000; ++i) {
@@ -155,7 +156,7 @@ TEST(PublishedMethods, ASingleRadarTakesTheWholeStep) {
   EXPECT_EQ(method->estimate(0).state, AlignmentState::kNoData);
 }
 
-TEST(PublishedMethods, TheGateKeepsMoversOut) {
+TEST(PublishedMethods, TheGateRejectsMovingObjects) {
   for (const bool gate : {false, true}) {
     PlanarWorld world;
     world.movers = 0.3;
@@ -165,7 +166,7 @@ TEST(PublishedMethods, TheGateKeepsMoversOut) {
     const auto method = make_published(Kind::kLeastSquares, world.vehicle, config);
     world.drive(*method, 6'000);
     if (gate) {
-      // Not zero: in some scans half of the few detections move, and the deviation's median with them.
+      // Not zero: in some scans half of the few detections move, and the median deviation moves with them.
       EXPECT_LT(worst_angle_deg(*method, world, 1, 1), 0.1);
       EXPECT_LT(worst_angle_deg(*method, world), 0.8);
       EXPECT_NEAR(method->estimate(0).inlier_ratio, 0.7, 0.05);
@@ -207,7 +208,7 @@ TEST(PublishedMethods, TheStraightModelIsWrongInCurvesAndRightWhereItIsUsedOnStr
     config.straight_yaw_rate_radps = 0.002;
     const auto method = make_published(Kind::kLeastSquares, world.vehicle, config);
     world.drive(*method, 12'000);
-    return std::max(worst_angle_deg(*method, world), std::abs(parameters(*method, 0)(0) - 1.01) / kDegree);
+    return std::max(worst_angle_deg(*method, world), std::abs(parameters(*method, 0)(0) - 1.01) / kRadiansPerDegree);
   };
   EXPECT_GT(yaw_error(RoadModel::kStraight), 0.05);
   EXPECT_LT(yaw_error(RoadModel::kStraightWhereSlow), 0.02);
@@ -220,7 +221,7 @@ TEST(PublishedMethods, TheStraightModelIsWrongInCurvesAndRightWhereItIsUsedOnStr
   EXPECT_LT(worst_angle_deg(*method, straight), 0.02);
 }
 
-TEST(PublishedMethods, PredictsWhatTheWorldShowsOnceConverged) {
+TEST(PublishedMethods, PredictsTheMeasuredRangeRatesOnceConverged) {
   PlanarWorld world;
   const auto method = make_published(Kind::kLeastSquares, world.vehicle, as_published());
   world.drive(*method, 12'000);
@@ -232,7 +233,7 @@ TEST(PublishedMethods, PredictsWhatTheWorldShowsOnceConverged) {
   }
 }
 
-TEST(PublishedMethods, LearnNothingFromScansThatSayNothing) {
+TEST(PublishedMethods, IgnoreScansWithoutInformation) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const Kind kind : kAll) {
     PlanarWorld world;
@@ -268,13 +269,13 @@ TEST(PublishedMethods, LearnNothingFromScansThatSayNothing) {
     method->process(0, *world.scan, world.ego);
     EXPECT_TRUE(untouched());
     world.look(0, 0.05);
-    method->process(4, *world.scan, world.ego);  // no such radar
+    method->process(4, *world.scan, world.ego);  // unknown radar
     EXPECT_TRUE(untouched());
     EXPECT_EQ(method->estimate(4).state, AlignmentState::kNoData);
   }
 }
 
-TEST(PublishedMethods, ADetectionThatIsNoNumberDoesNotSpoilItsScan) {
+TEST(PublishedMethods, ADetectionThatIsNotANumberDoesNotAffectItsScan) {
   for (const Kind kind : kAll) {
     PlanarWorld world;
     const auto method = make_published(kind, world.vehicle, as_published());
@@ -291,7 +292,7 @@ TEST(PublishedMethods, ADetectionThatIsNoNumberDoesNotSpoilItsScan) {
   }
 }
 
-TEST(PublishedMethods, OneAzimuthIsNotTakenForFourParameters) {
+TEST(PublishedMethods, OneAzimuthDoesNotDetermineFourParameters) {
   for (const Kind kind : kAll) {
     PlanarWorld world;
     world.one_azimuth = true;
@@ -306,7 +307,7 @@ TEST(PublishedMethods, OneAzimuthIsNotTakenForFourParameters) {
   }
 }
 
-TEST(PublishedMethods, AStepThatDivergesStaysWithinItsBounds) {
+TEST(PublishedMethods, ADivergentStepStaysWithinItsLimits) {
   PlanarWorld world;
   PublishedConfig config = as_published();
   config.steepest_descent_rate = {1.0, 1.0, 1.0, 1.0};
@@ -319,7 +320,7 @@ TEST(PublishedMethods, AStepThatDivergesStaysWithinItsBounds) {
   }
 }
 
-TEST(PublishedMethods, GoOnWhereTheLastIgnitionCycleEnded) {
+TEST(PublishedMethods, ContinueFromTheLastIgnitionCycle) {
   for (const Kind kind : kAll) {
     PlanarWorld world;
     world.vehicle.radars[1].mounting_pose.roll_rad = M_PI;  // upside down
@@ -333,7 +334,7 @@ TEST(PublishedMethods, GoOnWhereTheLastIgnitionCycleEnded) {
     second->restore(memory);
     for (std::size_t r = 0; r < 4; ++r) EXPECT_LT((parameters(*second, r) - parameters(*first, r)).norm(), 1e-9) << r;
     EXPECT_EQ(second->estimate(2).state, AlignmentState::kNoData);
-    memory.radars[3].id = 9;  // another radar stands there now
+    memory.radars[3].id = 9;  // another radar is mounted there now
     memory.radars[2].rotation_vehicle_rad[0] = std::numeric_limits<double>::quiet_NaN();
     memory.speed_scale = std::numeric_limits<double>::quiet_NaN();
     const auto third = make_published(kind, world.vehicle, as_published());

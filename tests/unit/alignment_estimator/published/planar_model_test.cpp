@@ -76,7 +76,7 @@ TEST(PlanarModel, IsTheRotationWhereThereIsNeitherPitchNorRoll) {
 TEST(PlanarModel, GradientsOfSpeedYawAndPitchAheadAreThoseOfTheRotation) {
   for (Case c : cases(200)) {
     c.nominal.pitch_rad = c.nominal.roll_rad = c.b(2) = c.b(3) = 0.0;
-    c.azimuth_rad = 0.0;  // beside the boresight the planar pitch is another one than the rotation's
+    c.azimuth_rad = 0.0;  // off the boresight the planar pitch differs from that of the rotation
     const RangeRate r = PlanarModel(c.nominal, c.b, c.speed_mps, c.yaw_rate_radps)(c.azimuth_rad, c.elevation_rad);
     for (int p = 0; p < 3; ++p) {
       Case above = c, below = c;
@@ -87,8 +87,9 @@ TEST(PlanarModel, GradientsOfSpeedYawAndPitchAheadAreThoseOfTheRotation) {
   }
 }
 
-TEST(PlanarModel, IsNoRotationElsewhere) {
-  // algorithms.md §1.4: 2° of each error, 60° to the side: off by more than a degree, which is 0.1 m/s and more.
+TEST(PlanarModel, IsNotARotationElsewhere) {
+  // docs/algorithms/published-alignment.md: 2° of each error, 60° to the side: off by more than a degree, which is 0.1
+  // m/s and more.
   constexpr double kTwoDegrees = 2.0 * M_PI / 180.0;
   const Case c{{{3.6, 0.7, 0.5}, 0.785, 0.0, 0.0}, {1.0, 0.0, kTwoDegrees, kTwoDegrees}, 20.0, 0.0, 1.047, 0.15};
   EXPECT_GT(std::abs(PlanarModel(c.nominal, c.b, c.speed_mps, 0.0).value(c.azimuth_rad, c.elevation_rad) - exact(c)),

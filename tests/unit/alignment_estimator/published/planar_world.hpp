@@ -1,4 +1,4 @@
-// Four corner radars in a world that obeys the planar model, without noise: what a method must find to the last digit.
+// Four corner radars in a world that follows the planar model, without noise: methods must find the exact values.
 #pragma once
 
 #include <cmath>
@@ -8,10 +8,9 @@
 
 #include "services/alignment_estimator/core/published/published.hpp"
 #include "services/alignment_estimator/core/published/published_method.hpp"
+#include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment::published {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 inline VehicleConfig four_corners() {
   VehicleConfig vehicle;
@@ -19,18 +18,19 @@ inline VehicleConfig four_corners() {
   for (std::uint32_t i = 0; i < 4; ++i) {
     RadarConfig radar;
     radar.id = i + 1;
-    radar.mounting_pose = {{x[i], y[i], 0.5}, yaw[i] * kDegree, 0.0, 0.0};
+    radar.mounting_pose = {{x[i], y[i], 0.5}, yaw[i] * kRadiansPerDegree, 0.0, 0.0};
     radar.cycle_time_s = 0.05;
     vehicle.radars.push_back(radar);
   }
   return vehicle;
 }
 
-/// Table 1 of Report A.
+/// Table 1 of Burza 2025.
 inline std::vector<Eigen::Vector4d> table_1() {
   const double deg[4][3] = {{-1, 1, 2}, {2, -1, 1}, {1, 2, -1}, {-2, -2, -2}};
   std::vector<Eigen::Vector4d> truth;
-  for (const auto& d : deg) truth.emplace_back(1.01, d[0] * kDegree, d[1] * kDegree, d[2] * kDegree);
+  for (const auto& d : deg)
+    truth.emplace_back(1.01, d[0] * kRadiansPerDegree, d[1] * kRadiansPerDegree, d[2] * kRadiansPerDegree);
   return truth;
 }
 
@@ -38,7 +38,7 @@ class PlanarWorld {
  public:
   explicit PlanarWorld(unsigned seed = 1) : random_(seed) {}
 
-  /// The scan of one radar at `time_s`, with the motion of that time.
+  /// The scan of one radar at `time_s`, with the motion at that time.
   void look(std::size_t radar, double time_s) {
     std::uniform_real_distribution<double> azimuth(-1.1, 1.1), elevation(-0.15, 0.15), share(0.0, 1.0),
         own(-20.0, 20.0);

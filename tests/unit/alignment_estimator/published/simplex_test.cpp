@@ -22,7 +22,7 @@ TEST(Simplex, FindsTheMinimumOfRosenbrocksValley) {
   }
   EXPECT_NEAR(simplex.best()(0), 1.0, 1e-5);
   EXPECT_NEAR(simplex.best()(1), 1.0, 1e-5);
-  EXPECT_EQ(simplex.best()(2), 5.0);  // not its dimensions
+  EXPECT_EQ(simplex.best()(2), 5.0);  // beyond its dimensions
   EXPECT_EQ(simplex.best()(3), 7.0);
 }
 
@@ -53,7 +53,7 @@ TEST(Simplex, OneIterationCostsTwoEvaluationsOrAShrinkage) {
   EXPECT_EQ(calls, 2);  // reflection is better than all, expansion is tried
 }
 
-TEST(Simplex, TakesACostThatIsNoNumberForTheWorst) {
+TEST(Simplex, RanksACostThatIsNotANumberLast) {
   const auto wall = [](const Point& x) { return x(0) > 0.4 ? std::nan("") : (x - Point::Constant(0.3)).squaredNorm(); };
   Simplex simplex(Point::Zero(), Point::Constant(0.5), 4, wall);
   for (int i = 0; i < 300; ++i) simplex.iterate(wall);

@@ -45,7 +45,7 @@ TEST(Steps, LeastSquaresIsEquation24) {
       least_squares_step(rows.equations, 10.0, rate).isApprox(-(rate.array() * inverse.array()).matrix(), 1e-9));
 }
 
-TEST(Steps, LeastSquaresLeavesAloneWhatHasNoGradient) {
+TEST(Steps, LeastSquaresDoesNotMoveParametersWithoutGradient) {
   const Rows rows(2);
   const Eigen::Vector4d step = least_squares_step(rows.equations, 10.0, Eigen::Vector4d::Ones());
   EXPECT_NE(step(0), 0.0);
@@ -78,7 +78,7 @@ TEST(Steps, TotalLeastSquaresWithASmallRateIsADampedLeastSquaresStep) {
   EXPECT_TRUE(total_least_squares_step(rows.equations, 4, 2e-4).isApprox(-2e-4 * full, 1e-4));
 }
 
-TEST(Steps, TotalLeastSquaresWithoutSolutionStaysWhereItIs) {
+TEST(Steps, TotalLeastSquaresWithoutSolutionTakesNoStep) {
   const Rows rows(2);  // no gradient of β and γ: the smallest singular vector lies there
   EXPECT_EQ(total_least_squares_step(rows.equations, 4, 2e-4), Eigen::Vector4d::Zero());
   NormalEquations broken;

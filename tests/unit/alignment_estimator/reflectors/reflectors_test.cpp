@@ -1,4 +1,4 @@
-// Corner reflectors: against the truth of radars mounted in every way, against the Cramér–Rao bound, and honest.
+// Corner reflectors: errors against the truth for various mountings, against the Cramér–Rao bound, and against the σ.
 #include "services/alignment_estimator/core/reflectors/reflectors.hpp"
 
 #include <limits>
@@ -26,7 +26,7 @@ RadarConfig mounted(double yaw_deg, double roll_deg = 0.0) {
   return radar;
 }
 
-/// A field of reflectors and a radar that is mounted wrongly.
+/// A field of reflectors and a radar with a mounting error.
 struct Field {
   RadarConfig radar = mounted(0.0);
   Eigen::Vector3d truth_deg{1.2, -0.7, 0.5};  ///< yaw, pitch, roll; actual − nominal
@@ -72,14 +72,14 @@ std::vector<Eigen::Vector3d> across(double ahead_m = 15.0, int count = 12) {
   return places;
 }
 
-/// What the reported stds should be if only the radar's angles are noisy.
+/// The right stds if only the radar's angles are noisy.
 Config only_angle_noise() {
   Config config;
   config.survey_std_m = config.height_std_m = config.mounting_std_m = 0.0;
   return config;
 }
 
-TEST(Directions, find_the_rotation_of_a_radar_mounted_in_any_way) {
+TEST(Directions, find_the_rotation_of_a_radar_in_any_mounting) {
   for (const double yaw_deg : {0.0, 45.0, -60.0}) {
     for (const double roll_deg : {0.0, 180.0, 30.0}) {
       SCOPED_TRACE(testing::Message() << "yaw " << yaw_deg << " roll " << roll_deg);
@@ -89,7 +89,7 @@ TEST(Directions, find_the_rotation_of_a_radar_mounted_in_any_way) {
       // A line along the driving direction, seen by a corner radar far from its boresight.
       field.places = along(yaw_deg < 0.0 ? -6.0 : 6.0);
       Config config = only_angle_noise();
-      config.prior_roll_std_rad = 10.0;  // as good as no prior: the truth is not pulled towards 0
+      config.prior_roll_std_rad = 10.0;  // practically no prior: the estimate is not pulled towards 0
       config.prior_yaw_std_rad = config.prior_pitch_std_rad = 10.0;
       const Result result = fit_directions(field.seen(), field.radar, config);
       ASSERT_TRUE(result.ok()) << explain(result.problem);
@@ -131,7 +131,7 @@ Eigen::Matrix3d cramer_rao(const Field& field, const Config& config) {
   return information.inverse();
 }
 
-TEST(Directions, reach_the_bound_and_state_it) {
+TEST(Directions, reach_the_bound_and_state_its_std) {
   for (const bool is_across : {false, true}) {
     for (const double yaw_deg : {0.0, 45.0}) {
       SCOPED_TRACE(testing::Message() << (is_across ? "across " : "along ") << yaw_deg);
@@ -163,7 +163,7 @@ TEST(Directions, reach_the_bound_and_state_it) {
   }
 }
 
-TEST(Directions, are_honest_about_the_surveyors_and_the_mounters_errors) {
+TEST(Directions, state_stds_that_cover_survey_and_mounting_errors) {
   Field field;
   field.places = along(2.0);
   field.survey_std_m = 0.02;
@@ -181,13 +181,13 @@ TEST(Directions, are_honest_about_the_surveyors_and_the_mounters_errors) {
   EXPECT_THAT(pitch, DoubleNear(0.95, 0.25));
 }
 
-TEST(Directions, do_not_believe_other_reflectors) {
+TEST(Directions, reject_other_reflectors) {
   Field field;
   field.places = across();
   std::vector<Position> positions = field.seen(5);
   positions[1].azimuth_rad += 0.1;     // the neighbour's direction
-  positions[7].elevation_rad += 0.08;  // over the ground, by reflection
-  positions[10].range_m += 3.0;        // a post behind
+  positions[7].elevation_rad += 0.08;  // a reflection by the ground
+  positions[10].range_m += 3.0;        // a post behind the reflector
   const Result result = fit_directions(positions, field.radar, Config{});
   ASSERT_TRUE(result.ok());
   EXPECT_EQ(result.positions_used, 9u);
@@ -200,7 +200,7 @@ TEST(Directions, do_not_believe_other_reflectors) {
   EXPECT_THAT(line.yaw_rad / kDeg, DoubleNear(1.2, 0.7));
 }
 
-TEST(Directions, without_elevation_know_the_yaw_only) {
+TEST(Directions, without_elevation_determine_only_yaw) {
   Field field;
   field.truth_deg = {1.2, 0.0, 0.0};
   field.places = along(2.0);
@@ -219,7 +219,7 @@ TEST(Directions, without_elevation_know_the_yaw_only) {
   EXPECT_EQ(line.pitch_std_rad, 0.0);
 }
 
-TEST(Directions, roll_is_seen_where_the_reflectors_spread_and_not_on_a_narrow_line) {
+TEST(Directions, roll_is_observable_with_spread_reflectors_and_not_on_a_narrow_line) {
   Field field;
   field.places = along(0.2);
   EXPECT_FALSE(fit_directions(field.seen(), field.radar, Config{}).roll_observable);
@@ -229,7 +229,7 @@ TEST(Directions, roll_is_seen_where_the_reflectors_spread_and_not_on_a_narrow_li
   EXPECT_THAT(wide.roll_rad, DoubleNear(0.5 * kDeg, 3.0 * wide.roll_std_rad));
 }
 
-TEST(Directions, more_scans_a_position_are_believed_more) {
+TEST(Directions, more_scans_per_position_get_more_weight) {
   Field field;
   field.places = along();
   std::vector<Position> positions = field.seen();
@@ -237,7 +237,7 @@ TEST(Directions, more_scans_a_position_are_believed_more) {
   const double once = fit_directions(positions, field.radar, config).yaw_std_rad;
   for (Position& position : positions) position.scans = 100;
   const Result often = fit_directions(positions, field.radar, config);
-  // The same scatter contradicts the smaller std: it is measured, and taken back.
+  // The same scatter contradicts the smaller std and widens it again.
   EXPECT_GT(often.noise_scale, 4.0);
   EXPECT_NEAR(often.yaw_std_rad / once, 1.0, 0.6);
 }
@@ -252,7 +252,7 @@ TEST(Line, has_the_yaw_of_the_slope_and_the_pitch_of_the_elevations) {
     ASSERT_TRUE(result.ok()) << explain(result.problem);
     EXPECT_EQ(result.across, is_across);
     EXPECT_THAT(result.yaw_rad / kDeg, DoubleNear(1.2, 0.001));
-    // Seen from the side, a pitch error shows less: by the cosine, up to 35° here.
+    // Seen from the side, a pitch error counts only by the cosine, up to 35° here.
     EXPECT_THAT(result.pitch_rad / kDeg, DoubleNear(-0.7, is_across ? 0.1 : 0.001));
   }
 }
@@ -277,7 +277,7 @@ TEST(Line, has_the_std_that_its_errors_have) {
       own_squares += std::pow(own.yaw_rad - 1.2 * kDeg, 2.0);
     }
     EXPECT_THAT(nees, DoubleNear(0.95, 0.3));
-    // Directions use that the line's place is known as well, not only its slope.
+    // The fit of directions also uses the position of the line, not only its slope.
     EXPECT_LT(own_squares, 0.7 * line_squares);
   }
 }
@@ -298,7 +298,7 @@ TEST(Line, of_a_corner_radar_mixes_pitch_and_roll_where_directions_do_not) {
   EXPECT_NEAR(own.pitch_rad / kDeg, 0.8, 0.01);
 }
 
-TEST(Reflectors, refuse_what_cannot_be_evaluated_and_say_where) {
+TEST(Reflectors, refuse_invalid_positions_and_report_their_index) {
   Field field;
   field.places = along();
   const std::vector<Position> good = field.seen();
@@ -325,7 +325,7 @@ TEST(Reflectors, refuse_what_cannot_be_evaluated_and_say_where) {
   expect(bad, Problem::kOutOfView, 5);
 }
 
-TEST(Reflectors, positions_that_do_not_agree_are_no_result) {
+TEST(Reflectors, contradicting_positions_give_no_result) {
   Field field;
   field.places = across();
   std::vector<Position> positions = field.seen();
@@ -343,7 +343,7 @@ TEST(Line, needs_a_line_along_or_across) {
   LineResult line = fit_line(field.seen(), field.radar, Config{});
   EXPECT_EQ(line.problem, Problem::kNotALine);
   EXPECT_EQ(line.problem_position, 3u);
-  EXPECT_TRUE(fit_directions(field.seen(), field.radar, Config{}).ok()) << "directions need no line";
+  EXPECT_TRUE(fit_directions(field.seen(), field.radar, Config{}).ok()) << "the fit of directions needs no line";
   field.places = along();
   for (Eigen::Vector3d& place : field.places) place.y() = 0.3 * (place.x() - 10.0);
   EXPECT_EQ(fit_line(field.seen(), field.radar, Config{}).problem, Problem::kSkewLine);

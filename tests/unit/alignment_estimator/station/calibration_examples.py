@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The worked examples of interfaces/wire/calibration_service.md, made from the document alone (no product code):
-calibration_examples.py DOCUMENT compares them and exits with 1 if one differs; with --write it puts them in."""
+calibration_examples.py DOCUMENT compares them and exits with 1 if one differs; --write replaces them."""
 import pathlib
 import struct
 import sys

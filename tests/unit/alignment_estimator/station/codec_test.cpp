@@ -67,7 +67,7 @@ TEST(CalibrationCodec, ReadsTheDocumentsMeasure) {
   EXPECT_EQ(measure->tilt_index, 0u);
   ASSERT_TRUE(measure->tilt_rad);
   EXPECT_NEAR(*measure->tilt_rad, -1.98 * kDegree_rad, 1e-12);
-  EXPECT_FALSE(read_measure(test::measure_payload(3))->tilt_rad) << "exactly as asked for";
+  EXPECT_FALSE(read_measure(test::measure_payload(3))->tilt_rad) << "exactly as requested";
 }
 
 TEST(CalibrationCodec, WritesTheDocumentsAnswers) {
@@ -118,7 +118,7 @@ TEST(CalibrationCodec, WritesTheDocumentsResult) {
   EXPECT_THAT(Bytes(result.begin(), result.begin() + 112), ElementsAreArray(beginning));
 }
 
-TEST(CalibrationCodec, WhatCannotBeStatedIsNaNOrZeroAndNeverOverflows) {
+TEST(CalibrationCodec, UnavailableValuesAreNaNOrZeroAndNeverOverflow) {
   plate::PlateResult result = result_of_examples();
   result.number_of_tilts = 99;
   result.pitch_rad = std::numeric_limits<double>::infinity();
@@ -135,7 +135,7 @@ TEST(CalibrationCodec, WhatCannotBeStatedIsNaNOrZeroAndNeverOverflows) {
   EXPECT_EQ(answer.i16(service::result::kBytes + service::result::record::kBytes), 32767);
 }
 
-TEST(CalibrationCodec, AHeaderThatGrewIsSkipped) {
+TEST(CalibrationCodec, ALongerHeaderIsSkipped) {
   Bytes payload = test::start_payload(3, {-100, 100});
   payload[3] = 24;
   payload.insert(payload.begin() + 20, {9, 9, 9, 9});
@@ -144,7 +144,7 @@ TEST(CalibrationCodec, AHeaderThatGrewIsSkipped) {
   EXPECT_NEAR(start->plan.tilts_rad[1], kDegree_rad, 1e-12);
 }
 
-TEST(CalibrationCodec, OfTooManyTiltsOnlyTheNumberIsKept) {
+TEST(CalibrationCodec, TooManyTiltsKeepOnlyTheirNumber) {
   const auto start = read_start(test::start_payload(3, std::vector<std::int16_t>(600)));
   ASSERT_TRUE(start);
   EXPECT_EQ(start->plan.number_of_tilts, 600u);

@@ -1,4 +1,4 @@
-// What the plate's result does to the dynamic estimator.
+// Effect of the plate's result on the dynamic estimator.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -44,7 +44,7 @@ Eigen::Matrix3d nominal(const RadarConfig& radar) {
   return geometry::sensor_to_vehicle(pose.yaw_rad, pose.pitch_rad, pose.roll_rad);
 }
 
-TEST(PlateSeed, IsWhatTheEstimatorStartsFrom) {
+TEST(PlateSeed, IsTheStartOfTheEstimator) {
   const VehicleConfig three = vehicle();
   const auto filter = std::make_unique<RobustFilter>(three, FilterConfig{});
   RobustFilter& estimator = *filter;
@@ -63,7 +63,7 @@ TEST(PlateSeed, IsWhatTheEstimatorStartsFrom) {
   const Eigen::Matrix3d actual = nominal(three.radars[1]) * geometry::sensor_to_vehicle(yaw_rad, pitch_rad, 0.0);
   EXPECT_LT(geometry::so3_log(seeded.sensor_to_vehicle * actual.transpose()).norm(), 0.002 * kDegree_rad);
   EXPECT_NEAR(std::sqrt(seeded.covariance(kTurnY, kTurnY)), std::hypot(0.02, 0.05) * kDegree_rad, 0.003 * kDegree_rad);
-  EXPECT_NEAR(std::sqrt(seeded.covariance(kTurnX, kTurnX)), 0.035, 0.001) << "the plate says nothing of roll";
+  EXPECT_NEAR(std::sqrt(seeded.covariance(kTurnX, kTurnX)), 0.035, 0.001) << "the plate does not measure roll";
   EXPECT_TRUE((seeded.observable & alignment_axis::kVehiclePitch) != 0);
   EXPECT_TRUE((seeded.observable & alignment_axis::kVehicleYaw) != 0);
 
@@ -73,7 +73,7 @@ TEST(PlateSeed, IsWhatTheEstimatorStartsFrom) {
   EXPECT_EQ(other.observable, before.observable);
 }
 
-TEST(PlateSeed, OfOneRadarIsNotForgottenForThatOfAnother) {
+TEST(PlateSeed, OfOneRadarIsKeptWhenAnotherIsSeeded) {
   const VehicleConfig three = vehicle();
   const auto filter = std::make_unique<RobustFilter>(three, FilterConfig{});
   RobustFilter& estimator = *filter;
@@ -85,13 +85,13 @@ TEST(PlateSeed, OfOneRadarIsNotForgottenForThatOfAnother) {
   for (std::size_t i = 0; i < 3; ++i) {
     const RadarEstimate estimate = estimator.estimate(i);
     Eigen::Matrix3d off = estimate.covariance.bottomRightCorner<3, 3>() - seeds[i].covariance;
-    // Yaw is told with what an unknown roll and pitch together turn it by.
+    // The variance of yaw includes the effect of an unknown roll and pitch together.
     off(2, 2) -= 0.25 * seeds[i].covariance(0, 0) * seeds[i].covariance(1, 1);
     EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-12) << "radar " << i << ", correlations between its axes included";
     const Eigen::Matrix3d actual = geometry::so3_exp(seeds[i].rotation_vehicle_rad) * nominal(three.radars[i]);
     EXPECT_LT((estimate.sensor_to_vehicle - actual).cwiseAbs().maxCoeff(), 1e-12);
   }
-  // And all of it is remembered.
+  // The memory contains all of this.
   const Memory memory = memory_of(estimator);
   ASSERT_EQ(memory.number_of_radars, 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -128,7 +128,7 @@ TEST(PlateSeed, IsRefusedWhereItCannotBeUsed) {
   EXPECT_EQ(estimator.estimate(0).covariance, before.covariance);
 }
 
-TEST(PlateSeed, IsTakenByEveryMethodThatHasThreeAngles) {
+TEST(PlateSeed, IsAcceptedByEveryMethodWithThreeAngles) {
   const VehicleConfig three = vehicle();
   RotationSeed seed;
   ASSERT_TRUE(seed_from_plate(three.radars[0], 0.01, 1e-4, 0.02, 1e-4, {}, seed));
@@ -144,11 +144,11 @@ TEST(PlateSeed, IsTakenByEveryMethodThatHasThreeAngles) {
     const Eigen::Vector3d turn =
         geometry::so3_log(estimator.estimate(0).sensor_to_vehicle * nominal(three.radars[0]).transpose());
     EXPECT_LT((turn - (refuses ? Eigen::Vector3d::Zero() : seed.rotation_vehicle_rad)).norm(), 1e-9);
-    EXPECT_FALSE(estimator.seed(unknown)) << "a radar that the vehicle has not";
+    EXPECT_FALSE(estimator.seed(unknown)) << "a radar that is not in the vehicle";
   }
 }
 
-TEST(PlateSeed, IsWorthMinutesOfDriving) {
+TEST(PlateSeed, SavesMinutesOfDriving) {
   simulator::AlignmentSpec spec = simulator::four_corner_radars();
   spec.duration_s = 12.0;
   spec.road = simulator::RoadKind::kMotorway;
@@ -163,7 +163,7 @@ TEST(PlateSeed, IsWorthMinutesOfDriving) {
     seed.rotation_vehicle_rad =
         geometry::so3_log(drive.sensor_to_vehicle(i, 0.0) * nominal(four.radars[i]).transpose());
     seed.covariance = Eigen::Vector3d::Constant(std::pow(0.05 * kDegree_rad, 2)).asDiagonal();
-    // Off by two of its stds, as a real one may be.
+    // An error of two stds, which is realistic.
     seed.rotation_vehicle_rad.y() += 0.1 * kDegree_rad;
     ASSERT_TRUE(with_seed.seed(seed));
   }

@@ -122,7 +122,7 @@ class CalibrationServiceTest : public ::testing::Test, public Surroundings {
   std::normal_distribution<double> noise{0.0, 1.0};
 };
 
-TEST_F(CalibrationServiceTest, AWholeRunFindsTheMountingErrorAndHandsItOn) {
+TEST_F(CalibrationServiceTest, AWholeRunFindsTheMountingErrorAndPassesItOn) {
   const Answer last = whole_run();
   EXPECT_TRUE(last.accepted());
   EXPECT_EQ(last.state(kVerdict), State::kFinished);
@@ -149,20 +149,20 @@ TEST_F(CalibrationServiceTest, AWholeRunFindsTheMountingErrorAndHandsItOn) {
   EXPECT_THAT(faults, IsEmpty());
 }
 
-TEST_F(CalibrationServiceTest, SaysIfTheEstimatorDidNotTakeTheResult) {
+TEST_F(CalibrationServiceTest, ReportsIfTheEstimatorDidNotTakeTheResult) {
   takes_over = false;
   whole_run();
   EXPECT_EQ(result().u8(service::result::kTakenOver), 0);
 }
 
-TEST_F(CalibrationServiceTest, WithoutAMaximumTheRunFailsAndNothingIsHandedOn) {
+TEST_F(CalibrationServiceTest, WithoutAMaximumTheRunFailsAndNothingIsPassedOn) {
   const Answer last = whole_run(true);
   EXPECT_TRUE(last.accepted());
   EXPECT_EQ(last.state(kVerdict), State::kFailed);
   EXPECT_EQ(last.failure(kVerdict), Failure::kNoMaximum);
   EXPECT_EQ(result().u8(service::result::kFailure), static_cast<std::uint8_t>(Failure::kNoMaximum));
   EXPECT_THAT(taken_over, IsEmpty());
-  // Once more, now properly.
+  // Again, now with a maximum.
   EXPECT_EQ(ask(Method::kRepeatRun, test::run_payload()).refusal(), Refusal::kNone);
   EXPECT_EQ(state().u32(service::state::kRun), 2u);
   EXPECT_EQ(result().code(), ReturnCode::kNotReady);
@@ -181,10 +181,10 @@ TEST_F(CalibrationServiceTest, TheStationsLimitsAreThoseOfItsRun) {
   }
   EXPECT_EQ(last.failure(kVerdict), Failure::kAmplitudeTooLow);
   EXPECT_EQ(result().u8(service::result::kMethod), service::start::kMethodPublished);
-  EXPECT_EQ(whole_run().state(kVerdict), State::kFinished) << "the limit was the other run's";
+  EXPECT_EQ(whole_run().state(kVerdict), State::kFinished) << "the limit belonged to the other run";
 }
 
-TEST_F(CalibrationServiceTest, RefusesPlansThatCannotBe) {
+TEST_F(CalibrationServiceTest, RefusesImpossiblePlans) {
   const auto refusal_of = [this](const Bytes& payload) { return ask(Method::kStartCalibration, payload).refusal(); };
   EXPECT_EQ(refusal_of(test::start_payload(3, kTilts)), Refusal::kUnknownRadar);
   EXPECT_EQ(refusal_of(test::start_payload(0, kTilts)), Refusal::kUnknownRadar);
@@ -208,7 +208,7 @@ TEST_F(CalibrationServiceTest, RefusesPlansThatCannotBe) {
   EXPECT_THAT(faults, IsEmpty());
 }
 
-TEST_F(CalibrationServiceTest, ARefusedStartLeavesTheResultOfTheRunBefore) {
+TEST_F(CalibrationServiceTest, ARefusedStartKeepsThePreviousResult) {
   whole_run();
   EXPECT_EQ(ask(Method::kStartCalibration, test::start_payload(9, kTilts)).refusal(), Refusal::kUnknownRadar);
   EXPECT_EQ(ask(Method::kStartCalibration, test::start_payload(2, {})).refusal(), Refusal::kTooFewTilts);
@@ -240,7 +240,7 @@ TEST_F(CalibrationServiceTest, EveryCommandOutOfTurnIsRefusedAndChangesNothing) 
   EXPECT_EQ(state().u16(service::state::kScansCollected), 10) << "still there";
 }
 
-TEST_F(CalibrationServiceTest, ARepeatedTiltIsMeasuredAnew) {
+TEST_F(CalibrationServiceTest, ARepeatedTiltIsMeasuredAgain) {
   EXPECT_EQ(start(), Refusal::kNone);
   EXPECT_EQ(measure(0), State::kTiltDone);
   const Answer repeated = ask(Method::kRepeatTilt, test::tilt_payload(0));
@@ -256,12 +256,12 @@ TEST_F(CalibrationServiceTest, AnAbortedRunHasNoResultButItsReason) {
   EXPECT_EQ(result().payload_bytes(), 0u);
   const Answer aborted = ask(Method::kAbort, test::run_payload());
   EXPECT_EQ(aborted.failure(kVerdict), Failure::kAborted);
-  EXPECT_EQ(aborted.u16(kVerdict + service::state::kClientId), 0) << "belongs to nobody now";
+  EXPECT_EQ(aborted.u16(kVerdict + service::state::kClientId), 0) << "no client owns the run now";
   EXPECT_EQ(result().u8(service::result::kFailure), static_cast<std::uint8_t>(Failure::kAborted));
   EXPECT_EQ(result().payload_bytes(), service::result::kBytes) << "no tilts";
 }
 
-TEST_F(CalibrationServiceTest, TimeOutsEndTheRunWithoutAnybodyAsking) {
+TEST_F(CalibrationServiceTest, TimeOutsEndTheRunWithoutARequest) {
   EXPECT_EQ(start(), Refusal::kNone);
   EXPECT_EQ(state().u32(service::state::kTimeLeft_ms), 60'000u);
   now += 61 * kSecond;
@@ -290,13 +290,13 @@ TEST_F(CalibrationServiceTest, ARunBelongsToOneStation) {
   EXPECT_EQ(start(0x18), Refusal::kNone);
 }
 
-TEST_F(CalibrationServiceTest, ARepetitionGetsTheSameAnswerAndIsNotCarriedOutTwice) {
+TEST_F(CalibrationServiceTest, ARepetitionGetsTheSameAnswerAndIsNotExecutedTwice) {
   EXPECT_EQ(start(), Refusal::kNone);
   const Answer first = answers.front();
   const Header header{.method = static_cast<std::uint16_t>(Method::kStartCalibration), .session = session};
   now += 500 * kMs;
   EXPECT_EQ(ask(header, test::start_payload(2, kTilts)).bytes, first.bytes);
-  // None of these is a repetition.
+  // None of these requests is a repetition.
   EXPECT_EQ(ask(header, test::start_payload(1, kTilts)).refusal(), Refusal::kWrongState) << "other payload";
   EXPECT_EQ(ask(header, test::start_payload(2, kTilts), {kStation.address, 5}).refusal(), Refusal::kWrongState);
   Header other = header;
@@ -305,14 +305,14 @@ TEST_F(CalibrationServiceTest, ARepetitionGetsTheSameAnswerAndIsNotCarriedOutTwi
   now += 5 * kSecond;
   EXPECT_EQ(ask(header, test::start_payload(2, kTilts)).refusal(), Refusal::kWrongState) << "too late";
   EXPECT_EQ(state().u32(service::state::kRun), 1u);
-  // A station without session handling is not taken for one that repeats.
+  // A station without session handling does not count as repeating.
   Header without{.method = static_cast<std::uint16_t>(Method::kRepeatRun), .session = 0};
   EXPECT_EQ(ask(without, test::run_payload()).refusal(), Refusal::kNone);
   EXPECT_EQ(ask(without, test::run_payload()).refusal(), Refusal::kNone);
   EXPECT_EQ(state().u32(service::state::kRun), 3u);
 }
 
-TEST_F(CalibrationServiceTest, StartsOnlyWhileTheVehicleStands) {
+TEST_F(CalibrationServiceTest, StartsOnlyWhileTheVehicleIsStationary) {
   EgoMotion motion{};
   motion.fields = ego_field::kSpeed;
   motion.speed_mps = -0.5F;
@@ -329,7 +329,7 @@ TEST_F(CalibrationServiceTest, StartsOnlyWhileTheVehicleStands) {
   calibration.add_ego_motion(motion, now);
   EXPECT_EQ(ask(Method::kRepeatRun, test::run_payload()).refusal(), Refusal::kVehicleMoves);
   now += 2 * kSecond;
-  EXPECT_EQ(start(), Refusal::kNone) << "a signal that does not come any more says nothing of now";
+  EXPECT_EQ(start(), Refusal::kNone) << "an old signal is not used";
 }
 
 TEST_F(CalibrationServiceTest, EachFaultOfTheHeaderHasItsReturnCode) {
@@ -378,7 +378,7 @@ TEST_F(CalibrationServiceTest, EachFaultOfTheHeaderHasItsReturnCode) {
   EXPECT_EQ(state().state(0), State::kIdle);
 }
 
-TEST_F(CalibrationServiceTest, NothingButRequestsIsAnswered) {
+TEST_F(CalibrationServiceTest, OnlyRequestsAreAnswered) {
   for (const int type : {0x02, 0x80, 0x81, 0x22, 0xA0, 0x40, 0xFF}) {
     send(test::message({.method = 7, .type = static_cast<std::uint8_t>(type)}, {}));
   }
@@ -396,7 +396,7 @@ TEST_F(CalibrationServiceTest, NothingButRequestsIsAnswered) {
   EXPECT_THAT(answers, IsEmpty());
 }
 
-TEST_F(CalibrationServiceTest, WithoutReturnIsCarriedOutInSilence) {
+TEST_F(CalibrationServiceTest, ARequestWithoutReturnIsExecutedWithoutAnswer) {
   send(test::message({.method = 1, .type = 0x01}, test::start_payload(2, kTilts)));
   send(test::message({.method = 99, .session = 2, .type = 0x01}, {}));
   EXPECT_THAT(answers, IsEmpty());
@@ -418,7 +418,7 @@ TEST_F(CalibrationServiceTest, RequestsThatShareADatagramAreAnsweredInTurn) {
   EXPECT_EQ(answers[3].state(kVerdict), State::kMeasuring);
 }
 
-TEST_F(CalibrationServiceTest, EventsTellEachChangeOnceWithSessionsOfTheirOwn) {
+TEST_F(CalibrationServiceTest, EventsReportEachChangeOnceWithSessionsOfTheirOwn) {
   std::vector<std::pair<std::uint16_t, State>> events;
   const auto look = [&] {
     const auto bytes = calibration.event_if_changed(now);
@@ -430,7 +430,7 @@ TEST_F(CalibrationServiceTest, EventsTellEachChangeOnceWithSessionsOfTheirOwn) {
     events.emplace_back(read_u16(&event.bytes[10]), event.state(0));
   };
   look();
-  EXPECT_THAT(events, IsEmpty()) << "nothing has happened";
+  EXPECT_THAT(events, IsEmpty()) << "nothing has changed";
   EXPECT_EQ(start(), Refusal::kNone);
   look();
   EXPECT_EQ(start(0x18), Refusal::kBusy);

@@ -13,7 +13,7 @@ Settings read(const std::string& text) {
   root.finish();
   return settings;
 }
-/// What is wrong with the table; empty if nothing is.
+/// The error in the table; empty if there is none.
 std::string problem_of(const std::string& text) {
   try {
     static_cast<void>(read(text));
@@ -50,7 +50,7 @@ settle_s = 0.5
   EXPECT_EQ(s.plate.settle_s, 0.5);
 }
 
-TEST(CalibrationSettings, SayWhatIsWrong) {
+TEST(CalibrationSettings, ReportErrors) {
   const std::string on = "[station]\nenabled = true\ninterface = \"eth0\"\n";
   EXPECT_NE(problem_of("[station]\nenabled = true\n").find("interface"), std::string::npos);
   EXPECT_NE(problem_of(on).find("address"), std::string::npos);

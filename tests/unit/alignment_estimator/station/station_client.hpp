@@ -1,4 +1,4 @@
-// A station for the tests: builds requests and takes answers apart, from the definition's offsets alone.
+// A station for the tests: builds requests and reads answers, by the offsets of the interface definition alone.
 #pragma once
 
 #include <cstdint>
@@ -68,7 +68,7 @@ inline Bytes message(const Header& header, const Bytes& payload) {
   return bytes;
 }
 
-/// An answer or event as it came; the getters read its payload.
+/// A received answer or event; the getters read its payload.
 struct Answer {
   Bytes bytes;
   [[nodiscard]] std::uint8_t type() const { return bytes.at(14); }
@@ -80,12 +80,12 @@ struct Answer {
   [[nodiscard]] std::uint32_t u32(std::size_t at) const { return read_u32(&bytes.at(16 + at)); }
   [[nodiscard]] float f32(std::size_t at) const { return read_f32(&bytes.at(16 + at)); }
 
-  // Of a verdict:
+  // Fields of a verdict:
   [[nodiscard]] bool accepted() const { return u8(service::verdict::kAccepted) == 1; }
   [[nodiscard]] service::Refusal refusal() const {
     return static_cast<service::Refusal>(u8(service::verdict::kRefusal));
   }
-  /// Of a state record, which begins at `record`: 0 in GetState and events, 4 in verdicts.
+  /// Fields of a state record, which begins at `record`: 0 in GetState and events, 4 in verdicts.
   [[nodiscard]] service::State state(std::size_t record) const {
     return static_cast<service::State>(u8(record + service::state::kState));
   }

@@ -1,5 +1,5 @@
-// The Cramér–Rao bound against a dense computation by finite differences, against the bound that another program
-// wrote beside a recorded drive, and against what must be so on any road.
+// The Cramér–Rao bound agrees with a dense computation by finite differences and with the bound that another program
+// wrote beside a recorded drive. General properties of the bound hold on any road.
 #include "tests/simulator/alignment/bound.hpp"
 
 #include <array>
@@ -13,13 +13,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::simulator {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 CramerRaoBound bound_of(const AlignmentSpec& spec, AlignmentDrive& drive, const BoundPriors& priors = {}) {
   CramerRaoBound bound(spec, drive, priors);
@@ -28,8 +27,8 @@ CramerRaoBound bound_of(const AlignmentSpec& spec, AlignmentDrive& drive, const 
   return bound;
 }
 
-/// Everything that a detection's range rate depends on, as functions of one long vector: the parameters, then for each
-/// ego motion the errors of speed and yaw rate, then for each instant of a scan the body's pitch.
+/// The inputs of a detection's range rate as functions of one long vector: the parameters, then the errors of speed and
+/// yaw rate for each ego motion, then the body pitch at each instant of a scan.
 struct Model {
   struct Detection {
     Eigen::Vector3d sight;  // sensor axes
@@ -52,7 +51,7 @@ struct Model {
 TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
   AlignmentSpec spec = four_corner_radars();
   spec.radars.resize(2);
-  spec.radars[0].config.mounting_pose.pitch_rad = 5.0 * kDegree;
+  spec.radars[0].config.mounting_pose.pitch_rad = 5.0 * kRadiansPerDegree;
   spec.radars[1].config.mounting_pose.roll_rad = M_PI;
   spec.radars[1].first_scan_s = 0.02;  // shares ego motions with the other radar, but not instants
   spec.radars[1].noise_scale = 1.5;
@@ -60,9 +59,9 @@ TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
   spec.road = RoadKind::kCity;
   spec.seed = 3;
   spec.slip_coefficient_radps2pm = 0.003;
-  spec.body_pitch_std_rad = 0.3 * kDegree;
+  spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
   for (AlignmentRadar& radar : spec.radars) radar.mean_detections = 15.0;
-  const BoundPriors priors{0.02, 3.0 * kDegree, 0.003, 0.005};
+  const BoundPriors priors{0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005};
 
   AlignmentDrive drive(spec);
   CramerRaoBound bound(spec, drive, priors);
@@ -85,7 +84,7 @@ TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
       d.rotation = drive.sensor_to_vehicle(event.radar, event.time_s);
       d.position_m = radar.config.mounting_pose.position_m;
       d.radar = static_cast<Eigen::Index>(event.radar);
-      d.ego = egos - 1;  // numbers; places below
+      d.ego = egos - 1;  // counted here; converted to positions below
       d.pitch = static_cast<Eigen::Index>(pitch_times.size()) - 1;
       d.signalled_speed = event.speed_mps / spec.speed_scale;
       d.signalled_yaw_rate = event.yaw_rate_radps;
@@ -114,7 +113,7 @@ TEST(CramerRaoBound, IsTheDenseInformationOfAllUnknowns) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
   const double p2 = std::pow(spec.body_pitch_std_rad, -2);
   information.diagonal() << std::pow(0.02, -2), std::pow(0.003, -2), std::pow(0.005, -2),
-      Eigen::VectorXd::Constant(6, std::pow(3.0 * kDegree, -2)), Eigen::VectorXd::Zero(2 * egos + instants);
+      Eigen::VectorXd::Constant(6, std::pow(3.0 * kRadiansPerDegree, -2)), Eigen::VectorXd::Zero(2 * egos + instants);
   for (Eigen::Index i = 0; i < egos; ++i) {
     information(kParameters + 2 * i, kParameters + 2 * i) = std::pow(spec.speed_std_mps, -2);
     information(kParameters + 2 * i + 1, kParameters + 2 * i + 1) = std::pow(spec.yaw_rate_std_radps, -2);
@@ -169,14 +168,14 @@ TEST(CramerRaoBound, OfADriveLikeTheRecordedOneIsAsPublishedWithIt) {
   const CramerRaoBound bound = bound_of(spec, drive);
   EXPECT_NEAR(bound.speed_scale_std(), 1.89e-5, 0.19e-5);
   for (std::size_t r = 0; r < 4; ++r) {
-    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kDegree;
+    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kRadiansPerDegree;
     EXPECT_NEAR(std.x(), r < 2 ? 0.179 : 0.723, r < 2 ? 0.018 : 0.072);
     EXPECT_NEAR(std.y(), 0.0087, 0.00087);
     EXPECT_NEAR(std.z(), 0.0012, 0.00012);
   }
 }
 
-/// Lines of a table without its heading; through `xz` where it is compressed.
+/// Lines of a table without its header; decompressed by `xz` if needed.
 std::vector<std::vector<double>> read_table(const std::filesystem::path& file, std::size_t columns) {
   const std::string command = (file.extension() == ".xz" ? "xz -dc '" : "cat '") + file.string() + "'";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
@@ -200,7 +199,7 @@ TEST(CramerRaoBound, OfTheRecordedDriveIsThatOfItsTruthFile) {
   const std::filesystem::path folder = std::filesystem::path(BORESIGHT_SHARED_DATA) / "alignment_drive";
   if (!std::filesystem::exists(folder / "drive_1.csv.xz")) GTEST_SKIP() << "skipped: no shared data";
   const auto rows = read_table(folder / "drive_1.csv.xz", 7), egos = read_table(folder / "ego_1.csv", 3);
-  if (rows.empty()) GTEST_SKIP() << "skipped: no xz to unpack the recording";
+  if (rows.empty()) GTEST_SKIP() << "skipped: no xz to decompress the recording";
   ASSERT_GT(rows.size(), 800'000U);
   const AlignmentSpec spec = four_corner_radars();
   const AlignmentDrive drive(spec);
@@ -233,7 +232,7 @@ TEST(CramerRaoBound, OfTheRecordedDriveIsThatOfItsTruthFile) {
   EXPECT_NEAR(bound.speed_scale_std() / 1.89e-5, 1.0, 0.05);
   const std::array<double, 4> roll_deg{0.1817, 0.1760, 0.7255, 0.7202};
   for (std::size_t r = 0; r < 4; ++r) {
-    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kDegree;
+    const Eigen::Vector3d std = bound.rotation_std_rad(r) / kRadiansPerDegree;
     EXPECT_NEAR(std.x() / roll_deg[r], 1.0, 0.05);
     EXPECT_NEAR(std.y() / 0.0087, 1.0, 0.05);
     EXPECT_NEAR(std.z() / 0.0012, 1.0, 0.05);  // the file has two digits
@@ -245,7 +244,7 @@ TEST(CramerRaoBound, InformationGrowsAlongTheDrive) {
   spec.duration_s = 60.0;
   spec.road = RoadKind::kCity;
   AlignmentDrive drive(spec);
-  CramerRaoBound bound(spec, drive, {0.02, 3.0 * kDegree, 0.003, 0.005});
+  CramerRaoBound bound(spec, drive, {0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005});
   AlignmentEvent event;
   Eigen::MatrixXd before = bound.covariance();
   EXPECT_NEAR(std::sqrt(before(1, 1)), 0.003, 1e-12);
@@ -258,25 +257,25 @@ TEST(CramerRaoBound, InformationGrowsAlongTheDrive) {
     const Eigen::VectorXd scale = before.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd gain = scale.asDiagonal() * (before - now) * scale.asDiagonal();
     const Eigen::MatrixXd shifted = gain + 1e-9 * Eigen::MatrixXd::Identity(gain.rows(), gain.cols());
-    EXPECT_EQ(shifted.llt().info(), Eigen::Success) << "nothing becomes less known, at " << event.time_s << " s";
+    EXPECT_EQ(shifted.llt().info(), Eigen::Success) << "no parameter becomes less certain, at " << event.time_s << " s";
     before = now;
   }
-  EXPECT_LT(bound.rotation_std_rad(0).z(), 0.005 * kDegree);
+  EXPECT_LT(bound.rotation_std_rad(0).z(), 0.005 * kRadiansPerDegree);
 }
 
-TEST(CramerRaoBound, AStraightRoadTellsNothingOfRoll) {
+TEST(CramerRaoBound, RollIsUnobservableOnAStraightRoad) {
   AlignmentSpec spec = four_corner_radars();
   spec.road = RoadKind::kStraight;
   spec.duration_s = 30.0;
   AlignmentDrive drive(spec);
   const CramerRaoBound bound = bound_of(spec, drive);
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_NEAR(bound.rotation_std_rad(r).x(), 3.0 * kDegree, 1e-6);
-    EXPECT_LT(bound.rotation_std_rad(r).z(), 0.01 * kDegree);
+    EXPECT_NEAR(bound.rotation_std_rad(r).x(), 3.0 * kRadiansPerDegree, 1e-6);
+    EXPECT_LT(bound.rotation_std_rad(r).z(), 0.01 * kRadiansPerDegree);
   }
 }
 
-TEST(CramerRaoBound, DisturbancesAndMissingElevationCost) {
+TEST(CramerRaoBound, DisturbancesAndMissingElevationRaiseIt) {
   const auto yaw_of = [](const AlignmentSpec& spec, const BoundPriors& priors) {
     AlignmentDrive drive(spec);
     return bound_of(spec, drive, priors).rotation_std_rad(0);
@@ -285,20 +284,20 @@ TEST(CramerRaoBound, DisturbancesAndMissingElevationCost) {
   spec.duration_s = 30.0;
   spec.road = RoadKind::kCity;
   const Eigen::Vector3d plain = yaw_of(spec, {});
-  const Eigen::Vector3d unknown = yaw_of(spec, {0.02, 3.0 * kDegree, 0.003, 0.005});
+  const Eigen::Vector3d unknown = yaw_of(spec, {0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005});
   EXPECT_GT(unknown.z(), 1.02 * plain.z());
   AlignmentSpec noisy = spec;
-  noisy.body_pitch_std_rad = 0.3 * kDegree;
+  noisy.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
   EXPECT_GT(yaw_of(noisy, {}).y(), 1.1 * plain.y());
   AlignmentSpec flat = spec;
   flat.radars[0].measures_elevation = false;
   const Eigen::Vector3d blind = yaw_of(flat, {});
-  EXPECT_NEAR(blind.x(), 3.0 * kDegree, 1e-9);
-  EXPECT_NEAR(blind.y(), 3.0 * kDegree, 1e-9);
-  EXPECT_LT(blind.z(), 0.02 * kDegree);
+  EXPECT_NEAR(blind.x(), 3.0 * kRadiansPerDegree, 1e-9);
+  EXPECT_NEAR(blind.y(), 3.0 * kRadiansPerDegree, 1e-9);
+  EXPECT_LT(blind.z(), 0.02 * kRadiansPerDegree);
 }
 
-TEST(CramerRaoBound, SlowScansCountOnlyIfTheyMay) {
+TEST(CramerRaoBound, SlowScansCountOnlyAboveTheMinimumSpeed) {
   AlignmentSpec spec = four_corner_radars();
   spec.duration_s = 20.0;
   spec.road = RoadKind::kCity;
@@ -325,7 +324,7 @@ TEST(CramerRaoBound, SlowScansCountOnlyIfTheyMay) {
   EXPECT_GT(fast.rotation_std_rad(0).x(), 1.05 * all.rotation_std_rad(0).x());
 }
 
-TEST(CramerRaoBound, RefusesTheModelThatIsNoRotation) {
+TEST(CramerRaoBound, RefusesThePlanarModel) {
   const AlignmentSpec spec = published_setup();
   const AlignmentDrive drive(spec);
   EXPECT_THROW(CramerRaoBound(spec, drive), std::invalid_argument);

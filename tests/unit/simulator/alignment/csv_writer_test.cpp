@@ -1,4 +1,4 @@
-// The files of an alignment drive, read back with readers that know nothing of the writer.
+// The files of an alignment drive, read back by independent readers.
 #include "tests/simulator/alignment/csv_writer.hpp"
 
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/simulator/alignment/bound.hpp"
 #include "tests/simulator/alignment/drive.hpp"
@@ -16,8 +17,6 @@
 
 namespace boresight::simulator {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 class Folder {
  public:
@@ -127,7 +126,7 @@ TEST(AlignmentCsv, TheServicesReadTheVehicleFile) {
   AlignmentSpec spec = small_drive();
   spec.duration_s = 0.2;
   spec.radars[0].config.name = R"(a "named\" one)";
-  spec.radars[2].config.mounting_pose.pitch_rad = -3.0 * kDegree;
+  spec.radars[2].config.mounting_pose.pitch_rad = -3.0 * kRadiansPerDegree;
   spec.radars[3].config.mounting_pose.roll_rad = M_PI;
   const VehicleConfig read =
       config::read_vehicle_file(write_alignment_drive(spec, folder.path(), kNobodyListens).vehicle);
@@ -176,8 +175,8 @@ TEST(AlignmentCsv, TruthIsThatOfTheDrive) {
   spec.duration_s = 20.0;
   spec.yaw_rate_bias_radps = 0.001;
   spec.slip_coefficient_radps2pm = 0.003;
-  spec.body_pitch_std_rad = 0.3 * kDegree;
-  const Eigen::Vector3d turn(0.0, 0.0, 1.0 * kDegree);
+  spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
+  const Eigen::Vector3d turn(0.0, 0.0, 1.0 * kRadiansPerDegree);
   spec.step_changes.push_back({11.0, 1, turn});
   const auto file = write_alignment_drive(spec, folder.path(), kNobodyListens).truth;
   EXPECT_NEAR(truth_line(file, "k_v")["k_v"], 1.01, 1e-9);
@@ -195,10 +194,10 @@ TEST(AlignmentCsv, TruthIsThatOfTheDrive) {
   EXPECT_NEAR(step_change.at("t"), 10.0, 1e-9);
   EXPECT_NEAR(step_change.at("radar"), 2.0, 1e-9);
   EXPECT_NEAR(step_change.at("turn_z_deg"), 1.0, 1e-9);
-  EXPECT_NEAR(step_change.at("alpha_deg"), 3.0, 1e-4) << "a turn about the vehicle's z is one of yaw";
+  EXPECT_NEAR(step_change.at("alpha_deg"), 3.0, 1e-4) << "a rotation about the vehicle's z axis is a change of yaw";
   EXPECT_NEAR(step_change.at("beta_deg"), -1.0, 1e-4);
   AlignmentDrive drive(spec);
-  CramerRaoBound bound(spec, drive, {0.02, 3.0 * kDegree, 0.003, 0.005});
+  CramerRaoBound bound(spec, drive, {0.02, 3.0 * kRadiansPerDegree, 0.003, 0.005});
   AlignmentEvent event;
   while (drive.next(event)) bound.add(event);
   EXPECT_NEAR(truth_line(file, "crlb_sd").at("kv") / bound.speed_scale_std(), 1.0, 0.01);
@@ -210,11 +209,11 @@ TEST(AlignmentCsv, ResidualsAreLikeThoseOfTheRecordedDrive) {
   spec.duration_s = 120.0;
   spec.road = RoadKind::kMixed;
   const auto residual = truth_line(write_alignment_drive(spec, folder.path(), kNobodyListens).truth, "stationary");
-  EXPECT_NEAR(residual.at("rmse_uncorrected"), 0.45, 0.08);  // 0.4504 → 0.0989 there
+  EXPECT_NEAR(residual.at("rmse_uncorrected"), 0.45, 0.08);  // the recorded drive has 0.4504 → 0.0989
   EXPECT_NEAR(residual.at("at_truth"), 0.099, 0.015);
 }
 
-TEST(AlignmentCsv, WhatCannotBeWrittenIsAnError) {
+TEST(AlignmentCsv, UnwritableFolderIsAnError) {
   EXPECT_THROW(write_alignment_drive(small_drive(), "/proc/nowhere", kNobodyListens), std::exception);
 }
 
@@ -228,13 +227,13 @@ TEST(AlignmentSpec, RadarsOfAVehicleKeepTheirMountingAndARandomTruthIsWithinBoun
   ASSERT_EQ(spec.radars.size(), 5U);
   EXPECT_EQ(spec.radars[4].config.mounting_pose.roll_rad, M_PI);
   EXPECT_EQ(spec.radars[4].config.source.sender, "10.13.1.119");
-  EXPECT_NEAR(spec.radars[4].truth.yaw_rad, -1.0 * kDegree, 1e-12);
+  EXPECT_NEAR(spec.radars[4].truth.yaw_rad, -1.0 * kRadiansPerDegree, 1e-12);
   EXPECT_EQ(spec.speed_std_mps, 0.07);
   draw_truth(spec);
   const double first = spec.radars[0].truth.yaw_rad;
   for (const AlignmentRadar& radar : spec.radars) {
     for (const double angle : {radar.truth.yaw_rad, radar.truth.pitch_rad, radar.truth.roll_rad}) {
-      EXPECT_LE(std::abs(angle), 3.0 * kDegree);
+      EXPECT_LE(std::abs(angle), 3.0 * kRadiansPerDegree);
     }
   }
   EXPECT_NEAR(spec.speed_scale, 1.0, 0.03);

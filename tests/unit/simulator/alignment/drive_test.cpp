@@ -1,4 +1,4 @@
-// What a statistical alignment drive promises: its truth, and that each effect touches nothing but what it is about.
+// A statistical alignment drive has the stated truth, and each effect changes only the quantities that it concerns.
 #include "tests/simulator/alignment/drive.hpp"
 
 #include <algorithm>
@@ -9,14 +9,13 @@
 
 #include <Eigen/Core>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::simulator {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-
-/// What a drive said, as numbers.
+/// The messages of a drive, as numbers.
 struct Heard {
   struct Scan {
     double time_s;
@@ -90,7 +89,7 @@ TEST(AlignmentDrive, SameSeedSameDriveAnotherSeedAnother) {
   EXPECT_FALSE(all_equal_to_other);
 }
 
-TEST(AlignmentDrive, NoEffectShiftsAnother) {
+TEST(AlignmentDrive, NoEffectChangesTheDrawsOfAnother) {
   const Heard plain = hear(short_drive());
   const auto with = [](const std::function<void(AlignmentSpec&)>& change) {
     AlignmentSpec spec = short_drive();
@@ -99,7 +98,7 @@ TEST(AlignmentDrive, NoEffectShiftsAnother) {
   };
   const std::vector<std::pair<const char*, Heard>> motions = {
       {"slip", with([](AlignmentSpec& s) { s.slip_coefficient_radps2pm = 0.003; })},
-      {"body pitch", with([](AlignmentSpec& s) { s.body_pitch_std_rad = 0.3 * kDegree; })},
+      {"body pitch", with([](AlignmentSpec& s) { s.body_pitch_std_rad = 0.3 * kRadiansPerDegree; })},
       {"brake pitch", with([](AlignmentSpec& s) { s.body_pitch_per_acceleration_radps2pm = 0.005; })},
   };
   for (const auto& [name, heard] : motions) {
@@ -135,8 +134,8 @@ TEST(AlignmentDrive, NoEffectShiftsAnother) {
   }
 }
 
-/// The range rate by elementary turns about axes, written independently of the simulator: the sensor's roll, then its
-/// pitch, then its yaw turn the line of sight; the sensor's motion is projected on it.
+/// The range rate by elementary rotations, written independently of the simulator. The sensor's roll, pitch and yaw
+/// rotate the line of sight in this order; the sensor's motion is projected on it.
 double expected_range_rate(const MountingPose& nominal, const Misalignment& m, double azimuth, double elevation,
                            const Heard::Scan& scan) {
   double x = std::cos(elevation) * std::cos(azimuth), y = std::cos(elevation) * std::sin(azimuth),
@@ -154,15 +153,15 @@ double expected_range_rate(const MountingPose& nominal, const Misalignment& m, d
   return -(x * vx + y * vy + z * scan.vertical_speed_mps);
 }
 
-TEST(AlignmentDrive, StationaryRangeRatesFollowTheMountingHoweverItIs) {
+TEST(AlignmentDrive, StationaryRangeRatesFollowAnyMounting) {
   AlignmentSpec spec = without_noise(short_drive());
-  spec.radars[0].config.mounting_pose.pitch_rad = 6.0 * kDegree;
+  spec.radars[0].config.mounting_pose.pitch_rad = 6.0 * kRadiansPerDegree;
   spec.radars[1].config.mounting_pose.roll_rad = M_PI;
-  spec.radars[2].config.mounting_pose.pitch_rad = -4.0 * kDegree;
+  spec.radars[2].config.mounting_pose.pitch_rad = -4.0 * kRadiansPerDegree;
   spec.radars[2].config.mounting_pose.roll_rad = M_PI;
-  spec.radars[3].config.mounting_pose.roll_rad = 20.0 * kDegree;
+  spec.radars[3].config.mounting_pose.roll_rad = 20.0 * kRadiansPerDegree;
   spec.slip_coefficient_radps2pm = 0.003;
-  spec.body_pitch_std_rad = 0.3 * kDegree;
+  spec.body_pitch_std_rad = 0.3 * kRadiansPerDegree;
   spec.outlier_share = 0.2;
   double largest_yaw_rate = 0.0;
   for (const Heard::Scan& scan : hear(spec).scans) {
@@ -177,7 +176,7 @@ TEST(AlignmentDrive, StationaryRangeRatesFollowTheMountingHoweverItIs) {
       ASSERT_NEAR(scan.elevation[i], scan.truth[i].elevation_rad, 1e-6);
     }
   }
-  EXPECT_GT(largest_yaw_rate, 0.02) << "the drive must turn for the test to mean anything";
+  EXPECT_GT(largest_yaw_rate, 0.02) << "the test needs a drive with bends";
 }
 
 TEST(AlignmentDrive, NoiseIsWhatIsStated) {
@@ -217,7 +216,7 @@ TEST(AlignmentDrive, NoisesAreIndependent) {
       const double rate =
           expected_range_rate(radar.config.mounting_pose, radar.truth, t.azimuth_rad, t.elevation_rad, scan);
       const Eigen::Vector3d z((scan.azimuth[i] - t.azimuth_rad) / scan.azimuth_std[i],
-                              (scan.elevation[i] - t.elevation_rad) / (0.6 * kDegree),
+                              (scan.elevation[i] - t.elevation_rad) / (0.6 * kRadiansPerDegree),
                               (scan.range_rate[i] - rate) / 0.03);
       sum += z * z.transpose();
       n += 1.0;
@@ -236,7 +235,7 @@ TEST(AlignmentDrive, TheNoseGoesDownWhenBraking) {
   while (drive.next(event)) {
     if (event.ego == nullptr) continue;
     const double acceleration = (event.speed_mps - last_speed) * spec.ego_rate_hz;
-    // Velocity in body axes: with the nose down the car moves towards its own roof. Not where it changes just now.
+    // Velocity in body axes: with the nose down the car moves towards its own roof. Changes of pitch are excluded.
     if (acceleration < -1.0 && last_vertical != 0.0 && std::abs(event.vertical_speed_mps / last_vertical - 1.0) < 0.1) {
       ++braking;
       EXPECT_NEAR(event.vertical_speed_mps / event.speed_mps, -0.004 * acceleration, 0.001);
@@ -325,7 +324,7 @@ TEST(AlignmentDrive, AStepChangeTurnsOneRadarAtOneInstant) {
   for (std::size_t i = 0; i < a.scans.size(); ++i) {
     const bool step_changed = a.scans[i].radar == 2 && a.scans[i].time_s >= 5.0;
     EXPECT_EQ(a.scans[i].azimuth != b.scans[i].azimuth, step_changed);
-    EXPECT_EQ(a.scans[i].range_rate, b.scans[i].range_rate) << "the world moves past as before";
+    EXPECT_EQ(a.scans[i].range_rate, b.scans[i].range_rate) << "range rates do not change";
   }
 }
 
@@ -342,7 +341,7 @@ TEST(AlignmentDrive, RadarsKeepTheirOwnTime) {
     EXPECT_GE(event.time_s, std::max(last_s, 1.0));
     EXPECT_NE(event.ego == nullptr, event.scan == nullptr);
     if (event.ego != nullptr && last_was_scan) {
-      EXPECT_GT(event.time_s, last_s) << "ego motion first";
+      EXPECT_GT(event.time_s, last_s) << "ego motion precedes scans";
     }
     last_s = event.time_s;
     last_was_scan = event.scan != nullptr;
@@ -358,7 +357,7 @@ TEST(AlignmentDrive, RadarsKeepTheirOwnTime) {
   EXPECT_NEAR(last_s, 11.0, 0.1);
 }
 
-TEST(AlignmentDrive, ARadarWithoutElevationSaysNothingOfIt) {
+TEST(AlignmentDrive, ARadarWithoutElevationLacksTheField) {
   AlignmentSpec spec = short_drive(2.0);
   spec.radars[3].measures_elevation = false;
   const Heard plain = hear(short_drive(2.0)), heard = hear(spec);
@@ -379,7 +378,7 @@ TEST(AlignmentDrive, StatesStdsOnlyWhereAsked) {
     EXPECT_EQ((scan.fields & scan_field::kStds) == 0, scan.radar == 0);
     for (std::size_t i = 0; i < scan.truth.size(); ++i) {
       const double expected =
-          scan.radar == 0 ? 0.0 : 0.3 * kDegree / std::max(std::cos(scan.truth[i].azimuth_rad), 0.35);
+          scan.radar == 0 ? 0.0 : 0.3 * kRadiansPerDegree / std::max(std::cos(scan.truth[i].azimuth_rad), 0.35);
       ASSERT_NEAR(scan.azimuth_std[i], expected, 1e-8);
     }
   }
@@ -400,7 +399,7 @@ TEST(AlignmentDrive, EgoSignalsAreScaledAndNoisy) {
   EXPECT_NEAR(std::sqrt(square / n), 0.02, 0.002);
 }
 
-/// What moves in a scan: azimuth, and range rate without that of the sensor's own motion.
+/// Moving detections of a scan: azimuth, and range rate without the part of the sensor's own motion.
 std::vector<std::pair<double, double>> movers(const AlignmentRadar& radar, const Heard::Scan& scan) {
   std::vector<std::pair<double, double>> found;
   for (std::size_t i = 0; i < scan.truth.size(); ++i) {
@@ -419,13 +418,13 @@ TEST(AlignmentDrive, MoversLastFromScanToScan) {
   for (const Heard::Scan& scan : hear(spec).scans) {
     if (scan.radar == 0) scans.push_back(movers(spec.radars[0], scan));
   }
-  // Share of what moves that was seen `back` scans before in the same direction at the same speed.
+  // Share of moving detections with a detection of the same direction and speed `back` scans earlier.
   const auto known = [&scans](std::size_t back) {
     double matched = 0.0, all = 0.0;
     for (std::size_t k = back; k < scans.size(); ++k) {
       for (const auto& [azimuth, rate] : scans[k]) {
         const auto same = [&, a = azimuth, r = rate](const std::pair<double, double>& other) {
-          return std::abs(other.first - a) < 6.0 * kDegree && std::abs(other.second - r) < 1.0;
+          return std::abs(other.first - a) < 6.0 * kRadiansPerDegree && std::abs(other.second - r) < 1.0;
         };
         all += 1.0;
         if (std::any_of(scans[k - back].begin(), scans[k - back].end(), same)) matched += 1.0;

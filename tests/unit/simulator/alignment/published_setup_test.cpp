@@ -1,4 +1,4 @@
-// The published set-up must give the residuals that Report A prints, or nothing compared with its tables means a thing.
+// The published set-up gives the residuals of Burza 2025. Comparisons with its tables rest on this.
 #include <cmath>
 
 #include "tests/simulator/alignment/drive.hpp"

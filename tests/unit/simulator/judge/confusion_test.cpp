@@ -7,7 +7,7 @@
 namespace boresight::judge {
 namespace {
 
-TEST(Confusion, CountsByTruthAndLeavesOutWhatTheCorrectorRejected) {
+TEST(Confusion, CountsByTruthWithoutRejectedDetections) {
   Confusion c;
   for (int i = 0; i < 3; ++i) c.add(Provenance::kGhostType1, Provenance::kGhostType1, false);
   for (int i = 0; i < 4; ++i) c.add(Provenance::kGhostType1, Provenance::kGhostType2, false);

@@ -1,4 +1,4 @@
-// What counts as a ghost's track.
+// Assignment of tracks to objects, and tracks that live on ghosts.
 #include <memory>
 
 #include "tests/simulator/judge/false_tracks.hpp"
@@ -39,28 +39,28 @@ class Tracks : public testing::Test {
   FalseTracks false_tracks_;
 };
 
-TEST_F(Tracks, BelongToTheNearestObjectAndToOneOnly) {
+TEST_F(Tracks, AreAssignedToTheNearestObjectOneToOne) {
   objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6), car(3, 60.0, 0.0)};
   add_track(7, 20.5f, 3.0f);
   add_track(8, 57.0f, 0.3f);
   add_track(9, 64.0f, 0.0f);
   const Matching m = matched();
-  // The car beside it has no track because another's is near.
+  // The first car has no track, although the track of the car beside it is near.
   EXPECT_EQ(m.track_of_object, (std::vector<std::size_t>{kNone, 0, 1}));
   EXPECT_EQ(m.object_of_track, (std::vector<std::size_t>{1, 2, kNone}));
 }
 
-TEST_F(Tracks, BelongToTheVehicleInWhoseBoxTheyLieOrToNone) {
+TEST_F(Tracks, InABoxAreAssignedToThatObjectOrToNone) {
   objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6)};
   add_track(7, 20.0f, 3.6f);
   add_track(8, 20.0f, 2.8f);
-  // The second one in the second car's box is 1.9 m beside the first car.
+  // The second track is in the second car's box and 1.9 m beside the first car.
   EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{1, kNone}));
   objects_[1].is_hidden = true;
   EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{1, 0}));
 }
 
-TEST_F(Tracks, BelongToWhatIsHiddenOnlyIfNothingThatIsSeenIsThere) {
+TEST_F(Tracks, AreAssignedToAHiddenObjectOnlyWithoutAVisibleOne) {
   objects_ = {car(1, 20.0, 0.0), car(2, 20.0, 3.6)};
   add_track(7, 20.0f, 1.3f);
   EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{0}));
@@ -70,7 +70,7 @@ TEST_F(Tracks, BelongToWhatIsHiddenOnlyIfNothingThatIsSeenIsThere) {
   EXPECT_EQ(matched().object_of_track, (std::vector<std::size_t>{0}));
 }
 
-TEST(LastSeen, HidesWhatShowsNothingOfItsOwnForHalfASecond) {
+TEST(LastSeen, HidesAnObjectWithoutDirectReflectionForHalfASecond) {
   std::vector<Object> objects = {{1, {20.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8},
                                  {2, {60.0, 0.0}, {0.0, 0.0}, 0.0, 4.5, 1.8}};
   LastSeen last_seen;
@@ -82,11 +82,11 @@ TEST(LastSeen, HidesWhatShowsNothingOfItsOwnForHalfASecond) {
     EXPECT_TRUE(objects[1].is_hidden);
     return objects[0].is_hidden;
   };
-  EXPECT_TRUE(is_hidden_after(0.0, Provenance::kGhostType2)) << "an image is not seen of itself";
+  EXPECT_TRUE(is_hidden_after(0.0, Provenance::kGhostType2)) << "a ghost is no direct reflection";
   EXPECT_FALSE(is_hidden_after(0.1, Provenance::kMoving));
   EXPECT_FALSE(is_hidden_after(0.6, Provenance::kGhostType2));
   EXPECT_TRUE(is_hidden_after(0.7, Provenance::kGhostType2));
-  EXPECT_FALSE(is_hidden_after(0.8, Provenance::kStationary)) << "it came to a stand";
+  EXPECT_FALSE(is_hidden_after(0.8, Provenance::kStationary)) << "the object stopped";
 }
 
 TEST_F(Tracks, LiveOnGhostsEvenCloseToTheirObject) {
@@ -106,7 +106,7 @@ TEST_F(Tracks, LiveOnGhostsEvenCloseToTheirObject) {
   EXPECT_EQ(false_tracks_.long_other_tracks(), 0u);
 }
 
-TEST_F(Tracks, OfGhostsThatWereToldAreNotMadeOfThem) {
+TEST_F(Tracks, DoNotLiveOnDetectionsClassifiedAsGhosts) {
   add_track(8, 25.0f, 0.0f);
   add_detection(25.0f, 0.0f, Provenance::kGhostType2, Provenance::kGhostType2);
   add_scans(10);

@@ -1,4 +1,4 @@
-// What the simulator writes is what the judge reads.
+// The judge reads the tables as the simulator wrote them.
 #include "tests/simulator/judge/truth_files.hpp"
 
 #include <filesystem>
@@ -49,11 +49,11 @@ TEST(TruthFiles, DetectionsAreReadAsTheDriveHadThem) {
       }
     }
   }
-  EXPECT_GT(ghosts, 0u) << "nothing was compared that has bounces";
+  EXPECT_GT(ghosts, 0u) << "no detection with mirror reflections was compared";
   std::filesystem::remove_all(folder);
 }
 
-TEST(TruthFiles, WhatCannotBeUnderstoodIsNamed) {
+TEST(TruthFiles, InvalidLineIsNamed) {
   const std::string header = "t_s,radar,scan,index,provenance,object,bounces,mirror,source\n";
   for (const char* line : {"0.1,1,1,0,mowing,1,0,0,body", "0.1,1,1,0,moving,1,0", "0.1,1,1,5,moving,1,0,0,body", ""}) {
     std::istringstream table(header + "0.1,1,1,0,moving,1,0,0,body\n" + line + "\n");
@@ -66,18 +66,18 @@ TEST(TruthFiles, WhatCannotBeUnderstoodIsNamed) {
   }
 }
 
-TEST(TruthFiles, ObjectsMoveBetweenInstantsAndParkedOnesAreNone) {
+TEST(TruthFiles, ObjectsAreInterpolatedAndParkedOnesOmitted) {
   std::istringstream table(
       "t_s,object,x_vehicle_m,y_vehicle_m,heading_rad,vx_over_ground_mps,vy_over_ground_mps,length_m,width_m,"
       "height_m,kind,parked\n"
       "0.0,1,10,2,3.1,5,0,4.5,1.8,1.5,car,0\n0.0,2,10,5,0,0,0,4.5,1.8,1.5,car,1\n0.0,3,50,0,0,5,0,4.5,1.8,1.5,car,0\n"
       "0.1,1,12,2,-3.1,7,0,4.5,1.8,1.5,car,0\n0.1,2,10,5,0,0,0,4.5,1.8,1.5,car,1\n");
   const TrueObjects objects(table);
-  ASSERT_EQ(objects.at(0.05).size(), 1u) << "the third left, the second is parked";
+  ASSERT_EQ(objects.at(0.05).size(), 1u) << "the third is gone, the second is parked";
   const Object o = objects.at(0.05).front();
   EXPECT_NEAR(o.position_m.x(), 11.0, 1e-9);
   EXPECT_NEAR(o.velocity_mps.x(), 6.0, 1e-9);
-  EXPECT_NEAR(std::abs(std::remainder(o.heading_rad, 2.0 * M_PI)), M_PI, 1e-6) << "the short way round";
+  EXPECT_NEAR(std::abs(std::remainder(o.heading_rad, 2.0 * M_PI)), M_PI, 1e-6) << "interpolated over the smaller angle";
   EXPECT_EQ(objects.at(0.0).size(), 2u);
   EXPECT_EQ(objects.at(9.0).size(), 1u);
   EXPECT_TRUE(TrueObjects().at(1.0).empty());

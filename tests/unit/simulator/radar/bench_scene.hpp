@@ -1,4 +1,4 @@
-// A radar at the world's origin and things about it, without anything random unless a test wants it.
+// A radar at the world's origin with targets around it, without random effects unless a test enables them.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@ namespace boresight::simulator {
 
 inline constexpr double kHeight_m = 0.6;
 
-/// The sensor sits in the origin of the vehicle, which drives along x with 20 m/s.
+/// The sensor is in the origin of the vehicle, which drives along x with 20 m/s.
 struct Bench {
   RadarConfig config;
   RadarEffects effects;
@@ -33,7 +33,7 @@ struct Bench {
     scene.ego = {{0.0, 0.0}, 0.0, 20.0, 0.0, 0.0};
   }
 
-  /// A body of which one centre, amidships, reflects in all directions.
+  /// A body with one reflection centre in its middle, which reflects in all directions.
   Body& add_body(std::uint32_t id, Eigen::Vector3d centre, Eigen::Vector3d velocity, double rcs_dbsm = 10.0) {
     Body body{};
     body.id = id;
@@ -61,7 +61,7 @@ struct Measured {
   std::vector<DetectionTruth> truth;
 
   [[nodiscard]] std::size_t count() const { return scan->number_of_valid_detections; }
-  /// Indices of the detections of that provenance and number of mirror bounces.
+  /// Indices of the detections with this provenance and number of mirror reflections.
   [[nodiscard]] std::vector<std::size_t> of(Provenance provenance, unsigned bounces) const {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -30,7 +30,7 @@ TEST(Detection, ProbabilityRisesWithPowerFromNothingToItsMaximumAndIsHalfAtTheTh
 
 TEST(Detection, FartherIsSeenLessOften) {
   Bench e;
-  e.effects.sensitivity.threshold_db = -40.0;  // a 0 dBsm reflector is seen half of the time at 100 m
+  e.effects.sensitivity.threshold_db = -40.0;  // a 0 dBsm reflector is detected half of the time at 100 m
   std::vector<int> seen;
   for (const double range : {50.0, 90.0, 100.0, 110.0, 180.0}) {
     e.scene.scatterers = {{{range, 0.0, kHeight_m}, 0.0}};
@@ -74,7 +74,7 @@ TEST(Detection, RangeRatesFoldIntoTheUnambiguousInterval) {
 
   Bench e;
   e.effects.unambiguous_mps = 30.0;
-  e.add_body(1, {30.0, 0.0, kHeight_m}, {-25.0, 0.0, 0.0});  // comes closer with 45 m/s
+  e.add_body(1, {30.0, 0.0, kHeight_m}, {-25.0, 0.0, 0.0});  // approaches with 45 m/s
   const Measured m = measure(e);
   ASSERT_EQ(m.count(), 1u);
   EXPECT_NEAR(m.scan->range_rate_mps[0], 15.0, 1e-5);
@@ -97,16 +97,16 @@ radar::Echo echo(double range_m, double azimuth_rad, double range_rate_mps, doub
   return e;
 }
 
-TEST(Detection, WhatIsNearerThanACellIsOneDetectionAtTheCentroidOfThePowers) {
+TEST(Detection, UnresolvedEchoesAreOneDetectionAtTheCentroidOfThePowers) {
   Bench e;
   e.effects.resolution = {1.0, 0.05, 0.5};
   // The stronger by 10·log10(3) dB, where range hardly matters: the centroid is a quarter of the way to the weaker.
   const double stronger = 10.0 * std::log10(3.0);
   e.scene.scatterers = {{{50.7, 0.5, kHeight_m}, stronger}, {{51.1, 0.5, kHeight_m}, 0.0}};
   const Measured one = measure(e);
-  ASSERT_EQ(one.count(), 1u) << "whatever lies between them: there is no grid";
+  ASSERT_EQ(one.count(), 1u) << "at any position: there is no grid";
   EXPECT_NEAR(one.scan->range_m[0], 50.8, 0.01);
-  e.scene.scatterers[1].position_m.x() = 51.75;  // a cell farther
+  e.scene.scatterers[1].position_m.x() = 51.75;  // one cell farther
   EXPECT_EQ(measure(e).count(), 2u);
   e.scene.scatterers[1].position_m = {50.6, 4.5, kHeight_m};  // another azimuth
   EXPECT_EQ(measure(e).count(), 2u);
@@ -120,9 +120,9 @@ TEST(Detection, WhatIsNearerThanACellIsOneDetectionAtTheCentroidOfThePowers) {
   EXPECT_EQ(strongest.truth[0].provenance, Provenance::kMoving);
 }
 
-TEST(Detection, TheStrongestTakesWhatIsWithinACellOfItAndNoMore) {
+TEST(Detection, TheStrongestEchoTakesExactlyTheEchoesWithinACell) {
   radar::Cells cells({1.0, 0.05, 0.5});
-  // The middle one is the strongest: it takes both. The first is: it takes the second, and the third is left.
+  // If the middle echo is the strongest, it takes both others. If the first is, it takes the second; the third remains.
   std::vector<radar::Echo> echoes = {echo(10.0, 0.0, 0.0, -20.0, 1), echo(10.8, 0.0, 0.0, 0.0, 2),
                                      echo(11.6, 0.0, 0.0, -20.0, 3)};
   cells.merge(echoes);
@@ -137,7 +137,7 @@ TEST(Detection, TheStrongestTakesWhatIsWithinACellOfItAndNoMore) {
   EXPECT_EQ(echoes[1].key, 3u);
 }
 
-TEST(Detection, CellsDoTheSameAsLookingAtAllPairsInAnyOrder) {
+TEST(Detection, CellsEqualTheComparisonOfAllPairsInAnyOrder) {
   const ResolutionCell cell{2.5, 0.07, 0.5};
   Stream stream(11, "test");
   std::vector<radar::Echo> echoes;
@@ -145,7 +145,7 @@ TEST(Detection, CellsDoTheSameAsLookingAtAllPairsInAnyOrder) {
     echoes.push_back(echo(stream.uniform(1.0, 75.0), stream.uniform(-1.3, 1.3), stream.uniform(-15.0, 15.0),
                           stream.uniform(-40.0, 0.0), i));
   }
-  // By the definition: from the strongest down, each takes all that is left within a cell.
+  // By the definition: in the order of power, each echo takes all remaining echoes within a cell.
   std::vector<radar::Echo> left = echoes;
   std::sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.power_db > b.power_db; });
   std::vector<std::uint64_t> wanted;
@@ -195,7 +195,7 @@ TEST(Detection, TheStrongestComeFirstAndTheRestIsCounted) {
   EXPECT_EQ(full.scan->dropped_detections, 1560u - kMaxDetections);
 }
 
-TEST(Detection, NoiseGrowsOffBoresightAndWithWeaknessAndIsWhatIsStated) {
+TEST(Detection, NoiseGrowsOffBoresightAndForWeakEchoesAndIsTheStatedOne) {
   const SensorNoise nominal;
   const SensorNoise good = radar::noise_of(nominal, 0.0, 0.0, 10.0), aside = radar::noise_of(nominal, 1.0, 0.0, 10.0),
                     weak = radar::noise_of(nominal, 0.0, 0.0, 5.0);

@@ -10,7 +10,7 @@
 namespace boresight::simulator {
 namespace {
 
-/// Rails, a roadside and traffic, with everything random on.
+/// Rails, a roadside and traffic, with all random effects enabled.
 struct Road : Bench {
   explicit Road(std::size_t scatterers = 400, int rail_pieces = 30, std::uint32_t cars = 12) {
     effects = RadarEffects{};
@@ -96,13 +96,13 @@ TEST(Effects, AddingOneChangesNoOther) {
   more.effects.misalignment[2] = {0.1, 0.0, 0.0};
   EXPECT_EQ(alone, rows(more));
   EXPECT_GT(measure(more).of(Provenance::kClutter), 10u);
-  // Another scatterer far from all others takes its own draws.
+  // A new scatterer far from all others has its own draws.
   Road another = road;
   another.scene.scatterers.insert(another.scene.scatterers.begin(), {{60.0, 0.5, kHeight_m}, 30.0});
   const auto with = rows(another);
   EXPECT_EQ(with.size(), alone.size() + 5);
   EXPECT_TRUE(std::includes(with.begin(), with.end(), alone.begin(), alone.end()));
-  // Without mirrors the direct echoes are as they were; a cell that a ghost shares would be another.
+  // Without mirrors the direct echoes do not change, since cells of size 0 hold no target together with a ghost.
   Road fine = road;
   fine.effects.resolution = {0.0, 0.0, 0.0};
   const auto with_mirrors = rows(fine);
@@ -112,12 +112,12 @@ TEST(Effects, AddingOneChangesNoOther) {
   EXPECT_TRUE(std::includes(with_mirrors.begin(), with_mirrors.end(), direct.begin(), direct.end()));
 }
 
-TEST(Effects, WithinACellOfWhatIsRealThereIsNoClutter) {
+TEST(Effects, ThereIsNoClutterInTheCellOfARealDetection) {
   Bench e;
   e.effects.clutter_per_scan = 20.0;
   e.scene.scatterers = {{{100.0, 0.0, kHeight_m}, 10.0}};
   ASSERT_GT(measure(e).of(Provenance::kClutter), 5u);
-  // Cells half the view wide, the range's and the range rate's wider than all there is.
+  // Azimuth cells of half the field of view; range and range-rate cells wider than the scene.
   e.effects.resolution = {300.0, 0.65, 200.0};
   std::size_t beyond = 0;
   for (std::uint32_t cycle = 0; cycle < 50; ++cycle) {
@@ -164,7 +164,7 @@ TEST(Effects, InterferenceLastsItsTimeRaisesTheNoiseAndMakesFalseDetections) {
   EXPECT_EQ(clutter[3], 0u);
   EXPECT_LT(real[1], real[0]);
   EXPECT_EQ(real[3], real[0]);
-  road.config.id = 2;  // another radar does not hear it
+  road.config.id = 2;  // another radar is not disturbed
   road.scene.t_s = 2.5;
   EXPECT_EQ(measure(road).of(Provenance::kClutter), 0u);
 }

@@ -1,5 +1,5 @@
-// The ground bounce's bias in elevation against what a phase interferometer would measure of the field of two spherical
-// waves.
+// The elevation bias by the ground reflection agrees with the measurement of a phase interferometer in the field of two
+// spherical waves.
 #include <complex>
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace boresight::simulator {
 namespace {
 
-/// The field at a height above the sensor's place: the direct wave and the one that the road turns by π and weakens.
+/// The field above the sensor's place: the direct wave, and the wave from the road with a phase shift of π and a loss.
 std::complex<double> field(double distance_m, double target_m, double at_m, double reflection) {
   const double k = 2.0 * M_PI / radar::kWavelength_m;
   const double direct = std::hypot(distance_m, target_m - at_m), ground = std::hypot(distance_m, target_m + at_m);
@@ -60,7 +60,7 @@ TEST(GroundReference, TheScanHasTheBiasInElevationOnly) {
     squares += std::pow(with.scan->elevation_rad[0] - without.scan->elevation_rad[0], 2);
     ++compared;
   }
-  EXPECT_GT(std::sqrt(squares / compared), 0.003) << "it biases: " << compared;
+  EXPECT_GT(std::sqrt(squares / compared), 0.003) << "elevation is biased: " << compared;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Paths by mirrors against examples derived by hand (mirrored positions) or by another method (shortest path).
+// Paths by mirrors agree with examples derived by hand (mirrored positions) or by another method (shortest path).
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@ namespace {
 
 using testing::SizeIs;
 
-/// Sensor at (0, 0) with 20 m/s along x, target at (30, 1) with (25, 0.5) m/s, rail along y = 4: the target's image is
-/// at (30, 7) and moves with (25, −0.5); it is seen through the rail at x = 30·4/7.
+/// Sensor at (0, 0) with 20 m/s along x, target at (30, 1) with (25, 0.5) m/s, rail along y = 4. The mirror image of
+/// the target is at (30, 7) and moves with (25, −0.5) m/s. The specular point is at x = 30·4/7.
 struct RailExample : Bench {
   RailExample() {
     add_rail({0.0, 4.0}, {100.0, 4.0});
@@ -64,7 +64,7 @@ TEST(Multipath, EveryBounceCostsTheSurfacesLossAndTheDetourItsSpreading) {
         cheap.scan->rcs_dbsm[cheap.of(provenance, bounces)[0]] - dear.scan->rcs_dbsm[dear.of(provenance, bounces)[0]],
         5.0F * static_cast<float>(bounces));
   }
-  // The image is as bright as a target of 10 dBsm there, less twice the 3 dB: the sensor knows the spreading.
+  // The ghost has the RCS of a 10 dBsm target at its range, less twice 3 dB: the sensor corrects for the spreading.
   EXPECT_FLOAT_EQ(cheap.scan->rcs_dbsm[cheap.of(Provenance::kGhostType2, 2)[0]], 4.0F);
   e.effects.multipath.extra_loss_db = 2.0;
   const Measured extra = measure(e);
@@ -76,14 +76,14 @@ TEST(Multipath, EveryBounceCostsTheSurfacesLossAndTheDetourItsSpreading) {
   EXPECT_NEAR(radar::radar_equation_db(0.0, 10.0, 20.0), -6.02, 0.01);
 }
 
-TEST(Multipath, ACornerSendsBackToWhereItWasLitFrom) {
+TEST(Multipath, ACornerReflectsMostlyBackToTheSource) {
   RailExample e;
   const auto rcs = [](const Measured& m, Provenance provenance, unsigned bounces) {
     return m.scan->rcs_dbsm[m.of(provenance, bounces)[0]];
   };
   e.effects.multipath.bistatic_rad = 0.0;
   const Measured everywhere = measure(e);
-  // Between the ways out and back at the target: atan(1/30) + atan(7/30) = 0.2625.
+  // Angle at the target between incident and reflected path: atan(1/30) + atan(7/30) = 0.2625.
   e.effects.multipath.bistatic_rad = 0.13125;
   const Measured corner = measure(e);
   EXPECT_NEAR(rcs(everywhere, Provenance::kGhostType1, 1) - rcs(corner, Provenance::kGhostType1, 1), 12.0, 1.01);
@@ -93,7 +93,7 @@ TEST(Multipath, ACornerSendsBackToWhereItWasLitFrom) {
 }
 
 TEST(Multipath, ThereIsNoGhostThroughAGapInTheRail) {
-  RailExample e;  // the bounce is at x = 17.143
+  RailExample e;  // the specular point is at x = 17.143
   e.scene.surfaces.clear();
   e.add_rail({0.0, 4.0}, {17.0, 4.0});
   e.add_rail({17.3, 4.0}, {100.0, 4.0});
@@ -104,7 +104,7 @@ TEST(Multipath, ThereIsNoGhostThroughAGapInTheRail) {
 
 TEST(Multipath, TheBounceMustLieWithinTheRailsHeights) {
   RailExample e;
-  e.scene.centres[0].position_m.z() = 1.2;  // the bounce is at z = 0.6 + 4/7·0.6 = 0.943
+  e.scene.centres[0].position_m.z() = 1.2;  // the specular point is at z = 0.6 + 4/7·0.6 = 0.943
   EXPECT_EQ(measure(e).count(), 1u);
   e.scene.surfaces[0].high_m = 0.95;
   EXPECT_EQ(measure(e).count(), 4u);
@@ -112,7 +112,7 @@ TEST(Multipath, TheBounceMustLieWithinTheRailsHeights) {
   EXPECT_EQ(measure(e).count(), 1u);
 }
 
-TEST(Multipath, OnlyTheImageIsSeenOfWhatIsHiddenDirectly) {
+TEST(Multipath, AnOccludedTargetIsDetectedByItsGhostOnly) {
   RailExample e;
   e.add_body(2, {15.0, 0.5, kHeight_m}, {0.0, 0.0, 0.0});
   e.scene.bodies.back().parked = true;
@@ -120,12 +120,12 @@ TEST(Multipath, OnlyTheImageIsSeenOfWhatIsHiddenDirectly) {
   const Measured m = measure(e);
   EXPECT_THAT(m.of(Provenance::kGhostType2, 2), SizeIs(1));
   EXPECT_EQ(m.count(), 1u);
-  e.scene.bodies.back().position_m = {17.0, 3.5};  // hides the bounce instead
+  e.scene.bodies.back().position_m = {17.0, 3.5};  // hides the specular point instead
   EXPECT_EQ(measure(e).of(Provenance::kMoving), 1u);
   EXPECT_EQ(measure(e).count(), 1u);
 }
 
-TEST(Multipath, ASideThatFacesTheRailOnlyIsSeenInTheRailOnly) {
+TEST(Multipath, ASideThatFacesTheRailIsDetectedByTheRailOnly) {
   RailExample e;
   e.scene.centres[0].facing = {0.0, 1.0, 0.0};
   const Measured m = measure(e);
@@ -146,7 +146,7 @@ TEST(Multipath, FewerBouncesMakeFewerGhosts) {
   EXPECT_EQ(measure(e).count(), 1u);
 }
 
-TEST(Multipath, WhatStandsIsMirroredOnRequest) {
+TEST(Multipath, StationaryTargetsAreMirroredOnRequest) {
   RailExample e;
   e.scene.bodies[0].parked = true;
   e.scene.centres[0].velocity_mps.setZero();
@@ -154,7 +154,7 @@ TEST(Multipath, WhatStandsIsMirroredOnRequest) {
   e.effects.multipath.of_stationary = true;
   const Measured m = measure(e);
   EXPECT_EQ(m.count(), 4u);
-  // Mirrored in what stands, it has the range rate of something that stands where it appears.
+  // A stationary target in a stationary mirror has the range rate of a stationary target at the ghost's place.
   const std::size_t i = m.of(Provenance::kGhostType2, 2)[0];
   EXPECT_NEAR(m.scan->range_rate_mps[i], -20.0 * std::cos(m.scan->azimuth_rad[i]), 1e-4);
 }
@@ -163,15 +163,15 @@ TEST(Multipath, TwoRailsMakeThePathsByBoth) {
   RailExample e;
   e.add_rail({0.0, -5.0}, {100.0, -5.0});
   const Measured m = measure(e);
-  // Images: left rail (30, 7), right rail (30, −11), left then right (30, 19): mirror at −5 to −11, at 4 to 19; right
-  // then left (30, −17): mirror at 4 to 7, at −5 to −17.
+  // Mirror images: left rail (30, 7); right rail (30, −11); first right at −5, to −11, then left at 4, to (30, 19);
+  // first left at 4, to 7, then right at −5, to (30, −17).
   const double direct = std::hypot(30.0, 1.0), left = std::hypot(30.0, 7.0), right = std::hypot(30.0, 11.0);
   const double both_left = std::hypot(30.0, 19.0), both_right = std::hypot(30.0, 17.0);
   std::vector<std::pair<double, double>> expected = {
       {left, 7.0},
       {right, -11.0},  // three bounces by one rail
       {0.5 * (left + right), 7.0},
-      {0.5 * (left + right), -11.0},  // out by one, back by the other
+      {0.5 * (left + right), -11.0},  // out by one rail, back by the other
       {0.5 * (direct + both_left), 19.0},
       {0.5 * (direct + both_right), -17.0}  // both on the way back
   };
@@ -187,7 +187,7 @@ TEST(Multipath, TwoRailsMakeThePathsByBoth) {
   EXPECT_THAT(m.of(Provenance::kGhostType1, 1), SizeIs(2));
 }
 
-/// A truck that drives and turns; its right side (y = −1.25 in its axes) mirrors.
+/// A truck in a bend; its right side (y = −1.25 in its axes) mirrors.
 struct TruckExample : Bench {
   TruckExample() {
     Body& truck = add_body(5, {20.0, 6.0, 2.0}, {22.0, -1.5, 0.0});
@@ -207,7 +207,7 @@ struct TruckExample : Bench {
     const Eigen::Vector2d forward(std::cos(heading), std::sin(heading)), left(-forward.y(), forward.x());
     return Eigen::Vector2d(20.0 + 22.0 * t_s, 6.0 - 1.5 * t_s) + along * forward - 1.25 * left;
   }
-  /// Shortest way from sensor over the truck's side to the target, by golden section: Fermat's principle.
+  /// Shortest path from the sensor over the truck's side to the target by golden section (Fermat's principle).
   static double shortest(double t_s) {
     const Eigen::Vector2d sensor(20.0 * t_s, 0.0), target(32.0 + 15.0 * t_s, -1.0 + 1.0 * t_s);
     const auto length = [&](double along) {
@@ -234,7 +234,7 @@ TEST(Multipath, AMovingTurningTrucksSideChangesTheLengthAsTheShortestPathSays) {
   EXPECT_NEAR(m.scan->range_rate_mps[found[0]], rate, 2e-4);
   EXPECT_EQ(m.truth[found[0]].mirror_body, 5u);
   EXPECT_EQ(m.truth[found[0]].object_id, 9u);
-  // A mirror that stood there would give another rate: the truck's motion counts.
+  // A stationary mirror at this place would give another rate.
   TruckExample standing;
   standing.scene.bodies[0].velocity_mps.setZero();
   standing.scene.bodies[0].yaw_rate_radps = 0.0;
@@ -244,16 +244,16 @@ TEST(Multipath, AMovingTurningTrucksSideChangesTheLengthAsTheShortestPathSays) {
 
 TEST(Multipath, ATruckMirrorsOnItsOutsideOnlyAndNotItself) {
   TruckExample e;
-  e.scene.bodies[0].position_m.y() -= 2.5;  // the same plane is now the truck's left side, seen from within
+  e.scene.bodies[0].position_m.y() -= 2.5;  // the same plane is now the inner face of the truck's left side
   EXPECT_EQ(measure(e).of(Provenance::kGhostType2), 0u);
   TruckExample self;
   self.scene.surfaces[0].body_id = 9;
-  self.scene.bodies[1].position_m.y() = 10.0;  // its body lies behind the side that it would be seen in
+  self.scene.bodies[1].position_m.y() = 10.0;  // its body lies behind the mirroring side
   EXPECT_EQ(measure(self).of(Provenance::kGhostType2), 0u);
 }
 
 TEST(Multipath, ATurnedWorldSeesTheSameGeometry) {
-  // The whole example turned by 1.1 rad about the origin is the same measurement.
+  // The whole example, rotated by 1.1 rad about the origin, gives the same measurement.
   RailExample e;
   const Eigen::Rotation2Dd turn(1.1);
   e.scene.ego.heading_rad = 1.1;

@@ -17,15 +17,15 @@ struct Ahead : Bench {
   }
 };
 
-TEST(Occlusion, ABodyHidesWhatIsBehindItWithinItsHeights) {
+TEST(Occlusion, ABodyHidesTargetsBehindItWithinItsHeights) {
   Ahead e;
   EXPECT_EQ(measure(e).count(), 1u);
   e.add_obstacle(20.0, 0.5);
   EXPECT_EQ(measure(e).count(), 0u);
-  e.scene.bodies[0].position_m.y() = 0.95;  // its side is now 5 cm beside the line of sight
+  e.scene.bodies[0].position_m.y() = 0.95;  // the body's side is now 5 cm beside the line of sight
   EXPECT_EQ(measure(e).count(), 1u);
   e.scene.bodies[0].position_m.y() = 0.5;
-  e.scene.bodies[0].clearance_m = 0.7;  // seen below it
+  e.scene.bodies[0].clearance_m = 0.7;  // visible below the body
   EXPECT_EQ(measure(e).count(), 1u);
   Ahead high(3.0);  // the line of sight is 1.8 m high there
   high.add_obstacle(20.0, 0.5);
@@ -49,10 +49,10 @@ TEST(Occlusion, AnOpaqueStructureHidesWithinItsHeightsOnly) {
   wall.opaque = false;
   EXPECT_EQ(measure(e).count(), 1u);
   wall.opaque = true;
-  wall.high_m = 0.55;  // a low rail: seen above it
+  wall.high_m = 0.55;  // visible above the low rail
   EXPECT_EQ(measure(e).count(), 1u);
   wall.high_m = 0.9;
-  wall.from_m.y() = 0.1;  // its end is beside the line of sight
+  wall.from_m.y() = 0.1;  // the wall's end is beside the line of sight
   EXPECT_EQ(measure(e).count(), 1u);
 }
 
@@ -74,8 +74,8 @@ TEST(Occlusion, AMovingBodyIsHiddenByAnotherButNotByItself) {
   EXPECT_EQ(m.truth[0].object_id, 2u);
 }
 
-TEST(Occlusion, TheEgoVehiclesOwnBodyIsInTheWay) {
-  // A radar in the left front corner that looks to all sides does not see what is behind on the right.
+TEST(Occlusion, TheEgoVehiclesOwnBodyHidesTargets) {
+  // A radar in the left front corner with a view to all sides does not see a target behind on the right.
   Bench e;
   e.ego_body = {-1.0, 3.7, 0.9, 0.15, 1.5};
   e.config.mounting_pose.position_m = {3.6, 0.8, kHeight_m};
@@ -90,7 +90,7 @@ TEST(Occlusion, TheEgoVehiclesOwnBodyIsInTheWay) {
   EXPECT_FALSE(seen(-20.0, -3.0));
   EXPECT_FALSE(seen(1.0, -10.0));
   EXPECT_FALSE(seen(-20.0, 0.0));
-  // Turned with the vehicle.
+  // The box rotates with the vehicle.
   e.scene.ego.heading_rad = M_PI;
   EXPECT_FALSE(seen(20.0, 3.0));
   EXPECT_TRUE(seen(-20.0, 0.0));
@@ -111,7 +111,7 @@ TEST(Occlusion, TheFieldOfViewEndsWhereConfigured) {
   EXPECT_FALSE(seen(0.3, 0.0, 201.0));
 }
 
-TEST(Ground, BelowACarOnlyTheImageUnderTheRoadIsSeen) {
+TEST(Ground, BelowACarTheTargetAppearsUnderTheRoad) {
   Ahead e;
   e.effects.multipath.ground_bounce = true;
   Body& car = e.add_obstacle(20.0, 0.0);
@@ -146,7 +146,7 @@ TEST(Ground, InterferenceIsBoundedByTheTwoRaysAndAveragesOut) {
 }
 
 TEST(Ground, AtAMaximumTheApparentElevationLiesBetweenTheRaysAndAtAMinimumAbove) {
-  // Rays in phase: weights 1 and ρ; in antiphase: 1 and −ρ (glint beyond the target, away from the image).
+  // Rays in phase: weights 1 and ρ; in antiphase: 1 and −ρ (glint beyond the target, away from the mirror image).
   bool between = false, above = false;
   for (double distance = 30.0; distance < 34.0; distance += 0.002) {
     const radar::GroundEffect effect = radar::two_rays(distance, 0.6, 0.7);

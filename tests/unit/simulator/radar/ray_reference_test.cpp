@@ -1,5 +1,5 @@
-// Ghosts in random scenes against a reference that knows no images: the shortest way over points of the mirrors
-// (Fermat's principle), found by bisection, and its length's derivative by moving everything a little in time.
+// Ghosts in random scenes agree with a reference that uses no mirror images. The reference finds the shortest path over
+// points of the mirrors (Fermat's principle) by bisection, and the derivative of its length by a small step in time.
 #include <algorithm>
 #include <optional>
 
@@ -13,13 +13,13 @@ namespace boresight::simulator {
 namespace {
 
 constexpr std::uint32_t kTruck = 50, kCar = 9;
-constexpr double kEdge_m = 0.05;  // paths nearer to an edge are left out of the comparison
+constexpr double kEdge_m = 0.05;  // paths nearer to an edge are not compared
 
-/// A vertical plane that drives and turns, as a function of time.
+/// A vertical plane that moves and rotates, as a function of time.
 struct Plane {
   Eigen::Vector2d middle_m, velocity_mps;
   double heading_rad, yaw_rate_radps, half_m, low_m, high_m;
-  double outer;  // +1: mirrors to its left only; 0: to both sides
+  double outer;  // +1: mirrors on its left face only; 0: on both faces
 
   [[nodiscard]] Eigen::Vector2d along(double t) const {
     const double heading = heading_rad + yaw_rate_radps * t;
@@ -32,7 +32,7 @@ struct Plane {
   }
 };
 
-/// Everything that moves, as functions of time.
+/// All moving things, as functions of time.
 struct Example {
   std::vector<Plane> planes;  // the wall, the truck's side
   Eigen::Vector2d ego_m, target_m, target_velocity_mps;
@@ -67,7 +67,7 @@ struct Example {
                       1.0});
   }
   [[nodiscard]] Eigen::Vector2d sensor(double t) const {
-    // On an arc: exact to second order, which is what a central difference keeps.
+    // Motion on an arc, exact to second order; a central difference needs no more.
     const double middle = ego_heading_rad + 0.5 * ego_yaw_rate_radps * t,
                  now = ego_heading_rad + ego_yaw_rate_radps * t;
     const Eigen::Vector2d ahead(std::cos(now), std::sin(now)), left(-ahead.y(), ahead.x());
@@ -77,7 +77,8 @@ struct Example {
   [[nodiscard]] Eigen::Vector2d target(double t) const { return target_m + t * target_velocity_mps; }
 };
 
-/// Where the shortest way from a over the line to b meets it: the derivative of a convex sum rises through zero.
+/// Specular point on the line of the shortest path from a to b: there the derivative of a convex sum rises through
+/// zero.
 double shortest(const Plane& plane, double t, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const auto slope = [&](double s) {
     const Eigen::Vector2d p = plane.at(t, s);
@@ -91,12 +92,13 @@ double shortest(const Plane& plane, double t, const Eigen::Vector2d& a, const Ei
   return 0.5 * (low + high);
 }
 
-/// The way from the sensor over these planes, in this order, to the target: the points on them.
+/// Specular points of the path from the sensor over these planes, in this order, to the target.
 std::vector<Eigen::Vector2d> corners(const Example& e, const std::vector<std::size_t>& order, double t) {
   const Eigen::Vector2d from = e.sensor(t), to = e.target(t);
   if (order.empty()) return {from, to};
   if (order.size() == 1) return {from, e.planes[order[0]].at(t, shortest(e.planes[order[0]], t, from, to)), to};
-  // The shortest over both is where the sum's derivative by the first point is zero, the second being the best for it.
+  // On the shortest path over both planes, the derivative of the length by the first point is zero, with the best
+  // second point for it.
   const Plane &first = e.planes[order[0]], &second = e.planes[order[1]];
   const auto best_second = [&](const Eigen::Vector2d& p) { return second.at(t, shortest(second, t, p, to)); };
   double low = -2000.0, high = 2000.0;
@@ -124,7 +126,7 @@ struct Way {
 
 enum class Is { kThere, kNotThere, kTooClose };
 
-/// Whether each corner lies on its plane, and comes and leaves on a side that mirrors.
+/// Whether each specular point lies on its plane, and the path arrives and leaves on a mirroring face.
 Is judge(const Example& e, const std::vector<std::size_t>& order, const std::vector<Eigen::Vector2d>& way) {
   double margin = 1e9;
   double travelled = 0.0, whole = 0.0;
@@ -142,7 +144,7 @@ Is judge(const Example& e, const std::vector<std::size_t>& order, const std::vec
   return std::abs(margin) < kEdge_m ? Is::kTooClose : margin > 0.0 ? Is::kThere : Is::kNotThere;
 }
 
-/// All ways there are; nothing where one is too close to an edge to be sure.
+/// All paths; nothing if a path is too close to an edge to decide.
 std::optional<std::vector<Way>> ways(const Example& e) {
   std::vector<Way> ways;
   for (const std::vector<std::size_t>& order : {std::vector<std::size_t>{}, {0}, {1}, {0, 1}, {1, 0}}) {
@@ -167,7 +169,7 @@ std::optional<std::vector<Way>> ways(const Example& e) {
 
 Bench bench_of(const Example& e) {
   Bench bench;
-  bench.ego_body = {-100.0, -99.0, 0.1, 0.15, 0.2};  // nothing of the vehicle is in the way
+  bench.ego_body = {-100.0, -99.0, 0.1, 0.15, 0.2};  // the ego vehicle hides nothing
   bench.config.mounting_pose.position_m = {e.mount_m.x(), e.mount_m.y(), kHeight_m};
   bench.config.field_of_view = {-3.2, 3.2, -1.6, 1.6, 300.0};
   bench.effects.unambiguous_mps = 0.0;
@@ -178,7 +180,7 @@ Bench bench_of(const Example& e) {
   car.length_m = car.width_m = 1e-3;  // hides nothing
   const Plane& side = e.planes[1];
   const Eigen::Vector2d u = side.along(0.0);
-  // Its body lies to the right of its side. The side's middle moves as told when the body's centre does so.
+  // The truck's body lies to the right of its side. The velocity of its centre is chosen for that of the side's middle.
   const Eigen::Vector2d arm = Eigen::Vector2d(u.y(), -u.x());
   Body& truck = bench.add_body(kTruck, {side.middle_m.x() + arm.x(), side.middle_m.y() + arm.y(), 2.0}, {0, 0, 0});
   truck.velocity_mps = side.velocity_mps + side.yaw_rate_radps * Eigen::Vector2d(-arm.y(), arm.x());
@@ -195,7 +197,7 @@ Bench bench_of(const Example& e) {
   return bench;
 }
 
-TEST(RayReference, EveryGhostHasTheLengthDirectionAndRateOfTheShortestWays) {
+TEST(RayReference, EveryGhostHasTheLengthDirectionAndRateOfTheShortestPath) {
   Stream draw(2026, "rays");
   std::size_t scenes = 0, moving_mirror = 0;
   std::map<std::pair<Provenance, unsigned>, std::size_t> compared;
@@ -233,7 +235,7 @@ TEST(RayReference, EveryGhostHasTheLengthDirectionAndRateOfTheShortestWays) {
         moving_mirror += mirror == kTruck ? 1 : 0;
       }
     }
-    ASSERT_EQ(m.count(), expected) << "trial " << trial << ": ghosts that no way makes";
+    ASSERT_EQ(m.count(), expected) << "trial " << trial << ": ghosts without a path in the reference";
   }
   EXPECT_GT(scenes, 2000u);
   EXPECT_GT(moving_mirror, 500u);
@@ -245,8 +247,8 @@ TEST(RayReference, EveryGhostHasTheLengthDirectionAndRateOfTheShortestWays) {
   }
 }
 
-/// Boxes and sheets in a scene, asked point by point along the line of sight.
-TEST(RayReference, WhatIsHiddenIsWhatALineOfSightRunsThrough) {
+/// Boxes and sheets in a scene, tested point by point along the line of sight.
+TEST(RayReference, ATargetIsHiddenExactlyIfItsLineOfSightIsBlocked) {
   Stream draw(7, "occlusion");
   const auto any = [&](double from, double to) { return draw.uniform(from, to); };
   std::size_t hidden = 0, clear = 0;
@@ -268,7 +270,7 @@ TEST(RayReference, WhatIsHiddenIsWhatALineOfSightRunsThrough) {
         to(any(-20.0, 20.0), any(-20.0, 20.0), any(0.2, 5.0));
     radar::Occlusion occlusion;
     occlusion.prepare(scene, {0.0, 0.0}, 100.0, radar::EgoBox{{-99.0, -99.0}, {-98.0, -98.0}, 0.1, 0.2});
-    // By small steps: inside the box shrunk by 3 cm is hidden for sure, outside the box grown by 3 cm is not.
+    // In small steps: a point inside the box shrunk by 3 cm is hidden, a point outside the box grown by 3 cm is not.
     bool surely_in = false, maybe_in = false;
     constexpr int kSteps = 6000;
     double across_before = 0.0;

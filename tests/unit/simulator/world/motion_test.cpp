@@ -90,7 +90,7 @@ TEST(Motion, FollowsTheRoadThroughBendsAndLaneChanges) {
   oncoming.speed_mps = {{0.0, -15.0}, {10.0, -8.0}};
   oncoming.lateral_m = {{100.0, 3.5}, {160.0, 5.0}};
   expect_consistent([&](double t) { return body_motion(oncoming, road, t); }, 25.0);
-  EXPECT_GT(body_motion(oncoming, road, 1.0).speed_mps, 0.0) << "it drives ahead, the other way";
+  EXPECT_GT(body_motion(oncoming, road, 1.0).speed_mps, 0.0) << "the body drives forward, in the opposite direction";
 
   BodySpec crossing;
   crossing.kind = BodyKind::kPedestrian;

@@ -1,4 +1,4 @@
-// Reflection centres move as bodies do; structures stand where they were asked for.
+// Reflection centres move with their bodies; structures stand at the requested places.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -37,21 +37,21 @@ TEST_P(Kinds, CentresHaveTheVelocityOfTheirPlaces) {
     const auto now = centres_at(t), before = centres_at(t - 1e-4), after = centres_at(t + 1e-4);
     for (std::size_t i = 0; i < now.size(); ++i) {
       const Eigen::Vector3d velocity = (after[i].position_m - before[i].position_m) / 2e-4;
-      // What turning does to the swing of a limb is left out.
+      // The effect of the body's rotation on the swing of a limb is neglected.
       ASSERT_NEAR((now[i].velocity_mps - velocity).norm(), 0.0, 0.1) << "centre " << i << " at " << t;
       ASSERT_GE(now[i].position_m.z(), 0.0);
       any_micro = any_micro || std::abs(now[i].velocity_mps.norm() - now[0].velocity_mps.norm()) > 1.0;
       ASSERT_TRUE(now[i].facing.norm() == 0.0 || std::abs(now[i].facing.norm() - 1.0) < 1e-9);
     }
   }
-  EXPECT_TRUE(any_micro) << "wheels and limbs";
+  EXPECT_TRUE(any_micro) << "rims and limbs move";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Kinds,
                          testing::Values(BodyKind::kCar, BodyKind::kVan, BodyKind::kTruck, BodyKind::kPedestrian,
                                          BodyKind::kCyclist));
 
-TEST(Sides, OnlyLargeVehiclesMirrorAndByAllFour) {
+TEST(Sides, OnlyLargeVehiclesMirrorWithAllFour) {
   Body body{};
   body.id = 7;
   body.kind = BodyKind::kTruck;
@@ -61,7 +61,7 @@ TEST(Sides, OnlyLargeVehiclesMirrorAndByAllFour) {
   body.width_m = 2.5;
   body.height_m = 3.8;
   body.clearance_m = 0.8;
-  body.flank_low_m = 0.5;
+  body.side_low_m = 0.5;
   body.velocity_mps = {3.0, 1.0};
   std::vector<MirrorSurface> sides;
   add_sides(body, 4.0, sides);
@@ -71,7 +71,7 @@ TEST(Sides, OnlyLargeVehiclesMirrorAndByAllFour) {
     around_m += (s.to_m - s.from_m).norm();
     EXPECT_EQ(s.body_id, 7u);
     EXPECT_EQ(s.velocity_mps, body.velocity_mps);
-    EXPECT_EQ(s.low_m, 0.5) << "its guards, not its clearance";
+    EXPECT_EQ(s.low_m, 0.5) << "height of its guards, not its clearance";
     EXPECT_EQ(s.high_m, 3.8);
   }
   EXPECT_NEAR(around_m, 29.0, 1e-9);
@@ -132,7 +132,7 @@ TEST(Structures, ARailFollowsItsLineWithinCentimetresAndOpensAtItsGaps) {
     EXPECT_LT(distance_m(p.scatterer.position_m.head<2>()), 0.035);
   }
   EXPECT_NEAR(static_cast<double>(roadside.scatterers.size()), (430.0 - 6.0 - 12.0) / 2.0, 8.0);
-  EXPECT_LT(roadside.surfaces.size(), 80u) << "as few as the curve allows";
+  EXPECT_LT(roadside.surfaces.size(), 80u) << "no more mirrors than the curve needs";
 }
 
 TEST(Structures, AWallOffTheRoadIsStraight) {

@@ -1,4 +1,4 @@
-// Scenario files: what is written is what comes out, and mistakes are named with file, line and key.
+// Scenario files are read completely, and errors name file, line and key.
 #include "tests/simulator/scenario_file.hpp"
 
 #include <filesystem>
@@ -22,7 +22,7 @@ std::string problems(std::string_view text) {
   return "";
 }
 
-TEST(ScenarioFile, SaysEverythingAScenarioIs) {
+TEST(ScenarioFile, ReadsEveryPartOfAScenario) {
   const Scenario s = read_scenario(config::Reader::parse(R"(
 name = "mine"
 vehicle = "demo"
@@ -121,11 +121,17 @@ TEST(ScenarioFile, NamesFileLineKeyAndWhatIsAllowed) {
   EXPECT_THAT(problems("name = \"x\"\n[[body]]\nkind = \"car\"\nstart_m = 1.0\ncolour = 3\n"),
               HasSubstr("my.toml:5: body[0].colour: unknown key"));
   EXPECT_THAT(problems(""), HasSubstr("name: is missing"));
-  EXPECT_THAT(problems("name = \"x\"\n[radars]\nknock = [{time_s = 1.0}]\n"), HasSubstr("radars.step_change[0].radar"));
+  EXPECT_THAT(problems("name = \"x\"\n[radars]\nstep_change = [{time_s = 1.0}]\n"),
+              HasSubstr("radars.step_change[0].radar"));
   EXPECT_THAT(problems("name = \"x\"\n[radars]\nmisalignment = [{radar = 17}]\n"), HasSubstr("1 … 16"));
 }
 
-TEST(ScenarioFile, RefusesWhatContradictsItself) {
+TEST(ScenarioFile, FormerKeyIsAnErrorThatNamesTheKeyOfToday) {
+  EXPECT_THAT(problems("name = \"x\"\n[[body]]\nkind = \"truck\"\nstart_m = 1.0\nflank_low_m = 0.8\n"),
+              HasSubstr("my.toml:5: body[0].flank_low_m: is called 'side_low_m' now"));
+}
+
+TEST(ScenarioFile, RefusesContradictions) {
   const std::string head = "name = \"x\"\n";
   const std::string rail = "[[structure]]\nkind = \"guard_rail\"\nlateral_m = 1.0\n";
   EXPECT_THAT(problems(head + rail + "from_m = 9.0\nto_m = 3.0\n"), HasSubstr("my.toml:6: structure[0].to_m"));
@@ -145,7 +151,7 @@ TEST(ScenarioFile, RefusesWhatContradictsItself) {
       HasSubstr("beyond the centre"));
 }
 
-TEST(ScenarioFile, ShippedOnesAreFoundByNameAndOwnOnesByPath) {
+TEST(ScenarioFile, ShippedScenariosAreFoundByNameAndOwnOnesByPath) {
   const auto names = scenario_names();
   for (const char* name : {"demo_drive", "aligned_drive", "straight_rail", "highway_multipath", "tunnel", "city_canyon",
                            "parking_garage", "truck_overtaking", "curve_with_rail", "junction", "motorway_braking"}) {

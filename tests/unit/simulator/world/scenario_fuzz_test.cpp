@@ -1,4 +1,4 @@
-// Whatever is written into a scenario file: it is refused with file and line, or it is a drive with finite numbers.
+// Any text as a scenario file is refused with file and line, or gives a drive with finite numbers.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr double kBrief_s = 0.1;
 
 enum class Outcome { kRefused, kDriven };
 
-/// Reads it, and drives a little if it is a scenario.
+/// Reads the text, and simulates a short drive if it is a scenario.
 Outcome attempt(const std::string& text) {
   static const VehicleConfig vehicle =
       config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
@@ -73,7 +73,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// One of what a careless or a wicked hand would do.
+/// One random mutation of the text.
 std::string mutated(std::string_view original, Stream& draw) {
   constexpr std::array<const char*, 26> kValues = {
       "nan",   "inf",   "-inf", "1e308", "-1e308", "1e-308", "0",     "0.0",       "-0.0",
@@ -167,7 +167,7 @@ TEST(ScenarioFuzz, ExtremesWithinTheBoundsAreDriven) {
   }
 }
 
-TEST(ScenarioFuzz, WhatWouldEatAllMemoryIsRefused) {
+TEST(ScenarioFuzz, ScenarioWithTooManyPointsIsRefused) {
   const std::string forest =
       "name = \"x\"\n[ego]\nstart_m = 50000.0\n[[scatter]]\nkind = \"columns\"\nfrom_m = 0.0\nto_m = 100000.0\n"
       "lateral_min_m = 1.0\nlateral_max_m = 200.0\nper_m = 20.0\ntop_max_m = 50.0\nspacing_m = 0.05\n";

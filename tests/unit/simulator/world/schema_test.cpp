@@ -1,5 +1,5 @@
-// config/schema/scenario.md tells every key that the reader knows, with the bounds and defaults that it has; and what
-// it gives as an example is a scenario.
+// config/schema/scenario.md lists every key that the reader knows, with its bounds and default. The example on that
+// page is a valid scenario.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -56,7 +56,7 @@ std::map<std::string, std::vector<Cells>> sections() {
   return sections;
 }
 
-/// How a table of the document is written, and what it needs besides the key in question.
+/// How a table of the document is written, and which other keys it requires.
 struct Table {
   std::string before;                           // up to its assignments
   std::map<std::string, std::string> required;  // key → value
@@ -99,7 +99,7 @@ const std::map<std::string, Table>& tables() {
       {"body.repeat", {car + "repeat = ", {}, true, ""}},
       {"radars", {name + "[radars]\n", {}, false, ""}},
       {"radars.misalignment", {name + "[radars]\nmisalignment = [", radar, true, "]"}},
-      {"radars.step_change", {name + "[radars]\nknock = [", radar, true, "]"}},
+      {"radars.step_change", {name + "[radars]\nstep_change = [", radar, true, "]"}},
       {"radars.blockage", {name + "[radars]\nblockage = [", radar, true, "]"}},
       {"radars.interference", {name + "[radars]\ninterference = [", {}, true, "]"}},
       {"radars.multipath", {name + "[radars]\nmultipath = ", {}, true, ""}},
@@ -109,7 +109,7 @@ const std::map<std::string, Table>& tables() {
   return tables;
 }
 
-/// A document with this value at the key; without a value the key is left out.
+/// A document with this value at the key; without a value it lacks the key.
 std::string text_with(const Table& table, const std::string& key, const std::optional<std::string>& value,
                       const std::map<std::string, std::string>& others = {}) {
   std::map<std::string, std::string> all = table.required;
@@ -133,7 +133,7 @@ std::string problems(const std::string& text) {
   return "";
 }
 
-/// Of the default column: as TOML. "0.12 rad" is exact for a key in degrees.
+/// The default column as TOML. "0.12 rad" is exact for a key in degrees.
 std::string value_of_default(const std::string& cell) {
   const std::string text = code(cell);
   if (!text.ends_with(" rad")) return text;
@@ -142,21 +142,22 @@ std::string value_of_default(const std::string& cell) {
   return degrees.data();
 }
 
-TEST(Schema, EveryKeyOfTheReaderIsInTheDocumentAndTheOtherWayRound) {
+TEST(Schema, DocumentListsExactlyTheKeysOfTheReader) {
   const auto documented = sections();
   for (const auto& [section, table] : tables()) {
     const std::string problem = problems(text_with(table, "no_such_key", "1"));
-    const std::string mark = "no_such_key: unknown key; known here: ";
-    const std::size_t at = problem.find(mark);
+    ASSERT_THAT(problem, HasSubstr("no_such_key: unknown key; ")) << section;
+    const std::string mark = "known here: ";
+    const std::size_t at = problem.find(mark, problem.find("no_such_key: unknown key"));
     ASSERT_NE(at, std::string::npos) << section << ": " << problem;
-    std::set<std::string> known, told;
+    std::set<std::string> known, documented_keys;
     std::istringstream names(problem.substr(at + mark.size(), problem.find('\n', at) - at - mark.size()));
     for (std::string name; std::getline(names, name, ',');) known.insert(trimmed(name));
     ASSERT_TRUE(documented.contains(section)) << section;
     for (const Cells& row : documented.at(section)) {
-      if (!code(row[0]).empty()) told.insert(code(row[0]));
+      if (!code(row[0]).empty()) documented_keys.insert(code(row[0]));
     }
-    EXPECT_EQ(known, told) << section;
+    EXPECT_EQ(known, documented_keys) << section;
   }
 }
 
@@ -181,7 +182,7 @@ TEST(Schema, BoundsAreThoseOfTheReader) {
       };
       const double step = type == "integer" ? 1.0 : 1e-6 * std::max(1.0, std::abs(high));
       for (const double inside : {low, high}) {
-        // It may contradict another key, as an end before its beginning does.
+        // The value may contradict another key, such as an end before the beginning.
         EXPECT_THAT(problem(inside), testing::Not(HasSubstr("is out of range"))) << section << "." << key;
       }
       for (const double outside : {low - step, high + step}) {
@@ -221,7 +222,7 @@ TEST(Schema, DefaultsAreThoseOfTheReader) {
     }
   }
   EXPECT_GT(checked, 50u);
-  // Those that depend on the kind.
+  // Defaults that depend on the kind.
   for (const char* section : {"structure", "scatter"}) {
     const auto& rows = documented.at(std::string(section) + " by kind");
     for (std::size_t r = 1; r < rows.size(); ++r) {
@@ -247,19 +248,19 @@ TEST(Schema, DefaultsAreThoseOfTheReader) {
     EXPECT_EQ(std::stod(sizes[1][k]), size.length_m);
     EXPECT_EQ(std::stod(sizes[2][k]), size.width_m);
     EXPECT_EQ(std::stod(sizes[3][k]), size.height_m);
-    EXPECT_EQ(std::stod(sizes[4][k]), size.flank_low_m);
+    EXPECT_EQ(std::stod(sizes[4][k]), size.side_low_m);
   }
 }
 
-TEST(Schema, WordsAreThoseOfTheReader) {
+TEST(Schema, KindsAreThoseOfTheReader) {
   const auto documented = sections();
   for (const char* section : {"structure", "scatter", "body"}) {
     const Cells& row = documented.at(section)[1];
     ASSERT_EQ(code(row[0]), "kind");
     // "must be one of "a", "b"" against "`"a"`, `"b"`".
-    std::string told = row[3];
-    std::erase(told, '`');
-    EXPECT_THAT(problems(text_with(tables().at(section), "kind", "\"cat\"")), HasSubstr("must be one of " + told));
+    std::string words = row[3];
+    std::erase(words, '`');
+    EXPECT_THAT(problems(text_with(tables().at(section), "kind", "\"cat\"")), HasSubstr("must be one of " + words));
   }
 }
 

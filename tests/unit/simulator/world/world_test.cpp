@@ -1,4 +1,4 @@
-// The world at an instant: all of it and nothing else, the same every time, and nobody drives through anybody.
+// The world at an instant is complete, reproducible, and without collisions.
 #include "tests/simulator/world.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST_P(Shipped, IsTheSameForTheSameSeedWhateverTheDuration) {
   EXPECT_NE(in_a.scatterers[0].position_m, in_other.scatterers[0].position_m);
 }
 
-TEST_P(Shipped, HoldsWhatIsWithinReachAndKeepsItsBuffers) {
+TEST_P(Shipped, ContainsEverythingWithinReachAndKeepsItsBuffers) {
   const Scenario s = scenario(GetParam());
   const World world(s, 1, s.duration_s);
   Scene scene, all;
@@ -44,8 +44,8 @@ TEST_P(Shipped, HoldsWhatIsWithinReachAndKeepsItsBuffers) {
                                               scene.scatterers.data()};
   for (double t = 0.0; t < s.duration_s; t += 0.5) {
     world.at(t, 100.0, scene);
-    // From a much longer reach what is near must be the same.
-    world.at(t, World::kSight_m, all);
+    // The near part of a scene with a much longer reach must be the same.
+    world.at(t, World::kReach_m, all);
     const auto near = std::count_if(all.scatterers.begin(), all.scatterers.end(), [&](const Scatterer& p) {
       return (p.position_m.head<2>() - all.ego.position_m).norm() <= 100.0;
     });
@@ -75,7 +75,7 @@ Box box(const Eigen::Vector2d& centre, double heading, double length, double wid
   return {centre + u + w, centre - u + w, centre - u - w, centre + u - w};
 }
 
-/// By the separating axis; a segment is a box without width.
+/// Overlap test by separating axes; a segment is a box without width.
 bool overlap(const Box& a, const Box& b) {
   for (const Box* sides : {&a, &b}) {
     for (std::size_t i = 0; i < 2; ++i) {
@@ -94,7 +94,7 @@ bool overlap(const Box& a, const Box& b) {
   return true;
 }
 
-TEST_P(Shipped, NobodyDrivesThroughAnybodyOrAnything) {
+TEST_P(Shipped, BodiesDoNotCollide) {
   const Scenario s = scenario(GetParam());
   const World world(s, 1, s.duration_s);
   Scene scene;
@@ -126,7 +126,7 @@ TEST_P(Shipped, NobodyDrivesThroughAnybodyOrAnything) {
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(scenario_names()));
 
-TEST(World, WhatStandsTellsWhichTableOfTheScenarioItComesFrom) {
+TEST(World, StationaryThingsNameTheirTableInTheScenario) {
   const Scenario s = scenario("city_canyon");
   const World world(s, 1, 2.0);
   Scene scene;
@@ -168,7 +168,7 @@ TEST(World, ParkedCarsKeepTheirNumbersWhateverElseThereIs) {
   EXPECT_GT(parked, 10u);
 }
 
-TEST(World, MoreOfOneThingChangesNoOther) {
+TEST(World, AddingOneThingChangesNoOther) {
   Scenario s = scenario("aligned_drive");
   const World before(s, 9, 2.0);
   s.scatter.push_back(s.scatter.front());

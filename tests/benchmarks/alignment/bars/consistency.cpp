@@ -1,5 +1,5 @@
-// Whether the errors are as large as the covariance says: normalised squared error of each parameter (1 is honest) and
-// how many true values lie in the 95 % intervals, on every kind of drive.
+// Consistency of the stated covariance on every kind of drive: the normalised estimation error squared (NEES) of each
+// parameter, 1 if the stated std is right, and the share of true values inside the 95 % intervals.
 #include <array>
 
 #include "tests/benchmarks/alignment/bars/bars.hpp"
@@ -11,8 +11,8 @@ namespace boresight::bench {
 
 namespace {
 
-/// Of one parameter: of the estimates that are stated to be observable.
-struct Honesty {
+/// Sums over the estimates of one parameter that are reported as observable.
+struct Consistency {
   double squares = 0.0, covered = 0.0, count = 0.0;
   void add(double error, double std) {
     const double z = error / std;
@@ -20,7 +20,7 @@ struct Honesty {
     covered += std::abs(z) <= 1.96 ? 1.0 : 0.0;
     count += 1.0;
   }
-  void add(const Honesty& other) {
+  void add(const Consistency& other) {
     squares += other.squares;
     covered += other.covered;
     count += other.count;
@@ -29,10 +29,10 @@ struct Honesty {
   [[nodiscard]] double coverage_percent() const { return 100.0 * covered / count; }
 };
 
-using Honesties = std::array<Honesty, 4>;
+using Consistencies = std::array<Consistency, 4>;
 
-void add_run(const Run& run, double duration_s, Honesties& to) {
-  // Estimates of one drive depend on one another the more the closer they are.
+void add_run(const Run& run, double duration_s, Consistencies& to) {
+  // Few instants, far apart: estimates of one drive that are close in time are correlated.
   for (const double share : {0.125, 0.25, 0.5, 1.0}) {
     const Snapshot* at = nullptr;
     for (const Snapshot& s : run.snapshots) {
@@ -49,15 +49,15 @@ void add_run(const Run& run, double duration_s, Honesties& to) {
 
 }  // namespace
 
-void honesty(const Options& options, Report& report) {
+void consistency(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(40);
   const double duration_s = options.seconds(120.0);
-  Table table{"honesty",
-              "NEES (coverage of 95 % intervals, %) of what is stated to be observable",
+  Table table{"consistency",
+              "NEES (coverage of 95 % intervals, %) of the estimates reported as observable",
               {"drive", "k_v", "roll", "pitch", "yaw"},
               {}};
-  Honesties pooled;
-  constexpr double kFewest = 40.0;  // estimates that make a figure
+  Consistencies pooled;
+  constexpr double kFewest = 40.0;  // fewer estimates give no figure
   double lowest = 1.0, highest = 1.0;
   std::string lowest_where, highest_where;
   for (const DriveKind& kind : drive_kinds()) {
@@ -65,33 +65,33 @@ void honesty(const Options& options, Report& report) {
     const std::size_t kind_seeds = kind.name == "16 radars" ? options.seeds(16) : seeds;
     for (std::size_t seed = 0; seed < kind_seeds; ++seed) specs.push_back(kind.make(duration_s, 1000 + seed));
     const auto runs = run_drives(specs, own_method().make, options);
-    Honesties of_kind;
+    Consistencies of_kind;
     for (const Run& run : runs) add_run(run, duration_s, of_kind);
     std::vector<std::string> row = {kind.name};
     for (std::size_t p = 0; p < 4; ++p) {
-      const Honesty& h = of_kind[p];
+      const Consistency& h = of_kind[p];
       pooled[p].add(h);
       row.push_back(h.count > 0.0 ? fixed(h.nees(), 2) + " (" + fixed(h.coverage_percent(), 1) + ")" : "—");
       if (h.count < kFewest) continue;
-      report.add(Curve{"honesty", kParameters[p], kind.name, {{h.nees(), h.coverage_percent()}}});
+      report.add(Curve{"consistency", kParameters[p], kind.name, {{h.nees(), h.coverage_percent()}}});
       const std::string where = std::string(kParameters[p]) + ", " + kind.name;
       if (lowest_where.empty() || h.nees() < lowest) lowest = h.nees(), lowest_where = where;
       if (highest_where.empty() || h.nees() > highest) highest = h.nees(), highest_where = where;
     }
     table.rows.push_back(row);
   }
-  const std::string how = std::to_string(seeds) + " seeds (16 radars: 16) of each of " +
-                          std::to_string(drive_kinds().size()) + " kinds of drive, at 15, 30, 60 and 120 s";
+  const std::string how = std::to_string(drive_kinds().size()) + " kinds of drive × " + std::to_string(seeds) +
+                          " seeds (16 radars: 16), after 15, 30, 60, 120 s";
   std::vector<std::string> row = {"**all**"};
   for (std::size_t p = 0; p < 4; ++p) {
     row.push_back(fixed(pooled[p].nees(), 2) + " (" + fixed(pooled[p].coverage_percent(), 1) + ")");
-    report.within("honesty", std::string("NEES ") + kParameters[p] + ", all drives", pooled[p].nees(), 0.7, 1.5, "",
+    report.within("consistency", std::string("NEES ") + kParameters[p] + ", all drives", pooled[p].nees(), 0.7, 1.5, "",
                   how);
-    report.within("honesty", std::string("coverage ") + kParameters[p] + ", all drives", pooled[p].coverage_percent(),
-                  90.0, 99.0, "%", how);
+    report.within("consistency", std::string("coverage ") + kParameters[p] + ", all drives",
+                  pooled[p].coverage_percent(), 90.0, 99.0, "%", how);
   }
-  report.within("honesty", "lowest NEES of a kind (" + lowest_where + ")", lowest, 0.7, 1.5, "", how);
-  report.within("honesty", "highest NEES of a kind (" + highest_where + ")", highest, 0.7, 1.5, "", how);
+  report.within("consistency", "lowest NEES of a kind (" + lowest_where + ")", lowest, 0.7, 1.5, "", how);
+  report.within("consistency", "highest NEES of a kind (" + highest_where + ")", highest, 0.7, 1.5, "", how);
   table.rows.push_back(row);
   report.add(std::move(table));
 }

@@ -1,0 +1,10 @@
+// The value of what is not known (yet).
+#pragma once
+
+#include <limits>
+
+namespace boresight {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace boresight
