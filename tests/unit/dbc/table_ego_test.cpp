@@ -113,7 +113,7 @@ TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAnew) {
   distance_m += 8.0;  // in 20 ms
   drive(10.0, 1);
   EXPECT_THAT(speeds(), SizeIs(middle));
-  EXPECT_THAT(bus.out.faults, ElementsAre("wheel pulses went further than the greatest plausible speed"));
+  EXPECT_THAT(bus.out.faults, ElementsAre("wheel pulses exceed the greatest plausible speed"));
   drive(10.0, 20);
   EXPECT_THAT(speeds(), Each(testing::DoubleNear(10.0, 0.9)));
 }

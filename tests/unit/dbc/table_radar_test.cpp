@@ -164,9 +164,9 @@ TEST_F(ExampleRadar, DetectionsWithoutTheirHeaderAreRefusedAndReportedOnce) {
 TEST_F(ExampleRadar, NumbersBeyondTheMappedOnesAreFaults) {
   send_header(2, 0);
   send_place(64, 10.0);
-  EXPECT_THAT(bus.out.faults, ElementsAre("number of a detection is beyond the mapped ones"));
+  EXPECT_THAT(bus.out.faults, ElementsAre("number of a detection exceeds the mapped ones"));
   send_header(200, 100);
-  EXPECT_THAT(bus.out.faults, testing::Contains("number of detections in the header is beyond the mapped ones"));
+  EXPECT_THAT(bus.out.faults, testing::Contains("number of detections in the header exceeds the mapped ones"));
 }
 
 TEST_F(ExampleRadar, NotANumberIsFlagged) {

@@ -293,10 +293,10 @@ TEST_F(Ars408Test, RepeatedAndSurplusFramesAreReportedAndDoNoHarm) {
   take(cluster_status(2, 0));
   take(general(layout::kClusterGeneralId, 7, {}));
   take(general(layout::kClusterGeneralId, 7, other));
-  EXPECT_EQ(output_.last_fault, "ARS408 cluster 7 came twice in a cycle: the first one counts");
+  EXPECT_EQ(output_.last_fault, "ARS408 cluster 7 occurs twice in a cycle; the first one is used");
   take(general(layout::kClusterGeneralId, 8, {}));
   take(general(layout::kClusterGeneralId, 9, other));
-  EXPECT_EQ(output_.last_fault, "ARS408 cluster 9 is beyond the 2 that the status frame announced");
+  EXPECT_EQ(output_.last_fault, "ARS408 cluster 9 exceeds the 2 that the status frame announced");
   take(quality(layout::kClusterQualityId, 8, {}));
   take(quality(layout::kClusterQualityId, 8, {}));
   take(quality(layout::kClusterQualityId, 7, {}));

@@ -291,7 +291,7 @@ TEST_F(Srr520Test, AnOpenListIsRejectedWhenAnotherBeginsOrNothingComes) {
   take(List(layout::kHrrList, 5));
   EXPECT_EQ(output_.scans, 1u);
   EXPECT_EQ(output_.count(Fault::kWireLength), 1u);
-  EXPECT_EQ(output_.last_fault, "SRR520 near list rejected: closing frame is missing, 29 of 50 record frames came");
+  EXPECT_EQ(output_.last_fault, "SRR520 near list rejected: closing frame is missing, 29 of 50 record frames received");
   for (std::size_t i = 0; i < 30; ++i) take(list.frames[i]);
   const std::int64_t last_ns = now_ns_ - 100'000;
   decoder_.tick(last_ns + 50 * kMillisecond, output_);
