@@ -1,5 +1,5 @@
 // The share of stationary reflectors that are classified as moving matches the configured sigma, whatever the certainty
-// of the mounting; and a slow object is classified as moving if its range rate shows it.
+// of the mounting. A slow object is classified as moving if its range rate shows it.
 #include <cmath>
 #include <memory>
 #include <random>

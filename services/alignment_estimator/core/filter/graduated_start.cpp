@@ -191,8 +191,8 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
 }
 
 GraduatedStart::Verdict GraduatedStart::judge() const {
-  // The gate must hold clearly more detections than a uniform background would give, which its neighbourhood, twice as
-  // wide, shows: five stds of the counts more, and most of those in the gate.
+  // The neighbourhood of the gate is twice as wide and shows the density of the background. The gate must hold more
+  // detections than this background by five stds of the counts, and by more than half of its detections.
   const double excess = inliers_ - 0.5 * near_;
   const bool stands_out = excess > 0.5 * inliers_ && excess * excess > 25.0 * (inliers_ + 0.25 * near_);
   const double rotation_limit = kPlausibleStds * std::sqrt(prior_.rotation_variance);
