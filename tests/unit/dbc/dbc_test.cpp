@@ -124,7 +124,7 @@ SG_MUL_VAL_ 2147483649 DEEP INNER 3-5, 8-8,10-12;
   EXPECT_EQ(message.signals.at(message.find("WIDE")->switch_index).name, "OUTER");
 }
 
-TEST(Dbc, MultiplexingThatGoesInCirclesOrNowhereIsReportedAndLeftOut) {
+TEST(Dbc, MultiplexingInCirclesOrWithoutASwitchIsReportedAndSkipped) {
   const Database database = parse(R"(BO_ 1 M: 8 X
  SG_ A m1M : 0|4@1+ (1,0) [0|0] "" X
  SG_ B m1M : 4|4@1+ (1,0) [0|0] "" X
@@ -186,7 +186,7 @@ BO_ 3 N: 8 X
   EXPECT_EQ(database.messages[1].name, "N");
 }
 
-TEST(Dbc, AStringThatIsNeverClosedCostsItsOwnLineOnly) {
+TEST(Dbc, AnUnclosedStringLosesOnlyItsOwnLine) {
   const Database database = parse("CM_ \"open\nBO_ 3 N: 8 X\nCM_ \\\"\nCM_ \\\"\n");
   EXPECT_THAT(database.problems, testing::Contains(HasSubstr("t.dbc:13: string is not closed")));
   EXPECT_THAT(database.messages, SizeIs(1));
@@ -267,7 +267,7 @@ TEST(Dbc, ABigFileIsReadCompletely) {
 }
 
 // Each of these takes hours in readers that search ahead from every line: the test's time limit would end it.
-TEST(Dbc, HostileTextsComeToAnEnd) {
+TEST(Dbc, HostileTextsAreReadInBoundedTime) {
   constexpr std::size_t kLines = 200'000;
   const auto repeated = [](std::string_view line) {
     std::string text = "BO_ 1 A: 8 X\n";

@@ -99,7 +99,7 @@ TEST_F(ExampleEgo, SpeedFromPulsesIsThatOfTheMiddleOfItsWindow) {
   EXPECT_GT(compared, 280u);
 }
 
-TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAnew) {
+TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAgain) {
   drive(10.0, 20);
   const std::size_t before = speeds().size();
   bus.now_ns += 600'000'000;  // a counter could have gone round at 70 m/s
@@ -124,7 +124,7 @@ TEST_F(ExampleEgo, StandstillIsASpeedOfZero) {
   EXPECT_THAT(speeds(), Each(0.0));
 }
 
-TEST_F(ExampleEgo, GearSaysReverse) {
+TEST_F(ExampleEgo, GearGivesTheDirection) {
   send_wheels(0.0, 0.0, 1);
   send_wheels(0.0, 0.0, 3);
   ASSERT_THAT(bus.out.egos, SizeIs(2));
@@ -133,7 +133,7 @@ TEST_F(ExampleEgo, GearSaysReverse) {
   EXPECT_FALSE(bus.out.egos[0].reading.speed_mps);
 }
 
-TEST_F(ExampleEgo, DamagedFrameIsRefused) {
+TEST_F(ExampleEgo, DamagedFrameIsRejected) {
   auto payload = bus.payload("WHEELS", {{"GEAR", 1}});
   ASSERT_TRUE(protector->protect(payload));
   payload[6] ^= 0x10;
@@ -190,7 +190,7 @@ TEST(TableEgo, SignedSpeedWithFactorOffsetAndSum) {
   EXPECT_TRUE(ego.bus.out.egos[0].reading.speed_is_signed);
 }
 
-TEST(TableEgo, ImplausibleOrNoNumberIsAFault) {
+TEST(TableEgo, ImplausibleValueOrNaNIsAFault) {
   OwnEgo ego("[speed]\nmessage = \"W\"\nsignals = [\"FL\"]\nplausible_mps = [-1, 60]\n");
   for (const double speed :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 220.0, -10.0}) {

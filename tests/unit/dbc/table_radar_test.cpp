@@ -93,7 +93,7 @@ TEST_F(ExampleRadar, EmptyListIsAScanToo) {
   EXPECT_EQ(bus.out.scans[0]->integrity, 0);
 }
 
-TEST_F(ExampleRadar, InvalidDetectionsAreLeftOut) {
+TEST_F(ExampleRadar, InvalidDetectionsAreSkipped) {
   send_header(3, 0);
   send_detection(0, 10.0, 0);
   send_detection(1, 11.0, 7);
@@ -104,7 +104,7 @@ TEST_F(ExampleRadar, InvalidDetectionsAreLeftOut) {
   EXPECT_FLOAT_EQ(bus.out.scans[0]->range_m[0], 12.0F);
 }
 
-TEST_F(ExampleRadar, NothingOfACycleStaysForTheNext) {
+TEST_F(ExampleRadar, NoDetectionOfACycleAppearsInTheNext) {
   send_header(2, 0, 1);
   send_detection(0, 10.0);
   send_detection(1, 11.0);
@@ -129,7 +129,7 @@ TEST_F(ExampleRadar, LostFrameLeavesTheCycleIncompleteUntilTheNextHeader) {
   EXPECT_THAT(bus.out.faults, ElementsAre("frames of a cycle are missing"));
 }
 
-TEST_F(ExampleRadar, DetectionWithoutItsPlaceIsLeftOut) {
+TEST_F(ExampleRadar, DetectionWithoutAPositionIsSkipped) {
   send_header(1, 0);
   send_strength(5);
   bus.wait_ms(30);
@@ -150,7 +150,7 @@ TEST_F(ExampleRadar, PauseEndsAnIncompleteCycle) {
   EXPECT_THAT(bus.out.scans, SizeIs(1));
 }
 
-TEST_F(ExampleRadar, DetectionsWithoutTheirHeaderAreRefusedAndReportedOnce) {
+TEST_F(ExampleRadar, DetectionsWithoutTheirHeaderAreRejectedAndReportedOnce) {
   send_detection(0, 10.0);
   send_detection(1, 10.0);
   EXPECT_THAT(bus.out.scans, IsEmpty());
@@ -199,7 +199,7 @@ TEST_F(ExampleRadar, ShortFramesAreFaultsAndLongOnesArePadded) {
   EXPECT_THAT(bus.out.scans, SizeIs(1));
 }
 
-TEST_F(ExampleRadar, FramesOfOthersAndRemoteFramesAreIgnored) {
+TEST_F(ExampleRadar, FramesWithOtherIdsAndRemoteFramesAreIgnored) {
   recording::Frame frame;
   const std::vector<std::uint8_t> payload(16);
   frame.payload = payload;

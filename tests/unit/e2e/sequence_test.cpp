@@ -154,7 +154,7 @@ TEST(Sequence, StrayCountersAreForgottenWhenTheSequenceGoesOn) {
   }
 }
 
-TEST(Sequence, AfterTwoStrayCountersTheOldSequenceIsGivenUp) {
+TEST(Sequence, AfterTwoStrayCountersTheOldSequenceIsDropped) {
   for (const Named& named : all_configs()) {
     Checker checker(named.config);
     EXPECT_EQ(checker.check(message(named.config, 1)), Status::kInitial);
@@ -174,7 +174,7 @@ TEST(Sequence, AStepOfOneIsNeverWrong) {
   }
 }
 
-TEST(Sequence, ASenderThatJumpsAboutIsRejectedUntilItSettles) {
+TEST(Sequence, ASenderWithRandomCountersIsRejectedUntilTheyAreInSequence) {
   for (const Named& named : all_configs()) {
     Checker checker(named.config);
     EXPECT_EQ(checker.check(message(named.config, 1)), Status::kInitial);
@@ -203,7 +203,7 @@ TEST(Sequence, RejectedContentDoesNotMoveTheSequence) {
   }
 }
 
-TEST(Sequence, FifteenIsNoCounterOfProfiles1And11) {
+TEST(Sequence, FifteenIsAnInvalidCounterOfProfiles1And11) {
   for (const Profile profile : {Profile::kP01, Profile::kP11}) {
     Config config;
     config.profile = profile;

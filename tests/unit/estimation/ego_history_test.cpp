@@ -44,7 +44,7 @@ TEST(EgoHistory, HoldsTheEndsUntilTheyAreStale) {
   EXPECT_EQ(history.at(kStart + 900 * kMillisecond).speed_mps, 10.0);
 }
 
-TEST(EgoHistory, AGapIsNoStraightLine) {
+TEST(EgoHistory, AGapIsNotInterpolated) {
   EgoHistory history(200 * kMillisecond);
   history.add(motion(kStart, 10.0F));
   history.add(motion(kStart + 1000 * kMillisecond, 20.0F));
@@ -67,7 +67,7 @@ TEST(EgoHistory, KeepsTheLatestOfManyAndForgetsOnARestart) {
   EXPECT_FALSE(history.at(kStart).stale);
 }
 
-TEST(EgoHistory, WhatIsIncompleteOrNotANumberIsLeftOut) {
+TEST(EgoHistory, IncompleteMessagesAndNaNAreIgnored) {
   EgoHistory history;
   EgoMotion without = motion(kStart, 10.0F);
   without.fields = ego_field::kSpeed;

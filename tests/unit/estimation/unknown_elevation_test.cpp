@@ -17,7 +17,7 @@ RadarConfig radar_of(double height_m, double half_view_deg) {
   return radar;
 }
 
-TEST(UnknownElevation, IsTheMeanOverThingsThatStandOnTheRoad) {
+TEST(UnknownElevation, IsTheMeanOverObjectsOnTheRoad) {
   constexpr double kHeight_m = 0.5, kTop_m = 4.7;
   const UnknownElevation unknown(radar_of(kHeight_m, 12.0), 0.0);
   for (const double range_m : {5.0, 12.0, 30.0, 100.0}) {
@@ -45,7 +45,7 @@ TEST(UnknownElevation, IsTheMeanOverThingsThatStandOnTheRoad) {
   }
 }
 
-TEST(UnknownElevation, IsFiniteWhateverIsSent) {
+TEST(UnknownElevation, IsFiniteForAllInputs) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   RadarConfig upwards = radar_of(0.5, 2.0);
   upwards.field_of_view.elevation_min_rad = 0.6;

@@ -62,7 +62,7 @@ TEST(Assignment, IsTheBestOfAllOnRandomProblems) {
   }
 }
 
-TEST(Assignment, WhatIsNoNumberIsNoPair) {
+TEST(Assignment, NaNIsNoPair) {
   Assignment assignment;
   assignment.reset(2, 2, 10.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -76,7 +76,7 @@ TEST(Assignment, WhatIsNoNumberIsNoPair) {
   EXPECT_EQ(assignment.total_cost(), 13.0);
 }
 
-TEST(Assignment, RemembersNothingOfTheProblemBefore) {
+TEST(Assignment, IsIndependentOfThePreviousProblem) {
   Assignment assignment;
   assignment.reset(3, 3, 10.0);
   for (std::size_t i = 0; i < 3; ++i) assignment.set(i, i, 1.0);

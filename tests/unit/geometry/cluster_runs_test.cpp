@@ -30,7 +30,7 @@ TEST(ClusterRuns, HoldsEachClustersItemsInTheirOrder) {
   }
 }
 
-TEST(ClusterRuns, LeavesOutWhatHasNoClusterOrNoRoom) {
+TEST(ClusterRuns, SkipsNoiseAndItemsBeyondTheCapacity) {
   ClusterRuns<int> runs(4);
   EXPECT_EQ(runs.size(), 0U);
   const std::vector<int> items{10, 11, 12, 13, 14, 15};

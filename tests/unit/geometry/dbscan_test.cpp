@@ -95,7 +95,7 @@ TEST(Dbscan, IsTheDefinitionOnRandomClouds) {
   }
 }
 
-TEST(Dbscan, DoesNotDependOnWhereTheGridLies) {
+TEST(Dbscan, DoesNotDependOnTheGridsOrigin) {
   Dbscan dbscan(512);
   const Points points = cloud(5, 300, 40.0);
   const std::size_t found = dbscan.cluster(points, 1.3, 3);
@@ -108,7 +108,7 @@ TEST(Dbscan, DoesNotDependOnWhereTheGridLies) {
   }
 }
 
-TEST(Dbscan, TellsApartWhatIsFarAwayInTheSameBucket) {
+TEST(Dbscan, DistinguishesDistantPointsInTheSameBucket) {
   // Clumps at all powers of two of the radius in both directions, wherever the square of buckets ends.
   Dbscan dbscan(512);
   const Points clump = cloud(6, 12, 0.3);

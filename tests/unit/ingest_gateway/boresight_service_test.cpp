@@ -49,7 +49,7 @@ class ServiceBody : public testing::Test {
   MemoryOutput out_;
 };
 
-TEST_F(ServiceBody, TheDocumentsExampleIsUnderstood) {
+TEST_F(ServiceBody, TheDocumentsExampleIsDecoded) {
   take(example("detection list"));
   ASSERT_EQ(out_.scans, 1u) << out_.last_fault;
   const RadarScan& scan = *out_.scan;
@@ -87,7 +87,7 @@ TEST_F(ServiceBody, TheDocumentsExampleIsUnderstood) {
   EXPECT_EQ(time.time_ns, 1'767'225'600'260'000'000);
 }
 
-TEST_F(ServiceBody, AValueThatIsNotAllowedConcernsItsDetectionOnly) {
+TEST_F(ServiceBody, AValueThatIsNotAllowedInvalidatesItsDetectionOnly) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   struct Case {
@@ -126,7 +126,7 @@ TEST_F(ServiceBody, AValueThatIsNotAllowedConcernsItsDetectionOnly) {
   EXPECT_EQ(out_.all_faults(), 0u);
 }
 
-TEST_F(ServiceBody, QuantitiesThatAreNotStatedAreNotLookedAt) {
+TEST_F(ServiceBody, QuantitiesThatAreNotStatedAreIgnored) {
   Bytes body = example("detection list");
   body[23] = 0;  // fields
   put_f32(body, kFirst + 8, std::numeric_limits<float>::quiet_NaN());
@@ -373,7 +373,7 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
 /// A project may protect the service's messages by a shorter profile and put the header further back.
 class OtherProfiles : public testing::TestWithParam<e2e::Config> {};
 
-TEST_P(OtherProfiles, AreCheckedAndTheBodyFoundBehindThem) {
+TEST_P(OtherProfiles, AreCheckedAndTheBodyIsFound) {
   VehicleConfig v = vehicle();
   v.radars.resize(1);
   v.radars[0].e2e.protection = GetParam();
@@ -416,7 +416,7 @@ INSTANTIATE_TEST_SUITE_P(
                     e2e::Config{
                         .profile = e2e::Profile::kP07, .data_id = 7, .offset_bytes = 20, .max_delta_counter = 9}));
 
-TEST_F(SomeIpGateway, ALostSegmentCostsItsMessageOnly) {
+TEST_F(SomeIpGateway, ALostSegmentLosesOnlyItsMessage) {
   pass(1000 * kMillisecond);
   std::size_t n = 0;
   const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
@@ -431,7 +431,7 @@ TEST_F(SomeIpGateway, ALostSegmentCostsItsMessageOnly) {
   EXPECT_EQ(count(Fault::kWireLength), 1u) << "said once";
 }
 
-TEST_F(SomeIpGateway, EventsOfStrangersAreNotTaken) {
+TEST_F(SomeIpGateway, EventsOfUnknownSendersAreRejected) {
   pass(1000 * kMillisecond);
   const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
   std::size_t segments = 0;
@@ -443,7 +443,7 @@ TEST_F(SomeIpGateway, EventsOfStrangersAreNotTaken) {
   EXPECT_EQ(count(Fault::kWireUnknown), segments) << "not even put together";
 }
 
-TEST_F(SomeIpGateway, AServerThatGoesSilentIsReportedAndFoundAgain) {
+TEST_F(SomeIpGateway, ASilentServerIsReportedAndFoundAgain) {
   pass(1000 * kMillisecond);
   publish_list(1);
   EXPECT_EQ(scans, 1u);

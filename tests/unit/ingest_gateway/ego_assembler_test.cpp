@@ -75,14 +75,14 @@ TEST(EgoAssembler, ASpeedCompletesAMotionOfItsOwnTime) {
   EXPECT_EQ(out.longitudinal_acceleration_mps2, 0.0F);
 }
 
-TEST(EgoAssembler, NothingIsClaimedBeforeASpeedCame) {
+TEST(EgoAssembler, NoMotionIsCompleteBeforeTheFirstSpeed) {
   EgoAssembler ego(EgoConfig{});
   EXPECT_FALSE(ego.take({}, at(0)).complete);
   EXPECT_FALSE(ego.take(gear(true), at(0)).complete);
   EXPECT_EQ(motion(ego).fields, 0u);
 }
 
-TEST(EgoAssembler, OldSignalsAreLeftOutAndZero) {
+TEST(EgoAssembler, OldSignalsAreMissingInFieldsAndZero) {
   EgoAssembler ego(EgoConfig{});
   ASSERT_TRUE(ego.take(everything(10.0, 0.1, 0.2), at(0)).complete);
   ASSERT_TRUE(ego.take(speed(10.0), at(200 * kMillisecond)).complete);
@@ -94,7 +94,7 @@ TEST(EgoAssembler, OldSignalsAreLeftOutAndZero) {
   EXPECT_EQ(out.steering_angle_rad, 0.0F);
 }
 
-TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersTaken) {
+TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersUsed) {
   const std::vector<double> impossible = {kNan, kInfinity, -kInfinity, 1e300};
   for (const double bad : impossible) {
     EgoAssembler ego(EgoConfig{});
@@ -114,7 +114,7 @@ TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersTaken) {
   }
 }
 
-TEST(EgoAssembler, LimitsAreWhereTheySay) {
+TEST(EgoAssembler, LimitsAreExact) {
   const auto takes = [](const EgoReading& reading) {
     EgoAssembler ego(EgoConfig{});
     return ego.take(reading, at(0)).rejected.empty();
@@ -148,7 +148,7 @@ TEST(EgoAssembler, ASpikeIsRejectedAndANewLevelIsAcceptedWithTheThirdReading) {
   EXPECT_TRUE(take(25.2).complete);
 }
 
-TEST(EgoAssembler, AfterASilenceAnySpeedIsTaken) {
+TEST(EgoAssembler, AfterASilenceAnySpeedIsAccepted) {
   EgoAssembler ego(EgoConfig{});
   ASSERT_TRUE(ego.take(speed(20.0), at(0)).complete);
   EXPECT_FALSE(ego.take(speed(5.0), at(200 * kMillisecond)).complete);
@@ -174,7 +174,7 @@ TEST(EgoAssembler, HardBrakingWithJitteringArrivalIsNeverRejected) {
   }
 }
 
-TEST(EgoAssembler, WheelsThatRollOverABumpAreNoFault) {
+TEST(EgoAssembler, ASpeedJumpOnABumpIsNoFault) {
   // From a real drive, 11 … 16 ms apart.
   EgoAssembler ego(EgoConfig{});
   std::int64_t t = 0;
@@ -217,7 +217,7 @@ TEST(EgoAssembler, StandingStillIsAMotionToo) {
   EXPECT_EQ(out.longitudinal_acceleration_mps2, 0.0F);
 }
 
-TEST(EgoAssembler, AClockThatGoesBackIsToldAndNothingOldSurvivesIt) {
+TEST(EgoAssembler, AClockThatGoesBackIsReportedAndDropsOldSignals) {
   EgoAssembler ego(EgoConfig{});
   ASSERT_TRUE(ego.take(everything(10.0, 0.1, 0.2), at(5'000 * kMillisecond)).complete);
   // A little: a reading that overtook another.
@@ -233,7 +233,7 @@ TEST(EgoAssembler, AClockThatGoesBackIsToldAndNothingOldSurvivesIt) {
   EXPECT_FALSE(ego.take(speed(30.0), at(4'720 * kMillisecond)).time_jumped);
 }
 
-TEST(EgoAssembler, NeitherWildReadingsNorGoodOnesAllocateOrGiveWildMotions) {
+TEST(EgoAssembler, RandomReadingsNeitherAllocateNorGiveImplausibleMotions) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> wild(-200.0, 200.0);
   EgoAssembler ego(EgoConfig{});

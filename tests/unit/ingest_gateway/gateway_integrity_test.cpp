@@ -80,7 +80,7 @@ class GatewayIntegrity : public testing::Test {
   static inline simulator::DriveFiles files_;
 };
 
-TEST_F(GatewayIntegrity, ASoundDriveIsSound) {
+TEST_F(GatewayIntegrity, AValidDriveHasNoIntegrityFaults) {
   const auto verdicts = drive([](int) { return 1; });
   ASSERT_EQ(verdicts->scans.size(), 4u);
   EXPECT_TRUE(verdicts->faults.empty()) << verdicts->faults.front();
@@ -96,7 +96,7 @@ TEST_F(GatewayIntegrity, ASoundDriveIsSound) {
   EXPECT_EQ(verdicts->synchronised, scans);
 }
 
-TEST_F(GatewayIntegrity, LostAndRepeatedScansAreToldOfTheirRadarOnly) {
+TEST_F(GatewayIntegrity, LostAndRepeatedScansAreReportedForTheirRadarOnly) {
   // These radars count nothing, like the real one: their stamps tell.
   const auto verdicts = drive([](int n) { return n == 401 ? 0 : n == 802 ? 2 : 1; });
   std::size_t gaps = 0, repetitions = 0, others = 0;

@@ -65,7 +65,7 @@ class GatewayTest : public testing::Test {
   std::int64_t offset_ = kEpoch - 5'000'000'000;
 };
 
-TEST_F(GatewayTest, TheSenderTellsWhichRadarItIs) {
+TEST_F(GatewayTest, TheSendersAddressIdentifiesTheRadar) {
   send_list(kSender1);
   EXPECT_EQ(sink_.last_radar, 1u);
   send_list(kSender2);
@@ -83,7 +83,7 @@ TEST_F(GatewayTest, TheSensorsOwnStampIsMappedToThisClock) {
   EXPECT_EQ(sink_.last_time.time_ns, kEpoch - offset_);
 }
 
-TEST_F(GatewayTest, AStampThatCannotBeIsReplacedByTheArrivalAndSaidSo) {
+TEST_F(GatewayTest, AnImplausibleStampIsReplacedByTheArrivalAndMarked) {
   send_list(kSender1, kEpoch + 3'000 * kMillisecond);  // 3 s old
   EXPECT_EQ(sink_.last_time.source, TimeSource::kLinkArrival);
   EXPECT_EQ(sink_.last_time.time_ns, kEpoch + 3'000 * kMillisecond - offset_);
@@ -164,7 +164,7 @@ TEST_F(GatewayTest, ARemoteFrameCarriesNothing) {
   EXPECT_EQ(sink_.all_faults(), 0u);
 }
 
-TEST_F(GatewayTest, ACycleThatFoundNoMemoryIsGone) {
+TEST_F(GatewayTest, ACycleWithoutMemoryIsDropped) {
   const auto send_cycle = [&](std::int64_t begin_ns) {
     for (std::uint32_t base : {0x210u, 0x220u}) {
       for (std::uint32_t slot = 0; slot < 16; ++slot) {
@@ -198,7 +198,7 @@ TEST_F(GatewayTest, AllocatesNothing) {
   EXPECT_EQ(runtime::counted_allocations(), before);
 }
 
-TEST(RecordingClock, KeepsTheSpacingAndAnchorsAnewWhereTheRecordingJumps) {
+TEST(RecordingClock, KeepsTheSpacingAndSetsANewOffsetAtAJump) {
   RecordingClock clock;
   bool jumped = false;
   EXPECT_EQ(clock.map(1'000'000'000'000, 50, jumped).received_ns, 50);

@@ -105,7 +105,7 @@ std::vector<JudgedRadars> drive(const simulator::Scenario& scenario, std::uint64
 
 class SimulatedDrive : public testing::TestWithParam<std::string> {};
 
-TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
+TEST_P(SimulatedDrive, ValidScansAreNeverSuspect) {
   // Crooked radars, a wrong speed signal, traffic, ghosts and clutter are sound data; so are range rates folded into an
   // interval that is known.
   const std::vector<NamedDamage> none = {{"as measured", nullptr},
@@ -123,7 +123,7 @@ TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
   }
 }
 
-TEST_P(SimulatedDrive, DamagedRangeRatesAreToldByEveryRadarAndSoon) {
+TEST_P(SimulatedDrive, DamagedRangeRatesAreReportedForEveryRadarWithinSeconds) {
   const auto judged = drive(simulator::scenario(GetParam()), 5, 25.0, damages());
   for (std::size_t k = 0; k < judged.size(); ++k) {
     for (const auto& [id, radar] : judged[k]) {

@@ -98,18 +98,18 @@ TEST_F(Judged, TrafficIsNoContradiction) {
   }
 }
 
-TEST_F(Judged, ATrackerThatSeesTrafficOnlyIsNotAccused) {
+TEST_F(Judged, ATrackerOfMovingObjectsOnlyIsNotSuspect) {
   EXPECT_EQ(contradictions(20 * 120, 10, 0.0, motion(25.0), 25.0), 0u);
 }
 
-TEST_F(Judged, AWrongSpeedIsToldAndTakenBackWhenItEnds) {
+TEST_F(Judged, AWrongSpeedIsReportedUntilItEnds) {
   EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
   EXPECT_GT(contradictions(100, 100, 0.6, motion(22.5), 15.0), 40u);
   EXPECT_LT(contradictions(100, 100, 0.6, motion(15.0), 15.0), 60u);
   EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
 }
 
-TEST_F(Judged, ATrackerWithTheWrongSignIsToldWithinAMinute) {
+TEST_F(Judged, ATrackerWithTheWrongSignIsReportedWithinAMinute) {
   EXPECT_GT(contradictions(20 * 60, 10, 0.2, motion(-20.0), 20.0), 300u);
 }
 
@@ -130,7 +130,7 @@ TEST_F(Judged, BrakingHardIsNoContradictionThoughTheEgoMotionIsNewerThanTheScan)
   }
 }
 
-TEST_F(Judged, WithoutSpeedYawRateOrMotionNothingIsSaidOfTheEgo) {
+TEST_F(Judged, WithoutSpeedYawRateOrMotionTheEgoTestIsSkipped) {
   EgoMotion no_yaw_rate = motion(20.0), no_speed = motion(20.0), wild = motion(20.0);
   no_yaw_rate.fields = ego_field::kSpeed;
   no_speed.fields = ego_field::kYawRate;
@@ -165,7 +165,7 @@ TEST_F(Judged, CountersOfAnyWidthWrapWithoutAFault) {
   }
 }
 
-TEST_F(Judged, GapsAreToldAndCountedAcrossTheWrapAndBeyondItByTime) {
+TEST_F(Judged, GapsAreReportedAndCountedAcrossTheWrapAndBeyondItByTime) {
   struct Case {
     unsigned bits;
     std::uint32_t lost;
@@ -189,7 +189,7 @@ TEST_F(Judged, GapsAreToldAndCountedAcrossTheWrapAndBeyondItByTime) {
   }
 }
 
-TEST_F(Judged, ARepeatedCounterIsTold) {
+TEST_F(Judged, ARepeatedCounterIsReported) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
     if (i == 7) --scan_->cycle_counter;
@@ -199,7 +199,7 @@ TEST_F(Judged, ARepeatedCounterIsTold) {
   EXPECT_EQ(judge_.counters().lost_scans, 0u);
 }
 
-TEST_F(Judged, ASensorThatBeginsToCountAnewHasNotLostTwoBillionScans) {
+TEST_F(Judged, ARestartedCounterIsNoLossOfTwoBillionScans) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
     if (i == 0) scan_->cycle_counter = 100'000;
@@ -212,7 +212,7 @@ TEST_F(Judged, ASensorThatBeginsToCountAnewHasNotLostTwoBillionScans) {
   EXPECT_EQ(judge_.counters().lost_scans, 60u);
 }
 
-TEST_F(Judged, ACounterThatNeverMovesIsDisowned) {
+TEST_F(Judged, AConstantCounterIsIgnored) {
   for (int i = 0; i < 100; ++i) {
     fill_anew();
     scan_->cycle_counter = ~0u;  // judge() adds one
@@ -224,7 +224,7 @@ TEST_F(Judged, ACounterThatNeverMovesIsDisowned) {
   EXPECT_EQ(judge(), kCounterGap) << "by time then";
 }
 
-TEST_F(Judged, WithoutACounterTimeTellsGaps) {
+TEST_F(Judged, WithoutACounterGapsAreFoundByTime) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
     if (i == 5) time_ns_ += kCycle_ns * 4 / 10;  // late, not lost
@@ -263,7 +263,7 @@ TEST_F(Judged, OldDataAndStampsThatDoNotAdvanceAreStale) {
 
 // ---------------------------------------------------------------- content
 
-TEST_F(Judged, AFrozenRadarIsTold) {
+TEST_F(Judged, AFrozenRadarIsReported) {
   const EgoMotion moving = motion(4.0), standing = motion(0.0);
   fill_anew(30);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(judge(&moving), i >= 3 ? kFrozen : 0) << i;
@@ -280,7 +280,7 @@ TEST_F(Judged, AFrozenRadarIsTold) {
   }
 }
 
-TEST_F(Judged, ImplausibleDetectionsAreToldIfThereAreMany) {
+TEST_F(Judged, ManyImplausibleDetectionsAreReported) {
   const auto with = [&](std::size_t bad, const std::function<void(std::size_t)>& spoil) {
     fill_anew(50);
     for (std::size_t i = 0; i < bad; ++i) spoil(i * 4);
@@ -321,7 +321,7 @@ TEST_F(Judged, ImplausibleDetectionsAreToldIfThereAreMany) {
   EXPECT_EQ(judge(), 0) << "two of four are not many";
 }
 
-TEST_F(Judged, CopiesOfDetectionsAreToldIfThereAreMany) {
+TEST_F(Judged, ManyCopiesOfDetectionsAreReported) {
   const auto copy = [&](std::size_t detections, std::size_t copies) {
     fill_anew(detections);
     for (std::size_t i = 0; i < copies; ++i) {
@@ -340,7 +340,7 @@ TEST_F(Judged, CopiesOfDetectionsAreToldIfThereAreMany) {
   EXPECT_EQ(copy(1024, 0), 0);
 }
 
-TEST_F(Judged, WhatTheDecoderSaysIsKeptAndCounted) {
+TEST_F(Judged, BitsOfTheDecoderAreKeptAndCounted) {
   fill_anew();
   scan_->integrity = kIncomplete;
   EXPECT_EQ(judge(), kIncomplete);
@@ -348,7 +348,7 @@ TEST_F(Judged, WhatTheDecoderSaysIsKeptAndCounted) {
   EXPECT_EQ(judge_.counters().scans, 1u);
 }
 
-TEST_F(Judged, WildScansAreJudgedWithoutAllocatingAndInBoundedTime) {
+TEST_F(Judged, RandomScansAreJudgedWithoutAllocatingAndInBoundedTime) {
   const EgoMotion ego = motion(20.0, 0.1);
   const std::uint64_t before = runtime::counted_allocations();
   {

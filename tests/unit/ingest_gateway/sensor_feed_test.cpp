@@ -40,7 +40,7 @@ EgoMotion ego(float speed_mps) {
   return motion;
 }
 
-TEST(SensorFeed, GoesToThoseWhoAskForItAndNoFasterThanTheyWant) {
+TEST(SensorFeed, IsSentOnlyToConfiguredSensorsAtTheirRate) {
   VehicleConfig vehicle;
   vehicle.radars = {radar(1, RadarProfile::kArs548, true), radar(2, RadarProfile::kArs548, false),
                     radar(3, RadarProfile::kArs408, true), radar(4, RadarProfile::kArs408, false),
@@ -70,7 +70,7 @@ TEST(SensorFeed, GoesToThoseWhoAskForItAndNoFasterThanTheyWant) {
   EXPECT_FALSE(out.sent.empty()) << "a clock that went back stops nothing";
 }
 
-TEST(SensorFeed, AnArs408IsConfiguredOnceIfAsked) {
+TEST(SensorFeed, AnArs408IsConfiguredOnceIfRequested) {
   VehicleConfig vehicle;
   vehicle.radars = {radar(1, RadarProfile::kArs408, false), radar(2, RadarProfile::kArs408, false)};
   vehicle.radars[0].output = Ars408Output::kClusters;

@@ -146,7 +146,7 @@ TEST_F(ToyotaRadarTest, AnIncompleteCycleDoesNotWaitForTheNext) {
   EXPECT_EQ(out_.scans, 1u) << "once";
 }
 
-TEST_F(ToyotaRadarTest, AFrameThatComesAgainBeginsTheNextCycle) {
+TEST_F(ToyotaRadarTest, ARepeatedFrameBeginsTheNextCycle) {
   const auto frames = cycle(1);
   for (std::size_t i = 0; i < 20; ++i) take(frames[i], static_cast<std::int64_t>(i));
   EXPECT_EQ(out_.scans, 0u);
@@ -160,7 +160,7 @@ TEST_F(ToyotaRadarTest, AFrameThatComesAgainBeginsTheNextCycle) {
   EXPECT_EQ(out_.last_reception.received_ns, 21);
 }
 
-TEST_F(ToyotaRadarTest, WrongFramesAreRefusedWithAReason) {
+TEST_F(ToyotaRadarTest, InvalidFramesAreRejectedWithAReason) {
   CanFrame frame = track_a(0, 1, true, 20.0);
   const FrameStamp stamp{0, 0, TimeSource::kLinkArrival};
   radar_.take(can_frame(0x123, frame.bytes), stamp, out_);
@@ -191,7 +191,7 @@ TEST_F(ToyotaRadarTest, SurvivesMutations) {
   EXPECT_GT(out_.scans, 100u);
 }
 
-TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
+TEST(ToyotaEgo, AgreesWithTheIndependentEncoder) {
   const simulator::EgoSignals truth{.speed_mps = 13.37, .yaw_rate_radps = 0.21, .steering_angle_rad = -0.7};
   ToyotaEgo ego;
   MemoryOutput output;
@@ -214,7 +214,7 @@ TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
   EXPECT_NEAR(all.steering_angle_rad.value(), truth.steering_angle_rad, 0.06 * M_PI / 180.0);
 }
 
-TEST(ToyotaEgo, WrongFramesAreRefusedWithAReason) {
+TEST(ToyotaEgo, InvalidFramesAreRejectedWithAReason) {
   ToyotaEgo ego;
   MemoryOutput output;
   auto frames = simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});

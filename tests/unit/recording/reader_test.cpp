@@ -35,7 +35,7 @@ TEST_F(CandumpFiles, StampsThatGoBackAreCountedAndKept) {
   EXPECT_EQ(c.counts.backwards, 1u);
 }
 
-TEST_F(CandumpFiles, ConsoleStampsSinceTheFirstFrameAndSinceTheOneBefore) {
+TEST_F(CandumpFiles, ConsoleStampsSinceTheFirstFrameAndSinceThePreviousOne) {
   const std::vector<int> milliseconds = {0, 50, 51, 52, 102, 103, 104, 1150};
   std::string since_first, since_last;
   int last = 0;
@@ -57,7 +57,7 @@ TEST_F(CandumpFiles, ConsoleStampsSinceTheFirstFrameAndSinceTheOneBefore) {
   }
 }
 
-TEST_F(CandumpFiles, WhatIsNoCandumpAtAllIsRefusedLineByLineInFixedMemory) {
+TEST_F(CandumpFiles, OtherTextIsRejectedLineByLineInFixedMemory) {
   // Three megabytes without a line end, then a good line: one problem, and the good line is read.
   const Contents c = read(write("noise.log", std::string(3'000'000, 'x') + "\n(1.0) can0 123#01\n"));
   EXPECT_EQ(c.frames.size(), 1u);
@@ -120,7 +120,7 @@ TEST_F(CandumpFiles, StandardInputIsReadByContentToo) {
   EXPECT_EQ(read_by_pipe(write("a.pcap", pcap_file(227, {{1, 0, socketcan_packet(0x123, "a")}}))), 1u);
 }
 
-TEST_F(CandumpFiles, FormatsOfOthersAreNamed) {
+TEST_F(CandumpFiles, UnsupportedFormatsAreNamed) {
   for (const auto& [magic, name] : {std::pair{"\x1F\x8B\x08", "gzip"}, {"LOGG", "BLF"}, {"MDF     4.10", "MDF"}}) {
     try {
       static_cast<void>(open_recording(write("other", magic), note_));
@@ -225,7 +225,7 @@ TEST_F(Captures, EveryLinkLayerByteOrderAndUnitOfTime) {
   }
 }
 
-TEST_F(Captures, OtherTrafficIsCountedAndOtherLinksAreRefusedByName) {
+TEST_F(Captures, OtherTrafficIsCountedAndUnsupportedLinksAreNamed) {
   const std::string arp = std::string(12, '\1') + std::string("\x08\x06", 2) + std::string(28, '\0');
   const Contents c = read(write("arp.pcap", pcap_file(1, {{1, 0, arp}})));
   EXPECT_TRUE(c.frames.empty());
@@ -240,7 +240,7 @@ TEST_F(Captures, OtherTrafficIsCountedAndOtherLinksAreRefusedByName) {
   }
 }
 
-TEST_F(Captures, PcapngTellsInterfacesApart) {
+TEST_F(Captures, PcapngInterfacesAreDistinguished) {
   const std::string ethernet = std::string(12, '\1') + std::string("\x08\x00", 2);
   const std::string file = pcapng_file({{227, "can1"}, {1, "eth0"}, {227, "can2", false}, {105, "wlan0"}},
                                        {{5, 7, socketcan_packet(0x123, "one"), 0, 0},
@@ -298,7 +298,7 @@ TEST_F(Captures, PcapngUnitsOfTime) {
   EXPECT_EQ(stamp_of(20, 1), -1) << "no such unit";
 }
 
-TEST_F(Captures, DamageInPcapngCostsWhatItCovers) {
+TEST_F(Captures, DamageInPcapngLosesOnlyTheDamagedBlocks) {
   std::vector<CapturedPacket> packets;
   for (std::uint32_t i = 0; i < 100; ++i) packets.push_back({i, 0, socketcan_packet(i, "12345678")});
   const std::string whole = pcapng_file({{227, "can1"}}, packets);
@@ -343,7 +343,7 @@ TEST_F(Captures, DamageInPcapngCostsWhatItCovers) {
   EXPECT_EQ(c.frames[0].frame.interface_name(), "can0");
 }
 
-TEST_F(Captures, StampsThatGoBackAreCountedAndMissingFragmentsAreSaid) {
+TEST_F(Captures, StampsThatGoBackAreCountedAndMissingFragmentsReported) {
   std::string first = udp_packet(std::string(16, 'a'));
   first[6] = 0x20;  // more fragments are to come
   const Contents c =

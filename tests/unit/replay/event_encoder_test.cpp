@@ -121,7 +121,7 @@ TEST(EventEncoder, WritesTheDocumentsSegments) {
   EXPECT_THAT(datagrams[1], ElementsAreArray(document_example("last segment, first 72 bytes")));
 }
 
-TEST(EventEncoder, AFullListPassesTheE2eCheckAndIsAsLongAsTheDocumentSays) {
+TEST(EventEncoder, AFullListPassesTheE2eCheckAndHasTheDocumentsLength) {
   auto scan = std::make_unique<RadarScan>();
   write_synthetic_scan(3, {}, 1, 1024, *scan);
   EventEncoder encoder(kDataIds);
@@ -137,7 +137,7 @@ TEST(EventEncoder, AFullListPassesTheE2eCheckAndIsAsLongAsTheDocumentSays) {
   }
 }
 
-TEST(EventBody, WhatIsNotAllowedIsFlaggedAndNotSent) {
+TEST(EventBody, ValuesThatAreNotAllowedAreFlaggedAndNotSent) {
   auto scan = example_scan();
   scan->number_of_valid_detections = 6;
   for (std::size_t i = 0; i < 6; ++i) set_detection(*scan, i, kFirst, 0);
@@ -163,7 +163,7 @@ TEST(EventBody, WhatIsNotAllowedIsFlaggedAndNotSent) {
   EXPECT_EQ(u16_at(record(5), list::record::kFlags), 0u);
 }
 
-TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsTheDocumentSays) {
+TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsSpecified) {
   auto scan = example_scan();
   scan->fields = 1u << 31;
   scan->elevation_rad[0] = kNan;  // means nothing without its bit
@@ -185,7 +185,7 @@ TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsTheDocumentSays) {
   EXPECT_EQ(u16_at(record, list::record::kFlags), 0u);
 }
 
-TEST(EventBody, AnIntervalThatIsNoneIsNotClaimed) {
+TEST(EventBody, AnInvalidIntervalIsNotStated) {
   auto scan = example_scan();
   Bytes body(200);
   for (const auto& [min, max] : {std::pair{kNan, 20.0F}, {20.0F, 20.0F}, {-60.0F, 200.0F}}) {
@@ -226,7 +226,7 @@ TEST(EventBody, NothingIsWrittenBeyondTheEnd) {
   EXPECT_EQ(write_ego_motion(example_ego(), kTime, std::span(body).first(31)), 0u);
 }
 
-TEST(SessionCounter, NeverZeroAndKnowsThatItWrapped) {
+TEST(SessionCounter, IsNeverZeroAndReportsItsWrap) {
   someip::SessionCounter counter;
   for (std::uint32_t i = 1; i <= 0xFFFF; ++i) {
     ASSERT_EQ(counter.take(), i);

@@ -162,7 +162,7 @@ TEST_F(SdServerTest, OffersAtFirstOftenThenEachCycle) {
   EXPECT_THAT(out[0].message, ElementsAreArray(document_example("offer")));
 }
 
-TEST_F(SdServerTest, CyclesThatWereMissedAreNotMadeUpFor) {
+TEST_F(SdServerTest, MissedCyclesAreSkipped) {
   tick(60 * kSecond);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_GT(server->next_due_ns(), 60 * kSecond);
@@ -253,7 +253,7 @@ TEST_F(SdServerTest, RefusesWhatItDoesNotServe) {
   EXPECT_EQ(server->statistics().acknowledged, 0u);
 }
 
-TEST_F(SdServerTest, RefusesTheSubscriberThatIsOneTooMany) {
+TEST_F(SdServerTest, RefusesSubscribersBeyondTheLimit) {
   for (std::uint16_t i = 0; i < 8; ++i) {
     const Bytes ack = receive(Client()
                                   .at(endpoint(2, static_cast<std::uint16_t>(50000 + i)))
@@ -281,7 +281,7 @@ TEST_F(SdServerTest, SubscriptionsEndWithTheirTimeUnlessRenewed) {
   EXPECT_EQ(destinations(20'000'000 * kSecond).size(), 1u) << "for ever";
 }
 
-TEST_F(SdServerTest, AClientCanTakeItsSubscriptionBack) {
+TEST_F(SdServerTest, AClientCanEndItsSubscription) {
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).subscribe(kEgo, 3).message(1));
   EXPECT_TRUE(receive(Client().at(kClientEvents).subscribe(kDetections, 0).message(2)).empty()) << "not answered";
   EXPECT_THAT(destinations(), IsEmpty());
@@ -295,7 +295,7 @@ TEST_F(SdServerTest, AClientCanTakeItsSubscriptionBack) {
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
 }
 
-TEST_F(SdServerTest, SubscriptionsOfOneEndpointAreToldApartByClientAndCounter) {
+TEST_F(SdServerTest, SubscriptionsOfOneEndpointAreDistinguishedByClientAndCounter) {
   const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3, 3, 1, 5).message(1));
   EXPECT_EQ(ack[24 + 13], 5) << "the counter comes back";
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(2));
@@ -331,7 +331,7 @@ TEST_F(SdServerTest, ForgetsWhatARebootedClientHadSubscribed) {
   EXPECT_THAT(destinations(100 * kMs, kEgo), IsEmpty());
 }
 
-TEST_F(SdServerTest, AnswersThoseWhoSearch) {
+TEST_F(SdServerTest, AnswersFindService) {
   const auto found = [&](const Client& client) { return !receive(client.message(1, false), 100 * kMs, true).empty(); };
   EXPECT_TRUE(found(Client().find(0xFFFF)));
   EXPECT_TRUE(found(Client().find(3, 1, 0)));
@@ -345,7 +345,7 @@ TEST_F(SdServerTest, AnswersThoseWhoSearch) {
   EXPECT_EQ(ttl_of(offer), 3u);
 }
 
-TEST_F(SdServerTest, SaysNothingBeforeItsFirstOfferAndAfterItsLast) {
+TEST_F(SdServerTest, SendsNothingBeforeItsFirstOfferAndAfterItsLast) {
   server.emplace(configuration(false));
   EXPECT_TRUE(receive(Client().find(3).message(1), 0).empty());
   server->start(0);
@@ -368,7 +368,7 @@ TEST_F(SdServerTest, SaysNothingBeforeItsFirstOfferAndAfterItsLast) {
   EXPECT_TRUE(receive(Client().find(3).message(4)).empty());
 }
 
-TEST_F(SdServerTest, TakesNoSubscriptionByMulticast) {
+TEST_F(SdServerTest, IgnoresSubscriptionsByMulticast) {
   EXPECT_TRUE(receive(document_example("subscribe"), 100 * kMs, true).empty());
   EXPECT_THAT(destinations(), IsEmpty());
 }
@@ -384,7 +384,7 @@ TEST_F(SdServerTest, ReadsAllMessagesOfADatagram) {
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
 }
 
-TEST_F(SdServerTest, DamagedMessagesAreRefusedWholeAndDoNoHarm) {
+TEST_F(SdServerTest, DamagedMessagesAreRejectedWithoutEffect) {
   const Bytes good = Client().at(kClientEvents).subscribe(kDetections, 3).message(1);
   for (std::size_t length = 1; length < good.size(); ++length) {
     Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length));
@@ -423,7 +423,7 @@ TEST_F(SdServerTest, DamagedMessagesAreRefusedWholeAndDoNoHarm) {
   EXPECT_FALSE(receive(good).empty()) << "the sound one is still taken";
 }
 
-TEST_F(SdServerTest, KeepsSoManyPeersAndNoMore) {
+TEST_F(SdServerTest, KeepsALimitedNumberOfPeers) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const Endpoint from{IpAddress::v4(0x0A000000u + i), 30490};
     EXPECT_EQ(session_of(receive(Client().find(3).message(1), 100 * kMs + i, true, from)), 1);
@@ -434,7 +434,7 @@ TEST_F(SdServerTest, KeepsSoManyPeersAndNoMore) {
   EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond, true, first)), 1) << "the first is forgotten";
 }
 
-TEST_F(SdServerTest, TellsNewSubscribersAndNotRenewals) {
+TEST_F(SdServerTest, ReportsNewSubscribersButNotRenewals) {
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).subscribe(kEgo, 3).message(1));
   ASSERT_EQ(server->new_subscribers().size(), 2u);
   EXPECT_EQ(server->new_subscribers()[0].instance, 3);

@@ -71,7 +71,7 @@ TEST(VehicleFile, RefusesWrongAddressesLinksAndMissingKeys) {
   EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("ego: is missing"));
 }
 
-TEST(VehicleFile, OfflineLinksMayBeLeftOutButNotBeWrong) {
+TEST(VehicleFile, OfflineLinksAreOptionalButMustBeValid) {
   const std::string bare =
       "name = \"car\"\n"
       "[[radar]]\nid = 1\nname = \"a\"\nmounting_pose = {position_m = [3.0, 0.0, 0.5], yaw_deg = 10.0}\n"
@@ -112,7 +112,7 @@ TEST(VehicleFile, KnowsEveryKindOfRadar) {
   EXPECT_TRUE(std::filesystem::exists(v.radar(7)->mapping));
 }
 
-TEST(VehicleFile, RefusesWhatAProfileDoesNotKnow) {
+TEST(VehicleFile, RejectsKeysThatAProfileDoesNotHave) {
   const std::string someip =
       "[[radar]]\nid = 1\nname = \"a\"\nprofile = \"boresight\"\nmounting_pose = {position_m = [0.0, 0.0, 0.0], "
       "yaw_deg "

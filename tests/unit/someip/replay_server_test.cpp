@@ -145,7 +145,7 @@ TEST_F(Drive, TheClientStartsFirst) {
   EXPECT_TRUE(faults_.empty());
 }
 
-TEST_F(Drive, AServerThatWasKilledIsSubscribedAnewWhenItIsBack) {
+TEST_F(Drive, AKilledServerIsSubscribedAgainWhenItIsBack) {
   start_client();
   start_server();
   time_until_subscribed();
@@ -161,7 +161,7 @@ TEST_F(Drive, AServerThatWasKilledIsSubscribedAnewWhenItIsBack) {
                                              UnsubscribeReason::kServerReboot, UnsubscribeReason::kOfferExpired));
 }
 
-TEST_F(Drive, AServerThatStopsSaysSo) {
+TEST_F(Drive, AServerWithdrawsItsOffersWhenItStops) {
   start_client();
   start_server();
   time_until_subscribed();
@@ -192,7 +192,7 @@ TEST_F(Drive, TheLinkGoesDownAndComesUp) {
   EXPECT_EQ(client_->statistics().reboots, 0u);
 }
 
-TEST_F(Drive, LostDatagramsAreMadeUpFor) {
+TEST_F(Drive, LostDatagramsAreRecovered) {
   loss_ = 0.2;
   start_client();
   start_server();
@@ -218,7 +218,7 @@ TEST_F(Drive, JoinsTheGroupTheServerNames) {
   EXPECT_EQ(joined_, std::nullopt);
 }
 
-TEST_F(Drive, AClientThatStopsLeavesNothingBehind) {
+TEST_F(Drive, AClientThatStopsEndsItsSubscriptions) {
   start_client();
   start_server();
   time_until_subscribed();
@@ -228,7 +228,7 @@ TEST_F(Drive, AClientThatStopsLeavesNothingBehind) {
   EXPECT_FALSE(server_serves());
 }
 
-TEST(ReplayEvents, ArriveWholeAndProtectedInWhateverOrderTheirSegmentsCome) {
+TEST(ReplayEvents, ArriveCompleteAndProtectedForAnyOrderOfSegments) {
   replay::EventEncoder encoder({service::data_id(kRadar, service::kEventDetectionList), 0});
   e2e::Checker checker({.profile = e2e::Profile::kP07,
                         .data_id = service::data_id(kRadar, service::kEventDetectionList),

@@ -38,7 +38,7 @@ TEST_F(SdClientServers, OffersWithoutAUsableEndpointAreFaults) {
   EXPECT_EQ(actions_.faults, faults);
 }
 
-TEST_F(SdClientServers, TheFirstOfTwoInstancesIsTakenAndKept) {
+TEST_F(SdClientServers, TheFirstOfTwoInstancesIsUsedAndKept) {
   Server second{.address = 0x0A000015};
   start();
   actions_.sent.clear();
@@ -59,7 +59,7 @@ TEST_F(SdClientServers, TheFirstOfTwoInstancesIsTakenAndKept) {
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 StopOffer", "subscribed 0 10.0.0.21:30501"));
 }
 
-TEST_F(SdClientServers, AServerThatDoesNotAnswerGivesWayToAnother) {
+TEST_F(SdClientServers, AServerThatDoesNotAnswerIsReplacedByAnother) {
   Server ghost{.address = 0x0A000063};
   start();
   multicast(ghost.offer(kForever_s), ghost);
@@ -110,7 +110,7 @@ TEST_F(SdClientServers, AnotherMajorVersionIsAFault) {
   EXPECT_EQ(actions_.last_fault, Fault::kVersionMismatch);
 }
 
-TEST_F(SdClientServers, AcksOfOthersAreNotOurs) {
+TEST_F(SdClientServers, AcksToOthersAreIgnored) {
   Server stranger{.address = 0x0A000099};
   start();
   offer();
@@ -122,7 +122,7 @@ TEST_F(SdClientServers, AcksOfOthersAreNotOurs) {
   EXPECT_EQ(actions_.faults, 0u);
 }
 
-TEST_F(SdClientServers, SeveralSubscriptionsShareMessagesAndAreToldApart) {
+TEST_F(SdClientServers, SeveralSubscriptionsShareMessagesAndAreDistinguished) {
   make({{.index = 10, .service = 0x1234, .instance = 1, .eventgroup = 0x10, .local_port = 40001},
         {.index = 11, .service = 0x1234, .instance = 1, .eventgroup = 0x10, .local_port = 40002},
         {.index = 12, .service = 0x1234, .instance = 2, .eventgroup = 0x10, .local_port = 40003}});

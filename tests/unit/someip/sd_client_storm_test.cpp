@@ -61,7 +61,7 @@ TEST_F(SdStorm, AStormOfOffersAndRebootsLeadsToTenSubscribesASecond) {
   EXPECT_EQ(client_.state(0).phase, SdSubscriptionState::Phase::kSubscribed);
 }
 
-TEST_F(SdStorm, AFloodOfPeersDoesNotMakeItForgetTheServer) {
+TEST_F(SdStorm, ManyPeersDoNotDisplaceTheServer) {
   become_subscribed();
   for (std::uint32_t i = 0; i < 5'000; ++i) {
     now_ns_ += 10'000;
@@ -136,7 +136,7 @@ TEST_F(SdStorm, ChangedMessagesOfOthersDoNotDisturbASubscription) {
   EXPECT_GT(client_.statistics().malformed_messages, 1000u);
 }
 
-TEST_F(SdStorm, ChangedMessagesOfTheServerItselfAreSurvived) {
+TEST_F(SdStorm, ChangedMessagesOfTheServerAreHandled) {
   std::mt19937 random(12);
   for (int i = 0; i < 20'000; ++i) {
     now_ns_ += 20 * kMillisecond;
