@@ -1,4 +1,4 @@
-// The reader of DBC files, on texts of our own.
+// The reader of DBC files.
 #include "services/ingest_gateway/dbc/dbc.hpp"
 
 #include <algorithm>
@@ -120,7 +120,7 @@ SG_MUL_VAL_ 2147483649 DEEP INNER 3-5, 8-8,10-12;
   EXPECT_EQ(deep.switch_values[0].last, 5u);
   EXPECT_EQ(deep.switch_values[1].first, 8u);
   EXPECT_EQ(deep.switch_values[2].last, 12u);
-  // Without a statement of its own it hangs on the only plain switch.
+  // Without its own statement it depends on the only plain switch.
   EXPECT_EQ(message.signals.at(message.find("WIDE")->switch_index).name, "OUTER");
 }
 
@@ -266,7 +266,7 @@ TEST(Dbc, ABigFileIsReadCompletely) {
   EXPECT_TRUE(std::ranges::all_of(database.messages, [](const Message& m) { return m.signals.size() == 32; }));
 }
 
-// Each of these takes hours in readers that search ahead from every line: the test's time limit would end it.
+// Each of these takes hours if a reader searches ahead from every line, and would exceed the test's time limit.
 TEST(Dbc, HostileTextsAreReadInBoundedTime) {
   constexpr std::size_t kLines = 200'000;
   const auto repeated = [](std::string_view line) {

@@ -1,4 +1,4 @@
-// Mapping files: the example that is shipped, and what is refused with which words.
+// Mapping files: the shipped example, and the errors of invalid files.
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 
 #include <filesystem>
@@ -69,7 +69,7 @@ dbc::Database load(const std::string&) {
   return dbc::parse_dbc(kDbc, "x.dbc");
 }
 
-/// The text with one part replaced, which must be in it.
+/// The text with one existing part replaced.
 std::string with(std::string_view text, std::string_view old, std::string_view replacement) {
   std::string changed(text);
   const std::size_t at = changed.find(old);

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 const std::filesystem::path kExamples = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings";
 
-/// The ego signals that are shipped as an example.
+/// The shipped example of ego signals.
 class ExampleEgo : public testing::Test {
  protected:
   ExampleEgo() {
@@ -33,7 +33,7 @@ class ExampleEgo : public testing::Test {
     config.data_id_mode = e2e::DataIdMode::kNibble;
     protector.emplace(config);
   }
-  /// The wheels have turned so far since the start; gear 3 is forward.
+  /// Distances of the rear wheels since the start, as pulses; gear 3 is forward.
   void send_wheels(double left_m, double right_m, int gear = 3) {
     const auto pulses = [](double metres) { return std::floor(metres / 0.0205); };
     auto payload = bus.payload("WHEELS", {{"PULSES_REAR_LEFT", std::fmod(pulses(left_m), 1000.0)},
@@ -42,7 +42,7 @@ class ExampleEgo : public testing::Test {
     EXPECT_TRUE(protector->protect(payload));
     bus.send_bytes("WHEELS", payload);
   }
-  /// Drives straight at this speed, with a frame each 20 ms.
+  /// Drives straight at this speed, with a frame every 20 ms.
   void drive(double speed_mps, int frames) {
     for (int i = 0; i < frames; ++i) {
       send_wheels(distance_m, distance_m);
@@ -69,7 +69,7 @@ class ExampleEgo : public testing::Test {
 };
 
 TEST_F(ExampleEgo, PulsesMakeASpeedAcrossTheirWrap) {
-  drive(30.0, 200);  // 120 m are six times round
+  drive(30.0, 200);  // 120 m are six wraps
   EXPECT_THAT(bus.out.faults, IsEmpty());
   ASSERT_THAT(speeds(), SizeIs(testing::Ge(190u)));
   // Two pulses more or less in 100 ms.
@@ -102,7 +102,7 @@ TEST_F(ExampleEgo, SpeedFromPulsesIsThatOfTheMiddleOfItsWindow) {
 TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAgain) {
   drive(10.0, 20);
   const std::size_t before = speeds().size();
-  bus.now_ns += 600'000'000;  // a counter could have gone round at 70 m/s
+  bus.now_ns += 600'000'000;  // a counter could have wrapped at 70 m/s
   distance_m += 6.0;
   drive(10.0, 1);
   EXPECT_THAT(speeds(), SizeIs(before));

@@ -1,4 +1,4 @@
-// What waits to be read is not given up because time has passed meanwhile.
+// Cycles and messages of waiting frames are not dropped by the advance of time.
 #include "services/ingest_gateway/core/backlog.hpp"
 
 #include <gtest/gtest.h>

@@ -120,7 +120,7 @@ TEST_F(ServiceBody, AValueThatIsNotAllowedInvalidatesItsDetectionOnly) {
       Bytes body = example("detection list");
       put_f32(body, kFirst + std_at, value);
       take(body);
-      EXPECT_EQ(out_.scan->detection_flags[0], 0u) << "a std that cannot be is not stated";
+      EXPECT_EQ(out_.scan->detection_flags[0], 0u) << "an invalid standard deviation is treated as not stated";
     }
   }
   EXPECT_EQ(out_.all_faults(), 0u);
@@ -183,7 +183,8 @@ TEST_F(ServiceBody, ABodyThatContradictsItselfIsRejectedWithAReason) {
   EXPECT_THAT(out_.last_fault, testing::HasSubstr("36"));
 }
 
-// --- the whole way ---------------------------------------------------------------------------------------------------
+// --- through the gateway
+// ---------------------------------------------------------------------------------------------------
 
 /// Two radars and the vehicle's motion by SOME/IP on one network.
 VehicleConfig vehicle() {
@@ -243,7 +244,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
     gateway_.start(0);
   }
 
-  /// What the gateway sends reaches the server, whose answers are kept for the next step().
+  /// Passes the gateway's datagrams to the server, and keeps the answers for the next step().
   void send(const recording::Frame& frame) override {
     ++datagrams_sent;
     server_.receive(now_ns_, frame.payload, {frame.source.address, 30490}, frame.destination.address.is_multicast(),
@@ -261,7 +262,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
     frame.payload = payload;
     gateway_.take(frame, {now_ns_, kEpoch, TimeSource::kLinkArrival});
   }
-  /// Time passes in steps of 10 ms, with discovery going on.
+  /// Advances the time in steps of 10 ms, with service discovery.
   void pass(std::int64_t duration_ns) {
     for (const std::int64_t end = now_ns_ + duration_ns; now_ns_ < end;) {
       now_ns_ += 10 * kMillisecond;
@@ -274,7 +275,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
       gateway_.tick(now_ns_);
     }
   }
-  /// One event of an instance to where it is subscribed.
+  /// Sends one event of an instance to its subscribers.
   template <typename Message>
   void publish(std::uint16_t instance, std::uint16_t eventgroup, const Message& message) {
     for (const recording::Endpoint& to : server_.destinations(instance, eventgroup, now_ns_)) {
@@ -358,9 +359,9 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   EXPECT_EQ(last_fault_radar, 1u);
   EXPECT_EQ(source_statistics[1].e2e_wrong, 1u);
   publish_list(1);
-  EXPECT_EQ(scans, 2u) << "the next one is sound";
-  EXPECT_EQ(source_statistics[1].e2e_lost, 1u) << "the damaged one never came";
-  given_->number_of_valid_detections = 10;  // in one datagram, as segments that come again are known as such before
+  EXPECT_EQ(scans, 2u) << "the next one is valid";
+  EXPECT_EQ(source_statistics[1].e2e_lost, 1u) << "the damaged one counts as lost";
+  given_->number_of_valid_detections = 10;  // unsegmented, as repeated segments are detected before the check
   const auto again = encoders_[1].detection_list(*given_, {kEpoch, 1});
   const Bytes repeated(again.begin(), again.end());
   publish(1, 1, repeated);
@@ -370,7 +371,7 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   EXPECT_EQ(source_statistics[2].e2e_wrong, 0u);
 }
 
-/// A project may protect the service's messages by a shorter profile and put the header further back.
+/// A project may protect the service's messages by a shorter profile with another header offset.
 class OtherProfiles : public testing::TestWithParam<e2e::Config> {};
 
 TEST_P(OtherProfiles, AreCheckedAndTheBodyIsFound) {
@@ -428,7 +429,7 @@ TEST_F(SomeIpGateway, ALostSegmentLosesOnlyItsMessage) {
   publish_list(2);
   EXPECT_EQ(scans, 2u);
   pass(200 * kMillisecond);
-  EXPECT_EQ(count(Fault::kWireLength), 1u) << "said once";
+  EXPECT_EQ(count(Fault::kWireLength), 1u) << "reported once";
 }
 
 TEST_F(SomeIpGateway, EventsOfUnknownSendersAreRejected) {
@@ -440,7 +441,7 @@ TEST_F(SomeIpGateway, EventsOfUnknownSendersAreRejected) {
     ++segments;
   });
   EXPECT_EQ(scans, 0u);
-  EXPECT_EQ(count(Fault::kWireUnknown), segments) << "not even put together";
+  EXPECT_EQ(count(Fault::kWireUnknown), segments) << "not reassembled";
 }
 
 TEST_F(SomeIpGateway, ASilentServerIsReportedAndFoundAgain) {
@@ -449,7 +450,7 @@ TEST_F(SomeIpGateway, ASilentServerIsReportedAndFoundAgain) {
   EXPECT_EQ(scans, 1u);
   server_runs_ = false;
   pass(4000 * kMillisecond);
-  EXPECT_EQ(count(Fault::kLink), 3u) << "each of the three subscriptions says that its offer expired";
+  EXPECT_EQ(count(Fault::kLink), 3u) << "each of the three subscriptions reports the expired offer";
   server_runs_ = true;
   server_ = boresight::someip::SdServer({.service = replay::radar_service(),
                                          .instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}},
@@ -476,7 +477,7 @@ TEST_F(SomeIpGateway, AMulticastGroupIsJoinedOnTheInterfaceOfTheVehicleFile) {
 TEST_F(SomeIpGateway, AllocatesNothing) {
   pass(1000 * kMillisecond);
   publish_list(1);
-  // Encoded before, since the other side may allocate.
+  // Encoded before, since the encoder may allocate.
   std::vector<Bytes> datagrams;
   for (int i = 0; i < 5; ++i) {
     const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});

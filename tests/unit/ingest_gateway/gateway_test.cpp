@@ -74,7 +74,7 @@ TEST_F(GatewayTest, TheSendersAddressIdentifiesTheRadar) {
   EXPECT_EQ(sink_.all_faults(), 0u);
   send_list(0x0A0D01FF);
   EXPECT_EQ(sink_.scans, 2u);
-  EXPECT_EQ(sink_.count(Fault::kWireUnknown), 1u) << "a stranger on a radar's port";
+  EXPECT_EQ(sink_.count(Fault::kWireUnknown), 1u) << "an unknown sender on a radar's port";
 }
 
 TEST_F(GatewayTest, TheSensorsOwnStampIsMappedToThisClock) {
@@ -113,7 +113,7 @@ TEST_F(GatewayTest, EgoSignalsComeFromTheirBusOnly) {
   EXPECT_NEAR(sink_.ego.speed_mps, 12.0F, 0.01F);
   const std::array<std::uint8_t, 8> other{};
   send_can("can0", 0x7FF, other, 1);
-  EXPECT_EQ(sink_.all_faults(), 0u) << "buses carry much else";
+  EXPECT_EQ(sink_.all_faults(), 0u) << "buses carry other traffic";
 }
 
 TEST_F(GatewayTest, ACycleOfTheCanRadarIsDatedBackByItsLatency) {

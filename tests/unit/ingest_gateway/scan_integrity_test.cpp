@@ -25,7 +25,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A radar that looks ahead, for what does not depend on where it looks.
+/// A forward-looking radar, for tests that do not depend on the direction.
 RadarConfig forward_radar() {
   RadarConfig radar;
   radar.id = 1;
@@ -42,9 +42,9 @@ EgoMotion motion(double speed_mps, double yaw_rate_radps = 0.0, bool direction_k
   return ego;
 }
 
-// ---------------------------------------------------------------- worlds of stationary things and traffic
+// ---------------------------------------------------------------- scenes of stationary and moving objects
 
-/// A scan of a forward radar: `stationary` of the detections stand still, the others drive along the road.
+/// A scan of a forward-looking radar: the share `stationary` is stationary, the others move along the road.
 void fill(RadarScan& scan, std::size_t detections, double stationary, double speed_mps, std::mt19937_64& random) {
   std::uniform_real_distribution<double> azimuth(-1.2, 1.2), range(3.0, 150.0), unit(0.0, 1.0);
   std::normal_distribution<double> noise(0.0, 0.05);
@@ -91,9 +91,9 @@ class Judged : public testing::Test {
 
 TEST_F(Judged, TrafficIsNoContradiction) {
   const EgoMotion ego = motion(20.0);
-  EXPECT_EQ(contradictions(1200, 200, 0.2, ego, 20.0), 0u) << "a fifth stands still";
+  EXPECT_EQ(contradictions(1200, 200, 0.2, ego, 20.0), 0u) << "a fifth is stationary";
   for (int i = 0; i < 50; ++i) {
-    EXPECT_EQ(contradictions(10, 200, 0.0, ego, 20.0), 0u) << "half a second of nothing but traffic";
+    EXPECT_EQ(contradictions(10, 200, 0.0, ego, 20.0), 0u) << "half a second of moving objects only";
     EXPECT_EQ(contradictions(20, 200, 0.5, ego, 20.0), 0u);
   }
 }
@@ -179,7 +179,7 @@ TEST_F(Judged, GapsAreReportedAndCountedAcrossTheWrapAndBeyondItByTime) {
       fill_anew();
       if (i == 3) counter += c.lost;
       scan_->cycle_counter = counter & mask;
-      // Cycles of a real sensor are not to the nanosecond what was configured.
+      // Cycles of a real sensor differ slightly from the configured time.
       const std::int64_t time_ns = counter * (kCycle_ns + 200'000);
       const std::uint16_t expected = i == 3 ? kCounterGap : 0;
       EXPECT_EQ(judge.judge(*scan_, time_ns, time_ns, c.bits, nullptr), expected) << c.bits << ' ' << c.lost;
@@ -221,7 +221,7 @@ TEST_F(Judged, AConstantCounterIsIgnored) {
   time_ns_ += kCycle_ns;
   scan_->cycle_counter = ~0u;
   fill_anew();
-  EXPECT_EQ(judge(), kCounterGap) << "by time then";
+  EXPECT_EQ(judge(), kCounterGap) << "detected by time";
 }
 
 TEST_F(Judged, WithoutACounterGapsAreFoundByTime) {
@@ -240,7 +240,7 @@ TEST_F(Judged, WithoutACounterTheSameContentAndStampAreARepetition) {
     if (i != 9) fill_anew();
     if (i == 9 || i == 10) time_ns_ -= kCycle_ns;
     const int verdict = judge(nullptr, 0) & ~kStale;
-    EXPECT_EQ(verdict, i == 9 ? kRepeated : 0) << i << ": another content with the same stamp is none";
+    EXPECT_EQ(verdict, i == 9 ? kRepeated : 0) << i << ": other content with the same stamp is no repetition";
   }
 }
 
@@ -250,11 +250,11 @@ TEST_F(Judged, OldDataAndStampsThatDoNotAdvanceAreStale) {
     ++scan_->cycle_counter;
     return judge_.judge(*scan_, measured_ms * kMillisecond, received_ms * kMillisecond, 8, nullptr);
   };
-  EXPECT_EQ(at(1000, 1247), 0) << "as a real ARS548";
+  EXPECT_EQ(at(1000, 1247), 0) << "as a recorded ARS548";
   EXPECT_EQ(at(1050, 1550), 0);
   EXPECT_EQ(at(1100, 1601), kStale);
   EXPECT_EQ(at(1300, 1650), 0);
-  EXPECT_EQ(at(1300, 1651), 0) << "two in one burst tell nothing";
+  EXPECT_EQ(at(1300, 1651), 0) << "two in one burst are not judged";
   EXPECT_EQ(at(1300, 1665), kStale) << "stands still";
   EXPECT_EQ(at(1299, 1700), kStale) << "goes back";
   EXPECT_EQ(at(1400, 1750), 0);
@@ -273,7 +273,7 @@ TEST_F(Judged, AFrozenRadarIsReported) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(judge(nullptr), i >= 10 ? kFrozen : 0) << i;
   scan_->range_m[17] = std::nextafter(scan_->range_m[17], 0.0F);
   EXPECT_EQ(judge(&moving), 0) << "one bit is a difference";
-  // One or two tracks of a coarse tracker may well be the same for a while, and nothing is nothing.
+  // One or two tracks of a coarse tracker may be equal for some time, and empty scans are equal.
   for (const std::size_t few : {0u, 1u, 3u}) {
     fill_anew(few);
     for (int i = 0; i < 50; ++i) EXPECT_EQ(judge(&moving), 0);
@@ -302,7 +302,7 @@ TEST_F(Judged, ManyImplausibleDetectionsAreReported) {
       },
       [&](std::size_t i) {
         scan_->azimuth_rad[i] = kNan;
-        scan_->detection_flags[i] = detection_flag::kInvalid;  // no excuse for what is no number
+        scan_->detection_flags[i] = detection_flag::kInvalid;  // does not excuse NaN
       },
   };
   for (std::size_t k = 0; k < spoils.size(); ++k) {
@@ -315,7 +315,7 @@ TEST_F(Judged, ManyImplausibleDetectionsAreReported) {
                    scan_->detection_flags[i] = detection_flag::kInvalid;
                  }),
             0)
-      << "the sensor says itself that the angle is invalid";
+      << "the sensor marks the angle as invalid";
   fill_anew(4);
   scan_->range_m[0] = scan_->range_m[1] = 1000.0F;
   EXPECT_EQ(judge(), 0) << "two of four are not many";

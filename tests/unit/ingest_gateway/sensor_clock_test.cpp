@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
-/// Of the ECU's epoch clock: November 2026.
+/// The ECU's epoch clock: November 2026.
 constexpr std::int64_t kEpoch_ns = 1'795'000'000 * kSecond;
 
 RadarConfig radar(double latency_s = 0.02) {
@@ -31,10 +31,10 @@ SensorStamp synchronised(std::int64_t measured_ns) {
   return {kEpoch_ns + measured_ns, true};
 }
 
-/// A sensor with a clock of its own and a link that delays.
+/// A sensor with its own clock and a link with delays.
 struct World {
   double drift = 0.0;
-  std::int64_t sensor_start_ns = 7 * kSecond;  // what its clock showed at time 0
+  std::int64_t sensor_start_ns = 7 * kSecond;  // its clock at time 0
   std::int64_t latency_ns = 20 * kMillisecond;
   std::int64_t jitter_ns = 8 * kMillisecond;
   double hiccup_share = 0.01;
@@ -65,7 +65,7 @@ TEST(SensorClock, WithoutAStampItIsReceptionLessLatency) {
 }
 
 TEST(SensorClock, ASynchronisedStampIsUsedUnchanged) {
-  // 247 ms is what a real ARS548 recording has.
+  // 247 ms as in a recording of an ARS548.
   for (const std::int64_t delay_ns : {-5 * kMillisecond, 0 * kMillisecond, 247 * kMillisecond, 1000 * kMillisecond}) {
     SensorClock clock(radar());
     const auto result = clock.map(synchronised(10 * kSecond - delay_ns), received(10 * kSecond));
@@ -142,7 +142,7 @@ TEST(SensorClock, AJumpAheadIsReportedOnceAndTheOffsetIsEstimatedAgain) {
 }
 
 TEST(SensorClock, AJumpBackIsReportedOnce) {
-  // Less than a cycle can first be told from a delay when it does not end.
+  // A jump of less than a cycle looks like a delay until it persists.
   for (const std::int64_t jump_ns : {40 * kMillisecond, 70 * kMillisecond, 3 * kSecond}) {
     World world{.sensor_start_ns = 3600 * kSecond, .jitter_ns = 4 * kMillisecond, .hiccup_share = 0.0};
     SensorClock clock(radar());
@@ -201,7 +201,7 @@ TEST(SensorClock, AClockWithAWrongUnitIsNeverUsed) {
 }
 
 TEST(SensorClock, LossOfSynchronisationDoesNotShiftTheTimes) {
-  // The delay of 247 ms was configured nowhere; it has been seen while the clock was synchronised.
+  // The delay of 247 ms is not configured; it was measured while the clock was synchronised.
   std::mt19937_64 random(3);
   std::uniform_int_distribution<std::int64_t> jitter_ns(0, 5 * kMillisecond);
   SensorClock clock(radar(0.0));
@@ -215,7 +215,7 @@ TEST(SensorClock, LossOfSynchronisationDoesNotShiftTheTimes) {
     EXPECT_EQ(result.time.source, in_sync ? TimeSource::kSensorSynchronised : TimeSource::kSensorFreeRunning);
     EXPECT_NEAR(static_cast<double>(result.time.time_ns - measured_ns), 0.0, 0.2e6) << i;
   }
-  // No stamp at all any more: reception less the delay that this sensor has been seen to have.
+  // Without stamps: reception minus the measured delay of this sensor.
   const auto result = clock.map(std::nullopt, received(40 * kSecond));
   EXPECT_EQ(result.time.source, TimeSource::kLinkArrival);
   EXPECT_NEAR(static_cast<double>(result.time.time_ns), 40e9 - 247e6, 0.2e6);

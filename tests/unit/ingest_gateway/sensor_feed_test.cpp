@@ -49,7 +49,7 @@ TEST(SensorFeed, IsSentOnlyToConfiguredSensorsAtTheirRate) {
   SensorFeed feed(vehicle);
   Outbox out;
   feed.start(out);
-  EXPECT_TRUE(out.sent.empty()) << "nobody asked for a configuration";
+  EXPECT_TRUE(out.sent.empty()) << "no configuration requested";
   for (int i = 0; i < 100; ++i) feed.send(ego(10.0F), i * 5 * kMillisecond, out);
   std::size_t udp = 0, can = 0;
   for (const auto& s : out.sent) {
@@ -63,11 +63,11 @@ TEST(SensorFeed, IsSentOnlyToConfiguredSensorsAtTheirRate) {
       EXPECT_TRUE(s.frame.can_id == 0x320 || s.frame.can_id == 0x321) << "sensor 2 of its bus";
     }
   }
-  EXPECT_EQ(can, 2u * 25u) << "50 Hz of what came at 200 Hz";
+  EXPECT_EQ(can, 2u * 25u) << "50 Hz from an input of 200 Hz";
   EXPECT_GE(udp, 3u * 25u);
   out.sent.clear();
   feed.send(ego(10.0F), -1000 * kMillisecond, out);
-  EXPECT_FALSE(out.sent.empty()) << "a clock that went back stops nothing";
+  EXPECT_FALSE(out.sent.empty()) << "still sends after the clock went back";
 }
 
 TEST(SensorFeed, AnArs408IsConfiguredOnceIfRequested) {

@@ -38,7 +38,7 @@ std::uint16_t crc16(std::uint16_t crc, const Bytes& bytes, std::size_t size) {
   return crc;
 }
 
-/// A list of that kind: header, record frames, closing frame. Records are zero but for those that the test writes.
+/// A list of that kind: header, record frames, closing frame. Records are zero except those that the test writes.
 class List {
  public:
   explicit List(std::size_t kind, unsigned entries = 0, unsigned sequence = 7) : kind_(kind) {
@@ -93,7 +93,7 @@ class Srr520Test : public testing::Test {
   void take(const List& list) {
     for (const CanFrame& frame : list.frames) take(frame);
   }
-  /// A sound list is taken whatever came before.
+  /// A valid list is accepted after any input.
   void expect_recovery() {
     const std::size_t scans = output_.scans, faults = output_.all_faults();
     take(List(layout::kNearList));
@@ -172,7 +172,7 @@ TEST_F(Srr520Test, WhatIsNotAvailableIsMarkedInvalid) {
   EXPECT_EQ(output_.scan->detection_flags[1], detection_flag::kInvalid);
   EXPECT_EQ(output_.scan->detection_flags[2], 0u);
   EXPECT_EQ(output_.scan->rcs_dbsm[2], 0.0F);
-  EXPECT_EQ(output_.scan->range_rate_max_mps, 0.0F) << "an ambiguous velocity of -100 m/s says nothing";
+  EXPECT_EQ(output_.scan->range_rate_max_mps, 0.0F) << "an ambiguous velocity of -100 m/s is invalid";
   EXPECT_FALSE(output_.scan->has(scan_field::kAmbiguity));
 }
 
@@ -226,7 +226,7 @@ TEST_F(Srr520Test, NoFlippedBitGoesThrough) {
   List list = sound;
   for (std::size_t i = 0; i < list.frames.size(); ++i) {
     for (std::size_t bit = 0; bit < list.frames[i].bytes.size() * 8; ++bit) {
-      if (i + 1 == list.frames.size() && bit >= 24) break;  // the last byte of the closing frame says nothing
+      if (i + 1 == list.frames.size() && bit >= 24) break;  // the last byte of the closing frame is not used
       const std::size_t faults = output_.all_faults();
       list.frames[i].bytes[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
       take(list);
@@ -269,7 +269,7 @@ TEST_F(Srr520Test, FieldsOutOfTheirRangeAreRejectedThoughTheCrcIsRight) {
   reject(layout::header::kSyncStatus, 1, 0, "sync status 0, allowed 1 … 3");
   reject(layout::header::kSyncStatus, 1, 4, "sync status 4, allowed 1 … 3");
   reject(layout::header::kNanoseconds, 4, 1'000'000'000, "nanoseconds of the stamp 1000000000, allowed 0 … 999999999");
-  // In a record frame the list is given up at once.
+  // In a record frame the list is rejected at once.
   List list(layout::kHrrList, 5);
   list.frames[2].bytes[layout::kFrameNumber] = 20;
   take(list.seal());
@@ -299,7 +299,7 @@ TEST_F(Srr520Test, AnOpenListIsRejectedWhenAnotherBeginsOrNothingComes) {
   decoder_.tick(last_ns + 50 * kMillisecond + 1, output_);
   EXPECT_EQ(output_.all_faults(), 2u);
   for (std::size_t i = 30; i < list.frames.size(); ++i) take(list.frames[i]);
-  EXPECT_EQ(output_.all_faults(), 2u) << "what is left of a rejected list is dropped silently";
+  EXPECT_EQ(output_.all_faults(), 2u) << "the rest of a rejected list is dropped silently";
   EXPECT_EQ(output_.scans, 1u);
   expect_recovery();
 }
@@ -415,7 +415,7 @@ TEST_F(Srr520Test, RandomFramesNeitherCrashNorGoThrough) {
       ++sound;
     }
   }
-  EXPECT_EQ(output_.scans, sound) << "bad frames do not disturb good ones, and none of them is taken for one";
+  EXPECT_EQ(output_.scans, sound) << "bad frames are rejected and do not disturb good ones";
   EXPECT_GT(output_.all_faults(), 1000u);
 }
 

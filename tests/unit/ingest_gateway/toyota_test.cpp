@@ -20,7 +20,7 @@ struct CanFrame {
   Bytes bytes;
 };
 
-/// Puts a raw value into a Motorola signal, bit by bit: the inverse of what the decoder does, written differently.
+/// Puts a raw value into a Motorola signal, bit by bit: the inverse of the decoder, implemented differently.
 void put(Bytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
   unsigned byte = start_bit / 8, bit = start_bit % 8;
   for (unsigned i = 0; i < length; ++i) {
@@ -61,7 +61,7 @@ CanFrame track_b(std::uint32_t slot, unsigned counter, unsigned score) {
   return f;
 }
 
-/// All 32 frames; slot 3 is a track 40 m ahead and 2 m to the left that comes closer.
+/// All 32 frames; slot 3 is an approaching track 40 m ahead and 2 m to the left.
 std::vector<CanFrame> cycle(unsigned counter) {
   std::vector<CanFrame> frames;
   for (std::uint32_t slot = 0; slot < 16; ++slot) {
@@ -118,13 +118,13 @@ TEST_F(ToyotaRadarTest, AMissingFrameEndsWithTheNextCycle) {
   frames.erase(frames.begin() + 10);
   for (std::size_t i = 0; i < frames.size(); ++i) take(frames[i], static_cast<std::int64_t>(i));
   EXPECT_EQ(out_.scans, 0u);
-  // The next cycle begins with another frame than the one that is missing …
+  // The next cycle begins with another frame than the missing one …
   take(cycle(2)[0], 50 * kMillisecond);
   ASSERT_EQ(out_.scans, 1u);
   EXPECT_EQ(out_.scan->integrity, scan_integrity::kIncomplete);
   EXPECT_EQ(out_.scan->number_of_valid_detections, 1u);
   EXPECT_EQ(out_.count(Fault::kWireLength), 1u);
-  // … or with just that one, which after the pause is not taken for the missing one.
+  // … or with the same frame, which after the pause does not complete the previous cycle.
   for (const CanFrame& f : frames) take(f, 100 * kMillisecond);
   ASSERT_EQ(out_.scans, 2u) << "the cycle of one frame";
   take(cycle(2)[10], 150 * kMillisecond);
@@ -137,7 +137,7 @@ TEST_F(ToyotaRadarTest, AnIncompleteCycleDoesNotWaitForTheNext) {
   frames.erase(frames.begin() + 10);
   for (const CanFrame& f : frames) take(f, 100 * kMillisecond);
   radar_.tick(115 * kMillisecond, out_);
-  EXPECT_EQ(out_.scans, 0u) << "its frame may still come";
+  EXPECT_EQ(out_.scans, 0u) << "its frame may still arrive";
   radar_.tick(125 * kMillisecond, out_);
   ASSERT_EQ(out_.scans, 1u);
   EXPECT_EQ(out_.scan->integrity, scan_integrity::kIncomplete);
@@ -155,7 +155,7 @@ TEST_F(ToyotaRadarTest, ARepeatedFrameBeginsTheNextCycle) {
   EXPECT_EQ(out_.scans, 1u);
   for (std::size_t i = 0; i < 6; ++i) take(frames[i], 22);
   for (std::size_t i = 26; i < 32; ++i) take(frames[i], 22);
-  EXPECT_EQ(out_.scans, 2u) << "the frame that came again was the first of its own cycle";
+  EXPECT_EQ(out_.scans, 2u) << "the repeated frame was the first of the next cycle";
   EXPECT_EQ(out_.scan->integrity, 0u);
   EXPECT_EQ(out_.last_reception.received_ns, 21);
 }
@@ -174,7 +174,7 @@ TEST_F(ToyotaRadarTest, InvalidFramesAreRejectedWithAReason) {
   EXPECT_NE(out_.last_fault.find("checksum"), std::string::npos);
 }
 
-/// Any payload of any length under the radar's ids: counted, never worse.
+/// Any payload of any length with the radar's ids is counted, without further effect.
 TEST_F(ToyotaRadarTest, SurvivesMutations) {
   std::mt19937 random(5);
   for (int i = 0; i < 200'000; ++i) {
@@ -202,7 +202,7 @@ TEST(ToyotaEgo, AgreesWithTheIndependentEncoder) {
     const EgoReading& one = output.last_ego;
     EXPECT_EQ(one.speed_mps.has_value() + one.yaw_rate_radps.has_value() + one.steering_angle_rad.has_value(), 1);
     EXPECT_FALSE(one.reverse.has_value());
-    EXPECT_FALSE(one.speed_is_signed) << "these wheels do not tell the direction";
+    EXPECT_FALSE(one.speed_is_signed) << "the wheel speeds have no direction";
     if (one.speed_mps) all.speed_mps = one.speed_mps;
     if (one.yaw_rate_radps) all.yaw_rate_radps = one.yaw_rate_radps;
     if (one.steering_angle_rad) all.steering_angle_rad = one.steering_angle_rad;
@@ -219,7 +219,7 @@ TEST(ToyotaEgo, InvalidFramesAreRejectedWithAReason) {
   MemoryOutput output;
   auto frames = simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
   ego.take(can_frame(0x0B4, frames[0].bytes), {}, output);
-  EXPECT_EQ(output.all_faults(), 0u) << "frames of others are no faults";
+  EXPECT_EQ(output.all_faults(), 0u) << "frames with other ids are no faults";
   for (const auto& frame : frames) {
     ego.take(can_frame(frame.id, std::span(frame.bytes).first(6)), {}, output);
     ego.take(can_frame(frame.id, {}), {}, output);

@@ -1,4 +1,4 @@
-// The kernel's tables of UDP sockets, as Linux prints them on a little-endian machine.
+// The kernel's tables of UDP sockets, as printed by Linux on a little-endian machine.
 #include "services/ingest_gateway/links/port_users.hpp"
 
 #include <bit>
@@ -52,7 +52,7 @@ TEST_F(PortUsers, Ipv6) {
 TEST_F(PortUsers, InvalidLinesAreSkipped) {
   const std::string good = line_of("02004D0A:771A", 7);
   EXPECT_TRUE(found("\nnonsense\n 1: 02004D0A 1 2 3 4 5 6 7 8 9\n" + good, "10.77.0.2"));
-  EXPECT_FALSE(found(" 1: 02004D0A:771A", "10.77.0.2")) << "cut off before its inode";
+  EXPECT_FALSE(found(" 1: 02004D0A:771A", "10.77.0.2")) << "ends before its inode";
   EXPECT_FALSE(
       found(line_of("02004D:771A", 7) + line_of("02004D0A:99999", 7) + line_of("0200XD0A:771A", 7), "10.77.0.2"));
 }

@@ -52,7 +52,7 @@ TEST(Candump, StampsKeepEveryDigit) {
   EXPECT_EQ(parse("(1700000000.9999999999) c 001#").frame.stamp_ns, 1'700'000'000'999'999'999);
 }
 
-// What one notation takes, the other one must take, too: a recording is read back from what was written of it.
+// Both notations accept the same stamps: a written recording must be readable.
 TEST(Candump, BothNotationsEndAtTheSameSecond) {
   EXPECT_EQ(parse("(9000000000.5) can0 123#").frame.stamp_ns, 9'000'000'000'500'000'000);
   EXPECT_EQ(parse("(9000000001.0) can0 123#").result, CandumpResult::kBadStamp);

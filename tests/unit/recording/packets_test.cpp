@@ -117,7 +117,7 @@ TEST(UdpDecoder, ADatagramWithAMissingFragmentIsDroppedAndTheNextOneIsComplete) 
       EXPECT_EQ(result, PacketResult::kFrame) << i;
     }
   }
-  EXPECT_GE(lost, 4) << "what is given up is said";
+  EXPECT_GE(lost, 4) << "dropped datagrams are reported";
 }
 
 TEST(UdpDecoder, ARepeatedFragmentIsIgnored) {
@@ -138,7 +138,7 @@ TEST(UdpDecoder, ARepeatedFragmentIsIgnored) {
 TEST(UdpDecoder, PartlyOverlappingFragmentsAreRejected) {
   const auto payload = payload_of(3000);
   const auto good = fragments(payload, 5, 1000);
-  // The same data cut elsewhere: the middle fragment begins eight bytes too early, or too late by as much.
+  // The same data cut elsewhere: the middle fragment begins eight bytes too early or too late.
   for (const int shift : {-8, 8}) {
     UdpDecoder decoder;
     Frame frame;
@@ -154,7 +154,7 @@ TEST(UdpDecoder, PartlyOverlappingFragmentsAreRejected) {
       lost = lost || result == PacketResult::kFragmentLost;
     }
     EXPECT_TRUE(lost) << shift;
-    EXPECT_EQ(feed(decoder, fragments(payload, 6, 1000), frame), PacketResult::kFrame) << "the next is whole";
+    EXPECT_EQ(feed(decoder, fragments(payload, 6, 1000), frame), PacketResult::kFrame) << "the next one is complete";
   }
 }
 

@@ -166,7 +166,7 @@ TEST(EventBody, ValuesThatAreNotAllowedAreFlaggedAndNotSent) {
 TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsSpecified) {
   auto scan = example_scan();
   scan->fields = 1u << 31;
-  scan->elevation_rad[0] = kNan;  // means nothing without its bit
+  scan->elevation_rad[0] = kNan;  // no meaning without its bit
   Bytes body(200);
   ASSERT_EQ(write_detection_list(*scan, {-5, 2}, body), 132u);
   EXPECT_EQ(u32_at(body, list::kFields), 0u);
@@ -205,7 +205,7 @@ TEST(EventBody, EgoMotionKeepsToItsFields) {
   ego.speed_mps = -13.5F;
   ASSERT_EQ(write_ego_motion(ego, kTime, body), 32u);
   EXPECT_EQ(f32_at(body, ego_wire::kSpeed_mps), -13.5F);
-  ego.fields &= ~ego_field::kReverse;  // a sign without a known direction says nothing
+  ego.fields &= ~ego_field::kReverse;  // a sign without a known direction has no meaning
   ASSERT_EQ(write_ego_motion(ego, kTime, body), 32u);
   EXPECT_EQ(f32_at(body, ego_wire::kSpeed_mps), 13.5F);
   EXPECT_EQ(u32_at(body, ego_wire::kFields), 7u);

@@ -35,7 +35,7 @@ void put(Bytes& bytes, std::uint64_t value, int count) {
   for (int shift = 8 * (count - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
-/// A client's entries and options, put together here by hand.
+/// A client's entries and options, written without the code under test.
 struct Client {
   Bytes entries, options;
   std::uint8_t number_of_options = 0;
@@ -197,7 +197,7 @@ TEST_F(SdServerTest, ClearsTheRebootFlagOfOffersWhenTheirSessionWraps) {
     ASSERT_EQ(out[0].message[16], first_round ? 0xC0 : 0x40) << i;
     ASSERT_EQ(session_of(out[0].message), first_round ? i + 1 : i + 1 - 0xFFFF);
   }
-  // The counter for unicast is another one.
+  // Unicast has a separate counter.
   const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 0x30000 * kSecond);
   ASSERT_FALSE(ack.empty());
   EXPECT_EQ(session_of(ack), 1);
@@ -210,7 +210,7 @@ TEST_F(SdServerTest, AcknowledgesTheDocumentsSubscription) {
   EXPECT_THAT(ack, ElementsAreArray(document_example("acknowledge")));
   EXPECT_THAT(destinations(), ElementsAre(kGroup));
   EXPECT_THAT(destinations(100 * kMs, kEgo), IsEmpty());
-  // A second subscriber does not make it two.
+  // A second subscriber does not double the events.
   receive(Client().at(endpoint(4, 5)).subscribe(kDetections, 3).message(1), 100 * kMs, false, endpoint(4, 30490));
   EXPECT_THAT(destinations(), ElementsAre(kGroup));
 }
@@ -227,7 +227,7 @@ TEST_F(SdServerTest, WithoutAGroupTheEventsGoToEachSubscriberOnce) {
   EXPECT_EQ(session_of(ack), 1) << "a counter for each peer";
   EXPECT_THAT(destinations(), ElementsAre(kClientEvents, other));
   EXPECT_THAT(destinations(100 * kMs, kEgo), ElementsAre(other));
-  // The same endpoint under another counter is a subscription of its own, but not a second copy.
+  // The same endpoint with another counter is a separate subscription, but gets no second copy.
   EXPECT_EQ(ttl_of(receive(Client().at(kClientEvents).subscribe(kDetections, 3, 3, 1, 1).message(2))), 3u);
   EXPECT_THAT(destinations(), ElementsAre(kClientEvents, other));
   EXPECT_EQ(session_of(receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(3))), 3);
@@ -278,7 +278,7 @@ TEST_F(SdServerTest, SubscriptionsEndWithTheirTimeUnlessRenewed) {
   EXPECT_THAT(destinations(3 * kSecond), IsEmpty()) << "once ended, it is gone";
   EXPECT_EQ(server->statistics().expired, 1u);
   receive(Client().at(kClientEvents).subscribe(kDetections, 0xFFFFFF).message(3), 5 * kSecond);
-  EXPECT_EQ(destinations(20'000'000 * kSecond).size(), 1u) << "for ever";
+  EXPECT_EQ(destinations(20'000'000 * kSecond).size(), 1u) << "without time limit";
 }
 
 TEST_F(SdServerTest, AClientCanEndItsSubscription) {
@@ -290,7 +290,7 @@ TEST_F(SdServerTest, AClientCanEndItsSubscription) {
   const Bytes ack = receive(Client().at(kClientEvents).subscribe(kEgo, 0).subscribe(kEgo, 3).message(3));
   EXPECT_EQ(entries_of(ack), 1u);
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
-  // Nobody else's.
+  // No other subscription.
   receive(Client().at(kClientEvents).subscribe(kEgo, 0).message(1), 100 * kMs, false, endpoint(9, 30490));
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
 }
@@ -302,9 +302,9 @@ TEST_F(SdServerTest, SubscriptionsOfOneEndpointAreDistinguishedByClientAndCounte
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 100 * kMs, false, endpoint(9, 30490));
   EXPECT_THAT(destinations(), ElementsAre(kClientEvents));
   receive(Client().at(kClientEvents).subscribe(kDetections, 0).message(3));
-  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "its other one, and the other client's";
+  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "its other subscription, and that of the other client";
   receive(Client().at(kClientEvents).subscribe(kDetections, 0, 3, 1, 5).message(4));
-  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "the other client's";
+  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "that of the other client";
   receive(Client().at(kClientEvents).subscribe(kDetections, 0).message(2), 100 * kMs, false, endpoint(9, 30490));
   EXPECT_THAT(destinations(), IsEmpty());
 }
@@ -313,16 +313,16 @@ TEST_F(SdServerTest, ForgetsWhatARebootedClientHadSubscribed) {
   const Endpoint other_sd = endpoint(4, 30490);
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(5));
   receive(Client().at(endpoint(4, 41000)).subscribe(kDetections, 3).message(5), 100 * kMs, false, other_sd);
-  // Multicast sessions are counted apart: a 1 there is no reboot.
+  // Multicast sessions are counted separately: a 1 there is no reboot.
   receive(Client().find(9).message(1), 100 * kMs, true);
   EXPECT_EQ(destinations().size(), 2u);
   receive(Client().at(kClientEvents).subscribe(kEgo, 3).message(6), 100 * kMs);
   EXPECT_EQ(destinations().size(), 2u);
   receive(Client().at(kClientEvents).subscribe(kEgo, 3).message(6), 100 * kMs);
   EXPECT_THAT(destinations(), ElementsAre(endpoint(4, 41000))) << "session did not grow";
-  EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u) << "what the same message subscribes counts";
+  EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u) << "the subscription of the same message counts";
   EXPECT_EQ(server->statistics().client_reboots, 1u);
-  // After a wrap (flag cleared) sessions may go down; the flag coming back is a reboot.
+  // After a wrap (flag cleared) sessions may decrease; a flag that is set again is a reboot.
   receive(Client().find(9).message(7, false));
   receive(Client().find(9).message(1, false));
   EXPECT_EQ(server->statistics().client_reboots, 1u);
@@ -340,7 +340,7 @@ TEST_F(SdServerTest, AnswersFindService) {
   EXPECT_FALSE(found(Client().find(3, 1, 1)));
   EXPECT_FALSE(found(Client().find(3, 0xFF, 0xFFFFFFFF, 0x1234)));
   const Bytes offer = receive(Client().find(0xFFFF).find(3).find(3).message(2), 100 * kMs, true);
-  EXPECT_EQ(entries_of(offer), 1u) << "once, however often asked";
+  EXPECT_EQ(entries_of(offer), 1u) << "once for any number of entries";
   EXPECT_EQ(offer[24], 0x01);
   EXPECT_EQ(ttl_of(offer), 3u);
 }
@@ -352,7 +352,7 @@ TEST_F(SdServerTest, SendsNothingBeforeItsFirstOfferAndAfterItsLast) {
   EXPECT_TRUE(receive(Client().find(3).message(2), 10 * kMs).empty());
   out.clear();
   server->stop(out);
-  EXPECT_THAT(out, IsEmpty()) << "nothing was offered, so nothing is taken back";
+  EXPECT_THAT(out, IsEmpty()) << "nothing was offered, so nothing is withdrawn";
 
   server->start(0);
   tick(50 * kMs);
@@ -420,7 +420,7 @@ TEST_F(SdServerTest, DamagedMessagesAreRejectedWithoutEffect) {
   for (int i = 0; i < 65; ++i) many.find(3);
   EXPECT_TRUE(receive(many.message(1)).empty());
   EXPECT_TRUE(problem.has_value());
-  EXPECT_FALSE(receive(good).empty()) << "the sound one is still taken";
+  EXPECT_FALSE(receive(good).empty()) << "the valid one is still accepted";
 }
 
 TEST_F(SdServerTest, KeepsALimitedNumberOfPeers) {

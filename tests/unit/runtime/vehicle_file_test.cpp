@@ -99,7 +99,7 @@ TEST(VehicleFile, KnowsEveryKindOfRadar) {
   EXPECT_EQ(v.ego.profile, EgoProfile::kMapping);
   EXPECT_TRUE(std::filesystem::exists(v.ego.mapping)) << "relative to the vehicle file";
   EXPECT_TRUE(v.radar(1)->ego_feed);
-  EXPECT_FALSE(v.radar(1)->e2e.required) << "real firmware leaves it zero";
+  EXPECT_FALSE(v.radar(1)->e2e.required) << "some firmware leaves it at zero";
   EXPECT_EQ(v.radar(2)->source.link, LinkKind::kSomeIp);
   EXPECT_TRUE(v.radar(2)->e2e.required);
   EXPECT_EQ(v.radar(2)->e2e.protection.profile, e2e::Profile::kP07);

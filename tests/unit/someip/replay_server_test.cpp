@@ -1,5 +1,5 @@
 // The client and the replay's server, which was written against the service's definition and not against the client,
-// on a simulated network: whoever starts first, whatever dies, whatever is lost.
+// on a simulated network: any order of starts, failures of each side, lost datagrams.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -79,7 +79,7 @@ class Drive : public testing::Test, public SdActions {
   void pass(std::int64_t duration_ns) {
     for (const std::int64_t end_ns = now_ns_ + duration_ns; now_ns_ < end_ns; now_ns_ += 5 * kMillisecond) step();
   }
-  /// How long it takes until `reached`; 20 s if it is not.
+  /// Time until `reached`; 20 s if it is not reached.
   std::int64_t time_until(const std::function<bool()>& reached) {
     const std::int64_t begin_ns = now_ns_;
     while (!reached() && now_ns_ < begin_ns + 20 * kSecond) pass(5 * kMillisecond);

@@ -1,4 +1,4 @@
-// The client's life with a server that starts, stops, vanishes, refuses and comes back.
+// The client with a server that starts, stops, vanishes, refuses and comes back.
 #include "services/ingest_gateway/core/sd_client.hpp"
 
 #include <gtest/gtest.h>
@@ -130,7 +130,7 @@ TEST_F(SdClientLife, AnOfferExpiresAndTheServerIsSoughtAgain) {
 
 TEST_F(SdClientLife, StopOfferEndsAtOnce) {
   become_subscribed();
-  pass(2 * kSecond);  // beyond the Finds of the beginning
+  pass(2 * kSecond);  // beyond the Finds of the start
   actions_.sent.clear();
   multicast(server_.offer(0), server_);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 StopOffer"));
@@ -154,7 +154,7 @@ TEST_F(SdClientLife, ARestartedServerIsSubscribedAgainAtItsFirstOffer) {
   offer();
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 reboot"));
   EXPECT_THAT(sent(), ElementsAre("Stop", "Subscribe"));
-  // The unicast counter has started again, too: that is no second reboot.
+  // The unicast counter has restarted as well, which is no second reboot.
   ack();
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
   pass(kSecond);
@@ -191,7 +191,7 @@ TEST_F(SdClientLife, SessionsAreCountedSeparatelyForMulticastAndUnicast) {
     ack();
   }
   EXPECT_EQ(client_->statistics().reboots, 0u);
-  // A reboot that shows in a unicast message.
+  // A reboot detected by a unicast message.
   pass(100 * kMillisecond);
   server_.unicast_session = 1;
   actions_.sent.clear();
@@ -259,7 +259,7 @@ TEST_F(SdClientLife, ARefusalIsAFaultAndWaitsLongerEachTime) {
   EXPECT_EQ(actions_.faults, 8u);
   ack();
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
-  // A refused renewal ends the subscription; a server that stops and starts is not made to wait.
+  // A refused renewal ends the subscription; a server that stops and starts is subscribed without a wait.
   unicast(server_.ack(0), server_);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 refused"));
   multicast(server_.offer(0), server_);
@@ -289,7 +289,7 @@ TEST_F(SdClientLife, EventsBeforeTheRebootDoNotCountAsAnAck) {
   pass(20 * kMillisecond);
   server_.restart();
   server_.multicast_session = 1;
-  // Within 100 ms of the last Subscribe: the next has to wait, and what arrives is still from before.
+  // Within 100 ms of the last Subscribe: the next one has to wait, and arriving events belong to the old subscription.
   offer();
   client_->event_received(0, now_ns_);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 reboot"));
@@ -341,7 +341,7 @@ TEST_F(SdClientLife, AnAckWithAnInvalidGroupIsAFault) {
 TEST_F(SdClientLife, EventsCountAsAnAckThatAnotherProgramReceived) {
   start();
   client_->event_received(0, now_ns_);
-  EXPECT_THAT(actions_.taken(), IsEmpty()) << "no offer yet: not ours";
+  EXPECT_THAT(actions_.taken(), IsEmpty()) << "no offer yet";
   offer();
   client_->event_received(7, now_ns_);
   EXPECT_THAT(actions_.taken(), IsEmpty()) << "of another subscription";

@@ -38,7 +38,7 @@ class SdTest : public testing::Test {
     if (sd_.entries()[0].fault != SdFault::kNone) return sd_.entries()[0].fault;
     return sd_.endpoint_of(sd_.entries()[0], Family::kIpv4, Purpose::kUnicast, endpoint_);
   }
-  /// Bytes of a payload that is not built by the rules.
+  /// Bytes of an invalid payload.
   SdFault read_payload(const Bytes& payload) { return read(test::message(test::kSdHeader, payload)); }
 
   Bytes datagram_;

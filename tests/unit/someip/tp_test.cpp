@@ -1,4 +1,4 @@
-// Reassembly of segmented messages: the rules of the specification and what users of other stacks complain about.
+// Reassembly of segmented messages: the rules of the specification, and reported problems of other stacks.
 #include "services/ingest_gateway/codecs/someip/tp.hpp"
 
 #include <algorithm>
@@ -135,7 +135,7 @@ TEST_F(Tp, EveryPartOfTheKeySeparates) {
   sources[4].first.type = 0x00;
   sources[5].second.port = 9;
   for (const auto& [header, sender] : sources) {
-    // Half of one, half of the other: neither is whole.
+    // Half of each message: neither is complete.
     EXPECT_EQ(take(segment(base, payload, 0, 32, true)), TpResult::kAccepted);
     EXPECT_EQ(take(segment(header, payload, 32, 16, false), sender), TpResult::kAccepted);
     EXPECT_TRUE(payloads_.empty());
@@ -167,7 +167,7 @@ TEST_F(Tp, TheOldestIsDroppedWhenAllSlotsAreBusy) {
   for (std::uint16_t i = 1; i < 5; ++i) {
     EXPECT_EQ(take(segment({.method = i}, payload, 16, 16, false)), TpResult::kComplete) << i;
   }
-  // All are delivered: they give way before anything that is being assembled.
+  // All are delivered: their slots are used before those of incomplete messages.
   EXPECT_EQ(take(segment({.method = 0}, payload, 0, 16, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({.method = 6}, payload, 0, 16, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({.method = 0}, payload, 16, 16, false)), TpResult::kComplete);
@@ -198,7 +198,7 @@ TEST_F(Tp, TheFirstOfOverlappingSegmentsIsKept) {
 }
 
 TEST_F(Tp, BytesThatOverlapAreNotCountedTwice) {
-  // 32 + 32 bytes of a message of 64: the second half never came.
+  // 32 + 32 bytes of a message of 64: the second half is missing.
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 0, 32, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 48, 16, false)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 16, 16, true)), TpResult::kDuplicate);
@@ -213,7 +213,7 @@ TEST_F(Tp, RejectsContradictorySegmentsButTheMessageCanStillBeCompleted) {
   EXPECT_EQ(take(test::message({.type = 0x22}, Bytes(3))), TpResult::kTooShort);
   EXPECT_EQ(take(test::message({.type = 0x22}, {})), TpResult::kTooShort);
   EXPECT_EQ(take(segment({.session = 0}, payload, 0, 32, true)), TpResult::kNoSession);
-  EXPECT_EQ(take(segment({}, payload, 0, 16, false)), TpResult::kContradiction) << "ends before what came";
+  EXPECT_EQ(take(segment({}, payload, 0, 16, false)), TpResult::kContradiction) << "ends before received bytes";
   EXPECT_EQ(tp_.statistics().bad_segments, 6u);
   ASSERT_EQ(take(segment({}, payload, 32, 32, false)), TpResult::kComplete);
   EXPECT_EQ(payloads_[0], payload);
