@@ -33,7 +33,7 @@ class ExampleEgo : public testing::Test {
     config.data_id_mode = e2e::DataIdMode::kNibble;
     protector.emplace(config);
   }
-  /// Distances of the rear wheels since the start, as pulses; gear 3 is forward.
+  /// Rear wheel pulses by the distances since the start; gear 3 is forward.
   void send_wheels(double left_m, double right_m, int gear = 3) {
     const auto pulses = [](double metres) { return std::floor(metres / 0.0205); };
     auto payload = bus.payload("WHEELS", {{"PULSES_REAR_LEFT", std::fmod(pulses(left_m), 1000.0)},
