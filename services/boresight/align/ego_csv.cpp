@@ -31,7 +31,7 @@ bool EgoReader::next(EgoMotion& motion, double& time_s) {
     }
     table_.accept();
     time_s = row[kEgoTime];
-    motion.fields = ego_field::kSpeed | ego_field::kEgoYawRate | ego_field::kReverse;
+    motion.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
     motion.speed_mps = static_cast<float>(row[kEgoSpeed]);
     motion.speed_std_mps = static_cast<float>(config_.speed_std_mps);
     motion.yaw_rate_radps = static_cast<float>(row[kEgoYawRate]);
