@@ -21,7 +21,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
-const std::filesystem::path kExamples = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings";
+const std::filesystem::path kEgoExamples = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings";
 
 /// The shipped example of ego signals.
 class ExampleEgo : public testing::Test {
@@ -59,10 +59,10 @@ class ExampleEgo : public testing::Test {
   }
 
   dbc::Database database = [] {
-    std::ifstream stream(kExamples / "example_radar.dbc");
+    std::ifstream stream(kEgoExamples / "example_radar.dbc");
     return dbc::parse_dbc(std::string{std::istreambuf_iterator<char>(stream), {}}, "example_radar.dbc");
   }();
-  TableEgo decoder{read_ego_mapping(kExamples / "example_ego.toml")};
+  TableEgo decoder{read_ego_mapping(kEgoExamples / "example_ego.toml")};
   Bus bus{database, decoder};
   std::optional<e2e::Protector> protector;
   double distance_m = 0.0;

@@ -11,13 +11,13 @@
 #include "tests/unit/ingest_gateway/ars408_frames.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/put_signal.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
 using testing::HasSubstr;
 using namespace ars408_frames;
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 class Ars408Test : public testing::Test {
  protected:

@@ -10,12 +10,12 @@
 
 #include "interfaces/wire/ars548.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest::ars548 {
 namespace {
 
 constexpr float kRadian = 3.14159265F / 180.0F;
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 std::string hex(const MotionDatagram& datagram) {
   std::string text;

@@ -5,11 +5,10 @@
 
 #include "tests/benchmarks/ingest/gateway_bench.hpp"
 #include "tests/benchmarks/ingest/scans.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 TEST(Backlog, TimeAdvancesWhileFramesAreReadAtOnce) {
   Backlog backlog;

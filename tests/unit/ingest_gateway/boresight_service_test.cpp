@@ -17,13 +17,13 @@
 #include "services/replay/core/radar_service.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 #include "tests/unit/replay/document.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kEpoch = 1'767'225'600'000'000'000;
+constexpr std::int64_t kServiceEpoch_ns = 1'767'225'600'000'000'000;
 using Bytes = std::vector<std::uint8_t>;
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
@@ -187,7 +187,7 @@ TEST_F(ServiceBody, ABodyThatContradictsItselfIsRejectedWithAReason) {
 // ---------------------------------------------------------------------------------------------------
 
 /// Two radars and the vehicle's motion by SOME/IP on one network.
-VehicleConfig vehicle() {
+VehicleConfig service_vehicle() {
   VehicleConfig v;
   const auto source = [](std::uint16_t instance) {
     SourceAddress s;
@@ -260,7 +260,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
     frame.source = from;
     frame.destination = to;
     frame.payload = payload;
-    gateway_.take(frame, {now_ns_, kEpoch, TimeSource::kLinkArrival});
+    gateway_.take(frame, {now_ns_, kServiceEpoch_ns, TimeSource::kLinkArrival});
   }
   /// Advances the time in steps of 10 ms, with service discovery.
   void pass(std::int64_t duration_ns) {
@@ -285,7 +285,8 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
   }
   void publish_list(std::uint16_t instance) {
     given_->cycle_counter += 1;
-    publish(instance, 1, encoders_[instance].detection_list(*given_, {kEpoch + now_ns_ - 5 * kMillisecond, 1}));
+    publish(instance, 1,
+            encoders_[instance].detection_list(*given_, {kServiceEpoch_ns + now_ns_ - 5 * kMillisecond, 1}));
   }
 
   static inline const recording::IpAddress kGroup = recording::IpAddress::v4(0xE0F4E0F5);
@@ -299,7 +300,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
   bool server_runs_ = true;
   std::size_t datagrams_sent = 0;
   std::vector<std::pair<recording::Endpoint, std::string>> joined;
-  Gateway gateway_{vehicle(), *this};
+  Gateway gateway_{service_vehicle(), *this};
 
  private:
   static replay::DataIds ids(unsigned instance) { return {0x42530001u | instance << 8, 0x42530002u | instance << 8}; }
@@ -338,7 +339,7 @@ TEST_F(SomeIpGateway, EgoMotionArrives) {
   given.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
   given.speed_mps = -3.5F;
   given.yaw_rate_radps = 0.25F;
-  publish(9, 2, encoders_[9].ego_motion(given, {kEpoch + now_ns_ - kMillisecond, 1}));
+  publish(9, 2, encoders_[9].ego_motion(given, {kServiceEpoch_ns + now_ns_ - kMillisecond, 1}));
   ASSERT_EQ(egos, 1u);
   EXPECT_EQ(ego.speed_mps, -3.5F);
   EXPECT_EQ(ego.yaw_rate_radps, 0.25F);
@@ -350,7 +351,7 @@ TEST_F(SomeIpGateway, EgoMotionArrives) {
 TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   pass(1000 * kMillisecond);
   publish_list(1);
-  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   Bytes damaged(message.begin(), message.end());
   damaged[500] ^= 4;
   publish(1, 1, damaged);
@@ -362,7 +363,7 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   EXPECT_EQ(scans, 2u) << "the next one is valid";
   EXPECT_EQ(source_statistics[1].e2e_lost, 1u) << "the damaged one counts as lost";
   given_->number_of_valid_detections = 10;  // unsegmented, as repeated segments are detected before the check
-  const auto again = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto again = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   const Bytes repeated(again.begin(), again.end());
   publish(1, 1, repeated);
   publish(1, 1, repeated);
@@ -375,7 +376,7 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
 class OtherProfiles : public testing::TestWithParam<e2e::Config> {};
 
 TEST_P(OtherProfiles, AreCheckedAndTheBodyIsFound) {
-  VehicleConfig v = vehicle();
+  VehicleConfig v = service_vehicle();
   v.radars.resize(1);
   v.radars[0].e2e.protection = GetParam();
   v.radars[0].source.sender = "192.168.10.13";
@@ -420,7 +421,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(SomeIpGateway, ALostSegmentLosesOnlyItsMessage) {
   pass(1000 * kMillisecond);
   std::size_t n = 0;
-  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
     if (n++ != 7) deliver(datagram, endpoint_of(1), {recording::IpAddress::v4(0xC0A80A02), 41000});
   });
@@ -434,7 +435,7 @@ TEST_F(SomeIpGateway, ALostSegmentLosesOnlyItsMessage) {
 
 TEST_F(SomeIpGateway, EventsOfUnknownSendersAreRejected) {
   pass(1000 * kMillisecond);
-  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   std::size_t segments = 0;
   replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
     deliver(datagram, at(30999), {recording::IpAddress::v4(0xC0A80A02), 41000});
@@ -480,7 +481,7 @@ TEST_F(SomeIpGateway, AllocatesNothing) {
   // Encoded before, since the encoder may allocate.
   std::vector<Bytes> datagrams;
   for (int i = 0; i < 5; ++i) {
-    const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+    const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
     replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
       datagrams.emplace_back(datagram.begin(), datagram.end());
     });

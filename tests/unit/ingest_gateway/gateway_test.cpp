@@ -6,11 +6,11 @@
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kEpoch = 1'700'000'000'000'000'000;
 
 VehicleConfig vehicle() {

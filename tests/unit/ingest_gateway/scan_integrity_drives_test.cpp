@@ -12,13 +12,12 @@
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/scan_integrity.hpp"
 #include "tests/simulator/drive.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
 using namespace scan_integrity;
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 VehicleConfig demo() {
   return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");

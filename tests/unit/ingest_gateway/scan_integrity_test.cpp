@@ -15,15 +15,15 @@
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/simulator/drive.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
 using namespace scan_integrity;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::int64_t kScanCycle_ns = 50 * kMillisecond;
+constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A forward-looking radar, for tests that do not depend on the direction.
 RadarConfig forward_radar() {
@@ -67,7 +67,7 @@ void fill(RadarScan& scan, std::size_t detections, double stationary, double spe
 class Judged : public testing::Test {
  protected:
   std::uint16_t judge(const EgoMotion* ego = nullptr, unsigned bits = 8) {
-    time_ns_ += kCycle_ns;
+    time_ns_ += kScanCycle_ns;
     ++scan_->cycle_counter;
     return judge_.judge(*scan_, time_ns_, time_ns_ + 10 * kMillisecond, bits, ego);
   }
@@ -125,7 +125,7 @@ TEST_F(Judged, BrakingHardIsNoContradictionThoughTheEgoMotionIsNewerThanTheScan)
     fill(*scan_, 150, 0.6, speed_mps + 2.5, random_);  // measured 250 ms before the ego motion
     EgoMotion ego = motion(speed_mps);
     ego.longitudinal_acceleration_mps2 = -10.0F;
-    ego.header.measurement_time_ns = time_ns_ + kCycle_ns + 250 * kMillisecond;
+    ego.header.measurement_time_ns = time_ns_ + kScanCycle_ns + 250 * kMillisecond;
     EXPECT_EQ(judge(&ego), 0) << i;
   }
 }
@@ -134,7 +134,7 @@ TEST_F(Judged, WithoutSpeedYawRateOrMotionTheEgoTestIsSkipped) {
   EgoMotion no_yaw_rate = motion(20.0), no_speed = motion(20.0), wild = motion(20.0);
   no_yaw_rate.fields = ego_field::kSpeed;
   no_speed.fields = ego_field::kYawRate;
-  wild.speed_mps = kNan;
+  wild.speed_mps = kFloatNan;
   const EgoMotion slow = motion(4.9), standing = motion(0.0);
   for (const EgoMotion& ego : {no_yaw_rate, no_speed, slow, standing, wild}) {
     for (int i = 0; i < 200; ++i) {
@@ -158,7 +158,7 @@ TEST_F(Judged, CountersOfAnyWidthWrapWithoutAFault) {
     for (int i = 0; i < 600; ++i) {
       fill_anew();
       scan_->cycle_counter = counter & mask;
-      EXPECT_EQ(judge.judge(*scan_, i * kCycle_ns, i * kCycle_ns, bits, nullptr), 0) << bits << ' ' << i;
+      EXPECT_EQ(judge.judge(*scan_, i * kScanCycle_ns, i * kScanCycle_ns, bits, nullptr), 0) << bits << ' ' << i;
       ++counter;
     }
     EXPECT_EQ(judge.counters().lost_scans, 0u);
@@ -180,7 +180,7 @@ TEST_F(Judged, GapsAreReportedAndCountedAcrossTheWrapAndBeyondItByTime) {
       if (i == 3) counter += c.lost;
       scan_->cycle_counter = counter & mask;
       // Cycles of a real sensor differ slightly from the configured time.
-      const std::int64_t time_ns = counter * (kCycle_ns + 200'000);
+      const std::int64_t time_ns = counter * (kScanCycle_ns + 200'000);
       const std::uint16_t expected = i == 3 ? kCounterGap : 0;
       EXPECT_EQ(judge.judge(*scan_, time_ns, time_ns, c.bits, nullptr), expected) << c.bits << ' ' << c.lost;
       ++counter;
@@ -205,7 +205,7 @@ TEST_F(Judged, ARestartedCounterIsNoLossOfTwoBillionScans) {
     if (i == 0) scan_->cycle_counter = 100'000;
     if (i == 10) {
       scan_->cycle_counter = 0;
-      time_ns_ += 60 * kCycle_ns;
+      time_ns_ += 60 * kScanCycle_ns;
     }
     EXPECT_EQ(judge(nullptr, 32), i == 10 ? kCounterGap : 0) << i;
   }
@@ -218,7 +218,7 @@ TEST_F(Judged, AConstantCounterIsIgnored) {
     scan_->cycle_counter = ~0u;  // judge() adds one
     EXPECT_EQ(judge(), i > 0 && i <= 10 ? kRepeated : 0) << i;
   }
-  time_ns_ += kCycle_ns;
+  time_ns_ += kScanCycle_ns;
   scan_->cycle_counter = ~0u;
   fill_anew();
   EXPECT_EQ(judge(), kCounterGap) << "detected by time";
@@ -227,9 +227,9 @@ TEST_F(Judged, AConstantCounterIsIgnored) {
 TEST_F(Judged, WithoutACounterGapsAreFoundByTime) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
-    if (i == 5) time_ns_ += kCycle_ns * 4 / 10;  // late, not lost
-    if (i == 9) time_ns_ += kCycle_ns;
-    if (i == 15) time_ns_ += 7 * kCycle_ns;
+    if (i == 5) time_ns_ += kScanCycle_ns * 4 / 10;  // late, not lost
+    if (i == 9) time_ns_ += kScanCycle_ns;
+    if (i == 15) time_ns_ += 7 * kScanCycle_ns;
     EXPECT_EQ(judge(nullptr, 0), i == 9 || i == 15 ? kCounterGap : 0) << i;
   }
   EXPECT_EQ(judge_.counters().lost_scans, 8u);
@@ -238,7 +238,7 @@ TEST_F(Judged, WithoutACounterGapsAreFoundByTime) {
 TEST_F(Judged, WithoutACounterTheSameContentAndStampAreARepetition) {
   for (int i = 0; i < 20; ++i) {
     if (i != 9) fill_anew();
-    if (i == 9 || i == 10) time_ns_ -= kCycle_ns;
+    if (i == 9 || i == 10) time_ns_ -= kScanCycle_ns;
     const int verdict = judge(nullptr, 0) & ~kStale;
     EXPECT_EQ(verdict, i == 9 ? kRepeated : 0) << i << ": other content with the same stamp is no repetition";
   }
@@ -287,10 +287,10 @@ TEST_F(Judged, ManyImplausibleDetectionsAreReported) {
     return judge();
   };
   const std::vector<std::function<void(std::size_t)>> spoils = {
-      [&](std::size_t i) { scan_->range_m[i] = kNan; },
+      [&](std::size_t i) { scan_->range_m[i] = kFloatNan; },
       [&](std::size_t i) { scan_->range_m[i] = -1.0F; },
       [&](std::size_t i) { scan_->range_m[i] = 361.0F; },
-      [&](std::size_t i) { scan_->azimuth_rad[i] = kNan; },
+      [&](std::size_t i) { scan_->azimuth_rad[i] = kFloatNan; },
       [&](std::size_t i) { scan_->azimuth_rad[i] = 1.3F + 0.18F; },
       [&](std::size_t i) { scan_->azimuth_rad[i] = -7.0F; },
       [&](std::size_t i) { scan_->range_rate_mps[i] = std::numeric_limits<float>::infinity(); },
@@ -301,7 +301,7 @@ TEST_F(Judged, ManyImplausibleDetectionsAreReported) {
         for (std::size_t k = 0; k <= i; k += 4) scan_->elevation_rad[k] = 0.6F;
       },
       [&](std::size_t i) {
-        scan_->azimuth_rad[i] = kNan;
+        scan_->azimuth_rad[i] = kFloatNan;
         scan_->detection_flags[i] = detection_flag::kInvalid;  // does not excuse NaN
       },
   };
@@ -359,8 +359,9 @@ TEST_F(Judged, RandomScansAreJudgedWithoutAllocatingAndInBoundedTime) {
       scan_->integrity = 0;
       if (i % 3 == 0) scan_->number_of_valid_detections = static_cast<std::uint32_t>(random_() % 1100);
       const auto time_ns = static_cast<std::int64_t>(random_());
-      static_cast<void>(judge_.judge(*scan_, i % 2 == 0 ? time_ns : i * kCycle_ns, static_cast<std::int64_t>(random_()),
-                                     static_cast<unsigned>(random_() % 40), &ego));
+      static_cast<void>(judge_.judge(*scan_, i % 2 == 0 ? time_ns : i * kScanCycle_ns,
+                                     static_cast<std::int64_t>(random_()), static_cast<unsigned>(random_() % 40),
+                                     &ego));
     }
   }
   EXPECT_EQ(runtime::counted_allocations(), before);

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
 /// The ECU's epoch clock: November 2026.

@@ -4,11 +4,10 @@
 
 #include "interfaces/wire/ars548.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 class Outbox : public MemorySink {
  public:

@@ -7,21 +7,21 @@
 #include "services/ingest_gateway/codecs/toyota_radar.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-namespace layout = wire::toyota;
-using Bytes = std::array<std::uint8_t, 8>;
-constexpr std::int64_t kMillisecond = 1'000'000;
+namespace toyota_layout = wire::toyota;
+using FrameBytes = std::array<std::uint8_t, 8>;
 
 struct CanFrame {
   std::uint32_t id;
-  Bytes bytes;
+  FrameBytes bytes;
 };
 
 /// Puts a raw value into a Motorola signal, bit by bit: the inverse of the decoder, implemented differently.
-void put(Bytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
+void put(FrameBytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
   unsigned byte = start_bit / 8, bit = start_bit % 8;
   for (unsigned i = 0; i < length; ++i) {
     const bool one = (static_cast<std::uint64_t>(raw) >> (length - 1 - i) & 1u) != 0;
@@ -35,7 +35,7 @@ void put(Bytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
   }
 }
 
-void seal(std::uint32_t id, Bytes& bytes) {
+void seal(std::uint32_t id, FrameBytes& bytes) {
   unsigned sum = (id & 0xFF) + (id >> 8) + 8;
   for (std::size_t i = 0; i < 7; ++i) sum += bytes[i];
   bytes[7] = static_cast<std::uint8_t>(sum);
@@ -43,7 +43,7 @@ void seal(std::uint32_t id, Bytes& bytes) {
 
 CanFrame track_a(std::uint32_t slot, unsigned counter, bool valid, double x = 0.0, double y_left = 0.0,
                  double rate = 0.0) {
-  CanFrame f{layout::kTrackA + slot, {}};
+  CanFrame f{toyota_layout::kTrackA + slot, {}};
   put(f.bytes, 7, 8, counter);
   put(f.bytes, 15, 15, std::lround(x / 0.01));
   put(f.bytes, 31, 11, std::lround(-y_left / 0.04));
@@ -54,7 +54,7 @@ CanFrame track_a(std::uint32_t slot, unsigned counter, bool valid, double x = 0.
 }
 
 CanFrame track_b(std::uint32_t slot, unsigned counter, unsigned score) {
-  CanFrame f{layout::kTrackB + slot, {}};
+  CanFrame f{toyota_layout::kTrackB + slot, {}};
   put(f.bytes, 7, 8, counter);
   put(f.bytes, 23, 8, score);
   seal(f.id, f.bytes);
@@ -229,9 +229,9 @@ TEST(ToyotaEgo, InvalidFramesAreRejectedWithAReason) {
   frames[0].bytes[1] = static_cast<std::uint8_t>(frames[0].bytes[1] ^ 4);
   ego.take(can_frame(frames[0].id, frames[0].bytes), {}, output);
   EXPECT_NE(output.last_fault.find("checksum"), std::string::npos);
-  Bytes fast{};
+  FrameBytes fast{};
   fast.fill(0xFF);
-  ego.take(can_frame(layout::kWheelSpeedsId, fast), {}, output);
+  ego.take(can_frame(toyota_layout::kWheelSpeedsId, fast), {}, output);
   EXPECT_NE(output.last_fault.find("252"), std::string::npos);
   EXPECT_EQ(output.count(Fault::kWireValue), 2u);
   EXPECT_EQ(output.ego_readings, 0u);

@@ -54,8 +54,8 @@ void set_detection(RadarScan& scan, std::size_t i, const std::array<float, 11>& 
 
 constexpr std::array<float, 11> kFirst{25.5F,     0.25F,   0.0625F, -13.25F, 0.25F, 0.0078125F,
                                        0.015625F, 0.0625F, 12.5F,   24.0F,   0.75F};
-constexpr std::array<float, 11> kSecond{120.0F,    -0.5F,   -0.03125F, -61.5F, 0.5F, 0.0078125F,
-                                        0.015625F, 0.0625F, -3.5F,     15.0F,  1.0F};
+constexpr std::array<float, 11> kSecondDetection{120.0F,    -0.5F,   -0.03125F, -61.5F, 0.5F, 0.0078125F,
+                                                 0.015625F, 0.0625F, -3.5F,     15.0F,  1.0F};
 constexpr SensorTime kTime{1767225600'250'000'000, 1};
 
 /// The scan of the document's first example.
@@ -67,7 +67,7 @@ std::unique_ptr<RadarScan> example_scan() {
   scan->range_rate_min_mps = -60.0F;
   scan->range_rate_max_mps = 20.0F;
   set_detection(*scan, 0, kFirst, 0);
-  set_detection(*scan, 1, kSecond, detection_flag::kAmbiguous);
+  set_detection(*scan, 1, kSecondDetection, detection_flag::kAmbiguous);
   return scan;
 }
 

@@ -20,7 +20,7 @@ using someip::SdServer;
 using someip::SdServerConfig;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kSecond = 1'000 * kMs;
+constexpr std::int64_t kSecond_ns = 1'000 * kMs;
 constexpr std::uint16_t kDetections = 1, kEgo = 2;
 
 Endpoint endpoint(std::uint8_t last, std::uint16_t port) {
@@ -143,15 +143,15 @@ class SdServerTest : public ::testing::Test {
 
 TEST_F(SdServerTest, OffersAtFirstOftenThenEachCycle) {
   server.emplace(configuration(false));
-  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond);
-  server->start(kSecond);
+  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond_ns);
+  server->start(kSecond_ns);
   std::vector<std::int64_t> at_ms;
-  for (std::int64_t now = kSecond; now < 6 * kSecond; now += 10 * kMs) {
+  for (std::int64_t now = kSecond_ns; now < 6 * kSecond_ns; now += 10 * kMs) {
     const std::size_t before = out.size();
     const bool due = server->next_due_ns() <= now;
     server->tick(now, out);
     EXPECT_EQ(due, out.size() > before) << now;
-    if (out.size() > before) at_ms.push_back((now - kSecond) / kMs);
+    if (out.size() > before) at_ms.push_back((now - kSecond_ns) / kMs);
   }
   EXPECT_THAT(at_ms, ElementsAre(50, 250, 650, 1450, 2450, 3450, 4450));
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -163,10 +163,10 @@ TEST_F(SdServerTest, OffersAtFirstOftenThenEachCycle) {
 }
 
 TEST_F(SdServerTest, MissedCyclesAreSkipped) {
-  tick(60 * kSecond);
+  tick(60 * kSecond_ns);
   ASSERT_EQ(out.size(), 1u);
-  EXPECT_GT(server->next_due_ns(), 60 * kSecond);
-  tick(60 * kSecond);
+  EXPECT_GT(server->next_due_ns(), 60 * kSecond_ns);
+  tick(60 * kSecond_ns);
   EXPECT_EQ(out.size(), 1u);
 }
 
@@ -178,7 +178,7 @@ TEST_F(SdServerTest, OffersSeveralInstancesWithTheirEndpointsInOneMessage) {
   config.instances = {{1, endpoint(13, 30601)}, {2, {v6, 30602}}};
   server.emplace(config);
   server->start(0);
-  tick(kSecond);
+  tick(kSecond_ns);
   ASSERT_EQ(out.size(), 1u);
   const Bytes& m = out[0].message;
   ASSERT_EQ(m.size(), 16u + 4 + 4 + 32 + 4 + 12 + 24);
@@ -191,14 +191,14 @@ TEST_F(SdServerTest, OffersSeveralInstancesWithTheirEndpointsInOneMessage) {
 TEST_F(SdServerTest, ClearsTheRebootFlagOfOffersWhenTheirSessionWraps) {
   for (std::int64_t i = 1; i < 0x10002; ++i) {
     out.clear();
-    tick(i * 2 * kSecond);
+    tick(i * 2 * kSecond_ns);
     ASSERT_EQ(out.size(), 1u);
     const bool first_round = i + 1 <= 0xFFFF;
     ASSERT_EQ(out[0].message[16], first_round ? 0xC0 : 0x40) << i;
     ASSERT_EQ(session_of(out[0].message), first_round ? i + 1 : i + 1 - 0xFFFF);
   }
   // Unicast has a separate counter.
-  const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 0x30000 * kSecond);
+  const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 0x30000 * kSecond_ns);
   ASSERT_FALSE(ack.empty());
   EXPECT_EQ(session_of(ack), 1);
   EXPECT_EQ(ack[16], 0xC0);
@@ -269,16 +269,16 @@ TEST_F(SdServerTest, RefusesSubscribersBeyondTheLimit) {
 
 TEST_F(SdServerTest, SubscriptionsEndWithTheirTimeUnlessRenewed) {
   const Client client = Client().at(kClientEvents).subscribe(kDetections, 2);
-  receive(client.message(1), kSecond);
-  EXPECT_EQ(destinations(3 * kSecond - 1).size(), 1u);
-  EXPECT_THAT(destinations(3 * kSecond), IsEmpty());
-  receive(client.message(2), 2 * kSecond);
-  EXPECT_EQ(destinations(4 * kSecond - 1).size(), 1u);
-  tick(4 * kSecond);
-  EXPECT_THAT(destinations(3 * kSecond), IsEmpty()) << "once ended, it is gone";
+  receive(client.message(1), kSecond_ns);
+  EXPECT_EQ(destinations(3 * kSecond_ns - 1).size(), 1u);
+  EXPECT_THAT(destinations(3 * kSecond_ns), IsEmpty());
+  receive(client.message(2), 2 * kSecond_ns);
+  EXPECT_EQ(destinations(4 * kSecond_ns - 1).size(), 1u);
+  tick(4 * kSecond_ns);
+  EXPECT_THAT(destinations(3 * kSecond_ns), IsEmpty()) << "once ended, it is gone";
   EXPECT_EQ(server->statistics().expired, 1u);
-  receive(Client().at(kClientEvents).subscribe(kDetections, 0xFFFFFF).message(3), 5 * kSecond);
-  EXPECT_EQ(destinations(20'000'000 * kSecond).size(), 1u) << "without time limit";
+  receive(Client().at(kClientEvents).subscribe(kDetections, 0xFFFFFF).message(3), 5 * kSecond_ns);
+  EXPECT_EQ(destinations(20'000'000 * kSecond_ns).size(), 1u) << "without time limit";
 }
 
 TEST_F(SdServerTest, AClientCanEndItsSubscription) {
@@ -364,7 +364,7 @@ TEST_F(SdServerTest, SendsNothingBeforeItsFirstOfferAndAfterItsLast) {
   EXPECT_EQ(out[0].message[24], 0x01);
   EXPECT_EQ(ttl_of(out[0].message), 0u);
   EXPECT_THAT(destinations(), IsEmpty());
-  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond);
+  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond_ns);
   EXPECT_TRUE(receive(Client().find(3).message(4)).empty());
 }
 
@@ -429,9 +429,9 @@ TEST_F(SdServerTest, KeepsALimitedNumberOfPeers) {
     EXPECT_EQ(session_of(receive(Client().find(3).message(1), 100 * kMs + i, true, from)), 1);
   }
   const Endpoint last{IpAddress::v4(0x0A000000u + 999), 30490};
-  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond, true, last)), 2) << "the latest are remembered";
+  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond_ns, true, last)), 2) << "the latest are remembered";
   const Endpoint first{IpAddress::v4(0x0A000000u), 30490};
-  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond, true, first)), 1) << "the first is forgotten";
+  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond_ns, true, first)), 1) << "the first is forgotten";
 }
 
 TEST_F(SdServerTest, ReportsNewSubscribersButNotRenewals) {

@@ -22,9 +22,9 @@ namespace {
 namespace service = wire::boresight_service;
 using recording::Endpoint;
 using test::Bytes;
+using test::kMillisecond;
+using test::kSecond;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kSecond = 1'000 * kMillisecond;
 constexpr std::uint16_t kRadar = 3;
 const Endpoint kGroup = test::endpoint(0xE0F4E0F5, 30490);
 const Endpoint kClient = test::endpoint(0x0A000002, 30490);

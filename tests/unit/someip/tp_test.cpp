@@ -8,16 +8,17 @@
 
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/someip/bytes.hpp"
+#include "tests/unit/someip/sd_server.hpp"
 
 namespace boresight::ingest::someip {
 namespace {
 
 using test::Bytes;
 using test::Header;
+using test::kMillisecond;
 using test::segment;
 using test::segments;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kTimeout_ns = 100 * kMillisecond;
 const recording::Endpoint kSender = test::endpoint(0xC0A80714, 30501);
 
