@@ -9,9 +9,9 @@
 
 namespace boresight::replay {
 
-/// For --via someip.
+/// Keys of [someip], for --via someip.
 struct SomeIpConfig {
-  std::string discovery_group;  ///< "": the definition's default of the IP version
+  std::string discovery_group;  ///< "": the service definition's default for the IP version
   std::uint16_t discovery_port = 30490;
   std::uint16_t first_port = 30600;  ///< instance n sends its events from first_port + n
   int multicast_hops = 1;
@@ -20,7 +20,7 @@ struct SomeIpConfig {
 
 struct Config {
   std::string tunnel_path;                    ///< "": the default of the runtime directory
-  std::map<std::string, std::string> routes;  ///< recorded IPv4 address → local one
+  std::map<std::string, std::string> routes;  ///< recorded IPv4 address → local address
   SomeIpConfig someip;
 };
 

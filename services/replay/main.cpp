@@ -1,7 +1,7 @@
-// boresight-replay: plays recordings at link level, as if the sensors and buses were there.
+// boresight-replay: sends recorded frames in place of sensors and buses.
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +10,7 @@
 
 #include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/reader.hpp"
+#include "services/common/runtime/exit_codes.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/options.hpp"
 #include "services/common/runtime/runtime_directory.hpp"
@@ -24,8 +25,8 @@ namespace {
 
 struct CommandLine {
   replay::PlayOptions play;
-  std::string config_directory;
-  std::string vehicle;
+  runtime::Configuration configuration;
+  bool has_config_folder = false;  // --config was given
   std::string speed = "1";
   std::string via = "tunnel";
   std::vector<std::string> routes;
@@ -36,32 +37,46 @@ struct CommandLine {
 
 void add_options(CLI::App& app, CommandLine& line) {
   app.set_version_flag("--version", std::string("boresight-replay ") + BORESIGHT_VERSION);
-  app.add_option("recordings", line.play.files, "recordings of one drive, merged by time stamp");
-  app.add_option("--config", line.config_directory, "folder with services/replay.toml and vehicle/");
-  app.add_option("--vehicle", line.vehicle, "name of the file in vehicle/ (someip); default: the only one");
-  app.add_flag("--check", line.check, "validate configuration and recordings' readability, and exit");
-  app.add_option("--speed", line.speed, "factor to real time, or max")
+  app.add_option("recordings", line.play.files, "Recordings of one drive, merged by time stamp")->type_name("FILE");
+  runtime::add_config_option(app, line.configuration);
+  runtime::add_vehicle_option(app, line.configuration,
+                              "Vehicle of the recordings (someip): a name in the folder vehicle/, or a file");
+  app.add_flag("--check", line.check, "Checks the configuration and opens the recordings, then ends");
+  app.add_option("--speed", line.speed, "Factor on the recorded speed, or max: as fast as the receiver reads")
       ->check(CLI::PositiveNumber | CLI::IsMember({"max"}))
+      ->type_name("FACTOR")
       ->capture_default_str();
-  app.add_option("--start", line.play.start_s, "seconds to skip")->check(CLI::Range(0.0, 1e9));
-  app.add_option("--duration", line.play.duration_s, "seconds to play")->check(CLI::Range(0.0, 1e9));
-  app.add_option("--step", line.play.step_s, "wait for Enter after each so many seconds of the recording")
-      ->check(CLI::Range(0.001, 1e6));
-  app.add_option("--loop", line.play.loops, "times to play")->check(CLI::Range(1u, 1000000u));
+  app.add_option("--start", line.play.start_s, "Seconds to skip at the beginning")
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("S");
+  app.add_option("--duration", line.play.duration_s, "Seconds to play")->check(CLI::Range(0.0, 1e9))->type_name("S");
+  app.add_option("--step", line.play.step_s, "Waits for Enter after each step of this many seconds")
+      ->check(CLI::Range(0.001, 1e6))
+      ->type_name("S");
+  app.add_option("--loop", line.play.loops, "Number of times to play")->check(CLI::Range(1u, 1000000u))->type_name("N");
   app.add_option("--via", line.via,
-                 "tunnel (the gateway's replay socket), wire (UDP, SocketCAN) or someip (as a server of the Boresight "
-                 "service)")
+                 "tunnel: to the gateway's replay socket; wire: by UDP and SocketCAN; someip: as a server of the "
+                 "Boresight service")
       ->check(CLI::IsMember({"tunnel", "wire", "someip"}))
+      ->type_name("tunnel|wire|someip")
       ->capture_default_str();
-  app.add_option("--route", line.routes, "RECORDED=LOCAL: IPv4 address to use instead of a recorded one (wire)");
-  app.add_option("--wait", line.wait_s, "seconds to wait for the gateway")->check(CLI::Range(0.0, 3600.0));
+  app.add_option("--route", line.routes, "Local IPv4 address in place of a recorded one (wire); repeatable")
+      ->type_name("RECORDED=LOCAL");
+  app.add_option("--wait", line.wait_s, "Seconds to wait for the gateway, or for the first subscriber (someip)")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->type_name("S")
+      ->capture_default_str();
   replay::add_someip_options(app, line.someip);
+  app.footer(
+      "Exit codes: 0 played to the end, or stopped by a signal; 2 wrong command line or configuration; 3 a recording "
+      "cannot be read, or the gateway or network cannot be reached");
 }
 
 replay::Config read_config(const CommandLine& line) {
   replay::Config config;
-  if (!line.config_directory.empty()) {
-    config = replay::read_config(config::Reader::open(line.config_directory + "/services/replay.toml"));
+  const std::filesystem::path file = line.configuration.service_file("replay");
+  if (line.has_config_folder || std::filesystem::exists(file)) {
+    config = replay::read_config(config::Reader::open(file));
   }
   for (const std::string& route : line.routes) {
     const std::size_t equals = route.find('=');
@@ -92,17 +107,15 @@ void run(CommandLine& line) {
   }
   const bool synthetic = line.someip.synthetic.detections > 0;
   if (synthetic && line.via != "someip") throw config::Error("--synthetic: only with --via someip");
-  // Before any waiting: a recording that cannot be read is the user's first concern.
+  if (!synthetic && line.play.files.empty()) throw config::Error("no recording given; see --help");
+  // Opens the recordings before any waiting, so that an error is reported at once.
   if (!synthetic) static_cast<void>(recording::open_recordings(line.play.files, [](const auto&) {}));
   if (line.via != "someip") {
     play_frames(line, config);
     return;
   }
   std::optional<VehicleConfig> vehicle;
-  // Synthetic radars need none; recordings without one are refused where the command line is checked.
-  if (!line.config_directory.empty() && !(synthetic && line.vehicle.empty())) {
-    vehicle = runtime::Configuration{line.config_directory, line.vehicle}.vehicle();
-  }
+  if (!synthetic || !line.configuration.vehicle_name.empty()) vehicle = line.configuration.vehicle();
   replay::serve_someip(line.someip, config.someip, vehicle ? &*vehicle : nullptr, line.play, line.wait_s);
 }
 
@@ -110,25 +123,25 @@ void run(CommandLine& line) {
 
 int main(int argc, char** argv) {
   CommandLine line;
-  CLI::App app{"Plays candump logs and pcap captures to the ingest gateway", "boresight-replay"};
+  CLI::App app{"Sends the frames of candump logs and pcap captures to the ingest gateway", "boresight-replay"};
   add_options(app, line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    constexpr int kExitUsage = 2;
-    return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
+    return app.exit(error) == 0 ? exit_code::kSuccess : exit_code::kUsage;
   }
+  line.has_config_folder = app.count("--config") > 0;
 
   runtime::log::initialise("boresight-replay");
   runtime::install_stop_signals();
   try {
     run(line);
-    return 0;
+    return exit_code::kSuccess;
   } catch (const config::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    return 2;
+    return exit_code::kUsage;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "boresight-replay: %s\n", error.what());
-    return 1;
+    return exit_code::kInputOutput;
   }
 }

@@ -14,13 +14,13 @@ namespace boresight::replay {
 
 namespace {
 
-/// A damaged recording can have a problem a line: the first ones are shown, all are counted.
+/// A damaged recording may have a problem per line: the first ones are logged, all are counted.
 class ProblemLog {
  public:
   void operator()(const std::string& problem) {
     constexpr std::uint64_t kShown = 10;
     if (++count_ <= kShown) runtime::log::warning("{}", problem);
-    if (count_ == kShown) runtime::log::warning("further problems of the recordings are only counted");
+    if (count_ == kShown) runtime::log::warning("further problems of the recordings are counted, not logged");
   }
 
  private:

@@ -10,7 +10,7 @@
 namespace boresight::golden {
 namespace {
 
-const std::filesystem::path kFolder = shared_data() / "alignment_drive";
+const std::filesystem::path kAlignCases = shared_data() / "alignment_drive";
 
 /// The numbers of all `"key":number` in the text.
 std::vector<double> all_of(const std::string& json, const std::string& key) {
@@ -24,11 +24,11 @@ std::vector<double> all_of(const std::string& json, const std::string& key) {
 
 /// Runs the command, sets `exit_code` and returns its output.
 std::string align(const std::string& method, int& exit_code) {
-  const std::string command = "xz -dc '" + (kFolder / "drive_1.csv.xz").string() +
+  const std::string command = "xz -dc '" + (kAlignCases / "drive_1.csv.xz").string() +
                               "' | " BORESIGHT_BINARY_DIR "/boresight align --drive - --ego '" +
-                              (kFolder / "ego_1.csv").string() +
+                              (kAlignCases / "ego_1.csv").string() +
                               "' --vehicle " BORESIGHT_SOURCE_DIR "/config/vehicle/alignment_drive.toml --truth '" +
-                              (kFolder / "truth_1.txt").string() + "' --json - --method " + method;
+                              (kAlignCases / "truth_1.txt").string() + "' --json - --method " + method;
   std::string text;
   FILE* const pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return text;
@@ -42,7 +42,7 @@ std::string align(const std::string& method, int& exit_code) {
 }
 
 TEST(Align, FindsTheTruthOfTheRecordedDrive) {
-  REQUIRE_RECORDING(kFolder);
+  REQUIRE_RECORDING(kAlignCases);
   if (std::system("xz --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no xz";
   int exit_code = -1;
   const std::string json = align("boresight", exit_code);
@@ -64,7 +64,7 @@ TEST(Align, FindsTheTruthOfTheRecordedDrive) {
 }
 
 TEST(Align, TheReferenceMethodFindsYawAndLeavesTheRestOpen) {
-  REQUIRE_RECORDING(kFolder);
+  REQUIRE_RECORDING(kAlignCases);
   if (std::system("xz --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no xz";
   int exit_code = -1;
   const std::string json = align("azimuth_1d", exit_code);

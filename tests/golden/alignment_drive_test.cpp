@@ -17,7 +17,7 @@ namespace boresight::golden {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kFolder = shared_data() / "alignment_drive";
+const fs::path kAlignmentDrive = shared_data() / "alignment_drive";
 
 struct Truth {
   double speed_scale = 0.0;
@@ -61,13 +61,13 @@ std::vector<std::string> unpack(const fs::path& file) {
 }
 
 TEST(AlignmentDrive, YawAndSpeedScaleAreFoundDespitePitchAndRoll) {
-  REQUIRE_RECORDING(kFolder);
-  const Truth truth = read_truth(kFolder / "truth_1.txt");
+  REQUIRE_RECORDING(kAlignmentDrive);
+  const Truth truth = read_truth(kAlignmentDrive / "truth_1.txt");
   ASSERT_EQ(truth.vehicle.radars.size(), 4u);
-  const auto lines = unpack(kFolder / "drive_1.csv.xz");
+  const auto lines = unpack(kAlignmentDrive / "drive_1.csv.xz");
   if (lines.empty()) GTEST_SKIP() << "skipped: no xz";
   std::map<long, EgoMotion> egos;  // by time in ms
-  std::ifstream ego_file(kFolder / "ego_1.csv");
+  std::ifstream ego_file(kAlignmentDrive / "ego_1.csv");
   for (std::string line; std::getline(ego_file, line);) {
     double t = 0.0, v = 0.0, w = 0.0;
     if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &t, &v, &w) != 3) continue;

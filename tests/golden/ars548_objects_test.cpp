@@ -15,15 +15,16 @@
 namespace boresight::golden {
 namespace {
 
-const std::filesystem::path kFolder = shared_data() / "nebula_ars548_srr520";
-const std::filesystem::path kRecording = kFolder / "ars548_real_2msgs_ipfrag.pcap";
-const std::filesystem::path kExpected = kFolder / "ars548/1708578204_199326753_object.yaml";
+const std::filesystem::path kArs548Objects = shared_data() / "nebula_ars548_srr520";
+const std::filesystem::path kObjectsRecording = kArs548Objects / "ars548_real_2msgs_ipfrag.pcap";
+const std::filesystem::path kExpectedObjects = kArs548Objects / "ars548/1708578204_199326753_object.yaml";
 
 class Ars548Objects : public testing::Test {
  protected:
   void SetUp() override {
-    REQUIRE_RECORDING(kRecording);
-    const auto reader = recording::open_recording(kRecording, [](const std::string& what) { ADD_FAILURE() << what; });
+    REQUIRE_RECORDING(kObjectsRecording);
+    const auto reader =
+        recording::open_recording(kObjectsRecording, [](const std::string& what) { ADD_FAILURE() << what; });
     for (recording::Frame frame; reader->next(frame);) {
       std::string_view problem;
       if (ingest::ars548::check_objects(frame.payload, problem) != ingest::DecodeResult::kComplete) continue;
@@ -38,7 +39,7 @@ class Ars548Objects : public testing::Test {
 
 TEST_F(Ars548Objects, AreDecodedAsByNebulaFieldByField) {
   Record head;
-  const auto expected = read_yaml_list(kExpected, head);
+  const auto expected = read_yaml_list(kExpectedObjects, head);
   ASSERT_EQ(expected.size(), 50u);
   ASSERT_EQ(list_->number_of_objects, 50u);
   // The stamp is that of the detections of the same cycle; the file has the time of reception.

@@ -19,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
-const fs::path kRecording = kFolder / "ars548_real_2msgs_ipfrag.pcap";
-const fs::path kExpected = kFolder / "ars548/1708578204_202447652_detection.yaml";
+const fs::path kArs548 = shared_data() / "nebula_ars548_srr520";
+const fs::path kArs548Recording = kArs548 / "ars548_real_2msgs_ipfrag.pcap";
+const fs::path kExpectedDetections = kArs548 / "ars548/1708578204_202447652_detection.yaml";
 
 /// The file has six significant digits.
 bool close(double ours, double theirs) {
@@ -31,8 +31,8 @@ bool close(double ours, double theirs) {
 class Ars548 : public testing::Test {
  protected:
   void SetUp() override {
-    REQUIRE_RECORDING(kRecording);
-    decoding_ = decode(vehicle("ars548_single"), kRecording);
+    REQUIRE_RECORDING(kArs548Recording);
+    decoding_ = decode(vehicle("ars548_single"), kArs548Recording);
     for (const Decoded& message : decoding_.messages) {
       if (message.scan) scan_ = message.scan.get();
     }
@@ -46,7 +46,7 @@ TEST_F(Ars548, IsDecodedAsByNebulaFieldByField) {
   // The packets were captured again years after the sensor's stamps, which are marked as synchronised.
   EXPECT_THAT(decoding_.faults, testing::ElementsAre(testing::HasSubstr("synchronised")));
   Record head;
-  const auto expected = read_yaml_list(kExpected, head);
+  const auto expected = read_yaml_list(kExpectedDetections, head);
   ASSERT_EQ(expected.size(), 308u);
   ASSERT_EQ(scan_->number_of_valid_detections, 308u);
   EXPECT_EQ(scan_->dropped_detections, 0u);
@@ -78,8 +78,9 @@ TEST_F(Ars548, FieldsThatTheScanOmitsAreAtTheirDocumentedOffsets) {
   namespace layout = wire::ars548;
   using boresight::read_f32, boresight::read_u16;
   Record head;
-  const auto expected = read_yaml_list(kExpected, head);
-  const auto reader = recording::open_recording(kRecording, [](const std::string& what) { ADD_FAILURE() << what; });
+  const auto expected = read_yaml_list(kExpectedDetections, head);
+  const auto reader =
+      recording::open_recording(kArs548Recording, [](const std::string& what) { ADD_FAILURE() << what; });
   recording::Frame frame;
   while (reader->next(frame) && frame.payload.size() != layout::kDetectionListBytes) {
   }

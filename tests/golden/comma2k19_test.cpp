@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = shared_data() / "comma2k19_seg40";
-const fs::path kRecording = kFolder / "radar_ego.candump.log";
+const fs::path kComma2k19 = shared_data() / "comma2k19_seg40";
+const fs::path kComma2k19Recording = kComma2k19 / "radar_ego.candump.log";
 /// The reference decoder adds 2.7 m to the longitudinal distance.
 constexpr double kReferenceOffset_m = 2.7;
 /// The reference decoder used the upper 13 of the 15 bits of the longitudinal distance.
@@ -24,10 +24,10 @@ constexpr double kReferenceStep_m = 0.04;
 class Comma2k19 : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    if (fs::exists(kRecording)) decoding_ = decode(vehicle("comma2k19"), kRecording);
+    if (fs::exists(kComma2k19Recording)) decoding_ = decode(vehicle("comma2k19"), kComma2k19Recording);
   }
   static void TearDownTestSuite() { decoding_ = {}; }
-  void SetUp() override { REQUIRE_RECORDING(kRecording); }
+  void SetUp() override { REQUIRE_RECORDING(kComma2k19Recording); }
   static inline Decoding decoding_;
 };
 
@@ -50,8 +50,8 @@ TEST_F(Comma2k19, NothingIsRejectedAndNoCycleIsLost) {
 TEST_F(Comma2k19, EveryValidRowIsTheReferenceDecodersRow) {
   // One line per row: x, y, range rate, two unused values, id, new. The reference decoder closes its cycle at one of
   // the frames, ours at the last frame. So a row may be in the neighbouring cycle there.
-  const auto table = read_npy(kFolder / "processed_log/CAN/radar/value");
-  const auto times = read_npy(kFolder / "processed_log/CAN/radar/t");
+  const auto table = read_npy(kComma2k19 / "processed_log/CAN/radar/value");
+  const auto times = read_npy(kComma2k19 / "processed_log/CAN/radar/t");
   constexpr std::size_t kColumns = 7;
   ASSERT_EQ(table.size(), times.size() * kColumns);
   std::vector<bool> taken(times.size());
@@ -81,10 +81,10 @@ TEST_F(Comma2k19, EveryValidRowIsTheReferenceDecodersRow) {
 }
 
 TEST_F(Comma2k19, EgoMotionIsThatOfOtherSensors) {
-  const auto speed_times = read_npy(kFolder / "processed_log/CAN/wheel_speed/t");
-  const auto wheels = read_npy(kFolder / "processed_log/CAN/wheel_speed/value");
-  const auto gyro_times = read_npy(kFolder / "processed_log/IMU/gyro/t");
-  auto gyro = read_npy_columns(kFolder / "processed_log/IMU/gyro/value");
+  const auto speed_times = read_npy(kComma2k19 / "processed_log/CAN/wheel_speed/t");
+  const auto wheels = read_npy(kComma2k19 / "processed_log/CAN/wheel_speed/value");
+  const auto gyro_times = read_npy(kComma2k19 / "processed_log/IMU/gyro/t");
+  auto gyro = read_npy_columns(kComma2k19 / "processed_log/IMU/gyro/value");
   const std::vector<double> down(gyro.end() - static_cast<std::ptrdiff_t>(gyro_times.size()), gyro.end());
   std::vector<double> rear;
   for (std::size_t i = 0; i < speed_times.size(); ++i) rear.push_back(0.5 * (wheels[4 * i + 2] + wheels[4 * i + 3]));
@@ -108,8 +108,8 @@ TEST_F(Comma2k19, EgoMotionIsThatOfOtherSensors) {
 }
 
 TEST_F(Comma2k19, SpeedScaleIsThatOfTheInertialReference) {
-  const auto times = read_npy(kFolder / "global_pose/frame_times");
-  const auto velocities = read_npy(kFolder / "global_pose/frame_velocities");
+  const auto times = read_npy(kComma2k19 / "global_pose/frame_times");
+  const auto velocities = read_npy(kComma2k19 / "global_pose/frame_velocities");
   ASSERT_EQ(velocities.size(), 3 * times.size());
   std::vector<double> speeds;
   for (std::size_t i = 0; i < times.size(); ++i) {

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kDbcFolder = shared_data() / "opendbc_radar";
-const fs::path kRecording = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
+const fs::path kMappingRecording = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
 
 constexpr std::string_view kRadarMapping = R"(kind = "radar"
 dbc = "DBC"
@@ -118,7 +118,8 @@ struct Products : ingest::DecoderOutput {
 
 /// Feeds a recording without every `drop_each`-th frame (0: all frames).
 void play(ingest::Decoder& decoder, Products& products, std::size_t drop_each = 0) {
-  const auto reader = recording::open_recording(kRecording, [](const std::string& problem) { FAIL() << problem; });
+  const auto reader =
+      recording::open_recording(kMappingRecording, [](const std::string& problem) { FAIL() << problem; });
   recording::Frame frame;
   for (std::size_t i = 1; reader->next(frame); ++i) {
     if (drop_each != 0 && i % drop_each == 0) continue;
@@ -163,7 +164,7 @@ TEST(PublicDbcFiles, AllAreReadWithoutAProblem) {
 class ToyotaByMapping : public testing::TestWithParam<std::size_t> {
  protected:
   void SetUp() override {
-    REQUIRE_RECORDING(kRecording);
+    REQUIRE_RECORDING(kMappingRecording);
     REQUIRE_RECORDING(kDbcFolder);
   }
 };
@@ -206,11 +207,12 @@ struct Drain : ingest::DecoderOutput {
 };
 
 TEST(Mapped, NothingIsAllocatedForAFrame) {
-  REQUIRE_RECORDING(kRecording);
+  REQUIRE_RECORDING(kMappingRecording);
   REQUIRE_RECORDING(kDbcFolder);
   std::vector<recording::Frame> frames;
   std::vector<std::array<std::uint8_t, 8>> payloads;
-  const auto reader = recording::open_recording(kRecording, [](const std::string& problem) { FAIL() << problem; });
+  const auto reader =
+      recording::open_recording(kMappingRecording, [](const std::string& problem) { FAIL() << problem; });
   for (recording::Frame frame; reader->next(frame);) {
     auto& payload = payloads.emplace_back();
     std::copy(frame.payload.begin(), frame.payload.end(), payload.begin());
@@ -235,7 +237,7 @@ TEST(Mapped, NothingIsAllocatedForAFrame) {
 }
 
 TEST(ToyotaEgoByMapping, ReadingsMakeTheEgoMotionOfTheCodecByHand) {
-  REQUIRE_RECORDING(kRecording);
+  REQUIRE_RECORDING(kMappingRecording);
   REQUIRE_RECORDING(kDbcFolder);
   const MappingFile file(kEgoMapping, kDbcFolder / "toyota_2017_ref_pt.dbc");
   ingest::TableEgo by_table(ingest::read_ego_mapping(file.path()));
@@ -243,7 +245,7 @@ TEST(ToyotaEgoByMapping, ReadingsMakeTheEgoMotionOfTheCodecByHand) {
   play(by_table, table);
   EXPECT_THAT(table.faults, testing::IsEmpty());
   // The hand-written codec publishes each speed with the last value of the other signals.
-  const Decoding hand = decode(vehicle("comma2k19"), kRecording);
+  const Decoding hand = decode(vehicle("comma2k19"), kMappingRecording);
   auto expected = hand.messages.begin();
   std::size_t compared = 0;
   double yaw_rate = 0.0, steering_angle = 0.0;

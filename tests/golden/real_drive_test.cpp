@@ -13,7 +13,7 @@ namespace boresight::golden {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kRecording = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
+const fs::path kRealDriveRecording = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
 
 struct Result {
   double speed_scale;
@@ -42,12 +42,12 @@ Result estimate(const Decoding& drive, const VehicleConfig& car, const alignment
 class RealDrive : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    if (!fs::exists(kRecording)) return;
+    if (!fs::exists(kRealDriveRecording)) return;
     car_ = vehicle("comma2k19");
-    drive_ = decode(car_, kRecording);
+    drive_ = decode(car_, kRealDriveRecording);
   }
   static void TearDownTestSuite() { drive_ = {}; }
-  void SetUp() override { REQUIRE_RECORDING(kRecording); }
+  void SetUp() override { REQUIRE_RECORDING(kRealDriveRecording); }
   static inline VehicleConfig car_;
   static inline Decoding drive_;
 };

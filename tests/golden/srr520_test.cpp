@@ -18,10 +18,10 @@ namespace boresight::golden {
 namespace {
 
 namespace fs = std::filesystem;
-namespace layout = wire::srr520;
+namespace srr520_layout = wire::srr520;
 
-const fs::path kFolder = shared_data() / "nebula_ars548_srr520";
-const fs::path kRecording = kFolder / "srr520_real_canfd.log";
+const fs::path kSrr520 = shared_data() / "nebula_ars548_srr520";
+const fs::path kSrr520Recording = kSrr520 / "srr520_real_canfd.log";
 
 struct StoredFrame {
   std::uint32_t id;
@@ -45,16 +45,16 @@ class Output : public ingest::MemoryOutput {
 };
 
 /// The files have six significant digits.
-bool close(double ours, double theirs) {
+bool close_to_reference(double ours, double theirs) {
   return std::abs(ours - theirs) <= 1e-5 * std::abs(theirs) + 2e-6;
 }
 
 class Srr520 : public testing::Test {
  protected:
   void SetUp() override {
-    REQUIRE_RECORDING(kRecording);
+    REQUIRE_RECORDING(kSrr520Recording);
     const auto reader =
-        recording::open_recording(kRecording, [](const std::string& problem) { ADD_FAILURE() << problem; });
+        recording::open_recording(kSrr520Recording, [](const std::string& problem) { ADD_FAILURE() << problem; });
     for (recording::Frame frame; reader->next(frame);) {
       frames_.push_back({frame.can_id, {frame.payload.begin(), frame.payload.end()}});
     }
@@ -70,28 +70,28 @@ class Srr520 : public testing::Test {
   }
   void expect_like(const StoredScan& stored, const char* file) {
     Record head;
-    const auto expected = read_yaml_list(kFolder / "srr520" / file, head);
+    const auto expected = read_yaml_list(kSrr520 / "srr520" / file, head);
     const RadarScan& scan = stored.scan;
     ASSERT_EQ(scan.number_of_valid_detections, expected.size());
     EXPECT_EQ(stored.sensor.time_ns, static_cast<std::int64_t>(head.at("sec")) * 1'000'000'000 +
                                          static_cast<std::int64_t>(head.at("nanosec")));
     EXPECT_EQ(stored.sensor.synchronised, head.at("global_time_stamp_sync_status") == 1.0);
     EXPECT_EQ(scan.cycle_counter, head.at("cycle_counter"));
-    EXPECT_TRUE(close(2.0 * scan.range_rate_max_mps, head.at("v_ambiguous")));
+    EXPECT_TRUE(close_to_reference(2.0 * scan.range_rate_max_mps, head.at("v_ambiguous")));
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const Record& row = expected[i];
-      EXPECT_TRUE(close(scan.range_m[i], row.at("range"))) << i;
-      EXPECT_TRUE(close(scan.azimuth_rad[i], row.at("azimuth_angle"))) << i;
-      EXPECT_TRUE(close(scan.range_rate_mps[i], row.at("range_rate"))) << i;
-      EXPECT_TRUE(close(scan.rcs_dbsm[i], row.at("rcs"))) << i;
-      EXPECT_TRUE(close(scan.snr_db[i], row.at("snr"))) << i;
+      EXPECT_TRUE(close_to_reference(scan.range_m[i], row.at("range"))) << i;
+      EXPECT_TRUE(close_to_reference(scan.azimuth_rad[i], row.at("azimuth_angle"))) << i;
+      EXPECT_TRUE(close_to_reference(scan.range_rate_mps[i], row.at("range_rate"))) << i;
+      EXPECT_TRUE(close_to_reference(scan.rcs_dbsm[i], row.at("rcs"))) << i;
+      EXPECT_TRUE(close_to_reference(scan.snr_db[i], row.at("snr"))) << i;
       EXPECT_EQ(scan.detection_flags[i], 0u) << i;
     }
   }
   /// Header fields and hypotheses, which the scan omits, read from the frames of the list.
   void expect_rest_like(std::uint32_t header_id, const char* file) {
     Record head;
-    const auto expected = read_yaml_list(kFolder / "srr520" / file, head);
+    const auto expected = read_yaml_list(kSrr520 / "srr520" / file, head);
     std::size_t at = 0;
     while (frames_[at].id != header_id) ++at;
     const auto& header = frames_[at].bytes;
@@ -100,14 +100,14 @@ class Srr520 : public testing::Test {
       for (std::size_t i = 0; i < size; ++i) value = value * 256.0 + header[offset + i];
       return value;
     };
-    EXPECT_EQ(number(layout::header::kSensorClock_us, 4), head.at("internal_time_stamp_usec"));
-    EXPECT_EQ(number(layout::header::kSignalStatus, 1), head.at("signal_status"));
-    EXPECT_EQ(number(layout::header::kSequenceCounter, 1), head.at("sequence_counter"));
-    EXPECT_TRUE(close(0.1 * number(layout::header::kMaxRange, 2), head.at("max_range")));
+    EXPECT_EQ(number(srr520_layout::header::kSensorClock_us, 4), head.at("internal_time_stamp_usec"));
+    EXPECT_EQ(number(srr520_layout::header::kSignalStatus, 1), head.at("signal_status"));
+    EXPECT_EQ(number(srr520_layout::header::kSequenceCounter, 1), head.at("sequence_counter"));
+    EXPECT_TRUE(close_to_reference(0.1 * number(srr520_layout::header::kMaxRange, 2), head.at("max_range")));
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const auto& record = frames_[at + 1 + i / 10].bytes;
       const auto detection = ingest::decode_srr520_detection(
-          std::span(record).subspan(i % 10 * layout::kDetectionBytes).first<layout::kDetectionBytes>());
+          std::span(record).subspan(i % 10 * srr520_layout::kDetectionBytes).first<srr520_layout::kDetectionBytes>());
       for (unsigned k = 0; k < 5; ++k) {
         EXPECT_EQ(100.0 * (detection.hypotheses >> k & 1u), expected[i].at("pdh0" + std::to_string(k))) << i;
       }
@@ -124,30 +124,30 @@ TEST_F(Srr520, IsDecodedAsByNebulaFieldByField) {
   ASSERT_EQ(output_.stored.size(), 2u);
   expect_like(output_.stored[0], "1708578209_45566935_near_detection.yaml");
   expect_like(output_.stored[1], "1708578209_76111685_hrr_detection.yaml");
-  expect_rest_like(layout::kNearHeaderId, "1708578209_45566935_near_detection.yaml");
-  expect_rest_like(layout::kHrrHeaderId, "1708578209_76111685_hrr_detection.yaml");
+  expect_rest_like(srr520_layout::kNearHeaderId, "1708578209_45566935_near_detection.yaml");
+  expect_rest_like(srr520_layout::kHrrHeaderId, "1708578209_76111685_hrr_detection.yaml");
   EXPECT_EQ(output_.conditions, 0u) << "the CRC of the status frame is right too, and the frame reports no fault";
 }
 
 TEST_F(Srr520, HeaderGivesTheEgoMotion) {
   decode();
   Record head;
-  read_yaml_list(kFolder / "srr520/1708578208_992410284_object.yaml", head);
+  read_yaml_list(kSrr520 / "srr520/1708578208_992410284_object.yaml", head);
   ASSERT_EQ(output_.ego_readings, 1u);
-  EXPECT_TRUE(close(output_.last_ego.speed_mps.value(), head.at("ego_vx")));
-  EXPECT_TRUE(close(output_.last_ego.yaw_rate_radps.value(), head.at("ego_yaw_rate")));
+  EXPECT_TRUE(close_to_reference(output_.last_ego.speed_mps.value(), head.at("ego_vx")));
+  EXPECT_TRUE(close_to_reference(output_.last_ego.yaw_rate_radps.value(), head.at("ego_yaw_rate")));
 }
 
 TEST_F(Srr520, EachListIsCheckedByItsOwnCrc) {
   std::vector<std::vector<std::uint8_t>> closings;
   for (const StoredFrame& frame : frames_) {
-    if (frame.id == layout::kClosingId) closings.push_back(frame.bytes);
+    if (frame.id == srr520_layout::kClosingId) closings.push_back(frame.bytes);
   }
   const std::vector<std::vector<std::uint8_t>> expected{{0, 0xBD, 0xCD, 0}, {2, 0x26, 0xDC, 0}, {1, 0x30, 0x59, 0}};
   ASSERT_EQ(closings, expected);
   for (StoredFrame& frame : frames_) {
-    const bool record = frame.bytes.size() == layout::kRecordFrameBytes && frame.id != layout::kStatusId;
-    if (record && frame.bytes[layout::kFrameNumber] == 4) frame.bytes[5] ^= 0x10;
+    const bool record = frame.bytes.size() == srr520_layout::kRecordFrameBytes && frame.id != srr520_layout::kStatusId;
+    if (record && frame.bytes[srr520_layout::kFrameNumber] == 4) frame.bytes[5] ^= 0x10;
   }
   decode();
   EXPECT_EQ(output_.scans, 0u);

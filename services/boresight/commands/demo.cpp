@@ -1,18 +1,16 @@
 // `boresight demo`: a drive through the whole pipeline, process by process, watched, judged and cleaned up after.
 #include <algorithm>
-#include <csignal>
 #include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "deploy/roudi/pools.hpp"
 #include "deploy/supervisor/domain.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/detection_truths.hpp"
 #include "services/boresight/commands/run_command.hpp"
+#include "services/boresight/commands/simulate_drive.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
 #include "services/boresight/terminal/output_file.hpp"
@@ -41,20 +39,6 @@ fs::path own_program() {
   return fs::read_symlink("/proc/self/exe");
 }
 
-/// Runs another program of the product until it ends; its output goes to `log`.
-void run_to_end(const supervisor::Command& command, const fs::path& log, const std::string& what) {
-  const pid_t pid = supervisor::spawn(command, log);
-  int status = 0;
-  while (waitpid(pid, &status, WNOHANG) == 0) {
-    usleep(20'000);
-    if (runtime::stop_signalled()) kill(-pid, SIGTERM);
-  }
-  stop_if_interrupted();
-  if (status != 0) {
-    throw Finding(what + " failed with " + supervisor::describe_exit(status) + "; see " + log.string());
-  }
-}
-
 /// The recordings that are played, and the truth that is known about them.
 struct Drive {
   std::string title;
@@ -63,21 +47,17 @@ struct Drive {
   report::Truth truth;
 };
 
-Drive simulate_drive(const DemoOptions& options, const VehicleConfig& vehicle, const fs::path& logs) {
+Drive simulated_drive(const DemoOptions& options, const VehicleConfig& vehicle) {
   const fs::path directory = options.output / "drive";
-  supervisor::Command command;
-  command.arguments = {
-      own_program().string(), "simulate", "--vehicle", options.configuration.vehicle_file().string(), "--out",
-      directory.string()};
-  if (options.duration_s > 0.0) {
-    command.arguments.insert(command.arguments.end(), {"--duration", fmt::format("{}", options.duration_s)});
-  }
+  const simulator::Scenario scenario = simulator::scenario("demo_drive");
   terminal::print("simulating a drive\n");
-  run_to_end(command, logs / "simulate.log", "the simulation");
+  constexpr std::uint64_t kSeed = 1;
+  static_cast<void>(write_simulated_drive(
+      scenario, vehicle, kSeed, options.duration_s > 0.0 ? options.duration_s : scenario.duration_s, directory));
   Drive drive{.title = "simulated drive", .recordings = {}, .truth_file = directory / "truth.csv", .truth = {}};
   InputFile truth(drive.truth_file.string());
   drive.truth = report::truth_of(read_drive_truth(truth), vehicle);
-  if (!drive.truth.known()) throw std::runtime_error("the simulation left no truth in " + directory.string());
+  if (!drive.truth.known()) throw std::runtime_error("there is no truth in " + directory.string());
   for (const char* file : {"radars.pcap", "ego.candump.log"}) drive.recordings.push_back((directory / file).string());
   return drive;
 }
@@ -239,7 +219,7 @@ int run_demo(DemoOptions options) {
   const fs::path page = options.output / "report.html";
   for (const fs::path& earlier : {records.snapshots, records.scans, page}) fs::remove(earlier);
 
-  const Drive drive = simulated ? simulate_drive(options, input.vehicle, logs) : recorded_drive(options);
+  const Drive drive = simulated ? simulated_drive(options, input.vehicle) : recorded_drive(options);
   const std::vector<supervisor::Event> events = play(options, drive, logs, records);
 
   InputFile recorded_snapshots(records.snapshots.string()), recorded_scans(records.scans.string());

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include "services/boresight/commands/alignment_drive_options.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
+#include "services/boresight/commands/simulate_drive.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
 #include "tests/simulator/alignment/csv_writer.hpp"
@@ -61,12 +61,12 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Calls `simulate(folder, progress)`, which returns the files that it wrote into `folder`; they get their places in
-/// --out when all of them are complete. Prints the lines of the files.
+/// Calls `simulate(folder, progress, scans, detections)`, which returns the files that it wrote into `folder`; they get
+/// their places in `out` when all of them are complete. Returns lines that describe the drive and name the files.
 template <typename Simulate>
-void simulate_into(const SimulateOptions& options, double duration_s, const Simulate& simulate) {
+std::string simulate_into(const std::filesystem::path& out, double duration_s, const Simulate& simulate) {
   const Stopwatch watch;
-  terminal::OutputFolder folder(options.out);
+  terminal::OutputFolder folder(out);
   terminal::ProgressBar bar("simulating");
   const auto progress = [&bar](double share) {
     stop_if_interrupted();
@@ -76,16 +76,13 @@ void simulate_into(const SimulateOptions& options, double duration_s, const Simu
   std::vector<std::filesystem::path> files;
   try {
     files = simulate(folder.temporary(), progress, scans, detections);
-  } catch (const std::invalid_argument&) {
-    throw;
   } catch (const std::runtime_error& error) {
     throw terminal::OutputError(folder.with_final_places(error.what()));
   }
   folder.commit();
-  bar.wipe();
   std::string text = watch.report(duration_s, scans, detections);
   for (const std::filesystem::path& file : files) text += "  " + folder.final_place(file).string() + "\n";
-  terminal::print(text);
+  return text;
 }
 
 int simulate_alignment(const SimulateOptions& options) {
@@ -96,14 +93,15 @@ int simulate_alignment(const SimulateOptions& options) {
   }
   const simulator::AlignmentSpec spec =
       alignment_spec(options.alignment, vehicle ? &*vehicle : nullptr, options.seed, duration_s);
-  simulate_into(options, duration_s,
-                [&](const std::filesystem::path& folder, const auto& progress, std::uint64_t& scans,
-                    std::uint64_t& detections) -> std::vector<std::filesystem::path> {
-                  const simulator::AlignmentFiles files = simulator::write_alignment_drive(spec, folder, progress);
-                  scans = files.scans;
-                  detections = files.detections;
-                  return {files.drive, files.ego, files.vehicle, files.truth};
-                });
+  terminal::print(simulate_into(options.out, duration_s,
+                                [&](const std::filesystem::path& folder, const auto& progress, std::uint64_t& scans,
+                                    std::uint64_t& detections) -> std::vector<std::filesystem::path> {
+                                  const simulator::AlignmentFiles files =
+                                      simulator::write_alignment_drive(spec, folder, progress);
+                                  scans = files.scans;
+                                  detections = files.detections;
+                                  return {files.drive, files.ego, files.vehicle, files.truth};
+                                }));
   return exit_code::kSuccess;
 }
 
@@ -139,20 +137,25 @@ int run_simulate(const SimulateOptions& options) {
   const simulator::Scenario scenario = simulator::scenario(options.scenario);
   const VehicleConfig vehicle = simulated_vehicle(options, scenario);
   const double duration_s = options.duration_s > 0.0 ? options.duration_s : scenario.duration_s;
-  simulate_into(options, duration_s,
-                [&](const std::filesystem::path& folder, const auto& progress, std::uint64_t& scans,
-                    std::uint64_t& detections) -> std::vector<std::filesystem::path> {
-                  const simulator::DriveFiles files =
-                      simulator::write_drive(scenario, vehicle, options.seed, duration_s, folder, progress);
-                  scans = files.scans;
-                  detections = files.number_of_detections;
-                  return {files.radars,  files.ego,     files.truth,     files.detections,
-                          files.objects, files.sensors, files.visibility};
-                });
+  terminal::print(write_simulated_drive(scenario, vehicle, options.seed, duration_s, options.out));
   return exit_code::kSuccess;
 }
 
 }  // namespace
+
+std::string write_simulated_drive(const simulator::Scenario& scenario, const VehicleConfig& vehicle, std::uint64_t seed,
+                                  double duration_s, const std::filesystem::path& folder) {
+  return simulate_into(folder, duration_s,
+                       [&](const std::filesystem::path& temporary, const auto& progress, std::uint64_t& scans,
+                           std::uint64_t& detections) -> std::vector<std::filesystem::path> {
+                         const simulator::DriveFiles files =
+                             simulator::write_drive(scenario, vehicle, seed, duration_s, temporary, progress);
+                         scans = files.scans;
+                         detections = files.number_of_detections;
+                         return {files.radars,  files.ego,     files.truth,     files.detections,
+                                 files.objects, files.sensors, files.visibility};
+                       });
+}
 
 void add_simulate_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<SimulateOptions>();

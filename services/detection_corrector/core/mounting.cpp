@@ -40,9 +40,9 @@ Split split(const Eigen::Vector3d& turn, Eigen::Matrix3d covariance, const Align
   constexpr std::array<std::uint32_t, 3> kAxis{alignment_axis::kVehicleRoll, alignment_axis::kVehiclePitch,
                                                alignment_axis::kVehicleYaw};
   // An axis that is not observable has no bound, whatever its row of the covariance.
-  constexpr double kAnything = 10.0;
+  constexpr double kUnbounded = 10.0;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) covariance(i, i) += kAnything;
+    if (!estimate.is_observable(kAxis[static_cast<std::size_t>(i)])) covariance(i, i) += kUnbounded;
   }
   Split out;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(covariance);

@@ -1,5 +1,4 @@
-// Continental ARS408 on CAN → one scan per cycle, of its clusters or of its objects, whichever it is configured to
-// send.
+// Continental ARS408 on CAN → one scan per cycle, of clusters or of objects, as the sensor is configured.
 #pragma once
 
 #include <array>
@@ -11,15 +10,15 @@
 
 namespace boresight::ingest {
 
-/// Collects the frames of one cycle: a status frame that announces how many entries come, a general frame for each,
-/// and, if the sensor is so configured, a quality frame for each. Whether quality frames come is learnt from the cycles
-/// themselves. A cycle is complete when all announced entries have come; if the next one begins or 30 ms pass without a
-/// frame, what came of it is published as incomplete, with a fault that says how many are missing. Clusters are the
-/// measurements to use: objects are the sensor's own tracks.
+/// Collects the frames of one cycle: a status frame that announces the number of entries, a general frame per entry,
+/// and, if so configured, a quality frame per entry. The decoder learns from the cycles if quality frames are sent. A
+/// cycle is complete with all announced entries. If the next cycle begins, or 30 ms pass without a frame, the received
+/// entries are published as incomplete, with a fault that gives the number of missing ones. Clusters are measurements;
+/// objects are the sensor's own tracks.
 ///
 /// Range, azimuth and range rate are computed from the Cartesian position and relative velocity. The sensor does not
-/// measure the lateral velocity of a cluster: it reports an assumption (users of a public data set recorded with it
-/// find that of moving clusters to be zero), and what it measures is the projection on the line of sight.
+/// measure the lateral velocity of a cluster but reports an assumed one (zero for moving clusters in a public data
+/// set). The measured quantity is the projection on the line of sight.
 class Ars408 : public Decoder {
  public:
   /// `sensor_id`: 0 … wire::ars408::kMaxSensorId, as the sensor is configured; shifts all ids. Higher bits are ignored.
@@ -47,9 +46,9 @@ class Ars408 : public Decoder {
   void write_entry(const Entry& entry, std::size_t i, RadarScan& scan) const;
 
   std::uint32_t id_offset_;
-  List open_ = List::kNone;      ///< what is being collected
-  bool started_ = false;         ///< a status frame has come: what precedes the first is nobody's fault
-  bool stray_reported_ = false;  ///< one fault for all entries that come outside of their cycle
+  List open_ = List::kNone;      ///< list being collected
+  bool started_ = false;         ///< a status frame was received; entries before the first one are no fault
+  bool stray_reported_ = false;  ///< one fault for all entries outside of their cycle
   Quality quality_ = Quality::kUnknown;
   std::size_t announced_ = 0;
   std::size_t with_general_ = 0;
@@ -59,7 +58,7 @@ class Ars408 : public Decoder {
   FrameStamp first_;
   std::int64_t last_ns_ = 0;
   std::array<Entry, 256> entries_{};       ///< by the id of the cluster or object
-  std::array<std::uint8_t, 256> order_{};  ///< ids in the order in which their general frames came
+  std::array<std::uint8_t, 256> order_{};  ///< ids in the order of their general frames
 };
 
 }  // namespace boresight::ingest

@@ -1,4 +1,4 @@
-// Frames to a Continental ARS408: what it shall send, and the ego motion it wants to know. Sent on request only.
+// Frames to a Continental ARS408: configuration of its output, and the ego motion. Sent on request only.
 #pragma once
 
 #include <array>
@@ -21,15 +21,15 @@ struct CommandFrame {
 
 enum class Output : std::uint8_t { kClusters, kObjects };
 
-/// Tells the sensor to send clusters or objects, with quality and extended information, sorted by range, and to keep
-/// that in its non-volatile memory. Write it once, not cyclically: the memory wears.
+/// Configures the sensor to send clusters or objects, with quality and extended information, sorted by range. The
+/// sensor stores this in non-volatile memory with a limited number of writes: send it once, not cyclically.
 [[nodiscard]] CommandFrame configuration(Output output, unsigned sensor_id);
 
-/// Speed with its direction, as signalled by the vehicle; beyond 163.82 m/s it is that. None if the speed is not known
-/// or not a number. A speed whose direction is not known counts as forward.
+/// Speed with its direction, as signalled by the vehicle, at most 163.82 m/s. None if the speed is unknown or NaN. A
+/// speed with unknown direction is sent as forward.
 [[nodiscard]] std::optional<CommandFrame> ego_speed(const EgoMotion& ego, unsigned sensor_id);
 
-/// Yaw rate, + to the left, confined to ±327.67 °/s. None if it is not known or not a number.
+/// Yaw rate, + to the left, limited to ±327.67 °/s. None if unknown or NaN.
 [[nodiscard]] std::optional<CommandFrame> ego_yaw_rate(const EgoMotion& ego, unsigned sensor_id);
 
 }  // namespace boresight::ingest::ars408

@@ -32,7 +32,7 @@ std::uint16_t flags_of(const std::uint8_t* record, std::uint8_t invalid, float r
   return flags;
 }
 
-/// Std of a quantity, or 0 ("not stated") where it is flagged or not finite.
+/// Standard deviation of a quantity, or 0 ("not stated") if it is flagged or not finite.
 float std_of(const std::uint8_t* p, bool invalid) {
   const float value = read_f32(p);
   return !invalid && std::isfinite(value) && value > 0.0F ? value : 0.0F;
@@ -150,7 +150,7 @@ void Ars548::take(const recording::Frame& frame, const FrameStamp& stamp, Decode
   if (const auto fault = fault_of(result)) output.fault(*fault, problem);
   if (result != DecodeResult::kComplete) return;
   if (e2e_required_) {
-    constexpr std::size_t kRequestId = 8;  // what is protected begins there
+    constexpr std::size_t kRequestId = 8;  // begin of the protected data
     const e2e::Status status = check_protection(checker_, frame.payload.subspan(kRequestId), output);
     if (!e2e::is_acceptable(status)) {
       output.fault(Fault::kWireValue, e2e::describe(status));
@@ -160,7 +160,7 @@ void Ars548::take(const recording::Frame& frame, const FrameStamp& stamp, Decode
   RadarScan* const scan = output.begin_scan();
   if (scan == nullptr) return;
   const SensorStamp time = decode(frame.payload, *scan);
-  // Firmware that does not fill the E2E header leaves zero there, for good.
+  // Firmware that does not fill the E2E header always leaves it at zero.
   output.publish_scan(stamp, time, scan->cycle_counter == 0 ? 0 : 32);
 }
 

@@ -13,13 +13,13 @@ namespace layout = wire::ars548;
 
 namespace {
 
-// What the sensor accepts, as the open-source driver nebula has it.
+// Ranges that the sensor accepts, as in the open-source driver nebula.
 constexpr double kMaxAcceleration_mps2 = 65.0;
 constexpr double kMaxSpeed_kmph = 350.0;
 constexpr double kMaxYawRate_degps = 163.83;
 constexpr double kMaxSteeringAngle_deg = 90.0;
 
-/// Header of the message, zeros elsewhere.
+/// Writes the message's header; all other bytes are zero.
 std::uint8_t* begin(const layout::MotionInput& input, MotionDatagram& out) {
   out.bytes.fill(0);
   out.size = input.bytes;

@@ -1,4 +1,4 @@
-// EgoMotion → the messages by which an ARS548 learns how the vehicle moves. Without them it reports kWithoutEgoMotion.
+// EgoMotion → messages of the vehicle's motion to an ARS548. Without them the sensor reports kWithoutEgoMotion.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace boresight::ingest::ars548 {
 struct MotionConfig {
   /// Angle of the steering wheel over that of the front axle; 0: unknown, and the steering angle is not sent.
   double steering_ratio = 15.0;
-  std::int64_t period_ns = 20'000'000;  ///< no closer than this: the sensor wants 10 … 50 Hz
-  // Two thresholds, so that the noise of wheel speeds at a traffic light is no driving.
+  std::int64_t period_ns = 20'000'000;  ///< shortest period: the sensor accepts 10 … 50 Hz
+  // Two thresholds (hysteresis), so that noise of the wheel speeds at standstill does not appear as motion.
   double standing_below_mps = 0.1;
   double moving_above_mps = 0.3;
 };
@@ -33,11 +33,10 @@ class MotionFeed {
  public:
   explicit MotionFeed(const MotionConfig& config = {}) : config_(config) {}
 
-  /// What is to be sent now: a datagram for each quantity that `ego.fields` says is known, is finite, and limited to
-  /// the sensor's range; nothing if the last ones went out less than a period ago by `now_ns` (any clock; one that goes
-  /// back starts anew). Valid until the next call. The speed is the one signalled, without k_v. Acceleration goes with
-  /// the speed it is derived from. The direction of travel is in the sign of the speed if kReverse is set, else
-  /// forward.
+  /// Datagrams to be sent now: one per quantity in `ego.fields` that is finite, limited to the sensor's range. None if
+  /// the last ones were sent less than a period ago by `now_ns` (any clock; starts again if the clock goes back). Valid
+  /// until the next call. The speed is the signalled one, without k_v. The acceleration is sent with the speed from
+  /// which it is derived. The direction of travel is the sign of the speed if kReverse is set, otherwise forward.
   [[nodiscard]] std::span<const MotionDatagram> encode(const EgoMotion& ego, std::int64_t now_ns);
 
  private:

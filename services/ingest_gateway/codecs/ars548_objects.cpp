@@ -12,7 +12,7 @@ namespace layout = wire::ars548;
 
 namespace {
 
-constexpr std::uint8_t kUnknownMovement = 255;  // no reason to throw away the rest
+constexpr std::uint8_t kUnknownMovement = 255;  // the other fields are still valid
 
 std::size_t records_of(std::size_t bytes) {
   if (bytes == layout::kObjectListBytes) return layout::kShortListRecords;
@@ -36,13 +36,13 @@ PlanarVector vector_of(const std::uint8_t* p) {
   return v;
 }
 
-/// A value, or 0 where it is flagged or not finite.
+/// A value, or 0 if it is flagged or not finite.
 float stated(const std::uint8_t* p, bool flagged) {
   const float value = read_f32(p);
   return !flagged && std::isfinite(value) ? value : 0.0F;
 }
 
-/// The ranges are those that the open-source driver nebula holds the sensor to.
+/// Ranges as in the open-source driver nebula.
 bool is_valid(const Object& o, const std::uint8_t* record) {
   namespace f = layout::object;
   constexpr float kPi = 3.14159274F;
@@ -100,7 +100,7 @@ DecodeResult check_objects(std::span<const std::uint8_t> datagram, std::string_v
   }
   const std::uint8_t* const bytes = datagram.data();
   if (read_u16(bytes) != layout::kServiceId || read_u16(bytes + 2) != layout::kMethodObjectList) {
-    problem = "ARS548: no object list, which is service 0, method 329";
+    problem = "ARS548: not an object list (service 0, method 329)";
     return DecodeResult::kUnknownMessage;
   }
   const std::size_t records = records_of(datagram.size());
@@ -109,7 +109,7 @@ DecodeResult check_objects(std::span<const std::uint8_t> datagram, std::string_v
     return DecodeResult::kBadLength;
   }
   if (read_u32(bytes + 4) != datagram.size() - layout::kShortHeaderBytes) {
-    problem = "ARS548: length field of the object list is not its length less 8";
+    problem = "ARS548: length field of the object list is not its length minus 8";
     return DecodeResult::kBadLength;
   }
   if (bytes[layout::kNumberOfObjects] > records) {

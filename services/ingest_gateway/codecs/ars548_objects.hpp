@@ -1,4 +1,4 @@
-// ARS548 object list: what the sensor's own tracker makes of its detections.
+// ARS548 object list: the output of the sensor's own tracker.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct PlanarVector {
   float y;
   float y_std;
   float covariance_xy;
-  bool valid;  ///< all are finite, no std is negative, and the sensor flags nothing
+  bool valid;  ///< all are finite, no standard deviation is negative, and the sensor sets no flag
 };
 
 struct Object {
@@ -56,12 +56,12 @@ struct Object {
   PlanarVector relative_velocity_mps;
   PlanarVector absolute_acceleration_mps2;
   PlanarVector relative_acceleration_mps2;
-  float orientation_rate_radps;  ///< this and the rest: 0 ("not stated") where flagged or not finite
+  float orientation_rate_radps;  ///< this and the following: 0 ("not stated") if flagged or not finite
   float orientation_rate_std_radps;
   float length_m;
   float width_m;
-  /// False: position, orientation, a status or a probability is out of its range or flagged invalid, so that nothing of
-  /// this record is to be used.
+  /// False: position, orientation, a status or a probability is out of its range or flagged invalid; the record must
+  /// not be used.
   bool valid;
 };
 
@@ -72,12 +72,12 @@ struct ObjectList {
   std::array<Object, wire::ars548::kLongListRecords> objects;
 };
 
-/// Judges one UDP payload by its header, lengths and ranges. kComplete: a sound object list of 50 or 200 records, to be
-/// passed to decode_objects(). kUnknownMessage: another message. Otherwise `problem` says what is wrong.
+/// Checks one UDP payload by its header, lengths and ranges. kComplete: a valid object list of 50 or 200 records for
+/// decode_objects(). kUnknownMessage: another message. Otherwise `problem` is the fault.
 [[nodiscard]] DecodeResult check_objects(std::span<const std::uint8_t> datagram, std::string_view& problem);
 
-/// Writes all fields of `list` up to its count from a datagram that check_objects() found kComplete. A single object
-/// that is implausible is marked, not refused.
+/// Writes all fields of `list` up to its count from a datagram with check_objects() kComplete. A single implausible
+/// object is marked, not rejected.
 void decode_objects(std::span<const std::uint8_t> datagram, ObjectList& list);
 
 }  // namespace boresight::ingest::ars548

@@ -16,12 +16,12 @@ namespace {
 
 constexpr std::uint32_t kNanosecondsPerSecond = 1'000'000'000;
 
-/// False for NaN, too.
+/// Also false for NaN.
 bool is_within(float value, float min, float max) {
   return value >= min && value <= max;
 }
 
-/// A std, or 0 ("not stated") where it is not allowed.
+/// A standard deviation, or 0 ("not stated") if it is not allowed.
 float std_of(const std::uint8_t* p, float max) {
   const float value = read_f32(p);
   return is_within(value, 0.0F, max) ? value : 0.0F;
@@ -32,7 +32,7 @@ SensorStamp stamp_of(std::uint32_t seconds, std::uint32_t nanoseconds, std::uint
           sync_status == wire_format::sync_status::kSynchronised};
 }
 
-/// What a list's header says of all its records.
+/// Values of a list's header for all records.
 struct ListFields {
   bool elevation, rcs, snr, stds, existence;
 };
@@ -94,11 +94,11 @@ DecodeResult check_detections(std::span<const std::uint8_t> body, std::string_vi
     return DecodeResult::kBadValue;
   }
   if (header_bytes < list::kMinHeaderBytes || header_bytes % 4 != 0) {
-    problem = "detection list: header bytes below 36 or no multiple of 4";
+    problem = "detection list: header bytes below 36 or not a multiple of 4";
     return DecodeResult::kBadValue;
   }
   if (record_bytes < list::kMinRecordBytes || record_bytes % 4 != 0) {
-    problem = "detection list: record bytes below 48 or no multiple of 4";
+    problem = "detection list: record bytes below 48 or not a multiple of 4";
     return DecodeResult::kBadValue;
   }
   if (read_u32(p + list::kNanoseconds) >= kNanosecondsPerSecond) {
@@ -106,7 +106,7 @@ DecodeResult check_detections(std::span<const std::uint8_t> body, std::string_vi
     return DecodeResult::kBadValue;
   }
   if (body.size() != header_bytes + count * record_bytes) {
-    problem = "detection list: body is not header bytes + number of detections × record bytes long";
+    problem = "detection list: body's length is not header bytes + number of detections × record bytes";
     return DecodeResult::kBadLength;
   }
   return DecodeResult::kComplete;
@@ -154,7 +154,7 @@ DecodeResult decode_ego(std::span<const std::uint8_t> body, EgoReading& reading,
     return DecodeResult::kBadValue;
   }
   if (read_u16(p + ego::kBodyBytes) != body.size() || body.size() % 4 != 0) {
-    problem = "ego motion: body bytes is not the body's length, or no multiple of 4";
+    problem = "ego motion: body bytes differs from the body's length, or is not a multiple of 4";
     return DecodeResult::kBadLength;
   }
   if (read_u32(p + ego::kNanoseconds) >= kNanosecondsPerSecond) {

@@ -1,4 +1,4 @@
-// Whether a CAN frame may be used: long enough, check sum right, E2E protection in order.
+// Checks of a CAN frame: length, checksum, E2E protection.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace boresight::ingest {
 
-/// Guards one message of a mapping. The texts of its faults are made here, once.
+/// Checks one message of a mapping. The texts of its faults are built once, by the constructor.
 class FrameGuard {
  public:
   explicit FrameGuard(const dbc::MappedMessage& message);
 
-  /// The part of the payload that the message is defined over (CAN FD pads), or an empty span with the fault reported.
+  /// The payload without CAN FD's padding, or an empty span with the fault reported.
   [[nodiscard]] std::span<const std::uint8_t> usable(const recording::Frame& frame, DecoderOutput& output);
 
  private:

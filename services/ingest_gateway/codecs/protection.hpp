@@ -1,4 +1,4 @@
-// One end-to-end check with its statistics passed on.
+// One end-to-end check; passes its statistics on.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace boresight::ingest {
 
-/// Checks one message and reports what the check added to the checker's statistics.
+/// Checks one message and reports the change of the checker's statistics.
 [[nodiscard]] inline e2e::Status check_protection(e2e::Checker& checker, std::span<const std::uint8_t> data,
                                                   DecoderOutput& output) {
   const auto wrong = [](const e2e::Statistics& s) {

@@ -1,4 +1,4 @@
-// What a codec says of a frame; wire faults are returned, never asserted.
+// A codec's result for a frame. Wire faults are returned, never asserted.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 namespace boresight::ingest {
 
 enum class DecodeResult : std::uint8_t {
-  kAccepted,   ///< taken; nothing complete yet
+  kAccepted,   ///< accepted; nothing complete yet
   kComplete,   ///< a scan or an ego motion is complete
-  kIgnored,    ///< known, but of no use here
+  kIgnored,    ///< known, but not used here
   kBadLength,  ///< shorter or longer than its layout
   kBadValue,   ///< a field outside its range, or a checksum that does not match
   kUnknownMessage,
 };
 
-/// The fault that a result is; nullopt if it is none.
+/// The fault of a result; nullopt if it is no fault.
 [[nodiscard]] constexpr std::optional<Fault> fault_of(DecodeResult result) {
   switch (result) {
     case DecodeResult::kBadLength:

@@ -1,4 +1,4 @@
-// Continental SRR520 on CAN FD → one scan per detection list, and the ego motion that its object list carries.
+// Continental SRR520 on CAN FD → one scan per detection list, and the ego motion of its object list.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace boresight::ingest {
 
-/// One detection as the sensor says it; the radar measures no elevation and states no stds.
+/// One detection as reported; the radar measures no elevation and states no standard deviations.
 struct Srr520Detection {
   double range_m;
   double azimuth_rad;     ///< + left
   double range_rate_mps;  ///< + receding; folded into the unambiguous interval
-  double rcs_dbsm;        ///< 0 where the sensor states none
+  double rcs_dbsm;        ///< 0 if the sensor states none
   double snr_db;
   std::uint8_t hypotheses;  ///< bit n: "pdh" n
   bool valid;               ///< azimuth and range rate are available
@@ -25,15 +25,15 @@ struct Srr520Detection {
 [[nodiscard]] Srr520Detection decode_srr520_detection(
     std::span<const std::uint8_t, wire::srr520::kDetectionBytes> record);
 
-/// Collects the frames of one list at a time and judges it as a whole when its closing frame comes: a list with a
-/// frame missing or a wrong CRC is rejected with one fault that says why. Frames may come in any order; a repeated
-/// frame replaces the earlier one, and the CRC tells whether it should have. Near and HRR lists are scans of their own
-/// since they are measured some 30 ms apart and have different unambiguous intervals; both count on one counter. Of the
-/// object list, only the ego motion in its header is used.
+/// Collects the frames of one list at a time and checks the list at its closing frame. A list with a missing frame or a
+/// wrong CRC is rejected with one fault that states the reason. Frames may arrive in any order; a repeated frame
+/// replaces the earlier one, and the CRC checks the result. Near and HRR lists are separate scans: they are measured
+/// some 30 ms apart and have different unambiguous intervals. Both share one counter. Only the ego motion in the header
+/// of the object list is used.
 class Srr520 : public Decoder {
  public:
   void take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) override;
-  /// Rejects a list whose next frame has not come for 50 ms.
+  /// Rejects a list without a further frame for 50 ms.
   void tick(std::int64_t now_ns, DecoderOutput& output) override;
 
  private:
@@ -57,11 +57,11 @@ class Srr520 : public Decoder {
       bytes_{};
   std::bitset<wire::srr520::kMaxRecordFrames> received_;
   std::size_t open_ = kNone;      ///< the list being collected
-  std::size_t rejected_ = kNone;  ///< the list whose remaining frames are dropped, its fault having been reported
-  bool started_ = false;          ///< a header has come: what precedes the first is nobody's fault
+  std::size_t rejected_ = kNone;  ///< the rejected list with a reported fault; its remaining frames are dropped
+  bool started_ = false;          ///< a header was received; frames before the first one are no fault
   FrameStamp first_;
   std::int64_t last_ns_ = 0;
-  std::optional<std::uint32_t> sensor_clock_us_;  ///< as received last
+  std::optional<std::uint32_t> sensor_clock_us_;  ///< last received value
   std::int64_t sensor_time_us_ = 0;               ///< the same without its wraps
 };
 

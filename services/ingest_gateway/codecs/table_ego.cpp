@@ -10,7 +10,7 @@ namespace {
 
 using Payload = std::span<const std::uint8_t>;
 
-/// The quantity, if all of its signals are in the frame and it is plausible.
+/// The quantity, if all its signals are in the frame and its value is plausible.
 std::optional<double> read(const std::optional<dbc::EgoQuantity>& quantity, Payload payload, std::string_view problem,
                            DecoderOutput& output) {
   if (!quantity) return std::nullopt;
@@ -42,14 +42,14 @@ PulseSpeed::Result PulseSpeed::take(Payload payload, std::int64_t stamp_ns) {
   const Sample& last = samples_[(first_ + count_ - 1) % kMaxSamples];
   if (stamp_ns == last.stamp_ns) return {};
   const double elapsed_s = static_cast<double>(stamp_ns - last.stamp_ns) * 1e-9;
-  // After a pause the counters may have gone round unseen.
+  // During a pause the counters may have wrapped.
   const double most_pulses = elapsed_s * pulses_.plausible_max_mps / pulses_.metres_per_pulse;
   double pulses = 0.0;
   bool is_known = elapsed_s > 0.0, jumped = false;
   for (std::size_t i = 0; i < wheels; ++i) {
     const std::uint64_t step = (counters[i] + pulses_.wraps[i] - last_[i]) % pulses_.wraps[i];
     is_known = is_known && most_pulses < static_cast<double>(pulses_.wraps[i]);
-    // A pulse more than the time allows may have been counted late.
+    // One pulse more than the time allows may have been counted late.
     jumped = jumped || static_cast<double>(step) > most_pulses + 2.0;
     pulses += static_cast<double>(step) / static_cast<double>(wheels);
   }
@@ -60,7 +60,7 @@ PulseSpeed::Result PulseSpeed::take(Payload payload, std::int64_t stamp_ns) {
   std::copy_n(counters.begin(), wheels, last_.begin());
   const Sample now{stamp_ns, last.distance_m + pulses * pulses_.metres_per_pulse};
   add(now);
-  // The window reaches back to the youngest sample that is old enough.
+  // The window starts at the latest sample that is old enough.
   while (count_ > 2 && stamp_ns - samples_[(first_ + 1) % kMaxSamples].stamp_ns >= pulses_.window_ns) {
     first_ = (first_ + 1) % kMaxSamples;
     --count_;
@@ -118,7 +118,7 @@ void TableEgo::take(const recording::Frame& frame, const FrameStamp& stamp, Deco
 
 void TableEgo::take_pulses(PulseSpeed& pulses, Payload payload, const FrameStamp& stamp, DecoderOutput& output) const {
   const PulseSpeed::Result result = pulses.take(payload, stamp.received_ns);
-  if (result.jumped) output.fault(Fault::kWireValue, "wheel pulses went further than the greatest plausible speed");
+  if (result.jumped) output.fault(Fault::kWireValue, "wheel pulses exceed the greatest plausible speed");
   if (!result.speed_mps) return;
   EgoReading reading;
   reading.speed_mps = result.speed_mps;

@@ -21,7 +21,7 @@ class PulseSpeed {
   struct Result {
     std::optional<double> speed_mps;  ///< absent until half a window has passed
     std::int64_t stamp_ns = 0;        ///< the middle of the window
-    bool jumped = false;              ///< a counter went further than the greatest plausible speed allows
+    bool jumped = false;              ///< a counter exceeded the greatest plausible speed
   };
   [[nodiscard]] Result take(std::span<const std::uint8_t> payload, std::int64_t stamp_ns);
 
@@ -41,7 +41,7 @@ class PulseSpeed {
   std::size_t first_ = 0, count_ = 0;
 };
 
-/// Every frame gives a reading of what it carries. Values that are not plausible are left out and reported.
+/// Every frame gives a reading of its signals. Implausible values are rejected and reported.
 class TableEgo : public Decoder {
  public:
   explicit TableEgo(dbc::EgoMapping mapping);

@@ -20,13 +20,13 @@ bool is_plausible(double range_m, double azimuth_rad, double elevation_rad, doub
          std::abs(range_rate_mps) <= 150.0;
 }
 
-/// Fits into a float even if a mapping's factor is absurd; the detection is flagged anyway.
+/// Limits a value to the range of float, for an extreme factor of a mapping; such a detection is flagged.
 float narrow(double value) {
   constexpr double kLimit = std::numeric_limits<float>::max();
   return static_cast<float>(std::clamp(value, -kLimit, kLimit));
 }
 
-/// 0 stands for "not stated".
+/// 0 means "not stated".
 float std_of(double value) {
   return value > 0.0 ? narrow(value) : 0.0F;
 }
@@ -62,7 +62,7 @@ void TableRadar::take(const recording::Frame& frame, const FrameStamp& stamp, De
   if (payload.empty()) return;
   tick(stamp.received_ns, output);
   const bool begins = message.is_header && mapping_.header_begins_cycle;
-  // A part that comes again belongs to the next cycle: the present one will not be completed any more.
+  // A repeated part belongs to the next cycle; the current one remains incomplete.
   if (frames_ > 0 && (begins || began_before(message, payload))) finish(false, output);
   if (mapping_.header_begins_cycle && !begins && !has_header_) {
     if (!std::exchange(reported_orphan_, true)) output.fault(Fault::kWireLength, "detections without their header");
@@ -91,7 +91,7 @@ bool TableRadar::take_header(const dbc::RadarMessage& message, Payload payload, 
   double count = 0.0;
   for (const dbc::MappedSignal& signal : message.counts) count += signal.value(payload);
   if (!(count >= 0.0 && count <= static_cast<double>(slots_.size()))) {
-    output.fault(Fault::kWireValue, "number of detections in the header is beyond the mapped ones");
+    output.fault(Fault::kWireValue, "number of detections in the header exceeds the mapped ones");
     return false;
   }
   has_header_ = true;
@@ -124,9 +124,8 @@ void TableRadar::take_part(const dbc::DetectionPart& part, Payload payload, Deco
   if (index == kNoSlot) {
     const bool is_full = part.slot_by == SlotBy::kArrival;
     if (is_full && dropped_ < std::numeric_limits<std::uint16_t>::max()) ++dropped_;
-    output.fault(
-        is_full ? Fault::kCapacity : Fault::kWireValue,
-        is_full ? "more detections in a cycle than mapped" : "number of a detection is beyond the mapped ones");
+    output.fault(is_full ? Fault::kCapacity : Fault::kWireValue,
+                 is_full ? "more detections in a cycle than mapped" : "number of a detection exceeds the mapped ones");
     return;
   }
   if (part.slot_by == SlotBy::kArrival) ++arrived_[part.slot];
@@ -202,7 +201,7 @@ bool TableRadar::write_detection(const Slot& slot, std::size_t i, RadarScan& sca
   const double range = is_polar ? slot.value(Quantity::kRange) : std::hypot(x, y);
   const double azimuth = is_polar ? slot.value(Quantity::kAzimuth) : std::atan2(y, x);
   const double elevation = slot.value(Quantity::kElevation);
-  // The component of the relative velocity along the line of sight, in the plane of the radar.
+  // Component of the relative velocity along the line of sight, in the radar's plane.
   const double range_rate = has_range_rate ? slot.value(Quantity::kRangeRate)
                                            : slot.value(Quantity::kVelocityLongitudinal) * std::cos(azimuth) +
                                                  slot.value(Quantity::kVelocityLateral) * std::sin(azimuth);

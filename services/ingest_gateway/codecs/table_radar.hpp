@@ -1,4 +1,4 @@
-// A CAN radar described by a mapping file → scans.
+// CAN radar with a mapping file → scans.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace boresight::ingest {
 
-/// Collects the parts of the detections of one cycle, and writes those that are valid and have a position and a range
-/// rate, in the order of their slots. How a cycle begins and ends is in the mapping; one that lacks parts is published
-/// with what it has, marked kIncomplete. Frames are found by binary search; nothing allocates after construction.
+/// Collects the parts of the detections of one cycle. Writes the valid detections with a position and a range rate, in
+/// the order of their slots. The mapping defines begin and end of a cycle. A cycle with missing parts is published as
+/// kIncomplete. Frames are found by binary search; nothing allocates after construction.
 class TableRadar : public Decoder {
  public:
   explicit TableRadar(dbc::RadarMapping mapping);
@@ -27,8 +27,8 @@ class TableRadar : public Decoder {
   struct Slot {
     std::array<double, dbc::kNumberOfQuantities> values;  // those whose bit is set in `present`
     std::uint32_t present = 0;
-    std::uint8_t parts = 0;   // bits of those that have come
-    std::uint8_t judged = 0;  // bits of the conditions that have come
+    std::uint8_t parts = 0;   // bits of the received parts
+    std::uint8_t judged = 0;  // bits of the received conditions
     bool valid = true;
     bool not_a_number = false;
 
@@ -54,8 +54,8 @@ class TableRadar : public Decoder {
   std::vector<std::uint64_t> keys_;  // of the messages, sorted
   std::vector<FrameGuard> guards_;
   std::vector<Slot> slots_;
-  std::vector<std::uint8_t> conditions_;  // of each slot: bits of those that make it valid
-  std::vector<std::uint16_t> arrived_;    // by the first slot of a group: detections so far in order of arrival
+  std::vector<std::uint8_t> conditions_;  // of each slot: bits of the conditions that hold
+  std::vector<std::uint16_t> arrived_;    // by the first slot of a group: number of detections so far
   std::size_t begun_slots_ = 0, complete_slots_ = 0;
   std::uint32_t frames_ = 0;
   std::uint32_t expected_ = 0;  // detections, by the header

@@ -5,8 +5,8 @@
 
 namespace boresight::ingest {
 
-/// One reading a frame. The speed is the mean of the rear wheels, that is, of the rear axle's centre; these wheel
-/// speeds carry no direction of travel.
+/// One reading per frame. The speed is the mean of the two rear wheel speeds, which is that of the rear axle's centre.
+/// The signals have no direction of travel.
 class ToyotaEgo : public Decoder {
  public:
   void take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) override;

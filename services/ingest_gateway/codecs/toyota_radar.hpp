@@ -1,4 +1,4 @@
-// Toyota radar: 2 × 16 CAN frames a cycle → one scan of the valid tracks.
+// Toyota radar: 2 × 16 CAN frames per cycle → one scan of the valid tracks.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace boresight::ingest {
 
-/// Collects the frames of one cycle. A cycle is complete with the last of its 32 frames, in whatever order they come;
-/// if frames are missing, it ends when the next cycle begins or nothing has come for 20 ms, and is published with what
-/// it has, marked kIncomplete. The radar reports tracks of its own: range and azimuth are computed from its Cartesian
-/// position; it measures no elevation and no RCS.
+/// Collects the frames of one cycle. A cycle is complete with the last of its 32 frames, in any order. If frames are
+/// missing, the cycle ends when the next one begins or after 20 ms without a frame, and is published as kIncomplete.
+/// The radar reports its own tracks: range and azimuth are computed from the Cartesian position. It measures no
+/// elevation and no RCS.
 class ToyotaRadar : public Decoder {
  public:
   void take(const recording::Frame& frame, const FrameStamp& stamp, DecoderOutput& output) override;

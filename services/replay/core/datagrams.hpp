@@ -1,5 +1,5 @@
-// Messages → datagrams: long ones in segments (SOME/IP-TP), short ones together (interfaces/wire/boresight_service.md,
-// 2.3).
+// Messages → datagrams: segments long messages (SOME/IP-TP) and combines short ones
+// (interfaces/wire/boresight_service.md, 2.3).
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace boresight::replay {
 inline constexpr std::size_t kMaxDatagramBytes =
     wire::boresight_service::kSomeIpHeaderBytes + wire::boresight_service::kMaxUnsegmentedPayloadBytes;
 
-/// True if the message goes out whole.
+/// True if the message is sent unsegmented.
 [[nodiscard]] inline bool fits_one_datagram(std::span<const std::uint8_t> message) {
   return message.size() <= kMaxDatagramBytes;
 }
 
 /// Calls `send(std::span<const std::uint8_t> datagram)` for the message, or for each of its segments in order.
-/// `message` is a whole SOME/IP message with its header.
+/// `message` is a complete SOME/IP message with its header.
 template <typename Send>
 void for_each_datagram(std::span<const std::uint8_t> message, Send&& send) {
   namespace service = wire::boresight_service;
@@ -51,10 +51,10 @@ void for_each_datagram(std::span<const std::uint8_t> message, Send&& send) {
   }
 }
 
-/// Several whole messages for one receiver in one datagram.
+/// Combines several unsegmented messages for one receiver in one datagram.
 class SharedDatagram {
  public:
-  /// False, and nothing taken, if it does not fit behind what is there.
+  /// False without any change if the message does not fit.
   [[nodiscard]] bool add(std::span<const std::uint8_t> message) {
     if (size_ + message.size() > bytes_.size()) return false;
     std::copy(message.begin(), message.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(size_));

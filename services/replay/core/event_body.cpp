@@ -11,7 +11,7 @@ namespace boresight::replay {
 namespace wire_list = wire::boresight_service::detection_list;
 namespace wire_ego = wire::boresight_service::ego_motion;
 
-// Both masks were given the same bits, so that they are copied and not translated.
+// Both masks have the same bits, so that they are copied without conversion.
 static_assert(wire_list::field::kElevation == scan_field::kElevation && wire_list::field::kRcs == scan_field::kRcs &&
               wire_list::field::kSnr == scan_field::kSnr && wire_list::field::kStds == scan_field::kStds &&
               wire_list::field::kExistence == scan_field::kExistence &&
@@ -25,7 +25,7 @@ static_assert(wire_list::kMaxDetections >= kMaxDetections);
 
 namespace {
 
-/// False for NaN, too.
+/// Also false for NaN.
 bool within(float value, float min, float max) {
   return value >= min && value <= max;
 }
@@ -38,7 +38,7 @@ void write_time(someip::ByteWriter& out, const SensorTime& time) {
   out.u8(time.sync_status);
 }
 
-/// Writes the quantities of one record and remembers whether one of them was not allowed.
+/// Writes the quantities of one record and notes if one of them was not allowed.
 class RecordWriter {
  public:
   RecordWriter(someip::ByteWriter& out, std::uint32_t fields) : out_(out), fields_(fields) {}
@@ -124,7 +124,7 @@ std::size_t write_ego_motion(const EgoMotion& ego, const SensorTime& time, std::
   std::uint32_t fields = 0;
   float speed_mps = 0.0F, yaw_rate_radps = 0.0F, steering_angle_rad = 0.0F;
   const bool direction_known = ego.has(ego_field::kSpeed | ego_field::kReverse);
-  // Without a direction the absolute value is sent, whatever sign the source has given it.
+  // Without a direction the absolute value is sent, whatever the sign of the source.
   const float speed = direction_known ? ego.speed_mps : std::abs(ego.speed_mps);
   if (ego.has(ego_field::kSpeed) && within(speed, -limit::kSpeed_mps, limit::kSpeed_mps)) {
     fields |= field::kSpeed | (direction_known ? field::kDirection : 0u);

@@ -10,15 +10,15 @@
 
 namespace boresight::replay {
 
-/// When the content was measured, as the sender's clock says.
+/// Time of measurement of the content on the sender's clock.
 struct SensorTime {
   std::int64_t epoch_ns = 0;  ///< since 1970; negative values and those after 2106 are sent as 0
   std::uint8_t sync_status = 1;
 };
 
-/// Writes the body and returns its length; 0 if `out` is too short for it. A value that the service does not allow (NaN
-/// among them) is sent as 0 and its detection flagged invalid; a std is then sent as not stated. Detections beyond 1024
-/// cannot be in a scan.
+/// Writes the body and returns its length; 0 if `out` is too short for it. A value that the service does not allow,
+/// including NaN, is sent as 0 and its detection flagged invalid; a standard deviation is then sent as not stated. A
+/// scan has at most 1024 detections.
 [[nodiscard]] std::size_t write_detection_list(const RadarScan& scan, const SensorTime& time,
                                                std::span<std::uint8_t> out);
 

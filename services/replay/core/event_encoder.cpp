@@ -53,7 +53,7 @@ std::span<const std::uint8_t> EventEncoder::finish(std::uint16_t event, std::siz
   header.u8(service::kMajorVersion);
   header.u8(0x02);
   header.u8(0);
-  // The message is never longer than profile 7 allows, so that this cannot fail.
+  // Cannot fail, as the message is never longer than profile 7 allows.
   static_cast<void>(protector.protect(message.subspan(service::kProtectedFrom)));
   return message;
 }

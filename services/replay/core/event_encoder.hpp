@@ -1,4 +1,4 @@
-// One instance's events as whole SOME/IP messages (interfaces/wire/boresight_service.md, 2).
+// Encodes one instance's events as complete SOME/IP messages (interfaces/wire/boresight_service.md, 2).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class EventEncoder {
  public:
   explicit EventEncoder(const DataIds& data_ids);
 
-  /// A whole protected message, valid until the next call.
+  /// A complete protected message, valid until the next call.
   [[nodiscard]] std::span<const std::uint8_t> detection_list(const RadarScan& scan, const SensorTime& time);
   [[nodiscard]] std::span<const std::uint8_t> ego_motion(const EgoMotion& ego, const SensorTime& time);
 

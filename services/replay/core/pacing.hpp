@@ -1,17 +1,17 @@
-// When each frame of a recording is due.
+// Computes the sending time of each recorded frame.
 #pragma once
 
 #include <cstdint>
 
 namespace boresight::replay {
 
-/// Maps recorded stamps to due times: real time, faster by a factor, or at once (speed 0).
+/// Converts recorded stamps to sending times: real time, faster by a factor, or at once (speed 0).
 class Pacing {
  public:
   explicit Pacing(double speed) : speed_(speed) {}
 
-  /// Monotonic time at which the frame is due; the first frame is due now, and again where the recording jumps back or
-  /// pauses for over ten minutes.
+  /// Monotonic time of sending the frame. The first frame is due now, and so is a frame after a jump back or a pause of
+  /// over ten minutes in the recording.
   [[nodiscard]] std::int64_t due_ns(std::int64_t recorded_ns, std::int64_t now_ns) {
     constexpr std::int64_t kPause_ns = 600'000'000'000;
     if (!anchored_ || recorded_ns < last_ns_ - 1'000'000'000 || recorded_ns > last_ns_ + kPause_ns) {

@@ -1,4 +1,4 @@
-// The service that the replay offers in place of radars, for service discovery.
+// Service discovery's description of the service that the replay offers in place of radars.
 #pragma once
 
 #include "interfaces/wire/boresight_service.hpp"
@@ -6,7 +6,7 @@
 
 namespace boresight::replay {
 
-/// Identifiers of interfaces/wire/boresight_service.md.
+/// The identifiers of interfaces/wire/boresight_service.md.
 [[nodiscard]] inline someip::OfferedService radar_service() {
   namespace service = wire::boresight_service;
   return {service::kServiceId,

@@ -8,7 +8,7 @@ namespace boresight::replay {
 
 namespace {
 
-/// SplitMix64 (Steele et al. 2014): numbers that depend on nothing but their seed, on every platform.
+/// SplitMix64 (Steele et al. 2014): random numbers that depend only on their seed, equal on all platforms.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -44,7 +44,7 @@ void write_synthetic_scan(std::uint32_t radar, const MountingPose& mounting, std
   for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
     const double azimuth_rad = random.between(-1.0, 1.0);
     const double elevation_rad = random.between(-0.2, 0.2);
-    // A sum of four uniform numbers is normal enough here.
+    // The sum of four uniform numbers approximates a normal distribution.
     double normal = 0.0;
     for (int k = 0; k < 4; ++k) normal += random.between(-0.866, 0.866);
     const double range_rate_mps =

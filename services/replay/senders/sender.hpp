@@ -1,4 +1,4 @@
-// Ways for a recorded frame out of the replay.
+// Outputs of recorded frames.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ namespace boresight::replay {
 class Sender {
  public:
   virtual ~Sender() = default;
-  /// Sends, waiting as long as the receiver is slow. False: the frame was lost because nobody receives at present.
+  /// Sends a frame and waits for a slow receiver. False: the frame is lost because there is no receiver.
   [[nodiscard]] virtual bool send(const recording::Frame& frame) = 0;
-  /// Returns at the monotonic time when the next frame is due, or at a stop signal; by default it sleeps.
+  /// Returns at the monotonic time of the next frame, or at a stop signal; sleeps by default.
   virtual void wait_until(std::int64_t due_ns);
-  /// No frame of the recording will follow.
+  /// End of the recording.
   virtual void end_recording() {}
 };
 
-/// Into the gateway's replay tunnel. Waits up to `wait_s` for the gateway at first (throws std::runtime_error then);
-/// when the gateway goes away later, frames are lost until it is back.
+/// Sends to the gateway's replay tunnel. Waits up to `wait_s` for the gateway at first, then throws std::runtime_error.
+/// If the gateway ends later, frames are lost until it is back.
 [[nodiscard]] std::unique_ptr<Sender> make_tunnel_sender(const std::string& path, double wait_s);
 
-/// To UDP sockets and SocketCAN interfaces. `routes` replaces recorded IPv4 addresses (sender or destination) by local
-/// ones, textual. Throws std::runtime_error at the first frame whose interface cannot be opened.
+/// Sends to UDP sockets and SocketCAN interfaces. `routes` replaces recorded IPv4 addresses (sender or destination) by
+/// local ones, as text. Throws std::runtime_error at the first frame whose interface cannot be opened.
 [[nodiscard]] std::unique_ptr<Sender> make_wire_sender(const std::map<std::string, std::string>& routes);
 
 }  // namespace boresight::replay

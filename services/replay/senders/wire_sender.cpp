@@ -49,7 +49,7 @@ class WireSender : public Sender {
     if (descriptor < 0) throw std::runtime_error(std::string("cannot make a UDP socket: ") + std::strerror(errno));
     sockaddr_storage address{};
     const socklen_t length = runtime::to_sockaddr({source, 0}, address);
-    // A sender's address that is not this machine's cannot be taken on; the gateway then needs no `sender` or a route.
+    // The socket cannot use a sender's address of another machine; the gateway then needs no `sender`, or a route.
     static_cast<void>(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), length));
     return udp_[source] = descriptor;
   }

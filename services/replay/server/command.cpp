@@ -60,7 +60,7 @@ SomeIpOptions server_options(const SomeIpCommand& command, const SomeIpConfig& c
       throw config::Error(std::string(what) + ": not of the same IP version as --address");
     }
   }
-  if (!options.discovery_group.address.is_multicast()) throw config::Error("discovery_group: no multicast group");
+  if (!options.discovery_group.address.is_multicast()) throw config::Error("discovery_group: not a multicast group");
   options.first_port = config.first_port;
   options.offer_cycle_s = command.offer_cycle_s;
   options.share_s = command.share_ms * 1e-3;
@@ -77,7 +77,7 @@ std::vector<std::uint16_t> instances_of(const SomeIpCommand& command, const Vehi
     }
   } else {
     for (const RadarConfig& radar : vehicle->radars) instances.push_back(static_cast<std::uint16_t>(radar.id));
-    // Somebody has to offer the ego motion of a vehicle without radars.
+    // One instance offers the ego motion of a vehicle without radars.
     if (instances.empty()) instances.push_back(1);
   }
   return instances;
@@ -100,7 +100,7 @@ void serve_recordings(const VehicleConfig& vehicle, const PlayOptions& options, 
   const std::int64_t deadline_ns = runtime::monotonic_now_ns() + static_cast<std::int64_t>(wait_s * 1e9);
   while (wait_s > 0.0 && !server.has_subscriber() && !runtime::stop_signalled()) {
     const std::int64_t now_ns = runtime::monotonic_now_ns();
-    if (now_ns >= deadline_ns) throw std::runtime_error("nobody subscribed the detections of any radar");
+    if (now_ns >= deadline_ns) throw std::runtime_error("no client subscribed to the detections of any radar");
     server.serve_until(std::min(deadline_ns, now_ns + 10'000'000));
   }
   SomeIpSender sender(vehicle, server);
@@ -115,7 +115,7 @@ void print(const SomeIpServer& server) {
   const someip::SdStatistics& discovery = server.discovery();
   std::printf(
       "served %llu detection lists and %llu ego motions in %llu datagrams (%.1f MB); "
-      "%llu events without subscriber, %llu datagrams refused by the kernel\n",
+      "%llu events without a subscriber, %llu datagrams rejected by the kernel\n",
       number(sent.detection_lists), number(sent.ego_motions), number(sent.datagrams),
       static_cast<double>(sent.bytes) * 1e-6, number(sent.unheard), number(sent.refused));
   std::printf(
@@ -128,31 +128,34 @@ void print(const SomeIpServer& server) {
 }  // namespace
 
 void add_someip_options(CLI::App& app, SomeIpCommand& command) {
-  app.add_option("--interface", command.interface, "network interface to serve on (someip)");
-  app.add_option("--address", command.address, "this machine's IPv4 or IPv6 address there (someip)");
-  app.add_option("--group", command.group, "GROUP:PORT: send events by multicast (someip)");
-  app.add_option("--offer-cycle", command.offer_cycle_s, "seconds between offers (someip)")
+  app.add_option("--interface", command.interface, "Network interface of the server (someip)")->type_name("NAME");
+  app.add_option("--address", command.address, "This machine's IPv4 or IPv6 address on the interface (someip)")
+      ->type_name("ADDRESS");
+  app.add_option("--group", command.group, "Sends events by multicast to this group (someip)")->type_name("GROUP:PORT");
+  app.add_option("--offer-cycle", command.offer_cycle_s, "Seconds between offers (someip)")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
-  app.add_option("--share-datagrams", command.share_ms, "MS: short events wait so long to share a datagram (someip)")
+  app.add_option("--share-datagrams", command.share_ms,
+                 "Milliseconds that short events wait to share a datagram (someip)")
       ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--synthetic", command.synthetic.detections, "N: serve made-up scans of N detections (someip)")
+  app.add_option("--synthetic", command.synthetic.detections,
+                 "Serves synthetic scans of this many detections, without recordings (someip)")
       ->check(CLI::Range(1u, static_cast<unsigned>(kMaxDetections)));
-  app.add_option("--rate", command.synthetic.rate_hz, "scans a second of each synthetic radar")
+  app.add_option("--rate", command.synthetic.rate_hz, "Scans per second of each synthetic radar")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
-  app.add_option("--radars", command.synthetic.radars, "number of synthetic radars")
+  app.add_option("--radars", command.synthetic.radars, "Number of synthetic radars")
       ->check(CLI::Range(1u, static_cast<unsigned>(kMaxRadars)))
       ->capture_default_str();
-  app.add_flag("--together", command.synthetic.together, "synthetic radars all measure at the same moment");
+  app.add_flag("--together", command.synthetic.together, "All synthetic radars measure at the same time");
 }
 
 void serve_someip(const SomeIpCommand& command, const SomeIpConfig& config, const VehicleConfig* vehicle,
                   const PlayOptions& play, double wait_s) {
   const bool synthetic = command.synthetic.detections > 0;
   if (synthetic == !play.files.empty()) throw config::Error("--via someip: either recordings or --synthetic");
-  if (!synthetic && vehicle == nullptr) throw config::Error("--via someip: recordings need --config and --vehicle");
-  if (play.step_s > 0.0) throw config::Error("--step: not with --via someip, whose subscriptions would run out");
+  if (play.step_s > 0.0)
+    throw config::Error("--step: not with --via someip, because subscriptions would expire meanwhile");
   SomeIpServer server(server_options(command, config), instances_of(command, vehicle));
   std::printf("serving %zu instance(s) at %s\n", instances_of(command, vehicle).size(), command.address.c_str());
   std::fflush(stdout);

@@ -1,4 +1,4 @@
-// The part of the command line that is for --via someip.
+// The options of --via someip.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ class App;
 
 namespace boresight::replay {
 
-/// As given by the user.
+/// Values of the options.
 struct SomeIpCommand {
   std::string interface;
   std::string address;
@@ -26,9 +26,10 @@ struct SomeIpCommand {
 
 void add_someip_options(CLI::App& app, SomeIpCommand& command);
 
-/// Serves recordings, or synthetic scans, until they end or a stop signal comes; prints what was sent. `vehicle` is
-/// needed for recordings, and says where synthetic radars are mounted if it is there. Waits `wait_s` for the first
-/// subscriber of recordings. Throws config::Error for a wrong command line and std::runtime_error for the network.
+/// Serves recordings, or synthetic scans, until their end or a stop signal; prints the numbers of sent events.
+/// `vehicle` is required for recordings; it is optional for synthetic radars and gives their mountings. Waits `wait_s`
+/// for the first subscriber of recordings. Throws config::Error for a wrong command line and std::runtime_error for the
+/// network.
 void serve_someip(const SomeIpCommand& command, const SomeIpConfig& config, const VehicleConfig* vehicle,
                   const PlayOptions& play, double wait_s);
 

@@ -18,7 +18,7 @@ void EventSink::frame_begins(std::int64_t received_ns, std::int64_t due_ns) {
 
 SensorTime EventSink::stamp(const ingest::MeasurementTime& time) const {
   namespace sync_status = wire::boresight_service::sync_status;
-  // The age at which the recording received the data is kept; the moment is that of the replay.
+  // Keeps the age of the data at their reception in the recording; the time of reception is that of the replay.
   const std::int64_t realtime_offset_ns = runtime::realtime_now_ns() - runtime::monotonic_now_ns();
   const bool synchronised = time.source == TimeSource::kSensorSynchronised;
   return {due_ns_ + realtime_offset_ns - (received_ns_ - time.time_ns),
@@ -36,7 +36,7 @@ void EventSink::publish_ego(const ingest::MeasurementTime& time) {
 void EventSink::fault(Fault /*fault*/, std::string_view what, std::uint32_t radar_id) {
   constexpr std::uint64_t kShown = 10;
   if (++faults_ <= kShown) runtime::log::warning("recording, radar {}: {}", radar_id, what);
-  if (faults_ == kShown) runtime::log::warning("further faults in the recordings' content are not shown");
+  if (faults_ == kShown) runtime::log::warning("further faults in the recordings' content are not logged");
 }
 
 SourceStatistics& EventSink::statistics(std::uint32_t radar_id) {

@@ -1,5 +1,5 @@
-// Recordings out of the replay as events of the Boresight service: decoded as the gateway would, and served as if each
-// radar spoke that service.
+// Sends recordings as events of the Boresight service: decodes them as the gateway does, and serves each radar as an
+// instance of the service.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace boresight::replay {
 
-/// What the gateway decodes, sent as events.
+/// Sends the gateway's decoded scans and ego motions as events.
 class EventSink : public ingest::Sink {
  public:
   explicit EventSink(SomeIpServer& server);
 
-  /// A frame follows that the recording received at `received_ns` on the gateway's clock, and that is due now.
+  /// Call before a frame: it was received at `received_ns` on the gateway's clock in the recording, and is sent now.
   void frame_begins(std::int64_t received_ns, std::int64_t due_ns);
-  /// False if that frame completed a scan or an ego motion that nobody had subscribed.
+  /// False if that frame completed a scan or an ego motion without a subscriber.
   [[nodiscard]] bool heard() const { return heard_; }
 
   RadarScan* begin_scan() override { return scan_.get(); }
@@ -31,7 +31,7 @@ class EventSink : public ingest::Sink {
   SourceStatistics& statistics(std::uint32_t radar_id) override;
 
  private:
-  /// When the content was measured, on the clock that events are stamped with.
+  /// Time of measurement of the content on the clock of the events' stamps.
   [[nodiscard]] SensorTime stamp(const ingest::MeasurementTime& time) const;
 
   SomeIpServer& server_;
@@ -48,7 +48,7 @@ class SomeIpSender : public Sender {
  public:
   SomeIpSender(const VehicleConfig& vehicle, SomeIpServer& server);
 
-  /// False if the frame completed something that nobody had subscribed.
+  /// False if the frame completed a scan or an ego motion without a subscriber.
   [[nodiscard]] bool send(const recording::Frame& frame) override;
   void wait_until(std::int64_t due_ns) override;
   void end_recording() override;

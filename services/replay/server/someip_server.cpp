@@ -66,9 +66,9 @@ void SomeIpServer::serve_until(std::int64_t due_ns) {
     std::int64_t now_ns = runtime::monotonic_now_ns();
     discovery_.tick(now_ns);
     if (now_ns >= flush_ns_) flush();
-    // A stop signal between its check and the call is seen this much later at the latest.
-    constexpr std::int64_t kLongest_ns = 100'000'000;
-    const std::int64_t next_ns = std::min({due_ns, discovery_.next_due_ns(), flush_ns_, now_ns + kLongest_ns});
+    // Longest delay of a stop signal that arrives between the check and the call.
+    constexpr std::int64_t kMaxStopDelay_ns = 100'000'000;
+    const std::int64_t next_ns = std::min({due_ns, discovery_.next_due_ns(), flush_ns_, now_ns + kMaxStopDelay_ns});
     const std::int64_t wait_ns = std::max<std::int64_t>(next_ns - now_ns, 0);
     const timespec wait{.tv_sec = wait_ns / kSecond_ns, .tv_nsec = wait_ns % kSecond_ns};
     if (ppoll(watched.data(), watched.size(), &wait, nullptr) > 0) discovery_.receive();
@@ -79,7 +79,7 @@ void SomeIpServer::serve_until(std::int64_t due_ns) {
 
 void SomeIpServer::report(const recording::IpAddress& from, std::string_view what) const {
   if (discovery_.statistics().malformed > 1) return;
-  runtime::log::warning("{}: {}; further ones are only counted", recording::to_text(from), what);
+  runtime::log::warning("{}: {}; further faults are counted, not logged", recording::to_text(from), what);
 }
 
 bool SomeIpServer::send(std::uint16_t number, const RadarScan& scan, const SensorTime& time) {
@@ -87,7 +87,7 @@ bool SomeIpServer::send(std::uint16_t number, const RadarScan& scan, const Senso
   for (Instance& instance : instances_) {
     if (instance.number != number) continue;
     const auto to = destinations(instance, service::kEventgroupDetections);
-    // Nothing is counted up for nobody: a subscriber would take it for a loss.
+    // Counters do not advance without a subscriber, who would detect a loss otherwise.
     if (to.empty()) continue;
     deliver(instance, to, instance.encoder.detection_list(scan, time));
     heard = true;
@@ -119,7 +119,7 @@ void SomeIpServer::deliver(Instance& instance, std::span<const recording::Endpoi
       share(instance, to, message);
       continue;
     }
-    // What was sent first stays first.
+    // Keeps the order of events.
     if (const auto waiting = instance.waiting.find(to); waiting != instance.waiting.end()) {
       if (!waiting->second.empty()) send_datagram(instance, to, waiting->second.content());
       waiting->second.clear();
@@ -153,7 +153,7 @@ void SomeIpServer::flush() {
     for (auto& [to, shared] : instance.waiting) {
       if (!shared.empty()) send_datagram(instance, to, shared.content());
     }
-    // Subscribers that have gone are not remembered.
+    // Forgets subscribers that have ended.
     instance.waiting.clear();
   }
   flush_ns_ = kNever;

@@ -1,5 +1,5 @@
 // Serves the Boresight service (interfaces/wire/boresight_service.md) on the network: discovery and events of several
-// instances, in one thread that runs while its caller waits.
+// instances. Single-threaded: works while the caller waits.
 #pragma once
 
 #include <cstdint>
@@ -24,38 +24,38 @@ struct SomeIpOptions {
   std::optional<recording::Endpoint> event_group;
   recording::Endpoint discovery_group;
   double offer_cycle_s = 1.0;
-  double share_s = 0.0;  ///< > 0: short messages wait so long for others to share a datagram with
+  double share_s = 0.0;  ///< > 0: time that short messages wait to share a datagram
   int multicast_hops = 1;
   std::uint32_t data_id_base = 0x4253'0000;
 };
 
 struct ServerCounts {
-  std::uint64_t detection_lists = 0, ego_motions = 0;  ///< sent to one subscriber or group at least
-  std::uint64_t unheard = 0;                           ///< events that nobody had subscribed
+  std::uint64_t detection_lists = 0, ego_motions = 0;  ///< sent to at least one subscriber or group
+  std::uint64_t unheard = 0;                           ///< events without a subscriber
   std::uint64_t datagrams = 0, bytes = 0;              ///< of events
-  std::uint64_t refused = 0;                           ///< datagrams that the kernel did not take
+  std::uint64_t refused = 0;                           ///< datagrams that the kernel rejected
 };
 
 class SomeIpServer {
  public:
-  /// Opens the sockets (throws std::runtime_error) and begins the initial wait of the discovery.
+  /// Opens the sockets (throws std::runtime_error) and begins the initial wait of service discovery.
   SomeIpServer(const SomeIpOptions& options, const std::vector<std::uint16_t>& instances);
 
-  /// As stop().
+  /// The same as stop().
   ~SomeIpServer();
   SomeIpServer(const SomeIpServer&) = delete;
   SomeIpServer& operator=(const SomeIpServer&) = delete;
 
-  /// Answers and offers until the monotonic time, or until a stop signal; at least one turn.
+  /// Sends answers and offers until the monotonic time or a stop signal; at least one pass.
   void serve_until(std::int64_t due_ns);
-  /// Sends to those who have subscribed; false if nobody has.
+  /// Sends to all subscribers; false without a subscriber.
   bool send(std::uint16_t number, const RadarScan& scan, const SensorTime& time);
-  /// As event of every instance, since each may have been asked for it.
+  /// Sends the event as each instance, since clients may subscribe to any of them.
   bool send(const EgoMotion& ego, const SensorTime& time);
-  /// Sends what waits for company, and takes the offers back; events are not sent any more.
+  /// Sends waiting messages and withdraws the offers; no events afterwards.
   void stop();
 
-  /// True if somebody has subscribed the detections of one instance at least.
+  /// True if a client has subscribed to the detections of at least one instance.
   [[nodiscard]] bool has_subscriber();
   [[nodiscard]] const ServerCounts& counts() const { return counts_; }
   [[nodiscard]] const someip::SdStatistics& discovery() const { return discovery_.statistics(); }
@@ -67,12 +67,12 @@ class SomeIpServer {
     EventEncoder encoder;
     std::map<recording::Endpoint, SharedDatagram> waiting;
   };
-  /// The first malformed datagram of discovery is worth a line.
+  /// Logs only the first malformed datagram of service discovery.
   void report(const recording::IpAddress& from, std::string_view what) const;
   [[nodiscard]] std::span<const recording::Endpoint> destinations(const Instance& instance, std::uint16_t eventgroup);
   void deliver(Instance& instance, std::span<const recording::Endpoint> destinations,
                std::span<const std::uint8_t> message);
-  /// Keeps a short message for a while, until its datagram is full.
+  /// Keeps a short message until its datagram is full, or for share_s.
   void share(Instance& instance, const recording::Endpoint& to, std::span<const std::uint8_t> message);
   void send_datagram(const Instance& instance, const recording::Endpoint& to, std::span<const std::uint8_t> datagram);
   void flush();

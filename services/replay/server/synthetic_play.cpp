@@ -12,7 +12,7 @@ namespace boresight::replay {
 
 namespace {
 
-/// Something sent every so often.
+/// A periodic event.
 struct Beat {
   std::int64_t next_ns;
   std::int64_t period_ns;
@@ -42,7 +42,7 @@ void play_synthetic(const SyntheticOptions& options, const std::vector<MountingP
     Beat& beat = *std::min_element(beats.begin(), beats.end(),
                                    [](const Beat& a, const Beat& b) { return a.next_ns < b.next_ns; });
     if (static_cast<double>(beat.next_ns - start_ns) * 1e-9 > options.duration_s) {
-      // The offer lasts as long as was asked, so that what was sent last is not withdrawn on its way.
+      // Serves until the end of the duration, so that the last event arrives before the offer is withdrawn.
       server.serve_until(start_ns + static_cast<std::int64_t>(options.duration_s * 1e9));
       return;
     }

@@ -50,9 +50,9 @@ TEST(Monitor, RecordsCanBeReadBackAndWriteErrorsAreReported) {
   ASSERT_TRUE(domain.until(10.0, [&] { return domain.replay_has_ended(); }));
   domain.run_for(1.0);
   EXPECT_EQ(whole.stop(), 0) << text_of("/tmp/whole");
-  EXPECT_EQ(no_scans.stop(), 1);
-  EXPECT_EQ(no_snapshots.stop(), 1);
-  EXPECT_EQ(text_of("/tmp/no_scans"), "boresight monitor: cannot write /dev/full: what it holds is not whole\n");
+  EXPECT_EQ(no_scans.stop(), 3);
+  EXPECT_EQ(no_snapshots.stop(), 3);
+  EXPECT_EQ(text_of("/tmp/no_scans"), "boresight monitor: /dev/full: cannot be written: No space left on device\n");
   EXPECT_EQ(text_of("/tmp/no_snapshots"), text_of("/tmp/no_scans"));
 
   const auto scan = std::make_unique<ClassifiedScan>();

@@ -16,13 +16,13 @@ namespace boresight::network {
 
 namespace {
 
-constexpr std::uint16_t kDiscoveryPort = 30490;
+constexpr std::uint16_t kOtherStackDiscoveryPort = 30490;
 constexpr std::string_view kLetter = "a peer's letter";
 
 sockaddr_in endpoint(const std::string& address) {
   sockaddr_in in{};
   in.sin_family = AF_INET;
-  in.sin_port = htons(kDiscoveryPort);
+  in.sin_port = htons(kOtherStackDiscoveryPort);
   inet_pton(AF_INET, address.c_str(), &in.sin_addr);
   return in;
 }

@@ -162,8 +162,8 @@ TEST(Observability, ANarrowViewWithCoarseAnglesIsNotBiased) {
     covariance << e.covariance[0], e.covariance[1], e.covariance[4], e.covariance[5];
     normalised += error.dot(covariance.inverse() * error);
   }
-  // 2 for a linear problem. k_v and yaw are hardly separable along a curved line, and the start of the estimate on it
-  // is known to degrees only: the covariance is a little too thin across the line.
+  // A linear problem would give 2. k_v and yaw are hardly separable along a curved line. The start of the estimate on
+  // it is known to degrees only, so the covariance is a little too thin across the line.
   EXPECT_LT(normalised / kRuns, 8.0);
 }
 

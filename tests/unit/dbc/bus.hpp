@@ -1,5 +1,4 @@
-// A CAN bus for tests: frames are written by the DBC file, one bit at a time, and go to a decoder whose products are
-// kept.
+// A CAN bus for tests: writes frames by the DBC file, one bit at a time, and keeps the output of a decoder.
 #pragma once
 
 #include <bit>
@@ -18,7 +17,7 @@
 
 namespace boresight::ingest {
 
-/// Writes raw bits to the places that DBC numbering says.
+/// Writes raw bits by DBC numbering.
 inline void put_bits(const dbc::Signal& signal, std::uint64_t bits, std::vector<std::uint8_t>& payload) {
   unsigned at = signal.start_bit;
   for (unsigned i = 0; i < signal.length; ++i) {
@@ -30,7 +29,7 @@ inline void put_bits(const dbc::Signal& signal, std::uint64_t bits, std::vector<
   }
 }
 
-/// The nearest raw value that stands for a physical one.
+/// The raw value nearest to a physical one.
 inline std::uint64_t raw_of(const dbc::Signal& signal, double physical) {
   const double raw = (physical - signal.offset) / signal.factor;
   if (signal.kind == wire::SignalKind::kFloat32) return std::bit_cast<std::uint32_t>(static_cast<float>(raw));
@@ -38,7 +37,7 @@ inline std::uint64_t raw_of(const dbc::Signal& signal, double physical) {
   return static_cast<std::uint64_t>(std::llround(raw));
 }
 
-/// Keeps what a decoder produces.
+/// Keeps a decoder's output.
 struct Recorder : DecoderOutput {
   struct Ego {
     EgoReading reading;
@@ -73,7 +72,7 @@ class Bus {
 
   Bus(const dbc::Database& database, Decoder& decoder) : database_(database), decoder_(decoder) {}
 
-  /// A frame of the named message with these physical values; what is not named is 0.
+  /// A frame of the named message with these physical values; other signals are 0.
   [[nodiscard]] std::vector<std::uint8_t> payload(const std::string& message, const Values& values) const {
     const dbc::Message& found = *database_.find(message);
     std::vector<std::uint8_t> bytes(found.length_bytes);

@@ -1,4 +1,4 @@
-// The reader of DBC files, on texts of our own.
+// The reader of DBC files.
 #include "services/ingest_gateway/dbc/dbc.hpp"
 
 #include <algorithm>
@@ -120,11 +120,11 @@ SG_MUL_VAL_ 2147483649 DEEP INNER 3-5, 8-8,10-12;
   EXPECT_EQ(deep.switch_values[0].last, 5u);
   EXPECT_EQ(deep.switch_values[1].first, 8u);
   EXPECT_EQ(deep.switch_values[2].last, 12u);
-  // Without a statement of its own it hangs on the only plain switch.
+  // Without its own statement it depends on the only plain switch.
   EXPECT_EQ(message.signals.at(message.find("WIDE")->switch_index).name, "OUTER");
 }
 
-TEST(Dbc, MultiplexingThatGoesInCirclesOrNowhereIsReportedAndLeftOut) {
+TEST(Dbc, MultiplexingInCirclesOrWithoutASwitchIsReportedAndSkipped) {
   const Database database = parse(R"(BO_ 1 M: 8 X
  SG_ A m1M : 0|4@1+ (1,0) [0|0] "" X
  SG_ B m1M : 4|4@1+ (1,0) [0|0] "" X
@@ -186,7 +186,7 @@ BO_ 3 N: 8 X
   EXPECT_EQ(database.messages[1].name, "N");
 }
 
-TEST(Dbc, AStringThatIsNeverClosedCostsItsOwnLineOnly) {
+TEST(Dbc, AnUnclosedStringLosesOnlyItsOwnLine) {
   const Database database = parse("CM_ \"open\nBO_ 3 N: 8 X\nCM_ \\\"\nCM_ \\\"\n");
   EXPECT_THAT(database.problems, testing::Contains(HasSubstr("t.dbc:13: string is not closed")));
   EXPECT_THAT(database.messages, SizeIs(1));
@@ -266,8 +266,8 @@ TEST(Dbc, ABigFileIsReadCompletely) {
   EXPECT_TRUE(std::ranges::all_of(database.messages, [](const Message& m) { return m.signals.size() == 32; }));
 }
 
-// Each of these takes hours in readers that search ahead from every line: the test's time limit would end it.
-TEST(Dbc, HostileTextsComeToAnEnd) {
+// Each of these takes hours if a reader searches ahead from every line, and would exceed the test's time limit.
+TEST(Dbc, HostileTextsAreReadInBoundedTime) {
   constexpr std::size_t kLines = 200'000;
   const auto repeated = [](std::string_view line) {
     std::string text = "BO_ 1 A: 8 X\n";

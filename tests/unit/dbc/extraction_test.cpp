@@ -1,4 +1,4 @@
-// Extraction of signals against a reference that takes one bit at a time.
+// Extraction of signals against a reference that reads one bit at a time.
 #include <array>
 #include <bit>
 #include <random>

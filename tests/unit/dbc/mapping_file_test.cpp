@@ -1,4 +1,4 @@
-// Mapping files: the example that is shipped, and what is refused with which words.
+// Mapping files: the shipped example, and the errors of invalid files.
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 
 #include <filesystem>
@@ -69,7 +69,7 @@ dbc::Database load(const std::string&) {
   return dbc::parse_dbc(kDbc, "x.dbc");
 }
 
-/// The text with one part replaced, which must be in it.
+/// The text with one existing part replaced.
 std::string with(std::string_view text, std::string_view old, std::string_view replacement) {
   std::string changed(text);
   const std::size_t at = changed.find(old);
@@ -118,7 +118,7 @@ TEST(MappingFile, ShippedExamplesAreRead) {
   EXPECT_EQ(ego.messages[1].frame.protection.profile, e2e::Profile::kP11);
 }
 
-TEST(MappingFile, NamesAreLookedUpForEveryIndex) {
+TEST(MappingFile, NamesAreResolvedForEveryIndex) {
   const dbc::RadarMapping mapping = read_radar_mapping(config::Reader::parse(kRadar, "m.toml"), load);
   ASSERT_THAT(mapping.messages, SizeIs(4));
   EXPECT_EQ(mapping.messages[1].frame.id, 529u);
@@ -129,7 +129,7 @@ TEST(MappingFile, NamesAreLookedUpForEveryIndex) {
   for (const dbc::RadarMessage& message : mapping.messages) EXPECT_TRUE(message.counter);
 }
 
-TEST(MappingFile, NameThatIsNotThereIsNamedWithSimilarOnes) {
+TEST(MappingFile, UnknownNameIsReportedWithSimilarOnes) {
   EXPECT_THAT(radar_error("TRACK_A_{}", "TRAC_A_{}"),
               HasSubstr("m.toml:9: detections[0].message[0].name: there is no message \"TRAC_A_0\" in the DBC file; "
                         "similar: \"TRACK_A_0\", \"TRACK_A_1\", \"TRACK_B_0\""));
@@ -141,7 +141,7 @@ TEST(MappingFile, NameThatIsNotThereIsNamedWithSimilarOnes) {
               HasSubstr("m.toml:5: speed.signals: there is no signal \"SPEED\" in \"TRACK_A_0\""));
 }
 
-TEST(MappingFile, SignalInTwoMessagesMustSayWhich) {
+TEST(MappingFile, SignalInTwoMessagesNeedsTheMessagesNumber) {
   EXPECT_THAT(
       radar_error("\"SCORE\"", "\"COUNTER\""),
       HasSubstr("signal \"COUNTER\" is in the messages \"TRACK_A_0\" and \"TRACK_B_0\"; choose one: message = 1 "
@@ -223,7 +223,7 @@ TEST(MappingFile, IdOffsetMovesEveryMessage) {
   EXPECT_THAT(radar_error("[cycle]", "id_offset = 2000\n[cycle]"), HasSubstr("is out of range with id_offset"));
 }
 
-TEST(MappingFile, EgoMappingMustBeWhole) {
+TEST(MappingFile, EgoMappingMustBeComplete) {
   EXPECT_THAT(error_of(std::string(kEgo)), IsEmpty());
   EXPECT_THAT(ego_error("[speed]", "[yaw_rate]"), HasSubstr("needs either a table speed or a table pulses"));
   EXPECT_THAT(ego_error("is = [1, 2]", ""), HasSubstr("reverse: needs either is or is_not"));

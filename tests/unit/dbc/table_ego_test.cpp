@@ -21,9 +21,9 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
-const std::filesystem::path kExamples = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings";
+const std::filesystem::path kEgoExamples = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/mappings";
 
-/// The ego signals that are shipped as an example.
+/// The shipped example of ego signals.
 class ExampleEgo : public testing::Test {
  protected:
   ExampleEgo() {
@@ -33,7 +33,7 @@ class ExampleEgo : public testing::Test {
     config.data_id_mode = e2e::DataIdMode::kNibble;
     protector.emplace(config);
   }
-  /// The wheels have turned so far since the start; gear 3 is forward.
+  /// Rear wheel pulses by the distances since the start; gear 3 is forward.
   void send_wheels(double left_m, double right_m, int gear = 3) {
     const auto pulses = [](double metres) { return std::floor(metres / 0.0205); };
     auto payload = bus.payload("WHEELS", {{"PULSES_REAR_LEFT", std::fmod(pulses(left_m), 1000.0)},
@@ -42,7 +42,7 @@ class ExampleEgo : public testing::Test {
     EXPECT_TRUE(protector->protect(payload));
     bus.send_bytes("WHEELS", payload);
   }
-  /// Drives straight at this speed, with a frame each 20 ms.
+  /// Drives straight at this speed, with a frame every 20 ms.
   void drive(double speed_mps, int frames) {
     for (int i = 0; i < frames; ++i) {
       send_wheels(distance_m, distance_m);
@@ -59,17 +59,17 @@ class ExampleEgo : public testing::Test {
   }
 
   dbc::Database database = [] {
-    std::ifstream stream(kExamples / "example_radar.dbc");
+    std::ifstream stream(kEgoExamples / "example_radar.dbc");
     return dbc::parse_dbc(std::string{std::istreambuf_iterator<char>(stream), {}}, "example_radar.dbc");
   }();
-  TableEgo decoder{read_ego_mapping(kExamples / "example_ego.toml")};
+  TableEgo decoder{read_ego_mapping(kEgoExamples / "example_ego.toml")};
   Bus bus{database, decoder};
   std::optional<e2e::Protector> protector;
   double distance_m = 0.0;
 };
 
 TEST_F(ExampleEgo, PulsesMakeASpeedAcrossTheirWrap) {
-  drive(30.0, 200);  // 120 m are six times round
+  drive(30.0, 200);  // 120 m are six wraps
   EXPECT_THAT(bus.out.faults, IsEmpty());
   ASSERT_THAT(speeds(), SizeIs(testing::Ge(190u)));
   // Two pulses more or less in 100 ms.
@@ -99,10 +99,10 @@ TEST_F(ExampleEgo, SpeedFromPulsesIsThatOfTheMiddleOfItsWindow) {
   EXPECT_GT(compared, 280u);
 }
 
-TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAnew) {
+TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAgain) {
   drive(10.0, 20);
   const std::size_t before = speeds().size();
-  bus.now_ns += 600'000'000;  // a counter could have gone round at 70 m/s
+  bus.now_ns += 600'000'000;  // a counter could have wrapped at 70 m/s
   distance_m += 6.0;
   drive(10.0, 1);
   EXPECT_THAT(speeds(), SizeIs(before));
@@ -113,7 +113,7 @@ TEST_F(ExampleEgo, PauseOrJumpOfTheCountersStartsAnew) {
   distance_m += 8.0;  // in 20 ms
   drive(10.0, 1);
   EXPECT_THAT(speeds(), SizeIs(middle));
-  EXPECT_THAT(bus.out.faults, ElementsAre("wheel pulses went further than the greatest plausible speed"));
+  EXPECT_THAT(bus.out.faults, ElementsAre("wheel pulses exceed the greatest plausible speed"));
   drive(10.0, 20);
   EXPECT_THAT(speeds(), Each(testing::DoubleNear(10.0, 0.9)));
 }
@@ -124,7 +124,7 @@ TEST_F(ExampleEgo, StandstillIsASpeedOfZero) {
   EXPECT_THAT(speeds(), Each(0.0));
 }
 
-TEST_F(ExampleEgo, GearSaysReverse) {
+TEST_F(ExampleEgo, GearGivesTheDirection) {
   send_wheels(0.0, 0.0, 1);
   send_wheels(0.0, 0.0, 3);
   ASSERT_THAT(bus.out.egos, SizeIs(2));
@@ -133,7 +133,7 @@ TEST_F(ExampleEgo, GearSaysReverse) {
   EXPECT_FALSE(bus.out.egos[0].reading.speed_mps);
 }
 
-TEST_F(ExampleEgo, DamagedFrameIsRefused) {
+TEST_F(ExampleEgo, DamagedFrameIsRejected) {
   auto payload = bus.payload("WHEELS", {{"GEAR", 1}});
   ASSERT_TRUE(protector->protect(payload));
   payload[6] ^= 0x10;
@@ -190,7 +190,7 @@ TEST(TableEgo, SignedSpeedWithFactorOffsetAndSum) {
   EXPECT_TRUE(ego.bus.out.egos[0].reading.speed_is_signed);
 }
 
-TEST(TableEgo, ImplausibleOrNoNumberIsAFault) {
+TEST(TableEgo, ImplausibleValueOrNaNIsAFault) {
   OwnEgo ego("[speed]\nmessage = \"W\"\nsignals = [\"FL\"]\nplausible_mps = [-1, 60]\n");
   for (const double speed :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 220.0, -10.0}) {

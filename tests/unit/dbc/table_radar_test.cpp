@@ -1,4 +1,4 @@
-// Radars by table: the shipped example, and each way for a cycle to begin, end, and go wrong.
+// Radars by table: the shipped example, and all kinds of begin, end and faults of a cycle.
 #include "services/ingest_gateway/codecs/table_radar.hpp"
 
 #include <filesystem>
@@ -27,7 +27,7 @@ dbc::Database example_database() {
   return dbc::parse_dbc(std::string{std::istreambuf_iterator<char>(stream), {}}, "example_radar.dbc");
 }
 
-/// The radar that is shipped as an example, in the words of its DBC file.
+/// The shipped example of a radar, with the names of its DBC file.
 class ExampleRadar : public testing::Test {
  protected:
   void send_header(int near, int far, int counter = 7) {
@@ -76,7 +76,7 @@ TEST_F(ExampleRadar, DetectionsOfBothPagesMakeAScan) {
   ASSERT_EQ(scan.number_of_valid_detections, 2u);  // in the order of their numbers
   EXPECT_FLOAT_EQ(scan.range_m[0], 20.0F);
   EXPECT_FLOAT_EQ(scan.range_m[1], 123.45F);
-  EXPECT_NEAR(scan.azimuth_rad[1], 10.0 * kRadiansPerDegree, 1e-6);  // this radar counts to the right
+  EXPECT_NEAR(scan.azimuth_rad[1], 10.0 * kRadiansPerDegree, 1e-6);  // this radar's azimuth is positive to the right
   EXPECT_NEAR(scan.elevation_rad[1], 2.5 * kRadiansPerDegree, 1e-6);
   EXPECT_FLOAT_EQ(scan.range_rate_mps[1], -3.25F);
   EXPECT_FLOAT_EQ(scan.rcs_dbsm[1], -4.5F);
@@ -93,7 +93,7 @@ TEST_F(ExampleRadar, EmptyListIsAScanToo) {
   EXPECT_EQ(bus.out.scans[0]->integrity, 0);
 }
 
-TEST_F(ExampleRadar, InvalidDetectionsAreLeftOut) {
+TEST_F(ExampleRadar, InvalidDetectionsAreSkipped) {
   send_header(3, 0);
   send_detection(0, 10.0, 0);
   send_detection(1, 11.0, 7);
@@ -104,7 +104,7 @@ TEST_F(ExampleRadar, InvalidDetectionsAreLeftOut) {
   EXPECT_FLOAT_EQ(bus.out.scans[0]->range_m[0], 12.0F);
 }
 
-TEST_F(ExampleRadar, NothingOfACycleStaysForTheNext) {
+TEST_F(ExampleRadar, NoDetectionOfACycleAppearsInTheNext) {
   send_header(2, 0, 1);
   send_detection(0, 10.0);
   send_detection(1, 11.0);
@@ -129,7 +129,7 @@ TEST_F(ExampleRadar, LostFrameLeavesTheCycleIncompleteUntilTheNextHeader) {
   EXPECT_THAT(bus.out.faults, ElementsAre("frames of a cycle are missing"));
 }
 
-TEST_F(ExampleRadar, DetectionWithoutItsPlaceIsLeftOut) {
+TEST_F(ExampleRadar, DetectionWithoutAPositionIsSkipped) {
   send_header(1, 0);
   send_strength(5);
   bus.wait_ms(30);
@@ -150,7 +150,7 @@ TEST_F(ExampleRadar, PauseEndsAnIncompleteCycle) {
   EXPECT_THAT(bus.out.scans, SizeIs(1));
 }
 
-TEST_F(ExampleRadar, DetectionsWithoutTheirHeaderAreRefusedAndReportedOnce) {
+TEST_F(ExampleRadar, DetectionsWithoutTheirHeaderAreRejectedAndReportedOnce) {
   send_detection(0, 10.0);
   send_detection(1, 10.0);
   EXPECT_THAT(bus.out.scans, IsEmpty());
@@ -164,9 +164,9 @@ TEST_F(ExampleRadar, DetectionsWithoutTheirHeaderAreRefusedAndReportedOnce) {
 TEST_F(ExampleRadar, NumbersBeyondTheMappedOnesAreFaults) {
   send_header(2, 0);
   send_place(64, 10.0);
-  EXPECT_THAT(bus.out.faults, ElementsAre("number of a detection is beyond the mapped ones"));
+  EXPECT_THAT(bus.out.faults, ElementsAre("number of a detection exceeds the mapped ones"));
   send_header(200, 100);
-  EXPECT_THAT(bus.out.faults, testing::Contains("number of detections in the header is beyond the mapped ones"));
+  EXPECT_THAT(bus.out.faults, testing::Contains("number of detections in the header exceeds the mapped ones"));
 }
 
 TEST_F(ExampleRadar, NotANumberIsFlagged) {
@@ -199,7 +199,7 @@ TEST_F(ExampleRadar, ShortFramesAreFaultsAndLongOnesArePadded) {
   EXPECT_THAT(bus.out.scans, SizeIs(1));
 }
 
-TEST_F(ExampleRadar, FramesOfOthersAndRemoteFramesAreIgnored) {
+TEST_F(ExampleRadar, FramesWithOtherIdsAndRemoteFramesAreIgnored) {
   recording::Frame frame;
   const std::vector<std::uint8_t> payload(16);
   frame.payload = payload;
@@ -229,7 +229,7 @@ TEST_F(ExampleRadar, ScanWithoutMemoryIsLostAlone) {
   EXPECT_EQ(bus.out.scans[0]->number_of_valid_detections, 1u);
 }
 
-/// A radar of a DBC text and a mapping of the test's own.
+/// A radar with a DBC text and a mapping of the test.
 struct OwnRadar {
   OwnRadar(const std::string& dbc, const std::string& mapping)
       : database(dbc::parse_dbc(dbc, "t.dbc")),
@@ -350,7 +350,7 @@ names = ["FAR_0"]
   EXPECT_FLOAT_EQ(scan.range_m[2], 90.0F);
 }
 
-// One message, where the switch is the number of the detection and every detection has signals of its own.
+// One message: the switch is the number of the detection, and every detection has its own signals.
 TEST(TableRadar, MultiplexedByIndexAndOneLevelDeeper) {
   std::string dbc =
       "BO_ 2147483649 D: 16 R\n SG_ N M : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ SUB m2M : 8|8@1+ (1,0) [0|0] \"\" X\n";
@@ -375,8 +375,8 @@ range_rate = { signal = "V_{}" }
 )");
   radar.bus.send("D", {{"N", 1}, {"R_1", 11.0}, {"A_1", -1.0}, {"V_1", 0.125}});
   radar.bus.send("D", {{"N", 0}, {"R_0", 10.0}, {"A_0", 1.0}, {"V_0", -0.125}});
-  radar.bus.send("D", {{"N", 7}, {"R_0", 99.0}});              // of no use here
-  radar.bus.send("D", {{"N", 2}, {"SUB", 7}, {"R_2", 99.0}});  // nor this
+  radar.bus.send("D", {{"N", 7}, {"R_0", 99.0}});              // not used
+  radar.bus.send("D", {{"N", 2}, {"SUB", 7}, {"R_2", 99.0}});  // not used either
   EXPECT_THAT(radar.bus.out.scans, IsEmpty());
   radar.bus.send("D", {{"N", 2}, {"SUB", 9}, {"R_2", 12.0}, {"A_2", 2.0}, {"V_2", 1e-3}});
   EXPECT_THAT(radar.bus.out.faults, IsEmpty());

@@ -1,5 +1,5 @@
 // The share of stationary reflectors that are classified as moving matches the configured sigma, whatever the certainty
-// of the mounting; and a slow object is classified as moving if its range rate shows it.
+// of the mounting. A slow object is classified as moving if its range rate shows it.
 #include <cmath>
 #include <memory>
 #include <random>
@@ -14,7 +14,7 @@
 namespace boresight::corrector {
 namespace {
 
-constexpr std::int64_t kTime = 1'000'000'000'000;
+constexpr std::int64_t kScanTime_ns = 1'000'000'000'000;
 
 /// Standard deviations of all errors.
 struct Spread {
@@ -102,7 +102,7 @@ class Simulation {
       AlignmentEstimate e{};
       e.header.source_id = 2;
       e.header.sequence = 1;
-      e.header.measurement_time_ns = kTime;
+      e.header.measurement_time_ns = kScanTime_ns;
       e.state = AlignmentState::kConverged;
       e.observable = case_.observable;
       e.speed_scale = static_cast<float>(estimated_scale);
@@ -122,7 +122,7 @@ class Simulation {
     }
     const double speed = case_.speed_mps, yaw_rate = case_.yaw_rate_radps;  // true
     EgoMotion m{};
-    m.header.measurement_time_ns = kTime;
+    m.header.measurement_time_ns = kScanTime_ns;
     m.fields = ego_field::kSpeed | ego_field::kYawRate;
     m.speed_std_mps = 0.03F;
     m.yaw_rate_std_radps = 0.002F;
@@ -140,7 +140,7 @@ class Simulation {
     const RadarConfig& radar = vehicle_.radars[0];
     scan.header = {};
     scan.header.source_id = 2;
-    scan.header.measurement_time_ns = kTime;
+    scan.header.measurement_time_ns = kScanTime_ns;
     scan.fields = case_.has_elevation ? scan_field::kElevation | scan_field::kStds : scan_field::kStds;
     scan.number_of_valid_detections = static_cast<std::uint32_t>(count);
     std::uniform_real_distribution<double> azimuth(-limit_rad, limit_rad), elevation(-0.1, 0.1), uniform(0.0, 1.0);

@@ -1,4 +1,4 @@
-// Configurations that are refused, with words that name the field and what it may be.
+// Invalid configurations are rejected with the field and its allowed values.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -59,7 +59,7 @@ TEST(ConfigOfE2e, Profile11KnowsTwoModes) {
     ASSERT_TRUE(validate(config));
     EXPECT_THAT(*validate(config), HasSubstr("data_id_mode"));
   }
-  config.profile = Profile::kP06;  // knows no modes
+  config.profile = Profile::kP06;  // has no modes
   EXPECT_EQ(validate(config), std::nullopt);
 }
 

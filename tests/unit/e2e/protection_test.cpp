@@ -1,4 +1,4 @@
-// What is protected is accepted, and every corruption is not: all profiles, lengths and offsets.
+// Protected data are accepted, corrupted data are rejected: all profiles, lengths and offsets.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -112,7 +112,7 @@ TEST(Protection, MessageOfAnotherSenderIsRejected) {
     ASSERT_TRUE(Protector(other).protect(data));
     const bool sent = layout(named.config.profile).data_id_bytes > 0;
     EXPECT_EQ(Checker(named.config).check(data), sent ? Status::kWrongDataId : Status::kWrongCrc) << named.name;
-    // The nibble that is sent differs, the byte in the CRC does not.
+    // The sent nibble differs, the byte in the CRC does not.
     if (named.config.data_id_mode == DataIdMode::kNibble) {
       other = named.config;
       other.data_id ^= 0x100;

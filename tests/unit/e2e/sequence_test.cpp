@@ -1,4 +1,4 @@
-// Counters: steps, repetitions, losses, wraps, jumps and how the checker finds back.
+// Counters: steps, repetitions, losses, wraps, jumps and recovery.
 #include <gtest/gtest.h>
 
 #include "services/common/e2e/checker.hpp"
@@ -12,7 +12,7 @@ namespace {
 using test::all_configs;
 using test::Named;
 
-/// A sound message with this counter.
+/// A valid message with this counter.
 std::vector<std::uint8_t> message(const Config& config, std::uint64_t counter) {
   std::vector<std::uint8_t> data(40, 0x33);
   Header header;
@@ -84,7 +84,7 @@ TEST(Sequence, LossesUpToTheLimitAreCountedAndAccepted) {
     const Config config = with_delta(named.config, 4);
     const std::uint64_t values = counter_values(config);
     for (std::uint64_t steps = 1; steps <= 5; ++steps) {
-      for (const std::uint64_t start : {std::uint64_t{0}, values - 2}) {  // the second wraps on the way
+      for (const std::uint64_t start : {std::uint64_t{0}, values - 2}) {  // the second one wraps
         Checker checker(config);
         EXPECT_EQ(checker.check(message(config, start)), Status::kInitial);
         const Status expected = steps == 1 ? Status::kOk : steps <= 4 ? Status::kOkSomeLost : Status::kWrongSequence;
@@ -154,7 +154,7 @@ TEST(Sequence, StrayCountersAreForgottenWhenTheSequenceGoesOn) {
   }
 }
 
-TEST(Sequence, AfterTwoStrayCountersTheOldSequenceIsGivenUp) {
+TEST(Sequence, AfterTwoStrayCountersTheOldSequenceIsDropped) {
   for (const Named& named : all_configs()) {
     Checker checker(named.config);
     EXPECT_EQ(checker.check(message(named.config, 1)), Status::kInitial);
@@ -167,14 +167,14 @@ TEST(Sequence, AfterTwoStrayCountersTheOldSequenceIsGivenUp) {
 
 TEST(Sequence, AStepOfOneIsNeverWrong) {
   for (const Named& named : all_configs()) {
-    const Config config = with_delta(named.config, 0);  // not valid, but it must not lock the sender out
+    const Config config = with_delta(named.config, 0);  // invalid, but must not exclude the sender
     Checker checker(config);
     EXPECT_EQ(checker.check(message(config, 1)), Status::kInitial);
     EXPECT_EQ(checker.check(message(config, 2)), Status::kOk) << named.name;
   }
 }
 
-TEST(Sequence, ASenderThatJumpsAboutIsRejectedUntilItSettles) {
+TEST(Sequence, ASenderWithRandomCountersIsRejectedUntilTheyAreInSequence) {
   for (const Named& named : all_configs()) {
     Checker checker(named.config);
     EXPECT_EQ(checker.check(message(named.config, 1)), Status::kInitial);
@@ -203,7 +203,7 @@ TEST(Sequence, RejectedContentDoesNotMoveTheSequence) {
   }
 }
 
-TEST(Sequence, FifteenIsNoCounterOfProfiles1And11) {
+TEST(Sequence, FifteenIsAnInvalidCounterOfProfiles1And11) {
   for (const Profile profile : {Profile::kP01, Profile::kP11}) {
     Config config;
     config.profile = profile;

@@ -44,7 +44,7 @@ TEST(EgoHistory, HoldsTheEndsUntilTheyAreStale) {
   EXPECT_EQ(history.at(kStart + 900 * kMillisecond).speed_mps, 10.0);
 }
 
-TEST(EgoHistory, AGapIsNoStraightLine) {
+TEST(EgoHistory, AGapIsNotInterpolated) {
   EgoHistory history(200 * kMillisecond);
   history.add(motion(kStart, 10.0F));
   history.add(motion(kStart + 1000 * kMillisecond, 20.0F));
@@ -58,8 +58,8 @@ TEST(EgoHistory, KeepsTheLatestOfManyAndForgetsOnARestart) {
   EgoHistory history;
   for (int i = 0; i < 1000; ++i) history.add(motion(kStart + i * 10 * kMillisecond, static_cast<float>(i)));
   EXPECT_NEAR(history.at(kStart + 9'505 * kMillisecond).speed_mps, 950.5, 1e-4);
-  EXPECT_TRUE(history.at(kStart).stale) << "out of the ring";
-  // A little back is a straggler and ignored; far back is a recording that began again.
+  EXPECT_TRUE(history.at(kStart).stale) << "not in the ring any more";
+  // A small step back is a late message and ignored; a large one is a restarted recording.
   history.add(motion(kStart + 9'900 * kMillisecond, -1.0F));
   EXPECT_EQ(history.at(kStart + 9'990 * kMillisecond).speed_mps, 999.0);
   history.add(motion(kStart, 5.0F));
@@ -67,7 +67,7 @@ TEST(EgoHistory, KeepsTheLatestOfManyAndForgetsOnARestart) {
   EXPECT_FALSE(history.at(kStart).stale);
 }
 
-TEST(EgoHistory, WhatIsIncompleteOrNotANumberIsLeftOut) {
+TEST(EgoHistory, IncompleteMessagesAndNaNAreIgnored) {
   EgoHistory history;
   EgoMotion without = motion(kStart, 10.0F);
   without.fields = ego_field::kSpeed;

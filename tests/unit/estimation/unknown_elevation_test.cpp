@@ -17,11 +17,11 @@ RadarConfig radar_of(double height_m, double half_view_deg) {
   return radar;
 }
 
-TEST(UnknownElevation, IsTheMeanOverThingsThatStandOnTheRoad) {
+TEST(UnknownElevation, IsTheMeanOverObjectsOnTheRoad) {
   constexpr double kHeight_m = 0.5, kTop_m = 4.7;
   const UnknownElevation unknown(radar_of(kHeight_m, 12.0), 0.0);
   for (const double range_m : {5.0, 12.0, 30.0, 100.0}) {
-    // Tops and reflecting points below them, both evenly spaced.
+    // Tops and reflection points below them, both evenly spaced.
     double sum = 0.0, square = 0.0, sine_sum = 0.0, count = 0.0;
     constexpr int kSteps = 1500;
     for (int i = 0; i < kSteps; ++i) {
@@ -45,7 +45,7 @@ TEST(UnknownElevation, IsTheMeanOverThingsThatStandOnTheRoad) {
   }
 }
 
-TEST(UnknownElevation, IsFiniteWhateverIsSent) {
+TEST(UnknownElevation, IsFiniteForAllInputs) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   RadarConfig upwards = radar_of(0.5, 2.0);
   upwards.field_of_view.elevation_min_rad = 0.6;

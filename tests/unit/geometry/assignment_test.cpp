@@ -13,7 +13,7 @@ namespace {
 
 using Costs = std::vector<std::vector<double>>;  // [row][column]
 
-/// The least total over every way to give rows distinct columns or leave them alone.
+/// The least total over all assignments of rows to distinct columns, or to none.
 double least(const Costs& costs, double alone, std::size_t row = 0, unsigned used = 0) {
   if (row == costs.size()) return 0.0;
   double best = alone + least(costs, alone, row + 1, used);
@@ -37,7 +37,7 @@ TEST(Assignment, IsTheBestOfAllOnRandomProblems) {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t c = 0; c < columns; ++c) {
         if (cost(random) < 6.0) continue;
-        // Round costs make ties, which must not confuse it.
+        // Round costs give ties.
         costs[r][c] = round % 2 == 0 ? cost(random) : std::floor(cost(random) / 4.0);
         assignment.set(r, c, costs[r][c]);
       }
@@ -62,7 +62,7 @@ TEST(Assignment, IsTheBestOfAllOnRandomProblems) {
   }
 }
 
-TEST(Assignment, WhatIsNoNumberIsNoPair) {
+TEST(Assignment, NaNIsNoPair) {
   Assignment assignment;
   assignment.reset(2, 2, 10.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -76,7 +76,7 @@ TEST(Assignment, WhatIsNoNumberIsNoPair) {
   EXPECT_EQ(assignment.total_cost(), 13.0);
 }
 
-TEST(Assignment, RemembersNothingOfTheProblemBefore) {
+TEST(Assignment, IsIndependentOfThePreviousProblem) {
   Assignment assignment;
   assignment.reset(3, 3, 10.0);
   for (std::size_t i = 0; i < 3; ++i) assignment.set(i, i, 1.0);
@@ -93,7 +93,7 @@ TEST(Assignment, FullSizeIsSolvedAndAllocatesNothing) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> cost(0.0, 1.0);
   constexpr std::size_t n = Assignment::kCapacity;
-  // The diagonal is cheap and every other pair is not: there is one best answer.
+  // Only the diagonal is cheap: there is one best assignment.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   std::shuffle(order.begin(), order.end(), random);

@@ -12,7 +12,7 @@
 namespace boresight::geometry {
 namespace {
 
-TEST(CellChains, FindAllThatIsNearAndNothingElseButWhatIsAPeriodAway) {
+TEST(CellChains, FindAllNearNumbersAndOthersOnlyAPeriodAway) {
   constexpr double kCell_m = 4.0, kPeriod_m = kCell_m * CellChains::kSide;
   CellChains chains(300, kCell_m);
   std::mt19937 random(1);
@@ -43,7 +43,7 @@ TEST(CellChains, FindAllThatIsNearAndNothingElseButWhatIsAPeriodAway) {
   }
 }
 
-TEST(CellChains, TakeNoMoreThanTheirCapacityWhereverItIsAndForget) {
+TEST(CellChains, AcceptNumbersUpToTheirCapacityAndForget) {
   CellChains chains(3, 4.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::size_t found = 0;

@@ -14,8 +14,7 @@ TEST(GridCell, BordersBelongToTheCellAbove) {
   EXPECT_EQ(grid_cell(0.0, 0.0, 2.0), (GridCell{0, 0}));
   EXPECT_EQ(grid_cell(-1e-9, 1.999, 2.0), (GridCell{-1, 0}));
   EXPECT_EQ(grid_cell(2.0, -2.0, 2.0), (GridCell{1, -1}));
-  EXPECT_EQ(grid_cell(1e30, -1e30, 1.0), (GridCell{1'000'000, -1'000'000}))
-      << "what is far is somewhere, not undefined";
+  EXPECT_EQ(grid_cell(1e30, -1e30, 1.0), (GridCell{1'000'000, -1'000'000})) << "a distant position has a defined cell";
   EXPECT_EQ(grid_cell(std::numeric_limits<double>::quiet_NaN(), 3.0, 2.0), (GridCell{-500'000, 1}));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-1000.0, 1000.0);
@@ -53,7 +52,7 @@ TEST(CellTable, IsAMapThatForgetsAtOnce) {
 
 TEST(CellTable, ForgetsSingleCells) {
   std::mt19937 random(2);
-  // Few places for many cells: as full as it gets, with long runs of displaced cells.
+  // Few slots for many cells: the largest fill, with long runs of displaced cells.
   std::uniform_int_distribution<std::int32_t> place(0, 24);
   constexpr std::size_t kCapacity = 256;
   CellTable table(kCapacity);

@@ -30,14 +30,14 @@ TEST(ClusterRuns, HoldsEachClustersItemsInTheirOrder) {
   }
 }
 
-TEST(ClusterRuns, LeavesOutWhatHasNoClusterOrNoRoom) {
+TEST(ClusterRuns, SkipsNoiseAndItemsBeyondTheCapacity) {
   ClusterRuns<int> runs(4);
   EXPECT_EQ(runs.size(), 0U);
   const std::vector<int> items{10, 11, 12, 13, 14, 15};
   const std::vector<std::int32_t> labels{0, -1, 7, 1, 0};
   runs.sort(items, labels, 2);
   ASSERT_EQ(runs.size(), 2U);
-  EXPECT_EQ(std::vector<int>(runs[0].begin(), runs[0].end()), std::vector<int>{10}) << "the fifth has no room";
+  EXPECT_EQ(std::vector<int>(runs[0].begin(), runs[0].end()), std::vector<int>{10}) << "the fifth exceeds the capacity";
   EXPECT_EQ(std::vector<int>(runs[1].begin(), runs[1].end()), std::vector<int>{13});
   runs.sort(items, labels, 1000);
   EXPECT_EQ(runs.size(), 4U);

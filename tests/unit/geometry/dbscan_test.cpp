@@ -14,7 +14,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// The definition of Ester et al., by comparing all pairs: cores, their connected components, and who is in reach.
+/// The definition of Ester et al., by comparing all pairs: core points, their connected components, and reachable
+/// points.
 struct Reference {
   Reference(const Points& points, double radius, std::size_t min_points) : component(points.size(), -1) {
     const std::size_t n = points.size();
@@ -86,7 +87,7 @@ TEST(Dbscan, IsTheDefinitionOnRandomClouds) {
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (reference.is_core[i]) continue;
-      // A point that is no core belongs to any one of the clusters in reach, or is noise if there is none.
+      // Other points belong to one of the clusters within the radius, or are noise if there is none.
       std::set<int> allowed;
       for (const int component : reference.reachable[i]) allowed.insert(name_of.at(component));
       if (allowed.empty()) allowed.insert(Dbscan::kNoise);
@@ -95,7 +96,7 @@ TEST(Dbscan, IsTheDefinitionOnRandomClouds) {
   }
 }
 
-TEST(Dbscan, DoesNotDependOnWhereTheGridLies) {
+TEST(Dbscan, DoesNotDependOnTheGridsOrigin) {
   Dbscan dbscan(512);
   const Points points = cloud(5, 300, 40.0);
   const std::size_t found = dbscan.cluster(points, 1.3, 3);
@@ -108,8 +109,8 @@ TEST(Dbscan, DoesNotDependOnWhereTheGridLies) {
   }
 }
 
-TEST(Dbscan, TellsApartWhatIsFarAwayInTheSameBucket) {
-  // Clumps at all powers of two of the radius in both directions, wherever the square of buckets ends.
+TEST(Dbscan, DistinguishesDistantPointsInTheSameBucket) {
+  // Clusters at all powers of two of the radius in both directions, across all borders of the square of buckets.
   Dbscan dbscan(512);
   const Points clump = cloud(6, 12, 0.3);
   Points points;

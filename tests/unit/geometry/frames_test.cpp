@@ -33,7 +33,7 @@ TEST(Frames, SignsAreThoseOfTheConventions) {
   EXPECT_GT(direction(0.0, 0.1).z(), 0.0) << "elevation up";
 }
 
-TEST(Frames, WhatIsAheadComesCloserAndWhatIsBehindRecedes) {
+TEST(Frames, ReflectorsAheadApproachAndReflectorsBehindRecede) {
   const Eigen::Vector3d velocity = sensor_velocity(1.0, 10.0, 0.0, {3.6, 0.0, 0.5});
   EXPECT_DOUBLE_EQ(stationary_range_rate({1.0, 0.0, 0.0}, velocity), -10.0);
   EXPECT_DOUBLE_EQ(stationary_range_rate({-1.0, 0.0, 0.0}, velocity), 10.0);

@@ -7,7 +7,7 @@
 namespace boresight::geometry {
 namespace {
 
-TEST(Crossing, TellsTheShareBeforeIt) {
+TEST(Crossing, IsTheShareOfTheFirstSegment) {
   const auto share = crossing({0.0, 0.0}, {10.0, 0.0}, {4.0, -1.0}, {4.0, 3.0});
   ASSERT_TRUE(share);
   EXPECT_DOUBLE_EQ(*share, 0.4);

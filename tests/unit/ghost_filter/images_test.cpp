@@ -4,14 +4,14 @@
 namespace boresight::ghosts {
 namespace {
 
-constexpr double kRail = -7.0;
-const Plane kRailPlane{{0.0, kRail}, {1.0, 0.0}};
+constexpr double kRailOffset_m = -7.0;
+const Plane kMirrorPlane{{0.0, kRailOffset_m}, {1.0, 0.0}};
 
 TEST_F(MirrorFilterTest, TheImageOfWhoCreepsIsAGhostThoughItLooksStill) {
   speed_mps_ = 0.0;
   std::size_t ghosts = 0, posts = 0, scans = 0;
   drive(2.0, [&] {
-    rail(kRail);
+    rail(kRailOffset_m);
     still({8.0, -17.5});
   });
   for (int k = 0; k < 20; ++k) {
@@ -21,9 +21,9 @@ TEST_F(MirrorFilterTest, TheImageOfWhoCreepsIsAGhostThoughItLooksStill) {
       const Vector2d p(2.8 + 0.06 * k, 4.0), v(1.2, 0.0);
       track(p, v, 4.5, 2.0);
       hand_over_tracks();
-      rail(kRail);
+      rail(kRailOffset_m);
       post = still({8.0, -17.5});
-      ghost = by_three_bounces(p + Vector2d(0.0, -1.0), v, kRailPlane);
+      ghost = by_three_bounces(p + Vector2d(0.0, -1.0), v, kMirrorPlane);
       scan_->detection_flags[ghost] = corrected_flag::kStationary;
     });
     ++scans;
@@ -42,19 +42,19 @@ TEST_F(MirrorFilterTest, WhatLiesOnATrackedImageIsAGhostThoughItMirrorsNothing) 
       std::uint32_t far_end = 0;
       drive(0.05, [&] {
         const Vector2d p(25.0, 1.0), v(23.0, 0.0);
-        rail(kRail);
+        rail(kRailOffset_m);
         if (with_object) {
           track(p, v);
           direct(p + Vector2d(-2.2, 0.0), v);
-          by_three_bounces(p + Vector2d(-2.2, 0.0), v, kRailPlane);
+          by_three_bounces(p + Vector2d(-2.2, 0.0), v, kMirrorPlane);
         } else {
           ++tracks_->number_of_tracks;  // an empty place, so that the image has the same number
           tracks_->tracks[0] = {};
         }
         // The image's track is longer than the object's.
-        track(kRailPlane.image(p) + Vector2d(5.0, 0.0), v, 14.0, 2.0);
+        track(kMirrorPlane.image(p) + Vector2d(5.0, 0.0), v, 14.0, 2.0);
         hand_over_tracks();
-        far_end = direct(kRailPlane.image(p) + Vector2d(11.5, 0.0), v, -8.0);
+        far_end = direct(kMirrorPlane.image(p) + Vector2d(11.5, 0.0), v, -8.0);
       });
       if (k < 40) continue;
       ++scans;
@@ -72,19 +72,19 @@ TEST_F(MirrorFilterTest, WhatWasLongTrackedIsNoImageForASecondWhereOneWouldBe) {
     std::uint32_t far_end = 0;
     drive(0.05, [&] {
       const Vector2d p(25.0, 1.0), v(23.0, 0.0);
-      rail(kRail);
+      rail(kRailOffset_m);
       // For three seconds it drives alone, then beside what would be mirrored there.
       if (k >= 60) {
         track(p, v);
         direct(p + Vector2d(-2.2, 0.0), v);
-        by_three_bounces(p + Vector2d(-2.2, 0.0), v, kRailPlane);
+        by_three_bounces(p + Vector2d(-2.2, 0.0), v, kMirrorPlane);
       } else {
         ++tracks_->number_of_tracks;  // an empty place, so that it keeps its number
         tracks_->tracks[0] = {};
       }
-      track(kRailPlane.image(p) + Vector2d(5.0, 0.0), v, 14.0, 2.0);
+      track(kMirrorPlane.image(p) + Vector2d(5.0, 0.0), v, 14.0, 2.0);
       hand_over_tracks();
-      far_end = direct(kRailPlane.image(p) + Vector2d(11.5, 0.0), v, -8.0);
+      far_end = direct(kMirrorPlane.image(p) + Vector2d(11.5, 0.0), v, -8.0);
     });
     moving_before += k >= 50 && k < 60 && label(far_end) == Provenance::kMoving ? 1U : 0U;
     moving_at_first += k >= 60 && k < 130 && label(far_end) == Provenance::kMoving ? 1U : 0U;
@@ -108,9 +108,9 @@ TEST_F(MirrorFilterTest, ALongRailGoesOnUnseenAndAShortOneDoesNot) {
         const Vector2d p(50.0, 1.0), v(-9.0, 0.0);
         track(p, v);
         hand_over_tracks();
-        rail(kRail, [&](double x) { return x < 20.0 && x > 20.0 - length_m; });
+        rail(kRailOffset_m, [&](double x) { return x < 20.0 && x > 20.0 - length_m; });
         direct(p + Vector2d(-2.2, 0.0), v);
-        ghost = by_three_bounces(p + Vector2d(-2.2, 0.0), v, kRailPlane);
+        ghost = by_three_bounces(p + Vector2d(-2.2, 0.0), v, kMirrorPlane);
       });
       if (k < 40) continue;
       ++scans;

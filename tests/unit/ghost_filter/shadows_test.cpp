@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-struct Box {
+struct ShadowingBox {
   Vector2d middle_m, axis;
   double half_length_m, half_width_m;
   [[nodiscard]] bool contains(const Vector2d& p) const {
@@ -41,7 +41,7 @@ TEST(Shadows, AreWhatNoRayReaches) {
     const double heading = turn(random);
     const Curve curve{
         {20.0 * share(random), 12.0}, {std::cos(0.1 * heading), std::sin(0.1 * heading)}, 0.01 * share(random)};
-    std::vector<Box> boxes;
+    std::vector<ShadowingBox> boxes;
     Shadows shadows;
     shadows.begin(eye);
     for (int k = 0; k < 3; ++k) {
@@ -68,7 +68,7 @@ TEST(Shadows, AreWhatNoRayReaches) {
       const Vector2d place = curve.at(arc), sight = (place - eye).normalized();
       if (curve.crossings(eye, sight)[0] < (place - eye).norm() - 0.01) continue;  // hidden by the curve itself
       bool is_hidden = false, is_close = false;
-      for (const Box& box : boxes) {
+      for (const ShadowingBox& box : boxes) {
         const bool here = box.hides(eye, place);
         is_hidden = is_hidden || here;
         is_close =
@@ -141,7 +141,7 @@ class TruckAlongside {
     for (; time_ns_ < end_ns; time_ns_ += kScan_ns) {
       static_cast<void>(odometry.advance(time_ns_, 20.0, 0.0));
       const Vector2d eye = odometry.position_m();
-      const Box truck{eye + truck_m, {1.0, 0.0}, 8.0, 1.25};
+      const ShadowingBox truck{eye + truck_m, {1.0, 0.0}, 8.0, 1.25};
       for (double x = std::floor(eye.x() - 50.0); x < eye.x() + 50.0; x += 1.0) {
         const Vector2d place(x, kWall_m);
         if (has_truck && truck.hides(eye, place)) continue;

@@ -40,9 +40,9 @@ TEST(Ars408Commands, TellTheSpeedWithItsDirection) {
   EXPECT_EQ(hex(ars408::ego_speed(ego(10.0F, 0.0F), 0)), "41F4");   // forward, 500
   EXPECT_EQ(hex(ars408::ego_speed(ego(-10.0F, 0.0F), 0)), "81F4");  // backward, 500
   EXPECT_EQ(hex(ars408::ego_speed(ego(0.0F, 0.0F), 0)), "0000");
-  EXPECT_EQ(hex(ars408::ego_speed(ego(0.009F, 0.0F), 0)), "0000") << "standstill as far as the signal can tell";
+  EXPECT_EQ(hex(ars408::ego_speed(ego(0.009F, 0.0F), 0)), "0000") << "below the signal's resolution";
   EXPECT_EQ(hex(ars408::ego_speed(ego(0.02F, 0.0F), 0)), "4001");
-  EXPECT_EQ(hex(ars408::ego_speed(ego(500.0F, 0.0F), 0)), "5FFF") << "confined to what the signal can carry";
+  EXPECT_EQ(hex(ars408::ego_speed(ego(500.0F, 0.0F), 0)), "5FFF") << "limited to the signal's range";
   EXPECT_EQ(ars408::ego_speed(ego(10.0F, 0.0F), 2)->can_id, 0x320u);
   EgoMotion motion = ego(-10.0F, 0.0F);
   motion.fields = ego_field::kSpeed;

@@ -1,4 +1,4 @@
-// Frames of an ARS408 as a sensor would send them.
+// Frames of an ARS408, as sent by the sensor.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct CanFrame {
 };
 using Frames = std::vector<CanFrame>;
 
-/// What one cluster or object says.
+/// Values of one cluster or object.
 struct Target {
   double x_m = 30.0, y_m = 4.1, vx_mps = -10.0, vy_mps = 2.0, rcs_dbsm = 7.5;
   unsigned rms_x = 10, rms_y = 12, rms_vx = 8, rms_vy = 14;
@@ -72,7 +72,7 @@ inline CanFrame quality(std::uint32_t frame_id, unsigned id, const Target& targe
   return frame;
 }
 
-/// A whole cycle of clusters with ids from 0 on, in the sensor's order.
+/// A complete cycle of clusters with ids from 0, in the sensor's order.
 inline Frames cluster_cycle(const std::vector<Target>& targets, bool with_quality, unsigned counter = 17) {
   Frames frames{cluster_status(static_cast<unsigned>(targets.size()), 0, counter)};
   for (unsigned i = 0; i < targets.size(); ++i) {

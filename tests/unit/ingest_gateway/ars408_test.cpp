@@ -11,13 +11,13 @@
 #include "tests/unit/ingest_gateway/ars408_frames.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/put_signal.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
 using testing::HasSubstr;
 using namespace ars408_frames;
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 class Ars408Test : public testing::Test {
  protected:
@@ -32,7 +32,7 @@ class Ars408Test : public testing::Test {
     now_ns_ += duration_ns;
     decoder_.tick(now_ns_, output_);
   }
-  /// Puts one target through and returns the flags of its detection.
+  /// Decodes one target and returns the flags of its detection.
   std::uint16_t flags_of(const Target& target) {
     take(cluster_cycle({target}, true));
     return output_.scan->detection_flags[0];
@@ -79,7 +79,7 @@ TEST_F(Ars408Test, StdsFollowFromCodesAndRoundingByPropagation) {
   Target target;
   target.y_m = 15.3;
   take(cluster_cycle({target}, true));
-  // Codes 10, 12, 8, 14 stand for these, and a value is rounded to 0.2 m or 0.25 m/s.
+  // Standard deviations of codes 10, 12, 8, 14; values are rounded to 0.2 m or 0.25 m/s.
   const double step = 1.0 / std::sqrt(12.0);
   const std::array<double, 4> stds{std::hypot(0.063, 0.2 * step), std::hypot(0.105, 0.2 * step),
                                    std::hypot(0.038, 0.25 * step), std::hypot(0.174, 0.25 * step)};
@@ -155,7 +155,7 @@ TEST_F(Ars408Test, QualityTellsWhetherAClusterIsBelieved) {
 TEST_F(Ars408Test, ObjectsAreDetectionsTooUnlessTheyAreOnlyPredicted) {
   for (unsigned state = 0; state < 8; ++state) {
     Target target;
-    target.y_m = -204.6;  // beyond what a cluster could say
+    target.y_m = -204.6;  // beyond the range of a cluster
     target.probability = 5;
     target.state = state;
     take(object_status(1, 300 + state));
@@ -187,13 +187,13 @@ TEST_F(Ars408Test, NearAndFarClustersAreOneList) {
     take(general(layout::kClusterGeneralId, i, {}));
     take(quality(layout::kClusterQualityId, i, {}));
   }
-  EXPECT_EQ(output_.scans, 1u) << "whether quality frames come one by one or all at the end";
+  EXPECT_EQ(output_.scans, 1u) << "quality frames after each general frame, or all at the end";
   EXPECT_EQ(output_.scan->number_of_valid_detections, 3u);
 }
 
 TEST_F(Ars408Test, WhetherQualityIsSentIsLearnt) {
   const std::vector<Target> targets(4);
-  // The first cycle has to wait for what may come, the second does not.
+  // The first cycle waits for possible quality frames, the second does not.
   take(cluster_cycle(targets, false));
   EXPECT_EQ(output_.scans, 0u);
   pass(31 * kMillisecond);
@@ -203,7 +203,7 @@ TEST_F(Ars408Test, WhetherQualityIsSentIsLearnt) {
   EXPECT_EQ(output_.scan->range_std_m[3], 0.0F);
   take(cluster_cycle(targets, false));
   EXPECT_EQ(output_.scans, 2u);
-  // Switched on: the cycle in which it shows is out already, the next one waits.
+  // Switched on: the first cycle with quality is already published, the next one waits.
   take(cluster_cycle(targets, true));
   EXPECT_EQ(output_.scans, 3u);
   EXPECT_FALSE(output_.scan->has(scan_field::kStds));
@@ -211,7 +211,7 @@ TEST_F(Ars408Test, WhetherQualityIsSentIsLearnt) {
   EXPECT_EQ(output_.scans, 4u);
   EXPECT_TRUE(output_.scan->has(scan_field::kStds));
   EXPECT_EQ(output_.all_faults(), 0u) << output_.last_fault;
-  // Switched off: looks like a loss once.
+  // Switched off: reported as a loss once.
   take(cluster_cycle(targets, false));
   pass(31 * kMillisecond);
   EXPECT_EQ(output_.last_fault,
@@ -251,7 +251,7 @@ TEST_F(Ars408Test, AnIncompleteCycleIsPublishedAsSuchAndSaysWhatIsMissing) {
             "ARS408 cluster cycle 18 is incomplete: 1 of 5 general and 1 of 5 quality frames are missing");
   EXPECT_EQ(output_.scan->integrity, scan_integrity::kIncomplete);
   EXPECT_EQ(output_.scan->number_of_valid_detections, 4u);
-  EXPECT_NEAR(output_.scan->range_m[2], std::hypot(77.0, 4.1), 1e-4) << "in the order in which they came";
+  EXPECT_NEAR(output_.scan->range_m[2], std::hypot(77.0, 4.1), 1e-4) << "in order of arrival";
   EXPECT_EQ(output_.scan->range_std_m[2], 0.0F) << "its quality is missing";
   EXPECT_GT(output_.scan->range_std_m[3], 0.0F);
   // The next status frame ends a cycle as well.
@@ -293,10 +293,10 @@ TEST_F(Ars408Test, RepeatedAndSurplusFramesAreReportedAndDoNoHarm) {
   take(cluster_status(2, 0));
   take(general(layout::kClusterGeneralId, 7, {}));
   take(general(layout::kClusterGeneralId, 7, other));
-  EXPECT_EQ(output_.last_fault, "ARS408 cluster 7 came twice in a cycle: the first one counts");
+  EXPECT_EQ(output_.last_fault, "ARS408 cluster 7 occurs twice in a cycle; the first one is used");
   take(general(layout::kClusterGeneralId, 8, {}));
   take(general(layout::kClusterGeneralId, 9, other));
-  EXPECT_EQ(output_.last_fault, "ARS408 cluster 9 is beyond the 2 that the status frame announced");
+  EXPECT_EQ(output_.last_fault, "ARS408 cluster 9 exceeds the 2 that the status frame announced");
   take(quality(layout::kClusterQualityId, 8, {}));
   take(quality(layout::kClusterQualityId, 8, {}));
   take(quality(layout::kClusterQualityId, 7, {}));
@@ -421,7 +421,7 @@ TEST_F(Ars408Test, RandomFramesNeitherCrashNorLeadToNonsense) {
     }
   }
   EXPECT_GT(checked, 1000u);
-  // Good cycles are not disturbed by what came before: the second one at the latest is complete and silent.
+  // Earlier frames do not disturb good cycles: at the latest the second one is complete and without a fault.
   take(cluster_cycle(std::vector<Target>(9), true));
   const std::size_t faults = output_.all_faults();
   take(cluster_cycle(std::vector<Target>(9), true));

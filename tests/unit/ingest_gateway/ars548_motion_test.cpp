@@ -10,12 +10,12 @@
 
 #include "interfaces/wire/ars548.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest::ars548 {
 namespace {
 
 constexpr float kRadian = 3.14159265F / 180.0F;
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 std::string hex(const MotionDatagram& datagram) {
   std::string text;
@@ -52,7 +52,7 @@ TEST(Ars548Motion, EveryMessageByteForByte) {
   MotionFeed feed;
   const auto sent = feed.encode(ego, 0);
   ASSERT_EQ(sent.size(), 5u);
-  // Service and method, length of what follows, reserved, value, reserved.
+  // Service and method, length of the following bytes, reserved, value, reserved.
   const auto zeros = [](std::size_t bytes) { return std::string(2 * bytes, '0'); };
   EXPECT_EQ(hex(sent[0]), "000001430000001c" + zeros(3) + "42100000" + zeros(21)) << "36 km/h";
   EXPECT_EQ(hex(sent[1]), "0000014500000016" + zeros(1) + "02" + zeros(20)) << "backward";
@@ -103,7 +103,7 @@ TEST(Ars548Motion, DirectionOfTravel) {
   EXPECT_EQ(direction(feed, 0, 0.0F, 300), 0);
   EXPECT_EQ(direction(feed, ego_field::kReverse, -2.0F, 400), 2);
   EXPECT_EQ(direction(feed, ego_field::kReverse, 2.0F, 500), 1);
-  EXPECT_EQ(direction(feed, 0, -2.0F, 600), 1) << "a sign that nobody vouches for";
+  EXPECT_EQ(direction(feed, 0, -2.0F, 600), 1) << "a sign without kReverse";
   const auto speed = feed.encode(ego_of(ego_field::kSpeed | ego_field::kReverse, -2.5F), 700 * kMillisecond);
   EXPECT_EQ(value_of(speed[0], wire::ars548::kSpeed_kmph), 9.0F) << "without a sign";
 }
@@ -120,7 +120,7 @@ TEST(Ars548Motion, AtMostFiftyTimesASecond) {
   EXPECT_EQ(runtime::counted_allocations(), before);
   EXPECT_EQ(rounds, 50);
   EXPECT_EQ(feed.encode(ego, 999 * kMillisecond).size(), 0u);
-  EXPECT_EQ(feed.encode(ego, 5 * kMillisecond).size(), 3u) << "a clock that went back is no reason to fall silent";
+  EXPECT_EQ(feed.encode(ego, 5 * kMillisecond).size(), 3u) << "still sends after the clock went back";
 }
 
 }  // namespace

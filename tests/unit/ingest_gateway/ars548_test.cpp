@@ -107,7 +107,7 @@ TEST_F(Ars548Test, WithProtectionRequiredTheListIsCheckedAndItsCounterFollowed) 
   frame.kind = recording::FrameKind::kUdp;
   frame.payload = *bytes_;
   radar.take(frame, {}, out);
-  EXPECT_EQ(out.scans, 0u) << "real firmware leaves the header zero: not good enough here";
+  EXPECT_EQ(out.scans, 0u) << "some firmware leaves the header at zero, which is rejected here";
   EXPECT_EQ(out.count(Fault::kWireValue), 1u);
   e2e::Protector protector(protection);
   for (std::uint32_t i = 0; i < 5; ++i) {
@@ -185,7 +185,7 @@ TEST_F(Ars548Test, RangeRatesOutsideTheUnambiguousIntervalAreMarked) {
     EXPECT_EQ((scan_->detection_flags[i] & detection_flag::kAmbiguous) != 0,
               std::abs(sent_->range_rate_mps[i]) > 10.0F);
   }
-  put_f32(*bytes_, layout::kRangeRateMin_mps, 20.0F);  // an interval that is none
+  put_f32(*bytes_, layout::kRangeRateMin_mps, 20.0F);  // an invalid interval
   static_cast<void>(decode(*bytes_, *scan_));
   EXPECT_FALSE(scan_->has(scan_field::kAmbiguity));
 }

@@ -1,17 +1,16 @@
-// What waits to be read is not given up because time has passed meanwhile.
+// Cycles and messages of waiting frames are not dropped by the advance of time.
 #include "services/ingest_gateway/core/backlog.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/benchmarks/ingest/gateway_bench.hpp"
 #include "tests/benchmarks/ingest/scans.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-
-TEST(Backlog, TimeGoesOnWhileFramesAreTakenAsTheyCome) {
+TEST(Backlog, TimeAdvancesWhileFramesAreReadAtOnce) {
   Backlog backlog;
   std::int64_t now_ns = 1'000 * kMillisecond;
   static_cast<void>(backlog.is_read(now_ns));
@@ -20,7 +19,7 @@ TEST(Backlog, TimeGoesOnWhileFramesAreTakenAsTheyCome) {
   EXPECT_TRUE(backlog.is_read(now_ns += 5 * kMillisecond));
 }
 
-TEST(Backlog, OneOldFrameAmongNewOnesTellsThatOthersWait) {
+TEST(Backlog, OneOldFrameAmongNewOnesMeansThatOthersWait) {
   Backlog backlog;
   std::int64_t now_ns = 1'000 * kMillisecond;
   static_cast<void>(backlog.is_read(now_ns));
@@ -30,7 +29,7 @@ TEST(Backlog, OneOldFrameAmongNewOnesTellsThatOthersWait) {
   EXPECT_TRUE(backlog.is_read(now_ns += 5 * kMillisecond));
 }
 
-TEST(Backlog, AfterAPauseOfTheProcessWhatWaitedIsReadFirst) {
+TEST(Backlog, AfterAPauseOfTheProcessWaitingFramesAreReadFirst) {
   Backlog backlog;
   std::int64_t now_ns = 1'000 * kMillisecond;
   static_cast<void>(backlog.is_read(now_ns));
@@ -69,11 +68,11 @@ std::size_t scans_of_a_list_with_a_newer_frame_between(bool live) {
   return bench.sink.scans;
 }
 
-TEST(Backlog, ANewerFrameOfAnotherLinkEndsNothingThatWaitsOnThisOne) {
+TEST(Backlog, ANewerFrameOfAnotherLinkEndsNoCycleThatWaitsOnThisOne) {
   EXPECT_EQ(scans_of_a_list_with_a_newer_frame_between(true), 1u);
 }
 
-TEST(Backlog, InARecordingTheFramesAreInOrderAndTellTheTime) {
+TEST(Backlog, InARecordingTheStampsOfFramesAreTheTime) {
   EXPECT_EQ(scans_of_a_list_with_a_newer_frame_between(false), 0u);
 }
 

@@ -17,13 +17,13 @@
 #include "services/replay/core/radar_service.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 #include "tests/unit/replay/document.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kEpoch = 1'767'225'600'000'000'000;
+constexpr std::int64_t kServiceEpoch_ns = 1'767'225'600'000'000'000;
 using Bytes = std::vector<std::uint8_t>;
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
@@ -49,7 +49,7 @@ class ServiceBody : public testing::Test {
   MemoryOutput out_;
 };
 
-TEST_F(ServiceBody, TheDocumentsExampleIsUnderstood) {
+TEST_F(ServiceBody, TheDocumentsExampleIsDecoded) {
   take(example("detection list"));
   ASSERT_EQ(out_.scans, 1u) << out_.last_fault;
   const RadarScan& scan = *out_.scan;
@@ -87,7 +87,7 @@ TEST_F(ServiceBody, TheDocumentsExampleIsUnderstood) {
   EXPECT_EQ(time.time_ns, 1'767'225'600'260'000'000);
 }
 
-TEST_F(ServiceBody, AValueThatIsNotAllowedConcernsItsDetectionOnly) {
+TEST_F(ServiceBody, AValueThatIsNotAllowedInvalidatesItsDetectionOnly) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   struct Case {
@@ -120,13 +120,13 @@ TEST_F(ServiceBody, AValueThatIsNotAllowedConcernsItsDetectionOnly) {
       Bytes body = example("detection list");
       put_f32(body, kFirst + std_at, value);
       take(body);
-      EXPECT_EQ(out_.scan->detection_flags[0], 0u) << "a std that cannot be is not stated";
+      EXPECT_EQ(out_.scan->detection_flags[0], 0u) << "an invalid standard deviation is treated as not stated";
     }
   }
   EXPECT_EQ(out_.all_faults(), 0u);
 }
 
-TEST_F(ServiceBody, QuantitiesThatAreNotStatedAreNotLookedAt) {
+TEST_F(ServiceBody, QuantitiesThatAreNotStatedAreIgnored) {
   Bytes body = example("detection list");
   body[23] = 0;  // fields
   put_f32(body, kFirst + 8, std::numeric_limits<float>::quiet_NaN());
@@ -183,10 +183,11 @@ TEST_F(ServiceBody, ABodyThatContradictsItselfIsRejectedWithAReason) {
   EXPECT_THAT(out_.last_fault, testing::HasSubstr("36"));
 }
 
-// --- the whole way ---------------------------------------------------------------------------------------------------
+// --- through the gateway
+// ---------------------------------------------------------------------------------------------------
 
 /// Two radars and the vehicle's motion by SOME/IP on one network.
-VehicleConfig vehicle() {
+VehicleConfig service_vehicle() {
   VehicleConfig v;
   const auto source = [](std::uint16_t instance) {
     SourceAddress s;
@@ -243,7 +244,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
     gateway_.start(0);
   }
 
-  /// What the gateway sends reaches the server, whose answers are kept for the next step().
+  /// Passes the gateway's datagrams to the server, and keeps the answers for the next step().
   void send(const recording::Frame& frame) override {
     ++datagrams_sent;
     server_.receive(now_ns_, frame.payload, {frame.source.address, 30490}, frame.destination.address.is_multicast(),
@@ -259,9 +260,9 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
     frame.source = from;
     frame.destination = to;
     frame.payload = payload;
-    gateway_.take(frame, {now_ns_, kEpoch, TimeSource::kLinkArrival});
+    gateway_.take(frame, {now_ns_, kServiceEpoch_ns, TimeSource::kLinkArrival});
   }
-  /// Time passes in steps of 10 ms, with discovery going on.
+  /// Advances the time in steps of 10 ms, with service discovery.
   void pass(std::int64_t duration_ns) {
     for (const std::int64_t end = now_ns_ + duration_ns; now_ns_ < end;) {
       now_ns_ += 10 * kMillisecond;
@@ -274,7 +275,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
       gateway_.tick(now_ns_);
     }
   }
-  /// One event of an instance to where it is subscribed.
+  /// Sends one event of an instance to its subscribers.
   template <typename Message>
   void publish(std::uint16_t instance, std::uint16_t eventgroup, const Message& message) {
     for (const recording::Endpoint& to : server_.destinations(instance, eventgroup, now_ns_)) {
@@ -284,7 +285,8 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
   }
   void publish_list(std::uint16_t instance) {
     given_->cycle_counter += 1;
-    publish(instance, 1, encoders_[instance].detection_list(*given_, {kEpoch + now_ns_ - 5 * kMillisecond, 1}));
+    publish(instance, 1,
+            encoders_[instance].detection_list(*given_, {kServiceEpoch_ns + now_ns_ - 5 * kMillisecond, 1}));
   }
 
   static inline const recording::IpAddress kGroup = recording::IpAddress::v4(0xE0F4E0F5);
@@ -298,7 +300,7 @@ class SomeIpGateway : public testing::Test, protected MemorySink {
   bool server_runs_ = true;
   std::size_t datagrams_sent = 0;
   std::vector<std::pair<recording::Endpoint, std::string>> joined;
-  Gateway gateway_{vehicle(), *this};
+  Gateway gateway_{service_vehicle(), *this};
 
  private:
   static replay::DataIds ids(unsigned instance) { return {0x42530001u | instance << 8, 0x42530002u | instance << 8}; }
@@ -337,7 +339,7 @@ TEST_F(SomeIpGateway, EgoMotionArrives) {
   given.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
   given.speed_mps = -3.5F;
   given.yaw_rate_radps = 0.25F;
-  publish(9, 2, encoders_[9].ego_motion(given, {kEpoch + now_ns_ - kMillisecond, 1}));
+  publish(9, 2, encoders_[9].ego_motion(given, {kServiceEpoch_ns + now_ns_ - kMillisecond, 1}));
   ASSERT_EQ(egos, 1u);
   EXPECT_EQ(ego.speed_mps, -3.5F);
   EXPECT_EQ(ego.yaw_rate_radps, 0.25F);
@@ -349,7 +351,7 @@ TEST_F(SomeIpGateway, EgoMotionArrives) {
 TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   pass(1000 * kMillisecond);
   publish_list(1);
-  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   Bytes damaged(message.begin(), message.end());
   damaged[500] ^= 4;
   publish(1, 1, damaged);
@@ -358,10 +360,10 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   EXPECT_EQ(last_fault_radar, 1u);
   EXPECT_EQ(source_statistics[1].e2e_wrong, 1u);
   publish_list(1);
-  EXPECT_EQ(scans, 2u) << "the next one is sound";
-  EXPECT_EQ(source_statistics[1].e2e_lost, 1u) << "the damaged one never came";
-  given_->number_of_valid_detections = 10;  // in one datagram, as segments that come again are known as such before
-  const auto again = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  EXPECT_EQ(scans, 2u) << "the next one is valid";
+  EXPECT_EQ(source_statistics[1].e2e_lost, 1u) << "the damaged one counts as lost";
+  given_->number_of_valid_detections = 10;  // unsegmented, as repeated segments are detected before the check
+  const auto again = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   const Bytes repeated(again.begin(), again.end());
   publish(1, 1, repeated);
   publish(1, 1, repeated);
@@ -370,11 +372,11 @@ TEST_F(SomeIpGateway, AListThatFailsItsCheckIsDroppedAndCountedForItsRadar) {
   EXPECT_EQ(source_statistics[2].e2e_wrong, 0u);
 }
 
-/// A project may protect the service's messages by a shorter profile and put the header further back.
+/// A project may protect the service's messages by a shorter profile with another header offset.
 class OtherProfiles : public testing::TestWithParam<e2e::Config> {};
 
-TEST_P(OtherProfiles, AreCheckedAndTheBodyFoundBehindThem) {
-  VehicleConfig v = vehicle();
+TEST_P(OtherProfiles, AreCheckedAndTheBodyIsFound) {
+  VehicleConfig v = service_vehicle();
   v.radars.resize(1);
   v.radars[0].e2e.protection = GetParam();
   v.radars[0].source.sender = "192.168.10.13";
@@ -416,10 +418,10 @@ INSTANTIATE_TEST_SUITE_P(
                     e2e::Config{
                         .profile = e2e::Profile::kP07, .data_id = 7, .offset_bytes = 20, .max_delta_counter = 9}));
 
-TEST_F(SomeIpGateway, ALostSegmentCostsItsMessageOnly) {
+TEST_F(SomeIpGateway, ALostSegmentLosesOnlyItsMessage) {
   pass(1000 * kMillisecond);
   std::size_t n = 0;
-  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
     if (n++ != 7) deliver(datagram, endpoint_of(1), {recording::IpAddress::v4(0xC0A80A02), 41000});
   });
@@ -428,28 +430,28 @@ TEST_F(SomeIpGateway, ALostSegmentCostsItsMessageOnly) {
   publish_list(2);
   EXPECT_EQ(scans, 2u);
   pass(200 * kMillisecond);
-  EXPECT_EQ(count(Fault::kWireLength), 1u) << "said once";
+  EXPECT_EQ(count(Fault::kWireLength), 1u) << "reported once";
 }
 
-TEST_F(SomeIpGateway, EventsOfStrangersAreNotTaken) {
+TEST_F(SomeIpGateway, EventsOfUnknownSendersAreRejected) {
   pass(1000 * kMillisecond);
-  const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+  const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
   std::size_t segments = 0;
   replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
     deliver(datagram, at(30999), {recording::IpAddress::v4(0xC0A80A02), 41000});
     ++segments;
   });
   EXPECT_EQ(scans, 0u);
-  EXPECT_EQ(count(Fault::kWireUnknown), segments) << "not even put together";
+  EXPECT_EQ(count(Fault::kWireUnknown), segments) << "not reassembled";
 }
 
-TEST_F(SomeIpGateway, AServerThatGoesSilentIsReportedAndFoundAgain) {
+TEST_F(SomeIpGateway, ASilentServerIsReportedAndFoundAgain) {
   pass(1000 * kMillisecond);
   publish_list(1);
   EXPECT_EQ(scans, 1u);
   server_runs_ = false;
   pass(4000 * kMillisecond);
-  EXPECT_EQ(count(Fault::kLink), 3u) << "each of the three subscriptions says that its offer expired";
+  EXPECT_EQ(count(Fault::kLink), 3u) << "each of the three subscriptions reports the expired offer";
   server_runs_ = true;
   server_ = boresight::someip::SdServer({.service = replay::radar_service(),
                                          .instances = {{1, endpoint_of(1)}, {2, endpoint_of(2)}, {9, endpoint_of(9)}},
@@ -476,10 +478,10 @@ TEST_F(SomeIpGateway, AMulticastGroupIsJoinedOnTheInterfaceOfTheVehicleFile) {
 TEST_F(SomeIpGateway, AllocatesNothing) {
   pass(1000 * kMillisecond);
   publish_list(1);
-  // Encoded before, since the other side may allocate.
+  // Encoded before, since the encoder may allocate.
   std::vector<Bytes> datagrams;
   for (int i = 0; i < 5; ++i) {
-    const auto message = encoders_[1].detection_list(*given_, {kEpoch, 1});
+    const auto message = encoders_[1].detection_list(*given_, {kServiceEpoch_ns, 1});
     replay::for_each_datagram(message, [&](std::span<const std::uint8_t> datagram) {
       datagrams.emplace_back(datagram.begin(), datagram.end());
     });

@@ -9,11 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -44,7 +44,7 @@ EgoReading everything(double speed_mps, double yaw_rate_radps, double steering_r
 
 EgoMotion motion(const EgoAssembler& ego) {
   EgoMotion out;
-  std::memset(static_cast<void*>(&out), 0xA5, sizeof out);  // a loaned chunk holds what was there before
+  std::memset(static_cast<void*>(&out), 0xA5, sizeof out);  // a loaned chunk holds old data
   ego.write(out);
   return out;
 }
@@ -75,14 +75,14 @@ TEST(EgoAssembler, ASpeedCompletesAMotionOfItsOwnTime) {
   EXPECT_EQ(out.longitudinal_acceleration_mps2, 0.0F);
 }
 
-TEST(EgoAssembler, NothingIsClaimedBeforeASpeedCame) {
+TEST(EgoAssembler, NoMotionIsCompleteBeforeTheFirstSpeed) {
   EgoAssembler ego(EgoConfig{});
   EXPECT_FALSE(ego.take({}, at(0)).complete);
   EXPECT_FALSE(ego.take(gear(true), at(0)).complete);
   EXPECT_EQ(motion(ego).fields, 0u);
 }
 
-TEST(EgoAssembler, OldSignalsAreLeftOutAndZero) {
+TEST(EgoAssembler, OldSignalsAreMissingInFieldsAndZero) {
   EgoAssembler ego(EgoConfig{});
   ASSERT_TRUE(ego.take(everything(10.0, 0.1, 0.2), at(0)).complete);
   ASSERT_TRUE(ego.take(speed(10.0), at(200 * kMillisecond)).complete);
@@ -94,7 +94,7 @@ TEST(EgoAssembler, OldSignalsAreLeftOutAndZero) {
   EXPECT_EQ(out.steering_angle_rad, 0.0F);
 }
 
-TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersTaken) {
+TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersUsed) {
   const std::vector<double> impossible = {kNan, kInfinity, -kInfinity, 1e300};
   for (const double bad : impossible) {
     EgoAssembler ego(EgoConfig{});
@@ -105,7 +105,7 @@ TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersTaken) {
     result = ego.take(everything(10.0, 0.1, bad), at(kMillisecond));
     EXPECT_TRUE(result.complete);
     EXPECT_NE(result.rejected.find("steering"), std::string_view::npos);
-    EXPECT_FLOAT_EQ(motion(ego).steering_angle_rad, 0.2F) << "the one before it";
+    EXPECT_FLOAT_EQ(motion(ego).steering_angle_rad, 0.2F) << "the previous one";
     result = ego.take(everything(bad, 0.15, 0.3), at(2 * kMillisecond));
     EXPECT_FALSE(result.complete);
     EXPECT_NE(result.rejected.find("speed"), std::string_view::npos);
@@ -114,7 +114,7 @@ TEST(EgoAssembler, ImpossibleSignalsAreRejectedWithAReasonAndTheOthersTaken) {
   }
 }
 
-TEST(EgoAssembler, LimitsAreWhereTheySay) {
+TEST(EgoAssembler, LimitsAreExact) {
   const auto takes = [](const EgoReading& reading) {
     EgoAssembler ego(EgoConfig{});
     return ego.take(reading, at(0)).rejected.empty();
@@ -137,7 +137,7 @@ TEST(EgoAssembler, ASpikeIsRejectedAndANewLevelIsAcceptedWithTheThirdReading) {
   EXPECT_TRUE(take(20.1).complete) << "a single spike";
   EXPECT_FALSE(take(25.0).complete);
   EXPECT_FALSE(take(35.0).complete);
-  EXPECT_FALSE(take(5.0).complete) << "spikes that do not agree are no level";
+  EXPECT_FALSE(take(5.0).complete) << "different spikes are no new level";
   EXPECT_TRUE(take(20.2).complete);
   EXPECT_FALSE(take(25.0).complete);
   EXPECT_FALSE(take(25.1).complete);
@@ -148,7 +148,7 @@ TEST(EgoAssembler, ASpikeIsRejectedAndANewLevelIsAcceptedWithTheThirdReading) {
   EXPECT_TRUE(take(25.2).complete);
 }
 
-TEST(EgoAssembler, AfterASilenceAnySpeedIsTaken) {
+TEST(EgoAssembler, AfterASilenceAnySpeedIsAccepted) {
   EgoAssembler ego(EgoConfig{});
   ASSERT_TRUE(ego.take(speed(20.0), at(0)).complete);
   EXPECT_FALSE(ego.take(speed(5.0), at(200 * kMillisecond)).complete);
@@ -157,7 +157,7 @@ TEST(EgoAssembler, AfterASilenceAnySpeedIsTaken) {
 }
 
 TEST(EgoAssembler, HardBrakingWithJitteringArrivalIsNeverRejected) {
-  // 12 m/s² from 40 m/s at 80 Hz; frames wait up to 12 ms behind others, so that two may come at once.
+  // 12 m/s² from 40 m/s at 80 Hz; frames queue for up to 12 ms, so that two may arrive at the same time.
   std::mt19937_64 random(7);
   std::uniform_int_distribution<std::int64_t> wait_ns(0, 12 * kMillisecond);
   for (int run = 0; run < 50; ++run) {
@@ -174,8 +174,8 @@ TEST(EgoAssembler, HardBrakingWithJitteringArrivalIsNeverRejected) {
   }
 }
 
-TEST(EgoAssembler, WheelsThatRollOverABumpAreNoFault) {
-  // From a real drive, 11 … 16 ms apart.
+TEST(EgoAssembler, ASpeedJumpOnABumpIsNoFault) {
+  // From a recorded drive, 11 … 16 ms apart.
   EgoAssembler ego(EgoConfig{});
   std::int64_t t = 0;
   for (const double v : {15.66, 16.50, 16.59, 15.79, 15.36, 15.98, 16.23, 15.68, 15.21, 14.59, 15.00}) {
@@ -198,8 +198,8 @@ TEST(EgoAssembler, DirectionIsInTheSignOnlyIfItIsKnown) {
   static_cast<void>(ego.take(gear(false), at(50 * kMillisecond)));
   ASSERT_TRUE(ego.take(speed(1.5), at(60 * kMillisecond)).complete);
   EXPECT_FLOAT_EQ(motion(ego).speed_mps, 1.5F);
-  EXPECT_TRUE(motion(ego).has(ego_field::kReverse)) << "forward is known too";
-  // A gear that is not told any more is not known.
+  EXPECT_TRUE(motion(ego).has(ego_field::kReverse)) << "forward is known as well";
+  // Without further gear signals the direction is unknown.
   for (std::int64_t t = 160; t <= 1560; t += 100) ASSERT_TRUE(ego.take(speed(1.5), at(t * kMillisecond)).complete);
   EXPECT_FALSE(motion(ego).has(ego_field::kReverse));
   // By a signed speed.
@@ -217,15 +217,15 @@ TEST(EgoAssembler, StandingStillIsAMotionToo) {
   EXPECT_EQ(out.longitudinal_acceleration_mps2, 0.0F);
 }
 
-TEST(EgoAssembler, AClockThatGoesBackIsToldAndNothingOldSurvivesIt) {
+TEST(EgoAssembler, AClockThatGoesBackIsReportedAndDropsOldSignals) {
   EgoAssembler ego(EgoConfig{});
   ASSERT_TRUE(ego.take(everything(10.0, 0.1, 0.2), at(5'000 * kMillisecond)).complete);
-  // A little: a reading that overtook another.
+  // A small step back: a reading overtook another one.
   auto result = ego.take(speed(10.0), at(4'950 * kMillisecond));
   EXPECT_FALSE(result.complete);
   EXPECT_FALSE(result.time_jumped);
   EXPECT_FALSE(result.rejected.empty());
-  // Much: another recording.
+  // A large step back: another recording.
   result = ego.take(speed(30.0), at(4'700 * kMillisecond));
   EXPECT_TRUE(result.time_jumped);
   EXPECT_TRUE(result.complete);
@@ -233,7 +233,7 @@ TEST(EgoAssembler, AClockThatGoesBackIsToldAndNothingOldSurvivesIt) {
   EXPECT_FALSE(ego.take(speed(30.0), at(4'720 * kMillisecond)).time_jumped);
 }
 
-TEST(EgoAssembler, NeitherWildReadingsNorGoodOnesAllocateOrGiveWildMotions) {
+TEST(EgoAssembler, RandomReadingsNeitherAllocateNorGiveImplausibleMotions) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> wild(-200.0, 200.0);
   EgoAssembler ego(EgoConfig{});

@@ -1,5 +1,4 @@
-// The verdicts of the gateway on a drive as it comes over the wires: quantised, interleaved, with the ego signals of a
-// bus.
+// The gateway's integrity bits on a drive at wire level: quantised, interleaved, with the ego signals of a bus.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -19,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace scan_integrity;
 
-/// Counts verdicts by radar and bit.
+/// Counts integrity bits by radar and bit.
 class Verdicts : public Sink {
  public:
   RadarScan* begin_scan() override { return scan_.get(); }
@@ -54,7 +53,7 @@ class GatewayIntegrity : public testing::Test {
   static void TearDownTestSuite() { fs::remove_all(folder()); }
   static fs::path folder() { return fs::temp_directory_path() / ("boresight-integrity-" + std::to_string(::getpid())); }
 
-  /// The drive through a gateway; `copies(n)` says how often the n-th detection list arrives.
+  /// The drive through a gateway; the n-th detection list arrives `copies(n)` times.
   template <typename Copies>
   static std::unique_ptr<Verdicts> drive(const Copies& copies) {
     auto verdicts = std::make_unique<Verdicts>();
@@ -68,7 +67,7 @@ class GatewayIntegrity : public testing::Test {
       const bool is_list = frame.kind == recording::FrameKind::kUdp && frame.payload.size() > 1000;
       const int times = is_list ? copies(lists++) : 1;
       for (int i = 0; i < times; ++i) {
-        // A copy comes 20 ms later: not in one burst with what it repeats.
+        // A copy arrives 20 ms later, not in one burst with the original.
         gateway.take(frame, {frame.stamp_ns + i * 20'000'000, 0, TimeSource::kLinkArrival});
       }
     }
@@ -80,7 +79,7 @@ class GatewayIntegrity : public testing::Test {
   static inline simulator::DriveFiles files_;
 };
 
-TEST_F(GatewayIntegrity, ASoundDriveIsSound) {
+TEST_F(GatewayIntegrity, AValidDriveHasNoIntegrityFaults) {
   const auto verdicts = drive([](int) { return 1; });
   ASSERT_EQ(verdicts->scans.size(), 4u);
   EXPECT_TRUE(verdicts->faults.empty()) << verdicts->faults.front();
@@ -96,14 +95,14 @@ TEST_F(GatewayIntegrity, ASoundDriveIsSound) {
   EXPECT_EQ(verdicts->synchronised, scans);
 }
 
-TEST_F(GatewayIntegrity, LostAndRepeatedScansAreToldOfTheirRadarOnly) {
-  // These radars count nothing, like the real one: their stamps tell.
+TEST_F(GatewayIntegrity, LostAndRepeatedScansAreReportedForTheirRadarOnly) {
+  // These radars have no counter, like the real one: stamps show gaps and repetitions.
   const auto verdicts = drive([](int n) { return n == 401 ? 0 : n == 802 ? 2 : 1; });
   std::size_t gaps = 0, repetitions = 0, others = 0;
   for (const auto& [id, bits] : verdicts->by_bit) {
     gaps += bits[0];
     repetitions += bits[1];
-    EXPECT_EQ(bits[1], bits[3]) << "a stamp that has not advanced is stale too";
+    EXPECT_EQ(bits[1], bits[3]) << "a stamp that has not advanced is stale as well";
     for (const std::size_t bit : {2u, 4u, 5u, 6u, 7u}) others += bits[bit];
   }
   EXPECT_EQ(gaps, 1u);

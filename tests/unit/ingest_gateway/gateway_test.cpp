@@ -6,11 +6,11 @@
 #include "tests/simulator/wire/ars548_encoder.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kEpoch = 1'700'000'000'000'000'000;
 
 VehicleConfig vehicle() {
@@ -65,7 +65,7 @@ class GatewayTest : public testing::Test {
   std::int64_t offset_ = kEpoch - 5'000'000'000;
 };
 
-TEST_F(GatewayTest, TheSenderTellsWhichRadarItIs) {
+TEST_F(GatewayTest, TheSendersAddressIdentifiesTheRadar) {
   send_list(kSender1);
   EXPECT_EQ(sink_.last_radar, 1u);
   send_list(kSender2);
@@ -74,7 +74,7 @@ TEST_F(GatewayTest, TheSenderTellsWhichRadarItIs) {
   EXPECT_EQ(sink_.all_faults(), 0u);
   send_list(0x0A0D01FF);
   EXPECT_EQ(sink_.scans, 2u);
-  EXPECT_EQ(sink_.count(Fault::kWireUnknown), 1u) << "a stranger on a radar's port";
+  EXPECT_EQ(sink_.count(Fault::kWireUnknown), 1u) << "an unknown sender on a radar's port";
 }
 
 TEST_F(GatewayTest, TheSensorsOwnStampIsMappedToThisClock) {
@@ -83,7 +83,7 @@ TEST_F(GatewayTest, TheSensorsOwnStampIsMappedToThisClock) {
   EXPECT_EQ(sink_.last_time.time_ns, kEpoch - offset_);
 }
 
-TEST_F(GatewayTest, AStampThatCannotBeIsReplacedByTheArrivalAndSaidSo) {
+TEST_F(GatewayTest, AnImplausibleStampIsReplacedByTheArrivalAndMarked) {
   send_list(kSender1, kEpoch + 3'000 * kMillisecond);  // 3 s old
   EXPECT_EQ(sink_.last_time.source, TimeSource::kLinkArrival);
   EXPECT_EQ(sink_.last_time.time_ns, kEpoch + 3'000 * kMillisecond - offset_);
@@ -113,7 +113,7 @@ TEST_F(GatewayTest, EgoSignalsComeFromTheirBusOnly) {
   EXPECT_NEAR(sink_.ego.speed_mps, 12.0F, 0.01F);
   const std::array<std::uint8_t, 8> other{};
   send_can("can0", 0x7FF, other, 1);
-  EXPECT_EQ(sink_.all_faults(), 0u) << "buses carry much else";
+  EXPECT_EQ(sink_.all_faults(), 0u) << "buses carry other traffic";
 }
 
 TEST_F(GatewayTest, ACycleOfTheCanRadarIsDatedBackByItsLatency) {
@@ -164,7 +164,7 @@ TEST_F(GatewayTest, ARemoteFrameCarriesNothing) {
   EXPECT_EQ(sink_.all_faults(), 0u);
 }
 
-TEST_F(GatewayTest, ACycleThatFoundNoMemoryIsGone) {
+TEST_F(GatewayTest, ACycleWithoutMemoryIsDropped) {
   const auto send_cycle = [&](std::int64_t begin_ns) {
     for (std::uint32_t base : {0x210u, 0x220u}) {
       for (std::uint32_t slot = 0; slot < 16; ++slot) {
@@ -198,7 +198,7 @@ TEST_F(GatewayTest, AllocatesNothing) {
   EXPECT_EQ(runtime::counted_allocations(), before);
 }
 
-TEST(RecordingClock, KeepsTheSpacingAndAnchorsAnewWhereTheRecordingJumps) {
+TEST(RecordingClock, KeepsTheSpacingAndSetsANewOffsetAtAJump) {
   RecordingClock clock;
   bool jumped = false;
   EXPECT_EQ(clock.map(1'000'000'000'000, 50, jumped).received_ns, 50);

@@ -1,4 +1,4 @@
-// What a decoder would hand out, kept in memory.
+// Keeps a decoder's output in memory.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace boresight::ingest {
 
-/// Does not allocate once constructed, but for the texts of faults.
+/// Allocates only in the constructor, and for the texts of faults.
 class MemoryOutput : public DecoderOutput, public FaultCounts {
  public:
   RadarScan* begin_scan() override { return refuse_memory ? nullptr : scan.get(); }

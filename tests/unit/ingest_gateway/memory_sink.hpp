@@ -1,4 +1,4 @@
-// What the gateway would publish, kept in memory.
+// Keeps the gateway's output in memory.
 #pragma once
 
 #include <memory>

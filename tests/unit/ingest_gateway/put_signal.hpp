@@ -1,4 +1,4 @@
-// Writes CAN signals bit by bit: the inverse of what decoders do, written differently.
+// Writes CAN signals bit by bit: the inverse of the decoders, implemented differently.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace boresight::ingest {
 
-/// Motorola: from the most significant bit down within a byte, then on at bit 7 of the next one.
+/// Motorola: from the most significant bit down within a byte, then from bit 7 of the next byte.
 inline void put_raw(std::span<std::uint8_t> payload, const wire::CanSignal& signal, std::uint64_t raw) {
   unsigned byte = signal.start_bit / 8u, bit = signal.start_bit % 8u;
   for (unsigned i = 0; i < signal.length; ++i) {

@@ -1,4 +1,4 @@
-// The judge of range rates on simulated drives: sound ones are never accused, damaged ones are told.
+// The check of range rates on simulated drives: valid scans are never suspect, damaged ones are reported.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,13 +12,12 @@
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/scan_integrity.hpp"
 #include "tests/simulator/drive.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
 using namespace scan_integrity;
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 VehicleConfig demo() {
   return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
@@ -34,7 +33,7 @@ void shuffle_rates(RadarScan& scan, std::mt19937_64& random) {
   std::shuffle(scan.range_rate_mps.data(), scan.range_rate_mps.data() + scan.number_of_valid_detections, random);
 }
 
-/// Puts range rates into ±10 m/s, as a radar of that unambiguous interval would report them.
+/// Folds range rates into ±10 m/s, as a radar with that unambiguous interval does.
 void fold_rates(RadarScan& scan) {
   for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
     scan.range_rate_mps[i] = std::remainder(scan.range_rate_mps[i], 20.0F);
@@ -69,11 +68,11 @@ const std::vector<NamedDamage>& damages() {
 struct JudgedRadar {
   explicit JudgedRadar(const RadarConfig& radar) : judge(radar) {}
   ScanJudge judge;
-  std::uint64_t driven = 0;  // scans while the vehicle drove faster than 5 m/s: slower, nothing is said of the motion
+  std::uint64_t driven = 0;  // scans above 5 m/s; below, the motion is not tested
 };
 using JudgedRadars = std::map<std::uint32_t, std::unique_ptr<JudgedRadar>>;
 
-/// Judges of all radars of the demo car on one simulated drive, for each damage.
+/// Checks all radars of the demo vehicle on one simulated drive, for each kind of damage.
 std::vector<JudgedRadars> drive(const simulator::Scenario& scenario, std::uint64_t seed, double duration_s,
                                 const std::vector<NamedDamage>& kinds) {
   const VehicleConfig vehicle = demo();
@@ -105,9 +104,9 @@ std::vector<JudgedRadars> drive(const simulator::Scenario& scenario, std::uint64
 
 class SimulatedDrive : public testing::TestWithParam<std::string> {};
 
-TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
-  // Crooked radars, a wrong speed signal, traffic, ghosts and clutter are sound data; so are range rates folded into an
-  // interval that is known.
+TEST_P(SimulatedDrive, ValidScansAreNeverSuspect) {
+  // Misaligned radars, a wrong speed signal, moving objects, ghosts and clutter are valid data. So are range rates
+  // folded into a known interval.
   const std::vector<NamedDamage> none = {{"as measured", nullptr},
                                          {"folded", [](RadarScan& scan, std::mt19937_64&) { fold_rates(scan); }}};
   for (const std::uint64_t seed : {1u, 4u}) {
@@ -117,21 +116,21 @@ TEST_P(SimulatedDrive, SoundScansAreNeverAccused) {
         const IntegrityCounters& counters = radar->judge.counters();
         EXPECT_GT(counters.scans, 450u);
         EXPECT_EQ(counters.lost_scans, 0u);
-        for (const std::uint64_t accused : counters.by_bit) EXPECT_EQ(accused, 0u) << none[k].first << ", radar " << id;
+        for (const std::uint64_t suspect : counters.by_bit) EXPECT_EQ(suspect, 0u) << none[k].first << ", radar " << id;
       }
     }
   }
 }
 
-TEST_P(SimulatedDrive, DamagedRangeRatesAreToldByEveryRadarAndSoon) {
+TEST_P(SimulatedDrive, DamagedRangeRatesAreReportedForEveryRadarWithinSeconds) {
   const auto judged = drive(simulator::scenario(GetParam()), 5, 25.0, damages());
   for (std::size_t k = 0; k < judged.size(); ++k) {
     for (const auto& [id, radar] : judged[k]) {
-      const std::uint64_t told = radar->judge.counters().by_bit[5];
-      // None in the parking garage: nobody drives there fast enough for range rates to tell damage from slow traffic.
-      // 1500 detections make a verdict; mirrored, the demo radars have only some 15 a scan that count.
-      EXPECT_GE(told, radar->driven / 2) << damages()[k].first << ", radar " << id;
-      EXPECT_LT(told, radar->driven - std::min<std::uint64_t>(radar->driven, 10) + 1) << "not by a single scan";
+      const std::uint64_t reported = radar->judge.counters().by_bit[5];
+      // None in the parking garage: at these speeds, damage looks like slow moving objects. A pool has 1500 detections;
+      // with the opposite sign, only some 15 detections per scan of the demo radars count.
+      EXPECT_GE(reported, radar->driven / 2) << damages()[k].first << ", radar " << id;
+      EXPECT_LT(reported, radar->driven - std::min<std::uint64_t>(radar->driven, 10) + 1) << "not by a single scan";
     }
   }
 }

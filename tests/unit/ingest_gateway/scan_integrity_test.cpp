@@ -15,17 +15,17 @@
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/simulator/drive.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
 using namespace scan_integrity;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::int64_t kScanCycle_ns = 50 * kMillisecond;
+constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A radar that looks ahead, for what does not depend on where it looks.
+/// A forward-looking radar, for tests that do not depend on the direction.
 RadarConfig forward_radar() {
   RadarConfig radar;
   radar.id = 1;
@@ -42,9 +42,9 @@ EgoMotion motion(double speed_mps, double yaw_rate_radps = 0.0, bool direction_k
   return ego;
 }
 
-// ---------------------------------------------------------------- worlds of stationary things and traffic
+// ---------------------------------------------------------------- scenes of stationary and moving objects
 
-/// A scan of a forward radar: `stationary` of the detections stand still, the others drive along the road.
+/// A scan of a forward-looking radar: the share `stationary` is stationary, the others move along the road.
 void fill(RadarScan& scan, std::size_t detections, double stationary, double speed_mps, std::mt19937_64& random) {
   std::uniform_real_distribution<double> azimuth(-1.2, 1.2), range(3.0, 150.0), unit(0.0, 1.0);
   std::normal_distribution<double> noise(0.0, 0.05);
@@ -67,7 +67,7 @@ void fill(RadarScan& scan, std::size_t detections, double stationary, double spe
 class Judged : public testing::Test {
  protected:
   std::uint16_t judge(const EgoMotion* ego = nullptr, unsigned bits = 8) {
-    time_ns_ += kCycle_ns;
+    time_ns_ += kScanCycle_ns;
     ++scan_->cycle_counter;
     return judge_.judge(*scan_, time_ns_, time_ns_ + 10 * kMillisecond, bits, ego);
   }
@@ -91,25 +91,25 @@ class Judged : public testing::Test {
 
 TEST_F(Judged, TrafficIsNoContradiction) {
   const EgoMotion ego = motion(20.0);
-  EXPECT_EQ(contradictions(1200, 200, 0.2, ego, 20.0), 0u) << "a fifth stands still";
+  EXPECT_EQ(contradictions(1200, 200, 0.2, ego, 20.0), 0u) << "a fifth is stationary";
   for (int i = 0; i < 50; ++i) {
-    EXPECT_EQ(contradictions(10, 200, 0.0, ego, 20.0), 0u) << "half a second of nothing but traffic";
+    EXPECT_EQ(contradictions(10, 200, 0.0, ego, 20.0), 0u) << "half a second of moving objects only";
     EXPECT_EQ(contradictions(20, 200, 0.5, ego, 20.0), 0u);
   }
 }
 
-TEST_F(Judged, ATrackerThatSeesTrafficOnlyIsNotAccused) {
+TEST_F(Judged, ATrackerOfMovingObjectsOnlyIsNotSuspect) {
   EXPECT_EQ(contradictions(20 * 120, 10, 0.0, motion(25.0), 25.0), 0u);
 }
 
-TEST_F(Judged, AWrongSpeedIsToldAndTakenBackWhenItEnds) {
+TEST_F(Judged, AWrongSpeedIsReportedUntilItEnds) {
   EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
   EXPECT_GT(contradictions(100, 100, 0.6, motion(22.5), 15.0), 40u);
   EXPECT_LT(contradictions(100, 100, 0.6, motion(15.0), 15.0), 60u);
   EXPECT_EQ(contradictions(100, 100, 0.6, motion(15.0), 15.0), 0u);
 }
 
-TEST_F(Judged, ATrackerWithTheWrongSignIsToldWithinAMinute) {
+TEST_F(Judged, ATrackerWithTheWrongSignIsReportedWithinAMinute) {
   EXPECT_GT(contradictions(20 * 60, 10, 0.2, motion(-20.0), 20.0), 300u);
 }
 
@@ -125,16 +125,16 @@ TEST_F(Judged, BrakingHardIsNoContradictionThoughTheEgoMotionIsNewerThanTheScan)
     fill(*scan_, 150, 0.6, speed_mps + 2.5, random_);  // measured 250 ms before the ego motion
     EgoMotion ego = motion(speed_mps);
     ego.longitudinal_acceleration_mps2 = -10.0F;
-    ego.header.measurement_time_ns = time_ns_ + kCycle_ns + 250 * kMillisecond;
+    ego.header.measurement_time_ns = time_ns_ + kScanCycle_ns + 250 * kMillisecond;
     EXPECT_EQ(judge(&ego), 0) << i;
   }
 }
 
-TEST_F(Judged, WithoutSpeedYawRateOrMotionNothingIsSaidOfTheEgo) {
+TEST_F(Judged, WithoutSpeedYawRateOrMotionTheEgoTestIsSkipped) {
   EgoMotion no_yaw_rate = motion(20.0), no_speed = motion(20.0), wild = motion(20.0);
   no_yaw_rate.fields = ego_field::kSpeed;
   no_speed.fields = ego_field::kYawRate;
-  wild.speed_mps = kNan;
+  wild.speed_mps = kFloatNan;
   const EgoMotion slow = motion(4.9), standing = motion(0.0);
   for (const EgoMotion& ego : {no_yaw_rate, no_speed, slow, standing, wild}) {
     for (int i = 0; i < 200; ++i) {
@@ -158,14 +158,14 @@ TEST_F(Judged, CountersOfAnyWidthWrapWithoutAFault) {
     for (int i = 0; i < 600; ++i) {
       fill_anew();
       scan_->cycle_counter = counter & mask;
-      EXPECT_EQ(judge.judge(*scan_, i * kCycle_ns, i * kCycle_ns, bits, nullptr), 0) << bits << ' ' << i;
+      EXPECT_EQ(judge.judge(*scan_, i * kScanCycle_ns, i * kScanCycle_ns, bits, nullptr), 0) << bits << ' ' << i;
       ++counter;
     }
     EXPECT_EQ(judge.counters().lost_scans, 0u);
   }
 }
 
-TEST_F(Judged, GapsAreToldAndCountedAcrossTheWrapAndBeyondItByTime) {
+TEST_F(Judged, GapsAreReportedAndCountedAcrossTheWrapAndBeyondItByTime) {
   struct Case {
     unsigned bits;
     std::uint32_t lost;
@@ -179,8 +179,8 @@ TEST_F(Judged, GapsAreToldAndCountedAcrossTheWrapAndBeyondItByTime) {
       fill_anew();
       if (i == 3) counter += c.lost;
       scan_->cycle_counter = counter & mask;
-      // Cycles of a real sensor are not to the nanosecond what was configured.
-      const std::int64_t time_ns = counter * (kCycle_ns + 200'000);
+      // Cycles of a real sensor differ slightly from the configured time.
+      const std::int64_t time_ns = counter * (kScanCycle_ns + 200'000);
       const std::uint16_t expected = i == 3 ? kCounterGap : 0;
       EXPECT_EQ(judge.judge(*scan_, time_ns, time_ns, c.bits, nullptr), expected) << c.bits << ' ' << c.lost;
       ++counter;
@@ -189,7 +189,7 @@ TEST_F(Judged, GapsAreToldAndCountedAcrossTheWrapAndBeyondItByTime) {
   }
 }
 
-TEST_F(Judged, ARepeatedCounterIsTold) {
+TEST_F(Judged, ARepeatedCounterIsReported) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
     if (i == 7) --scan_->cycle_counter;
@@ -199,37 +199,37 @@ TEST_F(Judged, ARepeatedCounterIsTold) {
   EXPECT_EQ(judge_.counters().lost_scans, 0u);
 }
 
-TEST_F(Judged, ASensorThatBeginsToCountAnewHasNotLostTwoBillionScans) {
+TEST_F(Judged, ARestartedCounterIsNoLossOfTwoBillionScans) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
     if (i == 0) scan_->cycle_counter = 100'000;
     if (i == 10) {
       scan_->cycle_counter = 0;
-      time_ns_ += 60 * kCycle_ns;
+      time_ns_ += 60 * kScanCycle_ns;
     }
     EXPECT_EQ(judge(nullptr, 32), i == 10 ? kCounterGap : 0) << i;
   }
   EXPECT_EQ(judge_.counters().lost_scans, 60u);
 }
 
-TEST_F(Judged, ACounterThatNeverMovesIsDisowned) {
+TEST_F(Judged, AConstantCounterIsIgnored) {
   for (int i = 0; i < 100; ++i) {
     fill_anew();
     scan_->cycle_counter = ~0u;  // judge() adds one
     EXPECT_EQ(judge(), i > 0 && i <= 10 ? kRepeated : 0) << i;
   }
-  time_ns_ += kCycle_ns;
+  time_ns_ += kScanCycle_ns;
   scan_->cycle_counter = ~0u;
   fill_anew();
-  EXPECT_EQ(judge(), kCounterGap) << "by time then";
+  EXPECT_EQ(judge(), kCounterGap) << "detected by time";
 }
 
-TEST_F(Judged, WithoutACounterTimeTellsGaps) {
+TEST_F(Judged, WithoutACounterGapsAreFoundByTime) {
   for (int i = 0; i < 20; ++i) {
     fill_anew();
-    if (i == 5) time_ns_ += kCycle_ns * 4 / 10;  // late, not lost
-    if (i == 9) time_ns_ += kCycle_ns;
-    if (i == 15) time_ns_ += 7 * kCycle_ns;
+    if (i == 5) time_ns_ += kScanCycle_ns * 4 / 10;  // late, not lost
+    if (i == 9) time_ns_ += kScanCycle_ns;
+    if (i == 15) time_ns_ += 7 * kScanCycle_ns;
     EXPECT_EQ(judge(nullptr, 0), i == 9 || i == 15 ? kCounterGap : 0) << i;
   }
   EXPECT_EQ(judge_.counters().lost_scans, 8u);
@@ -238,9 +238,9 @@ TEST_F(Judged, WithoutACounterTimeTellsGaps) {
 TEST_F(Judged, WithoutACounterTheSameContentAndStampAreARepetition) {
   for (int i = 0; i < 20; ++i) {
     if (i != 9) fill_anew();
-    if (i == 9 || i == 10) time_ns_ -= kCycle_ns;
+    if (i == 9 || i == 10) time_ns_ -= kScanCycle_ns;
     const int verdict = judge(nullptr, 0) & ~kStale;
-    EXPECT_EQ(verdict, i == 9 ? kRepeated : 0) << i << ": another content with the same stamp is none";
+    EXPECT_EQ(verdict, i == 9 ? kRepeated : 0) << i << ": other content with the same stamp is no repetition";
   }
 }
 
@@ -250,11 +250,11 @@ TEST_F(Judged, OldDataAndStampsThatDoNotAdvanceAreStale) {
     ++scan_->cycle_counter;
     return judge_.judge(*scan_, measured_ms * kMillisecond, received_ms * kMillisecond, 8, nullptr);
   };
-  EXPECT_EQ(at(1000, 1247), 0) << "as a real ARS548";
+  EXPECT_EQ(at(1000, 1247), 0) << "as a recorded ARS548";
   EXPECT_EQ(at(1050, 1550), 0);
   EXPECT_EQ(at(1100, 1601), kStale);
   EXPECT_EQ(at(1300, 1650), 0);
-  EXPECT_EQ(at(1300, 1651), 0) << "two in one burst tell nothing";
+  EXPECT_EQ(at(1300, 1651), 0) << "two in one burst are not judged";
   EXPECT_EQ(at(1300, 1665), kStale) << "stands still";
   EXPECT_EQ(at(1299, 1700), kStale) << "goes back";
   EXPECT_EQ(at(1400, 1750), 0);
@@ -263,7 +263,7 @@ TEST_F(Judged, OldDataAndStampsThatDoNotAdvanceAreStale) {
 
 // ---------------------------------------------------------------- content
 
-TEST_F(Judged, AFrozenRadarIsTold) {
+TEST_F(Judged, AFrozenRadarIsReported) {
   const EgoMotion moving = motion(4.0), standing = motion(0.0);
   fill_anew(30);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(judge(&moving), i >= 3 ? kFrozen : 0) << i;
@@ -273,24 +273,24 @@ TEST_F(Judged, AFrozenRadarIsTold) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(judge(nullptr), i >= 10 ? kFrozen : 0) << i;
   scan_->range_m[17] = std::nextafter(scan_->range_m[17], 0.0F);
   EXPECT_EQ(judge(&moving), 0) << "one bit is a difference";
-  // One or two tracks of a coarse tracker may well be the same for a while, and nothing is nothing.
+  // One or two tracks of a coarse tracker may be equal for some time, and empty scans are equal.
   for (const std::size_t few : {0u, 1u, 3u}) {
     fill_anew(few);
     for (int i = 0; i < 50; ++i) EXPECT_EQ(judge(&moving), 0);
   }
 }
 
-TEST_F(Judged, ImplausibleDetectionsAreToldIfThereAreMany) {
+TEST_F(Judged, ManyImplausibleDetectionsAreReported) {
   const auto with = [&](std::size_t bad, const std::function<void(std::size_t)>& spoil) {
     fill_anew(50);
     for (std::size_t i = 0; i < bad; ++i) spoil(i * 4);
     return judge();
   };
   const std::vector<std::function<void(std::size_t)>> spoils = {
-      [&](std::size_t i) { scan_->range_m[i] = kNan; },
+      [&](std::size_t i) { scan_->range_m[i] = kFloatNan; },
       [&](std::size_t i) { scan_->range_m[i] = -1.0F; },
       [&](std::size_t i) { scan_->range_m[i] = 361.0F; },
-      [&](std::size_t i) { scan_->azimuth_rad[i] = kNan; },
+      [&](std::size_t i) { scan_->azimuth_rad[i] = kFloatNan; },
       [&](std::size_t i) { scan_->azimuth_rad[i] = 1.3F + 0.18F; },
       [&](std::size_t i) { scan_->azimuth_rad[i] = -7.0F; },
       [&](std::size_t i) { scan_->range_rate_mps[i] = std::numeric_limits<float>::infinity(); },
@@ -301,8 +301,8 @@ TEST_F(Judged, ImplausibleDetectionsAreToldIfThereAreMany) {
         for (std::size_t k = 0; k <= i; k += 4) scan_->elevation_rad[k] = 0.6F;
       },
       [&](std::size_t i) {
-        scan_->azimuth_rad[i] = kNan;
-        scan_->detection_flags[i] = detection_flag::kInvalid;  // no excuse for what is no number
+        scan_->azimuth_rad[i] = kFloatNan;
+        scan_->detection_flags[i] = detection_flag::kInvalid;  // does not excuse NaN
       },
   };
   for (std::size_t k = 0; k < spoils.size(); ++k) {
@@ -315,13 +315,13 @@ TEST_F(Judged, ImplausibleDetectionsAreToldIfThereAreMany) {
                    scan_->detection_flags[i] = detection_flag::kInvalid;
                  }),
             0)
-      << "the sensor says itself that the angle is invalid";
+      << "the sensor marks the angle as invalid";
   fill_anew(4);
   scan_->range_m[0] = scan_->range_m[1] = 1000.0F;
   EXPECT_EQ(judge(), 0) << "two of four are not many";
 }
 
-TEST_F(Judged, CopiesOfDetectionsAreToldIfThereAreMany) {
+TEST_F(Judged, ManyCopiesOfDetectionsAreReported) {
   const auto copy = [&](std::size_t detections, std::size_t copies) {
     fill_anew(detections);
     for (std::size_t i = 0; i < copies; ++i) {
@@ -340,7 +340,7 @@ TEST_F(Judged, CopiesOfDetectionsAreToldIfThereAreMany) {
   EXPECT_EQ(copy(1024, 0), 0);
 }
 
-TEST_F(Judged, WhatTheDecoderSaysIsKeptAndCounted) {
+TEST_F(Judged, BitsOfTheDecoderAreKeptAndCounted) {
   fill_anew();
   scan_->integrity = kIncomplete;
   EXPECT_EQ(judge(), kIncomplete);
@@ -348,7 +348,7 @@ TEST_F(Judged, WhatTheDecoderSaysIsKeptAndCounted) {
   EXPECT_EQ(judge_.counters().scans, 1u);
 }
 
-TEST_F(Judged, WildScansAreJudgedWithoutAllocatingAndInBoundedTime) {
+TEST_F(Judged, RandomScansAreJudgedWithoutAllocatingAndInBoundedTime) {
   const EgoMotion ego = motion(20.0, 0.1);
   const std::uint64_t before = runtime::counted_allocations();
   {
@@ -359,8 +359,9 @@ TEST_F(Judged, WildScansAreJudgedWithoutAllocatingAndInBoundedTime) {
       scan_->integrity = 0;
       if (i % 3 == 0) scan_->number_of_valid_detections = static_cast<std::uint32_t>(random_() % 1100);
       const auto time_ns = static_cast<std::int64_t>(random_());
-      static_cast<void>(judge_.judge(*scan_, i % 2 == 0 ? time_ns : i * kCycle_ns, static_cast<std::int64_t>(random_()),
-                                     static_cast<unsigned>(random_() % 40), &ego));
+      static_cast<void>(judge_.judge(*scan_, i % 2 == 0 ? time_ns : i * kScanCycle_ns,
+                                     static_cast<std::int64_t>(random_()), static_cast<unsigned>(random_() % 40),
+                                     &ego));
     }
   }
   EXPECT_EQ(runtime::counted_allocations(), before);

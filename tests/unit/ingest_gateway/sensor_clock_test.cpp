@@ -7,14 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kCycle_ns = 50 * kMillisecond;
-/// Of the ECU's epoch clock: November 2026.
+/// The ECU's epoch clock: November 2026.
 constexpr std::int64_t kEpoch_ns = 1'795'000'000 * kSecond;
 
 RadarConfig radar(double latency_s = 0.02) {
@@ -31,10 +31,10 @@ SensorStamp synchronised(std::int64_t measured_ns) {
   return {kEpoch_ns + measured_ns, true};
 }
 
-/// A sensor with a clock of its own and a link that delays.
+/// A sensor with its own clock and a link with delays.
 struct World {
   double drift = 0.0;
-  std::int64_t sensor_start_ns = 7 * kSecond;  // what its clock showed at time 0
+  std::int64_t sensor_start_ns = 7 * kSecond;  // its clock at time 0
   std::int64_t latency_ns = 20 * kMillisecond;
   std::int64_t jitter_ns = 8 * kMillisecond;
   double hiccup_share = 0.01;
@@ -64,8 +64,8 @@ TEST(SensorClock, WithoutAStampItIsReceptionLessLatency) {
   EXPECT_EQ(other.map(std::nullopt, {5, 0, TimeSource::kUserArrival}).time.source, TimeSource::kUserArrival);
 }
 
-TEST(SensorClock, ASynchronisedStampIsTakenAsItIs) {
-  // 247 ms is what a real ARS548 recording has.
+TEST(SensorClock, ASynchronisedStampIsUsedUnchanged) {
+  // 247 ms as in a recording of an ARS548.
   for (const std::int64_t delay_ns : {-5 * kMillisecond, 0 * kMillisecond, 247 * kMillisecond, 1000 * kMillisecond}) {
     SensorClock clock(radar());
     const auto result = clock.map(synchronised(10 * kSecond - delay_ns), received(10 * kSecond));
@@ -75,7 +75,7 @@ TEST(SensorClock, ASynchronisedStampIsTakenAsItIs) {
   }
 }
 
-TEST(SensorClock, AStampThatCannotBeSynchronisedIsNotBelievedAndToldOnce) {
+TEST(SensorClock, AnImplausibleSynchronisedStampIsNotUsedAndReportedOnce) {
   for (const std::int64_t delay_ns : {-6 * kMillisecond, 1001 * kMillisecond, -3600 * kSecond, 3600 * kSecond}) {
     SensorClock clock(radar());
     auto result = clock.map(synchronised(10 * kSecond - delay_ns), received(10 * kSecond));
@@ -121,7 +121,7 @@ TEST(SensorClock, JitterOfArrivalDoesNotAppearInFreeRunningStamps) {
   EXPECT_LT(worst_error_ms, 0.8);
 }
 
-TEST(SensorClock, AJumpAheadIsToldOnceAndTheMappingBeginsAnew) {
+TEST(SensorClock, AJumpAheadIsReportedOnceAndTheOffsetIsEstimatedAgain) {
   for (const std::int64_t jump_ns : {30 * kMillisecond, 500 * kMillisecond, 3600 * kSecond}) {
     World world{.jitter_ns = 4 * kMillisecond, .hiccup_share = 0.0};
     SensorClock clock(radar());
@@ -141,8 +141,8 @@ TEST(SensorClock, AJumpAheadIsToldOnceAndTheMappingBeginsAnew) {
   }
 }
 
-TEST(SensorClock, AJumpBackIsToldOnce) {
-  // Less than a cycle can first be told from a delay when it does not end.
+TEST(SensorClock, AJumpBackIsReportedOnce) {
+  // A jump of less than a cycle looks like a delay until it persists.
   for (const std::int64_t jump_ns : {40 * kMillisecond, 70 * kMillisecond, 3 * kSecond}) {
     World world{.sensor_start_ns = 3600 * kSecond, .jitter_ns = 4 * kMillisecond, .hiccup_share = 0.0};
     SensorClock clock(radar());
@@ -161,7 +161,7 @@ TEST(SensorClock, AJumpBackIsToldOnce) {
   }
 }
 
-TEST(SensorClock, ASensorThatStartsAnewIsToldAndNeverTurnsTimeRound) {
+TEST(SensorClock, ARestartedSensorIsReportedAndTimeNeverGoesBack) {
   World world{.sensor_start_ns = 1000 * kSecond, .hiccup_share = 0.0};
   SensorClock clock(radar());
   std::int64_t last_ns = 0;
@@ -176,7 +176,7 @@ TEST(SensorClock, ASensorThatStartsAnewIsToldAndNeverTurnsTimeRound) {
   }
 }
 
-TEST(SensorClock, AClockThatStandsStillIsToldOnceAndThenNotBelieved) {
+TEST(SensorClock, AStoppedClockIsReportedOnceAndThenNotUsed) {
   World world{.jitter_ns = kMillisecond, .hiccup_share = 0.0};
   SensorClock clock(radar());
   unsigned jumps = 0;
@@ -192,7 +192,7 @@ TEST(SensorClock, AClockThatStandsStillIsToldOnceAndThenNotBelieved) {
   EXPECT_EQ(jumps, 1u);
 }
 
-TEST(SensorClock, AClockOfAWrongUnitIsNeverBelieved) {
+TEST(SensorClock, AClockWithAWrongUnitIsNeverUsed) {
   SensorClock clock(radar());
   for (int i = 1; i <= 400; ++i) {
     const auto result = clock.map(SensorStamp{i * kCycle_ns / 1000, false}, received(i * kCycle_ns));
@@ -200,8 +200,8 @@ TEST(SensorClock, AClockOfAWrongUnitIsNeverBelieved) {
   }
 }
 
-TEST(SensorClock, WhenSynchronisationIsLostTheTimesGoOnAsIfItWereNot) {
-  // The delay of 247 ms was configured nowhere; it has been seen while the clock was synchronised.
+TEST(SensorClock, LossOfSynchronisationDoesNotShiftTheTimes) {
+  // The delay of 247 ms is not configured; it was measured while the clock was synchronised.
   std::mt19937_64 random(3);
   std::uniform_int_distribution<std::int64_t> jitter_ns(0, 5 * kMillisecond);
   SensorClock clock(radar(0.0));
@@ -215,7 +215,7 @@ TEST(SensorClock, WhenSynchronisationIsLostTheTimesGoOnAsIfItWereNot) {
     EXPECT_EQ(result.time.source, in_sync ? TimeSource::kSensorSynchronised : TimeSource::kSensorFreeRunning);
     EXPECT_NEAR(static_cast<double>(result.time.time_ns - measured_ns), 0.0, 0.2e6) << i;
   }
-  // No stamp at all any more: reception less the delay that this sensor has been seen to have.
+  // Without stamps: reception minus the measured delay of this sensor.
   const auto result = clock.map(std::nullopt, received(40 * kSecond));
   EXPECT_EQ(result.time.source, TimeSource::kLinkArrival);
   EXPECT_NEAR(static_cast<double>(result.time.time_ns), 40e9 - 247e6, 0.2e6);
@@ -232,7 +232,7 @@ TEST(SensorClock, GainingSynchronisationIsNoFault) {
   }
 }
 
-TEST(SensorClock, ASynchronisedClockThatGoesBackIsToldAndHeld) {
+TEST(SensorClock, ASynchronisedClockThatGoesBackIsReportedAndHeld) {
   SensorClock clock(radar());
   static_cast<void>(clock.map(synchronised(9'950 * kMillisecond), received(10'000 * kMillisecond)));
   auto result = clock.map(synchronised(9'900 * kMillisecond), received(10'050 * kMillisecond));
@@ -243,7 +243,7 @@ TEST(SensorClock, ASynchronisedClockThatGoesBackIsToldAndHeld) {
   EXPECT_EQ(result.time.time_ns, 9'960 * kMillisecond);
 }
 
-TEST(SensorClock, FramesOfAnEarlierTimeAreToldAndFollowed) {
+TEST(SensorClock, FramesOfAnEarlierTimeAreReportedAndFollowed) {
   SensorClock clock(radar(0.0));
   static_cast<void>(clock.map(std::nullopt, received(100 * kSecond)));
   auto result = clock.map(std::nullopt, received(5 * kSecond));
@@ -253,7 +253,7 @@ TEST(SensorClock, FramesOfAnEarlierTimeAreToldAndFollowed) {
   EXPECT_FALSE(result.clock_jumped);
 }
 
-TEST(SensorClock, WildStampsNeitherTurnTimeRoundSilentlyNorAllocate) {
+TEST(SensorClock, RandomStampsNeitherTurnTimeBackSilentlyNorAllocate) {
   std::mt19937_64 random(5);
   const std::uint64_t before = runtime::counted_allocations();
   {

@@ -4,11 +4,10 @@
 
 #include "interfaces/wire/ars548.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1'000'000;
 
 class Outbox : public MemorySink {
  public:
@@ -40,7 +39,7 @@ EgoMotion ego(float speed_mps) {
   return motion;
 }
 
-TEST(SensorFeed, GoesToThoseWhoAskForItAndNoFasterThanTheyWant) {
+TEST(SensorFeed, IsSentOnlyToConfiguredSensorsAtTheirRate) {
   VehicleConfig vehicle;
   vehicle.radars = {radar(1, RadarProfile::kArs548, true), radar(2, RadarProfile::kArs548, false),
                     radar(3, RadarProfile::kArs408, true), radar(4, RadarProfile::kArs408, false),
@@ -49,7 +48,7 @@ TEST(SensorFeed, GoesToThoseWhoAskForItAndNoFasterThanTheyWant) {
   SensorFeed feed(vehicle);
   Outbox out;
   feed.start(out);
-  EXPECT_TRUE(out.sent.empty()) << "nobody asked for a configuration";
+  EXPECT_TRUE(out.sent.empty()) << "no configuration requested";
   for (int i = 0; i < 100; ++i) feed.send(ego(10.0F), i * 5 * kMillisecond, out);
   std::size_t udp = 0, can = 0;
   for (const auto& s : out.sent) {
@@ -63,14 +62,14 @@ TEST(SensorFeed, GoesToThoseWhoAskForItAndNoFasterThanTheyWant) {
       EXPECT_TRUE(s.frame.can_id == 0x320 || s.frame.can_id == 0x321) << "sensor 2 of its bus";
     }
   }
-  EXPECT_EQ(can, 2u * 25u) << "50 Hz of what came at 200 Hz";
+  EXPECT_EQ(can, 2u * 25u) << "50 Hz from an input of 200 Hz";
   EXPECT_GE(udp, 3u * 25u);
   out.sent.clear();
   feed.send(ego(10.0F), -1000 * kMillisecond, out);
-  EXPECT_FALSE(out.sent.empty()) << "a clock that went back stops nothing";
+  EXPECT_FALSE(out.sent.empty()) << "still sends after the clock went back";
 }
 
-TEST(SensorFeed, AnArs408IsConfiguredOnceIfAsked) {
+TEST(SensorFeed, AnArs408IsConfiguredOnceIfRequested) {
   VehicleConfig vehicle;
   vehicle.radars = {radar(1, RadarProfile::kArs408, false), radar(2, RadarProfile::kArs408, false)};
   vehicle.radars[0].output = Ars408Output::kClusters;

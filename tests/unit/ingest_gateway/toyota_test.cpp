@@ -7,21 +7,21 @@
 #include "services/ingest_gateway/codecs/toyota_radar.hpp"
 #include "tests/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
+#include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {
 namespace {
 
-namespace layout = wire::toyota;
-using Bytes = std::array<std::uint8_t, 8>;
-constexpr std::int64_t kMillisecond = 1'000'000;
+namespace toyota_layout = wire::toyota;
+using FrameBytes = std::array<std::uint8_t, 8>;
 
 struct CanFrame {
   std::uint32_t id;
-  Bytes bytes;
+  FrameBytes bytes;
 };
 
-/// Puts a raw value into a Motorola signal, bit by bit: the inverse of what the decoder does, written differently.
-void put(Bytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
+/// Puts a raw value into a Motorola signal, bit by bit: the inverse of the decoder, implemented differently.
+void put(FrameBytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
   unsigned byte = start_bit / 8, bit = start_bit % 8;
   for (unsigned i = 0; i < length; ++i) {
     const bool one = (static_cast<std::uint64_t>(raw) >> (length - 1 - i) & 1u) != 0;
@@ -35,7 +35,7 @@ void put(Bytes& bytes, unsigned start_bit, unsigned length, std::int64_t raw) {
   }
 }
 
-void seal(std::uint32_t id, Bytes& bytes) {
+void seal(std::uint32_t id, FrameBytes& bytes) {
   unsigned sum = (id & 0xFF) + (id >> 8) + 8;
   for (std::size_t i = 0; i < 7; ++i) sum += bytes[i];
   bytes[7] = static_cast<std::uint8_t>(sum);
@@ -43,7 +43,7 @@ void seal(std::uint32_t id, Bytes& bytes) {
 
 CanFrame track_a(std::uint32_t slot, unsigned counter, bool valid, double x = 0.0, double y_left = 0.0,
                  double rate = 0.0) {
-  CanFrame f{layout::kTrackA + slot, {}};
+  CanFrame f{toyota_layout::kTrackA + slot, {}};
   put(f.bytes, 7, 8, counter);
   put(f.bytes, 15, 15, std::lround(x / 0.01));
   put(f.bytes, 31, 11, std::lround(-y_left / 0.04));
@@ -54,14 +54,14 @@ CanFrame track_a(std::uint32_t slot, unsigned counter, bool valid, double x = 0.
 }
 
 CanFrame track_b(std::uint32_t slot, unsigned counter, unsigned score) {
-  CanFrame f{layout::kTrackB + slot, {}};
+  CanFrame f{toyota_layout::kTrackB + slot, {}};
   put(f.bytes, 7, 8, counter);
   put(f.bytes, 23, 8, score);
   seal(f.id, f.bytes);
   return f;
 }
 
-/// All 32 frames; slot 3 is a track 40 m ahead and 2 m to the left that comes closer.
+/// All 32 frames; slot 3 is an approaching track 40 m ahead and 2 m to the left.
 std::vector<CanFrame> cycle(unsigned counter) {
   std::vector<CanFrame> frames;
   for (std::uint32_t slot = 0; slot < 16; ++slot) {
@@ -118,13 +118,13 @@ TEST_F(ToyotaRadarTest, AMissingFrameEndsWithTheNextCycle) {
   frames.erase(frames.begin() + 10);
   for (std::size_t i = 0; i < frames.size(); ++i) take(frames[i], static_cast<std::int64_t>(i));
   EXPECT_EQ(out_.scans, 0u);
-  // The next cycle begins with another frame than the one that is missing …
+  // The next cycle begins with another frame than the missing one …
   take(cycle(2)[0], 50 * kMillisecond);
   ASSERT_EQ(out_.scans, 1u);
   EXPECT_EQ(out_.scan->integrity, scan_integrity::kIncomplete);
   EXPECT_EQ(out_.scan->number_of_valid_detections, 1u);
   EXPECT_EQ(out_.count(Fault::kWireLength), 1u);
-  // … or with just that one, which after the pause is not taken for the missing one.
+  // … or with the same frame, which after the pause does not complete the previous cycle.
   for (const CanFrame& f : frames) take(f, 100 * kMillisecond);
   ASSERT_EQ(out_.scans, 2u) << "the cycle of one frame";
   take(cycle(2)[10], 150 * kMillisecond);
@@ -137,7 +137,7 @@ TEST_F(ToyotaRadarTest, AnIncompleteCycleDoesNotWaitForTheNext) {
   frames.erase(frames.begin() + 10);
   for (const CanFrame& f : frames) take(f, 100 * kMillisecond);
   radar_.tick(115 * kMillisecond, out_);
-  EXPECT_EQ(out_.scans, 0u) << "its frame may still come";
+  EXPECT_EQ(out_.scans, 0u) << "its frame may still arrive";
   radar_.tick(125 * kMillisecond, out_);
   ASSERT_EQ(out_.scans, 1u);
   EXPECT_EQ(out_.scan->integrity, scan_integrity::kIncomplete);
@@ -146,7 +146,7 @@ TEST_F(ToyotaRadarTest, AnIncompleteCycleDoesNotWaitForTheNext) {
   EXPECT_EQ(out_.scans, 1u) << "once";
 }
 
-TEST_F(ToyotaRadarTest, AFrameThatComesAgainBeginsTheNextCycle) {
+TEST_F(ToyotaRadarTest, ARepeatedFrameBeginsTheNextCycle) {
   const auto frames = cycle(1);
   for (std::size_t i = 0; i < 20; ++i) take(frames[i], static_cast<std::int64_t>(i));
   EXPECT_EQ(out_.scans, 0u);
@@ -155,12 +155,12 @@ TEST_F(ToyotaRadarTest, AFrameThatComesAgainBeginsTheNextCycle) {
   EXPECT_EQ(out_.scans, 1u);
   for (std::size_t i = 0; i < 6; ++i) take(frames[i], 22);
   for (std::size_t i = 26; i < 32; ++i) take(frames[i], 22);
-  EXPECT_EQ(out_.scans, 2u) << "the frame that came again was the first of its own cycle";
+  EXPECT_EQ(out_.scans, 2u) << "the repeated frame was the first of the next cycle";
   EXPECT_EQ(out_.scan->integrity, 0u);
   EXPECT_EQ(out_.last_reception.received_ns, 21);
 }
 
-TEST_F(ToyotaRadarTest, WrongFramesAreRefusedWithAReason) {
+TEST_F(ToyotaRadarTest, InvalidFramesAreRejectedWithAReason) {
   CanFrame frame = track_a(0, 1, true, 20.0);
   const FrameStamp stamp{0, 0, TimeSource::kLinkArrival};
   radar_.take(can_frame(0x123, frame.bytes), stamp, out_);
@@ -174,7 +174,7 @@ TEST_F(ToyotaRadarTest, WrongFramesAreRefusedWithAReason) {
   EXPECT_NE(out_.last_fault.find("checksum"), std::string::npos);
 }
 
-/// Any payload of any length under the radar's ids: counted, never worse.
+/// Any payload of any length with the radar's ids is counted, without further effect.
 TEST_F(ToyotaRadarTest, SurvivesMutations) {
   std::mt19937 random(5);
   for (int i = 0; i < 200'000; ++i) {
@@ -191,7 +191,7 @@ TEST_F(ToyotaRadarTest, SurvivesMutations) {
   EXPECT_GT(out_.scans, 100u);
 }
 
-TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
+TEST(ToyotaEgo, AgreesWithTheIndependentEncoder) {
   const simulator::EgoSignals truth{.speed_mps = 13.37, .yaw_rate_radps = 0.21, .steering_angle_rad = -0.7};
   ToyotaEgo ego;
   MemoryOutput output;
@@ -202,7 +202,7 @@ TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
     const EgoReading& one = output.last_ego;
     EXPECT_EQ(one.speed_mps.has_value() + one.yaw_rate_radps.has_value() + one.steering_angle_rad.has_value(), 1);
     EXPECT_FALSE(one.reverse.has_value());
-    EXPECT_FALSE(one.speed_is_signed) << "these wheels do not tell the direction";
+    EXPECT_FALSE(one.speed_is_signed) << "the wheel speeds have no direction";
     if (one.speed_mps) all.speed_mps = one.speed_mps;
     if (one.yaw_rate_radps) all.yaw_rate_radps = one.yaw_rate_radps;
     if (one.steering_angle_rad) all.steering_angle_rad = one.steering_angle_rad;
@@ -214,12 +214,12 @@ TEST(ToyotaEgo, DecodesWhatTheIndependentEncoderSays) {
   EXPECT_NEAR(all.steering_angle_rad.value(), truth.steering_angle_rad, 0.06 * M_PI / 180.0);
 }
 
-TEST(ToyotaEgo, WrongFramesAreRefusedWithAReason) {
+TEST(ToyotaEgo, InvalidFramesAreRejectedWithAReason) {
   ToyotaEgo ego;
   MemoryOutput output;
   auto frames = simulator::wire::encode_ego({.speed_mps = 10.0, .yaw_rate_radps = 0.1, .steering_angle_rad = 0.0});
   ego.take(can_frame(0x0B4, frames[0].bytes), {}, output);
-  EXPECT_EQ(output.all_faults(), 0u) << "frames of others are no faults";
+  EXPECT_EQ(output.all_faults(), 0u) << "frames with other ids are no faults";
   for (const auto& frame : frames) {
     ego.take(can_frame(frame.id, std::span(frame.bytes).first(6)), {}, output);
     ego.take(can_frame(frame.id, {}), {}, output);
@@ -229,9 +229,9 @@ TEST(ToyotaEgo, WrongFramesAreRefusedWithAReason) {
   frames[0].bytes[1] = static_cast<std::uint8_t>(frames[0].bytes[1] ^ 4);
   ego.take(can_frame(frames[0].id, frames[0].bytes), {}, output);
   EXPECT_NE(output.last_fault.find("checksum"), std::string::npos);
-  Bytes fast{};
+  FrameBytes fast{};
   fast.fill(0xFF);
-  ego.take(can_frame(layout::kWheelSpeedsId, fast), {}, output);
+  ego.take(can_frame(toyota_layout::kWheelSpeedsId, fast), {}, output);
   EXPECT_NE(output.last_fault.find("252"), std::string::npos);
   EXPECT_EQ(output.count(Fault::kWireValue), 2u);
   EXPECT_EQ(output.ego_readings, 0u);

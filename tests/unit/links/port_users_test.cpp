@@ -1,4 +1,4 @@
-// The kernel's tables of UDP sockets, as Linux prints them on a little-endian machine.
+// The kernel's tables of UDP sockets, as printed by Linux on a little-endian machine.
 #include "services/ingest_gateway/links/port_users.hpp"
 
 #include <bit>
@@ -37,7 +37,7 @@ TEST_F(PortUsers, TheSameOrAllAddressesAndTheSamePort) {
   EXPECT_FALSE(found(line_of("02004D0A:771B", 7), "10.77.0.2")) << "another port";
 }
 
-TEST_F(PortUsers, OneselfIsNoOther) {
+TEST_F(PortUsers, TheOwnSocketIsNotCounted) {
   const std::string own = line_of("02004D0A:771A", 42);
   EXPECT_FALSE(found(own, "10.77.0.2", 42));
   EXPECT_TRUE(found(own + line_of("02004D0A:771A", 43), "10.77.0.2", 42));
@@ -49,10 +49,10 @@ TEST_F(PortUsers, Ipv6) {
   EXPECT_FALSE(found(line_of("000077FD000000000000000001000000:771A", 7), "fd77::2"));
 }
 
-TEST_F(PortUsers, WhatCannotBeReadIsPassedOver) {
+TEST_F(PortUsers, InvalidLinesAreSkipped) {
   const std::string good = line_of("02004D0A:771A", 7);
   EXPECT_TRUE(found("\nnonsense\n 1: 02004D0A 1 2 3 4 5 6 7 8 9\n" + good, "10.77.0.2"));
-  EXPECT_FALSE(found(" 1: 02004D0A:771A", "10.77.0.2")) << "cut off before its inode";
+  EXPECT_FALSE(found(" 1: 02004D0A:771A", "10.77.0.2")) << "ends before its inode";
   EXPECT_FALSE(
       found(line_of("02004D:771A", 7) + line_of("02004D0A:99999", 7) + line_of("0200XD0A:771A", 7), "10.77.0.2"));
 }

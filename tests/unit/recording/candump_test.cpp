@@ -52,7 +52,7 @@ TEST(Candump, StampsKeepEveryDigit) {
   EXPECT_EQ(parse("(1700000000.9999999999) c 001#").frame.stamp_ns, 1'700'000'000'999'999'999);
 }
 
-// What one notation takes, the other one must take, too: a recording is read back from what was written of it.
+// Both notations accept the same stamps: a written recording must be readable.
 TEST(Candump, BothNotationsEndAtTheSameSecond) {
   EXPECT_EQ(parse("(9000000000.5) can0 123#").frame.stamp_ns, 9'000'000'000'500'000'000);
   EXPECT_EQ(parse("(9000000001.0) can0 123#").result, CandumpResult::kBadStamp);
@@ -62,7 +62,7 @@ TEST(Candump, BothNotationsEndAtTheSameSecond) {
   EXPECT_EQ(parse(" (9999-12-31 23:59:60.0)  can0  123   [0]").result, CandumpResult::kBadStamp);
 }
 
-TEST(Candump, SaysWhatIsWrong) {
+TEST(Candump, EveryFaultHasItsResult) {
   EXPECT_EQ(parse("").result, CandumpResult::kEmpty);
   EXPECT_EQ(parse("  \r").result, CandumpResult::kEmpty);
   for (const char* line : {"1.0 can0 123#00", "can0 123#00", " can0  123   [1]  00", "nonsense"}) {
@@ -145,7 +145,7 @@ TEST(Candump, ConsoleFdRemoteErrorAndOtherViews) {
   EXPECT_EQ(parse(" (0000000001.0)  can0  123   [2]  20 27                     ' ''").result, CandumpResult::kFrame);
 }
 
-TEST(Candump, ConsoleLinesThatContradictThemselves) {
+TEST(Candump, ContradictoryConsoleLines) {
   for (const char* line : {" (0000000001.0)  can0  123   [3]  01 02", " (0000000001.0)  can0  123   [9]  01",
                            " (0000000001.0)  can0  123  [09]  01 02 03 04 05 06 07 08 09",
                            " (0000000001.0)  can0  123   [2]  01 2", " (0000000001.0)  can0  123   [2]  01 002",
@@ -156,7 +156,7 @@ TEST(Candump, ConsoleLinesThatContradictThemselves) {
   EXPECT_EQ(parse(" (0000000001.0)  can0  8FF   [1]  01").result, CandumpResult::kBadId);
 }
 
-TEST(Candump, CanXlAndDropsAreSaidAndLengthIsBounded) {
+TEST(Candump, CanXlAndDropsAreReportedAndLengthIsBounded) {
   EXPECT_EQ(parse("(1.0) can0 00123#81:00:12345678#1122").result, CandumpResult::kCanXl);
   EXPECT_EQ(parse(" (0000000001.0)  can0  123   [0002] (00|81:00:12345678)  11 22").result, CandumpResult::kCanXl);
   EXPECT_EQ(parse("DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 3)").result,
@@ -166,7 +166,7 @@ TEST(Candump, CanXlAndDropsAreSaidAndLengthIsBounded) {
   EXPECT_TRUE(is_problem(CandumpResult::kDropCount));
 }
 
-TEST(Candump, MutationsAreParsedOrRefused) {
+TEST(Candump, MutationsAreParsedOrRejected) {
   std::mt19937 random(1);
   const std::array<std::string, 2> goods = {
       "(1700000000.123456) can1 18DAF110##193382608AC0901C9 T",

@@ -1,4 +1,4 @@
-// Captures made byte by byte, as other tools and machines write them.
+// Captures written byte by byte, as by other tools and machines.
 #pragma once
 
 #include <cstdint>

@@ -86,7 +86,7 @@ TEST(UdpDecoder, AWholeDatagramAndOneInFragmentsInAnyOrder) {
   }
 }
 
-TEST(UdpDecoder, TwoSendersAtATimeAreKeptApart) {
+TEST(UdpDecoder, TwoSendersAtATimeAreDistinguished) {
   UdpDecoder decoder;
   Frame frame;
   const auto a = payload_of(4000, 1), b = payload_of(4000, 2);
@@ -101,7 +101,7 @@ TEST(UdpDecoder, TwoSendersAtATimeAreKeptApart) {
   EXPECT_TRUE(std::equal(a.begin(), a.end(), frame.payload.begin(), frame.payload.end()));
 }
 
-TEST(UdpDecoder, AMissingFragmentIsGivenUpAndTheNextDatagramIsWhole) {
+TEST(UdpDecoder, ADatagramWithAMissingFragmentIsDroppedAndTheNextOneIsComplete) {
   UdpDecoder decoder;
   Frame frame;
   auto lost = 0;
@@ -117,7 +117,7 @@ TEST(UdpDecoder, AMissingFragmentIsGivenUpAndTheNextDatagramIsWhole) {
       EXPECT_EQ(result, PacketResult::kFrame) << i;
     }
   }
-  EXPECT_GE(lost, 4) << "what is given up is said";
+  EXPECT_GE(lost, 4) << "dropped datagrams are reported";
 }
 
 TEST(UdpDecoder, ARepeatedFragmentIsIgnored) {
@@ -135,10 +135,10 @@ TEST(UdpDecoder, ARepeatedFragmentIsIgnored) {
   EXPECT_EQ(decoder.given_up(), 0u);
 }
 
-TEST(UdpDecoder, FragmentsThatOverlapInPartAreNotBelieved) {
+TEST(UdpDecoder, PartlyOverlappingFragmentsAreRejected) {
   const auto payload = payload_of(3000);
   const auto good = fragments(payload, 5, 1000);
-  // The same data cut elsewhere: the middle fragment begins eight bytes too early, or too late by as much.
+  // The same data cut elsewhere: the middle fragment begins eight bytes too early or too late.
   for (const int shift : {-8, 8}) {
     UdpDecoder decoder;
     Frame frame;
@@ -154,11 +154,11 @@ TEST(UdpDecoder, FragmentsThatOverlapInPartAreNotBelieved) {
       lost = lost || result == PacketResult::kFragmentLost;
     }
     EXPECT_TRUE(lost) << shift;
-    EXPECT_EQ(feed(decoder, fragments(payload, 6, 1000), frame), PacketResult::kFrame) << "the next is whole";
+    EXPECT_EQ(feed(decoder, fragments(payload, 6, 1000), frame), PacketResult::kFrame) << "the next one is complete";
   }
 }
 
-TEST(UdpDecoder, OtherBytesAtTheSamePlaceAndDataBeyondTheLastFragmentAreNotBelieved) {
+TEST(UdpDecoder, DifferentRepeatedBytesAndDataBeyondTheLastFragmentAreRejected) {
   Frame frame;
   {
     UdpDecoder decoder;
@@ -180,7 +180,7 @@ TEST(UdpDecoder, OtherBytesAtTheSamePlaceAndDataBeyondTheLastFragmentAreNotBelie
   }
 }
 
-TEST(UdpDecoder, ASenderThatNeverChangesTheIdentificationIsUnderstoodAfterALoss) {
+TEST(UdpDecoder, ASenderWithAConstantIdentificationIsDecodedAfterALoss) {
   UdpDecoder decoder;
   Frame frame;
   auto cut = fragments(payload_of(3000, 1), 0, 1000);
@@ -277,7 +277,7 @@ TEST_F(Files, APcapOfFragmentsAndALogAreMergedByTime) {
   EXPECT_TRUE(problems_.empty());
 }
 
-TEST_F(Files, WhatCannotBeOpenedIsNamed) {
+TEST_F(Files, FilesThatCannotBeOpenedAreNamed) {
   const auto expect_named = [&](const std::vector<std::filesystem::path>& files, const std::string& name) {
     try {
       static_cast<void>(open_recordings(files, note_));
@@ -292,7 +292,7 @@ TEST_F(Files, WhatCannotBeOpenedIsNamed) {
   expect_named({cut}, "cut.pcap");
 }
 
-TEST_F(Files, ACutCaptureIsReadAsFarAsItGoes) {
+TEST_F(Files, ATruncatedCaptureIsReadToItsEnd) {
   {
     simulator::wire::PcapWriter pcap(folder_ / "whole.pcap");
     for (int i = 0; i < 5; ++i) pcap.write(1'000'000'000 + i, {0x0A000001, 5}, {0x0A000002, 6}, payload_of(100));

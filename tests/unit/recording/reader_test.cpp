@@ -35,7 +35,7 @@ TEST_F(CandumpFiles, StampsThatGoBackAreCountedAndKept) {
   EXPECT_EQ(c.counts.backwards, 1u);
 }
 
-TEST_F(CandumpFiles, ConsoleStampsSinceTheFirstFrameAndSinceTheOneBefore) {
+TEST_F(CandumpFiles, ConsoleStampsSinceTheFirstFrameAndSinceThePreviousOne) {
   const std::vector<int> milliseconds = {0, 50, 51, 52, 102, 103, 104, 1150};
   std::string since_first, since_last;
   int last = 0;
@@ -57,7 +57,7 @@ TEST_F(CandumpFiles, ConsoleStampsSinceTheFirstFrameAndSinceTheOneBefore) {
   }
 }
 
-TEST_F(CandumpFiles, WhatIsNoCandumpAtAllIsRefusedLineByLineInFixedMemory) {
+TEST_F(CandumpFiles, OtherTextIsRejectedLineByLineInFixedMemory) {
   // Three megabytes without a line end, then a good line: one problem, and the good line is read.
   const Contents c = read(write("noise.log", std::string(3'000'000, 'x') + "\n(1.0) can0 123#01\n"));
   EXPECT_EQ(c.frames.size(), 1u);
@@ -120,7 +120,7 @@ TEST_F(CandumpFiles, StandardInputIsReadByContentToo) {
   EXPECT_EQ(read_by_pipe(write("a.pcap", pcap_file(227, {{1, 0, socketcan_packet(0x123, "a")}}))), 1u);
 }
 
-TEST_F(CandumpFiles, FormatsOfOthersAreNamed) {
+TEST_F(CandumpFiles, UnsupportedFormatsAreNamed) {
   for (const auto& [magic, name] : {std::pair{"\x1F\x8B\x08", "gzip"}, {"LOGG", "BLF"}, {"MDF     4.10", "MDF"}}) {
     try {
       static_cast<void>(open_recording(write("other", magic), note_));
@@ -191,7 +191,7 @@ TEST_F(Captures, EveryLinkLayerByteOrderAndUnitOfTime) {
   };
   for (const auto& [link, bytes] : packets) {
     for (const bool big_endian : {false, true}) {
-      // Cooked captures hold CAN ids in the order of the machine that wrote them; libpcap turns them, in v1 only.
+      // Cooked captures hold CAN ids in the byte order of the capturing machine; libpcap converts them, in v1 only.
       if (link == 276 && big_endian && bytes.find(can) != std::string::npos) continue;
       std::string packet = bytes;
       if (const auto at = packet.find(can); big_endian && at != std::string::npos) {
@@ -213,11 +213,11 @@ TEST_F(Captures, EveryLinkLayerByteOrderAndUnitOfTime) {
         EXPECT_TRUE(address == "10.0.0.2" || address == "fd00::2") << address;
       }
     }
-    for (std::size_t size = 0; size < bytes.size(); ++size) {  // cut anywhere
+    for (std::size_t size = 0; size < bytes.size(); ++size) {  // truncated anywhere
       problems_.clear();
       const Contents cut = read(write("cut.pcap", pcap_file(link, {{7, 5, bytes.substr(0, size), 2000}})));
       const bool is_can = bytes.find(can) != std::string::npos;
-      if (is_can && size >= bytes.size() - 3) continue;  // what is missing is padding behind the data
+      if (is_can && size >= bytes.size() - 3) continue;  // only padding after the data is missing
       EXPECT_TRUE(cut.frames.empty()) << link << " " << size;
       ASSERT_EQ(problems_.size(), 1u) << link << " " << size;
       EXPECT_NE(problems_[0].find("bytes were captured (snapshot length)"), std::string::npos) << problems_[0];
@@ -225,7 +225,7 @@ TEST_F(Captures, EveryLinkLayerByteOrderAndUnitOfTime) {
   }
 }
 
-TEST_F(Captures, OtherTrafficIsCountedAndOtherLinksAreRefusedByName) {
+TEST_F(Captures, OtherTrafficIsCountedAndUnsupportedLinksAreNamed) {
   const std::string arp = std::string(12, '\1') + std::string("\x08\x06", 2) + std::string(28, '\0');
   const Contents c = read(write("arp.pcap", pcap_file(1, {{1, 0, arp}})));
   EXPECT_TRUE(c.frames.empty());
@@ -240,7 +240,7 @@ TEST_F(Captures, OtherTrafficIsCountedAndOtherLinksAreRefusedByName) {
   }
 }
 
-TEST_F(Captures, PcapngTellsInterfacesApart) {
+TEST_F(Captures, PcapngInterfacesAreDistinguished) {
   const std::string ethernet = std::string(12, '\1') + std::string("\x08\x00", 2);
   const std::string file = pcapng_file({{227, "can1"}, {1, "eth0"}, {227, "can2", false}, {105, "wlan0"}},
                                        {{5, 7, socketcan_packet(0x123, "one"), 0, 0},
@@ -294,11 +294,11 @@ TEST_F(Captures, PcapngUnitsOfTime) {
   EXPECT_EQ(stamp_of(0x80 | 1, 3), 1'500'000'000);
   EXPECT_EQ(stamp_of(0x80 | 32, std::uint64_t{5} << 32 | 0x80000000), 5'500'000'000);
   EXPECT_EQ(stamp_of(0x80 | 63, 0xC000000000000000), 1'500'000'000);
-  EXPECT_EQ(stamp_of(0, ~std::uint64_t{0}), -1) << "beyond all time";
+  EXPECT_EQ(stamp_of(0, ~std::uint64_t{0}), -1) << "beyond the last valid second";
   EXPECT_EQ(stamp_of(20, 1), -1) << "no such unit";
 }
 
-TEST_F(Captures, DamageInPcapngCostsWhatItCovers) {
+TEST_F(Captures, DamageInPcapngLosesOnlyTheDamagedBlocks) {
   std::vector<CapturedPacket> packets;
   for (std::uint32_t i = 0; i < 100; ++i) packets.push_back({i, 0, socketcan_packet(i, "12345678")});
   const std::string whole = pcapng_file({{227, "can1"}}, packets);
@@ -339,13 +339,13 @@ TEST_F(Captures, DamageInPcapngCostsWhatItCovers) {
   const Contents c = read(write("big.pcapng", other_order));
   ASSERT_EQ(c.frames.size(), 1u);
   EXPECT_EQ(c.frames[0].data, "big");
-  EXPECT_EQ(c.frames[0].frame.stamp_ns, 2'000'003'000) << "microseconds unless said otherwise";
+  EXPECT_EQ(c.frames[0].frame.stamp_ns, 2'000'003'000) << "microseconds by default";
   EXPECT_EQ(c.frames[0].frame.interface_name(), "can0");
 }
 
-TEST_F(Captures, StampsThatGoBackAreCountedAndMissingFragmentsAreSaid) {
+TEST_F(Captures, StampsThatGoBackAreCountedAndMissingFragmentsReported) {
   std::string first = udp_packet(std::string(16, 'a'));
-  first[6] = 0x20;  // more fragments are to come
+  first[6] = 0x20;  // more fragments follow
   const Contents c =
       read(write("raw.pcap", pcap_file(101, {{5, 0, udp_packet("a")}, {4, 0, udp_packet("b")}, {6, 0, first}})));
   EXPECT_EQ(c.frames.size(), 2u);

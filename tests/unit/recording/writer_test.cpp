@@ -44,7 +44,7 @@ TEST_F(Writers, LinesAreThoseOfCandump) {
   EXPECT_EQ(line_of(frame), "(0000000000.000005) can1 004#\n");
 }
 
-TEST_F(Writers, WhatCanCannotHoldIsRefused) {
+TEST_F(Writers, FramesBeyondTheLimitsOfCanAreRejected) {
   const std::array<std::uint8_t, 65> data{};
   Frame frame;
   frame.payload = std::span(data).first(9);
@@ -101,7 +101,7 @@ TEST_F(Writers, AnyFrameWrittenIsReadAsItWas) {
   EXPECT_THAT(problems_, testing::ElementsAre(testing::HasSubstr("the kernel dropped frames here")));
 }
 
-TEST_F(Writers, TheConsoleFormatOfCanUtilsReadsAsTheLogItWasMadeOf) {
+TEST_F(Writers, TheConsoleFormatOfCanUtilsReadsAsItsLog) {
   if (std::system("command -v log2long > /dev/null") != 0) GTEST_SKIP() << "skipped: no can-utils";
   {
     CandumpWriter writer(folder_ / "log");

@@ -28,12 +28,12 @@ std::uint32_t u32_at(const Bytes& bytes, std::size_t at) {
          static_cast<std::uint32_t>(bytes[at + 2]) << 8 | bytes[at + 3];
 }
 
-TEST(Datagrams, UpToTheLimitAMessageStaysWhole) {
+TEST(Datagrams, UpToTheLimitAMessageIsNotSegmented) {
   for (const std::size_t bytes : {0u, 20u, 1392u})
     EXPECT_EQ(split(message_of(bytes)), std::vector<Bytes>({message_of(bytes)}));
 }
 
-TEST(Datagrams, SegmentsPutTogetherGiveTheMessage) {
+TEST(Datagrams, ReassembledSegmentsAreTheMessage) {
   for (const std::size_t bytes : {1393u, 1408u, 2784u, 2785u, 49208u}) {
     const Bytes message = message_of(bytes);
     const auto segments = split(message);
@@ -59,7 +59,7 @@ TEST(Datagrams, SegmentsPutTogetherGiveTheMessage) {
   }
 }
 
-TEST(Datagrams, ShortMessagesShareOne) {
+TEST(Datagrams, ShortMessagesShareADatagram) {
   SharedDatagram shared;
   const Bytes small = message_of(52);
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(shared.add(small));

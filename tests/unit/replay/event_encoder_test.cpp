@@ -54,8 +54,8 @@ void set_detection(RadarScan& scan, std::size_t i, const std::array<float, 11>& 
 
 constexpr std::array<float, 11> kFirst{25.5F,     0.25F,   0.0625F, -13.25F, 0.25F, 0.0078125F,
                                        0.015625F, 0.0625F, 12.5F,   24.0F,   0.75F};
-constexpr std::array<float, 11> kSecond{120.0F,    -0.5F,   -0.03125F, -61.5F, 0.5F, 0.0078125F,
-                                        0.015625F, 0.0625F, -3.5F,     15.0F,  1.0F};
+constexpr std::array<float, 11> kSecondDetection{120.0F,    -0.5F,   -0.03125F, -61.5F, 0.5F, 0.0078125F,
+                                                 0.015625F, 0.0625F, -3.5F,     15.0F,  1.0F};
 constexpr SensorTime kTime{1767225600'250'000'000, 1};
 
 /// The scan of the document's first example.
@@ -67,7 +67,7 @@ std::unique_ptr<RadarScan> example_scan() {
   scan->range_rate_min_mps = -60.0F;
   scan->range_rate_max_mps = 20.0F;
   set_detection(*scan, 0, kFirst, 0);
-  set_detection(*scan, 1, kSecond, detection_flag::kAmbiguous);
+  set_detection(*scan, 1, kSecondDetection, detection_flag::kAmbiguous);
   return scan;
 }
 
@@ -121,7 +121,7 @@ TEST(EventEncoder, WritesTheDocumentsSegments) {
   EXPECT_THAT(datagrams[1], ElementsAreArray(document_example("last segment, first 72 bytes")));
 }
 
-TEST(EventEncoder, AFullListPassesTheE2eCheckAndIsAsLongAsTheDocumentSays) {
+TEST(EventEncoder, AFullListPassesTheE2eCheckAndHasTheDocumentsLength) {
   auto scan = std::make_unique<RadarScan>();
   write_synthetic_scan(3, {}, 1, 1024, *scan);
   EventEncoder encoder(kDataIds);
@@ -137,7 +137,7 @@ TEST(EventEncoder, AFullListPassesTheE2eCheckAndIsAsLongAsTheDocumentSays) {
   }
 }
 
-TEST(EventBody, WhatIsNotAllowedIsFlaggedAndNotSent) {
+TEST(EventBody, ValuesThatAreNotAllowedAreFlaggedAndNotSent) {
   auto scan = example_scan();
   scan->number_of_valid_detections = 6;
   for (std::size_t i = 0; i < 6; ++i) set_detection(*scan, i, kFirst, 0);
@@ -163,10 +163,10 @@ TEST(EventBody, WhatIsNotAllowedIsFlaggedAndNotSent) {
   EXPECT_EQ(u16_at(record(5), list::record::kFlags), 0u);
 }
 
-TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsTheDocumentSays) {
+TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsSpecified) {
   auto scan = example_scan();
   scan->fields = 1u << 31;
-  scan->elevation_rad[0] = kNan;  // means nothing without its bit
+  scan->elevation_rad[0] = kNan;  // no meaning without its bit
   Bytes body(200);
   ASSERT_EQ(write_detection_list(*scan, {-5, 2}, body), 132u);
   EXPECT_EQ(u32_at(body, list::kFields), 0u);
@@ -185,7 +185,7 @@ TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsTheDocumentSays) {
   EXPECT_EQ(u16_at(record, list::record::kFlags), 0u);
 }
 
-TEST(EventBody, AnIntervalThatIsNoneIsNotClaimed) {
+TEST(EventBody, AnInvalidIntervalIsNotStated) {
   auto scan = example_scan();
   Bytes body(200);
   for (const auto& [min, max] : {std::pair{kNan, 20.0F}, {20.0F, 20.0F}, {-60.0F, 200.0F}}) {
@@ -205,7 +205,7 @@ TEST(EventBody, EgoMotionKeepsToItsFields) {
   ego.speed_mps = -13.5F;
   ASSERT_EQ(write_ego_motion(ego, kTime, body), 32u);
   EXPECT_EQ(f32_at(body, ego_wire::kSpeed_mps), -13.5F);
-  ego.fields &= ~ego_field::kReverse;  // a sign without a known direction says nothing
+  ego.fields &= ~ego_field::kReverse;  // a sign without a known direction has no meaning
   ASSERT_EQ(write_ego_motion(ego, kTime, body), 32u);
   EXPECT_EQ(f32_at(body, ego_wire::kSpeed_mps), 13.5F);
   EXPECT_EQ(u32_at(body, ego_wire::kFields), 7u);
@@ -226,7 +226,7 @@ TEST(EventBody, NothingIsWrittenBeyondTheEnd) {
   EXPECT_EQ(write_ego_motion(example_ego(), kTime, std::span(body).first(31)), 0u);
 }
 
-TEST(SessionCounter, NeverZeroAndKnowsThatItWrapped) {
+TEST(SessionCounter, IsNeverZeroAndReportsItsWrap) {
   someip::SessionCounter counter;
   for (std::uint32_t i = 1; i <= 0xFFFF; ++i) {
     ASSERT_EQ(counter.take(), i);

@@ -21,7 +21,7 @@ TEST(Pacing, DoesNotDriftWhenItIsLate) {
   for (int i = 1; i < 100; ++i) EXPECT_EQ(pacing.due_ns(i * kSecond / 20, 50 * kSecond), kSecond + i * kSecond / 20);
 }
 
-TEST(Pacing, AJumpBackOrALongPauseBeginsAnew) {
+TEST(Pacing, AJumpBackOrALongPauseStartsAgain) {
   Pacing pacing(1.0);
   static_cast<void>(pacing.due_ns(1000 * kSecond, 0));
   EXPECT_EQ(pacing.due_ns(900 * kSecond, 5 * kSecond), 5 * kSecond);

@@ -20,7 +20,7 @@ using someip::SdServer;
 using someip::SdServerConfig;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kSecond = 1'000 * kMs;
+constexpr std::int64_t kSecond_ns = 1'000 * kMs;
 constexpr std::uint16_t kDetections = 1, kEgo = 2;
 
 Endpoint endpoint(std::uint8_t last, std::uint16_t port) {
@@ -35,7 +35,7 @@ void put(Bytes& bytes, std::uint64_t value, int count) {
   for (int shift = 8 * (count - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
-/// A client's entries and options, put together here by hand.
+/// A client's entries and options, written without the code under test.
 struct Client {
   Bytes entries, options;
   std::uint8_t number_of_options = 0;
@@ -143,15 +143,15 @@ class SdServerTest : public ::testing::Test {
 
 TEST_F(SdServerTest, OffersAtFirstOftenThenEachCycle) {
   server.emplace(configuration(false));
-  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond);
-  server->start(kSecond);
+  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond_ns);
+  server->start(kSecond_ns);
   std::vector<std::int64_t> at_ms;
-  for (std::int64_t now = kSecond; now < 6 * kSecond; now += 10 * kMs) {
+  for (std::int64_t now = kSecond_ns; now < 6 * kSecond_ns; now += 10 * kMs) {
     const std::size_t before = out.size();
     const bool due = server->next_due_ns() <= now;
     server->tick(now, out);
     EXPECT_EQ(due, out.size() > before) << now;
-    if (out.size() > before) at_ms.push_back((now - kSecond) / kMs);
+    if (out.size() > before) at_ms.push_back((now - kSecond_ns) / kMs);
   }
   EXPECT_THAT(at_ms, ElementsAre(50, 250, 650, 1450, 2450, 3450, 4450));
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -162,11 +162,11 @@ TEST_F(SdServerTest, OffersAtFirstOftenThenEachCycle) {
   EXPECT_THAT(out[0].message, ElementsAreArray(document_example("offer")));
 }
 
-TEST_F(SdServerTest, CyclesThatWereMissedAreNotMadeUpFor) {
-  tick(60 * kSecond);
+TEST_F(SdServerTest, MissedCyclesAreSkipped) {
+  tick(60 * kSecond_ns);
   ASSERT_EQ(out.size(), 1u);
-  EXPECT_GT(server->next_due_ns(), 60 * kSecond);
-  tick(60 * kSecond);
+  EXPECT_GT(server->next_due_ns(), 60 * kSecond_ns);
+  tick(60 * kSecond_ns);
   EXPECT_EQ(out.size(), 1u);
 }
 
@@ -178,7 +178,7 @@ TEST_F(SdServerTest, OffersSeveralInstancesWithTheirEndpointsInOneMessage) {
   config.instances = {{1, endpoint(13, 30601)}, {2, {v6, 30602}}};
   server.emplace(config);
   server->start(0);
-  tick(kSecond);
+  tick(kSecond_ns);
   ASSERT_EQ(out.size(), 1u);
   const Bytes& m = out[0].message;
   ASSERT_EQ(m.size(), 16u + 4 + 4 + 32 + 4 + 12 + 24);
@@ -191,14 +191,14 @@ TEST_F(SdServerTest, OffersSeveralInstancesWithTheirEndpointsInOneMessage) {
 TEST_F(SdServerTest, ClearsTheRebootFlagOfOffersWhenTheirSessionWraps) {
   for (std::int64_t i = 1; i < 0x10002; ++i) {
     out.clear();
-    tick(i * 2 * kSecond);
+    tick(i * 2 * kSecond_ns);
     ASSERT_EQ(out.size(), 1u);
     const bool first_round = i + 1 <= 0xFFFF;
     ASSERT_EQ(out[0].message[16], first_round ? 0xC0 : 0x40) << i;
     ASSERT_EQ(session_of(out[0].message), first_round ? i + 1 : i + 1 - 0xFFFF);
   }
-  // The counter for unicast is another one.
-  const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 0x30000 * kSecond);
+  // Unicast has a separate counter.
+  const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 0x30000 * kSecond_ns);
   ASSERT_FALSE(ack.empty());
   EXPECT_EQ(session_of(ack), 1);
   EXPECT_EQ(ack[16], 0xC0);
@@ -210,7 +210,7 @@ TEST_F(SdServerTest, AcknowledgesTheDocumentsSubscription) {
   EXPECT_THAT(ack, ElementsAreArray(document_example("acknowledge")));
   EXPECT_THAT(destinations(), ElementsAre(kGroup));
   EXPECT_THAT(destinations(100 * kMs, kEgo), IsEmpty());
-  // A second subscriber does not make it two.
+  // A second subscriber does not double the events.
   receive(Client().at(endpoint(4, 5)).subscribe(kDetections, 3).message(1), 100 * kMs, false, endpoint(4, 30490));
   EXPECT_THAT(destinations(), ElementsAre(kGroup));
 }
@@ -227,7 +227,7 @@ TEST_F(SdServerTest, WithoutAGroupTheEventsGoToEachSubscriberOnce) {
   EXPECT_EQ(session_of(ack), 1) << "a counter for each peer";
   EXPECT_THAT(destinations(), ElementsAre(kClientEvents, other));
   EXPECT_THAT(destinations(100 * kMs, kEgo), ElementsAre(other));
-  // The same endpoint under another counter is a subscription of its own, but not a second copy.
+  // The same endpoint with another counter is a separate subscription, but gets no second copy.
   EXPECT_EQ(ttl_of(receive(Client().at(kClientEvents).subscribe(kDetections, 3, 3, 1, 1).message(2))), 3u);
   EXPECT_THAT(destinations(), ElementsAre(kClientEvents, other));
   EXPECT_EQ(session_of(receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(3))), 3);
@@ -253,7 +253,7 @@ TEST_F(SdServerTest, RefusesWhatItDoesNotServe) {
   EXPECT_EQ(server->statistics().acknowledged, 0u);
 }
 
-TEST_F(SdServerTest, RefusesTheSubscriberThatIsOneTooMany) {
+TEST_F(SdServerTest, RefusesSubscribersBeyondTheLimit) {
   for (std::uint16_t i = 0; i < 8; ++i) {
     const Bytes ack = receive(Client()
                                   .at(endpoint(2, static_cast<std::uint16_t>(50000 + i)))
@@ -269,19 +269,19 @@ TEST_F(SdServerTest, RefusesTheSubscriberThatIsOneTooMany) {
 
 TEST_F(SdServerTest, SubscriptionsEndWithTheirTimeUnlessRenewed) {
   const Client client = Client().at(kClientEvents).subscribe(kDetections, 2);
-  receive(client.message(1), kSecond);
-  EXPECT_EQ(destinations(3 * kSecond - 1).size(), 1u);
-  EXPECT_THAT(destinations(3 * kSecond), IsEmpty());
-  receive(client.message(2), 2 * kSecond);
-  EXPECT_EQ(destinations(4 * kSecond - 1).size(), 1u);
-  tick(4 * kSecond);
-  EXPECT_THAT(destinations(3 * kSecond), IsEmpty()) << "once ended, it is gone";
+  receive(client.message(1), kSecond_ns);
+  EXPECT_EQ(destinations(3 * kSecond_ns - 1).size(), 1u);
+  EXPECT_THAT(destinations(3 * kSecond_ns), IsEmpty());
+  receive(client.message(2), 2 * kSecond_ns);
+  EXPECT_EQ(destinations(4 * kSecond_ns - 1).size(), 1u);
+  tick(4 * kSecond_ns);
+  EXPECT_THAT(destinations(3 * kSecond_ns), IsEmpty()) << "once ended, it is gone";
   EXPECT_EQ(server->statistics().expired, 1u);
-  receive(Client().at(kClientEvents).subscribe(kDetections, 0xFFFFFF).message(3), 5 * kSecond);
-  EXPECT_EQ(destinations(20'000'000 * kSecond).size(), 1u) << "for ever";
+  receive(Client().at(kClientEvents).subscribe(kDetections, 0xFFFFFF).message(3), 5 * kSecond_ns);
+  EXPECT_EQ(destinations(20'000'000 * kSecond_ns).size(), 1u) << "without time limit";
 }
 
-TEST_F(SdServerTest, AClientCanTakeItsSubscriptionBack) {
+TEST_F(SdServerTest, AClientCanEndItsSubscription) {
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).subscribe(kEgo, 3).message(1));
   EXPECT_TRUE(receive(Client().at(kClientEvents).subscribe(kDetections, 0).message(2)).empty()) << "not answered";
   EXPECT_THAT(destinations(), IsEmpty());
@@ -290,21 +290,21 @@ TEST_F(SdServerTest, AClientCanTakeItsSubscriptionBack) {
   const Bytes ack = receive(Client().at(kClientEvents).subscribe(kEgo, 0).subscribe(kEgo, 3).message(3));
   EXPECT_EQ(entries_of(ack), 1u);
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
-  // Nobody else's.
+  // No other subscription.
   receive(Client().at(kClientEvents).subscribe(kEgo, 0).message(1), 100 * kMs, false, endpoint(9, 30490));
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
 }
 
-TEST_F(SdServerTest, SubscriptionsOfOneEndpointAreToldApartByClientAndCounter) {
+TEST_F(SdServerTest, SubscriptionsOfOneEndpointAreDistinguishedByClientAndCounter) {
   const Bytes ack = receive(Client().at(kClientEvents).subscribe(kDetections, 3, 3, 1, 5).message(1));
   EXPECT_EQ(ack[24 + 13], 5) << "the counter comes back";
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(2));
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(1), 100 * kMs, false, endpoint(9, 30490));
   EXPECT_THAT(destinations(), ElementsAre(kClientEvents));
   receive(Client().at(kClientEvents).subscribe(kDetections, 0).message(3));
-  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "its other one, and the other client's";
+  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "its other subscription, and that of the other client";
   receive(Client().at(kClientEvents).subscribe(kDetections, 0, 3, 1, 5).message(4));
-  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "the other client's";
+  EXPECT_THAT(destinations(), ElementsAre(kClientEvents)) << "that of the other client";
   receive(Client().at(kClientEvents).subscribe(kDetections, 0).message(2), 100 * kMs, false, endpoint(9, 30490));
   EXPECT_THAT(destinations(), IsEmpty());
 }
@@ -313,16 +313,16 @@ TEST_F(SdServerTest, ForgetsWhatARebootedClientHadSubscribed) {
   const Endpoint other_sd = endpoint(4, 30490);
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).message(5));
   receive(Client().at(endpoint(4, 41000)).subscribe(kDetections, 3).message(5), 100 * kMs, false, other_sd);
-  // Multicast sessions are counted apart: a 1 there is no reboot.
+  // Multicast sessions are counted separately: a 1 there is no reboot.
   receive(Client().find(9).message(1), 100 * kMs, true);
   EXPECT_EQ(destinations().size(), 2u);
   receive(Client().at(kClientEvents).subscribe(kEgo, 3).message(6), 100 * kMs);
   EXPECT_EQ(destinations().size(), 2u);
   receive(Client().at(kClientEvents).subscribe(kEgo, 3).message(6), 100 * kMs);
   EXPECT_THAT(destinations(), ElementsAre(endpoint(4, 41000))) << "session did not grow";
-  EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u) << "what the same message subscribes counts";
+  EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u) << "the subscription of the same message counts";
   EXPECT_EQ(server->statistics().client_reboots, 1u);
-  // After a wrap (flag cleared) sessions may go down; the flag coming back is a reboot.
+  // After a wrap (flag cleared) sessions may decrease; a flag that is set again is a reboot.
   receive(Client().find(9).message(7, false));
   receive(Client().find(9).message(1, false));
   EXPECT_EQ(server->statistics().client_reboots, 1u);
@@ -331,7 +331,7 @@ TEST_F(SdServerTest, ForgetsWhatARebootedClientHadSubscribed) {
   EXPECT_THAT(destinations(100 * kMs, kEgo), IsEmpty());
 }
 
-TEST_F(SdServerTest, AnswersThoseWhoSearch) {
+TEST_F(SdServerTest, AnswersFindService) {
   const auto found = [&](const Client& client) { return !receive(client.message(1, false), 100 * kMs, true).empty(); };
   EXPECT_TRUE(found(Client().find(0xFFFF)));
   EXPECT_TRUE(found(Client().find(3, 1, 0)));
@@ -340,19 +340,19 @@ TEST_F(SdServerTest, AnswersThoseWhoSearch) {
   EXPECT_FALSE(found(Client().find(3, 1, 1)));
   EXPECT_FALSE(found(Client().find(3, 0xFF, 0xFFFFFFFF, 0x1234)));
   const Bytes offer = receive(Client().find(0xFFFF).find(3).find(3).message(2), 100 * kMs, true);
-  EXPECT_EQ(entries_of(offer), 1u) << "once, however often asked";
+  EXPECT_EQ(entries_of(offer), 1u) << "once for any number of entries";
   EXPECT_EQ(offer[24], 0x01);
   EXPECT_EQ(ttl_of(offer), 3u);
 }
 
-TEST_F(SdServerTest, SaysNothingBeforeItsFirstOfferAndAfterItsLast) {
+TEST_F(SdServerTest, SendsNothingBeforeItsFirstOfferAndAfterItsLast) {
   server.emplace(configuration(false));
   EXPECT_TRUE(receive(Client().find(3).message(1), 0).empty());
   server->start(0);
   EXPECT_TRUE(receive(Client().find(3).message(2), 10 * kMs).empty());
   out.clear();
   server->stop(out);
-  EXPECT_THAT(out, IsEmpty()) << "nothing was offered, so nothing is taken back";
+  EXPECT_THAT(out, IsEmpty()) << "nothing was offered, so nothing is withdrawn";
 
   server->start(0);
   tick(50 * kMs);
@@ -364,11 +364,11 @@ TEST_F(SdServerTest, SaysNothingBeforeItsFirstOfferAndAfterItsLast) {
   EXPECT_EQ(out[0].message[24], 0x01);
   EXPECT_EQ(ttl_of(out[0].message), 0u);
   EXPECT_THAT(destinations(), IsEmpty());
-  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond);
+  EXPECT_GT(server->next_due_ns(), 1'000'000 * kSecond_ns);
   EXPECT_TRUE(receive(Client().find(3).message(4)).empty());
 }
 
-TEST_F(SdServerTest, TakesNoSubscriptionByMulticast) {
+TEST_F(SdServerTest, IgnoresSubscriptionsByMulticast) {
   EXPECT_TRUE(receive(document_example("subscribe"), 100 * kMs, true).empty());
   EXPECT_THAT(destinations(), IsEmpty());
 }
@@ -384,7 +384,7 @@ TEST_F(SdServerTest, ReadsAllMessagesOfADatagram) {
   EXPECT_EQ(destinations(100 * kMs, kEgo).size(), 1u);
 }
 
-TEST_F(SdServerTest, DamagedMessagesAreRefusedWholeAndDoNoHarm) {
+TEST_F(SdServerTest, DamagedMessagesAreRejectedWithoutEffect) {
   const Bytes good = Client().at(kClientEvents).subscribe(kDetections, 3).message(1);
   for (std::size_t length = 1; length < good.size(); ++length) {
     Bytes cut(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length));
@@ -420,21 +420,21 @@ TEST_F(SdServerTest, DamagedMessagesAreRefusedWholeAndDoNoHarm) {
   for (int i = 0; i < 65; ++i) many.find(3);
   EXPECT_TRUE(receive(many.message(1)).empty());
   EXPECT_TRUE(problem.has_value());
-  EXPECT_FALSE(receive(good).empty()) << "the sound one is still taken";
+  EXPECT_FALSE(receive(good).empty()) << "the valid one is still accepted";
 }
 
-TEST_F(SdServerTest, KeepsSoManyPeersAndNoMore) {
+TEST_F(SdServerTest, KeepsALimitedNumberOfPeers) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const Endpoint from{IpAddress::v4(0x0A000000u + i), 30490};
     EXPECT_EQ(session_of(receive(Client().find(3).message(1), 100 * kMs + i, true, from)), 1);
   }
   const Endpoint last{IpAddress::v4(0x0A000000u + 999), 30490};
-  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond, true, last)), 2) << "the latest are remembered";
+  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond_ns, true, last)), 2) << "the latest are remembered";
   const Endpoint first{IpAddress::v4(0x0A000000u), 30490};
-  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond, true, first)), 1) << "the first is forgotten";
+  EXPECT_EQ(session_of(receive(Client().find(3).message(2), kSecond_ns, true, first)), 1) << "the first is forgotten";
 }
 
-TEST_F(SdServerTest, TellsNewSubscribersAndNotRenewals) {
+TEST_F(SdServerTest, ReportsNewSubscribersButNotRenewals) {
   receive(Client().at(kClientEvents).subscribe(kDetections, 3).subscribe(kEgo, 3).message(1));
   ASSERT_EQ(server->new_subscribers().size(), 2u);
   EXPECT_EQ(server->new_subscribers()[0].instance, 3);

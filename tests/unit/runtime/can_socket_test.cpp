@@ -16,7 +16,7 @@ recording::Frame frame_of(std::uint32_t id, const std::vector<std::uint8_t>& pay
   return frame;
 }
 
-TEST(CanSocket, FramesComeBackAsTheyWent) {
+TEST(CanSocket, FramesAreReadAsTheyWereWritten) {
   for (const bool fd : {false, true}) {
     for (const std::uint32_t id : {0u, 0x7FFu, 0x800u, 0x1FFFFFFFu}) {
       const std::vector<std::uint8_t> payload(fd ? 48 : 5, 0xA5);
@@ -36,7 +36,7 @@ TEST(CanSocket, FramesComeBackAsTheyWent) {
   }
 }
 
-TEST(CanSocket, RemoteAndErrorFramesAreToldApart) {
+TEST(CanSocket, RemoteAndErrorFramesAreDistinguished) {
   canfd_frame raw{};
   recording::Frame frame = frame_of(0x123, {});
   frame.can_remote = true;
@@ -61,7 +61,7 @@ TEST(CanSocket, WrongLengthsAreNotRead) {
   EXPECT_EQ(from_kernel(raw, CANFD_MTU, frame), CanFrameKind::kWrongLength);
 }
 
-TEST(CanSocket, WhatIsTooLongIsCutToTheKindOfFrame) {
+TEST(CanSocket, PayloadsAreCutToTheKindOfFrame) {
   canfd_frame raw{};
   const std::vector<std::uint8_t> payload(80, 1);
   EXPECT_EQ(to_kernel(frame_of(1, payload), raw), CAN_MTU);
@@ -70,7 +70,7 @@ TEST(CanSocket, WhatIsTooLongIsCutToTheKindOfFrame) {
   EXPECT_EQ(raw.len, 64);
 }
 
-TEST(CanSocket, AnInterfaceThatIsNotThereIsNamed) {
+TEST(CanSocket, AMissingInterfaceIsNamed) {
   std::string problem;
   EXPECT_EQ(open_can_socket("nosuchcan0", false, problem), -1);
   EXPECT_FALSE(problem.empty()) << "no CAN in the kernel, or no such interface";

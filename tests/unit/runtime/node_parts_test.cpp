@@ -16,9 +16,9 @@ MessageHeader message(std::uint64_t sequence, std::uint32_t source = 0, std::uin
   return header;
 }
 
-TEST(GapDetector, CountsWhatIsMissingBetweenTwoMessages) {
+TEST(GapDetector, CountsMissingMessagesBetweenTwoMessages) {
   GapDetector gaps(false);
-  EXPECT_EQ(gaps.observe(message(7)), 0u) << "the first message a late reader sees is no loss";
+  EXPECT_EQ(gaps.observe(message(7)), 0u) << "the first message of a late reader is no loss";
   EXPECT_EQ(gaps.observe(message(8)), 0u);
   EXPECT_EQ(gaps.observe(message(12)), 3u);
 }
@@ -30,7 +30,7 @@ TEST(GapDetector, ARestartedWriterIsNoLoss) {
   EXPECT_EQ(gaps.observe(message(2)), 0u);
 }
 
-TEST(GapDetector, KeepsSeveralWritersApart) {
+TEST(GapDetector, DistinguishesSeveralWriters) {
   GapDetector gaps(true);
   static_cast<void>(gaps.observe(message(1, 0, 1)));
   static_cast<void>(gaps.observe(message(1, 3, 1)));
@@ -39,7 +39,7 @@ TEST(GapDetector, KeepsSeveralWritersApart) {
 }
 
 #ifndef BORESIGHT_SANITIZED
-// The call goes through a volatile pointer, or the compiler removes the pair as having no effect.
+// The call uses a volatile pointer, as the compiler would otherwise remove the pair without effect.
 void allocate_once() {
   void* (*volatile allocate)(std::size_t) = std::malloc;
   std::free(allocate(16));

@@ -71,7 +71,7 @@ TEST(VehicleFile, RefusesWrongAddressesLinksAndMissingKeys) {
   EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("ego: is missing"));
 }
 
-TEST(VehicleFile, OfflineLinksMayBeLeftOutButNotBeWrong) {
+TEST(VehicleFile, OfflineLinksAreOptionalButMustBeValid) {
   const std::string bare =
       "name = \"car\"\n"
       "[[radar]]\nid = 1\nname = \"a\"\nmounting_pose = {position_m = [3.0, 0.0, 0.5], yaw_deg = 10.0}\n"
@@ -99,7 +99,7 @@ TEST(VehicleFile, KnowsEveryKindOfRadar) {
   EXPECT_EQ(v.ego.profile, EgoProfile::kMapping);
   EXPECT_TRUE(std::filesystem::exists(v.ego.mapping)) << "relative to the vehicle file";
   EXPECT_TRUE(v.radar(1)->ego_feed);
-  EXPECT_FALSE(v.radar(1)->e2e.required) << "real firmware leaves it zero";
+  EXPECT_FALSE(v.radar(1)->e2e.required) << "some firmware leaves it at zero";
   EXPECT_EQ(v.radar(2)->source.link, LinkKind::kSomeIp);
   EXPECT_TRUE(v.radar(2)->e2e.required);
   EXPECT_EQ(v.radar(2)->e2e.protection.profile, e2e::Profile::kP07);
@@ -112,7 +112,7 @@ TEST(VehicleFile, KnowsEveryKindOfRadar) {
   EXPECT_TRUE(std::filesystem::exists(v.radar(7)->mapping));
 }
 
-TEST(VehicleFile, RefusesWhatAProfileDoesNotKnow) {
+TEST(VehicleFile, RejectsKeysThatAProfileDoesNotHave) {
   const std::string someip =
       "[[radar]]\nid = 1\nname = \"a\"\nprofile = \"boresight\"\nmounting_pose = {position_m = [0.0, 0.0, 0.0], "
       "yaw_deg "

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr double kDuration_s = 6.0;
 constexpr std::uint64_t kSeed = 4;
 
-VehicleConfig demo() {
+VehicleConfig demo_vehicle() {
   return config::read_vehicle_file(fs::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
 }
 
@@ -115,7 +115,7 @@ class Recording : public testing::Test {
   static void TearDownTestSuite() { fs::remove_all(folder()); }
   static fs::path folder() { return fs::temp_directory_path() / ("boresight-recording-" + std::to_string(::getpid())); }
   static DriveFiles write(const Scenario& scenario, std::uint64_t seed, const std::string& name) {
-    return write_drive(scenario, demo(), seed, kDuration_s, folder() / name, [](double) {});
+    return write_drive(scenario, demo_vehicle(), seed, kDuration_s, folder() / name, [](double) {});
   }
   static inline DriveFiles files_;
 };
@@ -138,7 +138,7 @@ TEST_F(Recording, TheSameSeedGivesTheSameBytesAndAnotherDoesNot) {
 
 TEST_F(Recording, TheGatewayReadsWhatWasMeasured) {
   Kept kept;
-  const VehicleConfig vehicle = demo();
+  const VehicleConfig vehicle = demo_vehicle();
   ingest::Gateway gateway(vehicle, kept);
   const auto reader = recording::open_recordings({files_.ego, files_.radars},
                                                  [](const std::string& problem) { ADD_FAILURE() << problem; });
@@ -186,7 +186,7 @@ TEST_F(Recording, TheGatewayReadsWhatWasMeasured) {
 
 TEST_F(Recording, EgoSignalsAreThoseOfTheDriveWithinTheirQuantisation) {
   Kept kept;
-  const VehicleConfig vehicle = demo();
+  const VehicleConfig vehicle = demo_vehicle();
   ingest::Gateway gateway(vehicle, kept);
   const auto reader = recording::open_recordings({files_.ego}, [](const std::string&) {});
   recording::Frame frame;
@@ -206,7 +206,7 @@ TEST_F(Recording, EgoSignalsAreThoseOfTheDriveWithinTheirQuantisation) {
 
 TEST_F(Recording, OnlyTheBlockedRadarReportsBlockageOnTheWire) {
   Kept kept;
-  const VehicleConfig vehicle = demo();
+  const VehicleConfig vehicle = demo_vehicle();
   ingest::Gateway gateway(vehicle, kept);
   const auto reader = recording::open_recordings({files_.radars}, [](const std::string&) {});
   recording::Frame frame;
@@ -234,7 +234,7 @@ TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
                                                    {"ghost_type_1", Provenance::kGhostType1},
                                                    {"ghost_type_2", Provenance::kGhostType2},
                                                    {"clutter", Provenance::kClutter}};
-  Drive drive(disturbed(), demo(), kSeed, kDuration_s);
+  Drive drive(disturbed(), demo_vehicle(), kSeed, kDuration_s);
   std::size_t at = 0;
   std::map<Provenance, std::size_t> kinds;
   while (const Event* event = drive.next()) {
@@ -329,7 +329,7 @@ TEST_F(Recording, TheTruthOfVisibilityAgreesWithDetectionsAndObjects) {
 }
 
 TEST_F(Recording, TheTruthOfObjectsIsThatOfTheWorld) {
-  const Drive drive(disturbed(), demo(), kSeed, kDuration_s);
+  const Drive drive(disturbed(), demo_vehicle(), kSeed, kDuration_s);
   std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < drive.world().number_of_bodies(); ++i) {
     index[std::to_string(drive.world().body(i, 0.0).id)] = i;
@@ -366,23 +366,25 @@ TEST(DriveWriter, RefusesUnsupportedVehiclesAndUnwritableFolders) {
   };
   Scenario s = scenario("tunnel");
   s.effects.step_changes = {{9, 1.0, {}}};
-  EXPECT_EQ(problem(s, demo()), "radars.step_change.radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4");
-  VehicleConfig other = demo();
+  EXPECT_EQ(problem(s, demo_vehicle()),
+            "radars.step_change.radar: 9 is no radar of the vehicle demo; allowed: 1, 2, 3, 4");
+  VehicleConfig other = demo_vehicle();
   other.radars[1].profile = RadarProfile::kArs408;
   EXPECT_NE(problem(scenario("tunnel"), other).find("front_right"), std::string::npos);
-  other = demo();
+  other = demo_vehicle();
   other.radars[2].e2e.required = true;
   EXPECT_NE(problem(scenario("tunnel"), other).find("rear_left"), std::string::npos);
-  other = demo();
+  other = demo_vehicle();
   other.ego.profile = EgoProfile::kMapping;
   EXPECT_NE(problem(scenario("tunnel"), other).find("Toyota"), std::string::npos);
-  other = demo();
+  other = demo_vehicle();
   other.radars[0].source.sender.clear();
   EXPECT_NE(problem(scenario("tunnel"), other).find("sender"), std::string::npos);
   other.radars.clear();
   EXPECT_NE(problem(scenario("tunnel"), other).find("no radar"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder)) << "nothing is written for a wrong scenario";
-  EXPECT_THROW(write_drive(scenario("tunnel"), demo(), 1, 0.1, "/proc/nowhere", [](double) {}), std::runtime_error);
+  EXPECT_THROW(write_drive(scenario("tunnel"), demo_vehicle(), 1, 0.1, "/proc/nowhere", [](double) {}),
+               std::runtime_error);
 }
 
 }  // namespace

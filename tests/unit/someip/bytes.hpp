@@ -1,4 +1,4 @@
-// SOME/IP bytes as tests write them: without the code under test.
+// SOME/IP bytes for tests, written without the code under test.
 #pragma once
 
 #include <cstdint>
@@ -77,7 +77,7 @@ inline Bytes random_bytes(std::mt19937& random, std::size_t size) {
   return bytes;
 }
 
-/// One to four random changes: bytes set, bits flipped, an end cut off or grown.
+/// One to four random changes: bytes set, bits flipped, the end removed or extended.
 inline Bytes mutated(std::mt19937& random, Bytes bytes) {
   for (std::size_t changes = 1 + random() % 4; changes > 0 && !bytes.empty(); --changes) {
     const std::size_t at = random() % bytes.size();

@@ -64,7 +64,7 @@ TEST(SomeIpMessage, AcceptsAnEmptyPayload) {
   EXPECT_EQ(messages.at(0).protected_data.size(), 8u);
 }
 
-TEST(SomeIpMessage, KnowsEveryTypeThereIs) {
+TEST(SomeIpMessage, AcceptsEveryMessageType) {
   for (unsigned type = 0; type < 256; ++type) {
     const unsigned plain = type & 0xDFu;
     const bool exists = plain <= 2 || plain == 0x80 || plain == 0x81;
@@ -85,7 +85,7 @@ TEST(SomeIpMessage, AMessageOfAnotherVersionOrTypeIsSkippedAlone) {
                                              ReadResult::kMessageType, ReadResult::kMessage, ReadResult::kEnd}));
 }
 
-TEST(SomeIpMessage, AWrongLengthGivesUpTheRestAndIsSaidOnce) {
+TEST(SomeIpMessage, AWrongLengthDropsTheRestAndIsReportedOnce) {
   const Bytes good = test::message({}, Bytes(3, 9));
   const auto with_length = [&](std::uint32_t length) {
     Bytes bad = good;
@@ -102,7 +102,7 @@ TEST(SomeIpMessage, AWrongLengthGivesUpTheRestAndIsSaidOnce) {
   EXPECT_EQ(with_length(0xFFFFFFFF), gives_up(ReadResult::kBeyondDatagram));
 }
 
-TEST(SomeIpMessage, ACutHeaderIsAFault) {
+TEST(SomeIpMessage, ATruncatedHeaderIsAFault) {
   const Bytes good = test::message({}, Bytes(3, 9));
   for (std::size_t left = 1; left < kHeaderBytes; ++left) {
     Bytes datagram = good;
@@ -113,7 +113,7 @@ TEST(SomeIpMessage, ACutHeaderIsAFault) {
   EXPECT_EQ(read_all({}), (std::vector{ReadResult::kHeaderCut, ReadResult::kEnd}));
 }
 
-TEST(SomeIpMessage, EveryFaultSaysWhatIsWrong) {
+TEST(SomeIpMessage, EveryFaultHasADescription) {
   for (const ReadResult fault : {ReadResult::kHeaderCut, ReadResult::kLengthTooSmall, ReadResult::kBeyondDatagram,
                                  ReadResult::kProtocolVersion, ReadResult::kMessageType}) {
     EXPECT_FALSE(describe(fault).empty());

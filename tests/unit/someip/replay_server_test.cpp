@@ -1,5 +1,5 @@
 // The client and the replay's server, which was written against the service's definition and not against the client,
-// on a simulated network: whoever starts first, whatever dies, whatever is lost.
+// on a simulated network: any order of starts, failures of each side, lost datagrams.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -22,9 +22,9 @@ namespace {
 namespace service = wire::boresight_service;
 using recording::Endpoint;
 using test::Bytes;
+using test::kMillisecond;
+using test::kSecond;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int64_t kSecond = 1'000 * kMillisecond;
 constexpr std::uint16_t kRadar = 3;
 const Endpoint kGroup = test::endpoint(0xE0F4E0F5, 30490);
 const Endpoint kClient = test::endpoint(0x0A000002, 30490);
@@ -79,7 +79,7 @@ class Drive : public testing::Test, public SdActions {
   void pass(std::int64_t duration_ns) {
     for (const std::int64_t end_ns = now_ns_ + duration_ns; now_ns_ < end_ns; now_ns_ += 5 * kMillisecond) step();
   }
-  /// How long it takes until `reached`; 20 s if it is not.
+  /// Time until `reached`; 20 s if it is not reached.
   std::int64_t time_until(const std::function<bool()>& reached) {
     const std::int64_t begin_ns = now_ns_;
     while (!reached() && now_ns_ < begin_ns + 20 * kSecond) pass(5 * kMillisecond);
@@ -145,7 +145,7 @@ TEST_F(Drive, TheClientStartsFirst) {
   EXPECT_TRUE(faults_.empty());
 }
 
-TEST_F(Drive, AServerThatWasKilledIsSubscribedAnewWhenItIsBack) {
+TEST_F(Drive, AKilledServerIsSubscribedAgainWhenItIsBack) {
   start_client();
   start_server();
   time_until_subscribed();
@@ -161,7 +161,7 @@ TEST_F(Drive, AServerThatWasKilledIsSubscribedAnewWhenItIsBack) {
                                              UnsubscribeReason::kServerReboot, UnsubscribeReason::kOfferExpired));
 }
 
-TEST_F(Drive, AServerThatStopsSaysSo) {
+TEST_F(Drive, AServerWithdrawsItsOffersWhenItStops) {
   start_client();
   start_server();
   time_until_subscribed();
@@ -192,7 +192,7 @@ TEST_F(Drive, TheLinkGoesDownAndComesUp) {
   EXPECT_EQ(client_->statistics().reboots, 0u);
 }
 
-TEST_F(Drive, LostDatagramsAreMadeUpFor) {
+TEST_F(Drive, LostDatagramsAreRecovered) {
   loss_ = 0.2;
   start_client();
   start_server();
@@ -218,7 +218,7 @@ TEST_F(Drive, JoinsTheGroupTheServerNames) {
   EXPECT_EQ(joined_, std::nullopt);
 }
 
-TEST_F(Drive, AClientThatStopsLeavesNothingBehind) {
+TEST_F(Drive, AClientThatStopsEndsItsSubscriptions) {
   start_client();
   start_server();
   time_until_subscribed();
@@ -228,7 +228,7 @@ TEST_F(Drive, AClientThatStopsLeavesNothingBehind) {
   EXPECT_FALSE(server_serves());
 }
 
-TEST(ReplayEvents, ArriveWholeAndProtectedInWhateverOrderTheirSegmentsCome) {
+TEST(ReplayEvents, ArriveCompleteAndProtectedForAnyOrderOfSegments) {
   replay::EventEncoder encoder({service::data_id(kRadar, service::kEventDetectionList), 0});
   e2e::Checker checker({.profile = e2e::Profile::kP07,
                         .data_id = service::data_id(kRadar, service::kEventDetectionList),

@@ -1,4 +1,4 @@
-// Service discovery messages as a server sends them, written without the code under test.
+// A server's service discovery messages, written without the code under test.
 #pragma once
 
 #include "tests/unit/someip/bytes.hpp"

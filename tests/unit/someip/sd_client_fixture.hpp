@@ -20,11 +20,11 @@ class SdClientTest : public testing::Test {
   void make(std::vector<SdSubscription> subscriptions) {
     client_ = std::make_unique<SdClient>(SdClientConfig{kLocal, kGroup, std::move(subscriptions)}, actions_);
   }
-  /// Lets time pass as a caller would: tick() is called when it said so, and not otherwise.
+  /// Advances the time and calls tick() exactly at its requested times.
   void pass(std::int64_t duration_ns) {
     const std::int64_t end_ns = now_ns_ + duration_ns;
     for (int guard = 0; due_ns_ <= end_ns; ++guard) {
-      ASSERT_LT(guard, 10'000) << "tick() asks to be called for ever";
+      ASSERT_LT(guard, 10'000) << "tick() requests calls without end";
       now_ns_ = std::max(now_ns_, due_ns_);
       due_ns_ = client_->tick(now_ns_);
     }
@@ -46,7 +46,7 @@ class SdClientTest : public testing::Test {
     ASSERT_THAT(actions_.taken(), testing::ElementsAre(kSubscribed0));
     actions_.sent.clear();
   }
-  /// Types and times to live of what was sent, such as "Subscribe 3".
+  /// Types and times to live of sent entries, such as "Subscribe 3".
   std::vector<std::string> sent() {
     std::vector<std::string> texts;
     for (const SentEntry& s : actions_.taken_sent()) {

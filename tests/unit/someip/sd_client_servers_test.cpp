@@ -1,4 +1,4 @@
-// Several servers, subscriptions and programs beside one another; what is wrong with what they say.
+// Several servers, subscriptions and programs at the same time; invalid messages.
 #include <gtest/gtest.h>
 
 #include "services/ingest_gateway/core/sd_client.hpp"
@@ -33,12 +33,12 @@ TEST_F(SdClientServers, OffersWithoutAUsableEndpointAreFaults) {
     EXPECT_EQ(actions_.last_fault, Fault::kWireValue);
   }
   EXPECT_THAT(sent(), IsEmpty());
-  // The same from a service nobody wants is nobody's fault.
+  // The same from a service without a subscription is no fault.
   multicast(server_.by_multicast({{.service = 0x9999, .number_1 = 1}}, {test::ipv4_option(0, 30501)}), server_);
   EXPECT_EQ(actions_.faults, faults);
 }
 
-TEST_F(SdClientServers, TheFirstOfTwoInstancesIsTakenAndKept) {
+TEST_F(SdClientServers, TheFirstOfTwoInstancesIsUsedAndKept) {
   Server second{.address = 0x0A000015};
   start();
   actions_.sent.clear();
@@ -47,7 +47,7 @@ TEST_F(SdClientServers, TheFirstOfTwoInstancesIsTakenAndKept) {
   EXPECT_THAT(sent(), ElementsAre("Subscribe"));
   ack();
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
-  // The same instance at another address is not followed while the first is there.
+  // The same instance at another address is ignored while the first one is present.
   multicast(second.offer(3, 1), second);
   multicast(second.offer(0, 1), second);
   EXPECT_EQ(client_->statistics().offers_by_others, 2u);
@@ -59,19 +59,19 @@ TEST_F(SdClientServers, TheFirstOfTwoInstancesIsTakenAndKept) {
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 StopOffer", "subscribed 0 10.0.0.21:30501"));
 }
 
-TEST_F(SdClientServers, AServerThatDoesNotAnswerGivesWayToAnother) {
+TEST_F(SdClientServers, AServerThatDoesNotAnswerIsReplacedByAnother) {
   Server ghost{.address = 0x0A000063};
   start();
   multicast(ghost.offer(kForever_s), ghost);
   offer();
-  EXPECT_EQ(client_->state(0).peer, ghost.sd()) << "it has had no time to answer";
+  EXPECT_EQ(client_->state(0).peer, ghost.sd()) << "its time to answer has not passed";
   pass(kSecond);
   multicast(server_.offer(0), server_);
-  EXPECT_EQ(client_->state(0).peer, ghost.sd()) << "a StopOffer of another is none of ours";
+  EXPECT_EQ(client_->state(0).peer, ghost.sd()) << "a StopOffer of another server is ignored";
   offer();
   ack();
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
-  // And the other way round: an answer keeps the place for as long as the next one may take.
+  // The opposite case: an answer keeps the server until its next answer is due.
   multicast(ghost.offer(kForever_s), ghost);
   pass(2 * kSecond);
   multicast(ghost.offer(kForever_s), ghost);
@@ -110,7 +110,7 @@ TEST_F(SdClientServers, AnotherMajorVersionIsAFault) {
   EXPECT_EQ(actions_.last_fault, Fault::kVersionMismatch);
 }
 
-TEST_F(SdClientServers, AcksOfOthersAreNotOurs) {
+TEST_F(SdClientServers, AcksToOthersAreIgnored) {
   Server stranger{.address = 0x0A000099};
   start();
   offer();
@@ -122,7 +122,7 @@ TEST_F(SdClientServers, AcksOfOthersAreNotOurs) {
   EXPECT_EQ(actions_.faults, 0u);
 }
 
-TEST_F(SdClientServers, SeveralSubscriptionsShareMessagesAndAreToldApart) {
+TEST_F(SdClientServers, SeveralSubscriptionsShareMessagesAndAreDistinguished) {
   make({{.index = 10, .service = 0x1234, .instance = 1, .eventgroup = 0x10, .local_port = 40001},
         {.index = 11, .service = 0x1234, .instance = 1, .eventgroup = 0x10, .local_port = 40002},
         {.index = 12, .service = 0x1234, .instance = 2, .eventgroup = 0x10, .local_port = 40003}});
@@ -163,7 +163,7 @@ TEST_F(SdClientServers, MoreSubscriptionsThanAMessageHoldsGoInSeveral) {
   }
   multicast(server_.by_multicast(entries, {test::ipv4_option(test::kServerAddress, 30501)}), server_);
   EXPECT_EQ(sent(), std::vector<std::string>(50, "Subscribe"));
-  // All withdrawn and subscribed anew, though a Stop and its Subscribe may fall into two messages.
+  // All are withdrawn and subscribed again; a StopSubscribe and its Subscribe may be in different messages.
   pass(kSecond);
   server_.restart();
   multicast(server_.by_multicast(entries, {test::ipv4_option(test::kServerAddress, 30501)}), server_);
@@ -195,7 +195,8 @@ TEST_F(SdClientServers, OwnSessionsCountPerPeerAndWrapWithTheFlagCleared) {
 }
 
 TEST_F(SdClientServers, ProgramsOnThisHostThatShareThePortDoNotLookLikeReboots) {
-  // A server on this host; another program's Finds and our own have the same address and port, but other sessions.
+  // A server on this host: Finds of the client and of another program have the same address and port, but different
+  // sessions.
   server_.address = test::kLocal.to_v4();
   start();
   offer();
@@ -245,13 +246,13 @@ TEST_F(SdClientServers, MalformedMessagesAreFaultsAndChangeNothing) {
   multicast(cut, server_);
   EXPECT_EQ(actions_.faults, 2u);
   EXPECT_EQ(client_->statistics().malformed_messages, 2u);
-  // Several bad entries: said once, all counted; the good one counts.
+  // Several invalid entries: reported once, all counted; the valid one is used.
   multicast(server_.by_multicast({{.index_1 = 9, .number_1 = 1}, {.index_1 = 9, .number_1 = 1}, {.ttl_s = 0}}),
             server_);
   EXPECT_EQ(actions_.faults, 3u);
   EXPECT_EQ(client_->statistics().malformed_entries, 2u);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 StopOffer"));
-  // Messages of other services on the port are nobody's fault.
+  // Messages of other services on the port are no fault.
   multicast(test::message({}, Bytes(10)), server_);
   EXPECT_EQ(actions_.faults, 3u);
 }

@@ -1,4 +1,4 @@
-// What the network can make the client do is bounded: storms, floods of peers, changed messages.
+// The client's work is bounded for all input: many messages, many peers, changed messages.
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/allocation_counter.hpp"
@@ -13,7 +13,7 @@ using test::kMillisecond;
 using test::kSecond;
 using test::Server;
 
-/// Only counts, so that what allocates is the client.
+/// Only counts, so that all allocations are the client's.
 class CountedActions : public SdActions {
  public:
   void send(std::span<const std::uint8_t> /*datagram*/, const recording::Endpoint& /*to*/) override { ++calls; }
@@ -54,14 +54,14 @@ TEST_F(SdStorm, AStormOfOffersAndRebootsLeadsToTenSubscribesASecond) {
   EXPECT_GE(client_.statistics().subscribes_sent, 50u);
   EXPECT_LE(actions_.datagrams, 110u);
   EXPECT_GT(client_.statistics().subscribes_put_off, 1000u);
-  // When it is over, all is well within an offer.
+  // Afterwards, the subscription is back within one offer.
   now_ns_ += kSecond;
   static_cast<void>(client_.take(server_.offer(), server_.sd(), true, now_ns_));
   static_cast<void>(client_.take(server_.ack(), server_.sd(), false, now_ns_));
   EXPECT_EQ(client_.state(0).phase, SdSubscriptionState::Phase::kSubscribed);
 }
 
-TEST_F(SdStorm, AFloodOfPeersDoesNotMakeItForgetTheServer) {
+TEST_F(SdStorm, ManyPeersDoNotDisplaceTheServer) {
   become_subscribed();
   for (std::uint32_t i = 0; i < 5'000; ++i) {
     now_ns_ += 10'000;
@@ -73,7 +73,7 @@ TEST_F(SdStorm, AFloodOfPeersDoesNotMakeItForgetTheServer) {
   now_ns_ += kSecond;
   static_cast<void>(client_.take(server_.offer(), server_.sd(), true, now_ns_));
   ASSERT_EQ(actions_.sent.size(), 1u);
-  EXPECT_EQ(actions_.sent[0].session, 2) << "our own counter is kept, or the server would see a reboot";
+  EXPECT_EQ(actions_.sent[0].session, 2) << "the client's counter is kept, or the server would detect a reboot";
   server_.restart();
   now_ns_ += kSecond;
   static_cast<void>(client_.take(server_.offer(), server_.sd(), true, now_ns_));
@@ -113,7 +113,7 @@ TEST_F(SdStorm, NothingAllocates) {
   EXPECT_EQ(runtime::counted_allocations(), before);
   EXPECT_GT(client.statistics().acks, 100u);
   EXPECT_GT(actions.calls, 200u);
-  EXPECT_EQ(actions.joined, 0) << "every group is left in the end";
+  EXPECT_EQ(actions.joined, 0) << "every group is left at the end";
 }
 
 TEST_F(SdStorm, ChangedMessagesOfOthersDoNotDisturbASubscription) {
@@ -136,7 +136,7 @@ TEST_F(SdStorm, ChangedMessagesOfOthersDoNotDisturbASubscription) {
   EXPECT_GT(client_.statistics().malformed_messages, 1000u);
 }
 
-TEST_F(SdStorm, ChangedMessagesOfTheServerItselfAreSurvived) {
+TEST_F(SdStorm, ChangedMessagesOfTheServerAreHandled) {
   std::mt19937 random(12);
   for (int i = 0; i < 20'000; ++i) {
     now_ns_ += 20 * kMillisecond;
@@ -144,7 +144,7 @@ TEST_F(SdStorm, ChangedMessagesOfTheServerItselfAreSurvived) {
     static_cast<void>(client_.take(test::mutated(random, bytes), server_.sd(), i % 2 == 0, now_ns_));
     ASSERT_GT(client_.tick(now_ns_), now_ns_);
   }
-  // What changed offers could have said: another endpoint, for ever. A StopOffer and a true offer mend it.
+  // A changed offer may name another endpoint without time limit. A StopOffer and a true offer correct it.
   server_.restart();
   now_ns_ += 100 * kSecond;
   static_cast<void>(client_.take(server_.offer(0), server_.sd(), true, now_ns_));

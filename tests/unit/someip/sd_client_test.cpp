@@ -1,4 +1,4 @@
-// The client's life with a server that starts, stops, vanishes, refuses and comes back.
+// The client with a server that starts, stops, vanishes, refuses and comes back.
 #include "services/ingest_gateway/core/sd_client.hpp"
 
 #include <gtest/gtest.h>
@@ -77,7 +77,7 @@ TEST_F(SdClientLife, TheServersEndpointIsThatOfTheOptionNotOfTheHeader) {
   EXPECT_THAT(actions_.taken(), ElementsAre("subscribed 0 10.0.0.200:777"));
 }
 
-TEST_F(SdClientLife, TheSdEndpointOptionSaysWhereToSubscribe) {
+TEST_F(SdClientLife, SubscribesAtTheSdEndpointOption) {
   start();
   actions_.sent.clear();
   multicast(server_.by_multicast({{.number_1 = 1}}, {test::ipv4_option(test::kServerAddress, 30501),
@@ -130,7 +130,7 @@ TEST_F(SdClientLife, AnOfferExpiresAndTheServerIsSoughtAgain) {
 
 TEST_F(SdClientLife, StopOfferEndsAtOnce) {
   become_subscribed();
-  pass(2 * kSecond);  // beyond the Finds of the beginning
+  pass(2 * kSecond);  // beyond the Finds of the start
   actions_.sent.clear();
   multicast(server_.offer(0), server_);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 StopOffer"));
@@ -141,7 +141,7 @@ TEST_F(SdClientLife, StopOfferEndsAtOnce) {
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
 }
 
-TEST_F(SdClientLife, AServerThatStartedAgainIsSubscribedAnewAtItsFirstOffer) {
+TEST_F(SdClientLife, ARestartedServerIsSubscribedAgainAtItsFirstOffer) {
   become_subscribed();
   for (int i = 0; i < 2; ++i) {
     pass(kSecond);
@@ -154,7 +154,7 @@ TEST_F(SdClientLife, AServerThatStartedAgainIsSubscribedAnewAtItsFirstOffer) {
   offer();
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 reboot"));
   EXPECT_THAT(sent(), ElementsAre("Stop", "Subscribe"));
-  // The unicast counter has started again, too: that is no second reboot.
+  // The unicast counter has restarted as well, which is no second reboot.
   ack();
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
   pass(kSecond);
@@ -164,7 +164,7 @@ TEST_F(SdClientLife, AServerThatStartedAgainIsSubscribedAnewAtItsFirstOffer) {
   EXPECT_EQ(client_->statistics().reboots, 1u);
 }
 
-TEST_F(SdClientLife, RebootIsSeenWhenTheFlagReturns) {
+TEST_F(SdClientLife, RebootIsDetectedWhenTheFlagReturns) {
   server_.multicast_session = 0xFFFE;
   become_subscribed();
   for (int i = 0; i < 3; ++i) {
@@ -191,7 +191,7 @@ TEST_F(SdClientLife, SessionsAreCountedSeparatelyForMulticastAndUnicast) {
     ack();
   }
   EXPECT_EQ(client_->statistics().reboots, 0u);
-  // A reboot that shows in a unicast message.
+  // A reboot detected by a unicast message.
   pass(100 * kMillisecond);
   server_.unicast_session = 1;
   actions_.sent.clear();
@@ -201,7 +201,7 @@ TEST_F(SdClientLife, SessionsAreCountedSeparatelyForMulticastAndUnicast) {
   EXPECT_THAT(sent(), ElementsAre("Stop", "Subscribe"));
 }
 
-TEST_F(SdClientLife, ARebootOfAnotherServerIsOfNoConcern) {
+TEST_F(SdClientLife, ARebootOfAnotherServerIsIgnored) {
   become_subscribed();
   Server other{.address = 0x0A000063};
   for (int i = 0; i < 3; ++i) {
@@ -226,7 +226,7 @@ TEST_F(SdClientLife, TheNetworksCopyOfADatagramIsNoReboot) {
   EXPECT_EQ(client_->statistics().reboots, 1u);
 }
 
-TEST_F(SdClientLife, AReboottedServerThatOfferedForEverHasToOfferAgain) {
+TEST_F(SdClientLife, ARebootedServerWithAnUnlimitedOfferMustOfferAgain) {
   start();
   multicast(server_.offer(kForever_s), server_);
   ack();
@@ -259,7 +259,7 @@ TEST_F(SdClientLife, ARefusalIsAFaultAndWaitsLongerEachTime) {
   EXPECT_EQ(actions_.faults, 8u);
   ack();
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
-  // A refused renewal ends the subscription; a server that stops and starts is not made to wait.
+  // A refused renewal ends the subscription; a server that stops and starts is subscribed without a wait.
   unicast(server_.ack(0), server_);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 refused"));
   multicast(server_.offer(0), server_);
@@ -269,7 +269,7 @@ TEST_F(SdClientLife, ARefusalIsAFaultAndWaitsLongerEachTime) {
   EXPECT_THAT(sent(), ElementsAre("Subscribe"));
 }
 
-TEST_F(SdClientLife, AServerThatRefusedAndStartedAgainIsAskedAtOnce) {
+TEST_F(SdClientLife, ARestartedServerIsAskedAtOnceAfterItsRefusal) {
   start();
   multicast(server_.offer(kForever_s), server_);
   for (int i = 0; i < 4; ++i) {
@@ -284,12 +284,12 @@ TEST_F(SdClientLife, AServerThatRefusedAndStartedAgainIsAskedAtOnce) {
   EXPECT_THAT(sent(), ElementsAre("Stop", "Subscribe"));
 }
 
-TEST_F(SdClientLife, EventsOfBeforeTheRebootDoNotCountAsAnAck) {
+TEST_F(SdClientLife, EventsBeforeTheRebootDoNotCountAsAnAck) {
   become_subscribed();
   pass(20 * kMillisecond);
   server_.restart();
   server_.multicast_session = 1;
-  // Within 100 ms of the last Subscribe: the next has to wait, and what arrives is still from before.
+  // Within 100 ms of the last Subscribe: the next one has to wait, and arriving events belong to the old subscription.
   offer();
   client_->event_received(0, now_ns_);
   EXPECT_THAT(actions_.taken(), ElementsAre("unsubscribed 0 reboot"));
@@ -312,7 +312,7 @@ TEST_F(SdClientLife, JoinsTheGroupOfTheAckAndLeavesItWithTheSubscription) {
   EXPECT_THAT(actions_.taken(), ElementsAre("leave 0 239.1.2.4:30600", "unsubscribed 0 StopOffer"));
 }
 
-TEST_F(SdClientLife, AcksThatNameEverOtherGroupsChangeItOnceASecond) {
+TEST_F(SdClientLife, AcksWithChangingGroupsChangeTheGroupOnceASecond) {
   start();
   offer();
   for (int i = 0; i < 25; ++i) {
@@ -329,7 +329,7 @@ TEST_F(SdClientLife, AcksThatNameEverOtherGroupsChangeItOnceASecond) {
   EXPECT_EQ(client_->state(0).phase, SdSubscriptionState::Phase::kSubscribed);
 }
 
-TEST_F(SdClientLife, AnAckWhoseGroupIsNoneIsAFault) {
+TEST_F(SdClientLife, AnAckWithAnInvalidGroupIsAFault) {
   start();
   offer();
   unicast(server_.ack_multicast(0x0A000001, 30600), server_);
@@ -341,7 +341,7 @@ TEST_F(SdClientLife, AnAckWhoseGroupIsNoneIsAFault) {
 TEST_F(SdClientLife, EventsCountAsAnAckThatAnotherProgramReceived) {
   start();
   client_->event_received(0, now_ns_);
-  EXPECT_THAT(actions_.taken(), IsEmpty()) << "no offer yet: not ours";
+  EXPECT_THAT(actions_.taken(), IsEmpty()) << "no offer yet";
   offer();
   client_->event_received(7, now_ns_);
   EXPECT_THAT(actions_.taken(), IsEmpty()) << "of another subscription";
@@ -357,7 +357,7 @@ TEST_F(SdClientLife, EventsCountAsAnAckThatAnotherProgramReceived) {
   EXPECT_EQ(client_->statistics().acknowledged_by_events, 1u);
 }
 
-TEST_F(SdClientLife, NeitherAckNorEventIsAFaultAndSubscribesAnew) {
+TEST_F(SdClientLife, MissingAckAndEventsAreAFaultAndSubscribeAgain) {
   become_subscribed();
   for (int i = 0; i < 3; ++i) {
     pass(900 * kMillisecond);
@@ -373,7 +373,7 @@ TEST_F(SdClientLife, NeitherAckNorEventIsAFaultAndSubscribesAnew) {
   EXPECT_THAT(actions_.taken(), ElementsAre(kSubscribed0));
 }
 
-TEST_F(SdClientLife, AServerThatNeverAcknowledgesIsComplainedOfOnceAndKeptTrying) {
+TEST_F(SdClientLife, AServerWithoutAckIsReportedOnceAndSubscribedRepeatedly) {
   start();
   for (int i = 0; i < 30; ++i) {
     offer();
@@ -384,7 +384,7 @@ TEST_F(SdClientLife, AServerThatNeverAcknowledgesIsComplainedOfOnceAndKeptTrying
   EXPECT_THAT(actions_.taken(), IsEmpty());
 }
 
-TEST_F(SdClientLife, AfterTheLinkReturnsItSeeksAndSubscribesAnew) {
+TEST_F(SdClientLife, AfterTheLinkReturnsItSeeksAndSubscribesAgain) {
   become_subscribed();
   client_->link_down();
   due_ns_ = SdClient::kNever;

@@ -1,4 +1,4 @@
-// A server of service discovery as tests need it, and a record of what the client wants done.
+// A server of service discovery for tests, and a record of the client's actions.
 #pragma once
 
 #include <algorithm>
@@ -62,7 +62,7 @@ class RecordedActions : public SdActions {
     fault_texts.emplace_back(what);
   }
 
-  /// What was noted since the last call.
+  /// Actions since the last call.
   [[nodiscard]] std::vector<std::string> taken() { return std::exchange(notes, {}); }
   [[nodiscard]] std::vector<SentEntry> taken_sent() { return std::exchange(sent, {}); }
 
@@ -80,7 +80,7 @@ inline const recording::Endpoint kGroup = endpoint(0xE0F4E0F5, 30490);
 inline const recording::IpAddress kLocal = recording::IpAddress::v4(0x0A000002);
 inline constexpr std::uint32_t kServerAddress = 0x0A000014;
 
-/// A server that counts its sessions as it should.
+/// A server that counts its sessions correctly.
 struct Server {
   std::uint32_t address = kServerAddress;
   std::uint16_t sd_port = 30490;

@@ -38,7 +38,7 @@ class SdTest : public testing::Test {
     if (sd_.entries()[0].fault != SdFault::kNone) return sd_.entries()[0].fault;
     return sd_.endpoint_of(sd_.entries()[0], Family::kIpv4, Purpose::kUnicast, endpoint_);
   }
-  /// Bytes of a payload that is not built by the rules.
+  /// Bytes of an invalid payload.
   SdFault read_payload(const Bytes& payload) { return read(test::message(test::kSdHeader, payload)); }
 
   Bytes datagram_;
@@ -140,7 +140,7 @@ TEST_F(SdTest, RefusesOtherHeaders) {
   EXPECT_EQ(with([](test::Header& h) { h.return_code = 1; }), SdFault::kHeader);
 }
 
-TEST_F(SdTest, LengthsThatContradictAreNamed) {
+TEST_F(SdTest, ContradictoryLengthsAreNamed) {
   const auto payload = [](std::uint32_t entries_bytes, std::size_t entries, std::uint32_t options_bytes,
                           const Bytes& options) {
     Bytes bytes{0xC0, 0, 0, 0};
@@ -197,7 +197,7 @@ TEST_F(SdTest, ABadEntryDoesNotHarmTheOthers) {
   EXPECT_EQ(sd_.endpoint_of(sd_.entries()[7], Family::kIpv4, Purpose::kUnicast, endpoint_), SdFault::kNone);
 }
 
-TEST_F(SdTest, EndpointsThatCannotBeOnesAreNamed) {
+TEST_F(SdTest, InvalidEndpointsAreNamed) {
   EXPECT_EQ(offer_fault({ipv4_option(0x0A000001, 1000)}), SdFault::kNone);
   EXPECT_EQ(offer_fault({}), SdFault::kEndpointMissing);
   EXPECT_EQ(offer_fault({ipv4_option(0x0A000001, 1000, 0x04, 0x06)}), SdFault::kEndpointMissing) << "TCP only";
@@ -234,7 +234,7 @@ TEST_F(SdTest, StringsMustFitTheirOption) {
   EXPECT_EQ(offer_fault({test::option(0x02, Bytes(5)), ipv4_option(0x0A000001, 1000)}), SdFault::kOptionContent);
 }
 
-TEST_F(SdTest, EveryFaultSaysWhatIsWrong) {
+TEST_F(SdTest, EveryFaultHasADescription) {
   for (int fault = 1; fault <= static_cast<int>(SdFault::kEndpointMissing); ++fault) {
     EXPECT_TRUE(describe(static_cast<SdFault>(fault)).starts_with("SOME/IP-SD: ")) << fault;
     EXPECT_NE(describe(static_cast<SdFault>(fault)), "SOME/IP-SD: unknown fault") << fault;
@@ -271,7 +271,7 @@ TEST(SdWriter, WritesWhatScapyWrites) {
   EXPECT_EQ(writer.finish(0xABCD, false)[16], 0x40);
 }
 
-TEST(SdWriter, RefusesWhatDoesNotFitAndWhatItWroteIsRead) {
+TEST(SdWriter, RejectsEntriesThatDoNotFitAndItsMessagesAreReadable) {
   SdWriter writer;
   EXPECT_TRUE(writer.is_empty());
   const EventgroupId id{.service = 1, .instance = 2, .major = 3, .eventgroup = 4, .counter = 5};

@@ -1,4 +1,4 @@
-// Reassembly of segmented messages: the rules of the specification and what users of other stacks complain about.
+// Reassembly of segmented messages: the rules of the specification, and reported problems of other stacks.
 #include "services/ingest_gateway/codecs/someip/tp.hpp"
 
 #include <algorithm>
@@ -8,16 +8,17 @@
 
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/someip/bytes.hpp"
+#include "tests/unit/someip/sd_server.hpp"
 
 namespace boresight::ingest::someip {
 namespace {
 
 using test::Bytes;
 using test::Header;
+using test::kMillisecond;
 using test::segment;
 using test::segments;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kTimeout_ns = 100 * kMillisecond;
 const recording::Endpoint kSender = test::endpoint(0xC0A80714, 30501);
 
@@ -42,7 +43,7 @@ class Tp : public testing::Test {
   std::vector<Bytes> payloads_;
 };
 
-TEST_F(Tp, PutsTogetherWhatScapyCutAndWritesThePlainHeader) {
+TEST_F(Tp, ReassemblesSegmentsOfScapyAndWritesThePlainHeader) {
   // scapy 2.5: SOMEIP(msg_type=TYPE_TP_NOTIFICATION, …)/Raw(bytes(range(40))), .fragment(16).
   EXPECT_EQ(take(test::from_hex("123480210000001c000000090102220000000001000102030405060708090a0b0c0d0e0f")),
             TpResult::kAccepted);
@@ -62,7 +63,7 @@ TEST_F(Tp, PutsTogetherWhatScapyCutAndWritesThePlainHeader) {
   EXPECT_EQ(tp_.statistics().completed, 1u);
 }
 
-TEST_F(Tp, TakesSegmentsInAnyOrderAndAnyOfThemTwice) {
+TEST_F(Tp, AcceptsSegmentsInAnyOrderAndRepeated) {
   for (int round = 0; round < 500; ++round) {
     const Bytes payload = test::random_bytes(random_, 1 + random_() % 8192);
     std::vector<Bytes> parts =
@@ -95,7 +96,7 @@ TEST_F(Tp, ALostSegmentDropsOnlyItsMessage) {
   EXPECT_EQ(tp_.statistics().dropped_incomplete, count);
 }
 
-TEST_F(Tp, ASegmentOfTheMessageBeforeDoesNotDisturbTheNewOne) {
+TEST_F(Tp, ASegmentOfThePreviousMessageDoesNotDisturbTheNewOne) {
   const Bytes old_payload = test::random_bytes(random_, 64), new_payload = test::random_bytes(random_, 64);
   const auto old_parts = segments({.session = 0xFFFF}, old_payload, 32);
   const auto new_parts = segments({.session = 1}, new_payload, 32);
@@ -108,14 +109,14 @@ TEST_F(Tp, ASegmentOfTheMessageBeforeDoesNotDisturbTheNewOne) {
   EXPECT_EQ(tp_.statistics().late_segments, 1u);
 }
 
-TEST_F(Tp, ASenderThatStartedAgainIsHeardAtOnce) {
+TEST_F(Tp, ARestartedSenderIsReceivedAtOnce) {
   EXPECT_EQ(take(segments({.session = 4000}, Bytes(64), 32)[0]), TpResult::kAccepted);
   take_all(segments({.session = 1}, Bytes(64, 5), 32));
   ASSERT_EQ(payloads_.size(), 1u);
   EXPECT_EQ(payloads_[0], Bytes(64, 5));
 }
 
-TEST_F(Tp, TheSameSessionIsTakenAgainLater) {
+TEST_F(Tp, TheSameSessionIsAcceptedAgainLater) {
   take_all(segments({.session = 1}, Bytes(64, 5), 32));
   EXPECT_EQ(take(segments({.session = 1}, Bytes(64, 5), 32)[0]), TpResult::kDuplicate);
   now_ns_ += 50 * kMillisecond;
@@ -135,7 +136,7 @@ TEST_F(Tp, EveryPartOfTheKeySeparates) {
   sources[4].first.type = 0x00;
   sources[5].second.port = 9;
   for (const auto& [header, sender] : sources) {
-    // Half of one, half of the other: neither is whole.
+    // Half of each message: neither is complete.
     EXPECT_EQ(take(segment(base, payload, 0, 32, true)), TpResult::kAccepted);
     EXPECT_EQ(take(segment(header, payload, 32, 16, false), sender), TpResult::kAccepted);
     EXPECT_TRUE(payloads_.empty());
@@ -158,7 +159,7 @@ TEST_F(Tp, MessagesOfSeveralSendersInterleave) {
   EXPECT_EQ(payloads_, expected);
 }
 
-TEST_F(Tp, TheOldestGivesWayWhenAllAssembliesAreBusy) {
+TEST_F(Tp, TheOldestIsDroppedWhenAllSlotsAreBusy) {
   const Bytes payload(32, 1);
   for (std::uint16_t i = 0; i < 5; ++i, ++now_ns_) {
     EXPECT_EQ(take(segment({.method = i}, payload, 0, 16, true)), TpResult::kAccepted);
@@ -167,14 +168,14 @@ TEST_F(Tp, TheOldestGivesWayWhenAllAssembliesAreBusy) {
   for (std::uint16_t i = 1; i < 5; ++i) {
     EXPECT_EQ(take(segment({.method = i}, payload, 16, 16, false)), TpResult::kComplete) << i;
   }
-  // All are delivered: they give way before anything that is being assembled.
+  // All are delivered: their slots are used before those of incomplete messages.
   EXPECT_EQ(take(segment({.method = 0}, payload, 0, 16, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({.method = 6}, payload, 0, 16, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({.method = 0}, payload, 16, 16, false)), TpResult::kComplete);
   EXPECT_EQ(tp_.statistics().dropped_incomplete, 1u);
 }
 
-TEST_F(Tp, DropsWhatTakesTooLong) {
+TEST_F(Tp, DropsMessagesAfterATimeout) {
   const auto parts = segments({}, Bytes(48, 1), 16);
   EXPECT_EQ(take(parts[0]), TpResult::kAccepted);
   EXPECT_EQ(tp_.expire(now_ns_ + kTimeout_ns), 0u);
@@ -187,7 +188,7 @@ TEST_F(Tp, DropsWhatTakesTooLong) {
   EXPECT_EQ(tp_.statistics().dropped_incomplete, 2u);
 }
 
-TEST_F(Tp, OfOverlappingSegmentsTheFirstWins) {
+TEST_F(Tp, TheFirstOfOverlappingSegmentsIsKept) {
   // The specification's example, in units of 16 bytes: 0…2 are 1, 1…3 are 2; the message is 1112.
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 0, 48, true)), TpResult::kAccepted);
   ASSERT_EQ(take(segment({}, Bytes(64, 2), 16, 48, false)), TpResult::kComplete);
@@ -198,14 +199,14 @@ TEST_F(Tp, OfOverlappingSegmentsTheFirstWins) {
 }
 
 TEST_F(Tp, BytesThatOverlapAreNotCountedTwice) {
-  // 32 + 32 bytes of a message of 64: the second half never came.
+  // 32 + 32 bytes of a message of 64: the second half is missing.
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 0, 32, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 48, 16, false)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({}, Bytes(64, 1), 16, 16, true)), TpResult::kDuplicate);
   EXPECT_TRUE(payloads_.empty());
 }
 
-TEST_F(Tp, RefusesSegmentsThatAreWrongInThemselvesButTheMessageCanStillBecomeWhole) {
+TEST_F(Tp, RejectsContradictorySegmentsButTheMessageCanStillBeCompleted) {
   const Bytes payload = test::random_bytes(random_, 64);
   EXPECT_EQ(take(segment({}, payload, 0, 32, true)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({}, payload, 32, 20, true)), TpResult::kNotMultiple);
@@ -213,14 +214,14 @@ TEST_F(Tp, RefusesSegmentsThatAreWrongInThemselvesButTheMessageCanStillBecomeWho
   EXPECT_EQ(take(test::message({.type = 0x22}, Bytes(3))), TpResult::kTooShort);
   EXPECT_EQ(take(test::message({.type = 0x22}, {})), TpResult::kTooShort);
   EXPECT_EQ(take(segment({.session = 0}, payload, 0, 32, true)), TpResult::kNoSession);
-  EXPECT_EQ(take(segment({}, payload, 0, 16, false)), TpResult::kContradiction) << "ends before what came";
+  EXPECT_EQ(take(segment({}, payload, 0, 16, false)), TpResult::kContradiction) << "ends before received bytes";
   EXPECT_EQ(tp_.statistics().bad_segments, 6u);
   ASSERT_EQ(take(segment({}, payload, 32, 32, false)), TpResult::kComplete);
   EXPECT_EQ(payloads_[0], payload);
   EXPECT_EQ(take(test::message({.type = 0x02}, Bytes(32))), TpResult::kNotASegment);
 }
 
-TEST_F(Tp, RefusesSegmentsBeyondTheEndThatWasStated) {
+TEST_F(Tp, RejectsSegmentsBeyondTheStatedEnd) {
   const Bytes payload(96, 3);
   EXPECT_EQ(take(segment({}, payload, 32, 16, false)), TpResult::kAccepted);
   EXPECT_EQ(take(segment({}, payload, 48, 16, true)), TpResult::kContradiction);
@@ -239,7 +240,7 @@ TEST_F(Tp, AnEmptyLastSegmentEndsAMessage) {
   EXPECT_EQ(take(segment({.method = 5}, Bytes(32, 4), 0, 0, false)), TpResult::kTooShort);
 }
 
-TEST_F(Tp, AMessageThatIsTooLongIsRefusedOnceAndOccupiesNothing) {
+TEST_F(Tp, AMessageThatIsTooLongIsRejectedOnceAndUsesNoMemory) {
   const Bytes payload(8192 + 16, 1);
   const auto parts = segments({}, payload, 1392);
   EXPECT_EQ(take(parts[0]), TpResult::kAccepted);
@@ -262,7 +263,7 @@ TEST_F(Tp, TheReturnCodeIsThatOfTheLastSegment) {
   EXPECT_EQ(complete_.protected_data[7], 9);
 }
 
-TEST_F(Tp, EveryFaultSaysWhatIsWrong) {
+TEST_F(Tp, EveryFaultHasADescription) {
   for (const TpResult result : {TpResult::kNotASegment, TpResult::kNoSession, TpResult::kTooShort,
                                 TpResult::kNotMultiple, TpResult::kContradiction, TpResult::kOverSize}) {
     EXPECT_TRUE(is_fault(result));

@@ -10,7 +10,7 @@
 namespace boresight::tracking {
 namespace {
 
-const Eigen::Vector2d kSensor_m(3.6, 0.0);
+const Eigen::Vector2d kMirrorSensor_m(3.6, 0.0);
 
 TrackedObject object_at(double x_m, double y_m, double speed_mps, double length_m, double dbsm, double age_s) {
   TrackedObject track;
@@ -26,7 +26,7 @@ TrackedObject object_at(double x_m, double y_m, double speed_mps, double length_
 double wait_s(double x_m, double y_m, double speed_mps) {
   const std::vector<TrackedObject> tracks{object_at(x_m, y_m, speed_mps, 4.5, -6.0, 0.2),
                                           object_at(32.0, -3.6, 1.2, 16.0, 15.0, 9.0)};
-  return image_wait_s(tracks[0], tracks, kSensor_m, Config{});
+  return image_wait_s(tracks[0], tracks, kMirrorSensor_m, Config{});
 }
 
 TEST(Images, OfATrucksRearAreNearerThanItsMiddle) {

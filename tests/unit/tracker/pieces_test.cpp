@@ -11,7 +11,7 @@
 namespace boresight::tracking {
 namespace {
 
-const Eigen::Vector2d kSensor_m(3.6, 0.0);
+const Eigen::Vector2d kFragmentSensor_m(3.6, 0.0);
 constexpr double kScan_s = 0.05, kCreeps_mps = 1.2;
 
 TrackedObject vehicle(std::uint32_t id, double x_m, double y_m, double age_s) {
@@ -31,25 +31,25 @@ void drive(std::vector<TrackedObject>& tracks, double seconds, double away_mps) 
   for (double t = 0.0; t < seconds; t += kScan_s) {
     for (TrackedObject& track : tracks) track.age_s += kScan_s;
     tracks[1].state.mean.x() += kScan_s * away_mps;
-    watch_pieces(tracks, kSensor_m);
+    watch_pieces(tracks, kFragmentSensor_m);
   }
 }
 
 TEST(Pieces, AreOfOneVehicleThatKeepTheirDistanceForThreeSeconds) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.0, -3.0, 4.0)};
   drive(tracks, 2.5, 0.0);
-  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "not known yet";
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m)) << "not known yet";
   EXPECT_NEAR(piece_wait_s(tracks[1]), 7.0, 2.0 * kScan_s);
   EXPECT_EQ(piece_wait_s(tracks[0]), 0.0) << "the older one is the whole";
   drive(tracks, 1.0, 0.0);
-  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
-  EXPECT_FALSE(is_piece_of(tracks[0], tracks[1], kSensor_m));
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m));
+  EXPECT_FALSE(is_piece_of(tracks[0], tracks[1], kFragmentSensor_m));
 }
 
 TEST(Pieces, AreNoneThatMoveOnTheirOwn) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.0, -3.0, 4.0)};
   drive(tracks, 4.5, -0.3);  // comes nearer
-  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m));
   EXPECT_EQ(piece_wait_s(tracks[1]), 0.0) << "nor is it kept waiting";
 }
 
@@ -58,10 +58,11 @@ TEST(Pieces, OfWhichAnotherAxleComesIntoSightAreMeasuredAnew) {
   drive(tracks, 2.0, 0.0);
   tracks[1].state.mean.x() -= 0.6;
   drive(tracks, 2.0, 0.0);
-  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it has not kept its distance for three seconds";
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m))
+      << "it has not kept its distance for three seconds";
   EXPECT_GT(piece_wait_s(tracks[1]), tracks[1].age_s);
   drive(tracks, 2.5, 0.0);
-  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m));
 }
 
 TEST(Pieces, MayBeginWithAScanThatIsOff) {
@@ -69,16 +70,17 @@ TEST(Pieces, MayBeginWithAScanThatIsOff) {
   drive(tracks, kScan_s, 0.0);
   tracks[1].state.mean.x() += 1.2;
   drive(tracks, 5.0, 0.0);
-  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m));
 }
 
 TEST(Pieces, BeginWhereANewTrackHasSettled) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 56.0, -3.0, 0.0)};
   drive(tracks, 0.5, 4.0);  // its first scans draw it to where the axles are that are seen then
   drive(tracks, 3.0, 0.0);
-  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it has not kept its distance for three seconds";
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m))
+      << "it has not kept its distance for three seconds";
   drive(tracks, 0.7, 0.0);
-  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kSensor_m));
+  EXPECT_TRUE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m));
 }
 
 TEST(Pieces, AreNoneThatTurnOutToBeFarAway) {
@@ -94,14 +96,14 @@ TEST(Pieces, AreNoneThatHaveComeNearerAndThenKeepTheirDistance) {
   std::vector<TrackedObject> tracks{vehicle(1, 50.0, -3.0, 5.0), vehicle(2, 58.5, -3.0, 4.0)};
   drive(tracks, 4.0, -0.35);
   drive(tracks, 10.0, 0.0);
-  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << "it followed, and stopped behind";
+  EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m)) << "it followed, and stopped behind";
 }
 
 TEST(Pieces, AreNeitherBesideNorFarNorSeenFromBehindAlone) {
   for (const auto& [behind, x_m, y_m] : {std::tuple{-3.0, 58.0, -1.0}, {-3.0, 60.0, -3.0}, {0.0, 58.0, 0.0}}) {
     std::vector<TrackedObject> tracks{vehicle(1, 50.0, behind, 5.0), vehicle(2, x_m, y_m, 4.0)};
     drive(tracks, 3.5, 0.0);
-    EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kSensor_m)) << x_m << ", " << y_m;
+    EXPECT_FALSE(is_piece_of(tracks[1], tracks[0], kFragmentSensor_m)) << x_m << ", " << y_m;
     EXPECT_EQ(piece_wait_s(tracks[1]), 0.0);
   }
 }

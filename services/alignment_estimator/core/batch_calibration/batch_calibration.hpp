@@ -56,8 +56,8 @@ struct Config {
   double judgement_width = 2.0;
   double judgement_roll_rad = 0.035;
   double prior_angle_std_rad = 0.0698;  ///< 4°: no std is larger
-  double believable_speed_scale = 2e-3;
-  double believable_angle_rad = 0.0052;  ///< 0.3°
+  double supported_speed_scale = 2e-3;
+  double supported_angle_rad = 0.0052;  ///< 0.3°
 };
 
 /// Whether the data support a parameter, or why not.

@@ -106,12 +106,12 @@ std::vector<Parameter> judge(std::span<const Recording> radars, const Eigen::Vec
     // A shifted roll changes itself by the shift only.
     const double other_roll = roll(i) > 0.0 ? 0.0 : by_roll(i);
     p.made_up = Eigen::Vector4d(by_shift(i), by_tilt(i), by_width(i), other_roll).norm();
-    const double believable = i == 0 ? config.believable_speed_scale : config.believable_angle_rad;
-    if (!(p.made_up < believable)) {
+    const double limit = i == 0 ? config.supported_speed_scale : config.supported_angle_rad;
+    if (!(p.made_up < limit)) {
       p.support = Support::kFollowsFillIn;
-    } else if (!(p.spread < believable)) {
+    } else if (!(p.spread < limit)) {
       p.support = Support::kSpreads;
-    } else if (!(p.std < believable)) {
+    } else if (!(p.std < limit)) {
       p.support = Support::kUncertain;
     } else {
       p.support = Support::kSupported;

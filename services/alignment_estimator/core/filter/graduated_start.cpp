@@ -98,8 +98,8 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
   scale_mps_ = std::max(scale_mps_ * config_.start_shrink, kMinScale_mps);
   std::array<Eigen::Matrix3d, kMaxScans> information;
   std::array<Eigen::Vector3d, kMaxScans> score;
-  Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), feigned = Eigen::Matrix3d::Zero();
-  inliers_ = near_ = standing_ = counted_ = 0.0;
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), from_noise = Eigen::Matrix3d::Zero();
+  inliers_ = near_ = stationary_ = counted_ = 0.0;
   double along = 0.0, lowered = 0.0, raised = 0.0;
   bool has_elevation = false;
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
@@ -123,10 +123,10 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
     information[k] = sums.information;
     score[k] = sums.score;
     all += sums.information;
-    feigned += sums.feigned;
+    from_noise += sums.from_noise;
     inliers_ += sums.inliers;
     near_ += sums.near;
-    standing_ += sums.standing;
+    stationary_ += sums.stationary;
     counted_ += static_cast<double>(scan.count);
     along += sums.along;
     lowered += sums.lowered;
@@ -135,7 +135,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
   }
   model_.lowering[0] = along > 0.0 ? lowered / along : 0.0;
   Spread spread;
-  spread.add(all, feigned, inliers_, 0.0);
+  spread.add(all, from_noise, inliers_, 0.0);
   const Support support = spread.support(has_elevation, prior_.log_angle_noise_std);
   constexpr Eigen::Index kRoll = column::kShared, kPitch = kRoll + 1, kYaw = kRoll + 2;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
@@ -187,12 +187,12 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
   result_.lowering = model_.lowering[0];
   result_.mean_sine = along > 0.0 ? raised / along : 0.0;
   result_.seconds = seconds_;
-  result_.inlier_ratio = counted_ > 0.0 ? standing_ / counted_ : 0.0;
+  result_.inlier_ratio = counted_ > 0.0 ? stationary_ / counted_ : 0.0;
 }
 
 GraduatedStart::Verdict GraduatedStart::judge() const {
-  // The gate must hold clearly more detections than a uniform background would give, which its neighbourhood, twice as
-  // wide, shows: five stds of the counts more, and most of those in the gate.
+  // The neighbourhood of the gate is twice as wide and shows the density of the background. The gate must hold more
+  // detections than this background by five stds of the counts, and by more than half of its detections.
   const double excess = inliers_ - 0.5 * near_;
   const bool stands_out = excess > 0.5 * inliers_ && excess * excess > 25.0 * (inliers_ + 0.25 * near_);
   const double rotation_limit = kPlausibleStds * std::sqrt(prior_.rotation_variance);

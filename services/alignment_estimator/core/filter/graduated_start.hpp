@@ -93,7 +93,7 @@ class GraduatedStart {
   double scale_mps_ = 0.0;
   StartPrior prior_;
   Eigen::Vector4d off_ = Eigen::Vector4d::Zero();
-  double inliers_ = 0.0, near_ = 0.0, standing_ = 0.0, counted_ = 0.0;
+  double inliers_ = 0.0, near_ = 0.0, stationary_ = 0.0, counted_ = 0.0;
   StartResult result_;
   JointState model_;
 };

@@ -147,11 +147,11 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   judgement.velocity_variance = state_.velocity_covariance();
   const ScanSums sums = sum_scan(run_of(sightings_), velocity.g, judgement);
   const auto detections = static_cast<double>(sightings_.count);
-  const double share = sums.standing / detections;
+  const double share = sums.stationary / detections;
   const bool strange = radar.inlier_ratio > 0.0 && share < kStrangeShare * radar.inlier_ratio;
   if (!strange) radar.inlier_ratio += (share - radar.inlier_ratio) * (1.0 - std::exp(-elapsed_s / kInlierMemory_s));
 
-  radar.spread.add(sums.information, sums.feigned, sums.inliers, std::exp(-elapsed_s / kSpreadMemory_s));
+  radar.spread.add(sums.information, sums.from_noise, sums.inliers, std::exp(-elapsed_s / kSpreadMemory_s));
   radar.efficiency.add(sums, elapsed_s);
   if (sums.along > 0.0) {
     const double recent = 1.0 - std::exp(-elapsed_s / kLoweringMemory_s);
@@ -166,7 +166,7 @@ void RobustFilter::update(std::size_t index, const ScanMotion3d& motion, double 
   const Eigen::Matrix3d by_turn = turn * information * turn.transpose();
   const Eigen::Vector3d turn_score = turn * score;
   const std::uint32_t suspicious = step_changes_.add(index, time_ns, by_turn.bottomRightCorner<2, 2>(),
-                                                     turn_score.tail<2>(), sums.standing, detections);
+                                                     turn_score.tail<2>(), sums.stationary, detections);
   const std::uint32_t changed =
       strange ? 0 : small_step_changes_.add(index, time_ns, by_turn, turn_score, state_.rotation_covariance(index));
   if (suspicious != 0) watch(suspicious, time_ns);

@@ -41,7 +41,7 @@ class RobustFilter : public Method {
 
  private:
   /// χ² of three degrees of freedom, exceeded once in 10⁴: beyond it two rotations differ.
-  static constexpr double kAnother = 21.1;
+  static constexpr double kDifferentRotation = 21.1;
   static constexpr double kEarlier_s = 5.0;  ///< interval between the rotations of Radar::earlier
   enum class Phase : std::uint8_t {
     kStarting,   ///< searching; the estimate is the prior or the restored memory

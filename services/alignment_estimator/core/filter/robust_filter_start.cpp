@@ -84,7 +84,7 @@ void RobustFilter::adopt(std::size_t index, const StartResult& found) {
         geometry::so3_log(found.sensor_to_vehicle * state_.sensor_to_vehicle[index].transpose());
     const Eigen::Matrix3d covariance = found.covariance.bottomRightCorner<3, 3>() + state_.rotation_covariance(index);
     const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
-    agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kAnother;
+    agrees = solver.info() == Eigen::Success && off.dot(solver.solve(off)) < kDifferentRotation;
   }
   if (!agrees) {
     if (radar.remembered) reopen(index);

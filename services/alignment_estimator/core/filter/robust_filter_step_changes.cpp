@@ -42,7 +42,7 @@ void RobustFilter::verify(std::size_t index, const StartResult& found, std::int6
       4.0 / config_.start_inflation * found.covariance.bottomRightCorner<3, 3>() + state_.rotation_covariance(index);
   const Eigen::LLT<Eigen::Matrix3d> solver(covariance);
   const double distance = solver.info() == Eigen::Success ? off.dot(solver.solve(off)) : 0.0;
-  const bool another = distance > kAnother && off.tail<2>().norm() > kMinStepChange_rad;
+  const bool another = distance > kDifferentRotation && off.tail<2>().norm() > kMinStepChange_rad;
   if (another) {
     reopen(index);
     place(index, found);

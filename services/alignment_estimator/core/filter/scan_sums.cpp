@@ -59,7 +59,7 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
   const double inverse_gate_square = 1.0 / (judgement.gate * judgement.gate);
   const double mean_square = weighted_square(judgement.gate);
   const double ambiguity = run.ambiguity_mps, inverse_ambiguity = ambiguity > 0.0 ? 1.0 / ambiguity : 0.0;
-  Symmetric information, feigned;
+  Symmetric information, from_noise;
   double sx = 0.0, sy = 0.0, sz = 0.0;
   ScanSums sums;
   for (std::size_t i = 0; i < run.count; ++i) {
@@ -89,14 +89,14 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     sums.weights += w;
     sums.curvature += curvature;
     sums.squares += w * w * z2;
-    if (w > 0.2) sums.standing += 1.0;
+    if (w > 0.2) sums.stationary += 1.0;
     const double inverse = 1.0 / s2, weight = w * inverse, slope = curvature * inverse;
     information.add(weight, x, y, z);
     sums.along += weight * along * along;
     sums.lowered += weight * along * along * run.lowering[i];
     sums.raised += weight * along * along * run.mean_sine[i];
-    feigned.add(weight * va, -y, x, 0.0);
-    feigned.add(weight * ve, tx, ty, ce);
+    from_noise.add(weight * va, -y, x, 0.0);
+    from_noise.add(weight * ve, tx, ty, ce);
     // Errors in variables: the noise ε of the angles is in the residual and in the gradient, so E[ψ(e)·ε] =
     // Cov(e, ε)·E[ψ′] (Stein) is subtracted. Two more terms are subtracted: variances are computed from noisy angles
     // (s2a, s2b are their derivatives), and the curvature of the range rate skews the residuals, so that the robust
@@ -122,7 +122,7 @@ ScanSums sum_scan(const SightingRun& run, const Eigen::Vector3d& velocity, const
     sums.noise_angle_angle += w * of_angle * of_angle;
   }
   sums.information = information.matrix();
-  sums.feigned = feigned.matrix();
+  sums.from_noise = from_noise.matrix();
   sums.score = {sx, sy, sz};
   return sums;
 }

@@ -38,13 +38,13 @@ struct Judgement {
 
 struct ScanSums {
   Eigen::Matrix3d information;  ///< Σ W u uᵀ, W Tukey's weight over the residual's variance; with the angles' noise
-  Eigen::Matrix3d feigned;      ///< the part of it that comes from the angles' noise only
+  Eigen::Matrix3d from_noise;   ///< the part of it that comes from the angles' noise only
   Eigen::Vector3d score;        ///< of g, corrected for errors in variables: zero mean at the true g
   double weights = 0.0, curvature = 0.0;  ///< Σ w and Σ ψ′
   double squares = 0.0;                   ///< Σ ψ² of normalised residuals
   double inliers = 0.0;                   ///< residuals in the gate
   double near = 0.0;                      ///< residuals beyond the gate, but within three times of it
-  double standing = 0.0;                  ///< residuals with weights over 0.2
+  double stationary = 0.0;                ///< residuals with weights over 0.2
   /// Σ W (u·g)²; the same times the reduction of range rates by unknown elevations; the same times their mean sine.
   double along = 0.0, lowered = 0.0, raised = 0.0;
   // Scores and Fisher information of the logarithms of the two variance factors.

@@ -18,9 +18,9 @@ constexpr double kMinRealShare = 0.1;
 
 }  // namespace
 
-void Spread::add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& feigned, double inliers, double keep) {
+void Spread::add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& from_noise, double inliers, double keep) {
   information_ = keep * information_ + information;
-  feigned_ = keep * feigned_ + feigned;
+  from_noise_ = keep * from_noise_ + from_noise;
   inliers_ = keep * inliers_ + inliers;
 }
 
@@ -28,7 +28,7 @@ Support Spread::support(bool has_elevation, double log_noise_std) const {
   Support out;
   const double scale = information_.trace();
   if (!(scale > 0.0) || !std::isfinite(scale)) return out;
-  Eigen::Matrix3d m = information_ / scale, f = feigned_ / scale;
+  Eigen::Matrix3d m = information_ / scale, f = from_noise_ / scale;
   m.diagonal().array() += 1e-9;
   f.diagonal().array() += 1e-9;
   if (!has_elevation) {
@@ -48,12 +48,12 @@ Support Spread::support(bool has_elevation, double log_noise_std) const {
   solver.compute(share);
   const double least = std::max(kMinRealShare, 5.0 * std::sqrt(2.0 / std::max(inliers_, 1.0)));
   const double margin = std::exp(kDoubtfulStds * log_noise_std);
-  Eigen::Vector3d real = Eigen::Vector3d::Zero(), feigned_of_real = Eigen::Vector3d::Zero();
+  Eigen::Vector3d real = Eigen::Vector3d::Zero(), noise_over_real = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double feigned = std::max(solver.eigenvalues()(i), 0.0);
-    if (!(1.0 - margin * feigned > least)) continue;
-    real(i) = 1.0 - feigned;
-    feigned_of_real(i) = feigned / real(i);
+    const double from_noise = std::max(solver.eigenvalues()(i), 0.0);
+    if (!(1.0 - margin * from_noise > least)) continue;
+    real(i) = 1.0 - from_noise;
+    noise_over_real(i) = from_noise / real(i);
     ++out.directions;
   }
   const Eigen::Matrix3d axes = l * solver.eigenvectors();  // m = axes·axesᵀ
@@ -61,7 +61,7 @@ Support Spread::support(bool has_elevation, double log_noise_std) const {
   out.share = axes * real.asDiagonal() * inverse_axes;
   // The corrected score of g is −(m − f)·(g − true) + f·g − f·g. If the last f were exp(δ)·f, its zero would move by
   // −(m − f)⁻¹·f·g·δ.
-  out.by_angle_noise = -inverse_axes.transpose() * feigned_of_real.asDiagonal() * axes.transpose();
+  out.by_angle_noise = -inverse_axes.transpose() * noise_over_real.asDiagonal() * axes.transpose();
   return out;
 }
 

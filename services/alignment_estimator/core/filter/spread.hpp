@@ -22,14 +22,14 @@ struct Support {
 class Spread {
  public:
   /// Without `has_elevation` the third component is never supported.
-  void add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& feigned, double inliers, double keep);
+  void add(const Eigen::Matrix3d& information, const Eigen::Matrix3d& from_noise, double inliers, double keep);
   void clear() { *this = {}; }
   /// `log_noise_std`: σ of ln(real / assumed variance of the angles).
   [[nodiscard]] Support support(bool has_elevation, double log_noise_std) const;
 
  private:
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d feigned_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d from_noise_ = Eigen::Matrix3d::Zero();
   double inliers_ = 0.0;
 };
 

@@ -22,7 +22,7 @@ constexpr double kCollapse = 0.5;
 /// Fewest detections for a share of stationary ones.
 constexpr double kMinDetections = 20.0;
 /// A single radar cannot subtract the common part: its limit is higher by this factor.
-constexpr double kAlone = 1.25;
+constexpr double kSingleRadarFactor = 1.25;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ double StepChangeDetector::sum(std::size_t radar) const {
 }
 
 std::uint32_t StepChangeDetector::add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
-                                      const Eigen::Vector2d& score, double standing, double detections) {
+                                      const Eigen::Vector2d& score, double stationary, double detections) {
   // All radars use the same time grid of blocks, so that they can be compared.
   const auto length_ns = static_cast<std::int64_t>(config_.step_change_block_s * 1e9);
   const std::int64_t block = time_ns / length_ns;
@@ -52,7 +52,7 @@ std::uint32_t StepChangeDetector::add(std::size_t radar, std::int64_t time_ns, c
   own.active = true;
   own.information += information;
   own.score += score;
-  own.standing += standing;
+  own.stationary += stationary;
   own.detections += detections;
   return suspicious;
 }
@@ -63,7 +63,7 @@ void StepChangeDetector::close(Radar& radar) const {
   if (!radar.active) return;
   ++radar.blocks;
   if (radar.detections >= kMinDetections) {
-    const double share = radar.standing / radar.detections;
+    const double share = radar.stationary / radar.detections;
     radar.collapsed = radar.usual_share > 0.0 && share < kCollapse * radar.usual_share;
     if (radar.usual_share < 0.0) radar.usual_share = share;
     if (!radar.collapsed) radar.usual_share += (share - radar.usual_share) / kSlowBlocks;
@@ -84,7 +84,7 @@ void StepChangeDetector::close(Radar& radar) const {
   if (all || radar.collapsed || radar.known[1] || radar.blocks >= kMaxJoined) {
     radar.information.setZero();
     radar.score.setZero();
-    radar.standing = radar.detections = 0.0;
+    radar.stationary = radar.detections = 0.0;
     radar.blocks = 0;
   }
 }
@@ -114,7 +114,7 @@ std::uint32_t StepChangeDetector::judge() {
       if (!radar.known[a]) continue;
       const auto axis = static_cast<Eigen::Index>(a);
       radar.own(axis) = radar.deviation(axis) - common(r, axis);
-      const double limit = others == 0 ? kAlone * limits[a] : limits[a];
+      const double limit = others == 0 ? kSingleRadarFactor * limits[a] : limits[a];
       const double d = radar.own(axis) / limit;
       // One block alone is no step change: it counts at most like a deviation of twice the limit.
       double& up = radar.sums[2 * a];

@@ -25,7 +25,7 @@ class StepChangeDetector {
   /// and the number of stationary detections. At the end of a block, returns the set of radars (bit by index) whose
   /// sums exceed the limit.
   [[nodiscard]] std::uint32_t add(std::size_t radar, std::int64_t time_ns, const Eigen::Matrix2d& information,
-                                  const Eigen::Vector2d& score, double standing, double detections);
+                                  const Eigen::Vector2d& score, double stationary, double detections);
   /// Clears a radar's sums (new estimate).
   void clear(std::size_t radar);
 
@@ -42,7 +42,7 @@ class StepChangeDetector {
   struct Radar {
     Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
     Eigen::Vector2d score = Eigen::Vector2d::Zero();
-    double standing = 0.0, detections = 0.0;
+    double stationary = 0.0, detections = 0.0;
     int blocks = 0;
     // Of the last block.
     Eigen::Vector2d deviation = Eigen::Vector2d::Zero(), own = Eigen::Vector2d::Zero();

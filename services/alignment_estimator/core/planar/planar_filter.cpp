@@ -172,7 +172,7 @@ void PlanarFilter::update(std::size_t index, const ScanDetections& scan, const S
   for (int i = 0; i < kMaxIterations; ++i) {
     const Sums sums = sum_rows(rows, setting, at, judgement);
     if (i == 0) {
-      const double share = sums.standing / static_cast<double>(rows.count);
+      const double share = sums.stationary / static_cast<double>(rows.count);
       if (share < kStrangeShare * radar.inlier_ratio) {
         if (++radar.strange_scans > kMaxStrangeScans) reopen(index);
         return;

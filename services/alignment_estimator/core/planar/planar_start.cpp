@@ -84,15 +84,15 @@ void PlanarStart::pass(const MountingPose& nominal, const Parameters& prior_mean
                     scan.ambiguity_mps};
     const Sums sums = sum_rows(rows, {nominal, scan.speed_mps, scan.yaw_rate_radps}, at_, judgement);
     total.information += sums.information;
-    total.feigned += sums.feigned;
+    total.from_noise += sums.from_noise;
     total.score += sums.score;
     total.inliers += sums.inliers;
-    total.standing += sums.standing;
+    total.stationary += sums.stationary;
     total.elevation += sums.elevation;
     total.elevation_square += sums.elevation_square;
     total.elevation_variance += sums.elevation_variance;
   }
-  inlier_ratio_ = total.standing / static_cast<double>(number_of_detections_);
+  inlier_ratio_ = total.stationary / static_cast<double>(number_of_detections_);
   Support support;
   support.add(total, 0.0);
   support.renew(has_elevation_);

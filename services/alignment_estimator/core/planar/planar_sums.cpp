@@ -91,7 +91,7 @@ Sums sum_rows(const Rows& rows, const Setting& setting, const Parameters& at, co
     if (!(t < 1.0)) continue;
     const double q = 1.0 - t, weight = q * q, slope = q * (1.0 - 5.0 * t);
     sums.inliers += 1.0;
-    if (weight > 0.2) sums.standing += 1.0;
+    if (weight > 0.2) sums.stationary += 1.0;
     sums.elevation += rows.elevation_rad[i];
     sums.elevation_square += rows.elevation_rad[i] * rows.elevation_rad[i];
     sums.elevation_variance += ve;
@@ -105,8 +105,8 @@ Sums sum_rows(const Rows& rows, const Setting& setting, const Parameters& at, co
     const double of_variance = 0.5 * slope * (1.0 + z2) * inverse * (variance_by_a * ka + variance_by_e * ke);
     sums.score += inverse * ((weight * e - of_variance) * g + slope * (ka * ga + ke * ge));
     sums.information.selfadjointView<Eigen::Lower>().rankUpdate(g, inverse);
-    sums.feigned += inverse * (caa * ga * ga.transpose() + cae * (ga * ge.transpose() + ge * ga.transpose()) +
-                               cee * ge * ge.transpose());
+    sums.from_noise += inverse * (caa * ga * ga.transpose() + cae * (ga * ge.transpose() + ge * ga.transpose()) +
+                                  cee * ge * ge.transpose());
   }
   sums.information.triangularView<Eigen::StrictlyUpper>() = sums.information.transpose();
   return sums;

@@ -49,10 +49,10 @@ struct Judgement {
 /// residual, σ_ṙ² + (∂ṙ/∂α_n σ_α)² + (∂ṙ/∂β_n σ_β)².
 struct Sums {
   Square information = Square::Zero();    ///< Σ g·gᵀ / s² of those within the gate
-  Square feigned = Square::Zero();        ///< expected part of it that comes from the noise of the angles in g
+  Square from_noise = Square::Zero();     ///< expected part of it that comes from the noise of the angles in g
   Parameters score = Parameters::Zero();  ///< Σ ψ·g / s, corrected: zero in expectation at the truth
   double inliers = 0.0;                   ///< within the gate
-  double standing = 0.0;                  ///< those of them with a weight above 0.2
+  double stationary = 0.0;                ///< those of them with a weight above 0.2
   double slope = 0.0;                     ///< Σ ψ′
   double square = 0.0;                    ///< Σ ψ²
   // Of the measured elevations of those within the gate: sum, sum of squares, and sum of their noise's variances.

@@ -27,7 +27,7 @@ Eigen::Matrix4d without_yaw_rate(const Square& m) {
 
 void Support::add(const Sums& sums, double keep) {
   information_ = keep * information_ + without_yaw_rate(sums.information);
-  feigned_ = keep * feigned_ + without_yaw_rate(sums.feigned);
+  from_noise_ = keep * from_noise_ + without_yaw_rate(sums.from_noise);
   inliers_ = keep * inliers_ + sums.inliers;
   elevation_ = keep * elevation_ + sums.elevation;
   elevation_square_ = keep * elevation_square_ + sums.elevation_square;
@@ -51,7 +51,7 @@ void Support::renew(bool has_elevation) {
   const Eigen::Vector4d scale = (information_.diagonal().array() + 1e-12).sqrt();
   const Eigen::Vector4d inverse = scale.cwiseInverse();
   const Eigen::Matrix4d real = inverse.asDiagonal() * information_ * inverse.asDiagonal();
-  Eigen::Matrix4d noise = inverse.asDiagonal() * feigned_ * inverse.asDiagonal();
+  Eigen::Matrix4d noise = inverse.asDiagonal() * from_noise_ * inverse.asDiagonal();
   noise.diagonal().array() += 1e-9;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d> solver(real, noise);
   if (solver.info() != Eigen::Success) return;

@@ -25,7 +25,7 @@ class Support {
   [[nodiscard]] Parameters score(const Parameters& score) const { return kept_ * score; }
 
  private:
-  Eigen::Matrix4d information_ = Eigen::Matrix4d::Zero(), feigned_ = Eigen::Matrix4d::Zero();
+  Eigen::Matrix4d information_ = Eigen::Matrix4d::Zero(), from_noise_ = Eigen::Matrix4d::Zero();
   double inliers_ = 0.0, elevation_ = 0.0, elevation_square_ = 0.0, elevation_variance_ = 0.0;
   bool has_elevation_ = false;
   Square share_ = Square::Zero(), kept_ = Square::Zero();

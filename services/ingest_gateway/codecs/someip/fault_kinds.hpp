@@ -1,4 +1,4 @@
-// Which counted fault a bad message or segment is.
+// Assigns faults of messages and segments to the counted kinds of faults.
 #pragma once
 
 #include "interfaces/messages/service_status.hpp"
@@ -9,7 +9,7 @@ namespace boresight::ingest::someip {
 
 using namespace boresight::someip;
 
-/// Of results that are faults.
+/// Only for results that are faults.
 [[nodiscard]] constexpr Fault kind_of(ReadResult result) {
   const bool is_value = result == ReadResult::kProtocolVersion || result == ReadResult::kMessageType;
   return is_value ? Fault::kWireValue : Fault::kWireLength;

@@ -9,14 +9,14 @@ namespace {
 constexpr std::size_t kFlagsBytes = 4;
 constexpr std::size_t kLengthBytes = 4;
 constexpr std::size_t kEntryBytes = 16;
-// Length and type, which an option's length does not count; the reserved byte that follows is counted.
+// Length and type fields, which an option's length does not count; it counts the reserved byte after them.
 constexpr std::size_t kOptionPrefixBytes = 3;
 constexpr std::uint8_t kDiscardableBit = 0x80;
 constexpr std::size_t kIpv4ContentBytes = 8;
 constexpr std::size_t kIpv6ContentBytes = 20;
 constexpr std::size_t kLoadBalancingBytes = 4;
 
-/// Strings, each behind its length, ended by a length of 0 in the last byte.
+/// Strings, each after its length; a length of 0 in the last byte ends them.
 bool is_string_list(std::span<const std::uint8_t> content) {
   for (std::size_t at = 0; at < content.size(); at += 1u + content[at]) {
     if (content[at] == 0) return at + 1 == content.size();
@@ -63,7 +63,7 @@ SdOption::State read_content(SdOption& option) {
 bool is_usable(const recording::Endpoint& endpoint, SdMessage::Family family, SdMessage::Purpose purpose) {
   const recording::IpAddress& address = endpoint.address;
   if (endpoint.port == 0 || address.is_unspecified()) return false;
-  // An IPv4 address in an IPv6 option is nothing that could be sent to over IPv6.
+  // An IPv4 address in an IPv6 option is not reachable over IPv6.
   if (address.is_v4() != (family == SdMessage::Family::kIpv4)) return false;
   if (purpose == SdMessage::Purpose::kMulticast) return address.is_multicast();
   return !address.is_multicast() && address.to_v4() != 0xFFFFFFFF;
@@ -80,9 +80,9 @@ std::string_view describe(SdFault fault) {
     case SdFault::kTooShort:
       return "SOME/IP-SD: shorter than flags and two lengths (12 bytes)";
     case SdFault::kEntriesLength:
-      return "SOME/IP-SD: length of entries array is no multiple of 16, or beyond the message";
+      return "SOME/IP-SD: length of entries array is not a multiple of 16, or beyond the message";
     case SdFault::kOptionsLength:
-      return "SOME/IP-SD: length of options array does not end where the message does";
+      return "SOME/IP-SD: options array does not end at the message's end";
     case SdFault::kOptionLength:
       return "SOME/IP-SD: length of an option is 0 or reaches beyond the options array";
     case SdFault::kTooManyEntries:
@@ -102,7 +102,7 @@ std::string_view describe(SdFault fault) {
     case SdFault::kEndpointConflict:
       return "SOME/IP-SD: an entry states two different UDP endpoints";
     case SdFault::kEndpointAddress:
-      return "SOME/IP-SD: address or port of an endpoint option cannot be one of its kind";
+      return "SOME/IP-SD: address or port of an endpoint option is invalid for its kind";
     case SdFault::kEndpointMissing:
       return "SOME/IP-SD: an entry states no UDP endpoint of the interface's address family";
   }
@@ -129,7 +129,7 @@ SdFault SdMessage::read_options(std::span<const std::uint8_t> bytes) {
 
 SdFault SdMessage::judge_runs(const SdEntry& entry) const {
   for (std::size_t which = 0; which < 2; ++which) {
-    // The index of an empty run means nothing.
+    // The index of an empty run is not used.
     if (entry.run_length[which] == 0) continue;
     if (std::size_t{entry.run_index[which]} + entry.run_length[which] > number_of_options_) {
       return which == 0 ? SdFault::kFirstRun : SdFault::kSecondRun;

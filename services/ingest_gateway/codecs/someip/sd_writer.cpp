@@ -12,7 +12,7 @@ constexpr std::uint16_t kIpv4OptionLength = 9;
 constexpr std::uint16_t kIpv6OptionLength = 21;
 constexpr std::uint8_t kOneOptionInFirstRun = 0x10;
 
-/// Returns behind the last byte written.
+/// Returns the offset after the last written byte.
 std::uint8_t* write_option(const recording::Endpoint& endpoint, std::uint8_t* out) {
   const bool ipv4 = endpoint.address.is_v4();
   write_u16(out, ipv4 ? kIpv4OptionLength : kIpv6OptionLength);

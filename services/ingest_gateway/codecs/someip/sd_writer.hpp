@@ -1,4 +1,4 @@
-// What a client says in service discovery: Find, Subscribe and its end.
+// Writes a client's messages of service discovery: Find, Subscribe and StopSubscribe.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace boresight::ingest::someip {
 
 using namespace boresight::someip;
 
-/// Which subscription an entry is about.
+/// The subscription of an entry.
 struct EventgroupId {
   std::uint16_t service = 0;
   std::uint16_t instance = 0;
@@ -36,7 +36,7 @@ class SdWriter {
 
   /// Any minor version, valid until the next reboot.
   [[nodiscard]] bool find(std::uint16_t service, std::uint16_t instance, std::uint8_t major);
-  /// `local`: where the events shall go, by UDP.
+  /// `local`: destination of the events, by UDP.
   [[nodiscard]] bool subscribe(const EventgroupId& id, std::uint32_t ttl_s, const recording::Endpoint& local);
   [[nodiscard]] bool stop_subscribe(const EventgroupId& id, const recording::Endpoint& local);
 

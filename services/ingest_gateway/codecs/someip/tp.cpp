@@ -13,13 +13,13 @@ constexpr std::size_t kTpHeaderBytes = 4;
 constexpr std::size_t kUnitBytes = 16;
 constexpr std::uint32_t kMoreSegments = 1;
 constexpr std::uint32_t kOffsetMask = 0xFFFFFFF0;  // in bytes: the 28-bit field counts units of 16
-// Segments are sent back to back, so that a copy of one comes soon; a message of the same session much later is that
-// of a sender that has started again.
+// Segments are sent back to back, so a copy of one arrives soon. A much later message with the same session comes from
+// a restarted sender.
 constexpr std::int64_t kDuplicatesCome_ns = 20'000'000;
-// A segment of one of so many sessions before the present one was overtaken. Further off, the sender started again.
+// A segment with a session at most this far before the current one was overtaken. Beyond, the sender has restarted.
 constexpr std::uint16_t kOvertakenSessions = 16;
-// A message of which nothing came for so long neither makes others late nor keeps its bytes when its session begins
-// (again): it was a stray, or a segment whose session id was damaged.
+// A message without a segment for this time does not make others late, and loses its bytes when its session starts
+// again: it was a stray segment, or one with a damaged session id.
 constexpr std::int64_t kStalls_ns = 20'000'000;
 
 std::size_t units_in(std::size_t bytes) {
@@ -58,7 +58,7 @@ std::string_view describe(TpResult result) {
     case TpResult::kComplete:
       return "";
     case TpResult::kDuplicate:
-      return "SOME/IP-TP: segment came twice";
+      return "SOME/IP-TP: repeated segment";
     case TpResult::kLate:
       return "SOME/IP-TP: segment of a message that a newer one has replaced";
     case TpResult::kRefused:
@@ -82,7 +82,7 @@ std::string_view describe(TpResult result) {
 TpReassembler::TpReassembler(std::size_t slots, std::size_t max_message_bytes, std::int64_t timeout_ns)
     : max_message_bytes_(std::max(max_message_bytes, kUnitBytes)),
       timeout_ns_(timeout_ns),
-      // Payloads stand at multiples of 16 for the sake of those who read them.
+      // Payloads are aligned to 16 bytes for faster access.
       buffer_bytes_(kHeaderBytes + units_in(max_message_bytes_) * kUnitBytes),
       words_per_assembly_((units_in(max_message_bytes_) + 63) / 64),
       assemblies_(std::max<std::size_t>(slots, 1)),
@@ -128,8 +128,8 @@ TpReassembler::Assembly* TpReassembler::find(const Message& segment, const recor
 
 TpReassembler::Assembly& TpReassembler::begin(const Message& segment, const recording::Endpoint& sender,
                                               std::int64_t now_ns) {
-  // Free ones first, then those kept only to know duplicates, then the sender's own, so that one that begins much and
-  // ends nothing harms itself; then the oldest.
+  // Free slots first, then slots kept only to detect duplicates. Then the sender's own slots, so that a sender of many
+  // incomplete messages harms only itself; then the oldest.
   const auto rank = [&](const Assembly& a) {
     if (a.state != State::kAssembling) return a.state == State::kFree ? 0 : 1;
     return a.sender == sender ? 2 : 3;
@@ -162,7 +162,7 @@ TpResult TpReassembler::place(Assembly& assembly, std::size_t offset, std::span<
   const std::size_t first_unit = offset / kUnitBytes;
   const std::size_t end_unit = units_in(end);
   std::size_t new_units = 0;
-  // Runs of units that are new are copied; what is there already stays, as the first segment wins.
+  // Copies runs of new units; existing bytes stay, as the first segment has priority.
   for (std::size_t unit = first_unit; unit < end_unit;) {
     if (test(units, unit)) {
       ++unit;
@@ -215,7 +215,7 @@ TpResult TpReassembler::take(const Message& segment, const recording::Endpoint& 
   const std::size_t offset = tp_header & kOffsetMask;
   const bool last = (tp_header & kMoreSegments) == 0;
   const std::span<const std::uint8_t> data = segment.payload.subspan(kTpHeaderBytes);
-  // A last segment without data ends a message whose length is a multiple of its segments': scapy sends such.
+  // A last segment without data ends a message whose length is a multiple of the segments' length, as sent by scapy.
   if (data.empty() && (!last || offset == 0)) return bad(TpResult::kTooShort);
   if (!last && data.size() % kUnitBytes != 0) return bad(TpResult::kNotMultiple);
 

@@ -1,5 +1,5 @@
-// Consistency of the stated covariance on every kind of drive: the normalised estimation error squared (NEES) of each
-// parameter, 1 if the stated std is right, and the share of true values inside the 95 % intervals.
+// Consistency of the stated covariance on every kind of drive. NEES is the normalised estimation error squared of each
+// parameter, 1 if the stated std is right. Coverage is the share of true values inside the 95 % intervals.
 #include <array>
 
 #include "tests/benchmarks/alignment/bars/bars.hpp"

@@ -68,9 +68,9 @@ struct RunOptions {
 [[nodiscard]] Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make,
                             const RunOptions& options = {});
 
-/// Seconds of driving and iterations until 95 % of the initial error is removed, against truth: the first time at which
-/// the error of the parameter is 5 % of the initial one or less, and the time from which it stays so. Infinite if
-/// never; NaN if the initial error is less than `least` (1 or rad), too small for this measure.
+/// Seconds of driving and iterations until 95 % of the initial error is removed, against truth. `first` is the first
+/// time at which the error of the parameter is 5 % of the initial one or less; from `stays` on it stays so. Infinite if
+/// never. NaN if the initial error is less than `least` (1 or rad), too small for this measure.
 struct TimeTo95 {
   double first_s, stays_s;
   double first_iterations;

@@ -134,7 +134,7 @@ TEST(ScanSums, ScoreHasZeroMeanAtTheTruth) {
   for (int i = 0; i < 400; ++i) {
     cloud->draw(random, 0.01, 0.02, 0.06);
     const ScanSums sums = sum_scan(run_of(cloud->sightings), cloud->g, judgement);
-    information += sums.information - sums.feigned;
+    information += sums.information - sums.from_noise;
     score += sums.score;
   }
   const Eigen::Vector3d off = information.inverse() * score;
@@ -154,7 +154,7 @@ TEST(Spread, NoiseOfAnglesDoesNotCountAsSpread) {
     for (int i = 0; i < 50; ++i) {
       cloud->draw(random, 0.005, 0.01, spread);
       const ScanSums sums = sum_scan(run_of(cloud->sightings), cloud->g, judgement);
-      seen.add(sums.information, sums.feigned, sums.inliers, 1.0);
+      seen.add(sums.information, sums.from_noise, sums.inliers, 1.0);
     }
     const double vertical = (seen.support(true, 0.35).share * Eigen::Vector3d::UnitZ()).norm();
     EXPECT_NEAR(vertical, spread > 0.0 ? 1.0 : 0.0, 0.05);

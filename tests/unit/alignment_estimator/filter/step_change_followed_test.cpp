@@ -9,7 +9,7 @@
 namespace boresight::alignment {
 namespace {
 
-simulator::AlignmentSpec drive(std::uint64_t seed, double seconds) {
+simulator::AlignmentSpec drive_with_step_change(std::uint64_t seed, double seconds) {
   simulator::AlignmentSpec spec = simulator::four_corner_radars();
   spec.seed = seed;
   spec.duration_s = seconds;
@@ -18,7 +18,7 @@ simulator::AlignmentSpec drive(std::uint64_t seed, double seconds) {
 
 TEST(FollowsStepChange, SmallChangesAreReportedForTheirRadarAndFollowedConsistently) {
   for (const Eigen::Vector2d& pitch_yaw_deg : {Eigen::Vector2d(0.0, 0.5), Eigen::Vector2d(-1.0, 0.0)}) {
-    simulator::AlignmentSpec spec = drive(93, 75.0);
+    simulator::AlignmentSpec spec = drive_with_step_change(93, 75.0);
     spec.step_changes.push_back(
         {41.2, 2, {0.0, pitch_yaw_deg(0) * kRadiansPerDegree, pitch_yaw_deg(1) * kRadiansPerDegree}});
     Bench bench(spec);
@@ -43,7 +43,7 @@ TEST(FollowsStepChange, SmallChangesAreReportedForTheirRadarAndFollowedConsisten
 }
 
 TEST(FollowsStepChange, ChangesBelowTheReportLimitAreFollowedToo) {
-  simulator::AlignmentSpec spec = drive(94, 75.0);
+  simulator::AlignmentSpec spec = drive_with_step_change(94, 75.0);
   spec.step_changes.push_back({41.2, 1, {0.0, 0.0, 0.12 * kRadiansPerDegree}});
   Bench bench(spec);
   bench.run(75.0);
@@ -53,7 +53,7 @@ TEST(FollowsStepChange, ChangesBelowTheReportLimitAreFollowedToo) {
 
 TEST(FollowsStepChange, ASlowDriftIsFollowed) {
   // 0.6° in a minute.
-  simulator::AlignmentSpec spec = drive(92, 90.0);
+  simulator::AlignmentSpec spec = drive_with_step_change(92, 90.0);
   for (int i = 0; i < 300; ++i) {
     spec.step_changes.push_back({21.0 + 0.2 * i, 0, {0.0, 0.0, 0.6 / 300.0 * kRadiansPerDegree}});
   }

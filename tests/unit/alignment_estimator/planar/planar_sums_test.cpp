@@ -83,7 +83,7 @@ TEST(PlanarSums, ScoreHasNoBiasByTheNoiseOfTheAngles) {
   EXPECT_GT((plain.array() / variance.array().sqrt()).abs().maxCoeff(), 5.0);
 }
 
-TEST(PlanarSums, FeignedInformationIsWhatNoiseAddsToTheGradients) {
+TEST(PlanarSums, FromNoiseIsTheInformationThatNoiseAddsToTheGradients) {
   constexpr std::size_t kCount = 100'000;
   constexpr double kAngleStd = 0.02;
   std::mt19937 random(6);
@@ -100,9 +100,10 @@ TEST(PlanarSums, FeignedInformationIsWhatNoiseAddsToTheGradients) {
   const Sums sums = sum_rows(rows, kSetting, at, {});
   const Parameters g = row_of(kSetting, at, azimuth, elevation).gradient;
   const double real = g(parameter::kBeta) * g(parameter::kBeta) * static_cast<double>(kCount);
-  EXPECT_NEAR((sums.information(parameter::kBeta, parameter::kBeta) - sums.feigned(parameter::kBeta, parameter::kBeta)),
-              real / (1.0 + kAngleStd * kAngleStd * 81.0),
-              0.05 * real + 0.05 * sums.feigned(parameter::kBeta, parameter::kBeta));
+  EXPECT_NEAR(
+      (sums.information(parameter::kBeta, parameter::kBeta) - sums.from_noise(parameter::kBeta, parameter::kBeta)),
+      real / (1.0 + kAngleStd * kAngleStd * 81.0),
+      0.05 * real + 0.05 * sums.from_noise(parameter::kBeta, parameter::kBeta));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/plate/parabola.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/simulator/alignment/plate_table.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 using simulator::PlateSpec;
 using testing::DoubleNear;
 
-constexpr double kDeg = M_PI / 180.0;
-
 Measurements run_of(const PlateSpec& spec, std::uint64_t seed = 1) {
   std::mt19937_64 random(seed);
   return simulator::simulate_plate(spec, random);
@@ -28,8 +27,8 @@ Measurements run_of(const PlateSpec& spec, std::uint64_t seed = 1) {
 /// No noise at all.
 PlateSpec exact(double yaw_deg, double pitch_deg) {
   PlateSpec spec;
-  spec.yaw_rad = yaw_deg * kDeg;
-  spec.pitch_rad = pitch_deg * kDeg;
+  spec.yaw_rad = yaw_deg * kRadiansPerDegree;
+  spec.pitch_rad = pitch_deg * kRadiansPerDegree;
   spec.amplitude_std_db = spec.tilt_std_db = spec.azimuth_std_rad = 0.0;
   return spec;
 }
@@ -125,10 +124,10 @@ TEST_P(EitherMethod, finds_the_truth_of_a_perfect_run_with_its_sign) {
   for (const double pitch_deg : {-3.0, -0.4, 0.0, 2.5}) {
     const PlateResult result = evaluated(run_of(exact(1.7, pitch_deg)), GetParam());
     ASSERT_TRUE(result.ok()) << explain(result.failure);
-    EXPECT_THAT(result.pitch_rad / kDeg, DoubleNear(pitch_deg, 1e-6));
-    EXPECT_THAT(result.yaw_rad / kDeg, DoubleNear(1.7, 1e-6));
+    EXPECT_THAT(result.pitch_rad / kRadiansPerDegree, DoubleNear(pitch_deg, 1e-6));
+    EXPECT_THAT(result.yaw_rad / kRadiansPerDegree, DoubleNear(1.7, 1e-6));
     EXPECT_THAT(result.maximum_db, DoubleNear(20.0, 1e-6));
-    EXPECT_THAT(result.triples_median_rad / kDeg, DoubleNear(pitch_deg, 1e-6));
+    EXPECT_THAT(result.triples_median_rad / kRadiansPerDegree, DoubleNear(pitch_deg, 1e-6));
     EXPECT_EQ(result.self_consistency, 1.0);
     EXPECT_EQ(result.tilts_used, 11u);
     // Transmit and receive path, each 3.01 dB at half the width: b₁ = −8·10·log₁₀2 / width².
@@ -199,7 +198,7 @@ TEST(PlateFit, published_weights_follow_the_scatter) {
     for (int k = 0; k < 30; ++k) tilt.add(middle + (i == 2 ? 6.0 : 0.0) + (k % 2 == 0 ? half : -half), 0.0);
     run.tilts[i] = tilt;
   }
-  EXPECT_NEAR(evaluated(run, FitMethod::kPublished).pitch_rad / kDeg, 1.0, 0.001);
+  EXPECT_NEAR(evaluated(run, FitMethod::kPublished).pitch_rad / kRadiansPerDegree, 1.0, 0.001);
 }
 
 TEST(PlateFit, robust_rejects_the_bad_tilts_and_reports_them) {
@@ -212,12 +211,12 @@ TEST(PlateFit, robust_rejects_the_bad_tilts_and_reports_them) {
   }
   const PlateResult result = evaluated(run, FitMethod::kRobust);
   ASSERT_TRUE(result.ok()) << explain(result.failure);
-  EXPECT_NEAR(result.pitch_rad / kDeg, -1.0, 1e-6);
-  EXPECT_NEAR(result.yaw_rad / kDeg, 0.5, 1e-6);
+  EXPECT_NEAR(result.pitch_rad / kRadiansPerDegree, -1.0, 1e-6);
+  EXPECT_NEAR(result.yaw_rad / kRadiansPerDegree, 0.5, 1e-6);
   EXPECT_EQ(result.tilts_used, 9u);
   EXPECT_FALSE(result.tilts[0].used);
   EXPECT_FALSE(result.tilts[8].used);
-  EXPECT_GT(std::abs(evaluated(run, FitMethod::kPublished).pitch_rad / kDeg + 1.0), 0.05);
+  EXPECT_GT(std::abs(evaluated(run, FitMethod::kPublished).pitch_rad / kRadiansPerDegree + 1.0), 0.05);
 }
 
 TEST_P(EitherMethod, without_a_maximum_the_run_failed) {
@@ -250,7 +249,7 @@ TEST_P(EitherMethod, an_amplitude_below_the_limit_fails_the_bumper) {
   config.min_amplitude_db = 20.1;
   const PlateResult result = evaluate(run_of(exact(0.0, 1.0)), config);
   EXPECT_EQ(result.failure, Failure::kAmplitudeTooLow);
-  EXPECT_NEAR(result.pitch_rad / kDeg, 1.0, 1e-6) << "still computed";
+  EXPECT_NEAR(result.pitch_rad / kRadiansPerDegree, 1.0, 1e-6) << "still computed";
 }
 
 TEST_P(EitherMethod, refuses_invalid_runs) {
@@ -301,7 +300,7 @@ TEST(PlateFit, robust_fails_if_two_halves_see_the_plate_at_different_azimuths) {
   PlateSpec spec;
   spec.number_of_tilts = 10;
   const Measurements halves = changed(run_of(spec, 8), [](double& tilt, double&, double& azimuth) {
-    azimuth += tilt < 0.0 ? -2.0 * kDeg : 2.0 * kDeg;
+    azimuth += tilt < 0.0 ? -2.0 * kRadiansPerDegree : 2.0 * kRadiansPerDegree;
   });
   const PlateResult result = evaluated(halves, FitMethod::kRobust);
   EXPECT_EQ(result.failure, Failure::kTooFewTilts);
@@ -310,16 +309,16 @@ TEST(PlateFit, robust_fails_if_two_halves_see_the_plate_at_different_azimuths) {
 
 TEST(PlateFit, quantised_values_do_not_break_the_robust_means) {
   PlateSpec spec;
-  spec.pitch_rad = 1.0 * kDeg;
-  spec.yaw_rad = 0.3 * kDeg;
+  spec.pitch_rad = 1.0 * kRadiansPerDegree;
+  spec.yaw_rad = 0.3 * kRadiansPerDegree;
   const Measurements coarse = changed(run_of(spec, 5), [](double&, double& amplitude, double& azimuth) {
     amplitude = std::round(amplitude);
-    azimuth = std::round(azimuth / kDeg) * kDeg;
+    azimuth = std::round(azimuth / kRadiansPerDegree) * kRadiansPerDegree;
   });
   const PlateResult result = evaluated(coarse, FitMethod::kRobust);
   ASSERT_TRUE(result.ok());
-  EXPECT_NEAR(result.pitch_rad / kDeg, 1.0, 0.4);
-  EXPECT_NEAR(result.yaw_rad / kDeg, 0.3, 0.35);
+  EXPECT_NEAR(result.pitch_rad / kRadiansPerDegree, 1.0, 0.4);
+  EXPECT_NEAR(result.yaw_rad / kRadiansPerDegree, 0.3, 0.35);
 }
 
 TEST(PlateFit, allocates_nothing) {

@@ -8,13 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/simulator/alignment/plate.hpp"
 
 namespace boresight::alignment::plate {
 namespace {
 
-constexpr double kDeg = M_PI / 180.0;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kCycle = kSecond / 20;
 
@@ -24,7 +24,7 @@ RunPlan plan_of(std::size_t tilts = 11, std::size_t scans = 30) {
   plan.scans_per_tilt = scans;
   const double middle = 0.5 * (static_cast<double>(tilts) - 1.0);
   for (std::size_t i = 0; i < std::min(tilts, kMaxTilts); ++i) {
-    plan.tilts_rad[i] = (static_cast<double>(i) - middle) * kDeg;
+    plan.tilts_rad[i] = (static_cast<double>(i) - middle) * kRadiansPerDegree;
   }
   return plan;
 }
@@ -64,7 +64,7 @@ class Plate : public testing::Test {
   void collect(double pitch_deg) {
     const double tilt = station_.progress(time_).tilt_rad;
     for (int i = 0; i < 200 && station_.state() == State::kMeasuring; ++i) {
-      const double off = (tilt + pitch_deg * kDeg) / kDeg;
+      const double off = (tilt + pitch_deg * kRadiansPerDegree) / kRadiansPerDegree;
       scan(20.0 - 0.2 * off * off, -0.01);
     }
   }
@@ -84,7 +84,7 @@ TEST_F(Plate, a_run_from_start_to_result) {
     EXPECT_EQ(progress.instruction, Instruction::kMovePlate);
     EXPECT_EQ(progress.tilt_index, i);
     EXPECT_EQ(progress.number_of_tilts, 11u);
-    EXPECT_NEAR(progress.tilt_rad, (static_cast<double>(i) - 5.0) * kDeg, 1e-12);
+    EXPECT_NEAR(progress.tilt_rad, (static_cast<double>(i) - 5.0) * kRadiansPerDegree, 1e-12);
     ASSERT_EQ(measure(), Refusal::kNone);
     EXPECT_EQ(station_.progress(time_).instruction, Instruction::kWait);
     collect(1.3);
@@ -96,7 +96,7 @@ TEST_F(Plate, a_run_from_start_to_result) {
   }
   EXPECT_EQ(station_.state(), State::kFinished);
   EXPECT_EQ(station_.progress(time_).instruction, Instruction::kTakeResult);
-  EXPECT_NEAR(station_.result().pitch_rad, 1.3 * kDeg, 1e-6);
+  EXPECT_NEAR(station_.result().pitch_rad, 1.3 * kRadiansPerDegree, 1e-6);
   EXPECT_NEAR(station_.result().yaw_rad, 0.01, 1e-6);
   EXPECT_NEAR(station_.result().maximum_db, 20.0, 1e-4);
 }
@@ -152,7 +152,7 @@ TEST_F(Plate, refuses_impossible_plans_and_stays_idle) {
   EXPECT_EQ(start(plan_of(11, 9)), Refusal::kScansOutOfRange);
   EXPECT_EQ(start(plan_of(11, 51)), Refusal::kScansOutOfRange);
   RunPlan plan = plan_of();
-  plan.tilts_rad[10] = 21.0 * kDeg;
+  plan.tilts_rad[10] = 21.0 * kRadiansPerDegree;
   EXPECT_EQ(start(plan), Refusal::kTiltOutOfRange);
   plan.tilts_rad[10] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(start(plan), Refusal::kTiltOutOfRange);
@@ -171,22 +171,23 @@ TEST_F(Plate, refuses_impossible_plans_and_stays_idle) {
 
 TEST_F(Plate, a_plate_at_another_tilt_than_requested_is_not_measured) {
   ASSERT_EQ(start(), Refusal::kNone);
-  EXPECT_EQ(station_.measure(-4.0 * kDeg, time_), Refusal::kWrongTilt);
+  EXPECT_EQ(station_.measure(-4.0 * kRadiansPerDegree, time_), Refusal::kWrongTilt);
   EXPECT_EQ(station_.measure(std::numeric_limits<double>::quiet_NaN(), time_), Refusal::kTiltOutOfRange);
   EXPECT_EQ(station_.state(), State::kPositioning);
-  EXPECT_EQ(station_.measure(-4.8 * kDeg, time_), Refusal::kNone);
-  EXPECT_NEAR(station_.progress(time_).tilt_rad, -4.8 * kDeg, 1e-12) << "the tilt measured by the station counts";
+  EXPECT_EQ(station_.measure(-4.8 * kRadiansPerDegree, time_), Refusal::kNone);
+  EXPECT_NEAR(station_.progress(time_).tilt_rad, -4.8 * kRadiansPerDegree, 1e-12)
+      << "the tilt measured by the station counts";
 }
 
 TEST_F(Plate, tilts_that_pass_one_another_within_the_tolerance_are_refused) {
   RunPlan plan = plan_of(5, 10);
-  for (std::size_t i = 0; i < 5; ++i) plan.tilts_rad[i] = 0.1 * static_cast<double>(i) * kDeg;
+  for (std::size_t i = 0; i < 5; ++i) plan.tilts_rad[i] = 0.1 * static_cast<double>(i) * kRadiansPerDegree;
   ASSERT_EQ(start(plan), Refusal::kNone);
-  ASSERT_EQ(station_.measure(0.2 * kDeg, time_), Refusal::kNone);
+  ASSERT_EQ(station_.measure(0.2 * kRadiansPerDegree, time_), Refusal::kNone);
   while (station_.state() == State::kMeasuring) scan();
   ASSERT_EQ(station_.next(time_), Refusal::kNone);
-  EXPECT_EQ(station_.measure(0.1 * kDeg, time_), Refusal::kTiltsNotMonotonic);
-  EXPECT_EQ(station_.measure(0.25 * kDeg, time_), Refusal::kNone);
+  EXPECT_EQ(station_.measure(0.1 * kRadiansPerDegree, time_), Refusal::kTiltsNotMonotonic);
+  EXPECT_EQ(station_.measure(0.25 * kRadiansPerDegree, time_), Refusal::kNone);
 }
 
 TEST_F(Plate, every_waiting_state_times_out_with_its_reason) {
@@ -264,13 +265,13 @@ TEST_F(Plate, a_repeated_tilt_deletes_its_scans) {
   EXPECT_GT(station_.progress(time_).scans_collected, 5u);
   ASSERT_EQ(station_.repeat_tilt(time_), Refusal::kNone);
   EXPECT_EQ(station_.progress(time_).scans_collected, 0u);
-  EXPECT_NEAR(station_.progress(time_).tilt_rad, -5.0 * kDeg, 1e-12);
+  EXPECT_NEAR(station_.progress(time_).tilt_rad, -5.0 * kRadiansPerDegree, 1e-12);
   for (int i = 0; i < 11; ++i) {
     ASSERT_EQ(measure(), Refusal::kNone);
     collect(-0.7);
     ASSERT_EQ(station_.next(time_), Refusal::kNone);
   }
-  EXPECT_NEAR(station_.result().pitch_rad, -0.7 * kDeg, 1e-6);
+  EXPECT_NEAR(station_.result().pitch_rad, -0.7 * kRadiansPerDegree, 1e-6);
 }
 
 TEST_F(Plate, only_new_scans_after_the_plate_settled_count) {
@@ -300,7 +301,7 @@ TEST_F(Plate, a_run_without_a_maximum_failed_and_can_be_repeated) {
   ASSERT_EQ(start(plan_of(11, 10)), Refusal::kNone);
   for (int i = 0; i < 11; ++i) {
     ASSERT_EQ(measure(), Refusal::kNone);
-    const double tilt = station_.progress(time_).tilt_rad / kDeg;
+    const double tilt = station_.progress(time_).tilt_rad / kRadiansPerDegree;
     while (station_.state() == State::kMeasuring) scan(10.0 + 0.2 * tilt * tilt);
     ASSERT_EQ(station_.next(time_), Refusal::kNone);
   }

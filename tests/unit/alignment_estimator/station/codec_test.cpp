@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/station/codecs/calibration_codec.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/alignment_estimator/station/station_client.hpp"
 #include "tests/unit/document.hpp"
 
@@ -14,7 +15,6 @@ namespace service = wire::calibration_service;
 using test::Bytes;
 using ::testing::ElementsAreArray;
 
-constexpr double kDegree_rad = 0.017453292519943295;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Bytes example(const std::string& name) {
@@ -42,7 +42,7 @@ RunState state_of_examples() {
   state.progress.state = plate::State::kPositioning;
   state.progress.instruction = plate::Instruction::kMovePlate;
   state.progress.number_of_tilts = 5;
-  state.progress.tilt_rad = -2.0 * kDegree_rad;
+  state.progress.tilt_rad = -2.0 * kRadiansPerDegree;
   state.progress.scans_per_tilt = 30;
   state.progress.seconds_left = 60.0;
   return state;
@@ -55,7 +55,7 @@ TEST(CalibrationCodec, ReadsTheDocumentsStart) {
   EXPECT_EQ(start->plan.number_of_tilts, 5u);
   EXPECT_EQ(start->plan.scans_per_tilt, 30u);
   for (int i = 0; i < 5; ++i) {
-    EXPECT_NEAR(start->plan.tilts_rad[static_cast<std::size_t>(i)], (i - 2) * kDegree_rad, 1e-12);
+    EXPECT_NEAR(start->plan.tilts_rad[static_cast<std::size_t>(i)], (i - 2) * kRadiansPerDegree, 1e-12);
   }
   EXPECT_FALSE(start->method);
   EXPECT_EQ(start->min_amplitude_db, 12.5F);
@@ -66,7 +66,7 @@ TEST(CalibrationCodec, ReadsTheDocumentsMeasure) {
   ASSERT_TRUE(measure);
   EXPECT_EQ(measure->tilt_index, 0u);
   ASSERT_TRUE(measure->tilt_rad);
-  EXPECT_NEAR(*measure->tilt_rad, -1.98 * kDegree_rad, 1e-12);
+  EXPECT_NEAR(*measure->tilt_rad, -1.98 * kRadiansPerDegree, 1e-12);
   EXPECT_FALSE(read_measure(test::measure_payload(3))->tilt_rad) << "exactly as requested";
 }
 
@@ -78,7 +78,7 @@ TEST(CalibrationCodec, WritesTheDocumentsAnswers) {
               ElementsAreArray(payload_of("busy")));
   state.progress.state = plate::State::kTiltDone;
   state.progress.instruction = plate::Instruction::kSendNext;
-  state.progress.tilt_rad = -1.98 * kDegree_rad;
+  state.progress.tilt_rad = -1.98 * kRadiansPerDegree;
   state.progress.scans_collected = 30;
   EXPECT_THAT(written([&](auto& out) { write_state(state, out); }), ElementsAreArray(payload_of("event")));
 }
@@ -97,7 +97,7 @@ plate::PlateResult result_of_examples() {
   result.number_of_tilts = 5;
   result.tilts_used = 4;
   for (std::size_t i = 0; i < 5; ++i) {
-    result.tilts[i] = {.tilt_rad = (static_cast<double>(i) - 2.0) * kDegree_rad,
+    result.tilts[i] = {.tilt_rad = (static_cast<double>(i) - 2.0) * kRadiansPerDegree,
                        .scans = 30,
                        .mean_db = 30.0,
                        .std_db = 0.25,
@@ -141,7 +141,7 @@ TEST(CalibrationCodec, ALongerHeaderIsSkipped) {
   payload.insert(payload.begin() + 20, {9, 9, 9, 9});
   const auto start = read_start(payload);
   ASSERT_TRUE(start);
-  EXPECT_NEAR(start->plan.tilts_rad[1], kDegree_rad, 1e-12);
+  EXPECT_NEAR(start->plan.tilts_rad[1], kRadiansPerDegree, 1e-12);
 }
 
 TEST(CalibrationCodec, TooManyTiltsKeepOnlyTheirNumber) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/station/core/calibration_service.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/unit/alignment_estimator/station/station_client.hpp"
 
@@ -29,7 +30,6 @@ using ::testing::IsEmpty;
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1000 * kMs;
-constexpr double kDegree_rad = std::numbers::pi / 180.0;
 const std::vector<std::int16_t> kTilts{-300, -200, -100, 0, 100, 200, 300};
 const Endpoint kStation{IpAddress::v4(0xC0A81402), 41000};
 constexpr std::size_t kVerdict = service::verdict::kState;  ///< where the state record of a verdict begins
@@ -86,7 +86,7 @@ class CalibrationServiceTest : public ::testing::Test, public Surroundings {
     radar_scan->elevation_rad[0] = 0.0F;
     radar_scan->range_rate_mps[0] = 0.0F;
     radar_scan->detection_flags[0] = 0;
-    const double off_degrees = (tilt_rad + pitch_rad) / kDegree_rad;
+    const double off_degrees = (tilt_rad + pitch_rad) / kRadiansPerDegree;
     const double amplitude = flat ? 20.0 + off_degrees * off_degrees : 30.0 - 0.5 * off_degrees * off_degrees;
     radar_scan->rcs_dbsm[0] = static_cast<float>(amplitude + 0.02 * noise(random));
     calibration.add_scan(*radar_scan, now);
@@ -116,7 +116,7 @@ class CalibrationServiceTest : public ::testing::Test, public Surroundings {
   CalibrationService calibration{vehicle(), plate::StationConfig{}, 0.1};
   std::int64_t now = 10 * kSecond;
   std::uint16_t session = 0;
-  double yaw_rad = 0.4 * kDegree_rad, pitch_rad = -0.8 * kDegree_rad;
+  double yaw_rad = 0.4 * kRadiansPerDegree, pitch_rad = -0.8 * kRadiansPerDegree;
   std::unique_ptr<RadarScan> radar_scan = std::make_unique<RadarScan>();
   std::mt19937 random{1};
   std::normal_distribution<double> noise{0.0, 1.0};
@@ -133,8 +133,8 @@ TEST_F(CalibrationServiceTest, AWholeRunFindsTheMountingErrorAndPassesItOn) {
   EXPECT_EQ(found.u32(service::result::kRadarId), 2u);
   EXPECT_EQ(found.u8(service::result::kFailure), 0);
   EXPECT_EQ(found.u8(service::result::kTakenOver), 1);
-  EXPECT_NEAR(found.f32(service::result::kYaw_rad), yaw_rad, 0.03 * kDegree_rad);
-  EXPECT_NEAR(found.f32(service::result::kPitch_rad), pitch_rad, 0.05 * kDegree_rad);
+  EXPECT_NEAR(found.f32(service::result::kYaw_rad), yaw_rad, 0.03 * kRadiansPerDegree);
+  EXPECT_NEAR(found.f32(service::result::kPitch_rad), pitch_rad, 0.05 * kRadiansPerDegree);
   EXPECT_NEAR(found.f32(service::result::kMaximum_db), 30.0F, 0.1F);
   EXPECT_GT(found.f32(service::result::kConfidence), 0.8F);
   for (std::size_t i = 0; i < kTilts.size(); ++i) {
@@ -145,7 +145,7 @@ TEST_F(CalibrationServiceTest, AWholeRunFindsTheMountingErrorAndPassesItOn) {
   }
   ASSERT_EQ(taken_over.size(), 1u);
   EXPECT_EQ(taken_over[0].first, 2u);
-  EXPECT_NEAR(taken_over[0].second, pitch_rad, 0.05 * kDegree_rad);
+  EXPECT_NEAR(taken_over[0].second, pitch_rad, 0.05 * kRadiansPerDegree);
   EXPECT_THAT(faults, IsEmpty());
 }
 

@@ -1,59 +1,33 @@
 // config/schema/scenario.md lists every key that the reader knows, with its bounds and default. The example on that
 // page is a valid scenario.
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/simulator/scenario_file.hpp"
 #include "tests/simulator/world/reflections.hpp"
+#include "tests/unit/schema_page.hpp"
 
 namespace boresight::simulator {
 namespace {
 
+using schema_page::Cells;
+using schema_page::code;
 using testing::HasSubstr;
 
 std::string document() {
-  std::ifstream stream(BORESIGHT_SOURCE_DIR "/config/schema/scenario.md");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return schema_page::text_of(BORESIGHT_SOURCE_DIR "/config/schema/scenario.md");
 }
 
-std::string trimmed(std::string text) {
-  const auto is_space = [](char c) { return c == ' '; };
-  text.erase(std::find_if_not(text.rbegin(), text.rend(), is_space).base(), text.end());
-  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), is_space));
-  return text;
-}
-
-/// Without its backticks.
-std::string code(const std::string& text) {
-  return text.size() >= 2 && text.front() == '`' && text.back() == '`' ? text.substr(1, text.size() - 2) : "";
-}
-
-using Cells = std::vector<std::string>;
-
-/// Rows of the tables of each section, by its heading.
 std::map<std::string, std::vector<Cells>> sections() {
-  std::map<std::string, std::vector<Cells>> sections;
-  std::istringstream lines(document());
-  std::string heading;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("#")) heading = trimmed(line.substr(line.find_first_not_of('#')));
-    if (!line.starts_with("|") || line.starts_with("|---")) continue;
-    Cells cells;
-    std::istringstream row(line.substr(1));
-    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(trimmed(cell));
-    sections[heading].push_back(cells);
-  }
-  return sections;
+  return schema_page::sections(document());
 }
 
 /// How a table of the document is written, and which other keys it requires.
@@ -145,14 +119,9 @@ std::string value_of_default(const std::string& cell) {
 TEST(Schema, DocumentListsExactlyTheKeysOfTheReader) {
   const auto documented = sections();
   for (const auto& [section, table] : tables()) {
-    const std::string problem = problems(text_with(table, "no_such_key", "1"));
-    ASSERT_THAT(problem, HasSubstr("no_such_key: unknown key; ")) << section;
-    const std::string mark = "known here: ";
-    const std::size_t at = problem.find(mark, problem.find("no_such_key: unknown key"));
-    ASSERT_NE(at, std::string::npos) << section << ": " << problem;
-    std::set<std::string> known, documented_keys;
-    std::istringstream names(problem.substr(at + mark.size(), problem.find('\n', at) - at - mark.size()));
-    for (std::string name; std::getline(names, name, ',');) known.insert(trimmed(name));
+    const std::set<std::string> known =
+        schema_page::known_keys(problems(text_with(table, "no_such_key", "1")), "no_such_key");
+    std::set<std::string> documented_keys;
     ASSERT_TRUE(documented.contains(section)) << section;
     for (const Cells& row : documented.at(section)) {
       if (!code(row[0]).empty()) documented_keys.insert(code(row[0]));
@@ -169,12 +138,12 @@ TEST(Schema, BoundsAreThoseOfTheReader) {
       const std::string key = code(row[0]), type = row[1], range = row[3];
       if (key.empty()) continue;
       ASSERT_EQ(row.size(), 6u) << section << "." << key;
-      const std::size_t dots = range.find(" … ");
-      if (dots == std::string::npos) {
+      const auto bounds = schema_page::bounds(range);
+      if (!bounds) {
         EXPECT_TRUE(type != "number" && type != "integer") << section << "." << key << " has no range";
         continue;
       }
-      const double low = std::stod(range.substr(0, dots)), high = std::stod(range.substr(dots + 5));
+      const auto [low, high] = *bounds;
       const auto problem = [&](double value) {
         std::array<char, 40> text{};
         std::snprintf(text.data(), text.size(), type == "integer" ? "%.0f" : "%.9f", value);

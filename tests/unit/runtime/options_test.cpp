@@ -1,0 +1,83 @@
+// Where the configuration and the vehicle file are found.
+#include "services/common/runtime/options.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+
+namespace boresight::runtime {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class OptionsTest : public ::testing::Test {
+ protected:
+  OptionsTest() {
+    std::string name = (fs::temp_directory_path() / "boresight_options_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder_ = name;
+    fs::create_directories(folder_ / "source/config/vehicle");
+    fs::create_directories(folder_ / "source/config/services");
+  }
+  ~OptionsTest() override { fs::remove_all(folder_); }
+  void make_build_tree(const fs::path& build, const std::string& source) const {
+    fs::create_directories(build / "bin");
+    std::ofstream(build / "CMakeCache.txt") << "# cache\nCMAKE_HOME_DIRECTORY:INTERNAL=" << source << "\n";
+  }
+  [[nodiscard]] Configuration configuration(const std::string& vehicle) const {
+    return {folder_ / "source/config", vehicle};
+  }
+  void make_vehicle(const std::string& name) const {
+    std::ofstream(folder_ / "source/config/vehicle" / (name + ".toml")) << "name = \"" << name << "\"\n";
+  }
+  [[nodiscard]] std::string error_of(const std::string& vehicle) const {
+    try {
+      static_cast<void>(configuration(vehicle).vehicle_file());
+    } catch (const config::Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(OptionsTest, BuildTreeUsesTheConfigurationOfItsSourceTree) {
+  make_build_tree(folder_ / "source/build", "/absent");
+  EXPECT_EQ(default_config_folder(folder_ / "source/build/bin"), folder_ / "source/config");
+  make_build_tree(folder_ / "elsewhere", (folder_ / "source").string());
+  EXPECT_EQ(default_config_folder(folder_ / "elsewhere/bin"), folder_ / "source/config");
+}
+
+TEST_F(OptionsTest, InstalledProgramUsesEtc) {
+  fs::create_directories(folder_ / "source/bin");
+  EXPECT_EQ(default_config_folder(folder_ / "source/bin"), "/etc/boresight") << "no build tree";
+  make_build_tree(folder_ / "elsewhere", "/absent");
+  EXPECT_EQ(default_config_folder(folder_ / "elsewhere/bin"), "/etc/boresight") << "no source tree";
+}
+
+TEST_F(OptionsTest, VehicleIsANameOrAFile) {
+  make_vehicle("car");
+  const fs::path file = folder_ / "source/config/vehicle/car.toml";
+  EXPECT_EQ(configuration("car").vehicle_file(), file);
+  EXPECT_EQ(configuration("").vehicle_file(), file) << "the only one";
+  EXPECT_EQ(configuration(file.string()).vehicle_file(), file);
+}
+
+TEST_F(OptionsTest, UnknownVehicleIsReportedWithTheKnownNamesAndTheFolder) {
+  make_vehicle("car");
+  make_vehicle("truck");
+  EXPECT_THAT(error_of("truk"), HasSubstr("no vehicle 'truk' in " + (folder_ / "source/config/vehicle").string()));
+  EXPECT_THAT(error_of("truk"), HasSubstr("did you mean 'truck'?"));
+  EXPECT_THAT(error_of("truk"), HasSubstr("names there: car, truck"));
+  EXPECT_EQ(error_of("./absent.toml"), "--vehicle ./absent.toml: no such file");
+  EXPECT_THAT(error_of(""), HasSubstr("several vehicles"));
+}
+
+}  // namespace
+}  // namespace boresight::runtime
