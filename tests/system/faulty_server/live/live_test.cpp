@@ -84,8 +84,7 @@ int observe(Seen& seen) {
   return node.spin();
 }
 
-// --- expected results of the story
-// ---------------------------------------------------------------------------------------------
+// --- expected results of the story ----------------------------------------------------------------------------------
 
 struct Stage {
   std::string name;
