@@ -82,8 +82,7 @@ inline constexpr std::size_t kWidthInvalid = 178;  // u8 bits
 inline constexpr std::size_t kWidth_m = 179;
 }  // namespace object
 
-// --- sensor status; the header is the 8 bytes of service, method and length only
-// ---------------------------------------
+// --- sensor status; the header is the 8 bytes of service, method and length only ------------------------------------
 inline constexpr std::size_t kStatusBytes = 84;
 namespace status {
 inline constexpr std::size_t kSyncStatus = 16;      // u8, as in the detection list
@@ -100,8 +99,7 @@ inline constexpr std::uint8_t kBlockageLow = 3;
 inline constexpr std::uint8_t kSelfTestFailed = 0;
 }  // namespace status
 
-// --- motion of the vehicle, an input of the sensor: same short header, floats at the given offset
-// ----------------------
+// --- motion of the vehicle, an input of the sensor: same short header, floats at the given offset -------------------
 inline constexpr std::uint16_t kSensorPort = 42101;
 /// A message to the sensor: method, size in bytes, offset of its value.
 struct MotionInput {

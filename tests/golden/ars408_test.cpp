@@ -174,7 +174,7 @@ struct Value {
   double physical;
   double code;
 };
-using Decoded = std::map<std::string, Value>;
+using DecodedSignals = std::map<std::string, Value>;
 
 class Tshark {
  public:
@@ -197,7 +197,7 @@ class Tshark {
     return begin == std::string::npos ? "" : text.substr(begin, text.find_first_not_of("0123456789.", begin) - begin);
   }
 
-  std::vector<Decoded> decode(const std::vector<CanFrame>& frames) const {
+  std::vector<DecodedSignals> decode(const std::vector<CanFrame>& frames) const {
     write_configuration();
     write_capture(frames);
     std::string command = "WIRESHARK_CONFIG_DIR=" + folder_.string() + " tshark -r " + (folder_ / "can.pcap").string() +
@@ -211,10 +211,10 @@ class Tshark {
       }
     }
     std::istringstream lines(output_of(command + " 2>" + (folder_ / "errors").string()));
-    std::vector<Decoded> decoded;
+    std::vector<DecodedSignals> decoded;
     for (std::string line; std::getline(lines, line);) {
       std::istringstream cells(line + ",");
-      Decoded& values = decoded.emplace_back();
+      DecodedSignals& values = decoded.emplace_back();
       std::string physical, code;
       for (std::size_t i = 0; std::getline(cells, physical, ',') && std::getline(cells, code, ',') && i < names.size();
            ++i) {
@@ -312,7 +312,7 @@ TEST_F(Ars408Tshark, ExtractsTheSameFromRandomFrames) {
       frame.bytes.push_back(static_cast<std::uint8_t>(random()));
     }
   }
-  const std::vector<Decoded> decoded = tshark_.decode(frames);
+  const std::vector<DecodedSignals> decoded = tshark_.decode(frames);
   ASSERT_EQ(decoded.size(), frames.size()) << tshark_.errors();
   std::size_t compared = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -345,7 +345,7 @@ TEST_F(Ars408Tshark, ReadsTheCommandsAsTheyAreMeant) {
   }
   frames.push_back(frame_of(ingest::ars408::configuration(ingest::ars408::Output::kClusters, 0)));
   frames.push_back(frame_of(ingest::ars408::configuration(ingest::ars408::Output::kObjects, 0)));
-  const std::vector<Decoded> decoded = tshark_.decode(frames);
+  const std::vector<DecodedSignals> decoded = tshark_.decode(frames);
   ASSERT_EQ(decoded.size(), frames.size()) << tshark_.errors();
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const double mps = decoded[2 * i].at("SpeedInformation.Speed").physical;
@@ -356,7 +356,7 @@ TEST_F(Ars408Tshark, ReadsTheCommandsAsTheyAreMeant) {
     EXPECT_NEAR(degps, motions[i].yaw_rate_radps * 180.0 / M_PI, 0.00501);
   }
   for (const double output : {2.0, 1.0}) {  // clusters, objects
-    const Decoded& configuration = decoded[decoded.size() - (output == 2.0 ? 2 : 1)];
+    const DecodedSignals& configuration = decoded[decoded.size() - (output == 2.0 ? 2 : 1)];
     for (const char* const valid : {"StoreInNVM", "SortIndex", "SendExtInfo", "SendQuality", "OutputType"}) {
       EXPECT_EQ(configuration.at("RadarConfiguration." + std::string(valid) + "_valid").code, 1.0) << valid;
     }

@@ -16,7 +16,7 @@ using namespace scan_integrity;
 namespace fs = std::filesystem;
 
 const fs::path kDrive = shared_data() / "comma2k19_seg40/radar_ego.candump.log";
-const fs::path kArs548 = shared_data() / "nebula_ars548_srr520/ars548_real_2msgs_ipfrag.pcap";
+const fs::path kSoundArs548 = shared_data() / "nebula_ars548_srr520/ars548_real_2msgs_ipfrag.pcap";
 constexpr std::int64_t kLatency_ns = 75'000'000;
 
 /// Changes a scan before it gets to the judge; false: the scan does not arrive.
@@ -132,9 +132,9 @@ TEST_F(RealDriveIntegrity, RangeRatesThatContradictTheSpeedAreReported) {
 }
 
 TEST(RealArs548Integrity, OriginalDataHasNoFault) {
-  REQUIRE_RECORDING(kArs548);
+  REQUIRE_RECORDING(kSoundArs548);
   const VehicleConfig car = vehicle("ars548_single");
-  const Decoding decoding = decode(car, kArs548);
+  const Decoding decoding = decode(car, kSoundArs548);
   ingest::ScanJudge judge(car.radars.front());
   for (const Decoded& message : decoding.messages) {
     if (!message.scan) continue;
@@ -147,9 +147,9 @@ TEST(RealArs548Integrity, OriginalDataHasNoFault) {
 }
 
 TEST(RealArs548Integrity, RangeRatesFitTheSpeedAndScaledOnesDoNot) {
-  REQUIRE_RECORDING(kArs548);
+  REQUIRE_RECORDING(kSoundArs548);
   const VehicleConfig car = vehicle("ars548_single");
-  const Decoding decoding = decode(car, kArs548);
+  const Decoding decoding = decode(car, kSoundArs548);
   const auto scan = std::make_unique<RadarScan>();
   for (const Decoded& message : decoding.messages) {
     if (message.scan) *scan = *message.scan;

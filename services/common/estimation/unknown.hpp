@@ -1,4 +1,4 @@
-// The value of what is not known (yet).
+// The value of unknown quantities.
 #pragma once
 
 #include <limits>

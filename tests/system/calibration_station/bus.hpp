@@ -1,5 +1,5 @@
-// What the alignment estimator has to do with on the bus: two radars before the plate, and whoever reads its estimates
-// and its status.
+// The alignment estimator's partners on the bus: two radars in front of plates, and a reader of its estimates and
+// status.
 #pragma once
 
 #include <array>
@@ -12,19 +12,19 @@
 
 namespace boresight::calibration_station {
 
-inline constexpr std::uint32_t kRadarAtPlate = 2;  ///< radar 1 sees a plate, too, that never moves
+inline constexpr std::uint32_t kRadarAtPlate = 2;  ///< radar 1 sees a plate as well, which never moves
 
-/// What the radar looks at; the test changes it while the radar measures.
+/// The radar's scene; the test changes it while the radar measures.
 struct Scene {
   volatile double tilt_rad;
   volatile double yaw_rad, pitch_rad;  ///< of the radar, truth
   volatile bool is_plate_there;
-  volatile bool has_maximum;       ///< else the amplitude grows to both sides
+  volatile bool has_maximum;       ///< otherwise the amplitude grows to both sides
   volatile double disturbance_db;  ///< added to every scan's amplitude
   volatile double speed_mps;       ///< of the vehicle, as signalled
 };
 
-/// Scans of both radars and ego motion, 100 times a second, by a process that is the gateway to the bus.
+/// Publishes scans of both radars and ego motion 100 times a second, in place of the gateway.
 class PlateRadars {
  public:
   PlateRadars();
@@ -37,7 +37,7 @@ class PlateRadars {
   std::unique_ptr<harness::Child> process_;
 };
 
-/// The latest of what the estimator has written.
+/// The estimator's latest messages.
 class Reader {
  public:
   Reader();
@@ -54,7 +54,7 @@ class Reader {
     volatile bool attached;
     volatile std::size_t number_of_statuses;
     std::array<volatile std::size_t, 3> number_of_estimates;
-    std::array<ServiceStatus, 2> statuses;  // by turns, so that the one read is not the one written
+    std::array<ServiceStatus, 2> statuses;  // alternating, so that readers and writer use different ones
     std::array<std::array<AlignmentEstimate, 2>, 3> estimates;
   };
   int run();

@@ -60,7 +60,7 @@ TEST_F(CalibrationStation, FindsTheServiceAndCalibratesARadar) {
               (result.f32(service::result::kPitch_rad) - scene().pitch_rad) / kDegree_rad,
               static_cast<double>(result.f32(service::result::kConfidence)));
 
-  // Each change came as an event: three for each tilt, the last one is the result's.
+  // Each change is an event: three per tilt; the last one is that of the result.
   std::vector<State> states;
   while (const auto event = events.next(0.2)) states.push_back(event->state(0));
   ASSERT_EQ(states.size(), 3 * kTilts.size() + 1);
@@ -73,7 +73,7 @@ TEST_F(CalibrationStation, FindsTheServiceAndCalibratesARadar) {
 
   finder.forget();
   stop_estimator();
-  EXPECT_TRUE(finder.wait_for(EntryType::kOffer, 1.0, true)) << "the offer is taken back";
+  EXPECT_TRUE(finder.wait_for(EntryType::kOffer, 1.0, true)) << "the offer is withdrawn";
 }
 
 TEST_F(CalibrationStation, TheResultIsTheEstimatorsPriorAndSurvivesTheIgnitionCycle) {
@@ -82,7 +82,7 @@ TEST_F(CalibrationStation, TheResultIsTheEstimatorsPriorAndSurvivesTheIgnitionCy
   ASSERT_EQ(finish(here).state(kVerdict), State::kFinished);
   const Answer result = here.result();
   ASSERT_EQ(result.u8(service::result::kTakenOver), 1);
-  // Expects the result in what is published now; its std of pitch.
+  // Expects the result in the published estimate; returns its standard deviation of pitch.
   const auto pitch_std_of_published = [&] {
     const std::size_t before = reader().number_of_estimates(kRadarAtPlate);
     EXPECT_TRUE(harness::eventually(3.0, [&] { return reader().number_of_estimates(kRadarAtPlate) > before + 1; }));
@@ -96,13 +96,13 @@ TEST_F(CalibrationStation, TheResultIsTheEstimatorsPriorAndSurvivesTheIgnitionCy
         static_cast<double>(estimate.covariance[5 * static_cast<std::size_t>(AlignmentParameter::kPitch)]));
   };
   EXPECT_LT(pitch_std_of_published(), 0.1 * kDegree_rad);
-  // It was written at once: power may go without a warning.
+  // The result is stored at once, as power may be switched off at any time.
   EXPECT_TRUE(harness::eventually(2.0, [] { return std::filesystem::exists("/tmp/memory/alignment"); }));
   estimator_->send(SIGKILL);
   ASSERT_TRUE(estimator_->wait_for(5.0));
   estimator_.reset();
   start_estimator();
-  EXPECT_LT(pitch_std_of_published(), 0.4 * kDegree_rad) << "what is only remembered is believed with more doubt";
+  EXPECT_LT(pitch_std_of_published(), 0.4 * kDegree_rad) << "a stored result has a larger standard deviation";
 }
 
 TEST_F(CalibrationStation, RepeatsATiltThatWasDisturbed) {
@@ -121,10 +121,10 @@ TEST_F(CalibrationStation, RepeatsATiltThatWasDisturbed) {
   EXPECT_EQ(finish(here, 5).state(kVerdict), State::kFinished);
   const Answer result = here.result();
   expect_truth(result);
-  EXPECT_EQ(result.u16(service::result::kTiltsUsed), kTilts.size()) << "nothing of the disturbance is left";
+  EXPECT_EQ(result.u16(service::result::kTiltsUsed), kTilts.size()) << "the disturbed scans are dropped";
 }
 
-TEST_F(CalibrationStation, AbortsAndStartsAnew) {
+TEST_F(CalibrationStation, AbortsAndStartsAgain) {
   Station here = station();
   ASSERT_EQ(start(here).refusal(), Refusal::kNone);
   ASSERT_EQ(measure(here, 0), State::kTiltDone);
@@ -138,7 +138,7 @@ TEST_F(CalibrationStation, AbortsAndStartsAnew) {
   expect_truth(here.result());
 }
 
-TEST_F(CalibrationStation, ARunWithoutAMaximumFailsAndTeachesNothing) {
+TEST_F(CalibrationStation, ARunWithoutAMaximumFailsAndDoesNotChangeTheEstimate) {
   scene().has_maximum = false;
   Station here = station();
   ASSERT_EQ(start(here).refusal(), Refusal::kNone);
@@ -160,9 +160,9 @@ TEST_F(CalibrationStation, TimeOutsFreeTheServiceByThemselves) {
   ASSERT_EQ(start(here).refusal(), Refusal::kNone);
   ASSERT_TRUE(events.next(1.0));
   const auto timed_out = events.next(kPositioningTimeout_s + 0.5);
-  ASSERT_TRUE(timed_out) << "nobody has to ask";
+  ASSERT_TRUE(timed_out) << "without a request";
   EXPECT_EQ(timed_out->failure(0), Failure::kPositioningTimeout);
-  EXPECT_EQ(timed_out->u16(service::state::kClientId), 0) << "belongs to nobody";
+  EXPECT_EQ(timed_out->u16(service::state::kClientId), 0) << "belongs to no station";
 
   scene().is_plate_there = false;
   ASSERT_EQ(start(here).refusal(), Refusal::kNone);
@@ -201,7 +201,7 @@ TEST_F(CalibrationStation, ASecondStationIsRefusedWhileOneIsBusy) {
   EXPECT_EQ(start(second).refusal(), Refusal::kBusy);
   EXPECT_EQ(second.ask(Method::kAbort, run_payload()).refusal(), Refusal::kBusy);
   EXPECT_EQ(second.ask(Method::kMeasure, measure_payload(0)).refusal(), Refusal::kBusy);
-  EXPECT_EQ(second.state().u16(service::state::kClientId), 0x17) << "but it may look";
+  EXPECT_EQ(second.state().u16(service::state::kClientId), 0x17) << "but it may read the state";
   EXPECT_EQ(finish(first).state(kVerdict), State::kFinished);
   EXPECT_EQ(start(second).refusal(), Refusal::kNone);
   EXPECT_EQ(second.state().u16(service::state::kClientId), 0x18);
@@ -222,7 +222,7 @@ TEST_F(CalibrationStation, MalformedRequestsAreCountedAndAnsweredByTheirCode) {
   EXPECT_EQ(code_of({.method = 7, .type = 0x20}, {}), ReturnCode::kWrongMessageType);
   EXPECT_EQ(code_of({.method = 1}, {1, 2, 3}), ReturnCode::kMalformedMessage);
   EXPECT_EQ(code_of({.method = 2}, Bytes(1300, 0xFF)), ReturnCode::kMalformedMessage);
-  // Not answered at all: no header, a length beyond the datagram, an answer, an empty datagram.
+  // Without an answer: no header, a length beyond the datagram, an answer, an empty datagram.
   for (const Bytes& datagram : {Bytes{1, 2, 3}, Bytes(16, 0xFF), message({.method = 7, .type = 0x80}, {}), Bytes{}}) {
     here.send(datagram);
   }
@@ -231,7 +231,7 @@ TEST_F(CalibrationStation, MalformedRequestsAreCountedAndAnsweredByTheirCode) {
   EXPECT_EQ(faults(after, Fault::kWireUnknown) - faults(before, Fault::kWireUnknown), 2u);
   EXPECT_EQ(faults(after, Fault::kWireValue) - faults(before, Fault::kWireValue), 4u);
   EXPECT_EQ(faults(after, Fault::kWireLength) - faults(before, Fault::kWireLength), 5u);
-  EXPECT_EQ(here.state().state(0), State::kIdle) << "it is still there";
+  EXPECT_EQ(here.state().state(0), State::kIdle) << "the service still runs";
 }
 
 TEST_F(CalibrationStation, ComesBackWithTheNetwork) {
@@ -239,12 +239,12 @@ TEST_F(CalibrationStation, ComesBackWithTheNetwork) {
   hosts().cut_cable();
   start_estimator();
   Finder finder(hosts());
-  EXPECT_FALSE(finder.wait_for(EntryType::kOffer, 1.2)) << "there is no cable";
+  EXPECT_FALSE(finder.wait_for(EntryType::kOffer, 1.2)) << "the cable is disconnected";
   for (int round = 0; round < 2; ++round) {
     hosts().lay_cable();
     finder.forget();
     const std::int64_t begin_ns = runtime::monotonic_now_ns();
-    EXPECT_TRUE(finder.wait_for(EntryType::kOffer, 3.0)) << "the cable has come, round " << round;
+    EXPECT_TRUE(finder.wait_for(EntryType::kOffer, 3.0)) << "the cable is connected, round " << round;
     std::printf("offered %.0f ms after the cable was laid\n",
                 static_cast<double>(runtime::monotonic_now_ns() - begin_ns) * 1e-6);
     Station here = station();

@@ -1,5 +1,5 @@
-// An end-of-line station on the other side of the cable. What it says in service discovery is made and read by the
-// gateway's client, which shares no code with the server; its requests are laid out from the definition's offsets.
+// An end-of-line station at the other end of the cable. It uses the gateway's client for service discovery, which
+// shares no code with the server. Its requests follow the offsets of the definition.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +34,10 @@ class Finder {
  public:
   explicit Finder(const network::TwoHosts& hosts);
   void find();
-  /// Asks for the state's events to be sent to a port of the station.
+  /// Subscribes to the state's events, with a port of the station as destination.
   void subscribe(std::uint16_t eventgroup, std::uint16_t port, std::uint32_t ttl_s);
   void forget() { heard_.clear(); }
-  /// What has come of the calibration service since forget(), after a look at the sockets.
+  /// Received entries of the calibration service since forget(), after reading the sockets.
   [[nodiscard]] const std::vector<Heard>& heard();
   /// The first such entry within the time.
   [[nodiscard]] std::optional<Heard> wait_for(ingest::someip::EntryType type, double seconds, bool stop = false);
@@ -54,10 +54,10 @@ class Station {
  public:
   Station(const network::TwoHosts& hosts, std::uint16_t client, const Endpoint& ecu);
 
-  /// Asks, and once more every 0.5 s with the same session; fails the test and returns zeros after 3 s.
+  /// Sends a request, repeated every 0.5 s with the same session; fails the test and returns zeros after 3 s.
   Answer ask(service::Method method, const Bytes& payload);
   void send(const Bytes& datagram);
-  /// The next datagram that comes to the station's port.
+  /// The next datagram to the station's port.
   [[nodiscard]] std::optional<Answer> receive(double seconds);
   [[nodiscard]] std::uint16_t client() const { return client_; }
   [[nodiscard]] std::uint16_t next_session() { return ++session_; }
@@ -72,7 +72,7 @@ class Station {
   std::uint16_t session_ = 0;
 };
 
-/// Where events come to.
+/// Receiver of events.
 class EventPort {
  public:
   EventPort(const network::TwoHosts& hosts, std::uint16_t port);

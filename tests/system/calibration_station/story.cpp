@@ -24,7 +24,7 @@ const std::string kEstimator = BORESIGHT_BINARY_DIR "/boresight-alignment_estima
 const fs::path kConfig = "/tmp/config";
 constexpr const char* kCapture = "/tmp/calibration.pcap";
 
-/// GCC 12 warns falsely where strings are added.
+/// GCC 12 has a false warning for concatenated strings.
 std::string joined(std::initializer_list<std::string_view> parts) {
   std::string text;
   for (const std::string_view part : parts) text.append(part);
@@ -49,7 +49,7 @@ bool is_installed(const std::string& program) {
   return std::system(joined({"command -v ", program, " >/dev/null"}).c_str()) == 0;
 }
 
-/// What a command prints.
+/// Output of a command.
 std::string output_of(const std::string& command) {
   std::string output;
   FILE* const pipe = popen(command.c_str(), "r");
@@ -101,7 +101,7 @@ void Story::judge_capture() {
     std::puts("skipped: tshark is not installed");
     return;
   }
-  // Severity: warning 6 and error 8, times 0x100000. What the station sends may be wrong on purpose.
+  // Severity: warning 6 and error 8, times 0x100000. The station sends some invalid messages on purpose.
   const std::string read = joined({"tshark -r ", kCapture, " -d udp.port==30490,someip -d udp.port==30700,someip",
                                    " -Y 'ip.src==", network::kEcuAddress});
   const auto count = [&read](const std::string& filter) {
@@ -166,7 +166,7 @@ void Story::start_estimator() {
 
 void Story::stop_estimator() {
   if (!estimator_) return;
-  EXPECT_EQ(estimator_->stop(), 0) << "the estimator did not end well";
+  EXPECT_EQ(estimator_->stop(), 0) << "the estimator's exit code";
   estimator_.reset();
 }
 

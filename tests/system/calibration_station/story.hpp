@@ -1,5 +1,5 @@
-// What the stories of this folder have in common: two hosts, a bus with radars before a plate, the estimator's process,
-// and all that passes between ECU and station captured for others' decoders.
+// Common part of the tests in this folder: two hosts, a bus with radars in front of a plate, the estimator's process,
+// and a capture of all traffic between ECU and station for other decoders.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@
 namespace boresight::calibration_station {
 
 inline constexpr double kDegree_rad = 0.017453292519943295;
-inline constexpr std::size_t kVerdict = service::verdict::kState;  ///< where the state record of a verdict begins
+inline constexpr std::size_t kVerdict = service::verdict::kState;  ///< offset of the state record in a verdict
 inline constexpr double kPositioningTimeout_s = 1.5, kSilenceTimeout_s = 0.6;
 
 class Story : public testing::Test {
@@ -31,19 +31,19 @@ class Story : public testing::Test {
   static Scene& scene() { return shared_->radars.scene(); }
   static Reader& reader() { return shared_->reader; }
 
-  /// The shipped configuration with the calibration service switched on or as it is shipped.
+  /// The shipped configuration, with the calibration service switched on or unchanged.
   static void write_configuration(bool enabled = true);
   void start_estimator();
   void stop_estimator();
-  /// A station that knows where the service is.
+  /// A station with the service's endpoint.
   [[nodiscard]] static Station station(std::uint16_t client = 0x17);
   /// Sends the start of a run with these tilts (hundredths of a degree), 10 scans each.
   static Answer start(Station& station);
-  /// Brings the plate to the tilt, measures, and waits until it is done; the state then.
+  /// Brings the plate to the tilt, measures, and waits until the tilt is done; returns the state.
   static service::State measure(Station& station, std::size_t index);
-  /// All tilts from `first` on; the last verdict.
+  /// Measures all tilts from `first` on; returns the last verdict.
   static Answer finish(Station& station, std::size_t first = 0);
-  /// Expects that the result is the scene's truth.
+  /// Expects the scene's true values as result.
   static void expect_truth(const Answer& result);
   static ServiceStatus status_after_now();
 

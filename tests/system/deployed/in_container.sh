@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs as the only task of the booted container; what it finds is described in README.md.
+# Runs as the only task of the booted container; README.md describes its checks.
 set -u
 failed=0
 check() { # check WHAT COMMAND…
@@ -7,7 +7,7 @@ check() { # check WHAT COMMAND…
   shift
   if "$@"; then echo "ok      $what"; else echo "FAILED  $what"; failed=1; fi
 }
-# within SECONDS COMMAND…: as soon as it succeeds.
+# within SECONDS COMMAND…: repeats COMMAND until it succeeds.
 within() {
   local end=$((SECONDS + $1))
   shift
@@ -23,9 +23,9 @@ all_active() {
   local service
   for service in roudi "${services[@]}"; do systemctl is-active -q "boresight-$service.service" || return 1; done
 }
-# is_new SERVICE OLD_PID: it runs as another process now.
+# is_new SERVICE OLD_PID: true if the service runs as another process.
 is_new() { systemctl is-active -q "boresight-$1.service" && [ "$(pid_of "$1")" != "$2" ]; }
-# monitor SECONDS: what a member of the group sees of the topics, as JSON.
+# monitor SECONDS: the topics as JSON, read by a member of the group.
 monitor() {
   nsenter -m -t "$(pid_of roudi)" runuser -u boresight-monitor -- boresight monitor --config /etc/boresight \
     --vehicle demo --json --duration "$1" 2>/dev/null
@@ -51,12 +51,12 @@ check "the replay played to its end" within 15 sh -c '! systemctl is-active -q b
 check "the replay ended well" [ "$(systemctl show -P Result boresight-replay.service)" = success ]
 kill -TERM $diagnostics
 wait $diagnostics
-check "a DDS subscriber sees the crooked radar degraded" grep -q 'front_right.*MISALIGNED' /out/diagnostics.txt
+check "a DDS subscriber reports the misaligned radar as degraded" grep -q 'front_right.*MISALIGNED' /out/diagnostics.txt
 check "and no other" sh -c '! grep MISALIGNED /out/diagnostics.txt | grep -qE "front_left|rear_left|rear_right"'
-check "the monitor sees tracks" grep -q '"confirmed":true' /out/monitor.txt
+check "the monitor shows tracks" grep -q '"confirmed":true' /out/monitor.txt
 check "no scan is lost" sh -c '! grep -qE "\"lost\":[1-9]|\"input lost\"" /out/monitor.txt'
 
-# mapped SERVICE SEGMENT ACCESS: how the service has mapped a segment of shared memory ("rw-s", "r--s").
+# mapped SERVICE SEGMENT ACCESS: access of the service to a segment of shared memory ("rw-s", "r--s").
 mapped() { grep " /dev/shm/boresight-$2\$" "/proc/$(pid_of "$1")/maps" | awk '{print $2}' | sort -u | grep -qx -- "$3"; }
 check "a service maps its own segment for writing" mapped tracker tracker rw-s
 check "and the others' read-only" mapped tracker ghost_filter r--s

@@ -11,7 +11,7 @@ if [ "${3:-}" != inside ]; then
   command -v systemd-nspawn >/dev/null || skip "no systemd-nspawn (package systemd-container)"
   [ -x /lib/systemd/systemd ] || skip "this machine has no systemd to boot"
   unshare -m true 2>/dev/null || skip "no mount namespaces here"
-  # Everything below is mounted in a namespace of its own and vanishes with it.
+  # All mounts below are in a separate namespace and end with it.
   exec unshare -m --propagation private "$0" "$source_dir" "$build" inside
 fi
 
@@ -29,7 +29,7 @@ nspawn=(systemd-nspawn --quiet --directory="$root" --machine="boresight-$$" --re
 "${nspawn[@]}" /bin/true </dev/null >"$work/out/preflight.txt" 2>&1 ||
   skip "systemd-nspawn does not work here: $(tail -n 1 "$work/out/preflight.txt")"
 
-# A machine of its own: no units of the host's, another identity.
+# A separate machine: none of the host's units, another identity.
 echo uninitialized > "$root/etc/machine-id"
 rm -rf "$root"/etc/systemd/system/*.wants
 DESTDIR=$root cmake --install "$build" --prefix /usr > "$work/out/install.txt"
@@ -43,7 +43,7 @@ BORESIGHT_REPLAY_ARGS=$recordings
 EOF
 install -m 755 "$here/in_container.sh" "$root/usr/local/bin/deployed-test"
 cat > "$root/etc/systemd/system/deployed-test.service" <<'EOF'
-# Not named boresight-…, whose restrictions would be its own.
+# Not named boresight-…, as the restrictions of these units would apply.
 [Unit]
 Description=The deployed test
 [Service]
@@ -57,5 +57,5 @@ EOF
 timeout -k 5 200 "${nspawn[@]}" --boot --bind="$work/out:/out" systemd.unit=deployed-test.service \
   </dev/null >"$work/out/console.txt" 2>&1 || true
 cat "$work/out/log.txt" 2>/dev/null || { cat "$work/out/console.txt"; echo "systemd did not get as far as the test"; exit 1; }
-# Only the verdict written inside counts: a container that dies early has none.
+# Only the result written inside counts: a container that dies early has none.
 [ "$(cat "$work/out/verdict" 2>/dev/null)" = 0 ] || { echo "journal: $work/out/journal.txt"; exit 1; }

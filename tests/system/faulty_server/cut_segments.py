@@ -1,4 +1,4 @@
-"""Segments: lost, doubled, cut, in any order, of any length, of several at once."""
+"""Segments: lost, repeated, truncated, in any order, of any length, of several messages at once."""
 import random
 
 from recording import *
@@ -41,7 +41,7 @@ def duplicated(r):
     r.cycle(lambda m: [part for part in segments(m) for _ in range(2)])
     r.cycle(lambda m: segments(m) * 2)
     r.cycle(lambda m: segments(m) + segments(m)[-1:] * 3)
-    # So late that the segments are put together again: the E2E counter tells.
+    # So late that the segments are reassembled again: the E2E counter detects the repetition.
     message, what = r.list()
     r.send(segments(message))
     r.delivered.append(what)
@@ -58,7 +58,7 @@ def overlapping(r):
     for size, step in ((1392, 1376), (1392, 16), (64, 48)):
         r.cycle(lambda m: segments(m, size, step), count=40)
     r.cycle(lambda m: segments(m, 1392, 704)[::-1])
-    # Of conflicting bytes the first ones win: here the right ones …
+    # The first of conflicting bytes are kept: here the right ones …
     r.cycle(lambda m: segments(m)[:2] + [segment(m, 1392, b"\xAA" * 1392 + m[16 + 2784:16 + 4176], True)] +
             segments(m)[3:])
     # … and here the wrong ones, which the E2E CRC finds.
@@ -87,7 +87,7 @@ def lost_segments(r):
         r.cycle()
         r.bad_cycle(without, INCOMPLETE, lost=1)
         r.cycle()
-    # Only one is there; and the last message of all is incomplete, too.
+    # Only one segment exists; the last message is incomplete as well.
     r.bad_cycle(lambda m: segments(m)[2:3], INCOMPLETE, lost=1)
     r.cycle()
     r.bad_cycle(lambda m: segments(m)[:-1], INCOMPLETE)
@@ -113,7 +113,7 @@ def truncated_segments(r):
     r.statistics(lost=1)
     r.bad_cycle(cut_datagram, BEYOND, INCOMPLETE, lost=1)
     r.cycle()
-    # The right segment after the wrong one saves the message.
+    # The right segment after the wrong one completes the message.
     r.cycle(lambda m: cut_datagram(m) + segments(m)[3:4])
     r.fault(BEYOND)
 
@@ -140,11 +140,11 @@ def oversize(r):
     r.bad_cycle(lambda m: segments(m)[:3] + [segment(m, 0xFFFFFFF0, b"\xAA" * 16, True)] + segments(m)[3:], OVERSIZE,
                 INCOMPLETE, lost=1)
     r.cycle()
-    # A sender that never ends: up to the limit, and beyond.
+    # A message without an end: up to the limit, and beyond.
     r.bad_cycle(lambda m: [segment(m, offset, b"\xAA" * 1392, True) for offset in range(0, 140_000, 1392)], OVERSIZE,
                 INCOMPLETE, lost=1)
     r.cycle()
-    # From the first segment on: nothing is kept, and what follows is only incomplete.
+    # From the first segment on: no segment is kept, and the following ones are only incomplete.
     r.bad_cycle(lambda m: [segment(m, 200_000, b"\xAA" * 64, False)] + segments(m)[:2], OVERSIZE, INCOMPLETE, lost=1)
     r.cycle()
 
@@ -156,7 +156,7 @@ def contradictory_ends(r):
     r.fault(CONTRADICTION)
     r.cycle(lambda m: segments(m)[6:] + [segment(m, 9664, b"\xAA" * 160, True)] + segments(m)[:6])
     r.fault(CONTRADICTION)
-    # An end that comes first is believed, and its message lost.
+    # An end that arrives first is accepted, and its message lost.
     r.bad_cycle(lambda m: [segment(m, 1392, b"\xAA" * 16, False)] + segments(m), LENGTH, wrong=1)
     r.cycle()
     r.statistics(lost=1)
@@ -200,7 +200,7 @@ def interleaved_senders(r):
 
 @scenario
 def flood_of_strangers(r):
-    """Forty senders that nobody asked begin a message between any two segments of ours."""
+    """Forty unknown senders begin a message between any two segments of the server."""
     strangers = [Instance(1, STRANGER, 40_000 + i) for i in range(40)]
     for _ in range(2):
         message, what = r.list()
@@ -216,7 +216,7 @@ def flood_of_strangers(r):
 
 @scenario
 def flood_of_kinds(r):
-    """Radar 1 begins messages of ever other client ids; only its own suffer."""
+    """Radar 1 begins messages with changing client ids; only its own messages are affected."""
     r.cycle()
     message, _ = r.list()
     other, what = r.list(instance=r.two)
@@ -253,7 +253,7 @@ def new_session_before_the_old_is_whole(r):
     r.send(segments(old)[:4])
     new, what = r.list()
     r.send(segments(new)[:3])
-    r.send(segments(old)[4:])  # late: of no use any more
+    r.send(segments(old)[4:])  # too late to be used
     r.send(segments(new)[3:])
     r.delivered.append(what)
     r.fault(INCOMPLETE)
@@ -264,7 +264,7 @@ def new_session_before_the_old_is_whole(r):
 
 @scenario
 def damaged_session(r):
-    """One segment belongs to a session to come: its message is lost, those that follow are not."""
+    """One segment belongs to a later session: its message is lost, the following ones are not."""
     r.cycle()
     for ahead in (1, 3, 16, 17, 0x4000, 0x8000, 0xFFFF):
         def damage(message):
@@ -272,8 +272,8 @@ def damaged_session(r):
             session = int.from_bytes(parts[2][10:12], "big") + ahead & 0xFFFF
             parts[2] = parts[2][:10] + (session or 0x7777).to_bytes(2, "big") + parts[2][12:]
             return parts
-        # Behind by one: late, and only the hole remains. Ahead: the old is dropped for the new, which then starves; if it
-        # is far off, the rest begins it anew.
+        # Behind by one: late, and only the gap remains. Ahead: the old message is dropped for the new one, which remains
+        # incomplete; if it is far ahead, the rest starts the old one again.
         incomplete = 1 if ahead == 0xFFFF else 2 if ahead <= 16 else 3
         r.bad_cycle(damage, *[INCOMPLETE] * incomplete, lost=1)
         r.cycle()
@@ -288,7 +288,7 @@ def session_wraps(r):
     r.one.session = 0xFFFF
     r.bad_cycle(lambda m: segments(m)[:-1], INCOMPLETE, lost=1)
     r.cycle()
-    # Session 0 tells nothing apart: segments are refused; a whole message needs none.
+    # Session 0 distinguishes no messages: segments are rejected; an unsegmented message needs none.
     r.bad_cycle(segments, *[NO_SESSION] * 7, lost=1, session=0)
     r.cycle()
     r.good(r.two, 20)
@@ -325,7 +325,7 @@ def several_in_a_datagram(r):
     with_middle(lambda m: m[:13] + b"\2" + m[14:], HEADER, lost=1)
     with_middle(lambda m: m[:14] + b"\x42" + m[15:], TYPE, lost=1)
     with_middle(lambda m: m[:100] + b"\xAA" + m[101:], CRC, lost=1, wrong=1)
-    with_middle(lambda m: b"\x12\x34" + m[2:], lost=1)  # another service's: none of our business
+    with_middle(lambda m: b"\x12\x34" + m[2:], lost=1)  # another service: ignored
     with_middle(lambda m: m[:3] + b"\3" + m[4:], STRANGERS, lost=1)  # an event that the service does not have
     with_middle(lambda m: m[:4] + b"\0\0\0\7" + m[8:], TOO_SMALL, lost=2, rest_is_lost=True)
     with_middle(lambda m: m[:4] + b"\x7F\xFF\xFF\xFF" + m[8:], BEYOND, lost=2, rest_is_lost=True)

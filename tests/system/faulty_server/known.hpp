@@ -1,4 +1,4 @@
-// The detections that wire.py puts into its lists, computed anew: whatever is delivered must be them to the last bit.
+// Computes the detections of wire.py's lists again: delivered ones must be bitwise equal.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace boresight::faulty_server {
 
-/// What a list is besides plain.
+/// Variants of a list.
 enum class Variant : std::uint8_t {
   kPlain = 0,
   kNotNumbers = 1,  ///< one bad number in each of the first 14 detections
-  kNoInterval = 2,  ///< the unambiguous interval is no number
+  kNoInterval = 2,  ///< the unambiguous interval is NaN
 };
 
 struct KnownScan {
@@ -24,7 +24,7 @@ struct KnownScan {
   friend bool operator==(const KnownScan&, const KnownScan&) = default;
 };
 
-/// In the order of the record: range, azimuth, elevation, range rate, their stds, rcs, snr, existence.
+/// In the order of the record: range, azimuth, elevation, range rate, their standard deviations, rcs, snr, existence.
 using Record = std::array<float, 11>;
 inline constexpr std::size_t kRange = 0, kAzimuth = 1, kElevation = 2, kRangeRate = 3, kFirstStd = 4, kRcs = 8,
                              kSnr = 9, kExistence = 10;
@@ -46,7 +46,8 @@ inline constexpr float kRateMin_mps = -50.0F, kRateMax_mps = 50.0F;
           field(11, 12, 0, 32.0F),    field(2, 8, 0, 256.0F)};
 }
 
-/// What wire.py's BAD_NUMBERS become: quantities stay as they came, bad stds are not stated. True: marked invalid.
+/// Effect of wire.py's BAD_NUMBERS: quantities are unchanged, invalid standard deviations are not stated. True: marked
+/// invalid.
 inline bool spoil(std::uint32_t i, Record& record) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
   switch (i) {
@@ -91,7 +92,7 @@ inline bool spoil(std::uint32_t i, Record& record) {
   }
 }
 
-/// What is not as it must be; "" if everything is. The integrity verdict and the header are not looked at.
+/// The first difference; "" if there is none. Integrity bits and header are not compared.
 [[nodiscard]] inline std::string difference(const RadarScan& scan, const KnownScan& known) {
   const bool has_interval = known.variant != Variant::kNoInterval;
   if (scan.cycle_counter != known.cycle) return "cycle " + std::to_string(scan.cycle_counter);

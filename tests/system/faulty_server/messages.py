@@ -1,4 +1,4 @@
-"""Whole messages: headers, end-to-end protection, bodies, anything."""
+"""Unsegmented messages: headers, end-to-end protection, bodies, random changes."""
 import random
 
 from recording import *
@@ -23,7 +23,7 @@ def wrong_lengths(r):
     r.bad_cycle(lambda m: [m[:500]], BEYOND, count=20)
     r.cycle(count=20)
     r.statistics(lost=10)
-    r.cycle(lambda m: [m + b"\0\0\0"], count=20)  # what follows a message does not undo it
+    r.cycle(lambda m: [m + b"\0\0\0"], count=20)  # bytes after a message do not invalidate it
     r.fault(CUT)
 
 
@@ -39,7 +39,7 @@ def wrong_headers(r):
         r.bad_cycle(whole, TYPE, count=20, **how)
     r.statistics(lost=15)
     r.cycle(count=20)
-    # The same in segments: put together, then refused as one.
+    # The same in segments: reassembled, then rejected as one.
     r.bad_cycle(segments, HEADER, interface=2)
     r.bad_cycle(segments, HEADER, kind=0x00)
     r.bad_cycle(segments, HEADER, code=1)
@@ -100,8 +100,8 @@ def counters(r):
     r.cycle(count=20)
     jump(51)
     r.bad_cycle(whole, SEQUENCE, count=20, wrong=1, lost=50)
-    r.cycle(count=20)  # follows it: believed
-    # One stray does not make the next good one wrong.
+    r.cycle(count=20)  # follows the stray counter: accepted
+    # One stray message does not make the next good one wrong.
     here = r.one.counters[LISTS]
     r.bad_cycle(whole, SEQUENCE, count=20, wrong=1, lost=1_000_000 - 1, counter_sent=here - 1 + 1_000_000)
     r.cycle(count=20)
@@ -140,7 +140,7 @@ def wrong_bodies(r):
 
 
 def _grown(r):
-    """A later minor version: longer header and records are skipped over."""
+    """A later minor version: additional bytes of header and records are skipped."""
     message, what = r.list(30, body=dict(header_bytes=44, record_bytes=60))
     r.send(datagrams(message))
     return what
@@ -188,7 +188,7 @@ def wrong_ego(r):
 # --- anything --------------------------------------------------------------------------------------------------------
 @scenario
 def random_damage(r):
-    """Single bits of segments and of whole messages are turned over; what is delivered is right to the bit."""
+    """Flips single bits of segments and of unsegmented messages; delivered scans are bitwise right."""
     dice = random.Random(4253)
     r.at_least = True
     r.e2e = None
@@ -198,7 +198,7 @@ def random_damage(r):
         message, what = r.list(count)
         parts = datagrams(message)
         at = dice.randrange(len(parts))
-        # Headers are few of the bytes, but most of what can go wrong.
+        # Headers are a small share of the bytes, but cause most faults.
         position = dice.randrange(20) if dice.random() < 0.7 else dice.randrange(len(parts[at]))
         damaged = bytearray(parts[at])
         damaged[position] ^= 1 << dice.randrange(8)

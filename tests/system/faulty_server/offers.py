@@ -1,10 +1,10 @@
-"""Service discovery, as far as a recording shows it."""
+"""Service discovery in recordings."""
 from recording import *
 
 
 @scenario
 def wrong_offers(r):
-    """Radar 1 is offered anew in every wrong way; the right offer holds."""
+    """Radar 1 is offered again with all kinds of faults; the right offer remains valid."""
     r.cycle(count=20)
     right = [endpoint(SERVER, 30601)]
     for address, port, protocol, fault in (("0.0.0.0", 30601, 17, ENDPOINT), ("224.0.0.9", 30601, 17, ENDPOINT),
@@ -55,10 +55,10 @@ def wrong_offers(r):
     r.fault(("over capacity", "more than 64 options"), radar=0)
     r.rest()
     r.cycle(count=20)
-    # Others' entries, and what a client is not asked, are no faults.
+    # Entries of others, and entries that are not for clients, are no faults.
     r.sd([offer_entry(1, service=0x1234), offer_entry(9), offer_entry(1, kind=0), ack_entry(1, 7), ack_entry(9, 1)], right)
     r.cycle(count=20)
-    # An offer from another host does not move what is served.
+    # An offer from another host does not change the served endpoint.
     r.packet(sd([offer_entry(1)], [endpoint(STRANGER, 30601)], session=1), (STRANGER, SD_PORT), (SD_GROUP, SD_PORT))
     r.cycle(count=20)
 
@@ -74,7 +74,7 @@ def withdrawn_and_offered_again(r):
         r.send(message, instance)
         r.fault(STRANGERS)
     r.rest()
-    r.one.restart(1500)  # it counts anew, at another port
+    r.one.restart(1500)  # its counters restart, at another port
     r.one.port = 30611
     r.offer()
     r.cycle(count=20)
@@ -99,7 +99,7 @@ def expired(r):
 
 @scenario
 def started_again(r):
-    """The server ends without a word and starts again: counters from the beginning, reboot flag, first event taken."""
+    """The server ends without StopOffer and restarts: counters from the start, reboot flag, first event accepted."""
     for _ in range(3):
         r.cycle(count=20)
     for restarts in range(3):
@@ -115,7 +115,7 @@ def started_again(r):
 
 @scenario
 def moved_by_reboot_storm(r):
-    """A hundred reboots and withdrawals within half a second; then all is as before."""
+    """A hundred reboots and withdrawals within half a second; then normal operation."""
     r.cycle(count=20)
     r.at_least = True
     r.fault(("link", "server restarted"))

@@ -1,4 +1,4 @@
-"""A recording of a faulty server in the making, and what has to become of it."""
+"""Builds a recording of a faulty server and its expected results."""
 from scapy.layers.inet import IP, UDP
 from scapy.layers.l2 import Ether
 from scapy.utils import checksum
@@ -12,7 +12,7 @@ EPOCH_NS = 1_767_225_600 * 10**9
 MILLISECOND = 1_000_000
 SCENARIOS = []  # (name, function), as the modules below fill it
 
-# Kinds of faults and words of their reasons.
+# Kinds of faults and parts of their texts.
 CUT = "wrong length", "fewer than the 16 bytes"
 TOO_SMALL = "wrong length", "length field below 8"
 BEYOND = "wrong length", "beyond the datagram"
@@ -38,7 +38,7 @@ class Recording:
         self.packets, self.headers, self.faults = [], {}, {}
         self.delivered, self.optional, self.egos = [], [], []
         self.e2e = {1: [0, 0, 0], 2: [0, 0, 0]}  # lost, repeated, wrong
-        self.at_least = False  # faults are only counted in sum
+        self.at_least = False  # expected numbers of faults are minimums
         self.one, self.two = Instance(1, SERVER, 30601), Instance(2, SERVER, 30602)
         self.sd_session = 0
         self.next_offer_ns = None  # while offers are not sent by themselves
@@ -79,14 +79,14 @@ class Recording:
         return (instance or self.one).list(count, self.now_ns - 10 * MILLISECOND, variant, **changes)
 
     def good(self, instance=None, count=200):
-        """As it should be, and delivered."""
+        """A valid list, which is delivered."""
         instance = instance or self.one
         message, what = self.list(count, instance)
         self.send(datagrams(message), instance)
         self.delivered.append(what)
 
     def cycle(self, how=None, count=200):
-        """One cycle of both radars; `how(message)` gives the datagrams of radar 1 if they are not as they should be."""
+        """One cycle of both radars; `how(message)` gives the faulty datagrams of radar 1."""
         self.good(self.two, count)
         if how is None:
             self.good(self.one, count)
@@ -97,7 +97,7 @@ class Recording:
         self.rest()
 
     def bad_cycle(self, how, *faults, count=200, lost=0, wrong=0, repeated=0, **changes):
-        """One cycle in which radar 1's list is not to be delivered."""
+        """One cycle in which radar 1's list must not be delivered."""
         self.good(self.two, min(count, 1024))
         message, _ = self.list(count, **changes)
         self.send(how(message))

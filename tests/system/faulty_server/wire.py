@@ -15,7 +15,7 @@ SEGMENT_BYTES = 1392
 SD_GROUP, SD_PORT = "224.244.224.245", 30490
 RATE_MIN, RATE_MAX = -50.0, 50.0
 NAN, INF = float("nan"), float("inf")
-# What a list may be besides plain; C++ knows what becomes of it.
+# Variants of a list; known.hpp has their effect.
 PLAIN, NOT_NUMBERS, NO_INTERVAL = 0, 1, 2
 
 
@@ -48,7 +48,7 @@ def known_values(radar, cycle, i):
             h >> 16 & 1]
 
 
-# (record, field, value): what NOT_NUMBERS puts into a list.
+# (record, field, value): the entries that NOT_NUMBERS puts into a list.
 BAD_NUMBERS = ((0, 0, NAN), (1, 1, INF), (2, 3, -INF), (3, 2, NAN), (4, 8, NAN), (5, 9, INF), (6, 10, NAN), (7, 10, 1.5),
                (8, 0, -1.0), (9, 1, 3.5), (10, 4, NAN), (11, 5, -INF), (12, 6, -1.0), (13, 7, INF))
 
@@ -76,7 +76,7 @@ def ego_body(speed, time_ns, *, layout=1, stated_bytes=32):
 
 def protected(instance, event, session, counter, body, *, kind=0x02, protocol=1, interface=1, code=0, client=0,
               service=SERVICE, crc_error=0, length_error=0, data_id=None, counter_sent=None):
-    """A whole message under E2E profile 7, its header by scapy."""
+    """A message with E2E profile 7 and its header by scapy."""
     length = 8 + 20 + len(body) + length_error
     counter = counter if counter_sent is None else counter_sent
     data_id = SERVICE << 16 | instance << 8 | event if data_id is None else data_id
@@ -107,7 +107,7 @@ def segments(message, size=SEGMENT_BYTES, step=None):
 
 
 def datagrams(message):
-    """As the document wants it sent."""
+    """The datagrams that the document specifies."""
     return segments(message) if len(message) - 16 > SEGMENT_BYTES else [message]
 
 
@@ -138,7 +138,7 @@ def group(address, port):
 
 
 class Instance:
-    """A server's instance: its counters, and where it sends from."""
+    """A server's instance: its counters and its endpoint."""
 
     def __init__(self, number, address, port):
         self.number, self.address, self.port = number, address, port
@@ -148,7 +148,7 @@ class Instance:
         self.session, self.cycle, self.counters = 1, cycle, {LISTS: 0, EGO: 0}
 
     def event(self, event, body, **changes):
-        """The next message; what `changes` do to it, the counters go on."""
+        """The next message with `changes`; the counters advance."""
         session = changes.pop("session", self.session)
         message = protected(self.number, event, session, self.counters[event], body, **changes)
         self.session = self.session % 0xFFFF + 1
@@ -156,7 +156,7 @@ class Instance:
         return message
 
     def list(self, count, time_ns, variant=PLAIN, body=None, **changes):
-        """(message, what is delivered of it)"""
+        """(message, expected delivery)"""
         self.cycle += 1
         made = list_body(self.number, self.cycle, count, time_ns, variant, **(body or {}))
         return self.event(LISTS, made, **changes), (self.number, self.cycle, count, variant)

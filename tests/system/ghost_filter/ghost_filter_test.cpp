@@ -1,5 +1,5 @@
-// The ghost filter as a process, by either method: it works without the tracker and says so, goes on as the tracker
-// comes and goes, and refuses a configuration that it does not understand.
+// The ghost filter as a process, with each method: it works without the tracker and reports this, continues while the
+// tracker starts and stops, and rejects an invalid configuration.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -64,15 +64,15 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
       << text_of(harness::log_of_alone("ghost_filter"));
   const auto alone = scans(0);
   EXPECT_TRUE(std::all_of(alone.begin(), alone.end(), never_had_tracks)) << "there is no tracker";
-  std::array<std::size_t, 6> told{};
+  std::array<std::size_t, 6> classified{};
   std::size_t with_segments = 0;
   for (const Sample* scan : alone) {
-    for (std::size_t i = 0; i < told.size(); ++i) told[i] += scan->labels[i];
+    for (std::size_t i = 0; i < classified.size(); ++i) classified[i] += scan->labels[i];
     with_segments += scan->segments > 0 ? 1 : 0;
   }
-  EXPECT_GT(told[static_cast<std::size_t>(Provenance::kStationary)], 1000u);
-  EXPECT_GT(told[static_cast<std::size_t>(Provenance::kMoving)], 50u);
-  EXPECT_GT(told[static_cast<std::size_t>(Provenance::kGhostType2)], 50u) << "tunnels are mirrors";
+  EXPECT_GT(classified[static_cast<std::size_t>(Provenance::kStationary)], 1000u);
+  EXPECT_GT(classified[static_cast<std::size_t>(Provenance::kMoving)], 50u);
+  EXPECT_GT(classified[static_cast<std::size_t>(Provenance::kGhostType2)], 50u) << "tunnels are mirrors";
   EXPECT_GT(with_segments, alone.size() / 2) << "of the tunnel's walls";
 
   auto tracker = harness::start_alone("tracker");
@@ -81,7 +81,7 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
     const auto now = scans(before);
     return now.size() >= 8 && std::none_of(now.end() - 8, now.end(), without_tracks);
   };
-  EXPECT_TRUE(domain.until(3.0, with_tracks)) << "the tracker runs, and is not heard";
+  EXPECT_TRUE(domain.until(3.0, with_tracks)) << "the tracker runs, but its tracks are not used";
   EXPECT_EQ(tracker->stop(), 0);
   before = observer.size();
   const auto alone_again = [&] {
@@ -91,9 +91,9 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
   EXPECT_TRUE(domain.until(3.0, alone_again)) << "the tracker is gone, and its tracks are still used";
   tracker = harness::start_alone("tracker");
   before = observer.size();
-  EXPECT_TRUE(domain.until(3.0, with_tracks)) << "the tracker came again";
+  EXPECT_TRUE(domain.until(3.0, with_tracks)) << "the tracker is back";
 
-  // All the while no scan was left out.
+  // No scan is missing during the whole time.
   std::array<std::uint64_t, 5> last{};
   for (const Sample* scan : scans(0)) {
     EXPECT_EQ(scan->header.source_sequence, ++last.at(scan->header.source_id)) << "radar " << scan->header.source_id;
@@ -107,9 +107,9 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
 INSTANTIATE_TEST_SUITE_P(By, GhostFilter, testing::Values("mirror", "published"),
                          [](const auto& info) { return info.param; });
 
-TEST(GhostFilterConfiguration, WhatIsNotUnderstoodEndsItWithFileLineKeyAndRange) {
+TEST(GhostFilterConfiguration, AnInvalidFileEndsItWithFileLineKeyAndRange) {
   struct Case {
-    std::string from, to, told;
+    std::string from, to, classified;
   };
   const std::string file = "/tmp/ghost_filter_configuration/services/ghost_filter.toml:";
   for (const Case& c : {
@@ -126,7 +126,7 @@ TEST(GhostFilterConfiguration, WhatIsNotUnderstoodEndsItWithFileLineKeyAndRange)
     EXPECT_EQ(filter->wait_for(5.0), 2) << c.to;
     const std::string log = text_of(harness::log_of_alone("ghost_filter"));
     EXPECT_THAT(log, HasSubstr(file));
-    EXPECT_THAT(log, HasSubstr(c.told));
+    EXPECT_THAT(log, HasSubstr(c.classified));
   }
 }
 

@@ -1,5 +1,5 @@
-// Another process of a test, written where the test is: a function run in a fork, because iceoryx allows one runtime
-// per process.
+// Another process of a test: a function of the test that runs in a fork, because iceoryx allows one runtime per
+// process.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class Child {
   std::optional<int> result_;
 };
 
-/// Memory that forks share with the test: what a child has seen. T must be trivial; it starts as zeros.
+/// Memory that forks share with the test, for a child's results. T must be trivial; it starts as zeros.
 void* allocate_shared(std::size_t bytes);
 void free_shared(void* memory, std::size_t bytes);
 
@@ -50,7 +50,7 @@ class Shared {
   T* value_;
 };
 
-/// Looks every 5 ms; false if it did not become true in time.
+/// Checks every 5 ms; false if the condition did not become true in time.
 [[nodiscard]] bool eventually(double seconds, const std::function<bool()>& condition);
 void sleep_s(double seconds);
 

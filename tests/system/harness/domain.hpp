@@ -1,4 +1,4 @@
-// The whole product as its supervisor runs it, for a test.
+// The whole product under its supervisor, for a test.
 #pragma once
 
 #include <filesystem>
@@ -38,7 +38,7 @@ class Domain {
 [[nodiscard]] std::filesystem::path shipped_configuration();
 
 /// Starts a service of the demo vehicle outside of any supervision, with the shipped configuration or another; it
-/// writes to log_of_alone(), which begins anew.
+/// writes to log_of_alone(), which is emptied before.
 [[nodiscard]] std::unique_ptr<Child> start_alone(const std::string& service,
                                                  const std::filesystem::path& config = shipped_configuration());
 [[nodiscard]] std::filesystem::path log_of_alone(const std::string& service);

@@ -30,7 +30,7 @@ bool lies_in_shared_memory(const void* address) {
   return false;
 }
 
-/// The last few scans of one radar, to compare with what later stages make of them.
+/// The last scans of one radar, for comparison with the output of later stages.
 template <typename Scan>
 class Recent {
  public:

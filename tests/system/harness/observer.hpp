@@ -1,4 +1,4 @@
-// A monitor that writes down what it sees on every topic, for a test to judge afterwards.
+// A monitor that records all topics, for checks at the end of a test.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace boresight::harness {
 
-/// One message as it arrived. What a topic does not have is zero.
+/// One received message. Fields that a topic does not have are zero.
 struct Sample {
   catalogue::TopicId topic;
   std::int64_t received_ns;
@@ -22,10 +22,10 @@ struct Sample {
   std::array<std::uint32_t, 6> labels;  ///< ClassifiedScan: detections by Provenance
   std::uint32_t segments;               ///< ClassifiedScan: reflectors
   std::uint64_t alignment_sequence;
-  /// CorrectedScan and ClassifiedScan: 1 if it corresponds index by index to the scan it comes from, 2 if not, 0 if
-  /// that scan was not seen in time.
+  /// CorrectedScan and ClassifiedScan: 1 if it corresponds index by index to its radar scan, 2 if not, 0 if that scan
+  /// was not received in time.
   std::uint8_t correspondence;
-  bool in_shared_memory;                       ///< it was read where /dev/shm is mapped
+  bool in_shared_memory;                       ///< read in place in a mapping of /dev/shm
   std::array<float, 2> values;                 ///< EgoMotion: speed, yaw rate; AlignmentEstimate: k_v, yaw
   ServiceStatus status;                        ///< of ServiceStatus only
   std::array<std::uint32_t, 5> sensor;         ///< HealthReport: data qualifier of radar 1…4 (index = id)

@@ -1,4 +1,4 @@
-// A RouDi of a test alone, for the tests that need no supervised domain.
+// A RouDi for tests without a supervised domain.
 #pragma once
 
 #include <memory>

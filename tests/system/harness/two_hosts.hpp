@@ -1,6 +1,6 @@
-// Two hosts on one machine: the ECU with the services and the sensors' (or the station's) side, each a network
-// namespace of its own, joined by a virtual Ethernet cable between the ECU and a switch on the sensors' side. A second
-// cable, over which the ECU's default route and all multicast routes lead, is there to be chosen by mistake.
+// Two hosts on one machine: the ECU with the services, and the side of the sensors or the station. Each is a separate
+// network namespace; a virtual Ethernet cable connects the ECU with a switch on the sensors' side. A second cable
+// carries the ECU's default route and all multicast routes, to detect use of the wrong interface.
 #pragma once
 
 #include <functional>
@@ -44,7 +44,7 @@ class TwoHosts {
   /// A process on a host; its output goes to a file that show_log() prints.
   [[nodiscard]] std::unique_ptr<harness::Child> start(Host host, const std::string& program,
                                                       const std::vector<std::string>& arguments) const;
-  /// Calls `make` as on that host: sockets made there stay there.
+  /// Calls `make` on that host: sockets made there stay there.
   void as(Host host, const std::function<void()>& make) const;
 
   /// Makes the ECU's interface with its addresses, and the switch's end of the cable; both are deleted by cut_cable().
@@ -58,10 +58,10 @@ class TwoHosts {
   int sensors_;
 };
 
-/// What the programs of that name have written since the beginning, to standard error of the test.
+/// Copies the output of the programs with that name to the standard error of the test.
 void show_log(const std::string& program);
 
-/// main() of such tests: without the right to make namespaces and cables all of them are skipped (exit code 77).
+/// main() of such tests: without permission for namespaces and cables all tests are skipped (exit code 77).
 [[nodiscard]] int run_tests_on_two_hosts(int argc, char** argv);
 
 }  // namespace boresight::network

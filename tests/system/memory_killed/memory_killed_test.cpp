@@ -1,5 +1,5 @@
-// A process that writes its memory over and over is killed at any instant: whoever starts next finds the old memory or
-// the new one, whole. Sudden death of the process only: that of the power is what fsync is for, and no test here.
+// A process that writes its memory repeatedly is killed at a random time: the next process finds the old or the new
+// memory, complete. The test kills the process only; fsync, which protects against a loss of power, is not tested.
 #include <atomic>
 #include <csignal>
 #include <random>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the writer says of itself, in memory that outlives it.
+/// The writer's progress, in memory that outlives it.
 struct Progress {
   std::atomic<int> begun{0};
   std::atomic<int> done{0};

@@ -1,6 +1,6 @@
-// Ignition cycles of the running estimator: what it learnt is there after a SIGTERM and after a kill, and what is not
-// its own memory is reported, kept aside and not used. What a file may hold and when a writer may die are the unit
-// tests' and system_memory_killed's; here the wiring counts.
+// Ignition cycles of the running estimator: its memory survives SIGTERM and a kill. A file that is not its own memory
+// is reported, kept aside and not used. Unit tests cover the content of files, system_memory_killed the death of a
+// writer.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -52,7 +52,7 @@ void write_configuration() {
   std::ofstream(file) << text.replace(at, shipped.size(), "period_s = 1.0");
 }
 
-/// Everything that is said of the crooked radar, and the last that is said of the estimator.
+/// All estimates of the misaligned radar, and the last status of the estimator.
 class Witness {
  public:
   Witness() : process_([this] { return watch(); }) {}
@@ -60,7 +60,7 @@ class Witness {
   /// The number of estimates so far.
   [[nodiscard]] std::size_t size() const { return seen_->estimates; }
   [[nodiscard]] const AlignmentEstimate& last() const { return seen_->log[size() - 1]; }
-  /// The first estimate of the process that was started when there were `from` of them.
+  /// The first estimate of a process that was started after `from` estimates.
   [[nodiscard]] const AlignmentEstimate* first(std::size_t from) const {
     for (std::size_t i = from; i < size(); ++i) {
       if (seen_->log[i].header.source_sequence == 1) return &seen_->log[i];
@@ -68,7 +68,7 @@ class Witness {
     return nullptr;
   }
   [[nodiscard]] const ServiceStatus& status() const { return seen_->status; }
-  /// As the health service reports them.
+  /// Rejected inputs as reported by the health service.
   [[nodiscard]] std::uint64_t rejected_inputs() const { return seen_->rejected_inputs; }
 
  private:
@@ -112,7 +112,7 @@ class IgnitionCycles : public testing::Test {
     fs::create_directories(kState);
     ASSERT_NO_FATAL_FAILURE(write_configuration());
     const auto recordings = harness::simulated_drive(20.0);
-    // As systemd does it.
+    // As under systemd.
     ASSERT_EQ(setenv("STATE_DIRECTORY", kState.c_str(), 1), 0);
     witness_ = std::make_unique<Witness>();
     domain_.start();
@@ -133,7 +133,7 @@ class IgnitionCycles : public testing::Test {
   [[nodiscard]] static std::string log() { return text_of(harness::log_of_alone(kService)); }
 
   [[nodiscard]] LoadedMemory kept() const { return alignment::load_memory(file_, alignment::identity_of(vehicle_)); }
-  /// Of the whole vehicle, seconds of drive that the kept memory has seen; 0 without one.
+  /// Seconds of drive in the stored memory, for the whole vehicle; 0 without a memory.
   [[nodiscard]] double kept_drive_s() const {
     if (!fs::exists(file_)) return 0.0;
     const LoadedMemory loaded = kept();
@@ -141,18 +141,18 @@ class IgnitionCycles : public testing::Test {
     return loaded.memory.radars[kMisaligned - 1].seconds_of_drive;
   }
 
-  /// As it was remembered, with more doubt: Config's `remembered`.
+  /// The stored estimate with a larger standard deviation: Config's `remembered`.
   void expect_taken_up(const AlignmentEstimate& first, const Memory& memory) const {
     const alignment::FilterConfig config;
     const std::size_t yaw = Memory::kShared + 3 * (kMisaligned - 1) + 2;
     const double variance = memory.covariance[yaw * memory.number_of_parameters() + yaw];
     const double doubted = std::sqrt(config.memory_inflation * variance + std::pow(config.memory_rotation_std_rad, 2));
-    // The memory has a rotation vector, the message angles about fixed axes: roll and pitch make a difference of 2e-4.
+    // The memory has a rotation vector, the message angles about fixed axes: with roll and pitch they differ by 2e-4.
     const Eigen::Vector3d remembered(memory.radars[kMisaligned - 1].rotation_vehicle_rad.data());
     EXPECT_NEAR(first.vehicle_yaw_rad, geometry::fixed_axes_angles(geometry::so3_exp(remembered))(0), 1e-4);
     EXPECT_NEAR(first.speed_scale, memory.speed_scale, 1e-6);
     EXPECT_NEAR(yaw_std(first), doubted, 0.01 * doubted);
-    EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "or nothing was inflated";
+    EXPECT_LT(std::sqrt(variance), 0.5 * doubted) << "otherwise the standard deviation was not increased";
     EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
     EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kMisaligned - 1].seconds_of_drive, 0.1);
     EXPECT_NE(log().find("alignment of 4 radars restored from " + file_.string()), std::string::npos) << log();
@@ -167,27 +167,28 @@ class IgnitionCycles : public testing::Test {
     EXPECT_LT(first.kpis.seconds_of_drive, 0.1F);
   }
 
-  /// Puts a file there that must not be believed, and what is said of it.
+  /// Writes a file that must not be used, and checks the report.
   void expect_refused(const std::string& content, const std::string& said) {
     std::ofstream(file_, std::ios::binary) << content;
     expect_from_the_prior(ignition_on());
-    EXPECT_FALSE(fs::exists(file_)) << "it is not in the way of the next";
-    EXPECT_EQ(text_of(kState / "alignment.rejected"), content) << "kept for who wants to know";
+    EXPECT_FALSE(fs::exists(file_)) << "it does not block the next memory";
+    EXPECT_EQ(text_of(kState / "alignment.rejected"), content) << "kept for inspection";
     EXPECT_NE(log().find("stored alignment is " + said + "; kept with the suffix .rejected and not used"),
               std::string::npos)
         << log();
-    EXPECT_TRUE(domain_.until(3.0, [&] { return witness_->rejected_inputs() == 1; })) << "health has not heard of it";
+    EXPECT_TRUE(domain_.until(3.0, [&] { return witness_->rejected_inputs() == 1; }))
+        << "health did not receive the fault";
     const ServiceStatus& status = witness_->status();
     EXPECT_EQ(status.faults[static_cast<std::size_t>(Fault::kWireValue)], 1u);
     EXPECT_EQ(std::string(status.last_fault.data()), "stored alignment is " + said);
-    // It learns as on the first day, and remembers that.
+    // It learns from the start, and stores the result.
     EXPECT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > 1.0; }));
     EXPECT_NEAR(witness_->last().vehicle_yaw_rad, kTrueYaw, 0.5 * kRadiansPerDegree);
     ignition_off();
     EXPECT_EQ(text_of(kState / "alignment.rejected"), content);
   }
 
-  /// What would put the crooked radar 5° to the other side if it were believed.
+  /// A memory that would turn the misaligned radar by 5° to the other side if it were used.
   [[nodiscard]] static std::string wrong_memory(const VehicleConfig& of) {
     Memory memory;
     memory.number_of_radars = of.radars.size();
@@ -211,7 +212,7 @@ class IgnitionCycles : public testing::Test {
   harness::Domain domain_{"demo", {kService, "detection_corrector", "ghost_filter", "tracker"}};
 };
 
-TEST_F(IgnitionCycles, WhatWasLearntIsTakenUpWithMoreDoubt) {
+TEST_F(IgnitionCycles, TheStoredEstimateIsUsedWithALargerStandardDeviation) {
   expect_from_the_prior(ignition_on());
   ASSERT_TRUE(domain_.until(8.0, [&] { return witness_->last().kpis.seconds_of_drive > 3.0F; }));
   ignition_off();
@@ -222,10 +223,11 @@ TEST_F(IgnitionCycles, WhatWasLearntIsTakenUpWithMoreDoubt) {
       << "the file is that of the end, not of the last period";
 
   expect_taken_up(ignition_on(), first.memory);
-  // Killed amid the drive, after it has put down more than it began with.
+  // Killed during the drive, after it has stored more than at its start.
   const double began_s = first.memory.radars[kMisaligned - 1].seconds_of_drive;
   ASSERT_TRUE(domain_.until(5.0, [&] { return kept_drive_s() > began_s + 1.0; }));
-  // Just after an estimate was sent, because who dies while sending leaves the bus locked (system_service_killed).
+  // Just after an estimate was sent, because a process that dies while sending leaves the bus locked
+  // (system_service_killed).
   const std::size_t sent = witness_->size();
   ASSERT_TRUE(domain_.until(2.0, [&] { return witness_->size() > sent; }));
   estimator_->send(SIGKILL);

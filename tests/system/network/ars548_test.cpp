@@ -1,4 +1,4 @@
-// Radars without discovery: four ARS548 of a simulated drive, whose fragmented datagrams come by multicast.
+// Radars without discovery: four ARS548 of a simulated drive with fragmented datagrams by multicast.
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -21,7 +21,7 @@ class Ars548 : public Story {
     std::ifstream file(demo);
     std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     replace_all(text, "address = \"224.0.2.2\"", "address = \"224.0.2.2\", interface = \"radar0\"");
-    // Without CAN, which few kernels in containers have, no link is down.
+    // No CAN: few kernels in containers have it, and a missing link is a fault.
     replace_all(text, "profile = \"toyota\"", "profile = \"boresight\"");
     replace_all(text, "{link = \"can\", interface = \"can0\"}",
                 "{link = \"someip\", address = \"10.77.0.2\", interface = \"radar0\", instance = 1}");
@@ -37,7 +37,7 @@ class Ars548 : public Story {
   void TearDown() override {
     Story::TearDown();
     hosts().run(Host::kSensors, "ip route del 224.0.0.0/4 dev sensor0");
-    // The first one last: with it the kernel deletes the others of its network.
+    // The first one last: the kernel deletes the others of its network with it.
     for (int sensor = 116; sensor >= 113; --sensor) {
       hosts().run(Host::kSensors, "ip address del 10.13.1." + std::to_string(sensor) + "/24 dev sensor0");
     }
@@ -49,7 +49,7 @@ class Ars548 : public Story {
     const auto replay = start_replay(all);
     ASSERT_EQ(replay->wait_for(10.0), 0);
   }
-  /// Datagrams that the kernel had no room for, over all UDP sockets of the ECU (the last column).
+  /// Datagrams that the kernel dropped, over all UDP sockets of the ECU (the last column).
   static unsigned long kernel_drops() {
     std::ifstream table("/proc/net/udp");
     unsigned long drops = 0;

@@ -1,4 +1,5 @@
-// Another program on this host has the port of service discovery, too: neither disturbs the other, whoever comes first.
+// Another program on this host uses the port of service discovery as well: neither disturbs the other, in both orders
+// of their starts.
 #include "tests/system/network/other_stack.hpp"
 #include "tests/system/network/story.hpp"
 

@@ -1,4 +1,4 @@
-// The groups are heard on the interface that the vehicle file names, and nowhere else; IPv6 as well.
+// The gateway receives groups only on the interface of the vehicle file; also with IPv6.
 #include <fstream>
 
 #include "tests/system/network/other_stack.hpp"
@@ -30,8 +30,8 @@ TEST_F(Interfaces, TheDefaultRouteLeadsElsewhere) {
   const auto rogue = start_replay({"--via", "someip", "--interface", kForeignInterface, "--address", kForeignAddress,
                                    "--radars", "2", "--synthetic", "7", "--group", "239.77.0.1:30650"});
   start_gateway();
-  EXPECT_TRUE(listener.hears_offer(2.0)) << "the rogue is not there, which proves nothing";
-  EXPECT_TRUE(is_silent(0.5)) << "a server was heard on another interface than the one named";
+  EXPECT_TRUE(listener.hears_offer(2.0)) << "the other server does not offer";
+  EXPECT_TRUE(is_silent(0.5)) << "received a server on another interface than configured";
   start_server(kServerAddress, {"--group", "239.77.0.1:30650"});
   expect_flow_after_offer("multicast events, default route by another interface");
   EXPECT_EQ(members_of("01004DEF"), std::vector<std::string>{kEcuInterface}) << "group 239.77.0.1";
@@ -55,7 +55,7 @@ TEST_F(Interfaces, Ipv6) {
   expect_flow("IPv6: interface deleted and made anew after 0.5 s", kOfferCycle_s);
 }
 
-/// Addresses that mean something on one link only.
+/// Addresses that are valid on one link only.
 TEST_F(Interfaces, Ipv6LinkLocal) {
   hosts().run(Host::kEcu, "ip -6 address add fe80::77:2/64 dev radar0 nodad");
   hosts().run(Host::kSensors, "ip -6 address add fe80::77:1/64 dev sensor0 nodad");

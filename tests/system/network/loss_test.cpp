@@ -1,4 +1,4 @@
-// A cable that loses one packet in twenty: what is lost is counted, and what is published is whole.
+// A cable that loses one packet in twenty: losses are counted, and published scans are complete.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,8 +9,8 @@ namespace {
 
 using Loss = Story;
 
-/// By the kernel's network emulator, or where it lacks that, by a packet filter of four instructions: load a random
-/// word, pass (0) if it is above a twentieth of all words, else drop (2).
+/// By the kernel's network emulator, or without it by a packet filter of four instructions: load a random word, pass
+/// (0) if it is above a twentieth of all words, else drop (2).
 bool make_lossy(const TwoHosts& hosts) {
   const std::string on_port = std::string("dev ") + kServerPort;
   if (hosts.try_run(Host::kSensors, "tc qdisc add " + on_port + " root netem loss 5% 2>/dev/null")) return true;
@@ -48,7 +48,7 @@ TEST_F(Loss, IsCountedAndHarmsNothingElse) {
     EXPECT_EQ(source->messages, received);
     EXPECT_EQ(source->e2e_lost, missing) << "by the end-to-end counter";
     EXPECT_EQ(source->lost, missing) << "by the cycle counter";
-    EXPECT_EQ(source->e2e_wrong, 0u) << "parts of different lists were put together";
+    EXPECT_EQ(source->e2e_wrong, 0u) << "segments of different lists were combined";
   }
   hosts().cut_cable();
   hosts().lay_cable();

@@ -38,7 +38,7 @@ Offers::Offers(const TwoHosts& hosts, const std::string& group) : socket_(-1) {
     const int off = 0;
     setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
     setsockopt(socket_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof(on));
-    // Only by the interface joined, not by those that others of this host have joined.
+    // Only on the joined interface, not on those that other programs of this host joined.
     setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof(off));
     setsockopt(socket_, IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof(off));
     sockaddr_storage local{};

@@ -1,5 +1,5 @@
-// Listens to the offers of the server, on the server's own side of the cable: when the first one came, and whether any
-// did, is known independently of what reaches the ECU.
+// Listens to the server's offers at the server's end of the cable, so that the time of the first offer is known
+// independently of the ECU.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class Offers {
   Offers(const Offers&) = delete;
   Offers& operator=(const Offers&) = delete;
 
-  /// Forgets what has been heard so far.
+  /// Forgets all offers so far.
   void forget();
   /// CLOCK_MONOTONIC of the first offer (StopOffers aside) since then, by the kernel's stamp.
   [[nodiscard]] std::optional<std::int64_t> first_ns();

@@ -38,7 +38,7 @@ int socket_at(const std::string& address) {
   return made;
 }
 
-/// Takes all that has come; whether one of it satisfies the condition.
+/// Reads all waiting datagrams; true if one of them satisfies the condition.
 template <typename Condition>
 bool receives(int from, Condition condition) {
   std::array<char, 2048> bytes;

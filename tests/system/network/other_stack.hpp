@@ -1,4 +1,4 @@
-// Another program on the ECU that takes part in SOME/IP service discovery: the sockets of one, and what they receive.
+// Another program on the ECU with SOME/IP service discovery: its sockets and received datagrams.
 #pragma once
 
 #include <string>
@@ -9,19 +9,19 @@ namespace boresight::network {
 
 class OtherStack {
  public:
-  /// A socket of the discovery group alone, joined on an interface.
+  /// A socket of the discovery group only, joined on an interface.
   [[nodiscard]] static OtherStack member_on(const TwoHosts& hosts, const std::string& interface);
-  /// One that has the port for itself as far as it knows: on `address` ("0.0.0.0": all), and in the group on the
-  /// radars' interface. It shares the port by SO_REUSEADDR, as stacks do.
+  /// A stack on `address` ("0.0.0.0": all) and in the group on the radars' interface. It shares the port by
+  /// SO_REUSEADDR, as common stacks do.
   [[nodiscard]] static OtherStack at(const TwoHosts& hosts, const std::string& address);
   ~OtherStack();
   OtherStack(OtherStack&& other) noexcept;
   OtherStack(const OtherStack&) = delete;
   OtherStack& operator=(const OtherStack&) = delete;
 
-  /// Whether an offer of the server comes within the time.
+  /// True if an offer of the server arrives within the time.
   [[nodiscard]] bool hears_offer(double seconds) const;
-  /// Whether what a peer sends to the ECU's discovery port arrives here, tried for so long.
+  /// True if datagrams of a peer to the ECU's discovery port arrive here within the time.
   [[nodiscard]] bool gets_unicast(double seconds) const;
 
  private:

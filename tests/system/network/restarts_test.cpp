@@ -1,4 +1,4 @@
-// Whoever starts first, is killed, is stopped or loses its cable: detections flow again within one offer cycle.
+// Any order of starts, kills, stops and cable failures: detections flow again within one offer cycle.
 #include <array>
 
 #include <arpa/inet.h>
@@ -25,7 +25,7 @@ TEST_F(Restarts, OfTheServer) {
   expect_flow_after_offer("server killed and restarted");
 
   kill_server();
-  harness::sleep_s(3.5);  // its offers have run out meanwhile
+  harness::sleep_s(3.5);  // its offers have expired meanwhile
   start_server();
   expect_flow_after_offer("server killed, restarted after its offers expired");
 
@@ -52,7 +52,7 @@ TEST_F(Restarts, ServerFirst) {
 
 class Cable : public Story {
  protected:
-  /// As the server would send it, but to any group and port.
+  /// As sent by the server, but to any group and port.
   static void send_stop_offer(const std::string& group, std::uint16_t port);
 };
 
@@ -100,7 +100,7 @@ TEST_F(Cable, DownAndUpAndReplaced) {
   expect_flow("ECU's link down for 0.5 s and up", kOfferCycle_s);
 
   hosts().run(Host::kEcu, "ip link set radar0 down");
-  harness::sleep_s(5.2);  // offers have expired, and the client has given up asking
+  harness::sleep_s(5.2);  // offers have expired, and the client has stopped searching
   EXPECT_TRUE(is_silent(0.1));
   hosts().run(Host::kEcu, "ip link set radar0 up");
   expect_flow("ECU's link down for 5.3 s and up", kOfferCycle_s);
@@ -116,7 +116,7 @@ TEST_F(Cable, DownAndUpAndReplaced) {
   expect_flow("interface deleted and made anew after 0.5 s", kOfferCycle_s);
 }
 
-/// With multicast, all depends on memberships, which the kernel forgets with an interface.
+/// Multicast depends on memberships, which the kernel drops with an interface.
 TEST_F(Cable, WithMulticastEvents) {
   start_gateway();
   start_server(kServerAddress, {"--group", "239.77.0.1:30650"});
@@ -128,7 +128,7 @@ TEST_F(Cable, WithMulticastEvents) {
   harness::sleep_s(0.5);
   hosts().lay_cable();
   expect_flow("multicast: interface deleted and made anew after 0.5 s", kOfferCycle_s);
-  // What ends a subscription arrives by the very socket that it closes.
+  // The StopOffer arrives at the same socket that it closes.
   const std::int64_t stop_ns = runtime::monotonic_now_ns();
   send_stop_offer("239.77.0.1", 30650);
   const std::int64_t flow_ns = wait_for_scans(stop_ns + 100'000'000, 3.0);

@@ -56,7 +56,7 @@ void Story::TearDown() {
   for (std::size_t i = first_scan_; scans_are_synthetic_ && i < witness().size(); ++i) {
     damaged += witness()[i].is_as_sent ? 0 : 1;
   }
-  EXPECT_EQ(damaged, 0u) << "scans differ from what the server made up";
+  EXPECT_EQ(damaged, 0u) << "scans differ from those of the server";
   EXPECT_EQ(witness().status().heap_allocations, 0u) << "on the gateway's data path";
   if (!HasFailure()) return;
   show_log(kGateway);
@@ -92,7 +92,7 @@ void Story::start_gateway() {
 
 void Story::stop_gateway() {
   if (!gateway_) return;
-  EXPECT_EQ(gateway_->stop(), 0) << "the gateway did not end well";
+  EXPECT_EQ(gateway_->stop(), 0) << "the gateway's exit code";
   gateway_.reset();
 }
 
@@ -117,7 +117,7 @@ void Story::kill_server() {
 
 void Story::stop_server() {
   if (!server_) return;
-  EXPECT_EQ(server_->stop(), 0) << "the server did not end well";
+  EXPECT_EQ(server_->stop(), 0) << "the server's exit code";
   server_.reset();
 }
 

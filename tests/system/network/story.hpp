@@ -1,4 +1,4 @@
-// What the stories of this folder have in common: two hosts, a bus, a witness on it, gateways and servers to start.
+// Common part of the tests in this folder: two hosts, a bus with a witness, gateways and servers.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ inline constexpr const char* kGroupV4 = "224.244.224.245";
 inline constexpr const char* kGroupV6 = "ff14::4:c0";
 inline constexpr double kOfferCycle_s = 1.0;
 
-/// The network and the bus are set up once for all stories.
+/// The network and the bus are set up once for all tests.
 class Story : public testing::Test {
  protected:
   static void SetUpTestSuite();
@@ -41,16 +41,16 @@ class Story : public testing::Test {
   void kill_server();
   void stop_server();
 
-  /// Waits until scans of both radars have arrived that were received since `since_ns`; returns when the last of the
-  /// two came first, 0 and a failure if it takes longer.
+  /// Waits for scans of both radars that were received since `since_ns`. Returns the time of the later of the two first
+  /// scans; 0 and a failure after the time-out.
   static std::int64_t wait_for_scans(std::int64_t since_ns, double seconds);
   /// Waits for the first offer and for scans after it; expects that they come within an offer cycle, prints the time.
   void expect_flow_after_offer(const std::string& what);
   /// Expects scans within the given time from now, and prints the time that it took.
   void expect_flow(const std::string& what, double seconds);
-  /// Whether no scan at all arrives for so long, looking from now on.
+  /// True if no scan arrives during this time from now on.
   static bool is_silent(double seconds);
-  /// Waits for a status of the gateway that was made from now on.
+  /// Waits for the gateway's next status.
   static ServiceStatus status_after_now();
 
   std::unique_ptr<harness::Child> gateway_;

@@ -1,4 +1,4 @@
-// A monitor on the bus that compares every scan with what the synthetic server made up, and keeps the gateway's status.
+// A monitor on the bus that compares every scan with that of the synthetic server, and keeps the gateway's status.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@ namespace boresight::network {
 
 struct SeenScan {
   std::int64_t received_ns;
-  std::int64_t age_ns;  ///< reception less time of measurement
+  std::int64_t age_ns;  ///< reception minus time of measurement
   std::uint32_t radar;
   std::uint32_t cycle;
   std::uint32_t detections;
   std::uint16_t integrity;
-  bool is_as_sent;  ///< to the last bit
+  bool is_as_sent;  ///< bitwise equal
 };
 
 class Witness {
  public:
   Witness();
-  /// Leaves the bus; false if it did not end well.
+  /// Leaves the bus; false after a failure.
   [[nodiscard]] bool stop() { return process_->stop() == 0; }
 
   [[nodiscard]] std::size_t size() const { return log_->size; }
@@ -42,7 +42,7 @@ class Witness {
     volatile std::size_t size;
     volatile std::size_t number_of_statuses;
     std::array<SeenScan, kMaxScans> scans;
-    std::array<ServiceStatus, 2> statuses;  // by turns, so that the one read is not the one written
+    std::array<ServiceStatus, 2> statuses;  // alternating, so that readers and writer use different ones
   };
   int watch();
   harness::Shared<Log> log_;

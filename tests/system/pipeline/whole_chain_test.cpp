@@ -1,4 +1,4 @@
-// Every process of the product on a simulated drive: nothing lost, nothing out of order, nothing copied, nothing left.
+// Every process of the product on a simulated drive: no message lost, out of order or copied, and no file left behind.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -24,7 +24,7 @@ using harness::Sample;
 constexpr double kDrive_s = 12.0;
 constexpr std::size_t kScansPerRadar = 239;  // 12 s at 20 Hz; the phase of a radar may cost it one
 
-/// What a process has open: targets of /proc/<pid>/fd.
+/// Open files of a process: targets of /proc/<pid>/fd.
 std::vector<std::string> open_files(pid_t pid) {
   std::vector<std::string> targets;
   for (const auto& entry : fs::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
@@ -47,7 +47,7 @@ std::set<std::string> leftovers() {
 class WholeChain : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    // A checkout under /tmp is there before.
+    // A checkout under /tmp exists before the test.
     const std::set<std::string> before = leftovers();
     const auto recordings = harness::simulated_drive(kDrive_s);
     observer_ = std::make_unique<Observer>("-pipeline");
@@ -158,7 +158,7 @@ TEST_F(WholeChain, MisalignedRadarIsReported) {
       return s->sensor_reason[radar] == static_cast<std::uint32_t>(ExtendedQualifier::kMisaligned);
     });
   };
-  EXPECT_TRUE(misaligned(2)) << "it looks 2.5 deg off";
+  EXPECT_TRUE(misaligned(2)) << "its mounting error is 2.5 deg";
   for (const std::uint32_t radar : {1u, 3u, 4u}) EXPECT_FALSE(misaligned(radar)) << "radar " << radar;
 }
 
@@ -171,8 +171,8 @@ TEST_F(WholeChain, MessagesAreReadWhereTheyWereWritten) {
 }
 
 TEST_F(WholeChain, ServicesShareNoPipesAndNoFilesButMemory) {
-  // A copy between two services would need a pipe or a file that both have open; sockets of the middleware's
-  // registration are each process's own.
+  // A copy between two services would need a common open pipe or file. Sockets of the middleware's registration belong
+  // to one process each.
   const std::vector<std::string> own = open_files(getpid());
   const std::set<std::string> inherited(own.begin(), own.end());
   std::map<std::string, std::set<std::string>> holders;

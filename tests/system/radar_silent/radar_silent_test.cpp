@@ -1,5 +1,5 @@
-// One of four radars says nothing for two seconds: health says NOT_AVAILABLE within its deadline, the other three go
-// on, and the radar is back with its first scan.
+// One of four radars is silent for two seconds: health reports NOT_AVAILABLE within the radar's deadline, the other
+// three continue, and the radar is available again with its first scan.
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -76,31 +76,31 @@ TEST(RadarSilent, IsNotAvailableWithinItsDeadlineAndBackWithItsFirstScan) {
   });
   ASSERT_NE(gap, scans.end()) << "the recording was not silent";
   const std::int64_t last_ns = gap[0]->received_ns, back_ns = gap[1]->received_ns;
-  std::int64_t said_ns = 0, taken_back_ns = 0;
+  std::int64_t reported_ns = 0, cleared_ns = 0;
   for (const Sample* report : observer.of(TopicId::kHealthReport)) {
     const bool not_available = report->sensor[kSilentRadar] == static_cast<std::uint32_t>(DataQualifier::kNotAvailable);
     if (report->received_ns <= last_ns) continue;
-    if (not_available && said_ns == 0) {
-      said_ns = report->received_ns;
+    if (not_available && reported_ns == 0) {
+      reported_ns = report->received_ns;
       EXPECT_EQ(report->sensor_reason[kSilentRadar], static_cast<std::uint32_t>(ExtendedQualifier::kNoData));
     }
-    if (!not_available && said_ns != 0 && taken_back_ns == 0) taken_back_ns = report->received_ns;
+    if (!not_available && reported_ns != 0 && cleared_ns == 0) cleared_ns = report->received_ns;
     if (report->received_ns < back_ns) {
       for (const std::uint32_t other : {1u, 2u, 4u}) {
         EXPECT_NE(report->sensor[other], static_cast<std::uint32_t>(DataQualifier::kNotAvailable)) << other;
       }
     }
   }
-  ASSERT_NE(said_ns, 0) << "health never said so";
-  const double after_s = static_cast<double>(said_ns - last_ns) * 1e-9;
-  // 20 ms is how often health looks; the rest is what a loaded machine may add.
+  ASSERT_NE(reported_ns, 0) << "health did not report it";
+  const double after_s = static_cast<double>(reported_ns - last_ns) * 1e-9;
+  // Health checks every 20 ms; the rest is a tolerance for a loaded machine.
   EXPECT_GE(after_s, kDeadline_s - 0.01);
   EXPECT_LE(after_s, kDeadline_s + 0.02 + 0.08);
-  ASSERT_NE(taken_back_ns, 0) << "it was never available again";
-  EXPECT_GE(taken_back_ns, back_ns - 10'000'000);
-  EXPECT_LE(static_cast<double>(taken_back_ns - back_ns) * 1e-9, 0.2);
+  ASSERT_NE(cleared_ns, 0) << "it did not become available again";
+  EXPECT_GE(cleared_ns, back_ns - 10'000'000);
+  EXPECT_LE(static_cast<double>(cleared_ns - back_ns) * 1e-9, 0.2);
   std::printf("NOT_AVAILABLE %.3f s after the last scan (deadline %.2f s), back %.3f s after the next one\n", after_s,
-              kDeadline_s, static_cast<double>(taken_back_ns - back_ns) * 1e-9);
+              kDeadline_s, static_cast<double>(cleared_ns - back_ns) * 1e-9);
 
   std::size_t lists = 0;
   for (const Sample* list : observer.of(TopicId::kTrackList)) {

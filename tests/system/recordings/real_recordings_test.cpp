@@ -1,4 +1,4 @@
-// Recordings of real radars through the real processes in real time.
+// Recordings of real radars through all processes in real time.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,7 +21,7 @@ using harness::Sample;
 
 const fs::path kData = BORESIGHT_SHARED_DATA;
 
-/// Plays the recording through the whole chain and returns what was seen; the domain is gone afterwards.
+/// Plays the recording through the whole chain and returns the recorded messages; the domain has ended afterwards.
 std::unique_ptr<Observer> play(const std::string& vehicle, const fs::path& recording, double limit_s) {
   auto observer = std::make_unique<Observer>("-recordings");
   harness::Domain domain(vehicle);
@@ -74,7 +74,7 @@ TEST_F(Comma2k19, EgoMotionIsThatOfTheReferenceDecodings) {
   const auto speed_times = golden::read_npy(kFolder / "processed_log/CAN/speed/t");
   const auto speeds = golden::read_npy(kFolder / "processed_log/CAN/speed/value");
   const auto gyro_times = golden::read_npy(kFolder / "processed_log/IMU/gyro/t");
-  // Columns one after the other: forward, right, down.
+  // Columns in order: forward, right, down.
   auto gyro = golden::read_npy_columns(kFolder / "processed_log/IMU/gyro/value");
   const std::vector<double> down(gyro.end() - static_cast<std::ptrdiff_t>(gyro_times.size()), gyro.end());
   double speed_square = 0.0;
@@ -121,7 +121,7 @@ TEST_F(Comma2k19, SpeedScaleAgreesWithTheInertialReference) {
   const auto estimates = observer_->of(TopicId::kAlignmentEstimate);
   ASSERT_FALSE(estimates.empty());
   const double found = static_cast<double>(estimates.back()->values[0]);
-  // 0.5 % was asked for and is missed, as in the golden test, which says why.
+  // The goal of 0.5 % is missed, as in the golden test, which states the reason.
   EXPECT_NEAR(found, reference / signalled, 0.007);
 }
 

@@ -1,4 +1,4 @@
-// kill -9 of RouDi: nobody can rejoin a new one, so the supervisor restarts the whole domain within two seconds.
+// kill -9 of RouDi: no service can rejoin a new RouDi, so the supervisor restarts the whole domain within two seconds.
 #include <memory>
 
 #include <gtest/gtest.h>

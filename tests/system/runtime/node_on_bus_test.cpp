@@ -1,4 +1,4 @@
-// The runtime on real shared memory: what a service may rely on.
+// The runtime on real shared memory: its guarantees for services.
 #include <cstdlib>
 
 #include <fcntl.h>
@@ -146,7 +146,7 @@ TEST_F(RuntimeOnBus, RefusesWritersAndReadersThatTheCatalogueDoesNotList) {
   EXPECT_EQ(service.wait_for(5.0), 0);
 }
 
-TEST_F(RuntimeOnBus, SlowReaderLosesTheOldestCountsThemAndHoldsNobodyUp) {
+TEST_F(RuntimeOnBus, SlowReaderLosesTheOldestCountsThemAndDelaysNoOther) {
   struct Seen {
     std::uint64_t slow, fast, fast_gaps, reported_lost, published;
   };
@@ -177,7 +177,7 @@ TEST_F(RuntimeOnBus, SlowReaderLosesTheOldestCountsThemAndHoldsNobodyUp) {
   EXPECT_TRUE(eventually(10.0, [&] { return seen->reported_lost > 50; })) << seen->reported_lost;
   EXPECT_EQ(seen->fast_gaps, 0u);
   EXPECT_EQ(writer.stop(), 0);
-  // What the slow one handled, what it lost and what may still wait make up everything that was published.
+  // Handled, lost and waiting messages of the slow reader add up to all published ones.
   const std::uint64_t waiting = catalogue::queue_capacity(catalogue::topic(catalogue::TopicId::kRadarScan));
   EXPECT_LE(seen->published, seen->slow + seen->reported_lost + 2 * waiting);
   EXPECT_EQ(slow.stop(), 0);
@@ -210,7 +210,7 @@ TEST_F(RuntimeOnBus, SideInputIsHandledBeforeTheScansThatWait) {
     });
     bool asked = false;
     node.every(20 * kMillisecond_ns, [&] {
-      // Waits inside its own loop until everything lies in its queues.
+      // Waits inside its own loop until all messages are in its queues.
       if (std::exchange(asked, true)) return;
       seen->ready = 1;
       while (seen->ready != 2) harness::sleep_s(0.001);
@@ -223,7 +223,7 @@ TEST_F(RuntimeOnBus, SideInputIsHandledBeforeTheScansThatWait) {
   EXPECT_EQ(writer.stop(), 0);
 }
 
-TEST_F(RuntimeOnBus, TimersAndHeartbeatGoOnUnderAFlood) {
+TEST_F(RuntimeOnBus, TimersAndHeartbeatContinueUnderAFlood) {
   struct Seen {
     std::uint64_t ticks, heartbeats, scans;
   };
@@ -232,7 +232,7 @@ TEST_F(RuntimeOnBus, TimersAndHeartbeatGoOnUnderAFlood) {
     Node node(Service::kDetectionCorrector);
     node.on<RadarScan>([&](const RadarScan&) {
       ++seen->scans;
-      harness::sleep_s(0.004);  // longer than a scan takes to come: the queue never runs empty
+      harness::sleep_s(0.004);  // longer than the period of scans: the queue never runs empty
     });
     node.every(20 * kMillisecond_ns, [&] { ++seen->ticks; });
     return node.spin();
@@ -350,7 +350,7 @@ TEST_F(RuntimeOnBus, NodeWithDescriptorsServesThemAndItsInputs) {
   EXPECT_TRUE(eventually(5.0, [&] { return seen->bytes == 3 && seen->heartbeats > 3; }))
       << seen->bytes << " bytes, " << seen->heartbeats << " heartbeats";
   harness::sleep_s(0.1);
-  EXPECT_EQ(seen->bytes, 3) << "a removed descriptor is not looked at";
+  EXPECT_EQ(seen->bytes, 3) << "a removed descriptor is not served";
   EXPECT_EQ(node_with_descriptor.stop(), 0);
   EXPECT_EQ(peer.stop(), 0);
   close(pipe_ends[0]);
@@ -380,11 +380,11 @@ TEST(RuntimeWithoutRoudi, CanBeStoppedWhileItWaits) {
   EXPECT_EQ(service.stop(1.0), 0);
 }
 
-TEST(RuntimeWithSmallPools, FailedLoanIsCountedAndTheServiceGoesOn) {
+TEST(RuntimeWithSmallPools, FailedLoanIsCountedAndTheServiceContinues) {
   auto segments = roudi::single_segment();
   const std::size_t chunk_bytes = roudi::chunk_bytes_for(sizeof(RadarScan));
   for (auto& pool : segments.front().pools) {
-    // Larger pools would help out, so they are made as small.
+    // Larger pools would replace exhausted ones, so they are small as well.
     if (pool.chunk_bytes >= chunk_bytes) pool.count = 3;
   }
   const harness::Roudi roudi(segments);

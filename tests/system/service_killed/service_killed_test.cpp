@@ -1,4 +1,4 @@
-// kill -9 of each service while data flow: they flow again within a second, and health says what happened.
+// kill -9 of each service while data flow: data flow again within a second, and health reports the restart.
 #include <algorithm>
 #include <memory>
 
@@ -37,7 +37,7 @@ TEST_P(ServiceKilled, DataFlowAgainWithinASecond) {
   const std::int64_t killed_ns = runtime::monotonic_now_ns();
   const pid_t pid = domain.supervisor().pid_of(name);
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  // Only what the new process wrote counts; its sequence starts at 1 again.
+  // Only messages of the new process count; its sequence starts at 1 again.
   const auto restarted = [&] {
     const auto samples = observer->of(GetParam().output, before);
     return std::any_of(samples.begin(), samples.end(),
@@ -45,21 +45,21 @@ TEST_P(ServiceKilled, DataFlowAgainWithinASecond) {
   };
   const bool in_time = domain.until(1.0, restarted);
   if (!in_time && domain.until(5.0, [&] { return domain.supervisor().domain_restarts() > 0; })) {
-    // One in a hundred or so dies inside publish() with a mutex locked; then the supervisor's rule is what counts:
-    // the whole domain is started anew, and an observer of the new one sees data.
+    // About one in a hundred dies inside publish() with a mutex locked. Then the supervisor restarts the whole domain,
+    // and an observer of the new domain receives data.
     observer = std::make_unique<Observer>("-story2");
     EXPECT_TRUE(domain.until(5.0, [&] { return seen() > 0; })) << "after the domain's restart";
   } else {
     EXPECT_TRUE(in_time) << "nothing on " << catalogue::topic(GetParam().output).name << " within 1 s of the kill";
     EXPECT_EQ(domain.supervisor().domain_restarts(), 0u);
-    const auto told = [&] {
+    const auto reported = [&] {
       const auto reports = observer->of(TopicId::kHealthReport, before);
       return std::any_of(reports.begin(), reports.end(), [&](const harness::Sample* s) {
         const ServiceCondition condition = s->services[static_cast<std::size_t>(GetParam().service)];
         return condition == ServiceCondition::kSilent || condition == ServiceCondition::kRestarted;
       });
     };
-    EXPECT_TRUE(domain.until(1.5, told)) << "health did not say so";
+    EXPECT_TRUE(domain.until(1.5, reported)) << "health did not report it";
   }
   EXPECT_EQ(observer->process().stop(), 0);
 }
@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ServiceKilled,
                                          Victim{Service::kTracker, TopicId::kTrackList}),
                          [](const auto& info) { return std::string(catalogue::name_of(info.param.service)); });
 
-TEST(GatewayKilled, ReplayGoesOnThroughTheNewOne) {
+TEST(GatewayKilled, ReplayContinuesThroughTheNewOne) {
   const auto recordings = harness::simulated_drive(8.0);
   Observer observer("-story");
   harness::Domain domain("demo");
@@ -79,15 +79,15 @@ TEST(GatewayKilled, ReplayGoesOnThroughTheNewOne) {
   domain.replay(recordings);
   ASSERT_TRUE(domain.until(5.0, [&] { return observer.of(TopicId::kRadarScan).size() >= 20; }));
   const std::size_t before = observer.size();
-  // Ended as asked, not killed: the story is the link's, not the mutex's.
+  // Stopped, not killed: this tests the link, not the mutex.
   ASSERT_EQ(kill(domain.supervisor().pid_of("ingest_gateway"), SIGTERM), 0);
   EXPECT_TRUE(domain.until(2.0, [&] {
     const auto scans = observer.of(TopicId::kClassifiedScan, before);
     return std::any_of(scans.begin(), scans.end(), [&](const harness::Sample* s) {
       return s->header.measurement_time_ns > observer[before].received_ns + 500'000'000;
     });
-  })) << "the chain did not go on";
-  EXPECT_FALSE(domain.supervisor().independent_result("replay")) << "the replay gave up";
+  })) << "the chain did not continue";
+  EXPECT_FALSE(domain.supervisor().independent_result("replay")) << "the replay ended";
   EXPECT_EQ(domain.supervisor().domain_restarts(), 0u);
   EXPECT_EQ(observer.process().stop(), 0);
 }

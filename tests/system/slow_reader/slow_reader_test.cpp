@@ -1,4 +1,4 @@
-// A monitor that sleeps in every scan loses scans itself and holds nobody up.
+// A monitor that sleeps in every scan loses scans itself and delays no other process.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ std::size_t gaps(const std::vector<const Sample*>& samples) {
   return lost;
 }
 
-TEST(SlowReader, LosesScansAloneAndHoldsNobodyUp) {
+TEST(SlowReader, LosesScansItselfAndDelaysNoOther) {
   const auto recordings = harness::simulated_drive(5.0);
   Observer quick("-quick");
   Observer slow("-slow", 0.2);

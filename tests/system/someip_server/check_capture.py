@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_capture.py CAPTURE: takes every byte the server sent apart with scapy, and with nothing left over."""
+"""check_capture.py CAPTURE: decodes every byte that the server sent with scapy, without a remainder."""
 import sys
 
 from scapy.contrib.automotive.someip import SD, SOMEIP
@@ -20,7 +20,7 @@ def messages_of(datagram):
 
 
 def check(message):
-    """The kind of the message; asserts that scapy sees in it what we meant, and builds the same bytes from that."""
+    """The kind of the message; asserts that scapy decodes the expected values and builds the same bytes from them."""
     parsed = SOMEIP(message)
     assert parsed.proto_ver == 1 and parsed.iface_ver == 1 and parsed.retcode == 0 and parsed.client_id == 0
     assert parsed.len == len(message) - 8 and parsed.session_id != 0
@@ -45,7 +45,7 @@ def check(message):
 
 counts = {}
 for number, packet in enumerate(rdpcap(sys.argv[1]), 1):
-    # In the story only the server sends from these ports under these addresses.
+    # In this test only the server sends from these addresses and ports.
     if UDP not in packet or packet[UDP].sport not in OFFERED:
         continue
     source = packet.payload.src

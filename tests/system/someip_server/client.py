@@ -1,4 +1,4 @@
-"""A client of the Boresight SOME/IP service, written from interfaces/wire/boresight_service.md alone."""
+"""A client of the Boresight SOME/IP service, written from interfaces/wire/boresight_service.md only."""
 import socket
 import struct
 import time
@@ -164,7 +164,7 @@ class Client:
         sock = sock or self.events
         end = time.monotonic() + seconds
         parts, received, shared = {}, [], []
-        # What had begun when the time was up gets another second to end.
+        # Messages that are incomplete at the end get another second.
         while time.monotonic() < end + (1.0 if parts else 0.0):
             try:
                 datagram, sender = sock.recvfrom(65536)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# run.sh SOURCE_DIR BUILD_DIR RECORDINGS: the SOME/IP server of the replay and clients in two network namespaces, with all
-# that passes between them captured and taken apart by others' decoders: tshark and scapy. Exit code 77: not possible here.
+# run.sh SOURCE_DIR BUILD_DIR RECORDINGS: the SOME/IP server of the replay and clients in two network namespaces, with a
+# capture of their traffic, decoded by tshark and scapy. Exit code 77: not possible here.
 set -uo pipefail
 source_dir=$1
 build=$2
@@ -20,7 +20,7 @@ out=$build/someip_server_test
 rm -rf "$out"
 mkdir -p "$out"
 
-# The server's namespace is this one, the clients' that of a process which does nothing else.
+# The server's namespace is this one; that of the clients belongs to an idle process.
 unshare --net sleep infinity &
 clients=$!
 here=$(readlink /proc/self/ns/net)
@@ -37,7 +37,7 @@ there ip link set client0 up
 there ip address add 10.66.83.2/24 dev client0
 there ip -6 address add fd66::2/64 dev client0 nodad
 
-# At the clients' end, which stays when the link at the server's end goes down.
+# At the clients' end, which stays up when the link at the server's end goes down.
 nsenter --net=/proc/$clients/ns/net tcpdump -i client0 -B 16384 -U -Z root -w "$out/wire.pcap" udp 2>"$out/tcpdump.txt" &
 capture=$!
 for _ in $(seq 100); do grep -q listening "$out/tcpdump.txt" && break; sleep 0.05; done

@@ -36,7 +36,7 @@ class Server:
 
 
 def per_stream(received, instance_of_port):
-    """Messages by (instance, event), after checks that hold for all."""
+    """Messages by (instance, event), after the common checks."""
     streams, sessions = {}, {}
     for when, port, message in received:
         instance = instance_of_port[port]
@@ -56,7 +56,7 @@ def rate(stream):
 
 
 def unicast():
-    """Two radars with long lists, each event where it was asked for, until the subscriptions end."""
+    """Two radars with long lists, each event to its subscriber, until the subscriptions end."""
     client = Client(CLIENT, "client0", SD_GROUP)
     with Server(SERVER, "--synthetic", "300", "--radars", "2", "--rate", "20") as server:
         client.wait(lambda: len(client.offers) >= 4, 2, "offers")
@@ -106,7 +106,7 @@ def unicast():
 
 
 def multicast():
-    """The Ack names a group, all events go there; short events share datagrams; the longest list is possible."""
+    """The Ack names a group for all events; short events share datagrams; the longest list is possible."""
     client = Client(CLIENT, "client0", SD_GROUP)
     events = client.joined("239.66.83.1", 30650)
     with Server(SERVER, "--synthetic", "1024", "--group", "239.66.83.1:30650", "--share-datagrams", "60") as server:
@@ -142,7 +142,7 @@ def ipv6():
 
 
 def link():
-    """What the link loses while it is down is lost; the server goes on."""
+    """Events are lost while the link is down; the server continues."""
     client = Client(CLIENT, "client0", SD_GROUP)
     with Server(SERVER, "--synthetic", "100") as server:
         client.wait(lambda: client.offers, 1, "offer")
@@ -158,7 +158,7 @@ def link():
 
 
 def recording():
-    """The real drive, as a Toyota radar and the vehicle's CAN signals recorded it."""
+    """The recorded drive of a Toyota radar with the vehicle's CAN signals."""
     drive = f"{DATA}/comma2k19_seg40/radar_ego.candump.log"
     if not os.path.exists(drive):
         print("skipped: no shared data")

@@ -1,4 +1,4 @@
-// A stage that is started before RouDi and before every peer waits, and does its work when they come.
+// A stage that starts before RouDi and before all peers waits, and works when they start.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST_P(StartedBeforePeers, WaitsAndThenWorks) {
   const std::string name(catalogue::name_of(GetParam().service));
   const auto recordings = harness::simulated_drive(3.0);
   const auto early = harness::start_alone(name);
-  EXPECT_EQ(early->wait_for(1.0), std::nullopt) << "it gave up without RouDi";
+  EXPECT_EQ(early->wait_for(1.0), std::nullopt) << "it ended without RouDi";
   Observer observer("-story");
   harness::Domain domain("demo", {name});
   domain.start();
@@ -35,7 +35,7 @@ TEST_P(StartedBeforePeers, WaitsAndThenWorks) {
   const std::size_t scans = observer.of(TopicId::kRadarScan).size();
   EXPECT_GE(scans, 4 * 58u);
   if (GetParam().output == TopicId::kTrackList || GetParam().output == TopicId::kCorrectedScan) {
-    EXPECT_EQ(observer.of(GetParam().output).size(), scans) << "not every scan passed it";
+    EXPECT_EQ(observer.of(GetParam().output).size(), scans) << "a scan is missing in its output";
   } else {
     EXPECT_GE(observer.of(GetParam().output).size(), 30u);
   }

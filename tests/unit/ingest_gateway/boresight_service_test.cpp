@@ -183,8 +183,7 @@ TEST_F(ServiceBody, ABodyThatContradictsItselfIsRejectedWithAReason) {
   EXPECT_THAT(out_.last_fault, testing::HasSubstr("36"));
 }
 
-// --- through the gateway
-// ---------------------------------------------------------------------------------------------------
+// --- through the gateway --------------------------------------------------------------------------------------------
 
 /// Two radars and the vehicle's motion by SOME/IP on one network.
 VehicleConfig service_vehicle() {

@@ -1,6 +1,6 @@
-// The gateway, live, against story.py in another network namespace: what a faulty server, its neighbours and storms of
-// service discovery do to it. Every list that a good server sent is delivered, to the bit and once; nothing else is;
-// every fault is counted; and a server that starts is served within one offer cycle, whatever came before.
+// The live gateway against story.py in another network namespace: a faulty server, other servers and storms of service
+// discovery. Every list of a good server is delivered once and bitwise equal; no other list is delivered. Every fault
+// is counted. A server that starts is served within one offer cycle in all cases.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -84,7 +84,7 @@ int observe(Seen& seen) {
   return node.spin();
 }
 
-// --- what the story says ---------------------------------------------------------------------------------------------
+// --- expected results of the story ----------------------------------------------------------------------------------
 
 struct Stage {
   std::string name;
@@ -130,7 +130,7 @@ bool run(const std::string& command) {
   return std::system((command + " > /dev/null 2>&1").c_str()) == 0;
 }
 
-/// Runs a program in a fork, its output in a file.
+/// Runs a program in a fork, with its output in a file.
 std::unique_ptr<Child> start(std::vector<std::string> arguments, const fs::path& output, bool own_network) {
   return std::make_unique<Child>([=]() mutable {
     if (own_network && unshare(CLONE_NEWNET) != 0) return 97;
@@ -171,7 +171,7 @@ class FaultyServerLive : public testing::Test {
   }
 };
 
-/// The last status that came before the time.
+/// The last status before the time.
 const SeenStatus& status_before(const Seen& seen, std::int64_t time_ns) {
   std::size_t i = seen.statuses;
   while (i > 1 && seen.status[i - 1].received_ns > time_ns) --i;
@@ -202,7 +202,7 @@ void judge_service(const Seen& seen, const Stage& stage) {
     const SeenScan* const first = std::find_if(seen.scan.data(), end, [&](const SeenScan& scan) {
       return scan.radar == radar && scan.received_ns > stage.begin_ns;
     });
-    ASSERT_NE(first, end) << stage.name << ": radar " << radar << " is not served at all";
+    ASSERT_NE(first, end) << stage.name << ": radar " << radar << " is not served";
     const double after_s = static_cast<double>(first->received_ns - stage.begin_ns) * 1e-9;
     EXPECT_LE(after_s, kOfferCycle_s + kLoadedMachine_s) << stage.name << ": radar " << radar;
     std::printf("%-24s radar %u is served %.2f s after its server started\n", stage.name.c_str(), radar, after_s);
@@ -217,7 +217,7 @@ void judge_faults(const Seen& seen, const Stage& stage) {
   };
   for (const Fault kind : kCounted) {
     const std::uint64_t expected = stage.faults[static_cast<std::size_t>(kind)];
-    // In a storm the kernel may drop, which is said.
+    // In a storm the kernel may drop datagrams, which is reported.
     const bool may_lack = !stage.exact && counted(kind) < expected && counted(Fault::kLink) > 0;
     if (!may_lack) {
       EXPECT_EQ(counted(kind), expected) << stage.name << ": " << name_of(kind) << "; last " << after.last_fault.data();

@@ -1,4 +1,4 @@
-"""A server of the Boresight service on real sockets, right as long as nobody makes it wrong."""
+"""A server of the Boresight service on real sockets, correct unless a test makes it faulty."""
 import socket
 import struct
 import time
@@ -16,7 +16,7 @@ OFFER_CYCLE_S = 1.0
 
 
 class Wire:
-    """Frames with whatever sender, past the kernel."""
+    """Frames with any sender, without the kernel's UDP."""
 
     def __init__(self):
         self.raw = socket.socket(socket.AF_PACKET, socket.SOCK_RAW)
@@ -34,7 +34,7 @@ class Wire:
 
 class Server:
     def __init__(self, story, cycle):
-        """Counts anew, as one that has just started; its cycles begin after `cycle`."""
+        """Restarts all counters; its cycles begin after `cycle`."""
         self.story = story
         self.one, self.two = Instance(1, SERVER, 30601), Instance(2, SERVER, 30602)
         for instance in (self.one, self.two):
@@ -62,7 +62,7 @@ class Server:
         return made
 
     def close(self):
-        """Without a word, as one that lost its power."""
+        """Ends without StopOffer, as at a loss of power."""
         for made in (self.sd_socket, self.finds, *self.sockets.values()):
             made.close()
 
@@ -105,7 +105,7 @@ class Server:
                 except BlockingIOError:
                     break
                 if sender[0] != CLIENT:
-                    continue  # our own multicast, and that of the servers that do not exist
+                    continue  # own multicast, and that of fictitious servers
                 message = SD(datagram[16:])
                 for entry in message.entry_array:
                     if entry.type == 6:
@@ -122,12 +122,12 @@ class Server:
         return instance.list(count, time.time_ns() - 10_000_000, **changes)
 
     def emit(self, instance, how=datagrams, delivered=True, **changes):
-        """One list to whom it may concern; `how(message)` gives its datagrams."""
+        """One list to all subscribers; `how(message)` gives its datagrams."""
         key = instance.number, LISTS
         if key not in self.subscribers:
             return
         if self.group and time.monotonic() - self.since[key] < 0.2:
-            return  # nobody can have joined the group before the Ack
+            return  # no client joins the group before the Ack
         message, what = self.list(instance, **changes)
         self.send(instance, how(message))
         if delivered:
@@ -135,7 +135,7 @@ class Server:
 
     # --- time --------------------------------------------------------------------------------------------------------
     def run(self, seconds, each_cycle=None):
-        """Offers, answers and sends for so long; `each_cycle(n)` sends radar 1's lists in its place."""
+        """Offers, answers and sends for this time; `each_cycle(n)` replaces the sending of radar 1's lists."""
         end, n = time.monotonic() + seconds, 0
         self.next_cycle = max(self.next_cycle, time.monotonic())
         while (now := time.monotonic()) < end:

@@ -1,4 +1,4 @@
-"""story.py RESULT: a faulty server in its network namespace, against a gateway in another; RESULT (TOML) says stage by
+"""story.py RESULT: a faulty server in its network namespace, against a gateway in another; RESULT (TOML) states for each
 stage what the gateway must have delivered and counted. Exit code 77: no scapy."""
 import os
 import random
@@ -24,7 +24,7 @@ class Story:
         self.stages = []
 
     def begin(self, name, *, fresh=False, exact=True):
-        """`fresh`: nobody is subscribed yet when the stage begins, and the good server begins to offer with it."""
+        """`fresh`: no client is subscribed when the stage begins, and the good server begins to offer with it."""
         self.stages.append({"name": name, "begin_ns": time.monotonic_ns(), "fresh": fresh, "exact": exact, "sent": [],
                             "faults": {}})
         print(f"{name} …", flush=True)
@@ -49,7 +49,7 @@ class Story:
 
 
 def settle(server):
-    """A good server for so long that the gateway's heartbeat has told what came before."""
+    """A good server, until the gateway's heartbeat has reported all earlier faults."""
     server.run(0.5)
 
 
@@ -94,7 +94,7 @@ def wrong_messages(story, server):
 
 
 def wrong_discovery(story, server, wire):
-    """Beside a server that goes on: nothing of this disturbs it."""
+    """Faults beside a running server, which is not disturbed."""
     story.begin("wrong discovery")
     right = [endpoint(SERVER, 30601)]
 
@@ -114,7 +114,7 @@ def wrong_discovery(story, server, wire):
               (ends(20, 8), ends(20, 0xFFFFFFF0), ends(40, 0xFFFF), ends(40, 0), ends(4, 0xFFFF), ends(4, 3),
                lambda m: m[:30], lambda m: m[:12])]
     cases += [(CAPACITY, [offer_entry(1)] * 80, right, {})]
-    # Others that offer, withdraw, acknowledge or refuse what is this server's, or nobody's: no faults.
+    # Other servers that offer, withdraw, acknowledge or refuse this server's entries, or unknown ones: no faults.
     others = [[offer_entry(1)], [offer_entry(1, ttl=0)], [offer_entry(2, ttl=0)], [ack_entry(1, LISTS, ttl=0)],
               [ack_entry(2, LISTS, ttl=0)], [ack_entry(1, LISTS, counter=3)], [ack_entry(7, LISTS)], [offer_entry(7)]]
 
@@ -125,7 +125,7 @@ def wrong_discovery(story, server, wire):
             server.send_sd(entries, options, to=(CLIENT, SD_PORT) if n % 2 else None, **how)
             story.fault(kind)
         wire.send(sd(others[n % len(others)], [endpoint("10.66.86.7", 30601)], session=n + 1), ("10.66.86.7", SD_PORT))
-        # Acks of the server itself, but for subscriptions that are not ours.
+        # Acks of the server itself for subscriptions of others.
         server.send_sd([ack_entry(1, LISTS, counter=7), ack_entry(9, 9)], to=(CLIENT, SD_PORT))
     server.run((len(cases) + 2) * CYCLE_S - CYCLE_S / 2, each)
     settle(server)
@@ -151,7 +151,7 @@ def group_of_its_own(story, server):
     server.send_sd([offer_entry(1, ttl=0, options=0), offer_entry(2, ttl=0, options=0)], to=server.group)
     server.forget_subscribers()
     server.run(1.4)
-    # Another group with each Ack, as fast as the gateway asks and without being asked.
+    # Another group with each Ack, as fast as the gateway subscribes, and also without a Subscribe.
     for n in range(300):
         address = f"239.66.83.{n % 200 + 2}"
         for key in ((1, LISTS), (2, LISTS)):
@@ -177,16 +177,16 @@ def reboot_storm(story, server):
 
 
 def storm(seconds, rate, seed):
-    """Offers of the gateway's instances from 200 senders that do not exist, one in 20 malformed, by a process of its
-    own. What it returns waits for its end and tells how many were malformed."""
-    told, tell = os.pipe()
+    """Offers of the gateway's instances from 200 fictitious senders, one in 20 malformed, by a separate process. The
+    returned function waits for its end and returns the number of malformed ones."""
+    result, report = os.pipe()
     child = os.fork()
     if child:
-        os.close(tell)
+        os.close(report)
 
         def end():
             os.waitpid(child, 0)
-            return int(os.read(told, 100))
+            return int(os.read(result, 100))
         return end
     wire, dice = Wire(), random.Random(seed)
     frames = []
@@ -205,7 +205,7 @@ def storm(seconds, rate, seed):
         sent = max(sent, min(due, sent + 500))
         time.sleep(0.0005)
     print(f"{sent} offers in {seconds} s", flush=True)
-    os.write(tell, str(sum(n % 200 % 20 == 7 for n in range(sent))).encode())
+    os.write(report, str(sum(n % 200 % 20 == 7 for n in range(sent))).encode())
     os._exit(0)
 
 
@@ -243,7 +243,7 @@ def main(result):
 
     story.begin("storm without a server", exact=False)
     story.fault(*[LENGTH] * storm(2.0, 10_000, 2)())
-    time.sleep(0.25)  # a heartbeat tells
+    time.sleep(0.25)  # until the next heartbeat
     story.end()
     story.begin("after the storm", fresh=True)
     server = Server(story, 40_000)

@@ -1,5 +1,5 @@
-// Every recording of scenarios.py through the gateway: exactly what is right comes out, to the bit; what is wrong is
-// counted with its reason, for the radar that sent it.
+// Every recording of scenarios.py through the gateway: exactly the valid scans are delivered, bitwise equal. Faults are
+// counted with their text, for the radar that sent them.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -33,8 +33,8 @@ struct Expectation {
   std::vector<KnownScan> delivered;
   std::vector<KnownScan> optional;        ///< may be delivered
   std::vector<std::int64_t> ego_eighths;  ///< speeds in 1/8 m/s
-  bool at_least = false;                  ///< the faults are least numbers, and others may be there
-  std::vector<std::int64_t> e2e;          ///< lost, repeated, wrong of radar 1, then of 2; empty: not looked at
+  bool at_least = false;                  ///< the numbers of faults are minimums, and other faults may occur
+  std::vector<std::int64_t> e2e;          ///< lost, repeated, wrong of radar 1, then of 2; empty: not checked
   std::vector<std::string> faults;        ///< "count|kind|radar|words of the reason"
 };
 
@@ -65,7 +65,7 @@ std::vector<Expectation> read_expectations(const fs::path& file) {
   return all;
 }
 
-/// What came out of one recording.
+/// Results of one recording.
 class Outcome : public ingest::Sink {
  public:
   explicit Outcome(const std::vector<KnownScan>& possible) : possible_(possible) {}
@@ -127,7 +127,7 @@ void judge_faults(const Expectation& expected, std::map<std::string, std::int64_
   }
 }
 
-/// "radar/cycle" of those of `scans` that the others lack.
+/// "radar/cycle" of the `scans` that are missing in the others.
 std::string without(const std::vector<KnownScan>& scans, const std::vector<KnownScan>& others) {
   std::string text;
   for (const KnownScan& scan : scans) {
@@ -148,7 +148,7 @@ void judge(const Expectation& expected, const VehicleConfig& vehicle, const fs::
   while (reader->next(frame)) gateway.take(frame, {frame.stamp_ns, 0, TimeSource::kLinkArrival});
   gateway.finish();
 
-  // What may come or not is taken out; the rest is exact, in order.
+  // Optional scans are removed; the others must be equal and in order.
   std::erase_if(outcome.delivered, [&](const KnownScan& scan) {
     return std::find(expected.optional.begin(), expected.optional.end(), scan) != expected.optional.end();
   });
