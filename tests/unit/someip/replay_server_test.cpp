@@ -15,6 +15,7 @@
 #include "services/replay/core/event_encoder.hpp"
 #include "services/replay/core/radar_service.hpp"
 #include "tests/unit/someip/bytes.hpp"
+#include "tests/unit/someip/sd_server.hpp"
 
 namespace boresight::ingest::someip {
 namespace {
@@ -22,11 +23,11 @@ namespace {
 namespace service = wire::boresight_service;
 using recording::Endpoint;
 using test::Bytes;
+using test::kGroup;
 using test::kMillisecond;
 using test::kSecond;
 
 constexpr std::uint16_t kRadar = 3;
-const Endpoint kGroup = test::endpoint(0xE0F4E0F5, 30490);
 const Endpoint kClient = test::endpoint(0x0A000002, 30490);
 const Endpoint kServer = test::endpoint(0x0A000014, 30490);
 const Endpoint kEventsFrom = test::endpoint(0x0A000014, 30509);
