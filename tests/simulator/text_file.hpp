@@ -10,11 +10,20 @@
 
 namespace boresight::simulator {
 
+/// The error of a file that could not be written. stdio does not keep the cause of an earlier failure, so a full disk
+/// is recognised by its free space.
+[[nodiscard]] inline std::runtime_error write_error(const std::filesystem::path& file, int error_number) {
+  std::error_code ignored;
+  const bool is_full = std::filesystem::space(file, ignored).available == 0;
+  const int cause = error_number != 0 ? error_number : is_full ? ENOSPC : EIO;
+  return std::runtime_error(file.string() + ": cannot be written: " + std::strerror(cause));
+}
+
 class TextFile {
  public:
   /// Throws std::runtime_error if the file cannot be written.
   explicit TextFile(const std::filesystem::path& file) : name_(file), file_(std::fopen(file.c_str(), "we")) {
-    if (file_ == nullptr) throw std::runtime_error(file.string() + ": cannot be written: " + std::strerror(errno));
+    if (file_ == nullptr) throw write_error(file, errno);
   }
   ~TextFile() { std::fclose(file_); }
   TextFile(const TextFile&) = delete;
@@ -24,7 +33,7 @@ class TextFile {
   void finish() const {
     errno = 0;
     if (std::fflush(file_) == 0 && std::ferror(file_) == 0) return;
-    throw std::runtime_error(name_.string() + ": cannot be written: " + std::strerror(errno != 0 ? errno : EIO));
+    throw write_error(name_, errno);
   }
 
  private:

@@ -1,5 +1,6 @@
 // `boresight supervise`: RouDi and every service, kept running in the foreground without systemd.
 #include <memory>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -52,7 +53,11 @@ int run_supervise(SuperviseOptions options) {
                                   event.detail));
     }
   };
-  domain.start([] { return runtime::stop_signalled(); });
+  try {
+    domain.start([] { return runtime::stop_signalled(); });
+  } catch (const std::runtime_error&) {
+    if (!runtime::stop_signalled()) throw;
+  }
   while (!runtime::stop_signalled()) {
     print_new_events();
     domain.poll(50'000'000);

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <pcap/pcap.h>
 
+#include "tests/simulator/text_file.hpp"
 #include "tests/simulator/wire/byte_writer.hpp"
 
 namespace boresight::simulator::wire {
@@ -46,7 +46,7 @@ PcapWriter::~PcapWriter() {
 void PcapWriter::finish() {
   errno = 0;
   if (pcap_dump_flush(dumper_) == 0 && std::ferror(pcap_dump_file(dumper_)) == 0) return;
-  throw std::runtime_error(name_.string() + ": cannot be written: " + std::strerror(errno != 0 ? errno : EIO));
+  throw write_error(name_, errno);
 }
 
 void PcapWriter::write(std::int64_t stamp_ns, const Endpoint& source, const Endpoint& destination,
