@@ -254,7 +254,8 @@ void add_align_command(CLI::App& app, int& exit_code) {
        "align --recording radars.pcap --recording ego.candump.log --vehicle demo",
        "the result is complete",
        "the result is doubtful: more than one line in a hundred was skipped, a radar is not in the vehicle file,\n"
-       "       there is no detection, or most scans have no ego motion. It is written all the same"},
+       "       there is no detection, most scans have no ego motion, or batch_calibration found no solution.\n"
+       "       The result is written all the same"},
       [options, command, config] {
         const bool has_tables = !options->drive.empty() && !options->ego.empty();
         const bool has_any_table = !options->drive.empty() || !options->ego.empty();
