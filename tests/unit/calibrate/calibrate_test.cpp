@@ -26,7 +26,6 @@ namespace plate = alignment::plate;
 namespace reflectors = alignment::reflectors;
 using testing::Folder;
 using ::testing::HasSubstr;
-using testing::kDegreesPerRadian;
 using ::testing::Not;
 
 const std::string kVehicle = std::string(BORESIGHT_SOURCE_DIR) + "/config/vehicle/demo.toml";

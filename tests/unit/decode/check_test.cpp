@@ -42,14 +42,14 @@ TEST_F(CheckTest, RegularScansAreSound) {
 
 TEST_F(CheckTest, NothingAtAllIsDamaged) {
   EXPECT_TRUE(is_damaged());
-  EXPECT_THAT(report_, HasSubstr("nothing of any source"));
+  EXPECT_THAT(report_, HasSubstr("no message of any source"));
 }
 
 TEST_F(CheckTest, EachKindOfDamageIsFoundAndNamed) {
   const std::vector<std::pair<std::function<void()>, std::string>> damages = {
       {[this] { check_.take_fault(1, Fault::kWireValue, "CRC 17 is not 99"); }, "1 rejected: CRC # is not #"},
       {[this] { scans(10, 130); }, "1 gaps in time"},
-      {[this] { scan(900); }, "1 measured before the one before"},
+      {[this] { scan(900); }, "1 measured before the previous one"},
       {[this] { scan(6000, scan_integrity::kFrozen), scans(1, 101); }, "1 scans: frozen"},
       {[this] { scan(6000, scan_integrity::kIncomplete), scans(1, 101); }, "1 scans: incomplete"},
       {[this] { statistics_[1].lost = 7; }, "7 scans lost"},

@@ -82,7 +82,7 @@ TEST_F(CanCaptureTest, StampsAreSecondsSinceTheEpoch) {
 TEST_F(CanCaptureTest, AFrameOfAWrongLengthIsReportedAndSkipped) {
   send(0x123, "AB", 10);
   capture_->read(*writer_, problem_);
-  EXPECT_THAT(problem_, testing::HasSubstr("can7: a frame of a wrong length"));
+  EXPECT_THAT(problem_, testing::HasSubstr("can7: a frame with a wrong length"));
   send(0x124, "123456789", CAN_MTU);
   capture_->read(*writer_, problem_);
   EXPECT_THAT(problem_, testing::HasSubstr("wrong length"));
