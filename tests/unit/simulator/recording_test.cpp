@@ -49,10 +49,10 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-using Row = std::map<std::string, std::string>;
+using TableRow = std::map<std::string, std::string>;
 
 /// A CSV table by its column names; every row must have all columns.
-std::vector<Row> table_of(const fs::path& file) {
+std::vector<TableRow> table_of(const fs::path& file) {
   std::istringstream lines(text_of(file));
   const auto cells_of = [](const std::string& line) {
     std::istringstream stream(line);
@@ -63,23 +63,23 @@ std::vector<Row> table_of(const fs::path& file) {
   std::string line;
   std::getline(lines, line);
   const std::vector<std::string> names = cells_of(line);
-  std::vector<Row> rows;
+  std::vector<TableRow> rows;
   while (std::getline(lines, line)) {
     const std::vector<std::string> cells = cells_of(line);
     EXPECT_EQ(cells.size(), names.size()) << file << ": " << line;
-    Row row;
+    TableRow row;
     for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i) row[names[i]] = cells[i];
     rows.push_back(row);
   }
   return rows;
 }
 
-double number(const Row& row, const std::string& column) {
+double number(const TableRow& row, const std::string& column) {
   return std::stod(row.at(column));
 }
 /// Radar and number of a scan.
 using ScanKey = std::pair<std::uint32_t, std::uint64_t>;
-ScanKey scan_of(const Row& row) {
+ScanKey scan_of(const TableRow& row) {
   return {static_cast<std::uint32_t>(std::stoul(row.at("radar"))), std::stoull(row.at("scan"))};
 }
 
@@ -227,7 +227,7 @@ TEST_F(Recording, OnlyTheBlockedRadarReportsBlockageOnTheWire) {
 }
 
 TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
-  const std::vector<Row> rows = table_of(files_.detections);
+  const std::vector<TableRow> rows = table_of(files_.detections);
   ASSERT_EQ(rows.size(), files_.number_of_detections);
   const std::map<std::string, Provenance> names = {{"moving", Provenance::kMoving},
                                                    {"stationary", Provenance::kStationary},
@@ -242,7 +242,7 @@ TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
     ASSERT_EQ(event->truth->size(), event->scan->number_of_valid_detections);
     for (std::size_t i = 0; i < event->truth->size(); ++i, ++at) {
       const DetectionTruth& truth = (*event->truth)[i];
-      const Row& row = rows.at(at);
+      const TableRow& row = rows.at(at);
       ASSERT_EQ(scan_of(row), ScanKey(event->scan->header.source_id, event->scan->header.source_sequence));
       ASSERT_EQ(row.at("index"), std::to_string(i));
       ASSERT_NEAR(number(row, "t_s"), event->t_s, 1e-6);
@@ -268,10 +268,10 @@ TEST_F(Recording, TheTruthOfDetectionsIsThatOfTheDrive) {
 }
 
 TEST_F(Recording, TheTruthOfSensorsHasMountingBlockageInterferenceAndCountsOfEachScan) {
-  const std::vector<Row> rows = table_of(files_.sensors);
+  const std::vector<TableRow> rows = table_of(files_.sensors);
   ASSERT_EQ(rows.size(), files_.scans);
   std::size_t detections = 0;
-  for (const Row& row : rows) {
+  for (const TableRow& row : rows) {
     const double t = number(row, "t_s");
     const std::string& id = row.at("radar");
     const bool first = id == "1" && t >= 2.0, second = id == "1" && t >= 4.0;
@@ -302,14 +302,14 @@ TEST_F(Recording, TheTruthOfSensorsHasMountingBlockageInterferenceAndCountsOfEac
 TEST_F(Recording, TheTruthOfVisibilityAgreesWithDetectionsAndObjects) {
   std::map<std::pair<ScanKey, std::string>, std::array<double, 3>>
       counted;  // by scan and object: direct, types 1 and 2
-  for (const Row& row : table_of(files_.detections)) {
+  for (const TableRow& row : table_of(files_.detections)) {
     if (row.at("object") == "0") continue;
     const std::string& kind = row.at("provenance");
     ++counted[{scan_of(row), row.at("object")}].at(kind == "ghost_type_1" ? 1 : kind == "ghost_type_2" ? 2 : 0);
   }
   std::map<std::string, std::size_t> states;
-  const std::vector<Row> rows = table_of(files_.visibility);
-  for (const Row& row : rows) {
+  const std::vector<TableRow> rows = table_of(files_.visibility);
+  for (const TableRow& row : rows) {
     const double centres = number(row, "centres"), in_view = number(row, "in_view"), seen = number(row, "seen");
     EXPECT_LE(in_view, centres);
     EXPECT_LE(seen, in_view);
@@ -336,7 +336,7 @@ TEST_F(Recording, TheTruthOfObjectsIsThatOfTheWorld) {
   }
   EXPECT_EQ(index.size(), drive.world().number_of_bodies()) << "ids are unique";
   std::map<std::string, std::size_t> kinds;
-  for (const Row& row : table_of(files_.objects)) {
+  for (const TableRow& row : table_of(files_.objects)) {
     const double t = number(row, "t_s");
     const Body body = drive.world().body(index.at(row.at("object")), t);
     const EgoState ego = drive.ego(t);
