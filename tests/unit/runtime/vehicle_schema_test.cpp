@@ -102,7 +102,8 @@ TEST(VehicleSchema, PageListsExactlyTheKeysOfTheReader) {
 TEST(VehicleSchema, PageListsExactlyTheKeysOfEachSource) {
   std::map<std::string, std::set<std::string>> documented_keys;
   std::string link;
-  for (const Cells& row : page().at("source")) {
+  const auto sections = page();  // a range-for does not extend the life of a temporary
+  for (const Cells& row : sections.at("source")) {
     if (!code(row[0]).empty()) link = code(row[0]);
     std::string keys = row[1];
     std::erase(keys, '`');
@@ -120,7 +121,8 @@ TEST(VehicleSchema, PageListsExactlyTheKeysOfEachSource) {
 
 TEST(VehicleSchema, ProfilesAndTheirLinksAreThoseOfTheReader) {
   std::map<std::string, std::string> documented_links;
-  for (const Cells& row : page().at("Profiles of radars")) {
+  const auto sections = page();
+  for (const Cells& row : sections.at("Profiles of radars")) {
     std::string profile = code(row[0]), link = code(row[2]);
     std::erase(profile, '"');
     std::erase(link, '"');
