@@ -202,8 +202,11 @@ void add_checks(const Truth& truth, Summary& summary) {
 }
 
 std::string render_radars(const Summary& summary) {
-  std::string text = fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", "radar", "scans", "lost", "yaw error ± σ",
-                                 "truth", "speed scale ± σ");
+  std::string text =
+      "  mounting error in yaw and speed scale (true / signalled speed) of each radar, with the σ that the estimator "
+      "states\n";
+  text += fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", "radar", "scans", "lost", "yaw error ± σ", "truth",
+                      "speed scale ± σ");
   for (const RadarSummary& radar : summary.radars) {
     const RadarSnapshot& last = radar.last;
     text += fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", last.name, last.scans, last.lost, yaw_text(last),
@@ -227,7 +230,8 @@ std::string render_truth(const Summary& summary) {
   if (text.empty()) return text;
   return "  error = estimate - truth, about the vehicle's axes; in parentheses relative to the stated σ\n" +
          fmt::format(fmt::runtime(kRow), "radar", "speed scale", "yaw", "pitch", "roll", "NEES", "mean") + text +
-         "  NEES: squared errors relative to the stated covariance, per parameter; 1 on average if σ is right\n\n";
+         "  NEES: squared errors relative to the stated covariance, per parameter; 1 on average if σ is right (mean: "
+         "of the drive)\n\n";
 }
 
 std::string render_faults(const Summary& summary) {
