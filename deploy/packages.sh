@@ -1,4 +1,4 @@
-# Sourced by deploy/demo and tests/run: installs what is missing of deploy/packages.txt.
+# Sourced by deploy/demo and tests/run: installs what is missing of deploy/packages.txt, configures and builds.
 
 if [ -t 1 ]; then say() { printf '\033[1m==>\033[0m %s\n' "$*"; }; else say() { printf '==> %s\n' "$*"; }; fi
 
@@ -33,4 +33,37 @@ configure() {
   mkdir -p "$build"
   log=$build/configure.log
   cmake -G Ninja -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$build" "$@" > "$log" 2>&1 || { cat "$log"; return 1; }
+}
+
+# Shows ninja's progress: one line that changes on a terminal, a line for every tenth part elsewhere. Whatever else
+# comes, such as a failed command with its messages, is passed on.
+_show_progress() {
+  local line tenth=-1 on_line=0
+  while IFS= read -r line; do
+    if [[ $line =~ ^@\ *([0-9]+)%\ ([0-9]+/[0-9]+)\ ([0-9]+) ]]; then
+      if [ -t 1 ]; then
+        printf '\r    %3d %%, %s steps, %d s' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" "${BASH_REMATCH[3]}"
+        on_line=1
+      elif [ $((BASH_REMATCH[1] / 10)) -ne $tenth ]; then
+        tenth=$((BASH_REMATCH[1] / 10))
+        printf '    %3d %%, %s steps, %d s\n' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" "${BASH_REMATCH[3]}"
+      fi
+    elif [[ $line != ninja:\ Entering* && $line != ninja:\ no\ work* ]]; then
+      [ $on_line -eq 0 ] || { printf '\n'; on_line=0; }
+      printf '%s\n' "$line"
+    fi
+  done
+  [ $on_line -eq 0 ] || printf '\n'
+}
+
+# build BUILD_DIR CPU_MINUTES [target…]: builds with progress. A first build takes about CPU_MINUTES on one core.
+build_targets() {
+  local build=$1 cpu_minutes=$2 cores steps
+  shift 2
+  steps=$(ninja -C "$build" -n "$@" | grep -c '^\[')
+  [ "$steps" -gt 0 ] || return 0
+  cores=$(nproc)
+  say "building: $steps steps on $cores cores; a first build takes about $(((cpu_minutes + cores - 1) / cores)) minutes"
+  NINJA_STATUS='@ %p %f/%t %e ' ninja -C "$build" "$@" 2>&1 | _show_progress
+  return "${PIPESTATUS[0]}"
 }

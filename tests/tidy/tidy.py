@@ -6,6 +6,9 @@ import shutil
 import subprocess
 import sys
 
+import citations
+import words
+
 ALLOWED_TOP_LEVEL = {"CMakeLists.txt", "services", "interfaces", "deploy", "tests", "config", "docs", "README.md",
                      "LICENSE"}
 MAX_LINES = 500
@@ -124,7 +127,8 @@ def check_format(root, files):
         yield f"{pathlib.Path(name).relative_to(root)}: not formatted (clang-format -i)"
 
 
-CHECKS = (check_top_level, check_purity, check_units, check_text, check_rooms, check_format)
+CHECKS = (check_top_level, check_purity, check_units, check_text, check_rooms, check_format, words.findings,
+          citations.findings)
 
 
 def violations(root):
