@@ -18,7 +18,7 @@ summary { cursor: pointer; color: var(--faint); } dl { margin: 8px 0 0; display:
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th { text-align: left; color: var(--faint); font-weight: 500; font-size: 13px; }
 td, th { padding: 5px 12px 5px 0; border-bottom: 1px solid var(--line); }
-td.n, th.n { text-align: right; } .wide { overflow-x: auto; }
+td.n, th.n { text-align: right; } td.n { white-space: nowrap; } .wide { overflow-x: auto; }
 .good { color: var(--good); } .bad { color: var(--bad); font-weight: 600; } .warn { color: var(--warn); }
 .grid2 { display: grid; grid-template-columns: 1fr 1fr; gap: 10px 22px; } .grid2 h3 { font-size: 14px; margin: 6px 0 0; }
 @media (max-width: 760px) { .grid2 { grid-template-columns: 1fr; } }

@@ -22,7 +22,8 @@ std::string render_table(const Summary& summary) {
   std::string text =
       "<h2>Radars</h2>\n<p class=\"faint\">Mounting error in yaw and scale of the speed signal (true speed / signalled "
       "speed), estimated while driving. σ is the standard deviation that the estimator states. Values are those at the "
-      "end of the drive.</p>\n<table><tr><th>radar</th><th class=n>scans</th><th class=n>lost</th>"
+      "end of the drive; deviation = estimate − truth.</p>\n<table><tr><th>radar</th><th class=n>scans</th><th "
+      "class=n>lost</th>"
       "<th class=n>yaw error ± σ</th><th class=n>true yaw error</th><th class=n>deviation</th>"
       "<th class=n>speed scale ± σ</th><th>verdict</th></tr>\n";
   for (const RadarSummary& radar : summary.radars) {
@@ -49,7 +50,8 @@ std::string render_details(const Summary& summary) {
       "Settling time: driving time until the estimate stays within 5 % of its whole change. Residual: RMS of measured "
       "minus predicted range rate. Sudden misalignments: step changes of the mounting that the estimator "
       "reported.</p>\n"
-      "<table><tr><th>radar</th><th class=n>yaw ± σ</th><th class=n>pitch ± σ</th><th class=n>roll ± σ</th>"
+      "<div class=\"wide\"><table><tr><th>radar</th><th class=n>yaw ± σ</th><th class=n>pitch ± σ</th><th class=n>roll "
+      "± σ</th>"
       "<th class=n>settling time, yaw</th><th class=n>pitch</th><th class=n>yaw drift per minute</th>"
       "<th class=n>residual</th><th class=n>sudden misalignments</th></tr>\n";
   for (const RadarSummary& radar : summary.radars) {
@@ -66,7 +68,7 @@ std::string render_details(const Summary& summary) {
         text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°"), text::fixed(d.residual_rmse_mps, 3, " m/s"),
         d.step_changes);
   }
-  text += "</table>\n";
+  text += "</table></div>\n";
   for (const RadarSummary& radar : summary.radars) {
     if (!has_estimate(radar.last)) continue;
     const monitor::AngleEstimate &bias = radar.last.details.yaw_rate_bias, &slip = radar.last.details.slip;
