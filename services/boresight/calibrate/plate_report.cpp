@@ -63,7 +63,7 @@ std::string to_table(const PlateRun& run) {
     } else {
       text += fmt::format(" {:>10} {:>9}", "", "");
     }
-    text += fmt::format(" {:12.3f} {:8.3f}", measured.azimuth.mean() * kDegreesPerRadian,
+    text += fmt::format(" {:>12} {:8.3f}", text::fixed(measured.azimuth.mean() * kDegreesPerRadian, 3),
                         std::sqrt(measured.azimuth.variance()) * kDegreesPerRadian);
     if (was_fitted(result) && !result.tilts[i].used) text += "  not used";
     text += '\n';
@@ -79,10 +79,11 @@ std::string to_table(const PlateRun& run) {
                         degrees_with_std(result.pitch_rad, result.pitch_std_rad), result.maximum_db);
     text += fmt::format("yaw   {} (positive: looks left), {:.1f} % of the scans are inliers\n",
                         degrees_with_std(result.yaw_rad, result.yaw_std_rad), 100.0 * result.azimuth_inlier_ratio);
-    text += fmt::format("{:.0f} % of the triples agree within {:g} deg; their median {:+.3f} deg, spread {:.3f} deg\n",
+    text += fmt::format("{:.0f} % of the triples agree within {:g} deg; their median {}, spread {:.3f} deg\n",
                         100.0 * result.self_consistency,
                         std::round(run.config.consistency_rad * kDegreesPerRadian * 100.0) / 100.0,
-                        result.triples_median_rad * kDegreesPerRadian, result.triples_std_rad * kDegreesPerRadian);
+                        text::fixed(result.triples_median_rad * kDegreesPerRadian, 3, " deg", text::Sign::kAlways),
+                        result.triples_std_rad * kDegreesPerRadian);
   }
   if (result.ok()) return text + "the run is good\n";
   return text + fmt::format("FAILED: {} ({})\n", plate::explain(result.failure), plate::name_of(result.failure));

@@ -63,14 +63,17 @@ std::string to_table(const ReflectorRun& run) {
   std::string text = fmt::format("radar {} {}: {} reflector positions{}\n", run.radar.id, run.radar.name,
                                  run.table.positions.size(), run.config.has_elevation ? "" : ", no elevation");
   if (!result.used.empty()) {
+    constexpr int kResidualDecimals = 3;
     text += "     x/m      y/m      z/m  range/m  scans  residual azimuth/deg  elevation/deg\n";
     for (std::size_t i = 0; i < run.table.positions.size(); ++i) {
       const reflectors::Position& position = run.table.positions[i];
-      text += fmt::format("{:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6d} {:21.3f}", position.surveyed_m.x(),
+      text += fmt::format("{:8.2f} {:8.2f} {:8.2f} {:8.2f} {:6d} {:>21}", position.surveyed_m.x(),
                           position.surveyed_m.y(), position.surveyed_m.z(), position.range_m, position.scans,
-                          result.residual_azimuth_rad[i] * kDegreesPerRadian);
-      text += run.config.has_elevation ? fmt::format(" {:14.3f}", result.residual_elevation_rad[i] * kDegreesPerRadian)
-                                       : std::string(15, ' ');
+                          text::fixed(result.residual_azimuth_rad[i] * kDegreesPerRadian, kResidualDecimals));
+      text += fmt::format(" {:>14}",
+                          run.config.has_elevation
+                              ? text::fixed(result.residual_elevation_rad[i] * kDegreesPerRadian, kResidualDecimals)
+                              : "");
       text += result.used[i] ? "\n" : "  not used\n";
     }
   }

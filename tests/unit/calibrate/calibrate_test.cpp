@@ -320,8 +320,8 @@ TEST_F(Calibrate, the_command_finds_a_corner_radars_error_from_reflectors) {
   const Outcome outcome = run("reflectors --table " + csv + " --radar 1 --vehicle " + kVehicle + " --json " +
                               folder_.path("r.json") + " --state " + folder_.path("state"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("yaw   +1.300"));
-  EXPECT_THAT(outcome.output, HasSubstr("pitch -0.599"));
+  EXPECT_THAT(outcome.output, HasSubstr("yaw   +1.300 ± "));
+  EXPECT_THAT(outcome.output, HasSubstr("pitch -0.60 ± "));
   EXPECT_THAT(outcome.output, HasSubstr("published line (along the driving direction)"));
   EXPECT_THAT(folder_.read("r.json"), HasSubstr("\"seed\":{\"radar\":1"));
   const alignment::LoadedMemory loaded = alignment::load_memory(folder_.path("state"), alignment::identity_of(vehicle));
