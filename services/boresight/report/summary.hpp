@@ -19,7 +19,7 @@ struct Truth {
   std::optional<double> speed_scale;
   std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: yaw, pitch, roll of the rotation about
                                                                ///< the vehicle's axes, as AlignmentEstimate's
-  std::map<std::uint32_t, std::uint64_t> scans;  ///< by radar id: how many the radar sent
+  std::map<std::uint32_t, std::uint64_t> scans;                ///< by radar id: how many the radar sent
   [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
 };
 
