@@ -83,7 +83,8 @@ void run(const Arguments& arguments) {
   }
   close(csv, arguments.csv_file);
   close(boxes, arguments.boxes_file);
-  const std::string how = std::to_string(arguments.seeds) + " seeds from " + std::to_string(arguments.seed) + " on";
+  const std::string how =
+      "seeds " + std::to_string(arguments.seed) + " to " + std::to_string(arguments.seed + arguments.seeds - 1);
   report.add(confusion_table("", arguments.scenario + ", " + arguments.method + ": % of each truth, " + how, outcomes));
   judge_tracks(arguments.scenario, outcomes, false, how, report);
   report.print(std::cout);
