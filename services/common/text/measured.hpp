@@ -24,14 +24,11 @@ enum class Sign { kMinusOnly, kAlways };
 [[nodiscard]] inline std::string fixed(double value, int decimals, std::string_view unit = {},
                                        Sign sign = Sign::kMinusOnly) {
   if (!std::isfinite(value)) return std::string(kUnknown);
-  std::string number = fmt::format("{:.{}f}", std::abs(value), decimals);
+  const std::string number = fmt::format("{:.{}f}", std::abs(value), decimals);
   const bool is_zero = number.find_first_not_of("0.") == std::string::npos;
-  if (std::signbit(value) && !is_zero) {
-    number.insert(0, "-");
-  } else if (sign == Sign::kAlways) {
-    number.insert(0, "+");
-  }
-  return number.append(unit);
+  const bool is_negative = std::signbit(value) && !is_zero;
+  const char* const shown_sign = is_negative ? "-" : sign == Sign::kAlways ? "+" : "";
+  return fmt::format("{}{}{}", shown_sign, number, unit);
 }
 
 /// Number of decimals that shows two significant digits of a standard deviation, 0 to 12. Nothing if the standard
@@ -71,9 +68,13 @@ enum class Sign { kMinusOnly, kAlways };
 
 /// "308,299".
 [[nodiscard]] inline std::string grouped(std::uint64_t count) {
-  std::string digits = std::to_string(count);
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-  return digits;
+  const std::string digits = std::to_string(count);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
 }
 
 }  // namespace boresight::text
