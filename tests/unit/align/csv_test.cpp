@@ -184,7 +184,7 @@ TEST_F(Tables, UselessFilesAreErrors) {
   EXPECT_THAT(drive("\n\n# nothing\n").error, HasSubstr("is empty"));
   EXPECT_THAT(drive("0.0,1,9,0.1,0,-1,1\n").error, HasSubstr("begins with a number"));
   EXPECT_THAT(drive("t,radar,range,el,vr\n").error, HasSubstr("the header lacks az"));
-  EXPECT_THAT(drive("t,radar,range,az,az,vr\n").error, HasSubstr("column az is there twice"));
+  EXPECT_THAT(drive("t,radar,range,az,az,vr\n").error, HasSubstr("column az is given twice"));
   const Read header_only = drive("t,radar,range,az,vr");
   EXPECT_EQ(header_only.error, "");
   EXPECT_TRUE(header_only.scans.empty());

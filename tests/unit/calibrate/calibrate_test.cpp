@@ -284,13 +284,13 @@ TEST_F(Calibrate, a_plates_result_gets_into_the_estimators_memory) {
   EXPECT_NEAR(both.memory.radars[0].rotation_vehicle_rad[2] * kDegreesPerRadian, 1.1, 0.1);
 }
 
-TEST_F(Calibrate, a_damaged_memory_is_kept_aside_and_begun_anew) {
+TEST_F(Calibrate, a_damaged_memory_is_kept_as_rejected_and_begun_anew) {
   const VehicleConfig vehicle = config::read_vehicle_file(kVehicle, config::VehicleUse::kOffline);
   const std::string state = folder_.write("state", "rubbish");
   alignment::RotationSeed seed;
   seed.radar_id = 1;
   seed.covariance = 1e-6 * Eigen::Matrix3d::Identity();
-  EXPECT_THAT(seed_state_file(state, vehicle, seed), HasSubstr("kept aside"));
+  EXPECT_THAT(seed_state_file(state, vehicle, seed), HasSubstr("kept as .rejected"));
   EXPECT_EQ(folder_.read("state.rejected"), "rubbish");
   EXPECT_EQ(alignment::load_memory(state, alignment::identity_of(vehicle)).kind, alignment::LoadedMemory::Kind::kTaken);
   seed.radar_id = 9;

@@ -172,13 +172,13 @@ TEST_F(ServiceBody, ABodyThatContradictsItselfIsRejectedWithAReason) {
   rejected(3, 38, "header bytes");
   rejected(35, 44, "record bytes");
   rejected(35, 50, "record bytes");
-  rejected(33, 3, "long");
+  rejected(33, 3, "length");
   rejected(32, 4, "1024");
   rejected(8, 0x7F, "nanoseconds");
   Bytes body = example("detection list");
   body.push_back(0);
   take(body);
-  EXPECT_THAT(out_.last_fault, testing::HasSubstr("long"));
+  EXPECT_THAT(out_.last_fault, testing::HasSubstr("length"));
   take(Bytes(20));
   EXPECT_THAT(out_.last_fault, testing::HasSubstr("36"));
 }

@@ -138,7 +138,7 @@ TEST(ScenarioFile, RefusesContradictions) {
   EXPECT_THAT(problems(head + rail + "from_m = 0.0\nto_m = 900.0\nheading_deg = 90.0\n"), HasSubstr("heading_deg"));
   EXPECT_THAT(problems(head + rail + "from_m = 0.0\nto_m = 9.0\nlow_m = 2.0\nhigh_m = 1.0\n"), HasSubstr("high_m"));
   EXPECT_THAT(problems(head + "[ego]\nspeed_mps = 5.0\nspeed = [{t_s = 0.0, speed_mps = 1.0}]\n"),
-              HasSubstr("one of both"));
+              HasSubstr("cannot be given together"));
   EXPECT_THAT(problems(head + "[ego]\nspeed = [{t_s = 3.0, speed_mps = 1.0}, {t_s = 2.0, speed_mps = 1.0}]\n"),
               HasSubstr("ego.speed[1].t_s"));
   EXPECT_THAT(problems(head + "[ego]\nspeed = []\n"), HasSubstr("must not be empty"));
