@@ -125,11 +125,11 @@ def wrong_bodies(r):
             ("record bytes below 48", "wrong value", dict(record_bytes=50)),
             ("nanoseconds", "wrong value", dict(nanoseconds=10**9)),
             ("nanoseconds", "wrong value", dict(nanoseconds=0xFFFFFFFF)),
-            ("body is not", "wrong length", dict(stated_count=19)),
-            ("body is not", "wrong length", dict(stated_count=21)),
+            ("length is not", "wrong length", dict(stated_count=19)),
+            ("length is not", "wrong length", dict(stated_count=21)),
             ("over 1024", "wrong value", dict(stated_count=1025)),
             ("over 1024", "wrong value", dict(stated_count=0xFFFF)),
-            ("body is not", "wrong length", dict(extra=b"\0")), ("body is not", "wrong length", dict(extra=-1)),
+            ("length is not", "wrong length", dict(extra=b"\0")), ("length is not", "wrong length", dict(extra=-1)),
             ("shorter than its 36-byte header", "wrong length", dict(extra=-20 * 48 - 1)),
             ("shorter than its 36-byte header", "wrong length", dict(extra=-20 * 48 - 36))):
         r.bad_cycle(whole, (kind, words), count=20, body=body)

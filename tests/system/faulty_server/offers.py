@@ -37,7 +37,7 @@ def wrong_offers(r):
     for at, value, array in ((20, 17, "entries"), (20, 32, "entries"), (20, 0xFFFFFFF0, "entries"), (40, 11, "options"),
                              (40, 13, "options"), (40, 0xFFFFFFFF, "options"), (20, 0, "options")):
         r.sd([offer_entry(1)], right, raw=lambda m: m[:at] + value.to_bytes(4, "big") + m[at + 4:])
-        r.fault(("wrong length", f"length of {array} array"), radar=0)
+        r.fault(("wrong length", "length of entries array" if array == "entries" else "options array does not end"), radar=0)
     for length in (0, 10, 0xFFFF):
         r.sd([offer_entry(1)], right, raw=lambda m: m[:44] + length.to_bytes(2, "big") + m[46:])
         r.fault(("wrong length", "length of an option is"), radar=0)
