@@ -40,6 +40,7 @@ configure() {
 _show_progress() {
   local line tenth=-1 on_line=0
   while IFS= read -r line; do
+    [[ $line != *Re-checking\ globbed* ]] || continue
     if [[ $line =~ ^@\ *([0-9]+)%\ ([0-9]+/[0-9]+)\ ([0-9]+) ]]; then
       if [ -t 1 ]; then
         printf '\r    %3d %%, %s steps, %d s' "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" "${BASH_REMATCH[3]}"
@@ -56,14 +57,13 @@ _show_progress() {
   [ $on_line -eq 0 ] || printf '\n'
 }
 
-# build BUILD_DIR CPU_MINUTES [target…]: builds with progress. A first build takes about CPU_MINUTES on one core.
+# build_targets BUILD_DIR CPU_MINUTES [target…]: builds with progress. A first build takes about CPU_MINUTES on one core.
 build_targets() {
-  local build=$1 cpu_minutes=$2 cores steps
-  shift 2
-  steps=$(ninja -C "$build" -n "$@" | grep -c '^\[')
-  [ "$steps" -gt 0 ] || return 0
+  local build=$1 minutes cores
   cores=$(nproc)
-  say "building: $steps steps on $cores cores; a first build takes about $(((cpu_minutes + cores - 1) / cores)) minutes"
+  minutes=$((($2 + cores - 1) / cores))
+  shift 2
+  [ -f "$build/.ninja_log" ] || say "building for the first time: about $minutes minutes on $cores cores"
   NINJA_STATUS='@ %p %f/%t %e ' ninja -C "$build" "$@" 2>&1 | _show_progress
   return "${PIPESTATUS[0]}"
 }
