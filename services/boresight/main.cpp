@@ -1,4 +1,6 @@
 // `boresight`: the one command-line tool of the product.
+#include <CLI/CLI.hpp>
+
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
 

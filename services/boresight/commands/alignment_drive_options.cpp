@@ -6,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 
+#include <CLI/CLI.hpp>
+
 #include "services/common/geometry/angles.hpp"
 #include "tests/simulator/alignment/drive.hpp"
 

@@ -1,6 +1,8 @@
 // `boresight catalogue`: the system on one page, as text, as documentation, or as RouDi's memory pools.
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "deploy/catalogue/catalogue_text.hpp"
 #include "deploy/roudi/pools.hpp"
 #include "services/boresight/commands/commands.hpp"

@@ -1,7 +1,9 @@
 // The subcommands of `boresight`; each registers itself and sets the process's exit code when it has run.
 #pragma once
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace boresight {
 

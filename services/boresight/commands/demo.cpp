@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "deploy/roudi/pools.hpp"

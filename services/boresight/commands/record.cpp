@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "services/boresight/commands/commands.hpp"

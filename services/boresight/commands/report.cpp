@@ -2,6 +2,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include <CLI/CLI.hpp>
+
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/detection_truths.hpp"
 #include "services/boresight/commands/run_command.hpp"

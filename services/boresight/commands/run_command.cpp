@@ -8,6 +8,7 @@
 #include <iostream>
 #include <sstream>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "services/boresight/terminal/output_file.hpp"

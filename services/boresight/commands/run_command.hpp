@@ -8,10 +8,14 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "services/common/runtime/exit_codes.hpp"
 #include "services/common/runtime/options.hpp"
+
+namespace CLI {
+class App;
+class Option;
+class ParseError;
+}  // namespace CLI
 
 namespace boresight {
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "services/boresight/commands/alignment_drive_options.hpp"

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <functional>
-
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <memory>
 
 #include "generated/diagnostic_array.h"
 #include "generated/sensor_health.h"
-#include "services/health/dds/participant.hpp"
+#include "services/health/dds/config.hpp"
 
 namespace boresight::dds {
 
@@ -19,21 +18,12 @@ class DiagnosticsReader {
   /// Joins the domain; throws std::runtime_error if that is impossible.
   DiagnosticsReader(const Config& config, OnSensorHealth on_sensor_health, OnDiagnosticArray on_diagnostic_array);
 
+  ~DiagnosticsReader();
+
  private:
-  template <typename Sample>
-  class Listener : public eprosima::fastdds::dds::DataReaderListener {
-   public:
-    explicit Listener(std::function<void(const Sample&)> callback) : callback_(std::move(callback)) {}
-    void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
+  class Readers;
 
-   private:
-    std::function<void(const Sample&)> callback_;
-    Sample sample_;
-  };
-
-  Listener<diagnostics::SensorHealth> sensor_health_;
-  Listener<diagnostic_msgs::msg::dds_::DiagnosticArray_> diagnostic_array_;
-  Participant participant_;  // last member: its destructor stops the listeners first
+  std::unique_ptr<Readers> readers_;
 };
 
 }  // namespace boresight::dds

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
 #include "generated/diagnostic_arrayPubSubTypes.h"
 #include "generated/sensor_healthPubSubTypes.h"
 #include "services/health/dds/to_dds.hpp"

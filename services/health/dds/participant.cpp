@@ -2,9 +2,13 @@
 
 #include <stdexcept>
 
+#include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 namespace boresight::dds {
@@ -56,7 +60,7 @@ fast::Topic& Participant::topic(const std::string& name, const fast::TypeSupport
   return *made(participant_->create_topic(name, type.get_type_name(), fast::TOPIC_QOS_DEFAULT), "topic " + name);
 }
 
-fast::DataWriter& Participant::writer(const std::string& name, fast::TypeSupport type, int depth) {
+fast::DataWriter& Participant::writer(const std::string& name, const fast::TypeSupport& type, int depth) {
   if (publisher_ == nullptr) {
     publisher_ = made(participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT), "a publisher");
   }
@@ -68,7 +72,7 @@ fast::DataWriter& Participant::writer(const std::string& name, fast::TypeSupport
   return *made(publisher_->create_datawriter(&topic(name, type), qos), "a writer of " + name);
 }
 
-fast::DataReader& Participant::reader(const std::string& name, fast::TypeSupport type, int depth,
+fast::DataReader& Participant::reader(const std::string& name, const fast::TypeSupport& type, int depth,
                                       fast::DataReaderListener& listener) {
   if (subscriber_ == nullptr) {
     subscriber_ = made(participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT), "a subscriber");

@@ -4,12 +4,18 @@
 #include <memory>
 #include <string>
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
-
 #include "services/health/dds/config.hpp"
+
+namespace eprosima::fastdds::dds {
+class DataReader;
+class DataReaderListener;
+class DataWriter;
+class DomainParticipant;
+class Publisher;
+class Subscriber;
+class Topic;
+class TypeSupport;
+}  // namespace eprosima::fastdds::dds
 
 namespace boresight::dds {
 
@@ -23,9 +29,9 @@ class Participant {
 
   /// Reliable and transient-local, the last `depth` samples of each instance.
   [[nodiscard]] eprosima::fastdds::dds::DataWriter& writer(const std::string& topic,
-                                                           eprosima::fastdds::dds::TypeSupport type, int depth);
+                                                           const eprosima::fastdds::dds::TypeSupport& type, int depth);
   /// Calls `listener` from the middleware's thread. The listener must outlive the participant.
-  eprosima::fastdds::dds::DataReader& reader(const std::string& topic, eprosima::fastdds::dds::TypeSupport type,
+  eprosima::fastdds::dds::DataReader& reader(const std::string& topic, const eprosima::fastdds::dds::TypeSupport& type,
                                              int depth, eprosima::fastdds::dds::DataReaderListener& listener);
 
  private:
