@@ -10,7 +10,7 @@ namespace boresight::tracking {
 namespace {
 
 constexpr double kLeast_m = 5.0, kMost_rad = 0.5;
-constexpr double kSideScatter_m = 0.25;  // reflections lie beside the flank by so much
+constexpr double kSideScatter_m = 0.25;  // std of the reflections across the side of a vehicle
 
 using Points = std::array<Eigen::Vector2d, std::tuple_size_v<decltype(Cluster::outline)>>;
 using Mask = std::uint32_t;

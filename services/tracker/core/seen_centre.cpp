@@ -10,7 +10,7 @@ namespace boresight::tracking {
 
 namespace {
 
-constexpr double kOutlineScatter_m = 0.2;  // corners are round, wheel houses deep
+constexpr double kOutlineScatter_m = 0.2;  // std of the outline: round corners, deep wheel arches
 /// What is farther off than that, while something else is not, is of the next vehicle or a ghost.
 constexpr double kUsual_m = 0.5;
 

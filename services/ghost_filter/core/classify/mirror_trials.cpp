@@ -21,7 +21,7 @@ constexpr double kSurePlace = 0.7, kGap = 0.5;     // that there is something of
 constexpr double kInReach = 0.6;                   // of the farthest detection: images are weak
 constexpr double kBefore_m = 2.0;                  // as far before a mirror what is detected of it may be
 constexpr double kHides_m = 2.0;                   // beside the way
-constexpr double kSlowPlace_mps = 2.0;             // what shows less may be taken for what stands
+constexpr double kSlowPlace_mps = 2.0;             // below it an object may be classified as stationary
 constexpr double kLeastRate_mps = 0.7;             // and less still is rather that than the image
 constexpr double kBeside_m = 3.0, kOff_mps = 1.5;  // of an image
 constexpr double kTold = 2.0;                      // standard deviations of its place that must be within that

@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kGhost = 0.95F;
 constexpr float kReal = 0.05F;
-/// What is not told by its speed lies within about this angle (rad) of right angles to the drive at most. Le Ba Thanh's
-/// scene is faster; at walking pace its constant would make everything move.
+/// Half width (rad) of the sector abeam in which moving and stationary detections have the same range rate. The scene
+/// of Le Ba Thanh 2023 is faster; at walking pace its constant would classify every detection as moving.
 constexpr double kAbeam = 0.15;
 
 Eigen::Vector2d point(const std::array<float, 2>& p) {

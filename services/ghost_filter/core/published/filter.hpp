@@ -1,7 +1,8 @@
-// The published method (Le Ba Thanh 2023), the baseline that others are compared with: what stands still is told by a
-// constant threshold; a moving detection whose line of sight crosses a reflector segment is a type-2 ghost, else one
-// whose line of sight passes through a predicted track a type-1 ghost. It asks for no mirrored object, knows no
-// clutter, and does not spare what is tracked behind a rail.
+// The published method (Le Ba Thanh 2023), the baseline of all comparisons. A detection is stationary if its range rate
+// over ground is below a constant threshold. A moving detection whose line of sight crosses a reflector segment is a
+// type-2 ghost. Otherwise, if its line of sight passes through a predicted track, it is a type-1 ghost. The method does
+// not check for an object at the mirrored position, has no clutter class, and takes a tracked object behind a rail for
+// a ghost.
 #pragma once
 
 #include <memory>

@@ -324,9 +324,9 @@ TEST(RobustFilter, AStepChangeIsReportedForItsRadarOnly) {
     bench.run(25.2 + step_change.within_s);
     EXPECT_EQ(bench.filter->estimate(1).step_change.count, 1u);
     bench.run(40.0);
-    const AlignmentStepChange told = bench.filter->estimate(1).step_change;
-    EXPECT_NEAR(told.rotation_vehicle_rad[1], step_change.pitch_deg * kRadiansPerDegree, 0.5 * kRadiansPerDegree);
-    EXPECT_NEAR(told.rotation_vehicle_rad[2], step_change.yaw_deg * kRadiansPerDegree, 0.1 * kRadiansPerDegree);
+    const AlignmentStepChange reported = bench.filter->estimate(1).step_change;
+    EXPECT_NEAR(reported.rotation_vehicle_rad[1], step_change.pitch_deg * kRadiansPerDegree, 0.5 * kRadiansPerDegree);
+    EXPECT_NEAR(reported.rotation_vehicle_rad[2], step_change.yaw_deg * kRadiansPerDegree, 0.1 * kRadiansPerDegree);
     for (std::size_t r = 0; r < 4; ++r) {
       EXPECT_EQ(bench.filter->estimate(r).step_change.count, r == 1 ? 1u : 0u);
       EXPECT_LT(std::abs(bench.error_rad(r).z()), 0.03 * kRadiansPerDegree) << r;

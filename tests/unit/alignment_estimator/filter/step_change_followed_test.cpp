@@ -27,9 +27,9 @@ TEST(FollowsStepChange, SmallChangesAreReportedForTheirRadarAndFollowedConsisten
     bench.run(52.2);
     EXPECT_EQ(bench.filter->estimate(2).step_change.count, 1u);
     bench.run(75.0);
-    const AlignmentStepChange told = bench.filter->estimate(2).step_change;
-    EXPECT_NEAR(told.rotation_vehicle_rad[1], pitch_yaw_deg(0) * kRadiansPerDegree, 0.2 * kRadiansPerDegree);
-    EXPECT_NEAR(told.rotation_vehicle_rad[2], pitch_yaw_deg(1) * kRadiansPerDegree, 0.1 * kRadiansPerDegree);
+    const AlignmentStepChange reported = bench.filter->estimate(2).step_change;
+    EXPECT_NEAR(reported.rotation_vehicle_rad[1], pitch_yaw_deg(0) * kRadiansPerDegree, 0.2 * kRadiansPerDegree);
+    EXPECT_NEAR(reported.rotation_vehicle_rad[2], pitch_yaw_deg(1) * kRadiansPerDegree, 0.1 * kRadiansPerDegree);
     for (std::size_t r = 0; r < 4; ++r) {
       const RadarEstimate estimate = bench.filter->estimate(r);
       EXPECT_EQ(estimate.step_change.count, r == 2 ? 1u : 0u) << r;
