@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -33,7 +34,7 @@ struct AlignOptions {
   std::string drive, ego, truth, json, plot;
   std::vector<std::string> recordings;
   runtime::Configuration configuration;
-  bool has_config = false;  ///< --config was given: the settings are read from it
+  bool has_config = false;  ///< the settings are read from the folder of the configuration
   std::string method = "boresight";
 };
 
@@ -269,7 +270,9 @@ void add_align_command(CLI::App& app, int& exit_code) {
         if (options->json == "-" && options->plot == "-") {
           throw UsageError("only one result can go to standard output");
         }
-        options->has_config = config->count() > 0;
+        // Without the option, what the service would read; without that either, its defaults.
+        options->has_config =
+            config->count() > 0 || std::filesystem::exists(options->configuration.service_file("alignment_estimator"));
         return Align(*options, *command).run();
       },
       &options->configuration);
