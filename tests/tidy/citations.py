@@ -1,9 +1,6 @@
-"""Citations that resolve: what tidy.py asks of sources, links and equation numbers.
-
-`python3 tests/tidy/citations.py SOURCE_DIR [PATH…]` prints each finding, below the given paths only if there are any."""
+"""Citations that resolve: what tidy.py asks of sources, links and equation numbers."""
 import pathlib
 import re
-import sys
 
 BIBLIOGRAPHY = pathlib.Path("docs/bibliography.md")
 ALGORITHMS = pathlib.Path("docs/algorithms")
@@ -222,15 +219,3 @@ def findings(root, files):
             found += findings_of_places(root, raw)
         for offset, words in sorted(found):
             yield f"{path.as_posix()}:{line_of(raw, offset)}: {words}"
-
-
-if __name__ == "__main__":
-    sys.path.insert(0, str(pathlib.Path(__file__).parent))
-    import tidy
-    source = pathlib.Path(sys.argv[1]).resolve()
-    wanted = [w.rstrip("/") for w in sys.argv[2:]]
-    tracked = [f for f in tidy.tracked_files(source)
-               if not wanted or any(f.as_posix() == w or f.as_posix().startswith(w + "/") for w in wanted)]
-    found = list(findings(source, tracked))
-    print("\n".join(found) if found else "fine")
-    sys.exit(1 if found else 0)

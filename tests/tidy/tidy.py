@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The project's rules of order, checked: tidy.py SOURCE_DIR prints each violation and exits with 1 if there is one."""
+"""The project's rules of order, checked: tidy.py SOURCE_DIR [PATH…] prints each violation, only those below the given
+paths if there are any, and exits with 1 if there is one."""
 import pathlib
 import re
 import shutil
@@ -138,6 +139,7 @@ def violations(root):
 
 
 if __name__ == "__main__":
-    found = violations(sys.argv[1])
+    paths = tuple(sys.argv[2:])
+    found = [line for line in violations(sys.argv[1]) if not paths or line.startswith(paths)]
     print("\n".join(found) if found else "tidy")
     sys.exit(1 if found else 0)

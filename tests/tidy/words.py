@@ -1,9 +1,6 @@
-"""Words of the field, and sentences that can be read: what tidy.py asks of docs, comments and strings.
-
-`python3 tests/tidy/words.py SOURCE_DIR [PATH…]` prints each finding, below the given paths only if there are any."""
+"""Words of the field, and sentences that can be read: what tidy.py asks of docs, comments and strings."""
 import pathlib
 import re
-import sys
 
 # Sources as they were once called; capitalised, unlike "report a fault".
 FORMER_REPORTS = r"\bReport [A-D]\b"
@@ -123,15 +120,3 @@ def findings(root, files):
         text = (root / path).read_text(errors="replace")
         yield from findings_of_words(path, text)
         yield from findings_of_sentences(path, text)
-
-
-if __name__ == "__main__":
-    sys.path.insert(0, str(pathlib.Path(__file__).parent))
-    import tidy
-    source = pathlib.Path(sys.argv[1]).resolve()
-    wanted = [w.rstrip("/") for w in sys.argv[2:]]
-    tracked = [f for f in tidy.tracked_files(source)
-               if not wanted or any(f.as_posix() == w or f.as_posix().startswith(w + "/") for w in wanted)]
-    found = list(findings(source, tracked))
-    print("\n".join(found) if found else "fine")
-    sys.exit(1 if found else 0)
