@@ -42,7 +42,7 @@ alignment::RadarEstimate estimate_of(const MountingPose& pose, double speed_scal
 Eigen::Matrix4d covariance_of(const batch_calibration::Parameter& speed_scale,
                               const batch_calibration::RadarResult& radar, const Eigen::Matrix3d& sensor_to_vehicle) {
   const Eigen::Vector3d angles = geometry::euler_angles(sensor_to_vehicle);
-  const Eigen::Matrix3d to_turn = geometry::euler_gradient(angles(0), angles(1)).inverse();
+  const Eigen::Matrix3d to_turn = geometry::euler_gradient_inverse(angles(0), angles(1));
   const Eigen::Vector3d stds(std_of(radar.yaw), std_of(radar.pitch), std_of(radar.roll));
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   covariance(0, 0) = std_of(speed_scale) * std_of(speed_scale);

@@ -78,4 +78,7 @@ namespace boresight::geometry {
   return m;
 }
 
+/// Small rotation in vehicle axes by a change of (yaw, pitch, roll): the inverse of `euler_gradient`. Compiled once.
+[[nodiscard]] Eigen::Matrix3d euler_gradient_inverse(double yaw_rad, double pitch_rad);
+
 }  // namespace boresight::geometry

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-
+#include "services/alignment_estimator/core/planar/solve.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -194,7 +193,7 @@ void PlanarFilter::update(std::size_t index, const ScanDetections& scan, const S
     score = of_score * radar.support.score(sums.score) + information * (at - before);
     // The step of this linearisation, for the parameters that the scan depends on.
     const Square system = Square::Identity() + covariance * information;
-    const Parameters step = system.partialPivLu().solve(covariance * score);
+    const Parameters step = solve(system, covariance * score);
     const Parameters moved = before + step - at;
     at = before + step;
     if (!at.allFinite()) return;
@@ -209,7 +208,7 @@ void PlanarFilter::take(std::size_t index, double speed_mps, const Square& infor
   const Square covariance = local_covariance(columns, index, speed_mps);
   // W = (Λ⁻¹ + C)⁻¹, also where Λ is singular: P ← P − P_c·W·P_cᵀ, x ← x + P_c·(1 − W·C)·score.
   const Square system = Square::Identity() + covariance * information;
-  Square w = system.transpose().partialPivLu().solve(information);
+  Square w = solve_columns(system.transpose(), information);
   w = 0.5 * (w + w.transpose()).eval();
   const Parameters step = score - w * (covariance * score);
   if (!w.allFinite() || !step.allFinite()) return;
@@ -277,7 +276,7 @@ RadarEstimate PlanarFilter::estimate(std::size_t index) const {
   out.sensor_to_vehicle = geometry::sensor_to_vehicle(radar.nominal, b(1), b(2), b(3));
   Eigen::Matrix4d to_vehicle = Eigen::Matrix4d::Identity();
   to_vehicle.bottomRightCorner<3, 3>() =
-      geometry::euler_gradient(radar.nominal.yaw_rad + b(1), radar.nominal.pitch_rad + b(2)).inverse();
+      geometry::euler_gradient_inverse(radar.nominal.yaw_rad + b(1), radar.nominal.pitch_rad + b(2));
   out.covariance = to_vehicle * covariance(index) * to_vehicle.transpose();
   // An axis is observable once the data have reduced its σ clearly below the prior.
   const auto learnt = [&](Eigen::Index i, double prior_std) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "services/alignment_estimator/core/planar/solve.hpp"
 
 namespace boresight::alignment::planar {
 
@@ -53,16 +53,16 @@ void Support::renew(bool has_elevation) {
   const Eigen::Matrix4d real = inverse.asDiagonal() * information_ * inverse.asDiagonal();
   Eigen::Matrix4d noise = inverse.asDiagonal() * from_noise_ * inverse.asDiagonal();
   noise.diagonal().array() += 1e-9;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d> solver(real, noise);
-  if (solver.info() != Eigen::Success) return;
+  const Quotients quotients = generalized_eigenvalues(real, noise);
+  if (!quotients.found) return;
   Eigen::Vector4d share = Eigen::Vector4d::Zero(), kept = Eigen::Vector4d::Zero();
   for (Eigen::Index i = 0; i < 4; ++i) {
-    const double quotient = solver.eigenvalues()(i);
+    const double quotient = quotients.values(i);
     if (!(quotient > limit)) continue;
     kept(i) = 1.0;
     share(i) = std::sqrt(1.0 - 1.0 / quotient);
   }
-  const Eigen::Matrix4d& v = solver.eigenvectors();
+  const Eigen::Matrix4d& v = quotients.vectors;
   const Eigen::Matrix4d to = scale.asDiagonal() * noise * v;
   const Eigen::Matrix4d from = v.transpose() * inverse.asDiagonal();
   const Eigen::Matrix4d share4 = to * share.asDiagonal() * from, kept4 = to * kept.asDiagonal() * from;

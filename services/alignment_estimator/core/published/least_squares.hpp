@@ -1,19 +1,14 @@
 // Burza 2025, (24)(25): damped nonlinear least squares, also used for the 1-D reference of the literature.
 #pragma once
 
-#include <Eigen/Cholesky>
-
 #include "services/alignment_estimator/core/published/published_method.hpp"
 
 namespace boresight::alignment::published {
 
 /// −η ∘ (JᵀJ + λI)⁻¹ JᵀR; λ > 0. (24) is printed without the transposition of J. A parameter without gradient gets no
 /// step.
-[[nodiscard]] inline Eigen::Vector4d least_squares_step(const NormalEquations& equations, double damping,
-                                                        const Eigen::Vector4d& rate) {
-  const Eigen::Matrix4d damped = equations.jtj + damping * Eigen::Matrix4d::Identity();
-  return -rate.cwiseProduct(damped.ldlt().solve(equations.jtr));
-}
+[[nodiscard]] Eigen::Vector4d least_squares_step(const NormalEquations& equations, double damping,
+                                                 const Eigen::Vector4d& rate);
 
 /// All four parameters (`Kind::kLeastSquares`), or k_v and α with β = γ = 0 (`Kind::kAzimuth1d`), for which Burza 2025
 /// names no algorithm: the same one is used.

@@ -182,9 +182,8 @@ RadarEstimate PublishedMethod::estimate(std::size_t index) const {
   // The remaining Gauss–Newton step: the distance to the optimum of the window's data.
   const Eigen::Vector4d distance = factor.solve(radar.jtr / floored);
   Eigen::Matrix4d to_vehicle = Eigen::Matrix4d::Identity();
-  to_vehicle.bottomRightCorner<3, 3>() =
-      geometry::euler_gradient(radar.nominal.yaw_rad + radar.angles(0), radar.nominal.pitch_rad + radar.angles(1))
-          .inverse();
+  to_vehicle.bottomRightCorner<3, 3>() = geometry::euler_gradient_inverse(radar.nominal.yaw_rad + radar.angles(0),
+                                                                          radar.nominal.pitch_rad + radar.angles(1));
   out.covariance = to_vehicle * covariance * to_vehicle.transpose();
 
   const bool is_seeded = !radar.seeded.isZero();
@@ -244,9 +243,8 @@ bool PublishedMethod::seed(std::size_t index, const Eigen::Vector3d& rotation_ve
   const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
   Radar& radar = radars_[index];
   if (factor.info() != Eigen::Success || !turn(radar, rotation_vehicle_rad)) return false;
-  const Eigen::Matrix3d to_vehicle =
-      geometry::euler_gradient(radar.nominal.yaw_rad + radar.angles(0), radar.nominal.pitch_rad + radar.angles(1))
-          .inverse();
+  const Eigen::Matrix3d to_vehicle = geometry::euler_gradient_inverse(radar.nominal.yaw_rad + radar.angles(0),
+                                                                      radar.nominal.pitch_rad + radar.angles(1));
   radar.seeded = to_vehicle.transpose() * factor.solve(to_vehicle);
   radar.seeded = 0.5 * (radar.seeded + radar.seeded.transpose()).eval();
   // The earlier sums belong to another mounting.

@@ -1,6 +1,9 @@
-#include "services/alignment_estimator/core/published/total_least_squares.hpp"
-
+// The decompositions of the published methods' steps.
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "services/alignment_estimator/core/published/least_squares.hpp"
+#include "services/alignment_estimator/core/published/total_least_squares.hpp"
 
 namespace boresight::alignment::published {
 
@@ -24,6 +27,11 @@ Eigen::Vector4d step_of(const NormalEquations& equations, double rate) {
 }
 
 }  // namespace
+
+Eigen::Vector4d least_squares_step(const NormalEquations& equations, double damping, const Eigen::Vector4d& rate) {
+  const Eigen::Matrix4d damped = equations.jtj + damping * Eigen::Matrix4d::Identity();
+  return -rate.cwiseProduct(damped.ldlt().solve(equations.jtr));
+}
 
 Eigen::Vector4d total_least_squares_step(const NormalEquations& equations, int parameters, double rate) {
   return parameters == 2 ? step_of<2>(equations, rate) : step_of<4>(equations, rate);
