@@ -8,7 +8,7 @@
 #include "services/detection_corrector/core/corrector.hpp"
 #include "services/ghost_filter/core/method.hpp"
 #include "services/tracker/core/tracker.hpp"
-#include "tests/simulator/drive.hpp"
+#include "services/simulator/drive.hpp"
 
 namespace boresight::closed_loop {
 

@@ -7,8 +7,8 @@
 
 #include "tests/closed_loop/chain.hpp"
 #include "tests/closed_loop/objects.hpp"
-#include "tests/simulator/judge/hidden.hpp"
-#include "tests/simulator/judge/matching.hpp"
+#include "services/simulator/judge/hidden.hpp"
+#include "services/simulator/judge/matching.hpp"
 
 namespace boresight::closed_loop {
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "tests/simulator/drive.hpp"
-#include "tests/simulator/judge/object.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/judge/object.hpp"
 
 namespace boresight::closed_loop {
 

@@ -9,7 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/common/geometry/angles.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/alignment/spec.hpp"
+#include "services/simulator/alignment/spec.hpp"
 
 namespace CLI {
 class App;

@@ -17,8 +17,8 @@
 #include "services/boresight/commands/simulate_drive.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
-#include "tests/simulator/alignment/csv_writer.hpp"
-#include "tests/simulator/drive_writer.hpp"
+#include "services/simulator/alignment/csv_writer.hpp"
+#include "services/simulator/drive_writer.hpp"
 
 namespace boresight {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 namespace boresight {
 

@@ -10,7 +10,7 @@
 
 #include "interfaces/messages/names.hpp"
 #include "services/common/text/measured.hpp"
-#include "tests/simulator/judge/matching.hpp"
+#include "services/simulator/judge/matching.hpp"
 
 namespace boresight::report {
 

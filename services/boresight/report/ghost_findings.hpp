@@ -13,9 +13,9 @@
 #include "interfaces/messages/track_list.hpp"
 #include "services/boresight/monitor/scan_record.hpp"
 #include "services/boresight/report/summary.hpp"
-#include "tests/simulator/judge/confusion.hpp"
-#include "tests/simulator/judge/false_tracks.hpp"
-#include "tests/simulator/judge/truth_files.hpp"
+#include "services/simulator/judge/confusion.hpp"
+#include "services/simulator/judge/false_tracks.hpp"
+#include "services/simulator/judge/truth_files.hpp"
 
 namespace boresight::report {
 

@@ -13,7 +13,7 @@
 #include "services/replay/core/event_encoder.hpp"
 #include "services/replay/core/synthetic.hpp"
 #include "tests/benchmarks/ingest/traffic.hpp"
-#include "tests/simulator/wire/ars548_encoder.hpp"
+#include "services/simulator/wire/ars548_encoder.hpp"
 
 namespace boresight::bench {
 

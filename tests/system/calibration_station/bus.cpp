@@ -9,7 +9,7 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/node.hpp"
-#include "tests/simulator/alignment/plate.hpp"
+#include "services/simulator/alignment/plate.hpp"
 
 namespace boresight::calibration_station {
 

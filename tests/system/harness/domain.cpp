@@ -11,7 +11,7 @@
 #include "deploy/supervisor/domain.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive_writer.hpp"
+#include "services/simulator/drive_writer.hpp"
 
 namespace boresight::harness {
 

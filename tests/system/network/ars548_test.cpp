@@ -6,7 +6,7 @@
 #include <signal.h>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive_writer.hpp"
+#include "services/simulator/drive_writer.hpp"
 #include "tests/system/network/story.hpp"
 
 namespace boresight::network {

@@ -72,7 +72,7 @@ TEST(Simulate, AScenarioLeavesRecordingsAndTruth) {
     EXPECT_FALSE(text_of(std::filesystem::path("/tmp/s/deep/er") / file).empty()) << file;
   }
   // Every column is explained where the table is.
-  const std::string readme = text_of(BORESIGHT_SOURCE_DIR "/tests/simulator/README.md");
+  const std::string readme = text_of(BORESIGHT_SOURCE_DIR "/services/simulator/README.md");
   for (const std::string table : {"detections", "objects", "sensors", "visibility"}) {
     const std::size_t begin = readme.find("\nColumns of `truth_" + table + ".csv`:\n\n");
     ASSERT_NE(begin, std::string::npos) << table;

@@ -13,7 +13,7 @@
 #include "services/boresight/align/plot.hpp"
 #include "services/boresight/align/table.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive_writer.hpp"
+#include "services/simulator/drive_writer.hpp"
 #include "tests/unit/align/tables.hpp"
 
 namespace boresight::align {

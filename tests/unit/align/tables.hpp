@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::align::testing {
 

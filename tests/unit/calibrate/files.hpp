@@ -15,9 +15,9 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/vehicle/vehicle.hpp"
-#include "tests/simulator/alignment/plate.hpp"
-#include "tests/simulator/wire/ars548_encoder.hpp"
-#include "tests/simulator/wire/pcap_writer.hpp"
+#include "services/simulator/alignment/plate.hpp"
+#include "services/simulator/wire/ars548_encoder.hpp"
+#include "services/simulator/wire/pcap_writer.hpp"
 
 namespace boresight::calibrate::testing {
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/simulator/wire/byte_writer.hpp"
+#include "services/simulator/wire/byte_writer.hpp"
 
 namespace boresight::ingest::ars548 {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "services/common/e2e/protector.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
-#include "tests/simulator/wire/ars548_encoder.hpp"
+#include "services/simulator/wire/ars548_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 
 namespace boresight::ingest::ars548 {

@@ -10,7 +10,7 @@
 #include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
-#include "tests/simulator/drive_writer.hpp"
+#include "services/simulator/drive_writer.hpp"
 
 namespace boresight::ingest {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/allocation_counter.hpp"
-#include "tests/simulator/wire/ars548_encoder.hpp"
-#include "tests/simulator/wire/toyota_encoder.hpp"
+#include "services/simulator/wire/ars548_encoder.hpp"
+#include "services/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_sink.hpp"
 #include "tests/unit/ingest_gateway/times.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/scan_integrity.hpp"
-#include "tests/simulator/drive.hpp"
+#include "services/simulator/drive.hpp"
 #include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {

@@ -14,7 +14,7 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive.hpp"
+#include "services/simulator/drive.hpp"
 #include "tests/unit/ingest_gateway/times.hpp"
 
 namespace boresight::ingest {

@@ -5,7 +5,7 @@
 
 #include "services/ingest_gateway/codecs/toyota_ego.hpp"
 #include "services/ingest_gateway/codecs/toyota_radar.hpp"
-#include "tests/simulator/wire/toyota_encoder.hpp"
+#include "services/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/memory_output.hpp"
 #include "tests/unit/ingest_gateway/times.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "services/common/recording/ip.hpp"
 #include "services/common/recording/reader.hpp"
-#include "tests/simulator/wire/pcap_writer.hpp"
+#include "services/simulator/wire/pcap_writer.hpp"
 #include "tests/unit/recording/files.hpp"
 
 namespace boresight::recording {

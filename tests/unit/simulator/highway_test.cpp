@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive.hpp"
+#include "services/simulator/drive.hpp"
 
 namespace boresight::simulator {
 namespace {

@@ -13,9 +13,9 @@
 
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive.hpp"
-#include "tests/simulator/radar/mounting.hpp"
-#include "tests/simulator/radar/round_trip.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/radar/mounting.hpp"
+#include "services/simulator/radar/round_trip.hpp"
 
 namespace boresight::simulator {
 namespace {

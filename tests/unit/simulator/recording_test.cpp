@@ -16,8 +16,8 @@
 #include "services/common/recording/reader.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
-#include "tests/simulator/drive.hpp"
-#include "tests/simulator/drive_writer.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/drive_writer.hpp"
 
 namespace boresight::simulator {
 namespace {

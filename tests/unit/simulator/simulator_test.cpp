@@ -8,8 +8,8 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/ingest_gateway/codecs/ars548.hpp"
-#include "tests/simulator/drive.hpp"
-#include "tests/simulator/wire/ars548_encoder.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/wire/ars548_encoder.hpp"
 
 namespace boresight::simulator {
 namespace {

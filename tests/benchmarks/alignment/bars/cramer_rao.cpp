@@ -7,8 +7,8 @@
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
-#include "tests/simulator/alignment/bound.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/bound.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

@@ -15,7 +15,7 @@
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

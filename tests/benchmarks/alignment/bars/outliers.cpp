@@ -4,7 +4,7 @@
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
-#include "tests/simulator/random.hpp"
+#include "services/simulator/random.hpp"
 
 namespace boresight::bench {
 

@@ -12,7 +12,7 @@
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/published_result.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "services/common/geometry/angles.hpp"
-#include "tests/simulator/random.hpp"
+#include "services/simulator/random.hpp"
 
 namespace boresight::bench {
 

@@ -5,7 +5,7 @@
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

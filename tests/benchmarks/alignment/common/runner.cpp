@@ -6,7 +6,7 @@
 #include "services/alignment_estimator/core/scan_detections.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/geometry/so3.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

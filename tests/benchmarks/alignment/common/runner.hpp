@@ -13,7 +13,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "tests/benchmarks/alignment/common/moments.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
-#include "tests/simulator/alignment/spec.hpp"
+#include "services/simulator/alignment/spec.hpp"
 
 namespace boresight::bench {
 

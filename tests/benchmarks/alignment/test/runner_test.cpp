@@ -10,7 +10,7 @@
 #include "services/common/geometry/so3.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/report.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 namespace {

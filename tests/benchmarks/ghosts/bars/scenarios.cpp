@@ -8,7 +8,7 @@
 #include "tests/benchmarks/ghosts/common/curves.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
 

@@ -9,7 +9,7 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
-#include "tests/simulator/random.hpp"
+#include "services/simulator/random.hpp"
 
 namespace boresight::bench {
 

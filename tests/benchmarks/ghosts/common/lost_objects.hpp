@@ -9,8 +9,8 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "tests/closed_loop/objects.hpp"
-#include "tests/simulator/detection_truth.hpp"
-#include "tests/simulator/judge/matching.hpp"
+#include "services/simulator/detection_truth.hpp"
+#include "services/simulator/judge/matching.hpp"
 
 namespace boresight::bench {
 

@@ -9,8 +9,8 @@
 #include "tests/benchmarks/ghosts/common/changed_method.hpp"
 #include "tests/benchmarks/ghosts/common/truth_method.hpp"
 #include "tests/closed_loop/chain.hpp"
-#include "tests/simulator/judge/hidden.hpp"
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/judge/hidden.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
 

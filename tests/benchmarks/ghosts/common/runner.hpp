@@ -12,9 +12,9 @@
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/reliability.hpp"
 #include "tests/closed_loop/objects.hpp"
-#include "tests/simulator/drive.hpp"
-#include "tests/simulator/judge/confusion.hpp"
-#include "tests/simulator/judge/false_tracks.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/judge/confusion.hpp"
+#include "services/simulator/judge/false_tracks.hpp"
 
 namespace boresight::bench {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/ghost_filter/core/method.hpp"
-#include "tests/simulator/detection_truth.hpp"
+#include "services/simulator/detection_truth.hpp"
 
 namespace boresight::bench {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <ostream>
 
-#include "tests/simulator/judge/matching.hpp"
+#include "services/simulator/judge/matching.hpp"
 
 namespace boresight::bench {
 

@@ -11,7 +11,7 @@
 #include "tests/benchmarks/ghosts/common/tables.hpp"
 #include "tests/benchmarks/ghosts/explain/boxes.hpp"
 #include "tests/benchmarks/ghosts/explain/explained.hpp"
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 using namespace boresight;
 using namespace boresight::bench;

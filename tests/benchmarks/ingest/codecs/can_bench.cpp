@@ -8,7 +8,7 @@
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
 #include "tests/benchmarks/ingest/codecs/measure.hpp"
 #include "tests/benchmarks/ingest/gateway_bench.hpp"
-#include "tests/simulator/wire/toyota_encoder.hpp"
+#include "services/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/ars408_frames.hpp"
 
 namespace boresight::bench {

@@ -8,7 +8,7 @@
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment {
 

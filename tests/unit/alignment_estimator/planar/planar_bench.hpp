@@ -8,7 +8,7 @@
 #include "services/alignment_estimator/core/planar/planar_filter.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/geometry/angles.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment::planar {
 

@@ -11,7 +11,7 @@
 #include "services/alignment_estimator/core/plate/parabola.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
-#include "tests/simulator/alignment/plate_table.hpp"
+#include "services/simulator/alignment/plate_table.hpp"
 
 namespace boresight::alignment::plate {
 namespace {

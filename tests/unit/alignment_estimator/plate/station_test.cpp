@@ -10,7 +10,7 @@
 
 #include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
-#include "tests/simulator/alignment/plate.hpp"
+#include "services/simulator/alignment/plate.hpp"
 
 namespace boresight::alignment::plate {
 namespace {

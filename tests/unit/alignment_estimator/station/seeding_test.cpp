@@ -10,7 +10,7 @@
 #include "services/alignment_estimator/core/plate/seed.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::alignment {
 namespace {

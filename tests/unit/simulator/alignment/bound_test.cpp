@@ -1,6 +1,6 @@
 // The Cramér–Rao bound agrees with a dense computation by finite differences and with the bound that another program
 // wrote beside a recorded drive. General properties of the bound hold on any road.
-#include "tests/simulator/alignment/bound.hpp"
+#include "services/simulator/alignment/bound.hpp"
 
 #include <array>
 #include <cmath>

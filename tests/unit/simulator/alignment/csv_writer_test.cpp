@@ -1,5 +1,5 @@
 // The files of an alignment drive, read back by independent readers.
-#include "tests/simulator/alignment/csv_writer.hpp"
+#include "services/simulator/alignment/csv_writer.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 #include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/alignment/bound.hpp"
-#include "tests/simulator/alignment/drive.hpp"
-#include "tests/simulator/alignment/vehicle_toml.hpp"
+#include "services/simulator/alignment/bound.hpp"
+#include "services/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/vehicle_toml.hpp"
 
 namespace boresight::simulator {
 namespace {

@@ -1,5 +1,5 @@
 // A statistical alignment drive has the stated truth, and each effect changes only the quantities that it concerns.
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 #include <algorithm>
 #include <cmath>

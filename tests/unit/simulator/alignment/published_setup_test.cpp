@@ -1,7 +1,7 @@
 // The published set-up gives the residuals of Burza 2025. Comparisons with its tables rest on this.
 #include <cmath>
 
-#include "tests/simulator/alignment/drive.hpp"
+#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::simulator {
 namespace {

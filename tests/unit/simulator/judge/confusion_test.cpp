@@ -1,4 +1,4 @@
-#include "tests/simulator/judge/confusion.hpp"
+#include "services/simulator/judge/confusion.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // Assignment of tracks to objects, and tracks that live on ghosts.
 #include <memory>
 
-#include "tests/simulator/judge/false_tracks.hpp"
-#include "tests/simulator/judge/hidden.hpp"
+#include "services/simulator/judge/false_tracks.hpp"
+#include "services/simulator/judge/hidden.hpp"
 
 namespace boresight::judge {
 namespace {

@@ -1,11 +1,11 @@
 // The judge reads the tables as the simulator wrote them.
-#include "tests/simulator/judge/truth_files.hpp"
+#include "services/simulator/judge/truth_files.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "tests/simulator/truth_tables.hpp"
+#include "services/simulator/truth_tables.hpp"
 
 namespace boresight::judge {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "tests/simulator/radar/radar_sensor.hpp"
+#include "services/simulator/radar/radar_sensor.hpp"
 
 namespace boresight::simulator {
 

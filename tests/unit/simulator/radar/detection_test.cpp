@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/simulator/radar/cells.hpp"
-#include "tests/simulator/radar/detector.hpp"
-#include "tests/simulator/radar/doppler.hpp"
-#include "tests/simulator/radar/measurement_noise.hpp"
-#include "tests/simulator/random.hpp"
+#include "services/simulator/radar/cells.hpp"
+#include "services/simulator/radar/detector.hpp"
+#include "services/simulator/radar/doppler.hpp"
+#include "services/simulator/radar/measurement_noise.hpp"
+#include "services/simulator/random.hpp"
 #include "tests/unit/simulator/radar/bench_scene.hpp"
 
 namespace boresight::simulator {

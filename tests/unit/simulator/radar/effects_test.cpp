@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "services/common/geometry/frames.hpp"
-#include "tests/simulator/radar/blockage.hpp"
-#include "tests/simulator/random.hpp"
+#include "services/simulator/radar/blockage.hpp"
+#include "services/simulator/random.hpp"
 #include "tests/unit/simulator/radar/bench_scene.hpp"
 
 namespace boresight::simulator {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/simulator/radar/ground.hpp"
+#include "services/simulator/radar/ground.hpp"
 #include "tests/unit/simulator/radar/bench_scene.hpp"
 
 namespace boresight::simulator {

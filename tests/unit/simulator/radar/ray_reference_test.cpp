@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/simulator/random.hpp"
+#include "services/simulator/random.hpp"
 #include "tests/unit/simulator/radar/bench_scene.hpp"
 
 namespace boresight::simulator {

@@ -1,9 +1,9 @@
 // Roads and motions agree with their own derivatives.
-#include "tests/simulator/world/motion.hpp"
+#include "services/simulator/world/motion.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/simulator/world/knots.hpp"
+#include "services/simulator/world/knots.hpp"
 
 namespace boresight::simulator {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/simulator/world/reflections.hpp"
-#include "tests/simulator/world/structures.hpp"
+#include "services/simulator/world/reflections.hpp"
+#include "services/simulator/world/structures.hpp"
 
 namespace boresight::simulator {
 namespace {

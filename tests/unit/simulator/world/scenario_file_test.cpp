@@ -1,5 +1,5 @@
 // Scenario files are read completely, and errors name file, line and key.
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 #include <filesystem>
 #include <fstream>

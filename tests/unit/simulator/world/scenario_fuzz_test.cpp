@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/simulator/drive.hpp"
-#include "tests/simulator/random.hpp"
-#include "tests/simulator/scenario/shipped.hpp"
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/random.hpp"
+#include "services/simulator/scenario/shipped.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 namespace boresight::simulator {
 namespace {

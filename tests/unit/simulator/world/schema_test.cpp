@@ -11,8 +11,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/simulator/scenario_file.hpp"
-#include "tests/simulator/world/reflections.hpp"
+#include "services/simulator/scenario_file.hpp"
+#include "services/simulator/world/reflections.hpp"
 #include "tests/unit/schema_page.hpp"
 
 namespace boresight::simulator {

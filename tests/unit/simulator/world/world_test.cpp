@@ -1,5 +1,5 @@
 // The world at an instant is complete, reproducible, and without collisions.
-#include "tests/simulator/world.hpp"
+#include "services/simulator/world.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/simulator/scenario_file.hpp"
+#include "services/simulator/scenario_file.hpp"
 
 namespace boresight::simulator {
 namespace {
