@@ -31,6 +31,11 @@ std::string quote(std::string_view text) {
   return result + (text.size() > kLongest ? "…\"" : "\"");
 }
 
+bool is_named(const Column& column, std::string_view name) {
+  const auto& same = column.synonyms;
+  return !name.empty() && (column.name == name || std::find(same.begin(), same.end(), name) != same.end());
+}
+
 bool is_number(std::string_view text) {
   double unused = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), unused);
@@ -39,13 +44,39 @@ bool is_number(std::string_view text) {
 
 }  // namespace
 
+std::int64_t nanoseconds_of(std::string_view text, double value) {
+  constexpr std::size_t kDecimals = 9;
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const std::int64_t rounded_ns = std::llround(value * static_cast<double>(kSecond_ns));
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const bool is_negative = text.starts_with('-');
+  if (is_negative) text.remove_prefix(1);
+  const std::size_t point = std::min(text.find('.'), text.size());
+  const std::string_view decimals = point < text.size() ? text.substr(point + 1) : std::string_view();
+  if (decimals.size() > kDecimals) return rounded_ns;
+  std::int64_t whole = 0, fraction = 0;
+  const auto read = [](std::string_view digits, std::int64_t& number) {
+    if (digits.empty()) return true;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return error == std::errc{} && end == digits.data() + digits.size() && digits.front() != '-';
+  };
+  if (!read(text.substr(0, point), whole) || !read(decimals, fraction)) return rounded_ns;
+  constexpr std::int64_t kMost_s = 9'000'000'000;  // as many nanoseconds fit into 64 bits
+  if (whole > kMost_s) return rounded_ns;
+  for (std::size_t i = decimals.size(); i < kDecimals; ++i) fraction *= 10;
+  const std::int64_t magnitude_ns = whole * kSecond_ns + fraction;
+  return is_negative ? -magnitude_ns : magnitude_ns;
+}
+
 CsvTable::CsvTable(recording::ByteSource& source, std::span<const Column> columns, Problems& problems)
     : source_(source),
       lines_(source, kMaxLine),
       columns_(columns),
       problems_(problems),
       cell_of_(columns.size(), -1),
-      offset_of_(columns.size(), 0) {
+      offset_of_(columns.size(), 0),
+      text_of_(columns.size()) {
+  for (const Column& column : columns) name_of_.push_back(column.name);
   std::string expected;
   for (const Column& column : columns) {
     if (column.required) expected += (expected.empty() ? "" : ",") + std::string(column.name);
@@ -63,7 +94,8 @@ CsvTable::CsvTable(recording::ByteSource& source, std::span<const Column> column
   for (std::size_t begin = 0; begin <= header.size();) {
     const std::size_t end = std::min(header.find(',', begin), header.size());
     const std::string_view name = trim(header.substr(begin, end - begin));
-    const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [name](const Column& c) { return is_named(c, name); });
     if (found == columns.end()) {
       column_of_.push_back(-1);
       ignored_.emplace_back(quote(name));
@@ -71,6 +103,10 @@ CsvTable::CsvTable(recording::ByteSource& source, std::span<const Column> column
       const auto column = static_cast<std::size_t>(found - columns.begin());
       if (has(column)) throw TableError(fmt::format("{}: column {} is given twice", place(begin), name));
       cell_of_[column] = static_cast<int>(column_of_.size());
+      if (const auto same = std::find(found->synonyms.begin(), found->synonyms.end(), name);
+          same != found->synonyms.end()) {
+        name_of_[column] = *same;
+      }
       column_of_.push_back(static_cast<int>(column));
     }
     begin = end + 1;
@@ -110,7 +146,7 @@ bool CsvTable::next(std::span<double> values) {
 }
 
 void CsvTable::reject(std::size_t column, const std::string& problem) {
-  problems_.bad_line(fmt::format("{}: {}: {}", place(offset_of_[column]), columns_[column].name, problem));
+  problems_.bad_line(fmt::format("{}: {}: {}", place(offset_of_[column]), name_of_[column], problem));
 }
 
 bool CsvTable::parse(std::string_view line, std::span<double> values) {
@@ -128,6 +164,18 @@ bool CsvTable::parse(std::string_view line, std::span<double> values) {
       const Column& column = columns_[i];
       std::string_view text = trim(line.substr(begin, end - begin));
       offset_of_[i] = begin;
+      text_of_[i] = text;
+      if (!column.words.empty()) {
+        const auto word = std::find(column.words.begin(), column.words.end(), text);
+        if (word == column.words.end()) {
+          reject(i, fmt::format("read {}, allowed is nothing or one of {}", quote(text),
+                                fmt::join(column.words.begin() + 1, column.words.end(), ", ")));
+          return false;
+        }
+        values[i] = static_cast<double>(word - column.words.begin());
+        begin = end + 1;
+        continue;
+      }
       const auto wrong = [&] {
         reject(i, fmt::format("read {}, allowed is a number {:g} … {:g}{}{}{}", quote(text), column.min, column.max,
                               column.unit.empty() ? "" : " ", column.unit, column.may_be_empty ? ", or nothing" : ""));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -14,9 +15,8 @@
 
 namespace boresight::align {
 
-/// Columns t (s, any origin), radar (id), range (m), az and el (rad, + left, + up, sensor axes), vr (m/s, + receding).
-/// `el` may be absent or empty if the radar measures no elevation. Optional: az_std, el_std (rad), vr_std (m/s), and
-/// vr_min, vr_max (m/s), the unambiguous interval of vr. Other columns are ignored, also the truth is_stationary.
+/// Columns of config/schema/tables.md. The elevation may be absent or empty if the radar measures none. Other columns
+/// are ignored, also the truth is_stationary.
 class DriveReader {
  public:
   /// Throws TableError as CsvTable does. All arguments must outlive the reader.
@@ -28,20 +28,26 @@ class DriveReader {
 
   /// Ignored columns, without is_stationary.
   [[nodiscard]] std::vector<std::string> ignored_columns() const;
+  /// Time of the scan that next() returned last, with every digit of the table.
+  [[nodiscard]] std::int64_t time_ns() const { return time_ns_; }
   [[nodiscard]] std::uint64_t dropped_detections() const { return dropped_; }
   /// Number of rows by id of radars that the vehicle file does not contain; these rows count as bad lines as well.
   [[nodiscard]] const std::map<std::uint32_t, std::uint64_t>& unknown_radars() const { return unknown_; }
 
  private:
-  static constexpr std::size_t kColumns = 11;
+  static constexpr std::size_t kColumns = 18;
   /// Reads on to the next good row; false at the end.
   bool read_row();
+  /// Flags of the detection in the last row, without those of its elevation.
+  [[nodiscard]] std::uint16_t flags_of_row() const;
 
   const VehicleConfig& vehicle_;
   CsvTable table_;
   TimeOrder order_;
   std::array<double, kColumns> row_{};
   bool has_row_ = false;
+  std::int64_t row_ns_ = 0, time_ns_ = 0;
+  std::bitset<kMaxDetections> lacks_elevation_;  // by detection of the current scan
   std::uint64_t dropped_ = 0;
   std::map<std::uint32_t, std::uint64_t> unknown_;
 };

@@ -9,9 +9,9 @@ namespace {
 enum : std::size_t { kEgoTime, kEgoSpeed, kEgoYawRate };
 
 constexpr std::array<Column, 3> kEgoColumns = {{
-    {.name = "t", .min = TimeOrder::kMin_s, .max = TimeOrder::kMax_s, .unit = "s"},
-    {.name = "v", .min = -150.0, .max = 150.0, .unit = "m/s"},
-    {.name = "yaw_rate", .min = -20.0, .max = 20.0, .unit = "rad/s"},
+    {.name = "t_s", .min = TimeOrder::kMin_s, .max = TimeOrder::kMax_s, .unit = "s", .synonyms = {"t", "time_s"}},
+    {.name = "speed_mps", .min = -150.0, .max = 150.0, .unit = "m/s", .synonyms = {"v"}},
+    {.name = "yaw_rate_radps", .min = -20.0, .max = 20.0, .unit = "rad/s", .synonyms = {"yaw_rate"}},
 }};
 
 }  // namespace
@@ -31,6 +31,7 @@ bool EgoReader::next(EgoMotion& motion, double& time_s) {
     }
     table_.accept();
     time_s = row[kEgoTime];
+    time_ns_ = nanoseconds_of(table_.text(kEgoTime), time_s);
     motion.fields = ego_field::kSpeed | ego_field::kYawRate | ego_field::kReverse;
     motion.speed_mps = static_cast<float>(row[kEgoSpeed]);
     motion.speed_std_mps = static_cast<float>(config_.speed_std_mps);

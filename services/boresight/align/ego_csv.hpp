@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 
 namespace boresight::align {
 
-/// Columns t (s, on the clock of the detections), v (m/s, as signalled, + forward), yaw_rate (rad/s, + left).
+/// Columns of config/schema/tables.md.
 class EgoReader {
  public:
   /// `config` has the stds of the signals. Throws TableError as CsvTable does. All arguments must outlive the reader.
@@ -20,12 +21,15 @@ class EgoReader {
 
   /// The next motion; `time_s` is the time of the table, the header is not written. False at the end.
   [[nodiscard]] bool next(EgoMotion& motion, double& time_s);
+  /// Time of the motion that next() returned last, with every digit of the table.
+  [[nodiscard]] std::int64_t time_ns() const { return time_ns_; }
   [[nodiscard]] const std::vector<std::string>& ignored_columns() const { return table_.ignored(); }
 
  private:
   EgoConfig config_;
   CsvTable table_;
   TimeOrder order_;
+  std::int64_t time_ns_ = 0;
 };
 
 }  // namespace boresight::align

@@ -180,10 +180,11 @@ TEST_F(Tables, DetectionsBeyondTheMostAScanCanHaveAreCounted) {
 }
 
 TEST_F(Tables, UselessFilesAreErrors) {
-  EXPECT_THAT(drive("").error, HasSubstr("is empty; the first line must name the columns t,radar,range,az,vr"));
+  EXPECT_THAT(drive("").error,
+              HasSubstr("is empty; the first line must name the columns t_s,radar,range_m,azimuth_rad,"));
   EXPECT_THAT(drive("\n\n# nothing\n").error, HasSubstr("is empty"));
   EXPECT_THAT(drive("0.0,1,9,0.1,0,-1,1\n").error, HasSubstr("begins with a number"));
-  EXPECT_THAT(drive("t,radar,range,el,vr\n").error, HasSubstr("the header lacks az"));
+  EXPECT_THAT(drive("t,radar,range,el,vr\n").error, HasSubstr("the header lacks azimuth_rad"));
   EXPECT_THAT(drive("t,radar,range,az,az,vr\n").error, HasSubstr("column az is given twice"));
   const Read header_only = drive("t,radar,range,az,vr");
   EXPECT_EQ(header_only.error, "");
