@@ -17,7 +17,7 @@ TABLES = TMP / "tables"
 FULL = TMP / "full"  # a file system without room
 
 COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "monitor",
-            "record", "report", "simulate", "supervise")
+            "record", "report", "run", "score", "simulate", "supervise")
 # Commands whose input is not there: exit code 3, and the message names the input.
 MISSING_INPUT = (
     "align --recording ABSENT --vehicle demo",
@@ -30,6 +30,10 @@ MISSING_INPUT = (
     "decode --vehicle demo --check ABSENT",
     "demo --recording ABSENT --vehicle demo",
     "report ABSENT --vehicle demo",
+    "run ABSENT --vehicle demo --out OUT",
+    "run --detections ABSENT --ego TABLES/ego.csv --vehicle alignment_drive --out OUT",
+    "score ABSENT --truth DRIVE",
+    "score DRIVE --truth ABSENT",
     "report RECORD --vehicle demo --scans ABSENT",
     "report RECORD --vehicle demo --truth ABSENT",
 )
@@ -52,6 +56,11 @@ USAGE = (
     ("record --vehicle absent --out x", "names there: alignment_drive, "),
     ("record --out x", "nothing to record"),
     ("report RECORD --vehicle absent", "names there: alignment_drive, "),
+    ("run --vehicle demo --out OUT", "give either recordings, or --detections and --ego"),
+    ("run x --vehicle absent --out OUT", "names there: alignment_drive, "),
+    ("score DRIVE --truth DRIVE --limit a=1", "--limit needs --junit"),
+    ("score DRIVE --truth DRIVE --junit OUT --limit a", "allowed is NAME=MAX"),
+    ("score DRIVE --truth DRIVE --vehicle absent", "names there: alignment_drive, "),
     ("simulate --scenario absent --out OUT", "known: aligned_drive"),
     ("simulate --vehicle absent --out OUT", "names there: alignment_drive, "),
     ("simulate --vehicle demo --config RECORD --out OUT", "is a file; give the folder"),
@@ -73,6 +82,7 @@ NO_ROOM = (
     ("demo --out FULL/demo", "FULL/demo"),
     ("monitor --vehicle demo --record FULL/folder/record.txt", "FULL/folder/record.txt"),
     ("report RECORD --vehicle demo --out FULL/report.html", "FULL/report.html"),
+    ("run DRIVE/radars.pcap DRIVE/ego.candump.log --vehicle demo --out FULL/run", "FULL/run/"),
     ("simulate --duration 5 --out FULL/drive", "FULL/drive/"),
     ("simulate --alignment-drive city --duration 5 --out FULL/tables", "FULL/tables/"),
     ("simulate --list > /dev/full", "standard output"),

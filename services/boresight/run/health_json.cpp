@@ -1,0 +1,62 @@
+// A line of health.jsonl.
+#include <nlohmann/json.hpp>
+
+#include "interfaces/messages/names.hpp"
+#include "services/boresight/json/text.hpp"
+#include "services/boresight/run/writer.hpp"
+
+namespace boresight::run {
+
+namespace {
+
+json::Value to_json(const AxisHealth& axis) {
+  json::Value value;
+  value["error_rad"] = json::shortest(axis.error_rad);
+  value["std_rad"] = json::shortest(axis.std_rad);
+  value["tolerance_rad"] = json::shortest(axis.tolerance_rad);
+  value["observable"] = axis.observable != 0;
+  value["beyond_tolerance"] = axis.beyond_tolerance != 0;
+  value["about_vehicle_axis"] = axis.about_vehicle_axis != 0;
+  return value;
+}
+
+json::Value to_json(const SensorHealth& sensor) {
+  json::Value value;
+  value["radar"] = sensor.radar_id;
+  value["data_qualifier"] = name_of(sensor.data_qualifier);
+  value["extended_qualifier"] = name_of(sensor.extended_qualifier);
+  value["conditions"] = words_of_conditions(sensor.conditions);
+  value["rate_hz"] = json::shortest(sensor.rate_hz);
+  value["expected_rate_hz"] = json::shortest(sensor.expected_rate_hz);
+  value["last_seen_s"] = sensor.last_seen_s < 0.0F ? json::Value() : json::Value(json::shortest(sensor.last_seen_s));
+  value["detections_per_scan"] = json::shortest(sensor.detections_per_scan);
+  value["yaw"] = to_json(sensor.yaw);
+  value["pitch"] = to_json(sensor.pitch);
+  value["roll"] = to_json(sensor.roll);
+  value["speed_scale"] = json::shortest(sensor.speed_scale);
+  value["speed_scale_std"] = json::shortest(sensor.speed_scale_std);
+  value["lateral_displacement_m"] = json::shortest(sensor.lateral_displacement_m);
+  value["reference_range_m"] = json::shortest(sensor.reference_range_m);
+  value["step_changes"] = sensor.step_changes;
+  value["scans"] = sensor.scans;
+  value["missed_scans"] = sensor.missed_scans;
+  value["suspect_scans"] = sensor.suspect_scans;
+  value["e2e_lost"] = sensor.e2e_lost;
+  value["e2e_repeated"] = sensor.e2e_repeated;
+  value["e2e_wrong"] = sensor.e2e_wrong;
+  return value;
+}
+
+}  // namespace
+
+std::string to_json_line(const HealthResult& result) {
+  json::Value value;
+  value["t_s"] = static_cast<double>(result.at.since_start_us()) / 1e6;
+  value["time_ns"] = result.at.time_ns;
+  value["overall"] = name_of(result.overall);
+  json::Value& radars = value["radars"] = json::Value::array();
+  for (std::size_t i = 0; i < result.number_of_sensors; ++i) radars.push_back(to_json(result.sensors[i]));
+  return json::line(value);
+}
+
+}  // namespace boresight::run

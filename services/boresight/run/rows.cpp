@@ -1,0 +1,156 @@
+#include "services/boresight/run/rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "services/boresight/run/chain.hpp"
+#include "services/boresight/run/counts.hpp"
+#include "services/boresight/run/csv_row.hpp"
+#include "services/boresight/run/origins.hpp"
+
+namespace boresight::run {
+
+namespace {
+
+constexpr std::array<std::string_view, kNumberOfPipelineFlags> kFlagNames = {
+    "no_alignment", "alignment_stale", "no_ego_motion", "ego_motion_stale",
+    "no_elevation", "no_tracks",       "tracks_stale"};
+constexpr std::array<std::string_view, kNumberOfOrigins> kOriginNames = {"unknown",      "moving",       "stationary",
+                                                                         "ghost_type_1", "ghost_type_2", "clutter"};
+constexpr std::array<std::string_view, kNumberOfRejections> kRejectionNames = {"", "invalid", "outside_region", "weak"};
+constexpr std::array<std::string_view, 9> kAxisNames = {
+    "speed_scale", "yaw", "pitch", "roll", "vehicle_yaw", "vehicle_pitch", "vehicle_roll", "yaw_rate_bias", "slip"};
+constexpr std::array<std::string_view, 2> kStatusNames = {"tentative", "confirmed"};
+constexpr std::array<std::string_view, 2> kUpdateNames = {"measured", "predicted"};
+constexpr std::array<std::string_view, 4> kMovementNames = {"unknown", "moving", "stationary", "stopped"};
+constexpr std::array<std::string_view, 5> kClassNames = {"unknown", "car", "truck", "two_wheeler", "pedestrian"};
+constexpr std::array<std::string_view, 4> kStateNames = {"no_data", "waiting", "converging", "converged"};
+
+template <typename Enum, std::size_t N>
+std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < N ? words[index] : std::string_view("unknown");
+}
+
+std::string joined(std::span<const std::string_view> names, std::uint32_t bits) {
+  std::string text;
+  for (std::size_t bit = 0; bit < names.size(); ++bit) {
+    if ((bits >> bit & 1u) == 0) continue;
+    if (!text.empty()) text += '+';
+    text += names[bit];
+  }
+  return text;
+}
+
+/// The columns with which every row of a scan begins.
+CsvRow begin_row(std::string& rows, const ScanResult& result) {
+  CsvRow row(rows);
+  row.seconds(result.at.since_start_us()).number(result.at.time_ns).number(result.scan.header.source_id);
+  row.number(result.number);
+  return row;
+}
+
+}  // namespace
+
+std::string names_of_flags(std::uint32_t pipeline_flags) {
+  return joined(kFlagNames, pipeline_flags);
+}
+
+std::string_view name_of_flag(std::size_t bit) {
+  return word_of(kFlagNames, bit);
+}
+
+std::string_view name_of_origin(std::size_t provenance) {
+  return word_of(kOriginNames, provenance);
+}
+
+std::string names_of_axes(std::uint32_t axes) {
+  return joined(kAxisNames, axes);
+}
+
+void append_scan(std::string& rows, const ScanResult& result) {
+  const ClassifiedScan& scan = result.classified;
+  const ScanGeometry& geometry = scan.geometry;
+  const bool has_ego = (scan.flags & (pipeline_flag::kNoEgoMotion | pipeline_flag::kEgoMotionStale)) == 0;
+  const Provenance* const labels = scan.provenance.data();
+  const auto moving = std::count(labels, labels + scan.number_of_valid_detections, Provenance::kMoving);
+  CsvRow row = begin_row(rows, result);
+  row.number(scan.number_of_valid_detections).word(names_of_flags(scan.flags));
+  row.number(geometry.sensor_position_vehicle_m[0]).number(geometry.sensor_position_vehicle_m[1]);
+  row.number_if(has_ego, geometry.sensor_velocity_vehicle_mps[0]);
+  row.number_if(has_ego, geometry.sensor_velocity_vehicle_mps[1]);
+  row.number_if(has_ego, geometry.ego_speed_mps).number_if(has_ego, geometry.ego_yaw_rate_radps);
+  row.number(moving).number(result.tracks.number_of_tracks).number(result.tracks.number_of_confirmed_tracks).end();
+}
+
+void append_detections(std::string& rows, const ScanResult& result) {
+  const RadarScan& scan = result.scan;
+  const ClassifiedScan& classified = result.classified;
+  const bool has_elevation = scan.has(scan_field::kElevation);
+  const bool has_rcs = scan.has(scan_field::kRcs);
+  const bool has_ego = (classified.flags & (pipeline_flag::kNoEgoMotion | pipeline_flag::kEgoMotionStale)) == 0;
+  for (std::size_t i = 0; i < classified.number_of_valid_detections; ++i) {
+    const std::uint16_t flags = result.corrected.detection_flags[i];
+    const bool has_position = std::isfinite(scan.range_m[i]) && std::isfinite(scan.azimuth_rad[i]);
+    CsvRow row = begin_row(rows, result);
+    row.number(i).number(scan.range_m[i]).number(scan.azimuth_rad[i]);
+    row.number_if(has_elevation, scan.elevation_rad[i]).number(scan.range_rate_mps[i]);
+    row.number_if(has_rcs, scan.rcs_dbsm[i]);
+    row.number_if(has_position, classified.x_vehicle_m[i]).number_if(has_position, classified.y_vehicle_m[i]);
+    row.number_if(has_position, classified.z_vehicle_m[i]);
+    row.number_if(has_ego && std::isfinite(scan.range_rate_mps[i]), classified.range_rate_over_ground_mps[i]);
+    row.word(word_of(kOriginNames, classified.provenance[i]));
+    const auto p = probabilities_of(classified.provenance[i], classified.ghost_probability[i], flags);
+    for (std::size_t k = 0; k < OriginProbabilities{}.size(); ++k) row.number_if(p.has_value(), p ? (*p)[k] : 0.0F);
+    row.word(word_of(kRejectionNames, rejection_of(flags))).end();
+  }
+}
+
+void append_reflectors(std::string& rows, const ScanResult& result) {
+  const std::size_t count =
+      std::min<std::size_t>(result.classified.number_of_reflector_segments, kMaxReflectorSegments);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ReflectorSegment& segment = result.classified.reflector_segments[i];
+    CsvRow row = begin_row(rows, result);
+    row.number(i).number(segment.start_vehicle_m[0]).number(segment.start_vehicle_m[1]);
+    row.number(segment.end_vehicle_m[0]).number(segment.end_vehicle_m[1]);
+    row.number(segment.residual_std_m).number(segment.number_of_detections).end();
+  }
+}
+
+void append_tracks(std::string& rows, const ScanResult& result) {
+  const std::size_t count = std::min<std::size_t>(result.tracks.number_of_tracks, kMaxTracks);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Track& track = result.tracks.tracks[i];
+    CsvRow row = begin_row(rows, result);
+    row.number(track.tracking_id).word(word_of(kStatusNames, track.status)).word(word_of(kUpdateNames, track.update));
+    row.word(word_of(kMovementNames, track.movement)).word(word_of(kClassNames, track.object_class));
+    row.number(track.existence_probability).number(track.age_s).number(track.time_since_update_s);
+    for (const float position_m : track.position_vehicle_m) row.number(position_m);
+    for (const float velocity_mps : track.velocity_over_ground_mps) row.number(velocity_mps);
+    for (const float acceleration_mps2 : track.acceleration_over_ground_mps2) row.number(acceleration_mps2);
+    row.number(track.heading_rad).number(track.length_m).number(track.width_m).number(track.height_m);
+    row.number(track.number_of_detections);
+    for (std::size_t a = 0; a < kTrackStateSize; ++a) {
+      for (std::size_t b = a; b < kTrackStateSize; ++b) row.number(track.covariance[a * kTrackStateSize + b]);
+    }
+    row.end();
+  }
+}
+
+void append_estimate(std::string& rows, const EstimateResult& result) {
+  const AlignmentEstimate& message = result.message;
+  CsvRow row(rows);
+  row.seconds(result.at.since_start_us()).number(result.at.time_ns).number(message.header.source_id);
+  row.word(word_of(kStateNames, message.state)).number(message.speed_scale);
+  row.number(message.vehicle_yaw_rad).number(message.vehicle_pitch_rad).number(message.vehicle_roll_rad);
+  for (Eigen::Index i = 0; i < 3; ++i) row.number(static_cast<float>(result.rotation_vehicle_rad(i)));
+  for (Eigen::Index a = 0; a < result.covariance.rows(); ++a) {
+    for (Eigen::Index b = a; b < result.covariance.cols(); ++b) row.number(static_cast<float>(result.covariance(a, b)));
+  }
+  row.word(names_of_axes(message.observable)).number(message.kpis.inlier_ratio).number(message.step_change.count).end();
+}
+
+}  // namespace boresight::run

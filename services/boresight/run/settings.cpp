@@ -1,0 +1,29 @@
+#include "services/boresight/run/settings.hpp"
+
+#include "services/alignment_estimator/config.hpp"
+#include "services/detection_corrector/config.hpp"
+#include "services/ghost_filter/config.hpp"
+#include "services/health/config.hpp"
+#include "services/tracker/config.hpp"
+
+namespace boresight::run {
+
+Settings read_settings(const runtime::Configuration& configuration) {
+  const auto open = [&](std::string_view service) { return config::Reader::open(configuration.service_file(service)); };
+  return {.estimator = alignment::read_settings(open("alignment_estimator")).estimator,
+          .corrector = corrector::read_config(open("detection_corrector")),
+          .ghosts = ghosts::read_config(open("ghost_filter")),
+          .tracker = tracking::read_config(open("tracker")),
+          .health = health::read_config(open("health")).supervision};
+}
+
+std::vector<std::pair<std::string, std::string>> settings_files(const runtime::Configuration& configuration) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const char* const service :
+       {"alignment_estimator", "detection_corrector", "ghost_filter", "tracker", "health"}) {
+    files.emplace_back(service, configuration.service_file(service).string());
+  }
+  return files;
+}
+
+}  // namespace boresight::run

@@ -1,0 +1,20 @@
+// The settings files of the services, read as the services do.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/boresight/run/chain.hpp"
+#include "services/common/runtime/options.hpp"
+
+namespace boresight::run {
+
+/// Throws config::Error.
+[[nodiscard]] Settings read_settings(const runtime::Configuration& configuration);
+
+/// Service and file of each.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> settings_files(
+    const runtime::Configuration& configuration);
+
+}  // namespace boresight::run

@@ -1,0 +1,175 @@
+#include "services/boresight/run/summary.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "services/boresight/json/text.hpp"
+#include "services/boresight/run/rows.hpp"
+
+namespace boresight::run {
+
+namespace {
+
+constexpr int kRunFormat = 1;
+constexpr std::array<const char*, scan_integrity::kNumberOfBits> kIntegrityNames = {
+    "counter_gap", "repeated", "frozen", "stale", "implausible", "contradicts_ego", "incomplete", "impossible_copies"};
+
+double seconds_of(std::int64_t time_ns) {
+  return static_cast<double>(time_ns) / 1e9;
+}
+
+json::Value to_object(const Inputs& inputs) {
+  json::Value object;
+  if (inputs.recordings.empty()) {
+    object["detections"] = inputs.detections;
+    object["ego"] = inputs.ego;
+  } else {
+    object["recordings"] = inputs.recordings;
+  }
+  return object;
+}
+
+json::Value to_object(const Reasons& reasons) {
+  json::Value object = json::Value::object();
+  for (const auto& [reason, count] : reasons) object[reason] = count;
+  return object;
+}
+
+json::Value counts_of(const RadarCounts& counts) {
+  json::Value value;
+  value["scans"] = counts.scans;
+  value["detections"] = counts.detections;
+  json::Value& origins = value["origins"];
+  for (std::size_t i = 0; i < counts.origins.size(); ++i) {
+    origins[std::string(name_of_origin(i))] = counts.origins[i];
+  }
+  value["alignment_estimates"] = counts.estimates;
+  return value;
+}
+
+json::Value losses_of(const RadarCounts& counts, const SourceStatistics& source, const Reasons& rejected,
+                      const Reasons& noted) {
+  json::Value value;
+  value["missed_scans"] = source.lost;
+  value["rejected_messages"] = to_object(rejected);
+  value["noted_faults"] = to_object(noted);
+  value["e2e_lost"] = source.e2e_lost;
+  value["e2e_repeated"] = source.e2e_repeated;
+  value["e2e_wrong"] = source.e2e_wrong;
+  json::Value& integrity = value["scans_of_doubtful_integrity"] = json::Value::object();
+  for (std::size_t i = 0; i < counts.integrity.size(); ++i) integrity[kIntegrityNames[i]] = counts.integrity[i];
+  json::Value& lacking = value["scans_lacking_input"] = json::Value::object();
+  for (std::size_t i = 0; i < counts.flags.size(); ++i) lacking[std::string(name_of_flag(i))] = counts.flags[i];
+  value["dropped_detections"] = counts.dropped_detections;
+  json::Value& rejections = value["rejected_detections"] = json::Value::object();
+  const auto number = [&counts](Rejection reason) { return counts.rejections[static_cast<std::size_t>(reason)]; };
+  rejections["invalid"] = number(Rejection::kInvalid);
+  rejections["outside_region"] = number(Rejection::kOutsideRegion);
+  rejections["weak"] = number(Rejection::kWeak);
+  return value;
+}
+
+json::Value radars_of(const Summary& summary, const VehicleConfig& vehicle) {
+  json::Value radars = json::Value::array();
+  for (const RadarConfig& radar : vehicle.radars) {
+    json::Value value;
+    value["id"] = radar.id;
+    value["name"] = radar.name;
+    const RadarCounts& counts = summary.counts.radars[radar.id];
+    value["counts"] = counts_of(counts);
+    value["losses"] = losses_of(counts, summary.sources[radar.id], summary.rejected[radar.id], summary.noted[radar.id]);
+    radars.push_back(value);
+  }
+  return radars;
+}
+
+json::Value totals_of(const Counts& counts) {
+  std::uint64_t scans = 0, detections = 0, estimates = 0;
+  for (const RadarCounts& radar : counts.radars) {
+    scans += radar.scans;
+    detections += radar.detections;
+    estimates += radar.estimates;
+  }
+  json::Value value;
+  value["ego_motions"] = counts.ego_motions;
+  value["scans"] = scans;
+  value["detections"] = detections;
+  value["track_rows"] = counts.tracks;
+  value["alignment_estimates"] = estimates;
+  return value;
+}
+
+json::Value input_losses_of(const Summary& summary) {
+  json::Value value;
+  if (summary.frames) {
+    value["frames"] = summary.frames->frames;
+    value["unreadable"] = summary.frames->problems;
+    value["error_frames"] = summary.frames->error_frames;
+    value["ignored"] = summary.frames->ignored;
+    value["backwards"] = summary.frames->backwards;
+  }
+  if (summary.tables) {
+    value["lines"] = summary.tables->lines;
+    value["unreadable"] = summary.tables->bad_lines;
+    json::Value& unknown = value["lines_of_unknown_radars"] = json::Value::object();
+    for (const auto& [id, lines] : summary.tables->unknown_radars) unknown[std::to_string(id)] = lines;
+    value["dropped_detections"] = summary.tables->dropped_detections;
+  }
+  value["rejected_messages"] = to_object(summary.rejected[0]);
+  value["noted_faults"] = to_object(summary.noted[0]);
+  return value;
+}
+
+json::Value tracker_losses_of(const Counts& counts) {
+  json::Value value;
+  value["scans_out_of_order"] = counts.scans_out_of_order;
+  value["restarts"] = counts.tracker_restarts;
+  value["dropped_clusters"] = counts.dropped_clusters;
+  value["dropped_tracks"] = counts.dropped_tracks;
+  return value;
+}
+
+json::Value timing_of(const Timing& timing, double recording_s) {
+  const StageTimes& t = timing.stages;
+  const double known_s = seconds_of(t.estimator + t.corrector + t.ghost_filter + t.tracker + t.health) + timing.write_s;
+  json::Value stages;
+  stages["decode"] = std::max(0.0, timing.cpu_s - known_s);
+  stages["alignment_estimator"] = seconds_of(t.estimator);
+  stages["detection_corrector"] = seconds_of(t.corrector);
+  stages["ghost_filter"] = seconds_of(t.ghost_filter);
+  stages["tracker"] = seconds_of(t.tracker);
+  stages["health"] = seconds_of(t.health);
+  stages["write"] = timing.write_s;
+  json::Value value;
+  value["wall_s"] = timing.wall_s;
+  value["cpu_s"] = timing.cpu_s;
+  value["times_real_time"] = timing.wall_s > 0.0 ? json::Value(recording_s / timing.wall_s) : json::Value();
+  value["cpu_s_by_stage"] = stages;
+  return value;
+}
+
+}  // namespace
+
+std::string to_json(const Summary& summary, const VehicleConfig& vehicle) {
+  json::Value value;
+  value["tool"] = "boresight run";
+  value["version"] = summary.inputs.version;
+  value["format"] = kRunFormat;
+  value["complete"] = summary.is_complete;
+  value["inputs"] = to_object(summary.inputs);
+  value["vehicle"]["file"] = summary.inputs.vehicle_file;
+  value["vehicle"]["name"] = vehicle.name;
+  value["configuration"]["folder"] = summary.inputs.configuration;
+  for (const auto& [service, file] : summary.inputs.settings_files) value["configuration"][service] = file;
+  value["start_ns"] = summary.start_ns;
+  value["recording_s"] = summary.recording_s;
+  value["counts"] = totals_of(summary.counts);
+  value["radars"] = radars_of(summary, vehicle);
+  value["losses"]["input"] = input_losses_of(summary);
+  value["losses"]["tracker"] = tracker_losses_of(summary.counts);
+  value["timing"] = timing_of(summary.timing, summary.recording_s);
+  return json::document(value);
+}
+
+}  // namespace boresight::run

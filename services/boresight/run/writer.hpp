@@ -1,0 +1,43 @@
+// The files of a run folder that grow with the recording. Rows are gathered and handed over in complete ones.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "services/boresight/run/results.hpp"
+
+namespace boresight::run {
+
+enum class File : std::uint8_t { kScans, kDetections, kReflectors, kTracks, kAlignment, kHealth };
+inline constexpr std::array<std::string_view, 6> kFileNames = {"scans.csv",  "detections.csv", "reflectors.csv",
+                                                               "tracks.csv", "alignment.csv",  "health.jsonl"};
+
+class Writer {
+ public:
+  /// Appends text to a file.
+  using Put = std::function<void(File, std::string_view text)>;
+
+  /// The header lines are the first rows.
+  explicit Writer(Put put);
+
+  void write(const ScanResult& result);
+  void write(const EstimateResult& result);
+  void write(const HealthResult& result);
+  /// Hands over what has been gathered.
+  void flush();
+
+ private:
+  [[nodiscard]] std::string& rows(File file) { return rows_[static_cast<std::size_t>(file)]; }
+  void hand_over(std::size_t least_bytes);
+
+  Put put_;
+  std::array<std::string, kFileNames.size()> rows_;
+};
+
+/// A line of health.jsonl, with line feed.
+[[nodiscard]] std::string to_json_line(const HealthResult& result);
+
+}  // namespace boresight::run
