@@ -70,6 +70,21 @@ TEST_F(RunCommand, TwoRunsDifferInTheirTimingOnly) {
   EXPECT_THAT(json, HasSubstr("\"scans\": " + std::to_string(testing::demo_drive().scans)));
 }
 
+TEST_F(RunCommand, TakesTheTablesOfDecodeInPlaceOfTheRecording) {
+  const std::string decode =
+      BORESIGHT_BINARY_DIR "/boresight decode --config " BORESIGHT_SOURCE_DIR "/config --vehicle demo ";
+  const std::string detections = path("d.csv").string(), ego = path("e.csv").string();
+  ASSERT_EQ(std::system((decode + "--csv --out " + detections + " " + drive() + " 2> /dev/null").c_str()), 0);
+  ASSERT_EQ(std::system((decode + "--ego --out " + ego + " " + drive() + " 2> /dev/null").c_str()), 0);
+  ASSERT_EQ(run(drive() + " --vehicle demo --out " + path("recorded").string()), 0) << errors_;
+  ASSERT_EQ(run("--detections " + detections + " --ego " + ego + " --vehicle demo --out " + path("table").string()), 0)
+      << errors_;
+  EXPECT_THAT(errors_, HasSubstr("ignored columns: \"cycle\""));
+  for (const char* const name : {"scans.csv", "detections.csv", "reflectors.csv", "tracks.csv", "alignment.csv"}) {
+    EXPECT_TRUE(text("recorded/" + std::string(name)) == text("table/" + std::string(name))) << name;
+  }
+}
+
 TEST_F(RunCommand, CountsAndReportsDamagedInput) {
   std::string log = schema_page::text_of(testing::demo_drive().ego.string());
   const std::size_t middle = log.find('\n', log.size() / 2);
