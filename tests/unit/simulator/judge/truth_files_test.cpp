@@ -22,7 +22,7 @@ TEST(TruthFiles, DetectionsAreReadAsTheDriveHadThem) {
   std::filesystem::create_directories(folder);
   const simulator::Scenario scenario = simulator::scenario("truck_overtaking");
   simulator::Drive drive(scenario, vehicle, 3, 0.6);
-  simulator::TruthTables tables(folder, scenario, vehicle);
+  simulator::TruthTables tables(folder, scenario, vehicle, 3);
   TrueScans expected;
   while (const simulator::Event* event = drive.next()) {
     if (event->scan == nullptr) continue;

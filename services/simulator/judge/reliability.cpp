@@ -1,9 +1,9 @@
-#include "tests/benchmarks/ghosts/common/reliability.hpp"
+#include "services/simulator/judge/reliability.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace boresight::bench {
+namespace boresight::judge {
 
 void Reliability::add(double probability, bool is_so) {
   const double p = probability >= 0.0 && probability <= 1.0 ? probability : (is_so ? 0.0 : 1.0);
@@ -38,4 +38,4 @@ double Reliability::calibration_error() const {
   return sum / static_cast<double>(count());
 }
 
-}  // namespace boresight::bench
+}  // namespace boresight::judge
