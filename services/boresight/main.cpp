@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   boresight::add_record_command(app, exit_code);
   boresight::add_report_command(app, exit_code);
   boresight::add_run_command(app, exit_code);
+  boresight::add_score_command(app, exit_code);
   boresight::add_simulate_command(app, exit_code);
   boresight::add_supervise_command(app, exit_code);
   try {
