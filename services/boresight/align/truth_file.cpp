@@ -1,7 +1,10 @@
 #include "services/boresight/align/truth_file.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <istream>
 #include <sstream>
 #include <stdexcept>
@@ -9,8 +12,10 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/header.hpp"
+#include "services/boresight/align/csv_table.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/common/vehicle/drive_truth.hpp"
 
 namespace boresight::align {
 
@@ -39,7 +44,79 @@ std::optional<std::array<double, 3>> sensor_angles(const std::map<std::string, d
   return std::array<double, 3>{*alpha * kRadiansPerDegree, *beta * kRadiansPerDegree, *gamma * kRadiansPerDegree};
 }
 
+constexpr std::string_view kDriveTruthHeader = "quantity,";
+
+std::ifstream opened(const std::filesystem::path& file) {
+  errno = 0;
+  std::ifstream stream(file);
+  if (!stream || stream.peek() == std::ifstream::traits_type::eof()) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), errno != 0 ? std::strerror(errno) : "is empty"));
+  }
+  return stream;
+}
+
+/// truth.csv: the speed scale, and the angles at the start.
+void take_drive_truth(const std::filesystem::path& file, Truth& truth) {
+  std::ifstream stream = opened(file);
+  const DriveTruth drive = read_drive_truth(stream);
+  if (std::isfinite(drive.speed_scale)) truth.speed_scale = drive.speed_scale;
+  for (const auto& [id, radar] : drive.radars) {
+    if (!std::isfinite(radar.yaw_rad + radar.pitch_rad + radar.roll_rad)) continue;
+    truth.radars[id].sensor_rad = {radar.yaw_rad, radar.pitch_rad, radar.roll_rad};
+  }
+}
+
+/// truth_sensors.csv: the first angles of a radar that truth.csv does not state, and each step change.
+void take_sensor_truth(const std::filesystem::path& file, double origin_s, Truth& truth) {
+  constexpr std::array<Column, 6> kColumns = {{{"t_s", -4e9, 4e9, "s"},
+                                               {"radar", 1.0, double{kMaxRadars}, ""},
+                                               {"alignment_yaw_deg", -360.0, 360.0, "deg"},
+                                               {"alignment_pitch_deg", -360.0, 360.0, "deg"},
+                                               {"alignment_roll_deg", -360.0, 360.0, "deg"},
+                                               {"step_changes", 0.0, 1e9, ""}}};
+  recording::ByteSource source(file);
+  Problems problems([](const std::string& problem) { throw TableError(problem); });
+  CsvTable table(source, kColumns, problems);
+  std::map<std::uint32_t, double> changes;
+  std::array<double, kColumns.size()> row{};
+  while (table.next(row)) {
+    const auto id = static_cast<std::uint32_t>(row[1]);
+    const std::array<double, 3> angles = {row[2] * kRadiansPerDegree, row[3] * kRadiansPerDegree,
+                                          row[4] * kRadiansPerDegree};
+    if (!truth.radars.contains(id)) truth.radars[id].sensor_rad = angles;
+    const auto [before, is_first] = changes.try_emplace(id, 0.0);
+    if (row[5] > before->second) truth.step_changes.push_back({origin_s + row[0], id, angles});
+    before->second = row[5];
+  }
+}
+
 }  // namespace
+
+Truth read_truth_at(const std::filesystem::path& where, double origin_s) {
+  if (!std::filesystem::is_directory(where)) {
+    std::ifstream stream = opened(where);
+    std::string first;
+    std::getline(stream, first);
+    if (!first.starts_with(kDriveTruthHeader)) {
+      stream.clear();
+      stream.seekg(0);
+      return read_truth(stream, where.string());
+    }
+    Truth truth;
+    take_drive_truth(where, truth);
+    if (!truth.speed_scale && truth.radars.empty()) throw std::runtime_error(where.string() + ": holds no truth");
+    return truth;
+  }
+  Truth truth;
+  if (std::filesystem::exists(where / "truth.csv")) take_drive_truth(where / "truth.csv", truth);
+  if (std::filesystem::exists(where / "truth_sensors.csv")) {
+    take_sensor_truth(where / "truth_sensors.csv", origin_s, truth);
+  }
+  if (!truth.speed_scale && truth.radars.empty()) {
+    throw std::runtime_error(where.string() + ": holds no truth of mountings (truth.csv, truth_sensors.csv)");
+  }
+  return truth;
+}
 
 Truth read_truth(std::istream& input, const std::string& name) {
   Truth truth;
@@ -79,6 +156,12 @@ Truth read_truth(std::istream& input, const std::string& name) {
       const auto values = pairs(words);
       truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
       truth.slip_coefficient_radps2pm = find(values, "rear_slip_coeff");
+    } else if (!kind.empty() && kind.front() != '#' && kind != "noise" && kind != "real_car" && kind != "stationary" && kind != "crlb_sd" &&
+               kind != "prototype") {
+      fail(fmt::format(
+          "unknown line \"{}\"; known are k_v, radar, step_change, disturbance, noise, real_car, stationary, crlb_sd, "
+          "prototype and comments (#)",
+          kind.substr(0, 40)));
     }
   }
   std::stable_sort(truth.step_changes.begin(), truth.step_changes.end(),

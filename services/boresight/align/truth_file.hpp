@@ -1,8 +1,9 @@
-// The truth of a simulated drive, in the format of alignment_drive/truth_1.txt.
+// The truth of a simulated drive: the text of an alignment drive, or the tables of a drive (config/schema/truth.md).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <iosfwd>
 #include <map>
 #include <optional>
@@ -34,9 +35,16 @@ struct Truth {
   std::vector<StepChange> step_changes;   ///< in the order of time
 };
 
-/// Reads lines "k_v VALUE", and lines "radar ID", "step_change" and "disturbance" with pairs "key value"; other lines
-/// are skipped. Throws std::runtime_error, which names line and cause, if a number is missing or no such line exists.
+/// Reads lines "k_v VALUE", and lines "radar ID", "step_change" and "disturbance" with pairs "key value". Comments (#),
+/// empty lines, and the lines "noise", "stationary", "crlb_sd" and "prototype" hold no truth of a mounting and are
+/// passed over. Throws std::runtime_error, which names line and cause, for any other line, if a number is missing, or
+/// if no truth is stated.
 [[nodiscard]] Truth read_truth(std::istream& input, const std::string& name);
+
+/// Reads what is there: a folder with truth.csv or truth_sensors.csv of a simulated drive, truth.csv itself, or the
+/// text of an alignment drive. `origin_s` is the time 0 of the tables on the recording's clock; the text has the
+/// recording's own clock. Throws std::runtime_error as above.
+[[nodiscard]] Truth read_truth_at(const std::filesystem::path& where, double origin_s);
 
 /// R(sensor→vehicle) = R_z(yaw_b+α)·R_y(−(pitch_b+β))·R_x(roll_b+γ). Nominal angles that the truth does not state are
 /// taken from the vehicle file.

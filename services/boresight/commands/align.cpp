@@ -25,6 +25,7 @@
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
+#include "services/simulator/drive.hpp"
 
 namespace boresight {
 
@@ -68,8 +69,10 @@ class Align {
       run_options.config = alignment::read_settings(config::Reader::open(settings_file())).estimator;
     }
     if (!options_.truth.empty()) {
-      InputFile truth(options_.truth);
-      run_options.truth = align::read_truth(truth, options_.truth);
+      // Recordings of a simulated drive carry stamps; its tables count from the beginning.
+      const double origin_s =
+          options_.recordings.empty() ? 0.0 : 1e-9 * static_cast<double>(simulator::Drive::kStart_ns);
+      run_options.truth = align::read_truth_at(options_.truth, origin_s);
     }
     if (!options_.recordings.empty()) return report(run_recordings(std::move(run_options)));
     const VehicleConfig vehicle = options_.configuration.vehicle(config::VehicleUse::kOffline);
@@ -229,9 +232,11 @@ void add_align_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<AlignOptions>();
   command
       ->add_option("--drive", options->drive,
-                   "Table of detections with the columns t, radar, range, az, el, vr; \"-\": standard input")
+                   "Table of detections with the columns t_s, radar, range_m, azimuth_rad, range_rate_mps …; \"-\": "
+                   "standard input")
       ->type_name("FILE");
-  command->add_option("--ego", options->ego, "Table of ego motions with the columns t, v, yaw_rate")->type_name("FILE");
+  command->add_option("--ego", options->ego, "Table of ego motions with the columns t_s, speed_mps, yaw_rate_radps")
+      ->type_name("FILE");
   command
       ->add_option("--recording", options->recordings,
                    "Instead of tables: pcap, pcapng or candump log of the vehicle's links; repeatable")
@@ -243,8 +248,11 @@ void add_align_command(CLI::App& app, int& exit_code) {
   command->add_option("--method", options->method, "Estimation method")
       ->check(CLI::IsMember(align::method_names()))
       ->capture_default_str();
-  command->add_option("--truth", options->truth, "Truth of a simulated drive, to compare the result with")
-      ->type_name("FILE");
+  command
+      ->add_option(
+          "--truth", options->truth,
+          "Truth of a simulated drive, to compare the result with: its folder, or the file of an alignment drive")
+      ->type_name("DIR|FILE");
   add_json_option(*command, options->json, "Result as JSON; without FILE, or with \"-\": to standard output");
   command
       ->add_option("--plot", options->plot,

@@ -76,12 +76,42 @@ TEST(TruthFile, RefusesWhatHoldsNone) {
     }
     return "";
   };
-  EXPECT_THAT(error_of("hello\n"), HasSubstr("holds no truth"));
+  EXPECT_THAT(error_of("# nothing\n"), HasSubstr("holds no truth"));
+  EXPECT_THAT(error_of("k_v 1\nradat 1 alpha_deg 1\n"), HasSubstr("truth.txt:2: unknown line \"radat\""));
   EXPECT_THAT(error_of("k_v fast\n"), HasSubstr("truth.txt:1: k_v"));
   EXPECT_THAT(error_of("radar 17 alpha_deg 1\n"), HasSubstr("1 … 16"));
   EXPECT_THAT(error_of("k_v 1\nradar 1 alpha_deg 1 beta_deg 2\n"),
               HasSubstr("truth.txt:2: radar 1: alpha_deg, beta_deg"));
   EXPECT_THAT(error_of("k_v 1\nstep_change t 30 radar 1\n"), HasSubstr("truth.txt:2: step_change"));
+}
+
+TEST(TruthFile, PassesOverLinesWithoutMountings) {
+  std::istringstream text(
+      "# comment\n\nk_v 1.02\nnoise sigma_vr 0.03 m/s\nstationary residual\ncrlb_sd kv 1\nprototype x\n");
+  EXPECT_DOUBLE_EQ(read_truth(text, "truth.txt").speed_scale.value(), 1.02);
+}
+
+TEST(TruthFile, FolderOfASimulatedDriveIsReadWithItsStepChanges) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "align_truth_folder";
+  std::filesystem::create_directories(folder);
+  testing::write_text(folder / "truth.csv",
+                      "quantity,radar,value,unit\nspeed_scale,,1.012000,1\nalignment_yaw,2,0.3,deg\n"
+                      "alignment_pitch,2,-0.2,deg\nalignment_roll,2,0.1,deg\nscans,2,3,1\n");
+  testing::write_text(folder / "truth_sensors.csv",
+                      "t_s,radar,scan,alignment_yaw_deg,alignment_pitch_deg,alignment_roll_deg,step_changes,stated\n"
+                      "0.0,2,1,0.3,-0.2,0.1,0,clear\n0.1,2,2,2.5,-0.2,0.1,1,clear\n0.2,2,3,2.5,-0.2,0.1,1,clear\n");
+  const Truth truth = read_truth_at(folder, 1000.0);
+  const double degree = M_PI / 180.0;
+  EXPECT_DOUBLE_EQ(truth.speed_scale.value(), 1.012);
+  EXPECT_NEAR(truth.radars.at(2).sensor_rad[0], 0.3 * degree, 1e-12);
+  ASSERT_EQ(truth.step_changes.size(), 1u);
+  EXPECT_DOUBLE_EQ(truth.step_changes[0].time_s, 1000.1);
+  EXPECT_NEAR(truth.step_changes[0].sensor_rad[0], 2.5 * degree, 1e-12);
+  const Truth alone = read_truth_at(folder / "truth.csv", 0.0);
+  EXPECT_NEAR(alone.radars.at(2).sensor_rad[1], -0.2 * degree, 1e-12);
+  std::filesystem::remove(folder / "truth.csv");
+  std::filesystem::remove(folder / "truth_sensors.csv");
+  EXPECT_THROW(static_cast<void>(read_truth_at(folder, 0.0)), std::runtime_error);
 }
 
 /// With nothing known: every figure NaN.

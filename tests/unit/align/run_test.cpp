@@ -238,7 +238,7 @@ TEST_F(Align, TheTruthIsComparedWith) {
   EXPECT_THAT(json(), HasSubstr("\"k_v_error\":"));
   EXPECT_THAT(out(), HasSubstr("error"));
   ASSERT_EQ(align(kInputs + "--method azimuth_1d --truth vehicle.toml"), 3);
-  EXPECT_THAT(errors(), HasSubstr("holds no truth"));
+  EXPECT_THAT(errors(), HasSubstr("vehicle.toml:4: unknown line"));
 }
 
 TEST_F(Align, AFewBadLinesAreReportedAndManyMakeItFail) {
