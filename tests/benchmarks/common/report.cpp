@@ -43,6 +43,8 @@ std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
+}  // namespace
+
 void print_table(const Table& table, std::ostream& out) {
   std::vector<std::size_t> widths;
   for (const std::string& cell : table.header) widths.push_back(width(cell));
@@ -60,8 +62,6 @@ void print_table(const Table& table, std::ostream& out) {
   line(table.header);
   for (const auto& row : table.rows) line(row);
 }
-
-}  // namespace
 
 std::string number(double value) {
   if (std::isnan(value)) return "—";

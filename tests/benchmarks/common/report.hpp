@@ -33,6 +33,9 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// As text, columns aligned.
+void print_table(const Table& table, std::ostream& out);
+
 /// One curve of one panel of a figure.
 struct Curve {
   std::string figure;

@@ -1,0 +1,78 @@
+#include "tests/benchmarks/realism/rows/row.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "tests/benchmarks/common/report.hpp"
+
+namespace boresight::bench::realism {
+
+namespace {
+
+constexpr double kTolerance = 0.25;     // of the measured value
+constexpr double kTolerance_db = 0.97;  // 10·log10(1.25)
+
+}  // namespace
+
+double Row::rounding() const {
+  return 0.5 * std::pow(10.0, -digits);
+}
+
+Measured Row::required(Source source) const {
+  if (judged == Judged::kNo || source == Source::kNone) return {};
+  const Measured& own = source == Source::kRadarScenes ? radar_scenes : nuscenes;
+  const Measured& other = source == Source::kRadarScenes ? nuscenes : radar_scenes;
+  return own.exists() || judged == Judged::kOwn ? own : other;
+}
+
+Verdict judge(const Row& row, Source source, double figure) {
+  const Measured required = row.required(source);
+  if (!required.exists()) return {};
+  if (std::isnan(figure)) return {Outcome::kNoData, 0.0};
+  if (figure >= required.low && figure <= required.high) return {Outcome::kMet, 0.0};
+  const double nearest = figure < required.low ? required.low : required.high;
+  const bool is_level = row.scale == Scale::kLevel_db;
+  const double tolerance = (is_level ? kTolerance_db : kTolerance * std::abs(nearest)) + row.rounding();
+  const double distance = figure - nearest;
+  // The part beyond a measured zero cannot be a share of it.
+  const double off = is_level ? distance : nearest == 0.0 ? kNoFigure : distance / std::abs(nearest);
+  return {std::abs(distance) <= tolerance ? Outcome::kMet : Outcome::kMissed, off};
+}
+
+std::string Verdict::text(Scale scale) const {
+  switch (outcome) {
+    case Outcome::kNotJudged:
+      return "";
+    case Outcome::kMet:
+      return "within";
+    case Outcome::kNoData:
+      return "no data";
+    case Outcome::kMissed:
+      break;
+  }
+  if (std::isnan(off)) return "off";
+  const std::string sign = off < 0.0 ? "−" : "+";
+  return scale == Scale::kLevel_db ? "off by " + sign + fixed(std::abs(off), 1) + " dB"
+                                   : "off by " + sign + fixed(kPercent * std::abs(off), 0) + " %";
+}
+
+std::vector<Row> all_rows() {
+  std::vector<Row> rows;
+  add_count_rows(rows);
+  add_place_rows(rows);
+  add_deviation_rows(rows);
+  add_strength_rows(rows);
+  add_stationary_rows(rows);
+  add_false_mover_rows(rows);
+  return rows;
+}
+
+const char* section_title(int section) {
+  constexpr std::array<const char*, 6> kTitles{
+      "1. Detections of an object in one scan of one radar", "2. Where on the body",
+      "3. Range rate against the rigid body",                "4. Strength: RCS as the sensor states it",
+      "5. The stationary world",                             "6. False movers"};
+  return section >= 1 && section <= 6 ? kTitles[static_cast<std::size_t>(section - 1)] : "";
+}
+
+}  // namespace boresight::bench::realism
