@@ -1,0 +1,50 @@
+// Azimuth ambiguity of the antenna array: a strong stationary reflector appears a second time at another azimuth.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "services/simulator/radar/returns/place.hpp"
+#include "services/simulator/radar/returns/strength.hpp"
+
+namespace boresight::simulator::radar {
+
+/// sin(azimuth) of the copy: a step away, to the side where it stays in view.
+[[nodiscard]] inline double ambiguous_sine(double sine, double step, double limit) {
+  const double outward = std::copysign(step, sine);
+  return std::abs(sine + outward) < limit ? sine + outward : sine - outward;
+}
+
+/// Appends copies of stationary detections, `per_scan` of them in the mean. A parent's chance grows with the root of
+/// its power, so strong parents are preferred.
+inline void add_ambiguous_azimuths(const AzimuthAmbiguitySpec& spec, const Draws& draws, const FieldOfView& fov,
+                                   const StrengthSpec& strength, std::vector<Echo>& echoes) {
+  constexpr std::uint64_t kCopy = 0xA21B;
+  const auto weight_of = [&](const Echo& e) { return std::pow(10.0, 0.05 * rcs_of(e, fov)); };
+  const auto is_parent = [](const Echo& e) { return e.truth.provenance == Provenance::kStationary; };
+  double sum = 0.0;
+  for (const Echo& e : echoes) sum += is_parent(e) ? weight_of(e) : 0.0;
+  const std::size_t parents = echoes.size();
+  const double limit = std::sin(std::min(0.5 * M_PI, std::min(-fov.azimuth_min_rad, fov.azimuth_max_rad)));
+  for (std::size_t i = 0; i < parents; ++i) {
+    if (!is_parent(echoes[i])) continue;
+    Stream stream = draws.once("azimuth ambiguity", echoes[i].key);
+    const double share = spec.per_scan * weight_of(echoes[i]) / sum;
+    const double step = spec.sine_step + spec.sine_step_std * stream.gaussian();
+    const unsigned copies = stream.poisson(share);
+    const double sine = ambiguous_sine(std::sin(echoes[i].azimuth_rad), step, limit);
+    if (copies == 0 || std::abs(sine) >= limit) continue;
+    Echo e = echoes[i];
+    const double rcs = strength.on ? false_rcs(strength, e.range_m, stream) : rcs_of(e, fov);
+    e.azimuth_rad = std::asin(sine);
+    set_rcs(e, rcs, fov);
+    e.truth.provenance = Provenance::kClutter;
+    e.truth.cause = Cause::kAzimuthAmbiguity;
+    e.key = key_of(kCopy, e.key);
+    echoes.push_back(e);
+  }
+}
+
+}  // namespace boresight::simulator::radar

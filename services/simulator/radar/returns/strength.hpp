@@ -1,0 +1,66 @@
+// RCS by range, as a radar states it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "services/simulator/radar/returns/draws.hpp"
+#include "services/simulator/radar/returns/interpolate.hpp"
+#include "services/simulator/radar/returns/object_class.hpp"
+
+namespace boresight::simulator::radar {
+
+inline constexpr double kNormal90 = 1.2815515655446004;  ///< 90 % quantile of the standard normal distribution
+
+/// The RCS at a standard normal value: a normal distribution on either side of the median.
+[[nodiscard]] inline double rcs_at(const StrengthSpec& spec, const StrengthQuantiles& quantiles, double range_m,
+                                   double normal) {
+  const double median = interpolated(spec.range_m, quantiles.median_dbsm, range_m);
+  const double other = interpolated(spec.range_m, normal < 0.0 ? quantiles.low_dbsm : quantiles.high_dbsm, range_m);
+  return median + std::abs(normal) / kNormal90 * (other - median);
+}
+
+/// Standard deviation of the RCS at a range.
+[[nodiscard]] inline double rcs_std_db(const StrengthSpec& spec, const StrengthQuantiles& quantiles, double range_m) {
+  return 0.5 / kNormal90 *
+         (interpolated(spec.range_m, quantiles.high_dbsm, range_m) -
+          interpolated(spec.range_m, quantiles.low_dbsm, range_m));
+}
+
+/// RCS of one detection of an object: a slowly changing part, a part that is common to the scan, and a part of its own.
+/// `part`: key of the detection.
+[[nodiscard]] inline double object_rcs(const StrengthSpec& spec, BodyKind kind, double range_m, std::uint32_t object,
+                                       std::uint64_t part, const Draws& draws) {
+  const double std_db = std::max(0.1, is_vehicle(kind) ? rcs_std_db(spec, spec.vehicle, range_m) : spec.person_std_db);
+  const double own = std::min(1.0, std::pow(spec.detection_std_db / std_db, 2));
+  const double scan = std::min(1.0 - own, std::pow(spec.scan_std_db / std_db, 2));
+  const double slow = std::max(0.0, 1.0 - own - scan);
+  const double normal = std::sqrt(slow) * draws.held("rcs of object", object, spec.object_correlation).gaussian() +
+                        std::sqrt(scan) * draws.once("rcs of scan", object).gaussian() +
+                        std::sqrt(own) * draws.once("rcs of detection", part).gaussian();
+  if (is_vehicle(kind)) return rcs_at(spec, spec.vehicle, range_m, normal);
+  return (kind == BodyKind::kPedestrian ? spec.pedestrian_dbsm : spec.two_wheeler_dbsm) + std_db * normal;
+}
+
+/// RCS of a stationary reflector: `place` is its own standard normal value, which lasts.
+[[nodiscard]] inline double stationary_rcs(const StrengthSpec& spec, double range_m, double place,
+                                           std::uint64_t reflector, const Draws& draws) {
+  const double std_db = std::max(0.1, rcs_std_db(spec, spec.stationary, range_m));
+  const double scan = std::min(1.0, std::pow(spec.scan_std_db / std_db, 2));
+  const double normal =
+      std::sqrt(1.0 - scan) * place + std::sqrt(scan) * draws.once("rcs of reflector", reflector).gaussian();
+  return rcs_at(spec, spec.stationary, range_m, normal);
+}
+
+[[nodiscard]] inline double false_rcs(const StrengthSpec& spec, double range_m, Stream& stream) {
+  return rcs_at(spec, spec.false_mover, range_m, stream.gaussian());
+}
+
+/// Offset of a radar's scale, for the whole drive.
+[[nodiscard]] inline double radar_offset_db(const StrengthSpec& spec, const Draws& draws) {
+  if (!spec.on) return 0.0;
+  return draws.always("rcs of radar").uniform(-spec.radar_offset_db, spec.radar_offset_db);
+}
+
+}  // namespace boresight::simulator::radar
