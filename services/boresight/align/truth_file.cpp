@@ -156,8 +156,8 @@ Truth read_truth(std::istream& input, const std::string& name) {
       const auto values = pairs(words);
       truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
       truth.slip_coefficient_radps2pm = find(values, "rear_slip_coeff");
-    } else if (!kind.empty() && kind.front() != '#' && kind != "noise" && kind != "real_car" && kind != "stationary" && kind != "crlb_sd" &&
-               kind != "prototype") {
+    } else if (!kind.empty() && kind.front() != '#' && kind != "noise" && kind != "real_car" && kind != "stationary" &&
+               kind != "crlb_sd" && kind != "prototype") {
       fail(fmt::format(
           "unknown line \"{}\"; known are k_v, radar, step_change, disturbance, noise, real_car, stationary, crlb_sd, "
           "prototype and comments (#)",

@@ -36,9 +36,9 @@ struct Truth {
 };
 
 /// Reads lines "k_v VALUE", and lines "radar ID", "step_change" and "disturbance" with pairs "key value". Comments (#),
-/// empty lines, and the lines "noise", "stationary", "crlb_sd" and "prototype" hold no truth of a mounting and are
-/// passed over. Throws std::runtime_error, which names line and cause, for any other line, if a number is missing, or
-/// if no truth is stated.
+/// empty lines, and the lines "noise", "real_car", "stationary", "crlb_sd" and "prototype" hold no truth of a mounting
+/// and are passed over. Throws std::runtime_error, which names line and cause, for any other line, if a number is
+/// missing, or if no truth is stated.
 [[nodiscard]] Truth read_truth(std::istream& input, const std::string& name);
 
 /// Reads what is there: a folder with truth.csv or truth_sensors.csv of a simulated drive, truth.csv itself, or the
