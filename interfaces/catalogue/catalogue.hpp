@@ -27,15 +27,17 @@ enum class Service : std::uint8_t {
   kTracker = 4,
   kHealth = 5,
   kMonitor = 6,  ///< `boresight monitor`, tests, recorders: reads everything, writes nothing, may be absent
+  kReplay = 7,   ///< `boresight-replay --speed max`: waits for the track list of each scan, may be absent
 };
-inline constexpr std::size_t kNumberOfServices = 7;
-/// Supervised services: all except the optional monitor.
+inline constexpr std::size_t kNumberOfServices = 8;
+/// Supervised services: all except the optional monitor and replay.
 inline constexpr std::size_t kNumberOfSupervisedServices = 6;
 static_assert(kNumberOfServices <= kMaxServices);
 
 /// Names as in binaries (`boresight-<name>`), directories under services/, configuration files and log lines.
 inline constexpr std::array<std::string_view, kNumberOfServices> kServiceNames = {
-    "ingest_gateway", "alignment_estimator", "detection_corrector", "ghost_filter", "tracker", "health", "monitor"};
+    "ingest_gateway", "alignment_estimator", "detection_corrector", "ghost_filter", "tracker", "health", "monitor",
+    "replay"};
 
 [[nodiscard]] constexpr std::string_view name_of(Service service) {
   return kServiceNames[static_cast<std::size_t>(service)];
@@ -103,7 +105,7 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
      .type = "RadarScan",
      .payload_bytes = sizeof(RadarScan),
      .writers = ServiceSet(kIngestGateway),
-     .readers = ServiceSet(kAlignmentEstimator, kDetectionCorrector, kHealth, kMonitor),
+     .readers = ServiceSet(kAlignmentEstimator, kDetectionCorrector, kHealth, kMonitor, kReplay),
      .per_radar = true,
      .period_ns = 50 * kMillisecond_ns,
      .deadline_ns = 250 * kMillisecond_ns,
@@ -158,7 +160,7 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
      .type = "TrackList",
      .payload_bytes = sizeof(TrackList),
      .writers = ServiceSet(kTracker),
-     .readers = ServiceSet(kGhostFilter, kHealth, kMonitor),
+     .readers = ServiceSet(kGhostFilter, kHealth, kMonitor, kReplay),
      .per_radar = true,
      .period_ns = 50 * kMillisecond_ns,
      .deadline_ns = 250 * kMillisecond_ns,
@@ -180,7 +182,7 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
      .type = "ServiceStatus",
      .payload_bytes = sizeof(ServiceStatus),
      .writers = ServiceSet(kIngestGateway, kAlignmentEstimator, kDetectionCorrector, kGhostFilter, kTracker, kHealth),
-     .readers = ServiceSet(kHealth, kMonitor),
+     .readers = ServiceSet(kHealth, kMonitor, kReplay),
      .per_radar = false,
      .period_ns = 100 * kMillisecond_ns,
      .deadline_ns = 500 * kMillisecond_ns,

@@ -1,6 +1,7 @@
 #include "services/common/runtime/node.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <thread>
@@ -49,7 +50,7 @@ void install_error_handler() {
 }
 
 /// True if RouDi accepts datagrams at its socket, which it does as soon as it can register applications.
-bool roudi_is_reachable() {
+bool roudi_accepts_datagrams() {
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return false;
   sockaddr_un address{};
@@ -64,7 +65,7 @@ bool roudi_is_reachable() {
 /// Waits for RouDi, so that a service may start first. iceoryx itself aborts after a minute without RouDi.
 void wait_for_roudi() {
   bool is_logged = false;
-  while (!roudi_is_reachable()) {
+  while (!roudi_accepts_datagrams()) {
     if (stop_signalled()) throw std::runtime_error("stopped while waiting for RouDi");
     if (!is_logged) log::info("waiting for RouDi");
     is_logged = true;
@@ -104,6 +105,10 @@ Node::Node(catalogue::Service self, std::string_view name_suffix) : impl_(std::m
 }
 
 Node::~Node() = default;
+
+bool Node::roudi_is_reachable() {
+  return roudi_accepts_datagrams();
+}
 
 catalogue::Service Node::self() const {
   return impl_->self;
@@ -160,6 +165,11 @@ int Node::spin() {
   return impl_->exit_code;
 }
 
+void Node::serve() {
+  impl_->take_all();
+  impl_->run_timers();
+}
+
 void Node::stop(int exit_code) {
   impl_->stopping = true;
   impl_->exit_code = exit_code;
@@ -207,6 +217,10 @@ bool Node::Impl::take_one(Input& input) {
   } else {
     const std::uint64_t lost = input.gaps.observe(header);
     node.status.faults[static_cast<std::size_t>(Fault::kInputLost)] += lost;
+    if (lost > 0) {
+      std::snprintf(node.status.last_fault.data(), node.status.last_fault.size(), "gap in the sequence of %s",
+                    input.port.getServiceDescription().getInstanceIDString().c_str());
+    }
     {
       const CountAllocations counting(input.handled >= kWarmUpInputs);
       input.handler(payload);

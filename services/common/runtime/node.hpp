@@ -19,6 +19,8 @@ class Node {
   /// Connects to RouDi and waits for it until a stop is requested; then throws std::runtime_error. `name_suffix`
   /// distinguishes several monitors.
   explicit Node(catalogue::Service self, std::string_view name_suffix = {});
+  /// Whether RouDi can be reached now. For programs that do without the bus if it is not there.
+  [[nodiscard]] static bool roudi_is_reachable();
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
@@ -45,6 +47,8 @@ class Node {
 
   /// Runs until SIGTERM, SIGINT or stop(); returns the process's exit code.
   int spin();
+  /// In place of spin(), for a program with a loop of its own: handles all waiting messages and due timers, returns.
+  void serve();
   void stop(int exit_code = 0);
   [[nodiscard]] bool stop_requested() const;
 

@@ -214,7 +214,7 @@ TEST(MonitorRecord, DamagedSnapshotIsSkippedAndReported) {
        "r:2: track id is '4294967296', allowed: a whole number from 0 to 4294967295"},
       {head + "track 1 1 4 4 0 0 0 0\nend\n", "r:2: movement is '4', allowed: a whole number from 0 to 3"},
       {head + "service 18446744073709551615 1 0 0 0 0 0\nend\n",
-       "r:2: service is '18446744073709551615', allowed: a whole number from 0 to 6"},
+       "r:2: service is '18446744073709551615', allowed: a whole number from 0 to 7"},
       {head + "latency 99 1\nend\n", "r:2: stage is '99', allowed: a whole number from 0 to "},
       {head + "latency 0 1 4000000000 1\nend\n", "r:2: bucket is '4000000000', allowed: a whole number from 0 to "},
       {head + "latency 0 1 3 18446744073709551615\nend\n",
