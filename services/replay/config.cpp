@@ -1,5 +1,7 @@
 #include "services/replay/config.hpp"
 
+#include "interfaces/catalogue/catalogue.hpp"
+
 namespace boresight::replay {
 
 Config read_config(config::Reader root) {
@@ -10,6 +12,13 @@ Config read_config(config::Reader root) {
     route.require("local");
     c.routes[route.text("recorded", "")] = route.text("local", "");
   }
+  config::Reader max_speed = root.table("max_speed");
+  // The gateway may publish the scan of one more frame. The queues of all readers still hold it.
+  constexpr auto kMost =
+      static_cast<double>(catalogue::queue_capacity(catalogue::topic(catalogue::TopicId::kRadarScan)));
+  c.max_speed.max_scans_in_flight = static_cast<std::size_t>(max_speed.integer(
+      "max_scans_in_flight", {1, kMost / 2}, static_cast<std::int64_t>(c.max_speed.max_scans_in_flight)));
+  c.max_speed.timeout_s = max_speed.number("timeout_s", {0.1, 3600.0}, c.max_speed.timeout_s);
   config::Reader someip = root.table("someip");
   SomeIpConfig& s = c.someip;
   s.discovery_group = someip.text("discovery_group", "");

@@ -1,6 +1,7 @@
 // config/services/replay.toml → replay::Config.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -18,9 +19,16 @@ struct SomeIpConfig {
   std::uint32_t data_id_base = 0x4253'0000;  ///< Data ID = base + instance << 8 + low byte of the event
 };
 
+/// Keys of [max_speed], for --speed max.
+struct MaxSpeedConfig {
+  std::size_t max_scans_in_flight = 1;  ///< scans that wait for their track list before the next frame is sent
+  double timeout_s = 2.0;               ///< time without any track list after which the replay no longer waits
+};
+
 struct Config {
   std::string tunnel_path;                    ///< "": the default of the runtime directory
   std::map<std::string, std::string> routes;  ///< recorded IPv4 address → local address
+  MaxSpeedConfig max_speed;
   SomeIpConfig someip;
 };
 

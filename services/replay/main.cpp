@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "services/common/runtime/stop_signal.hpp"
 #include "services/replay/config.hpp"
 #include "services/replay/player.hpp"
+#include "services/replay/senders/following_sender.hpp"
 #include "services/replay/server/command.hpp"
 
 using namespace boresight;
@@ -42,7 +44,7 @@ void add_options(CLI::App& app, CommandLine& line) {
   runtime::add_vehicle_option(app, line.configuration,
                               "Vehicle of the recordings (someip): a name in the folder vehicle/, or a file");
   app.add_flag("--check", line.check, "Checks the configuration and opens the recordings, then ends");
-  app.add_option("--speed", line.speed, "Factor on the recorded speed, or max: as fast as the receiver reads")
+  app.add_option("--speed", line.speed, "Factor on the recorded speed, or max: as fast as the pipeline takes the scans")
       ->check(CLI::PositiveNumber | CLI::IsMember({"max"}))
       ->type_name("FACTOR")
       ->capture_default_str();
@@ -68,8 +70,9 @@ void add_options(CLI::App& app, CommandLine& line) {
       ->capture_default_str();
   replay::add_someip_options(app, line.someip);
   app.footer(
-      "Exit codes: 0 played to the end, or stopped by a signal; 2 wrong command line or configuration; 3 a recording "
-      "cannot be read, or the gateway or network cannot be reached");
+      "Exit codes: 0 played to the end, or stopped by a signal; 1 with --speed max, the pipeline lost "
+      "scans; 2 wrong command line or configuration; 3 a recording cannot be read, or the gateway or network cannot be "
+      "reached");
 }
 
 replay::Config read_config(const CommandLine& line) {
@@ -87,36 +90,52 @@ replay::Config read_config(const CommandLine& line) {
   return config;
 }
 
-void play_frames(const CommandLine& line, const replay::Config& config) {
-  const auto sender = line.via == "wire" ? replay::make_wire_sender(config.routes)
-                                         : replay::make_tunnel_sender(config.tunnel_path, line.wait_s);
-  const replay::PlayResult result = replay::play(line.play, *sender);
+void print(const replay::PlayResult& result) {
   std::printf("replayed %.1f s: %llu frames sent, %llu lost, %llu malformed\n", result.recorded_s,
               static_cast<unsigned long long>(result.sent), static_cast<unsigned long long>(result.lost),
               static_cast<unsigned long long>(result.malformed));
 }
 
-void run(CommandLine& line) {
+/// Plays as fast as the pipeline takes the scans; returns the exit code.
+int play_following(const CommandLine& line, const replay::Config& config, std::unique_ptr<replay::Sender> tunnel) {
+  replay::FollowingSender sender(std::move(tunnel), config.max_speed);
+  const replay::PlayResult result = replay::play(line.play, sender);
+  sender.finish();
+  print(result);
+  std::fputs(sender.text().c_str(), stdout);
+  return sender.has_losses() && !result.stopped ? exit_code::kFinding : exit_code::kSuccess;
+}
+
+int play_frames(const CommandLine& line, const replay::Config& config) {
+  auto sender = line.via == "wire" ? replay::make_wire_sender(config.routes)
+                                   : replay::make_tunnel_sender(config.tunnel_path, line.wait_s);
+  if (line.via == "tunnel" && line.play.speed <= 0.0) {
+    if (runtime::Node::roudi_is_reachable()) return play_following(line, config, std::move(sender));
+    runtime::log::warning("RouDi cannot be reached: lost scans are neither avoided nor counted");
+  }
+  print(replay::play(line.play, *sender));
+  return exit_code::kSuccess;
+}
+
+int run(CommandLine& line) {
   const replay::Config config = read_config(line);
   line.play.speed = line.speed == "max" ? 0.0 : std::stod(line.speed);
   if (line.play.speed < 0.0 || line.play.speed > 1000.0) throw config::Error("--speed: must be 0.01 … 1000 or max");
   if (line.check) {
     for (const auto& file : line.play.files) static_cast<void>(recording::open_recording(file, [](const auto&) {}));
     std::puts("boresight-replay: configuration is valid");
-    return;
+    return exit_code::kSuccess;
   }
   const bool synthetic = line.someip.synthetic.detections > 0;
   if (synthetic && line.via != "someip") throw config::Error("--synthetic: only with --via someip");
   if (!synthetic && line.play.files.empty()) throw config::Error("no recording given; see --help");
   // Opens the recordings before any waiting, so that an error is reported at once.
   if (!synthetic) static_cast<void>(recording::open_recordings(line.play.files, [](const auto&) {}));
-  if (line.via != "someip") {
-    play_frames(line, config);
-    return;
-  }
+  if (line.via != "someip") return play_frames(line, config);
   std::optional<VehicleConfig> vehicle;
   if (!synthetic || !line.configuration.vehicle_name.empty()) vehicle = line.configuration.vehicle();
   replay::serve_someip(line.someip, config.someip, vehicle ? &*vehicle : nullptr, line.play, line.wait_s);
+  return exit_code::kSuccess;
 }
 
 }  // namespace
@@ -135,8 +154,7 @@ int main(int argc, char** argv) {
   runtime::log::initialise("boresight-replay");
   runtime::install_stop_signals();
   try {
-    run(line);
-    return exit_code::kSuccess;
+    return run(line);
   } catch (const config::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return exit_code::kUsage;

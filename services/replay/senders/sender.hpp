@@ -18,6 +18,8 @@ class Sender {
   [[nodiscard]] virtual bool send(const recording::Frame& frame) = 0;
   /// Returns at the monotonic time of the next frame, or at a stop signal; sleeps by default.
   virtual void wait_until(std::int64_t due_ns);
+  /// Whether the receiver has read every frame that was sent; true for a sender that cannot know.
+  [[nodiscard]] virtual bool all_read() { return true; }
   /// End of the recording.
   virtual void end_recording() {}
 };

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <sys/un.h>
@@ -60,6 +62,11 @@ class TunnelSender : public Sender {
       return false;
     }
     return true;
+  }
+
+  bool all_read() override {
+    int unread_bytes = 0;
+    return descriptor_ < 0 || ioctl(descriptor_, SIOCOUTQ, &unread_bytes) != 0 || unread_bytes == 0;
   }
 
  private:
