@@ -1,6 +1,8 @@
 // `boresight demo`: a drive through the whole pipeline, process by process, watched, judged and cleaned up after.
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +16,7 @@
 #include "services/boresight/commands/simulate_drive.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
+#include "services/boresight/score/mounting_truth.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/stop_signal.hpp"
@@ -28,11 +31,14 @@ constexpr std::int64_t kReadyTimeout_ns = 30'000'000'000;
 // From the last frame to the last snapshot that contains its effect: two periods of the monitor's record.
 constexpr std::int64_t kLinger_ns = 1'000'000'000;
 constexpr const char* kSimulatedVehicle = "demo";
+constexpr int kReplayLostScans = exit_code::kFinding;  // of boresight-replay --speed max
 
 struct DemoOptions {
   runtime::Configuration configuration;
   std::vector<std::string> recordings;
+  std::string truth;  ///< folder of the truth of the recordings
   double duration_s = 0.0;
+  std::string speed = "1";  ///< factor, or "max"
   fs::path output = "demo_output";
 };
 
@@ -44,9 +50,45 @@ fs::path own_program() {
 struct Drive {
   std::string title;
   std::vector<std::string> recordings;
-  fs::path truth_file;  ///< of a simulated drive
+  fs::path truth_file;  ///< truth.csv; empty where no truth is known
   report::Truth truth;
 };
+
+/// Whether the truth of each radar is beyond the tolerance that health uses, sometime and at the end of the drive.
+std::map<std::uint32_t, report::TrueMisalignment> true_misalignments(const fs::path& folder,
+                                                                     const VehicleConfig& vehicle, double duration_s) {
+  const score::TruthSource source = score::find_truth(folder);
+  score::MountingTruthReader mountings(source, vehicle);
+  std::map<std::uint32_t, report::TrueMisalignment> misaligned;
+  const auto judge = [&](double t_s) {
+    for (const RadarConfig& radar : vehicle.radars) {
+      const std::optional<bool> is_misaligned = mountings.is_misaligned(radar.id, t_s);
+      if (!is_misaligned) continue;
+      report::TrueMisalignment& seen = misaligned[radar.id];
+      seen.at_end = *is_misaligned;
+      seen.ever = seen.ever || *is_misaligned;
+    }
+  };
+  judge(0.0);
+  if (source.sensors.empty()) return misaligned;
+  score::Table sensors(source.sensors, {"t_s"});
+  constexpr double kLatest_s = 4e9;  // seconds since the epoch are allowed, too
+  while (sensors.next()) {
+    stop_if_interrupted();
+    const double t_s = sensors.number("t_s", -kLatest_s, kLatest_s);
+    if (duration_s > 0.0 && t_s > duration_s) break;
+    judge(t_s);
+  }
+  return misaligned;
+}
+
+report::Truth read_truth(const fs::path& truth_file, const VehicleConfig& vehicle, double duration_s) {
+  InputFile file(truth_file.string());
+  report::Truth truth = report::truth_of(read_drive_truth(file), vehicle);
+  if (!truth.known()) throw std::runtime_error("there is no truth in " + truth_file.string());
+  truth.misaligned = true_misalignments(truth_file.parent_path(), vehicle, duration_s);
+  return truth;
+}
 
 Drive simulated_drive(const DemoOptions& options, const VehicleConfig& vehicle) {
   const fs::path directory = options.output / "drive";
@@ -56,20 +98,23 @@ Drive simulated_drive(const DemoOptions& options, const VehicleConfig& vehicle) 
   static_cast<void>(write_simulated_drive(
       scenario, vehicle, kSeed, options.duration_s > 0.0 ? options.duration_s : scenario.duration_s, directory));
   Drive drive{.title = "simulated drive", .recordings = {}, .truth_file = directory / "truth.csv", .truth = {}};
-  InputFile truth(drive.truth_file.string());
-  drive.truth = report::truth_of(read_drive_truth(truth), vehicle);
-  if (!drive.truth.known()) throw std::runtime_error("there is no truth in " + directory.string());
+  drive.truth = read_truth(drive.truth_file, vehicle, 0.0);
   for (const char* file : {"radars.pcap", "ego.candump.log"}) drive.recordings.push_back((directory / file).string());
   return drive;
 }
 
-Drive recorded_drive(const DemoOptions& options) {
+Drive recorded_drive(const DemoOptions& options, const VehicleConfig& vehicle) {
   Drive drive;
   for (const std::string& file : options.recordings) {
     InputFile readable(file);  // before anything is started
     drive.recordings.push_back(fs::absolute(file).string());
     drive.title += (drive.title.empty() ? "" : ", ") + fs::path(file).filename().string();
   }
+  if (options.truth.empty()) return drive;
+  drive.truth_file = fs::absolute(fs::path(options.truth) / "truth.csv");
+  drive.truth = read_truth(drive.truth_file, vehicle, options.duration_s);
+  // The number of scans is that of the whole drive.
+  if (options.duration_s > 0.0) drive.truth.scans.clear();
   return drive;
 }
 
@@ -100,7 +145,7 @@ supervisor::ProcessSpec replay_of(const DemoOptions& options, const Drive& drive
                                   const fs::path& run_directory) {
   supervisor::ProcessSpec spec;
   spec.name = "replay";
-  spec.command.arguments = {(binaries / "boresight-replay").string()};
+  spec.command.arguments = {(binaries / "boresight-replay").string(), "--speed", options.speed};
   // A simulated drive already has the wanted duration. To cut it again would lose the datagrams that arrive just after
   // its end.
   if (options.duration_s > 0.0 && !options.recordings.empty()) {
@@ -123,9 +168,13 @@ void throw_if_refused(const supervisor::Supervisor& domain, const fs::path& logs
   }
 }
 
-/// Plays the drive through a fresh domain; returns the supervisor's events. Whatever happens, the domain is gone after.
-std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& drive, const fs::path& logs,
-                                    const Records& records) {
+struct Played {
+  std::vector<supervisor::Event> events;  ///< of the supervisor
+  bool has_losses = false;                ///< reported by the replay
+};
+
+/// Plays the drive through a fresh domain. Whatever happens, the domain is gone after.
+Played play(const DemoOptions& options, const Drive& drive, const fs::path& logs, const Records& records) {
   const auto segments = roudi::single_segment();
   if (const auto shortage = supervisor::shared_memory_shortage(roudi::total_bytes(segments), "/dev/shm")) {
     throw std::runtime_error(*shortage);
@@ -167,13 +216,19 @@ std::vector<supervisor::Event> play(const DemoOptions& options, const Drive& dri
     stop_if_interrupted();
   }
   const int status = *domain.independent_result("replay");
-  std::vector<supervisor::Event> events = domain.events();
+  Played played{.events = domain.events(), .has_losses = status == kReplayLostScans};
   domain.stop();
-  if (status != 0) {
+  if (status != 0 && !played.has_losses) {
     throw Finding("the replay failed with " + supervisor::describe_exit(status) + "; see " +
                   (logs / "replay.log").string());
   }
-  return events;
+  return played;
+}
+
+/// "4 × real time"; empty for real time.
+std::string pace_of(const std::string& speed) {
+  if (speed == "max") return "as fast as the pipeline takes the scans";
+  return std::stod(speed) == 1.0 ? "" : speed + " × real time";
 }
 
 /// Processes that ended while the drive was played, which the health service cannot see.
@@ -204,6 +259,7 @@ void remove_earlier_logs(const fs::path& logs) {
 
 int run_demo(DemoOptions options) {
   const bool simulated = options.recordings.empty();
+  if (simulated && !options.truth.empty()) throw UsageError("--truth belongs to --recording");
   if (simulated && options.configuration.vehicle_name.empty()) options.configuration.vehicle_name = kSimulatedVehicle;
   report::ReportInput input;
   input.vehicle = options.configuration.vehicle();  // a wrong configuration is reported before anything starts
@@ -220,21 +276,27 @@ int run_demo(DemoOptions options) {
   const fs::path page = options.output / "report.html";
   for (const fs::path& earlier : {records.snapshots, records.scans, page}) fs::remove(earlier);
 
-  const Drive drive = simulated ? simulated_drive(options, input.vehicle) : recorded_drive(options);
-  const std::vector<supervisor::Event> events = play(options, drive, logs, records);
+  const Drive drive = simulated ? simulated_drive(options, input.vehicle) : recorded_drive(options, input.vehicle);
+  const Played played = play(options, drive, logs, records);
 
   InputFile recorded_snapshots(records.snapshots.string()), recorded_scans(records.scans.string());
   input.title = drive.title + ", vehicle " + input.vehicle.name;
   monitor::DamagedLines damaged;
   input.snapshots = monitor::read_record(recorded_snapshots, records.snapshots.string(), damaged);
   input.truth = drive.truth;
-  input.events = event_lines(events);
+  input.events = event_lines(played.events);
+  input.pace = pace_of(options.speed);
   const auto truths = drive.truth_file.empty() ? std::nullopt : detection_truths_beside(drive.truth_file);
   input.ghosts = report::find_ghosts(recorded_scans, records.scans.string(), truths ? &*truths : nullptr);
   input.more_checks = report::ghost_checks(input.ghosts);
   input.more_checks.push_back(report::record_check("record", damaged));
-  input.more_checks.push_back(check_of_processes(events));
+  input.more_checks.push_back(check_of_processes(played.events));
+  if (options.speed == "max") {
+    input.more_checks.push_back(
+        {"every scan came back as a track list (see " + (logs / "replay.log").string() + ")", !played.has_losses});
+  }
   report::Summary summary = report::summarise(input.snapshots, input.truth);
+  summary.pace = input.pace;
   summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
   const std::string html = report::render_html(input);
   stop_if_interrupted();
@@ -253,6 +315,16 @@ void add_demo_command(CLI::App& app, int& exit_code) {
       ->add_option("--recording", options->recordings,
                    "candump log or pcap capture of a drive; repeatable; default: a simulated drive")
       ->type_name("FILE");
+  command
+      ->add_option("--truth", options->truth,
+                   "Folder of `boresight simulate` with the truth of the recordings; the run is compared with it")
+      ->type_name("DIR");
+  command
+      ->add_option("--speed", options->speed,
+                   "Factor on the recorded speed, or max: as fast as the pipeline takes the scans")
+      ->check(CLI::Range(0.01, 1000.0) | CLI::IsMember({"max"}))
+      ->type_name("FACTOR")
+      ->capture_default_str();
   runtime::add_config_option(*command, options->configuration);
   runtime::add_vehicle_option(*command, options->configuration)->envname("BORESIGHT_VEHICLE");
   command->add_option("--duration", options->duration_s, "Plays so many seconds of the drive; 0: all of it")
@@ -264,7 +336,7 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   on_call(
       *command, exit_code,
       {"demo --duration 20\n"
-       "demo --vehicle demo --recording drive/radars.pcap --recording drive/ego.candump.log",
+       "demo --vehicle demo --recording drive/radars.pcap --recording drive/ego.candump.log --truth drive --speed max",
        "every check passed", "a check failed, or a process of the pipeline failed"},
       [options] { return run_demo(*options); }, &options->configuration);
 }

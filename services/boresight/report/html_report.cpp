@@ -9,6 +9,7 @@ namespace boresight::report {
 
 std::string render_html(const ReportInput& input) {
   Summary summary = summarise(input.snapshots, input.truth);
+  summary.pace = input.pace;
   summary.checks.insert(summary.checks.end(), input.more_checks.begin(), input.more_checks.end());
   const TimeBase time(input.snapshots, input.ghosts);
   std::string text =
@@ -16,8 +17,9 @@ std::string render_html(const ReportInput& input) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><style>";
   text += kStyle;
   text += fmt::format(
-      "</style></head><body>\n<h1>Boresight report</h1>\n<p class=\"faint\">{} · {:.0f} s · {} radars</p>\n",
-      escape(input.title), summary.duration_s, summary.radars.size());
+      "</style></head><body>\n<h1>Boresight report</h1>\n<p class=\"faint\">{} · {:.0f} s{} · {} radars</p>\n",
+      escape(input.title), summary.duration_s, summary.pace.empty() ? "" : ", played " + summary.pace,
+      summary.radars.size());
   text += render_verdict(input, summary);
   text += render_terms();
   text += render_table(summary);

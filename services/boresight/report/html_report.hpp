@@ -19,6 +19,7 @@ struct ReportInput {
   std::vector<Check> more_checks;   ///< besides those of summarise()
   GhostFindings ghosts;             ///< of the record of scans, where there is one
   std::vector<std::string> events;  ///< of the supervisor
+  std::string pace{};               ///< as in Summary
 };
 
 /// The page is complete in itself: it loads no script, font or picture.

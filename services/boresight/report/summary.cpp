@@ -156,6 +156,11 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
     if (const auto found = truth.yaw_rad.find(id); found != truth.yaw_rad.end()) {
       radar.true_yaw_rad = found->second;
       radar.expected_to_be_misaligned = std::abs(found->second) > radar.last.yaw_tolerance_rad;
+      radar.expected_to_be_aligned = !radar.expected_to_be_misaligned;
+    }
+    if (const auto found = truth.misaligned.find(id); found != truth.misaligned.end()) {
+      radar.expected_to_be_misaligned = found->second.at_end;
+      radar.expected_to_be_aligned = !found->second.ever;
     }
     summary.radars.push_back(radar);
   }
@@ -194,7 +199,7 @@ void add_checks(const Truth& truth, Summary& summary) {
   for (const RadarSummary& radar : summary.radars) {
     if (radar.expected_to_be_misaligned) {
       check(radar.last.name + " is misaligned in the truth and was reported as MISALIGNED", radar.misaligned);
-    } else {
+    } else if (radar.expected_to_be_aligned) {
       check(radar.last.name + " is within tolerance in the truth and was never reported as MISALIGNED",
             radar.first_misaligned_s < 0);
     }
@@ -352,7 +357,9 @@ std::string labels_text(const monitor::LabelCounts& labels) {
 }
 
 std::string render_summary(const Summary& summary) {
-  std::string text = fmt::format("\nSummary of {:.0f} s of driving\n\n", summary.duration_s);
+  std::string text = summary.pace.empty() ? fmt::format("\nSummary of {:.0f} s of driving\n\n", summary.duration_s)
+                                          : fmt::format("\nSummary of a drive, played in {:.0f} s ({})\n\n",
+                                                        summary.duration_s, summary.pace);
   text += render_radars(summary) + "\n" + render_truth(summary);
   for (const RadarSummary& radar : summary.radars) text += "  " + verdict_line(radar) + "\n";
   text += fmt::format("\n  {:<20}{:>10}{:>10}{:>10}\n", "latency of a scan", "p50, µs", "p99, µs", "max, µs");
@@ -361,6 +368,7 @@ std::string render_summary(const Summary& summary) {
     text += fmt::format("  {:<20}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
                         h.percentile_us(0.99), h.max_us());
   }
+  if (!summary.pace.empty()) text += "  Not played in real time: latencies, rates and times have no verdict.\n";
   const std::string labels = labels_text(summary.labels);
   if (!labels.empty()) {
     text += fmt::format("\n  {} detections classified: {}\n", text::grouped(summary.labels.detections()), labels);

@@ -13,13 +13,21 @@
 
 namespace boresight::report {
 
-/// The truth of a simulated drive; empty for recordings.
+/// Whether a true angle of a radar is beyond its tolerance, as health judges it.
+struct TrueMisalignment {
+  bool ever = false;
+  bool at_end = false;
+};
+
+/// The truth of a drive; empty where it is not known.
 struct Truth {
   std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
   std::optional<double> speed_scale;
   std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: yaw, pitch, roll of the rotation about
                                                                ///< the vehicle's axes, as AlignmentEstimate's
   std::map<std::uint32_t, std::uint64_t> scans;                ///< by radar id: how many the radar sent
+  /// By radar id; a radar without an entry is judged by its yaw.
+  std::map<std::uint32_t, TrueMisalignment> misaligned{};
   [[nodiscard]] bool known() const { return !yaw_rad.empty(); }
 };
 
@@ -29,9 +37,10 @@ struct RadarSummary {
   std::optional<double> true_speed_scale;
   std::optional<std::array<double, 3>> true_vehicle_rad;
   double mean_nees = std::numeric_limits<double>::quiet_NaN();  ///< over the drive, where the truth is known
-  bool misaligned = false;  ///< verdict of the health service while the radar was sending
-  bool expected_to_be_misaligned = false;
-  double first_misaligned_s = -1.0;  ///< since the first scan of any radar; negative: never
+  bool misaligned = false;                 ///< verdict of the health service while the radar was sending
+  bool expected_to_be_misaligned = false;  ///< in the truth, at the end of the drive
+  bool expected_to_be_aligned = true;      ///< in the truth, during the whole drive
+  double first_misaligned_s = -1.0;        ///< since the first scan of any radar; negative: never
 };
 
 /// A statement that must hold, or an aim: an aim that is missed is reported but fails nothing.
@@ -47,6 +56,7 @@ struct Check {
 
 struct Summary {
   double duration_s = 0.0;  ///< from the first to the last scan seen
+  std::string pace;         ///< "4 × real time"; empty: real time. Latencies and rates of another pace have no verdict
   std::vector<RadarSummary> radars;
   monitor::LabelCounts labels;  ///< of all radars
   std::size_t most_confirmed_tracks = 0;

@@ -46,6 +46,26 @@ TEST(Summary, FalseAlarmFailsEvenIfItWasWithdrawn) {
   EXPECT_FALSE(passed(summarise(snapshots, synthetic_truth()), "rear_left is within tolerance in the truth"));
 }
 
+TEST(Summary, FalseAlarmIsJudgedByAllAnglesOfTheTruthWhereTheyAreKnown) {
+  auto snapshots = synthetic_drive();
+  snapshots[30].radars[2].extended_qualifier = ExtendedQualifier::kMisaligned;
+  Truth truth = synthetic_truth();
+  truth.misaligned[3] = {.ever = false, .at_end = false};
+  EXPECT_FALSE(summarise(snapshots, truth).all_passed());
+  truth.misaligned[3] = {.ever = true, .at_end = false};
+  EXPECT_TRUE(summarise(snapshots, truth).all_passed()) << "it was misaligned for a time";
+  truth.misaligned[3] = {.ever = true, .at_end = true};
+  EXPECT_FALSE(passed(summarise(snapshots, truth), "rear_left is misaligned in the truth"));
+}
+
+TEST(Summary, StatesThatAnotherPaceThanRealTimeHasNoVerdict) {
+  Summary summary = summarise(synthetic_drive(), synthetic_truth());
+  EXPECT_THAT(render_summary(summary), ::testing::Not(::testing::HasSubstr("no verdict")));
+  summary.pace = "4 × real time";
+  EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("played in 60 s (4 × real time)"));
+  EXPECT_THAT(render_summary(summary), ::testing::HasSubstr("latencies, rates and times have no verdict"));
+}
+
 TEST(Summary, ScansThatNeverArrivedFailThoughNoSequenceHasAGap) {
   const auto snapshots = synthetic_drive();
   Truth truth = synthetic_truth();

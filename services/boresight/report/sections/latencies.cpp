@@ -19,7 +19,9 @@ std::string render_latencies(const Summary& summary) {
   text +=
       "</table>\n<p class=\"faint\">A stage is measured from taking its input to publishing its output. The total is "
       "measured "
-      "from reception of the scan's last frame to the published track list and includes all waiting.</p></div><div>\n";
+      "from reception of the scan's last frame to the published track list and includes all waiting.</p>";
+  if (!summary.pace.empty()) text += "<p class=\"faint\">Not played in real time: latencies have no verdict.</p>";
+  text += "</div><div>\n";
   const LatencyHistogram& total = summary.latencies.back();
   std::size_t first = LatencyHistogram::kBuckets;
   std::size_t last = 0;
