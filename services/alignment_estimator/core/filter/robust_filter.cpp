@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/alignment_estimator/core/filter/small_maths.hpp"
+#include "services/alignment_estimator/core/small_maths.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::alignment {

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 
 #include "services/alignment_estimator/core/filter/common_mode.hpp"
-#include "services/alignment_estimator/core/filter/small_maths.hpp"
+#include "services/alignment_estimator/core/small_maths.hpp"
 #include "services/common/geometry/angles.hpp"
 
 namespace boresight::alignment {

@@ -33,6 +33,7 @@ class PlanarFilter : public Method {
 
  private:
   // Columns of the joint covariance: k_v, δV and δω of this instant, then α, β, γ of each radar.
+  static constexpr Eigen::Index kSpeedScaleColumn = 0, kSpeedColumn = 1, kYawRateColumn = 2;
   static constexpr Eigen::Index kShared = 3;
   static constexpr Eigen::Index kMaxSize = kShared + 3 * static_cast<Eigen::Index>(kMaxRadars);
   using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSize, 1>;

@@ -1,4 +1,4 @@
-// Short mathematical helpers of the filter.
+// Short mathematical helpers of the filters.
 #pragma once
 
 #include <cstdint>
