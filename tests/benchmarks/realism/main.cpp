@@ -50,13 +50,11 @@ bool write(const std::string& path, const Report& report, void (Report::*writer)
 }
 
 int run(const Arguments& arguments) {
-  std::printf("seed %llu, %zu scenarios, %zu drives of each\n",
-              static_cast<unsigned long long>(arguments.drives.seed), arguments.drives.scenarios.size(),
-              arguments.drives.seeds);
+  std::printf("seed %llu, %zu scenarios, %zu drives of each\n", static_cast<unsigned long long>(arguments.drives.seed),
+              arguments.drives.scenarios.size(), arguments.drives.seeds);
   std::fflush(stdout);
-  const VehicleConfig demo =
-      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml",
-                                config::VehicleUse::kOffline);
+  const VehicleConfig demo = config::read_vehicle_file(
+      std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml", config::VehicleUse::kOffline);
   std::vector<realism::Column> columns;
   for (const std::string& profile : arguments.profiles) {
     std::fprintf(stderr, "%s\n", profile.c_str());
@@ -87,8 +85,9 @@ int main(int argc, char** argv) {
   Arguments arguments;
   arguments.drives.scenarios = kScenarios;
   arguments.drives.seed = fresh_seed();
-  CLI::App app{"Compares simulated radars with measured ones. R: RadarScenes, N: nuScenes (aggregate figures). "
-               "Exit code 0: every row with a verdict is met, 1: some are not, 3: error."};
+  CLI::App app{
+      "Compares simulated radars with measured ones. R: RadarScenes, N: nuScenes (aggregate figures). "
+      "Exit code 0: every row with a verdict is met, 1: some are not, 3: error."};
   app.add_option("--seed", arguments.drives.seed, "seed of the first drive of each scenario; default: a fresh one");
   app.add_option("--seeds", arguments.drives.seeds, "drives of each scenario")
       ->check(CLI::Range(1, 100))

@@ -13,14 +13,14 @@ namespace boresight::bench::realism {
 
 struct Drives {
   std::vector<std::string> scenarios;
-  std::uint64_t seed = 0;      ///< of the first drive of each scenario
-  std::size_t seeds = 1;       ///< drives of each scenario
-  double longest_s = 1e9;      ///< limit of a drive
-  std::size_t jobs = 2;        ///< threads
+  std::uint64_t seed = 0;  ///< of the first drive of each scenario
+  std::size_t seeds = 1;   ///< drives of each scenario
+  double longest_s = 1e9;  ///< limit of a drive
+  std::size_t jobs = 2;    ///< threads
 };
 
-/// Statistics of these drives with one radar profile. They do not depend on `jobs`. Throws std::exception for an unknown
-/// scenario or profile.
+/// Statistics of these drives with one radar profile. They do not depend on `jobs`. Throws std::exception for an
+/// unknown scenario or profile.
 [[nodiscard]] Statistics simulate(const Drives& drives, const std::string& profile, const VehicleConfig& demo);
 
 }  // namespace boresight::bench::realism

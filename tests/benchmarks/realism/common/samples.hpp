@@ -27,7 +27,9 @@ struct Share {
     yes += other.yes;
     of += other.of;
   }
-  [[nodiscard]] double value() const { return of == 0 ? kNoFigure : static_cast<double>(yes) / static_cast<double>(of); }
+  [[nodiscard]] double value() const {
+    return of == 0 ? kNoFigure : static_cast<double>(yes) / static_cast<double>(of);
+  }
   [[nodiscard]] double percent() const { return kPercent * value(); }
 };
 

@@ -54,17 +54,22 @@ void add_means(std::vector<Row>& rows) {
                     [of](const Statistics& s) { return s.counts.percent_none(s.counting, of); }});
   }
   const CountSelection car{}, truck{RoadUser::kTruck};
-  rows.push_back({1, "car in sight: mean", "", 1, {}, {}, Judged::kNo,
-                  [car](const Statistics& s) { return s.counts.mean(Counting::kInSight, car); }});
-  rows.push_back({1, "car in sight: none", "%", 0, {}, {}, Judged::kNo,
-                  [car](const Statistics& s) { return s.counts.percent_none(Counting::kInSight, car); }});
+  rows.push_back({1, "car in sight: mean", "", 1, {}, {}, Judged::kNo, [car](const Statistics& s) {
+                    return s.counts.mean(Counting::kInSight, car);
+                  }});
+  rows.push_back({1, "car in sight: none", "%", 0, {}, {}, Judged::kNo, [car](const Statistics& s) {
+                    return s.counts.percent_none(Counting::kInSight, car);
+                  }});
   const CountSelection beside = select(RoadUser::kCar, 0, 10), ahead = select(RoadUser::kCar, 20, 30);
-  rows.push_back({1, "car < 10 m: most in one scan", "", 0, 20, {}, Judged::kShared,
-                  [beside](const Statistics& s) { return s.counts.most(beside); }});
-  rows.push_back({1, "car 20–30 m: most in one scan", "", 0, 12, {}, Judged::kNo,
-                  [ahead](const Statistics& s) { return s.counts.most(ahead); }});
-  rows.push_back({1, "truck/bus: most in one scan", "", 0, 35, {}, Judged::kNo,
-                  [truck](const Statistics& s) { return s.counts.most(truck); }});
+  rows.push_back({1, "car < 10 m: most in one scan", "", 0, 20, {}, Judged::kShared, [beside](const Statistics& s) {
+                    return s.counts.most(beside);
+                  }});
+  rows.push_back({1, "car 20–30 m: most in one scan", "", 0, 12, {}, Judged::kNo, [ahead](const Statistics& s) {
+                    return s.counts.most(ahead);
+                  }});
+  rows.push_back({1, "truck/bus: most in one scan", "", 0, 35, {}, Judged::kNo, [truck](const Statistics& s) {
+                    return s.counts.most(truck);
+                  }});
 }
 
 void add_aspects(std::vector<Row>& rows) {
@@ -75,7 +80,13 @@ void add_aspects(std::vector<Row>& rows) {
   for (const Aspect& a : {Aspect{"rear", 0.0, kEndSector_rad, 1.3}, Aspect{"side", kSideFrom_rad, kSideTo_rad, 4.7},
                           Aspect{"front", M_PI - kEndSector_rad, 4.0, 1.7}}) {
     const CountSelection of{RoadUser::kCar, 0.0, 60.0, a.from_rad, a.to_rad};
-    rows.push_back({1, std::string("car < 60 m, ") + a.name + ": mean", "", 1, a.mean_r, {}, Judged::kOwn,
+    rows.push_back({1,
+                    std::string("car < 60 m, ") + a.name + ": mean",
+                    "",
+                    1,
+                    a.mean_r,
+                    {},
+                    Judged::kOwn,
                     [of](const Statistics& s) { return s.counts.mean(s.counting, of); }});
   }
 }
@@ -83,16 +94,25 @@ void add_aspects(std::vector<Row>& rows) {
 void add_spreads(std::vector<Row>& rows) {
   const CountSelection far = select(RoadUser::kCar, 30, kEverywhere), near = select(RoadUser::kCar, 0, 30);
   const CountSelection truck{RoadUser::kTruck};
-  rows.push_back({1, "car > 30 m: variance / mean", "", 1, {0.7, 1.1}, {}, Judged::kNo,
-                  [far](const Statistics& s) { return s.counts.variance_over_mean(s.counting, far); }});
-  rows.push_back({1, "car < 30 m: variance / mean", "", 0, {2, 5}, {}, Judged::kNo,
-                  [near](const Statistics& s) { return s.counts.variance_over_mean(s.counting, near); }});
-  rows.push_back({1, "truck/bus: variance / mean", "", 0, {2, 5}, {}, Judged::kNo,
-                  [truck](const Statistics& s) { return s.counts.variance_over_mean(s.counting, truck); }});
-  for (const auto& [name, user, value] : {std::tuple{"car", RoadUser::kCar, 0.71},
-                                          std::tuple{"truck/bus", RoadUser::kTruck, 1.39}}) {
+  rows.push_back({1, "car > 30 m: variance / mean", "", 1, {0.7, 1.1}, {}, Judged::kNo, [far](const Statistics& s) {
+                    return s.counts.variance_over_mean(s.counting, far);
+                  }});
+  rows.push_back({1, "car < 30 m: variance / mean", "", 0, {2, 5}, {}, Judged::kNo, [near](const Statistics& s) {
+                    return s.counts.variance_over_mean(s.counting, near);
+                  }});
+  rows.push_back({1, "truck/bus: variance / mean", "", 0, {2, 5}, {}, Judged::kNo, [truck](const Statistics& s) {
+                    return s.counts.variance_over_mean(s.counting, truck);
+                  }});
+  for (const auto& [name, user, value] :
+       {std::tuple{"car", RoadUser::kCar, 0.71}, std::tuple{"truck/bus", RoadUser::kTruck, 1.39}}) {
     const RoadUser u = user;
-    rows.push_back({1, std::string(name) + ", one track and range bin: variance / mean", "", 2, value, {}, Judged::kNo,
+    rows.push_back({1,
+                    std::string(name) + ", one track and range bin: variance / mean",
+                    "",
+                    2,
+                    value,
+                    {},
+                    Judged::kNo,
                     [u](const Statistics& s) { return s.counts.variance_over_mean_in_track(s.counting, u); }});
   }
 }
@@ -111,10 +131,10 @@ void add_misses(std::vector<Row>& rows) {
                         Miss{"pedestrian", RoadUser::kPedestrian, 0.24, 0.66, 0.56, 0.83, Judged::kOwn},
                         Miss{"standing car", RoadUser::kStandingCar, none, none, 0.34, 0.81, Judged::kShared}}) {
     const RoadUser user = m.user;
-    rows.push_back({1, std::string(m.name) + ": P(none)", "", 2, m.none_r, m.none_n, Judged::kOwn,
-                    [user](const Statistics& s) {
-                      return s.counts.percent_none(s.counting, select(user, 0, kEverywhere)) / kPercent;
-                    }});
+    rows.push_back(
+        {1, std::string(m.name) + ": P(none)", "", 2, m.none_r, m.none_n, Judged::kOwn, [user](const Statistics& s) {
+           return s.counts.percent_none(s.counting, select(user, 0, kEverywhere)) / kPercent;
+         }});
     rows.push_back({1, std::string(m.name) + ": P(none given none)", "", 2, m.after_r, m.after_n, m.judged,
                     [user](const Statistics& s) { return s.counts.none_after_none(s.counting, user); }});
   }
@@ -126,21 +146,31 @@ void add_misses(std::vector<Row>& rows) {
   for (const Gap& g : {Gap{"car", RoadUser::kCar, 3, 6, 20}, Gap{"truck/bus", RoadUser::kTruck, 4, 9, 38}}) {
     const RoadUser user = g.user;
     const std::string name = std::string(g.name) + ", gap: ";
-    rows.push_back({1, name + "mean", "scans", 0, g.mean, {}, Judged::kNo,
-                    [user](const Statistics& s) { return s.counts.gaps(s.counting, user).mean(); }});
-    rows.push_back({1, name + "p90", "scans", 0, g.p90, {}, Judged::kNo,
-                    [user](const Statistics& s) { return s.counts.gaps(s.counting, user).quantile(0.90); }});
-    rows.push_back({1, name + "p99", "scans", 0, g.p99, {}, Judged::kNo,
-                    [user](const Statistics& s) { return s.counts.gaps(s.counting, user).quantile(0.99); }});
+    rows.push_back({1, name + "mean", "scans", 0, g.mean, {}, Judged::kNo, [user](const Statistics& s) {
+                      return s.counts.gaps(s.counting, user).mean();
+                    }});
+    rows.push_back({1, name + "p90", "scans", 0, g.p90, {}, Judged::kNo, [user](const Statistics& s) {
+                      return s.counts.gaps(s.counting, user).quantile(0.90);
+                    }});
+    rows.push_back({1, name + "p99", "scans", 0, g.p99, {}, Judged::kNo, [user](const Statistics& s) {
+                      return s.counts.gaps(s.counting, user).quantile(0.99);
+                    }});
   }
   struct Lag {
     const char* name;
     std::size_t scans;
     Measured value;
   };
-  for (const Lag& l : {Lag{"one scan", 1, {0.23, 0.45}}, Lag{"two scans", 2, {0.15, 0.36}}, Lag{"five scans", 5, 0.0}}) {
+  for (const Lag& l :
+       {Lag{"one scan", 1, {0.23, 0.45}}, Lag{"two scans", 2, {0.15, 0.36}}, Lag{"five scans", 5, 0.0}}) {
     const std::size_t lag = l.scans;
-    rows.push_back({1, std::string("car: correlation of counts after ") + l.name, "", 2, l.value, {}, Judged::kNo,
+    rows.push_back({1,
+                    std::string("car: correlation of counts after ") + l.name,
+                    "",
+                    2,
+                    l.value,
+                    {},
+                    Judged::kNo,
                     [lag](const Statistics& s) { return s.counts.correlation(s.counting, RoadUser::kCar, lag); }});
   }
 }

@@ -35,9 +35,8 @@ void add_numbers(std::vector<Row>& rows) {
   for (const auto& [share, low, high] : {std::tuple{0.10, 2.0, 4.0}, std::tuple{0.50, 8.0, 17.0},
                                          std::tuple{0.90, 18.0, 80.0}, std::tuple{0.99, 34.0, 124.0}}) {
     const double p = share;
-    add(rows, "a scan, forward radars: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), "", 0, {low, high}, {},
-        Judged::kOwn,
-        [p](const Statistics& s) { return s.false_movers.per_scan(Facing::kForward).quantile(p); });
+    add(rows, "a scan, forward radars: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), "", 0, {low, high},
+        {}, Judged::kOwn, [p](const Statistics& s) { return s.false_movers.per_scan(Facing::kForward).quantile(p); });
   }
   const std::array<std::tuple<const char*, double>, 3> kBeyond{
       {{"a scan, > 0.5 m/s", 13.2}, {"a scan, > 2 m/s", 9.6}, {"a scan, > 5 m/s", 7.4}}};
@@ -102,8 +101,10 @@ void add_origins(std::vector<Row>& rows) {
       [](const Statistics& s) { return s.false_movers.percent_doppler_measured(); });
   add(rows, "Doppler ambiguity, by the truth", "%", 0, {15, 16}, {}, Judged::kNo,
       [](const Statistics& s) { return s.false_movers.percent_doppler_by_truth(); });
-  add(rows, "Doppler ambiguity, of stationary detections", "%", 1, 1.0, {}, Judged::kOwn,
+  add(rows, "Doppler ambiguity, of stationary detections, as measured", "%", 1, 1.0, {}, Judged::kNo,
       [](const Statistics& s) { return s.false_movers.percent_doppler_of_stationary(); });
+  add(rows, "Doppler ambiguity, of stationary detections, by the truth", "%", 1, 1.0, {}, Judged::kOwn,
+      [](const Statistics& s) { return s.false_movers.percent_doppler_of_stationary_by_truth(); });
   add(rows, "Doppler ambiguity, of labelled movers", "%", 1, {2.0, 5.3}, {}, Judged::kOwn,
       [](const Statistics& s) { return s.false_movers.percent_doppler_of_movers(); });
   add(rows, "azimuth ambiguity beyond chance, as measured", "%", 0, 12, {}, Judged::kNo,
@@ -122,13 +123,20 @@ void add_ghosts(std::vector<Row>& rows) {
         std::tuple{0.50, -12.0, Judged::kShared}, std::tuple{0.75, -4.0, Judged::kNo},
         std::tuple{0.90, 3.0, Judged::kShared}}) {
     const double p = share;
-    add(rows, "strength against the object: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), "dB", 0, value, {},
-        judged, [p](const Statistics& s) { return s.ghosts.quantile_db(p); }, Scale::kLevel_db);
+    add(
+        rows, "strength against the object: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), "dB", 0, value,
+        {}, judged, [p](const Statistics& s) { return s.ghosts.quantile_db(p); }, Scale::kLevel_db);
   }
   add(rows, "stronger than the object", "%", 0, 15, {}, Judged::kNo,
       [](const Statistics& s) { return s.ghosts.percent_stronger(); });
-  add(rows, "mirror images, by the truth: median strength", "dB", 0, -12, {}, Judged::kNo,
-      [](const Statistics& s) { return s.ghosts.mirror_image_quantile_db(0.5); }, Scale::kLevel_db);
+  for (const auto& [share, value] : {std::tuple{0.10, -29.0}, std::tuple{0.50, -12.0}, std::tuple{0.90, 3.0}}) {
+    const double p = share;
+    add(
+        rows,
+        "mirror images against the object, by the truth: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)),
+        "dB", 0, value, {}, Judged::kNo, [p](const Statistics& s) { return s.ghosts.mirror_image_quantile_db(p); },
+        Scale::kLevel_db);
+  }
 }
 
 void add_validity(std::vector<Row>& rows) {

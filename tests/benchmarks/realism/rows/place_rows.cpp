@@ -12,13 +12,21 @@ using SamplesOf = Samples BodyPlaces::Figures::*;
 Row quantile_row(const std::string& name, RoadUser user, SamplesOf which, double share, int digits, Measured r,
                  Measured n, Judged judged) {
   const std::string p = ": p" + std::to_string(static_cast<int>(kPercent * share + 0.5));
-  return {2, name + p, "m", digits, r, n, judged,
-          [user, which, share](const Statistics& s) { return (s.places.of(user).*which).quantile(share); }};
+  return {2,      name + p,
+          "m",    digits,
+          r,      n,
+          judged, [user, which, share](const Statistics& s) { return (s.places.of(user).*which).quantile(share); }};
 }
 
 Row above_row(const std::string& name, RoadUser user, SamplesOf which, double limit_m, int digits, Measured r,
               Measured n, Judged judged) {
-  return {2, name, "%", digits, r, n, judged,
+  return {2,
+          name,
+          "%",
+          digits,
+          r,
+          n,
+          judged,
           [user, which, limit_m](const Statistics& s) { return (s.places.of(user).*which).percent_above(limit_m); }};
 }
 
@@ -50,8 +58,8 @@ void add_place_rows(std::vector<Row>& rows) {
   rows.push_back(above_row("truck/bus: more than 0.7 m inside", U::kTruck, &F::depth_m, 0.7, 0, {}, 43, Judged::kNo));
   add_quantiles(rows, "car, length shown by a scan", U::kCar, &F::shown_length_m, 1,
                 {{0.5, 2.4}, {0.9, 3.8}, {0.99, 4.7}}, false);
-  add_quantiles(rows, "car, width shown by a scan", U::kCar, &F::shown_width_m, 1, {{0.5, 1.1}, {0.9, 1.8}, {0.99, 2.4}},
-                false);
+  add_quantiles(rows, "car, width shown by a scan", U::kCar, &F::shown_width_m, 1,
+                {{0.5, 1.1}, {0.9, 1.8}, {0.99, 2.4}}, false);
   add_quantiles(rows, "truck/bus, length shown by a scan", U::kTruck, &F::shown_length_m, 1,
                 {{0.5, 4.2}, {0.9, 8.3}, {0.99, 11.7}}, false);
   rows.push_back(
@@ -60,16 +68,17 @@ void add_place_rows(std::vector<Row>& rows) {
       above_row("car: > 2 m behind the nearest one", U::kCar, &F::behind_nearest_m, 2.0, 0, 17, {}, Judged::kShared));
   rows.push_back(
       above_row("car: > 3 m behind the nearest one", U::kCar, &F::behind_nearest_m, 3.0, 0, 5, {}, Judged::kNo));
-  rows.push_back(
-      above_row("truck/bus: > 2 m behind the nearest one", U::kTruck, &F::behind_nearest_m, 2.0, 0, 57, {}, Judged::kNo));
-  rows.push_back(
-      above_row("truck/bus: > 5 m behind the nearest one", U::kTruck, &F::behind_nearest_m, 5.0, 0, 16, {}, Judged::kNo));
-  rows.push_back(
-      above_row("truck/bus: > 8 m behind the nearest one", U::kTruck, &F::behind_nearest_m, 8.0, 0, 4, {}, Judged::kNo));
-  rows.push_back({2, "car: sd across the track", "m", 2, 0.51, {}, Judged::kNo,
-                  [](const Statistics& s) { return s.places.of(U::kCar).across_m.std_dev(); }});
-  rows.push_back(above_row("car: > 1.5 m across the track", U::kCar, &F::across_from_mean_m, 1.5, 1, 0.3, {},
+  rows.push_back(above_row("truck/bus: > 2 m behind the nearest one", U::kTruck, &F::behind_nearest_m, 2.0, 0, 57, {},
                            Judged::kNo));
+  rows.push_back(above_row("truck/bus: > 5 m behind the nearest one", U::kTruck, &F::behind_nearest_m, 5.0, 0, 16, {},
+                           Judged::kNo));
+  rows.push_back(above_row("truck/bus: > 8 m behind the nearest one", U::kTruck, &F::behind_nearest_m, 8.0, 0, 4, {},
+                           Judged::kNo));
+  rows.push_back({2, "car: sd across the track", "m", 2, 0.51, {}, Judged::kNo, [](const Statistics& s) {
+                    return s.places.of(U::kCar).across_m.std_dev();
+                  }});
+  rows.push_back(
+      above_row("car: > 1.5 m across the track", U::kCar, &F::across_from_mean_m, 1.5, 1, 0.3, {}, Judged::kNo));
 }
 
 void add_deviation_rows(std::vector<Row>& rows) {
@@ -107,17 +116,32 @@ void add_deviation_rows(std::vector<Row>& rows) {
   for (const auto& [share, value] : {std::tuple{0.05, -0.88}, std::tuple{0.25, -0.47}, std::tuple{0.50, -0.11},
                                      std::tuple{0.75, 0.18}, std::tuple{0.95, 0.52}}) {
     const double p = share;
-    rows.push_back({3,
-                    "car, beyond 1 m/s: deviation / radial speed, p" + std::to_string(static_cast<int>(kPercent * p + 0.5)),
-                    "", 2, value, {}, Judged::kShared,
-                    [p](const Statistics& s) { return s.deviations.ratio({U::kCar, 0.0, 4.0}, p); }});
+    rows.push_back(
+        {3,
+         "car, beyond 1 m/s: deviation / radial speed, p" + std::to_string(static_cast<int>(kPercent * p + 0.5)),
+         "",
+         2,
+         value,
+         {},
+         Judged::kShared,
+         [p](const Statistics& s) {
+           return s.deviations.ratio({U::kCar, 0.0, 4.0}, p);
+         }});
   }
   for (const auto& [name, user, value, digits] :
        {std::tuple{"car", U::kCar, 0.049, 3}, std::tuple{"truck/bus", U::kTruck, 0.037, 3},
         std::tuple{"pedestrian", U::kPedestrian, 0.28, 2}}) {
     const RoadUser u = user;
-    rows.push_back({3, std::string(name) + ": robust sd of the rest", "m/s", digits, value, {}, Judged::kNo,
-                    [u](const Statistics& s) { return s.deviations.rest_std_mps({u, 0.0, 4.0}); }});
+    rows.push_back({3,
+                    std::string(name) + ": robust sd of the rest",
+                    "m/s",
+                    digits,
+                    value,
+                    {},
+                    Judged::kNo,
+                    [u](const Statistics& s) {
+                      return s.deviations.rest_std_mps({u, 0.0, 4.0});
+                    }});
   }
 }
 

@@ -50,7 +50,7 @@ std::string Verdict::text(Scale scale) const {
     case Outcome::kMissed:
       break;
   }
-  if (std::isnan(off)) return "off";
+  if (std::isnan(off)) return "off: not 0";
   const std::string sign = off < 0.0 ? "−" : "+";
   return scale == Scale::kLevel_db ? "off by " + sign + fixed(std::abs(off), 1) + " dB"
                                    : "off by " + sign + fixed(kPercent * std::abs(off), 0) + " %";
@@ -68,10 +68,12 @@ std::vector<Row> all_rows() {
 }
 
 const char* section_title(int section) {
-  constexpr std::array<const char*, 6> kTitles{
-      "1. Detections of an object in one scan of one radar", "2. Where on the body",
-      "3. Range rate against the rigid body",                "4. Strength: RCS as the sensor states it",
-      "5. The stationary world",                             "6. False movers"};
+  constexpr std::array<const char*, 6> kTitles{"1. Detections of an object in one scan of one radar",
+                                               "2. Where on the body",
+                                               "3. Range rate against the rigid body",
+                                               "4. Strength: RCS as the sensor states it",
+                                               "5. The stationary world",
+                                               "6. False movers"};
   return section >= 1 && section <= 6 ? kTitles[static_cast<std::size_t>(section - 1)] : "";
 }
 

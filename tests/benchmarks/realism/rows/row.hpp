@@ -50,7 +50,7 @@ enum class Outcome : std::uint8_t { kNotJudged, kMet, kMissed, kNoData };
 
 struct Verdict {
   Outcome outcome = Outcome::kNotJudged;
-  double off = 0.0;  ///< beyond the measured value: as a share of it, or in dB
+  double off = 0.0;  ///< beyond the measured value: as a share of it, or in dB; not a number beside a measured zero
   [[nodiscard]] std::string text(Scale scale) const;
 };
 

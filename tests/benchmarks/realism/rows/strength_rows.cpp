@@ -48,10 +48,9 @@ void add_levels(std::vector<Row>& rows) {
   }
   for (const auto& [share, value] : {std::tuple{0.05, -4.0}, std::tuple{0.50, 5.0}, std::tuple{0.95, 18.0}}) {
     const double p = share;
-    rows.push_back(level_row("vehicles, all ranges: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), {}, value,
-                             Judged::kOwn, [p](const Statistics& s) {
-                               return s.strength.quantile_dbsm(Sort::kVehicle, 0.0, kEverywhere, p);
-                             }));
+    rows.push_back(level_row(
+        "vehicles, all ranges: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), {}, value, Judged::kOwn,
+        [p](const Statistics& s) { return s.strength.quantile_dbsm(Sort::kVehicle, 0.0, kEverywhere, p); }));
   }
 }
 
@@ -68,12 +67,25 @@ void add_separation(std::vector<Row>& rows) {
 
 void add_spread(std::vector<Row>& rows) {
   for (std::size_t bin = 0; bin < kStrengthBins; ++bin) {
-    rows.push_back({4, std::string("one vehicle, sd at ") + kLevels_r[bin].range, "dB", 0, {7, 13}, {}, Judged::kShared,
+    rows.push_back({4,
+                    std::string("one vehicle, sd at ") + kLevels_r[bin].range,
+                    "dB",
+                    0,
+                    {7, 13},
+                    {},
+                    Judged::kShared,
                     [bin](const Statistics& s) { return s.strength.std_in_bin_db(bin); }});
   }
-  rows.push_back({4, "one vehicle, sd in one scan", "dB", 0, {5, 8}, {}, Judged::kNo,
-                  [](const Statistics& s) { return s.strength.std_in_scan_db(); }});
-  rows.push_back({4, "strongest one of a vehicle, sd from scan to scan", "dB", 1, {3.4, 4.9}, {}, Judged::kShared,
+  rows.push_back({4, "one vehicle, sd in one scan", "dB", 0, {5, 8}, {}, Judged::kNo, [](const Statistics& s) {
+                    return s.strength.std_in_scan_db();
+                  }});
+  rows.push_back({4,
+                  "strongest one of a vehicle, sd from scan to scan",
+                  "dB",
+                  1,
+                  {3.4, 4.9},
+                  {},
+                  Judged::kShared,
                   [](const Statistics& s) { return s.strength.std_scan_to_scan_db(); }});
 }
 
@@ -83,8 +95,8 @@ void add_strongest(std::vector<Row>& rows) {
     double from_m, to_m;
     Measured r;
   };
-  for (const Median& m : {Median{"< 10 m", 0, 10, -4}, Median{"10–20 m", 10, 20, -2}, Median{"20–50 m", 20, 50, {0, 10}},
-                          Median{"> 50 m", 50, kEverywhere, {9, 11}}}) {
+  for (const Median& m : {Median{"< 10 m", 0, 10, -4}, Median{"10–20 m", 10, 20, -2},
+                          Median{"20–50 m", 20, 50, {0, 10}}, Median{"> 50 m", 50, kEverywhere, {9, 11}}}) {
     const double from_m = m.from_m, to_m = m.to_m;
     rows.push_back(
         level_row(std::string("strongest one of a vehicle, ") + m.range + ": median", m.r, {}, Judged::kNo,
@@ -95,14 +107,20 @@ void add_strongest(std::vector<Row>& rows) {
     RoadUser user;
     double from_m, to_m, r;
   };
-  for (const Weak& w : {Weak{"car < 20 m", RoadUser::kCar, 0, 20, 38}, Weak{"car 20–50 m", RoadUser::kCar, 20, 50, 23},
-                        Weak{"car > 50 m", RoadUser::kCar, 50, kEverywhere, 8},
-                        Weak{"truck/bus < 20 m", RoadUser::kTruck, 0, 20, 22},
-                        Weak{"truck/bus 20–50 m", RoadUser::kTruck, 20, 50, 10},
-                        Weak{"truck/bus > 50 m", RoadUser::kTruck, 50, kEverywhere, 1}}) {
+  for (const Weak& w :
+       {Weak{"car < 20 m", RoadUser::kCar, 0, 20, 38}, Weak{"car 20–50 m", RoadUser::kCar, 20, 50, 23},
+        Weak{"car > 50 m", RoadUser::kCar, 50, kEverywhere, 8}, Weak{"truck/bus < 20 m", RoadUser::kTruck, 0, 20, 22},
+        Weak{"truck/bus 20–50 m", RoadUser::kTruck, 20, 50, 10},
+        Weak{"truck/bus > 50 m", RoadUser::kTruck, 50, kEverywhere, 1}}) {
     const RoadUser user = w.user;
     const double from_m = w.from_m, to_m = w.to_m;
-    rows.push_back({4, std::string(w.name) + ": strongest one < −5 dBsm", "%", 0, w.r, {}, Judged::kNo,
+    rows.push_back({4,
+                    std::string(w.name) + ": strongest one < −5 dBsm",
+                    "%",
+                    0,
+                    w.r,
+                    {},
+                    Judged::kNo,
                     [user, from_m, to_m](const Statistics& s) {
                       return s.strength.percent_strongest_below(user, from_m, to_m, -5.0);
                     }});

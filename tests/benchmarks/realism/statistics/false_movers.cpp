@@ -129,13 +129,16 @@ void FalseMovers::add_causes(const ObservedScan& scan, const std::vector<Observe
   for (const ObservedDetection& d : scan.detections) {
     if (d.is_of_mover()) {
       if (!std::isnan(d.rigid_deviation_mps)) doppler_of_movers_.add(is_ambiguous_width(d.rigid_deviation_mps));
-      if (!d.is_in_box || std::abs(d.deviation_mps) <= kMoving_mps) continue;
-      valid_[1].add(d.is_valid);
-      unambiguous_[1].add(d.is_unambiguous);
-      existence_[1].add(d.existence);
-    } else if (d.is_stationary() || is_doppler_ambiguity(d)) {
-      doppler_of_stationary_.add(is_doppler_ambiguity(d));
+      if (d.is_in_box && std::abs(d.deviation_mps) > kMoving_mps) {
+        valid_[1].add(d.is_valid);
+        unambiguous_[1].add(d.is_unambiguous);
+        existence_[1].add(d.existence);
+      }
+      continue;
     }
+    const bool by_truth = d.cause == Cause::kDopplerAmbiguity;
+    if (d.is_stationary() || is_doppler_ambiguity(d)) doppler_of_stationary_.add(is_doppler_ambiguity(d));
+    if (d.is_stationary() || by_truth) doppler_of_stationary_truth_.add(by_truth);
   }
 }
 
@@ -229,8 +232,8 @@ void FalseMovers::merge(const FalseMovers& other) {
   for (const auto share :
        {&FalseMovers::of_unlabelled_, &FalseMovers::near_zero_, &FalseMovers::again_, &FalseMovers::chance_,
         &FalseMovers::doppler_measured_, &FalseMovers::doppler_by_truth_, &FalseMovers::doppler_of_stationary_,
-        &FalseMovers::doppler_of_movers_, &FalseMovers::azimuth_at_step_, &FalseMovers::azimuth_beside_,
-        &FalseMovers::azimuth_by_truth_, &FalseMovers::beside_object_}) {
+        &FalseMovers::doppler_of_stationary_truth_, &FalseMovers::doppler_of_movers_, &FalseMovers::azimuth_at_step_,
+        &FalseMovers::azimuth_beside_, &FalseMovers::azimuth_by_truth_, &FalseMovers::beside_object_}) {
     (this->*share).merge(other.*share);
   }
 }

@@ -54,11 +54,12 @@ class FalseMovers {
   /// Variance / mean about the slowly changing rate, from the differences of successive counts.
   [[nodiscard]] double variance_over_mean() const;
 
-  /// Doppler ambiguity: share of the false movers by the measured definition and by the truth, share of stationary and
-  /// of labelled detections.
+  /// Doppler ambiguity: share of the false movers by the measured definition and by the truth, share of stationary
+  /// detections likewise, share of labelled detections. By the measured definition other false movers count, too.
   [[nodiscard]] double percent_doppler_measured() const { return doppler_measured_.percent(); }
   [[nodiscard]] double percent_doppler_by_truth() const { return doppler_by_truth_.percent(); }
   [[nodiscard]] double percent_doppler_of_stationary() const { return doppler_of_stationary_.percent(); }
+  [[nodiscard]] double percent_doppler_of_stationary_by_truth() const { return doppler_of_stationary_truth_.percent(); }
   [[nodiscard]] double percent_doppler_of_movers() const { return doppler_of_movers_.percent(); }
   /// Azimuth ambiguity: share by the measured definition beyond chance, share and number in a scan by the truth.
   [[nodiscard]] double percent_azimuth_measured() const;
@@ -99,7 +100,7 @@ class FalseMovers {
   Samples range_m_, chain_scans_;
   std::array<LagCorrelation, kLags_s.size()> correlation_;
   double step_squares_ = 0.0, step_sum_ = 0.0;
-  Share doppler_measured_, doppler_by_truth_, doppler_of_stationary_, doppler_of_movers_;
+  Share doppler_measured_, doppler_by_truth_, doppler_of_stationary_, doppler_of_stationary_truth_, doppler_of_movers_;
   Share azimuth_at_step_, azimuth_beside_, azimuth_by_truth_, beside_object_;
   std::array<Share, 2> valid_, unambiguous_;
   std::array<Samples, 2> existence_;

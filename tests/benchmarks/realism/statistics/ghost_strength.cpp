@@ -27,7 +27,8 @@ void GhostStrength::add(const ObservedScan& scan) {
   const bool has_chance = earlier.size() == kChanceScans;
   const auto count = [](const ObservedDetection& object, const ObservedDetection& other, Histogram& histogram) {
     if (!is_pair(object, other)) return;
-    const double difference_db = std::clamp<double>(std::round(other.rcs_dbsm - object.rcs_dbsm), -kReach_db, kReach_db);
+    const double difference_db =
+        std::clamp<double>(std::round(other.rcs_dbsm - object.rcs_dbsm), -kReach_db, kReach_db);
     histogram[static_cast<std::size_t>(difference_db + kReach_db)] += 1.0;
   };
   for (const ObservedObject& object : scan.objects) {

@@ -19,9 +19,9 @@ std::size_t index_of(RoadUser user) {
 
 void ObjectCounts::add(const ObservedScan& scan) {
   for (const ObservedObject& object : scan.objects) {
-    const auto count = static_cast<unsigned>(
-        std::count_if(scan.detections.begin(), scan.detections.end(),
-                      [&](const ObservedDetection& d) { return d.is_direct_of(object.id); }));
+    const auto count =
+        static_cast<unsigned>(std::count_if(scan.detections.begin(), scan.detections.end(),
+                                            [&](const ObservedDetection& d) { return d.is_direct_of(object.id); }));
     open_[{scan.radar, object.id}].push_back({scan.t_s, scan.number, object.user, static_cast<float>(object.range_m),
                                               static_cast<float>(object.aspect_rad), count, object.in_sight});
     if (count == 0) continue;

@@ -77,8 +77,8 @@ class ObjectCounts {
   template <typename Use>
   void for_each(Counting counting, const CountSelection& of, const Use& use) const;
 
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Series> open_;            // by radar and object
-  std::map<std::uint32_t, std::pair<double, double>> detected_s_;             // by object: first and last
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Series> open_;  // by radar and object
+  std::map<std::uint32_t, std::pair<double, double>> detected_s_;   // by object: first and last
   std::array<Sums, kCountings> sums_;
 };
 

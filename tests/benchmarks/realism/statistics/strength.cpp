@@ -50,8 +50,7 @@ void Strength::add_vehicle(const ObservedScan& scan, const ObservedObject& objec
   }
   if (strongest == nullptr) return;
   in_scan_.add_group(levels);
-  strongest_.push_back(
-      {object.user, static_cast<float>(strongest->range_m), static_cast<float>(strongest->rcs_dbsm)});
+  strongest_.push_back({object.user, static_cast<float>(strongest->range_m), static_cast<float>(strongest->rcs_dbsm)});
   const auto [last, is_new] = last_.try_emplace({scan.radar, object.id}, Last{scan.number, strongest->rcs_dbsm});
   if (is_new) return;
   // The variance of a group of two is half of the squared difference.

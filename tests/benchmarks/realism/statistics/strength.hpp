@@ -32,7 +32,9 @@ class Strength {
   /// Probability that a vehicle's detection is stronger than a false mover's.
   [[nodiscard]] double vehicle_is_stronger(double from_m, double to_m) const;
   /// Median of the detections of pedestrians or two-wheelers.
-  [[nodiscard]] double median_dbsm(RoadUser user) const { return of_user_[static_cast<std::size_t>(user)].quantile(0.5); }
+  [[nodiscard]] double median_dbsm(RoadUser user) const {
+    return of_user_[static_cast<std::size_t>(user)].quantile(0.5);
+  }
 
   /// Standard deviations of one vehicle's detections: in a range bin, in one scan.
   [[nodiscard]] double std_in_bin_db(std::size_t bin) const { return in_bin_[bin].std_dev(); }

@@ -1,7 +1,8 @@
 // Places on the body and deviating range rates, on scans whose figures are known.
+#include "tests/benchmarks/realism/statistics/body_places.hpp"
+
 #include <gtest/gtest.h>
 
-#include "tests/benchmarks/realism/statistics/body_places.hpp"
 #include "tests/benchmarks/realism/statistics/rigid_deviations.hpp"
 #include "tests/benchmarks/realism/test/scans.hpp"
 

@@ -1,7 +1,8 @@
 // False movers, on scans whose figures are known.
+#include "tests/benchmarks/realism/statistics/false_movers.hpp"
+
 #include <gtest/gtest.h>
 
-#include "tests/benchmarks/realism/statistics/false_movers.hpp"
 #include "tests/benchmarks/realism/test/scans.hpp"
 
 namespace boresight::bench::realism {
@@ -13,8 +14,8 @@ TEST(FalseMovers, DetectionsOfMoversAndSlowOnesAreNone) {
   FalseMovers movers;
   ObservedScan scan = scan_of(1);
   scan.objects = {car_at(1, 20.0)};
-  scan.detections = {of_car(1, 20.0, 0.0), at(10.0, 0.0), false_mover_at(30.0, 0.0, 0.7), false_mover_at(30.0, 0.0, 3.0),
-                     false_mover_at(70.0, 0.0, -15.0)};
+  scan.detections = {of_car(1, 20.0, 0.0), at(10.0, 0.0), false_mover_at(30.0, 0.0, 0.7),
+                     false_mover_at(30.0, 0.0, 3.0), false_mover_at(70.0, 0.0, -15.0)};
   movers.add(scan);
   EXPECT_DOUBLE_EQ(movers.per_scan(), 2.0);
   EXPECT_DOUBLE_EQ(movers.per_scan_beyond(0), 3.0);
@@ -83,6 +84,7 @@ TEST(FalseMovers, DopplerAmbiguityIsOnTheOtherSideOfZero) {
   EXPECT_DOUBLE_EQ(movers.percent_doppler_measured(), 50.0);
   EXPECT_DOUBLE_EQ(movers.percent_doppler_by_truth(), 50.0);
   EXPECT_DOUBLE_EQ(movers.percent_doppler_of_stationary(), 50.0);
+  EXPECT_DOUBLE_EQ(movers.percent_doppler_of_stationary_by_truth(), 50.0);
 }
 
 TEST(FalseMovers, AmbiguousMoverIsAtItsPlaceWithAWrongRangeRate) {

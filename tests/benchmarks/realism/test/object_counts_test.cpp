@@ -1,9 +1,10 @@
 // Detections per object and misses, on scans whose figures are known.
+#include "tests/benchmarks/realism/statistics/object_counts.hpp"
+
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "tests/benchmarks/realism/statistics/object_counts.hpp"
 #include "tests/benchmarks/realism/test/scans.hpp"
 
 namespace boresight::bench::realism {

@@ -1,4 +1,6 @@
 // What the statistics read of a simulated drive.
+#include "tests/benchmarks/realism/common/observer.hpp"
+
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -6,7 +8,6 @@
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/realism/common/drives.hpp"
-#include "tests/benchmarks/realism/common/observer.hpp"
 
 namespace boresight::bench::realism {
 namespace {

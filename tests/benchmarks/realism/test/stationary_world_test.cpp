@@ -1,7 +1,8 @@
 // The stationary world, on scans whose figures are known.
+#include "tests/benchmarks/realism/statistics/stationary_world.hpp"
+
 #include <gtest/gtest.h>
 
-#include "tests/benchmarks/realism/statistics/stationary_world.hpp"
 #include "tests/benchmarks/realism/test/scans.hpp"
 
 namespace boresight::bench::realism {
@@ -13,8 +14,8 @@ TEST(StationaryWorld, NumbersAndSharesByRangeAreOfStationaryDetectionsOnly) {
   StationaryWorld world;
   ObservedScan scan = scan_of(1);
   scan.objects = {car_at(1, 15.0)};
-  scan.detections = {at(5.0, 0.0), at(15.0, 0.0), at(0.0, 15.0), at(95.0, 0.0), of_car(1, 15.0, 0.0),
-                     false_mover_at(5.0, 0.0, -4.0)};
+  scan.detections = {at(5.0, 0.0),  at(15.0, 0.0),        at(0.0, 15.0),
+                     at(95.0, 0.0), of_car(1, 15.0, 0.0), false_mover_at(5.0, 0.0, -4.0)};
   world.add(scan);
   EXPECT_DOUBLE_EQ(world.per_scan(Facing::kForward).mean(), 4.0);
   EXPECT_DOUBLE_EQ(world.all_per_scan().mean(), 6.0);

@@ -1,8 +1,9 @@
 // Strength of vehicles, false movers and ghosts, on scans whose figures are known.
+#include "tests/benchmarks/realism/statistics/strength.hpp"
+
 #include <gtest/gtest.h>
 
 #include "tests/benchmarks/realism/statistics/ghost_strength.hpp"
-#include "tests/benchmarks/realism/statistics/strength.hpp"
 #include "tests/benchmarks/realism/test/scans.hpp"
 
 namespace boresight::bench::realism {
@@ -61,7 +62,7 @@ TEST(GhostStrength, PairsAreBesideTheObjectAtItsRangeAndRangeRate) {
     // A ghost that moves away from the object's range rate, so that an earlier one is no pair.
     ObservedDetection ghost = with_rcs(false_mover_at(0.0, 31.0, -10.0), -2.0);
     if (i <= 20) ghost.range_rate_mps = -20.0;
-    ObservedDetection near = with_rcs(false_mover_at(30.5, 1.0, -10.0), 20.0);    // 2° beside
+    ObservedDetection near = with_rcs(false_mover_at(30.5, 1.0, -10.0), 20.0);     // 2° beside
     ObservedDetection farther = with_rcs(false_mover_at(0.0, 35.0, -10.0), 20.0);  // 5 m farther
     scan.detections = {car, ghost, near, farther};
     ghosts.add(scan);
