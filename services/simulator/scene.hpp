@@ -14,9 +14,11 @@ namespace boresight::simulator {
 struct EgoPose {
   Eigen::Vector2d position_m;
   double heading_rad;
-  double speed_mps;
+  double speed_mps;  ///< along the heading
   double acceleration_mps2;
   double yaw_rate_radps;
+  double lateral_speed_mps = 0.0;  ///< of the rear axle, positive to the left: side slip
+  double body_pitch_rad = 0.0;     ///< of the body about the rear axle, positive with the nose up
 };
 
 /// A point that reflects back to the radar: a corner, a rim, a leg. `facing` is a unit vector out of the body's

@@ -96,7 +96,7 @@ void CramerRaoBound::add(const AlignmentEvent& event) {
                                  event.vertical_speed_mps);
   const Eigen::Vector3d seen = rotation.transpose() * velocity;  // the sensor's motion in its own axes
   // Derivatives of the sensor's velocity by the vehicle's true speed and yaw rate.
-  const double slip = spec_.slip_coefficient_radps2pm;
+  const double slip = spec_.total_slip_coefficient_radps2pm();
   const Eigen::Vector3d by_speed(1.0, -2.0 * slip * speed * yaw_rate, event.vertical_speed_mps / speed);
   const Eigen::Vector3d by_yaw_rate(-position[1], position[0] - slip * speed * speed, 0.0);
   const double rate_variance = squared(radar.config.noise.range_rate_std_mps);

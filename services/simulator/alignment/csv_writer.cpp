@@ -69,9 +69,10 @@ class DriveTable {
 
   void add(const AlignmentEvent& event) {
     const RadarScan& scan = *event.scan;
+    const double stamp_s = static_cast<double>(scan.header.measurement_time_ns) * 1e-9;  // late if the radar's are
     for (std::size_t i = 0; i < event.truth->size(); ++i) {
       std::FILE* const out = file_.get();
-      std::fprintf(out, "%.4f,%u,%.2f,%.6f,", event.time_s - AlignmentDrive::kStart_s, scan.header.source_id,
+      std::fprintf(out, "%.4f,%u,%.2f,%.6f,", stamp_s - AlignmentDrive::kStart_s, scan.header.source_id,
                    number(scan.range_m[i]), number(scan.azimuth_rad[i]));
       if (scan.has(scan_field::kElevation)) std::fprintf(out, "%.6f", number(scan.elevation_rad[i]));
       std::fprintf(out, ",%.4f,%d", number(scan.range_rate_mps[i]), (*event.truth)[i].stationary ? 1 : 0);
@@ -118,8 +119,8 @@ AlignmentFiles write_alignment_drive(const AlignmentSpec& spec, const std::files
   AlignmentDrive drive(spec);
   // An estimator does not know the disturbances of the drive: the bound has a prior for each.
   BoundPriors priors;
-  if (spec.yaw_rate_bias_radps != 0.0) priors.yaw_rate_bias_std_radps = 0.003;
-  if (spec.slip_coefficient_radps2pm != 0.0) priors.slip_coefficient_std_radps2pm = 0.005;
+  if (spec.total_yaw_rate_bias_radps() != 0.0) priors.yaw_rate_bias_std_radps = 0.003;
+  if (spec.total_slip_coefficient_radps2pm() != 0.0) priors.slip_coefficient_std_radps2pm = 0.005;
   std::optional<CramerRaoBound> bound;
   if (spec.model == MountingModel::kExact) bound.emplace(spec, drive, priors);
 

@@ -15,7 +15,8 @@ struct AlignmentFiles {
 };
 
 /// Simulates a drive and writes into `folder` (made if absent):
-///   drive.csv     t,radar,range,az,el,vr,is_stationary: s since the start, radar id, m, rad, rad, m/s, truth. `el` is
+///   drive.csv     t,radar,range,az,el,vr,is_stationary: stamp (s since the start), radar id, m, rad, rad, m/s, truth.
+///   `el` is
 ///                 empty for radars without elevation. Further columns: az_std,el_std,vr_std if radars state standard
 ///                 deviations, and vr_min,vr_max if an interval is ambiguous.
 ///   ego.csv       t,v,yaw_rate: as signalled, m/s and rad/s

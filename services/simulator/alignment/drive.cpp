@@ -10,6 +10,8 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/simulator/alignment/motion.hpp"
+#include "services/simulator/car/radar_of_car.hpp"
+#include "services/simulator/car/signals.hpp"
 #include "services/simulator/random.hpp"
 
 namespace boresight::simulator {
@@ -85,6 +87,7 @@ constexpr double kNearest_m = 2.0;
 struct RadarState {
   AlignmentRadar spec;
   View view;
+  car::RadarOfCar of_car;
   Stream movement;
   std::vector<MovingObject> objects;  // kObjectsOfAKind of each kind
   std::uint32_t cycle = 0;
@@ -93,8 +96,13 @@ struct RadarState {
   }
 };
 
-RadarState make_radar(const AlignmentRadar& spec, std::uint64_t seed, std::size_t index) {
-  RadarState radar{spec, view_of(spec.config), Stream(seed, "alignment objects", index), {}, 0};
+RadarState make_radar(const AlignmentRadar& spec, const car::RealCar& car, std::uint64_t seed, std::size_t index) {
+  RadarState radar{spec,
+                   view_of(spec.config),
+                   car::radar_of_car(car, seed, spec.config.id, spec.config.field_of_view),
+                   Stream(seed, "alignment objects", index),
+                   {},
+                   0};
   const double period_s = spec.config.cycle_time_s;
   Stream& s = radar.movement;
   const double view_rad = 0.5 * (radar.view.azimuth_max_rad - radar.view.azimuth_min_rad);
@@ -163,6 +171,11 @@ double stated_yaw_rate_std_radps(const AlignmentSpec& spec) {
   return std::max(spec.yaw_rate_std_radps, 1e-6);
 }
 
+/// Angles of a detection in the sensor's frame, radians.
+struct Angles {
+  double azimuth, elevation;
+};
+
 /// True mounting angles of the radar: nominal plus misalignment plus step changes.
 struct Mounting {
   Eigen::Matrix3d rotation;
@@ -178,7 +191,7 @@ struct AlignmentDrive::State {
         speed_noise(s.seed, "alignment speed noise"),
         yaw_rate_noise(s.seed, "alignment yaw rate noise"),
         end_ns(stamp_ns(s.duration_s)) {
-    for (std::size_t i = 0; i < s.radars.size(); ++i) radars.push_back(make_radar(s.radars[i], s.seed, i));
+    for (std::size_t i = 0; i < s.radars.size(); ++i) radars.push_back(make_radar(s.radars[i], s.real_car, s.seed, i));
     truth.reserve(kMaxDetections);
   }
 
@@ -217,9 +230,11 @@ void AlignmentDrive::State::make_ego(const AlignmentMotion& motion) {
   ego.header.measurement_time_ns = stamp_ns(static_cast<double>(ego_count - 1) / spec.ego_rate_hz);
   ego.header.time_source = TimeSource::kSensorSynchronised;
   ego.fields = ego_field::kSpeed | ego_field::kYawRate;
-  ego.speed_mps = static_cast<float>(motion.speed_mps / spec.speed_scale + spec.speed_std_mps * speed_noise.gaussian());
-  ego.yaw_rate_radps = static_cast<float>(motion.yaw_rate_radps + spec.yaw_rate_bias_radps +
-                                          spec.yaw_rate_std_radps * yaw_rate_noise.gaussian());
+  ego.speed_mps = static_cast<float>(car::quantised_speed(
+      spec.real_car, motion.speed_mps / spec.speed_scale + spec.speed_std_mps * speed_noise.gaussian()));
+  ego.yaw_rate_radps =
+      static_cast<float>(car::signalled_yaw_rate(spec.real_car, motion.yaw_rate_radps) + spec.yaw_rate_bias_radps +
+                         spec.yaw_rate_std_radps * yaw_rate_noise.gaussian());
   ego.speed_std_mps = static_cast<float>(stated_speed_std_mps(spec));
   ego.yaw_rate_std_radps = static_cast<float>(stated_yaw_rate_std_radps(spec));
   ego.longitudinal_acceleration_mps2 = static_cast<float>(motion.acceleration_mps2 / spec.speed_scale);
@@ -231,7 +246,7 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
   const RadarConfig& config = r.config;
   const Mounting mount = mounting(index, time_s);
   const Eigen::Matrix3d to_sensor = mount.rotation.transpose();
-  const std::array<double, 3>& p = config.mounting_pose.position_m;
+  const std::array<double, 3> p = radar.of_car.true_position(config.mounting_pose).position_m;
   const Eigen::Vector3d velocity(motion.speed_mps - motion.yaw_rate_radps * p[1],
                                  motion.lateral_speed_mps + motion.yaw_rate_radps * p[0], motion.vertical_speed_mps);
   const double yaw = mount.yaw_pitch_roll_rad.x(), pitch = mount.yaw_pitch_roll_rad.y();
@@ -242,7 +257,7 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
   Stream scene = stream("alignment scene"), outliers = stream("alignment outliers");
   Stream azimuth_noise = stream("alignment azimuth noise"), elevation_noise = stream("alignment elevation noise");
   Stream rate_noise = stream("alignment rate noise"), range_noise = stream("alignment range noise");
-  Stream strength = stream("alignment strength");
+  Stream strength = stream("alignment strength"), road_mirror = stream("real car road mirror");
   for (MovingObject& o : radar.objects) {
     o.along_mps.step(radar.movement);
     o.across_mps.step(radar.movement);
@@ -260,9 +275,10 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
   out.header.source_id = config.id;
   out.header.sequence = scan_count;
   out.header.source_sequence = radar.cycle + 1;
-  out.header.measurement_time_ns = radar.next_ns();
+  const std::int64_t stamp_ns = radar.next_ns() + radar.of_car.stamp_offset_ns();
+  out.header.measurement_time_ns = stamp_ns;
   out.header.time_source = TimeSource::kSensorSynchronised;
-  out.header.stage(Stage::kIngest) = {radar.next_ns(), radar.next_ns()};
+  out.header.stage(Stage::kIngest) = {stamp_ns, stamp_ns};
   out.cycle_counter = radar.cycle;
   out.number_of_valid_detections = static_cast<std::uint32_t>(count);
   out.dropped_detections = 0;
@@ -274,6 +290,16 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
   out.range_rate_max_mps = static_cast<float>(0.5 * std::max(r.ambiguity_mps, 0.0));
   out.range_rate_min_mps = -out.range_rate_max_mps;
   truth.resize(count);
+
+  const auto seen = [&](const Eigen::Vector3d& sight, double azimuth_vehicle, double elevation) -> Angles {
+    if (spec.model == MountingModel::kExact) {
+      const Eigen::Vector3d u = to_sensor * sight;
+      return {std::atan2(u.y(), u.x()), std::asin(std::clamp(u.z(), -1.0, 1.0))};
+    }
+    // Burza 2025, (10)(11), solved for the angles that the sensor sees
+    const double a = geometry::wrap_angle(azimuth_vehicle - yaw), b = elevation - pitch;
+    return {cos_roll * a + sin_roll * b, -sin_roll * a + cos_roll * b};
+  };
 
   for (std::size_t i = 0; i < count; ++i) {
     double azimuth = draw_azimuth_rad(radar.view, scene);
@@ -295,28 +321,32 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
     const Eigen::Vector3d sight = geometry::direction(azimuth_vehicle, elevation);
     double rate = geometry::stationary_range_rate(sight, velocity);
     if (object != nullptr) rate += sight.dot(object->velocity_mps(motion.speed_mps));
-    double seen_azimuth, seen_elevation;
-    if (spec.model == MountingModel::kExact) {
-      const Eigen::Vector3d u = to_sensor * sight;
-      seen_azimuth = std::atan2(u.y(), u.x());
-      seen_elevation = std::asin(std::clamp(u.z(), -1.0, 1.0));
-    } else {  // Burza 2025, (10)(11), solved for the angles that the sensor sees
-      const double a = geometry::wrap_angle(azimuth_vehicle - yaw), b = elevation - pitch;
-      seen_azimuth = cos_roll * a + sin_roll * b;
-      seen_elevation = -sin_roll * a + cos_roll * b;
-    }
+    auto [seen_azimuth, seen_elevation] = seen(sight, azimuth_vehicle, elevation);
     // A ghost: its range rate is that of a stationary reflection, but its azimuth is another.
     if (is_outlier && object == nullptr) {
       seen_azimuth = radar.view.azimuth(place) * (cos_roll < 0.0 ? -1.0 : 1.0);
     }
     truth[i] = {!is_outlier, seen_azimuth, seen_elevation};
+    // What the radar's noise adds to: the angles that road and bumper show, the range rate by the radar's own clock.
+    Angles shown{seen_azimuth, seen_elevation};
+    if (spec.real_car.road_mirror_share > 0.0 && road_mirror.uniform() < spec.real_car.road_mirror_share) {
+      if (const auto image = car::mirrored_by_road(sight, range_m, p[2])) {
+        const Angles of_image = seen(*image, azimuth_vehicle, std::asin(image->z()));
+        const FieldOfView& f = config.field_of_view;
+        if (of_image.elevation >= f.elevation_min_rad && of_image.elevation <= f.elevation_max_rad) {
+          shown.elevation = of_image.elevation;
+        }
+      }
+    }
+    shown.azimuth += radar.of_car.curve.error_rad(shown.azimuth);
+    rate *= radar.of_car.range_rate_scale;
 
     const double azimuth_std = config.noise.azimuth_std_rad / std::max(std::cos(seen_azimuth), spec.azimuth_std_edge);
     const double elevation_std = config.noise.elevation_std_rad;
     rate += config.noise.range_rate_std_mps * rate_noise.gaussian();
     if (r.ambiguity_mps > 0.0) rate -= r.ambiguity_mps * std::floor(rate / r.ambiguity_mps + 0.5);
-    const double measured_elevation = seen_elevation + r.noise_scale * elevation_std * elevation_noise.gaussian();
-    out.azimuth_rad[i] = static_cast<float>(seen_azimuth + r.noise_scale * azimuth_std * azimuth_noise.gaussian());
+    const double measured_elevation = shown.elevation + r.noise_scale * elevation_std * elevation_noise.gaussian();
+    out.azimuth_rad[i] = static_cast<float>(shown.azimuth + r.noise_scale * azimuth_std * azimuth_noise.gaussian());
     out.elevation_rad[i] = r.measures_elevation ? static_cast<float>(measured_elevation) : 0.0F;
     out.range_rate_mps[i] = static_cast<float>(rate);
     out.range_m[i] = static_cast<float>(std::max(0.1, range_m + config.noise.range_std_m * range_noise.gaussian()));

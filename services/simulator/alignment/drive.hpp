@@ -14,18 +14,18 @@ namespace boresight::simulator {
 /// Truth of one detection.
 struct AlignmentDetectionTruth {
   bool stationary = true;
-  double azimuth_rad = 0.0;  ///< both angles without noise
+  double azimuth_rad = 0.0;  ///< both angles without noise and without distortion by the car
   double elevation_rad = 0.0;
 };
 
 /// Exactly one of the first two is set. All pointers are valid until the next call.
 struct AlignmentEvent {
-  double time_s = 0.0;
+  double time_s = 0.0;  ///< of measurement; the stamp of a scan may be later
   const EgoMotion* ego = nullptr;
   const RadarScan* scan = nullptr;
   std::size_t radar = 0;  ///< index of the scan's radar
   const std::vector<AlignmentDetectionTruth>* truth = nullptr;
-  /// True motion at this instant: speed, yaw rate, lateral speed at the rear axle, vertical speed by body pitch.
+  /// True motion at this instant: speed, yaw rate, lateral speed at the rear axle, vertical speed by pitch of the body.
   double speed_mps = 0.0, yaw_rate_radps = 0.0, lateral_speed_mps = 0.0, vertical_speed_mps = 0.0;
 };
 

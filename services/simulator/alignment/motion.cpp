@@ -49,6 +49,7 @@ AlignmentRoad::AlignmentRoad(const AlignmentSpec& spec)
     : spec_(spec),
       segments_(spec.seed, "alignment road"),
       pitch_(spec.seed, "alignment body pitch"),
+      side_slip_(spec.real_car, spec.seed, spec.duration_s),
       pitch_decay_(std::exp(-kStep_s / std::max(spec.body_pitch_correlation_s, 1e-6))),
       segment_(draw_segment()),
       segment_end_s_(segment_.duration_s),
@@ -123,9 +124,12 @@ AlignmentMotion AlignmentRoad::at(double time_s) {
   motion.yaw_rate_radps = motion.speed_mps * std::clamp(blend(before_.curvature_per_m, after_.curvature_per_m),
                                                         -sharpest_per_m, sharpest_per_m);
   motion.lateral_speed_mps =
-      -spec_.slip_coefficient_radps2pm * motion.speed_mps * motion.speed_mps * motion.yaw_rate_radps;
-  const double nose_down_rad = blend(before_.pitch_rad, after_.pitch_rad) -
-                               spec_.body_pitch_per_acceleration_radps2pm * motion.acceleration_mps2;
+      -spec_.total_slip_coefficient_radps2pm() * motion.speed_mps * motion.speed_mps * motion.yaw_rate_radps;
+  const double side_slip_rad = car::side_slip_share(motion.speed_mps) * side_slip_.at(time_s);
+  if (side_slip_rad != 0.0) motion.lateral_speed_mps += motion.speed_mps * std::tan(side_slip_rad);
+  double nose_down_rad = blend(before_.pitch_rad, after_.pitch_rad) -
+                         spec_.body_pitch_per_acceleration_radps2pm * motion.acceleration_mps2;
+  if (spec_.real_car.load_pitch_rad != 0.0) nose_down_rad -= car::load_pitch_rad(spec_.real_car, time_s);
   motion.vertical_speed_mps = motion.speed_mps * nose_down_rad;
   return motion;
 }

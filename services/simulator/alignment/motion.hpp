@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "services/simulator/alignment/spec.hpp"
+#include "services/simulator/car/body.hpp"
 #include "services/simulator/random.hpp"
 
 namespace boresight::simulator {
@@ -13,7 +14,7 @@ struct AlignmentMotion {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
   double acceleration_mps2 = 0.0;
-  double lateral_speed_mps = 0.0;   ///< V_y = −c·V·(V·ω)
+  double lateral_speed_mps = 0.0;   ///< V_y = −c·V·(V·ω), and side slip
   double vertical_speed_mps = 0.0;  ///< in body axes; positive while the nose is down
 };
 
@@ -38,6 +39,7 @@ class AlignmentRoad {
   const AlignmentSpec spec_;
   Stream segments_;
   Stream pitch_;
+  car::SideSlip side_slip_;
   double pitch_decay_;
   Segment segment_;
   double segment_end_s_;

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "services/common/vehicle/vehicle.hpp"
+#include "services/simulator/car/real_car.hpp"
 #include "services/simulator/radar_effects.hpp"
 
 namespace boresight::simulator {
@@ -61,6 +62,12 @@ struct AlignmentSpec {
   double body_pitch_correlation_s = 0.3;
   double body_pitch_per_acceleration_radps2pm = 0.0;  ///< nose down when braking
   std::vector<StepChange> step_changes;
+  car::RealCar real_car{};  ///< its yaw-rate bias and slip coefficient add to those above
+
+  [[nodiscard]] double total_yaw_rate_bias_radps() const { return yaw_rate_bias_radps + real_car.yaw_rate_bias_radps; }
+  [[nodiscard]] double total_slip_coefficient_radps2pm() const {
+    return slip_coefficient_radps2pm + real_car.slip_coefficient_radps2pm;
+  }
 };
 
 /// Four corner radars, as in drive_1: noise, mounting and truth of Burza 2025, Table 1.

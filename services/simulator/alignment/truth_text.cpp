@@ -7,6 +7,7 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
+#include "services/simulator/car/truth.hpp"
 
 namespace boresight::simulator {
 
@@ -40,6 +41,22 @@ std::string step_change_text(const StepChange& step_change, const AlignmentSpec&
       "step_change t {:.4f} radar {} turn_x_deg {:.4f} turn_y_deg {:.4f} turn_z_deg {:.4f} {}\n",
       step_change.time_s - AlignmentDrive::kStart_s, radar.id, turn.x(), turn.y(), turn.z(),
       angles_text(misalignment(drive.sensor_to_vehicle(step_change.radar, step_change.time_s), radar.mounting_pose)));
+}
+
+/// The real car's effects, one a line; none if all are off.
+std::string real_car_text(const AlignmentSpec& spec) {
+  std::string text;
+  for (const car::TruthRow& row : car::truth_of_car(spec.real_car)) {
+    text += fmt::format("real_car {} {:.8f} {}\n", row.quantity, row.value, row.unit);
+  }
+  for (const AlignmentRadar& radar : spec.radars) {
+    const RadarConfig& config = radar.config;
+    const car::RadarOfCar of_car = car::radar_of_car(spec.real_car, spec.seed, config.id, config.field_of_view);
+    for (const car::TruthRow& row : car::truth_of_radar(spec.real_car, of_car, config.id)) {
+      text += fmt::format("real_car {} {:.8f} {} radar {}\n", row.quantity, row.value, row.unit, config.id);
+    }
+  }
+  return text;
 }
 
 std::string bound_text(const CramerRaoBound& bound, std::size_t radars) {
@@ -76,8 +93,9 @@ std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive, c
   text += fmt::format(
       "disturbance yaw_rate_bias {:.6f} rad/s (measured = true + bias) rear_slip_coeff {:.4f} rad/(m/s2) "
       "(V_lat=-c*V*(V*w)) pitch_std {:.3f} deg pitch_per_ax {:.4f} rad/(m/s2)\n",
-      spec.yaw_rate_bias_radps, spec.slip_coefficient_radps2pm, spec.body_pitch_std_rad / kRadiansPerDegree,
-      spec.body_pitch_per_acceleration_radps2pm);
+      spec.total_yaw_rate_bias_radps(), spec.total_slip_coefficient_radps2pm(),
+      spec.body_pitch_std_rad / kRadiansPerDegree, spec.body_pitch_per_acceleration_radps2pm);
+  text += real_car_text(spec);
   for (const StepChange& step_change : spec.step_changes) text += step_change_text(step_change, spec, drive);
   text += fmt::format("stationary residual rmse_uncorrected {:.4f} at_truth {:.4f}\n", residuals.uncorrected_mps,
                       residuals.at_truth_mps);

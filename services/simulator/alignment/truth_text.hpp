@@ -14,7 +14,8 @@ struct AlignmentResiduals {
 };
 
 /// Lines of a key and pairs of name and value, angles in degrees: k_v; one line per radar with α, β, γ at the start;
-/// noise; disturbance; one line per step change with α, β, γ after it; residuals; and the bound if there is one.
+/// noise; disturbance; the effects of a real car, one a line; one line per step change with α, β, γ after it;
+/// residuals; and the bound if there is one.
 [[nodiscard]] std::string truth_text(const AlignmentSpec& spec, const AlignmentDrive& drive,
                                      const AlignmentResiduals& residuals, const CramerRaoBound* bound);
 
