@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <arpa/inet.h>
 
@@ -19,7 +24,6 @@ namespace boresight::simulator {
 
 namespace {
 
-constexpr std::int64_t kRadarLatency_ns = 20'000'000;  // from measurement to the last fragment on the wire
 constexpr std::int64_t kStatusPeriod_ns = 1'000'000'000;
 constexpr double kObjectsPeriod_s = 0.1;
 
@@ -71,6 +75,7 @@ void check(const Scenario& scenario, const VehicleConfig& vehicle) {
   for (const RadarInterference& i : e.interference) {
     if (i.radar != 0) expect_radar(vehicle, e, i.radar, "interference");
   }
+  for (const ProfileOfRadar& other : e.profiles) expect_radar(vehicle, e, other.id, "profile_of");
 }
 
 void write_ego(const Event& event, const std::string& interface, std::FILE* log) {
@@ -82,34 +87,75 @@ void write_ego(const Event& event, const std::string& interface, std::FILE* log)
   }
 }
 
-/// The recording of the radars' network.
+/// Time from the measurement to the last fragment on the wire.
+std::int64_t latency_ns(const radar::LatencySpec& latency, std::uint32_t detections) {
+  return std::llround(1e9 * (latency.constant_s + latency.per_detection_s * detections));
+}
+
+/// The recording of the radars' network, in the order of transmission: a long list of one radar ends after a short one
+/// of another radar that was measured later.
 class RadarLog {
  public:
   explicit RadarLog(const std::filesystem::path& file) : pcap_(file) {}
 
-  /// Writes a detection list. A status message follows when the radar's condition has changed, and at least once a
-  /// second.
-  void add(const Event& event, const RadarConfig& radar) {
-    const wire::Endpoint from = endpoint(radar.source.sender, radar.source.port);
-    const wire::Endpoint to = endpoint(radar.source.address, radar.source.port);
-    const std::int64_t sent_ns = event.time_ns + kRadarLatency_ns;
-    wire::encode_ars548(*event.scan, event.time_ns, *list_);
-    pcap_.write(sent_ns, from, to, *list_);
+  /// Adds a detection list. A status message follows when the radar's condition has changed, and at least once a
+  /// second. Events come in the order of measurement.
+  void add(const Event& event, const RadarConfig& radar, const radar::LatencySpec& latency) {
+    write_until(event.time_ns);
+    Pending& p = open_slot();
+    p.from = endpoint(radar.source.sender, radar.source.port);
+    p.to = endpoint(radar.source.address, radar.source.port);
+    p.sent_ns = event.stamp_ns + latency_ns(latency, event.scan->number_of_valid_detections);
+    wire::encode_ars548(*event.scan, event.stamp_ns, *p.list);
     Status& last = last_status_.at(radar.id);
-    if (last.sent_ns != 0 && last.condition == event.condition && sent_ns < last.sent_ns + kStatusPeriod_ns) return;
-    last = {sent_ns, event.condition};
-    pcap_.write(sent_ns, from, to, wire::encode_ars548_status(event.condition));
+    p.condition = event.condition;
+    p.with_status =
+        last.sent_ns == 0 || last.condition != event.condition || p.sent_ns >= last.sent_ns + kStatusPeriod_ns;
+    if (p.with_status) last = {p.sent_ns, event.condition};
   }
   /// Throws std::runtime_error if a write failed, as on a full disk.
-  void finish() { pcap_.finish(); }
+  void finish() {
+    write_until(std::numeric_limits<std::int64_t>::max());
+    pcap_.finish();
+  }
 
  private:
   struct Status {
     std::int64_t sent_ns = 0;
     std::uint32_t condition = 0;
   };
+  /// A list that is still being transmitted.
+  struct Pending {
+    std::int64_t sent_ns = 0;
+    wire::Endpoint from{}, to{};
+    std::unique_ptr<wire::Ars548List> list = std::make_unique<wire::Ars548List>();
+    std::uint32_t condition = 0;
+    bool with_status = false;
+  };
+
+  /// Writes what was sent up to that time; of equal times, what was measured first.
+  void write_until(std::int64_t time_ns) {
+    std::stable_sort(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(used_),
+                     [](const Pending& a, const Pending& b) { return a.sent_ns < b.sent_ns; });
+    std::size_t written = 0;
+    for (; written < used_ && pending_[written].sent_ns <= time_ns; ++written) {
+      const Pending& p = pending_[written];
+      pcap_.write(p.sent_ns, p.from, p.to, *p.list);
+      if (p.with_status) pcap_.write(p.sent_ns, p.from, p.to, wire::encode_ars548_status(p.condition));
+    }
+    std::rotate(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written),
+                pending_.begin() + static_cast<std::ptrdiff_t>(used_));
+    used_ -= written;
+  }
+  /// The buffers of lists are used again.
+  Pending& open_slot() {
+    if (used_ == pending_.size()) pending_.emplace_back();
+    return pending_[used_++];
+  }
+
   wire::PcapWriter pcap_;
-  std::unique_ptr<wire::Ars548List> list_ = std::make_unique<wire::Ars548List>();
+  std::vector<Pending> pending_;
+  std::size_t used_ = 0;                              // of pending_, in the order of measurement
   std::array<Status, kMaxRadars + 1> last_status_{};  // by radar id
 };
 
@@ -131,7 +177,7 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
                    0};
   RadarLog radars(files.radars);
   const TextFile ego(files.ego);
-  TruthTables truth(folder, scenario, vehicle);
+  TruthTables truth(folder, scenario, vehicle, seed);
   double next_objects_s = 0.0;
   while (const Event* event = drive.next()) {
     if (event->scan == nullptr) {
@@ -143,7 +189,8 @@ DriveFiles write_drive(const Scenario& scenario, const VehicleConfig& vehicle, s
       write_ego(*event, vehicle.ego.source.interface, ego.get());
       continue;
     }
-    radars.add(*event, *vehicle.radar(event->scan->header.source_id));
+    const RadarConfig& radar = *vehicle.radar(event->scan->header.source_id);
+    radars.add(*event, radar, scenario.effects.profile_of(radar.id).latency);
     truth.add_scan(drive, *event);
     ++files.scans;
     files.number_of_detections += event->truth->size();

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "interfaces/messages/header.hpp"
+#include "services/simulator/car/real_car.hpp"
+#include "services/simulator/radar/profile.hpp"
 
 namespace boresight::simulator {
 
@@ -90,6 +92,13 @@ struct NamedRadar {
   [[nodiscard]] bool operator==(const NamedRadar& other) const { return id == other.id; }
 };
 
+/// The profile of one radar that has another than all radars.
+struct ProfileOfRadar {
+  std::uint32_t id = 0;
+  radar::Profile profile{};
+  [[nodiscard]] bool operator==(const ProfileOfRadar&) const = default;
+};
+
 struct RadarEffects {
   double speed_scale = 1.0;                                 ///< k_v: true speed = k_v · signalled speed
   bool noise = true;                                        ///< noise of measurements, ego signals and RCS
@@ -102,8 +111,18 @@ struct RadarEffects {
   ResolutionCell resolution{};
   SensitivitySpec sensitivity{};
   double unambiguous_mps = 80.0;  ///< range rates fold into ± this; 0: no folding
+  radar::Profile profile{};       ///< statistics of all radars that `profiles` does not list
+  std::vector<ProfileOfRadar> profiles;
+  car::RealCar real_car{};
   std::vector<NamedRadar> named;  ///< in the order of the file; for errors, since the vehicle is known only later
   [[nodiscard]] bool operator==(const RadarEffects&) const = default;
+
+  [[nodiscard]] const radar::Profile& profile_of(std::uint32_t id) const {
+    for (const ProfileOfRadar& other : profiles) {
+      if (other.id == id) return other.profile;
+    }
+    return profile;
+  }
 };
 
 }  // namespace boresight::simulator

@@ -56,14 +56,14 @@ Scenario read_scenario(config::Reader root) {
 
 std::vector<std::string> scenario_names() {
   std::vector<std::string> names;
-  for (const ShippedScenario& shipped : shipped_scenarios()) names.emplace_back(shipped.name);
+  for (const ShippedFile& shipped : shipped_scenarios()) names.emplace_back(shipped.name);
   return names;
 }
 
 Scenario scenario(std::string_view name_or_file) {
   if (is_file(name_or_file)) return read_scenario(config::Reader::open(std::filesystem::path(name_or_file)));
   std::string known;
-  for (const ShippedScenario& shipped : shipped_scenarios()) {
+  for (const ShippedFile& shipped : shipped_scenarios()) {
     if (shipped.name == name_or_file) {
       return read_scenario(
           config::Reader::parse(shipped.text, "config/scenarios/" + std::string(shipped.name) + ".toml"));

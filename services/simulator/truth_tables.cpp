@@ -8,6 +8,7 @@
 
 #include "interfaces/messages/service_status.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "services/simulator/car/truth.hpp"
 #include "services/simulator/judge/truth_files.hpp"
 #include "services/simulator/radar/blockage.hpp"
 #include "services/simulator/radar/false_echoes.hpp"
@@ -40,7 +41,7 @@ const char* name_of_condition(std::uint32_t condition) {
   return (condition & source_condition::kPartlyBlocked) != 0 ? "partly_blocked" : "clear";
 }
 
-/// Source of the detection: its place in the scenario file.
+/// Source of the detection: its place in the scenario file, or the radar profile's field of weak reflectors.
 std::string name_of(const DetectionTruth& truth) {
   if (truth.object_id != 0) return "body";
   switch (truth.origin.kind) {
@@ -51,7 +52,7 @@ std::string name_of(const DetectionTruth& truth) {
     case Origin::Kind::kNone:
       break;
   }
-  return "none";
+  return truth.provenance == Provenance::kStationary ? "field" : "none";
 }
 
 struct View {
@@ -90,13 +91,21 @@ Counts count(const std::vector<DetectionTruth>& truth, const Wanted& wanted) {
   return counts;
 }
 
+void write_rows(const std::vector<car::TruthRow>& rows, std::FILE* out) {
+  for (const car::TruthRow& row : rows) {
+    const std::string radar = row.radar ? std::to_string(*row.radar) : "";
+    std::fprintf(out, "%s,%s,%.8f,%s\n", row.quantity.c_str(), radar.c_str(), row.value, row.unit);
+  }
+}
+
 unsigned long long scan_number(const Event& event) {
   return event.scan->header.source_sequence;
 }
 
 }  // namespace
 
-TruthTables::TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle)
+TruthTables::TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle,
+                         std::uint64_t seed)
     : effects_(scenario.effects),
       folder_(folder),
       detections_(folder / "truth_detections.csv"),
@@ -104,9 +113,12 @@ TruthTables::TruthTables(const std::filesystem::path& folder, const Scenario& sc
       sensors_(folder / "truth_sensors.csv"),
       visibility_(folder / "truth_visibility.csv") {
   for (const RadarConfig& radar : vehicle.radars) {
-    radars_.push_back({&radar, Sight(radar, effects_, ego_body(scenario.ego))});
+    const car::RadarOfCar of_car = car::radar_of_car(effects_.real_car, seed, radar.id, radar.field_of_view);
+    RadarConfig real = radar;
+    real.mounting_pose = of_car.true_position(radar.mounting_pose);
+    radars_.push_back({&radar, of_car, Sight(real, effects_, ego_body(scenario.ego))});
   }
-  std::fputs("t_s,radar,scan,index,provenance,object,bounces,mirror,source\n", detections_.get());
+  std::fputs("t_s,radar,scan,index,provenance,object,bounces,mirror,source,cause\n", detections_.get());
   std::fputs(
       "t_s,object,x_vehicle_m,y_vehicle_m,heading_rad,vx_over_ground_mps,vy_over_ground_mps,length_m,width_m,"
       "height_m,kind,parked\n",
@@ -138,9 +150,9 @@ void TruthTables::add_objects(const Drive& drive, double t_s) {
 void TruthTables::add_detections(const Event& event) {
   for (std::size_t i = 0; i < event.truth->size(); ++i) {
     const DetectionTruth& truth = (*event.truth)[i];
-    std::fprintf(detections_.get(), "%.6f,%u,%llu,%zu,%s,%u,%u,%u,%s\n", event.t_s, event.scan->header.source_id,
+    std::fprintf(detections_.get(), "%.6f,%u,%llu,%zu,%s,%u,%u,%u,%s,%s\n", event.t_s, event.scan->header.source_id,
                  scan_number(event), i, judge::table_word(truth.provenance).data(), truth.object_id, truth.bounces,
-                 truth.mirror_body, name_of(truth).c_str());
+                 truth.mirror_body, name_of(truth).c_str(), cause_word(truth.cause).data());
   }
 }
 
@@ -196,6 +208,7 @@ void TruthTables::finish() {
   for (const TextFile* file : {&detections_, &objects_, &sensors_, &visibility_}) file->finish();
   const TextFile out(folder_ / "truth.csv");
   std::fprintf(out.get(), "quantity,radar,value,unit\nspeed_scale,,%.6f,1\n", effects_.speed_scale);
+  write_rows(car::truth_of_car(effects_.real_car), out.get());
   for (const Radar& radar : radars_) {
     const std::uint32_t id = radar.config->id;
     const Misalignment& m = effects_.misalignment[id];
@@ -203,6 +216,7 @@ void TruthTables::finish() {
                  m.yaw_rad * kDegreesPerRadian, id, m.pitch_rad * kDegreesPerRadian, id,
                  m.roll_rad * kDegreesPerRadian);
     std::fprintf(out.get(), "scans,%u,%zu,1\n", id, radar.scans);
+    write_rows(car::truth_of_radar(effects_.real_car, radar.of_car, id), out.get());
   }
   out.finish();
 }

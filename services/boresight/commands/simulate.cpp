@@ -13,12 +13,14 @@
 
 #include "services/boresight/commands/alignment_drive_options.hpp"
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/real_car_options.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/commands/simulate_drive.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
 #include "services/simulator/alignment/csv_writer.hpp"
 #include "services/simulator/drive_writer.hpp"
+#include "services/simulator/scenario/read_profile.hpp"
 
 namespace boresight {
 
@@ -28,12 +30,14 @@ constexpr double kAlignmentDrive_s = 45.0;
 
 struct SimulateOptions {
   std::string scenario = "demo_drive";
+  std::string profile;  ///< empty: as the scenario says
   runtime::Configuration configuration;
   std::string out;
   std::uint64_t seed = 1;
   double duration_s = 0.0;  ///< 0: as the scenario says, or kAlignmentDrive_s
   bool list = false;
   AlignmentDriveOptions alignment;
+  RealCarOptions real_car;
 };
 
 /// Refuses "nan", which a range accepts because comparisons with it are false.
@@ -92,8 +96,9 @@ int simulate_alignment(const SimulateOptions& options) {
   if (!options.configuration.vehicle_name.empty()) {
     vehicle = options.configuration.vehicle(config::VehicleUse::kOffline);
   }
-  const simulator::AlignmentSpec spec =
+  simulator::AlignmentSpec spec =
       alignment_spec(options.alignment, vehicle ? &*vehicle : nullptr, options.seed, duration_s);
+  if (const auto car = real_car(options.real_car)) spec.real_car = *car;
   terminal::print(simulate_into(options.out, duration_s,
                                 [&](const std::filesystem::path& folder, const auto& progress, std::uint64_t& scans,
                                     std::uint64_t& detections) -> std::vector<std::filesystem::path> {
@@ -135,7 +140,9 @@ int run_simulate(const SimulateOptions& options) {
   if (options.list) return list_scenarios();
   if (options.out.empty()) throw UsageError("--out is required: the folder for the recordings and the truth");
   if (!options.alignment.road.empty()) return simulate_alignment(options);
-  const simulator::Scenario scenario = simulator::scenario(options.scenario);
+  simulator::Scenario scenario = simulator::scenario(options.scenario);
+  if (!options.profile.empty()) simulator::use_profile(scenario, options.profile);
+  if (const auto car = real_car(options.real_car)) scenario.effects.real_car = *car;
   const VehicleConfig vehicle = simulated_vehicle(options, scenario);
   const double duration_s = options.duration_s > 0.0 ? options.duration_s : scenario.duration_s;
   terminal::print(write_simulated_drive(scenario, vehicle, options.seed, duration_s, options.out));
@@ -172,6 +179,13 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "Vehicle: a name in the folder vehicle/, or a file. Default: the vehicle of the scenario; "
       "for an alignment drive, four corner radars");
   runtime::add_config_option(*command, options->configuration);
+  CLI::Option* const profile =
+      command
+          ->add_option("--profile", options->profile,
+                       "Radar profile of all radars: a file (TOML), or a shipped one: " +
+                           fmt::format("{}", fmt::join(simulator::radar_profile_names(), ", ")) +
+                           "; default: as the scenario says")
+          ->type_name("NAME|FILE");
   CLI::Option* const out = command
                                ->add_option("--out", options->out,
                                             "Folder for the recordings and the truth; made if it does not exist, files "
@@ -190,11 +204,13 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       ->type_name("S")
       ->check(CLI::Range(0.1, 36000.0))
       ->check(kFinite);
+  add_real_car_options(*command, options->real_car);
   CLI::Option* const alignment = add_alignment_drive_options(*command, options->alignment);
   alignment->excludes(scenario);
+  alignment->excludes(profile);
   on_call(
       *command, exit_code,
-      {"simulate --scenario city_canyon --out drive\n"
+      {"simulate --scenario city_canyon --profile series_77ghz --out drive\n"
        "simulate --alignment-drive city --random-truth --out drive",
        "the drive is written", ""},
       [options] { return run_simulate(*options); }, &options->configuration);

@@ -35,7 +35,7 @@ struct Disturbance {
 /// Appends a Poisson-distributed number of echoes at random places of the field of view, just above the threshold,
 /// since false detections are weak. Range rates are uniform within ±`rate_max_mps`.
 inline void add_false(Stream& stream, double mean, double mean_excess_db, double threshold_db, double rate_max_mps,
-                      const FieldOfView& view, std::vector<Echo>& echoes) {
+                      const FieldOfView& view, Cause cause, std::vector<Echo>& echoes) {
   const unsigned count = stream.poisson(mean);
   for (unsigned i = 0; i < count; ++i) {
     Echo e{};
@@ -45,6 +45,7 @@ inline void add_false(Stream& stream, double mean, double mean_excess_db, double
     e.range_rate_mps = stream.uniform(-rate_max_mps, rate_max_mps);
     e.power_db = threshold_db - mean_excess_db * std::log(1.0 - stream.uniform());
     e.truth.provenance = Provenance::kClutter;
+    e.truth.cause = cause;
     e.key = key_of(i, stream.next());
     echoes.push_back(e);
   }

@@ -37,6 +37,9 @@ class Propagation {
   /// see Occlusion.
   void direct(const Target& target, double embedded_m, std::vector<OneWay>& paths) const;
 
+  /// Whether the direct line from the sensor to a stationary point is free.
+  [[nodiscard]] bool clear(const Eigen::Vector3d& point_m) const { return occlusion_.clear(view_.position_m, point_m); }
+
   /// Chooses the mirrors, and pairs of mirrors, that may reflect a target within `radius_m` of `centre_m`. `mirrored`
   /// uses only these.
   void choose(const Eigen::Vector3d& centre_m, double radius_m);

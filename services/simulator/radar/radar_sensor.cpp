@@ -9,6 +9,8 @@
 #include "services/simulator/radar/key.hpp"
 #include "services/simulator/radar/measurement_noise.hpp"
 #include "services/simulator/radar/mounting.hpp"
+#include "services/simulator/radar/returns/strength.hpp"
+#include "services/simulator/radar/returns/validity.hpp"
 #include "services/simulator/random.hpp"
 
 namespace boresight::simulator {
@@ -27,8 +29,10 @@ bool moves(const Body& body) {
           std::abs(body.yaw_rate_radps) * 0.5 * std::hypot(body.length_m, body.width_m) > kNearlyStill_mps);
 }
 
-bool is_false(const radar::Echo& echo) {
-  return echo.truth.provenance == Provenance::kClutter;
+/// Clutter or interference: drawn as measured, without noise of measurement.
+bool is_noise_itself(const radar::Echo& echo) {
+  return echo.truth.provenance == Provenance::kClutter &&
+         (echo.truth.cause == Cause::kNone || echo.truth.cause == Cause::kInterference);
 }
 
 }  // namespace
@@ -38,11 +42,15 @@ RadarSensor::RadarSensor(const RadarConfig& config, const RadarEffects& effects,
     : config_(config),
       effects_(effects),
       seed_(seed),
-      ego_box_(radar::seen_from(ego_body, Eigen::Vector3d(config.mounting_pose.position_m.data()))),
+      of_car_(car::radar_of_car(effects.real_car, seed, config.id, config.field_of_view)),
+      true_position_(of_car_.true_position(config.mounting_pose)),
+      ego_box_(radar::seen_from(ego_body, Eigen::Vector3d(true_position_.position_m.data()))),
       swerling_order_(radar::swerling_order(effects.sensitivity.rcs_fluctuation_db)),
       antenna_(config.field_of_view),
       propagation_(effects.multipath, config.field_of_view.range_max_m),
-      cells_(effects.resolution) {}
+      cells_(effects.resolution),
+      returns_(effects.profile_of(config.id), effects.sensitivity, config.cycle_time_s),
+      rcs_offset_db_(radar::radar_offset_db(returns_.profile().strength, {seed, config.id, 0})) {}
 
 std::uint32_t RadarSensor::condition(double t_s) const {
   std::vector<radar::Dirt> dirt;
@@ -124,9 +132,9 @@ void RadarSensor::add_false_detections(std::uint64_t cycle_key, double interfere
   false_echoes_.clear();
   Stream clutter(seed_, "clutter", cycle_key), interference(seed_, "interference", cycle_key);
   radar::add_false(clutter, effects_.clutter_per_scan, kClutterExcess_db, threshold, rate_max, config_.field_of_view,
-                   false_echoes_);
+                   Cause::kNone, false_echoes_);
   radar::add_false(interference, interference_per_scan, kInterferenceExcess_db, threshold, rate_max,
-                   config_.field_of_view, false_echoes_);
+                   config_.field_of_view, Cause::kInterference, false_echoes_);
   // A cell holds one detection: a false echo in the cell of a real one is dropped.
   const std::size_t real = echoes_.size();
   for (const radar::Echo& e : false_echoes_) {
@@ -137,21 +145,44 @@ void RadarSensor::add_false_detections(std::uint64_t cycle_key, double interfere
   }
 }
 
-void RadarSensor::write(std::uint64_t cycle_key, RadarScan& scan, std::vector<DetectionTruth>& truth) const {
+void RadarSensor::distort(radar::Echo& echo, std::uint64_t cycle_key) const {
+  const double share = effects_.real_car.road_mirror_share;
+  if (share > 0.0 && echo.truth.cause == Cause::kNone &&
+      Stream(seed_, "real car road mirror", cycle_key, echo.key).uniform() < share) {
+    const Eigen::Vector3d direction =
+        view_.sensor_to_world * geometry::direction(echo.azimuth_rad, echo.elevation_rad);
+    if (const auto image = car::mirrored_by_road(direction, echo.range_m, view_.position_m.z())) {
+      const radar::Look look = antenna_.look(view_.sensor_to_world.transpose() * *image);
+      if (look.inside) {
+        echo.azimuth_rad = look.azimuth_rad;
+        echo.elevation_rad = look.elevation_rad;
+        echo.truth.cause = Cause::kRoadMirror;
+      }
+    }
+  }
+  echo.azimuth_rad += of_car_.curve.error_rad(echo.azimuth_rad);
+  echo.range_rate_mps *= of_car_.range_rate_scale;
+}
+
+void RadarSensor::write(std::uint32_t cycle, RadarScan& scan, std::vector<DetectionTruth>& truth) const {
   truth.clear();
+  const std::uint64_t cycle_key = radar::cycle_key(config_.id, cycle);
+  const radar::Draws draws{seed_, config_.id, cycle};
   const std::size_t most = std::min<std::size_t>(kMaxDetections, effects_.sensitivity.max_detections);
   const std::size_t count = std::min(most, echoes_.size());
   const double limit = effects_.unambiguous_mps;
   for (std::size_t i = 0; i < count; ++i) {
     const radar::Echo& echo = echoes_[i];
+    radar::Echo seen = echo;
+    if (!is_noise_itself(echo)) distort(seen, cycle_key);
     const SensorNoise noise = radar::noise_of(config_.noise, echo.azimuth_rad, echo.elevation_rad,
                                               echo.power_db - effects_.sensitivity.threshold_db);
     Stream stream(seed_, "noise", cycle_key, echo.key);
-    const double on = effects_.noise && !is_false(echo) ? 1.0 : 0.0;
+    const double on = effects_.noise && !is_noise_itself(echo) ? 1.0 : 0.0;
     const double range = echo.range_m + on * noise.range_std_m * stream.gaussian();
-    const double azimuth = echo.azimuth_rad + on * noise.azimuth_std_rad * stream.gaussian();
-    const double elevation = echo.elevation_rad + on * noise.elevation_std_rad * stream.gaussian();
-    const double rate = radar::fold(echo.range_rate_mps + on * noise.range_rate_std_mps * stream.gaussian(), limit);
+    const double azimuth = seen.azimuth_rad + on * noise.azimuth_std_rad * stream.gaussian();
+    const double elevation = seen.elevation_rad + on * noise.elevation_std_rad * stream.gaussian();
+    const double rate = radar::fold(seen.range_rate_mps + on * noise.range_rate_std_mps * stream.gaussian(), limit);
     // The sensor corrects for its pattern and range. It does not know the loss by dirt or the true length of the path.
     const double rcs = echo.power_db + 40.0 * std::log10(echo.range_m / 10.0) -
                        2.0 * radar::pattern_db(echo.azimuth_rad, echo.elevation_rad, config_.field_of_view);
@@ -159,15 +190,17 @@ void RadarSensor::write(std::uint64_t cycle_key, RadarScan& scan, std::vector<De
     scan.azimuth_rad[i] = static_cast<float>(azimuth);
     scan.elevation_rad[i] = static_cast<float>(elevation);
     scan.range_rate_mps[i] = static_cast<float>(rate);
-    scan.rcs_dbsm[i] = static_cast<float>(std::clamp(std::round(rcs), -127.0, 127.0));
+    scan.rcs_dbsm[i] = static_cast<float>(std::clamp(std::round(rcs + rcs_offset_db_), -127.0, 127.0));
     scan.snr_db[i] = 0.0F;
     scan.range_std_m[i] = static_cast<float>(noise.range_std_m);
     scan.azimuth_std_rad[i] = static_cast<float>(noise.azimuth_std_rad);
     scan.elevation_std_rad[i] = static_cast<float>(noise.elevation_std_rad);
     scan.range_rate_std_mps[i] = static_cast<float>(noise.range_rate_std_mps);
-    scan.existence_probability[i] = 1.0F;
-    scan.detection_flags[i] = 0;
-    truth.push_back(echo.truth);
+    const radar::Verdict verdict =
+        radar::verdict_on(returns_.profile().validity, radar::is_direct(echo), echo.key, draws);
+    scan.existence_probability[i] = static_cast<float>(verdict.existence);
+    scan.detection_flags[i] = verdict.flags;
+    truth.push_back(seen.truth);
   }
   scan.number_of_valid_detections = static_cast<std::uint32_t>(count);
   scan.dropped_detections = static_cast<std::uint16_t>(std::min<std::size_t>(65535, echoes_.size() - count));
@@ -180,7 +213,7 @@ void RadarSensor::write(std::uint64_t cycle_key, RadarScan& scan, std::vector<De
 
 void RadarSensor::measure(const Scene& scene, std::uint32_t cycle, RadarScan& scan,
                           std::vector<DetectionTruth>& truth) {
-  view_ = radar::viewpoint(scene.ego, config_.mounting_pose,
+  view_ = radar::viewpoint(scene.ego, true_position_,
                            radar::actual_mounting(config_.mounting_pose, effects_, config_.id, scene.t_s));
   const Eigen::Matrix3d world_to_sensor = view_.sensor_to_world.transpose();
   radar::dirt_at(effects_.blockages, config_.id, scene.t_s, dirt_);
@@ -188,6 +221,7 @@ void RadarSensor::measure(const Scene& scene, std::uint32_t cycle, RadarScan& sc
   propagation_.prepare(scene, view_, ego_box_);
   echoes_.clear();
   add_bodies(scene, world_to_sensor);
+  if (returns_.is_on()) returns_.note_bodies(scene, echoes_);
   add_scatterers(scene, world_to_sensor);
 
   const std::uint64_t key = radar::cycle_key(config_.id, cycle);
@@ -195,11 +229,15 @@ void RadarSensor::measure(const Scene& scene, std::uint32_t cycle, RadarScan& sc
   fluctuate(key, disturbance.noise_rise_db);
   cells_.merge(echoes_);
   keep_detected(key);
+  if (returns_.is_on()) {
+    returns_.apply({scene, view_, antenna_, propagation_, dirt_, disturbance.noise_rise_db, {seed_, config_.id, cycle}},
+                   echoes_);
+  }
   add_false_detections(key, disturbance.detections_per_scan);
   std::sort(echoes_.begin(), echoes_.end(), [](const radar::Echo& a, const radar::Echo& b) {
     return a.power_db != b.power_db ? a.power_db > b.power_db : a.key < b.key;
   });
-  write(key, scan, truth);
+  write(cycle, scan, truth);
   scan.cycle_counter = cycle;
 }
 

@@ -1,4 +1,4 @@
-// The measurement of one radar at an instant: propagation, detection, noise.
+// The measurement of one radar at an instant: propagation, detection, the radar's statistics, noise.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,13 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/vehicle/vehicle.hpp"
+#include "services/simulator/car/radar_of_car.hpp"
 #include "services/simulator/detection_truth.hpp"
 #include "services/simulator/radar/antenna.hpp"
 #include "services/simulator/radar/cells.hpp"
 #include "services/simulator/radar/ego_body.hpp"
 #include "services/simulator/radar/one_way.hpp"
+#include "services/simulator/radar/returns/statistical_returns.hpp"
 #include "services/simulator/radar/round_trip.hpp"
 #include "services/simulator/radar_effects.hpp"
 #include "services/simulator/scene.hpp"
@@ -37,11 +39,15 @@ class RadarSensor {
   void fluctuate(std::uint64_t cycle_key, double noise_rise_db);
   void keep_detected(std::uint64_t cycle_key);
   void add_false_detections(std::uint64_t cycle_key, double interference_per_scan);
-  void write(std::uint64_t cycle_key, RadarScan& scan, std::vector<DetectionTruth>& truth) const;
+  /// What the real car makes of an echo: the road mirrors its elevation, the bumper bends its azimuth.
+  void distort(radar::Echo& echo, std::uint64_t cycle_key) const;
+  void write(std::uint32_t cycle, RadarScan& scan, std::vector<DetectionTruth>& truth) const;
 
   RadarConfig config_;
   RadarEffects effects_;
   std::uint64_t seed_;
+  car::RadarOfCar of_car_;
+  MountingPose true_position_;
   radar::EgoBox ego_box_;
   double swerling_order_;
   radar::Viewpoint view_{};
@@ -51,6 +57,8 @@ class RadarSensor {
   radar::Cells cells_;
   std::vector<radar::OneWay> paths_;
   std::vector<radar::Echo> echoes_, false_echoes_;
+  radar::StatisticalReturns returns_;
+  double rcs_offset_db_;  // of this radar's scale, for the whole drive
 };
 
 }  // namespace boresight::simulator

@@ -1,4 +1,10 @@
+#include <exception>
+#include <string>
+#include <string_view>
+
 #include "interfaces/messages/header.hpp"
+#include "services/simulator/scenario/read_profile.hpp"
+#include "services/simulator/scenario/read_real_car.hpp"
 #include "services/simulator/scenario/reading.hpp"
 
 namespace boresight::simulator {
@@ -77,6 +83,17 @@ SensitivitySpec read_sensitivity(Reader reader) {
   return s;
 }
 
+/// The profile that a key names; an error is noted at the key.
+radar::Profile read_named_profile(Reader& reader, std::string_view key) {
+  const std::string name = reader.text(key, "ideal");
+  try {
+    return radar_profile(name);
+  } catch (const std::exception& error) {
+    reader.reject(key, error.what());
+    return {};
+  }
+}
+
 }  // namespace
 
 RadarEffects read_effects(Reader reader) {
@@ -85,6 +102,12 @@ RadarEffects read_effects(Reader reader) {
   e.noise = reader.boolean("noise", e.noise);
   e.clutter_per_scan = reader.number("clutter_per_scan", kPerScan, e.clutter_per_scan);
   e.unambiguous_mps = reader.number("unambiguous_mps", {0.0, 200.0}, e.unambiguous_mps);
+  e.profile = read_named_profile(reader, "profile");
+  for (Reader& r : reader.tables("profile_of")) {
+    const std::uint32_t id = read_radar(r, e);
+    r.require("profile");
+    e.profiles.push_back({id, read_named_profile(r, "profile")});
+  }
   for (Reader& r : reader.tables("misalignment")) {
     const std::uint32_t radar = read_radar(r, e);
     e.misalignment[radar] = read_angles(r);
@@ -101,6 +124,7 @@ RadarEffects read_effects(Reader reader) {
   e.multipath = read_multipath(reader.table("multipath"));
   e.resolution = read_resolution(reader.table("resolution"));
   e.sensitivity = read_sensitivity(reader.table("sensitivity"));
+  e.real_car = read_real_car(reader.table("real_car"));
   return e;
 }
 

@@ -1,4 +1,4 @@
-// The files of config/scenarios/, compiled into the program.
+// The files of config/scenarios/ and config/radar_profiles/, compiled into the program.
 #pragma once
 
 #include <span>
@@ -6,11 +6,12 @@
 
 namespace boresight::simulator {
 
-struct ShippedScenario {
+struct ShippedFile {
   std::string_view name;  ///< of the file without ".toml"
   std::string_view text;
 };
-/// Sorted by name. Generated, see services/simulator/CMakeLists.txt.
-[[nodiscard]] std::span<const ShippedScenario> shipped_scenarios();
+/// Both are sorted by name. Generated, see services/simulator/CMakeLists.txt.
+[[nodiscard]] std::span<const ShippedFile> shipped_scenarios();
+[[nodiscard]] std::span<const ShippedFile> shipped_radar_profiles();
 
 }  // namespace boresight::simulator

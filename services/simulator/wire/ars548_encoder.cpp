@@ -21,7 +21,9 @@ void encode_ars548(const RadarScan& scan, std::int64_t epoch_ns, Ars548List& byt
     const std::size_t at = 101 + 44 * static_cast<std::size_t>(i);
     put_f32(bytes, at + 0, scan.azimuth_rad[i]);
     put_f32(bytes, at + 4, scan.azimuth_std_rad[i]);
-    bytes[at + 8] = 0;  // nothing invalid
+    // One bit for each quantity; the sensor's doubt is put on the range rate. The list has no bit for ambiguity.
+    const bool invalid = (scan.detection_flags[i] & detection_flag::kInvalid) != 0;
+    bytes[at + 8] = static_cast<std::uint8_t>(invalid ? 1U << 6 : 0U);
     put_f32(bytes, at + 9, scan.elevation_rad[i]);
     put_f32(bytes, at + 13, scan.elevation_std_rad[i]);
     put_f32(bytes, at + 17, scan.range_m[i]);

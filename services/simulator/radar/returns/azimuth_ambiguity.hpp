@@ -30,12 +30,11 @@ inline void add_ambiguous_azimuths(const AzimuthAmbiguitySpec& spec, const Draws
   const double limit = std::sin(std::min(0.5 * M_PI, std::min(-fov.azimuth_min_rad, fov.azimuth_max_rad)));
   for (std::size_t i = 0; i < parents; ++i) {
     if (!is_parent(echoes[i])) continue;
-    Stream stream = draws.once("azimuth ambiguity", echoes[i].key);
-    const double share = spec.per_scan * weight_of(echoes[i]) / sum;
+    Stream stream = draws.once("azimuth", echoes[i].key);
+    if (stream.uniform() * sum >= spec.per_scan * weight_of(echoes[i])) continue;
     const double step = spec.sine_step + spec.sine_step_std * stream.gaussian();
-    const unsigned copies = stream.poisson(share);
     const double sine = ambiguous_sine(std::sin(echoes[i].azimuth_rad), step, limit);
-    if (copies == 0 || std::abs(sine) >= limit) continue;
+    if (std::abs(sine) >= limit) continue;
     Echo e = echoes[i];
     const double rcs = strength.on ? false_rcs(strength, e.range_m, stream) : rcs_of(e, fov);
     e.azimuth_rad = std::asin(sine);

@@ -18,7 +18,7 @@ inline void shift_range_rates(const DopplerAmbiguitySpec& spec, const Draws& dra
   for (Echo& e : echoes) {
     if (!is_direct(e)) continue;
     const bool moving = e.truth.provenance == Provenance::kMoving;
-    Stream stream = draws.once("doppler ambiguity", e.key);
+    Stream stream = draws.once("doppler", e.key);
     if (stream.uniform() >= (moving ? spec.moving_share : spec.stationary_share)) continue;
     e.range_rate_mps -= std::copysign(stream.uniform() < 0.5 ? first : second, e.range_rate_mps);
     e.truth.cause = Cause::kDopplerAmbiguity;

@@ -71,7 +71,7 @@ void StatisticalReturns::note_bodies(const Scene& scene, std::span<const Echo> e
                                      [&](const Body& b) { return b.id == echo.truth.object_id; });
       if (body == scene.bodies.end()) continue;
       const bool moving = echo.truth.provenance == Provenance::kMoving;
-      sightings_.push_back({&*body, direct_.size(), 0, moving, true, kNoStrength});
+      sightings_.push_back({&*body, direct_.size(), 0, moving, true, {}, kNoStrength});
     }
     direct_.push_back(echo);
     ++sightings_.back().echoes;
@@ -108,7 +108,7 @@ void StatisticalReturns::draw_detections(const ScanContext& context, const Sight
       const Eigen::Vector3d spot(place.x(), place.y(), offset.z());
       if (!place_echo(context.view, context.antenna, spot, velocity_at(body, spot), e)) continue;
     }
-    if (profile_.strength.on) rcs = object_rcs(profile_.strength, body.kind, e.range_m, body.id, key, draws);
+    if (profile_.strength.on) rcs = object_rcs(profile_.strength, body.kind, e.range_m, sighting.common, key, draws);
     set_rcs(e, rcs, fov);
     e.truth = {};
     e.truth.provenance = sighting.moving ? Provenance::kMoving : Provenance::kStationary;
@@ -182,7 +182,7 @@ void StatisticalReturns::restate_strength(const ScanContext& context, std::vecto
       const double place = draws.always("rcs of place", e.key).gaussian();
       rcs = stationary_rcs(profile_.strength, e.range_m, place, e.key, draws);
     } else if (const Sighting* const s = is_of_body(e) ? sighting_of(e.truth.object_id) : nullptr; s != nullptr) {
-      rcs = object_rcs(profile_.strength, s->body->kind, e.range_m, s->body->id, e.key, draws);
+      rcs = object_rcs(profile_.strength, s->body->kind, e.range_m, s->common, e.key, draws);
     } else {
       continue;
     }
@@ -251,6 +251,9 @@ void StatisticalReturns::apply(const ScanContext& context, std::vector<Echo>& ec
   const FieldOfView& fov = context.antenna.view();
   const double t_s = context.scene.t_s;
   drawn_.clear();
+  if (p.strength.on) {
+    for (Sighting& s : sightings_) s.common = common_strength(p.strength, s.body->id, context.draws);
+  }
   // What is real.
   if (p.presence.on || p.count.on) apply_to_objects(context, echoes);
   if (p.stationary_world.on) thin_reflectors(context, echoes);

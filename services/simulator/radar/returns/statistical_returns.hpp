@@ -14,6 +14,7 @@
 #include "services/simulator/radar/returns/draws.hpp"
 #include "services/simulator/radar/returns/false_movers.hpp"
 #include "services/simulator/radar/returns/stationary_field.hpp"
+#include "services/simulator/radar/returns/strength.hpp"
 #include "services/simulator/radar/round_trip.hpp"
 #include "services/simulator/radar/viewpoint.hpp"
 #include "services/simulator/radar_effects.hpp"
@@ -52,6 +53,7 @@ class StatisticalReturns {
     std::size_t first_echo, echoes;  // in direct_
     bool moving;
     bool present;
+    CommonStrength common;
     double strongest_dbsm;  // of its detections in this scan
   };
   [[nodiscard]] const Sighting* sighting_of(std::uint32_t object) const;

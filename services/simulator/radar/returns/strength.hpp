@@ -28,17 +28,25 @@ inline constexpr double kNormal90 = 1.2815515655446004;  ///< 90 % quantile of t
           interpolated(spec.range_m, quantiles.low_dbsm, range_m));
 }
 
-/// RCS of one detection of an object: a slowly changing part, a part that is common to the scan, and a part of its own.
-/// `part`: key of the detection.
-[[nodiscard]] inline double object_rcs(const StrengthSpec& spec, BodyKind kind, double range_m, std::uint32_t object,
-                                       std::uint64_t part, const Draws& draws) {
+/// What the detections of an object have in common: a slowly changing part, and a part of the scan. Standard normal.
+struct CommonStrength {
+  double slow, scan;
+};
+[[nodiscard]] inline CommonStrength common_strength(const StrengthSpec& spec, std::uint32_t object,
+                                                    const Draws& draws) {
+  return {draws.held("rcs of object", object, spec.object_correlation).gaussian(),
+          draws.once("rcs of scan", object).gaussian()};
+}
+
+/// RCS of one detection of an object: the common parts and a part of its own. `part`: key of the detection.
+[[nodiscard]] inline double object_rcs(const StrengthSpec& spec, BodyKind kind, double range_m,
+                                       const CommonStrength& common, std::uint64_t part, const Draws& draws) {
   const double std_db = std::max(0.1, is_vehicle(kind) ? rcs_std_db(spec, spec.vehicle, range_m) : spec.person_std_db);
   const double own = std::min(1.0, std::pow(spec.detection_std_db / std_db, 2));
   const double scan = std::min(1.0 - own, std::pow(spec.scan_std_db / std_db, 2));
   const double slow = std::max(0.0, 1.0 - own - scan);
-  const double normal = std::sqrt(slow) * draws.held("rcs of object", object, spec.object_correlation).gaussian() +
-                        std::sqrt(scan) * draws.once("rcs of scan", object).gaussian() +
-                        std::sqrt(own) * draws.once("rcs of detection", part).gaussian();
+  const double normal = std::sqrt(slow) * common.slow + std::sqrt(scan) * common.scan +
+                        std::sqrt(own) * draws.once("rcs", part).gaussian();
   if (is_vehicle(kind)) return rcs_at(spec, spec.vehicle, range_m, normal);
   return (kind == BodyKind::kPedestrian ? spec.pedestrian_dbsm : spec.two_wheeler_dbsm) + std_db * normal;
 }
@@ -48,8 +56,7 @@ inline constexpr double kNormal90 = 1.2815515655446004;  ///< 90 % quantile of t
                                            std::uint64_t reflector, const Draws& draws) {
   const double std_db = std::max(0.1, rcs_std_db(spec, spec.stationary, range_m));
   const double scan = std::min(1.0, std::pow(spec.scan_std_db / std_db, 2));
-  const double normal =
-      std::sqrt(1.0 - scan) * place + std::sqrt(scan) * draws.once("rcs of reflector", reflector).gaussian();
+  const double normal = std::sqrt(1.0 - scan) * place + std::sqrt(scan) * draws.once("glint", reflector).gaussian();
   return rcs_at(spec, spec.stationary, range_m, normal);
 }
 

@@ -192,7 +192,9 @@ TEST(Strength, HasTheStatedQuantilesByRange) {
     std::vector<double> rcs;
     for (std::uint32_t object = 1; object <= 300; ++object) {
       for (std::uint32_t cycle = 0; cycle < 2000; cycle += 20) {
-        rcs.push_back(radar::object_rcs(series().strength, BodyKind::kCar, range_m, object, object, at_cycle(cycle)));
+        const radar::Draws draws = at_cycle(cycle);
+        const radar::CommonStrength common = radar::common_strength(series().strength, object, draws);
+        rcs.push_back(radar::object_rcs(series().strength, BodyKind::kCar, range_m, common, object, draws));
       }
     }
     EXPECT_NEAR(quantile(rcs, 0.1), low, 0.4);
@@ -207,7 +209,8 @@ TEST(Strength, ChangesAmongTheDetectionsOfAScanAndFromScanToScan) {
   for (std::uint32_t cycle = 0; cycle < 4000; ++cycle) {
     const radar::Draws draws = at_cycle(cycle), next = at_cycle(cycle + 1);
     const auto rcs = [&](const radar::Draws& d, std::uint64_t part) {
-      return radar::object_rcs(series().strength, BodyKind::kPedestrian, 20.0, 1, part, d);
+      const radar::CommonStrength common = radar::common_strength(series().strength, 1, d);
+      return radar::object_rcs(series().strength, BodyKind::kPedestrian, 20.0, common, part, d);
     };
     within.push_back((rcs(draws, 1) - rcs(draws, 2)) / std::sqrt(2.0));
     double mean_now = 0.0, mean_next = 0.0;

@@ -122,7 +122,7 @@ TEST(ScenarioFuzz, AThousandMutantsAreRefusedOrDriven) {
   std::size_t refused = 0, driven = 0;
   constexpr std::size_t kMutants = 1200;
   for (std::size_t i = 0; i < kMutants; ++i) {
-    const ShippedScenario& shipped = shipped_scenarios()[i % shipped_scenarios().size()];
+    const ShippedFile& shipped = shipped_scenarios()[i % shipped_scenarios().size()];
     std::string text = mutated(shipped.text, draw);
     if (i % 3 == 0) text = mutated(text, draw);  // twice
     (attempt(text) == Outcome::kRefused ? refused : driven) += 1;

@@ -72,6 +72,7 @@ const std::map<std::string, Table>& tables() {
       {"body", {name + "[[body]]\n", {{"kind", "\"car\""}, {"start_m", "1.0"}}, false, ""}},
       {"body.repeat", {car + "repeat = ", {}, true, ""}},
       {"radars", {name + "[radars]\n", {}, false, ""}},
+      {"radars.profile_of", {name + "[radars]\nprofile_of = [", {{"radar", "1"}, {"profile", "\"ideal\""}}, true, "]"}},
       {"radars.misalignment", {name + "[radars]\nmisalignment = [", radar, true, "]"}},
       {"radars.step_change", {name + "[radars]\nstep_change = [", radar, true, "]"}},
       {"radars.blockage", {name + "[radars]\nblockage = [", radar, true, "]"}},
@@ -79,6 +80,7 @@ const std::map<std::string, Table>& tables() {
       {"radars.multipath", {name + "[radars]\nmultipath = ", {}, true, ""}},
       {"radars.resolution", {name + "[radars]\nresolution = ", {}, true, ""}},
       {"radars.sensitivity", {name + "[radars]\nsensitivity = ", {}, true, ""}},
+      {"radars.real_car", {name + "[radars]\nreal_car = ", {}, true, ""}},
   };
   return tables;
 }
