@@ -21,7 +21,8 @@ struct BodySight {
   std::uint32_t seen;     ///< those in view that face the radar with a free line of sight
 };
 
-/// Lines of sight of one radar with its true mounting at the time; the configured position is the true one. Paths by mirrors or the ground are not considered.
+/// Lines of sight of one radar with its true mounting at the time; the configured position is the true one. Paths by
+/// mirrors or the ground are not considered.
 class Sight {
  public:
   Sight(const RadarConfig& config, const RadarEffects& effects, const radar::EgoBody& ego_body);
