@@ -15,7 +15,8 @@ namespace boresight::simulator {
 class TruthTables {
  public:
   /// Throws std::runtime_error if a file cannot be written; `folder` must exist.
-  TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle);
+  TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle,
+              std::uint64_t seed);
 
   /// Adds every body within 150 m of the ego vehicle at that time.
   void add_objects(const Drive& drive, double t_s);
@@ -27,6 +28,7 @@ class TruthTables {
  private:
   struct Radar {
     const RadarConfig* config;
+    car::RadarOfCar of_car;
     Sight sight;
     std::size_t scans = 0;
   };
