@@ -8,29 +8,18 @@ namespace boresight::bench::realism {
 namespace {
 
 constexpr double kPairRange_m = 3.0, kPairRate_mps = 0.6, kBeside_rad = 8.0 * M_PI / 180.0;
-constexpr std::size_t kChanceScans = 20;  // 1.5 s: the object has moved on
+constexpr double kBesideRate_mps = 3.0;  // beside the object's range rate: pairs by chance
 
-bool is_pair(const ObservedDetection& object, const ObservedDetection& other) {
+/// `offset_mps`: of the range rate that is asked for.
+bool is_pair(const ObservedDetection& object, const ObservedDetection& other, double offset_mps) {
   return std::abs(other.range_m - object.range_m) <= kPairRange_m &&
-         std::abs(other.range_rate_mps - object.range_rate_mps) <= kPairRate_mps &&
+         std::abs(other.range_rate_mps - object.range_rate_mps - offset_mps) <= kPairRate_mps &&
          std::abs(other.azimuth_rad - object.azimuth_rad) > kBeside_rad;
 }
 
 }  // namespace
 
 void GhostStrength::add(const ObservedScan& scan) {
-  std::vector<ObservedDetection> false_movers;
-  for (const ObservedDetection& d : scan.detections) {
-    if (d.is_false_mover()) false_movers.push_back(d);
-  }
-  auto& earlier = earlier_[scan.radar];
-  const bool has_chance = earlier.size() == kChanceScans;
-  const auto count = [](const ObservedDetection& object, const ObservedDetection& other, Histogram& histogram) {
-    if (!is_pair(object, other)) return;
-    const double difference_db =
-        std::clamp<double>(std::round(other.rcs_dbsm - object.rcs_dbsm), -kReach_db, kReach_db);
-    histogram[static_cast<std::size_t>(difference_db + kReach_db)] += 1.0;
-  };
   for (const ObservedObject& object : scan.objects) {
     const ObservedDetection* strongest = nullptr;
     for (const ObservedDetection& d : scan.detections) {
@@ -39,16 +28,18 @@ void GhostStrength::add(const ObservedScan& scan) {
     }
     if (strongest == nullptr) continue;
     for (const ObservedDetection& d : scan.detections) {
+      const double difference_db = d.rcs_dbsm - strongest->rcs_dbsm;
       const bool is_image = d.provenance == Provenance::kGhostType1 || d.provenance == Provenance::kGhostType2;
-      if (is_image && d.object == object.id) mirror_images_db_.add(d.rcs_dbsm - strongest->rcs_dbsm);
+      if (is_image && d.object == object.id) mirror_images_db_.add(difference_db);
+      if (!d.is_false_mover()) continue;
+      const auto bin =
+          static_cast<std::size_t>(std::clamp<double>(std::round(difference_db), -kReach_db, kReach_db) + kReach_db);
+      if (is_pair(*strongest, d, 0.0)) pairs_[bin] += 1.0;
+      for (const double offset_mps : {-kBesideRate_mps, kBesideRate_mps}) {
+        if (is_pair(*strongest, d, offset_mps)) by_chance_[bin] += 0.5;
+      }
     }
-    // Without an earlier scan the chance is unknown: this scan does not count.
-    if (!has_chance) continue;
-    for (const ObservedDetection& d : false_movers) count(*strongest, d, pairs_);
-    for (const ObservedDetection& d : earlier.front()) count(*strongest, d, by_chance_);
   }
-  if (has_chance) earlier.pop_front();
-  earlier.push_back(std::move(false_movers));
 }
 
 void GhostStrength::merge(const GhostStrength& other) {

@@ -3,10 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <map>
-#include <vector>
 
 #include "tests/benchmarks/realism/common/observed_scan.hpp"
 #include "tests/benchmarks/realism/common/samples.hpp"
@@ -14,11 +10,11 @@
 namespace boresight::bench::realism {
 
 /// Pairs of the strongest detection of a moving object and a false mover of the same scan within 3 m of its range and
-/// 0.6 m/s of its range rate, over 8° beside it. Pairs by chance are counted with the false movers of an earlier scan.
+/// 0.6 m/s of its range rate, over 8° beside it. Pairs by chance are those at range rates 3 m/s beside the object's: an
+/// earlier scan would not do, since it holds ghosts of the same object.
 class GhostStrength {
  public:
   void add(const ObservedScan& scan);
-  void end_drive() { earlier_.clear(); }
   void merge(const GhostStrength& other);
 
   /// Quantile of the false mover's RCS less the object's, with the pairs by chance taken off.
@@ -33,9 +29,8 @@ class GhostStrength {
   using Histogram = std::array<double, 2 * kReach_db + 1>;  // by 1 dB
   [[nodiscard]] Histogram without_chance() const;
 
-  Histogram pairs_{}, by_chance_{};
+  Histogram pairs_{}, by_chance_{};  // chance: the mean of either side
   Samples mirror_images_db_;
-  std::map<std::uint32_t, std::deque<std::vector<ObservedDetection>>> earlier_;  // false movers, by radar
 };
 
 }  // namespace boresight::bench::realism

@@ -43,7 +43,6 @@ struct Statistics {
     strength.end_drive();
     stationary.end_drive();
     false_movers.end_drive();
-    ghosts.end_drive();
   }
   void merge(const Statistics& other) {
     scans += other.scans;

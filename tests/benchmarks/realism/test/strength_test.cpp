@@ -54,36 +54,34 @@ TEST(Strength, SpreadsAreWithinAScanWithinABinAndFromScanToScan) {
 
 TEST(GhostStrength, PairsAreBesideTheObjectAtItsRangeAndRangeRate) {
   GhostStrength ghosts;
-  for (std::uint64_t i = 1; i <= 40; ++i) {
-    ObservedScan scan = scan_of(i);
-    scan.objects = {car_at(1, 30.0)};
-    ObservedDetection car = with_rcs(of_car(1, 30.0, 0.0), 8.0);
-    car.range_rate_mps = -10.0;
-    // A ghost that moves away from the object's range rate, so that an earlier one is no pair.
-    ObservedDetection ghost = with_rcs(false_mover_at(0.0, 31.0, -10.0), -2.0);
-    if (i <= 20) ghost.range_rate_mps = -20.0;
-    ObservedDetection near = with_rcs(false_mover_at(30.5, 1.0, -10.0), 20.0);     // 2° beside
-    ObservedDetection farther = with_rcs(false_mover_at(0.0, 35.0, -10.0), 20.0);  // 5 m farther
-    scan.detections = {car, ghost, near, farther};
-    ghosts.add(scan);
-  }
-  EXPECT_EQ(ghosts.pairs(), 20u);
+  ObservedScan scan = scan_of(1);
+  scan.objects = {car_at(1, 30.0)};
+  ObservedDetection car = with_rcs(of_car(1, 30.0, 0.0), 8.0);
+  car.range_rate_mps = -10.0;
+  const ObservedDetection ghost = with_rcs(false_mover_at(0.0, 31.0, -10.0), -2.0);
+  const ObservedDetection near = with_rcs(false_mover_at(30.5, 1.0, -10.0), 20.0);     // 2° beside
+  const ObservedDetection farther = with_rcs(false_mover_at(0.0, 35.0, -10.0), 20.0);  // 5 m farther
+  const ObservedDetection slower = with_rcs(false_mover_at(0.0, 31.0, -9.0), 20.0);
+  scan.detections = {car, ghost, near, farther, slower};
+  ghosts.add(scan);
+  EXPECT_EQ(ghosts.pairs(), 1u);
   EXPECT_DOUBLE_EQ(ghosts.quantile_db(0.5), -10.0);
   EXPECT_DOUBLE_EQ(ghosts.percent_stronger(), 0.0);
 }
 
 TEST(GhostStrength, PairsByChanceAreTakenOff) {
   GhostStrength ghosts;
-  for (std::uint64_t i = 1; i <= 40; ++i) {
-    ObservedScan scan = scan_of(i);
-    scan.objects = {car_at(1, 30.0)};
-    scan.detections = {of_car(1, 30.0, 0.0), with_rcs(false_mover_at(0.0, 30.0, 5.0), -20.0)};
-    scan.detections[0].range_rate_mps = 5.0;
-    // As often as this one, independent of the object; and one of the object in the later half only.
-    if (i > 20) scan.detections.push_back(with_rcs(false_mover_at(0.0, -30.0, 5.0), 6.0));
-    ghosts.add(scan);
+  ObservedScan scan = scan_of(1);
+  scan.objects = {car_at(1, 30.0)};
+  scan.detections = {of_car(1, 30.0, 0.0), with_rcs(false_mover_at(0.0, -30.0, 10.0), 6.0)};
+  scan.detections[0].range_rate_mps = 10.0;
+  // Weak ones at every range rate are there without the object.
+  for (const double rate_mps : {7.0, 10.0, 13.0}) {
+    scan.detections.push_back(with_rcs(false_mover_at(0.0, 30.0, rate_mps), -20.0));
   }
-  EXPECT_DOUBLE_EQ(ghosts.quantile_db(0.5), 6.0);
+  ghosts.add(scan);
+  EXPECT_EQ(ghosts.pairs(), 2u);
+  EXPECT_DOUBLE_EQ(ghosts.quantile_db(0.1), 6.0);
   EXPECT_DOUBLE_EQ(ghosts.percent_stronger(), 100.0);
 }
 
