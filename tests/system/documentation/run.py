@@ -14,7 +14,7 @@ import tempfile
 
 import pages
 
-PAGES = ("README.md", "docs/quick-start.md", "docs/integrator.md", "docs/diagnosis-engineer.md",
+PAGES = ("README.md", "docs/quick-start.md", "docs/test-engineer.md", "docs/integrator.md", "docs/diagnosis-engineer.md",
          "docs/troubleshooting.md", "docs/CHANGELOG.md", "docs/architecture.md", "docs/decisions.md")
 WITHOUT_COMMANDS = ("docs/CHANGELOG.md", "docs/architecture.md", "docs/decisions.md")
 PAGE_OF_MESSAGES = "docs/troubleshooting.md"
