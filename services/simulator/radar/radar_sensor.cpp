@@ -149,8 +149,7 @@ void RadarSensor::distort(radar::Echo& echo, std::uint64_t cycle_key) const {
   const double share = effects_.real_car.road_mirror_share;
   if (share > 0.0 && echo.truth.cause == Cause::kNone &&
       Stream(seed_, "real car road mirror", cycle_key, echo.key).uniform() < share) {
-    const Eigen::Vector3d direction =
-        view_.sensor_to_world * geometry::direction(echo.azimuth_rad, echo.elevation_rad);
+    const Eigen::Vector3d direction = view_.sensor_to_world * geometry::direction(echo.azimuth_rad, echo.elevation_rad);
     if (const auto image = car::mirrored_by_road(direction, echo.range_m, view_.position_m.z())) {
       const radar::Look look = antenna_.look(view_.sensor_to_world.transpose() * *image);
       if (look.inside) {

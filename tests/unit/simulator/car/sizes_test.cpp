@@ -221,7 +221,8 @@ TEST(RealCarSizes, RoadMirrorsTheStatedShareOfLowDetections) {
           height_m > kBorder_m && height_m < kLow_m - kBorder_m && image_sine > std::sin(view_rad) + 1e-3;
       const bool is_changed = std::abs(a.elevation_rad - b.elevation_rad) > 1e-5;
       if (is_changed) {
-        ASSERT_NEAR(std::sin(b.elevation_rad), image_sine, 1e-4) << "the image lies as deep as the reflector is high";
+        ASSERT_NEAR(std::sin(b.elevation_rad), image_sine, 1e-4)
+            << "the mirror image lies as deep as the reflector is high";
         ASSERT_LT(height_m, kLow_m + kBorder_m);
       }
       low += is_low ? 1.0 : 0.0;
