@@ -7,8 +7,8 @@
 #include "services/alignment_estimator/core/estimator.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
 #include "services/ghost_filter/core/method.hpp"
-#include "services/tracker/core/tracker.hpp"
 #include "services/simulator/drive.hpp"
+#include "services/tracker/core/tracker.hpp"
 
 namespace boresight::closed_loop {
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
-#include "tests/closed_loop/chain.hpp"
-#include "tests/closed_loop/objects.hpp"
 #include "services/simulator/judge/hidden.hpp"
 #include "services/simulator/judge/matching.hpp"
+#include "tests/closed_loop/chain.hpp"
+#include "tests/closed_loop/objects.hpp"
 
 namespace boresight::closed_loop {
 

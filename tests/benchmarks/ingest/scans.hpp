@@ -12,8 +12,8 @@
 #include "services/replay/core/datagrams.hpp"
 #include "services/replay/core/event_encoder.hpp"
 #include "services/replay/core/synthetic.hpp"
-#include "tests/benchmarks/ingest/traffic.hpp"
 #include "services/simulator/wire/ars548_encoder.hpp"
+#include "tests/benchmarks/ingest/traffic.hpp"
 
 namespace boresight::bench {
 

@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
-#include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "services/simulator/wire/ars548_encoder.hpp"
 #include "services/simulator/wire/pcap_writer.hpp"
+#include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
 #include "tests/system/harness/domain.hpp"
 #include "tests/system/harness/observer.hpp"
 

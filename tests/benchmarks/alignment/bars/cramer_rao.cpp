@@ -3,12 +3,12 @@
 
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "services/simulator/alignment/bound.hpp"
+#include "services/simulator/alignment/drive.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
-#include "services/simulator/alignment/bound.hpp"
-#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

@@ -12,10 +12,10 @@
 #include "services/boresight/align/run.hpp"
 #include "services/boresight/align/truth_file.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "services/simulator/alignment/drive.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
-#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

@@ -1,10 +1,10 @@
 // Mounting errors of 5° about each axis, and up to 60 % outliers: detections of moving objects and ghosts.
 #include "services/common/geometry/angles.hpp"
+#include "services/simulator/random.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/many_runs.hpp"
 #include "tests/benchmarks/alignment/common/methods.hpp"
-#include "services/simulator/random.hpp"
 
 namespace boresight::bench {
 

@@ -1,6 +1,6 @@
 // Static calibration with the tilting plate: error of each evaluation method.
-#include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "services/simulator/alignment/plate_table.hpp"
+#include "tests/benchmarks/alignment/bars/bars.hpp"
 
 namespace boresight::bench {
 

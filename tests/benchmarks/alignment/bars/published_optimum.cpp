@@ -8,11 +8,11 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
+#include "services/simulator/alignment/drive.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/alignment/common/published_result.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
-#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

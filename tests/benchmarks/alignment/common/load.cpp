@@ -3,9 +3,9 @@
 #include <chrono>
 
 #include "services/common/runtime/allocation_counter.hpp"
+#include "services/simulator/alignment/drive.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
-#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 

@@ -11,9 +11,9 @@
 
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/common/vehicle/vehicle.hpp"
+#include "services/simulator/alignment/spec.hpp"
 #include "tests/benchmarks/alignment/common/moments.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
-#include "services/simulator/alignment/spec.hpp"
 
 namespace boresight::bench {
 

@@ -8,9 +8,9 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
+#include "services/simulator/alignment/drive.hpp"
 #include "tests/benchmarks/alignment/common/drives.hpp"
 #include "tests/benchmarks/common/report.hpp"
-#include "services/simulator/alignment/drive.hpp"
 
 namespace boresight::bench {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <string_view>
 
+#include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/ghosts/bars/bars.hpp"
 #include "tests/benchmarks/ghosts/common/curves.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
-#include "services/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
 

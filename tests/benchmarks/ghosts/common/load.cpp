@@ -8,8 +8,8 @@
 
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
-#include "tests/benchmarks/common/statistics.hpp"
 #include "services/simulator/random.hpp"
+#include "tests/benchmarks/common/statistics.hpp"
 
 namespace boresight::bench {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "interfaces/messages/classified_scan.hpp"
-#include "tests/closed_loop/objects.hpp"
 #include "services/simulator/detection_truth.hpp"
 #include "services/simulator/judge/matching.hpp"
+#include "tests/closed_loop/objects.hpp"
 
 namespace boresight::bench {
 

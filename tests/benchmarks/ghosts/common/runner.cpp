@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/simulator/judge/hidden.hpp"
+#include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
 #include "tests/benchmarks/ghosts/common/changed_method.hpp"
 #include "tests/benchmarks/ghosts/common/truth_method.hpp"
 #include "tests/closed_loop/chain.hpp"
-#include "services/simulator/judge/hidden.hpp"
-#include "services/simulator/scenario_file.hpp"
 
 namespace boresight::bench {
 

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "interfaces/messages/names.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/judge/confusion.hpp"
+#include "services/simulator/judge/false_tracks.hpp"
 #include "tests/benchmarks/common/options.hpp"
 #include "tests/benchmarks/ghosts/common/lost_objects.hpp"
 #include "tests/benchmarks/ghosts/common/methods.hpp"
 #include "tests/benchmarks/ghosts/common/reliability.hpp"
 #include "tests/closed_loop/objects.hpp"
-#include "services/simulator/drive.hpp"
-#include "services/simulator/judge/confusion.hpp"
-#include "services/simulator/judge/false_tracks.hpp"
 
 namespace boresight::bench {
 

@@ -8,10 +8,10 @@
 #include <CLI/CLI.hpp>
 
 #include "services/ghost_filter/config.hpp"
+#include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/ghosts/common/tables.hpp"
 #include "tests/benchmarks/ghosts/explain/boxes.hpp"
 #include "tests/benchmarks/ghosts/explain/explained.hpp"
-#include "services/simulator/scenario_file.hpp"
 
 using namespace boresight;
 using namespace boresight::bench;

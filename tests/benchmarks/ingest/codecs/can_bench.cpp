@@ -6,9 +6,9 @@
 #include "services/common/e2e/crc.hpp"
 #include "services/common/recording/candump.hpp"
 #include "services/ingest_gateway/mapping/mapping_file.hpp"
+#include "services/simulator/wire/toyota_encoder.hpp"
 #include "tests/benchmarks/ingest/codecs/measure.hpp"
 #include "tests/benchmarks/ingest/gateway_bench.hpp"
-#include "services/simulator/wire/toyota_encoder.hpp"
 #include "tests/unit/ingest_gateway/ars408_frames.hpp"
 
 namespace boresight::bench {
