@@ -69,7 +69,8 @@ class Chain {
   [[nodiscard]] std::int64_t start_ns() const { return start_ns_; }
   [[nodiscard]] std::int64_t length_ns() const { return has_start_ ? latest_ns_ - start_ns_ : 0; }
 
-  /// The gateway's counts by radar id, which health judges; written by whoever feeds the chain.
+  /// Messages that the ingest gateway accepted and rejected, by radar id. The caller that decodes the recording writes
+  /// them; the health judgement reads them.
   std::array<SourceStatistics, kMaxRadars + 1> sources{};
 
  private:

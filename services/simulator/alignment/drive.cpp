@@ -10,6 +10,8 @@
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/simulator/alignment/motion.hpp"
+#include "services/simulator/alignment/moving_objects.hpp"
+#include "services/simulator/alignment/reflection_draws.hpp"
 #include "services/simulator/car/radar_of_car.hpp"
 #include "services/simulator/car/signals.hpp"
 #include "services/simulator/random.hpp"
@@ -24,63 +26,6 @@ std::int64_t stamp_ns(double since_start_s) {
   return kStart_ns + std::llround(since_start_s * 1e9);
 }
 
-/// Directions in which detections are drawn, relative to the horizon ahead of the radar's nominal boresight.
-struct View {
-  double azimuth_min_rad, azimuth_max_rad, elevation_min_rad, elevation_max_rad;
-  [[nodiscard]] double azimuth(double share) const {
-    return azimuth_min_rad + (azimuth_max_rad - azimuth_min_rad) * share;
-  }
-};
-
-/// The range of directions is a little smaller than the field of view, so that a misaligned radar still measures within
-/// it. For a radar mounted upside down, left and right of its own frame are swapped.
-View view_of(const RadarConfig& radar) {
-  const FieldOfView& f = radar.field_of_view;
-  const double azimuth_margin = std::min(5.0 * kRadiansPerDegree, (f.azimuth_max_rad - f.azimuth_min_rad) / 12.0);
-  const double elevation_margin = std::min(3.0 * kRadiansPerDegree, (f.elevation_max_rad - f.elevation_min_rad) / 12.0);
-  View view{f.azimuth_min_rad + azimuth_margin, f.azimuth_max_rad - azimuth_margin,
-            f.elevation_min_rad + elevation_margin, f.elevation_max_rad - elevation_margin};
-  if (std::cos(radar.mounting_pose.roll_rad) < 0.0) {
-    view = {-view.azimuth_max_rad, -view.azimuth_min_rad, -view.elevation_max_rad, -view.elevation_min_rad};
-  }
-  view.elevation_min_rad += radar.mounting_pose.pitch_rad;
-  view.elevation_max_rad += radar.mounting_pose.pitch_rad;
-  return view;
-}
-
-/// First-order Gauss–Markov process of mean 0, sampled once a scan.
-class Wander {
- public:
-  Wander(double std, double correlation_s, double period_s, Stream& stream)
-      : decay_(std::exp(-period_s / correlation_s)),
-        kick_(std * std::sqrt(1.0 - decay_ * decay_)),
-        value_(std * stream.gaussian()) {}
-  void step(Stream& stream) { value_ = decay_ * value_ + kick_ * stream.gaussian(); }
-  [[nodiscard]] double value() const { return value_; }
-
- private:
-  double decay_, kick_, value_;
-};
-
-/// A moving object in a radar's field of view. Its reflections share direction, range and velocity, from scan to scan.
-struct MovingObject {
-  enum class Kind : std::uint8_t { kWithTraffic, kAgainstTraffic, kWalker };
-  Kind kind;
-  Wander along_mps, across_mps, azimuth_rad, log_range;
-  [[nodiscard]] Eigen::Vector3d velocity_mps(double ego_speed_mps) const {
-    switch (kind) {
-      case Kind::kWithTraffic:
-        return {ego_speed_mps + along_mps.value(), 0.0, 0.0};
-      case Kind::kAgainstTraffic:
-        return {-0.9 * ego_speed_mps + along_mps.value(), 0.0, 0.0};
-      case Kind::kWalker:
-        break;
-    }
-    return {along_mps.value(), across_mps.value(), 0.0};
-  }
-};
-
-constexpr std::size_t kObjectsOfAKind = 2;
 constexpr double kMedianRange_m = 18.0;
 constexpr double kNearest_m = 2.0;
 
@@ -103,48 +48,8 @@ RadarState make_radar(const AlignmentRadar& spec, const car::RealCar& car, std::
                    Stream(seed, "alignment objects", index),
                    {},
                    0};
-  const double period_s = spec.config.cycle_time_s;
-  Stream& s = radar.movement;
-  const double view_rad = 0.5 * (radar.view.azimuth_max_rad - radar.view.azimuth_min_rad);
-  const auto add = [&](MovingObject::Kind kind, double along_mps, double across_mps, double correlation_s) {
-    for (std::size_t i = 0; i < kObjectsOfAKind; ++i) {
-      radar.objects.push_back({kind, Wander(along_mps, correlation_s, period_s, s),
-                               Wander(across_mps, correlation_s, period_s, s), Wander(0.5 * view_rad, 5.0, period_s, s),
-                               Wander(0.6, 5.0, period_s, s)});
-    }
-  };
-  add(MovingObject::Kind::kWithTraffic, 3.0, 0.0, 4.0);
-  add(MovingObject::Kind::kAgainstTraffic, 4.0, 0.0, 4.0);
-  add(MovingObject::Kind::kWalker, 1.0, 1.2, 3.0);
+  radar.objects = make_moving_objects(radar.view, spec.config.cycle_time_s, radar.movement);
   return radar;
-}
-
-/// Height of a reflector relative to the radar: kerbs and cars, fences, façades.
-double draw_height_m(Stream& stream) {
-  const double sort = stream.uniform();
-  if (sort < 0.35) return stream.uniform(-0.55, 0.3);
-  if (sort < 0.75) return stream.uniform(-0.3, 2.0);
-  return stream.uniform(0.0, 8.0);
-}
-
-double draw_elevation_rad(ElevationKind kind, const View& view, double range_m, Stream& stream) {
-  double elevation = 0.0;
-  if (kind == ElevationKind::kUniform) elevation = stream.uniform(-0.02, 0.06);
-  if (kind == ElevationKind::kScene) {
-    elevation = std::asin(std::clamp(draw_height_m(stream) / range_m, -0.9, 0.9));
-    constexpr double kMargin_rad = 2.0 * kRadiansPerDegree;
-    const bool seen =
-        elevation > view.elevation_min_rad + kMargin_rad && elevation < view.elevation_max_rad - kMargin_rad;
-    if (!seen) elevation = 3.0 * kRadiansPerDegree * stream.gaussian();
-  }
-  return std::clamp(elevation, view.elevation_min_rad, view.elevation_max_rad);
-}
-
-/// Azimuth of a detection: fewer towards the edge of the field of view, as by an antenna pattern.
-double draw_azimuth_rad(const View& view, Stream& stream) {
-  if (stream.uniform() >= 0.35) return view.azimuth(stream.uniform());
-  return std::clamp(view.azimuth(0.5) + 25.0 * kRadiansPerDegree * stream.gaussian(), view.azimuth_min_rad,
-                    view.azimuth_max_rad);
 }
 
 double clamp_range_m(const RadarConfig& config, double range_m) {
@@ -152,17 +57,6 @@ double clamp_range_m(const RadarConfig& config, double range_m) {
 }
 
 constexpr double kMostDetections = 600.0;  // largest mean number, since the Poisson draw needs e^−mean > 0
-constexpr double kMovingShare = 0.85;      // share of moving objects among the outliers; the others are ghosts
-
-/// Index of the object of an outlier. 40 % of the outliers move with the traffic, 25 % against it, 20 % walk.
-std::size_t object_of(double sort) {
-  constexpr std::array<double, 4> kEdges{0.0, 0.40, 0.65, kMovingShare};
-  std::size_t kind = 0;
-  while (kind < 2 && sort >= kEdges[kind + 1]) ++kind;
-  const double within = (sort - kEdges[kind]) / (kEdges[kind + 1] - kEdges[kind]);
-  return kind * kObjectsOfAKind + std::min(static_cast<std::size_t>(within * kObjectsOfAKind), kObjectsOfAKind - 1);
-}
-
 /// Standard deviation that the sensor states; greater than 0 even without noise.
 double stated_speed_std_mps(const AlignmentSpec& spec) {
   return std::max(spec.speed_std_mps, 1e-4);
@@ -258,12 +152,7 @@ void AlignmentDrive::State::make_scan(std::size_t index, double time_s, const Al
   Stream azimuth_noise = stream("alignment azimuth noise"), elevation_noise = stream("alignment elevation noise");
   Stream rate_noise = stream("alignment rate noise"), range_noise = stream("alignment range noise");
   Stream strength = stream("alignment strength"), road_mirror = stream("real car road mirror");
-  for (MovingObject& o : radar.objects) {
-    o.along_mps.step(radar.movement);
-    o.across_mps.step(radar.movement);
-    o.azimuth_rad.step(radar.movement);
-    o.log_range.step(radar.movement);
-  }
+  for (MovingObject& o : radar.objects) o.step(radar.movement);
 
   const double drawn = stream("alignment count").poisson(std::min(r.mean_detections, kMostDetections));
   const std::size_t count = static_cast<std::size_t>(
