@@ -26,6 +26,7 @@ constexpr int kMet = 0, kMissed = 1, kError = 3;
 
 struct Arguments {
   realism::Drives drives;
+  std::size_t seeds = 3;
   std::vector<std::string> profiles{"series_77ghz", "can_cluster", "ideal"};
   std::string json, markdown;
   bool quick = false;
@@ -50,17 +51,23 @@ bool write(const std::string& path, const Report& report, void (Report::*writer)
 }
 
 int run(const Arguments& arguments) {
-  std::printf("seed %llu, %zu scenarios, %zu drives of each\n", static_cast<unsigned long long>(arguments.drives.seed),
-              arguments.drives.scenarios.size(), arguments.drives.seeds);
+  std::printf("seeds %llu … %llu, %zu scenarios\n", static_cast<unsigned long long>(arguments.drives.seed),
+              static_cast<unsigned long long>(arguments.drives.seed + arguments.seeds - 1),
+              arguments.drives.scenarios.size());
   std::fflush(stdout);
   const VehicleConfig demo = config::read_vehicle_file(
       std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml", config::VehicleUse::kOffline);
   std::vector<realism::Column> columns;
   for (const std::string& profile : arguments.profiles) {
-    std::fprintf(stderr, "%s\n", profile.c_str());
-    columns.push_back({profile, realism::source_of(profile), realism::simulate(arguments.drives, profile, demo)});
-    const realism::Statistics& s = columns.back().statistics;
-    std::printf("%s: %zu scans, %zu detections\n", profile.c_str(), s.scans, s.detections);
+    columns.push_back({profile, realism::source_of(profile), {}});
+    realism::Drives drives = arguments.drives;
+    for (const std::uint64_t last = drives.seed + arguments.seeds; drives.seed < last; ++drives.seed) {
+      std::fprintf(stderr, "%s, seed %llu\n", profile.c_str(), static_cast<unsigned long long>(drives.seed));
+      const realism::Statistics statistics = realism::simulate(drives, profile, demo);
+      columns.back().figures.push_back(realism::figures_of(statistics));
+      std::printf("%s, seed %llu: %zu scans, %zu detections\n", profile.c_str(),
+                  static_cast<unsigned long long>(drives.seed), statistics.scans, statistics.detections);
+    }
   }
   const realism::Tables tables = realism::make_tables(columns);
   Report report;
@@ -70,7 +77,8 @@ int run(const Arguments& arguments) {
   }
   std::cout << '\n';
   for (const realism::Tally& tally : tables.tallies) {
-    std::cout << tally.profile << ": " << tally.met << " of " << tally.judged() << " rows with a verdict are met, "
+    std::cout << tally.profile << ": " << tally.met + tally.met_by_interval << " of " << tally.judged()
+              << " rows with a verdict are met, " << tally.met_by_interval << " of these only by their interval, "
               << tally.without_data << " have no data\n";
   }
   std::cout.flush();
@@ -88,8 +96,8 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Compares simulated radars with measured ones. R: RadarScenes, N: nuScenes (aggregate figures). "
       "Exit code 0: every row with a verdict is met, 1: some are not, 3: error."};
-  app.add_option("--seed", arguments.drives.seed, "seed of the first drive of each scenario; default: a fresh one");
-  app.add_option("--seeds", arguments.drives.seeds, "drives of each scenario")
+  app.add_option("--seed", arguments.drives.seed, "first seed; default: a fresh one");
+  app.add_option("--seeds", arguments.seeds, "number of seeds; each drives all scenarios once")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   app.add_option("--profile", arguments.profiles, "radar profiles, by name or file")->capture_default_str();

@@ -29,12 +29,11 @@ Statistics simulate(const Drives& drives, const std::string& profile, const Vehi
   const Source source = source_of(profile);
   const VehicleConfig vehicle = measuring_vehicle(demo, source);
   const Counting counting = source == Source::kNuScenes ? Counting::kInSight : Counting::kFirstToLast;
-  const std::size_t count = drives.scenarios.size() * drives.seeds;
+  const std::size_t count = drives.scenarios.size();
   std::vector<std::unique_ptr<Statistics>> parts(count);
   parallel_for(count, drives.jobs, [&](std::size_t i) {
     parts[i] = std::make_unique<Statistics>();
-    const std::string& name = drives.scenarios[i / drives.seeds];
-    add_drive(name, profile, vehicle, drives.seed + i % drives.seeds, drives.longest_s, *parts[i]);
+    add_drive(drives.scenarios[i], profile, vehicle, drives.seed, drives.longest_s, *parts[i]);
   });
   Statistics all;
   all.counting = counting;

@@ -13,8 +13,7 @@ namespace boresight::bench::realism {
 
 struct Drives {
   std::vector<std::string> scenarios;
-  std::uint64_t seed = 0;  ///< of the first drive of each scenario
-  std::size_t seeds = 1;   ///< drives of each scenario
+  std::uint64_t seed = 0;  ///< of each drive
   double longest_s = 1e9;  ///< limit of a drive
   std::size_t jobs = 2;    ///< threads
 };

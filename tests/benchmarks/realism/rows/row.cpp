@@ -1,5 +1,6 @@
 #include "tests/benchmarks/realism/rows/row.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -25,18 +26,21 @@ Measured Row::required(Source source) const {
   return own.exists() || judged == Judged::kOwn ? own : other;
 }
 
-Verdict judge(const Row& row, Source source, double figure) {
+Verdict judge(const Row& row, Source source, const Spread& figure) {
   const Measured required = row.required(source);
   if (!required.exists()) return {};
-  if (std::isnan(figure)) return {Outcome::kNoData, 0.0};
-  if (figure >= required.low && figure <= required.high) return {Outcome::kMet, 0.0};
-  const double nearest = figure < required.low ? required.low : required.high;
+  if (std::isnan(figure.median)) return {Outcome::kNoData, 0.0};
   const bool is_level = row.scale == Scale::kLevel_db;
-  const double tolerance = (is_level ? kTolerance_db : kTolerance * std::abs(nearest)) + row.rounding();
-  const double distance = figure - nearest;
+  const auto tolerance = [&](double measured) {
+    return (is_level ? kTolerance_db : kTolerance * std::abs(measured)) + row.rounding();
+  };
+  const double low = required.low - tolerance(required.low), high = required.high + tolerance(required.high);
+  const double nearest = std::clamp(figure.median, required.low, required.high);
+  const double distance = figure.median - nearest;
   // The part beyond a measured zero cannot be a share of it.
   const double off = is_level ? distance : nearest == 0.0 ? kNoFigure : distance / std::abs(nearest);
-  return {std::abs(distance) <= tolerance ? Outcome::kMet : Outcome::kMissed, off};
+  if (figure.median >= low && figure.median <= high) return {Outcome::kMet, off};
+  return {figure.high >= low && figure.low <= high ? Outcome::kMetByInterval : Outcome::kMissed, off};
 }
 
 std::string Verdict::text(Scale scale) const {
@@ -45,6 +49,8 @@ std::string Verdict::text(Scale scale) const {
       return "";
     case Outcome::kMet:
       return "within";
+    case Outcome::kMetByInterval:
+      return "interval within";
     case Outcome::kNoData:
       return "no data";
     case Outcome::kMissed:

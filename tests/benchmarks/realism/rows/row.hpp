@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/benchmarks/realism/common/measuring_vehicle.hpp"
+#include "tests/benchmarks/realism/rows/spread.hpp"
 #include "tests/benchmarks/realism/statistics/statistics.hpp"
 
 namespace boresight::bench::realism {
@@ -46,16 +47,22 @@ struct Row {
   [[nodiscard]] Measured required(Source source) const;
 };
 
-enum class Outcome : std::uint8_t { kNotJudged, kMet, kMissed, kNoData };
+enum class Outcome : std::uint8_t {
+  kNotJudged,
+  kMet,            ///< the median over the seeds is within the tolerance
+  kMetByInterval,  ///< the median is not, but the interval reaches into the tolerance
+  kMissed,
+  kNoData,
+};
 
 struct Verdict {
   Outcome outcome = Outcome::kNotJudged;
-  double off = 0.0;  ///< beyond the measured value: as a share of it, or in dB; not a number beside a measured zero
+  double off = 0.0;  ///< median beyond the measured value: a share of it, or in dB; NaN beside a measured zero
   [[nodiscard]] std::string text(Scale scale) const;
 };
 
 /// Compares a figure of a profile with the measured value of its radar.
-[[nodiscard]] Verdict judge(const Row& row, Source source, double figure);
+[[nodiscard]] Verdict judge(const Row& row, Source source, const Spread& figure);
 
 /// Rows of the sections 1 … 6, in the order of the tables.
 [[nodiscard]] std::vector<Row> all_rows();

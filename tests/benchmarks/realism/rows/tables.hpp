@@ -10,17 +10,21 @@
 
 namespace boresight::bench::realism {
 
+/// Figures of all rows, in their order.
+[[nodiscard]] std::vector<double> figures_of(const Statistics& statistics);
+
 struct Column {
   std::string profile;
   Source source = Source::kNone;
-  Statistics statistics;
+  std::vector<std::vector<double>> figures;  ///< of each seed: those of all rows
 };
 
 /// Rows of one profile that have a verdict.
 struct Tally {
   std::string profile;
-  std::size_t met = 0, missed = 0, without_data = 0;
-  [[nodiscard]] std::size_t judged() const { return met + missed + without_data; }
+  std::size_t met = 0, met_by_interval = 0, missed = 0, without_data = 0;
+  [[nodiscard]] std::size_t judged() const { return met + met_by_interval + missed + without_data; }
+  [[nodiscard]] bool all_met() const { return met + met_by_interval == judged(); }
 };
 
 struct Tables {

@@ -54,7 +54,7 @@ TEST(MeasuringVehicle, RadarsStandAsTheMeasuredOnes) {
 }
 
 TEST(Drives, StatisticsDependOnTheSeedAndNotOnTheThreads) {
-  Drives drives{{"straight_rail", "city_canyon"}, 3, 1, 1.0, 1};
+  Drives drives{{"straight_rail", "city_canyon"}, 3, 1.0, 1};
   const Statistics one = simulate(drives, "series_77ghz", demo());
   drives.jobs = 2;
   const Statistics two = simulate(drives, "series_77ghz", demo());
@@ -66,7 +66,7 @@ TEST(Drives, StatisticsDependOnTheSeedAndNotOnTheThreads) {
 }
 
 TEST(Drives, UnknownProfileIsAnError) {
-  EXPECT_THROW(static_cast<void>(simulate({{"straight_rail"}, 1, 1, 1.0, 1}, "no_such_radar", demo())), std::exception);
+  EXPECT_THROW(static_cast<void>(simulate({{"straight_rail"}, 1, 1.0, 1}, "no_such_radar", demo())), std::exception);
 }
 
 }  // namespace
