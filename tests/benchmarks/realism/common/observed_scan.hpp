@@ -37,6 +37,7 @@ struct ObservedObject {
   std::uint32_t id = 0;
   RoadUser user = RoadUser::kCar;
   Eigen::Vector2d position_m{0.0, 0.0};  ///< centre
+  Eigen::Vector2d velocity_mps{0.0, 0.0};  ///< of the centre, over ground
   double heading_rad = 0.0;
   double length_m = 4.5, width_m = 1.8;
   double range_m = 0.0;  ///< from the radar to the nearest point of the box
@@ -93,11 +94,20 @@ struct ObservedScan {
   std::uint64_t number = 0;  ///< of this radar's scans
   Facing facing = Facing::kForward;
   Eigen::Vector2d sensor_m{0.0, 0.0};
+  Eigen::Vector2d sensor_velocity_mps{0.0, 0.0};  ///< over ground
   double view_rad = 0.0;     ///< width of the field of view
   double range_max_m = 0.0;  ///< of the field of view
   std::vector<ObservedDetection> detections;
   std::vector<ObservedObject> objects;  ///< those in view
 
+  /// Line of sight: unit vector from the sensor to a place.
+  [[nodiscard]] Eigen::Vector2d sight_to(const Eigen::Vector2d& place_m) const {
+    return (place_m - sensor_m).normalized();
+  }
+  /// Range rate of the centre of an object.
+  [[nodiscard]] double range_rate_mps(const ObservedObject& object) const {
+    return sight_to(object.position_m).dot(object.velocity_mps - sensor_velocity_mps);
+  }
   [[nodiscard]] const ObservedObject* object(std::uint32_t id) const {
     const auto found = std::find_if(objects.begin(), objects.end(), [id](const auto& o) { return o.id == id; });
     return found == objects.end() ? nullptr : &*found;

@@ -45,6 +45,7 @@ ObservedObject observed(const simulator::Body& body, const Eigen::Vector2d& sens
   o.id = body.id;
   o.user = road_user(body);
   o.position_m = body.position_m;
+  o.velocity_mps = body.velocity_mps;
   o.heading_rad = body.heading_rad;
   o.length_m = body.length_m;
   o.width_m = body.width_m;
@@ -84,6 +85,7 @@ ObservedScan Observer::observe(const simulator::Drive& drive, const simulator::E
   out.number = scan.header.source_sequence;
   out.facing = facing_of(config);
   out.sensor_m = view.position_m.head<2>();
+  out.sensor_velocity_mps = view.velocity_mps.head<2>();
   out.view_rad = config.field_of_view.azimuth_max_rad - config.field_of_view.azimuth_min_rad;
   out.range_max_m = config.field_of_view.range_max_m;
 

@@ -48,6 +48,12 @@ class Samples {
     for (const float v : values_) sum += static_cast<double>(v);
     return values_.empty() ? kNoFigure : sum / static_cast<double>(values_.size());
   }
+  [[nodiscard]] double std_dev() const {
+    const double middle = mean();
+    double squares = 0.0;
+    for (const float v : values_) squares += (static_cast<double>(v) - middle) * (static_cast<double>(v) - middle);
+    return values_.size() < 2 ? kNoFigure : std::sqrt(squares / static_cast<double>(values_.size() - 1));
+  }
   [[nodiscard]] double percent_above(double limit) const {
     Share share;
     for (const float v : values_) share.add(static_cast<double>(v) > limit);

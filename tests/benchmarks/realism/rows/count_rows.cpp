@@ -175,6 +175,36 @@ void add_misses(std::vector<Row>& rows) {
   }
 }
 
+void add_births(std::vector<Row>& rows) {
+  for (const auto& [name, user, value] :
+       {std::tuple{"car", RoadUser::kCar, 55.0}, std::tuple{"truck/bus", RoadUser::kTruck, 79.0}}) {
+    const RoadUser u = user;
+    rows.push_back(
+        {1, std::string(name) + ", first seen: median", "m", 0, value, {}, Judged::kNo, [u](const Statistics& s) {
+           return s.births.first_range_m(u).quantile(0.5);
+         }});
+  }
+  rows.push_back({1,
+                  "first detections within 6 m of the largest range",
+                  "%",
+                  0,
+                  {23, 29},
+                  {},
+                  Judged::kNo,
+                  [](const Statistics& s) { return s.births.percent_first_at_largest_range(); }});
+  rows.push_back(
+      {1, "last detections within 6 m of the largest range", "%", 0, 3, {}, Judged::kNo, [](const Statistics& s) {
+         return s.births.percent_last_at_largest_range();
+       }});
+  rows.push_back(
+      {1, "last detections within 6° of the view's edge", "%", 0, {20, 24}, {}, Judged::kNo, [](const Statistics& s) {
+         return s.births.percent_last_at_edge();
+       }});
+  rows.push_back({1, "first and last detections elsewhere", "%", 0, 75, {}, Judged::kNo, [](const Statistics& s) {
+                    return s.births.percent_elsewhere();
+                  }});
+}
+
 }  // namespace
 
 void add_count_rows(std::vector<Row>& rows) {
@@ -182,6 +212,7 @@ void add_count_rows(std::vector<Row>& rows) {
   add_aspects(rows);
   add_spreads(rows);
   add_misses(rows);
+  add_births(rows);
 }
 
 }  // namespace boresight::bench::realism

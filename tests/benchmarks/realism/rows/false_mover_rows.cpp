@@ -56,6 +56,8 @@ void add_distribution(std::vector<Row>& rows) {
     add(rows, std::string("density at ") + range, "1e-5/(m²·m/s)", 1, {low, high}, {}, Judged::kNo,
         [ring](const Statistics& s) { return 1e5 * s.false_movers.density_per_m2_mps(ring); });
   }
+  add(rows, "density in the whole view", "1e-5/(m²·m/s)", 1, {1.2, 2.5}, {}, Judged::kNo,
+      [](const Statistics& s) { return 1e5 * s.false_movers.density_of_view_per_m2_mps(); });
   const std::array<std::tuple<const char*, double>, FalseMovers::kDeviations> kDeviation{
       {{"1–2", 14}, {"2–5", 20}, {"5–10", 16}, {"10–20", 32}, {"20–36", 17}}};
   for (std::size_t band = 0; band < kDeviation.size(); ++band) {
@@ -113,8 +115,24 @@ void add_origins(std::vector<Row>& rows) {
       [](const Statistics& s) { return s.false_movers.percent_azimuth_by_truth(); });
   add(rows, "azimuth ambiguity, by the truth: a scan", "", 1, 1.3, {}, Judged::kOwn,
       [](const Statistics& s) { return s.false_movers.azimuth_by_truth_per_scan(); });
+  add(rows, "azimuth ambiguity: step of sin(azimuth)", "", 2, 0.72, {}, Judged::kOwn,
+      [](const Statistics& s) { return s.origins.sine_step(); });
   add(rows, "beside a labelled object", "%", 0, {6, 10}, {}, Judged::kNo,
       [](const Statistics& s) { return s.false_movers.percent_beside_object(); });
+  add(rows, "beside a tracked object, detected or not", "%", 0, {18, 20}, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_beside_tracked_object(); });
+  add(rows, "behind an object at its range rate", "%", 0, {3, 8}, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_behind_object(); });
+  add(rows, "the same 10° beside it", "%", 0, {3, 8}, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_beside_behind_object(); });
+  add(rows, "twice range and range rate of an object", "%", 1, 0.2, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_at_twice_the_range(); });
+  add(rows, "mirror images of type 2, by the truth", "%", 0, {5, 20}, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_mirror_images(); });
+  add(rows, "unlabelled rest of an object", "%", 0, {2, 4}, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_rest_of_object(); });
+  add(rows, "none of these", "%", 0, 30, {}, Judged::kNo,
+      [](const Statistics& s) { return s.origins.percent_of_no_origin(); });
 }
 
 void add_ghosts(std::vector<Row>& rows) {

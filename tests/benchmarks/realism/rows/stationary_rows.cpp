@@ -16,6 +16,12 @@ void add_stationary_rows(std::vector<Row>& rows) {
   rows.push_back({5, "a scan, detections of any kind", "", 0, {}, {45, 114}, Judged::kOwn, [](const Statistics& s) {
                     return s.stationary.all_per_scan().mean();
                   }});
+  rows.push_back({5, "a scan, forward radars: sd", "", 0, {36, 70}, {}, Judged::kNo, [](const Statistics& s) {
+                    return s.stationary.per_scan(Facing::kForward).std_dev();
+                  }});
+  rows.push_back({5, "a scan, radars to the side: sd", "", 0, {36, 70}, {}, Judged::kNo, [](const Statistics& s) {
+                    return s.stationary.per_scan(Facing::kSideways).std_dev();
+                  }});
   constexpr std::array<double, StationaryWorld::kRanges> kShares{20, 26, 17, 12, 8, 6, 4, 3, 2, 1};
   for (std::size_t ring = 0; ring < kShares.size(); ++ring) {
     rows.push_back({5,
@@ -86,6 +92,42 @@ void add_stationary_rows(std::vector<Row>& rows) {
                     {},
                     Judged::kNo,
                     [level](const Statistics& s) { return s.stationary.rate_std_mps(level); }});
+  }
+  rows.push_back({5, "range rate: kurtosis", "", 0, 9, {}, Judged::kNo, [](const Statistics& s) {
+                    return s.stationary.rate_kurtosis();
+                  }});
+  rows.push_back(
+      {5, "range rate: p95 of the absolute deviation", "m/s", 2, 0.21, {}, Judged::kNo, [](const Statistics& s) {
+         return s.stationary.rate_p95_mps();
+       }});
+  struct Band {
+    const char* name;
+    std::size_t band;
+    Measured r;
+    int digits;
+  };
+  for (const Band& b :
+       {Band{"≤ 20°", 0, {0.0, 0.05}, 2}, Band{"20–50°", 1, {0.2, 0.3}, 1}, Band{"60–70°", 2, 0.6, 1}}) {
+    const std::size_t band = b.band;
+    rows.push_back({5,
+                    std::string("azimuth, sd, ") + b.name + " off boresight",
+                    "°",
+                    b.digits,
+                    b.r,
+                    {},
+                    Judged::kNo,
+                    [band](const Statistics& s) { return s.azimuth_noise.azimuth_std_deg(band); }});
+  }
+  for (const auto& [name, range] : {std::tuple{"20–50 m", std::size_t{0}}, std::tuple{"50–100 m", std::size_t{1}}}) {
+    const std::size_t r = range;
+    rows.push_back({5,
+                    std::string("car ") + name + ": robust sd across the line of sight",
+                    "m",
+                    2,
+                    {0.43, 0.50},
+                    {},
+                    Judged::kNo,
+                    [r](const Statistics& s) { return s.azimuth_noise.car_std_m(r); }});
   }
 }
 

@@ -52,6 +52,9 @@ void add_levels(std::vector<Row>& rows) {
         "vehicles, all ranges: p" + std::to_string(static_cast<int>(kPercent * p + 0.5)), {}, value, Judged::kOwn,
         [p](const Statistics& s) { return s.strength.quantile_dbsm(Sort::kVehicle, 0.0, kEverywhere, p); }));
   }
+  rows.push_back(level_row("false movers, all ranges: median", {-9, -4}, {}, Judged::kOwn, [](const Statistics& s) {
+    return s.strength.quantile_dbsm(Sort::kFalseMover, 0.0, kEverywhere, 0.5);
+  }));
 }
 
 void add_separation(std::vector<Row>& rows) {
@@ -63,6 +66,23 @@ void add_separation(std::vector<Row>& rows) {
   add("5–15 m", 5.0, 15.0, {}, 0.54);
   add("15–30 m", 15.0, 30.0, {}, 0.49);
   add("30–50 m", 30.0, 50.0, {}, 0.48);
+  struct Valid {
+    const char* range;
+    double from_m, to_m, n;
+  };
+  for (const Valid& v :
+       {Valid{"5–15 m", 5.0, 15.0, 0.70}, Valid{"15–30 m", 15.0, 30.0, 0.58}, Valid{"30–50 m", 30.0, 50.0, 0.51}}) {
+    const double from_m = v.from_m, to_m = v.to_m;
+    rows.push_back(
+        {4,
+         std::string("the same, valid by the sensor, ") + v.range,
+         "",
+         2,
+         {},
+         v.n,
+         Judged::kOwn,
+         [from_m, to_m](const Statistics& s) { return s.strength.valid_vehicle_is_stronger(from_m, to_m); }});
+  }
 }
 
 void add_spread(std::vector<Row>& rows) {

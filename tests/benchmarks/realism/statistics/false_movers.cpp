@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/benchmarks/realism/common/neighbours.hpp"
+#include "tests/benchmarks/realism/statistics/origin_criteria.hpp"
 
 namespace boresight::bench::realism {
 
@@ -16,39 +17,8 @@ constexpr double kRateSpan_mps = 60.0;  // of the deviations, for the density: f
 // The same false mover in the next scan: by range rate and place, moved along the line of sight.
 constexpr double kAgain_m = 1.5, kAgainRate_mps = 1.0;
 
-// Azimuth ambiguity by the measured definition: a stationary detection of the same range and range rate at this
-// distance of sin(azimuth). Chance: the same at two other distances.
-constexpr double kSineStep = 0.72, kSineTolerance = 0.06;
+// Azimuth ambiguity by chance: the same search at two other distances of sin(azimuth).
 constexpr std::array<double, 2> kSineBeside{0.52, 0.92};
-constexpr double kSameRange_m = 0.5, kSameRate_mps = 0.3;
-
-constexpr double kBesideObject_rad = 4.0 * M_PI / 180.0, kObjectRange_m = 1.0, kObjectRate_mps = 0.5;
-
-bool is_ambiguous_width(double deviation_mps) {
-  return std::abs(deviation_mps) >= kAmbiguityFrom_mps && std::abs(deviation_mps) <= kAmbiguityTo_mps;
-}
-
-/// Off by such a width, and on the other side of zero than a stationary reflector in this direction.
-bool is_doppler_ambiguity(const ObservedDetection& d) {
-  const double expected_mps = d.range_rate_mps - d.deviation_mps;
-  return is_ambiguous_width(d.deviation_mps) && d.range_rate_mps * expected_mps < 0.0;
-}
-
-bool is_ambiguous_azimuth(const ObservedScan& scan, const ObservedDetection& mover, double step) {
-  return std::any_of(scan.detections.begin(), scan.detections.end(), [&](const ObservedDetection& d) {
-    if (!d.is_stationary() || std::abs(d.range_m - mover.range_m) > kSameRange_m) return false;
-    if (std::abs(d.range_rate_mps - mover.range_rate_mps) > kSameRate_mps) return false;
-    return std::abs(std::abs(std::sin(d.azimuth_rad) - std::sin(mover.azimuth_rad)) - step) <= kSineTolerance;
-  });
-}
-
-bool is_beside_object(const ObservedScan& scan, const ObservedDetection& mover) {
-  return std::any_of(scan.detections.begin(), scan.detections.end(), [&](const ObservedDetection& d) {
-    return d.is_of_mover() && std::abs(d.range_m - mover.range_m) <= kObjectRange_m &&
-           std::abs(d.range_rate_mps - mover.range_rate_mps) <= kObjectRate_mps &&
-           std::abs(d.azimuth_rad - mover.azimuth_rad) > kBesideObject_rad;
-  });
-}
 
 double mean_of(const std::array<Samples, 3>& by_facing) {
   double sum = 0.0, n = 0.0;
@@ -256,6 +226,16 @@ double FalseMovers::azimuth_by_truth_per_scan() const {
 
 double FalseMovers::density_per_m2_mps(std::size_t ring) const {
   return area_m2_[ring] > 0.0 ? static_cast<double>(in_ring_[ring]) / (area_m2_[ring] * kRateSpan_mps) : kNoFigure;
+}
+
+double FalseMovers::density_of_view_per_m2_mps() const {
+  std::size_t in_view = 0;
+  double area_m2 = 0.0;
+  for (std::size_t r = 0; r < kDensities; ++r) {
+    in_view += in_ring_[r];
+    area_m2 += area_m2_[r];
+  }
+  return area_m2 > 0.0 ? static_cast<double>(in_view) / (area_m2 * kRateSpan_mps) : kNoFigure;
 }
 
 double FalseMovers::percent_of_deviation(std::size_t band) const {

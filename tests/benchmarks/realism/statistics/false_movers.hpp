@@ -38,6 +38,7 @@ class FalseMovers {
   [[nodiscard]] double per_scan_beyond(std::size_t limit) const;
   [[nodiscard]] double percent_of_unlabelled() const { return of_unlabelled_.percent(); }
   [[nodiscard]] double density_per_m2_mps(std::size_t ring) const;
+  [[nodiscard]] double density_of_view_per_m2_mps() const;
   [[nodiscard]] double percent_of_deviation(std::size_t band) const;
   [[nodiscard]] double percent_near_zero_rate() const { return near_zero_.percent(); }
   [[nodiscard]] const Samples& range_m() const { return range_m_; }

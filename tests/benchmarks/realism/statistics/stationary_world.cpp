@@ -79,6 +79,31 @@ void StationaryWorld::merge(const StationaryWorld& other) {
   later_.merge(other.later_);
 }
 
+double StationaryWorld::rate_kurtosis() const {
+  double n = 0.0, sum = 0.0, squares = 0.0, fourth = 0.0;
+  for (const Samples& level : deviation_mps_) {
+    n += static_cast<double>(level.size());
+    for (const float v : level.values()) sum += static_cast<double>(v);
+  }
+  const double mean = sum / n;
+  for (const Samples& level : deviation_mps_) {
+    for (const float v : level.values()) {
+      const double square = (static_cast<double>(v) - mean) * (static_cast<double>(v) - mean);
+      squares += square;
+      fourth += square * square;
+    }
+  }
+  return n * fourth / (squares * squares);
+}
+
+double StationaryWorld::rate_p95_mps() const {
+  std::vector<double> sizes;
+  for (const Samples& level : deviation_mps_) {
+    for (const float v : level.values()) sizes.push_back(std::abs(static_cast<double>(v)));
+  }
+  return bench::quantile(std::move(sizes), 0.95);
+}
+
 double StationaryWorld::percent_of_rings(std::size_t from, std::size_t to) const {
   double all = 0.0, within = 0.0;
   for (std::size_t r = 0; r < kRanges; ++r) {

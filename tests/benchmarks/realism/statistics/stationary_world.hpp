@@ -37,6 +37,9 @@ class StationaryWorld {
   /// 0 … 10, above 10 dBsm.
   static constexpr std::size_t kLevels = 4;
   [[nodiscard]] double rate_std_mps(std::size_t level) const { return deviation_mps_[level].robust_std(); }
+  /// Kurtosis (3 for a normal distribution) and 95 % quantile of the absolute value, at all strengths.
+  [[nodiscard]] double rate_kurtosis() const;
+  [[nodiscard]] double rate_p95_mps() const;
 
  private:
   std::array<Samples, 3> per_scan_;  // by facing

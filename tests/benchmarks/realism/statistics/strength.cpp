@@ -22,7 +22,7 @@ bool is_within(float range_m, double from_m, double to_m) {
 
 void Strength::add(const ObservedScan& scan) {
   for (const ObservedDetection& d : scan.detections) {
-    const Value value{static_cast<float>(d.range_m), static_cast<float>(d.rcs_dbsm)};
+    const Value value{static_cast<float>(d.range_m), static_cast<float>(d.rcs_dbsm), d.is_valid};
     if (d.is_false_mover()) {
       by_sort_[static_cast<std::size_t>(Sort::kFalseMover)].push_back(value);
     } else if (!d.is_of_mover()) {
@@ -75,9 +75,10 @@ void Strength::merge(const Strength& other) {
   strongest_.insert(strongest_.end(), other.strongest_.begin(), other.strongest_.end());
 }
 
-std::vector<float> Strength::values(Sort sort, double from_m, double to_m) const {
+std::vector<float> Strength::values(Sort sort, double from_m, double to_m, bool valid_only) const {
   std::vector<float> found;
   for (const Value& v : by_sort_[static_cast<std::size_t>(sort)]) {
+    if (valid_only && !v.is_valid) continue;
     if (is_within(v.range_m, from_m, to_m)) found.push_back(v.rcs_dbsm);
   }
   return found;
@@ -90,6 +91,11 @@ double Strength::quantile_dbsm(Sort sort, double from_m, double to_m, double sha
 
 double Strength::vehicle_is_stronger(double from_m, double to_m) const {
   return chance_that_first_exceeds(values(Sort::kVehicle, from_m, to_m), values(Sort::kFalseMover, from_m, to_m));
+}
+
+double Strength::valid_vehicle_is_stronger(double from_m, double to_m) const {
+  return chance_that_first_exceeds(values(Sort::kVehicle, from_m, to_m, true),
+                                   values(Sort::kFalseMover, from_m, to_m, true));
 }
 
 double Strength::strongest_median_dbsm(double from_m, double to_m) const {

@@ -31,6 +31,8 @@ class Strength {
   [[nodiscard]] double quantile_dbsm(Sort sort, double from_m, double to_m, double share) const;
   /// Probability that a vehicle's detection is stronger than a false mover's.
   [[nodiscard]] double vehicle_is_stronger(double from_m, double to_m) const;
+  /// The same of those that the sensor reports as valid.
+  [[nodiscard]] double valid_vehicle_is_stronger(double from_m, double to_m) const;
   /// Median of the detections of pedestrians or two-wheelers.
   [[nodiscard]] double median_dbsm(RoadUser user) const {
     return of_user_[static_cast<std::size_t>(user)].quantile(0.5);
@@ -48,6 +50,7 @@ class Strength {
  private:
   struct Value {
     float range_m, rcs_dbsm;
+    bool is_valid;  // by the sensor
   };
   struct Strongest {
     RoadUser user;
@@ -57,7 +60,7 @@ class Strength {
     std::uint64_t scan;
     double rcs_dbsm;
   };
-  [[nodiscard]] std::vector<float> values(Sort sort, double from_m, double to_m) const;
+  [[nodiscard]] std::vector<float> values(Sort sort, double from_m, double to_m, bool valid_only = false) const;
   void add_vehicle(const ObservedScan& scan, const ObservedObject& object);
 
   std::array<std::vector<Value>, kSorts> by_sort_;

@@ -58,6 +58,20 @@ TEST(StationaryWorld, ChanceIsFoundByTurningTheScan) {
   EXPECT_DOUBLE_EQ(world.seen_again_by_chance(), 1.0);
 }
 
+TEST(StationaryWorld, TailsOfTheRangeRateAreOfAllStrengths) {
+  StationaryWorld world;
+  ObservedScan scan = scan_of(1);
+  for (int i = 0; i < 100; ++i) {
+    ObservedDetection d = at(20.0, 0.0);
+    d.rcs_dbsm = i % 2 == 0 ? -15.0 : 15.0;
+    d.deviation_mps = i < 5 ? 0.5 : i < 10 ? -0.5 : 0.0;
+    scan.detections.push_back(d);
+  }
+  world.add(scan);
+  EXPECT_NEAR(world.rate_kurtosis(), 10.0, 1e-6);  // 1 / the share of the deviating ones
+  EXPECT_NEAR(world.rate_p95_mps(), 0.5, 1e-6);
+}
+
 TEST(StationaryWorld, NothingIsSeenAgainInAnotherDrive) {
   StationaryWorld world;
   ObservedScan first = scan_of(kSearched - 1), second = scan_of(kSearched);

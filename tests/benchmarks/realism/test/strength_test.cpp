@@ -29,6 +29,18 @@ TEST(Strength, LevelsAreByKindAndRange) {
   EXPECT_DOUBLE_EQ(strength.vehicle_is_stronger(10.0, 20.0), 1.0);
 }
 
+TEST(Strength, ValidOnesAreComparedByThemselves) {
+  Strength strength;
+  ObservedScan scan = scan_of(1);
+  scan.objects = {car_at(1, 15.0)};
+  scan.detections = {with_rcs(of_car(1, 15.0, 0.0), 5.0), with_rcs(false_mover_at(15.0, 0.0, 3.0), -5.0),
+                     with_rcs(false_mover_at(15.0, 0.0, 3.0), 9.0)};
+  scan.detections[1].is_valid = false;
+  strength.add(scan);
+  EXPECT_DOUBLE_EQ(strength.vehicle_is_stronger(10.0, 20.0), 0.5);
+  EXPECT_DOUBLE_EQ(strength.valid_vehicle_is_stronger(10.0, 20.0), 0.0);
+}
+
 TEST(Strength, ChanceOfAStrongerVehicleCountsTiesByHalf) {
   EXPECT_DOUBLE_EQ(chance_that_first_exceeds({1.0F, 3.0F}, {1.0F, 2.0F}), (0.5 + 2.0) / 4.0);
   EXPECT_DOUBLE_EQ(chance_that_first_exceeds({1.0F}, {2.0F}), 0.0);
