@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "services/boresight/align/play.hpp"
+#include "services/boresight/input/play.hpp"
 
 namespace boresight::align {
 
@@ -26,7 +26,7 @@ RadarScan* RecordingFeed::begin_scan() {
 
 void RecordingFeed::publish_scan(std::uint32_t radar_id, const ingest::MeasurementTime& time) {
   ++statistics(radar_id).messages;
-  if ((scan_->integrity & kDoubtful) != 0) {
+  if ((scan_->integrity & input::kDoubtful) != 0) {
     ++doubtful_;
     return;
   }

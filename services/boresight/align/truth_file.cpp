@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/header.hpp"
-#include "services/boresight/align/csv_table.hpp"
+#include "services/boresight/input/csv_table.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/vehicle/drive_truth.hpp"
@@ -68,15 +68,15 @@ void take_drive_truth(const std::filesystem::path& file, Truth& truth) {
 
 /// truth_sensors.csv: the first angles of a radar that truth.csv does not state, and each step change.
 void take_sensor_truth(const std::filesystem::path& file, double origin_s, Truth& truth) {
-  constexpr std::array<Column, 6> kColumns = {{{"t_s", -4e9, 4e9, "s"},
-                                               {"radar", 1.0, double{kMaxRadars}, ""},
-                                               {"alignment_yaw_deg", -360.0, 360.0, "deg"},
-                                               {"alignment_pitch_deg", -360.0, 360.0, "deg"},
-                                               {"alignment_roll_deg", -360.0, 360.0, "deg"},
-                                               {"step_changes", 0.0, 1e9, ""}}};
+  constexpr std::array<input::Column, 6> kColumns = {{{"t_s", -4e9, 4e9, "s"},
+                                                      {"radar", 1.0, double{kMaxRadars}, ""},
+                                                      {"alignment_yaw_deg", -360.0, 360.0, "deg"},
+                                                      {"alignment_pitch_deg", -360.0, 360.0, "deg"},
+                                                      {"alignment_roll_deg", -360.0, 360.0, "deg"},
+                                                      {"step_changes", 0.0, 1e9, ""}}};
   recording::ByteSource source(file);
-  Problems problems([](const std::string& problem) { throw TableError(problem); });
-  CsvTable table(source, kColumns, problems);
+  input::Problems problems([](const std::string& problem) { throw input::TableError(problem); });
+  input::CsvTable table(source, kColumns, problems);
   std::map<std::uint32_t, double> changes;
   std::array<double, kColumns.size()> row{};
   while (table.next(row)) {

@@ -9,11 +9,11 @@ namespace boresight::calibrate {
 
 namespace plate = alignment::plate;
 
-plate::Measurements read_plate(recording::ByteSource& source, align::Problems& problems) {
+plate::Measurements read_plate(recording::ByteSource& source, input::Problems& problems) {
   constexpr double kRadians = M_PI / 180.0;
-  constexpr std::array<align::Column, 3> kColumns{
+  constexpr std::array<input::Column, 3> kColumns{
       {{"tilt_deg", -20.0, 20.0, "deg"}, {"amplitude_db", -200.0, 200.0, "dB"}, {"azimuth_deg", -90.0, 90.0, "deg"}}};
-  align::CsvTable table(source, kColumns, problems);
+  input::CsvTable table(source, kColumns, problems);
   plate::Measurements run;
   double tilt_deg = NAN;
   std::array<double, kColumns.size()> row{};

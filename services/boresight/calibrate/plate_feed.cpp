@@ -6,17 +6,17 @@
 
 #include <fmt/format.h>
 
-#include "services/boresight/align/play.hpp"
+#include "services/boresight/input/play.hpp"
 
 namespace boresight::calibrate {
 
 namespace plate = alignment::plate;
 
-std::vector<TiltInterval> read_tilts(recording::ByteSource& source, align::Problems& problems) {
+std::vector<TiltInterval> read_tilts(recording::ByteSource& source, input::Problems& problems) {
   constexpr double kRadians = M_PI / 180.0, kLatest_s = 1e11;
-  constexpr std::array<align::Column, 3> kColumns{
+  constexpr std::array<input::Column, 3> kColumns{
       {{"tilt_deg", -20.0, 20.0, "deg"}, {"begin_s", 0.0, kLatest_s, "s"}, {"end_s", 0.0, kLatest_s, "s"}}};
-  align::CsvTable table(source, kColumns, problems);
+  input::CsvTable table(source, kColumns, problems);
   std::vector<TiltInterval> intervals;
   std::array<double, kColumns.size()> row{};
   while (table.next(row)) {
@@ -52,7 +52,7 @@ void PlateFeed::publish_scan(std::uint32_t radar_id, const ingest::MeasurementTi
   });
   if (interval == intervals_.end()) return;
   ++within_;
-  if ((scan_->integrity & align::kDoubtful) != 0) {
+  if ((scan_->integrity & input::kDoubtful) != 0) {
     ++doubtful_;
     return;
   }

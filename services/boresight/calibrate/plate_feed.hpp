@@ -8,7 +8,7 @@
 
 #include "services/alignment_estimator/core/plate/measurement.hpp"
 #include "services/alignment_estimator/core/plate/station.hpp"
-#include "services/boresight/align/csv_table.hpp"
+#include "services/boresight/input/csv_table.hpp"
 #include "services/ingest_gateway/core/sink.hpp"
 
 namespace boresight::calibrate {
@@ -22,8 +22,8 @@ struct TiltInterval {
 
 /// Columns tilt_deg (−20…20, positive = toward the ground), begin_s and end_s (the recording's stamps: UNIX time where
 /// it was recorded live), a row for each tilt, in the order of time and without overlap. Rows that cannot be used are
-/// reported to `problems` and skipped; throws align::TableError as CsvTable does.
-[[nodiscard]] std::vector<TiltInterval> read_tilts(recording::ByteSource& source, align::Problems& problems);
+/// reported to `problems` and skipped; throws input::TableError as CsvTable does.
+[[nodiscard]] std::vector<TiltInterval> read_tilts(recording::ByteSource& source, input::Problems& problems);
 
 /// Collects one radar's echoes of the plate. From each scan within an interval it takes the same echo as the station of
 /// the service. Scans of doubtful integrity and scans beyond kMaxScansPerTilt at a tilt are not used.

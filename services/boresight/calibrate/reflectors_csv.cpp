@@ -19,15 +19,15 @@ struct Rows {
 
 }  // namespace
 
-ReflectorTable read_reflectors(recording::ByteSource& source, align::Problems& problems) {
+ReflectorTable read_reflectors(recording::ByteSource& source, input::Problems& problems) {
   constexpr double kRadians = M_PI / 180.0;
-  constexpr std::array<align::Column, 6> kColumns{{{"x_m", -100.0, 100.0, "m"},
+  constexpr std::array<input::Column, 6> kColumns{{{"x_m", -100.0, 100.0, "m"},
                                                    {"y_m", -100.0, 100.0, "m"},
                                                    {"z_m", -100.0, 100.0, "m"},
                                                    {"range_m", 0.0, 100.0, "m"},
                                                    {"azimuth_deg", -90.0, 90.0, "deg"},
                                                    {"elevation_deg", -90.0, 90.0, "deg", false, true}}};
-  align::CsvTable table(source, kColumns, problems);
+  input::CsvTable table(source, kColumns, problems);
   ReflectorTable result;
   std::vector<Rows> reflectors;
   std::array<double, kColumns.size()> row{};

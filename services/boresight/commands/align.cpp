@@ -11,10 +11,7 @@
 #include <fmt/format.h>
 
 #include "services/alignment_estimator/config.hpp"
-#include "services/boresight/align/drive_csv.hpp"
-#include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/align/json.hpp"
-#include "services/boresight/align/play.hpp"
 #include "services/boresight/align/plot.hpp"
 #include "services/boresight/align/recording_feed.hpp"
 #include "services/boresight/align/run.hpp"
@@ -22,6 +19,9 @@
 #include "services/boresight/align/truth_file.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
+#include "services/boresight/input/drive_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
+#include "services/boresight/input/play.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
@@ -87,8 +87,8 @@ class Align {
 
   align::Result run_tables(const VehicleConfig& vehicle, align::Run::Options run_options) {
     recording::ByteSource ego_source(options_.ego), drive_source(options_.drive);
-    align::EgoReader ego(ego_source, vehicle.ego, problems_);
-    align::DriveReader drive(drive_source, vehicle, problems_);
+    input::EgoReader ego(ego_source, vehicle.ego, problems_);
+    input::DriveReader drive(drive_source, vehicle, problems_);
     const auto scan = std::make_unique<RadarScan>();
     EgoMotion motion{};
     double motion_s = 0.0, newest_motion_s = NAN, scan_s = 0.0;
@@ -127,7 +127,7 @@ class Align {
     align::Run run(vehicle, std::move(run_options));
     align::RecordingFeed feed(run);
     ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
-    align::play({options_.recordings.begin(), options_.recordings.end()}, gateway, problems_,
+    input::play({options_.recordings.begin(), options_.recordings.end()}, gateway, problems_,
                 [this](const recording::Progress& progress) {
                   stop_if_interrupted();
                   if (bar_.is_due()) show_progress(progress.position_bytes, progress.total_bytes);
@@ -176,8 +176,8 @@ class Align {
     bar_.wipe();
     provenance_.lines = problems_.lines();
     provenance_.bad_lines = problems_.bad_lines();
-    if (problems_.bad_lines() > align::Problems::kShown) {
-      tell(fmt::format("… and {} more", problems_.bad_lines() - align::Problems::kShown));
+    if (problems_.bad_lines() > input::Problems::kShown) {
+      tell(fmt::format("… and {} more", problems_.bad_lines() - input::Problems::kShown));
     }
     if (problems_.bad_lines() > 0) {
       const std::string text = fmt::format("{} of {} {} were skipped", problems_.bad_lines(), problems_.lines(),
@@ -218,7 +218,7 @@ class Align {
   AlignOptions options_;
   const CLI::App& command_;
   terminal::ProgressBar bar_;
-  align::Problems problems_;
+  input::Problems problems_;
   align::Provenance provenance_;
   std::optional<alignment::batch_calibration::Phase> announced_phase_;
   int exit_code_ = exit_code::kSuccess;

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "services/boresight/align/play.hpp"
 #include "services/boresight/calibrate/plate_csv.hpp"
 #include "services/boresight/calibrate/plate_feed.hpp"
 #include "services/boresight/calibrate/plate_report.hpp"
@@ -16,6 +15,7 @@
 #include "services/boresight/calibrate/state_file.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
+#include "services/boresight/input/play.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
@@ -55,15 +55,15 @@ struct ReflectorOptions : CalibrateOptions {
 };
 
 /// A table with any bad line is rejected: a wrong calibration at the end of the line would stay in the vehicle.
-void demand_all_lines(const std::string& file, const align::Problems& problems) {
+void demand_all_lines(const std::string& file, const input::Problems& problems) {
   if (problems.lines() == 0) throw std::runtime_error(file + ": there is no measurement in it");
   if (problems.bad_lines() == 0) return;
   throw std::runtime_error(fmt::format("{}: {} of {} lines cannot be used; correct them or take them out", file,
                                        problems.bad_lines(), problems.lines()));
 }
 
-align::Problems printed_problems() {
-  return align::Problems([](const std::string& problem) { std::fprintf(stderr, "%s\n", problem.c_str()); });
+input::Problems printed_problems() {
+  return input::Problems([](const std::string& problem) { std::fprintf(stderr, "%s\n", problem.c_str()); });
 }
 
 const RadarConfig& radar_of(const VehicleConfig& vehicle, const CalibrateOptions& options) {
@@ -94,7 +94,7 @@ void print_table(const CalibrateOptions& options, const std::string& table) {
 }
 
 plate::Measurements read_plate_table(const std::string& file) {
-  align::Problems problems = printed_problems();
+  input::Problems problems = printed_problems();
   recording::ByteSource source(file);
   const plate::Measurements measurements = calibrate::read_plate(source, problems);
   demand_all_lines(file, problems);
@@ -104,7 +104,7 @@ plate::Measurements read_plate_table(const std::string& file) {
 /// The radar's detections of the plate during the intervals of the table of tilts.
 plate::Measurements read_plate_recording(const PlateOptions& options, const VehicleConfig& vehicle,
                                          const RadarConfig& radar) {
-  align::Problems problems = printed_problems();
+  input::Problems problems = printed_problems();
   recording::ByteSource source(options.tilts);
   const std::vector<calibrate::TiltInterval> intervals = calibrate::read_tilts(source, problems);
   demand_all_lines(options.tilts, problems);
@@ -112,8 +112,8 @@ plate::Measurements read_plate_recording(const PlateOptions& options, const Vehi
   window.azimuth_half_width_rad = options.azimuth_half_width_deg / kDegreesPerRadian;
   calibrate::PlateFeed feed(radar.id, intervals, window);
   ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
-  align::Problems unreadable = printed_problems();
-  align::play({options.recordings.begin(), options.recordings.end()}, gateway, unreadable,
+  input::Problems unreadable = printed_problems();
+  input::play({options.recordings.begin(), options.recordings.end()}, gateway, unreadable,
               [](const auto&) { stop_if_interrupted(); });
   stop_if_interrupted();
   if (unreadable.bad_lines() > 0) options.tell(fmt::format("{} frames could not be read", unreadable.bad_lines()));
@@ -194,7 +194,7 @@ int run_reflectors(const ReflectorOptions& options) {
   run.source = options.table;
   run.radar = radar_of(vehicle, options);
   run.config = options.config;
-  align::Problems problems = printed_problems();
+  input::Problems problems = printed_problems();
   recording::ByteSource source(options.table);
   run.table = calibrate::read_reflectors(source, problems);
   demand_all_lines(options.table, problems);

@@ -12,10 +12,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "services/boresight/align/drive_csv.hpp"
-#include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/commands/commands.hpp"
 #include "services/boresight/commands/run_command.hpp"
+#include "services/boresight/input/drive_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
 #include "services/boresight/run/chain.hpp"
 #include "services/boresight/run/gateway_feed.hpp"
 #include "services/boresight/run/settings.hpp"
@@ -172,8 +172,8 @@ class RunDrive {
   template <typename Begin>
   void play_tables(run::Chain& chain, const Begin& begin_output) {
     recording::ByteSource ego_source(options_.ego), drive_source(options_.detections);
-    align::EgoReader ego(ego_source, vehicle_.ego, problems_);
-    align::DriveReader drive(drive_source, vehicle_, problems_);
+    input::EgoReader ego(ego_source, vehicle_.ego, problems_);
+    input::DriveReader drive(drive_source, vehicle_, problems_);
     begin_output();
     run::TableFeed feed(drive, ego, chain);
     while (!runtime::stop_signalled() && feed.next()) look(drive_source.position(), drive_source.total());
@@ -233,8 +233,8 @@ class RunDrive {
       detections += radar.detections;
       without_ego += radar.flags.at(kNoEgoMotionBit) + radar.flags.at(kEgoMotionStaleBit);
     }
-    if (problems_.bad_lines() > align::Problems::kShown) {
-      tell(fmt::format("… and {} more", problems_.bad_lines() - align::Problems::kShown));
+    if (problems_.bad_lines() > input::Problems::kShown) {
+      tell(fmt::format("… and {} more", problems_.bad_lines() - input::Problems::kShown));
     }
     if (problems_.bad_lines() > 0) {
       const bool too_many = problems_.too_many();
@@ -262,7 +262,7 @@ class RunDrive {
   RunOptions options_;
   const CLI::App& command_;
   terminal::ProgressBar bar_;
-  align::Problems problems_;
+  input::Problems problems_;
   VehicleConfig vehicle_;
   run::Summary summary_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

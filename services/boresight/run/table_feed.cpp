@@ -2,7 +2,7 @@
 
 namespace boresight::run {
 
-TableFeed::TableFeed(align::DriveReader& drive, align::EgoReader& ego, Chain& chain)
+TableFeed::TableFeed(input::DriveReader& drive, input::EgoReader& ego, Chain& chain)
     : drive_(drive), ego_(ego), chain_(chain), has_motion_(ego.next(motion_, motion_s_)) {}
 
 void TableFeed::add_ego() {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <memory>
 
-#include "services/boresight/align/drive_csv.hpp"
-#include "services/boresight/align/ego_csv.hpp"
+#include "services/boresight/input/drive_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
 #include "services/boresight/run/chain.hpp"
 
 namespace boresight::run {
@@ -16,7 +16,7 @@ namespace boresight::run {
 class TableFeed {
  public:
   /// All arguments must outlive the feed.
-  TableFeed(align::DriveReader& drive, align::EgoReader& ego, Chain& chain);
+  TableFeed(input::DriveReader& drive, input::EgoReader& ego, Chain& chain);
 
   /// Hands over the next scan with the ego motions before it; false at the end, when the rest of them is read.
   bool next();
@@ -24,8 +24,8 @@ class TableFeed {
  private:
   void add_ego();
 
-  align::DriveReader& drive_;
-  align::EgoReader& ego_;
+  input::DriveReader& drive_;
+  input::EgoReader& ego_;
   Chain& chain_;
   std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
   EgoMotion motion_{};

@@ -8,13 +8,13 @@
 
 #include "services/alignment_estimator/core/memory/codec.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
-#include "services/boresight/align/play.hpp"
 #include "services/boresight/calibrate/plate_csv.hpp"
 #include "services/boresight/calibrate/plate_feed.hpp"
 #include "services/boresight/calibrate/plate_report.hpp"
 #include "services/boresight/calibrate/reflectors_csv.hpp"
 #include "services/boresight/calibrate/reflectors_report.hpp"
 #include "services/boresight/calibrate/state_file.hpp"
+#include "services/boresight/input/play.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "tests/unit/calibrate/files.hpp"
@@ -60,7 +60,7 @@ class Calibrate : public ::testing::Test {
 
   Folder folder_;
   std::vector<std::string> reported_;
-  align::Problems problems_{[this](const std::string& text) { reported_.push_back(text); }};
+  input::Problems problems_{[this](const std::string& text) { reported_.push_back(text); }};
 };
 
 simulator::PlateSpec misaligned() {
@@ -101,7 +101,7 @@ TEST_F(Calibrate, a_plates_bad_rows_are_reported_with_line_value_and_what_is_all
   ASSERT_EQ(reported_.size(), 2u);
   EXPECT_THAT(reported_[0], HasSubstr("more than 50 scans at a tilt of 1 deg"));
   EXPECT_THAT(reported_[1], HasSubstr("12 deg is tilt number 12"));
-  EXPECT_THROW(static_cast<void>(plate_of("tilt_deg,azimuth_deg\n1,0\n")), align::TableError);
+  EXPECT_THROW(static_cast<void>(plate_of("tilt_deg,azimuth_deg\n1,0\n")), input::TableError);
 }
 
 TEST_F(Calibrate, the_command_reports_a_plates_run) {
@@ -132,7 +132,7 @@ TEST_F(Calibrate, a_plates_recording_is_what_the_radar_saw_at_the_tilts) {
   recording::ByteSource source(folder_.write("tilts.csv", tilts));
   PlateFeed feed(2, read_tilts(source, problems_), {});
   ingest::Gateway gateway(vehicle, feed);
-  align::play({pcap}, gateway, problems_, [](const auto&) {});
+  input::play({pcap}, gateway, problems_, [](const auto&) {});
   EXPECT_EQ(problems_.bad_lines(), 0u);
   EXPECT_EQ(feed.rejected() + feed.doubtful() + feed.without_plate(), 0u);
   EXPECT_EQ(feed.within(), 330u);

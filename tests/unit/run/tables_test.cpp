@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "services/boresight/align/drive_csv.hpp"
-#include "services/boresight/align/ego_csv.hpp"
+#include "services/boresight/input/drive_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
 #include "services/boresight/run/rows.hpp"
 #include "services/boresight/run/table_feed.hpp"
 #include "tests/unit/run/drive_in_memory.hpp"
@@ -82,10 +82,10 @@ class RunTables : public ::testing::Test {
   };
   void play(const std::string& detections, const std::string& motions, const VehicleConfig& vehicle,
             Played& played) const {
-    align::Problems problems([&](const std::string& text) { played.problems.push_back(text); });
+    input::Problems problems([&](const std::string& text) { played.problems.push_back(text); });
     recording::ByteSource drive_source(write("detections.csv", detections)), ego_source(write("ego.csv", motions));
-    align::DriveReader drive(drive_source, vehicle, problems);
-    align::EgoReader ego(ego_source, vehicle.ego, problems);
+    input::DriveReader drive(drive_source, vehicle, problems);
+    input::EgoReader ego(ego_source, vehicle.ego, problems);
     const auto chain = std::make_unique<Chain>(vehicle, Settings{}, played.files.listeners());
     TableFeed feed(drive, ego, *chain);
     while (feed.next()) {
@@ -172,7 +172,7 @@ TEST_F(RunTables, SkipLinesThatCannotBeRead) {
 }
 
 TEST(RunTableTimes, KeepEveryNanosecond) {
-  const auto exact = [](const std::string& text) { return align::nanoseconds_of(text, std::stod(text)); };
+  const auto exact = [](const std::string& text) { return input::nanoseconds_of(text, std::stod(text)); };
   EXPECT_EQ(exact("1700000000.123456789"), 1'700'000'000'123'456'789);
   EXPECT_EQ(exact("-1.5"), -1'500'000'000);
   EXPECT_EQ(exact("+2"), 2'000'000'000);
@@ -210,7 +210,7 @@ TEST_F(RunTables, HaveExactlyTheDocumentedColumnsAndRanges) {
              is_ego ? others + "\n" : "t_s,speed_mps,yaw_rate_radps\n", testing::demo_vehicle(), played);
       };
       if (left_out.is_required) {
-        EXPECT_THROW(read(), align::TableError) << left_out.name;
+        EXPECT_THROW(read(), input::TableError) << left_out.name;
       } else {
         EXPECT_NO_THROW(read()) << left_out.name;
       }

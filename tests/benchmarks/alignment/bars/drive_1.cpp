@@ -7,10 +7,10 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "services/boresight/align/drive_csv.hpp"
-#include "services/boresight/align/ego_csv.hpp"
 #include "services/boresight/align/run.hpp"
 #include "services/boresight/align/truth_file.hpp"
+#include "services/boresight/input/drive_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/simulator/alignment/drive.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
@@ -55,10 +55,10 @@ align::Result align_drive(const std::string& method, const fs::path& table, cons
   // The recording's radars are the simulator's four corner radars without stated stds.
   const VehicleConfig vehicle = simulator::AlignmentDrive(simulator::four_corner_radars()).vehicle();
   std::ifstream truth(folder / "truth_1.txt");
-  align::Problems problems([](const std::string& problem) { throw std::runtime_error(problem); });
+  input::Problems problems([](const std::string& problem) { throw std::runtime_error(problem); });
   recording::ByteSource ego_source(folder / "ego_1.csv"), drive_source(table);
-  align::EgoReader ego(ego_source, vehicle.ego, problems);
-  align::DriveReader drive(drive_source, vehicle, problems);
+  input::EgoReader ego(ego_source, vehicle.ego, problems);
+  input::DriveReader drive(drive_source, vehicle, problems);
   const auto scan = std::make_unique<RadarScan>();
   EgoMotion motion{};
   double motion_s = 0.0, scan_s = 0.0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace boresight::align {
+namespace boresight::input {
 
 /// Times may go back by a second (radars are not synchronised) and forward by an hour (the vehicle was parked). A
 /// larger step forward is an error of a single line, unless the next line confirms it: then the drive continues from
@@ -32,4 +32,4 @@ class TimeOrder {
   double doubtful_s_ = NAN;  // time of the previous line
 };
 
-}  // namespace boresight::align
+}  // namespace boresight::input

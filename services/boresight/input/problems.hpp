@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace boresight::align {
+namespace boresight::input {
 
 class Problems {
  public:
@@ -32,4 +32,4 @@ class Problems {
   std::uint64_t good_lines_ = 0;
 };
 
-}  // namespace boresight::align
+}  // namespace boresight::input

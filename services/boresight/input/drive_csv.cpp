@@ -1,10 +1,10 @@
-#include "services/boresight/align/drive_csv.hpp"
+#include "services/boresight/input/drive_csv.hpp"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace boresight::align {
+namespace boresight::input {
 
 namespace {
 
@@ -181,4 +181,4 @@ bool DriveReader::next(RadarScan& scan, double& time_s) {
   return true;
 }
 
-}  // namespace boresight::align
+}  // namespace boresight::input

@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include "services/boresight/align/problems.hpp"
+#include "services/boresight/input/problems.hpp"
 #include "services/common/recording/byte_source.hpp"
 #include "services/common/recording/line_reader.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 
 /// The whole file cannot be used; what() names file, line and cause.
 class TableError : public std::runtime_error {
@@ -76,4 +76,4 @@ class CsvTable {
   std::uint64_t line_number_ = 0;
 };
 
-}  // namespace boresight::align
+}  // namespace boresight::input

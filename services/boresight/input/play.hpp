@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "interfaces/messages/radar_scan.hpp"
-#include "services/boresight/align/problems.hpp"
+#include "services/boresight/input/problems.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 
 /// Scans with one of these integrity flags are rejected, as in the service.
 inline constexpr std::uint16_t kDoubtful =
@@ -22,4 +22,4 @@ inline constexpr std::uint16_t kDoubtful =
 void play(const std::vector<std::filesystem::path>& recordings, ingest::Gateway& gateway, Problems& problems,
           const std::function<void(const recording::Progress&)>& look);
 
-}  // namespace boresight::align
+}  // namespace boresight::input

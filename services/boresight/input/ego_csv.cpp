@@ -1,8 +1,8 @@
-#include "services/boresight/align/ego_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
 
 #include <fmt/format.h>
 
-namespace boresight::align {
+namespace boresight::input {
 
 namespace {
 
@@ -43,4 +43,4 @@ bool EgoReader::next(EgoMotion& motion, double& time_s) {
   return false;
 }
 
-}  // namespace boresight::align
+}  // namespace boresight::input

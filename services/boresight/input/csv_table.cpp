@@ -1,4 +1,4 @@
-#include "services/boresight/align/csv_table.hpp"
+#include "services/boresight/input/csv_table.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,7 +10,7 @@
 
 #include "services/common/estimation/unknown.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 
 namespace {
 
@@ -203,4 +203,4 @@ bool CsvTable::parse(std::string_view line, std::span<double> values) {
   return true;
 }
 
-}  // namespace boresight::align
+}  // namespace boresight::input

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "interfaces/messages/ego_motion.hpp"
-#include "services/boresight/align/csv_table.hpp"
-#include "services/boresight/align/time_order.hpp"
+#include "services/boresight/input/csv_table.hpp"
+#include "services/boresight/input/time_order.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 
 /// Columns of config/schema/tables.md.
 class EgoReader {
@@ -32,4 +32,4 @@ class EgoReader {
   std::int64_t time_ns_ = 0;
 };
 
-}  // namespace boresight::align
+}  // namespace boresight::input

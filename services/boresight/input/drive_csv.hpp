@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "interfaces/messages/radar_scan.hpp"
-#include "services/boresight/align/csv_table.hpp"
-#include "services/boresight/align/time_order.hpp"
+#include "services/boresight/input/csv_table.hpp"
+#include "services/boresight/input/time_order.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 
 /// Columns of config/schema/tables.md. The elevation may be absent or empty if the radar measures none. Other columns
 /// are ignored, also the truth is_stationary.
@@ -52,4 +52,4 @@ class DriveReader {
   std::map<std::uint32_t, std::uint64_t> unknown_;
 };
 
-}  // namespace boresight::align
+}  // namespace boresight::input

@@ -1,6 +1,6 @@
-#include "services/boresight/align/play.hpp"
+#include "services/boresight/input/play.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 
 void play(const std::vector<std::filesystem::path>& recordings, ingest::Gateway& gateway, Problems& problems,
           const std::function<void(const recording::Progress&)>& look) {
@@ -17,4 +17,4 @@ void play(const std::vector<std::filesystem::path>& recordings, ingest::Gateway&
   gateway.finish();
 }
 
-}  // namespace boresight::align
+}  // namespace boresight::input

@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include "services/boresight/align/drive_csv.hpp"
-#include "services/boresight/align/ego_csv.hpp"
+#include "services/boresight/input/drive_csv.hpp"
+#include "services/boresight/input/ego_csv.hpp"
 #include "tests/unit/align/tables.hpp"
 
-namespace boresight::align {
+namespace boresight::input {
 namespace {
 
 using ::testing::ElementsAre;
@@ -41,11 +41,11 @@ struct Read {
 
 class Tables : public ::testing::Test {
  protected:
-  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("align_csv." + std::to_string(getpid()));
+  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("input_csv." + std::to_string(getpid()));
   void TearDown() override { std::filesystem::remove(file_); }
 
   Read drive(const std::string& text, std::initializer_list<std::uint32_t> ids = {1, 2}) {
-    testing::write_text(file_, text);
+    align::testing::write_text(file_, text);
     Read read;
     Problems problems([&](const std::string& problem) { read.reported.push_back(problem); });
     const VehicleConfig vehicle = vehicle_of(ids);
@@ -202,7 +202,7 @@ TEST_F(Tables, AnyBytesAreRefusedWithoutHarm) {
 }
 
 TEST_F(Tables, EgoMotionIsReadWithTheVehiclesStds) {
-  testing::write_text(file_, "yaw_rate,t,v,gear\n0.1,5,20,D\nx,5.1,20,D\n0.2,5.2,-3,R\n");
+  align::testing::write_text(file_, "yaw_rate,t,v,gear\n0.1,5,20,D\nx,5.1,20,D\n0.2,5.2,-3,R\n");
   Problems problems([](const std::string&) {});
   recording::ByteSource source(file_);
   EgoConfig config;
@@ -224,4 +224,4 @@ TEST_F(Tables, EgoMotionIsReadWithTheVehiclesStds) {
 }
 
 }  // namespace
-}  // namespace boresight::align
+}  // namespace boresight::input
