@@ -36,7 +36,7 @@ inline constexpr double kAmbiguityFrom_mps = 21.5, kAmbiguityTo_mps = 34.0;
 struct ObservedObject {
   std::uint32_t id = 0;
   RoadUser user = RoadUser::kCar;
-  Eigen::Vector2d position_m{0.0, 0.0};  ///< centre
+  Eigen::Vector2d position_m{0.0, 0.0};    ///< centre
   Eigen::Vector2d velocity_mps{0.0, 0.0};  ///< of the centre, over ground
   double heading_rad = 0.0;
   double length_m = 4.5, width_m = 1.8;
@@ -95,8 +95,8 @@ struct ObservedScan {
   Facing facing = Facing::kForward;
   Eigen::Vector2d sensor_m{0.0, 0.0};
   Eigen::Vector2d sensor_velocity_mps{0.0, 0.0};  ///< over ground
-  double view_rad = 0.0;     ///< width of the field of view
-  double range_max_m = 0.0;  ///< of the field of view
+  double view_rad = 0.0;                          ///< width of the field of view
+  double range_max_m = 0.0;                       ///< of the field of view
   std::vector<ObservedDetection> detections;
   std::vector<ObservedObject> objects;  ///< those in view
 

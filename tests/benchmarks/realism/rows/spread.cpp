@@ -16,7 +16,7 @@ Spread spread_of(const std::vector<double>& figures) {
   std::vector<double> known;
   std::copy_if(figures.begin(), figures.end(), std::back_inserter(known), [](double f) { return !std::isnan(f); });
   if (known.empty()) return {};
-  const double middle = bench::median(known);
+  const double middle = quantile_of(known, 0.5);
   if (known.size() <= kFewSeeds) {
     const auto [low, high] = std::minmax_element(known.begin(), known.end());
     return {middle, *low, *high};

@@ -23,8 +23,8 @@ struct Spread {
 /// `figures`: one of each seed; those that are not numbers have no data and do not count.
 [[nodiscard]] Spread spread_of(const std::vector<double>& figures);
 
-/// Quantile 97.5 % of Student's t with `freedom` ≥ 3 degrees of freedom, within 0.3 % from 5 on (Abramowitz and Stegun
-/// 1964, 26.7.5).
+/// Quantile 97.5 % of Student's t with `freedom` ≥ 3 degrees of freedom, within 0.3 % from 5 on, by the first terms of
+/// its expansion about the normal distribution.
 [[nodiscard]] double student_t(double freedom);
 
 }  // namespace boresight::bench::realism

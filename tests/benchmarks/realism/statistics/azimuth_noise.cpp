@@ -55,7 +55,7 @@ void AzimuthNoise::add(const ObservedScan& scan) {
 void AzimuthNoise::end_drive() {
   for (const auto& [key, across_m] : open_) {
     if (across_m.size() < kLeastOfCar) continue;
-    const double middle = bench::median(across_m);
+    const double middle = quantile_of(across_m, 0.5);
     for (const double v : across_m) car_across_m_[std::get<2>(key)].add(v - middle);
   }
   open_.clear();

@@ -101,7 +101,7 @@ double StationaryWorld::rate_p95_mps() const {
   for (const Samples& level : deviation_mps_) {
     for (const float v : level.values()) sizes.push_back(std::abs(static_cast<double>(v)));
   }
-  return bench::quantile(std::move(sizes), 0.95);
+  return quantile_of(std::move(sizes), 0.95);
 }
 
 double StationaryWorld::percent_of_rings(std::size_t from, std::size_t to) const {

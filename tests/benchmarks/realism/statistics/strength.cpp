@@ -85,8 +85,7 @@ std::vector<float> Strength::values(Sort sort, double from_m, double to_m, bool 
 }
 
 double Strength::quantile_dbsm(Sort sort, double from_m, double to_m, double share) const {
-  const std::vector<float> found = values(sort, from_m, to_m);
-  return bench::quantile(std::vector<double>(found.begin(), found.end()), share);
+  return quantile_of(values(sort, from_m, to_m), share);
 }
 
 double Strength::vehicle_is_stronger(double from_m, double to_m) const {
