@@ -95,7 +95,8 @@ std::string integrity_names(std::uint16_t bits) {
 
 std::string_view detection_header() {
   return "time_s,radar,cycle,index,range_m,azimuth_rad,elevation_rad,range_rate_mps,rcs_dbsm,snr_db,range_std_m,"
-         "azimuth_std_rad,elevation_std_rad,range_rate_std_mps,existence,flags,time_source,integrity\n";
+         "azimuth_std_rad,elevation_std_rad,range_rate_std_mps,range_rate_min_mps,range_rate_max_mps,existence,flags,"
+         "time_source,integrity\n";
 }
 
 std::string_view ego_header() {
@@ -108,6 +109,7 @@ void append_detections(std::string& rows, const RadarScan& scan, std::uint32_t r
   const std::string integrity = integrity_names(scan.integrity);
   const bool has_elevation = scan.has(scan_field::kElevation);
   const bool has_stds = scan.has(scan_field::kStds);
+  const bool has_interval = scan.has(scan_field::kAmbiguity);
   for (std::uint32_t i = 0; i < scan.number_of_valid_detections && i < kMaxDetections; ++i) {
     Row row(rows);
     row.seconds(time.time_ns);
@@ -124,6 +126,8 @@ void append_detections(std::string& rows, const RadarScan& scan, std::uint32_t r
     row.number_if(has_stds, scan.azimuth_std_rad[i]);
     row.number_if(has_stds && has_elevation, scan.elevation_std_rad[i]);
     row.number_if(has_stds, scan.range_rate_std_mps[i]);
+    row.number_if(has_interval, scan.range_rate_min_mps);
+    row.number_if(has_interval, scan.range_rate_max_mps);
     row.number_if(scan.has(scan_field::kExistence), scan.existence_probability[i]);
     row.word(flag_names(scan.detection_flags[i]));
     row.word(name_of(time.source));

@@ -21,6 +21,8 @@ std::unique_ptr<RadarScan> scan_of(std::uint32_t detections, std::uint32_t field
   scan->cycle_counter = 4'000'000'000;
   scan->number_of_valid_detections = detections;
   scan->fields = fields;
+  scan->range_rate_min_mps = -20.25f;
+  scan->range_rate_max_mps = 10.75f;
   for (std::uint32_t i = 0; i < detections; ++i) {
     scan->range_m[i] = 0.1f + static_cast<float>(i);
     scan->azimuth_rad[i] = -1.0f / 3.0f;
@@ -38,8 +40,8 @@ std::unique_ptr<RadarScan> scan_of(std::uint32_t detections, std::uint32_t field
   return scan;
 }
 
-constexpr std::uint32_t kAll =
-    scan_field::kElevation | scan_field::kRcs | scan_field::kSnr | scan_field::kStds | scan_field::kExistence;
+constexpr std::uint32_t kAll = scan_field::kElevation | scan_field::kRcs | scan_field::kSnr | scan_field::kStds |
+                               scan_field::kAmbiguity | scan_field::kExistence;
 
 TEST(Csv, EveryQuantityOfADetectionHasItsColumn) {
   std::string rows;
@@ -52,10 +54,10 @@ TEST(Csv, EveryQuantityOfADetectionHasItsColumn) {
   std::getline(lines, second);
   EXPECT_FALSE(std::getline(lines, none));
   EXPECT_THAT(cells(first), testing::ElementsAre("1700000000.000000001", "3", "4000000000", "0", "0.1", "-0.33333334",
-                                                 "1e-09", "-12.5", "3", "4", "5", "6", "7", "8", "0.5", "",
-                                                 "sensor_synchronised", "counter_gap+frozen"));
+                                                 "1e-09", "-12.5", "3", "4", "5", "6", "7", "8", "-20.25", "10.75",
+                                                 "0.5", "", "sensor_synchronised", "counter_gap+frozen"));
   EXPECT_EQ(cells(second)[3], "1");
-  EXPECT_EQ(cells(second)[15], "invalid");
+  EXPECT_EQ(cells(second)[17], "invalid");
   EXPECT_EQ(cells(std::string(detection_header())).size(), cells(first).size());
 }
 
@@ -75,7 +77,7 @@ TEST(Csv, WhatTheSensorDoesNotMeasureIsEmpty) {
   append_detections(rows, *scan_of(1, 0), 1, {-1'500'000'000, TimeSource::kLinkArrival});
   const auto row = cells(rows);
   EXPECT_EQ(row[0], "-1.500000000");
-  for (const std::size_t column : {6, 8, 9, 10, 11, 12, 13, 14}) EXPECT_EQ(row[column], "") << column;
+  for (const std::size_t column : {6, 8, 9, 10, 11, 12, 13, 14, 15, 16}) EXPECT_EQ(row[column], "") << column;
   EXPECT_EQ(row[4], "0.1");
 }
 
