@@ -25,6 +25,7 @@ constexpr BarGroup kGroups[] = {
     {"cost", cost},
     {"plate", plate},
     {"drive_1", drive_1},
+    {"world", world, true},
 };
 // clang-format on
 
@@ -32,7 +33,10 @@ constexpr BarGroup kGroups[] = {
 
 int main(int argc, char** argv) {
   return bars_main(argc, argv,
-                   {"Each bar (limit) of the alignment estimator with the measured figure.", "docs/alignment.md",
-                    "--drive-data", "folder of drive_1.csv.xz, ego_1.csv and truth_1.txt"},
+                   {.about = "Each bar (limit) of the alignment estimator with the measured figure.",
+                    .document = "docs/alignment.md",
+                    .data_option = "--drive-data",
+                    .data_about = "folder of drive_1.csv.xz, ego_1.csv and truth_1.txt",
+                    .first_seed_about = "first seed of the group world; the other groups have fixed seeds"},
                    kGroups);
 }

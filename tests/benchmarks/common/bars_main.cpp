@@ -31,6 +31,12 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
   app.add_flag("--quick", options.quick, "two seeds and short drives: a check that it runs, not a measurement");
   app.add_option("--most-seeds", options.most_seeds, "upper limit of the number of seeds, for a quick look");
   app.add_option("--only", options.only, "run one group of bars only")->check(CLI::IsMember(names));
+  app.add_option("--profile", options.profile,
+                 "radar profile of the simulated radars, by name or file; groups that it does not concern are skipped, "
+                 "and bars are judged with " +
+                     std::string(kJudgedProfile) + " only")
+      ->type_name("NAME|FILE")
+      ->capture_default_str();
   app.add_option("--jobs", options.jobs, "threads")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--json", json, "write bars, tables and curves to this file");
   app.add_option("--markdown", markdown,
@@ -43,9 +49,14 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
   }
   CLI11_PARSE(app, argc, argv);
 
-  Report report;
+  if (!options.judges()) std::printf("radar profile %s: no bar is judged\n", options.profile.c_str());
+  Report report(options.profile, options.judges());
   for (const BarGroup& group : groups) {
     if (!options.wants(group.name)) continue;
+    if (!options.judges() && !group.has_profile) {
+      std::fprintf(stderr, "%s: skipped, it does not depend on the radar profile\n", group.name);
+      continue;
+    }
     std::fprintf(stderr, "%s\n", group.name);
     group.run(options, report);
   }

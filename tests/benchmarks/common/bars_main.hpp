@@ -11,6 +11,7 @@ namespace boresight::bench {
 struct BarGroup {
   const char* name;
   void (*run)(const Options&, Report&);
+  bool has_profile = false;  ///< its drives use Options::profile; groups without are run with kJudgedProfile only
 };
 
 struct BarsProgram {

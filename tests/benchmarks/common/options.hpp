@@ -8,6 +8,9 @@
 
 namespace boresight::bench {
 
+/// The radar profile on which the bars are judged.
+inline constexpr const char* kJudgedProfile = "ideal";
+
 struct Options {
   bool quick = false;            ///< two seeds and short drives: a check that it runs, not a measurement
   std::string only;              ///< group of bars; empty: all groups
@@ -15,12 +18,14 @@ struct Options {
   std::size_t most_seeds = 0;    ///< 0: as many as a bar requires
   std::uint64_t first_seed = 1;  ///< benchmarks with fixed seeds for their bars: other seeds are for tuning
   std::string data_folder;       ///< folder of recordings; empty: groups of bars that need recordings are skipped
+  std::string profile = kJudgedProfile;  ///< of all simulated radars: a shipped radar profile or its file
 
   [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
     const std::size_t most = quick ? 2 : most_seeds != 0 ? most_seeds : wanted;
     return std::min(wanted, most);
   }
   [[nodiscard]] double seconds(double wanted) const { return quick ? std::min(wanted, 12.0) : wanted; }
+  [[nodiscard]] bool judges() const { return profile == kJudgedProfile; }
   [[nodiscard]] bool wants(const std::string& group) const { return only.empty() || only == group; }
 };
 

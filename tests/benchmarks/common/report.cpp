@@ -91,23 +91,31 @@ const char* Bar::verdict() const {
   return passes() ? "PASS" : "FAIL";
 }
 
+void Report::add_bar(Bar bar) {
+  if (!judged_) {
+    bar.low = -kNone;
+    bar.high = kNone;
+  }
+  bars_.push_back(std::move(bar));
+}
+
 void Report::at_most(std::string group, std::string what, double figure, double bar, std::string unit,
                      std::string how) {
-  bars_.push_back({std::move(group), std::move(what), figure, -kNone, bar, std::move(unit), std::move(how)});
+  add_bar({std::move(group), std::move(what), figure, -kNone, bar, std::move(unit), std::move(how)});
 }
 
 void Report::at_least(std::string group, std::string what, double figure, double bar, std::string unit,
                       std::string how) {
-  bars_.push_back({std::move(group), std::move(what), figure, bar, kNone, std::move(unit), std::move(how)});
+  add_bar({std::move(group), std::move(what), figure, bar, kNone, std::move(unit), std::move(how)});
 }
 
 void Report::within(std::string group, std::string what, double figure, double low, double high, std::string unit,
                     std::string how) {
-  bars_.push_back({std::move(group), std::move(what), figure, low, high, std::move(unit), std::move(how)});
+  add_bar({std::move(group), std::move(what), figure, low, high, std::move(unit), std::move(how)});
 }
 
 void Report::beside(std::string group, std::string what, double figure, std::string unit, std::string how) {
-  bars_.push_back({std::move(group), std::move(what), figure, -kNone, kNone, std::move(unit), std::move(how)});
+  add_bar({std::move(group), std::move(what), figure, -kNone, kNone, std::move(unit), std::move(how)});
 }
 
 Table Report::bars_table() const {
@@ -156,7 +164,7 @@ void Report::write_markdown(std::ostream& out) const {
 }
 
 void Report::write_json(std::ostream& out) const {
-  out << "{\"bars\":[";
+  out << "{\"profile\":" << quoted(profile_) << ",\"bars\":[";
   for (std::size_t i = 0; i < bars_.size(); ++i) {
     const Bar& bar = bars_[i];
     out << (i > 0 ? ",\n" : "\n") << "{\"group\":" << quoted(bar.group) << ",\"what\":" << quoted(bar.what)

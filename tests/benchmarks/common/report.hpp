@@ -46,6 +46,10 @@ struct Curve {
 
 class Report {
  public:
+  Report() = default;
+  /// Not `judged`: every figure is reported without a bar.
+  Report(std::string profile, bool judged) : profile_(std::move(profile)), judged_(judged) {}
+
   void at_most(std::string group, std::string what, double figure, double bar, std::string unit, std::string how);
   void at_least(std::string group, std::string what, double figure, double bar, std::string unit, std::string how);
   void within(std::string group, std::string what, double figure, double low, double high, std::string unit,
@@ -63,6 +67,9 @@ class Report {
 
  private:
   [[nodiscard]] Table bars_table() const;
+  void add_bar(Bar bar);
+  std::string profile_;  // radar profile of the drives
+  bool judged_ = true;
   std::vector<Bar> bars_;
   std::vector<Table> tables_;
   std::vector<Curve> curves_;

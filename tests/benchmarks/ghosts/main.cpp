@@ -7,8 +7,11 @@ using namespace boresight::bench;
 
 namespace {
 
-constexpr BarGroup kGroups[] = {
-    {"highway", highway}, {"scenarios", scenarios}, {"ablation", ablation}, {"plan", plan}, {"cost", cost}};
+constexpr BarGroup kGroups[] = {{"highway", highway, true},
+                                {"scenarios", scenarios, true},
+                                {"ablation", ablation, true},
+                                {"plan", plan, true},
+                                {"cost", cost}};
 
 }  // namespace
 

@@ -22,5 +22,6 @@ void false_alarms(const Options& options, Report& report);
 void cost(const Options& options, Report& report);
 void plate(const Options& options, Report& report);
 void drive_1(const Options& options, Report& report);
+void world(const Options& options, Report& report);
 
 }  // namespace boresight::bench

@@ -12,20 +12,24 @@ using simulator::AlignmentSpec;
 using simulator::RoadKind;
 using simulator::Stream;
 
-namespace {
-
-double either_sign(Stream& stream, double low, double high) {
-  const double magnitude = stream.uniform(low, high);
+double draw_mounting_error(Stream& stream) {
+  const double magnitude = stream.uniform(1.0, 2.5) * kRadiansPerDegree;
   return stream.uniform() < 0.5 ? -magnitude : magnitude;
 }
 
+double draw_speed_scale(Stream& stream) {
+  return stream.uniform(0.98, 1.02);
+}
+
+namespace {
+
 void misalign(AlignmentSpec& spec) {
   Stream stream(spec.seed, "bench truth");
-  spec.speed_scale = stream.uniform(0.98, 1.02);
+  spec.speed_scale = draw_speed_scale(stream);
   for (AlignmentRadar& radar : spec.radars) {
-    radar.truth.yaw_rad = either_sign(stream, 1.0, 2.5) * kRadiansPerDegree;
-    radar.truth.pitch_rad = either_sign(stream, 1.0, 2.5) * kRadiansPerDegree;
-    radar.truth.roll_rad = either_sign(stream, 1.0, 2.5) * kRadiansPerDegree;
+    radar.truth.yaw_rad = draw_mounting_error(stream);
+    radar.truth.pitch_rad = draw_mounting_error(stream);
+    radar.truth.roll_rad = draw_mounting_error(stream);
   }
 }
 

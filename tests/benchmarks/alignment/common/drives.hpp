@@ -7,8 +7,13 @@
 
 #include "services/common/geometry/angles.hpp"
 #include "services/simulator/alignment/spec.hpp"
+#include "services/simulator/random.hpp"
 
 namespace boresight::bench {
+
+/// 1…2.5° of either sign, in rad; and a k_v of 0.98…1.02.
+[[nodiscard]] double draw_mounting_error(simulator::Stream& stream);
+[[nodiscard]] double draw_speed_scale(simulator::Stream& stream);
 
 /// Four corner radars with each angle wrong by 1…2.5° of either sign, k_v 0.98…1.02, a quarter of the detections moving
 /// or ghosts, no disturbance.

@@ -106,7 +106,7 @@ void plan(const Options& options, Report& report) {
   const std::vector<NamedGhostMethod> methods = ghost_methods();
   std::vector<PlanView> views;
   for (const NamedGhostMethod& method : methods) views.emplace_back(method.name.c_str());
-  static_cast<void>(run_ghost_drive("highway_multipath", methods, options.first_seed, kEnd_s,
+  static_cast<void>(run_ghost_drive({"highway_multipath", options.profile, options.first_seed, kEnd_s}, methods,
                                     [&](const Observed& observed) { views[observed.method].add(observed); }));
   for (const PlanView& view : views) view.write(report);
 }

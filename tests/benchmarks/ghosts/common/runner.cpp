@@ -1,13 +1,13 @@
 #include "tests/benchmarks/ghosts/common/runner.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
-#include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/simulator/judge/hidden.hpp"
+#include "services/simulator/scenario/read_profile.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
+#include "tests/benchmarks/common/scenario_vehicle.hpp"
 #include "tests/benchmarks/ghosts/common/changed_method.hpp"
 #include "tests/benchmarks/ghosts/common/truth_method.hpp"
 #include "tests/closed_loop/chain.hpp"
@@ -85,25 +85,20 @@ void count_apart(const ClassifiedScan& scan, const std::vector<DetectionTruth>& 
   }
 }
 
-/// The vehicle that a scenario names, or the demo vehicle.
-VehicleConfig vehicle_of(const simulator::Scenario& scenario) {
-  const std::string name = scenario.vehicle.empty() ? "demo" : scenario.vehicle;
-  return config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle" / (name + ".toml"));
-}
-
 }  // namespace
 
-std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const NamedGhostMethod> methods,
-                                     std::uint64_t seed, double duration_s, const Observer& observe) {
-  const simulator::Scenario scenario = simulator::scenario(name);
+std::vector<Outcome> run_ghost_drive(const GhostDrive& of, std::span<const NamedGhostMethod> methods,
+                                     const Observer& observe) {
+  simulator::Scenario scenario = simulator::scenario(of.scenario);
+  if (!of.profile.empty()) simulator::use_profile(scenario, of.profile);
   const VehicleConfig vehicle = vehicle_of(scenario);
-  simulator::Drive drive(scenario, vehicle, seed, std::min(duration_s, scenario.duration_s));
+  simulator::Drive drive(scenario, vehicle, of.seed, std::min(of.duration_s, scenario.duration_s));
   // The stages before the ghost filter are the same for all methods and run once.
   closed_loop::Front front(vehicle);
   Perfect perfect(vehicle);
   std::vector<std::unique_ptr<Perfect>> by_chance;
   for (std::size_t draw = 0; draw < LostByChance::kDraws; ++draw) {
-    by_chance.push_back(std::make_unique<Perfect>(vehicle, LostByChance::kDraws * seed + draw));
+    by_chance.push_back(std::make_unique<Perfect>(vehicle, LostByChance::kDraws * of.seed + draw));
   }
   std::vector<std::unique_ptr<Lane>> lanes;
   for (const NamedGhostMethod& method : methods) lanes.push_back(std::make_unique<Lane>(vehicle, method));
@@ -158,7 +153,8 @@ std::vector<std::vector<Outcome>> run_ghost_drives(const std::string& scenario,
                                                    double duration_s, const Options& options) {
   std::vector<std::vector<Outcome>> outcomes(methods.size(), std::vector<Outcome>(seeds));
   parallel_for(seeds, options.jobs, [&](std::size_t i) {
-    const std::vector<Outcome> of_seed = run_ghost_drive(scenario, methods, options.first_seed + i, duration_s);
+    const std::vector<Outcome> of_seed =
+        run_ghost_drive({scenario, options.profile, options.first_seed + i, duration_s}, methods);
     for (std::size_t m = 0; m < methods.size(); ++m) outcomes[m][i] = of_seed[m];
   });
   return outcomes;

@@ -55,10 +55,17 @@ struct Observed {
 };
 using Observer = std::function<void(const Observed&)>;
 
-/// All methods on the same drive, each with a tracker of its own: one outcome per method. `name`: a scenario or its
-/// file; the drive is at most as long as the scenario states. `observe` is called for each scan and method, if given.
-[[nodiscard]] std::vector<Outcome> run_ghost_drive(const std::string& name, std::span<const NamedGhostMethod> methods,
-                                                   std::uint64_t seed, double duration_s, const Observer& observe = {});
+struct GhostDrive {
+  std::string scenario;  ///< or its file
+  std::string profile;   ///< of all radars, or its file; empty: as the scenario says
+  std::uint64_t seed = 1;
+  double duration_s = 20.0;  ///< at most as long as the scenario states
+};
+
+/// All methods on the same drive, each with a tracker of its own: one outcome per method. `observe` is called for each
+/// scan and method, if given.
+[[nodiscard]] std::vector<Outcome> run_ghost_drive(const GhostDrive& of, std::span<const NamedGhostMethod> methods,
+                                                   const Observer& observe = {});
 
 /// Seeds from options.first_seed on, spread over threads; by method, then seed.
 [[nodiscard]] std::vector<std::vector<Outcome>> run_ghost_drives(const std::string& scenario,

@@ -42,6 +42,17 @@ Percent percent_not_moving(const std::vector<Outcome>& outcomes, Provenance trut
   return over_seeds(outcomes, truth, [&](const Confusion& c) { return 100.0 - c.percent(truth, Provenance::kMoving); });
 }
 
+Percent percent_truly_moving(const std::vector<Outcome>& outcomes) {
+  std::vector<double> values;
+  for (const Outcome& o : outcomes) {
+    const auto right = static_cast<double>(o.confusion.count(Provenance::kMoving, Provenance::kMoving));
+    double all = 0.0;
+    for (const Provenance truth : kTruths) all += static_cast<double>(o.confusion.count(truth, Provenance::kMoving));
+    if (all > 0.0) values.push_back(100.0 * right / all);
+  }
+  return {median(values), quantile(values, 0.0)};
+}
+
 Percent percent_rejected(const std::vector<Outcome>& outcomes, Provenance truth) {
   return over_seeds(outcomes, truth, [&](const Confusion& c) {
     const auto rejected = static_cast<double>(c.rejected(truth));

@@ -15,6 +15,8 @@ struct Percent {
 [[nodiscard]] Percent percent_classified_ghost(const std::vector<Outcome>& outcomes, Provenance truth);
 /// Classified as anything but moving.
 [[nodiscard]] Percent percent_not_moving(const std::vector<Outcome>& outcomes, Provenance truth);
+/// Of the detections classified as moving, those that are direct echoes of moving objects.
+[[nodiscard]] Percent percent_truly_moving(const std::vector<Outcome>& outcomes);
 /// Of all detections of the truth: rejected by the corrector before the filter.
 [[nodiscard]] Percent percent_rejected(const std::vector<Outcome>& outcomes, Provenance truth);
 /// Of the type-1 ghosts, those apart from their object's box; and of these, classified as ghost of either type.

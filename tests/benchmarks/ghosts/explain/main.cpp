@@ -19,7 +19,7 @@ using namespace boresight::bench;
 namespace {
 
 struct Arguments {
-  std::string scenario = "highway_multipath", method = "mirror", config_file, csv_file, boxes_file;
+  std::string scenario = "highway_multipath", method = "mirror", profile, config_file, csv_file, boxes_file;
   std::uint64_t seed = 101;
   std::size_t seeds = 1;
   double duration_s = 20.0;
@@ -79,7 +79,9 @@ void run(const Arguments& arguments) {
       }
       if (boxes.is_open()) write_boxes(seed, observed, boxes);
     };
-    outcomes.push_back(run_ghost_drive(arguments.scenario, {&method, 1}, seed, arguments.duration_s, observe).front());
+    outcomes.push_back(
+        run_ghost_drive({arguments.scenario, arguments.profile, seed, arguments.duration_s}, {&method, 1}, observe)
+            .front());
   }
   close(csv, arguments.csv_file);
   close(boxes, arguments.boxes_file);
@@ -101,6 +103,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{"Lists the detections that the ghost filter classifies wrongly on a simulated drive."};
   app.add_option("scenario", arguments.scenario, "name, or a scenario file")->capture_default_str();
+  app.add_option("--profile", arguments.profile, "radar profile of all radars; default: as the scenario says")
+      ->type_name("NAME|FILE");
   app.add_option("--method", arguments.method, "ghost filter method")
       ->check(CLI::IsMember({"mirror", "published"}))
       ->capture_default_str();

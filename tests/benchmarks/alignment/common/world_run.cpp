@@ -1,0 +1,92 @@
+#include "tests/benchmarks/alignment/common/world_run.hpp"
+
+#include <algorithm>
+
+#include "services/alignment_estimator/core/estimator.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/simulator/drive.hpp"
+#include "services/simulator/judge/alignment_judge.hpp"
+#include "services/simulator/radar/mounting.hpp"
+#include "services/simulator/random.hpp"
+#include "services/simulator/scenario/read_profile.hpp"
+#include "services/simulator/scenario_file.hpp"
+#include "tests/benchmarks/alignment/common/drives.hpp"
+#include "tests/benchmarks/alignment/common/runner.hpp"
+#include "tests/benchmarks/common/scenario_vehicle.hpp"
+
+namespace boresight::bench {
+
+namespace {
+
+using simulator::Misalignment;
+
+simulator::Scenario scenario_of(const WorldDrive& of) {
+  simulator::Scenario scenario = simulator::scenario(of.scenario);
+  simulator::use_profile(scenario, of.profile);
+  simulator::Stream stream(of.seed, "bench truth");
+  scenario.effects.speed_scale = draw_speed_scale(stream);
+  for (Misalignment& radar : scenario.effects.misalignment) {
+    radar.yaw_rad = draw_mounting_error(stream);
+    radar.pitch_rad = draw_mounting_error(stream);
+    radar.roll_rad = draw_mounting_error(stream);
+  }
+  return scenario;
+}
+
+Eigen::Matrix3d nominal_of(const RadarConfig& radar) {
+  return geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0);
+}
+
+judge::AlignmentSample sample_of(const alignment::RadarEstimate& estimate, const RadarConfig& radar, double t_s) {
+  judge::AlignmentSample sample;
+  sample.t_s = t_s;
+  sample.radar = radar.id;
+  sample.speed_scale = estimate.speed_scale;
+  sample.rotation = estimate.sensor_to_vehicle * nominal_of(radar).transpose();
+  sample.step_changes = estimate.step_change.count;
+  for (std::size_t i = 0; i < kParameterBits.size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(i);
+    const bool is_observable = (estimate.observable & kParameterBits[i]) != 0;
+    sample.variances(place) = is_observable ? estimate.covariance(place, place) : 0.0;
+  }
+  return sample;
+}
+
+judge::MountingTruth truth_of(const simulator::RadarEffects& effects, const RadarConfig& radar, double t_s) {
+  judge::MountingTruth truth;
+  truth.speed_scale = effects.speed_scale;
+  truth.has_rotation = true;
+  truth.rotation =
+      simulator::radar::actual_mounting(radar.mounting_pose, effects, radar.id, t_s) * nominal_of(radar).transpose();
+  truth.step_changes = static_cast<std::uint32_t>(
+      std::count_if(effects.step_changes.begin(), effects.step_changes.end(),
+                    [&](const simulator::RadarStepChange& c) { return c.radar == radar.id && c.time_s <= t_s; }));
+  return truth;
+}
+
+}  // namespace
+
+WorldRun run_world_drive(const WorldDrive& of) {
+  const simulator::Scenario scenario = scenario_of(of);
+  const VehicleConfig vehicle = vehicle_of(scenario);
+  WorldRun run;
+  run.radars = vehicle.radars.size();
+  run.duration_s = std::min(of.duration_s, scenario.duration_s);
+  simulator::Drive drive(scenario, vehicle, of.seed, run.duration_s);
+  alignment::Estimator estimator(vehicle, {});
+  judge::AlignmentJudge judge;
+  while (const simulator::Event* event = drive.next()) {
+    if (event->scan == nullptr) {
+      estimator.add_ego_motion(simulator::to_message(*event, vehicle.ego));
+      continue;
+    }
+    if (estimator.add_scan(*event->scan) != alignment::ScanResult::kPublish) continue;
+    const RadarConfig& radar = *vehicle.radar(event->scan->header.source_id);
+    const auto index = static_cast<std::size_t>(&radar - vehicle.radars.data());
+    judge.add(sample_of(estimator.estimate(index), radar, event->t_s), truth_of(scenario.effects, radar, event->t_s));
+  }
+  judge.write(run.figures);
+  return run;
+}
+
+}  // namespace boresight::bench

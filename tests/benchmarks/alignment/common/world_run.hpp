@@ -1,0 +1,28 @@
+// The product's estimator on one drive of the world simulator, whose radars have a profile.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "services/simulator/judge/figure_list.hpp"
+
+namespace boresight::bench {
+
+struct WorldDrive {
+  std::string scenario;  ///< or its file
+  std::string profile;   ///< radar profile of all radars, or its file
+  std::uint64_t seed = 1;
+  double duration_s = 45.0;  ///< at most as long as the scenario states
+};
+
+struct WorldRun {
+  judge::FigureList figures;  ///< of judge::AlignmentJudge
+  std::size_t radars = 0;     ///< ids 1 … radars
+  double duration_s = 0.0;
+};
+
+/// Mountings and k_v are wrong by amounts of the seed: draw_mounting_error(), draw_speed_scale(). Axes that the
+/// estimator reports as not observable have no NEES.
+[[nodiscard]] WorldRun run_world_drive(const WorldDrive& of);
+
+}  // namespace boresight::bench
