@@ -22,7 +22,7 @@ constexpr std::int64_t kMostCount = std::numeric_limits<std::int64_t>::max();
 RunScan scan_of(const Table& table) {
   RunScan scan;
   scan.t_s = table.number("t_s", -kLongestRun_s, kLongestRun_s);
-  scan.time_ns = table.integer("time_ns", std::numeric_limits<std::int64_t>::min(), kMostCount);
+  scan.time_ns = table.integer("time_ns", -kLatest_ns, kLatest_ns);
   scan.radar = static_cast<std::uint32_t>(table.integer("radar", 1, kMaxRadars));
   scan.scan = static_cast<std::uint64_t>(table.integer("scan", 0, kMostCount));
   return scan;
@@ -101,8 +101,9 @@ void RunTracks::take(const RunScan& scan, std::vector<judge::ScoredTrack>& track
     track.heading_rad = number("heading_rad");
     track.length_m = table_.number("length_m", 0.0, kMostValue);
     track.width_m = table_.number("width_m", 0.0, kMostValue);
-    const double xy = covariance("cov_x_y");
-    track.position_covariance_m2 << covariance("cov_x_x"), xy, xy, covariance("cov_y_y");
+    // Read before the matrix is begun: one that is left incomplete by an exception ends the process.
+    const double xx = covariance("cov_x_x"), xy = covariance("cov_x_y"), yy = covariance("cov_y_y");
+    track.position_covariance_m2 << xx, xy, xy, yy;
     tracks.push_back(track);
   }
   expect_count(table_, "tracks", scan, tracks.size(), scan.tracks);
@@ -116,7 +117,7 @@ bool RunAlignment::next(judge::AlignmentSample& sample, std::int64_t& time_ns) {
   while (table_.next()) {
     if (table_.text("state") == "no_data") continue;
     sample.t_s = table_.number("t_s", -kLongestRun_s, kLongestRun_s);
-    time_ns = table_.integer("time_ns", std::numeric_limits<std::int64_t>::min(), kMostCount);
+    time_ns = table_.integer("time_ns", -kLatest_ns, kLatest_ns);
     sample.radar = static_cast<std::uint32_t>(table_.integer("radar", 1, kMaxRadars));
     sample.speed_scale = table_.number("speed_scale", 0.0, 10.0);
     const auto angle = [this](const char* column) { return table_.number(column, -4.0, 4.0); };

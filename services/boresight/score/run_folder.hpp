@@ -17,6 +17,10 @@
 
 namespace boresight::score {
 
+/// Times on the run's clock are at most so far from 1970, as in tables of a drive, so that their differences fit into
+/// 64 bits.
+inline constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
+
 /// A row of scans.csv.
 struct RunScan {
   double t_s = 0.0;

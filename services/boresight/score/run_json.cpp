@@ -43,6 +43,9 @@ bool RunHealth::next(RunVerdicts& verdicts) {
     verdicts.radars.clear();
     const auto time_ns = value.find("time_ns"), t_s = value.find("t_s"), radars = value.find("radars");
     if (time_ns == value.end() || !time_ns->is_number_integer()) refuse("time_ns: a whole number is missing");
+    if (std::abs(time_ns->get<double>()) > static_cast<double>(kLatest_ns)) {
+      refuse(fmt::format("time_ns: allowed is -{0} … {0}", kLatest_ns));
+    }
     if (t_s == value.end() || !t_s->is_number()) refuse("t_s: a number is missing");
     if (radars == value.end() || !radars->is_array()) refuse("radars: an array is missing");
     verdicts.time_ns = time_ns->get<std::int64_t>();
