@@ -2,21 +2,18 @@
 // to this ECU's clock.
 #include <cstdlib>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include "services/common/recording/reader.hpp"
 #include "services/ingest_gateway/codecs/frame_stamp.hpp"
+#include "tests/fuzz/memory_file.hpp"
 
 using namespace boresight::recording;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const int file = memfd_create("recording", MFD_CLOEXEC);
-  if (ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) std::abort();
-  static const std::string name = "/proc/self/fd/" + std::to_string(file);
+  static boresight::fuzz::MemoryFile file;
+  file.fill({data, size});
   std::uint64_t problems = 0;
   try {
-    const auto reader = open_recording(name, [&](const std::string&) { ++problems; });
+    const auto reader = open_recording(file.path(), [&](const std::string&) { ++problems; });
     Frame frame;
     boresight::ingest::RecordingClock clock;
     bool jumped = false;
