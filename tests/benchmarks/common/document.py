@@ -9,16 +9,61 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 REGION = re.compile(r"<!-- begin: ([\w ]+) -->\n(.*?)<!-- end: \1 -->", re.DOTALL)
 
 
+PROFILES = ("ideal", "series_77ghz")  # radar profiles shown side by side; bars are judged on the first
+
+
+def results_of(folder, profile):
+    """The files of the runs with a radar profile, each with its content."""
+    results = [(file, json.loads(file.read_text())) for file in sorted(folder.rglob("bars.json"))]
+    return [(file, result) for file, result in results if result["profile"] == profile]
+
+
 def read_results(folder):
     """Returns the curves and the Markdown tables by name; rows of several tables of bars are joined in order."""
     curves, regions = [], {}
-    for file in sorted(folder.rglob("bars.json")):
-        curves += json.loads(file.read_text())["curves"]
+    for file, result in results_of(folder, PROFILES[0]):
+        curves += result["curves"]
         for name, body in REGION.findall(file.with_suffix(".md").read_text()):
             if name == "bars" and name in regions:
                 body = regions[name] + "".join(body.splitlines(keepends=True)[2:])
             regions[name] = body
     return curves, regions
+
+
+def read_tables(folder, profile):
+    """The tables by name, each a list of rows; a row is a dictionary by column. Empty first cells repeat the row above."""
+    tables = {}
+    for _, result in results_of(folder, profile):
+        for table in result["tables"]:
+            rows = [dict(zip(table["header"], row)) for row in table["rows"]]
+            first = table["header"][0]
+            for above, row in zip(rows, rows[1:]):
+                row[first] = row[first] or above[first]
+            tables[table["name"]] = rows
+    return tables
+
+
+def side_by_side(folder, table, key, columns, keep=lambda row: True):
+    """One Markdown table with a column for each radar profile. `columns`: by shown title, columns of the benchmark's table,
+    which share a cell."""
+    rows = {profile: {row[key]: row for row in read_tables(folder, profile).get(table, []) if keep(row)} for profile in PROFILES}
+    lines = [[key] + [f"{title}: {profile}" for title in columns for profile in PROFILES]]
+    lines.append(["---"] * len(lines[0]))
+    for name in rows[PROFILES[0]]:
+        lines.append([name] + [" / ".join(rows[profile].get(name, {}).get(column, "—") for column in cell)
+                               for cell in columns.values() for profile in PROFILES])
+    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+
+
+def run_profiles(command, options, results):
+    """Runs a benchmark once for each radar profile, in folders of their names. `options`: by profile, a list of runs with
+    their options."""
+    for profile, runs in options.items():
+        for number, words in enumerate(runs):
+            folder = results / profile / str(number)
+            folder.mkdir(parents=True, exist_ok=True)
+            subprocess.run([*command, "--profile", profile, *words, "--json", str(folder / "bars.json"), "--markdown",
+                            str(folder / "bars.md")], check=True)
 
 
 def machine():
