@@ -68,8 +68,8 @@ def run_profiles(command, options, results):
 
 def machine():
     model = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
-    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                            check=False).stdout.strip()
+    commit = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--match=", "--dirty= with uncommitted changes"],
+                            capture_output=True, text=True, check=False).stdout.strip()
     return f"Measured at commit {commit or 'unknown'}; CPU times on {model.group(1) if model else 'an unknown processor'}.\n"
 
 
