@@ -19,7 +19,7 @@ constexpr double kLatestSensor_s = 4e9;
 }  // namespace
 
 MountingTruthReader::MountingTruthReader(const TruthSource& truth, const VehicleConfig& vehicle)
-    : vehicle_(vehicle), speed_scale_(kNaN) {
+    : vehicle_(vehicle), car_(read_car_truth(truth.drive)), speed_scale_(kNaN) {
   if (!truth.drive.empty()) {
     std::ifstream stream(truth.drive);
     const DriveTruth drive = read_drive_truth(stream);
@@ -47,27 +47,33 @@ void MountingTruthReader::read_until(double t_s) {
   }
 }
 
-judge::MountingTruth MountingTruthReader::at(std::uint32_t radar, double t_s) {
+std::optional<Eigen::Matrix3d> MountingTruthReader::mounting(std::uint32_t radar, double t_s) {
   read_until(t_s);
-  judge::MountingTruth truth;
-  truth.speed_scale = speed_scale_;
   const auto angles = angles_.find(radar);
   const RadarConfig* const config = vehicle_.radar(radar);
-  if (angles == angles_.end() || config == nullptr) return truth;
+  if (angles == angles_.end() || config == nullptr) return std::nullopt;
   const TrueAngles& is = angles->second;
+  return geometry::sensor_to_vehicle(config->mounting_pose, is.yaw_rad, is.pitch_rad, is.roll_rad) *
+         geometry::sensor_to_vehicle(config->mounting_pose, 0.0, 0.0, 0.0).transpose();
+}
+
+judge::MountingTruth MountingTruthReader::at(std::uint32_t radar, double t_s) {
+  judge::MountingTruth truth;
+  truth.speed_scale = speed_scale_ * car_.range_rate_scale(radar);
+  const std::optional<Eigen::Matrix3d> rotation = mounting(radar, t_s);
+  if (!rotation) return truth;
   truth.has_rotation = true;
-  truth.rotation = geometry::sensor_to_vehicle(config->mounting_pose, is.yaw_rad, is.pitch_rad, is.roll_rad) *
-                   geometry::sensor_to_vehicle(config->mounting_pose, 0.0, 0.0, 0.0).transpose();
-  truth.step_changes = is.step_changes;
+  truth.rotation = car_.load_rotation(t_s) * *rotation;
+  truth.step_changes = angles_.at(radar).step_changes;
   return truth;
 }
 
 std::optional<bool> MountingTruthReader::is_misaligned(std::uint32_t radar, double t_s) {
-  const judge::MountingTruth truth = at(radar, t_s);
+  const std::optional<Eigen::Matrix3d> rotation = mounting(radar, t_s);
   const RadarConfig* const config = vehicle_.radar(radar);
-  if (!truth.has_rotation || config == nullptr) return std::nullopt;
+  if (!rotation || config == nullptr) return std::nullopt;
   const TrueAngles& own = angles_.at(radar);
-  const Eigen::Vector3d about_vehicle = geometry::fixed_axes_angles(truth.rotation);
+  const Eigen::Vector3d about_vehicle = geometry::fixed_axes_angles(*rotation);
   const AlignmentTolerance& tolerance = config->tolerance;
   const auto is_beyond = [](double own_rad, double about_vehicle_rad, double tolerance_rad) {
     return std::abs(own_rad) > tolerance_rad || std::abs(about_vehicle_rad) > tolerance_rad;

@@ -137,8 +137,10 @@ std::string detections_text(const FigureList& f) {
 }
 
 std::string tracks_text(const FigureList& f) {
-  std::string text = fmt::format("\nTracks: {} lists judged, {} without truth\n", count(f.value("tracks.lists")),
-                                 count(f.value("tracks.lists_without_truth")));
+  std::string text =
+      fmt::format("\nTracks: {} lists judged, {} without truth; {} pairs of track and object not considered\n",
+                  count(f.value("tracks.lists")), count(f.value("tracks.lists_without_truth")),
+                  count(f.value("tracks.pairs_not_considered")));
   if (!(f.value("tracks.lists") > 0.0)) return text;
   Grid objects;
   objects.row({"objects", "number", "found", "tracked", "delay s", "p90", "along m", "across m", "speed m/s",

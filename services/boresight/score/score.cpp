@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "services/boresight/score/car_truth.hpp"
 #include "services/boresight/score/detection_truth.hpp"
 #include "services/boresight/score/mounting_truth.hpp"
 #include "services/boresight/score/object_truth.hpp"
@@ -24,7 +25,8 @@ namespace {
 /// The scans of a run with their detections and track lists, beside the truth.
 class DriveJudge {
  public:
-  DriveJudge(const Input& input, Score& result) : input_(input), result_(result), scans_(input.run) {}
+  DriveJudge(const Input& input, Score& result)
+      : input_(input), result_(result), car_(read_car_truth(input.truth.drive)), scans_(input.run) {}
 
   void run() {
     RunScan scan;
@@ -78,7 +80,8 @@ class DriveJudge {
   [[nodiscard]] double on_truth(std::int64_t time_ns) const { return 1e-9 * static_cast<double>(time_ns - origin_ns_); }
 
   void judge_scan(const RunScan& scan) {
-    const double t_s = on_truth(scan.time_ns);
+    // The time of measurement, which a late stamp does not state.
+    const double t_s = on_truth(scan.time_ns) - car_.stamp_offset_s(scan.radar);
     if (tracks_) {
       tracks_->take(scan, track_list_);
       if (objects_->at(t_s, object_list_)) {
@@ -117,13 +120,20 @@ class DriveJudge {
     tracks_judge_.write(result_.figures);
     if (tracks_ && input_.truth.visibility.empty()) {
       result_.notes.emplace_back(
-          "objects count as in view within 100 m unless they are parked, because the truth has no "
-          "truth_visibility.csv");
+          "tracks: visibility not known, the truth has no truth_visibility.csv; all objects within 100 m that are not "
+          "parked count as in view, also those hidden from every radar");
+    }
+    for (const auto& [radar, offset_s] : car_.stamp_offsets_s) {
+      result_.notes.push_back(
+          fmt::format("stamps of radar {} are {:+.1f} ms off in the truth: its scans are judged at the time of "
+                      "measurement",
+                      radar, 1e3 * offset_s));
     }
   }
 
   const Input& input_;
   Score& result_;
+  CarTruth car_;
   RunScans scans_;
   std::int64_t origin_ns_ = 0;
   double truth_first_s_ = 0.0, first_on_truth_s_ = 0.0, begin_s_ = 0.0, end_s_ = 0.0;
@@ -139,6 +149,27 @@ class DriveJudge {
   judge::TrackJudge tracks_judge_;
   std::uint64_t lists_without_truth_ = 0, scans_without_truth_ = 0;
 };
+
+/// What the truth of the mountings and speed scales contains.
+void note_mounting_truth(const Input& input, Score& result) {
+  const CarTruth car = read_car_truth(input.truth.drive);
+  if (car.load_pitch_rad != 0.0) {
+    result.notes.push_back(
+        fmt::format("alignment: the true mountings include the load from {:g} s on, which pitches the car by {:+g}°; "
+                    "health is judged without it",
+                    car.load_time_s, car.load_pitch_rad * kDegreesPerRadian));
+  }
+  for (const auto& [radar, scale] : car.range_rate_scales) {
+    result.notes.push_back(fmt::format(
+        "alignment: the true speed scale of radar {} includes its own scale of range rates, {:.6f}", radar, scale));
+  }
+  if (car.side_slip_std_rad != 0.0) {
+    result.notes.push_back(
+        fmt::format("alignment: the side slip of the car, {:g}° (σ), turns its direction of travel; the true mountings "
+                    "do not include it",
+                    car.side_slip_std_rad * kDegreesPerRadian));
+  }
+}
 
 /// Whether anything was judged.
 bool judge_alignment(const Input& input, std::int64_t origin_ns, Score& result) {
@@ -158,6 +189,7 @@ bool judge_alignment(const Input& input, std::int64_t origin_ns, Score& result) 
     for (std::int64_t time_ns = 0; estimates.next(sample, time_ns); judged = true) {
       alignment_judge.add(sample, truth.at(sample.radar, 1e-9 * static_cast<double>(time_ns - origin_ns)));
     }
+    note_mounting_truth(input, result);
   }
   alignment_judge.write(result.figures);
   return judged;

@@ -1,4 +1,5 @@
-// Confirmed tracks that match no object.
+// Confirmed tracks that match no object, by the true origin of their detections: what the bars of docs/ghosts.md judge,
+// and the findings of the demo's report. The track judge counts false tracks whatever their cause.
 #pragma once
 
 #include <cstdint>

@@ -43,6 +43,8 @@ class Gospa {
   /// Cost of a missed object or of a false track: c/α with α = 2.
   static constexpr double kCostAlone = kCutOff / 2.0;
 
+  /// Pairs that no evaluation considered (pairing.hpp).
+  [[nodiscard]] std::size_t not_considered() const { return pairing_.not_considered(); }
   [[nodiscard]] GospaParts evaluate(std::span<const Ellipse> objects, std::span<const Ellipse> tracks, GospaBase base);
 
  private:

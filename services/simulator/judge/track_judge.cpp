@@ -302,6 +302,7 @@ void TrackJudge::write(FigureList& figures) const {
     add("stays_found", count(cell.stays_found));
     add("delay_median_s", quantile_of(cell.delays_s, 0.5), "s");
     add("delay_p90_s", quantile_of(cell.delays_s, 0.9), "s");
+    add("delay_max_s", quantile_of(cell.delays_s, 1.0), "s");
     add("along_rms_m", rms(cell.along_m2), "m");
     add("across_rms_m", rms(cell.across_m2), "m");
     add("speed_rms_mps", rms(cell.speed_m2ps2), "m/s");
@@ -331,6 +332,8 @@ void TrackJudge::write(FigureList& figures) const {
     figures.add(name + "mean_at_a_time", share_of(static_cast<double>(counts.lists), lists));
   }
   figures.add("tracks.duplicates.mean_at_a_time", share_of(static_cast<double>(duplicates_), lists));
+  figures.add("tracks.pairs_not_considered",
+              of_lists(static_cast<double>(pairing_.not_considered() + gospa_.not_considered())));
   for (const auto& [name, parts] : {std::pair("squared", gospa_squared_), std::pair("root", gospa_root_)}) {
     const std::string prefix = "tracks.gospa." + std::string(name) + ".";
     const std::string_view unit = std::string_view(name) == "squared" ? "m²" : "m";

@@ -206,6 +206,84 @@ TEST(Score, AlignmentAndHealthAreJudgedWithAVehicle) {
   EXPECT_THAT(score_of(run, truth).notes, ::testing::Contains(HasSubstr("without a vehicle")));
 }
 
+const std::string kAlignmentHeader =
+    "t_s,time_ns,radar,state,speed_scale,rotation_x_rad,rotation_y_rad,rotation_z_rad,cov_k_k,cov_x_x,cov_y_y,cov_z_z,"
+    "step_changes\n";
+
+TEST(Score, RealCarsTruthIncludesLoadAndRangeRateScale) {
+  const fs::path run = made::folder("car_run"), truth = made::folder("car_truth");
+  made::write_run(run, kScans, 0.0);
+  made::write_truth(truth, kScans);
+  made::write_file(truth / "truth.csv",
+                   "quantity,radar,value,unit\nspeed_scale,,1.01,1\nside_slip_std,,0.2,deg\nload_pitch,,2,deg\n"
+                   "load_time,,2,s\nalignment_yaw,1,0,deg\nalignment_pitch,1,0,deg\nalignment_roll,1,0,deg\n"
+                   "range_rate_scale,1,1.002,1\n");
+  const VehicleConfig vehicle = one_radar();
+  // Nose up by 2° is −2° about the y axis.
+  const auto errors = [&](int last_scan) {
+    const std::int64_t time_ns = made::kStart_ns + static_cast<std::int64_t>(last_scan) * 100'000'000;
+    made::write_file(
+        run / "alignment.csv",
+        kAlignmentHeader + fmt::format("{:.6f},{},1,converged,{},0,{},0,1e-6,1e-4,1e-4,1e-4,0\n",
+                                       made::kPeriod_s * last_scan, time_ns, 1.01 * 1.002, -2.0 * M_PI / 180.0));
+    made::write_file(run / "health.jsonl", "");
+    return score_of(run, truth, &vehicle);
+  };
+  const Score before = errors(19), after = errors(20);
+  EXPECT_NEAR(before.figures.value("alignment.radar_1.rotation_y.error_deg"), -2.0, 1e-6);
+  EXPECT_NEAR(after.figures.value("alignment.radar_1.rotation_y.error_deg"), 0.0, 1e-6);
+  EXPECT_NEAR(after.figures.value("alignment.radar_1.speed_scale.error"), 0.0, 1e-9);
+  EXPECT_THAT(after.notes,
+              ::testing::Contains(HasSubstr("include the load from 2 s on, which pitches the car by +2°")));
+  EXPECT_THAT(after.notes, ::testing::Contains(HasSubstr("radar 1 includes its own scale of range rates, 1.002")));
+  EXPECT_THAT(after.notes, ::testing::Contains(HasSubstr("side slip of the car, 0.2°")));
+}
+
+TEST(Score, LoadDoesNotMakeARadarMisaligned) {
+  const fs::path run = made::folder("load_run"), truth = made::folder("load_truth");
+  made::write_run(run, kScans, 0.0);
+  made::write_truth(truth, kScans);
+  made::write_file(truth / "truth.csv",
+                   "quantity,radar,value,unit\nspeed_scale,,1,1\nload_pitch,,5,deg\nload_time,,0,s\n"
+                   "alignment_yaw,1,0,deg\nalignment_pitch,1,0,deg\nalignment_roll,1,0,deg\n");
+  std::string health;
+  for (int i = 0; i < kScans; ++i) {
+    health += fmt::format(
+        R"({{"t_s":{},"time_ns":{},"radars":[{{"radar":1,"data_qualifier":"AVAILABLE","extended_qualifier":"NONE"}}]}})"
+        "\n",
+        made::kPeriod_s * i, made::kStart_ns + static_cast<std::int64_t>(i) * 100'000'000);
+  }
+  made::write_file(run / "health.jsonl", health);
+  const VehicleConfig vehicle = one_radar();
+  const Score result = score_of(run, truth, &vehicle);
+  EXPECT_NEAR(result.figures.value("health.radar_1.judged_s"), 3.0, 1e-6);
+  EXPECT_EQ(result.figures.value("health.radar_1.not_misaligned_though_beyond_tolerance_s"), 0.0);
+}
+
+TEST(Score, ScansOfLateStampsAreJudgedAtTheTimeOfMeasurement) {
+  const fs::path run = made::folder("late_run"), truth = made::folder("late_truth");
+  // Stamps are 40 ms late, in which the car moves on by 0.04 m.
+  made::write_run(run, kScans, -0.04);
+  made::write_truth(truth, kScans);
+  const auto along_m = [&] { return score_of(run, truth).figures.value("tracks.car.all_ranges.along_rms_m"); };
+  EXPECT_NEAR(along_m(), 0.04, 1e-3);
+  made::write_file(truth / "truth.csv", "quantity,radar,value,unit\nspeed_scale,,1,1\nstamp_offset,1,0.04,s\n");
+  EXPECT_LT(along_m(), 0.01) << "only the first scan lies before the truth";
+  EXPECT_THAT(score_of(run, truth).notes, ::testing::Contains(HasSubstr("radar 1 are +40.0 ms off")));
+  made::write_file(truth / "truth.csv", "quantity,radar,value,unit\nstamp_offset,1,4,s\n");
+  EXPECT_THAT(error_of([&] { static_cast<void>(score_of(run, truth)); }),
+              HasSubstr("truth.csv:2: value: read \"4\", allowed is a number -1 … 1"));
+}
+
+TEST(Score, UnknownVisibilityIsNoted) {
+  const fs::path run = made::folder("seen_run"), truth = made::folder("seen_truth");
+  made::write_run(run, kScans, 0.0);
+  made::write_truth(truth, kScans);
+  EXPECT_THAT(score_of(run, truth).notes, ::testing::Contains(HasSubstr("visibility not known")));
+  made::write_file(truth / "truth_visibility.csv", "t_s,object,state\n0,1,seen\n");
+  EXPECT_THAT(score_of(run, truth).notes, ::testing::Not(::testing::Contains(HasSubstr("visibility not known"))));
+}
+
 TEST(Score, DamagedTablesAreNamedWithLineAndColumn) {
   const fs::path run = made::folder("damaged_run"), truth = made::folder("damaged_truth");
   const auto error = [&](const char* file, const std::string& from, const std::string& to) {
@@ -294,6 +372,7 @@ TEST(Outputs, OfAScoreShowWhatIsUnknown) {
   const NamedScore named{"my \"run\"", score_of(run, truth)};
   const std::string text = to_text(named);
   EXPECT_THAT(text, HasSubstr("car, all ranges"));
+  EXPECT_THAT(text, HasSubstr("31 lists judged, 0 without truth; 0 pairs of track and object not considered"));
   EXPECT_THAT(text, HasSubstr("Alignment: –"));
   EXPECT_THAT(text, HasSubstr("Health: –"));
   EXPECT_THAT(text, HasSubstr("Time: –"));
