@@ -1,4 +1,5 @@
-// The cores of the pipeline, connected in memory as the processes are.
+// The cores of the pipeline in two halves, so that the ghost benchmark runs several ghost filters behind one corrector.
+// The whole chain is run::Chain.
 #pragma once
 
 #include <memory>
@@ -67,19 +68,6 @@ class Back {
  private:
   std::unique_ptr<ghosts::Method> method_;
   tracking::Tracker tracker_;
-};
-
-class Chain : public Front, public Back {
- public:
-  explicit Chain(const VehicleConfig& vehicle, const ghosts::Config& ghosts = {})
-      : Front(vehicle), Back(vehicle, ghosts::make_method(ghosts)) {}
-
-  /// Takes one event; true if it was a scan, whose results are then in the members.
-  bool take(const simulator::Event& event) {
-    if (!Front::take(event)) return false;
-    Back::take(*corrected);
-    return true;
-  }
 };
 
 }  // namespace boresight::closed_loop
