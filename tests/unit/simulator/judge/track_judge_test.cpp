@@ -212,6 +212,18 @@ TEST(TrackJudge, ReturnAfterAGapIsAFragmentation) {
   EXPECT_DOUBLE_EQ(f.value("tracks.all.all_ranges.tracked_share"), 35.0 / 40.0);
 }
 
+TEST(TrackJudge, PairsBeyondTheCapacityOfTheAssignmentAreCounted) {
+  const auto not_considered = [](std::uint32_t tracks_in_both_cars) {
+    const FigureList f = judged(1, [&](int, TrackSet& tracks, ObjectSet& objects) {
+      objects = {true_car(1, 20.0, 0.0), true_car(2, 20.0, 1.0)};
+      for (std::uint32_t id = 1; id <= tracks_in_both_cars; ++id) tracks.push_back(track_at(id, 20.0, 0.5));
+    });
+    return f.value("tracks.pairs_not_considered");
+  };
+  EXPECT_EQ(not_considered(100), 0.0);
+  EXPECT_GT(not_considered(150), 0.0);
+}
+
 TEST(TrackJudge, DelayCountsFromFirstSightOfEachStay) {
   // In view from 0 s to 1.9 s with a track from 0.5 s on, and again from 4 s to 5.9 s with a track from 4.3 s on.
   const FigureList f = judged(60, [](int i, TrackSet& tracks, ObjectSet& objects) {
@@ -222,6 +234,7 @@ TEST(TrackJudge, DelayCountsFromFirstSightOfEachStay) {
   EXPECT_EQ(f.value("tracks.car.all_ranges.stays"), 2.0);
   EXPECT_EQ(f.value("tracks.car.all_ranges.stays_found"), 2.0);
   EXPECT_NEAR(f.value("tracks.car.all_ranges.delay_median_s"), 0.4, 1e-9);
+  EXPECT_NEAR(f.value("tracks.car.all_ranges.delay_max_s"), 0.5, 1e-9);
   EXPECT_EQ(f.value("tracks.car.all_ranges.objects"), 1.0);
   EXPECT_EQ(f.value("tracks.car.all_ranges.identity_switches"), 0.0) << "a new stay";
 }
