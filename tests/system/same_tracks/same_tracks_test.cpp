@@ -21,13 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 
 // The processes run at the same time, so an estimate may reach the detection corrector a scan earlier or later than in
-// `boresight run`. This changes a track by millimetres, and a decision at a threshold now and then: a track is born a
-// scan earlier or later, and ids, which count births, differ from then on. So tracks are compared by position. The
-// limits are choices above what was seen on a machine with five times as many threads as cores: a median of 3 mm, and
-// 0, 3 and 90 of 1,599 scans with a track that has no partner.
+// `boresight run`. This changes a track by millimetres, and a decision at a threshold now and then: a weak track is
+// confirmed earlier or later, or not at all, and ids, which count births, differ from then on. So tracks are compared
+// by position. The limits are choices, twice and more what four calls on a busy machine showed: a median of 5 mm, and
+// 1 … 5 % of the tracks without partner.
 constexpr double kMedian_m = 0.02;
 constexpr double kPartner_m = 0.5;
-constexpr double kMostOtherScans_share = 0.1;
+constexpr double kMostWithoutPartner_share = 0.1;
 
 constexpr double kDrive_s = 20.0;
 const fs::path kLists = "/tmp/same_tracks.csv";
@@ -117,8 +117,8 @@ TEST(SameTracks, ProcessesThatLoseNoScanGiveTheTracksOfTheRunCommand) {
 
   const Lists of_processes = recorded_lists(), of_run = lists_of_run();
   ASSERT_EQ(of_run.size(), 4u);
-  std::size_t scans = 0, others = 0;
-  std::vector<double> all_m;
+  std::size_t scans = 0;
+  std::vector<double> all_m;  // in both directions
   for (const auto& [radar, lists] : of_run) {
     ASSERT_TRUE(of_processes.contains(radar)) << "radar " << radar;
     const std::vector<List>& received = of_processes.at(radar);
@@ -128,19 +128,20 @@ TEST(SameTracks, ProcessesThatLoseNoScanGiveTheTracksOfTheRunCommand) {
       ASSERT_EQ(received[i].time_ns - received[0].time_ns, lists[i].time_ns - lists[0].time_ns)
           << "radar " << radar << ", scan " << i + 1;
       ++scans;
-      const std::vector<double> found_m = distances_m(lists[i], received[i]);
-      const bool has_partners = std::all_of(found_m.begin(), found_m.end(), [](double m) { return m <= kPartner_m; });
-      others += has_partners && received[i].positions_m.size() == found_m.size() ? 0 : 1;
-      all_m.insert(all_m.end(), found_m.begin(), found_m.end());
+      for (const std::vector<double>& each : {distances_m(lists[i], received[i]), distances_m(received[i], lists[i])}) {
+        all_m.insert(all_m.end(), each.begin(), each.end());
+      }
     }
   }
   ASSERT_GT(all_m.size(), scans);
-  const auto middle = all_m.begin() + static_cast<std::ptrdiff_t>(all_m.size() / 2);
-  std::nth_element(all_m.begin(), middle, all_m.end());
-  std::printf("%zu of %zu scans have other confirmed tracks in the processes; median distance %.4f m\n", others, scans,
-              *middle);
-  EXPECT_LE(*middle, kMedian_m);
-  EXPECT_LE(static_cast<double>(others), kMostOtherScans_share * static_cast<double>(scans));
+  std::sort(all_m.begin(), all_m.end());
+  const double median_m = all_m[all_m.size() / 2];
+  const auto lonely = all_m.end() - std::upper_bound(all_m.begin(), all_m.end(), kPartner_m);
+  const double lonely_share = static_cast<double>(lonely) / static_cast<double>(all_m.size());
+  std::printf("%zu scans: median distance of the tracks %.4f m, %.1f %% without partner\n", scans, median_m,
+              100.0 * lonely_share);
+  EXPECT_LE(median_m, kMedian_m);
+  EXPECT_LE(lonely_share, kMostWithoutPartner_share);
 }
 
 }  // namespace
