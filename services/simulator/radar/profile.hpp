@@ -24,10 +24,10 @@ using FiveQuantiles = std::array<double, 5>;
 struct PresenceSpec {
   bool on = false;
   ByRange range_m{5.0, 15.0, 25.0, 35.0, 57.5, 72.5, 90.0};
-  ByRange car{}, truck{}, two_wheeler{}, pedestrian{}, standing_vehicle{};  ///< P(none)
+  ByRange car{}, truck{}, two_wheeler{}, pedestrian{}, standing_vehicle{}, standing_truck{};  ///< P(none)
   /// P(none | none in the scan before).
   double car_after_none = 0.0, truck_after_none = 0.0, two_wheeler_after_none = 0.0, pedestrian_after_none = 0.0,
-         standing_vehicle_after_none = 0.0;
+         standing_vehicle_after_none = 0.0, standing_truck_after_none = 0.0;
   [[nodiscard]] bool operator==(const PresenceSpec&) const = default;
 };
 
@@ -35,10 +35,10 @@ struct PresenceSpec {
 struct CountSpec {
   bool on = false;
   ByRange range_m{5.0, 15.0, 25.0, 35.0, 57.5, 72.5, 90.0};
-  ByRange car{}, truck{}, two_wheeler{}, pedestrian{}, standing_vehicle{};  ///< mean
-  double rear_factor = 1.0, side_factor = 1.0, front_factor = 1.0;          ///< of the mean, by aspect; vehicles
-  double correlation = 0.0;                                                 ///< from scan to scan, of the Poisson part
-  std::uint32_t most = 1;                                                   ///< largest number
+  ByRange car{}, truck{}, two_wheeler{}, pedestrian{}, standing_vehicle{}, standing_truck{};  ///< mean
+  double rear_factor = 1.0, side_factor = 1.0, front_factor = 1.0;  ///< of the mean, by aspect; vehicles
+  double correlation = 0.0;                                         ///< from scan to scan, of the Poisson part
+  std::uint32_t most = 1;                                           ///< largest number
   [[nodiscard]] bool operator==(const CountSpec&) const = default;
 };
 
@@ -75,16 +75,18 @@ struct StrengthSpec {
   double pedestrian_dbsm = 0.0, two_wheeler_dbsm = 0.0;  ///< median
   double person_std_db = 0.0;                            ///< of pedestrians and two-wheelers
   double detection_std_db = 0.0;                         ///< among the detections of one object in one scan
+  double detection_correlation = 0.0;                    ///< of this part, from scan to scan
   double scan_std_db = 0.0;                              ///< from scan to scan
   double object_correlation = 0.0;                       ///< of the rest, from scan to scan
   double radar_offset_db = 0.0;                          ///< offset of the scale: uniform ±, per drive and radar
   [[nodiscard]] bool operator==(const StrengthSpec&) const = default;
 };
 
-/// RCS of mirror images relative to the strongest detection of their object.
+/// Mirror images: their RCS against the level of their object's strongest detection, and how often mirrors work.
 struct MirrorStrengthSpec {
   bool on = false;
   double mirror_strength_db = 0.0, mirror_strength_std_db = 0.0;
+  double working_share = 1.0;  ///< of the paths over mirrors, at an instant: real surfaces are rough and interrupted
   [[nodiscard]] bool operator==(const MirrorStrengthSpec&) const = default;
 };
 
@@ -94,6 +96,7 @@ struct FalseMoverSpec {
   double median_per_scan = 0.0;
   double p90_per_scan = 0.0;                             ///< 90 % quantile of the rate
   double correlation_after_1s = 0.0;                     ///< of the rate's logarithm
+  double abeam_factor = 1.0;                             ///< of the rate, for a radar that looks abeam
   FiveQuantiles range_m{};                               ///< 10, 25, 50, 75, 90 %
   std::array<double, kDeviationBins> deviation_share{};  ///< of 1–2, 2–5, 5–10, 10–20, 20–36 m/s
   double near_zero_share = 0.0;                          ///< range rate within ±1 m/s: as fast as the ego vehicle

@@ -125,7 +125,8 @@ void RadarSensor::keep_detected(std::uint64_t cycle_key) {
   });
 }
 
-void RadarSensor::add_false_detections(std::uint64_t cycle_key, double interference_per_scan) {
+void RadarSensor::add_false_detections(std::uint32_t cycle, double interference_per_scan) {
+  const std::uint64_t cycle_key = radar::cycle_key(config_.id, cycle);
   const double threshold = effects_.sensitivity.threshold_db;
   const double rate_max =
       effects_.unambiguous_mps > 0.0 ? std::min(effects_.unambiguous_mps, kFalseRate_mps) : kFalseRate_mps;
@@ -135,6 +136,8 @@ void RadarSensor::add_false_detections(std::uint64_t cycle_key, double interfere
                    Cause::kNone, false_echoes_);
   radar::add_false(interference, interference_per_scan, kInterferenceExcess_db, threshold, rate_max,
                    config_.field_of_view, Cause::kInterference, false_echoes_);
+  const radar::Draws draws{seed_, config_.id, cycle};
+  for (radar::Echo& e : false_echoes_) returns_.restate_noise(draws, config_.field_of_view, e);
   // A cell holds one detection: a false echo in the cell of a real one is dropped.
   const std::size_t real = echoes_.size();
   for (const radar::Echo& e : false_echoes_) {
@@ -232,7 +235,7 @@ void RadarSensor::measure(const Scene& scene, std::uint32_t cycle, RadarScan& sc
     returns_.apply({scene, view_, antenna_, propagation_, dirt_, disturbance.noise_rise_db, {seed_, config_.id, cycle}},
                    echoes_);
   }
-  add_false_detections(key, disturbance.detections_per_scan);
+  add_false_detections(cycle, disturbance.detections_per_scan);
   std::sort(echoes_.begin(), echoes_.end(), [](const radar::Echo& a, const radar::Echo& b) {
     return a.power_db != b.power_db ? a.power_db > b.power_db : a.key < b.key;
   });

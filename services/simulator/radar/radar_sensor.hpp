@@ -38,7 +38,7 @@ class RadarSensor {
   void add(const radar::Target& target, bool with_mirrors, double embedded_m, const Eigen::Matrix3d& world_to_sensor);
   void fluctuate(std::uint64_t cycle_key, double noise_rise_db);
   void keep_detected(std::uint64_t cycle_key);
-  void add_false_detections(std::uint64_t cycle_key, double interference_per_scan);
+  void add_false_detections(std::uint32_t cycle, double interference_per_scan);
   /// What the real car makes of an echo: the road mirrors its elevation, the bumper bends its azimuth.
   void distort(radar::Echo& echo, std::uint64_t cycle_key) const;
   void write(std::uint32_t cycle, RadarScan& scan, std::vector<DetectionTruth>& truth) const;

@@ -56,11 +56,13 @@ void read_table(Reader table, radar::PresenceSpec& spec) {
                 Key{"two_wheeler", &S::two_wheeler, kShare},
                 Key{"pedestrian", &S::pedestrian, kShare},
                 Key{"standing_vehicle", &S::standing_vehicle, kShare},
+                Key{"standing_truck", &S::standing_truck, kShare},
                 Key{"car_after_none", &S::car_after_none, kCorrelation},
                 Key{"truck_after_none", &S::truck_after_none, kCorrelation},
                 Key{"two_wheeler_after_none", &S::two_wheeler_after_none, kCorrelation},
                 Key{"pedestrian_after_none", &S::pedestrian_after_none, kCorrelation},
                 Key{"standing_vehicle_after_none", &S::standing_vehicle_after_none, kCorrelation},
+                Key{"standing_truck_after_none", &S::standing_truck_after_none, kCorrelation},
             });
 }
 
@@ -75,6 +77,7 @@ void read_table(Reader table, radar::CountSpec& spec) {
                 Key{"two_wheeler", &S::two_wheeler, kObjectDetections},
                 Key{"pedestrian", &S::pedestrian, kObjectDetections},
                 Key{"standing_vehicle", &S::standing_vehicle, kObjectDetections},
+                Key{"standing_truck", &S::standing_truck, kObjectDetections},
                 Key{"rear_factor", &S::rear_factor, kFactor},
                 Key{"side_factor", &S::side_factor, kFactor},
                 Key{"front_factor", &S::front_factor, kFactor},
@@ -123,6 +126,7 @@ void read_table(Reader table, radar::StrengthSpec& spec) {
                 Key{"two_wheeler_dbsm", &S::two_wheeler_dbsm, kStatedRcs_dbsm},
                 Key{"person_std_db", &S::person_std_db, kStd_db},
                 Key{"detection_std_db", &S::detection_std_db, kStd_db},
+                Key{"detection_correlation", &S::detection_correlation, kCorrelation},
                 Key{"scan_std_db", &S::scan_std_db, kStd_db},
                 Key{"object_correlation", &S::object_correlation, kCorrelation},
                 Key{"radar_offset_db", &S::radar_offset_db, {0.0, 40.0}},
@@ -135,6 +139,7 @@ void read_table(Reader table, radar::MirrorStrengthSpec& spec) {
             std::tuple{
                 Key{"mirror_strength_db", &S::mirror_strength_db, {-60.0, 20.0}},
                 Key{"mirror_strength_std_db", &S::mirror_strength_std_db, kStd_db},
+                Key{"working_share", &S::working_share, kShare},
             });
 }
 
@@ -146,6 +151,7 @@ void read_table(Reader table, radar::FalseMoverSpec& spec) {
                 Key{"median_per_scan", &S::median_per_scan, kRate},
                 Key{"p90_per_scan", &S::p90_per_scan, kRate},
                 Key{"correlation_after_1s", &S::correlation_after_1s, kCorrelation},
+                Key{"abeam_factor", &S::abeam_factor, kShare},
                 Key{"range_m", &S::range_m, kFarRange_m},
                 Key{"deviation_share", &S::deviation_share, kShare},
                 Key{"near_zero_share", &S::near_zero_share, kShare},

@@ -22,16 +22,20 @@ namespace boresight::simulator::radar {
 inline void add_ambiguous_azimuths(const AzimuthAmbiguitySpec& spec, const Draws& draws, const FieldOfView& fov,
                                    const StrengthSpec& strength, std::vector<Echo>& echoes) {
   constexpr std::uint64_t kCopy = 0xA21B;
-  const auto weight_of = [&](const Echo& e) { return std::pow(10.0, 0.05 * rcs_of(e, fov)); };
+  const StreamSeed effect = draws.of("azimuth");
   const auto is_parent = [](const Echo& e) { return e.truth.provenance == Provenance::kStationary; };
-  double sum = 0.0;
-  for (const Echo& e : echoes) sum += is_parent(e) ? weight_of(e) : 0.0;
   const std::size_t parents = echoes.size();
+  std::vector<double> weights(parents);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < parents; ++i) {
+    weights[i] = is_parent(echoes[i]) ? std::exp(0.05 * std::log(10.0) * rcs_of(echoes[i], fov)) : 0.0;
+    sum += weights[i];
+  }
   const double limit = std::sin(std::min(0.5 * M_PI, std::min(-fov.azimuth_min_rad, fov.azimuth_max_rad)));
   for (std::size_t i = 0; i < parents; ++i) {
     if (!is_parent(echoes[i])) continue;
-    Stream stream = draws.once("azimuth", echoes[i].key);
-    if (stream.uniform() * sum >= spec.per_scan * weight_of(echoes[i])) continue;
+    Stream stream = draws.once(effect, echoes[i].key);
+    if (stream.uniform() * sum >= spec.per_scan * weights[i]) continue;
     const double step = spec.sine_step + spec.sine_step_std * stream.gaussian();
     const double sine = ambiguous_sine(std::sin(echoes[i].azimuth_rad), step, limit);
     if (std::abs(sine) >= limit) continue;

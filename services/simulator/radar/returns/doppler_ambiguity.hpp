@@ -15,10 +15,11 @@ inline void shift_range_rates(const DopplerAmbiguitySpec& spec, const Draws& dra
   Stream widths = draws.once("ambiguity width");
   const double first = widths.uniform(spec.width_min_mps, spec.width_max_mps);
   const double second = widths.uniform(spec.width_min_mps, spec.width_max_mps);
+  const StreamSeed effect = draws.of("doppler");
   for (Echo& e : echoes) {
     if (!is_direct(e)) continue;
     const bool moving = e.truth.provenance == Provenance::kMoving;
-    Stream stream = draws.once("doppler", e.key);
+    Stream stream = draws.once(effect, e.key);
     if (stream.uniform() >= (moving ? spec.moving_share : spec.stationary_share)) continue;
     e.range_rate_mps -= std::copysign(stream.uniform() < 0.5 ? first : second, e.range_rate_mps);
     e.truth.cause = Cause::kDopplerAmbiguity;

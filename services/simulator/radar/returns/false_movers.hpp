@@ -54,12 +54,21 @@ class FalseMovers {
     return spec_.median_per_scan * std::exp(spread * level_.at(t_s, draws));
   }
 
+  /// Factor of the rate: 1 for a radar that looks along the road, `abeam_factor` for one that looks abeam.
+  [[nodiscard]] double direction_factor(const Viewpoint& view, double ego_heading_rad) const {
+    const Eigen::Vector2d boresight = view.sensor_to_world.col(0).head<2>().normalized();
+    const double cosine = boresight.x() * std::cos(ego_heading_rad) + boresight.y() * std::sin(ego_heading_rad);
+    return spec_.abeam_factor + (1.0 - spec_.abeam_factor) * cosine * cosine;
+  }
+
   /// Appends the false movers of a scan. Most are new in each scan, at the present rate. Those that last are born at
   /// the constant rate median · lasting_share and move by their own range rate.
-  void add(double t_s, double cycle_time_s, const Draws& draws, const Viewpoint& view, const FieldOfView& fov,
-           const StrengthSpec& strength, std::vector<Echo>& echoes) const {
+  void add(double t_s, double cycle_time_s, const Draws& draws, const Viewpoint& view, double ego_heading_rad,
+           const FieldOfView& fov, const StrengthSpec& strength, std::vector<Echo>& echoes) const {
     Stream present = draws.once("false movers");
-    const unsigned single = present.poisson(std::min(kMostPerScan, (1.0 - spec_.lasting_share) * rate(t_s, draws)));
+    const double share = direction_factor(view, ego_heading_rad);
+    const unsigned single =
+        present.poisson(std::min(kMostPerScan, share * (1.0 - spec_.lasting_share) * rate(t_s, draws)));
     for (unsigned i = 0; i < single; ++i) {
       Stream stream = draws.once("false mover", i);
       add_one(stream, 0.0, key_of(kSingle, key_of(draws.cycle, i)), view, fov, strength, echoes);
@@ -67,7 +76,7 @@ class FalseMovers {
     for (std::uint32_t age = 0; age < kOldest; ++age) {
       const std::uint64_t birth = Draws::kBefore + draws.cycle - age;
       Stream births = draws.always("false births", birth);
-      const unsigned count = births.poisson(spec_.lasting_share * spec_.median_per_scan);
+      const unsigned count = births.poisson(share * spec_.lasting_share * spec_.median_per_scan);
       for (unsigned i = 0; i < count; ++i) {
         if (length(births) <= age) continue;
         Stream stream = draws.always("lasting", key_of(birth, i));

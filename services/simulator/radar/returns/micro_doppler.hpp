@@ -22,7 +22,8 @@ struct MicroDoppler {
 }
 
 /// `radial_mps`: the body's radial velocity over ground, positive away. The ratio of a large deviation to it is drawn
-/// by its quantiles: negative means slower than the body.
+/// by its quantiles: negative means slower than the body. A body that hardly moves along the line of sight has only
+/// small deviations.
 [[nodiscard]] inline MicroDoppler micro_doppler(const MicroDopplerSpec& spec, BodyKind kind, double aspect_rad,
                                                 double radial_mps, Stream& stream) {
   constexpr double kSmall_mps = 0.5, kLarge_mps = 1.0;  // bounds of the measured shares
@@ -34,7 +35,8 @@ struct MicroDoppler {
     return {sign * stream.uniform(kSmall_mps, kLarge_mps), true};
   }
   const double deviation = value_at(stream.uniform(), kFrom5To95, spec.ratio, -1.0, 0.6) * radial_mps;
-  return {std::copysign(std::max(kLarge_mps, std::abs(deviation)), deviation), true};
+  if (std::abs(deviation) >= kLarge_mps) return {deviation, true};
+  return {std::copysign(stream.uniform(kSmall_mps, kLarge_mps), deviation), true};
 }
 
 }  // namespace boresight::simulator::radar

@@ -11,7 +11,7 @@
 
 namespace boresight::simulator::radar {
 
-enum class ObjectClass : std::uint8_t { kCar, kTruck, kTwoWheeler, kPedestrian, kStandingVehicle };
+enum class ObjectClass : std::uint8_t { kCar, kTruck, kTwoWheeler, kPedestrian, kStandingVehicle, kStandingTruck };
 
 [[nodiscard]] inline ObjectClass class_of(BodyKind kind, bool moving) {
   switch (kind) {
@@ -19,7 +19,7 @@ enum class ObjectClass : std::uint8_t { kCar, kTruck, kTwoWheeler, kPedestrian, 
     case BodyKind::kVan:
       return moving ? ObjectClass::kCar : ObjectClass::kStandingVehicle;
     case BodyKind::kTruck:
-      return moving ? ObjectClass::kTruck : ObjectClass::kStandingVehicle;
+      return moving ? ObjectClass::kTruck : ObjectClass::kStandingTruck;
     case BodyKind::kCyclist:
       return ObjectClass::kTwoWheeler;
     case BodyKind::kPedestrian:
@@ -31,7 +31,8 @@ enum class ObjectClass : std::uint8_t { kCar, kTruck, kTwoWheeler, kPedestrian, 
 /// The entry of a table with one entry for each class.
 template <typename Table, typename Entry>
 [[nodiscard]] const Entry& entry_of(ObjectClass c, const Table& t, Entry Table::*car, Entry Table::*truck,
-                                    Entry Table::*two_wheeler, Entry Table::*pedestrian, Entry Table::*standing) {
+                                    Entry Table::*two_wheeler, Entry Table::*pedestrian, Entry Table::*standing,
+                                    Entry Table::*standing_truck) {
   switch (c) {
     case ObjectClass::kCar:
       return t.*car;
@@ -41,6 +42,8 @@ template <typename Table, typename Entry>
       return t.*two_wheeler;
     case ObjectClass::kStandingVehicle:
       return t.*standing;
+    case ObjectClass::kStandingTruck:
+      return t.*standing_truck;
     case ObjectClass::kPedestrian:
       break;
   }
@@ -49,6 +52,16 @@ template <typename Table, typename Entry>
 
 [[nodiscard]] inline bool is_vehicle(BodyKind kind) {
   return kind == BodyKind::kCar || kind == BodyKind::kVan || kind == BodyKind::kTruck;
+}
+
+/// Range of a body: to the nearest point of its box, as detections measure it. The centre of a truck is up to half its
+/// length farther.
+[[nodiscard]] inline double range_of(const Body& body, const Eigen::Vector2d& sensor_m) {
+  const double c = std::cos(body.heading_rad), s = std::sin(body.heading_rad);
+  const Eigen::Vector2d offset = sensor_m - body.position_m;
+  const double ahead = std::abs(c * offset.x() + s * offset.y()) - 0.5 * body.length_m;
+  const double aside = std::abs(c * offset.y() - s * offset.x()) - 0.5 * body.width_m;
+  return std::hypot(std::max(0.0, ahead), std::max(0.0, aside));
 }
 
 /// Angle between the body's heading and the line of sight, 0 … π: 0 from behind, π from ahead.

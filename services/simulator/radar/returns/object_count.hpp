@@ -12,10 +12,10 @@ namespace boresight::simulator::radar {
 
 [[nodiscard]] inline double mean_count(const CountSpec& spec, ObjectClass c, double range_m, double aspect_rad) {
   using S = CountSpec;
-  const double mean = interpolated(
-      spec.range_m,
-      entry_of<S, ByRange>(c, spec, &S::car, &S::truck, &S::two_wheeler, &S::pedestrian, &S::standing_vehicle),
-      range_m);
+  const double mean = interpolated(spec.range_m,
+                                   entry_of<S, ByRange>(c, spec, &S::car, &S::truck, &S::two_wheeler, &S::pedestrian,
+                                                        &S::standing_vehicle, &S::standing_truck),
+                                   range_m);
   const bool person = c == ObjectClass::kTwoWheeler || c == ObjectClass::kPedestrian;
   return person ? mean : mean * by_aspect(aspect_rad, spec.rear_factor, spec.side_factor, spec.front_factor);
 }

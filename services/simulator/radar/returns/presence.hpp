@@ -20,11 +20,11 @@ namespace boresight::simulator::radar {
 [[nodiscard]] inline bool is_present(const PresenceSpec& spec, ObjectClass c, double range_m, std::uint32_t object,
                                      const Draws& draws) {
   using S = PresenceSpec;
-  const ByRange& by_range =
-      entry_of<S, ByRange>(c, spec, &S::car, &S::truck, &S::two_wheeler, &S::pedestrian, &S::standing_vehicle);
+  const ByRange& by_range = entry_of<S, ByRange>(c, spec, &S::car, &S::truck, &S::two_wheeler, &S::pedestrian,
+                                                 &S::standing_vehicle, &S::standing_truck);
   const double after_none =
       entry_of<S, double>(c, spec, &S::car_after_none, &S::truck_after_none, &S::two_wheeler_after_none,
-                          &S::pedestrian_after_none, &S::standing_vehicle_after_none);
+                          &S::pedestrian_after_none, &S::standing_vehicle_after_none, &S::standing_truck_after_none);
   const double none = interpolated(spec.range_m, by_range, range_m);
   return draws.held("presence", object, presence_correlation(none, after_none)).uniform() >= none;
 }

@@ -36,8 +36,7 @@ class StationaryField {
   [[nodiscard]] double density_per_m2(std::size_t layer) const { return density_per_m2_[layer]; }
 
  private:
-  void show(const Eigen::Vector2d& patch_m, std::uint64_t key, const Draws& draws,
-            std::vector<FieldPoint>& points) const;
+  void show(const Eigen::Vector2d& patch_m, std::uint64_t key, Stream& stream, std::vector<FieldPoint>& points) const;
   StationaryWorldSpec spec_;
   std::array<double, kRings> density_per_m2_{};
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "services/simulator/radar/blockage.hpp"
 #include "services/simulator/radar/detector.hpp"
@@ -20,7 +19,6 @@ namespace boresight::simulator::radar {
 
 namespace {
 
-constexpr double kNoStrength = -std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kDrawnKey = 0xD2A40;
 
 bool is_of_body(const Echo& echo) {
@@ -71,7 +69,7 @@ void StatisticalReturns::note_bodies(const Scene& scene, std::span<const Echo> e
                                      [&](const Body& b) { return b.id == echo.truth.object_id; });
       if (body == scene.bodies.end()) continue;
       const bool moving = echo.truth.provenance == Provenance::kMoving;
-      sightings_.push_back({&*body, direct_.size(), 0, moving, true, {}, kNoStrength});
+      sightings_.push_back({&*body, direct_.size(), 0, moving, true, {}});
     }
     direct_.push_back(echo);
     ++sightings_.back().echoes;
@@ -91,7 +89,7 @@ void StatisticalReturns::draw_detections(const ScanContext& context, const Sight
   const FieldOfView& fov = context.antenna.view();
   const ObjectClass object_class = class_of(body.kind, sighting.moving);
   const Eigen::Vector2d sensor = context.view.position_m.head<2>();
-  const double range = (body.position_m - sensor).norm();
+  const double range = range_of(body, sensor);
   const double mean = mean_count(profile_.count, object_class, range, aspect_of(body, sensor));
   const unsigned count = count_of(profile_.count, mean, body.id, draws);
   const Eigen::Vector2d sensor_body = turned(sensor - body.position_m, -body.heading_rad);
@@ -106,7 +104,9 @@ void StatisticalReturns::draw_detections(const ScanContext& context, const Sight
       const Eigen::Vector3d offset = spot_of(profile_.spots, body, sensor_body, i, draws);
       const Eigen::Vector2d place = body.position_m + turned(offset.head<2>(), body.heading_rad);
       const Eigen::Vector3d spot(place.x(), place.y(), offset.z());
-      if (!place_echo(context.view, context.antenna, spot, velocity_at(body, spot), e)) continue;
+      // A place out of view: the detection stays at the reflection centre, which is in view.
+      Echo placed = e;
+      if (place_echo(context.view, context.antenna, spot, velocity_at(body, spot), placed)) e = placed;
     }
     if (profile_.strength.on) rcs = object_rcs(profile_.strength, body.kind, e.range_m, sighting.common, key, draws);
     set_rcs(e, rcs, fov);
@@ -121,7 +121,7 @@ void StatisticalReturns::draw_detections(const ScanContext& context, const Sight
 void StatisticalReturns::apply_to_objects(const ScanContext& context, std::vector<Echo>& echoes) {
   const Eigen::Vector2d sensor = context.view.position_m.head<2>();
   for (Sighting& s : sightings_) {
-    const double range = (s.body->position_m - sensor).norm();
+    const double range = range_of(*s.body, sensor);
     s.present = !profile_.presence.on ||
                 is_present(profile_.presence, class_of(s.body->kind, s.moving), range, s.body->id, context.draws);
   }
@@ -207,27 +207,31 @@ void StatisticalReturns::append_surviving(const ScanContext& context, std::vecto
   drawn.clear();
 }
 
-void StatisticalReturns::note_strongest(const FieldOfView& fov, const std::vector<Echo>& echoes) {
-  for (Sighting& s : sightings_) {
-    for (const Echo& e : echoes) {
-      if (is_of_body(e) && e.truth.object_id == s.body->id)
-        s.strongest_dbsm = std::max(s.strongest_dbsm, rcs_of(e, fov));
-    }
-  }
+bool StatisticalReturns::is_reported(const ScanContext& context, const Echo& echo) const {
+  if (!profile_.strength.on) return true;
+  const double excess_db = rcs_of(echo, context.antenna.view()) - sensitivity_dbsm(profile_.strength, echo.range_m);
+  return context.draws.once("reported", echo.key).uniform() <
+         steady_detection_probability(excess_db + kHalfDetected_db);
 }
 
 void StatisticalReturns::restate_mirror_images(const ScanContext& context, std::vector<Echo>& echoes) const {
   const FieldOfView& fov = context.antenna.view();
   const MirrorStrengthSpec& spec = profile_.mirror;
+  const auto is_image = [](const Echo& e) { return is_ghost(e) && e.truth.object_id != 0; };
+  std::erase_if(echoes, [&](const Echo& e) {
+    return is_image(e) && context.draws.once("mirror works", e.key).uniform() >= spec.working_share;
+  });
   for (Echo& e : echoes) {
-    if (!is_ghost(e) || e.truth.object_id == 0) continue;
-    const Sighting* const s = sighting_of(e.truth.object_id);
-    double strongest = s == nullptr ? kNoStrength : s->strongest_dbsm;
-    // An object that is not detected itself: the strength that it has in the mean.
-    if (!std::isfinite(strongest)) strongest = rcs_at(profile_.strength, profile_.strength.vehicle, e.range_m, 0.0);
+    if (!is_image(e)) continue;
+    const auto body = std::find_if(context.scene.bodies.begin(), context.scene.bodies.end(),
+                                   [&](const Body& b) { return b.id == e.truth.object_id; });
+    if (body == context.scene.bodies.end()) continue;
+    // The image shows the object from another side, so it does not fluctuate with the object's own detections.
+    const double level = strongest_level_dbsm(profile_.strength, body->kind, e.range_m);
     Stream stream = context.draws.once("mirror strength", e.key);
-    set_rcs(e, strongest + spec.mirror_strength_db + spec.mirror_strength_std_db * stream.gaussian(), fov);
+    set_rcs(e, level + spec.mirror_strength_db + spec.mirror_strength_std_db * stream.gaussian(), fov);
   }
+  std::erase_if(echoes, [&](const Echo& e) { return is_image(e) && !is_reported(context, e); });
 }
 
 void StatisticalReturns::add_side_lobes_of(const ScanContext& context, std::vector<Echo>& echoes) const {
@@ -244,6 +248,15 @@ void StatisticalReturns::add_side_lobes_of(const ScanContext& context, std::vect
     const Echo parent = echoes[strongest];
     add_side_lobes(profile_.side_lobe, parent, context.draws, fov, echoes);
   }
+  const auto first = echoes.begin() + static_cast<std::ptrdiff_t>(parents);
+  echoes.erase(std::remove_if(first, echoes.end(), [&](const Echo& e) { return !is_reported(context, e); }),
+               echoes.end());
+}
+
+void StatisticalReturns::restate_noise(const Draws& draws, const FieldOfView& fov, Echo& echo) const {
+  if (!profile_.strength.on) return;
+  Stream stream = draws.once("rcs of noise", echo.key);
+  set_rcs(echo, false_rcs(profile_.strength, echo.range_m, stream), fov);
 }
 
 void StatisticalReturns::apply(const ScanContext& context, std::vector<Echo>& echoes) {
@@ -262,13 +275,15 @@ void StatisticalReturns::apply(const ScanContext& context, std::vector<Echo>& ec
   append_surviving(context, drawn_, echoes);
   if (p.micro_doppler.on) disturb_rates(context, echoes);
   // What follows from it.
-  note_strongest(fov, echoes);
   if (p.mirror.on) restate_mirror_images(context, echoes);
   if (p.side_lobe.on) add_side_lobes_of(context, echoes);
   if (p.azimuth_ambiguity.on) add_ambiguous_azimuths(p.azimuth_ambiguity, context.draws, fov, p.strength, echoes);
   if (p.doppler_ambiguity.on) shift_range_rates(p.doppler_ambiguity, context.draws, echoes);
   // What is false without a cause in the scene.
-  if (p.false_mover.on) false_movers_.add(t_s, cycle_time_s_, context.draws, context.view, fov, p.strength, drawn_);
+  if (p.false_mover.on) {
+    false_movers_.add(t_s, cycle_time_s_, context.draws, context.view, context.scene.ego.heading_rad, fov, p.strength,
+                      drawn_);
+  }
   if (p.burst.on) add_bursts(p.burst, t_s, context.draws, fov, p.strength, drawn_);
   append_surviving(context, drawn_, echoes);
 }

@@ -43,6 +43,9 @@ class StatisticalReturns {
   /// Notes the bodies in sight: those with a direct echo among `echoes`, all of which are of bodies.
   void note_bodies(const Scene& scene, std::span<const Echo> echoes);
 
+  /// States the RCS of an echo of clutter or interference as that of a false mover.
+  void restate_noise(const Draws& draws, const FieldOfView& fov, Echo& echo) const;
+
   /// Replaces the detected echoes of the scan by what the profile makes of them.
   void apply(const ScanContext& context, std::vector<Echo>& echoes);
 
@@ -54,7 +57,6 @@ class StatisticalReturns {
     bool moving;
     bool present;
     CommonStrength common;
-    double strongest_dbsm;  // of its detections in this scan
   };
   [[nodiscard]] const Sighting* sighting_of(std::uint32_t object) const;
   void apply_to_objects(const ScanContext& context, std::vector<Echo>& echoes);
@@ -64,7 +66,8 @@ class StatisticalReturns {
   void add_field(const ScanContext& context, std::vector<Echo>& drawn);
   void restate_strength(const ScanContext& context, std::vector<Echo>& echoes) const;
   void restate_mirror_images(const ScanContext& context, std::vector<Echo>& echoes) const;
-  void note_strongest(const FieldOfView& fov, const std::vector<Echo>& echoes);
+  /// Whether the sensor reports an echo of this stated RCS.
+  [[nodiscard]] bool is_reported(const ScanContext& context, const Echo& echo) const;
   void add_side_lobes_of(const ScanContext& context, std::vector<Echo>& echoes) const;
   void append_surviving(const ScanContext& context, std::vector<Echo>& drawn, std::vector<Echo>& echoes) const;
 

@@ -38,7 +38,8 @@ struct CommonStrength {
           draws.once("rcs of scan", object).gaussian()};
 }
 
-/// RCS of one detection of an object: the common parts and a part of its own. `part`: key of the detection.
+/// RCS of one detection of an object: the common parts and a part of its own, which lasts as its place does. `part`:
+/// key of the detection.
 [[nodiscard]] inline double object_rcs(const StrengthSpec& spec, BodyKind kind, double range_m,
                                        const CommonStrength& common, std::uint64_t part, const Draws& draws) {
   const double std_db = std::max(0.1, is_vehicle(kind) ? rcs_std_db(spec, spec.vehicle, range_m) : spec.person_std_db);
@@ -46,9 +47,22 @@ struct CommonStrength {
   const double scan = std::min(1.0 - own, std::pow(spec.scan_std_db / std_db, 2));
   const double slow = std::max(0.0, 1.0 - own - scan);
   const double normal = std::sqrt(slow) * common.slow + std::sqrt(scan) * common.scan +
-                        std::sqrt(own) * draws.once("rcs", part).gaussian();
+                        std::sqrt(own) * draws.held("rcs", part, spec.detection_correlation).gaussian();
   if (is_vehicle(kind)) return rcs_at(spec, spec.vehicle, range_m, normal);
   return (kind == BodyKind::kPedestrian ? spec.pedestrian_dbsm : spec.two_wheeler_dbsm) + std_db * normal;
+}
+
+/// Level of the strongest detection of an object of this kind: the expected maximum of two detections.
+[[nodiscard]] inline double strongest_level_dbsm(const StrengthSpec& spec, BodyKind kind, double range_m) {
+  constexpr double kMaximumOfTwo = 0.5641895835477563;  // of standard normal values, 1/√π
+  if (is_vehicle(kind)) return rcs_at(spec, spec.vehicle, range_m, kMaximumOfTwo);
+  return (kind == BodyKind::kPedestrian ? spec.pedestrian_dbsm : spec.two_wheeler_dbsm) +
+         kMaximumOfTwo * spec.person_std_db;
+}
+
+/// RCS at which half of the detections are reported: the weakest tenth of the stationary world lies below it.
+[[nodiscard]] inline double sensitivity_dbsm(const StrengthSpec& spec, double range_m) {
+  return rcs_at(spec, spec.stationary, range_m, -kNormal90);
 }
 
 /// RCS of a stationary reflector: `place` is its own standard normal value, which lasts.

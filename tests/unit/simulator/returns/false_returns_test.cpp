@@ -42,8 +42,9 @@ TEST(FalseMovers, TheRateIsLogNormalAndChangesWithinSeconds) {
     rates.push_back(movers.rate(0.5 * i, at_cycle(0)));
     logarithms.push_back(std::log(rates.back()));
   }
-  EXPECT_NEAR(quantile(rates, 0.5), 3.0, 0.2);
-  EXPECT_NEAR(quantile(rates, 0.9), 8.0, 0.8);
+  const radar::FalseMoverSpec& spec = series().false_mover;
+  EXPECT_NEAR(quantile(rates, 0.5), spec.median_per_scan, 0.1 * spec.median_per_scan);
+  EXPECT_NEAR(quantile(rates, 0.9), spec.p90_per_scan, 0.15 * spec.p90_per_scan);
   EXPECT_NEAR(correlation(logarithms, 2), 0.8, 0.03);
   EXPECT_NEAR(correlation(logarithms, 6), 0.51, 0.05);
   EXPECT_NE(rates[10], movers.rate(5.0, at_cycle(0, 2))) << "each radar has its own";
@@ -56,7 +57,7 @@ TEST(FalseMovers, HaveTheStatedRangesDeviationsAndLengths) {
   std::size_t near_zero = 0, scans = 10'000;
   for (std::uint32_t cycle = 0; cycle < scans; ++cycle) {
     std::vector<radar::Echo> echoes;
-    movers.add(0.075 * cycle, 0.075, at_cycle(cycle), driving(), kView, series().strength, echoes);
+    movers.add(0.075 * cycle, 0.075, at_cycle(cycle), driving(), 0.0, kView, series().strength, echoes);
     for (const radar::Echo& e : echoes) {
       ++lengths[e.key];
       EXPECT_EQ(e.truth.cause, Cause::kFalseMover);
@@ -66,22 +67,49 @@ TEST(FalseMovers, HaveTheStatedRangesDeviationsAndLengths) {
       deviations.push_back(std::abs(e.range_rate_mps - radar::stationary_rate(driving(), e)));
     }
   }
-  const double mean_rate = 3.0 * std::exp(0.5 * std::pow(std::log(8.0 / 3.0) / radar::kNormal90, 2));
+  const radar::FalseMoverSpec& spec = series().false_mover;
+  const double spread = std::log(spec.p90_per_scan / spec.median_per_scan) / radar::kNormal90;
+  const double mean_rate = spec.median_per_scan * std::exp(0.5 * spread * spread);
   const double number = static_cast<double>(ranges.size());
-  EXPECT_NEAR(number / static_cast<double>(scans), 0.9 * mean_rate + 0.3 * 3.5, 0.6);
+  EXPECT_NEAR(number / static_cast<double>(scans),
+              (1.0 - spec.lasting_share) * mean_rate + spec.lasting_share * spec.median_per_scan * spec.lasting_scans,
+              0.12 * mean_rate);
   EXPECT_NEAR(quantile(ranges, 0.1), 9.0, 1.5);
   EXPECT_NEAR(quantile(ranges, 0.5), 32.0, 2.0);
   EXPECT_NEAR(quantile(ranges, 0.9), 75.0, 2.0);
-  EXPECT_GT(static_cast<double>(near_zero) / number, 0.15);
-  EXPECT_LT(static_cast<double>(near_zero) / number, 0.30);
-  EXPECT_NEAR(share_of(deviations, [](double d) { return d > 10.0 && d < 20.0; }), 0.85 * 0.32 + 0.12, 0.05);
+  EXPECT_GT(static_cast<double>(near_zero) / number, spec.near_zero_share);
+  EXPECT_LT(static_cast<double>(near_zero) / number, spec.near_zero_share + 0.15);
+  double sum = 0.0;
+  for (const double share : spec.deviation_share) sum += share;
+  EXPECT_NEAR(share_of(deviations, [](double d) { return d > 10.0 && d < 20.0; }),
+              (1.0 - spec.near_zero_share) * spec.deviation_share[3] / sum + 0.8 * spec.near_zero_share, 0.05);
   double single = 0.0, in_long_chains = 0.0;
   for (const auto& [key, length] : lengths) {
     single += length == 1 ? 1.0 : 0.0;
     in_long_chains += length >= 6 ? length : 0.0;
   }
   EXPECT_NEAR(single / static_cast<double>(lengths.size()), 0.92, 0.04);
-  EXPECT_NEAR(in_long_chains / number, 0.06, 0.04);
+  // Lengths are geometric: of the detections that last, some six in seven are in chains of six and more scans.
+  const double lasting = spec.lasting_share * spec.median_per_scan * spec.lasting_scans;
+  EXPECT_NEAR(in_long_chains / number, 6.0 / 7.0 * lasting / ((1.0 - spec.lasting_share) * mean_rate + lasting), 0.05);
+}
+
+TEST(FalseMovers, AreFewerWhereTheRadarLooksAbeam) {
+  const radar::FalseMovers movers(series().false_mover);
+  const auto per_scan = [&](double ego_heading_rad) {
+    std::size_t number = 0;
+    for (std::uint32_t cycle = 0; cycle < 4000; ++cycle) {
+      std::vector<radar::Echo> echoes;
+      movers.add(0.075 * cycle, 0.075, at_cycle(cycle), driving(), ego_heading_rad, kView, series().strength, echoes);
+      number += echoes.size();
+    }
+    return static_cast<double>(number) / 4000.0;
+  };
+  const double ahead = per_scan(0.0), factor = series().false_mover.abeam_factor;
+  EXPECT_LT(factor, 0.6);
+  EXPECT_NEAR(per_scan(0.5 * M_PI) / ahead, factor, 0.05);
+  EXPECT_NEAR(per_scan(M_PI) / ahead, 1.0, 0.05) << "behind is as ahead";
+  EXPECT_NEAR(per_scan(0.25 * M_PI) / ahead, 0.5 * (1.0 + factor), 0.05);
 }
 
 TEST(DopplerAmbiguity, ShiftsTheStatedSharesAcrossZero) {
@@ -165,8 +193,8 @@ TEST(SideLobes, HaveTheObjectsRangeRateAndTheStatedStrength) {
     }
   }
   EXPECT_NEAR(static_cast<double>(number) / static_cast<double>(scans), 0.25 * (1.0 - 0.14 / 2.44), 0.015);
-  EXPECT_NEAR(mean(strength), -12.0, 0.6);
-  EXPECT_NEAR(std_of(strength), 12.0, 0.5);
+  EXPECT_NEAR(mean(strength), series().side_lobe.strength_db, 0.8);
+  EXPECT_NEAR(std_of(strength), series().side_lobe.strength_std_db, 0.6);
 }
 
 TEST(Bursts, LastForSecondsInOneRangeInterval) {

@@ -54,7 +54,7 @@ TEST(Presence, MissesAreAsFrequentAndAsLongAsStated) {
                person = misses(ObjectClass::kPedestrian, 25.0);
   EXPECT_NEAR(car.none, 0.36, 0.015);
   EXPECT_NEAR(car.after_none, 0.67, 0.015);
-  EXPECT_NEAR(truck.none, 0.15, 0.015);
+  EXPECT_NEAR(truck.none, series().presence.truck[2], 0.02);
   EXPECT_NEAR(truck.after_none, 0.76, 0.02);
   EXPECT_NEAR(person.none, 0.44, 0.025);
   EXPECT_NEAR(person.after_none, 0.80, 0.015);
@@ -82,7 +82,7 @@ TEST(Count, HasTheStatedMeanByClassRangeAndAspect) {
   };
   EXPECT_NEAR(mean_of(ObjectClass::kCar, 15.0, 0.0), 3.8 * 0.85, 0.05);
   EXPECT_NEAR(mean_of(ObjectClass::kCar, 15.0, 0.5 * M_PI), 3.8 * 1.7, 0.08);
-  EXPECT_NEAR(mean_of(ObjectClass::kCar, 35.0, M_PI), 1.9 * 1.1, 0.05);
+  EXPECT_NEAR(mean_of(ObjectClass::kCar, 35.0, M_PI), 1.9 * series().count.front_factor, 0.05);
   EXPECT_NEAR(mean_of(ObjectClass::kTruck, 25.0, 0.0), 4.0 * 0.85, 0.06);
   EXPECT_NEAR(mean_of(ObjectClass::kPedestrian, 25.0, 0.5 * M_PI), 1.7, 0.04) << "aspect is a matter of vehicles";
 }
@@ -118,9 +118,12 @@ TEST(Spots, LieAtTheNearEndAndAreExponentiallyFewBehindIt) {
     across.push_back(p.y());
   }
   const auto beyond = [&](double m) { return share_of(behind, [m](double b) { return b > m; }); };
-  EXPECT_NEAR(beyond(1.0), 0.41, 0.03);
-  EXPECT_NEAR(beyond(2.0), 0.17, 0.03);
-  EXPECT_NEAR(beyond(3.0), 0.05, 0.02);
+  // An exponential distribution that ends with the body.
+  const auto stated = [](double m) {
+    const double mean_m = series().spots.car_behind_m, end = std::exp(-4.5 / mean_m);
+    return (std::exp(-m / mean_m) - end) / (1.0 - end);
+  };
+  for (const double m : {1.0, 2.0, 3.0}) EXPECT_NEAR(beyond(m), stated(m), 0.03) << m;
   EXPECT_NEAR(std_of(across), 0.55, 0.03);
   EXPECT_LE(quantile(behind, 1.0), 4.5);
 }
@@ -164,8 +167,9 @@ TEST(MicroDoppler, TheStatedShareDeviatesByAspect) {
                      share_of(deviations, [](double d) { return d >= 1.0; }));
   };
   EXPECT_NEAR(shares(BodyKind::kCar, 0.0).first, 0.022, 0.004);
-  EXPECT_NEAR(shares(BodyKind::kCar, 0.5 * M_PI).first, 0.24, 0.01);
-  EXPECT_NEAR(shares(BodyKind::kCar, 0.5 * M_PI).second, 0.24 * 0.47, 0.01);
+  EXPECT_NEAR(shares(BodyKind::kCar, 0.5 * M_PI).first, series().micro_doppler.side, 0.01);
+  EXPECT_LT(shares(BodyKind::kCar, 0.5 * M_PI).second,
+            series().micro_doppler.side * series().micro_doppler.large_share);
   EXPECT_NEAR(shares(BodyKind::kTruck, M_PI).first, 0.040, 0.005);
   EXPECT_NEAR(shares(BodyKind::kCyclist, M_PI).first, 0.015, 0.004);
   // Of pedestrians the other detections scatter as well.
@@ -177,18 +181,45 @@ TEST(MicroDoppler, LargeDeviationsHaveTheStatedRatioToTheRadialSpeed) {
   for (std::uint32_t cycle = 0; cycle < 40'000; ++cycle) {
     Stream stream = at_cycle(cycle).once("test");
     const double d =
-        radar::micro_doppler(series().micro_doppler, BodyKind::kCar, 0.5 * M_PI, 50.0, stream).deviation_mps;
-    if (std::abs(d) > 1.0) ratios.push_back(d / 50.0);
+        radar::micro_doppler(series().micro_doppler, BodyKind::kCar, 0.5 * M_PI, 1000.0, stream).deviation_mps;
+    if (std::abs(d) > 1.0) ratios.push_back(d / 1000.0);
   }
-  EXPECT_NEAR(quantile(ratios, 0.05), -0.88, 0.03);
-  EXPECT_NEAR(quantile(ratios, 0.25), -0.47, 0.03);
-  EXPECT_NEAR(quantile(ratios, 0.50), -0.11, 0.03);
-  EXPECT_NEAR(quantile(ratios, 0.95), 0.52, 0.03);
+  const radar::FiveQuantiles& stated = series().micro_doppler.ratio;
+  EXPECT_NEAR(quantile(ratios, 0.05), stated[0], 0.04);
+  EXPECT_NEAR(quantile(ratios, 0.25), stated[1], 0.06);
+  EXPECT_NEAR(quantile(ratios, 0.95), stated[4], 0.04);
+}
+
+TEST(MicroDoppler, IsSmallIfTheBodyHardlyMovesAlongTheLineOfSight) {
+  std::vector<double> deviations;
+  for (std::uint32_t cycle = 0; cycle < 40'000; ++cycle) {
+    Stream stream = at_cycle(cycle).once("test");
+    deviations.push_back(
+        std::abs(radar::micro_doppler(series().micro_doppler, BodyKind::kCar, 0.5 * M_PI, 0.5, stream).deviation_mps));
+  }
+  EXPECT_NEAR(share_of(deviations, [](double d) { return d >= 0.5; }), series().micro_doppler.side, 0.01);
+  EXPECT_EQ(share_of(deviations, [](double d) { return d > 1.0; }), 0.0);
+}
+
+TEST(RangeOfABody, IsThatOfItsNearestPoint) {
+  Body truck{};
+  truck.length_m = 16.0;
+  truck.width_m = 2.5;
+  truck.position_m = {30.0, 0.0};
+  EXPECT_NEAR(radar::range_of(truck, {10.0, 0.0}), 12.0, 1e-9);
+  EXPECT_NEAR(radar::range_of(truck, {30.0, 11.25}), 10.0, 1e-9);
+  EXPECT_NEAR(radar::range_of(truck, {41.0, -5.25}), 5.0, 1e-9);
+  EXPECT_EQ(radar::range_of(truck, {31.0, 1.0}), 0.0);
+  truck.heading_rad = 0.5 * M_PI;
+  EXPECT_NEAR(radar::range_of(truck, {10.0, 0.0}), 18.75, 1e-9);
 }
 
 TEST(Strength, HasTheStatedQuantilesByRange) {
-  for (const auto& [range_m, low, median, high] :
-       {std::tuple(5.0, -21.0, -11.0, 0.0), std::tuple(25.0, -12.0, 2.0, 20.0), std::tuple(82.5, -1.0, 8.0, 18.0)}) {
+  const auto of_knot = [](std::size_t k) {
+    const radar::StrengthSpec& s = series().strength;
+    return std::tuple(s.range_m[k], s.vehicle.low_dbsm[k], s.vehicle.median_dbsm[k], s.vehicle.high_dbsm[k]);
+  };
+  for (const auto& [range_m, low, median, high] : {of_knot(0), of_knot(2), of_knot(5)}) {
     std::vector<double> rcs;
     for (std::uint32_t object = 1; object <= 300; ++object) {
       for (std::uint32_t cycle = 0; cycle < 2000; cycle += 20) {
@@ -220,8 +251,23 @@ TEST(Strength, ChangesAmongTheDetectionsOfAScanAndFromScanToScan) {
     }
     between.push_back((mean_next - mean_now) / std::sqrt(2.0));
   }
-  EXPECT_NEAR(std_of(within), 6.5, 0.2);
-  EXPECT_NEAR(std_of(between), 2.7, 0.3) << "what the detections leave of 7 dB";
+  EXPECT_NEAR(std_of(within), series().strength.detection_std_db, 0.6);
+  EXPECT_NEAR(std_of(between), series().strength.scan_std_db, 0.3);
+}
+
+TEST(Strength, OfADetectionLastsForSomeScans) {
+  std::vector<double> rcs;
+  radar::StrengthSpec spec = series().strength;
+  spec.scan_std_db = 0.0;
+  spec.person_std_db = spec.detection_std_db;
+  for (std::uint32_t cycle = 0; cycle < 20'000; ++cycle) {
+    const radar::Draws draws = at_cycle(cycle);
+    const radar::CommonStrength common = radar::common_strength(spec, 1, draws);
+    rcs.push_back(radar::object_rcs(spec, BodyKind::kPedestrian, 20.0, common, 1, draws));
+  }
+  EXPECT_GT(spec.detection_correlation, 0.5);
+  EXPECT_NEAR(correlation(rcs, 1), spec.detection_correlation, 0.03);
+  EXPECT_NEAR(correlation(rcs, 3), std::pow(spec.detection_correlation, 3), 0.05);
 }
 
 TEST(Strength, EachRadarHasAnOffsetOfItsOwnPerDrive) {

@@ -185,35 +185,71 @@ TEST(ProfileInSensor, AScanDependsOnNoScanBefore) {
   }
 }
 
-TEST(ProfileInSensor, MirrorImagesHaveTheStatedStrengthAgainstTheirObject) {
-  for (const auto& [mean_db, std_db] : {std::pair(-12.0, 12.0), std::pair(-28.0, 7.0)}) {
-    Street street;
-    radar::Profile& p = street.effects.profile;
-    p.mirror.mirror_strength_db = mean_db;
-    p.mirror.mirror_strength_std_db = std_db;
-    p.presence.on = false;
-    std::vector<double> relative;
-    RadarSensor sensor(street.config, street.effects, street.ego_body, street.seed);
-    for (std::uint32_t cycle = 0; cycle < 400; ++cycle) {
-      Measured m;
-      sensor.measure(street.scene, cycle, *m.scan, m.truth);
-      std::map<std::uint32_t, double> strongest;
-      for (std::size_t i = 0; i < m.count(); ++i) {
-        if (m.truth[i].provenance != Provenance::kMoving) continue;
-        double& s = strongest.try_emplace(m.truth[i].object_id, -200.0).first->second;
-        s = std::max(s, static_cast<double>(m.scan->rcs_dbsm[i]));
-      }
-      for (std::size_t i = 0; i < m.count(); ++i) {
-        const auto parent = strongest.find(m.truth[i].object_id);
-        if (m.truth[i].bounces == 0 || parent == strongest.end()) continue;
-        relative.push_back(static_cast<double>(m.scan->rcs_dbsm[i]) - parent->second);
-      }
+/// RCS of the mirror images in 300 scans, less the level of a car's strongest detection at their range.
+std::vector<double> images(const std::function<void(radar::Profile&)>& change) {
+  Street street;
+  radar::Profile& p = street.effects.profile;
+  p.strength.radar_offset_db = 0.0;
+  change(p);
+  std::vector<double> relative;
+  RadarSensor sensor(street.config, street.effects, street.ego_body, street.seed);
+  for (std::uint32_t cycle = 0; cycle < 300; ++cycle) {
+    Measured m;
+    sensor.measure(street.scene, cycle, *m.scan, m.truth);
+    for (std::size_t i = 0; i < m.count(); ++i) {
+      if (m.truth[i].bounces == 0 || m.truth[i].object_id == 0) continue;
+      const auto range = static_cast<double>(m.scan->range_m[i]);
+      const double level = radar::strongest_level_dbsm(p.strength, BodyKind::kCar, range);
+      relative.push_back(static_cast<double>(m.scan->rcs_dbsm[i]) - level);
     }
+  }
+  return relative;
+}
+
+TEST(ProfileInSensor, MirrorImagesHaveTheStatedStrengthAgainstTheLevelOfTheirObject) {
+  for (const auto& [mean_db, std_db] : {std::pair(-12.0, 9.0), std::pair(-28.0, 7.0)}) {
+    const std::vector<double> relative = images([&, m = mean_db, s = std_db](radar::Profile& p) {
+      p.mirror = {true, m, s, 1.0};
+      p.strength.stationary.low_dbsm.fill(-90.0);  // a radar that reports everything
+      p.stationary_world.on = false;
+    });
     ASSERT_GT(relative.size(), 300u);
     const double error = 4.0 * std_db / std::sqrt(static_cast<double>(relative.size()));
     EXPECT_NEAR(mean(relative), mean_db, error);
     EXPECT_NEAR(std_of(relative), std_db, error);
   }
+}
+
+TEST(ProfileInSensor, WeakerMirrorImagesAreReportedLessOften) {
+  const auto number = [](double mean_db, double working_share) {
+    return images([&](radar::Profile& p) {
+             p.mirror = {true, mean_db, 7.0, working_share};
+             p.stationary_world.on = false;
+           })
+        .size();
+  };
+  const std::size_t strong = number(-12.0, 1.0);
+  EXPECT_LT(number(-28.0, 1.0), strong / 2);
+  EXPECT_NEAR(static_cast<double>(number(-12.0, 0.25)) / static_cast<double>(strong), 0.25, 0.04);
+  EXPECT_EQ(number(-12.0, 0.0), 0u);
+}
+
+TEST(ProfileInSensor, ClutterHasTheStrengthOfFalseMovers) {
+  Street street;
+  street.effects.clutter_per_scan = 5.0;
+  street.effects.profile.strength.radar_offset_db = 0.0;
+  const radar::StrengthSpec& s = street.effects.profile.strength;
+  std::vector<double> deviation;
+  for (const Row& r : rows_of(street)) {
+    if (r.provenance != Provenance::kClutter || r.cause != Cause::kNone) continue;
+    const auto range = static_cast<double>(r.range), rcs = static_cast<double>(r.rcs);
+    const double median = radar::rcs_at(s, s.false_mover, range, 0.0);
+    const double end = radar::rcs_at(s, s.false_mover, range, rcs < median ? -radar::kNormal90 : radar::kNormal90);
+    deviation.push_back((rcs - median) / std::abs(end - median));
+  }
+  ASSERT_GT(deviation.size(), 100u);
+  EXPECT_NEAR(mean(deviation), 0.0, 0.3);
+  EXPECT_NEAR(share_of(deviation, [](double d) { return std::abs(d) > 1.0; }), 0.2, 0.12);
 }
 
 TEST(ProfileInSensor, HiddenObjectsAreNotDetected) {
