@@ -226,7 +226,7 @@ void StatisticalReturns::restate_mirror_images(const ScanContext& context, std::
     const auto body = std::find_if(context.scene.bodies.begin(), context.scene.bodies.end(),
                                    [&](const Body& b) { return b.id == e.truth.object_id; });
     if (body == context.scene.bodies.end()) continue;
-    // The image shows the object from another side, so it does not fluctuate with the object's own detections.
+    // A mirror image shows the object from another side, so it does not fluctuate with the object's own detections.
     const double level = strongest_level_dbsm(profile_.strength, body->kind, e.range_m);
     Stream stream = context.draws.once("mirror strength", e.key);
     set_rcs(e, level + spec.mirror_strength_db + spec.mirror_strength_std_db * stream.gaussian(), fov);
