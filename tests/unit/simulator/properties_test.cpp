@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -288,22 +287,6 @@ TEST_P(Shipped, StationaryDetectionsHaveTheRangeRateOfTheEgoMotion) {
     }
   }
   EXPECT_GT(compared, 500u);
-}
-
-TEST_P(Shipped, IsFasterThanRealTime) {
-  const Scenario s = scenario(GetParam());
-  const VehicleConfig vehicle = vehicle_named(s.vehicle);
-  constexpr double kPart_s = 5.0;
-  const std::clock_t begin = std::clock();
-  Drive drive(s, vehicle, 1, kPart_s);
-  std::size_t detections = 0;
-  while (const Event* event = drive.next()) {
-    if (event->scan != nullptr) detections += event->truth->size();
-  }
-  const double cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  std::printf("%s: %.0f times real time, %zu detections in %.0f s\n", s.name.c_str(), kPart_s / cpu_s, detections,
-              kPart_s);
-  EXPECT_LT(cpu_s, kPart_s);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(scenario_names()));

@@ -1,5 +1,3 @@
-#include <ctime>
-
 #include <gtest/gtest.h>
 
 #include "services/common/geometry/frames.hpp"
@@ -212,32 +210,6 @@ TEST(Effects, AMisalignedAndStepChangedRadarSeesTheWorldTurned) {
                                  geometry::direction(m.scan->azimuth_rad[0], m.scan->elevation_rad[0]);
     EXPECT_LT((seen - truth).norm(), 1e-6);
   }
-}
-
-TEST(Effects, FourRadarsAreMuchFasterThanRealTime) {
-  Road road(600, 75, 12);
-  road.effects.clutter_per_scan = 1.5;
-  std::vector<RadarSensor> sensors;
-  for (const double yaw : {0.0, M_PI_2, M_PI, -M_PI_2}) {
-    road.config.id = static_cast<std::uint32_t>(sensors.size() + 1);
-    road.config.mounting_pose.yaw_rad = yaw;
-    sensors.emplace_back(road.config, road.effects, road.ego_body, road.seed);
-  }
-  Measured m;
-  std::size_t detections = 0;
-  constexpr std::uint32_t kCycles = 20;  // a second
-  const std::clock_t begin = std::clock();
-  for (std::uint32_t cycle = 0; cycle < kCycles; ++cycle) {
-    for (RadarSensor& sensor : sensors) {
-      sensor.measure(road.scene, cycle, *m.scan, m.truth);
-      detections += m.count();
-    }
-  }
-  const double cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  RecordProperty("cpu_ms_per_scan", std::to_string(1000.0 * cpu_s / (kCycles * 4)));
-  std::printf("%.3f ms of CPU a scan, %.1f detections\n", 1000.0 * cpu_s / (kCycles * 4),
-              static_cast<double>(detections) / (kCycles * 4));
-  EXPECT_LT(cpu_s, 0.5);
 }
 
 }  // namespace
