@@ -11,11 +11,13 @@
 #include "deploy/roudi/pools.hpp"
 #include "deploy/supervisor/domain.hpp"
 #include "services/boresight/commands/commands.hpp"
-#include "services/boresight/commands/detection_truths.hpp"
+#include "services/boresight/commands/report_input.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/commands/simulate_drive.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
+#include "services/boresight/run/summary.hpp"
+#include "services/boresight/run/writer.hpp"
 #include "services/boresight/score/mounting_truth.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/clock.hpp"
@@ -118,12 +120,7 @@ Drive recorded_drive(const DemoOptions& options, const VehicleConfig& vehicle) {
   return drive;
 }
 
-/// Records of the run by the monitor.
-struct Records {
-  fs::path snapshots, scans;
-};
-
-supervisor::ProcessSpec monitor_of(const DemoOptions& options, const Records& records) {
+supervisor::ProcessSpec monitor_of(const DemoOptions& options, const fs::path& run_folder) {
   supervisor::ProcessSpec spec;
   spec.name = "monitor";
   spec.command.arguments = {own_program().string(),
@@ -133,9 +130,7 @@ supervisor::ProcessSpec monitor_of(const DemoOptions& options, const Records& re
                             "--vehicle",
                             options.configuration.vehicle_name,
                             "--record",
-                            records.snapshots.string(),
-                            "--record-scans",
-                            records.scans.string()};
+                            run_folder.string()};
   spec.role = supervisor::Role::kSpectator;
   spec.shares_terminal = true;
   return spec;
@@ -174,7 +169,7 @@ struct Played {
 };
 
 /// Plays the drive through a fresh domain. Whatever happens, the domain is gone after.
-Played play(const DemoOptions& options, const Drive& drive, const fs::path& logs, const Records& records) {
+Played play(const DemoOptions& options, const Drive& drive, const fs::path& logs, const fs::path& run_folder) {
   const auto segments = roudi::single_segment();
   if (const auto shortage = supervisor::shared_memory_shortage(roudi::total_bytes(segments), "/dev/shm")) {
     throw std::runtime_error(*shortage);
@@ -190,7 +185,7 @@ Played play(const DemoOptions& options, const Drive& drive, const fs::path& logs
   // The estimator compares its key figures with the truth.
   if (!drive.truth_file.empty()) domain_options.environment.emplace_back("BORESIGHT_TRUTH", drive.truth_file.string());
   supervisor::DomainConfig config = supervisor::domain_of_catalogue(domain_options, pools);
-  config.services.push_back(monitor_of(options, records));
+  config.services.push_back(monitor_of(options, run_folder));
 
   terminal::print(fmt::format("starting RouDi and {} services; their output is in {}\n",
                               catalogue::kNumberOfSupervisedServices, logs.string()));
@@ -257,6 +252,12 @@ void remove_earlier_logs(const fs::path& logs) {
   for (const std::string& name : names) fs::remove(logs / (name + ".log"));
 }
 
+/// The monitor would continue an earlier record.
+void remove_earlier_run(const fs::path& folder) {
+  for (const std::string_view name : run::kFileNames) fs::remove(folder / name);
+  for (const char* const name : {"monitor.jsonl", "run.json"}) fs::remove(folder / name);
+}
+
 int run_demo(DemoOptions options) {
   const bool simulated = options.recordings.empty();
   if (simulated && !options.truth.empty()) throw UsageError("--truth belongs to --recording");
@@ -268,28 +269,28 @@ int run_demo(DemoOptions options) {
   options.configuration.directory = fs::absolute(options.configuration.directory);
   options.output = fs::absolute(options.output);
   const fs::path logs = options.output / "logs";
-  const Records records{options.output / "record.txt", options.output / "scans.txt"};
+  const fs::path run_folder = options.output / "run";
   std::error_code error;
   fs::create_directories(logs, error);
   if (error) throw terminal::OutputError(logs.string(), error.value());
   remove_earlier_logs(logs);
   const fs::path page = options.output / "report.html";
-  for (const fs::path& earlier : {records.snapshots, records.scans, page}) fs::remove(earlier);
+  fs::remove(page);
+  remove_earlier_run(run_folder);
 
   const Drive drive = simulated ? simulated_drive(options, input.vehicle) : recorded_drive(options, input.vehicle);
-  const Played played = play(options, drive, logs, records);
+  const Played played = play(options, drive, logs, run_folder);
 
-  InputFile recorded_snapshots(records.snapshots.string()), recorded_scans(records.scans.string());
   input.title = drive.title + ", vehicle " + input.vehicle.name;
-  monitor::DamagedLines damaged;
-  input.snapshots = monitor::read_record(recorded_snapshots, records.snapshots.string(), damaged);
   input.truth = drive.truth;
   input.events = event_lines(played.events);
   input.pace = pace_of(options.speed);
-  const auto truths = drive.truth_file.empty() ? std::nullopt : detection_truths_beside(drive.truth_file);
-  input.ghosts = report::find_ghosts(recorded_scans, records.scans.string(), truths ? &*truths : nullptr);
-  input.more_checks = report::ghost_checks(input.ghosts);
-  input.more_checks.push_back(report::record_check("record", damaged));
+  read_run_folder(run_folder, drive.truth_file, input);
+  if (input.ghosts.truth_begin_ns) {
+    InputFile run_json((run_folder / "run.json").string());
+    const std::string text{std::istreambuf_iterator<char>(run_json), std::istreambuf_iterator<char>()};
+    terminal::write_file(run_folder / "run.json", run::with_truth_begin(text, *input.ghosts.truth_begin_ns));
+  }
   input.more_checks.push_back(check_of_processes(played.events));
   if (options.speed == "max") {
     input.more_checks.push_back(
@@ -330,7 +331,8 @@ void add_demo_command(CLI::App& app, int& exit_code) {
   command->add_option("--duration", options->duration_s, "Plays so many seconds of the drive; 0: all of it")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
-  command->add_option("--out", options->output, "Folder for the report, the logs and the simulated drive")
+  command
+      ->add_option("--out", options->output, "Folder for the report, the run folder, the logs and the simulated drive")
       ->type_name("DIR")
       ->capture_default_str();
   on_call(

@@ -1,8 +1,8 @@
 // `boresight monitor`: the running system on the terminal.
-#include <cerrno>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -10,10 +10,10 @@
 #include <unistd.h>
 
 #include "services/boresight/commands/commands.hpp"
+#include "services/boresight/commands/live_record.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
-#include "services/boresight/monitor/scan_record.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
@@ -30,46 +30,9 @@ constexpr std::int64_t kLinePeriod_ns = 3'000'000'000;
 
 struct MonitorOptions {
   runtime::Configuration configuration;
-  std::string json;  ///< file, "-" for standard output; empty: text
-  std::string record_file;
-  std::string scans_file;
+  std::string json;              ///< file, "-" for standard output; empty: text
+  std::filesystem::path record;  ///< run folder; empty: none
   double duration_s = 0.0;
-};
-
-/// A record that grows by whole lines. The first error is kept until check(), so that the live view goes on.
-class AppendedFile {
- public:
-  /// An empty path is no file. Throws OutputError.
-  explicit AppendedFile(const std::string& path) : path_(path) {
-    if (path.empty()) return;
-    errno = 0;
-    stream_.open(path, std::ios::app);
-    if (!stream_) throw terminal::OutputError(path, errno);
-  }
-  [[nodiscard]] bool is_open() const { return stream_.is_open(); }
-  template <typename Write>
-  void append(const Write& write) {
-    if (!is_open() || error_ != 0) return;
-    errno = 0;
-    write(stream_);
-    note_error();
-  }
-  void flush() {
-    append([](std::ofstream& stream) { stream.flush(); });
-  }
-  /// Throws OutputError if anything was lost.
-  void check() {
-    flush();
-    if (error_ != 0) throw terminal::OutputError(path_, error_);
-  }
-
- private:
-  void note_error() {
-    if (!stream_) error_ = errno != 0 ? errno : EIO;
-  }
-  std::string path_;
-  std::ofstream stream_;
-  int error_ = 0;
 };
 
 /// Redraws in place: every line is cleared to its end, and the rest of a longer screen below.
@@ -91,23 +54,26 @@ int run_monitor(const MonitorOptions& options) {
   runtime::log::initialise("boresight-monitor");
   const VehicleConfig vehicle = options.configuration.vehicle();
   monitor::Accumulator accumulator(vehicle);
-  AppendedFile record(options.record_file), scans(options.scans_file);
+  std::optional<LiveRecord> record;
+  if (!options.record.empty()) record.emplace(options.record);
   terminal::OutputFile output(options.json.empty() ? "-" : options.json);
 
   runtime::Node node(catalogue::Service::kMonitor, "-" + std::to_string(getpid()));
-  node.on<AlignmentEstimate>([&](const AlignmentEstimate& m) { accumulator.observe(m); });
-  node.on<HealthReport>([&](const HealthReport& m) { accumulator.observe(m); });
+  const auto observe = [&](const auto& message) {
+    accumulator.observe(message);
+    if (record) record->observe(message);
+  };
+  // A scan before its results, so that few scans are incomplete at a time.
+  node.on<EgoMotion>(observe);
+  node.on<RadarScan>([&](const RadarScan& m) {
+    accumulator.observe(m, runtime::monotonic_now_ns());
+    if (record) record->observe(m);
+  });
+  node.on<ClassifiedScan>(observe);
+  node.on<TrackList>(observe);
+  node.on<AlignmentEstimate>(observe);
+  node.on<HealthReport>(observe);
   node.on<ServiceStatus>([&](const ServiceStatus& m) { accumulator.observe(m); });
-  node.on<EgoMotion>([&](const EgoMotion& m) { accumulator.observe(m); });
-  node.on<RadarScan>([&](const RadarScan& m) { accumulator.observe(m, runtime::monotonic_now_ns()); });
-  node.on<ClassifiedScan>([&](const ClassifiedScan& m) {
-    accumulator.observe(m);
-    scans.append([&m](std::ofstream& file) { monitor::write_scan(file, m); });
-  });
-  node.on<TrackList>([&](const TrackList& m) {
-    accumulator.observe(m);
-    scans.append([&m](std::ofstream& file) { monitor::write_tracks(file, m); });
-  });
 
   const std::int64_t begin_ns = runtime::monotonic_now_ns();
   const auto elapsed_s = [begin_ns] { return static_cast<double>(runtime::monotonic_now_ns() - begin_ns) * 1e-9; };
@@ -118,27 +84,23 @@ int run_monitor(const MonitorOptions& options) {
       draw(snapshot(), elapsed_s());
       return;
     }
-    output.write((options.json.empty() ? monitor::render_line(snapshot(), elapsed_s()) : monitor::to_json(snapshot())) +
-                 "\n");
+    output.write(options.json.empty() ? monitor::render_line(snapshot(), elapsed_s()) + "\n"
+                                      : monitor::to_json(snapshot()));
     output.flush();
   };
   if (screen) terminal::print("\x1b[2J");
   node.every(!options.json.empty() ? kJsonPeriod_ns : (screen ? kScreenPeriod_ns : kLinePeriod_ns), show);
-  if (record.is_open()) {
-    node.every(kRecordPeriod_ns, [&] {
-      record.append([&](std::ofstream& file) { monitor::write_record(file, snapshot()); });
-      record.flush();
-    });
-  }
+  if (record) node.every(kRecordPeriod_ns, [&] { record->add(snapshot()); });
   if (options.duration_s > 0.0) {
     node.every(static_cast<std::int64_t>(options.duration_s * 1e9), [&node] { node.stop(); });
   }
   const int result = node.spin();
   if (screen) show();
   output.commit();
-  record.append([&](std::ofstream& file) { monitor::write_record(file, snapshot()); });
-  record.check();
-  scans.check();
+  if (record) {
+    record->add(snapshot());
+    record->finish(options.configuration, vehicle);
+  }
   return exit_code_after_signal(result);
 }
 
@@ -153,18 +115,15 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
   add_json_option(*command, options->json,
                   "A line of JSON each second instead of the screen; without FILE, or with \"-\": to standard output");
   command
-      ->add_option("--record", options->record_file, "Appends two snapshots a second to FILE, for `boresight report`")
-      ->type_name("FILE");
-  command
-      ->add_option("--record-scans", options->scans_file,
-                   "Appends every classified scan and track list to FILE, for `boresight report --scans`; about 20 MB "
-                   "a minute")
-      ->type_name("FILE");
+      ->add_option("--record", options->record,
+                   "Run folder for `boresight report` and `boresight score`: every scan with its results, and two "
+                   "snapshots a second. A record in it is continued")
+      ->type_name("DIR");
   command->add_option("--duration", options->duration_s, "Ends after so many seconds; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
   on_call(
-      *command, exit_code, {"monitor --vehicle demo --record record.txt", "ended after --duration or by SIGTERM", ""},
+      *command, exit_code, {"monitor --vehicle demo --record run", "ended after --duration or by SIGTERM", ""},
       [options] { return run_monitor(*options); }, &options->configuration);
 }
 

@@ -1,11 +1,11 @@
-// `boresight report`: a monitor's record as a page and a judgement.
+// `boresight report`: a run folder as a page and a judgement.
 #include <memory>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
 #include "services/boresight/commands/commands.hpp"
-#include "services/boresight/commands/detection_truths.hpp"
+#include "services/boresight/commands/report_input.hpp"
 #include "services/boresight/commands/run_command.hpp"
 #include "services/boresight/report/html_report.hpp"
 #include "services/boresight/report/truth_table.hpp"
@@ -17,32 +17,21 @@ namespace {
 
 struct ReportOptions {
   runtime::Configuration configuration;
-  std::string record;
+  std::string folder;
   std::string truth;
-  std::string scans;
   std::string output = "report.html";
 };
 
 int run_report(const ReportOptions& options) {
-  InputFile record(options.record);
   report::ReportInput input;
-  input.title = options.record;
-  monitor::DamagedLines damaged;
-  input.snapshots = monitor::read_record(record, options.record, damaged);
-  input.more_checks.push_back(report::record_check("record", damaged));
+  input.title = options.folder;
   input.vehicle = options.configuration.vehicle();
   if (!options.truth.empty()) {
     InputFile truth(options.truth);
     input.truth = report::truth_of(read_drive_truth(truth), input.vehicle);
     if (!input.truth.known()) throw std::runtime_error("no truth in " + options.truth);
   }
-  if (!options.scans.empty()) {
-    InputFile scans(options.scans);
-    const auto truths = options.truth.empty() ? std::nullopt : detection_truths_beside(options.truth);
-    input.ghosts = report::find_ghosts(scans, options.scans, truths ? &*truths : nullptr);
-    const std::vector<report::Check> checks = report::ghost_checks(input.ghosts);
-    input.more_checks.insert(input.more_checks.end(), checks.begin(), checks.end());
-  }
+  read_run_folder(options.folder, options.truth, input);
   const std::string page = report::render_html(input);
   stop_if_interrupted();
   terminal::write_file(options.output, page);
@@ -56,24 +45,21 @@ int run_report(const ReportOptions& options) {
 
 void add_report_command(CLI::App& app, int& exit_code) {
   CLI::App* const command =
-      app.add_subcommand("report", "Judges a record of `boresight monitor --record` and draws it as an HTML page.");
+      app.add_subcommand("report", "Judges a run folder of `boresight monitor --record` and draws it as an HTML page.");
   auto options = std::make_shared<ReportOptions>();
-  command->add_option("record", options->record, "Record of the monitor")->type_name("FILE")->required();
+  command->add_option("folder", options->folder, "Run folder")->type_name("DIR")->required();
   runtime::add_config_option(*command, options->configuration);
   runtime::add_vehicle_option(*command, options->configuration)->envname("BORESIGHT_VEHICLE");
   command
       ->add_option("--truth", options->truth,
                    "truth.csv of a simulated drive; the tables beside it are the truth of scans and tracks")
       ->type_name("FILE");
-  command->add_option("--scans", options->scans, "Record of `boresight monitor --record-scans` of the same run")
-      ->type_name("FILE");
   command->add_option("--out", options->output, "HTML page to write; \"-\": standard output, without the summary")
       ->type_name("FILE")
       ->capture_default_str();
   on_call(
       *command, exit_code,
-      {"report record.txt --vehicle demo --scans scans.txt --truth drive/truth.csv --out report.html",
-       "every check passed", "a check failed"},
+      {"report run --vehicle demo --truth drive/truth.csv --out report.html", "every check passed", "a check failed"},
       [options] { return run_report(*options); }, &options->configuration);
 }
 

@@ -23,7 +23,7 @@ inline std::string quoted(std::string_view word) {
 /// missing from every result.
 struct DamagedLines {
   std::uint64_t count = 0;
-  std::string first;  ///< "scans.txt:17: y of detection 3 is '1.x', allowed: a number"
+  std::string first;  ///< "monitor.jsonl:17: radars[2].yaw_deg is '1.x', allowed: a number"
 
   void add(std::string_view file, std::uint64_t line, std::string_view why) {
     if (count++ == 0) first = fmt::format("{}:{}: {}", file, line, why);

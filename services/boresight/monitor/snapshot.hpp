@@ -42,6 +42,10 @@ struct AlignmentDetails {
   double nees = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// By Provenance.
+inline constexpr std::array<std::string_view, 6> kLabelWords = {"unknown",      "moving",       "stationary",
+                                                                "ghost_type_1", "ghost_type_2", "clutter"};
+
 /// Labels of the detections in all scans of the ghost filter that the monitor received.
 struct LabelCounts {
   std::array<std::uint64_t, 6> classified{};  ///< by Provenance
@@ -121,14 +125,10 @@ struct Snapshot {
   std::array<LatencyHistogram, kNumberOfLatencies> latencies;
 };
 
-/// Appends one snapshot to a record: lines of words, closed by a line "end". A record that was cut off in the middle of
-/// a snapshot is still readable.
-void write_record(std::ostream& output, const Snapshot& snapshot);
-/// Reads the complete snapshots. A snapshot with a damaged line or without its end is skipped and counted. Errors name
-/// the record `name`.
-[[nodiscard]] std::vector<Snapshot> read_record(std::istream& input, const std::string& name, DamagedLines& damaged);
-
-/// One line of JSON.
+/// One line of JSON with line feed: config/schema/run.md, monitor.jsonl.
 [[nodiscard]] std::string to_json(const Snapshot& snapshot);
+/// Reads such lines. A line with a field that is missing or not allowed is skipped and counted. Errors name the file
+/// `name`.
+[[nodiscard]] std::vector<Snapshot> read_snapshots(std::istream& input, const std::string& name, DamagedLines& damaged);
 
 }  // namespace boresight::monitor

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <istream>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "interfaces/messages/names.hpp"
+#include "services/boresight/report/recorded_scans.hpp"
 #include "services/common/text/measured.hpp"
 #include "services/simulator/judge/matching.hpp"
 
@@ -16,18 +15,10 @@ namespace boresight::report {
 
 namespace {
 
-using Line = monitor::ScanRecordReader::Line;
-
 /// A scan of the record is a scan of the truth if their times differ by less: far below the cycle time of any radar,
 /// far above the variation of the gateway's mapping from the sensor's clock to the ECU's.
 constexpr double kSameTime_s = 0.01;
 constexpr std::int64_t kView_ns = 100'000'000;  // scans that are shown together: two cycles of 50 ms
-
-struct SeenScan {
-  std::uint32_t radar;
-  std::int64_t time_ns;
-  std::size_t detections;
-};
 
 /// The scan of the truth at that time with as many detections, or null.
 const judge::TrueScan* scan_at(const judge::TrueScans& truth, std::uint32_t radar, double t_s, std::size_t detections) {
@@ -45,7 +36,7 @@ const judge::TrueScan* scan_at(const judge::TrueScans& truth, std::uint32_t rada
 /// The ECU time at which the drive began. Stamps do not state where a replay began, and sequence numbers would be wrong
 /// by every lost scan. Each scan of the truth that may be the first recorded one is tried; the one that lets most of
 /// the other recorded scans find theirs is taken.
-std::optional<std::int64_t> beginning(const std::vector<SeenScan>& seen, const judge::TrueScans& truth) {
+std::optional<std::int64_t> beginning(const std::vector<ScanRow>& seen, const judge::TrueScans& truth) {
   if (seen.empty()) return std::nullopt;
   const auto of_radar = truth.find(seen.front().radar);
   if (of_radar == truth.end()) return std::nullopt;
@@ -74,10 +65,10 @@ bool is_ghost(Provenance provenance) {
   return provenance == Provenance::kGhostType1 || provenance == Provenance::kGhostType2;
 }
 
-/// One scan with its truth, as long as a track list may refer to it.
+/// The latest scan of a radar with its truth.
 struct Recent {
   std::unique_ptr<ClassifiedScan> scan;
-  const judge::TrueScan* truth;
+  const judge::TrueScan* truth = nullptr;
   std::size_t ghosts = 0;
   std::size_t mistakes = 0;
 };
@@ -87,15 +78,19 @@ class Finder {
   Finder(const DetectionTruths* truth, std::optional<std::int64_t> begin_ns) : truth_(truth), begin_ns_(begin_ns) {
     if (truth_ != nullptr) out_.confusion.emplace();
   }
-  void take(const ClassifiedScan& scan) {
+  void take(const ClassifiedScan& scan, const TrackList& list) {
     ++out_.scans;
     const std::int64_t time_ns = scan.header.measurement_time_ns;
     out_.first_scan_ns = out_.scans == 1 ? time_ns : std::min(out_.first_scan_ns, time_ns);
+    *tracks_ = list;
     const std::size_t count = scan.number_of_valid_detections;
-    Recent recent{std::make_unique<ClassifiedScan>(scan), nullptr};
-    if (truth_ != nullptr && begin_ns_) {
-      recent.truth = scan_at(truth_->scans, scan.header.source_id, seconds(scan.header.measurement_time_ns), count);
-    }
+    Recent& recent = recent_[scan.header.source_id];
+    if (!recent.scan) recent.scan = std::make_unique<ClassifiedScan>();
+    *recent.scan = scan;
+    recent.ghosts = recent.mistakes = 0;
+    recent.truth = truth_ != nullptr && begin_ns_
+                       ? scan_at(truth_->scans, scan.header.source_id, seconds(time_ns), count)
+                       : nullptr;
     if (truth_ != nullptr && count > 0) ++(recent.truth != nullptr ? out_.compared_scans : out_.unknown_scans);
     for (std::size_t i = 0; i < count; ++i) {
       const bool rejected = (scan.detection_flags[i] & corrected_flag::kRejected) != 0;
@@ -105,21 +100,12 @@ class Finder {
       out_.confusion->add(is, scan.provenance[i], rejected);
       if (!rejected && is != scan.provenance[i]) ++recent.mistakes;
     }
-    std::deque<Recent>& of_radar = recent_[scan.header.source_id];
-    of_radar.push_front(std::move(recent));
-    if (of_radar.size() > kKept) of_radar.pop_back();
-    look(time_ns);
-  }
-  void take(const TrackList& list) {
-    ++out_.track_lists;
-    *tracks_ = list;
-    for (const Recent& recent : recent_[list.header.source_id]) {
-      const std::int64_t time_ns = recent.scan->header.measurement_time_ns;
-      if (time_ns != list.header.measurement_time_ns || recent.truth == nullptr) continue;
+    if (recent.truth != nullptr) {
       const judge::Matching matching =
           judge::match(list, list.number_of_confirmed_tracks, truth_->objects.at(seconds(time_ns)));
-      false_tracks_.add(static_cast<double>(time_ns) * 1e-9, *recent.scan, recent.truth->detections, list, matching);
+      false_tracks_.add(static_cast<double>(time_ns) * 1e-9, scan, recent.truth->detections, list, matching);
     }
+    look(time_ns);
   }
   [[nodiscard]] GhostFindings finish() {
     out_.ghost_tracks = false_tracks_.long_ghost_tracks();
@@ -128,15 +114,12 @@ class Finder {
   }
 
  private:
-  static constexpr std::size_t kKept = 4;  // scans of a radar that a track list may come after
   [[nodiscard]] double seconds(std::int64_t time_ns) const { return static_cast<double>(time_ns - *begin_ns_) * 1e-9; }
   /// The latest scan of each radar within kView_ns of the time.
   [[nodiscard]] std::vector<const Recent*> together(std::int64_t now_ns) const {
     std::vector<const Recent*> scans;
-    for (const auto& [radar, of_radar] : recent_) {
-      if (!of_radar.empty() && std::abs(now_ns - of_radar.front().scan->header.measurement_time_ns) < kView_ns) {
-        scans.push_back(&of_radar.front());
-      }
+    for (const auto& [radar, recent] : recent_) {
+      if (std::abs(now_ns - recent.scan->header.measurement_time_ns) < kView_ns) scans.push_back(&recent);
     }
     return scans;
   }
@@ -194,7 +177,7 @@ class Finder {
   const DetectionTruths* truth_;
   std::optional<std::int64_t> begin_ns_;
   GhostFindings out_;
-  std::map<std::uint32_t, std::deque<Recent>> recent_;  // by radar, latest first
+  std::map<std::uint32_t, Recent> recent_;  // by radar
   std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
   judge::FalseTracks false_tracks_;
   std::size_t most_ghosts_ = 0, most_mistakes_ = 0;
@@ -202,36 +185,50 @@ class Finder {
 
 }  // namespace
 
-GhostFindings find_ghosts(std::istream& record, const std::string& name, const DetectionTruths* truth) {
-  const auto scan = std::make_unique<ClassifiedScan>();
-  const auto tracks = std::make_unique<TrackList>();
+GhostFindings find_ghosts(const std::filesystem::path& folder, const DetectionTruths* truth,
+                          const std::function<void()>& look) {
+  if (!std::filesystem::exists(folder / "scans.csv")) return {};
+  constexpr std::uint64_t kScansBetweenLooks = 256;
   std::optional<std::int64_t> begin_ns;
-  if (truth != nullptr) {
-    std::vector<SeenScan> seen;
-    monitor::ScanRecordReader reader(record, name);
-    for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
-      if (line != Line::kScan || scan->number_of_valid_detections == 0) continue;
-      seen.push_back({scan->header.source_id, scan->header.measurement_time_ns, scan->number_of_valid_detections});
+  std::string problem;
+  try {
+    std::vector<ScanRow> seen;
+    if (truth != nullptr) {
+      ScanRows rows(folder);
+      for (ScanRow row; rows.next(row);) {
+        if (row.detections > 0) seen.push_back(row);
+      }
     }
-    begin_ns = beginning(seen, truth->scans);
-    record.clear();
-    record.seekg(0);
+    if (truth != nullptr) begin_ns = beginning(seen, truth->scans);
+  } catch (const score::InputError& error) {
+    problem = error.what();
   }
   Finder finder(truth, begin_ns);
-  monitor::ScanRecordReader reader(record, name);
-  for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
-    if (line == Line::kScan) finder.take(*scan);
-    if (line == Line::kTracks) finder.take(*tracks);
+  try {
+    const auto scan = std::make_unique<ClassifiedScan>();
+    const auto tracks = std::make_unique<TrackList>();
+    RecordedScans scans(folder);
+    for (std::uint64_t count = 1; scans.next(*scan, *tracks); ++count) {
+      finder.take(*scan, *tracks);
+      if (look && count % kScansBetweenLooks == 0) look();
+    }
+  } catch (const score::InputError& error) {
+    if (problem.empty()) problem = error.what();
   }
   GhostFindings findings = finder.finish();
-  findings.damaged = reader.damaged();
+  findings.problem = problem;
+  findings.is_recorded = true;
+  findings.truth_begin_ns = begin_ns;
   return findings;
 }
 
 std::vector<Check> ghost_checks(const GhostFindings& findings) {
   std::vector<Check> checks;
-  if (findings.scans + findings.track_lists + findings.damaged.count > 0) {
-    checks.push_back(record_check("record of scans", findings.damaged));
+  if (findings.is_recorded) {
+    checks.push_back({findings.problem.empty()
+                          ? "the tables of scans could be read to their end"
+                          : "the tables of scans could not be read to their end: " + findings.problem,
+                      findings.problem.empty(), false});
   }
   if (!findings.confusion) return checks;
   const judge::Confusion& c = *findings.confusion;

@@ -1,9 +1,10 @@
-// How the ghost filter and the tracker of a run classified and tracked every detection, from the record of their
-// messages; compared with the truth where it is known.
+// How the ghost filter and the tracker of a run classified and tracked every detection, from the tables of its run
+// folder; compared with the truth where it is known.
 #pragma once
 
 #include <cstdint>
-#include <iosfwd>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,7 +12,6 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
-#include "services/boresight/monitor/scan_record.hpp"
 #include "services/boresight/report/summary.hpp"
 #include "services/simulator/judge/confusion.hpp"
 #include "services/simulator/judge/false_tracks.hpp"
@@ -55,17 +55,18 @@ struct PlanView {
 };
 
 struct GhostFindings {
-  std::uint64_t scans = 0;         ///< in the record; 0: there is none
-  std::uint64_t track_lists = 0;   ///< the same
+  bool is_recorded = false;        ///< whether the folder holds scans.csv
+  std::uint64_t scans = 0;         ///< with a track list each
   std::int64_t first_scan_ns = 0;  ///< of measurement, of the earliest
-  monitor::DamagedLines damaged;   ///< their content is missing below
+  std::string problem;             ///< why the tables could not be read to their end; the rest is missing below
   PlanView most_ghosts;            ///< where most detections were classified as ghosts; empty if none ever was
   // With truth only:
-  std::optional<judge::Confusion> confusion;  ///< truth × label of all scans that were matched to the truth
-  std::uint64_t compared_scans = 0;           ///< matched scans with detections
+  std::optional<std::int64_t> truth_begin_ns;  ///< time 0 of the truth on the clock of the tables
+  std::optional<judge::Confusion> confusion;   ///< truth × label of all scans that were matched to the truth
+  std::uint64_t compared_scans = 0;            ///< matched scans with detections
   std::uint64_t unknown_scans =
       0;  ///< others with detections: the truth has no scan of that time and number of detections
-  std::vector<judge::GhostTrack> ghost_tracks;  ///< times are CLOCK_MONOTONIC
+  std::vector<judge::GhostTrack> ghost_tracks;  ///< times on the clock of the tables
   std::size_t other_false_tracks = 0;           ///< of clutter, or of the stationary world
   /// Where most labels differ from the truth. In the first moments of a drive neither reflectors nor tracks are known,
   /// so most labels would differ there; only this view skips them.
@@ -73,9 +74,10 @@ struct GhostFindings {
   static constexpr double kFirstMoments_s = 2.0;
 };
 
-/// `record` was written by monitor::write_scan and write_tracks; it is read twice. Errors name it `name`. `truth` is
-/// null where it is not known.
-[[nodiscard]] GhostFindings find_ghosts(std::istream& record, const std::string& name, const DetectionTruths* truth);
+/// Reads scans.csv, detections.csv, reflectors.csv and tracks.csv; nothing where there is no scans.csv. `truth` is null
+/// where it is not known. `look` is called now and then, and may end the reading by an exception.
+[[nodiscard]] GhostFindings find_ghosts(const std::filesystem::path& folder, const DetectionTruths* truth,
+                                        const std::function<void()>& look = {});
 
 /// What a filter must reach on a drive with truth: the bars of the ghost filter's scenarios (docs/ghosts.md).
 struct GhostBars {
@@ -83,7 +85,7 @@ struct GhostBars {
   static constexpr double kGhostsClassifiedGhosts_percent = 90.0;  ///< of each type
   static constexpr double kScansCompared_percent = 99.0;
 };
-/// Checks: the record is whole, and its scans are those of the truth. The bars are aims, because one drive may miss
+/// Checks: the tables are whole, and their scans are those of the truth. The bars are aims, because one drive may miss
 /// what the median of many drives reaches. Without truth only the first check; empty where nothing was recorded.
 [[nodiscard]] std::vector<Check> ghost_checks(const GhostFindings& findings);
 

@@ -15,12 +15,6 @@ constexpr std::int64_t kEarliest_ns = 10'000'000'000;
 
 }  // namespace
 
-Rejection rejection_of(std::uint16_t flags) {
-  if ((flags & corrected_flag::kInvalid) != 0) return Rejection::kInvalid;
-  if ((flags & corrected_flag::kOutsideRegion) != 0) return Rejection::kOutsideRegion;
-  return (flags & corrected_flag::kWeak) != 0 ? Rejection::kWeak : Rejection::kNone;
-}
-
 Chain::Chain(const VehicleConfig& vehicle, const Settings& settings, Listeners listeners, std::int64_t (*cpu_ns)())
     : vehicle_(vehicle),
       listeners_(std::move(listeners)),
@@ -115,8 +109,8 @@ bool Chain::add_scan(RadarScan& scan, std::int64_t time_ns) {
     tracker_.write(*tracks_);
   });
   timed(times_.ghost_filter, [&] { ghosts_->add_tracks(*tracks_); });
-  const ScanResult result{{time_ns, start_ns_}, number, scan, *corrected_, *classified_, *tracks_};
-  count(result);
+  const ScanResult result{{time_ns, start_ns_}, number, scan, *classified_, *tracks_};
+  add(result, counts_);
   if (listeners_.scan) listeners_.scan(result);
   publish_estimate(scan, time_ns);
   return true;
@@ -142,26 +136,6 @@ void Chain::publish_estimate(const RadarScan& scan, std::int64_t time_ns) {
   const alignment::RadarEstimate estimate = estimator_.estimate(index);
   const Eigen::Matrix3d turned = estimate.sensor_to_vehicle * nominal_[index].transpose();
   listeners_.estimate({{time_ns, start_ns_}, message, geometry::so3_log(turned), estimate.covariance});
-}
-
-void Chain::count(const ScanResult& result) {
-  RadarCounts& counts = counts_.radars[result.scan.header.source_id];
-  const std::size_t detections = result.classified.number_of_valid_detections;
-  counts.detections += detections;
-  counts.dropped_detections += result.scan.dropped_detections;
-  counts_.tracks += result.tracks.number_of_tracks;
-  for (std::size_t bit = 0; bit < counts.integrity.size(); ++bit) {
-    counts.integrity[bit] += static_cast<std::uint64_t>(result.scan.integrity >> bit & 1);
-  }
-  for (std::size_t bit = 0; bit < counts.flags.size(); ++bit) counts.flags[bit] += result.classified.flags >> bit & 1u;
-  for (std::size_t i = 0; i < detections; ++i) {
-    const Rejection rejection = rejection_of(result.corrected.detection_flags[i]);
-    if (rejection != Rejection::kNone) {
-      ++counts.rejections[static_cast<std::size_t>(rejection)];
-    } else {
-      ++counts.origins[std::min(static_cast<std::size_t>(result.classified.provenance[i]), kNumberOfOrigins - 1)];
-    }
-  }
 }
 
 }  // namespace boresight::run

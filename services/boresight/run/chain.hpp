@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,13 +28,6 @@ struct Settings {
   ghosts::Config ghosts;
   tracking::Config tracker;
   health::Config health;
-};
-
-/// Called in the order in which the results arise; each may be empty.
-struct Listeners {
-  std::function<void(const ScanResult&)> scan;
-  std::function<void(const EstimateResult&)> estimate;
-  std::function<void(const HealthResult&)> health;
 };
 
 /// One thread, no clock: the same inputs give the same results. A scan is corrected with the ego motions and estimates
@@ -78,7 +70,6 @@ class Chain {
   [[nodiscard]] std::int64_t to_core(std::int64_t time_ns);
   void note_measurement(std::int64_t time_ns);
   void publish_estimate(const RadarScan& scan, std::int64_t time_ns);
-  void count(const ScanResult& result);
   [[nodiscard]] HealthWatch::Report health_report();
 
   template <typename Work>
@@ -108,8 +99,5 @@ class Chain {
   std::int64_t start_ns_ = 0, latest_ns_ = 0;
   std::int64_t arrival_ns_ = 0;
 };
-
-/// Why the corrector rejected a detection with these corrected_flag bits.
-[[nodiscard]] Rejection rejection_of(std::uint16_t corrected_flags);
 
 }  // namespace boresight::run

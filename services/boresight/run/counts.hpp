@@ -6,6 +6,7 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/radar_scan.hpp"
+#include "services/boresight/run/results.hpp"
 
 namespace boresight::run {
 
@@ -42,5 +43,10 @@ struct Counts {
 struct StageTimes {
   std::int64_t estimator = 0, corrector = 0, ghost_filter = 0, tracker = 0, health = 0;
 };
+
+/// Why the corrector rejected a detection with these corrected_flag bits.
+[[nodiscard]] Rejection rejection_of(std::uint16_t corrected_flags);
+/// Adds detections, tracks, faults and missing inputs of a scan; the number of scans is counted by the caller.
+void add(const ScanResult& result, Counts& counts);
 
 }  // namespace boresight::run

@@ -3,12 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 
 #include <Eigen/Core>
 
 #include "interfaces/messages/alignment_estimate.hpp"
 #include "interfaces/messages/classified_scan.hpp"
-#include "interfaces/messages/corrected_scan.hpp"
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/radar_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
@@ -26,12 +26,12 @@ struct Moment {
   }
 };
 
-/// A scan that passed all stages. Index i is the same detection everywhere.
+/// A scan that passed all stages. Index i is the same detection everywhere; its corrected_flag bits are those of
+/// `classified`.
 struct ScanResult {
   Moment at;
   std::uint64_t number;  ///< of the scan of this radar, from 1
   const RadarScan& scan;
-  const CorrectedScan& corrected;
   const ClassifiedScan& classified;
   const TrackList& tracks;
 };
@@ -50,6 +50,13 @@ struct HealthResult {
   DataQualifier overall = DataQualifier::kNotAvailable;
   std::size_t number_of_sensors = 0;
   std::array<SensorHealth, kMaxRadars> sensors{};
+};
+
+/// Called in the order in which the results arise; each may be empty.
+struct Listeners {
+  std::function<void(const ScanResult&)> scan;
+  std::function<void(const EstimateResult&)> estimate;
+  std::function<void(const HealthResult&)> health;
 };
 
 }  // namespace boresight::run

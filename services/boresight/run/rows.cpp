@@ -5,7 +5,6 @@
 #include <cmath>
 #include <span>
 
-#include "services/boresight/run/chain.hpp"
 #include "services/boresight/run/counts.hpp"
 #include "services/boresight/run/csv_row.hpp"
 #include "services/boresight/run/origins.hpp"
@@ -92,7 +91,7 @@ void append_detections(std::string& rows, const ScanResult& result) {
   const bool has_rcs = scan.has(scan_field::kRcs);
   const bool has_ego = (classified.flags & (pipeline_flag::kNoEgoMotion | pipeline_flag::kEgoMotionStale)) == 0;
   for (std::size_t i = 0; i < classified.number_of_valid_detections; ++i) {
-    const std::uint16_t flags = result.corrected.detection_flags[i];
+    const std::uint16_t flags = classified.detection_flags[i];
     const bool has_position = std::isfinite(scan.range_m[i]) && std::isfinite(scan.azimuth_rad[i]);
     CsvRow row = begin_row(rows, result);
     row.number(i).number(scan.range_m[i]).number(scan.azimuth_rad[i]);

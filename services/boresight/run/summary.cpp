@@ -1,6 +1,7 @@
 #include "services/boresight/run/summary.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
@@ -48,15 +49,8 @@ json::Value counts_of(const RadarCounts& counts) {
   return value;
 }
 
-json::Value losses_of(const RadarCounts& counts, const SourceStatistics& source, const Reasons& rejected,
-                      const Reasons& noted) {
-  json::Value value;
-  value["missed_scans"] = source.lost;
-  value["rejected_messages"] = to_object(rejected);
-  value["noted_faults"] = to_object(noted);
-  value["e2e_lost"] = source.e2e_lost;
-  value["e2e_repeated"] = source.e2e_repeated;
-  value["e2e_wrong"] = source.e2e_wrong;
+/// The losses that the counts of the scans state.
+void add_losses_of_scans(const RadarCounts& counts, json::Value& value) {
   json::Value& integrity = value["scans_of_doubtful_integrity"] = json::Value::object();
   for (std::size_t i = 0; i < counts.integrity.size(); ++i) integrity[kIntegrityNames[i]] = counts.integrity[i];
   json::Value& lacking = value["scans_lacking_input"] = json::Value::object();
@@ -67,6 +61,31 @@ json::Value losses_of(const RadarCounts& counts, const SourceStatistics& source,
   rejections["invalid"] = number(Rejection::kInvalid);
   rejections["outside_region"] = number(Rejection::kOutsideRegion);
   rejections["weak"] = number(Rejection::kWeak);
+}
+
+json::Value losses_of(const RadarCounts& counts, const SourceStatistics& source, const Reasons& rejected,
+                      const Reasons& noted) {
+  json::Value value;
+  value["missed_scans"] = source.lost;
+  value["rejected_messages"] = to_object(rejected);
+  value["noted_faults"] = to_object(noted);
+  value["e2e_lost"] = source.e2e_lost;
+  value["e2e_repeated"] = source.e2e_repeated;
+  value["e2e_wrong"] = source.e2e_wrong;
+  add_losses_of_scans(counts, value);
+  return value;
+}
+
+json::Value losses_of(const RadarCounts& counts, const SensorHealth* health, std::uint64_t incomplete_scans) {
+  json::Value value;
+  if (health != nullptr) {
+    value["missed_scans"] = health->missed_scans;
+    value["e2e_lost"] = health->e2e_lost;
+    value["e2e_repeated"] = health->e2e_repeated;
+    value["e2e_wrong"] = health->e2e_wrong;
+  }
+  value["scans_not_recorded"] = incomplete_scans;
+  add_losses_of_scans(counts, value);
   return value;
 }
 
@@ -150,6 +169,42 @@ json::Value timing_of(const Timing& timing, double recording_s) {
 }
 
 }  // namespace
+
+std::string to_json(const LiveSummary& summary, const VehicleConfig& vehicle) {
+  const LiveResults& results = summary.results;
+  json::Value value;
+  value["tool"] = "boresight monitor";
+  value["version"] = summary.version;
+  value["format"] = kRunFormat;
+  value["complete"] = true;
+  value["continued"] = summary.is_continued;
+  value["vehicle"]["file"] = summary.vehicle_file;
+  value["vehicle"]["name"] = vehicle.name;
+  value["configuration"]["folder"] = summary.configuration;
+  value["clock"] = "CLOCK_MONOTONIC";
+  value["epoch_offset_ns"] = summary.epoch_offset_ns;
+  value["start_ns"] = results.start_ns();
+  value["recording_s"] = seconds_of(results.length_ns());
+  value["counts"] = totals_of(results.counts());
+  json::Value& radars = value["radars"] = json::Value::array();
+  for (const RadarConfig& radar : vehicle.radars) {
+    const RadarCounts& counts = results.counts().radars[radar.id];
+    json::Value each;
+    each["id"] = radar.id;
+    each["name"] = radar.name;
+    each["counts"] = counts_of(counts);
+    each["losses"] = losses_of(counts, results.health_of(radar.id), results.incomplete_scans()[radar.id]);
+    radars.push_back(each);
+  }
+  return json::document(value);
+}
+
+std::string with_truth_begin(std::string_view run_json, std::int64_t truth_begin_ns) {
+  json::Value value = json::Value::parse(run_json, nullptr, false);
+  if (!value.is_object()) throw std::invalid_argument("run.json is no JSON object");
+  value["truth_begin_ns"] = truth_begin_ns;
+  return json::document(value);
+}
 
 std::string to_json(const Summary& summary, const VehicleConfig& vehicle) {
   json::Value value;

@@ -10,6 +10,7 @@
 
 #include "services/boresight/run/counts.hpp"
 #include "services/boresight/run/gateway_feed.hpp"
+#include "services/boresight/run/live_results.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -49,6 +50,20 @@ struct Summary {
   std::array<Reasons, kMaxRadars + 1> rejected, noted;
   Timing timing;
 };
+
+/// What one who only listened to the running services knows of a drive.
+struct LiveSummary {
+  std::string version, vehicle_file, configuration;
+  bool is_continued = false;         ///< the folder held an earlier part; counts are those of the last part
+  std::int64_t epoch_offset_ns = 0;  ///< UNIX time minus the clock of the tables, when the record began
+  const LiveResults& results;
+};
+
+/// The text of run.json of a live record.
+[[nodiscard]] std::string to_json(const LiveSummary& summary, const VehicleConfig& vehicle);
+/// The text of run.json with the time 0 of the drive's truth on the clock of the tables, which a listener does not
+/// know. Throws std::invalid_argument if it is no JSON object.
+[[nodiscard]] std::string with_truth_begin(std::string_view run_json, std::int64_t truth_begin_ns);
 
 /// The text of run.json. Everything but "timing" is the same in every run.
 [[nodiscard]] std::string to_json(const Summary& summary, const VehicleConfig& vehicle);

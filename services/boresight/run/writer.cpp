@@ -10,7 +10,8 @@ namespace {
 constexpr std::size_t kEnough_bytes = 1 << 16;
 }
 
-Writer::Writer(Put put) : put_(std::move(put)) {
+Writer::Writer(Put put, bool has_headers) : put_(std::move(put)) {
+  if (has_headers) return;
   constexpr std::array<std::pair<File, std::string_view>, 5> kHeaders = {{{File::kScans, kScansHeader},
                                                                           {File::kDetections, kDetectionsHeader},
                                                                           {File::kReflectors, kReflectorsHeader},
@@ -42,7 +43,7 @@ void Writer::flush() {
 }
 
 void Writer::hand_over(std::size_t least_bytes) {
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
+  for (std::size_t i = rows_.size(); i-- > 0;) {
     if (rows_[i].size() < least_bytes) continue;
     put_(static_cast<File>(i), rows_[i]);
     rows_[i].clear();

@@ -20,13 +20,13 @@ class Writer {
   /// Appends text to a file.
   using Put = std::function<void(File, std::string_view text)>;
 
-  /// The header lines are the first rows.
-  explicit Writer(Put put);
+  /// The header lines are the first rows, unless the files have them already.
+  explicit Writer(Put put, bool has_headers = false);
 
   void write(const ScanResult& result);
   void write(const EstimateResult& result);
   void write(const HealthResult& result);
-  /// Hands over what has been gathered.
+  /// Hands over what has been gathered, scans.csv last: its rows say that a scan is whole in the other tables.
   void flush();
 
  private:

@@ -58,6 +58,14 @@ check "every scan of the run is found in the truth" grep -Eq '^  \[ok\] ([0-9,]+
 check "it states how many tracks followed a ghost" grep -Eq '^  \[(ok|MISSED)\] no confirmed track followed a ghost' "$out/whole.txt"
 check "its page shows labels, truth, and scans from above" \
   [ "$(grep -Ec 'classification of detections</h2>|comparison with the truth</h2>|Most detections classified as ghosts: at' "$out/whole/report.html")" -eq 3 ]
+"$build/bin/boresight" score --config "$source_dir/config" "$out/whole/run" --truth "$out/whole/drive" > "$out/score.txt" 2>&1
+check "its run folder can be scored" [ $? -eq 0 ]
+check "every scan of it has a truth" grep -Eq '^Detections: [0-9,]+ scans judged, 0 without truth' "$out/score.txt"
+check "and every track list" grep -Eq '^Tracks: [0-9,]+ lists judged, 0 without truth' "$out/score.txt"
+"$build/bin/boresight" report --config "$source_dir/config" --vehicle demo "$out/whole/run" --truth "$out/whole/drive/truth.csv" \
+  --out "$out/again.html" > "$out/again.txt" 2>&1
+check "boresight report finds the same in it" diff <(sed -n '/latency of a scan/,/^  faults/p' "$out/whole.txt") \
+  <(sed -n '/latency of a scan/,/^  faults/p' "$out/again.txt")
 check "it writes a report" grep -q 'All checks passed' "$out/whole/report.html"
 check "its summary is at most 60 lines" [ "$(sed -n '/^Summary of/,$p' "$out/whole.txt" | wc -l)" -le 60 ]
 check "it leaves nothing behind" nothing_left

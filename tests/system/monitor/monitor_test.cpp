@@ -1,4 +1,4 @@
-// `boresight monitor` beside the running system: its records can be read back, and write errors are reported.
+// `boresight monitor` beside the running system: its run folder can be read back, and write errors are reported.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,14 +8,14 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include "services/boresight/monitor/scan_record.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
+#include "services/boresight/report/recorded_scans.hpp"
 #include "tests/system/harness/domain.hpp"
 
 namespace boresight {
 namespace {
 
-using Line = monitor::ScanRecordReader::Line;
+namespace fs = std::filesystem;
 
 harness::Child monitor_with(const std::vector<std::string>& options, const std::string& errors) {
   return harness::Child([&options, &errors] {
@@ -37,14 +37,23 @@ std::string text_of(const std::string& file) {
   return text.str();
 }
 
-TEST(Monitor, RecordsCanBeReadBackAndWriteErrorsAreReported) {
+/// A run folder in which one file cannot be written.
+fs::path folder_without_room(const std::string& name, const std::string& file) {
+  const fs::path folder = "/tmp/" + name;
+  fs::create_directories(folder);
+  fs::create_symlink("/dev/full", folder / file);
+  return folder;
+}
+
+TEST(Monitor, RunFolderCanBeReadBackAndWriteErrorsAreReported) {
   const auto recordings = harness::simulated_drive(3.0);
+  const fs::path no_scans_folder = folder_without_room("no_scans_run", "scans.csv"),
+                 no_snapshots_folder = folder_without_room("no_snapshots_run", "monitor.jsonl");
   harness::Domain domain("demo");
   domain.start();
-  harness::Child whole =
-      monitor_with({"--record", "/tmp/record.txt", "--record-scans", "/tmp/scans.txt"}, "/tmp/whole");
-  harness::Child no_scans = monitor_with({"--record-scans", "/dev/full"}, "/tmp/no_scans");
-  harness::Child no_snapshots = monitor_with({"--record", "/dev/full"}, "/tmp/no_snapshots");
+  harness::Child whole = monitor_with({"--record", "/tmp/whole_run"}, "/tmp/whole");
+  harness::Child no_scans = monitor_with({"--record", no_scans_folder.string()}, "/tmp/no_scans");
+  harness::Child no_snapshots = monitor_with({"--record", no_snapshots_folder.string()}, "/tmp/no_snapshots");
   domain.run_for(1.0);
   domain.replay(recordings);
   ASSERT_TRUE(domain.until(10.0, [&] { return domain.replay_has_ended(); }));
@@ -52,23 +61,24 @@ TEST(Monitor, RecordsCanBeReadBackAndWriteErrorsAreReported) {
   EXPECT_EQ(whole.stop(), 0) << text_of("/tmp/whole");
   EXPECT_EQ(no_scans.stop(), 3);
   EXPECT_EQ(no_snapshots.stop(), 3);
-  EXPECT_EQ(text_of("/tmp/no_scans"), "boresight monitor: /dev/full: cannot be written: No space left on device\n");
-  EXPECT_EQ(text_of("/tmp/no_snapshots"), text_of("/tmp/no_scans"));
+  const std::string reason = ": cannot be written: No space left on device\n";
+  EXPECT_EQ(text_of("/tmp/no_scans"), "boresight monitor: " + (no_scans_folder / "scans.csv").string() + reason);
+  EXPECT_EQ(text_of("/tmp/no_snapshots"),
+            "boresight monitor: " + (no_snapshots_folder / "monitor.jsonl").string() + reason);
 
   const auto scan = std::make_unique<ClassifiedScan>();
   const auto tracks = std::make_unique<TrackList>();
-  std::ifstream record("/tmp/scans.txt");
-  monitor::ScanRecordReader reader(record, "scans.txt");
-  std::size_t scans = 0, lists = 0;
-  for (Line line = reader.next(*scan, *tracks); line != Line::kEnd; line = reader.next(*scan, *tracks)) {
-    ++(line == Line::kScan ? scans : lists);
+  report::RecordedScans record("/tmp/whole_run");
+  std::size_t scans = 0, confirmed = 0;
+  while (record.next(*scan, *tracks)) {
+    ++scans;
+    confirmed += tracks->number_of_confirmed_tracks;
   }
-  EXPECT_EQ(reader.damaged().count, 0u) << reader.damaged().first;
   EXPECT_GT(scans, 200u) << "of some 240";
-  EXPECT_EQ(lists, scans);
-  std::ifstream snapshots("/tmp/record.txt");
+  EXPECT_GT(confirmed, 0u);
+  std::ifstream snapshots("/tmp/whole_run/monitor.jsonl");
   monitor::DamagedLines damaged;
-  EXPECT_GT(monitor::read_record(snapshots, "record.txt", damaged).size(), 5u);
+  EXPECT_GT(monitor::read_snapshots(snapshots, "monitor.jsonl", damaged).size(), 5u);
   EXPECT_EQ(damaged.count, 0u) << damaged.first;
 }
 

@@ -1,8 +1,10 @@
-// What a report states about ghosts, from a record of scans and the truth of a drive.
-#include <memory>
+// What a report states about ghosts, from the tables of a run folder and the truth of a drive.
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
-#include "services/boresight/monitor/scan_record.hpp"
+#include <fmt/format.h>
+
 #include "services/boresight/report/html_report.hpp"
 
 namespace boresight::report {
@@ -41,53 +43,56 @@ class Drive {
   }
 
   /// The scan as it was published, with the ghost at (20, 9) classified as `label`; then two tracks, one on the ghost.
-  void publish(std::uint32_t radar, int k, Provenance label) {
-    ClassifiedScan& scan = *scan_;
-    scan = {};
-    scan.header.source_id = radar;
-    scan.header.measurement_time_ns = time_ns(radar, k);
-    scan.number_of_valid_detections = static_cast<std::uint32_t>(2 + k % 3);
-    for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
-      scan.x_vehicle_m[i] = 20.0F;
-      scan.y_vehicle_m[i] = i == 1 ? 9.0F : 0.0F;
-      scan.provenance[i] = i == 0 ? Provenance::kMoving : i == 1 ? label : Provenance::kStationary;
+  void publish(std::uint32_t radar, int k, const char* label) {
+    const int detections = 2 + k % 3;
+    const std::string key = fmt::format("{},{},{}", time_ns(radar, k), radar, k);
+    scans += fmt::format("{},{},,3.5,0.5,2\n", key, detections);
+    for (int i = 0; i < detections; ++i) {
+      const bool is_rejected = k % 3 == 2 && i == 3;
+      rows += fmt::format("{},{},20.0,{},0.0,{},0.0,0.0,0.0,{}\n", key, i, i == 1 ? "9.00" : "0.0",
+                          i == 0   ? "moving"
+                          : i == 1 ? label
+                                   : "stationary",
+                          is_rejected ? "outside_region" : "");
     }
-    if (k % 3 == 2) scan.detection_flags[3] = corrected_flag::kOutsideRegion;
-    scan.number_of_reflector_segments = 1;
-    scan.reflector_segments[0] = {{0.0F, 4.5F}, {40.0F, 4.5F}, 0.1F, 9};
-    monitor::write_scan(record, scan);
-    TrackList& list = *tracks_;
-    list = {};
-    list.header.source_id = radar;
-    list.header.measurement_time_ns = time_ns(radar, k);
-    list.number_of_tracks = list.number_of_confirmed_tracks = 2;
-    for (std::size_t t : {0u, 1u}) {
-      Track& track = list.tracks[t];
-      track.tracking_id = static_cast<std::uint32_t>(4 + t);
-      track.status = TrackStatus::kConfirmed;
-      track.position_vehicle_m = {20.0F, t == 0 ? 0.0F : 9.0F, 0.0F};
-      track.length_m = 4.5F;
-      track.width_m = 1.8F;
-      track.number_of_detections = 1;
+    reflectors += key + ",0.0,4.5,40.0,4.5\n";
+    for (const int t : {0, 1}) {
+      tracks +=
+          fmt::format("{},{},confirmed,moving,20.0,{},5.0,0.0,2.0,0.0,4.5,1.8,1\n", key, 4 + t, t == 0 ? 0.0 : 9.0);
     }
-    monitor::write_tracks(record, list);
   }
   /// All scans except the lost ones; the ghost is classified as moving in the first `mistakes` scans of each radar.
   void publish_all(int mistakes) {
     constexpr int kLost = 7;
     for (int k = kLost; k < kScans; ++k) {
       for (std::uint32_t radar : {1u, 2u}) {
-        publish(radar, k, k < kLost + mistakes ? Provenance::kMoving : Provenance::kGhostType2);
+        publish(radar, k, k < kLost + mistakes ? "moving" : "ghost_type_2");
       }
     }
   }
 
-  DetectionTruths truth;
-  std::stringstream record;
+  /// Writes the tables, and returns their folder.
+  [[nodiscard]] std::filesystem::path folder() const {
+    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "ghost_findings";
+    std::filesystem::create_directories(folder);
+    const auto write = [&folder](const char* name, const char* header, const std::string& text) {
+      std::ofstream(folder / name) << header << '\n' << text;
+    };
+    write("scans.csv", "time_ns,radar,scan,detections,flags,sensor_x_m,sensor_y_m,tracks", scans);
+    write("detections.csv",
+          "time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_ghost_type_1,"
+          "p_ghost_type_2,p_clutter,rejected",
+          rows);
+    write("reflectors.csv", "time_ns,radar,scan,x1_vehicle_m,y1_vehicle_m,x2_vehicle_m,y2_vehicle_m", reflectors);
+    write("tracks.csv",
+          "time_ns,radar,scan,id,status,movement,x_vehicle_m,y_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,age_s,"
+          "heading_rad,length_m,width_m,detections",
+          tracks);
+    return folder;
+  }
 
- private:
-  std::unique_ptr<ClassifiedScan> scan_ = std::make_unique<ClassifiedScan>();
-  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
+  DetectionTruths truth;
+  std::string scans, rows, reflectors, tracks;  // of the four tables
 };
 
 const Check& check_about(const std::vector<Check>& checks, const std::string& part) {
@@ -102,9 +107,8 @@ const Check& check_about(const std::vector<Check>& checks, const std::string& pa
 TEST(GhostFindings, ScansAreMatchedToTheTruthWhenTheFirstAreMissingAndClocksDiffer) {
   Drive drive;
   drive.publish_all(0);
-  const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
+  const GhostFindings found = find_ghosts(drive.folder(), &drive.truth);
   EXPECT_EQ(found.scans, 2u * 393u);
-  EXPECT_EQ(found.track_lists, 2u * 393u);
   EXPECT_EQ(found.compared_scans, 2u * 393u);
   EXPECT_EQ(found.unknown_scans, 0u);
   const judge::Confusion& c = found.confusion.value();
@@ -119,7 +123,7 @@ TEST(GhostFindings, ScansAreMatchedToTheTruthWhenTheFirstAreMissingAndClocksDiff
 TEST(GhostFindings, MistakesAndTracksOfGhostsAreCountedAndFail) {
   Drive drive;
   drive.publish_all(60);
-  const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
+  const GhostFindings found = find_ghosts(drive.folder(), &drive.truth);
   EXPECT_EQ(found.confusion->count(Provenance::kGhostType2, Provenance::kMoving), 120u);
   ASSERT_EQ(found.ghost_tracks.size(), 1u);
   EXPECT_EQ(found.ghost_tracks[0].tracking_id, 5u);
@@ -143,7 +147,7 @@ TEST(GhostFindings, ScansThatAreMissingInTheTruthAreNotCompared) {
   Drive drive;
   drive.publish_all(0);
   for (auto& scan : drive.truth.scans[2]) scan.detections.emplace_back();
-  const GhostFindings found = find_ghosts(drive.record, "scans.txt", &drive.truth);
+  const GhostFindings found = find_ghosts(drive.folder(), &drive.truth);
   EXPECT_EQ(found.unknown_scans, 393u);
   EXPECT_EQ(found.confusion->count(Provenance::kMoving), 393u);
   EXPECT_FALSE(check_about(ghost_checks(found), "found in the truth").passed);
@@ -152,7 +156,7 @@ TEST(GhostFindings, ScansThatAreMissingInTheTruthAreNotCompared) {
 TEST(GhostFindings, WithoutTruthThereAreViewsAndNoVerdict) {
   Drive drive;
   drive.publish_all(60);
-  const GhostFindings found = find_ghosts(drive.record, "scans.txt", nullptr);
+  const GhostFindings found = find_ghosts(drive.folder(), nullptr);
   EXPECT_FALSE(found.confusion);
   ASSERT_EQ(ghost_checks(found).size(), 1u) << "that the record could be read";
   EXPECT_TRUE(ghost_checks(found)[0].passed);
@@ -164,48 +168,49 @@ TEST(GhostFindings, WithoutTruthThereAreViewsAndNoVerdict) {
   EXPECT_TRUE(found.most_ghosts.objects.empty());
 }
 
-TEST(GhostFindings, DamagedLinesAreReportedWithFileAndLine) {
+TEST(GhostFindings, ADamagedTableIsReportedWithFileLineAndColumn) {
   Drive drive;
   drive.publish_all(0);
-  const std::string whole = drive.record.str();
-  // Damages the y of the second detection of the first scan, and the end of the last track list.
-  std::string text = whole.substr(0, whole.size() - 20);
-  const std::size_t at = text.find(" 9.00 ");
+  // The y of the second detection of the first scan.
+  const std::size_t at = drive.rows.find(",9.00,");
   ASSERT_NE(at, std::string::npos);
-  text.replace(at, 6, " 9<0 ");
-  std::istringstream record(text);
-  const GhostFindings found = find_ghosts(record, "out/scans.txt", &drive.truth);
-  EXPECT_EQ(found.damaged.count, 2u);
-  EXPECT_EQ(found.damaged.first, "out/scans.txt:1: y of detection 2 is '9<0', allowed: a number");
-  EXPECT_EQ(found.scans, 785u) << "nothing else is lost";
-  EXPECT_EQ(found.track_lists, 785u);
+  drive.rows.replace(at, 6, ",9<0,");
+  const std::string file = (drive.folder() / "detections.csv").string();
+  const GhostFindings found = find_ghosts(drive.folder(), &drive.truth);
+  EXPECT_THAT(found.problem, HasSubstr(file));
+  EXPECT_THAT(found.problem, HasSubstr("9<0"));
   const std::vector<Check> checks = ghost_checks(found);
-  const Check& check = check_about(checks, "could be read");
+  const Check& check = check_about(checks, "read to their end");
   EXPECT_FALSE(check.passed);
   EXPECT_FALSE(check.aim);
-  EXPECT_EQ(check.what,
-            "every line of the record of scans could be read (2 damaged; first: out/scans.txt:1: y of detection "
-            "2 is '9<0', allowed: a number)");
+  EXPECT_EQ(check.what, "the tables of scans could not be read to their end: " + found.problem);
   ReportInput input;
   input.ghosts = found;
-  const std::string page = render_html(input);
-  EXPECT_THAT(page, HasSubstr("2 lines of the record of scans could not be read"));
-  EXPECT_THAT(page, HasSubstr("The first line: <code>out/scans.txt:1: y of detection 2 is '9&lt;0'"));
+  EXPECT_THAT(render_html(input), HasSubstr("9&lt;0"));
+}
 
-  std::istringstream nothing_whole("scan 1\n");
-  input.ghosts = find_ghosts(nothing_whole, "scans.txt", nullptr);
-  EXPECT_FALSE(check_about(ghost_checks(input.ghosts), "could be read").passed);
-  const std::string empty_page = render_html(input);
-  EXPECT_THAT(empty_page, HasSubstr("One line of the record of scans could not be read"));
-  EXPECT_THAT(empty_page, HasSubstr("scans.txt:1: ends before source sequence"));
-  EXPECT_THAT(empty_page, Not(HasSubstr("no record of its scans")));
+TEST(GhostFindings, AScanWithFewerRowsThanItStatesIsReported) {
+  Drive drive;
+  drive.publish_all(0);
+  drive.rows.erase(drive.rows.rfind('\n', drive.rows.size() - 2) + 1);
+  const GhostFindings found = find_ghosts(drive.folder(), &drive.truth);
+  EXPECT_THAT(found.problem, HasSubstr("scans.csv states 2"));
+  EXPECT_EQ(found.scans, 785u) << "nothing before it is lost";
+}
+
+TEST(GhostFindings, AFolderWithoutScansIsNotJudged) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "ghost_findings_empty";
+  std::filesystem::create_directories(folder);
+  const GhostFindings found = find_ghosts(folder, nullptr);
+  EXPECT_FALSE(found.is_recorded);
+  EXPECT_TRUE(ghost_checks(found).empty());
 }
 
 TEST(GhostPage, ShowsMatrixTracksAndViews) {
   Drive drive;
   drive.publish_all(60);
   ReportInput input;
-  input.ghosts = find_ghosts(drive.record, "scans.txt", &drive.truth);
+  input.ghosts = find_ghosts(drive.folder(), &drive.truth);
   const std::string page = render_html(input);
   for (const char* part :
        {"title=\"120\">15.27 %</td>", "<td>#5</td><td class=n>120</td>", "Most detections classified as ghosts: at ",
@@ -231,12 +236,12 @@ TEST(GhostPage, StatesHowManyDetectionsLieOutsideTheView) {
 }
 
 TEST(GhostPage, StatesThatTheRecordOrTheTruthIsMissing) {
-  EXPECT_THAT(render_html({}), HasSubstr("This run has no record of its scans, so there is no comparison"));
+  EXPECT_THAT(render_html({}), HasSubstr("This run has no table of its scans, so there is no comparison"));
   EXPECT_THAT(render_html({}), HasSubstr("No scan of the ghost filter was received."));
   Drive drive;
   drive.publish_all(0);
   ReportInput input;
-  input.ghosts = find_ghosts(drive.record, "scans.txt", nullptr);
+  input.ghosts = find_ghosts(drive.folder(), nullptr);
   const std::string page = render_html(input);
   EXPECT_THAT(page, HasSubstr("The true provenance of this drive's detections is not known"));
   EXPECT_THAT(page, Not(HasSubstr("differs from the truth")));

@@ -1,10 +1,15 @@
 #include <cmath>
 #include <memory>
+#include <set>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
+#include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "tests/unit/schema_page.hpp"
 
 namespace boresight::monitor {
 namespace {
@@ -158,7 +163,8 @@ TEST(LatencyHistogram, PercentilesAreWithinABucketOfTheTruth) {
   EXPECT_DOUBLE_EQ(LatencyHistogram().percentile_us(0.5), 0.0);
 }
 
-TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
+/// A snapshot with a value in every part.
+Snapshot eventful_snapshot() {
   Accumulator accumulator(vehicle());
   see_scan(accumulator, 2, 1, 0);
   see_misaligned_radar(accumulator);
@@ -169,73 +175,107 @@ TEST(Record, SurvivesWritingAndReadingAndBeingCutOff) {
   status.inputs = 12;
   status.faults[static_cast<std::size_t>(Fault::kCapacity)] = 3;
   accumulator.observe(status);
-  const Snapshot written = accumulator.snapshot(123'456'789'012'345);
-  std::stringstream record;
-  write_record(record, written);
-  write_record(record, written);
-  const std::string whole = record.str();
-  std::istringstream cut(whole.substr(0, whole.size() - 20));
-  DamagedLines of_cut, of_whole;
-  EXPECT_EQ(read_record(cut, "cut", of_cut).size(), 1U);
-  EXPECT_GE(of_cut.count, 1U);
-  const auto snapshots = read_record(record, "whole", of_whole);
-  EXPECT_EQ(of_whole.count, 0U) << of_whole.first;
-  ASSERT_EQ(snapshots.size(), 2U);
-  EXPECT_EQ(to_json(snapshots[1]), to_json(written));
-  EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
-  EXPECT_THAT(to_json(written),
-              ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7,"std":0.04,"observable":true})"));
-  EXPECT_THAT(
-      to_json(written),
-      ::testing::HasSubstr(R"("step_changes":1,"yaw_seconds_to_95_percent":1.4,"pitch_seconds_to_95_percent":null)"));
-  EXPECT_THAT(
-      to_json(written),
-      ::testing::HasSubstr(R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
-                           R"("clutter":1,"rejected":1},"classified_scans":1,"classified_without_tracks":1})"));
-  EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
-  EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
-  EXPECT_DOUBLE_EQ(snapshots[0].radars[1].yaw_tolerance_rad, written.radars[1].yaw_tolerance_rad);
+  return accumulator.snapshot(123'456'789'012'345);
 }
 
-TEST(MonitorRecord, DamagedSnapshotIsSkippedAndReported) {
-  std::ostringstream one;
-  write_record(one, Snapshot());
-  const std::string whole = one.str();
-  const std::string head = "snapshot 1 2.5 0 0\n";
+TEST(SnapshotLines, AreReadBackWithEveryValueAlsoWhenTheLastIsCutOff) {
+  const Snapshot written = eventful_snapshot();
+  const std::string whole = to_json(written) + to_json(written);
+  std::istringstream all(whole), cut(whole.substr(0, whole.size() - 20));
+  DamagedLines of_cut, of_all;
+  EXPECT_EQ(read_snapshots(cut, "cut", of_cut).size(), 1U);
+  EXPECT_EQ(of_cut.count, 1U);
+  const auto snapshots = read_snapshots(all, "all", of_all);
+  EXPECT_EQ(of_all.count, 0U) << of_all.first;
+  ASSERT_EQ(snapshots.size(), 2U);
+  EXPECT_EQ(to_json(snapshots[1]), to_json(written));
+  EXPECT_EQ(snapshots[0].time_ns, written.time_ns);
+  EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
+  EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
+  EXPECT_EQ(snapshots[0].radars[1].conditions, written.radars[1].conditions);
+  EXPECT_NEAR(snapshots[0].radars[1].details.pitch.value_rad, written.radars[1].details.pitch.value_rad, 1e-9);
+  EXPECT_TRUE(std::isnan(snapshots[0].radars[1].details.pitch_seconds_to_95_percent));
+}
+
+TEST(SnapshotLines, StateConditionsAnglesAndLabels) {
+  const std::string line = to_json(eventful_snapshot());
+  EXPECT_THAT(line, ::testing::EndsWith("}\n"));
+  EXPECT_THAT(line, ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
+  EXPECT_THAT(line, ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7)"));
+  EXPECT_THAT(line, ::testing::HasSubstr(R"("pitch_seconds_to_95_percent":null)"));
+  EXPECT_THAT(line, ::testing::HasSubstr(
+                        R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
+                        R"("clutter":1,"rejected":1},"classified_scans":1,"classified_without_tracks":1)"));
+}
+
+/// The keys of a section's tables: a cell may name several.
+std::set<std::string> documented_keys(const std::string& section) {
+  const auto sections =
+      schema_page::sections(schema_page::text_of(std::string(BORESIGHT_SOURCE_DIR) + "/config/schema/run.md"));
+  std::set<std::string> keys;
+  for (const schema_page::Cells& cells : sections.at(section)) {
+    std::istringstream names(cells.at(0));
+    for (std::string name; std::getline(names, name, ',');) {
+      std::string key = schema_page::code(schema_page::trimmed(name));
+      if (key.ends_with("[]")) key.resize(key.size() - 2);
+      if (!key.empty()) keys.insert(key);
+    }
+  }
+  return keys;
+}
+
+std::set<std::string> keys_of(const json::Value& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.insert(key);
+  return keys;
+}
+
+TEST(SnapshotLines, HaveExactlyTheDocumentedKeys) {
+  const json::Value line = json::Value::parse(to_json(eventful_snapshot()));
+  EXPECT_EQ(keys_of(line), documented_keys("monitor.jsonl"));
+  for (const char* const part : {"radars", "tracks", "services"}) {
+    EXPECT_EQ(keys_of(line.at(part).at(0)), documented_keys(std::string(part) + " of monitor.jsonl")) << part;
+  }
+}
+
+TEST(SnapshotLines, NameOfARadarMayHoldAnyCharacter) {
+  Snapshot written;
+  written.radars.resize(1);
+  written.radars[0].name = "front, \"left\" \\ Kühler\n</b>";
+  std::istringstream lines(to_json(written));
+  DamagedLines damaged;
+  const auto snapshots = read_snapshots(lines, "r", damaged);
+  ASSERT_EQ(snapshots.size(), 1U) << damaged.first;
+  EXPECT_EQ(snapshots[0].radars[0].name, written.radars[0].name);
+}
+
+TEST(SnapshotLines, DamagedLineIsSkippedAndReportedWithFieldAndAllowedValues) {
+  const std::string whole = to_json(eventful_snapshot());
   const struct {
-    std::string text;
+    std::string from, to;
     const char* first;
   } cases[] = {
-      {"snapshot soon 2.5 0 0\ntrack 1\nend\n", "r:1: time is 'soon', allowed: a whole number from -"},
-      {head + "track 1 1 0 4 fast 0 0 0\nend\n", "r:2: y is 'fast', allowed: a number"},
-      {head + "track 1 1 0\nend\n", "r:2: ends before x"},
-      {head + "track 4294967296 1 0 4 0 0 0 0\nend\n",
-       "r:2: track id is '4294967296', allowed: a whole number from 0 to 4294967295"},
-      {head + "track 1 1 4 4 0 0 0 0\nend\n", "r:2: movement is '4', allowed: a whole number from 0 to 3"},
-      {head + "service 18446744073709551615 1 0 0 0 0 0\nend\n",
-       "r:2: service is '18446744073709551615', allowed: a whole number from 0 to 7"},
-      {head + "latency 99 1\nend\n", "r:2: stage is '99', allowed: a whole number from 0 to "},
-      {head + "latency 0 1 4000000000 1\nend\n", "r:2: bucket is '4000000000', allowed: a whole number from 0 to "},
-      {head + "latency 0 1 3 18446744073709551615\nend\n",
-       "r:2: count of a bucket is '18446744073709551615', allowed: a whole number from 0 to 4294967295"},
-      {head + "truck 1\nend\n",
-       "r:2: kind of line is 'truck', allowed: snapshot, radar, track, service, latency or end"},
-      {head, "r:2: the snapshot before has no end"},
-      {"end\n", "r:1: kind of line is 'end', allowed: snapshot"},
-      {"track 1 1 0 4 0 0 0 0\n", "r:1: kind of line is 'track', allowed: snapshot"},
+      {"{\"time_ns\":123456789012345", "{\"time_ns\":\"soon\"", "r:1: time_ns is '\"soon\"', allowed: a whole number"},
+      {"\"x_m\":-10.0", "\"x_m\":\"far\"", "r:1: tracks[0].x_m is '\"far\"', allowed: a number"},
+      {"\"x_m\":-10.0", "\"x\":-10.0", "r:1: tracks[0].x_m is missing"},
+      {"{\"id\":8,\"confirmed\"", "{\"id\":4294967296,\"confirmed\"",
+       "r:1: tracks[0].id is '4294967296', allowed: a whole number from 0 to 4294967295"},
+      {"\"confirmed\":true", "\"confirmed\":1", "r:1: tracks[0].confirmed is '1', allowed: true or false"},
+      {"\"tracks\":[", "\"tracks\":1,\"more\":[", "r:1: tracks is '1', allowed: an array"},
+      {"\"buckets\":[[", "\"buckets\":[[4000000000,1],[", "r:1: latency_us.ingest.buckets is "},
+      {"{\"time_ns\"", "\"time_ns\"", "r:1: the line is no JSON"},
   };
   for (const auto& c : cases) {
-    std::istringstream record(c.text + whole);
+    std::string damaged_line = whole;
+    const std::size_t at = damaged_line.find(c.from);
+    ASSERT_NE(at, std::string::npos) << c.from;
+    damaged_line.replace(at, c.from.size(), c.to);
+    std::istringstream lines(damaged_line + whole);
     DamagedLines damaged;
-    EXPECT_EQ(read_record(record, "r", damaged).size(), 1U) << "nothing else is lost: " << c.text;
-    EXPECT_GE(damaged.count, 1U) << c.text;
+    EXPECT_EQ(read_snapshots(lines, "r", damaged).size(), 1U) << "nothing else is lost: " << c.to;
+    EXPECT_EQ(damaged.count, 1U) << c.to;
     EXPECT_THAT(damaged.first, ::testing::StartsWith(c.first));
   }
-  std::istringstream record(whole + head);
-  DamagedLines damaged;
-  EXPECT_EQ(read_record(record, "r", damaged).size(), 1U);
-  EXPECT_THAT(damaged.first, ::testing::EndsWith(": the snapshot has no end"));
 }
 
 TEST(Render, ShowsWhichRadarIsMisalignedWithItsUncertainty) {

@@ -72,16 +72,19 @@ TEST(RunChain, CorrectsAScanWithTheLatestEstimateThatCameBeforeIt) {
   const VehicleConfig vehicle = testing::demo_vehicle();
   std::map<std::uint32_t, std::uint64_t> published;  // sequence by radar
   std::size_t corrected = 0;
+  const Chain* running = nullptr;
   const Listeners listeners{[&](const ScanResult& result) {
-                              if (result.corrected.alignment_sequence == 0) return;
+                              const std::uint64_t used = running->corrected().alignment_sequence;
+                              if (used == 0) return;
                               ++corrected;
-                              EXPECT_EQ(result.corrected.alignment_sequence, published[result.scan.header.source_id]);
+                              EXPECT_EQ(used, published[result.scan.header.source_id]);
                             },
                             [&](const EstimateResult& result) {
                               published[result.message.header.source_id] = result.message.header.sequence;
                             },
                             {}};
   Chain chain(vehicle, Settings{}, listeners);
+  running = &chain;
   GatewayFeed feed(chain);
   testing::play({testing::demo_drive().ego, testing::demo_drive().radars}, vehicle, chain, feed);
   EXPECT_EQ(published.size(), vehicle.radars.size());

@@ -42,8 +42,7 @@ std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& tim
       "within {:.0f} m of its box that were classified as moving. The table lists tracks that followed a ghost for "
       "more "
       "than {} scans in total, among {} track lists.</p>\n",
-      judge::FalseTracks::kEvidenceDistance_m, judge::FalseTracks::kMaxTolerated_scans, ghosts.track_lists);
-  if (ghosts.track_lists == 0) return text + "<p>No track list is in the record.</p>\n";
+      judge::FalseTracks::kEvidenceDistance_m, judge::FalseTracks::kMaxTolerated_scans, ghosts.scans);
   if (ghosts.ghost_tracks.empty()) {
     text += "<p>None.";
   } else {
@@ -69,19 +68,17 @@ std::string render_ghost_tracks(const GhostFindings& ghosts, const TimeBase& tim
 std::string render_confusion(const ReportInput& input, const TimeBase& time) {
   const GhostFindings& ghosts = input.ghosts;
   std::string text = "<h2>Ghost filter: comparison with the truth</h2>\n";
-  if (ghosts.damaged.count > 0) {
-    const bool one = ghosts.damaged.count == 1;
+  if (!ghosts.problem.empty()) {
     text += fmt::format(
-        "<p><span class=\"bad\">{} of the record of scans could not be read</span> and {} missing in this section and "
-        "in the views. {}: <code>{}</code></p>\n",
-        one ? "One line" : fmt::format("{} lines", ghosts.damaged.count), one ? "is" : "are",
-        one ? "The line" : "The first line", escape(ghosts.damaged.first));
-    if (ghosts.scans == 0) return text + "<p>No other line holds a scan.</p>\n";
+        "<p><span class=\"bad\">The tables of scans could not be read to their end</span>; the rest is missing in this "
+        "section and in the views: <code>{}</code></p>\n",
+        escape(ghosts.problem));
+    if (ghosts.scans == 0) return text + "<p>No scan could be read.</p>\n";
   }
   if (ghosts.scans == 0) {
     return text +
-           "<p>This run has no record of its scans, so there is no comparison and no view of them. <code>boresight "
-           "monitor --record-scans</code> records them.</p>\n";
+           "<p>This run has no table of its scans, so there is no comparison and no view of them. <code>boresight "
+           "monitor --record</code> records them.</p>\n";
   }
   if (!ghosts.confusion) {
     return text +
