@@ -40,6 +40,11 @@ std::size_t word_of(const Table& table, std::string_view column, std::initialize
   return static_cast<std::size_t>(found - words.begin());
 }
 
+/// Goes to the first row of a scan that has rows.
+void find_first_row(Table& table, bool& has_row, const RunScan& scan, std::size_t stated) {
+  while (stated > 0 && has_row && !is_of(table, scan)) has_row = table.next();
+}
+
 void expect_count(const Table& table, const char* what, const RunScan& scan, std::size_t rows, std::size_t stated) {
   if (rows == stated) return;
   throw InputError(fmt::format("{}: scan {} of radar {} has {} {}, scans.csv states {}", table.name(), scan.scan,
@@ -65,6 +70,7 @@ RunDetections::RunDetections(const std::filesystem::path& folder)
 
 void RunDetections::take(const RunScan& scan, std::vector<RunDetection>& detections) {
   detections.clear();
+  find_first_row(table_, has_row_, scan, scan.detections);
   for (; has_row_ && is_of(table_, scan); has_row_ = table_.next()) {
     const auto index = static_cast<std::size_t>(table_.integer("index", 0, kMaxDetections - 1));
     if (index != detections.size()) table_.refuse("index", "the next one of the scan");
@@ -86,6 +92,7 @@ RunTracks::RunTracks(const std::filesystem::path& folder)
 
 void RunTracks::take(const RunScan& scan, std::vector<judge::ScoredTrack>& tracks) {
   tracks.clear();
+  find_first_row(table_, has_row_, scan, scan.tracks);
   const auto number = [this](const char* column) { return table_.number(column, -kMostValue, kMostValue); };
   const auto covariance = [this](const char* column) {
     return table_.number_or_nan(column, -kMostValue * kMostValue, kMostValue * kMostValue);

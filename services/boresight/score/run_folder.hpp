@@ -45,7 +45,8 @@ struct RunDetection {
   double p_moving = kNaN;  ///< NaN: not given
 };
 
-/// detections.csv, in the order of scans.csv.
+/// detections.csv, in the order of scans.csv. Rows of a scan that is not in scans.csv are passed over, as in
+/// tracks.csv: a live record that was cut off and continued may hold such.
 class RunDetections {
  public:
   explicit RunDetections(const std::filesystem::path& folder);
@@ -107,6 +108,7 @@ struct RunSummary {
   double recording_s = kNaN;
   std::vector<std::pair<std::uint32_t, std::string>> radars;  ///< ids and names
   std::vector<std::pair<std::string, double>> timing;         ///< "wall_s", "stages.tracker.cpu_s", …
+  std::optional<std::int64_t> truth_begin_ns;                 ///< time 0 of the truth on the run's clock
 };
 [[nodiscard]] RunSummary read_run_summary(const std::filesystem::path& folder);
 

@@ -88,6 +88,10 @@ RunSummary read_run_summary(const std::filesystem::path& folder) {
       summary.recording_s = seconds->get<double>();
     }
   }
+  if (const auto begin = value.find("truth_begin_ns"); begin != value.end()) {
+    if (!begin->is_number_integer()) throw InputError(file.string() + ": truth_begin_ns: is no whole number");
+    summary.truth_begin_ns = begin->get<std::int64_t>();
+  }
   if (const auto radars = value.find("radars"); radars != value.end() && radars->is_array()) {
     for (const Json& radar : *radars) {
       if (!radar.is_object()) continue;

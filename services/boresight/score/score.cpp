@@ -58,7 +58,10 @@ class DriveJudge {
  private:
   void open(const RunScan& first) {
     truth_first_s_ = first_time_s(input_.truth).value_or(0.0);
-    origin_ns_ = truth_origin_ns(truth_first_s_, first.time_ns, first.t_s);
+    const bool has_summary = fs::exists(input_.run / "run.json");
+    const std::optional<std::int64_t> stated_ns =
+        has_summary ? read_run_summary(input_.run).truth_begin_ns : std::nullopt;
+    origin_ns_ = stated_ns ? *stated_ns : truth_origin_ns(truth_first_s_, first.time_ns, first.t_s);
     first_on_truth_s_ = on_truth(first.time_ns);
     if (!input_.truth.objects.empty() && fs::exists(input_.run / "tracks.csv")) {
       tracks_.emplace(input_.run);

@@ -84,6 +84,37 @@ TEST(Score, TruthMayCountOnEachOfThreeClocks) {
   }
 }
 
+TEST(Score, ClockOfTheTruthIsTakenFromTheRunThatStatesIt) {
+  const fs::path run = made::folder("stated_run"), truth = made::folder("stated_truth");
+  // A record whose first five scans were not received: its first measurement is not the beginning of the truth.
+  constexpr std::int64_t kBegin_ns = 34'000'000'000'000;
+  made::write_run(run, kScans - 5, 0.0, kBegin_ns + 500'000'000);
+  made::write_truth(truth, kScans);
+  made::write_file(run / "run.json", fmt::format("{{\"truth_begin_ns\":{}}}", kBegin_ns));
+  const Score result = score_of(run, truth);
+  EXPECT_EQ(result.figures.value("tracks.lists"), kScans - 5);
+  // The tracks of the made run begin at the object's first place, half a second behind it.
+  EXPECT_NEAR(result.figures.value("tracks.car.all_ranges.along_rms_m"), 0.5, 1e-3);
+  made::write_file(run / "run.json", "{\"truth_begin_ns\":\"now\"}");
+  EXPECT_THAT(error_of([&] { static_cast<void>(score_of(run, truth)); }),
+              HasSubstr("truth_begin_ns: is no whole number"));
+}
+
+TEST(Score, RowsOfAScanThatIsNotInTheTableOfScansArePassedOver) {
+  const fs::path run = made::folder("orphans_run"), truth = made::folder("orphans_truth");
+  made::write_run(run, kScans, 0.0);
+  made::write_truth(truth, kScans);
+  std::ifstream stream(run / "scans.csv");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t third = text.find("0.200000,");
+  ASSERT_NE(third, std::string::npos);
+  text.erase(third, text.find('\n', third) + 1 - third);
+  made::write_file(run / "scans.csv", text);
+  const Score result = score_of(run, truth);
+  EXPECT_EQ(result.figures.value("tracks.lists"), kScans - 1);
+  EXPECT_EQ(result.figures.value("detections.scans"), kScans - 1);
+}
+
 TEST(Score, TruthOfAnotherTimeIsAFinding) {
   const fs::path run = made::folder("other_run"), truth = made::folder("other_truth");
   made::write_run(run, kScans, 0.0);
