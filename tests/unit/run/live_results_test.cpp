@@ -110,6 +110,27 @@ TEST_F(LiveScans, WithoutOneOfTheirMessagesAreCountedAndTheOthersAreResults) {
   EXPECT_EQ(results_.incomplete_scans()[1], 2u) << "at the end, too";
 }
 
+TEST_F(LiveScans, AreNoResultsWhicheverMessageIsMissing) {
+  results_.observe(*message<ClassifiedScan>(1, 1));
+  results_.observe(*message<TrackList>(1, 1));
+  results_.observe(*message<RadarScan>(2, 1));
+  results_.observe(*message<TrackList>(2, 1));
+  results_.observe(*message<RadarScan>(3, 1));
+  results_.observe(*message<ClassifiedScan>(3, 1));
+  results_.finish();
+  EXPECT_TRUE(times_ns_.empty());
+  for (std::size_t radar = 1; radar <= 3; ++radar) EXPECT_EQ(results_.incomplete_scans()[radar], 1u) << radar;
+}
+
+TEST_F(LiveScans, EstimatesOfBeforeTheFirstMeasurementAreNoResults) {
+  results_.observe(*message<AlignmentEstimate>(1, 50));
+  results_.observe(*message<EgoMotion>(0, 100));
+  results_.observe(*message<AlignmentEstimate>(1, 99));
+  EXPECT_EQ(results_.counts().radars[1].estimates, 0u);
+  results_.observe(*message<AlignmentEstimate>(1, 100));
+  EXPECT_EQ(results_.counts().radars[1].estimates, 1u);
+}
+
 TEST_F(LiveScans, GoOnWhenTheClockOfTheMeasurementsJumpsBack) {
   for (std::int64_t t_s = 100; t_s < 120; ++t_s) whole_scan(2, t_s * 1'000'000'000);
   for (std::int64_t t_s = 1; t_s < 21; ++t_s) whole_scan(2, t_s * 1'000'000'000);
