@@ -2,13 +2,17 @@
 
 #include <cmath>
 
-#include "services/boresight/align/json_writer.hpp"
+#include <nlohmann/json.hpp>
+
+#include "services/boresight/json/text.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::align {
 
 namespace {
+
+using json::significant;
 
 constexpr std::array<const char*, kParameters> kNames = {"k_v", "yaw", "pitch", "roll"};
 constexpr std::array<const char*, 3> kSensorNames = {"alpha", "beta", "gamma"};
@@ -18,151 +22,234 @@ constexpr std::array<std::uint32_t, kParameters> kVehicleBits = {
 constexpr std::array<std::uint32_t, 3> kSensorBits = {alignment_axis::kYaw, alignment_axis::kPitch,
                                                       alignment_axis::kRoll};
 
+double degrees(double angle_rad) {
+  return significant(angle_rad * kDegreesPerRadian);
+}
+
 /// k_v as it is, angles in degrees.
 double shown(std::size_t parameter, double value) {
-  return parameter == 0 ? value : value * kDegreesPerRadian;
+  return parameter == 0 ? significant(value) : degrees(value);
 }
 
 std::string key_of(std::size_t parameter, const std::string& suffix = "") {
   return kNames.at(parameter) + suffix + (parameter == 0 ? "" : "_deg");
 }
 
+std::string sensor_key_of(std::size_t axis, const std::string& suffix = "") {
+  return kSensorNames.at(axis) + suffix + "_deg";
+}
+
 double std_of(const std::array<float, 16>& covariance, std::size_t i) {
   return std::sqrt(static_cast<double>(covariance.at(5 * i)));
 }
 
-void write_estimated(JsonWriter& json, const char* key, double value, double std, bool observable) {
-  json.key(key).begin_object().field("value", value).field("std", std).field("observable", observable).end_object();
+json::Value estimated(double value, double std, bool observable) {
+  json::Value object;
+  object["value"] = significant(value);
+  object["std"] = significant(std);
+  object["observable"] = observable;
+  return object;
 }
 
-void write_moments(JsonWriter& json, const char* key, const Moments& moments) {
-  json.key(key).begin_object().field("rmse_mps", moments.rmse_mps);
-  json.field("skewness", moments.skewness).field("kurtosis", moments.kurtosis).end_object();
+json::Value object_of(const Moments& moments) {
+  json::Value object;
+  object["rmse_mps"] = significant(moments.rmse_mps);
+  object["skewness"] = significant(moments.skewness);
+  object["kurtosis"] = significant(moments.kurtosis);
+  return object;
 }
 
-void write_observability(JsonWriter& json, const AlignmentEstimate& message) {
-  const auto each = [&](const auto& write) {
-    for (std::size_t i = 0; i < kParameters; ++i) write(kNames.at(i), message.is_observable(kVehicleBits.at(i)));
-    for (std::size_t i = 0; i < 3; ++i) write(kSensorNames.at(i), message.is_observable(kSensorBits.at(i)));
+json::Value object_of(const ResidualSummary& residuals) {
+  json::Value object;
+  object["corrected"] = object_of(residuals.after);
+  object["uncorrected"] = object_of(residuals.before);
+  object["inlier_ratio"] = significant(residuals.inlier_ratio);
+  object["detections"] = residuals.judged;
+  return object;
+}
+
+/// Keys k_v, yaw, pitch, roll.
+template <typename Values>
+json::Value by_parameter(const Values& values) {
+  json::Value object;
+  for (std::size_t i = 0; i < kParameters; ++i) object[kNames.at(i)] = significant(values.at(i));
+  return object;
+}
+
+void add_observability(json::Value& object, const AlignmentEstimate& message) {
+  json::Value observable, words;
+  const auto add = [&](const char* name, std::uint32_t bits) {
+    const bool is_observable = message.is_observable(bits);
+    observable[name] = is_observable;
+    words[name] = is_observable ? "OBSERVABLE" : "NOT_OBSERVABLE";
   };
-  json.key("observable").begin_object();
-  each([&](const char* name, bool observable) { json.field(name, observable); });
-  json.end_object().key("observability").begin_object();
-  each([&](const char* name, bool observable) { json.field(name, observable ? "OBSERVABLE" : "NOT_OBSERVABLE"); });
-  json.end_object();
+  for (std::size_t i = 0; i < kParameters; ++i) add(kNames.at(i), kVehicleBits.at(i));
+  for (std::size_t i = 0; i < 3; ++i) add(kSensorNames.at(i), kSensorBits.at(i));
+  object["observable"] = std::move(observable);
+  object["observability"] = std::move(words);
 }
 
-void write_residuals(JsonWriter& json, const ResidualSummary& residuals) {
-  json.key("residual").begin_object();
-  write_moments(json, "corrected", residuals.after);
-  write_moments(json, "uncorrected", residuals.before);
-  json.field("inlier_ratio", residuals.inlier_ratio).field("detections", residuals.judged).end_object();
+json::Value object_of(const TruthComparison& truth) {
+  json::Value object;
+  const TruthComparison::Mounting& now = truth.mountings[truth.true_now];
+  for (std::size_t i = 0; i < kParameters; ++i) object[key_of(i)] = shown(i, now.values.at(i));
+  for (std::size_t i = 0; i < kParameters; ++i) object[key_of(i, "_error")] = shown(i, truth.errors.at(i));
+  for (std::size_t i = 0; i < 3; ++i) object[sensor_key_of(i, "_error")] = degrees(truth.sensor_errors_rad.at(i));
+  object["nees"] = by_parameter(truth.nees);
+  object["seconds_to_95_percent"] = by_parameter(truth.seconds_to_95_percent);
+  json::Value& changes = object["step_changes"] = json::Value::array();
+  for (std::size_t i = 1; i < truth.mountings.size(); ++i) changes.push_back(truth.mountings[i].from_s);
+  return object;
 }
 
-void write_truth(JsonWriter& json, const TruthComparison& truth) {
-  json.key("truth").begin_object();
-  for (std::size_t i = 0; i < kParameters; ++i)
-    json.field(key_of(i), shown(i, truth.mountings[truth.true_now].values.at(i)));
-  for (std::size_t i = 0; i < kParameters; ++i) json.field(key_of(i, "_error"), shown(i, truth.errors.at(i)));
-  for (std::size_t i = 0; i < 3; ++i) {
-    json.field(std::string(kSensorNames.at(i)) + "_error_deg", truth.sensor_errors_rad.at(i) * kDegreesPerRadian);
-  }
-  json.key("nees").begin_object();
-  for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.nees.at(i));
-  json.end_object().key("seconds_to_95_percent").begin_object();
-  for (std::size_t i = 0; i < kParameters; ++i) json.field(kNames.at(i), truth.seconds_to_95_percent.at(i));
-  json.end_object().key("step_changes").begin_array();
-  for (std::size_t i = 1; i < truth.mountings.size(); ++i) json.value(truth.mountings[i].from_s);
-  json.end_array().end_object();
-}
-
-void write_radar(JsonWriter& json, const RadarResult& radar) {
+/// Estimates with their standard deviations, about the axes of the vehicle and of the sensor.
+void add_estimates(json::Value& object, const RadarResult& radar) {
   const AlignmentEstimate& m = radar.message;
-  json.begin_object();
-  json.field("id", std::uint64_t{radar.id}).field("name", radar.name).field("state", name_of(m.state));
-  json.field("measures_elevation", radar.measures_elevation);
   const std::array<double, kParameters> vehicle = {radar.estimate.speed_scale, m.vehicle_yaw_rad, m.vehicle_pitch_rad,
                                                    m.vehicle_roll_rad};
   for (std::size_t i = 0; i < kParameters; ++i) {
-    json.field(key_of(i), shown(i, vehicle.at(i)));
-    json.field(key_of(i, "_std"), shown(i, radar.stds.at(i)));
+    object[key_of(i)] = shown(i, vehicle.at(i));
+    object[key_of(i, "_std")] = shown(i, radar.stds.at(i));
   }
   const std::array<double, 3> sensor = {m.alignment_yaw_rad, m.alignment_pitch_rad, m.alignment_roll_rad};
   for (std::size_t i = 0; i < 3; ++i) {
-    json.field(std::string(kSensorNames.at(i)) + "_deg", sensor.at(i) * kDegreesPerRadian);
-    json.field(std::string(kSensorNames.at(i)) + "_std_deg", std_of(m.covariance, i + 1) * kDegreesPerRadian);
+    object[sensor_key_of(i)] = degrees(sensor.at(i));
+    object[sensor_key_of(i, "_std")] = degrees(std_of(m.covariance, i + 1));
   }
-  write_observability(json, m);
-  const Eigen::Vector3d turn =
-      geometry::so3_log(geometry::fixed_axes_rotation(m.vehicle_yaw_rad, m.vehicle_pitch_rad, m.vehicle_roll_rad));
-  json.key("rotation_vector_vehicle_rad").begin_array();
-  json.value(turn.x()).value(turn.y()).value(turn.z());
-  json.end_array().key("sensor_to_vehicle").begin_array();
-  for (Eigen::Index i = 0; i < 9; ++i) json.value(radar.estimate.sensor_to_vehicle(i / 3, i % 3));
-  json.end_array().key("covariance").begin_array();
-  for (Eigen::Index i = 0; i < 16; ++i) json.value(radar.estimate.covariance(i / 4, i % 4));
-  json.end_array();
-  write_residuals(json, radar.residuals);
-  json.key("seconds_to_95_percent").begin_object();
-  for (std::size_t i = 0; i < kParameters; ++i) {
-    json.field(kNames.at(i), double{m.kpis.seconds_to_95_percent.at(i)});
-  }
-  json.end_object().key("scans_to_95_percent").begin_object();
-  for (std::size_t i = 0; i < kParameters; ++i) {
-    const std::uint32_t scans = m.kpis.scans_to_95_percent.at(i);
-    json.field(kNames.at(i), scans == 0 ? std::nan("") : static_cast<double>(scans));
-  }
-  json.end_object();
-  json.field("cpu_us_per_scan", radar.cpu_us_per_scan).field("max_cpu_us_per_scan", radar.max_cpu_us_per_scan);
-  json.field("scans", radar.scans).field("scans_used", radar.estimate.scans_used);
-  json.field("scans_without_ego_motion", radar.scans_without_ego);
-  json.field("detections", radar.detections).field("detections_used", radar.estimate.detections_used);
-  json.field("seconds_of_drive", radar.estimate.seconds_of_drive);
-  json.field("angle_noise_scale", radar.estimate.angle_noise_scale);
-  json.key("step_changes").begin_array();
-  for (const StepChangeEvent& step_change : radar.step_changes) {
-    json.begin_object().field("t", step_change.time_s);
-    for (std::size_t i = 0; i < 3; ++i)
-      json.field(key_of(i + 1), step_change.yaw_pitch_roll_rad.at(i) * kDegreesPerRadian);
-    json.end_object();
-  }
-  json.end_array();
-  if (!radar.support.empty()) {
-    json.key("support").begin_object();
-    for (std::size_t i = 0; i < radar.support.size(); ++i) json.field(kSensorNames.at(i), radar.support[i]);
-    json.end_object();
-  }
-  if (radar.truth) write_truth(json, *radar.truth);
-  json.end_object();
+  add_observability(object, m);
 }
 
-void write_series(JsonWriter& json, const Result& result) {
-  const auto column = [&](const char* key, const auto& value) {
-    json.key(key).begin_array();
-    for (const Sample& sample : result.series) json.value(value(sample));
-    json.end_array();
-  };
-  json.key("time_series").begin_object();
-  column(result.x_is_iteration ? "iteration" : "t", [](const Sample& s) { return s.x; });
-  column("k_v", [](const Sample& s) { return s.speed_scale; });
-  column("k_v_std", [](const Sample& s) { return s.speed_scale_std; });
-  column("yaw_rate_bias_radps", [](const Sample& s) { return s.yaw_rate_bias_radps; });
-  column("yaw_rate_bias_std_radps", [](const Sample& s) { return s.yaw_rate_bias_std_radps; });
-  column("slip_coefficient_radps2pm", [](const Sample& s) { return s.slip_coefficient_radps2pm; });
-  column("slip_coefficient_std_radps2pm", [](const Sample& s) { return s.slip_coefficient_std_radps2pm; });
-  json.key("radars").begin_array();
-  for (std::size_t r = 0; r < result.radars.size(); ++r) {
-    json.begin_object().field("id", std::uint64_t{result.radars[r].id});
-    column("state", [r](const Sample& s) { return name_of(s.radars[r].state); });
-    for (std::size_t i = 0; i < kParameters; ++i) {
-      column(key_of(i).c_str(), [r, i](const Sample& s) { return shown(i, s.radars[r].values.at(i)); });
-      column(key_of(i, "_std").c_str(), [r, i](const Sample& s) { return shown(i, s.radars[r].stds.at(i)); });
-      column((std::string(kNames.at(i)) + "_observable").c_str(),
-             [r, i](const Sample& s) { return (s.radars[r].observable & kVehicleBits.at(i)) != 0; });
-    }
-    json.end_object();
+void add_matrices(json::Value& object, const RadarResult& radar) {
+  const AlignmentEstimate& m = radar.message;
+  const Eigen::Vector3d turn =
+      geometry::so3_log(geometry::fixed_axes_rotation(m.vehicle_yaw_rad, m.vehicle_pitch_rad, m.vehicle_roll_rad));
+  object["rotation_vector_vehicle_rad"] = {significant(turn.x()), significant(turn.y()), significant(turn.z())};
+  json::Value& rotation = object["sensor_to_vehicle"] = json::Value::array();
+  for (Eigen::Index i = 0; i < 9; ++i) rotation.push_back(significant(radar.estimate.sensor_to_vehicle(i / 3, i % 3)));
+  json::Value& covariance = object["covariance"] = json::Value::array();
+  for (Eigen::Index i = 0; i < 16; ++i) covariance.push_back(significant(radar.estimate.covariance(i / 4, i % 4)));
+}
+
+json::Value scans_to_95_percent_of(const AlignmentEstimate& message) {
+  json::Value object;
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    const std::uint32_t scans = message.kpis.scans_to_95_percent.at(i);
+    object[kNames.at(i)] = scans == 0 ? json::Value() : json::Value(scans);
   }
-  json.end_array().end_object();
+  return object;
+}
+
+void add_counts(json::Value& object, const RadarResult& radar) {
+  object["cpu_us_per_scan"] = significant(radar.cpu_us_per_scan);
+  object["max_cpu_us_per_scan"] = significant(radar.max_cpu_us_per_scan);
+  object["scans"] = radar.scans;
+  object["scans_used"] = radar.estimate.scans_used;
+  object["scans_without_ego_motion"] = radar.scans_without_ego;
+  object["detections"] = radar.detections;
+  object["detections_used"] = radar.estimate.detections_used;
+  object["seconds_of_drive"] = significant(radar.estimate.seconds_of_drive);
+  object["angle_noise_scale"] = significant(radar.estimate.angle_noise_scale);
+}
+
+json::Value object_of(const StepChangeEvent& change) {
+  json::Value object;
+  object["t"] = change.time_s;
+  for (std::size_t i = 0; i < 3; ++i) object[key_of(i + 1)] = degrees(change.yaw_pitch_roll_rad.at(i));
+  return object;
+}
+
+json::Value object_of(const RadarResult& radar) {
+  json::Value object;
+  object["id"] = radar.id;
+  object["name"] = radar.name;
+  object["state"] = name_of(radar.message.state);
+  object["measures_elevation"] = radar.measures_elevation;
+  add_estimates(object, radar);
+  add_matrices(object, radar);
+  object["residual"] = object_of(radar.residuals);
+  object["seconds_to_95_percent"] = by_parameter(radar.message.kpis.seconds_to_95_percent);
+  object["scans_to_95_percent"] = scans_to_95_percent_of(radar.message);
+  add_counts(object, radar);
+  json::Value& changes = object["step_changes"] = json::Value::array();
+  for (const StepChangeEvent& change : radar.step_changes) changes.push_back(object_of(change));
+  for (std::size_t i = 0; i < radar.support.size(); ++i) object["support"][kSensorNames.at(i)] = radar.support[i];
+  if (radar.truth) object["truth"] = object_of(*radar.truth);
+  return object;
+}
+
+json::Value series_of(const Result& result) {
+  const auto column = [&](const auto& value_of) {
+    json::Value values = json::Value::array();
+    for (const Sample& sample : result.series) values.push_back(value_of(sample));
+    return values;
+  };
+  const auto numbers = [&](double Sample::*member) {
+    return column([member](const Sample& s) { return significant(s.*member); });
+  };
+  json::Value series;
+  series[result.x_is_iteration ? "iteration" : "t"] = column([](const Sample& s) { return s.x; });
+  series["k_v"] = numbers(&Sample::speed_scale);
+  series["k_v_std"] = numbers(&Sample::speed_scale_std);
+  series["yaw_rate_bias_radps"] = numbers(&Sample::yaw_rate_bias_radps);
+  series["yaw_rate_bias_std_radps"] = numbers(&Sample::yaw_rate_bias_std_radps);
+  series["slip_coefficient_radps2pm"] = numbers(&Sample::slip_coefficient_radps2pm);
+  series["slip_coefficient_std_radps2pm"] = numbers(&Sample::slip_coefficient_std_radps2pm);
+  json::Value& radars = series["radars"] = json::Value::array();
+  for (std::size_t r = 0; r < result.radars.size(); ++r) {
+    json::Value object;
+    object["id"] = result.radars[r].id;
+    object["state"] = column([r](const Sample& s) { return name_of(s.radars[r].state); });
+    for (std::size_t i = 0; i < kParameters; ++i) {
+      object[key_of(i)] = column([r, i](const Sample& s) { return shown(i, s.radars[r].values.at(i)); });
+      object[key_of(i, "_std")] = column([r, i](const Sample& s) { return shown(i, s.radars[r].stds.at(i)); });
+      object[std::string(kNames.at(i)) + "_observable"] =
+          column([r, i](const Sample& s) { return (s.radars[r].observable & kVehicleBits.at(i)) != 0; });
+    }
+    radars.push_back(std::move(object));
+  }
+  return series;
+}
+
+json::Value object_of(const Provenance& provenance) {
+  json::Value object = json::Value::object();
+  const auto file = [&](const char* key, const std::string& name) {
+    if (!name.empty()) object[key] = name;
+  };
+  file("drive", provenance.drive);
+  file("ego", provenance.ego);
+  if (!provenance.recordings.empty()) object["recordings"] = provenance.recordings;
+  file("vehicle", provenance.vehicle);
+  file("config", provenance.config);
+  file("truth", provenance.truth);
+  return object;
+}
+
+json::Value recording_of(const Result& result, const Provenance& provenance) {
+  json::Value object;
+  object["start_s"] = result.start_s;
+  object["end_s"] = result.end_s;
+  object["duration_s"] = significant(result.end_s - result.start_s);
+  object["scans"] = result.scans;
+  object["detections"] = result.detections;
+  object["ego_motions"] = result.ego_motions;
+  object["dropped_detections"] = provenance.dropped_detections;
+  object["lines"] = provenance.lines;
+  object["bad_lines"] = provenance.bad_lines;
+  return object;
+}
+
+/// Errors of the vehicle's signals, estimated with all radars.
+void add_ego(json::Value& object, const Result& result) {
+  object["k_v"] = estimated(result.speed_scale, result.speed_scale_std, result.speed_scale_observable);
+  const Sample last = result.series.empty() ? Sample{} : result.series.back();
+  std::uint32_t bits = 0;
+  for (const RadarResult& radar : result.radars) bits |= radar.message.observable;
+  object["yaw_rate_bias_radps"] =
+      estimated(last.yaw_rate_bias_radps, last.yaw_rate_bias_std_radps, (bits & alignment_axis::kYawRateBias) != 0);
+  object["slip_coefficient_radps2pm"] = estimated(last.slip_coefficient_radps2pm, last.slip_coefficient_std_radps2pm,
+                                                  (bits & alignment_axis::kSlip) != 0);
+  if (!result.speed_scale_support.empty()) object["k_v_support"] = result.speed_scale_support;
+  if (result.true_speed_scale) object["k_v_error"] = significant(result.speed_scale - *result.true_speed_scale);
 }
 
 }  // namespace
@@ -182,45 +269,19 @@ const char* name_of(AlignmentState state) {
 }
 
 std::string to_json(const Result& result, const Provenance& provenance) {
-  JsonWriter json;
-  json.begin_object().field("tool", "boresight align").field("version", provenance.tool_version);
-  json.field("format", std::uint64_t{1}).field("method", result.method).field("vehicle", result.vehicle);
-  json.key("inputs").begin_object();
-  const auto file = [&](const char* key, const std::string& name) {
-    if (!name.empty()) json.field(key, name);
-  };
-  file("drive", provenance.drive);
-  file("ego", provenance.ego);
-  if (!provenance.recordings.empty()) {
-    json.key("recordings").begin_array();
-    for (const std::string& name : provenance.recordings) json.value(name);
-    json.end_array();
-  }
-  file("vehicle", provenance.vehicle);
-  file("config", provenance.config);
-  file("truth", provenance.truth);
-  json.end_object().key("recording").begin_object();
-  json.field("start_s", result.start_s).field("end_s", result.end_s).field("duration_s", result.end_s - result.start_s);
-  json.field("scans", result.scans).field("detections", result.detections).field("ego_motions", result.ego_motions);
-  json.field("dropped_detections", provenance.dropped_detections);
-  json.field("lines", provenance.lines).field("bad_lines", provenance.bad_lines).end_object();
-
-  write_estimated(json, "k_v", result.speed_scale, result.speed_scale_std, result.speed_scale_observable);
-  const Sample last = result.series.empty() ? Sample{} : result.series.back();
-  std::uint32_t bits = 0;
-  for (const RadarResult& radar : result.radars) bits |= radar.message.observable;
-  write_estimated(json, "yaw_rate_bias_radps", last.yaw_rate_bias_radps, last.yaw_rate_bias_std_radps,
-                  (bits & alignment_axis::kYawRateBias) != 0);
-  write_estimated(json, "slip_coefficient_radps2pm", last.slip_coefficient_radps2pm, last.slip_coefficient_std_radps2pm,
-                  (bits & alignment_axis::kSlip) != 0);
-  if (!result.speed_scale_support.empty()) json.field("k_v_support", result.speed_scale_support);
-  if (result.true_speed_scale) json.field("k_v_error", result.speed_scale - *result.true_speed_scale);
-  json.key("radars").begin_array();
-  for (const RadarResult& radar : result.radars) write_radar(json, radar);
-  json.end_array();
-  write_series(json, result);
-  json.end_object();
-  return json.text() + "\n";
+  json::Value object;
+  object["tool"] = "boresight align";
+  object["version"] = provenance.tool_version;
+  object["format"] = 1;
+  object["method"] = result.method;
+  object["vehicle"] = result.vehicle;
+  object["inputs"] = object_of(provenance);
+  object["recording"] = recording_of(result, provenance);
+  add_ego(object, result);
+  json::Value& radars = object["radars"] = json::Value::array();
+  for (const RadarResult& radar : result.radars) radars.push_back(object_of(radar));
+  object["time_series"] = series_of(result);
+  return json::line(object);
 }
 
 }  // namespace boresight::align

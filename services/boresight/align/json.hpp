@@ -1,4 +1,4 @@
-// A result as JSON; services/boresight/README.md describes the keys.
+// A result as JSON; config/schema/json.md describes the keys.
 #pragma once
 
 #include <cstdint>

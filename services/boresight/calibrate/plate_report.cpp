@@ -40,6 +40,34 @@ double fitted_db(const plate::PlateResult& result, double tilt_rad) {
   return (b1 * tilt_rad + b2) * tilt_rad + b3;
 }
 
+json::Value parabola_of(const plate::PlateResult& result) {
+  const auto fitted = [&](double value) { return was_fitted(result) ? json::significant(value) : kNaN; };
+  json::Value object;
+  object["b1_db_per_deg2"] = fitted(result.parabola[0] / (kDegreesPerRadian * kDegreesPerRadian));
+  object["b2_db_per_deg"] = fitted(result.parabola[1] / kDegreesPerRadian);
+  object["b3_db"] = fitted(result.parabola[2]);
+  return object;
+}
+
+json::Value tilt_of(const PlateRun& run, std::size_t index) {
+  const plate::TiltMeasurement& measured = run.measurements.tilts[index];
+  const plate::TiltSummary& summary = run.result.tilts[index];
+  const bool is_fitted = was_fitted(run.result);
+  const auto fitted = [&](double value) { return is_fitted ? json::significant(value) : kNaN; };
+  json::Value object;
+  object["tilt_deg"] = json::significant(measured.tilt_rad * kDegreesPerRadian);
+  object["scans"] = measured.scans;
+  object["mean_db"] = json::significant(measured.amplitude.mean());
+  object["std_db"] = json::significant(std::sqrt(measured.amplitude.variance()));
+  object["median_db"] = fitted(summary.median_db);
+  object["taken_db"] = fitted(summary.taken_db);
+  object["fitted_db"] = fitted(summary.fitted_db);
+  object["mean_azimuth_deg"] = json::significant(measured.azimuth.mean() * kDegreesPerRadian);
+  object["azimuth_std_deg"] = json::significant(std::sqrt(measured.azimuth.variance()) * kDegreesPerRadian);
+  object["used"] = is_fitted && summary.used;
+  return object;
+}
+
 constexpr svg::Style kScan = svg::area_of(svg::kGrey, 0.45);
 constexpr svg::Style kUsedTilt = svg::area_of(svg::kBlue);
 constexpr svg::Style kRejectedTilt = {.fill = svg::kPaper, .stroke = svg::kOrange, .stroke_width_px = 2.0};
@@ -91,43 +119,30 @@ std::string to_table(const PlateRun& run) {
 
 std::string to_json(const PlateRun& run) {
   const plate::PlateResult& result = run.result;
-  const auto known = [&](double value) { return has_pitch(result) ? value : kNaN; };
-  align::JsonWriter json;
-  json.begin_object().field("tool", "boresight calibrate plate").field("version", run.tool_version);
-  json.field("source", run.source).field("method", name_of(result.method));
-  json.field("ok", result.ok()).field("failure", plate::name_of(result.failure));
-  json.field("pitch_deg", known(result.pitch_rad * kDegreesPerRadian));
-  json.field("pitch_std_deg", known(result.pitch_std_rad * kDegreesPerRadian));
-  json.field("yaw_deg", known(result.yaw_rad * kDegreesPerRadian))
-      .field("yaw_std_deg", known(result.yaw_std_rad * kDegreesPerRadian));
-  json.field("maximum_db", known(result.maximum_db)).field("min_amplitude_db", run.config.min_amplitude_db);
-  json.field("self_consistency", known(result.self_consistency));
-  json.field("triples_median_deg", known(result.triples_median_rad * kDegreesPerRadian));
-  json.field("triples_std_deg", known(result.triples_std_rad * kDegreesPerRadian));
-  json.field("azimuth_inlier_ratio", known(result.azimuth_inlier_ratio));
-  json.field("tilts_used", std::uint64_t{result.tilts_used});
-  json.key("parabola").begin_object();
-  const bool fitted = was_fitted(result);
-  json.field("b1_db_per_deg2", fitted ? result.parabola[0] / (kDegreesPerRadian * kDegreesPerRadian) : kNaN);
-  json.field("b2_db_per_deg", fitted ? result.parabola[1] / kDegreesPerRadian : kNaN);
-  json.field("b3_db", fitted ? result.parabola[2] : kNaN).end_object();
-  json.key("tilts").begin_array();
-  for (std::size_t i = 0; i < run.measurements.number_of_tilts; ++i) {
-    const plate::TiltMeasurement& measured = run.measurements.tilts[i];
-    json.begin_object()
-        .field("tilt_deg", measured.tilt_rad * kDegreesPerRadian)
-        .field("scans", std::uint64_t{measured.scans});
-    json.field("mean_db", measured.amplitude.mean()).field("std_db", std::sqrt(measured.amplitude.variance()));
-    json.field("median_db", fitted ? result.tilts[i].median_db : kNaN);
-    json.field("taken_db", fitted ? result.tilts[i].taken_db : kNaN);
-    json.field("fitted_db", fitted ? result.tilts[i].fitted_db : kNaN);
-    json.field("mean_azimuth_deg", measured.azimuth.mean() * kDegreesPerRadian);
-    json.field("azimuth_std_deg", std::sqrt(measured.azimuth.variance()) * kDegreesPerRadian);
-    json.field("used", fitted && result.tilts[i].used).end_object();
-  }
-  json.end_array();
-  if (run.seed) write_seed(json, *run.seed);
-  return json.end_object().text() + "\n";
+  const auto known = [&](double value) { return has_pitch(result) ? json::significant(value) : kNaN; };
+  json::Value object;
+  object["tool"] = "boresight calibrate plate";
+  object["version"] = run.tool_version;
+  object["source"] = run.source;
+  object["method"] = name_of(result.method);
+  object["ok"] = result.ok();
+  object["failure"] = plate::name_of(result.failure);
+  object["pitch_deg"] = known(result.pitch_rad * kDegreesPerRadian);
+  object["pitch_std_deg"] = known(result.pitch_std_rad * kDegreesPerRadian);
+  object["yaw_deg"] = known(result.yaw_rad * kDegreesPerRadian);
+  object["yaw_std_deg"] = known(result.yaw_std_rad * kDegreesPerRadian);
+  object["maximum_db"] = known(result.maximum_db);
+  object["min_amplitude_db"] = json::significant(run.config.min_amplitude_db);
+  object["self_consistency"] = known(result.self_consistency);
+  object["triples_median_deg"] = known(result.triples_median_rad * kDegreesPerRadian);
+  object["triples_std_deg"] = known(result.triples_std_rad * kDegreesPerRadian);
+  object["azimuth_inlier_ratio"] = known(result.azimuth_inlier_ratio);
+  object["tilts_used"] = result.tilts_used;
+  object["parabola"] = parabola_of(result);
+  json::Value& tilts = object["tilts"] = json::Value::array();
+  for (std::size_t i = 0; i < run.measurements.number_of_tilts; ++i) tilts.push_back(tilt_of(run, i));
+  if (run.seed) object["seed"] = object_of(*run.seed);
+  return json::line(object);
 }
 
 std::string to_svg(const PlateRun& run) {

@@ -23,12 +23,38 @@ std::string angle(const char* name, double value_rad, double std_rad, bool obser
       text::with_std(value_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, " deg", text::Sign::kAlways));
 }
 
-void write_angle(align::JsonWriter& json, const std::string& name, bool known, double value_rad, double std_rad,
-                 bool observable) {
-  json.key(name).begin_object().field("value_deg", known ? value_rad * kDegreesPerRadian : kNaN);
-  json.field("std_deg", known ? std_rad * kDegreesPerRadian : kNaN)
-      .field("observable", known && observable)
-      .end_object();
+json::Value angle_of(bool known, double value_rad, double std_rad, bool observable) {
+  json::Value object;
+  object["value_deg"] = known ? json::significant(value_rad * kDegreesPerRadian) : kNaN;
+  object["std_deg"] = known ? json::significant(std_rad * kDegreesPerRadian) : kNaN;
+  object["observable"] = known && observable;
+  return object;
+}
+
+json::Value line_of(const ReflectorRun& run) {
+  const reflectors::LineResult& line = run.line;
+  json::Value object;
+  object["ok"] = line.ok();
+  object["problem"] = problem_of(run, line.problem, line.problem_position);
+  object["across"] = line.across;
+  object["yaw"] = angle_of(line.ok(), line.yaw_rad, line.yaw_std_rad, true);
+  object["pitch"] = angle_of(line.ok() && run.config.has_elevation, line.pitch_rad, line.pitch_std_rad, true);
+  return object;
+}
+
+json::Value position_of(const ReflectorRun& run, std::size_t index) {
+  const reflectors::Position& position = run.table.positions[index];
+  const reflectors::Result& result = run.result;
+  json::Value object;
+  object["x_m"] = json::significant(position.surveyed_m.x());
+  object["y_m"] = json::significant(position.surveyed_m.y());
+  object["z_m"] = json::significant(position.surveyed_m.z());
+  object["scans"] = position.scans;
+  object["residual_azimuth_deg"] = json::significant(result.residual_azimuth_rad[index] * kDegreesPerRadian);
+  object["residual_elevation_deg"] =
+      run.config.has_elevation ? json::significant(result.residual_elevation_rad[index] * kDegreesPerRadian) : kNaN;
+  object["used"] = static_cast<bool>(result.used[index]);
+  return object;
 }
 
 }  // namespace
@@ -99,35 +125,24 @@ std::string to_table(const ReflectorRun& run) {
 std::string to_json(const ReflectorRun& run) {
   const reflectors::Result& result = run.result;
   const bool known = result.ok();
-  align::JsonWriter json;
-  json.begin_object().field("tool", "boresight calibrate reflectors").field("version", run.tool_version);
-  json.field("source", run.source).field("radar", std::uint64_t{run.radar.id}).field("ok", known);
-  json.field("problem", problem_of(run, result.problem, result.problem_position));
-  json.field("has_elevation", run.config.has_elevation);
-  write_angle(json, "yaw", known, result.yaw_rad, result.yaw_std_rad, true);
-  write_angle(json, "pitch", known, result.pitch_rad, result.pitch_std_rad, result.pitch_observable);
-  write_angle(json, "roll", known, result.roll_rad, result.roll_std_rad, result.roll_observable);
-  json.field("noise_scale", known ? result.noise_scale : kNaN);
-  json.field("positions_used", std::uint64_t{result.positions_used});
-  json.key("line").begin_object().field("ok", run.line.ok());
-  json.field("problem", problem_of(run, run.line.problem, run.line.problem_position));
-  json.field("across", run.line.across);
-  write_angle(json, "yaw", run.line.ok(), run.line.yaw_rad, run.line.yaw_std_rad, true);
-  write_angle(json, "pitch", run.line.ok() && run.config.has_elevation, run.line.pitch_rad, run.line.pitch_std_rad,
-              true);
-  json.end_object().key("positions").begin_array();
-  for (std::size_t i = 0; i < result.used.size(); ++i) {
-    const reflectors::Position& position = run.table.positions[i];
-    json.begin_object().field("x_m", position.surveyed_m.x()).field("y_m", position.surveyed_m.y());
-    json.field("z_m", position.surveyed_m.z()).field("scans", std::uint64_t{position.scans});
-    json.field("residual_azimuth_deg", result.residual_azimuth_rad[i] * kDegreesPerRadian);
-    json.field("residual_elevation_deg",
-               run.config.has_elevation ? result.residual_elevation_rad[i] * kDegreesPerRadian : kNaN);
-    json.field("used", static_cast<bool>(result.used[i])).end_object();
-  }
-  json.end_array();
-  if (known) write_seed(json, result.rotation);
-  return json.end_object().text() + "\n";
+  json::Value object;
+  object["tool"] = "boresight calibrate reflectors";
+  object["version"] = run.tool_version;
+  object["source"] = run.source;
+  object["radar"] = run.radar.id;
+  object["ok"] = known;
+  object["problem"] = problem_of(run, result.problem, result.problem_position);
+  object["has_elevation"] = run.config.has_elevation;
+  object["yaw"] = angle_of(known, result.yaw_rad, result.yaw_std_rad, true);
+  object["pitch"] = angle_of(known, result.pitch_rad, result.pitch_std_rad, result.pitch_observable);
+  object["roll"] = angle_of(known, result.roll_rad, result.roll_std_rad, result.roll_observable);
+  object["noise_scale"] = known ? json::significant(result.noise_scale) : kNaN;
+  object["positions_used"] = result.positions_used;
+  object["line"] = line_of(run);
+  json::Value& positions = object["positions"] = json::Value::array();
+  for (std::size_t i = 0; i < result.used.size(); ++i) positions.push_back(position_of(run, i));
+  if (known) object["seed"] = object_of(result.rotation);
+  return json::line(object);
 }
 
 }  // namespace boresight::calibrate

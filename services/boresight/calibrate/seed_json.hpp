@@ -1,26 +1,25 @@
 // A seed of the dynamic estimator as JSON.
 #pragma once
 
-#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "services/alignment_estimator/core/plate/seed.hpp"
-#include "services/boresight/align/json_writer.hpp"
+#include "services/boresight/json/text.hpp"
 #include "services/common/geometry/angles.hpp"
 
 namespace boresight::calibrate {
 
-/// Key `seed`: radar, rotation vector in vehicle axes (degrees) and its covariance (deg², row-major).
-inline void write_seed(align::JsonWriter& json, const alignment::RotationSeed& seed) {
-  json.key("seed").begin_object().field("radar", std::uint64_t{seed.radar_id});
-  json.key("rotation_vehicle_deg").begin_array();
-  for (const double angle : seed.rotation_vehicle_rad) json.value(angle * kDegreesPerRadian);
-  json.end_array().key("covariance_deg2").begin_array();
-  for (Eigen::Index row = 0; row < 3; ++row) {
-    for (Eigen::Index column = 0; column < 3; ++column) {
-      json.value(seed.covariance(row, column) * kDegreesPerRadian * kDegreesPerRadian);
-    }
+/// Radar, rotation vector in vehicle axes (degrees) and its covariance (deg², row-major).
+inline json::Value object_of(const alignment::RotationSeed& seed) {
+  json::Value object;
+  object["radar"] = seed.radar_id;
+  json::Value& rotation = object["rotation_vehicle_deg"] = json::Value::array();
+  for (const double angle : seed.rotation_vehicle_rad) rotation.push_back(json::significant(angle * kDegreesPerRadian));
+  json::Value& covariance = object["covariance_deg2"] = json::Value::array();
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    covariance.push_back(json::significant(seed.covariance(i / 3, i % 3) * kDegreesPerRadian * kDegreesPerRadian));
   }
-  json.end_array().end_object();
+  return object;
 }
 
 }  // namespace boresight::calibrate

@@ -35,11 +35,12 @@ struct DiagnosticsOptions {
 class LinePrinter {
  public:
   explicit LinePrinter(const std::string& file) : output_(file) {}
+  /// `text` ends with a line feed.
   void print(const std::string& text) {
     const std::lock_guard lock(mutex_);
     if (failed_) return;
     try {
-      output_.write(text + "\n");
+      output_.write(text);
       output_.flush();  // the reader of a pipe shall not wait
       ++printed_;
     } catch (const terminal::OutputError&) {
@@ -88,12 +89,12 @@ int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) 
   dds::DiagnosticsReader::OnDiagnosticArray on_array;
   if (options.array) {
     on_array = [&](const diagnostic_msgs::msg::dds_::DiagnosticArray_& array) {
-      printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array));
+      printer.print(is_json ? diagnostics_text::to_json(array) : diagnostics_text::to_lines(array) + "\n");
     };
   } else {
     on_sensor_health = [&](const diagnostics::SensorHealth& sensor) {
       if (!changes.observe(sensor) && !options.all) return;
-      printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor));
+      printer.print(is_json ? diagnostics_text::to_json(sensor) : diagnostics_text::to_line(sensor) + "\n");
     };
   }
   std::optional<dds::DiagnosticsReader> reader(std::in_place, options.dds, on_sensor_health, on_array);

@@ -1,14 +1,16 @@
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
 
-#include <cmath>
 #include <ctime>
 #include <string_view>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "interfaces/messages/names.hpp"
+#include "services/boresight/json/text.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::diagnostics_text {
@@ -42,39 +44,40 @@ std::string axis_text(std::string_view name, const diagnostics::AxisHealth& axis
                      axis.beyond_tolerance() ? "beyond" : "within", axis.tolerance_rad() * kDegreesPerRadian);
 }
 
-/// JSON knows no NaN.
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
+double degrees(float angle_rad) {
+  return json::shortest(static_cast<float>(angle_rad * kDegreesPerRadian));
 }
 
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
+json::Value object_of(const diagnostics::AxisHealth& axis) {
+  json::Value object;
+  object["error_deg"] = degrees(axis.error_rad());
+  object["std_deg"] = degrees(axis.std_rad());
+  object["tolerance_deg"] = degrees(axis.tolerance_rad());
+  object["observable"] = axis.observable();
+  object["beyond_tolerance"] = axis.beyond_tolerance();
+  return object;
 }
 
-std::string axis_json(std::string_view name, const diagnostics::AxisHealth& axis) {
-  return fmt::format(R"("{}":{{"error_deg":{},"std_deg":{},"tolerance_deg":{},"observable":{},"beyond_tolerance":{}}})",
-                     name, number(axis.error_rad() * kDegreesPerRadian), number(axis.std_rad() * kDegreesPerRadian),
-                     number(axis.tolerance_rad() * kDegreesPerRadian), axis.observable(), axis.beyond_tolerance());
+json::Value object_of(const diagnostic_msgs::msg::dds_::DiagnosticStatus_& status) {
+  json::Value object;
+  object["level"] = status.level_();
+  object["name"] = status.name_();
+  object["message"] = status.message_();
+  object["hardware_id"] = status.hardware_id_();
+  json::Value& values = object["values"] = json::Value::object();
+  for (const auto& value : status.values_()) values[value.key_()] = value.value_();
+  return object;
 }
 
 }  // namespace
 
 std::string to_line(const diagnostics::SensorHealth& s) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  constexpr std::size_t kNameColumns = 13;
   std::string line =
-      fmt::format("{} {:<12} {} {}  {:.1f} Hz", clock_time(s.time_ns() / kSecond_ns, s.time_ns() % kSecond_ns),
-                  s.radar_name(), word(s.data_qualifier()), word(s.extended_qualifier()), s.rate_hz());
+      fmt::format("{} {}{} {}  {:.1f} Hz", clock_time(s.time_ns() / kSecond_ns, s.time_ns() % kSecond_ns),
+                  text::padded(text::printable(s.radar_name()), kNameColumns), word(s.data_qualifier()),
+                  word(s.extended_qualifier()), s.rate_hz());
   line += axis_text("yaw", s.yaw()) + axis_text("pitch", s.pitch()) + axis_text("roll", s.roll());
   if (s.yaw().observable()) {
     line += fmt::format("  lateral displacement {} at {:.0f} m",
@@ -85,17 +88,32 @@ std::string to_line(const diagnostics::SensorHealth& s) {
 }
 
 std::string to_json(const diagnostics::SensorHealth& s) {
-  return fmt::format(
-      R"({{"radar_id":{},"radar":{},"vehicle":{},"time_ns":{},"data_qualifier":"{}","extended_qualifier":"{}",)"
-      R"("rate_hz":{},"expected_rate_hz":{},"last_seen_s":{},{},{},{},"speed_scale":{},"speed_scale_std":{},)"
-      R"("lateral_displacement_m":{},"reference_range_m":{},"scans":{},"lost_scans":{},"missed_scans":{},)"
-      R"("suspect_scans":{},"e2e_lost":{},"e2e_repeated":{},"e2e_wrong":{},"conditions":"{}"}})",
-      s.radar_id(), quoted(s.radar_name()), quoted(s.vehicle_name()), s.time_ns(), word(s.data_qualifier()),
-      word(s.extended_qualifier()), number(s.rate_hz()), number(s.expected_rate_hz()), number(s.last_seen_s()),
-      axis_json("yaw", s.yaw()), axis_json("pitch", s.pitch()), axis_json("roll", s.roll()), number(s.speed_scale()),
-      number(s.speed_scale_std()), number(s.lateral_displacement_m()), number(s.reference_range_m()), s.scans(),
-      s.lost_scans(), s.missed_scans(), s.suspect_scans(), s.e2e_lost(), s.e2e_repeated(), s.e2e_wrong(),
-      words_of_conditions(s.conditions()));
+  json::Value object;
+  object["radar_id"] = s.radar_id();
+  object["radar"] = s.radar_name();
+  object["vehicle"] = s.vehicle_name();
+  object["time_ns"] = s.time_ns();
+  object["data_qualifier"] = word(s.data_qualifier());
+  object["extended_qualifier"] = word(s.extended_qualifier());
+  object["rate_hz"] = json::shortest(s.rate_hz());
+  object["expected_rate_hz"] = json::shortest(s.expected_rate_hz());
+  object["last_seen_s"] = json::shortest(s.last_seen_s());
+  object["yaw"] = object_of(s.yaw());
+  object["pitch"] = object_of(s.pitch());
+  object["roll"] = object_of(s.roll());
+  object["speed_scale"] = json::shortest(s.speed_scale());
+  object["speed_scale_std"] = json::shortest(s.speed_scale_std());
+  object["lateral_displacement_m"] = json::shortest(s.lateral_displacement_m());
+  object["reference_range_m"] = json::shortest(s.reference_range_m());
+  object["scans"] = s.scans();
+  object["lost_scans"] = s.lost_scans();
+  object["missed_scans"] = s.missed_scans();
+  object["suspect_scans"] = s.suspect_scans();
+  object["e2e_lost"] = s.e2e_lost();
+  object["e2e_repeated"] = s.e2e_repeated();
+  object["e2e_wrong"] = s.e2e_wrong();
+  object["conditions"] = words_of_conditions(s.conditions());
+  return json::line(object);
 }
 
 std::string to_lines(const DiagnosticArray_& array) {
@@ -104,27 +122,20 @@ std::string to_lines(const DiagnosticArray_& array) {
   for (const auto& status : array.status_()) {
     if (status.level_() == 0) continue;
     if (!text.empty()) text += '\n';
-    text += fmt::format("{} {:<5} {}: {}", time, level_word(status.level_()), status.name_(), status.message_());
+    text += fmt::format("{} {:<5} {}: {}", time, level_word(status.level_()), text::printable(status.name_()),
+                        text::printable(status.message_()));
   }
   return text.empty() ? fmt::format("{} OK    all {} statuses", time, array.status_().size()) : text;
 }
 
 std::string to_json(const DiagnosticArray_& array) {
-  std::string text = fmt::format(R"({{"sec":{},"nanosec":{},"frame_id":{},"status":[)", array.header_().stamp_().sec_(),
-                                 array.header_().stamp_().nanosec_(), quoted(array.header_().frame_id_()));
-  std::string_view comma;
-  for (const auto& status : array.status_()) {
-    text += fmt::format(R"({}{{"level":{},"name":{},"message":{},"hardware_id":{},"values":{{)", comma, status.level_(),
-                        quoted(status.name_()), quoted(status.message_()), quoted(status.hardware_id_()));
-    comma = ",";
-    std::string_view value_comma;
-    for (const auto& value : status.values_()) {
-      text += fmt::format("{}{}:{}", value_comma, quoted(value.key_()), quoted(value.value_()));
-      value_comma = ",";
-    }
-    text += "}}";
-  }
-  return text + "]}";
+  json::Value object;
+  object["sec"] = array.header_().stamp_().sec_();
+  object["nanosec"] = array.header_().stamp_().nanosec_();
+  object["frame_id"] = array.header_().frame_id_();
+  json::Value& statuses = object["status"] = json::Value::array();
+  for (const auto& status : array.status_()) statuses.push_back(object_of(status));
+  return json::line(object);
 }
 
 }  // namespace boresight::diagnostics_text

@@ -18,4 +18,7 @@ using Value = nlohmann::ordered_json;
 /// The double with the same shortest text as the float: 0.3F is written as 0.3, not as 0.30000001192092896.
 [[nodiscard]] double shortest(float value);
 
+/// Rounded to the digits that a float has, for values that are not more accurate, and without the sign of zero.
+[[nodiscard]] double significant(double value);
+
 }  // namespace boresight::json
