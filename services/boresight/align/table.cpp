@@ -1,22 +1,32 @@
 #include "services/boresight/align/table.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "services/boresight/align/json.hpp"
 #include "services/common/geometry/angles.hpp"
+#include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::align {
 
 namespace {
 
-/// `text` in `width` columns; characters such as ± and ° have two bytes but one column.
-std::string padded(const std::string& text, std::size_t width) {
-  std::size_t columns = 0;
-  for (const char c : text) columns += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1 : 0;
-  return text + std::string(columns < width ? width - columns : 1, ' ');
+using text::padded;
+
+/// Of the first column; longer names widen it.
+constexpr std::size_t kLeastNameColumns = 20;
+
+std::string name_of(const RadarResult& radar) {
+  return fmt::format("{} {}", radar.id, radar.name);
+}
+
+std::size_t name_columns(const std::vector<RadarResult>& radars) {
+  std::size_t width = kLeastNameColumns;
+  for (const RadarResult& radar : radars) width = std::max(width, text::columns(name_of(radar)) + 1);
+  return width;
 }
 
 std::string angle(double value_rad, double std_rad, bool observable) {
@@ -39,12 +49,13 @@ std::string to_table(const Result& result) {
                                   result.detections, result.ego_motions);
   if (result.scans > 0) table += fmt::format(", {:.1f} s", result.end_s - result.start_s);
   table += "\nmounting error about the vehicle's axes, ± one standard deviation:\n";
-  constexpr std::size_t kName = 20, kAngle = 21;
-  table += padded("radar", kName) + padded("yaw", kAngle) + padded("pitch", kAngle) + padded("roll", kAngle) +
+  const std::size_t name_width = name_columns(result.radars);
+  constexpr std::size_t kAngle = 21;
+  table += padded("radar", name_width) + padded("yaw", kAngle) + padded("pitch", kAngle) + padded("roll", kAngle) +
            padded("RMSE m/s", 18) + padded("95 % after s", 17) + padded("µs/scan", 9) + "state\n";
   for (const RadarResult& r : result.radars) {
     const AlignmentEstimate& m = r.message;
-    table += padded(fmt::format("{} {}", r.id, r.name), kName);
+    table += padded(name_of(r), name_width);
     table += padded(angle(m.vehicle_yaw_rad, r.stds[1], m.is_observable(alignment_axis::kVehicleYaw)), kAngle);
     table += padded(angle(m.vehicle_pitch_rad, r.stds[2], m.is_observable(alignment_axis::kVehiclePitch)), kAngle);
     table += padded(angle(m.vehicle_roll_rad, r.stds[3], m.is_observable(alignment_axis::kVehicleRoll)), kAngle);
@@ -58,13 +69,13 @@ std::string to_table(const Result& result) {
     table += '\n';
     constexpr std::array<const char*, 3> kSensorAxes = {"alpha", "beta", "gamma"};
     for (std::size_t i = 0; i < r.support.size(); ++i) {
-      table += padded("", kName) + kSensorAxes.at(i) + " " + r.support[i] + '\n';
+      table += padded("", name_width) + kSensorAxes.at(i) + " " + r.support[i] + '\n';
     }
     if (r.truth) {
       const auto error = [&](std::size_t i) {
         return text::error_in_stds(r.truth->errors.at(i) * kDegreesPerRadian, r.stds.at(i) * kDegreesPerRadian, "°");
       };
-      table += padded("  error", kName) + padded(error(1), kAngle) + padded(error(2), kAngle) + error(3) + '\n';
+      table += padded("  error", name_width) + padded(error(1), kAngle) + padded(error(2), kAngle) + error(3) + '\n';
     }
   }
   table += result.speed_scale_observable ? "k_v " + text::with_std(result.speed_scale, result.speed_scale_std)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "services/common/geometry/angles.hpp"
+#include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::monitor {
@@ -114,16 +115,26 @@ std::string complaint(const RadarSnapshot& radar) {
   return text;
 }
 
+/// Of the column with the names of the radars; longer names widen it.
+std::size_t name_columns(const Snapshot& snapshot) {
+  constexpr std::size_t kLeastNameColumns = 13;
+  std::size_t width = kLeastNameColumns;
+  for (const RadarSnapshot& radar : snapshot.radars) width = std::max(width, text::columns(radar.name) + 1);
+  return width;
+}
+
 void put_radars(Page& page, const Snapshot& snapshot) {
+  const std::size_t name_width = name_columns(snapshot);
   // The most important columns come first: a narrow terminal cuts the end.
-  page.put(fmt::format("{:<13}{:<32}{:<19}{:<21}{:>8}{:>5}{:>7}{:>6}  {:<12}{:<19}{:<19}{:>8}{:>12}", "RADAR", "HEALTH",
-                       "YAW ± σ", "SPEED SCALE ± σ", "SCANS/S", "DET", "MOVING", "GHOST", "ALIGNMENT", "PITCH ± σ",
-                       "ROLL ± σ", "SETTLED", "DRIFT/MIN"),
+  page.put(text::padded("RADAR", name_width), Ink::kDim);
+  page.put(fmt::format("{:<32}{:<19}{:<21}{:>8}{:>5}{:>7}{:>6}  {:<12}{:<19}{:<19}{:>8}{:>12}", "HEALTH", "YAW ± σ",
+                       "SPEED SCALE ± σ", "SCANS/S", "DET", "MOVING", "GHOST", "ALIGNMENT", "PITCH ± σ", "ROLL ± σ",
+                       "SETTLED", "DRIFT/MIN"),
            Ink::kDim);
   page.line();
   for (const RadarSnapshot& r : snapshot.radars) {
     const bool known = is_estimated(r);
-    page.put(fmt::format("{:<13}", r.name), Ink::kBold);
+    page.put(text::padded(r.name, name_width), Ink::kBold);
     page.put(fmt::format("{:<32}", verdict(r)), ink_of(r));
     const bool beyond = r.extended_qualifier == ExtendedQualifier::kMisaligned;
     const AlignmentDetails& d = r.details;
@@ -137,7 +148,7 @@ void put_radars(Page& page, const Snapshot& snapshot) {
                          text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°", text::Sign::kAlways)));
     page.line();
     if (const std::string text = complaint(r); !text.empty()) {
-      page.put(fmt::format("{:<13}{}", "", text), Ink::kWarning);
+      page.put(std::string(name_width, ' ') + text, Ink::kWarning);
       page.line();
     }
   }

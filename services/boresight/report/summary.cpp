@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "services/common/geometry/angles.hpp"
+#include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
 
 namespace boresight::report {
@@ -206,15 +207,25 @@ void add_checks(const Truth& truth, Summary& summary) {
   }
 }
 
+/// Of the column with the names of the radars; longer names widen it.
+std::size_t name_columns(const Summary& summary) {
+  constexpr std::size_t kLeastNameColumns = 14;
+  std::size_t width = kLeastNameColumns;
+  for (const RadarSummary& radar : summary.radars) width = std::max(width, text::columns(radar.last.name) + 1);
+  return width;
+}
+
 std::string render_radars(const Summary& summary) {
   std::string text =
       "  mounting error in yaw and speed scale (true / signalled speed) of each radar, with the σ that the estimator "
       "states\n";
-  text += fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", "radar", "scans", "lost", "yaw error ± σ", "truth",
+  const std::size_t name_width = name_columns(summary);
+  constexpr const char* kRow = "  {}{:>7}{:>6}   {:<20}{:<11}{}\n";
+  text += fmt::format(fmt::runtime(kRow), text::padded("radar", name_width), "scans", "lost", "yaw error ± σ", "truth",
                       "speed scale ± σ");
   for (const RadarSummary& radar : summary.radars) {
     const RadarSnapshot& last = radar.last;
-    text += fmt::format("  {:<14}{:>7}{:>6}   {:<20}{:<11}{}\n", last.name, last.scans, last.lost, yaw_text(last),
+    text += fmt::format(fmt::runtime(kRow), text::padded(last.name, name_width), last.scans, last.lost, yaw_text(last),
                         true_yaw_text(radar), speed_scale_text(last));
   }
   return text;
@@ -223,18 +234,21 @@ std::string render_radars(const Summary& summary) {
 /// The error of every parameter, and whether it agrees with its σ; nothing where no truth is known.
 std::string render_truth(const Summary& summary) {
   std::string text;
-  constexpr const char* kRow = "  {:<14}{:<22}{:<19}{:<19}{:<19}{:>6}{:>6}\n";
+  const std::size_t name_width = name_columns(summary);
+  constexpr const char* kRow = "  {}{:<22}{:<19}{:<19}{:<19}{:>6}{:>6}\n";
   for (const RadarSummary& radar : summary.radars) {
     if (!radar.true_vehicle_rad || !has_estimate(radar.last)) continue;
     const monitor::AlignmentDetails& d = radar.last.details;
     const std::array<double, 3>& truth = *radar.true_vehicle_rad;
-    text += fmt::format(fmt::runtime(kRow), radar.last.name, speed_scale_error_text(radar), error_text(d.yaw, truth[0]),
-                        error_text(d.pitch, truth[1]), error_text(d.roll, truth[2]), text::fixed(d.nees, 2),
-                        text::fixed(radar.mean_nees, 2));
+    text += fmt::format(fmt::runtime(kRow), text::padded(radar.last.name, name_width), speed_scale_error_text(radar),
+                        error_text(d.yaw, truth[0]), error_text(d.pitch, truth[1]), error_text(d.roll, truth[2]),
+                        text::fixed(d.nees, 2), text::fixed(radar.mean_nees, 2));
   }
   if (text.empty()) return text;
   return "  error = estimate - truth, about the vehicle's axes; in parentheses relative to the stated σ\n" +
-         fmt::format(fmt::runtime(kRow), "radar", "speed scale", "yaw", "pitch", "roll", "NEES", "mean") + text +
+         fmt::format(fmt::runtime(kRow), text::padded("radar", name_width), "speed scale", "yaw", "pitch", "roll",
+                     "NEES", "mean") +
+         text +
          "  NEES: squared errors relative to the stated covariance, per parameter; 1 on average if σ is right (mean: "
          "of the drive)\n\n";
 }

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
 #include "services/simulator/judge/scored_scene.hpp"
 #include "services/simulator/judge/truth_files.hpp"
@@ -27,13 +28,13 @@ class Grid {
     std::vector<std::size_t> widths;
     for (const auto& cells : rows_) {
       widths.resize(std::max(widths.size(), cells.size()));
-      for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], columns_of(cells[i]));
+      for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], text::columns(cells[i]));
     }
     std::string text;
     for (const auto& cells : rows_) {
       std::string line = "  ";
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        const std::string blanks(widths[i] - columns_of(cells[i]), ' ');
+        const std::string blanks(widths[i] - text::columns(cells[i]), ' ');
         line += i == 0 ? cells[i] + blanks : "  " + blanks + cells[i];
       }
       line.erase(line.find_last_not_of(' ') + 1);
@@ -43,11 +44,6 @@ class Grid {
   }
 
  private:
-  /// Columns on a terminal: characters such as ° have several bytes.
-  static std::size_t columns_of(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-  }
   std::vector<std::vector<std::string>> rows_;
 };
 

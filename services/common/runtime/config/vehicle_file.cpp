@@ -8,6 +8,7 @@
 #include "interfaces/messages/header.hpp"
 #include "interfaces/wire/boresight_service.hpp"
 #include "services/common/recording/ip_address.hpp"
+#include "services/common/text/columns.hpp"
 
 namespace boresight::config {
 
@@ -181,8 +182,9 @@ RadarConfig read_radar(Reader reader, VehicleUse use) {
   radar.id = static_cast<std::uint32_t>(reader.integer("id", {1, kMaxRadars}, 0));
   radar.name = reader.text("name", "");
   if (reader.has("name") && (radar.name.empty() || radar.name.size() > 31)) {
-    reader.reject("name", "must have 1 … 31 characters");
+    reader.reject("name", "must have 1 … 31 bytes");
   }
+  if (text::printable(radar.name) != radar.name) reader.reject("name", "must not contain control characters");
   radar.profile = reader.choice<RadarProfile>("profile",
                                               {{"toyota", RadarProfile::kToyota},
                                                {"ars548", RadarProfile::kArs548},
