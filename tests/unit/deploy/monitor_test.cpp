@@ -1,15 +1,10 @@
 #include <cmath>
 #include <memory>
-#include <set>
 #include <sstream>
 
-#include <nlohmann/json.hpp>
-
-#include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/accumulator.hpp"
 #include "services/boresight/monitor/render.hpp"
 #include "services/common/geometry/angles.hpp"
-#include "tests/unit/schema_page.hpp"
 
 namespace boresight::monitor {
 namespace {
@@ -206,36 +201,6 @@ TEST(SnapshotLines, StateConditionsAnglesAndLabels) {
   EXPECT_THAT(line, ::testing::HasSubstr(
                         R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
                         R"("clutter":1,"rejected":1},"classified_scans":1,"classified_without_tracks":1)"));
-}
-
-/// The keys of a section's tables: a cell may name several.
-std::set<std::string> documented_keys(const std::string& section) {
-  const auto sections =
-      schema_page::sections(schema_page::text_of(std::string(BORESIGHT_SOURCE_DIR) + "/config/schema/run.md"));
-  std::set<std::string> keys;
-  for (const schema_page::Cells& cells : sections.at(section)) {
-    std::istringstream names(cells.at(0));
-    for (std::string name; std::getline(names, name, ',');) {
-      std::string key = schema_page::code(schema_page::trimmed(name));
-      if (key.ends_with("[]")) key.resize(key.size() - 2);
-      if (!key.empty()) keys.insert(key);
-    }
-  }
-  return keys;
-}
-
-std::set<std::string> keys_of(const json::Value& object) {
-  std::set<std::string> keys;
-  for (const auto& [key, value] : object.items()) keys.insert(key);
-  return keys;
-}
-
-TEST(SnapshotLines, HaveExactlyTheDocumentedKeys) {
-  const json::Value line = json::Value::parse(to_json(eventful_snapshot()));
-  EXPECT_EQ(keys_of(line), documented_keys("monitor.jsonl"));
-  for (const char* const part : {"radars", "tracks", "services"}) {
-    EXPECT_EQ(keys_of(line.at(part).at(0)), documented_keys(std::string(part) + " of monitor.jsonl")) << part;
-  }
 }
 
 TEST(SnapshotLines, NameOfARadarMayHoldAnyCharacter) {

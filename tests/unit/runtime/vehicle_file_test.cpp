@@ -60,6 +60,16 @@ TEST(VehicleFile, RefusesTwoRadarsOfOneIdNameOrSource) {
   EXPECT_THAT(text, HasSubstr("radar[1].source: is the source of front too"));
 }
 
+TEST(VehicleFile, NameOfARadarMayHoldBlanksQuotesAndAnyLettersButNoControlCharacters) {
+  const auto with_name = [](const std::string& toml) {
+    std::string text = std::string(kEgo) + std::string(kRadar);
+    return text.replace(text.find("\"front\""), 7, toml);
+  };
+  EXPECT_EQ(read(with_name(R"("front \"long\", größte")")).radars.at(0).name, "front \"long\", größte");
+  EXPECT_THAT(error_of(with_name(R"("front\nleft")")), HasSubstr("radar[0].name: must not contain control characters"));
+  EXPECT_THAT(error_of(with_name(R"("a name of more than thirty-one bytes")")), HasSubstr("must have 1 … 31 bytes"));
+}
+
 TEST(VehicleFile, RefusesWrongAddressesLinksAndMissingKeys) {
   std::string bad(kRadar);
   bad.replace(bad.find("224.0.2.2"), 9, "radar.lan");

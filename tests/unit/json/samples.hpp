@@ -1,0 +1,198 @@
+// What the writers of JSON write: for each section of config/schema/json.md objects that together have every key.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "services/boresight/align/json.hpp"
+#include "services/boresight/calibrate/plate_report.hpp"
+#include "services/boresight/calibrate/reflectors_report.hpp"
+#include "services/boresight/diagnostics/diagnostics_text.hpp"
+#include "services/boresight/json/text.hpp"
+#include "services/boresight/monitor/snapshot.hpp"
+#include "services/boresight/run/summary.hpp"
+#include "services/boresight/run/writer.hpp"
+#include "services/boresight/score/report_text.hpp"
+
+namespace boresight::json::testing {
+
+/// A name that every output must survive.
+inline const std::string kName = "front \"long\", größte";
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+inline VehicleConfig one_radar() {
+  VehicleConfig vehicle;
+  vehicle.name = "car";
+  vehicle.radars.resize(1);
+  vehicle.radars[0].id = 1;
+  vehicle.radars[0].name = kName;
+  return vehicle;
+}
+
+inline std::vector<std::string> run_summaries() {
+  run::Summary recordings;
+  recordings.inputs.recordings = {"radars.pcap"};
+  recordings.inputs.settings_files = {{"alignment_estimator", "a.toml"},
+                                      {"detection_corrector", "d.toml"},
+                                      {"ghost_filter", "g.toml"},
+                                      {"tracker", "t.toml"},
+                                      {"health", "h.toml"}};
+  recordings.frames = recording::Counts{};
+  recordings.rejected[0] = recordings.noted[0] = recordings.rejected[1] = recordings.noted[1] = {{"wrong length", 3}};
+  recordings.timing.wall_s = 2.0;
+  run::Summary tables;
+  tables.inputs.detections = tables.inputs.ego = "table.csv";
+  tables.tables = run::TableLosses{};
+  tables.tables->unknown_radars = {{9, 2}};
+
+  run::LiveResults results({});
+  EgoMotion ego{};
+  ego.header.measurement_time_ns = 1;
+  results.observe(ego);
+  HealthReport report{};
+  report.number_of_sensors = 1;
+  report.sensors[0].radar_id = 1;
+  results.observe(report);
+  const std::string record = run::to_json({"1", "car.toml", "config", false, 5, results}, one_radar());
+  return {run::to_json(recordings, one_radar()), run::to_json(tables, one_radar()), run::with_truth_begin(record, 7)};
+}
+
+inline std::vector<std::string> verdicts() {
+  run::HealthResult never_seen;
+  never_seen.number_of_sensors = 1;
+  never_seen.sensors[0].last_seen_s = -1.0F;
+  run::HealthResult seen = never_seen;
+  seen.sensors[0].last_seen_s = 0.05F;
+  return {run::to_json_line(never_seen), run::to_json_line(seen)};
+}
+
+inline std::vector<std::string> snapshots() {
+  monitor::Snapshot snapshot;
+  snapshot.radars.resize(2);
+  snapshot.radars[0].name = kName;
+  monitor::AlignmentDetails& known = snapshot.radars[1].details;
+  known.yaw_seconds_to_95_percent = known.pitch_seconds_to_95_percent = known.yaw_drift_radpmin = 1.0;
+  known.residual_rmse_mps = known.nees = 1.0;
+  snapshot.tracks.resize(1);
+  snapshot.services.resize(1);
+  snapshot.services[0].faults[0] = 2;
+  for (LatencyHistogram& histogram : snapshot.latencies) histogram.add(1000);
+  return {monitor::to_json(snapshot)};
+}
+
+inline std::vector<std::string> scores() {
+  score::NamedScore score;
+  score.run = "my run";
+  score.score.notes = {"a note"};
+  score.score.figures.add("tracks.known", 1.0, "");
+  score.score.figures.add("tracks.without_data", kUnknown, "");
+  return {score::to_json({score}, "truth", "1")};
+}
+
+/// Of one radar with nothing known.
+inline align::Result unknown_alignment() {
+  align::Result result;
+  result.start_s = result.end_s = kUnknown;
+  align::RadarResult& radar = result.radars.emplace_back();
+  radar.id = 1;
+  radar.name = kName;
+  radar.cpu_us_per_scan = radar.max_cpu_us_per_scan = kUnknown;
+  radar.residuals = {{kUnknown, kUnknown, kUnknown}, {kUnknown, kUnknown, kUnknown}, kUnknown, 0, {}};
+  radar.message.kpis.seconds_to_95_percent.fill(std::nanf(""));
+  align::TruthComparison truth;
+  truth.mountings.resize(1);
+  truth.mountings[0].values[0] = truth.errors[0] = kUnknown;
+  truth.nees.fill(kUnknown);
+  truth.seconds_to_95_percent.fill(kUnknown);
+  radar.truth = truth;
+  return result;
+}
+
+inline std::vector<std::string> alignments() {
+  align::Result result;
+  result.true_speed_scale = 1.0;
+  result.speed_scale_support = "supported";
+  align::RadarResult& radar = result.radars.emplace_back();
+  radar.name = kName;
+  radar.step_changes.resize(1);
+  radar.support = {"supported", "supported", "not supported"};
+  radar.message.kpis.scans_to_95_percent.fill(7);
+  radar.truth.emplace().mountings.resize(2);
+  result.series.resize(2);
+  for (align::Sample& sample : result.series) sample.radars.resize(1);
+  align::Result batch = result;
+  batch.x_is_iteration = true;
+  return {align::to_json(result, {"1", "d.csv", "e.csv", "car", "config", "truth", {"r.pcap"}}),
+          align::to_json(batch, {}), align::to_json(unknown_alignment(), {})};
+}
+
+inline std::vector<std::string> plates() {
+  calibrate::PlateRun good;
+  good.measurements.number_of_tilts = good.result.number_of_tilts = good.result.tilts_used = 1;
+  good.seed.emplace();
+  calibrate::PlateRun failed;
+  failed.measurements.number_of_tilts = 1;
+  failed.result.failure = alignment::plate::Failure::kNoMaximum;
+  return {calibrate::to_json(good), calibrate::to_json(failed)};
+}
+
+inline std::vector<std::string> reflector_runs() {
+  calibrate::ReflectorRun good;
+  good.table.positions.resize(1);
+  good.table.lines = {2};
+  good.result.used = {true};
+  good.result.residual_azimuth_rad = good.result.residual_elevation_rad = {0.001};
+  calibrate::ReflectorRun failed = good;
+  failed.config.has_elevation = false;
+  failed.result.problem = failed.line.problem = alignment::reflectors::Problem::kTooFewAgree;
+  return {calibrate::to_json(good), calibrate::to_json(failed)};
+}
+
+inline std::vector<std::string> sensor_healths() {
+  diagnostics::SensorHealth sensor;
+  sensor.radar_name(kName);
+  diagnostics::SensorHealth unknown;
+  unknown.speed_scale(std::nanf(""));
+  unknown.yaw().error_rad(std::nanf(""));
+  return {diagnostics_text::to_json(sensor), diagnostics_text::to_json(unknown)};
+}
+
+inline std::vector<std::string> diagnostic_arrays() {
+  diagnostic_msgs::msg::dds_::DiagnosticArray_ array;
+  diagnostic_msgs::msg::dds_::DiagnosticStatus_ status;
+  status.name_("boresight/radar/" + kName);
+  diagnostic_msgs::msg::dds_::KeyValue_ value;
+  value.key_("scans");
+  value.value_("7");
+  status.values_().push_back(value);
+  array.status_().push_back(status);
+  return {diagnostics_text::to_json(array)};
+}
+
+/// By section of the page.
+inline std::map<std::string, std::vector<Value>> written() {
+  const std::map<std::string, std::vector<std::string>> texts = {
+      {"Run folder: run.json", run_summaries()},
+      {"Run folder: health.jsonl", verdicts()},
+      {"boresight monitor", snapshots()},
+      {"boresight score", scores()},
+      {"boresight align", alignments()},
+      {"boresight calibrate plate", plates()},
+      {"boresight calibrate reflectors", reflector_runs()},
+      {"boresight diagnostics", sensor_healths()},
+      {"boresight diagnostics --array", diagnostic_arrays()},
+  };
+  std::map<std::string, std::vector<Value>> values;
+  for (const auto& [section, each] : texts) {
+    for (const std::string& text : each) values[section].push_back(Value::parse(text));
+  }
+  return values;
+}
+
+}  // namespace boresight::json::testing
