@@ -45,6 +45,20 @@ void share_speed_scale(Sample& sample) {
   }
 }
 
+/// The truth of the vehicle's speed scale as share_speed_scale() combines it: the mean of what each radar sees, with
+/// the weights of the estimate.
+std::optional<double> true_speed_scale(const Truth& truth, const Result& result) {
+  double sum = 0.0, weights = 0.0;
+  for (const RadarResult& radar : result.radars) {
+    const std::optional<double> seen = truth.speed_scale_seen_by(radar.id);
+    if (!seen || (radar.estimate.observable & alignment_axis::kSpeedScale) == 0) continue;
+    const double weight = 1.0 / std::max(1e-18, radar.stds[0] * radar.stds[0]);
+    sum += weight * *seen;
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : truth.speed_scale;
+}
+
 /// The true mountings in the order of time; none if the truth does not contain the radar.
 std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const RadarConfig& config) {
   std::vector<TruthComparison::Mounting> mountings;
@@ -53,7 +67,8 @@ std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const 
   const auto add = [&](double from_s, const Truth::Radar& radar) {
     const Eigen::Matrix3d actual = true_mounting(radar, config.mounting_pose);
     const Eigen::Vector3d angles = alignment::vehicle_angles(config, actual);
-    mountings.push_back({from_s, actual, {truth.speed_scale.value_or(kNaN), angles(0), angles(1), angles(2)}});
+    mountings.push_back(
+        {from_s, actual, {truth.speed_scale_seen_by(config.id).value_or(kNaN), angles(0), angles(1), angles(2)}});
   };
   Truth::Radar radar = known->second;
   add(-std::numeric_limits<double>::infinity(), radar);
@@ -252,7 +267,7 @@ Result Run::finish() {
     if (!radars_[i].truth.empty()) r.truth = compare(radars_[i], r);
   }
   if (options_.truth) {
-    result.true_speed_scale = options_.truth->speed_scale;
+    result.true_speed_scale = true_speed_scale(*options_.truth, result);
     result.true_yaw_rate_bias_radps = options_.truth->yaw_rate_bias_radps;
     result.true_slip_coefficient_radps2pm = options_.truth->slip_coefficient_radps2pm;
   }

@@ -61,6 +61,7 @@ void take_drive_truth(const std::filesystem::path& file, Truth& truth) {
   const DriveTruth drive = read_drive_truth(stream);
   if (std::isfinite(drive.speed_scale)) truth.speed_scale = drive.speed_scale;
   for (const auto& [id, radar] : drive.radars) {
+    if (radar.range_rate_scale != 1.0) truth.range_rate_scales[id] = radar.range_rate_scale;
     if (!std::isfinite(radar.yaw_rad + radar.pitch_rad + radar.roll_rad)) continue;
     truth.radars[id].sensor_rad = {radar.yaw_rad, radar.pitch_rad, radar.roll_rad};
   }
@@ -156,8 +157,13 @@ Truth read_truth(std::istream& input, const std::string& name) {
       const auto values = pairs(words);
       truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
       truth.slip_coefficient_radps2pm = find(values, "rear_slip_coeff");
-    } else if (!kind.empty() && kind.front() != '#' && kind != "noise" && kind != "real_car" && kind != "stationary" &&
-               kind != "crlb_sd" && kind != "prototype") {
+    } else if (kind == "real_car") {
+      const auto values = pairs(words);
+      const auto scale = find(values, "range_rate_scale"), id = find(values, "radar");
+      if (scale && !id) fail("real_car range_rate_scale: a number, the unit 1, and radar with an id must follow");
+      if (scale) truth.range_rate_scales[static_cast<std::uint32_t>(std::clamp(*id, 0.0, 99.0))] = *scale;
+    } else if (!kind.empty() && kind.front() != '#' && kind != "noise" && kind != "stationary" && kind != "crlb_sd" &&
+               kind != "prototype") {
       fail(fmt::format(
           "unknown line \"{}\"; known are k_v, radar, step_change, disturbance, noise, real_car, stationary, crlb_sd, "
           "prototype and comments (#)",
@@ -170,6 +176,12 @@ Truth read_truth(std::istream& input, const std::string& name) {
     throw std::runtime_error(name + ": holds no truth (lines \"k_v VALUE\" and \"radar ID … alpha_deg VALUE …\")");
   }
   return truth;
+}
+
+std::optional<double> Truth::speed_scale_seen_by(std::uint32_t radar) const {
+  if (!speed_scale) return std::nullopt;
+  const auto found = range_rate_scales.find(radar);
+  return speed_scale_seen(*speed_scale, found == range_rate_scales.end() ? 1.0 : found->second);
 }
 
 Eigen::Matrix3d true_mounting(const Truth::Radar& truth, const MountingPose& nominal) {

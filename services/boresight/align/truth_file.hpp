@@ -31,14 +31,18 @@ struct Truth {
     std::uint32_t radar = 0;
     std::array<double, 3> sensor_rad{};
   };
-  std::map<std::uint32_t, Radar> radars;  ///< by id
-  std::vector<StepChange> step_changes;   ///< in the order of time
+  std::map<std::uint32_t, Radar> radars;              ///< by id
+  std::map<std::uint32_t, double> range_rate_scales;  ///< measured / true range rate by radar id, where it is not 1
+  std::vector<StepChange> step_changes;               ///< in the order of time
+  /// The speed scale that an estimator sees through this radar (speed_scale_seen()); nothing if k_v is not known.
+  [[nodiscard]] std::optional<double> speed_scale_seen_by(std::uint32_t radar) const;
 };
 
-/// Reads lines "k_v VALUE", and lines "radar ID", "step_change" and "disturbance" with pairs "key value". Comments (#),
-/// empty lines, and the lines "noise", "real_car", "stationary", "crlb_sd" and "prototype" hold no truth of a mounting
-/// and are passed over. Throws std::runtime_error, which names line and cause, for any other line, if a number is
-/// missing, or if no truth is stated.
+/// Reads lines "k_v VALUE", lines "radar ID", "step_change" and "disturbance" with pairs "key value", and
+/// "real_car range_rate_scale VALUE 1 radar ID". Comments (#), empty lines, other effects of "real_car", and the lines
+/// "noise", "stationary", "crlb_sd" and "prototype" hold no truth that is compared, and are passed over. Throws
+/// std::runtime_error, which names line and cause, for any other line, if a number is missing, or if no truth is
+/// stated.
 [[nodiscard]] Truth read_truth(std::istream& input, const std::string& name);
 
 /// Reads what is there: a folder with truth.csv or truth_sensors.csv of a simulated drive, truth.csv itself, or the

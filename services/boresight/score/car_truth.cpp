@@ -18,10 +18,6 @@ double value_or(const std::map<std::uint32_t, double>& values, std::uint32_t rad
 
 }  // namespace
 
-double CarTruth::range_rate_scale(std::uint32_t radar) const {
-  return value_or(range_rate_scales, radar, 1.0);
-}
-
 double CarTruth::stamp_offset_s(std::uint32_t radar) const {
   return value_or(stamp_offsets_s, radar, 0.0);
 }

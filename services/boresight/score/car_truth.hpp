@@ -14,10 +14,9 @@ struct CarTruth {
   double load_pitch_rad = 0.0;  ///< of the body by load, positive with the nose up
   double load_time_s = 0.0;     ///< from this time of the drive on
   double side_slip_std_rad = 0.0;
-  std::map<std::uint32_t, double> range_rate_scales;  ///< measured / true range rate, by radar
+  std::map<std::uint32_t, double> range_rate_scales;  ///< measured / true range rate, by radar; see DriveTruth
   std::map<std::uint32_t, double> stamp_offsets_s;    ///< stamp − measurement, by radar
 
-  [[nodiscard]] double range_rate_scale(std::uint32_t radar) const;
   [[nodiscard]] double stamp_offset_s(std::uint32_t radar) const;
   /// Rotation of the body by the load at a time of the drive, in the axes of the unloaded vehicle.
   [[nodiscard]] Eigen::Matrix3d load_rotation(double t_s) const;

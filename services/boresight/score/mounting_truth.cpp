@@ -5,10 +5,8 @@
 #include <limits>
 
 #include "interfaces/messages/header.hpp"
-#include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
-#include "services/common/vehicle/drive_truth.hpp"
 
 namespace boresight::score {
 
@@ -19,12 +17,11 @@ constexpr double kLatestSensor_s = 4e9;
 }  // namespace
 
 MountingTruthReader::MountingTruthReader(const TruthSource& truth, const VehicleConfig& vehicle)
-    : vehicle_(vehicle), car_(read_car_truth(truth.drive)), speed_scale_(kNaN) {
+    : vehicle_(vehicle), car_(read_car_truth(truth.drive)) {
   if (!truth.drive.empty()) {
     std::ifstream stream(truth.drive);
-    const DriveTruth drive = read_drive_truth(stream);
-    speed_scale_ = drive.speed_scale;
-    for (const auto& [id, radar] : drive.radars) {
+    drive_ = read_drive_truth(stream);
+    for (const auto& [id, radar] : drive_.radars) {
       if (!std::isfinite(radar.yaw_rad + radar.pitch_rad + radar.roll_rad)) continue;
       angles_[id] = {radar.yaw_rad, radar.pitch_rad, radar.roll_rad, 0};
     }
@@ -59,7 +56,7 @@ std::optional<Eigen::Matrix3d> MountingTruthReader::mounting(std::uint32_t radar
 
 judge::MountingTruth MountingTruthReader::at(std::uint32_t radar, double t_s) {
   judge::MountingTruth truth;
-  truth.speed_scale = speed_scale_ * car_.range_rate_scale(radar);
+  truth.speed_scale = drive_.speed_scale_seen_by(radar);
   const std::optional<Eigen::Matrix3d> rotation = mounting(radar, t_s);
   if (!rotation) return truth;
   truth.has_rotation = true;

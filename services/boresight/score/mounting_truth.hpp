@@ -9,6 +9,7 @@
 #include "services/boresight/score/car_truth.hpp"
 #include "services/boresight/score/table.hpp"
 #include "services/boresight/score/truth_source.hpp"
+#include "services/common/vehicle/drive_truth.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/simulator/judge/alignment_judge.hpp"
 
@@ -42,7 +43,7 @@ class MountingTruthReader {
   CarTruth car_;
   std::optional<Table> table_;
   bool has_row_ = false;
-  double speed_scale_;
+  DriveTruth drive_;
   std::map<std::uint32_t, TrueAngles> angles_;  // by radar
 };
 

@@ -11,6 +11,11 @@
 
 namespace boresight {
 
+double DriveTruth::speed_scale_seen_by(std::uint32_t radar) const {
+  const auto found = radars.find(radar);
+  return speed_scale_seen(speed_scale, found == radars.end() ? 1.0 : found->second.range_rate_scale);
+}
+
 DriveTruth read_drive_truth(std::istream& input) {
   constexpr double kRadians = M_PI / 180.0;
   DriveTruth truth;
@@ -28,6 +33,7 @@ DriveTruth read_drive_truth(std::istream& input) {
     if (cells[0] == "alignment_yaw") radar().yaw_rad = value * kRadians;
     if (cells[0] == "alignment_pitch") radar().pitch_rad = value * kRadians;
     if (cells[0] == "alignment_roll") radar().roll_rad = value * kRadians;
+    if (cells[0] == "range_rate_scale") radar().range_rate_scale = value;
     if (cells[0] == "scans" && value >= 0.0) radar().scans = static_cast<std::uint64_t>(value);
   }
   return truth;

@@ -82,6 +82,23 @@ TEST(TruthFile, PassesOverLinesWithoutMountings) {
   EXPECT_DOUBLE_EQ(read_truth(text, "truth.txt").speed_scale.value(), 1.02);
 }
 
+TEST(TruthFile, SpeedScaleIncludesTheOwnRangeRateScaleOfEachRadar) {
+  std::istringstream text(
+      "k_v 1.02\nreal_car load_time 3 s\nreal_car range_rate_scale 1.0025 1 radar 1\n"
+      "radar 1 alpha_deg 1 beta_deg 0 gamma_deg 0\n");
+  const Truth of_text = read_truth(text, "truth.txt");
+  EXPECT_DOUBLE_EQ(of_text.speed_scale_seen_by(1).value(), 1.02 * 1.0025);
+  EXPECT_DOUBLE_EQ(of_text.speed_scale_seen_by(2).value(), 1.02);
+  const auto file = std::filesystem::path(::testing::TempDir()) / "align_scaled_truth.csv";
+  testing::write_text(file, "quantity,radar,value,unit\nspeed_scale,,1.02,1\nrange_rate_scale,2,0.998,1\n");
+  const Truth of_table = read_truth_at(file, 0.0);
+  EXPECT_DOUBLE_EQ(of_table.speed_scale_seen_by(1).value(), 1.02);
+  EXPECT_DOUBLE_EQ(of_table.speed_scale_seen_by(2).value(), 1.02 * 0.998);
+  std::filesystem::remove(file);
+  std::istringstream without_radar("k_v 1.02\nreal_car range_rate_scale 1.0025 1\n");
+  EXPECT_THROW(static_cast<void>(read_truth(without_radar, "truth.txt")), std::runtime_error);
+}
+
 TEST(TruthFile, FolderOfASimulatedDriveIsReadWithItsStepChanges) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / "align_truth_folder";
   std::filesystem::create_directories(folder);

@@ -243,6 +243,24 @@ TEST_F(Align, TheTruthIsComparedWith) {
   EXPECT_THAT(errors(), HasSubstr("vehicle.toml:4: unknown line"));
 }
 
+TEST_F(Align, SpeedScaleIsComparedWithWhatTheRadarSees) {
+  const auto error_with = [this](const std::string& more) {
+    testing::write_text(folder_ / "truth.txt",
+                        "k_v 1.01\nradar 1 mount_az_deg 45.0 alpha_deg -1 beta_deg 1 gamma_deg 2\n" + more);
+    EXPECT_EQ(align(kInputs + "--method azimuth_1d --truth truth.txt"), 0) << errors();
+    return nlohmann::json::parse(json()).at("k_v_error").get<double>();
+  };
+  std::string of_all;
+  for (std::uint32_t radar = 1; radar <= kMaxRadars; ++radar) {
+    of_all += "real_car range_rate_scale 1.0025 1 radar " + std::to_string(radar) + "\n";
+  }
+  const double of_vehicle = error_with("");
+  EXPECT_NEAR(error_with(of_all), of_vehicle - 1.01 * 0.0025, 1e-6);
+  const double of_one = error_with("real_car range_rate_scale 1.0025 1 radar 1\n");
+  EXPECT_LT(of_one, of_vehicle - 1e-5);
+  EXPECT_GT(of_one, of_vehicle - 1.01 * 0.0025 + 1e-5) << "only one of several radars has its own scale";
+}
+
 TEST_F(Align, AFewBadLinesAreReportedAndManyMakeItFail) {
   std::string few = tables_.drive;
   few.insert(few.find('\n') + 1, "1,1,x,0,0,0,1\n");
