@@ -44,8 +44,9 @@ int run_report(const ReportOptions& options) {
 }  // namespace
 
 void add_report_command(CLI::App& app, int& exit_code) {
-  CLI::App* const command =
-      app.add_subcommand("report", "Judges a run folder of `boresight monitor --record` and draws it as an HTML page.");
+  CLI::App* const command = app.add_subcommand(
+      "report",
+      "Judges a run folder of `boresight run` or `boresight monitor --record`, and draws it as an HTML page.");
   auto options = std::make_shared<ReportOptions>();
   command->add_option("folder", options->folder, "Run folder")->type_name("DIR")->required();
   runtime::add_config_option(*command, options->configuration);

@@ -36,7 +36,7 @@ const judge::TrueScan* scan_at(const judge::TrueScans& truth, std::uint32_t rada
 /// The ECU time at which the drive began. Stamps do not state where a replay began, and sequence numbers would be wrong
 /// by every lost scan. Each scan of the truth that may be the first recorded one is tried; the one that lets most of
 /// the other recorded scans find theirs is taken.
-std::optional<std::int64_t> beginning(const std::vector<ScanRow>& seen, const judge::TrueScans& truth) {
+std::optional<std::int64_t> beginning(const std::vector<score::RunScan>& seen, const judge::TrueScans& truth) {
   if (seen.empty()) return std::nullopt;
   const auto of_radar = truth.find(seen.front().radar);
   if (of_radar == truth.end()) return std::nullopt;
@@ -192,10 +192,10 @@ GhostFindings find_ghosts(const std::filesystem::path& folder, const DetectionTr
   std::optional<std::int64_t> begin_ns;
   std::string problem;
   try {
-    std::vector<ScanRow> seen;
+    std::vector<score::RunScan> seen;
     if (truth != nullptr) {
-      ScanRows rows(folder);
-      for (ScanRow row; rows.next(row);) {
+      score::RunScans rows(folder);
+      for (score::RunScan row; rows.next(row);) {
         if (row.detections > 0) seen.push_back(row);
       }
     }

@@ -150,7 +150,9 @@ void add_radars(const std::vector<Snapshot>& snapshots, const Truth& truth, Summ
     radar.last.labels = labels_of(sum);
     add_labels(radar.last.labels, summary.labels);
     if (sum.known_nees > 0) radar.mean_nees = sum.nees / sum.known_nees;
-    radar.true_speed_scale = truth.speed_scale;
+    if (const auto found = truth.speed_scales.find(id); found != truth.speed_scales.end()) {
+      radar.true_speed_scale = found->second;
+    }
     if (const auto found = truth.vehicle_rad.find(id); found != truth.vehicle_rad.end()) {
       radar.true_vehicle_rad = found->second;
     }
@@ -184,12 +186,16 @@ void add_checks(const Truth& truth, Summary& summary) {
     summary.checks.push_back({std::move(what), passed, false});
   };
   check("every radar delivered scans", all_heard);
-  check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs)", lost, lost_inputs),
-        lost + lost_inputs == 0);
+  if (!summary.is_offline) {
+    check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs)", lost, lost_inputs),
+          lost + lost_inputs == 0);
+  }
   check(fmt::format("objects were tracked ({} in total, up to {} at the same time)", summary.distinct_confirmed_tracks,
                     summary.most_confirmed_tracks),
         summary.distinct_confirmed_tracks > 0);
-  check(fmt::format("no service had to be restarted ({} restarts)", restarts), restarts == 0);
+  if (!summary.is_offline) {
+    check(fmt::format("no service had to be restarted ({} restarts)", restarts), restarts == 0);
+  }
   for (const RadarSummary& radar : summary.radars) {
     const auto sent = truth.scans.find(radar.last.id);
     if (sent == truth.scans.end()) continue;
@@ -253,6 +259,17 @@ std::string render_truth(const Summary& summary) {
          "of the drive)\n\n";
 }
 
+std::string render_latency_rows(const Summary& summary) {
+  std::string text =
+      fmt::format("\n  {:<20}{:>10}{:>10}{:>10}\n", "latency of a scan", "p50, µs", "p99, µs", "max, µs");
+  for (std::size_t i = 0; i < monitor::kNumberOfLatencies; ++i) {
+    const auto& h = summary.latencies[i];
+    text += fmt::format("  {:<20}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
+                        h.percentile_us(0.99), h.max_us());
+  }
+  return text;
+}
+
 std::string render_faults(const Summary& summary) {
   std::string text;
   for (const auto& service : summary.services) {
@@ -293,6 +310,7 @@ Summary summarise(const std::vector<Snapshot>& snapshots, const Truth& truth) {
     summary.checks.push_back({"the monitor received messages of the running system", false, false});
     return summary;
   }
+  summary.is_offline = snapshots.back().services.empty();
   add_radars(snapshots, truth, summary);
   add_tracks(snapshots, summary);
   add_latencies(snapshots, summary);
@@ -376,12 +394,7 @@ std::string render_summary(const Summary& summary) {
                                                         summary.duration_s, summary.pace);
   text += render_radars(summary) + "\n" + render_truth(summary);
   for (const RadarSummary& radar : summary.radars) text += "  " + verdict_line(radar) + "\n";
-  text += fmt::format("\n  {:<20}{:>10}{:>10}{:>10}\n", "latency of a scan", "p50, µs", "p99, µs", "max, µs");
-  for (std::size_t i = 0; i < monitor::kNumberOfLatencies; ++i) {
-    const auto& h = summary.latencies[i];
-    text += fmt::format("  {:<20}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
-                        h.percentile_us(0.99), h.max_us());
-  }
+  if (!summary.is_offline) text += render_latency_rows(summary);
   if (!summary.pace.empty()) text += "  Not played in real time: latencies, rates and times have no verdict.\n";
   const std::string labels = labels_text(summary.labels);
   if (!labels.empty()) {
@@ -389,7 +402,7 @@ std::string render_summary(const Summary& summary) {
     text += fmt::format("  {} of {} scans were classified without tracks\n",
                         text::grouped(summary.labels.scans_without_tracks), text::grouped(summary.labels.scans));
   }
-  text += "\n" + render_faults(summary) + "\n";
+  text += "\n" + (!summary.is_offline ? render_faults(summary) + "\n" : "");
   for (const Check& check : summary.checks) {
     text += fmt::format("  [{}] {}\n", word_of(check), check.what);
   }

@@ -21,8 +21,8 @@ struct TrueMisalignment {
 
 /// The truth of a drive; empty where it is not known.
 struct Truth {
-  std::map<std::uint32_t, double> yaw_rad;  ///< by radar id: actual − nominal mounting
-  std::optional<double> speed_scale;
+  std::map<std::uint32_t, double> yaw_rad;                     ///< by radar id: actual − nominal mounting
+  std::map<std::uint32_t, double> speed_scales;                ///< by radar id, as the radar sees it (DriveTruth)
   std::map<std::uint32_t, std::array<double, 3>> vehicle_rad;  ///< by radar id: yaw, pitch, roll of the rotation about
                                                                ///< the vehicle's axes, as AlignmentEstimate's
   std::map<std::uint32_t, std::uint64_t> scans;                ///< by radar id: how many the radar sent
@@ -61,6 +61,7 @@ struct Summary {
   monitor::LabelCounts labels;  ///< of all radars
   std::size_t most_confirmed_tracks = 0;
   std::size_t distinct_confirmed_tracks = 0;
+  bool is_offline = false;  ///< no services ran: no latencies, and no key figures of the estimator
   std::vector<monitor::ServiceSnapshot> services;
   std::array<LatencyHistogram, monitor::kNumberOfLatencies> latencies;
   std::vector<Check> checks;

@@ -9,7 +9,9 @@ namespace boresight::report {
 
 Truth truth_of(const DriveTruth& drive, const VehicleConfig& vehicle) {
   Truth truth;
-  if (std::isfinite(drive.speed_scale)) truth.speed_scale = drive.speed_scale;
+  for (const RadarConfig& radar : vehicle.radars) {
+    if (std::isfinite(drive.speed_scale)) truth.speed_scales[radar.id] = drive.speed_scale_seen_by(radar.id);
+  }
   for (const auto& [id, radar] : drive.radars) {
     if (radar.scans) truth.scans[id] = *radar.scans;
     if (std::isfinite(radar.yaw_rad)) truth.yaw_rad[id] = radar.yaw_rad;

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "interfaces/messages/alignment_estimate.hpp"
 #include "interfaces/messages/classified_scan.hpp"
+#include "interfaces/messages/health_report.hpp"
 #include "services/boresight/score/table.hpp"
 #include "services/simulator/judge/alignment_judge.hpp"
 #include "services/simulator/judge/scored_scene.hpp"
@@ -28,6 +30,31 @@ struct RunScan {
   std::uint32_t radar = 0;
   std::uint64_t scan = 0;
   std::size_t detections = 0, tracks = 0;
+  std::uint32_t flags = 0;  ///< pipeline_flag bits; 0 without the column
+  // NaN where the table has no value:
+  double sensor_x_m = kNaN, sensor_y_m = kNaN, ego_speed_mps = kNaN, ego_yaw_rate_radps = kNaN;
+};
+
+/// A table whose rows belong to scans, in the order of scans.csv. Rows of a scan that is not in scans.csv are passed
+/// over: a live record that was cut off and continued may hold such.
+class RowsOfScans {
+ public:
+  RowsOfScans(const std::filesystem::path& file, const std::vector<std::string_view>& columns)
+      : table_(file, columns), has_row_(table_.next()) {}
+  [[nodiscard]] const Table& table() const { return table_; }
+  /// Calls `read()` at each row of the scan. Throws InputError if they are not as many as `stated`.
+  template <typename Read>
+  void take(const RunScan& scan, std::size_t stated, std::string_view what, const Read& read);
+  /// The same where scans.csv states no number.
+  template <typename Read>
+  void take(const RunScan& scan, const Read& read);
+
+ private:
+  template <typename Read>
+  std::size_t take_rows(const RunScan& scan, const Read& read);
+
+  Table table_;
+  bool has_row_;
 };
 
 class RunScans {
@@ -43,31 +70,52 @@ struct RunDetection {
   Provenance origin = Provenance::kUnknown;
   bool rejected = false;
   double p_moving = kNaN;  ///< NaN: not given
+  // With Detail::kAll only; NaN where the table has no value:
+  std::uint16_t rejection = 0;  ///< corrected_flag bit of the reason
+  double p_ghost = kNaN;        ///< of both types and of clutter together
+  double x_vehicle_m = kNaN, y_vehicle_m = kNaN, range_rate_over_ground_mps = kNaN;
 };
 
-/// detections.csv, in the order of scans.csv. Rows of a scan that is not in scans.csv are passed over, as in
-/// tracks.csv: a live record that was cut off and continued may hold such.
+/// detections.csv.
 class RunDetections {
  public:
-  explicit RunDetections(const std::filesystem::path& folder);
+  /// What is read, and which columns must be there.
+  enum class Detail : std::uint8_t { kOrigin, kAll };
+  explicit RunDetections(const std::filesystem::path& folder, Detail detail = Detail::kOrigin);
   /// The detections of a scan. Throws InputError if they are not as many as the scan has.
   void take(const RunScan& scan, std::vector<RunDetection>& detections);
 
  private:
-  Table table_;
-  bool has_row_ = false;
+  Detail detail_;
+  RowsOfScans rows_;
 };
 
-/// tracks.csv, in the order of scans.csv.
+/// reflectors.csv.
+class RunReflectors {
+ public:
+  explicit RunReflectors(const std::filesystem::path& folder);
+  /// The ends of the reflectors that were used for a scan.
+  void take(const RunScan& scan, std::vector<ReflectorSegment>& reflectors);
+
+ private:
+  RowsOfScans rows_;
+};
+
+struct RunTrack : judge::ScoredTrack {
+  double age_s = kNaN;           ///< NaN without the column
+  std::uint32_t detections = 0;  ///< of the scan; 0 without the column
+};
+
+/// tracks.csv.
 class RunTracks {
  public:
   explicit RunTracks(const std::filesystem::path& folder);
   /// The track list after a scan. Throws InputError if it has not as many tracks as scans.csv states.
   void take(const RunScan& scan, std::vector<judge::ScoredTrack>& tracks);
+  void take(const RunScan& scan, std::vector<RunTrack>& tracks);
 
  private:
-  Table table_;
-  bool has_row_ = false;
+  RowsOfScans rows_;
 };
 
 /// alignment.csv. Rows of a radar without estimate (state no_data) are passed over.
@@ -75,18 +123,27 @@ class RunAlignment {
  public:
   explicit RunAlignment(const std::filesystem::path& folder);
   [[nodiscard]] bool next(judge::AlignmentSample& sample, std::int64_t& time_ns);
+  // Of the present row:
+  [[nodiscard]] AlignmentState state() const;
+  /// alignment_axis bits; 0 without the column.
+  [[nodiscard]] std::uint32_t observable() const;
+  /// Over (speed scale, rotation about x, y, z); NaN where the table has no value.
+  [[nodiscard]] Eigen::Matrix4d covariance() const;
 
  private:
   Table table_;
 };
 
-/// Whether each radar was reported MISALIGNED, a line of health.jsonl.
+/// The verdict on each radar, a line of health.jsonl. A word that is not known is NOT_AVAILABLE or INITIALISING.
 struct RunVerdicts {
   double t_s = 0.0;
   std::int64_t time_ns = 0;
   struct Radar {
     std::uint32_t radar;
     bool misaligned;
+    DataQualifier data_qualifier;
+    ExtendedQualifier extended_qualifier;
+    std::uint64_t missed_scans;  ///< 0 without the key
   };
   std::vector<Radar> radars;
 };

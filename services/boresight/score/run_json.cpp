@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "interfaces/messages/header.hpp"
+#include "interfaces/messages/names.hpp"
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/score/run_folder.hpp"
 
@@ -24,6 +25,15 @@ void flatten(const Json& value, const std::string& path, std::vector<std::pair<s
   if (value.is_array() || value.is_object()) {
     for (const auto& [key, each] : value.items()) flatten(each, path.empty() ? key : path + "." + key, numbers);
   }
+}
+
+/// The value of that name, up to `last`, which is also that of an unknown name.
+template <typename Enum>
+Enum named(const std::string& word, Enum last) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(last); ++i) {
+    if (word == name_of(static_cast<Enum>(i))) return static_cast<Enum>(i);
+  }
+  return last;
 }
 
 }  // namespace
@@ -58,7 +68,13 @@ bool RunHealth::next(RunVerdicts& verdicts) {
         refuse(fmt::format("radars: radar: a whole number 1 … {} is missing", kMaxRadars));
       }
       if (reason == radar.end() || !reason->is_string()) refuse("radars: extended_qualifier: a word is missing");
-      verdicts.radars.push_back({id->get<std::uint32_t>(), reason->get<std::string>() == "MISALIGNED"});
+      const auto qualifier = radar.find("data_qualifier"), missed = radar.find("missed_scans");
+      const std::string word = qualifier != radar.end() && qualifier->is_string() ? qualifier->get<std::string>() : "";
+      const auto extended = named(reason->get<std::string>(), ExtendedQualifier::kInitialising);
+      verdicts.radars.push_back(
+          {id->get<std::uint32_t>(), extended == ExtendedQualifier::kMisaligned,
+           named(word, DataQualifier::kNotAvailable), extended,
+           missed != radar.end() && missed->is_number_unsigned() ? missed->get<std::uint64_t>() : 0});
     }
     return true;
   }

@@ -45,7 +45,7 @@ class Drive {
   /// The scan as it was published, with the ghost at (20, 9) classified as `label`; then two tracks, one on the ghost.
   void publish(std::uint32_t radar, int k, const char* label) {
     const int detections = 2 + k % 3;
-    const std::string key = fmt::format("{},{},{}", time_ns(radar, k), radar, k);
+    const std::string key = fmt::format("{},{},{},{}", time_s(radar, k), time_ns(radar, k), radar, k);
     scans += fmt::format("{},{},,3.5,0.5,2\n", key, detections);
     for (int i = 0; i < detections; ++i) {
       const bool is_rejected = k % 3 == 2 && i == 3;
@@ -78,16 +78,17 @@ class Drive {
     const auto write = [&folder](const char* name, const char* header, const std::string& text) {
       std::ofstream(folder / name) << header << '\n' << text;
     };
-    write("scans.csv", "time_ns,radar,scan,detections,flags,sensor_x_m,sensor_y_m,tracks", scans);
+    write("scans.csv", "t_s,time_ns,radar,scan,detections,flags,sensor_x_m,sensor_y_m,tracks", scans);
     write("detections.csv",
-          "time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_ghost_type_1,"
+          "t_s,time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_ghost_type_1,"
           "p_ghost_type_2,p_clutter,rejected",
           rows);
-    write("reflectors.csv", "time_ns,radar,scan,x1_vehicle_m,y1_vehicle_m,x2_vehicle_m,y2_vehicle_m", reflectors);
-    write("tracks.csv",
-          "time_ns,radar,scan,id,status,movement,x_vehicle_m,y_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,age_s,"
-          "heading_rad,length_m,width_m,detections",
-          tracks);
+    write("reflectors.csv", "t_s,time_ns,radar,scan,x1_vehicle_m,y1_vehicle_m,x2_vehicle_m,y2_vehicle_m", reflectors);
+    write(
+        "tracks.csv",
+        "t_s,time_ns,radar,scan,id,status,movement,x_vehicle_m,y_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,age_s,"
+        "heading_rad,length_m,width_m,detections",
+        tracks);
     return folder;
   }
 

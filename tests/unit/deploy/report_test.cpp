@@ -161,6 +161,26 @@ TEST(Summary, LabelsAreSharesOfAllDetectionsAndSurviveARestartOfTheMonitor) {
   EXPECT_THAT(page, ::testing::HasSubstr("of all detections, %"));
 }
 
+TEST(TruthTable, SpeedScaleIncludesTheOwnRangeRateScaleOfEachRadar) {
+  std::istringstream table(
+      "quantity,radar,value,unit\nspeed_scale,,1.02,1\nrange_rate_scale,1,1.0025,1\nrange_rate_scale,2,0.998,1\n"
+      "alignment_yaw,1,0.5,deg\nalignment_yaw,2,0.5,deg\nalignment_yaw,3,0.5,deg\n");
+  VehicleConfig vehicle;
+  for (const std::uint32_t id : {1u, 2u, 3u}) {
+    vehicle.radars.emplace_back();
+    vehicle.radars.back().id = id;
+  }
+  const Truth truth = truth_of(read_drive_truth(table), vehicle);
+  EXPECT_DOUBLE_EQ(truth.speed_scales.at(1), 1.02 * 1.0025);
+  EXPECT_DOUBLE_EQ(truth.speed_scales.at(2), 1.02 * 0.998);
+  EXPECT_DOUBLE_EQ(truth.speed_scales.at(3), 1.02);
+
+  auto snapshots = synthetic_drive();
+  for (auto& snapshot : snapshots) snapshot.radars[1].speed_scale = 1.02 * 0.998 + 0.001;
+  const Summary summary = summarise(snapshots, truth);
+  EXPECT_THAT(speed_scale_error_text(summary.radars[1]), ::testing::StartsWith("+0.0010"));
+}
+
 TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
   std::istringstream table(
       "quantity,radar,value,unit\nspeed_scale,,1.012,1\n"
@@ -182,7 +202,7 @@ TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
         {3.6, -0.7, 0.5}, -45.0 * kRadiansPerDegree, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree};
   }
   const Truth truth = truth_of(drive, vehicle);
-  EXPECT_EQ(truth.speed_scale, 1.012);
+  EXPECT_EQ(truth.speed_scales, (std::map<std::uint32_t, double>{{1, 1.012}, {2, 1.012}}));
   EXPECT_EQ(truth.scans.at(2), 899u);
   EXPECT_EQ(truth.yaw_rad.size(), 2U);
   ASSERT_EQ(truth.vehicle_rad.size(), 1U) << "radar 1 lacks its pitch and roll";
@@ -260,8 +280,10 @@ TEST(HtmlReport, StandsAloneAndShowsEveryRadar) {
 
 TEST(HtmlReport, SurvivesARunWithoutAnyData) {
   EXPECT_THAT(render_html({}), ::testing::HasSubstr("Not all checks passed."));
+  monitor::Snapshot empty;
+  empty.services.emplace_back();
   EXPECT_THAT(render_html({.title = "",
-                           .snapshots = {monitor::Snapshot()},
+                           .snapshots = {empty},
                            .truth = {},
                            .vehicle = {},
                            .more_checks = {},

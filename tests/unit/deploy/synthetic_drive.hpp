@@ -13,7 +13,7 @@ inline constexpr double kMisaligned_rad = 2.5 * kRadiansPerDegree;
 
 inline Truth synthetic_truth() {
   return {.yaw_rad = {{1, 0.1 * kRadiansPerDegree}, {2, kMisaligned_rad}, {3, -0.3 * kRadiansPerDegree}, {4, 0.0}},
-          .speed_scale = 1.03,
+          .speed_scales = {{1, 1.03}, {2, 1.03}, {3, 1.03}, {4, 1.03}},
           .vehicle_rad = {},
           .scans = {}};
 }

@@ -70,6 +70,21 @@ TEST_F(RunCommand, TwoRunsDifferInTheirTimingOnly) {
   EXPECT_THAT(json, HasSubstr("\"scans\": " + std::to_string(testing::demo_drive().scans)));
 }
 
+TEST_F(RunCommand, WritesAFolderThatReportShows) {
+  ASSERT_EQ(run(drive() + " --vehicle demo --quiet --out " + path("run").string()), 0) << errors_;
+  const std::string page = path("page.html").string(), printed = path("printed").string();
+  const std::string report = BORESIGHT_BINARY_DIR "/boresight report --config " BORESIGHT_SOURCE_DIR "/config ";
+  const int status = std::system(
+      (report + path("run").string() + " --vehicle demo --out " + page + " > " + printed + " 2>&1").c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_LE(WEXITSTATUS(status), 1) << text("printed");
+  EXPECT_THAT(text("printed"), HasSubstr("[ok] every radar delivered scans"));
+  EXPECT_THAT(text("printed"), HasSubstr("[ok] the alignment and the verdicts of health could be read to their end"));
+  EXPECT_THAT(text("page.html"), HasSubstr("An offline run has no latencies"));
+  ASSERT_NE(std::system((report + path("").string() + " --vehicle demo > " + printed + " 2>&1").c_str()), 0);
+  EXPECT_THAT(text("printed"), HasSubstr("holds neither monitor.jsonl nor scans.csv"));
+}
+
 TEST_F(RunCommand, TakesTheTablesOfDecodeInPlaceOfTheRecording) {
   const std::string decode =
       BORESIGHT_BINARY_DIR "/boresight decode --config " BORESIGHT_SOURCE_DIR "/config --vehicle demo ";

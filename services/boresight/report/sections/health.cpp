@@ -83,10 +83,12 @@ std::string render_health(const ReportInput& input, const TimeBase& time, const 
               {.min = 0, .max = count, .label = ""});
   draw_rows(chart, rows);
   const auto key = [](std::string_view colour) { return svg::page_key(svg::area_sample(svg::area_of(colour))); };
-  return "<h2>Health over time</h2>\n<p class=\"faint\">Verdict of the health service on each radar and each "
-         "service.</p>\n<p class=\"legend\">" +
-         key(svg::kGreen) + "available, alive" + key(svg::kAmber) + "reduced, degraded, restarted" + key(svg::kRed) +
-         "not available, silent" + key(svg::kLightGrey) + "no verdict yet</p>\n" + chart.finish();
+  return "<h2>Health over time</h2>\n<p class=\"faint\">" +
+         std::string(!summary.is_offline ? "Verdict of the health service on each radar and each service."
+                                         : "Verdict of health on each radar; no services run offline.") +
+         "</p>\n<p class=\"legend\">" + key(svg::kGreen) + "available, alive" + key(svg::kAmber) +
+         "reduced, degraded, restarted" + key(svg::kRed) + "not available, silent" + key(svg::kLightGrey) +
+         "no verdict yet</p>\n" + chart.finish();
 }
 
 }  // namespace boresight::report

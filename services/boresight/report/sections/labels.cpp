@@ -72,7 +72,7 @@ std::string render_shares(const ReportInput& input, const TimeBase& time) {
 
 std::string render_labels(const ReportInput& input, const TimeBase& time, const Summary& summary) {
   std::string text =
-      "<h2>Ghost filter: classification of detections</h2>\n<p class=\"faint\">Labels (provenance) that the running "
+      "<h2>Ghost filter: classification of detections</h2>\n<p class=\"faint\">Labels (provenance) that the "
       "ghost filter published, in percent of all detections. Ghost type 1: the last reflection is at the object, so "
       "the "
       "ghost appears in the direction of the object, behind it. Ghost type 2: the last reflection is at the mirror, so "

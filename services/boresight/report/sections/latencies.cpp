@@ -8,6 +8,10 @@
 namespace boresight::report {
 
 std::string render_latencies(const Summary& summary) {
+  if (summary.is_offline) {
+    return "<h2>Latency</h2>\n<p>An offline run has no latencies; its run.json states the CPU time of each "
+           "stage.</p>\n";
+  }
   std::string text =
       "<h2>Latency</h2>\n<div class=\"grid2\"><div>\n<table><tr><th>stage</th><th class=n>p50, µs</th>"
       "<th class=n>p99, µs</th><th class=n>max, µs</th></tr>\n";

@@ -69,6 +69,11 @@ std::string render_details(const Summary& summary) {
         d.step_changes);
   }
   text += "</table></div>\n";
+  if (summary.is_offline) {
+    return text +
+           "<p>The tables of an offline run do not hold settling times, drift, residuals, and the errors of the "
+           "vehicle's signals.</p>\n";
+  }
   for (const RadarSummary& radar : summary.radars) {
     if (!has_estimate(radar.last)) continue;
     const monitor::AngleEstimate &bias = radar.last.details.yaw_rate_bias, &slip = radar.last.details.slip;

@@ -42,13 +42,16 @@ std::string render_truth(const ReportInput& input, const TimeBase& time, const S
     legend += svg::page_key(svg::line_sample(style)) + escape(radar.last.name);
   }
   if (rows.empty()) return rows;
-  return "<h2>Estimation errors</h2>\n<p class=\"faint\">Estimate − truth at the end of the drive, about the vehicle's "
-         "axes; in parentheses as a multiple of the stated σ. NEES (normalised estimation error squared) compares the "
-         "errors of all observable parameters with their stated covariance P: eᵀP⁻¹e divided by the number of "
-         "parameters. NEES is 1 on average if the stated σ is right, above 1 if σ is too small.</p>\n"
-         "<table><tr><th>radar</th><th class=n>speed scale</th><th class=n>yaw</th><th class=n>pitch</th>"
-         "<th class=n>roll</th><th class=n>NEES</th><th class=n>mean NEES of the drive</th></tr>\n" +
-         rows + "</table>\n<p class=\"legend\">" + legend + svg::page_key(svg::line_sample(svg::kTruth)) +
+  std::string text =
+      "<h2>Estimation errors</h2>\n<p class=\"faint\">Estimate − truth at the end of the drive, about the vehicle's "
+      "axes; in parentheses as a multiple of the stated σ. NEES (normalised estimation error squared) compares the "
+      "errors of all observable parameters with their stated covariance P: eᵀP⁻¹e divided by the number of "
+      "parameters. NEES is 1 on average if the stated σ is right, above 1 if σ is too small.</p>\n"
+      "<table><tr><th>radar</th><th class=n>speed scale</th><th class=n>yaw</th><th class=n>pitch</th>"
+      "<th class=n>roll</th><th class=n>NEES</th><th class=n>mean NEES of the drive</th></tr>\n" +
+      rows + "</table>\n";
+  if (summary.is_offline) return text + "<p>The tables of an offline run do not hold the NEES.</p>\n";
+  return text + "<p class=\"legend\">" + legend + svg::page_key(svg::line_sample(svg::kTruth)) +
          "expected mean, 1</p>\n" + chart.finish();
 }
 
