@@ -56,26 +56,6 @@ class NameOfARadar : public ::testing::Test {
     EXPECT_EQ(commas.size(), 1u) << name;
     EXPECT_GT(rows, 2u) << name;
   }
-  /// What a monitor of this vehicle would have recorded: two snapshots.
-  void write_snapshots() const {
-    monitor::Snapshot snapshot;
-    snapshot.time_ns = 1;
-    const Value summary = json("run/run.json");
-    for (const Value& radar : summary.at("radars")) {
-      monitor::RadarSnapshot& each = snapshot.radars.emplace_back();
-      each.id = radar.at("id").get<std::uint32_t>();
-      each.name = radar.at("name").get<std::string>();
-      each.scans = 40;
-    }
-    snapshot.tracks.resize(1);
-    snapshot.tracks[0].confirmed = true;
-    std::ofstream file(folder_ / "run/monitor.jsonl");
-    file << monitor::to_json(snapshot);
-    for (monitor::RadarSnapshot& radar : snapshot.radars) radar.scans *= 2;
-    snapshot.time_ns += 2'000'000'000;
-    file << monitor::to_json(snapshot);
-  }
-
   [[nodiscard]] std::string score() const { return run("score run --truth drive --json score.json"); }
   [[nodiscard]] std::string align() const {
     return run(
@@ -106,8 +86,7 @@ TEST_F(NameOfARadar, IsWholeInTableJsonAndPlotOfTheAlignment) {
 }
 
 TEST_F(NameOfARadar, IsWholeInSummaryAndPageOfTheReport) {
-  write_snapshots();
-  EXPECT_THAT(run("report run --out page.html" + kVehicle), HasSubstr(testing::kName));
+  EXPECT_THAT(run("report run --truth drive/truth.csv --out page.html" + kVehicle), HasSubstr(testing::kName));
   EXPECT_NE(text("page.html").find("<td>front &quot;long&quot;, größte</td>"), std::string::npos);
 }
 
