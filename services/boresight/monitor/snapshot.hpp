@@ -42,10 +42,6 @@ struct AlignmentDetails {
   double nees = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// By Provenance.
-inline constexpr std::array<std::string_view, 6> kLabelWords = {"unknown",      "moving",       "stationary",
-                                                                "ghost_type_1", "ghost_type_2", "clutter"};
-
 /// Labels of the detections in all scans of the ghost filter that the monitor received.
 struct LabelCounts {
   std::array<std::uint64_t, 6> classified{};  ///< by Provenance

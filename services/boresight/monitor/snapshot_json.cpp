@@ -5,6 +5,7 @@
 
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
+#include "services/boresight/run/radar_json.hpp"
 #include "services/common/geometry/angles.hpp"
 
 namespace boresight::monitor {
@@ -50,17 +51,14 @@ void add_details(json::Value& value, const AlignmentDetails& d) {
 
 /// Sums since the start of the monitor.
 void add_labels(json::Value& value, const LabelCounts& labels) {
-  json::Value& classified = value["classified"];
-  for (std::size_t i = 0; i < kLabelWords.size(); ++i) classified[std::string(kLabelWords[i])] = labels.classified[i];
+  json::Value& classified = value["classified"] = run::counts_by_origin(labels.classified);
   classified["rejected"] = labels.rejected;
   value["classified_scans"] = labels.scans;
   value["classified_without_tracks"] = labels.scans_without_tracks;
 }
 
 json::Value object_of(const RadarSnapshot& r) {
-  json::Value value;
-  value["id"] = r.id;
-  value["name"] = r.name;
+  json::Value value = run::radar_object(r.id, r.name);
   value["scans"] = r.scans;
   value["lost"] = r.lost;
   value["rate_hz"] = digits_of(r.rate_hz);

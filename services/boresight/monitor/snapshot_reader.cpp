@@ -8,6 +8,7 @@
 
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
+#include "services/boresight/run/words.hpp"
 #include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/angles.hpp"
 
@@ -145,8 +146,8 @@ RadarSnapshot radar_at(const Fields& fields) {
   fields.read("condition_bits", r.conditions);
   r.details = details_at(fields);
   const Fields classified = fields.object("classified");
-  for (std::size_t i = 0; i < kLabelWords.size(); ++i) {
-    classified.read(std::string(kLabelWords[i]), r.labels.classified[i]);
+  for (std::size_t i = 0; i < run::kOriginWords.size(); ++i) {
+    classified.read(std::string(run::kOriginWords[i]), r.labels.classified[i]);
   }
   classified.read("rejected", r.labels.rejected);
   fields.read("classified_scans", r.labels.scans);

@@ -8,24 +8,14 @@
 #include "services/boresight/run/counts.hpp"
 #include "services/boresight/run/csv_row.hpp"
 #include "services/boresight/run/origins.hpp"
+#include "services/boresight/run/words.hpp"
 
 namespace boresight::run {
 
 namespace {
 
-constexpr std::array<std::string_view, kNumberOfPipelineFlags> kFlagNames = {
-    "no_alignment", "alignment_stale", "no_ego_motion", "ego_motion_stale",
-    "no_elevation", "no_tracks",       "tracks_stale"};
-constexpr std::array<std::string_view, kNumberOfOrigins> kOriginNames = {"unknown",      "moving",       "stationary",
-                                                                         "ghost_type_1", "ghost_type_2", "clutter"};
-constexpr std::array<std::string_view, kNumberOfRejections> kRejectionNames = {"", "invalid", "outside_region", "weak"};
-constexpr std::array<std::string_view, 9> kAxisNames = {
-    "speed_scale", "yaw", "pitch", "roll", "vehicle_yaw", "vehicle_pitch", "vehicle_roll", "yaw_rate_bias", "slip"};
-constexpr std::array<std::string_view, 2> kStatusNames = {"tentative", "confirmed"};
-constexpr std::array<std::string_view, 2> kUpdateNames = {"measured", "predicted"};
-constexpr std::array<std::string_view, 4> kMovementNames = {"unknown", "moving", "stationary", "stopped"};
-constexpr std::array<std::string_view, 5> kClassNames = {"unknown", "car", "truck", "two_wheeler", "pedestrian"};
-constexpr std::array<std::string_view, 4> kStateNames = {"no_data", "waiting", "converging", "converged"};
+static_assert(kFlagWords.size() == kNumberOfPipelineFlags && kOriginWords.size() == kNumberOfOrigins &&
+              kRejectionWords.size() == kNumberOfRejections);
 
 template <typename Enum, std::size_t N>
 std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
@@ -54,19 +44,15 @@ CsvRow begin_row(std::string& rows, const ScanResult& result) {
 }  // namespace
 
 std::string names_of_flags(std::uint32_t pipeline_flags) {
-  return joined(kFlagNames, pipeline_flags);
+  return joined(kFlagWords, pipeline_flags);
 }
 
 std::string_view name_of_flag(std::size_t bit) {
-  return word_of(kFlagNames, bit);
-}
-
-std::string_view name_of_origin(std::size_t provenance) {
-  return word_of(kOriginNames, provenance);
+  return word_of(kFlagWords, bit);
 }
 
 std::string names_of_axes(std::uint32_t axes) {
-  return joined(kAxisNames, axes);
+  return joined(kAxisWords, axes);
 }
 
 void append_scan(std::string& rows, const ScanResult& result) {
@@ -100,10 +86,10 @@ void append_detections(std::string& rows, const ScanResult& result) {
     row.number_if(has_position, classified.x_vehicle_m[i]).number_if(has_position, classified.y_vehicle_m[i]);
     row.number_if(has_position, classified.z_vehicle_m[i]);
     row.number_if(has_ego && std::isfinite(scan.range_rate_mps[i]), classified.range_rate_over_ground_mps[i]);
-    row.word(word_of(kOriginNames, classified.provenance[i]));
+    row.word(word_of(kOriginWords, classified.provenance[i]));
     const auto p = probabilities_of(classified.provenance[i], classified.ghost_probability[i], flags);
     for (std::size_t k = 0; k < OriginProbabilities{}.size(); ++k) row.number_if(p.has_value(), p ? (*p)[k] : 0.0F);
-    row.word(word_of(kRejectionNames, rejection_of(flags))).end();
+    row.word(word_of(kRejectionWords, rejection_of(flags))).end();
   }
 }
 
@@ -124,8 +110,8 @@ void append_tracks(std::string& rows, const ScanResult& result) {
   for (std::size_t i = 0; i < count; ++i) {
     const Track& track = result.tracks.tracks[i];
     CsvRow row = begin_row(rows, result);
-    row.number(track.tracking_id).word(word_of(kStatusNames, track.status)).word(word_of(kUpdateNames, track.update));
-    row.word(word_of(kMovementNames, track.movement)).word(word_of(kClassNames, track.object_class));
+    row.number(track.tracking_id).word(word_of(kStatusWords, track.status)).word(word_of(kUpdateWords, track.update));
+    row.word(word_of(kMovementWords, track.movement)).word(word_of(kClassWords, track.object_class));
     row.number(track.existence_probability).number(track.age_s).number(track.time_since_update_s);
     for (const float position_m : track.position_vehicle_m) row.number(position_m);
     for (const float velocity_mps : track.velocity_over_ground_mps) row.number(velocity_mps);
@@ -143,7 +129,7 @@ void append_estimate(std::string& rows, const EstimateResult& result) {
   const AlignmentEstimate& message = result.message;
   CsvRow row(rows);
   row.seconds(result.at.since_start_us()).number(result.at.time_ns).number(message.header.source_id);
-  row.word(word_of(kStateNames, message.state)).number(message.speed_scale);
+  row.word(word_of(kStateWords, message.state)).number(message.speed_scale);
   row.number(message.vehicle_yaw_rad).number(message.vehicle_pitch_rad).number(message.vehicle_roll_rad);
   for (Eigen::Index i = 0; i < 3; ++i) row.number(static_cast<float>(result.rotation_vehicle_rad(i)));
   for (Eigen::Index a = 0; a < result.covariance.rows(); ++a) {

@@ -33,7 +33,6 @@ inline constexpr std::string_view kAlignmentHeader =
 /// Names of pipeline_flag bits, joined by '+'; "" if none is set.
 [[nodiscard]] std::string names_of_flags(std::uint32_t pipeline_flags);
 [[nodiscard]] std::string_view name_of_flag(std::size_t bit);
-[[nodiscard]] std::string_view name_of_origin(std::size_t provenance);
 /// Names of alignment_axis bits, joined by '+'.
 [[nodiscard]] std::string names_of_axes(std::uint32_t axes);
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/boresight/json/text.hpp"
+#include "services/boresight/run/radar_json.hpp"
 #include "services/boresight/run/rows.hpp"
 
 namespace boresight::run {
@@ -41,10 +42,7 @@ json::Value counts_of(const RadarCounts& counts) {
   json::Value value;
   value["scans"] = counts.scans;
   value["detections"] = counts.detections;
-  json::Value& origins = value["origins"];
-  for (std::size_t i = 0; i < counts.origins.size(); ++i) {
-    origins[std::string(name_of_origin(i))] = counts.origins[i];
-  }
+  value["origins"] = counts_by_origin(counts.origins);
   value["alignment_estimates"] = counts.estimates;
   return value;
 }
@@ -89,15 +87,14 @@ json::Value losses_of(const RadarCounts& counts, const SensorHealth* health, std
   return value;
 }
 
-json::Value radars_of(const Summary& summary, const VehicleConfig& vehicle) {
+/// `losses(radar)` is the object "losses" of each radar.
+template <typename Losses>
+json::Value radars_of(const VehicleConfig& vehicle, const Counts& counts, const Losses& losses) {
   json::Value radars = json::Value::array();
   for (const RadarConfig& radar : vehicle.radars) {
-    json::Value value;
-    value["id"] = radar.id;
-    value["name"] = radar.name;
-    const RadarCounts& counts = summary.counts.radars[radar.id];
-    value["counts"] = counts_of(counts);
-    value["losses"] = losses_of(counts, summary.sources[radar.id], summary.rejected[radar.id], summary.noted[radar.id]);
+    json::Value value = radar_object(radar.id, radar.name);
+    value["counts"] = counts_of(counts.radars[radar.id]);
+    value["losses"] = losses(radar.id);
     radars.push_back(value);
   }
   return radars;
@@ -186,16 +183,9 @@ std::string to_json(const LiveSummary& summary, const VehicleConfig& vehicle) {
   value["start_ns"] = results.start_ns();
   value["recording_s"] = seconds_of(results.length_ns());
   value["counts"] = totals_of(results.counts());
-  json::Value& radars = value["radars"] = json::Value::array();
-  for (const RadarConfig& radar : vehicle.radars) {
-    const RadarCounts& counts = results.counts().radars[radar.id];
-    json::Value each;
-    each["id"] = radar.id;
-    each["name"] = radar.name;
-    each["counts"] = counts_of(counts);
-    each["losses"] = losses_of(counts, results.health_of(radar.id), results.incomplete_scans()[radar.id]);
-    radars.push_back(each);
-  }
+  value["radars"] = radars_of(vehicle, results.counts(), [&results](std::uint32_t id) {
+    return losses_of(results.counts().radars[id], results.health_of(id), results.incomplete_scans()[id]);
+  });
   return json::document(value);
 }
 
@@ -220,7 +210,9 @@ std::string to_json(const Summary& summary, const VehicleConfig& vehicle) {
   value["start_ns"] = summary.start_ns;
   value["recording_s"] = summary.recording_s;
   value["counts"] = totals_of(summary.counts);
-  value["radars"] = radars_of(summary, vehicle);
+  value["radars"] = radars_of(vehicle, summary.counts, [&summary](std::uint32_t id) {
+    return losses_of(summary.counts.radars[id], summary.sources[id], summary.rejected[id], summary.noted[id]);
+  });
   value["losses"]["input"] = input_losses_of(summary);
   value["losses"]["tracker"] = tracker_losses_of(summary.counts);
   value["timing"] = timing_of(summary.timing, summary.recording_s);
