@@ -39,12 +39,23 @@ std::optional<std::int64_t> start_of_record(const fs::path& folder) {
   return table.integer("time_ns", 0, kMost_ns) - std::llround(table.number("t_s", -kMost_s, kMost_s) * 1e9);
 }
 
+/// The monitor's clock begins again when the ECU does; rows after that would have times before the record.
+void refuse_later_record(const fs::path& folder, std::int64_t start_ns) {
+  const std::int64_t now_ns = runtime::monotonic_now_ns();
+  if (start_ns <= now_ns) return;
+  throw std::runtime_error(
+      fmt::format("{}: its record begins at {:.3f} s of CLOCK_MONOTONIC, later than now, {:.3f} s: the ECU was "
+                  "restarted; give another folder",
+                  folder.string(), static_cast<double>(start_ns) * 1e-9, static_cast<double>(now_ns) * 1e-9));
+}
+
 /// Makes the folder, and removes what is no record to be continued.
 std::optional<std::int64_t> prepare(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw terminal::OutputError(folder.string(), error.value());
   const std::optional<std::int64_t> start_ns = start_of_record(folder);
+  if (start_ns) refuse_later_record(folder, *start_ns);
   fs::remove(folder / "run.json", error);
   if (start_ns) return start_ns;
   for (const std::string_view name : run::kFileNames) {

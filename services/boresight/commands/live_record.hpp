@@ -20,7 +20,8 @@ namespace boresight {
 /// whole. Errors of writing are kept until finish(), so that the live view goes on.
 class LiveRecord {
  public:
-  /// Makes the folder. Throws terminal::OutputError, or std::runtime_error for tables of another version.
+  /// Makes the folder. Throws terminal::OutputError, or std::runtime_error for tables of another version and for a
+  /// record that begins later than now; such a folder stays as it is.
   explicit LiveRecord(const std::filesystem::path& folder);
 
   template <typename Message>

@@ -1,9 +1,12 @@
 // `boresight monitor`: the running system on the terminal.
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <sys/ioctl.h>
@@ -18,6 +21,7 @@
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/log.hpp"
 #include "services/common/runtime/node.hpp"
+#include "services/common/runtime/stop_signal.hpp"
 
 namespace boresight {
 
@@ -48,6 +52,23 @@ void draw(const monitor::Snapshot& snapshot, double elapsed_s) {
   terminal::print(text + "\x1b[J");
 }
 
+/// Says once what the monitor waits for if RouDi cannot be reached for a while: log lines are switched off. The node
+/// goes on waiting.
+void say_if_roudi_is_absent() {
+  constexpr std::int64_t kSilent_ns = 2'000'000'000;  // choice: RouDi of `boresight supervise` takes less than a second
+  runtime::install_stop_signals();
+  const std::int64_t begin_ns = runtime::monotonic_now_ns();
+  while (!runtime::Node::roudi_is_reachable()) {
+    if (runtime::stop_signalled()) return;
+    if (runtime::monotonic_now_ns() - begin_ns >= kSilent_ns) {
+      std::fprintf(stderr,
+                   "boresight monitor: waiting for RouDi; `boresight supervise` starts RouDi and the services\n");
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
 int run_monitor(const MonitorOptions& options) {
   // Log lines would break the screen.
   setenv("BORESIGHT_LOG_LEVEL", "error", 0);
@@ -58,6 +79,7 @@ int run_monitor(const MonitorOptions& options) {
   if (!options.record.empty()) record.emplace(options.record);
   terminal::OutputFile output(options.json.empty() ? "-" : options.json);
 
+  say_if_roudi_is_absent();
   runtime::Node node(catalogue::Service::kMonitor, "-" + std::to_string(getpid()));
   const auto observe = [&](const auto& message) {
     accumulator.observe(message);

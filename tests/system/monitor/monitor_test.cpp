@@ -1,15 +1,18 @@
 // `boresight monitor` beside the running system: its run folder can be read back, and write errors are reported.
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <unistd.h>
 
 #include "services/boresight/monitor/snapshot.hpp"
 #include "services/boresight/report/recorded_scans.hpp"
+#include "services/boresight/run/rows.hpp"
 #include "tests/system/harness/domain.hpp"
 
 namespace boresight {
@@ -43,6 +46,39 @@ fs::path folder_without_room(const std::string& name, const std::string& file) {
   fs::create_directories(folder);
   fs::create_symlink("/dev/full", folder / file);
   return folder;
+}
+
+TEST(Monitor, SaysOnceThatItWaitsForRouDiAndGoesOnWaiting) {
+  harness::Child monitor = monitor_with({}, "/tmp/waiting");
+  const auto seconds_later = [](int seconds) { std::this_thread::sleep_for(std::chrono::seconds(seconds)); };
+  seconds_later(1);
+  EXPECT_EQ(text_of("/tmp/waiting"), "");
+  seconds_later(3);
+  const std::string message =
+      "boresight monitor: waiting for RouDi; `boresight supervise` starts RouDi and the services\n";
+  EXPECT_EQ(text_of("/tmp/waiting"), message);
+  harness::Domain domain("demo");
+  domain.start();
+  domain.run_for(1.0);
+  EXPECT_EQ(monitor.stop(), 0) << text_of("/tmp/waiting");
+  EXPECT_EQ(text_of("/tmp/waiting"), message);
+}
+
+TEST(Monitor, RecordThatBeginsLaterThanNowIsNotContinued) {
+  const fs::path folder = "/tmp/record_before_restart";
+  fs::create_directories(folder);
+  std::string scans(run::kScansHeader);
+  scans += "\n2.000000,9000000002000000000,1,7,0,,3.5,0,0,0,0,0,0,0,0\n";
+  std::ofstream(folder / "scans.csv") << scans;
+  std::ofstream(folder / "run.json") << "{}\n";
+  harness::Child monitor = monitor_with({"--record", folder.string()}, "/tmp/not_continued");
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_EQ(monitor.stop(), 3);
+  EXPECT_THAT(text_of("/tmp/not_continued"),
+              ::testing::ContainsRegex("^boresight monitor: /tmp/record_before_restart: its record begins at "
+                                       "9000000000.000 s of CLOCK_MONOTONIC, later than now, [0-9]+\\.[0-9]+ s: "));
+  EXPECT_EQ(text_of(folder / "scans.csv"), scans);
+  EXPECT_TRUE(fs::exists(folder / "run.json"));
 }
 
 TEST(Monitor, RunFolderCanBeReadBackAndWriteErrorsAreReported) {
