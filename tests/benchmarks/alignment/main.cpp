@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
                     .document = "docs/alignment.md",
                     .data_option = "--drive-data",
                     .data_about = "folder of drive_1.csv.xz, ego_1.csv and truth_1.txt",
-                    .first_seed_about = "first seed of the group world; the other groups have fixed seeds"},
+                    .first_seed_about = "first seed of the group world; the other groups have fixed seeds",
+                    .has_real_car = true},
                    kGroups);
 }

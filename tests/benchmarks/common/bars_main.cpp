@@ -37,6 +37,12 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
                      std::string(kJudgedProfile) + " only")
       ->type_name("NAME|FILE")
       ->capture_default_str();
+  if (program.has_real_car) {
+    app.add_flag(
+        "--real-car", options.real_car,
+        "the simulated vehicle has all effects of a real car; as with another profile, bars are not judged and "
+        "groups that it does not concern are skipped");
+  }
   app.add_option("--jobs", options.jobs, "threads")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--json", json, "write bars, tables and curves to this file");
   app.add_option("--markdown", markdown,
@@ -49,12 +55,12 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
   }
   CLI11_PARSE(app, argc, argv);
 
-  if (!options.judges()) std::printf("radar profile %s: no bar is judged\n", options.profile.c_str());
-  Report report(options.profile, options.judges());
+  if (!options.judges()) std::printf("radar profile %s: no bar is judged\n", options.drives().c_str());
+  Report report(options.drives(), options.judges());
   for (const BarGroup& group : groups) {
     if (!options.wants(group.name)) continue;
     if (!options.judges() && !group.has_profile) {
-      std::fprintf(stderr, "%s: skipped, it does not depend on the radar profile\n", group.name);
+      std::fprintf(stderr, "%s: skipped, it does not depend on the radar profile or the car\n", group.name);
       continue;
     }
     std::fprintf(stderr, "%s\n", group.name);

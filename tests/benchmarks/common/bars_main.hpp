@@ -11,7 +11,7 @@ namespace boresight::bench {
 struct BarGroup {
   const char* name;
   void (*run)(const Options&, Report&);
-  bool has_profile = false;  ///< its drives use Options::profile; groups without are run with kJudgedProfile only
+  bool has_profile = false;  ///< its drives use Options::profile and real_car; other groups run if bars are judged only
 };
 
 struct BarsProgram {
@@ -20,6 +20,7 @@ struct BarsProgram {
   const char* data_option = nullptr;  ///< option for Options::data_folder; nullptr: no such option
   const char* data_about = nullptr;
   const char* first_seed_about = nullptr;  ///< help text of --first-seed; nullptr: no such option
+  bool has_real_car = false;               ///< option --real-car for Options::real_car
 };
 
 /// For main(). Exit code 0 also if bars fail, 1 on an error.

@@ -19,13 +19,16 @@ struct Options {
   std::uint64_t first_seed = 1;  ///< benchmarks with fixed seeds for their bars: other seeds are for tuning
   std::string data_folder;       ///< folder of recordings; empty: groups of bars that need recordings are skipped
   std::string profile = kJudgedProfile;  ///< of all simulated radars: a shipped radar profile or its file
+  bool real_car = false;                 ///< the vehicle has the effects of a real car, all of the preset
 
   [[nodiscard]] std::size_t seeds(std::size_t wanted) const {
     const std::size_t most = quick ? 2 : most_seeds != 0 ? most_seeds : wanted;
     return std::min(wanted, most);
   }
   [[nodiscard]] double seconds(double wanted) const { return quick ? std::min(wanted, 12.0) : wanted; }
-  [[nodiscard]] bool judges() const { return profile == kJudgedProfile; }
+  /// Radar profile and car of the simulated drives, as reports name them.
+  [[nodiscard]] std::string drives() const { return real_car ? profile + " + real car" : profile; }
+  [[nodiscard]] bool judges() const { return profile == kJudgedProfile && !real_car; }
   [[nodiscard]] bool wants(const std::string& group) const { return only.empty() || only == group; }
 };
 

@@ -68,7 +68,7 @@ class Report {
  private:
   [[nodiscard]] Table bars_table() const;
   void add_bar(Bar bar);
-  std::string profile_;  // radar profile of the drives
+  std::string profile_;  // of the drives: Options::drives()
   bool judged_ = true;
   std::vector<Bar> bars_;
   std::vector<Table> tables_;

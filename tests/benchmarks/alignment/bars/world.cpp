@@ -1,9 +1,11 @@
 // The estimator on drives of the world simulator, whose radars have a profile. Nothing is judged: there are no bars
 // yet.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "services/common/geometry/angles.hpp"
+#include "services/simulator/car/real_car.hpp"
 #include "tests/benchmarks/alignment/bars/bars.hpp"
 #include "tests/benchmarks/alignment/common/world_run.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
@@ -21,9 +23,11 @@ constexpr std::array<const char*, 4> kErrors = {"speed_scale.error", "rotation_x
                                                 "rotation_z.error_deg"};
 constexpr std::array<const char*, 4> kNees = {"speed_scale.nees", "rotation_x.nees", "rotation_y.nees",
                                               "rotation_z.nees"};
+/// (Error / σ)² at the ends of a 95 % interval.
+constexpr double kInterval95 = 1.96 * 1.96;
 enum : std::size_t { kScaleAt, kRollAt, kPitchAt, kYawAt };
 
-/// At the end of the drives, of all radars of all drives.
+/// At the end of the drives, of all radars of all drives; only of axes that the estimator reports as observable.
 struct WorldFigures {
   std::array<std::vector<double>, 4> errors, nees;
   double changes = 0.0, driven_s = 0.0;
@@ -33,8 +37,9 @@ struct WorldFigures {
       const std::string radar = "alignment.radar_" + std::to_string(id) + ".";
       for (std::size_t p = 0; p < errors.size(); ++p) {
         const double error = run.figures.value(radar + kErrors[p]), consistency = run.figures.value(radar + kNees[p]);
-        if (std::isfinite(error)) errors[p].push_back(std::abs(error));
-        if (std::isfinite(consistency)) nees[p].push_back(consistency);
+        if (!std::isfinite(error) || !std::isfinite(consistency)) continue;
+        errors[p].push_back(std::abs(error));
+        nees[p].push_back(consistency);
       }
     }
     changes += run.figures.value("alignment.false_step_changes");
@@ -56,6 +61,11 @@ struct WorldFigures {
     for (const double value : nees[p]) sum += value;
     return nees[p].empty() ? "—" : number(sum / static_cast<double>(nees[p].size()));
   }
+  /// Share of the radars whose true value lies in the stated 95 % interval, %.
+  [[nodiscard]] std::string covered(std::size_t p) const {
+    const auto inside = std::count_if(nees[p].begin(), nees[p].end(), [](double n) { return n <= kInterval95; });
+    return nees[p].empty() ? "—" : fixed(100.0 * static_cast<double>(inside) / static_cast<double>(nees[p].size()), 0);
+  }
   [[nodiscard]] std::vector<std::string> row(const std::string& name) const {
     return {name,
             error(kScaleAt),
@@ -65,6 +75,10 @@ struct WorldFigures {
             mean_nees(kYawAt),
             mean_nees(kPitchAt),
             mean_nees(kRollAt),
+            covered(kScaleAt),
+            covered(kYawAt),
+            covered(kPitchAt),
+            covered(kRollAt),
             fixed(changes, 0),
             number(changes / (driven_s / 3600.0))};
   }
@@ -76,18 +90,20 @@ void world(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(8);
   const double longest_s = options.quick ? 4.0 : 45.0;
   Table table{"world",
-              "drives of the world simulator: errors of all radars at the end, median (95 % quantile); mean NEES of "
-              "the axes reported as observable; step changes reported though none happened, and their number per "
-              "hour; " +
-                  std::to_string(seeds) + " seeds of at most " + fixed(longest_s, 0) + " s",
-              {"scenario", "k_v", "yaw °", "pitch °", "NEES k_v", "NEES yaw", "NEES pitch", "NEES roll",
-               "false changes", "per hour"},
+              "drives of the world simulator: errors of all radars at the end, median (95 % quantile), mean NEES and "
+              "share of radars within the stated 95 % interval, all of the axes reported as observable; step changes "
+              "reported though none happened, and their number per hour; " +
+                  std::to_string(seeds) + " drives of at most " + fixed(longest_s, 0) + " s, seeds from " +
+                  std::to_string(options.first_seed) + " on",
+              {"scenario", "k_v", "yaw °", "pitch °", "NEES k_v", "NEES yaw", "NEES pitch", "NEES roll", "k_v within",
+               "yaw within", "pitch within", "roll within", "false changes", "per hour"},
               {}};
+  const simulator::car::RealCar car = options.real_car ? simulator::car::real_car_preset() : simulator::car::RealCar{};
   WorldFigures all;
   for (const char* scenario : kWorldScenarios) {
     std::vector<WorldRun> runs(seeds);
     parallel_for(seeds, options.jobs, [&](std::size_t i) {
-      runs[i] = run_world_drive({scenario, options.profile, options.first_seed + i, longest_s});
+      runs[i] = run_world_drive({scenario, options.profile, options.first_seed + i, longest_s, car});
     });
     WorldFigures of;
     for (const WorldRun& run : runs) of.take(run);

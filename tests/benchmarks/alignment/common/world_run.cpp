@@ -1,11 +1,16 @@
 #include "tests/benchmarks/alignment/common/world_run.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <memory>
+#include <vector>
 
 #include "services/alignment_estimator/core/estimator.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/common/vehicle/drive_truth.hpp"
+#include "services/simulator/car/body.hpp"
+#include "services/simulator/car/radar_of_car.hpp"
 #include "services/simulator/drive.hpp"
-#include "services/simulator/judge/alignment_judge.hpp"
 #include "services/simulator/radar/mounting.hpp"
 #include "services/simulator/random.hpp"
 #include "services/simulator/scenario/read_profile.hpp"
@@ -23,6 +28,7 @@ using simulator::Misalignment;
 simulator::Scenario scenario_of(const WorldDrive& of) {
   simulator::Scenario scenario = simulator::scenario(of.scenario);
   simulator::use_profile(scenario, of.profile);
+  scenario.effects.real_car = of.real_car;
   simulator::Stream stream(of.seed, "bench truth");
   scenario.effects.speed_scale = draw_speed_scale(stream);
   for (Misalignment& radar : scenario.effects.misalignment) {
@@ -52,17 +58,29 @@ judge::AlignmentSample sample_of(const alignment::RadarEstimate& estimate, const
   return sample;
 }
 
-judge::MountingTruth truth_of(const simulator::RadarEffects& effects, const RadarConfig& radar, double t_s) {
+judge::MountingTruth truth_of(const simulator::RadarEffects& effects, const RadarConfig& radar, std::uint64_t seed,
+                              double t_s) {
+  const simulator::car::RealCar& car = effects.real_car;
   judge::MountingTruth truth;
-  truth.speed_scale = effects.speed_scale;
+  truth.speed_scale = speed_scale_seen(
+      effects.speed_scale, simulator::car::radar_of_car(car, seed, radar.id, radar.field_of_view).range_rate_scale);
   truth.has_rotation = true;
-  truth.rotation =
-      simulator::radar::actual_mounting(radar.mounting_pose, effects, radar.id, t_s) * nominal_of(radar).transpose();
+  // The mounting is that on the body, which the load pitches.
+  truth.rotation = geometry::sensor_to_vehicle(0.0, simulator::car::load_pitch_rad(car, t_s), 0.0) *
+                   simulator::radar::actual_mounting(radar.mounting_pose, effects, radar.id, t_s) *
+                   nominal_of(radar).transpose();
   truth.step_changes = static_cast<std::uint32_t>(
       std::count_if(effects.step_changes.begin(), effects.step_changes.end(),
                     [&](const simulator::RadarStepChange& c) { return c.radar == radar.id && c.time_s <= t_s; }));
   return truth;
 }
+
+/// A scan on its way: radars send it after its stamp, which may be later than the measurement.
+struct SentScan {
+  double t_s = 0.0;  ///< of the measurement
+  std::unique_ptr<RadarScan> scan;
+  [[nodiscard]] std::int64_t stamp_ns() const { return scan->header.measurement_time_ns; }
+};
 
 }  // namespace
 
@@ -71,20 +89,34 @@ WorldRun run_world_drive(const WorldDrive& of) {
   const VehicleConfig vehicle = vehicle_of(scenario);
   WorldRun run;
   run.radars = vehicle.radars.size();
+  run.truth.resize(run.radars);
   run.duration_s = std::min(of.duration_s, scenario.duration_s);
   simulator::Drive drive(scenario, vehicle, of.seed, run.duration_s);
   alignment::Estimator estimator(vehicle, {});
   judge::AlignmentJudge judge;
+  std::vector<SentScan> sent;  // by stamp
+  const auto deliver_before = [&](std::int64_t time_ns) {
+    const auto end = std::find_if(sent.begin(), sent.end(), [&](const SentScan& s) { return s.stamp_ns() >= time_ns; });
+    for (auto it = sent.begin(); it != end; ++it) {
+      if (estimator.add_scan(*it->scan) != alignment::ScanResult::kPublish) continue;
+      const RadarConfig& radar = *vehicle.radar(it->scan->header.source_id);
+      const auto index = static_cast<std::size_t>(&radar - vehicle.radars.data());
+      run.truth[index] = truth_of(scenario.effects, radar, of.seed, it->t_s);
+      judge.add(sample_of(estimator.estimate(index), radar, it->t_s), run.truth[index]);
+    }
+    sent.erase(sent.begin(), end);
+  };
   while (const simulator::Event* event = drive.next()) {
-    if (event->scan == nullptr) {
-      estimator.add_ego_motion(simulator::to_message(*event, vehicle.ego));
+    if (event->scan != nullptr) {
+      const auto later =
+          std::find_if(sent.begin(), sent.end(), [&](const SentScan& s) { return s.stamp_ns() > event->stamp_ns; });
+      sent.insert(later, {event->t_s, std::make_unique<RadarScan>(*event->scan)});
       continue;
     }
-    if (estimator.add_scan(*event->scan) != alignment::ScanResult::kPublish) continue;
-    const RadarConfig& radar = *vehicle.radar(event->scan->header.source_id);
-    const auto index = static_cast<std::size_t>(&radar - vehicle.radars.data());
-    judge.add(sample_of(estimator.estimate(index), radar, event->t_s), truth_of(scenario.effects, radar, event->t_s));
+    deliver_before(event->time_ns);
+    estimator.add_ego_motion(simulator::to_message(*event, vehicle.ego));
   }
+  deliver_before(std::numeric_limits<std::int64_t>::max());
   judge.write(run.figures);
   return run;
 }
