@@ -12,8 +12,11 @@ REGION = re.compile(r"<!-- begin: ([\w ]+) -->\n(.*?)<!-- end: \1 -->", re.DOTAL
 PROFILES = ("ideal", "series_77ghz")  # radar profiles shown side by side; bars are judged on the first
 
 
+REAL_CAR = " + real car"  # ends the name of drives with --real-car
+
+
 def results_of(folder, profile):
-    """The files of the runs with a radar profile, each with its content."""
+    """The files of the runs with a radar profile, each with its content. REAL_CAR may follow the profile."""
     results = [(file, json.loads(file.read_text())) for file in sorted(folder.rglob("bars.json"))]
     return [(file, result) for file, result in results if result["profile"] == profile]
 
@@ -56,13 +59,14 @@ def side_by_side(folder, table, key, columns, keep=lambda row: True):
 
 
 def run_profiles(command, options, results):
-    """Runs a benchmark once for each radar profile, in folders of their names. `options`: by profile, a list of runs with
-    their options."""
+    """Runs a benchmark once for each radar profile, in folders of their names. `options`: by profile, which REAL_CAR may
+    follow, a list of runs with their options."""
     for profile, runs in options.items():
         for number, words in enumerate(runs):
             folder = results / profile / str(number)
             folder.mkdir(parents=True, exist_ok=True)
-            subprocess.run([*command, "--profile", profile, *words, "--json", str(folder / "bars.json"), "--markdown",
+            car = ["--real-car"] if profile.endswith(REAL_CAR) else []
+            subprocess.run([*command, "--profile", profile.removesuffix(REAL_CAR), *car, *words, "--json", str(folder / "bars.json"), "--markdown",
                             str(folder / "bars.md")], check=True)
 
 
@@ -73,9 +77,11 @@ def machine():
     return f"Measured at commit {commit or 'unknown'}; CPU times on {model.group(1) if model else 'an unknown processor'}.\n"
 
 
-def rewrite(document, regions):
-    """Replaces the tables. Reports on stderr the tables that the document does not show, and places without a new table."""
-    regions = {**regions, "measured": machine()}
+def rewrite(document, regions, whole=True):
+    """Replaces the tables. If they are those of the `whole` document, states where they were measured. Reports on stderr the
+    tables that the document does not show, and places without a new table."""
+    if whole:
+        regions = {**regions, "measured": machine()}
     text = document.read_text()
     marks = {name for name, _ in REGION.findall(text)}
     where = document.relative_to(ROOT)

@@ -89,15 +89,16 @@ struct WorldFigures {
 void world(const Options& options, Report& report) {
   const std::size_t seeds = options.seeds(8);
   const double longest_s = options.quick ? 4.0 : 45.0;
-  Table table{"world",
-              "drives of the world simulator: errors of all radars at the end, median (95 % quantile), mean NEES and "
-              "share of radars within the stated 95 % interval, all of the axes reported as observable; step changes "
-              "reported though none happened, and their number per hour; " +
-                  std::to_string(seeds) + " drives of at most " + fixed(longest_s, 0) + " s, seeds from " +
-                  std::to_string(options.first_seed) + " on",
-              {"scenario", "k_v", "yaw °", "pitch °", "NEES k_v", "NEES yaw", "NEES pitch", "NEES roll", "k_v within",
-               "yaw within", "pitch within", "roll within", "false changes", "per hour"},
-              {}};
+  Table table{
+      "world",
+      "errors of all radars at the end of drives in the world simulator, median (95 % quantile); mean NEES; share "
+      "of radars within the stated 95 % interval. Only axes reported as observable count. False changes: step "
+      "changes reported though none happened, and their number per hour. " +
+          std::to_string(seeds) + " drives of at most " + fixed(longest_s, 0) + " s, seeds from " +
+          std::to_string(options.first_seed) + " on.",
+      {"scenario", "k_v", "yaw °", "pitch °", "NEES k_v", "NEES yaw", "NEES pitch", "NEES roll", "k_v within",
+       "yaw within", "pitch within", "roll within", "false changes", "per hour"},
+      {}};
   const simulator::car::RealCar car = options.real_car ? simulator::car::real_car_preset() : simulator::car::RealCar{};
   WorldFigures all;
   for (const char* scenario : kWorldScenarios) {
