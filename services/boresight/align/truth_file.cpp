@@ -130,6 +130,12 @@ Truth read_truth(std::istream& input, const std::string& name) {
     const auto fail = [&](const std::string& what) {
       throw std::runtime_error(fmt::format("{}:{}: {}", name, number, what));
     };
+    const auto radar_id = [&](double id) {
+      if (!(id >= 1.0 && id <= kMaxRadars && id == std::floor(id))) {
+        fail(fmt::format("{}: radar: an id 1 … {} must follow", kind, kMaxRadars));
+      }
+      return static_cast<std::uint32_t>(id);
+    };
     if (kind == "k_v") {
       double value = NAN;
       if (!(words >> value) || !std::isfinite(value)) fail("k_v: a number must follow");
@@ -152,7 +158,7 @@ Truth read_truth(std::istream& input, const std::string& name) {
       const auto time_s = find(values, "t"), id = find(values, "radar");
       const auto angles = sensor_angles(values);
       if (!time_s || !id || !angles) fail("step_change: t, radar, alpha_deg, beta_deg and gamma_deg must follow");
-      truth.step_changes.push_back({*time_s, static_cast<std::uint32_t>(std::clamp(*id, 0.0, 99.0)), *angles});
+      truth.step_changes.push_back({*time_s, radar_id(*id), *angles});
     } else if (kind == "disturbance") {
       const auto values = pairs(words);
       truth.yaw_rate_bias_radps = find(values, "yaw_rate_bias");
@@ -161,7 +167,7 @@ Truth read_truth(std::istream& input, const std::string& name) {
       const auto values = pairs(words);
       const auto scale = find(values, "range_rate_scale"), id = find(values, "radar");
       if (scale && !id) fail("real_car range_rate_scale: a number, the unit 1, and radar with an id must follow");
-      if (scale) truth.range_rate_scales[static_cast<std::uint32_t>(std::clamp(*id, 0.0, 99.0))] = *scale;
+      if (scale) truth.range_rate_scales[radar_id(*id)] = *scale;
     } else if (!kind.empty() && kind.front() != '#' && kind != "noise" && kind != "stationary" && kind != "crlb_sd" &&
                kind != "prototype") {
       fail(fmt::format(

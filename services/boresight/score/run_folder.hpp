@@ -134,7 +134,7 @@ class RunAlignment {
   Table table_;
 };
 
-/// The verdict on each radar, a line of health.jsonl. A word that is not known is NOT_AVAILABLE or INITIALISING.
+/// The verdict on each radar, a line of health.jsonl. Without the key, the data qualifier is NOT_AVAILABLE.
 struct RunVerdicts {
   double t_s = 0.0;
   std::int64_t time_ns = 0;

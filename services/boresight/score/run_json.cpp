@@ -2,6 +2,8 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,13 +29,13 @@ void flatten(const Json& value, const std::string& path, std::vector<std::pair<s
   }
 }
 
-/// The value of that name, up to `last`, which is also that of an unknown name.
+/// The value of that name, up to `last`; none if there is no such name.
 template <typename Enum>
-Enum named(const std::string& word, Enum last) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(last); ++i) {
+std::optional<Enum> named(std::string_view word, Enum last) {
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(last); ++i) {
     if (word == name_of(static_cast<Enum>(i))) return static_cast<Enum>(i);
   }
-  return last;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -68,12 +70,17 @@ bool RunHealth::next(RunVerdicts& verdicts) {
         refuse(fmt::format("radars: radar: a whole number 1 … {} is missing", kMaxRadars));
       }
       if (reason == radar.end() || !reason->is_string()) refuse("radars: extended_qualifier: a word is missing");
-      const auto qualifier = radar.find("data_qualifier"), missed = radar.find("missed_scans");
-      const std::string word = qualifier != radar.end() && qualifier->is_string() ? qualifier->get<std::string>() : "";
       const auto extended = named(reason->get<std::string>(), ExtendedQualifier::kInitialising);
+      if (!extended)
+        refuse("radars: extended_qualifier: \"" + reason->get<std::string>().substr(0, 40) + "\" is no such word");
+      const auto qualifier = radar.find("data_qualifier"), missed = radar.find("missed_scans");
+      const auto data = qualifier != radar.end() && qualifier->is_string()
+                            ? named(qualifier->get<std::string>(), DataQualifier::kNotAvailable)
+                            : DataQualifier::kNotAvailable;
+      if (!data)
+        refuse("radars: data_qualifier: \"" + qualifier->get<std::string>().substr(0, 40) + "\" is no such word");
       verdicts.radars.push_back(
-          {id->get<std::uint32_t>(), extended == ExtendedQualifier::kMisaligned,
-           named(word, DataQualifier::kNotAvailable), extended,
+          {id->get<std::uint32_t>(), *extended == ExtendedQualifier::kMisaligned, *data, *extended,
            missed != radar.end() && missed->is_number_unsigned() ? missed->get<std::uint64_t>() : 0});
     }
     return true;

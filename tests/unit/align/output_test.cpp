@@ -97,6 +97,8 @@ TEST(TruthFile, SpeedScaleIncludesTheOwnRangeRateScaleOfEachRadar) {
   std::filesystem::remove(file);
   std::istringstream without_radar("k_v 1.02\nreal_car range_rate_scale 1.0025 1\n");
   EXPECT_THROW(static_cast<void>(read_truth(without_radar, "truth.txt")), std::runtime_error);
+  std::istringstream of_no_radar("k_v 1.02\nreal_car range_rate_scale 1.0025 1 radar 99\n");
+  EXPECT_THROW(static_cast<void>(read_truth(of_no_radar, "truth.txt")), std::runtime_error);
 }
 
 TEST(TruthFile, FolderOfASimulatedDriveIsReadWithItsStepChanges) {

@@ -280,7 +280,7 @@ TEST(Score, LoadDoesNotMakeARadarMisaligned) {
   std::string health;
   for (int i = 0; i < kScans; ++i) {
     health += fmt::format(
-        R"({{"t_s":{},"time_ns":{},"radars":[{{"radar":1,"data_qualifier":"AVAILABLE","extended_qualifier":"NONE"}}]}})"
+        R"({{"t_s":{},"time_ns":{},"radars":[{{"radar":1,"data_qualifier":"AVAILABLE","extended_qualifier":"NORMAL"}}]}})"
         "\n",
         made::kPeriod_s * i, made::kStart_ns + static_cast<std::int64_t>(i) * 100'000'000);
   }
@@ -368,6 +368,11 @@ TEST(RunHealth, DamagedLineIsNamed) {
   EXPECT_THAT(error(R"({"t_s":1,"time_ns":1,"radars":[{"radar":99,"extended_qualifier":"NORMAL"}]})"),
               HasSubstr("1 … 16"));
   EXPECT_THAT(error(R"({"t_s":1,"time_ns":1,"radars":[{"radar":1}]})"), HasSubstr("extended_qualifier"));
+  EXPECT_THAT(error(R"({"t_s":1,"time_ns":1,"radars":[{"radar":1,"extended_qualifier":"TWISTED"}]})"),
+              HasSubstr("\"TWISTED\" is no such word"));
+  EXPECT_THAT(
+      error(R"({"t_s":1,"time_ns":1,"radars":[{"radar":1,"extended_qualifier":"NORMAL","data_qualifier":"MAYBE"}]})"),
+      HasSubstr("\"MAYBE\" is no such word"));
 }
 
 TEST(RunSummary, NumbersOfTheTimingAreTakenWithTheirPaths) {
