@@ -21,11 +21,12 @@ enum class MethodName : std::uint8_t {
   kTls,
   kNelderMead,
   kAzimuth1d,
-  kBoresightPlanar
+  kBoresightPlanar,
+  kWindows
 };
 
 /// Their names in the configuration and on the command line.
-inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodNames{{
+inline constexpr std::array<std::pair<std::string_view, MethodName>, 8> kMethodNames{{
     {"boresight", MethodName::kBoresight},
     {"steepest_descent", MethodName::kSteepestDescent},
     {"nls", MethodName::kNls},
@@ -34,6 +35,7 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodN
     {"azimuth_1d", MethodName::kAzimuth1d},
     // Boresight's filter with the planar roll model of Burza 2025; it only reproduces the published tables.
     {"boresight_planar", MethodName::kBoresightPlanar},
+    {"windows", MethodName::kWindows},
 }};
 
 struct Config {
@@ -47,11 +49,11 @@ struct Config {
 
   /// Std of the mounting error before any measurement, as the chosen method assumes it.
   [[nodiscard]] double prior_angle_std_rad() const {
-    return method == MethodName::kBoresight ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
+    return method == MethodName::kBoresight || method == MethodName::kWindows ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
   }
   /// Scans at lower speed are not used.
   [[nodiscard]] double min_speed_mps() const {
-    return method == MethodName::kBoresight ? filter.min_speed_mps : published.min_speed_mps;
+    return method == MethodName::kBoresight || method == MethodName::kWindows ? filter.min_speed_mps : published.min_speed_mps;
   }
 };
 

@@ -5,6 +5,7 @@
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/planar/planar_filter.hpp"
 #include "services/alignment_estimator/core/published/published.hpp"
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 
 namespace boresight::alignment {
 
@@ -14,6 +15,8 @@ std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& 
   switch (config.method) {
     case MethodName::kBoresight:
       return std::make_unique<RobustFilter>(vehicle, config.filter);
+    case MethodName::kWindows:
+      return std::make_unique<WindowedFilter>(vehicle, config.filter);
     case MethodName::kSteepestDescent:
       return make(Kind::kSteepestDescent);
     case MethodName::kNls:

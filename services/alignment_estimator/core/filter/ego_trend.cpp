@@ -33,7 +33,7 @@ ScanMotion3d EgoTrend::at(std::int64_t time_ns, const EgoSample& ego) {
     fit();
   }
   return {ego.speed_mps + acceleration_mps2_ * held_s, ego.yaw_rate_radps + yaw_acceleration_radps2_ * held_s,
-          acceleration_mps2_};
+          acceleration_mps2_, yaw_acceleration_radps2_};
 }
 
 void EgoTrend::fit() {

@@ -16,6 +16,7 @@ struct ScanMotion3d {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
   double acceleration_mps2 = 0.0;
+  double yaw_acceleration_radps2 = 0.0;
 };
 
 /// Velocity g = (1 + λ)·Rᵀ·v of the sensor in its own frame, m/s, and its gradient.

@@ -33,6 +33,7 @@ void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const 
       if (ca > edge) slope = sa / ca;
     }
     azimuth_std = std::min(azimuth_std, 0.5);
+    out.azimuth_rad[n] = azimuth;
     out.azimuth_variance[n] = azimuth_std * azimuth_std;
     out.azimuth_std_slope[n] = slope;
     out.range_rate_variance[n] = rate_std * rate_std;

@@ -16,6 +16,7 @@ struct Sightings {
   double ambiguity_mps = 0.0;
   bool has_elevation = false;
   std::array<double, kMaxDetections> x, y, z;           ///< line of sight
+  std::array<double, kMaxDetections> azimuth_rad;       //
   std::array<double, kMaxDetections> range_rate_mps;    //
   std::array<double, kMaxDetections> azimuth_variance;  ///< rad²
   std::array<double, kMaxDetections> elevation_variance;

@@ -1,0 +1,112 @@
+#include "services/alignment_estimator/core/windows/curve_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::alignment::windows {
+
+namespace {
+
+/// E[w z²]/E[w] of a Gaussian residual z under Tukey's weight w.
+double weighted_square_of(double gate) {
+  const double b = 1.0 / (gate * gate);
+  return (1.0 - 6.0 * b + 15.0 * b * b) / (1.0 - 2.0 * b + 3.0 * b * b);
+}
+
+constexpr double kWideGate = 3.0;
+
+}  // namespace
+
+CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& curve, const Knots& knots,
+                   const CurveJudgement& judgement) {
+  CurveSums sums;
+  ScanSums& common = sums.common;
+  const double inverse_gate_square = 1.0 / (judgement.gate * judgement.gate);
+  const double mean_square = weighted_square_of(judgement.gate);
+  const double ambiguity = run.ambiguity_mps, inverse_ambiguity = ambiguity > 0.0 ? 1.0 / ambiguity : 0.0;
+  const double wide = judgement.wide_std_mps * judgement.wide_std_mps;
+  const double inverse_step = 1.0 / knots.step_rad;
+  sums.detections = static_cast<double>(run.count);
+  for (std::size_t i = 0; i < run.count; ++i) {
+    const double place = (run.azimuth_rad[i] - knots.first_rad) * inverse_step;
+    const int knot = std::clamp(static_cast<int>(place), 0, kKnots - 2);
+    const double h1 = std::clamp(place - knot, 0.0, 1.0), h0 = 1.0 - h1;
+    const double slope_of_hat = place > 0.0 && place < kKnots - 1 ? inverse_step : 0.0;
+    const double error = curve(knot) * h0 + curve(knot + 1) * h1;
+    // Turned by −error about the sensor's z axis, to second order.
+    const double ce_ = 1.0 - 0.5 * error * error;
+    const Eigen::Vector3d u(ce_ * run.x[i] + error * run.y[i], ce_ * run.y[i] - error * run.x[i], run.z[i]);
+    const double along = u.dot(g);
+    double e = run.range_rate_mps[i] + along;
+    if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
+    const double ce = std::sqrt(u.x() * u.x() + u.y() * u.y());
+    const Eigen::Vector3d ea(-u.y(), u.x(), 0.0), eb(-u.x() * u.z() / ce, -u.y() * u.z() / ce, ce);
+    const double da = ea.dot(g), db = eb.dot(g);
+    const double va = judgement.angle_factor * run.azimuth_variance[i];
+    const double ve = judgement.angle_factor * run.elevation_variance[i];
+    const double by_rate =
+        judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
+    const double by_angle = va * da * da + ve * db * db, s2 = by_rate + by_angle;
+    const double gate_variance =
+        s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
+    if (wide > 0.0) {
+      const double t = e * e / ((gate_variance + wide) * kWideGate * kWideGate);
+      if (t < 1.0) {
+        const double weight = (1.0 - t) * (1.0 - t) / s2;
+        sums.wide_score -= weight * e * u;
+        sums.wide_information.noalias() += weight * u * u.transpose();
+      }
+    }
+    const double z2 = e * e / gate_variance, t = z2 * inverse_gate_square;
+    if (t >= 1.0) {
+      if (t < 9.0) common.near += 1.0;
+      continue;
+    }
+    const double q = 1.0 - t, w = q * q, curvature = q * (1.0 - 5.0 * t);
+    common.inliers += 1.0;
+    common.weights += w;
+    common.curvature += curvature;
+    common.squares += w * w * z2;
+    if (w > 0.2) common.stationary += 1.0;
+    const double inverse = 1.0 / s2, weight = w * inverse, slope = curvature * inverse;
+    // Second derivatives of the range rate, and of its variance: see scan_sums.cpp for the terms of errors in variables.
+    const double daa = -along + u.z() * g.z(), dab = -(g.y() * u.x() - g.x() * u.y()) * u.z() / ce;
+    const double s2a = 2.0 * (da * daa * va + da * da * va * run.azimuth_std_slope[i] + db * dab * ve);
+    const double s2b = 2.0 * (da * dab * va - db * along * ve);
+    const double ca = da * va, cb = db * ve;
+    const double by_variance = (1.0 - 12.0 * t + 15.0 * t * t) * (s2a * ca + s2b * cb);
+    const double by_skew =
+        6.0 * inverse_gate_square * (1.0 - 5.0 * t) * (daa * ca * ca + 2.0 * dab * ca * cb - along * cb * cb);
+    const double pull = -weight * e - inverse / gate_variance * (by_variance + by_skew);
+    const double ka = slope * va * da, kb = slope * ve * db;
+    sums.score += pull * u + ka * ea + kb * eb;
+    const double wa = weight * va, we = weight * ve;
+    sums.information.noalias() += weight * u * u.transpose() - wa * ea * ea.transpose() - we * eb * eb.transpose();
+    // The knots: ∂e/∂c = −h·da. Its derivative to the azimuth has the slope of the hat function, so that a direction
+    // that the data cannot see (a scale of the range rates against a stretched curve) gets no push.
+    for (int side = 0; side < 2; ++side) {
+      const int k = knot + side;
+      const double h = side == 0 ? h0 : h1, hat = side == 0 ? -slope_of_hat : slope_of_hat;
+      const double column = -da * h, by_azimuth = -(daa * h + da * hat), by_elevation = -dab * h;
+      sums.curve_score(k) += pull * column + ka * by_azimuth + kb * by_elevation;
+      sums.curve_by_velocity.row(k) +=
+          (weight * column * u - wa * by_azimuth * ea - we * by_elevation * eb).transpose();
+      sums.curve_diagonal(k) +=
+          weight * column * column - wa * by_azimuth * by_azimuth - we * by_elevation * by_elevation;
+      if (side == 1) {
+        const double c0 = -da * h0, a0 = -(daa * h0 - da * slope_of_hat), b0 = -dab * h0;
+        sums.curve_next(knot) += weight * c0 * column - wa * a0 * by_azimuth - we * b0 * by_elevation;
+      }
+    }
+    const double share = 1.0 / gate_variance, of_rate = by_rate * share, of_angle = by_angle * share;
+    const double excess = w * (z2 - mean_square);
+    common.noise_score_rate += excess * of_rate;
+    common.noise_score_angle += excess * of_angle;
+    common.noise_rate_rate += w * of_rate * of_rate;
+    common.noise_rate_angle += w * of_rate * of_angle;
+    common.noise_angle_angle += w * of_angle * of_angle;
+  }
+  return sums;
+}
+
+}  // namespace boresight::alignment::windows

@@ -1,0 +1,78 @@
+#include "services/alignment_estimator/core/windows/segment.hpp"
+
+namespace boresight::alignment::windows {
+
+namespace {
+
+/// Segments of a level before the two oldest of them become one.
+constexpr int kOfLevel = 8;
+
+}  // namespace
+
+void add_to(Share& sum, const Point& point, const LocalVector& score, const LocalMatrix& information, double seconds) {
+  if (sum.seconds <= 0.0) {
+    sum.point = point;
+    sum.score = score;
+    sum.information = information;
+  } else {
+    // s·d at `point` is s + L·(point − sum.point) at the other.
+    sum.score.noalias() += information * difference(sum.point, point);
+    sum.score += score;
+    sum.information += information;
+  }
+  sum.seconds += seconds;
+}
+
+void Segments::begin(int load) {
+  if (size_ == kMaxSegments) merge();
+  segments_[static_cast<std::size_t>(size_)] = Segment{0.0, 0, load};
+  for (std::size_t r = 0; r < radars_; ++r) share(size_, r) = Share();
+  ++size_;
+}
+
+void Segments::add(std::size_t radar, const Block& block) {
+  Share& latest = share(size_ - 1, radar);
+  add_to(latest, block.point, block.score, block.information, block.seconds);
+}
+
+void Segments::merge() {
+  // The lowest level with enough segments; else the two oldest of all.
+  for (int level = 0; level < 16; ++level) {
+    int first = -1, count = 0;
+    for (int i = 0; i + 1 < size_; ++i) {
+      if (segment(i).level != level) continue;
+      if (first < 0) first = i;
+      ++count;
+    }
+    if (count > kOfLevel && segment(first + 1).level == level && segment(first + 1).load == segment(first).load) {
+      join(first);
+      return;
+    }
+  }
+  join(0);
+}
+
+void Segments::join(int first) {
+  Segment& into = segment(first);
+  into.seconds += segment(first + 1).seconds;
+  into.level = std::max(into.level, segment(first + 1).level) + 1;
+  into.load = segment(first + 1).load;
+  for (std::size_t r = 0; r < radars_; ++r) {
+    Share& a = share(first, r);
+    const Share& b = share(first + 1, r);
+    // What an earlier mounting said about its rotation is lost with it.
+    if (b.seconds <= 0.0) continue;
+    if (a.is_earlier != b.is_earlier) {
+      a = b;
+    } else {
+      add_to(a, b.point, b.score, b.information, b.seconds);
+    }
+  }
+  for (int i = first + 1; i + 1 < size_; ++i) {
+    segment(i) = segment(i + 1);
+    for (std::size_t r = 0; r < radars_; ++r) share(i, r) = share(i + 1, r);
+  }
+  --size_;
+}
+
+}  // namespace boresight::alignment::windows

@@ -1,0 +1,60 @@
+// Segments of driving time: what each radar saw in some seconds, kept as information about its parameters.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "services/alignment_estimator/core/windows/block.hpp"
+#include "services/alignment_estimator/core/windows/columns.hpp"
+
+namespace boresight::alignment::windows {
+
+/// What one radar saw in one segment; see Block.
+struct Share {
+  Point point;
+  LocalVector score = LocalVector::Zero();
+  LocalMatrix information = LocalMatrix::Zero();
+  double seconds = 0.0;      ///< 0: nothing
+  bool is_earlier = false;   ///< its rotation is the one before the radar's latest sudden misalignment
+  double weight = 1.0;       ///< learnt: a segment that contradicts the others counts less
+};
+
+struct Segment {
+  double seconds = 0.0;
+  int level = 0;  ///< of 2^level segments of the shortest length
+  int load = 0;   ///< number of load steps before it
+};
+
+/// The segments of a drive, oldest first. When there is no room for another, two neighbours of one level become one of
+/// the next level: the memory is bounded, and old ones are coarser. No allocation after construction.
+class Segments {
+ public:
+  explicit Segments(std::size_t radars) : shares_(kMaxSegments * radars), radars_(radars) {}
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] Segment& segment(int i) { return segments_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const Segment& segment(int i) const { return segments_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] Share& share(int i, std::size_t radar) { return shares_[static_cast<std::size_t>(i) * radars_ + radar]; }
+  [[nodiscard]] const Share& share(int i, std::size_t radar) const {
+    return shares_[static_cast<std::size_t>(i) * radars_ + radar];
+  }
+  void clear() { size_ = 0; }
+  /// Begins a segment after the latest one.
+  void begin(int load);
+  /// Adds a block to the latest segment.
+  void add(std::size_t radar, const Block& block);
+
+ private:
+  void merge();
+  void join(int first);
+  std::array<Segment, kMaxSegments> segments_;
+  std::vector<Share> shares_;
+  std::size_t radars_;
+  int size_ = 0;
+};
+
+/// Adds `more` to `sum`: its score is moved to the other's point.
+void add_to(Share& sum, const Point& point, const LocalVector& score, const LocalMatrix& information, double seconds);
+
+}  // namespace boresight::alignment::windows

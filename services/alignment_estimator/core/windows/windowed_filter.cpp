@@ -1,0 +1,251 @@
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "services/alignment_estimator/core/small_maths.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+using namespace windows;
+
+constexpr std::size_t kMinSightings = 4;
+constexpr double kMaxGap_s = 1.0;
+constexpr double kInlierMemory_s = 10.0, kNoiseMemory_s = 60.0;
+constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
+constexpr double kBlock_s = 1.0, kSegment_s = 10.0, kSolve_s = 5.0;
+/// Largest standard deviations of scale and rotation that widen the gate of a running radar.
+constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
+
+}  // namespace
+
+WindowedFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filter)
+    : config(radar),
+      nominal(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0)),
+      unknown(radar, filter.prior_rotation_std_rad),
+      start(filter) {
+  const double half = std::max(std::abs(radar.field_of_view.azimuth_min_rad), radar.field_of_view.azimuth_max_rad);
+  knots.first_rad = -half;
+  knots.step_rad = 2.0 * half / (kKnots - 1);
+}
+
+WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const Priors& priors)
+    : config_(config), priors_(priors), solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
+      segments_(std::min(vehicle.radars.size(), kMaxRadars)) {
+  const std::size_t count = solver_.size();
+  radars_.reserve(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    radars_.emplace_back(vehicle.radars[r], config);
+    solver_.set_prior(r, radars_[r].nominal, true);
+    solver_.set_curve_prior(r, radars_[r].knots.step_rad);
+  }
+}
+
+bool WindowedFilter::usable(const EgoSample& ego) const {
+  return ego.valid && !ego.stale && std::abs(ego.speed_mps) >= config_.min_speed_mps &&
+         std::abs(ego.speed_mps) < kMaxSpeed_mps && std::abs(ego.yaw_rate_radps) < kMaxYawRate_radps;
+}
+
+Motion WindowedFilter::motion_of(const Point& point, const ScanMotion3d& motion) const {
+  return {motion.speed_mps + point.stamp_s * motion.acceleration_mps2,
+          motion.yaw_rate_radps + point.stamp_s * motion.yaw_acceleration_radps2, motion.acceleration_mps2,
+          motion.yaw_acceleration_radps2};
+}
+
+void WindowedFilter::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {
+  if (index >= radars_.size()) return;
+  Radar& radar = radars_[index];
+  const double since_s = radar.last_time_ns == 0 ? 0.0 : seconds(scan.time_ns - radar.last_time_ns);
+  const double elapsed_s = since_s > 0.0 && since_s < kMaxGap_s ? since_s : radar.config.cycle_time_s;
+  radar.last_time_ns = scan.time_ns;
+  if (!usable(ego)) {
+    radar.state = std::max(radar.state, AlignmentState::kWaiting);
+    return;
+  }
+  take_sightings(scan, radar.config, radar.unknown, config_.azimuth_std_edge, radar.noise.angle_variance_factor(),
+                 sightings_);
+  if (sightings_.count < kMinSightings) {
+    radar.state = std::max(radar.state, AlignmentState::kWaiting);
+    return;
+  }
+  const ScanMotion3d motion = trend_.at(scan.time_ns, ego);
+  if (has_block_) {
+    const double block_s = seconds(scan.time_ns - block_start_ns_);
+    if (block_s >= kBlock_s || block_s < -0.5) close_block();
+  }
+  if (!has_block_) {
+    block_start_ns_ = scan.time_ns;
+    has_block_ = true;
+  }
+  if (!radar.running) {
+    search(index, motion, elapsed_s);
+    if (!radar.running) {
+      radar.state = std::max(radar.state, AlignmentState::kWaiting);
+      return;
+    }
+  } else {
+    update(index, motion, ego, elapsed_s);
+  }
+  radar.seconds_of_drive += elapsed_s;
+  const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
+  const bool sure = std::sqrt(yaw_variance) < config_.converged_yaw_std_rad &&
+                    radar.seconds_of_drive >= config_.min_seconds_to_converge;
+  radar.state = sure ? AlignmentState::kConverged : AlignmentState::kConverging;
+}
+
+void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, double elapsed_s) {
+  Radar& radar = radars_[index];
+  StartPrior prior;
+  const SharedState& shared = solver_.shared();
+  prior.speed_scale = shared.speed_scale;
+  prior.speed_scale_variance = square(priors_.speed_scale_std);
+  prior.sensor_to_vehicle = solver_.radar(index).state.sensor_to_vehicle;
+  prior.rotation_variance = square(priors_.rotation_std_rad);
+  prior.log_angle_noise_std = config_.prior_angle_noise_log_std;
+  const auto verdict = radar.start.add(sightings_, radar.config.mounting_pose.position_m, motion, elapsed_s, prior,
+                                       radar.noise.angle_variance_factor());
+  if (verdict != GraduatedStart::Verdict::kFound) return;
+  const StartResult& found = radar.start.result();
+  bool first = true;
+  for (const Radar& other : radars_) first = first && !other.running;
+  if (!sightings_.has_elevation) {
+    solver_.set_prior(index, radar.nominal, false);
+    solver_.set_curve_prior(index, radar.knots.step_rad);
+  }
+  solver_.radar(index).state.sensor_to_vehicle = found.sensor_to_vehicle;
+  if (first) solver_.shared().speed_scale = found.speed_scale;
+  radar.running = true;
+  radar.inlier_ratio = found.inlier_ratio;
+  begin_block(index);
+}
+
+void WindowedFilter::begin_block(std::size_t index) {
+  Radar& radar = radars_[index];
+  radar.block.clear(solver_.point(index, 0));
+  LocalMatrix p = solver_.local_covariance(index);
+  const RadarSolution& solution = solver_.radar(index);
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    p(kFluctuating[k], kFluctuating[k]) += solution.fluctuation.variance[k] + solver_.common().variance[k];
+  }
+  const bool young = driven_s_ < kSolve_s;
+  Eigen::Matrix<double, local::kCount, 1> cap = Eigen::Matrix<double, local::kCount, 1>::Ones();
+  const auto limit = [&](int column, double std) {
+    cap(column) = std::min(1.0, std / std::sqrt(p(column, column) + 1e-20));
+  };
+  limit(local::kSpeedScale, young ? 0.02 : kGateScale);
+  limit(local::kRateScale, kGateScale);
+  limit(local::kRotation + 1, 2.0 * kGateRotation_rad);
+  limit(local::kRotation + 2, kGateRotation_rad);
+  radar.gate_covariance = (cap.asDiagonal() * p * cap.asDiagonal()).topLeftCorner<local::kCurve, local::kCurve>();
+  radar.curve_variance = p.diagonal().tail<kKnots>().mean();
+}
+
+void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s) {
+  Radar& radar = radars_[index];
+  const ScanModel model =
+      model_scan(radar.block.point, radar.config.mounting_pose.position_m, motion_of(radar.block.point, motion));
+  const auto std_of = [](double stated, double fallback) { return stated > 0.0 ? stated : fallback; };
+  const MotionVariances variances{square(std_of(ego.speed_std_mps, config_.speed_std_mps)),
+                                  square(std_of(ego.yaw_rate_std_radps, config_.yaw_rate_std_radps)),
+                                  sightings_.has_elevation ? square(0.1 * M_PI / 180.0) : 0.0,
+                                  square(0.05 * M_PI / 180.0)};
+  CurveJudgement judgement;
+  judgement.gate = config_.outlier_gate_sigma;
+  judgement.rate_factor = radar.noise.rate_variance_factor();
+  judgement.angle_factor = radar.noise.angle_variance_factor();
+  judgement.velocity_variance = model.by_parameter.transpose() * radar.gate_covariance * model.by_parameter;
+  for (int m = 0; m < kMotionErrors; ++m) {
+    judgement.velocity_variance +=
+        variances[static_cast<std::size_t>(m)] * model.by_motion.row(m).transpose() * model.by_motion.row(m);
+  }
+  judgement.curve_variance = radar.curve_variance;
+  judgement.wide_std_mps = 0.012 * std::abs(ego.speed_mps);
+  const CurveSums sums =
+      windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
+  radar.efficiency.add(sums.common, elapsed_s);
+  windows::add_scan(radar.block, model, sums, variances,
+                    {radar.efficiency.of_information(), radar.efficiency.of_score()});
+  radar.block.seconds += elapsed_s;
+  radar.block.fastest_turn_radps = std::max(radar.block.fastest_turn_radps, std::abs(ego.yaw_rate_radps));
+  radar.noise.add(sums.common, std::exp(-elapsed_s / kNoiseMemory_s));
+  const double share = sums.common.stationary / sums.detections;
+  radar.inlier_ratio += (share - radar.inlier_ratio) * (1.0 - std::exp(-elapsed_s / kInlierMemory_s));
+  ++radar.scans_used;
+  radar.detections_used += static_cast<std::uint64_t>(sums.common.inliers);
+}
+
+void WindowedFilter::close_block() {
+  has_block_ = false;
+  bool any = false;
+  for (const Radar& radar : radars_) any = any || (radar.running && radar.block.scans > 0);
+  if (!any) return;
+  if (segments_.size() == 0 || segments_.segment(segments_.size() - 1).seconds >= kSegment_s - 0.5 * kBlock_s) {
+    segments_.begin(0);
+  }
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (radars_[r].running && radars_[r].block.scans > 0) segments_.add(r, radars_[r].block);
+  }
+  segments_.segment(segments_.size() - 1).seconds += kBlock_s;
+  driven_s_ += kBlock_s;
+  if (driven_s_ - solved_s_ >= kSolve_s || driven_s_ <= kSolve_s) {
+    solver_.solve(segments_);
+    solved_s_ = driven_s_;
+  }
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (radars_[r].running) begin_block(r);
+  }
+}
+
+RadarEstimate WindowedFilter::estimate(std::size_t index) const {
+  RadarEstimate out;
+  if (index >= radars_.size()) return out;
+  const Radar& radar = radars_[index];
+  const RadarSolution& solution = solver_.radar(index);
+  out.state = radar.state;
+  out.speed_scale = solver_.shared().speed_scale;
+  out.sensor_to_vehicle = solution.state.sensor_to_vehicle;
+  out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
+  out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
+  out.covariance.block<3, 1>(1, 0) = solution.with_shared.block<3, 1>(own::kRotation, shared::kSpeedScale);
+  out.covariance.block<1, 3>(0, 1) = out.covariance.block<3, 1>(1, 0).transpose();
+  const auto learnt = [](double variance, double prior_std) { return variance < square(prior_std / 3.0); };
+  if (radar.running) {
+    if (learnt(out.covariance(0, 0), priors_.speed_scale_std)) out.observable |= alignment_axis::kSpeedScale;
+    if (learnt(out.covariance(1, 1), priors_.rotation_std_rad)) out.observable |= alignment_axis::kVehicleRoll;
+    if (learnt(out.covariance(2, 2), priors_.rotation_std_rad)) out.observable |= alignment_axis::kVehiclePitch;
+    if (learnt(out.covariance(3, 3), priors_.rotation_std_rad)) out.observable |= alignment_axis::kVehicleYaw;
+  }
+  out.yaw_rate_bias_radps = solver_.shared().yaw_rate_bias_radps;
+  out.yaw_rate_bias_std_radps = std::sqrt(solver_.shared_covariance()(shared::kYawRateBias, shared::kYawRateBias));
+  out.slip_coefficient_radps2pm = solver_.shared().slip_radps2pm;
+  out.slip_coefficient_std_radps2pm = std::sqrt(solver_.shared_covariance()(shared::kSlip, shared::kSlip));
+  out.angle_noise_scale = std::sqrt(radar.noise.angle_variance_factor());
+  out.inlier_ratio = std::max(0.0, radar.inlier_ratio);
+  out.scans_used = radar.scans_used;
+  out.detections_used = radar.detections_used;
+  out.seconds_of_drive = radar.seconds_of_drive;
+  return out;
+}
+
+void WindowedFilter::predict(std::size_t index, const ScanDetections& scan, const EgoSample& ego,
+                             std::span<double> out) const {
+  const std::size_t count = std::min(scan.count, out.size());
+  std::fill_n(out.begin(), count, 0.0);
+  if (index >= radars_.size()) return;
+  const Radar& radar = radars_[index];
+  const Point point = solver_.point(index, 0);
+  const ScanModel model = model_scan(point, radar.config.mounting_pose.position_m,
+                                     {ego.speed_mps, ego.yaw_rate_radps, 0.0, 0.0});
+  for (std::size_t i = 0; i < count; ++i) {
+    const double mean_cosine = scan.has_elevation ? 1.0 : 1.0 - radar.unknown.at(scan.range_m[i]).lowering;
+    out[i] = -mean_cosine * geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]).dot(model.g);
+  }
+}
+
+}  // namespace boresight::alignment

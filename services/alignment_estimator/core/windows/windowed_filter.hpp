@@ -1,0 +1,70 @@
+// Boresight's own alignment estimator: what each radar saw in some seconds is kept as information about the parameters
+// of its model, and all of it is solved again whenever a new part is complete (docs/algorithms/alignment.md).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/alignment_estimator/core/filter/efficiency.hpp"
+#include "services/alignment_estimator/core/filter/ego_trend.hpp"
+#include "services/alignment_estimator/core/filter/graduated_start.hpp"
+#include "services/alignment_estimator/core/filter/noise_scale.hpp"
+#include "services/alignment_estimator/core/method.hpp"
+#include "services/alignment_estimator/core/windows/solver.hpp"
+#include "services/common/vehicle/vehicle.hpp"
+
+namespace boresight::alignment {
+
+/// Large: never on the stack.
+class WindowedFilter : public Method {
+ public:
+  WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const windows::Priors& priors = {});
+
+  void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) override;
+  [[nodiscard]] RadarEstimate estimate(std::size_t radar) const override;
+  void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego,
+               std::span<double> out) const override;
+
+  [[nodiscard]] const windows::Solver& solver() const { return solver_; }
+
+ private:
+  struct Radar {
+    RadarConfig config;
+    Eigen::Matrix3d nominal;
+    UnknownElevation unknown;
+    GraduatedStart start;
+    NoiseScale noise;
+    Efficiency efficiency;
+    windows::Block block;
+    windows::Knots knots;
+    Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve> gate_covariance;
+    double curve_variance = 0.0;
+    bool running = false;
+    AlignmentState state = AlignmentState::kNoData;
+    std::int64_t last_time_ns = 0;
+    double seconds_of_drive = 0.0;
+    double inlier_ratio = -1.0;
+    std::uint64_t scans_used = 0, detections_used = 0;
+    Radar(const RadarConfig& radar, const FilterConfig& filter);
+  };
+  [[nodiscard]] bool usable(const EgoSample& ego) const;
+  [[nodiscard]] windows::Motion motion_of(const windows::Point& point, const ScanMotion3d& motion) const;
+  void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
+  void update(std::size_t radar, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s);
+  void close_block();
+  void begin_block(std::size_t radar);
+
+  FilterConfig config_;
+  windows::Priors priors_;
+  std::vector<Radar> radars_;
+  windows::Solver solver_;
+  windows::Segments segments_;
+  EgoTrend trend_;
+  Sightings sightings_;
+  std::int64_t block_start_ns_ = 0;
+  bool has_block_ = false;
+  double driven_s_ = 0.0, solved_s_ = 0.0;
+};
+
+}  // namespace boresight::alignment
