@@ -38,6 +38,7 @@ void take_sightings(const ScanDetections& scan, const RadarConfig& radar, const 
     out.azimuth_std_slope[n] = slope;
     out.range_rate_variance[n] = rate_std * rate_std;
     out.range_rate_mps[n] = rate;
+    out.range_m[n] = scan.range_m[i];
     // The mean of a noisy angle's cosine is shorter by exp(−σ²/2).
     const double stretch_azimuth = 1.0 + 0.5 * angle_scale * out.azimuth_variance[n];
     if (scan.has_elevation) {

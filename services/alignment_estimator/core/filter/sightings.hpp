@@ -18,6 +18,7 @@ struct Sightings {
   std::array<double, kMaxDetections> x, y, z;           ///< line of sight
   std::array<double, kMaxDetections> azimuth_rad;       //
   std::array<double, kMaxDetections> range_rate_mps;    //
+  std::array<double, kMaxDetections> range_m;           //
   std::array<double, kMaxDetections> azimuth_variance;  ///< rad²
   std::array<double, kMaxDetections> elevation_variance;
   std::array<double, kMaxDetections> range_rate_variance;

@@ -13,21 +13,33 @@ void add_scan(Block& block, const ScanModel& model, const CurveSums& sums, const
   l.topLeftCorner<local::kCurve, local::kCurve>().noalias() = weighted * gradient.transpose();
   const Eigen::Matrix<double, local::kCurve, kKnots> cross =
       factors.information * (gradient * sums.curve_by_velocity.transpose());
-  l.topRightCorner<local::kCurve, kKnots>() = cross;
-  l.bottomLeftCorner<kKnots, local::kCurve>() = cross.transpose();
+  l.block<local::kCurve, kKnots>(0, local::kCurve) = cross;
+  l.block<kKnots, local::kCurve>(local::kCurve, 0) = cross.transpose();
   for (int k = 0; k < kKnots; ++k) {
     l(local::kCurve + k, local::kCurve + k) = factors.information * sums.curve_diagonal(k);
     if (k + 1 == kKnots) continue;
     const double next = factors.information * sums.curve_next(k);
     l(local::kCurve + k, local::kCurve + k + 1) = l(local::kCurve + k + 1, local::kCurve + k) = next;
   }
+  const LocalVector mirror = [&] {
+    LocalVector column;
+    column.head<local::kCurve>().noalias() = gradient * sums.mirror_by_velocity;
+    column.segment<kKnots>(local::kCurve) = sums.mirror_by_curve;
+    column(local::kMirror) = sums.mirror_diagonal;
+    return LocalVector(factors.information * column);
+  }();
+  l.col(local::kMirror) = mirror;
+  l.row(local::kMirror) = mirror.transpose();
   s.head<local::kCurve>().noalias() = gradient * score;
-  s.tail<kKnots>() = factors.score * sums.curve_score;
+  s.segment<kKnots>(local::kCurve) = factors.score * sums.curve_score;
+  s(local::kMirror) = factors.score * sums.mirror_score;
   // The errors of the motion, one after the other: they are independent, and known to their variances.
   Eigen::Matrix<double, local::kCount, kMotionErrors> by_motion;
   by_motion.topRows<local::kCurve>().noalias() = weighted * model.by_motion.transpose();
-  by_motion.bottomRows<kKnots>().noalias() =
+  by_motion.middleRows<kKnots>(local::kCurve).noalias() =
       factors.information * (sums.curve_by_velocity * model.by_motion.transpose());
+  by_motion.row(local::kMirror).noalias() =
+      factors.information * (model.by_motion * sums.mirror_by_velocity).transpose();
   Eigen::Matrix<double, kMotionErrors, kMotionErrors> own = model.by_motion * information * model.by_motion.transpose();
   Eigen::Matrix<double, kMotionErrors, 1> own_score = model.by_motion * score;
   for (int m = 0; m < kMotionErrors; ++m) {

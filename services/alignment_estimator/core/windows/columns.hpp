@@ -24,7 +24,8 @@ enum : int {
   kPosition,      ///< two: error of the position in the vehicle file, x and y (m)
   kPitchPerAcceleration = kPosition + 2,  ///< rad per m/s², positive with the nose up
   kCurve,         ///< kKnots: error of the azimuth, measured − true (rad)
-  kCount = kCurve + kKnots
+  kMirror = kCurve + kKnots,  ///< share of the detections below the road that are images of reflectors above it
+  kCount
 };
 }  // namespace local
 using LocalVector = Eigen::Matrix<double, local::kCount, 1>;
@@ -38,7 +39,8 @@ enum : int {
   kStamp = kRotation + 3,
   kPosition,
   kCurve = kPosition + 2,
-  kEarlierRotation = kCurve + kKnots,  ///< before its latest sudden misalignment
+  kMirror = kCurve + kKnots,
+  kEarlierRotation,  ///< before its latest sudden misalignment
   kCount = kEarlierRotation + 3
 };
 }  // namespace own

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace boresight::alignment::windows {
 
@@ -14,6 +15,22 @@ double weighted_square_of(double gate) {
 }
 
 constexpr double kWideGate = 3.0;
+static const double kMirrorV = std::getenv("MV") ? std::atof(std::getenv("MV")) : 0.25;
+
+/// What the range rate of a detection below the road would gain if the detection were the image of a reflector above it.
+struct Image {
+  double gain_mps = 0.0, by_elevation = 0.0;
+};
+
+Image image_in_road(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double range_m, const CurveJudgement& judgement) {
+  const double z = judgement.up.dot(u);
+  if (!(judgement.height_m > 0.0) || judgement.height_m + range_m * z >= 0.0) return {};
+  const double image = -z - 2.0 * judgement.height_m / range_m;
+  const double across = std::sqrt(std::max(1.0 - z * z, 1e-6)), across_image = std::sqrt(std::max(1.0 - image * image, 1e-6));
+  const double upward = judgement.up.dot(g), forward = (u.dot(g) - z * upward) / across;
+  return {-(across_image - across) * forward - (image - z) * upward,
+          -(image * across / across_image + z) * forward + 2.0 * across * upward};
+}
 
 }  // namespace
 
@@ -37,7 +54,8 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double ce_ = 1.0 - 0.5 * error * error;
     const Eigen::Vector3d u(ce_ * run.x[i] + error * run.y[i], ce_ * run.y[i] - error * run.x[i], run.z[i]);
     const double along = u.dot(g);
-    double e = run.range_rate_mps[i] + along;
+    const Image image = run.has_elevation ? image_in_road(u, g, run.range_m[i], judgement) : Image();
+    double e = run.range_rate_mps[i] + along - judgement.mirror_share * image.gain_mps;
     if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
     const double ce = std::sqrt(u.x() * u.x() + u.y() * u.y());
     const Eigen::Vector3d ea(-u.y(), u.x(), 0.0), eb(-u.x() * u.z() / ce, -u.y() * u.z() / ce, ce);
@@ -46,7 +64,7 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double ve = judgement.angle_factor * run.elevation_variance[i];
     const double by_rate =
         judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
-    const double by_angle = va * da * da + ve * db * db, s2 = by_rate + by_angle;
+    const double by_angle = va * da * da + ve * db * db, s2 = by_rate + by_angle + kMirrorV * image.gain_mps * image.gain_mps;
     const double gate_variance =
         s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
     if (wide > 0.0) {
@@ -84,6 +102,13 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     sums.information.noalias() += weight * u * u.transpose() - wa * ea * ea.transpose() - we * eb * eb.transpose();
     // The knots: ∂e/∂c = −h·da. Its derivative to the azimuth has the slope of the hat function, so that a direction
     // that the data cannot see (a scale of the range rates against a stretched curve) gets no push.
+    const bool below = image.gain_mps != 0.0;
+    if (below) {
+      const double column = -image.gain_mps, by_elevation = -image.by_elevation;
+      sums.mirror_score += pull * column + kb * by_elevation;
+      sums.mirror_by_velocity += weight * column * u - we * by_elevation * eb;
+      sums.mirror_diagonal += weight * column * column - we * by_elevation * by_elevation;
+    }
     for (int side = 0; side < 2; ++side) {
       const int k = knot + side;
       const double h = side == 0 ? h0 : h1, hat = side == 0 ? -slope_of_hat : slope_of_hat;
@@ -93,6 +118,7 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
           (weight * column * u - wa * by_azimuth * ea - we * by_elevation * eb).transpose();
       sums.curve_diagonal(k) +=
           weight * column * column - wa * by_azimuth * by_azimuth - we * by_elevation * by_elevation;
+      if (below) sums.mirror_by_curve(k) += -weight * column * image.gain_mps + we * by_elevation * image.by_elevation;
       if (side == 1) {
         const double c0 = -da * h0, a0 = -(daa * h0 - da * slope_of_hat), b0 = -dab * h0;
         sums.curve_next(knot) += weight * c0 * column - wa * a0 * by_azimuth - we * b0 * by_elevation;

@@ -24,6 +24,9 @@ struct CurveJudgement {
   double angle_factor = 1.0;     //
   Eigen::Matrix3d velocity_variance = Eigen::Matrix3d::Zero();  ///< of g as predicted: widens the gate
   double curve_variance = 0.0;   ///< of the curve at any azimuth: widens the gate
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< the vehicle's z axis in the sensor's
+  double height_m = 0.0;         ///< of the sensor over the road
+  double mirror_share = 0.0;     ///< see local::kMirror
   double wide_std_mps = 0.0;     ///< widens the gate of a radar that may have turned
 };
 
@@ -33,6 +36,9 @@ struct CurveSums {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, kKnots, 3> curve_by_velocity = Eigen::Matrix<double, kKnots, 3>::Zero();
   Curve curve_diagonal = Curve::Zero(), curve_next = Curve::Zero(), curve_score = Curve::Zero();
+  Eigen::Vector3d mirror_by_velocity = Eigen::Vector3d::Zero();
+  Curve mirror_by_curve = Curve::Zero();
+  double mirror_diagonal = 0.0, mirror_score = 0.0;
   Eigen::Matrix3d wide_information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d wide_score = Eigen::Vector3d::Zero();
   double detections = 0.0;

@@ -1,5 +1,7 @@
 #include "services/alignment_estimator/core/windows/segment.hpp"
 
+#include "services/alignment_estimator/core/windows/reduced.hpp"
+
 namespace boresight::alignment::windows {
 
 namespace {
@@ -23,8 +25,8 @@ void add_to(Share& sum, const Point& point, const LocalVector& score, const Loca
   sum.seconds += seconds;
 }
 
-void Segments::begin(int load) {
-  if (size_ == kMaxSegments) merge();
+void Segments::begin(int load, const MergeNoise& noise) {
+  if (size_ == kMaxSegments) merge(noise);
   segments_[static_cast<std::size_t>(size_)] = Segment{0.0, 0, load};
   for (std::size_t r = 0; r < radars_; ++r) share(size_, r) = Share();
   ++size_;
@@ -35,7 +37,7 @@ void Segments::add(std::size_t radar, const Block& block) {
   add_to(latest, block.point, block.score, block.information, block.seconds);
 }
 
-void Segments::merge() {
+void Segments::merge(const MergeNoise& noise) {
   // The lowest level with enough segments; else the two oldest of all.
   for (int level = 0; level < 16; ++level) {
     int first = -1, count = 0;
@@ -45,14 +47,32 @@ void Segments::merge() {
       ++count;
     }
     if (count > kOfLevel && segment(first + 1).level == level && segment(first + 1).load == segment(first).load) {
-      join(first);
+      join(first, noise);
       return;
     }
   }
-  join(0);
+  join(0, noise);
 }
 
-void Segments::join(int first) {
+void Segments::join(int first, const MergeNoise& noise) {
+  const double a_s = segment(first).seconds, b_s = segment(first + 1).seconds;
+  const double of_mean = share_of_mean(std::max(a_s + b_s, 0.1), noise.correlation_s);
+  for (const int part : {first, first + 1}) {
+    const Segment& of = segment(part);
+    const double common = std::max(share_of_mean(std::max(of.seconds, 0.1), noise.correlation_s) - of_mean, 0.0);
+    for (std::size_t r = 0; r < radars_; ++r) {
+      Share& s = share(part, r);
+      if (s.seconds <= 0.0) continue;
+      std::array<double, kFluctuations> deviation = own_variances(noise.own[r], of, s);
+      for (std::size_t k = 0; k < kFluctuations; ++k) {
+        deviation[k] = 0.5 * deviation[k] + common * noise.common.variance[k];
+      }
+      const Reduced reduced = reduce(s, s.point, deviation);
+      s.information = reduced.information;
+      s.score = reduced.score;
+      s.weight = 1.0;
+    }
+  }
   Segment& into = segment(first);
   into.seconds += segment(first + 1).seconds;
   into.level = std::max(into.level, segment(first + 1).level) + 1;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "interfaces/messages/header.hpp"
 #include "services/alignment_estimator/core/windows/block.hpp"
 #include "services/alignment_estimator/core/windows/columns.hpp"
 
@@ -18,6 +19,18 @@ struct Share {
   double seconds = 0.0;      ///< 0: nothing
   bool is_earlier = false;   ///< its rotation is the one before the radar's latest sudden misalignment
   double weight = 1.0;       ///< learnt: a segment that contradicts the others counts less
+};
+
+/// A fluctuation of yaw, pitch and scale: constant in a segment, with a variance that is learnt.
+struct Fluctuation {
+  std::array<double, kFluctuations> variance{};
+};
+
+/// What a merged segment must know: its parts had fluctuations of their own.
+struct MergeNoise {
+  Fluctuation common;
+  double correlation_s = 20.0;
+  std::array<Fluctuation, kMaxRadars> own{};
 };
 
 struct Segment {
@@ -41,13 +54,13 @@ class Segments {
   }
   void clear() { size_ = 0; }
   /// Begins a segment after the latest one.
-  void begin(int load);
+  void begin(int load, const MergeNoise& noise);
   /// Adds a block to the latest segment.
   void add(std::size_t radar, const Block& block);
 
  private:
-  void merge();
-  void join(int first);
+  void merge(const MergeNoise& noise);
+  void join(int first, const MergeNoise& noise);
   std::array<Segment, kMaxSegments> segments_;
   std::vector<Share> shares_;
   std::size_t radars_;

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "services/alignment_estimator/core/small_maths.hpp"
+#include "services/alignment_estimator/core/windows/reduced.hpp"
 
 namespace boresight::alignment::windows {
 
@@ -27,8 +28,7 @@ Eigen::Matrix<double, kKnots, kKnots> curve_precision(double std, double length_
   Square alike, project = Square::Identity();
   Eigen::Matrix<double, kKnots, 1> weights;
   for (int i = 0; i < kKnots; ++i) {
-    const double place = 2.0 * i / (kKnots - 1) - 1.0;
-    weights(i) = square(std::cos(0.5 * M_PI * 0.92 * place));
+    weights(i) = i == 0 || i == kKnots - 1 ? 0.5 : 1.0;
     for (int j = 0; j < kKnots; ++j) alike(i, j) = std::exp(-0.5 * square((i - j) / length_knots)) + (i == j ? 1e-4 : 0.0);
   }
   weights /= weights.sum();
@@ -37,12 +37,6 @@ Eigen::Matrix<double, kKnots, kKnots> curve_precision(double std, double length_
   covariance *= square(std) / covariance.diagonal().mean();
   covariance.diagonal().array() += 1e-6 * square(std) + 1e-16;
   return covariance.inverse();
-}
-
-/// Variance of the mean of an Ornstein–Uhlenbeck process over `length`, relative to its variance.
-double share_of_mean(double length_s, double correlation_s) {
-  const double t = correlation_s / length_s;
-  return 2.0 * t * (1.0 - t * (1.0 - std::exp(-1.0 / t)));
 }
 
 /// Step of λ = ln q towards the maximum of −n/2·λ − sum/(2q) − (λ − λ₀)²/(2τ²).
@@ -91,6 +85,7 @@ void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool h
     r.prior(own::kRotation + axis, own::kRotation + axis) = precision;
     r.prior(own::kEarlierRotation + axis, own::kEarlierRotation + axis) = precision;
   }
+  r.prior(own::kMirror, own::kMirror) = has_elevation ? precision_of(priors_.mirror_share_std) : kFixed;
   r.prior(own::kStamp, own::kStamp) = precision_of(priors_.stamp_std_s);
   r.prior(own::kPosition, own::kPosition) = r.prior(own::kPosition + 1, own::kPosition + 1) =
       precision_of(priors_.position_std_m);
@@ -126,6 +121,7 @@ Point Solver::point(std::size_t radar, int load, bool earlier) const {
   p.position_error_m = own.position_error_m;
   p.pitch_per_acceleration_radps2pm = shared_.pitch_per_acceleration_radps2pm;
   p.curve_rad = own.curve_rad;
+  p.mirror_share = own.mirror_share;
   return p;
 }
 
@@ -139,6 +135,7 @@ int own_column(int local, bool earlier) {
   }
   if (local == local::kStamp) return own::kStamp;
   if (local == local::kPosition || local == local::kPosition + 1) return own::kPosition + local - local::kPosition;
+  if (local == local::kMirror) return own::kMirror;
   if (local >= local::kCurve) return own::kCurve + local - local::kCurve;
   return -1;
 }
@@ -168,45 +165,6 @@ TouchedColumns touched(const Segment& segment, int index) {
   return t;
 }
 
-using FluctuationMatrix = Eigen::Matrix<double, kFluctuations, kFluctuations>;
-using FluctuationColumns = Eigen::Matrix<double, local::kCount, kFluctuations>;
-
-/// A share with its own fluctuation eliminated, at the present point.
-struct Reduced {
-  LocalMatrix information;
-  LocalVector score;
-  FluctuationColumns gain;      ///< L_c·M⁻¹
-  FluctuationMatrix posterior;  ///< M⁻¹, the fluctuation's covariance if all else is known
-  Eigen::Matrix<double, kFluctuations, 1> raw_score;
-};
-
-Reduced reduce(const Share& share, const Point& present, const Fluctuation& fluctuation, double relative) {
-  Reduced r;
-  r.information = share.information;
-  r.score = share.score;
-  r.score.noalias() += r.information * difference(present, share.point);
-  FluctuationColumns columns;
-  for (int k = 0; k < kFluctuations; ++k) columns.col(k) = r.information.col(kFluctuating[static_cast<std::size_t>(k)]);
-  FluctuationMatrix m;
-  for (int k = 0; k < kFluctuations; ++k) {
-    m.row(k) = columns.row(kFluctuating[static_cast<std::size_t>(k)]);
-    r.raw_score(k) = r.score(kFluctuating[static_cast<std::size_t>(k)]);
-  }
-  for (int k = 0; k < kFluctuations; ++k) {
-    const double variance = relative / share.weight * fluctuation.variance[static_cast<std::size_t>(k)];
-    m(k, k) += variance > 0.0 ? 1.0 / variance : kFixed;
-  }
-  r.posterior = m.inverse();
-  r.gain.noalias() = columns * r.posterior;
-  r.information.noalias() -= r.gain * columns.transpose();
-  r.score.noalias() -= r.gain * r.raw_score;
-  return r;
-}
-
-double own_relative(const Segment& segment) {
-  return std::ldexp(1.0, -segment.level);
-}
-
 }  // namespace
 
 void Solver::gather(const Segments& segments, std::size_t index) {
@@ -222,13 +180,14 @@ void Solver::gather(const Segments& segments, std::size_t index) {
   off(own::kStamp) = mean.stamp_s - now.stamp_s;
   off.segment<2>(own::kPosition) = mean.position_error_m - now.position_error_m;
   off.segment<kKnots>(own::kCurve) = mean.curve_rad - now.curve_rad;
+  off(own::kMirror) = mean.mirror_share - now.mirror_share;
   w.score = radar.prior * off;
   for (int i = 0; i < segments.size(); ++i) {
     const Share& share = segments.share(i, index);
     if (share.seconds <= 0.0) continue;
     const Segment& segment = segments.segment(i);
-    const Reduced r = reduce(share, point(index, segment.load, share.is_earlier), radar.fluctuation,
-                             own_relative(segment));
+    const Reduced r = reduce(share, point(index, segment.load, share.is_earlier),
+                             own_variances(radar.fluctuation, segment, share));
     std::array<int, local::kCount> own_of;
     for (int c = 0; c < local::kCount; ++c) own_of[static_cast<std::size_t>(c)] = own_column(c, share.is_earlier);
     const TouchedColumns t = touched(segment, i);
@@ -270,6 +229,14 @@ void Solver::eliminate(std::size_t index) {
     border_system_.topLeftCorner(border_, border_).middleCols(first, width).noalias() -=
         cross.transpose() * strip;
   }
+}
+
+void Solver::begin_segment(Segments& segments, int load) const {
+  MergeNoise noise;
+  noise.common = common_;
+  noise.correlation_s = priors_.common_correlation_s;
+  for (std::size_t r = 0; r < radars_.size(); ++r) noise.own[r] = radars_[r].fluctuation;
+  segments.begin(load, noise);
 }
 
 double Solver::common_share(const Segment& segment) const {
@@ -359,6 +326,7 @@ void Solver::apply(std::size_t index) {
   s.stamp_s += step(own::kStamp);
   s.position_error_m += step.segment<2>(own::kPosition);
   s.curve_rad += step.segment<kKnots>(own::kCurve);
+  s.mirror_share += step(own::kMirror);
   // Covariance: of the own parameters if the shared ones were known, and by those.
   Eigen::Matrix<double, own::kCount, kMaxShared> by_shared;
   by_shared.leftCols(border_).noalias() = cross * border_inverse_.topLeftCorner(border_, border_);
@@ -383,7 +351,7 @@ void Solver::learn(Segments& segments) {
       const Segment& segment = segments.segment(i);
       const double relative = own_relative(segment);
       const Reduced reduced =
-          reduce(share, point(r, segment.load, share.is_earlier), radar.fluctuation, relative);
+          reduce(share, point(r, segment.load, share.is_earlier), own_variances(radar.fluctuation, segment, share));
       LocalVector d = LocalVector::Zero();
       for (int c = 0; c < local::kCount; ++c) {
         const int column = own_column(c, share.is_earlier);

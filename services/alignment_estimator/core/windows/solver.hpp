@@ -14,11 +14,6 @@
 
 namespace boresight::alignment::windows {
 
-/// A fluctuation of yaw, pitch and scale: constant in a segment, with a variance that is learnt.
-struct Fluctuation {
-  std::array<double, kFluctuations> variance{};
-};
-
 /// Priors: standard deviations before any data.
 struct Priors {
   double speed_scale_std = 0.03;
@@ -33,6 +28,7 @@ struct Priors {
   double position_std_m = 0.03;
   double curve_std_rad = 0.00262;
   double curve_length_rad = 0.262;
+  double mirror_share_std = 1.0;
   double load_std_rad = 0.0105;
   double step_std_rad = 0.0698;
   // Fluctuations: medians of their standard deviations, and the standard deviation of the logarithm.
@@ -50,6 +46,7 @@ struct OwnState {
   double stamp_s = 0.0;
   Eigen::Vector2d position_error_m{0.0, 0.0};
   Eigen::Matrix<double, kKnots, 1> curve_rad = Eigen::Matrix<double, kKnots, 1>::Zero();
+  double mirror_share = 0.0;
 };
 
 struct SharedState {
@@ -94,6 +91,8 @@ class Solver {
   /// Covariance of the local parameters of a radar now; of the constants only.
   [[nodiscard]] LocalMatrix local_covariance(std::size_t radar) const;
 
+  /// Begins a segment; older ones that are merged lose the deviations from their common mean.
+  void begin_segment(Segments& segments, int load) const;
   /// Solves once, and learns the fluctuations. No allocation.
   void solve(Segments& segments);
 

@@ -19,7 +19,7 @@ constexpr std::size_t kMinSightings = 4;
 constexpr double kMaxGap_s = 1.0;
 constexpr double kInlierMemory_s = 10.0, kNoiseMemory_s = 60.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
-constexpr double kBlock_s = 1.0, kSegment_s = 10.0, kSolve_s = 5.0;
+constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 5.0;
 /// Largest standard deviations of scale and rotation that widen the gate of a running radar.
 constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
 
@@ -53,9 +53,9 @@ bool WindowedFilter::usable(const EgoSample& ego) const {
 }
 
 Motion WindowedFilter::motion_of(const Point& point, const ScanMotion3d& motion) const {
-  return {motion.speed_mps + point.stamp_s * motion.acceleration_mps2,
-          motion.yaw_rate_radps + point.stamp_s * motion.yaw_acceleration_radps2, motion.acceleration_mps2,
-          motion.yaw_acceleration_radps2};
+  const double a = std::abs(motion.acceleration_mps2) > 0.5 ? motion.acceleration_mps2 : 0.0;
+  const double w = std::abs(motion.yaw_acceleration_radps2) > 0.04 ? motion.yaw_acceleration_radps2 : 0.0;
+  return {motion.speed_mps + point.stamp_s * a, motion.yaw_rate_radps + point.stamp_s * w, a, w};
 }
 
 void WindowedFilter::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {
@@ -143,7 +143,7 @@ void WindowedFilter::begin_block(std::size_t index) {
   limit(local::kRotation + 1, 2.0 * kGateRotation_rad);
   limit(local::kRotation + 2, kGateRotation_rad);
   radar.gate_covariance = (cap.asDiagonal() * p * cap.asDiagonal()).topLeftCorner<local::kCurve, local::kCurve>();
-  radar.curve_variance = p.diagonal().tail<kKnots>().mean();
+  radar.curve_variance = p.diagonal().segment<kKnots>(local::kCurve).mean();
 }
 
 void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s) {
@@ -165,6 +165,9 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
         variances[static_cast<std::size_t>(m)] * model.by_motion.row(m).transpose() * model.by_motion.row(m);
   }
   judgement.curve_variance = radar.curve_variance;
+  judgement.up = radar.block.point.sensor_to_vehicle.row(2).transpose();
+  judgement.height_m = radar.config.mounting_pose.position_m[2];
+  judgement.mirror_share = radar.block.point.mirror_share;
   judgement.wide_std_mps = 0.012 * std::abs(ego.speed_mps);
   const CurveSums sums =
       windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
@@ -186,7 +189,7 @@ void WindowedFilter::close_block() {
   for (const Radar& radar : radars_) any = any || (radar.running && radar.block.scans > 0);
   if (!any) return;
   if (segments_.size() == 0 || segments_.segment(segments_.size() - 1).seconds >= kSegment_s - 0.5 * kBlock_s) {
-    segments_.begin(0);
+    solver_.begin_segment(segments_, 0);
   }
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if (radars_[r].running && radars_[r].block.scans > 0) segments_.add(r, radars_[r].block);
@@ -212,6 +215,13 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   out.sensor_to_vehicle = solution.state.sensor_to_vehicle;
   out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
   out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
+  // The share of images differs with range and road: it is not known better than to this.
+  constexpr double kMirrorTolerance = 0.15;
+  const double mirror_variance = solution.covariance(own::kMirror, own::kMirror);
+  if (mirror_variance > 1e-9) {
+    const Eigen::Vector3d by_mirror = solution.covariance.block<3, 1>(own::kRotation, own::kMirror) / mirror_variance;
+    out.covariance.bottomRightCorner<3, 3>() += square(kMirrorTolerance) * by_mirror * by_mirror.transpose();
+  }
   out.covariance.block<3, 1>(1, 0) = solution.with_shared.block<3, 1>(own::kRotation, shared::kSpeedScale);
   out.covariance.block<1, 3>(0, 1) = out.covariance.block<3, 1>(1, 0).transpose();
   const auto learnt = [](double variance, double prior_std) { return variance < square(prior_std / 3.0); };

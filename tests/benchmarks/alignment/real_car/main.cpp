@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
                                    seed + static_cast<std::uint64_t>(d));
     auto& c = spec.real_car;
     if (kind == "disturbed") spec = bench::disturbed_drive(simulator::RoadKind::kMixed, duration, seed + static_cast<std::uint64_t>(d));
+    if (kind == "real_car_flat") { c = preset; c.load_pitch_rad = 0; c.road_mirror_share = 0; spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
+    if (kind == "body") { spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
     if (kind == "real_car") { c = preset; c.load_pitch_rad = 0; spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
     if (kind == "scale") c.range_rate_scale = preset.range_rate_scale;
     if (kind == "curve") c.azimuth_curve_rms_rad = preset.azimuth_curve_rms_rad;
@@ -41,15 +43,17 @@ int main(int argc, char** argv) {
     options.snapshot_period_s = 60.0;
     if (std::getenv("VERBOSE")) options.look = [&](const alignment::Method& m, double t) {
       const auto* w = dynamic_cast<const alignment::WindowedFilter*>(&m);
-      if (!w || t < 2.0) return;
+      static double next = 0.0;
+      if (!w || t < next) return;
+      next = t + std::atof(std::getenv("VERBOSE"));
       const auto& s = w->solver();
       std::printf("t %.1f k %.6f b %.4f g %.4f c %.5f dive %.5f tau %.4f common yaw %.4f pitch %.4f scale %.6f\n", t, s.shared().speed_scale,
                   s.shared().yaw_rate_bias_radps * 57.3, s.shared().yaw_rate_gain, s.shared().slip_radps2pm, s.shared().pitch_per_acceleration_radps2pm,
                   s.shared().stamp_s, 57.3 * std::sqrt(s.common().variance[0]), 57.3 * std::sqrt(s.common().variance[1]), std::sqrt(s.common().variance[2]));
       for (std::size_t r = 0; r < s.size(); ++r) {
         const auto& q = s.radar(r);
-        std::printf("   radar %zu scale %+.5f tau %.4f pos %.3f %.3f curve %.3f own yaw %.4f pitch %.4f scale %.6f sd yaw %.4f\n", r, q.state.rate_scale, q.state.stamp_s,
-                    q.state.position_error_m.x(), q.state.position_error_m.y(), 57.3 * std::sqrt(q.state.curve_rad.squaredNorm() / 11), 57.3 * std::sqrt(q.fluctuation.variance[0]),
+        std::printf("   radar %zu scale %+.5f tau %.4f pos %.3f %.3f mirror %.2f curve %.3f own yaw %.4f pitch %.4f scale %.6f sd yaw %.4f\n", r, q.state.rate_scale, q.state.stamp_s,
+                    q.state.position_error_m.x(), q.state.position_error_m.y(), q.state.mirror_share, 57.3 * std::sqrt(q.state.curve_rad.squaredNorm() / 11), 57.3 * std::sqrt(q.fluctuation.variance[0]),
                     57.3 * std::sqrt(q.fluctuation.variance[1]), std::sqrt(q.fluctuation.variance[2]), 57.3 * std::sqrt(q.covariance(3, 3)));
       }
     };
