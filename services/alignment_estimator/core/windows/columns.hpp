@@ -14,16 +14,16 @@ inline constexpr int kKnots = 11;
 /// Parameters that a scan of one radar depends on.
 namespace local {
 enum : int {
-  kSpeedScale,    ///< k_v
-  kRateScale,     ///< e: the radar multiplies its range rates by 1 + e
-  kRotation,      ///< three: error of the rotation about the vehicle's x, y and z axes, Exp(d)·R
+  kSpeedScale,                   ///< k_v
+  kRateScale,                    ///< e: the radar multiplies its range rates by 1 + e
+  kRotation,                     ///< three: error of the rotation about the vehicle's x, y and z axes, Exp(d)·R
   kYawRateBias = kRotation + 3,  ///< rad/s
-  kYawRateGain,   ///< true = (signalled − bias)·(1 + gain)
-  kSlip,          ///< c of V_y = −c·V·(V·ω), rad per m/s²
-  kStamp,         ///< s; the motion that belongs to a scan is that at its stamp + this
-  kPosition,      ///< two: error of the position in the vehicle file, x and y (m)
+  kYawRateGain,                  ///< true = (signalled − bias)·(1 + gain)
+  kSlip,                         ///< c of V_y = −c·V·(V·ω), rad per m/s²
+  kStamp,                        ///< s; the motion that belongs to a scan is that at its stamp + this
+  kPosition,                     ///< two: error of the position in the vehicle file, x and y (m)
   kPitchPerAcceleration = kPosition + 2,  ///< rad per m/s², positive with the nose up
-  kCurve,         ///< kKnots: error of the azimuth, measured − true (rad)
+  kCurve,                                 ///< kKnots: error of the azimuth, measured − true (rad)
   kMirror = kCurve + kKnots,  ///< share of the detections below the road that are images of reflectors above it
   kCount
 };
@@ -40,8 +40,9 @@ enum : int {
   kPosition,
   kCurve = kPosition + 2,
   kMirror = kCurve + kKnots,
-  kEarlierRotation,  ///< before its latest sudden misalignment
-  kCount = kEarlierRotation + 3
+  kPitchDrift,  ///< rad/s of the rotation about the vehicle's y and z axes, over the last minutes
+  kYawDrift,
+  kCount
 };
 }  // namespace own
 using OwnVector = Eigen::Matrix<double, own::kCount, 1>;

@@ -17,16 +17,19 @@ double weighted_square_of(double gate) {
 constexpr double kWideGate = 3.0;
 static const double kMirrorV = std::getenv("MV") ? std::atof(std::getenv("MV")) : 0.25;
 
-/// What the range rate of a detection below the road would gain if the detection were the image of a reflector above it.
+/// What the range rate of a detection below the road would gain if the detection were the image of a reflector above
+/// it.
 struct Image {
   double gain_mps = 0.0, by_elevation = 0.0;
 };
 
-Image image_in_road(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double range_m, const CurveJudgement& judgement) {
+Image image_in_road(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double range_m,
+                    const CurveJudgement& judgement) {
   const double z = judgement.up.dot(u);
   if (!(judgement.height_m > 0.0) || judgement.height_m + range_m * z >= 0.0) return {};
   const double image = -z - 2.0 * judgement.height_m / range_m;
-  const double across = std::sqrt(std::max(1.0 - z * z, 1e-6)), across_image = std::sqrt(std::max(1.0 - image * image, 1e-6));
+  const double across = std::sqrt(std::max(1.0 - z * z, 1e-6)),
+               across_image = std::sqrt(std::max(1.0 - image * image, 1e-6));
   const double upward = judgement.up.dot(g), forward = (u.dot(g) - z * upward) / across;
   return {-(across_image - across) * forward - (image - z) * upward,
           -(image * across / across_image + z) * forward + 2.0 * across * upward};
@@ -64,9 +67,9 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double ve = judgement.angle_factor * run.elevation_variance[i];
     const double by_rate =
         judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
-    const double by_angle = va * da * da + ve * db * db, s2 = by_rate + by_angle + kMirrorV * image.gain_mps * image.gain_mps;
-    const double gate_variance =
-        s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
+    const double by_angle = va * da * da + ve * db * db,
+                 s2 = by_rate + by_angle + kMirrorV * image.gain_mps * image.gain_mps;
+    const double gate_variance = s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
     if (wide > 0.0) {
       const double t = e * e / ((gate_variance + wide) * kWideGate * kWideGate);
       if (t < 1.0) {
@@ -87,7 +90,8 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     common.squares += w * w * z2;
     if (w > 0.2) common.stationary += 1.0;
     const double inverse = 1.0 / s2, weight = w * inverse, slope = curvature * inverse;
-    // Second derivatives of the range rate, and of its variance: see scan_sums.cpp for the terms of errors in variables.
+    // Second derivatives of the range rate, and of its variance: see scan_sums.cpp for the terms of errors in
+    // variables.
     const double daa = -along + u.z() * g.z(), dab = -(g.y() * u.x() - g.x() * u.y()) * u.z() / ce;
     const double s2a = 2.0 * (da * daa * va + da * da * va * run.azimuth_std_slope[i] + db * dab * ve);
     const double s2b = 2.0 * (da * dab * va - db * along * ve);

@@ -19,15 +19,15 @@ struct Knots {
 };
 
 struct CurveJudgement {
-  double gate = 5.0;             ///< Tukey's constant
-  double rate_factor = 1.0;      ///< of the variances
-  double angle_factor = 1.0;     //
+  double gate = 5.0;                                            ///< Tukey's constant
+  double rate_factor = 1.0;                                     ///< of the variances
+  double angle_factor = 1.0;                                    //
   Eigen::Matrix3d velocity_variance = Eigen::Matrix3d::Zero();  ///< of g as predicted: widens the gate
-  double curve_variance = 0.0;   ///< of the curve at any azimuth: widens the gate
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< the vehicle's z axis in the sensor's
-  double height_m = 0.0;         ///< of the sensor over the road
-  double mirror_share = 0.0;     ///< see local::kMirror
-  double wide_std_mps = 0.0;     ///< widens the gate of a radar that may have turned
+  double curve_variance = 0.0;                                  ///< of the curve at any azimuth: widens the gate
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();                ///< the vehicle's z axis in the sensor's
+  double height_m = 0.0;                                        ///< of the sensor over the road
+  double mirror_share = 0.0;                                    ///< see local::kMirror
+  double wide_std_mps = 0.0;                                    ///< widens the gate of a radar that may have turned
 };
 
 struct CurveSums {

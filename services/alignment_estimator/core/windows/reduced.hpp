@@ -23,7 +23,8 @@ struct Reduced {
 };
 
 /// Eliminates a fluctuation with these variances; 0: there is none.
-[[nodiscard]] Reduced reduce(const Share& share, const Point& present, const std::array<double, kFluctuations>& variances);
+[[nodiscard]] Reduced reduce(const Share& share, const Point& present,
+                             const std::array<double, kFluctuations>& variances);
 
 [[nodiscard]] inline double own_relative(const Segment& segment) {
   return std::ldexp(1.0, -segment.level);

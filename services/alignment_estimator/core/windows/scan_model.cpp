@@ -22,7 +22,8 @@ ScanModel model_scan(const Point& point, const std::array<double, 3>& position_m
   by.col(local::kYawRateBias) = -gain * by_yaw_rate;
   by.col(local::kYawRateGain) = unbiased * by_yaw_rate;
   by.col(local::kSlip) << 0.0, -speed * speed * yaw_rate, 0.0;
-  by.col(local::kStamp) = point.speed_scale * acceleration * by_speed + gain * motion.yaw_acceleration_radps2 * by_yaw_rate;
+  by.col(local::kStamp) =
+      point.speed_scale * acceleration * by_speed + gain * motion.yaw_acceleration_radps2 * by_yaw_rate;
   by.col(local::kPosition) << 0.0, yaw_rate, 0.0;
   by.col(local::kPosition + 1) << -yaw_rate, 0.0, 0.0;
   by.col(local::kPitchPerAcceleration) << 0.0, 0.0, acceleration * speed;

@@ -27,7 +27,7 @@ void add_to(Share& sum, const Point& point, const LocalVector& score, const Loca
 
 void Segments::begin(int load, const MergeNoise& noise) {
   if (size_ == kMaxSegments) merge(noise);
-  segments_[static_cast<std::size_t>(size_)] = Segment{0.0, 0, load};
+  segments_[static_cast<std::size_t>(size_)] = Segment{0.0, 0.0, 0, load};
   for (std::size_t r = 0; r < radars_; ++r) share(size_, r) = Share();
   ++size_;
 }
@@ -35,6 +35,32 @@ void Segments::begin(int load, const MergeNoise& noise) {
 void Segments::add(std::size_t radar, const Block& block) {
   Share& latest = share(size_ - 1, radar);
   add_to(latest, block.point, block.score, block.information, block.seconds);
+}
+
+void forget(Share& share, int first_column, int columns) {
+  if (share.seconds <= 0.0) return;
+  for (int c = first_column; c < first_column + columns; ++c) {
+    const double pivot = share.information(c, c);
+    if (!(pivot > 0.0)) continue;
+    const LocalVector column = share.information.col(c);
+    share.information.noalias() -= column * column.transpose() / pivot;
+    share.score -= column * (share.score(c) / pivot);
+    share.information.col(c).setZero();
+    share.information.row(c).setZero();
+    share.score(c) = 0.0;
+  }
+}
+
+void Segments::forget(std::size_t radar, int first_column, int columns) {
+  for (int i = 0; i < size_; ++i) windows::forget(share(i, radar), first_column, columns);
+}
+
+void Segments::drop_latest(std::size_t radar, double seconds) {
+  double since = 0.0;
+  for (int i = size_ - 1; i >= 0 && since < seconds; --i) {
+    since += segment(i).seconds;
+    share(i, radar) = Share();
+  }
 }
 
 void Segments::merge(const MergeNoise& noise) {
@@ -73,20 +99,18 @@ void Segments::join(int first, const MergeNoise& noise) {
       s.weight = 1.0;
     }
   }
+  // Pitch of the body before and after a load change.
+  if (segment(first).load != segment(first + 1).load) {
+    for (std::size_t r = 0; r < radars_; ++r) windows::forget(share(first, r), local::kRotation + 1, 1);
+  }
   Segment& into = segment(first);
+  into.middle_s = (into.middle_s * a_s + segment(first + 1).middle_s * b_s) / std::max(a_s + b_s, 1e-3);
   into.seconds += segment(first + 1).seconds;
   into.level = std::max(into.level, segment(first + 1).level) + 1;
   into.load = segment(first + 1).load;
   for (std::size_t r = 0; r < radars_; ++r) {
-    Share& a = share(first, r);
     const Share& b = share(first + 1, r);
-    // What an earlier mounting said about its rotation is lost with it.
-    if (b.seconds <= 0.0) continue;
-    if (a.is_earlier != b.is_earlier) {
-      a = b;
-    } else {
-      add_to(a, b.point, b.score, b.information, b.seconds);
-    }
+    if (b.seconds > 0.0) add_to(share(first, r), b.point, b.score, b.information, b.seconds);
   }
   for (int i = first + 1; i + 1 < size_; ++i) {
     segment(i) = segment(i + 1);

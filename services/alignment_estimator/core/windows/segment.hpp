@@ -16,9 +16,8 @@ struct Share {
   Point point;
   LocalVector score = LocalVector::Zero();
   LocalMatrix information = LocalMatrix::Zero();
-  double seconds = 0.0;      ///< 0: nothing
-  bool is_earlier = false;   ///< its rotation is the one before the radar's latest sudden misalignment
-  double weight = 1.0;       ///< learnt: a segment that contradicts the others counts less
+  double seconds = 0.0;  ///< 0: nothing
+  double weight = 1.0;   ///< learnt: a segment that contradicts the others counts less
 };
 
 /// A fluctuation of yaw, pitch and scale: constant in a segment, with a variance that is learnt.
@@ -35,8 +34,9 @@ struct MergeNoise {
 
 struct Segment {
   double seconds = 0.0;
-  int level = 0;  ///< of 2^level segments of the shortest length
-  int load = 0;   ///< number of load steps before it
+  double middle_s = 0.0;  ///< its middle on the clock of the drive
+  int level = 0;          ///< of 2^level segments of the shortest length
+  int load = 0;           ///< number of load steps before it
 };
 
 /// The segments of a drive, oldest first. When there is no room for another, two neighbours of one level become one of
@@ -48,11 +48,17 @@ class Segments {
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] Segment& segment(int i) { return segments_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const Segment& segment(int i) const { return segments_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] Share& share(int i, std::size_t radar) { return shares_[static_cast<std::size_t>(i) * radars_ + radar]; }
+  [[nodiscard]] Share& share(int i, std::size_t radar) {
+    return shares_[static_cast<std::size_t>(i) * radars_ + radar];
+  }
   [[nodiscard]] const Share& share(int i, std::size_t radar) const {
     return shares_[static_cast<std::size_t>(i) * radars_ + radar];
   }
   void clear() { size_ = 0; }
+  /// Takes away what a radar's shares say about some local parameters: they have changed.
+  void forget(std::size_t radar, int first_column, int columns);
+  /// Takes away all that a radar saw in the last seconds.
+  void drop_latest(std::size_t radar, double seconds);
   /// Begins a segment after the latest one.
   void begin(int load, const MergeNoise& noise);
   /// Adds a block to the latest segment.
@@ -66,6 +72,9 @@ class Segments {
   std::size_t radars_;
   int size_ = 0;
 };
+
+/// Eliminates local parameters, each known to nothing.
+void forget(Share& share, int first_column, int columns);
 
 /// Adds `more` to `sum`: its score is moved to the other's point.
 void add_to(Share& sum, const Point& point, const LocalVector& score, const LocalMatrix& information, double seconds);

@@ -29,7 +29,8 @@ Eigen::Matrix<double, kKnots, kKnots> curve_precision(double std, double length_
   Eigen::Matrix<double, kKnots, 1> weights;
   for (int i = 0; i < kKnots; ++i) {
     weights(i) = i == 0 || i == kKnots - 1 ? 0.5 : 1.0;
-    for (int j = 0; j < kKnots; ++j) alike(i, j) = std::exp(-0.5 * square((i - j) / length_knots)) + (i == j ? 1e-4 : 0.0);
+    for (int j = 0; j < kKnots; ++j)
+      alike(i, j) = std::exp(-0.5 * square((i - j) / length_knots)) + (i == j ? 1e-4 : 0.0);
   }
   weights /= weights.sum();
   project.rowwise() -= weights.transpose();
@@ -37,6 +38,22 @@ Eigen::Matrix<double, kKnots, kKnots> curve_precision(double std, double length_
   covariance *= square(std) / covariance.diagonal().mean();
   covariance.diagonal().array() += 1e-6 * square(std) + 1e-16;
   return covariance.inverse();
+}
+
+/// A common fluctuation's means over neighbouring segments as a Markov chain: mean(i) = keep·mean(i − 1) + noise, with
+/// the variance of the noise relative to the fluctuation's.
+struct ChainLink {
+  double keep = 0.0, noise = 1.0;
+};
+
+ChainLink chain_link(const Segments& segments, int i, double tau_s) {
+  const auto length = [&](int of) { return std::max(segments.segment(of).seconds, 0.1); };
+  const double own = share_of_mean(length(i), tau_s);
+  if (i == 0) return {0.0, own};
+  const double shared = square(tau_s) / (length(i) * length(i - 1)) * (1.0 - std::exp(-length(i) / tau_s)) *
+                        (1.0 - std::exp(-length(i - 1) / tau_s));
+  const double keep = shared / share_of_mean(length(i - 1), tau_s);
+  return {keep, std::max(own - keep * shared, 1e-3 * own)};
 }
 
 /// Step of λ = ln q towards the maximum of −n/2·λ − sum/(2q) − (λ − λ₀)²/(2τ²).
@@ -72,48 +89,47 @@ Solver::Solver(std::size_t radars, const Priors& priors)
   }
 }
 
-void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool has_elevation) {
+void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool has_elevation, double knot_step_rad) {
   RadarSolution& r = radars_[radar];
-  r.state.sensor_to_vehicle = r.state.earlier = nominal;
+  r.state = OwnState();
+  r.state.sensor_to_vehicle = nominal;
   r.prior_state = r.state;
   r.has_elevation = has_elevation;
   r.prior.setZero();
   r.prior(own::kRateScale, own::kRateScale) = precision_of(priors_.rate_scale_std);
   for (int axis = 0; axis < 3; ++axis) {
-    const double precision =
-        axis == 2 || has_elevation ? precision_of(priors_.rotation_std_rad) : kFixed;
+    const double precision = axis == 2 || has_elevation ? precision_of(priors_.rotation_std_rad) : kFixed;
     r.prior(own::kRotation + axis, own::kRotation + axis) = precision;
-    r.prior(own::kEarlierRotation + axis, own::kEarlierRotation + axis) = precision;
   }
   r.prior(own::kMirror, own::kMirror) = has_elevation ? precision_of(priors_.mirror_share_std) : kFixed;
   r.prior(own::kStamp, own::kStamp) = precision_of(priors_.stamp_std_s);
   r.prior(own::kPosition, own::kPosition) = r.prior(own::kPosition + 1, own::kPosition + 1) =
       precision_of(priors_.position_std_m);
-  r.covariance = r.prior.diagonal().cwiseMax(1e-12).cwiseInverse().asDiagonal();
-  for (int k = 0; k < kFluctuations; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    r.fluctuation.variance[i] = k == 1 && !has_elevation ? 0.0 : square(priors_.own_std[i]);
-  }
-}
-
-void Solver::set_curve_prior(std::size_t radar, double knot_step_rad) {
-  RadarSolution& r = radars_[radar];
   r.prior.block<kKnots, kKnots>(own::kCurve, own::kCurve) =
       priors_.curve_std_rad > 0.0 ? curve_precision(priors_.curve_std_rad, priors_.curve_length_rad / knot_step_rad)
                                   : kFixed * Eigen::Matrix<double, kKnots, kKnots>::Identity();
-  r.covariance.block<kKnots, kKnots>(own::kCurve, own::kCurve) =
-      square(priors_.curve_std_rad) * Eigen::Matrix<double, kKnots, kKnots>::Identity();
+  r.drift_variance = {has_elevation ? square(priors_.drift_std_radps) : 0.0, square(priors_.drift_std_radps)};
+  r.covariance = r.prior.diagonal().cwiseMax(1e-12).cwiseInverse().asDiagonal();
+  r.covariance.diagonal().segment<kKnots>(own::kCurve).setConstant(square(priors_.curve_std_rad));
+  r.covariance.diagonal().tail<2>() << r.drift_variance[0], r.drift_variance[1];
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    r.fluctuation.variance[k] = k == 1 && !has_elevation ? 0.0 : square(priors_.own_std[k]);
+  }
 }
 
-Point Solver::point(std::size_t radar, int load, bool earlier) const {
+double Solver::drift_time(double middle_s) const {
+  return std::max(middle_s - time_s_, -priors_.drift_span_s);
+}
+
+Point Solver::point(std::size_t radar, double time_s, int load) const {
   const OwnState& own = radars_[radar].state;
   Point p;
-  double pitch_rad = 0.0;
+  const double since_s = drift_time(time_s);
+  double pitch_rad = own.drift_radps(0) * since_s;
   for (int step = 0; step < load; ++step) pitch_rad += shared_.load_rad[static_cast<std::size_t>(step)];
   p.speed_scale = shared_.speed_scale;
   p.rate_scale = own.rate_scale;
-  p.sensor_to_vehicle =
-      geometry::so3_exp({0.0, pitch_rad, 0.0}) * (earlier ? own.earlier : own.sensor_to_vehicle);
+  p.sensor_to_vehicle = geometry::so3_exp({0.0, pitch_rad, own.drift_radps(1) * since_s}) * own.sensor_to_vehicle;
   p.yaw_rate_bias_radps = shared_.yaw_rate_bias_radps;
   p.yaw_rate_gain = shared_.yaw_rate_gain;
   p.slip_radps2pm = shared_.slip_radps2pm;
@@ -128,17 +144,32 @@ Point Solver::point(std::size_t radar, int load, bool earlier) const {
 namespace {
 
 /// Where a local parameter stands among the radar's own; −1: it is the vehicle's.
-int own_column(int local, bool earlier) {
+int own_column(int local) {
   if (local == local::kRateScale) return own::kRateScale;
-  if (local >= local::kRotation && local < local::kRotation + 3) {
-    return (earlier ? own::kEarlierRotation : own::kRotation) + local - local::kRotation;
-  }
+  if (local >= local::kRotation && local < local::kRotation + 3) return own::kRotation + local - local::kRotation;
   if (local == local::kStamp) return own::kStamp;
   if (local == local::kPosition || local == local::kPosition + 1) return own::kPosition + local - local::kPosition;
   if (local == local::kMirror) return own::kMirror;
   if (local >= local::kCurve) return own::kCurve + local - local::kCurve;
   return -1;
 }
+
+/// A radar's own parameter and the local one that it acts on; the drifts act on the rotation.
+struct OwnAction {
+  int own, local;
+  double factor;
+};
+struct OwnActions {
+  std::array<OwnAction, own::kCount> actions;
+  explicit OwnActions(double drift_time_s) {
+    std::size_t n = 0;
+    for (int c = 0; c < local::kCount; ++c) {
+      if (own_column(c) >= 0) actions[n++] = {own_column(c), c, 1.0};
+    }
+    actions[n++] = {own::kPitchDrift, local::kRotation + 1, drift_time_s};
+    actions[n++] = {own::kYawDrift, local::kRotation + 2, drift_time_s};
+  }
+};
 
 struct Touched {
   int border, local;
@@ -176,32 +207,32 @@ void Solver::gather(const Segments& segments, std::size_t index) {
   const OwnState &mean = radar.prior_state, &now = radar.state;
   off(own::kRateScale) = mean.rate_scale - now.rate_scale;
   off.segment<3>(own::kRotation) = geometry::so3_log(mean.sensor_to_vehicle * now.sensor_to_vehicle.transpose());
-  off.segment<3>(own::kEarlierRotation) = geometry::so3_log(mean.earlier * now.earlier.transpose());
   off(own::kStamp) = mean.stamp_s - now.stamp_s;
   off.segment<2>(own::kPosition) = mean.position_error_m - now.position_error_m;
   off.segment<kKnots>(own::kCurve) = mean.curve_rad - now.curve_rad;
   off(own::kMirror) = mean.mirror_share - now.mirror_share;
-  w.score = radar.prior * off;
+  off.tail<2>() = -now.drift_radps;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double variance = radar.drift_variance[static_cast<std::size_t>(axis)];
+    w.system(own::kPitchDrift + axis, own::kPitchDrift + axis) = variance > 0.0 ? 1.0 / variance : kFixed;
+  }
+  w.score = w.system * off;
   for (int i = 0; i < segments.size(); ++i) {
     const Share& share = segments.share(i, index);
     if (share.seconds <= 0.0) continue;
     const Segment& segment = segments.segment(i);
-    const Reduced r = reduce(share, point(index, segment.load, share.is_earlier),
-                             own_variances(radar.fluctuation, segment, share));
-    std::array<int, local::kCount> own_of;
-    for (int c = 0; c < local::kCount; ++c) own_of[static_cast<std::size_t>(c)] = own_column(c, share.is_earlier);
+    const Reduced r =
+        reduce(share, point(index, segment.middle_s, segment.load), own_variances(radar.fluctuation, segment, share));
+    const OwnActions of_own(drift_time(segment.middle_s));
     const TouchedColumns t = touched(segment, i);
-    for (int c = 0; c < local::kCount; ++c) {
-      const int column = own_of[static_cast<std::size_t>(c)];
-      if (column < 0) continue;
-      w.score(column) += r.score(c);
-      for (int d = 0; d < local::kCount; ++d) {
-        const int other = own_of[static_cast<std::size_t>(d)];
-        if (other >= 0) w.system(column, other) += r.information(c, d);
+    for (const OwnAction& a : of_own.actions) {
+      w.score(a.own) += a.factor * r.score(a.local);
+      for (const OwnAction& b : of_own.actions) {
+        w.system(a.own, b.own) += a.factor * b.factor * r.information(a.local, b.local);
       }
       for (int b = 0; b < t.count; ++b) {
         const Touched& touch = t.columns[static_cast<std::size_t>(b)];
-        w.cross(column, touch.border) += r.information(c, touch.local);
+        w.cross(a.own, touch.border) += a.factor * r.information(a.local, touch.local);
       }
     }
     for (int b = 0; b < t.count; ++b) {
@@ -217,7 +248,12 @@ void Solver::gather(const Segments& segments, std::size_t index) {
 
 void Solver::eliminate(std::size_t index) {
   Eliminated& w = work_[index];
-  const Eigen::LDLT<OwnMatrix> solver(w.system);
+  Eigen::LLT<OwnMatrix> solver(w.system);
+  // Few detections with much noise of the angles: less than nothing. The prior holds.
+  for (double more = 1.0; solver.info() != Eigen::Success && more < 1e9; more *= 10.0) {
+    w.system.diagonal() += more * radars_[index].prior.diagonal().cwiseMax(1e-6);
+    solver.compute(w.system);
+  }
   w.inverse = solver.solve(OwnMatrix::Identity());
   w.solved.noalias() = w.inverse * w.score;
   const auto cross = w.cross.leftCols(border_);
@@ -226,8 +262,7 @@ void Solver::eliminate(std::size_t index) {
     const int width = std::min(32, border_ - first);
     Eigen::Matrix<double, own::kCount, Eigen::Dynamic, Eigen::ColMajor, own::kCount, 32> strip(own::kCount, width);
     strip.noalias() = w.inverse * cross.middleCols(first, width);
-    border_system_.topLeftCorner(border_, border_).middleCols(first, width).noalias() -=
-        cross.transpose() * strip;
+    border_system_.topLeftCorner(border_, border_).middleCols(first, width).noalias() -= cross.transpose() * strip;
   }
 }
 
@@ -239,13 +274,55 @@ void Solver::begin_segment(Segments& segments, int load) const {
   segments.begin(load, noise);
 }
 
-double Solver::common_share(const Segment& segment) const {
-  return share_of_mean(std::max(segment.seconds, 0.1), priors_.common_correlation_s);
+void Solver::begin(double time_s) {
+  // The rotations move with their drift to the new time.
+  const double since_s = time_s - time_s_;
+  for (RadarSolution& r : radars_) {
+    const Eigen::Vector2d turn = r.state.drift_radps * since_s;
+    r.state.sensor_to_vehicle = geometry::so3_exp({0.0, turn(0), turn(1)}) * r.state.sensor_to_vehicle;
+  }
+  time_s_ = time_s;
+  stage_ = Stage::kPrior;
 }
 
-void Solver::solve(Segments& segments) {
+bool Solver::step(Segments& segments) {
+  switch (stage_) {
+    case Stage::kIdle:
+      return true;
+    case Stage::kPrior:
+      if (segments.size() == 0) {
+        stage_ = Stage::kIdle;
+        return true;
+      }
+      begin_border(segments);
+      next_ = 0;
+      stage_ = Stage::kRadars;
+      return false;
+    case Stage::kRadars:
+      gather(segments, next_);
+      eliminate(next_);
+      if (++next_ == radars_.size()) stage_ = Stage::kBorder;
+      return false;
+    case Stage::kBorder:
+      solve_border();
+      next_ = 0;
+      stage_ = Stage::kLearn;
+      return false;
+    case Stage::kLearn:
+      learn(segments, next_);
+      if (++next_ == radars_.size()) stage_ = Stage::kCommit;
+      return false;
+    case Stage::kCommit:
+      learn_common(segments);
+      commit();
+      stage_ = Stage::kIdle;
+      return true;
+  }
+  return true;
+}
+
+void Solver::begin_border(const Segments& segments) {
   const int count = segments.size();
-  if (count == 0) return;
   border_ = shared::kFirstFluctuation + kFluctuations * count;
   border_system_.topLeftCorner(border_, border_).setZero();
   border_score_.head(border_).setZero();
@@ -266,46 +343,155 @@ void Solver::solve(Segments& segments) {
   }
   for (int k = 0; k < kFluctuations; ++k) {
     const double variance = common_.variance[static_cast<std::size_t>(k)];
-    double before = 0.0, length_before = 0.0;
     for (int i = 0; i < count; ++i) {
       const int column = shared::kFirstFluctuation + kFluctuations * i + k;
       if (!(variance > 0.0)) {
         border_system_(column, column) += kFixed;
         continue;
       }
-      const double length = std::max(segments.segment(i).seconds, 0.1), tau = priors_.common_correlation_s;
-      const double own = variance * common_share(segments.segment(i));
-      if (i == 0) {
-        border_system_(column, column) += 1.0 / own;
-      } else {
-        const double shared = variance * square(tau) / (length * length_before) * (1.0 - std::exp(-length / tau)) *
-                              (1.0 - std::exp(-length_before / tau));
-        const double keep = shared / before, noise = 1.0 / std::max(own - keep * shared, 1e-3 * own);
-        border_system_(column, column) += noise;
-        border_system_(column - kFluctuations, column - kFluctuations) += keep * keep * noise;
-        border_system_(column, column - kFluctuations) -= keep * noise;
-        border_system_(column - kFluctuations, column) -= keep * noise;
-      }
-      before = own;
-      length_before = length;
+      const ChainLink link = chain_link(segments, i, priors_.common_correlation_s);
+      const double precision = 1.0 / (variance * link.noise);
+      border_system_(column, column) += precision;
+      if (i == 0) continue;
+      const int last = column - kFluctuations;
+      border_system_(last, last) += link.keep * link.keep * precision;
+      border_system_(column, last) -= link.keep * precision;
+      border_system_(last, column) -= link.keep * precision;
     }
   }
-  for (std::size_t r = 0; r < radars_.size(); ++r) gather(segments, r);
-  for (std::size_t r = 0; r < radars_.size(); ++r) eliminate(r);
+}
+
+void Solver::solve_border() {
   Eigen::Ref<Eigen::MatrixXd> system = border_system_.topLeftCorner(border_, border_);
   auto inverse = border_inverse_.topLeftCorner(border_, border_);
   inverse.setIdentity();
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> solver(system);
   solver.solveInPlace(inverse);
   border_step_.head(border_).noalias() = inverse * border_score_.head(border_);
-  learn(segments);
-  for (std::size_t r = 0; r < radars_.size(); ++r) apply(r);
+}
+
+void Solver::learn(Segments& segments, std::size_t index) {
+  Eliminated& w = work_[index];
+  RadarSolution& radar = radars_[index];
+  const auto cross = w.cross.leftCols(border_);
+  const auto of_border = border_inverse_.topLeftCorner(border_, border_);
+  // Covariance between the own parameters and the border: −inverse·cross·border⁻¹.
+  Eigen::Matrix<double, own::kCount, kMaxShared> with_border;
+  {
+    Eigen::Matrix<double, own::kCount, kMaxShared> by_own;
+    by_own.leftCols(border_).noalias() = w.inverse * cross;
+    with_border.leftCols(border_).noalias() = -by_own.leftCols(border_) * of_border;
+    w.covariance = w.inverse;
+    w.covariance.noalias() -= with_border.leftCols(border_) * by_own.leftCols(border_).transpose();
+    w.step = w.solved;
+    w.step.noalias() -= by_own.leftCols(border_) * border_step_.head(border_);
+  }
+  w.with_shared = with_border.leftCols<shared::kConstants>();
+
+  std::array<double, kFluctuations> sum{};
+  double segments_used = 0.0;
+  for (int i = 0; i < segments.size(); ++i) {
+    Share& share = segments.share(i, index);
+    if (share.seconds < 1.5) continue;
+    const Segment& segment = segments.segment(i);
+    const double relative = own_relative(segment);
+    const Reduced reduced =
+        reduce(share, point(index, segment.middle_s, segment.load), own_variances(radar.fluctuation, segment, share));
+    LocalVector d = LocalVector::Zero();
+    for (const OwnAction& a : OwnActions(drift_time(segment.middle_s)).actions) d(a.local) += a.factor * w.step(a.own);
+    const TouchedColumns t = touched(segment, i);
+    for (int b = 0; b < t.count; ++b) {
+      const Touched& touch = t.columns[static_cast<std::size_t>(b)];
+      d(touch.local) += border_step_(touch.border);
+    }
+    const FluctuationVector mean = reduced.posterior * reduced.raw_score - reduced.gain.transpose() * d;
+    // Variance by the other parameters: the radar's own rotation and scale, and the common fluctuation.
+    FluctuationMatrix of_static;
+    for (int a = 0; a < kFluctuations; ++a) {
+      const int own_a = own_column(kFluctuating[static_cast<std::size_t>(a)]);
+      const int border_a = shared::kFirstFluctuation + kFluctuations * i + a;
+      for (int b = 0; b < kFluctuations; ++b) {
+        const int own_b = own_column(kFluctuating[static_cast<std::size_t>(b)]);
+        const int border_b = shared::kFirstFluctuation + kFluctuations * i + b;
+        of_static(a, b) = w.covariance(own_a, own_b) + with_border(own_a, border_b) + with_border(own_b, border_a) +
+                          of_border(border_a, border_b);
+      }
+    }
+    FluctuationMatrix gain;
+    for (int a = 0; a < kFluctuations; ++a) gain.row(a) = reduced.gain.row(kFluctuating[static_cast<std::size_t>(a)]);
+    const FluctuationMatrix covariance = reduced.posterior + gain.transpose() * of_static * gain;
+    double distance = 0.0, freedom = 0.0;
+    for (int a = 0; a < kFluctuations; ++a) {
+      const double variance = relative * radar.fluctuation.variance[static_cast<std::size_t>(a)];
+      if (!(variance > 0.0)) continue;
+      distance += (square(mean(a)) + covariance(a, a)) / variance;
+      freedom += 1.0;
+    }
+    share.weight = (kSegmentFreedom + freedom) / (kSegmentFreedom + std::max(distance, freedom));
+    for (int a = 0; a < kFluctuations; ++a) {
+      sum[static_cast<std::size_t>(a)] += share.weight * (square(mean(a)) + covariance(a, a)) / relative;
+    }
+    segments_used += 1.0;
+  }
+  if (segments_used >= 2.0) {
+    for (std::size_t k = 0; k < kFluctuations; ++k) {
+      radar.fluctuation.variance[k] = learnt_variance(radar.fluctuation.variance[k], sum[k], segments_used,
+                                                      priors_.own_std[k], priors_.log_fluctuation_std);
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      const int c = own::kPitchDrift + axis;
+      double& variance = radar.drift_variance[static_cast<std::size_t>(axis)];
+      variance = learnt_variance(variance, square(radar.state.drift_radps(axis) + w.step(c)) + w.covariance(c, c), 1.0,
+                                 priors_.drift_std_radps, priors_.log_fluctuation_std);
+    }
+  }
+}
+
+void Solver::learn_common(const Segments& segments) {
+  if (segments.size() < 2) return;
+  const auto inverse = border_inverse_.topLeftCorner(border_, border_);
+  for (int k = 0; k < kFluctuations; ++k) {
+    double& variance = common_.variance[static_cast<std::size_t>(k)];
+    if (!(variance > 0.0)) continue;
+    double sum = 0.0;
+    for (int i = 0; i < segments.size(); ++i) {
+      const int column = shared::kFirstFluctuation + kFluctuations * i + k;
+      const ChainLink link = chain_link(segments, i, priors_.common_correlation_s);
+      double square_of_noise = square(border_step_(column)) + inverse(column, column);
+      if (i > 0) {
+        const int last = column - kFluctuations;
+        square_of_noise += square(link.keep) * (square(border_step_(last)) + inverse(last, last)) -
+                           2.0 * link.keep * (border_step_(column) * border_step_(last) + inverse(column, last));
+      }
+      sum += square_of_noise / link.noise;
+    }
+    variance = learnt_variance(variance, sum, segments.size(), priors_.common_std[static_cast<std::size_t>(k)],
+                               priors_.log_fluctuation_std);
+  }
+}
+
+void Solver::commit() {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const Eliminated& w = work_[r];
+    RadarSolution& radar = radars_[r];
+    OwnState& s = radar.state;
+    s.rate_scale += w.step(own::kRateScale);
+    s.sensor_to_vehicle = geometry::so3_exp(w.step.segment<3>(own::kRotation)) * s.sensor_to_vehicle;
+    s.stamp_s += w.step(own::kStamp);
+    s.position_error_m += w.step.segment<2>(own::kPosition);
+    s.curve_rad += w.step.segment<kKnots>(own::kCurve);
+    s.mirror_share += w.step(own::kMirror);
+    s.drift_radps += w.step.tail<2>();
+    radar.covariance = w.covariance;
+    radar.with_shared = w.with_shared;
+  }
   shared_.speed_scale += border_step_(shared::kSpeedScale);
   shared_.yaw_rate_bias_radps += border_step_(shared::kYawRateBias);
   shared_.yaw_rate_gain += border_step_(shared::kYawRateGain);
   shared_.slip_radps2pm += border_step_(shared::kSlip);
   shared_.pitch_per_acceleration_radps2pm += border_step_(shared::kPitchPerAcceleration);
   shared_.stamp_s += border_step_(shared::kStamp);
+  const auto inverse = border_inverse_.topLeftCorner(border_, border_);
   for (int step = 0; step < shared::kLoads; ++step) {
     shared_.load_rad[static_cast<std::size_t>(step)] += border_step_(shared::kLoad + step);
     load_variance_[static_cast<std::size_t>(step)] = inverse(shared::kLoad + step, shared::kLoad + step);
@@ -313,145 +499,30 @@ void Solver::solve(Segments& segments) {
   shared_covariance_ = inverse.topLeftCorner<shared::kConstants, shared::kConstants>();
 }
 
-void Solver::apply(std::size_t index) {
-  Eliminated& w = work_[index];
-  RadarSolution& radar = radars_[index];
-  const auto cross = w.cross.leftCols(border_);
-  OwnVector back = cross * border_step_.head(border_);
-  const OwnVector step = w.solved - w.inverse * back;
-  OwnState& s = radar.state;
-  s.rate_scale += step(own::kRateScale);
-  s.sensor_to_vehicle = geometry::so3_exp(step.segment<3>(own::kRotation)) * s.sensor_to_vehicle;
-  s.earlier = geometry::so3_exp(step.segment<3>(own::kEarlierRotation)) * s.earlier;
-  s.stamp_s += step(own::kStamp);
-  s.position_error_m += step.segment<2>(own::kPosition);
-  s.curve_rad += step.segment<kKnots>(own::kCurve);
-  s.mirror_share += step(own::kMirror);
-  // Covariance: of the own parameters if the shared ones were known, and by those.
-  Eigen::Matrix<double, own::kCount, kMaxShared> by_shared;
-  by_shared.leftCols(border_).noalias() = cross * border_inverse_.topLeftCorner(border_, border_);
-  OwnMatrix spread;
-  spread.noalias() = by_shared.leftCols(border_) * cross.transpose();
-  radar.covariance = w.inverse + w.inverse * spread * w.inverse;
-  radar.with_shared = -w.inverse * by_shared.leftCols<shared::kConstants>();
-}
-
-void Solver::learn(Segments& segments) {
-  const auto inverse = border_inverse_.topLeftCorner(border_, border_);
-  for (std::size_t r = 0; r < radars_.size(); ++r) {
-    RadarSolution& radar = radars_[r];
-    const Eliminated& w = work_[r];
-    const OwnVector step = w.solved - w.inverse * (w.cross.leftCols(border_) * border_step_.head(border_));
-    Eigen::Matrix<double, kFluctuations, own::kCount> rows;
-    std::array<double, kFluctuations> sum{};
-    double segments_used = 0.0;
-    for (int i = 0; i < segments.size(); ++i) {
-      Share& share = segments.share(i, r);
-      if (share.seconds < 1.5) continue;
-      const Segment& segment = segments.segment(i);
-      const double relative = own_relative(segment);
-      const Reduced reduced =
-          reduce(share, point(r, segment.load, share.is_earlier), own_variances(radar.fluctuation, segment, share));
-      LocalVector d = LocalVector::Zero();
-      for (int c = 0; c < local::kCount; ++c) {
-        const int column = own_column(c, share.is_earlier);
-        if (column >= 0) d(c) += step(column);
-      }
-      const TouchedColumns t = touched(segment, i);
-      for (int b = 0; b < t.count; ++b) {
-        const Touched& touch = t.columns[static_cast<std::size_t>(b)];
-        d(touch.local) += border_step_(touch.border);
-      }
-      const Eigen::Matrix<double, kFluctuations, 1> mean =
-          reduced.posterior * reduced.raw_score - reduced.gain.transpose() * d;
-      // Variance by the parameters: of the radar's own rotation and scale, and of the common fluctuation.
-      FluctuationMatrix of_static;
-      for (int a = 0; a < kFluctuations; ++a) {
-        rows.row(a) = w.inverse.row(own_column(kFluctuating[static_cast<std::size_t>(a)], share.is_earlier));
-      }
-      const Eigen::Matrix<double, kFluctuations, kMaxShared> along = [&] {
-        Eigen::Matrix<double, kFluctuations, kMaxShared> m;
-        m.leftCols(border_).noalias() = -rows * w.cross.leftCols(border_);
-        for (int a = 0; a < kFluctuations; ++a) m(a, shared::kFirstFluctuation + kFluctuations * i + a) += 1.0;
-        return m;
-      }();
-      for (int a = 0; a < kFluctuations; ++a) {
-        for (int b = 0; b < kFluctuations; ++b) {
-          of_static(a, b) = rows(a, own_column(kFluctuating[static_cast<std::size_t>(b)], share.is_earlier));
-        }
-      }
-      of_static.noalias() +=
-          along.leftCols(border_) * inverse * along.leftCols(border_).transpose();
-      FluctuationMatrix gain;
-      for (int a = 0; a < kFluctuations; ++a) gain.row(a) = reduced.gain.row(kFluctuating[static_cast<std::size_t>(a)]);
-      const FluctuationMatrix covariance = reduced.posterior + gain.transpose() * of_static * gain;
-      double distance = 0.0, freedom = 0.0;
-      for (int a = 0; a < kFluctuations; ++a) {
-        const double variance = relative * radar.fluctuation.variance[static_cast<std::size_t>(a)];
-        if (!(variance > 0.0)) continue;
-        distance += (square(mean(a)) + covariance(a, a)) / variance;
-        freedom += 1.0;
-      }
-      share.weight = (kSegmentFreedom + freedom) / (kSegmentFreedom + std::max(distance, freedom));
-      for (int a = 0; a < kFluctuations; ++a) {
-        const auto k = static_cast<std::size_t>(a);
-        sum[k] += share.weight * (square(mean(a)) + covariance(a, a)) / relative;
-      }
-      segments_used += 1.0;
-    }
-    if (segments_used < 2.0) continue;
-    for (std::size_t k = 0; k < kFluctuations; ++k) {
-      radar.fluctuation.variance[k] = learnt_variance(radar.fluctuation.variance[k], sum[k], segments_used,
-                                                      priors_.own_std[k], priors_.log_fluctuation_std);
-    }
-  }
-  for (int k = 0; k < kFluctuations; ++k) {
-    double& variance = common_.variance[static_cast<std::size_t>(k)];
-    if (!(variance > 0.0) || segments.size() < 2) continue;
-    double sum = 0.0, before = 0.0, length_before = 0.0;
-    const double tau = priors_.common_correlation_s;
-    for (int i = 0; i < segments.size(); ++i) {
-      const int column = shared::kFirstFluctuation + kFluctuations * i + k;
-      const double length = std::max(segments.segment(i).seconds, 0.1);
-      const double own = common_share(segments.segment(i));
-      const double mean_square = square(border_step_(column)) + inverse(column, column);
-      if (i == 0) {
-        sum += mean_square / own;
-      } else {
-        const int last = column - kFluctuations;
-        const double shared = square(tau) / (length * length_before) * (1.0 - std::exp(-length / tau)) *
-                              (1.0 - std::exp(-length_before / tau));
-        const double keep = shared / before, noise = std::max(own - keep * shared, 1e-3 * own);
-        const double product = border_step_(column) * border_step_(last) + inverse(column, last);
-        sum += (mean_square - 2.0 * keep * product +
-                keep * keep * (square(border_step_(last)) + inverse(last, last))) /
-               noise;
-      }
-      before = own;
-      length_before = length;
-    }
-    variance = learnt_variance(variance, sum, segments.size(), priors_.common_std[static_cast<std::size_t>(k)],
-                               priors_.log_fluctuation_std);
-  }
-}
-
 LocalMatrix Solver::local_covariance(std::size_t index) const {
   const RadarSolution& radar = radars_[index];
   LocalMatrix p = LocalMatrix::Zero();
   const auto shared_of = [](int c) {
     switch (c) {
-      case local::kSpeedScale: return static_cast<int>(shared::kSpeedScale);
-      case local::kYawRateBias: return static_cast<int>(shared::kYawRateBias);
-      case local::kYawRateGain: return static_cast<int>(shared::kYawRateGain);
-      case local::kSlip: return static_cast<int>(shared::kSlip);
-      case local::kPitchPerAcceleration: return static_cast<int>(shared::kPitchPerAcceleration);
-      case local::kStamp: return static_cast<int>(shared::kStamp);
-      default: return -1;
+      case local::kSpeedScale:
+        return static_cast<int>(shared::kSpeedScale);
+      case local::kYawRateBias:
+        return static_cast<int>(shared::kYawRateBias);
+      case local::kYawRateGain:
+        return static_cast<int>(shared::kYawRateGain);
+      case local::kSlip:
+        return static_cast<int>(shared::kSlip);
+      case local::kPitchPerAcceleration:
+        return static_cast<int>(shared::kPitchPerAcceleration);
+      case local::kStamp:
+        return static_cast<int>(shared::kStamp);
+      default:
+        return -1;
     }
   };
   for (int a = 0; a < local::kCount; ++a) {
     for (int b = 0; b < local::kCount; ++b) {
-      const int oa = own_column(a, false), ob = own_column(b, false), sa = shared_of(a), sb = shared_of(b);
+      const int oa = own_column(a), ob = own_column(b), sa = shared_of(a), sb = shared_of(b);
       if (oa >= 0 && ob >= 0) p(a, b) += radar.covariance(oa, ob);
       if (sa >= 0 && sb >= 0) p(a, b) += shared_covariance_(sa, sb);
       if (oa >= 0 && sb >= 0) p(a, b) += radar.with_shared(oa, sb);

@@ -1,7 +1,7 @@
 // All segments solved together: the parameters of every radar and of the vehicle, and the size of their fluctuations.
 //
 // Each radar's parameters are eliminated on their own, so that the cost is linear in the number of radars; what remains
-// are the vehicle's parameters and the fluctuations that all radars share.
+// are the vehicle's parameters and the fluctuations that all radars share. A solution is made in steps of similar cost.
 #pragma once
 
 #include <array>
@@ -10,43 +10,20 @@
 
 #include <Eigen/Core>
 
+#include "services/alignment_estimator/core/windows/priors.hpp"
 #include "services/alignment_estimator/core/windows/segment.hpp"
 
 namespace boresight::alignment::windows {
 
-/// Priors: standard deviations before any data.
-struct Priors {
-  double speed_scale_std = 0.03;
-  double rate_scale_std = 0.003;
-  double rotation_std_rad = 0.0698;
-  double yaw_rate_bias_std_radps = 0.00175;
-  double yaw_rate_gain_std = 0.03;
-  double slip_std_radps2pm = 0.006;
-  double pitch_per_acceleration_std_radps2pm = 0.006;
-  double common_stamp_std_s = 0.05;
-  double stamp_std_s = 0.02;
-  double position_std_m = 0.03;
-  double curve_std_rad = 0.00262;
-  double curve_length_rad = 0.262;
-  double mirror_share_std = 1.0;
-  double load_std_rad = 0.0105;
-  double step_std_rad = 0.0698;
-  // Fluctuations: medians of their standard deviations, and the standard deviation of the logarithm.
-  std::array<double, kFluctuations> own_std{5e-4, 9e-4, 5e-4};
-  std::array<double, kFluctuations> common_std{1.4e-3, 1.7e-3, 3e-4};
-  double log_fluctuation_std = 1.0;
-  double common_correlation_s = 20.0;
-};
-
 /// Values of a radar's own parameters.
 struct OwnState {
   double rate_scale = 0.0;
-  Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d earlier = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();  ///< at Solver::time_s()
   double stamp_s = 0.0;
   Eigen::Vector2d position_error_m{0.0, 0.0};
   Eigen::Matrix<double, kKnots, 1> curve_rad = Eigen::Matrix<double, kKnots, 1>::Zero();
   double mirror_share = 0.0;
+  Eigen::Vector2d drift_radps{0.0, 0.0};  ///< of pitch and yaw
 };
 
 struct SharedState {
@@ -54,18 +31,19 @@ struct SharedState {
   double pitch_per_acceleration_radps2pm = 0.0, stamp_s = 0.0;
   std::array<double, shared::kLoads> load_rad{};  ///< steps
 };
+using SharedMatrix = Eigen::Matrix<double, shared::kConstants, shared::kConstants>;
 
-/// What is known of a radar, as the drive goes on.
+/// What is known of a radar.
 struct RadarSolution {
   OwnState state;
   OwnMatrix covariance = OwnMatrix::Zero();
   Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared =
       Eigen::Matrix<double, own::kCount, shared::kConstants>::Zero();
   Fluctuation fluctuation;
-  OwnMatrix prior = OwnMatrix::Zero();  ///< precision
-  OwnState prior_state;                 ///< mean
+  std::array<double, 2> drift_variance{};  ///< of the rates of pitch and yaw: learnt
+  OwnMatrix prior = OwnMatrix::Zero();     ///< precision
+  OwnState prior_state;                    ///< mean
   bool has_elevation = true;
-  bool started = false;
 };
 
 class Solver {
@@ -76,49 +54,66 @@ class Solver {
   [[nodiscard]] const RadarSolution& radar(std::size_t i) const { return radars_[i]; }
   [[nodiscard]] SharedState& shared() { return shared_; }
   [[nodiscard]] const SharedState& shared() const { return shared_; }
-  [[nodiscard]] const Eigen::Matrix<double, shared::kConstants, shared::kConstants>& shared_covariance() const {
-    return shared_covariance_;
-  }
+  [[nodiscard]] const SharedMatrix& shared_covariance() const { return shared_covariance_; }
   [[nodiscard]] const Fluctuation& common() const { return common_; }
   [[nodiscard]] double load_variance(int step) const { return load_variance_[static_cast<std::size_t>(step)]; }
   [[nodiscard]] std::size_t size() const { return radars_.size(); }
+  /// Time on the clock of the drive that the rotations belong to.
+  [[nodiscard]] double time_s() const { return time_s_; }
+  [[nodiscard]] const Priors& priors() const { return priors_; }
 
-  /// Sets the prior of a radar: nominal mounting, and its curve's covariance over the knots. Only once.
-  void set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool has_elevation);
-  void set_curve_prior(std::size_t radar, double knot_step_rad);
-  /// The model's point for the scans of a radar now. `load`: number of load steps so far.
-  [[nodiscard]] Point point(std::size_t radar, int load, bool earlier = false) const;
-  /// Covariance of the local parameters of a radar now; of the constants only.
+  /// Sets the prior of a radar: its nominal mounting, and the distance of its curve's knots.
+  void set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool has_elevation, double knot_step_rad);
+  /// The model's point for the scans of a radar at a time of the drive, after so many load steps.
+  [[nodiscard]] Point point(std::size_t radar, double time_s, int load) const;
+  /// Covariance of the local parameters of a radar; of the constants only.
   [[nodiscard]] LocalMatrix local_covariance(std::size_t radar) const;
 
   /// Begins a segment; older ones that are merged lose the deviations from their common mean.
   void begin_segment(Segments& segments, int load) const;
-  /// Solves once, and learns the fluctuations. No allocation.
-  void solve(Segments& segments);
+  /// Begins a new solution for this time, then makes it step by step; true: done. The segments must not change
+  /// meanwhile. No allocation.
+  void begin(double time_s);
+  [[nodiscard]] bool step(Segments& segments);
+  [[nodiscard]] bool busy() const { return stage_ != Stage::kIdle; }
+  void solve(Segments& segments, double time_s) {
+    begin(time_s);
+    while (!step(segments)) {
+    }
+  }
 
  private:
+  enum class Stage { kIdle, kPrior, kRadars, kBorder, kLearn, kCommit };
+  struct Eliminated {
+    OwnMatrix system, inverse;
+    OwnVector score, solved;  ///< solved: system⁻¹·score
+    Eigen::Matrix<double, own::kCount, kMaxShared> cross;
+    OwnVector step;
+    OwnMatrix covariance;
+    Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared;
+  };
+  void begin_border(const Segments& segments);
   void gather(const Segments& segments, std::size_t radar);
   void eliminate(std::size_t radar);
-  void apply(std::size_t radar);
-  void learn(Segments& segments);
-  [[nodiscard]] double common_share(const Segment& segment) const;
+  void solve_border();
+  void learn(Segments& segments, std::size_t radar);
+  void learn_common(const Segments& segments);
+  void commit();
+  /// Time from the solution to a segment, over which a mounting drifts.
+  [[nodiscard]] double drift_time(double middle_s) const;
 
   Priors priors_;
   std::vector<RadarSolution> radars_;
   SharedState shared_;
-  Eigen::Matrix<double, shared::kConstants, shared::kConstants> shared_covariance_;
+  SharedMatrix shared_covariance_;
   std::array<double, shared::kLoads> load_variance_{};
   Fluctuation common_;
+  double time_s_ = 0.0;
 
-  // Work space.
+  // Work space of the solution that is being made.
+  Stage stage_ = Stage::kIdle;
+  std::size_t next_ = 0;
   int border_ = 0;  ///< number of shared columns in use
-  struct Eliminated {
-    OwnMatrix system;
-    OwnVector score;
-    Eigen::Matrix<double, own::kCount, kMaxShared> cross;   ///< then system⁻¹·cross
-    OwnVector solved;                                        ///< system⁻¹·score
-    OwnMatrix inverse;
-  };
   std::vector<Eliminated> work_;
   Eigen::MatrixXd border_system_, border_inverse_;
   Eigen::VectorXd border_score_, border_step_;

@@ -36,14 +36,15 @@ WindowedFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filte
 }
 
 WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const Priors& priors)
-    : config_(config), priors_(priors), solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
+    : config_(config),
+      priors_(priors),
+      solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
       segments_(std::min(vehicle.radars.size(), kMaxRadars)) {
   const std::size_t count = solver_.size();
   radars_.reserve(count);
   for (std::size_t r = 0; r < count; ++r) {
     radars_.emplace_back(vehicle.radars[r], config);
-    solver_.set_prior(r, radars_[r].nominal, true);
-    solver_.set_curve_prior(r, radars_[r].knots.step_rad);
+    solver_.set_prior(r, radars_[r].nominal, true, radars_[r].knots.step_rad);
   }
 }
 
@@ -115,8 +116,7 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   bool first = true;
   for (const Radar& other : radars_) first = first && !other.running;
   if (!sightings_.has_elevation) {
-    solver_.set_prior(index, radar.nominal, false);
-    solver_.set_curve_prior(index, radar.knots.step_rad);
+    solver_.set_prior(index, radar.nominal, false, radar.knots.step_rad);
   }
   solver_.radar(index).state.sensor_to_vehicle = found.sensor_to_vehicle;
   if (first) solver_.shared().speed_scale = found.speed_scale;
@@ -127,7 +127,7 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
 
 void WindowedFilter::begin_block(std::size_t index) {
   Radar& radar = radars_[index];
-  radar.block.clear(solver_.point(index, 0));
+  radar.block.clear(solver_.point(index, driven_s_, 0));
   LocalMatrix p = solver_.local_covariance(index);
   const RadarSolution& solution = solver_.radar(index);
   for (std::size_t k = 0; k < kFluctuations; ++k) {
@@ -169,8 +169,7 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   judgement.height_m = radar.config.mounting_pose.position_m[2];
   judgement.mirror_share = radar.block.point.mirror_share;
   judgement.wide_std_mps = 0.012 * std::abs(ego.speed_mps);
-  const CurveSums sums =
-      windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
+  const CurveSums sums = windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
   radar.efficiency.add(sums.common, elapsed_s);
   windows::add_scan(radar.block, model, sums, variances,
                     {radar.efficiency.of_information(), radar.efficiency.of_score()});
@@ -194,10 +193,12 @@ void WindowedFilter::close_block() {
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if (radars_[r].running && radars_[r].block.scans > 0) segments_.add(r, radars_[r].block);
   }
-  segments_.segment(segments_.size() - 1).seconds += kBlock_s;
+  Segment& latest = segments_.segment(segments_.size() - 1);
+  latest.seconds += kBlock_s;
   driven_s_ += kBlock_s;
+  latest.middle_s = driven_s_ - 0.5 * latest.seconds;
   if (driven_s_ - solved_s_ >= kSolve_s || driven_s_ <= kSolve_s) {
-    solver_.solve(segments_);
+    solver_.solve(segments_, driven_s_);
     solved_s_ = driven_s_;
   }
   for (std::size_t r = 0; r < radars_.size(); ++r) {
@@ -212,7 +213,7 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   const RadarSolution& solution = solver_.radar(index);
   out.state = radar.state;
   out.speed_scale = solver_.shared().speed_scale;
-  out.sensor_to_vehicle = solution.state.sensor_to_vehicle;
+  out.sensor_to_vehicle = solver_.point(index, driven_s_, 0).sensor_to_vehicle;
   out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
   out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
   // The share of images differs with range and road: it is not known better than to this.
@@ -249,9 +250,9 @@ void WindowedFilter::predict(std::size_t index, const ScanDetections& scan, cons
   std::fill_n(out.begin(), count, 0.0);
   if (index >= radars_.size()) return;
   const Radar& radar = radars_[index];
-  const Point point = solver_.point(index, 0);
-  const ScanModel model = model_scan(point, radar.config.mounting_pose.position_m,
-                                     {ego.speed_mps, ego.yaw_rate_radps, 0.0, 0.0});
+  const Point point = solver_.point(index, driven_s_, 0);
+  const ScanModel model =
+      model_scan(point, radar.config.mounting_pose.position_m, {ego.speed_mps, ego.yaw_rate_radps, 0.0, 0.0});
   for (std::size_t i = 0; i < count; ++i) {
     const double mean_cosine = scan.has_elevation ? 1.0 : 1.0 - radar.unknown.at(scan.range_m[i]).lowering;
     out[i] = -mean_cosine * geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]).dot(model.g);
