@@ -12,6 +12,7 @@ struct Priors {
   double speed_scale_std = 0.03;
   double rate_scale_std = 0.003;
   double rotation_std_rad = 0.0698;
+  double turned_std_rad = 0.0175;  ///< of pitch and yaw after a sudden misalignment, as the blocks showed it
   double yaw_rate_bias_std_radps = 0.00175;
   double yaw_rate_gain_std = 0.03;
   double slip_std_radps2pm = 0.006;
@@ -28,7 +29,8 @@ struct Priors {
   std::array<double, kFluctuations> own_std{5e-4, 9e-4, 5e-4};
   std::array<double, kFluctuations> common_std{1.4e-3, 1.7e-3, 3e-4};
   double log_fluctuation_std = 1.0;
-  double common_correlation_s = 20.0;
+  double common_correlation_s = 20.0;  ///< median of their correlation times
+  double log_correlation_std = 0.7;
   // Drift of a mounting over the last `drift_span_s`: median of the standard deviation of its rate.
   double drift_std_radps = 9e-7;  // 0.003 deg/min
   double drift_span_s = 180.0;

@@ -55,6 +55,30 @@ void Segments::forget(std::size_t radar, int first_column, int columns) {
   for (int i = 0; i < size_; ++i) windows::forget(share(i, radar), first_column, columns);
 }
 
+void Segments::forget_latest(double seconds, int first_column, int columns) {
+  double since = 0.0;
+  for (int i = size_ - 1; i >= 0 && since < seconds; --i) {
+    since += segment(i).seconds;
+    for (std::size_t r = 0; r < radars_; ++r) windows::forget(share(i, r), first_column, columns);
+  }
+}
+
+void Segments::forget_first_load() {
+  for (int i = 0; i < size_; ++i) {
+    if (segment(i).load > 0) {
+      --segment(i).load;
+      continue;
+    }
+    for (std::size_t r = 0; r < radars_; ++r) windows::forget(share(i, r), local::kRotation + 1, 1);
+  }
+}
+
+void Segments::remove_load(int load) {
+  for (int i = 0; i < size_; ++i) {
+    if (segment(i).load >= load) --segment(i).load;
+  }
+}
+
 void Segments::drop_latest(std::size_t radar, double seconds) {
   double since = 0.0;
   for (int i = size_ - 1; i >= 0 && since < seconds; --i) {
@@ -82,15 +106,17 @@ void Segments::merge(const MergeNoise& noise) {
 
 void Segments::join(int first, const MergeNoise& noise) {
   const double a_s = segment(first).seconds, b_s = segment(first + 1).seconds;
-  const double of_mean = share_of_mean(std::max(a_s + b_s, 0.1), noise.correlation_s);
   for (const int part : {first, first + 1}) {
     const Segment& of = segment(part);
-    const double common = std::max(share_of_mean(std::max(of.seconds, 0.1), noise.correlation_s) - of_mean, 0.0);
     for (std::size_t r = 0; r < radars_; ++r) {
       Share& s = share(part, r);
       if (s.seconds <= 0.0) continue;
       std::array<double, kFluctuations> deviation = own_variances(noise.own[r], of, s);
       for (std::size_t k = 0; k < kFluctuations; ++k) {
+        const double tau_s = noise.correlation_s[k];
+        const double common = std::max(share_of_mean(std::max(of.seconds, 0.1), tau_s) -
+                                           share_of_mean(std::max(a_s + b_s, 0.1), tau_s),
+                                       0.0);
         deviation[k] = 0.5 * deviation[k] + common * noise.common.variance[k];
       }
       const Reduced reduced = reduce(s, s.point, deviation);

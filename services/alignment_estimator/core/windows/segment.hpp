@@ -28,7 +28,7 @@ struct Fluctuation {
 /// What a merged segment must know: its parts had fluctuations of their own.
 struct MergeNoise {
   Fluctuation common;
-  double correlation_s = 20.0;
+  std::array<double, kFluctuations> correlation_s{20.0, 20.0, 20.0};
   std::array<Fluctuation, kMaxRadars> own{};
 };
 
@@ -57,6 +57,12 @@ class Segments {
   void clear() { size_ = 0; }
   /// Takes away what a radar's shares say about some local parameters: they have changed.
   void forget(std::size_t radar, int first_column, int columns);
+  /// Takes away what all radars said about some local parameters in the last seconds.
+  void forget_latest(double seconds, int first_column, int columns);
+  /// What was seen before the first load step loses its pitch; the others count from there.
+  void forget_first_load();
+  /// There was no load step of this number.
+  void remove_load(int load);
   /// Takes away all that a radar saw in the last seconds.
   void drop_latest(std::size_t radar, double seconds);
   /// Begins a segment after the latest one.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -79,6 +81,7 @@ Solver::Solver(std::size_t radars, const Priors& priors)
       border_inverse_(kMaxShared, kMaxShared),
       border_score_(kMaxShared),
       border_step_(kMaxShared) {
+  correlation_s_.fill(priors.common_correlation_s);
   shared_covariance_.setZero();
   shared_covariance_.diagonal() << square(priors.speed_scale_std), square(priors.yaw_rate_bias_std_radps),
       square(priors.yaw_rate_gain_std), square(priors.slip_std_radps2pm),
@@ -121,12 +124,52 @@ double Solver::drift_time(double middle_s) const {
   return std::max(middle_s - time_s_, -priors_.drift_span_s);
 }
 
+double Solver::load_rad(int steps) const {
+  double sum = shared_.first_load_rad;
+  for (int step = 0; step < steps; ++step) sum += shared_.load_rad[static_cast<std::size_t>(step)];
+  return sum;
+}
+
+void Solver::turn(std::size_t index, const Eigen::Vector3d& turn_vehicle_rad) {
+  stop();
+  RadarSolution& radar = radars_[index];
+  OwnState& s = radar.state;
+  s.sensor_to_vehicle = geometry::so3_exp(turn_vehicle_rad) * s.sensor_to_vehicle;
+  s.drift_radps.setZero();
+  radar.prior_state.sensor_to_vehicle = s.sensor_to_vehicle;
+  radar.drift_variance = {radar.has_elevation ? square(priors_.drift_std_radps) : 0.0, square(priors_.drift_std_radps)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int c = own::kRotation + axis;
+    const double std_rad = axis == 0 ? priors_.rotation_std_rad : priors_.turned_std_rad;
+    const double precision = radar.has_elevation || axis == 2 ? precision_of(std_rad) : kFixed;
+    radar.prior.row(c).setZero();
+    radar.prior.col(c).setZero();
+    radar.prior(c, c) = precision;
+    radar.covariance.row(c).setZero();
+    radar.covariance.col(c).setZero();
+    radar.with_shared.row(c).setZero();
+    radar.covariance(c, c) = 1.0 / precision;
+  }
+}
+
+void Solver::remove_load(int step) {
+  stop();
+  for (int i = step; i + 1 < shared::kLoads; ++i) {
+    shared_.load_rad[static_cast<std::size_t>(i)] = shared_.load_rad[static_cast<std::size_t>(i + 1)];
+  }
+  shared_.load_rad.back() = 0.0;
+}
+
+void Solver::absorb_first_load() {
+  shared_.first_load_rad += shared_.load_rad.front();
+  remove_load(0);
+}
+
 Point Solver::point(std::size_t radar, double time_s, int load) const {
   const OwnState& own = radars_[radar].state;
   Point p;
   const double since_s = drift_time(time_s);
-  double pitch_rad = own.drift_radps(0) * since_s;
-  for (int step = 0; step < load; ++step) pitch_rad += shared_.load_rad[static_cast<std::size_t>(step)];
+  const double pitch_rad = own.drift_radps(0) * since_s + load_rad(load);
   p.speed_scale = shared_.speed_scale;
   p.rate_scale = own.rate_scale;
   p.sensor_to_vehicle = geometry::so3_exp({0.0, pitch_rad, own.drift_radps(1) * since_s}) * own.sensor_to_vehicle;
@@ -269,7 +312,7 @@ void Solver::eliminate(std::size_t index) {
 void Solver::begin_segment(Segments& segments, int load) const {
   MergeNoise noise;
   noise.common = common_;
-  noise.correlation_s = priors_.common_correlation_s;
+  noise.correlation_s = correlation_s_;
   for (std::size_t r = 0; r < radars_.size(); ++r) noise.own[r] = radars_[r].fluctuation;
   segments.begin(load, noise);
 }
@@ -313,6 +356,7 @@ bool Solver::step(Segments& segments) {
       if (++next_ == radars_.size()) stage_ = Stage::kCommit;
       return false;
     case Stage::kCommit:
+      if (std::getenv("LW3")) { std::fprintf(stderr, "solve %.0f load %.3f+%.3f pitch steps", time_s_, 57.3*shared_.load_rad[0], 57.3*border_step_(shared::kLoad)); for (auto& w : work_) std::fprintf(stderr, " %.3f", 57.3*w.step(own::kRotation+1)); std::fprintf(stderr, "\n"); for (int i = 0; i < segments.size(); ++i) { std::fprintf(stderr, " %d/%.0f/%d:%.2f(", segments.segment(i).load, segments.segment(i).seconds, segments.segment(i).level, 57.3 * border_step_(shared::kFirstFluctuation + 3*i+1)); for (std::size_t r = 0; r < radars_.size(); ++r) std::fprintf(stderr, "%.2f,", segments.share(i,r).seconds > 0 ? 57.3/std::sqrt(segments.share(i, r).information(local::kRotation+1, local::kRotation+1)) : 0.0); std::fprintf(stderr, ")"); } std::fprintf(stderr, "\n"); }
       learn_common(segments);
       commit();
       stage_ = Stage::kIdle;
@@ -349,7 +393,7 @@ void Solver::begin_border(const Segments& segments) {
         border_system_(column, column) += kFixed;
         continue;
       }
-      const ChainLink link = chain_link(segments, i, priors_.common_correlation_s);
+      const ChainLink link = chain_link(segments, i, correlation_s_[static_cast<std::size_t>(k)]);
       const double precision = 1.0 / (variance * link.noise);
       border_system_(column, column) += precision;
       if (i == 0) continue;
@@ -453,18 +497,36 @@ void Solver::learn_common(const Segments& segments) {
   for (int k = 0; k < kFluctuations; ++k) {
     double& variance = common_.variance[static_cast<std::size_t>(k)];
     if (!(variance > 0.0)) continue;
+    // Expected log likelihood of the chain with this correlation time, and its sum of squares.
     double sum = 0.0;
-    for (int i = 0; i < segments.size(); ++i) {
-      const int column = shared::kFirstFluctuation + kFluctuations * i + k;
-      const ChainLink link = chain_link(segments, i, priors_.common_correlation_s);
-      double square_of_noise = square(border_step_(column)) + inverse(column, column);
-      if (i > 0) {
-        const int last = column - kFluctuations;
-        square_of_noise += square(link.keep) * (square(border_step_(last)) + inverse(last, last)) -
-                           2.0 * link.keep * (border_step_(column) * border_step_(last) + inverse(column, last));
+    const auto likelihood = [&](double tau_s) {
+      sum = 0.0;
+      double log_noise = 0.0;
+      for (int i = 0; i < segments.size(); ++i) {
+        const int column = shared::kFirstFluctuation + kFluctuations * i + k;
+        const ChainLink link = chain_link(segments, i, tau_s);
+        double square_of_noise = square(border_step_(column)) + inverse(column, column);
+        if (i > 0) {
+          const int last = column - kFluctuations;
+          square_of_noise += square(link.keep) * (square(border_step_(last)) + inverse(last, last)) -
+                             2.0 * link.keep * (border_step_(column) * border_step_(last) + inverse(column, last));
+        }
+        sum += square_of_noise / link.noise;
+        log_noise += std::log(link.noise);
       }
-      sum += square_of_noise / link.noise;
+      return -0.5 * log_noise - 0.5 * sum / variance -
+             0.5 * square(std::log(tau_s / priors_.common_correlation_s) / priors_.log_correlation_std);
+    };
+    double& tau_s = correlation_s_[static_cast<std::size_t>(k)];
+    const double now_s = tau_s;
+    double best = likelihood(now_s);
+    for (const double factor : {0.5, 0.8, 1.25, 2.0}) {
+      const double other_s = std::clamp(now_s * factor, 1.5, 60.0), value = likelihood(other_s);
+      if (value <= best) continue;
+      best = value;
+      tau_s = other_s;
     }
+    (void)likelihood(tau_s);
     variance = learnt_variance(variance, sum, segments.size(), priors_.common_std[static_cast<std::size_t>(k)],
                                priors_.log_fluctuation_std);
   }

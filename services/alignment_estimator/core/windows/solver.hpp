@@ -30,6 +30,7 @@ struct SharedState {
   double speed_scale = 1.0, yaw_rate_bias_radps = 0.0, yaw_rate_gain = 0.0, slip_radps2pm = 0.0;
   double pitch_per_acceleration_radps2pm = 0.0, stamp_s = 0.0;
   std::array<double, shared::kLoads> load_rad{};  ///< steps
+  double first_load_rad = 0.0;                    ///< sum of the steps before those
 };
 using SharedMatrix = Eigen::Matrix<double, shared::kConstants, shared::kConstants>;
 
@@ -56,6 +57,7 @@ class Solver {
   [[nodiscard]] const SharedState& shared() const { return shared_; }
   [[nodiscard]] const SharedMatrix& shared_covariance() const { return shared_covariance_; }
   [[nodiscard]] const Fluctuation& common() const { return common_; }
+  [[nodiscard]] double correlation_s(std::size_t k) const { return correlation_s_[k]; }
   [[nodiscard]] double load_variance(int step) const { return load_variance_[static_cast<std::size_t>(step)]; }
   [[nodiscard]] std::size_t size() const { return radars_.size(); }
   /// Time on the clock of the drive that the rotations belong to.
@@ -75,6 +77,14 @@ class Solver {
   /// meanwhile. No allocation.
   void begin(double time_s);
   [[nodiscard]] bool step(Segments& segments);
+  /// Gives up the solution that is being made.
+  void stop() { stage_ = Stage::kIdle; }
+  /// The radar has been turned: its rotation starts from here, with the variance of the prior.
+  void turn(std::size_t radar, const Eigen::Vector3d& turn_vehicle_rad);
+  /// Removes a load step that did not happen; `first`: the oldest, to which all else is referred from now on.
+  void remove_load(int step);
+  void absorb_first_load();
+  [[nodiscard]] double load_rad(int steps) const;
   [[nodiscard]] bool busy() const { return stage_ != Stage::kIdle; }
   void solve(Segments& segments, double time_s) {
     begin(time_s);
@@ -108,6 +118,7 @@ class Solver {
   SharedMatrix shared_covariance_;
   std::array<double, shared::kLoads> load_variance_{};
   Fluctuation common_;
+  std::array<double, kFluctuations> correlation_s_;
   double time_s_ = 0.0;
 
   // Work space of the solution that is being made.

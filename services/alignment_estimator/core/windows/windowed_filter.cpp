@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include <Eigen/Eigenvalues>
 
@@ -20,6 +22,10 @@ constexpr double kMaxGap_s = 1.0;
 constexpr double kInlierMemory_s = 10.0, kNoiseMemory_s = 60.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 5.0;
+constexpr double kDropped_s = 7.0;  ///< of driving before a change is reported: they are from both sides of it
+constexpr std::size_t kWindowsToSettle = 15;
+constexpr double kSettledYaw_rad = 0.0052, kWait_s = 45.0;
+constexpr double kStopped_mps = 0.6;
 /// Largest standard deviations of scale and rotation that widen the gate of a running radar.
 constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
 
@@ -39,8 +45,12 @@ WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig&
     : config_(config),
       priors_(priors),
       solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
-      segments_(std::min(vehicle.radars.size(), kMaxRadars)) {
+      segments_(std::min(vehicle.radars.size(), kMaxRadars)),
+      changes_(std::min(vehicle.radars.size(), kMaxRadars), change_config_),
+      load_watch_(load_config_) {
   const std::size_t count = solver_.size();
+  deviations_.resize(count);
+  verdicts_.resize(count);
   radars_.reserve(count);
   for (std::size_t r = 0; r < count; ++r) {
     radars_.emplace_back(vehicle.radars[r], config);
@@ -65,6 +75,8 @@ void WindowedFilter::process(std::size_t index, const ScanDetections& scan, cons
   const double since_s = radar.last_time_ns == 0 ? 0.0 : seconds(scan.time_ns - radar.last_time_ns);
   const double elapsed_s = since_s > 0.0 && since_s < kMaxGap_s ? since_s : radar.config.cycle_time_s;
   radar.last_time_ns = scan.time_ns;
+  if (solver_.busy()) (void)solver_.step(segments_);
+  if (ego.valid && !ego.stale && std::abs(ego.speed_mps) < kStopped_mps) has_stopped_ = true;
   if (!usable(ego)) {
     radar.state = std::max(radar.state, AlignmentState::kWaiting);
     return;
@@ -127,7 +139,7 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
 
 void WindowedFilter::begin_block(std::size_t index) {
   Radar& radar = radars_[index];
-  radar.block.clear(solver_.point(index, driven_s_, 0));
+  radar.block.clear(solver_.point(index, driven_s_, load_));
   LocalMatrix p = solver_.local_covariance(index);
   const RadarSolution& solution = solver_.radar(index);
   for (std::size_t k = 0; k < kFluctuations; ++k) {
@@ -182,28 +194,113 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   radar.detections_used += static_cast<std::uint64_t>(sums.common.inliers);
 }
 
+bool WindowedFilter::settled(std::size_t index) const {
+  const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
+  return radars_[index].running && changes_.windows(index) >= kWindowsToSettle &&
+         yaw_variance < square(kSettledYaw_rad);
+}
+
 void WindowedFilter::close_block() {
   has_block_ = false;
   bool any = false;
   for (const Radar& radar : radars_) any = any || (radar.running && radar.block.scans > 0);
   if (!any) return;
-  if (segments_.size() == 0 || segments_.segment(segments_.size() - 1).seconds >= kSegment_s - 0.5 * kBlock_s) {
-    solver_.begin_segment(segments_, 0);
-  }
+  while (solver_.busy()) (void)solver_.step(segments_);
+  judge_block();
+  const bool due = segments_.size() == 0 ||
+                   segments_.segment(segments_.size() - 1).seconds >= kSegment_s - 0.5 * kBlock_s ||
+                   segments_.segment(segments_.size() - 1).load != load_;
+  if (due) solver_.begin_segment(segments_, load_);
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    if (radars_[r].running && radars_[r].block.scans > 0) segments_.add(r, radars_[r].block);
+    if (radars_[r].running && radars_[r].block.scans > 0 && !verdicts_[r].suspect) segments_.add(r, radars_[r].block);
   }
   Segment& latest = segments_.segment(segments_.size() - 1);
   latest.seconds += kBlock_s;
   driven_s_ += kBlock_s;
   latest.middle_s = driven_s_ - 0.5 * latest.seconds;
+  decide_load();
   if (driven_s_ - solved_s_ >= kSolve_s || driven_s_ <= kSolve_s) {
-    solver_.solve(segments_, driven_s_);
+    solver_.begin(driven_s_);
     solved_s_ = driven_s_;
+    // At the start every second counts.
+    while (driven_s_ <= kSolve_s && !solver_.step(segments_)) {
+    }
   }
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if (radars_[r].running) begin_block(r);
   }
+}
+
+void WindowedFilter::judge_block() {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const RadarSolution& s = solver_.radar(r);
+    deviations_[r] = {};
+    if (!radars_[r].running) continue;
+    deviations_[r] =
+        deviation_of(radars_[r].block, s.covariance(own::kRateScale, own::kRateScale) + s.fluctuation.variance[2],
+                     s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
+                     change_config_);
+  }
+  if (std::getenv("LW2")) for (std::size_t r = 0; r < radars_.size(); ++r) { const Block& b = radars_[r].block; if (b.scans == 0) continue; const int p = local::kRotation + 1; std::fprintf(stderr, "%.0f r%zu narrow %.3f (%.3f) wide %.3f  dev %.3f\n", driven_s_, r, 57.3 * b.score(p) / b.information(p, p), 57.3 / std::sqrt(b.information(p, p)), 57.3 * b.wide_score(2) / b.wide_information(2, 2), 57.3 * deviations_[r].value(0)); }
+  changes_.judge(deviations_, verdicts_);
+  bool all_settled = true;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (!settled(r) || driven_s_ < kWait_s) {
+      all_settled = all_settled && !radars_[r].running;
+      verdicts_[r].suspect = verdicts_[r].changed = false;
+    }
+    if (verdicts_[r].changed) take_change(r);
+  }
+  if (!all_settled || load_since_s_ >= 0.0) return;
+  const LoadVerdict verdict = load_watch_.judge(deviations_);
+  if (verdict.suspect) {
+    for (ChangeVerdict& v : verdicts_) v.suspect = true;
+  }
+  if (!verdict.stands_out && !has_stopped_) return;
+  if (load_ == shared::kLoads) {
+    segments_.forget_first_load();
+    solver_.absorb_first_load();
+    --load_;
+  }
+  ++load_;
+  load_since_s_ = driven_s_;
+  if (verdict.stands_out && !has_stopped_) {
+    // They are from both sides of the step.
+    segments_.forget_latest(static_cast<double>(LoadWatch::kBlocks) + kSegment_s, local::kRotation + 1, 1);
+  }
+  has_stopped_ = false;
+  load_watch_.restart();
+}
+
+void WindowedFilter::take_change(std::size_t index) {
+  Radar& radar = radars_[index];
+  const Eigen::Vector3d turn(0.0, verdicts_[index].turn_rad(0), verdicts_[index].turn_rad(1));
+  solver_.turn(index, turn);
+  segments_.drop_latest(index, kDropped_s);
+  segments_.forget(index, local::kRotation, 3);
+  changes_.restart(index);
+  verdicts_[index].suspect = true;
+  ++radar.step_change.count;
+  radar.step_change.time_ns = radar.last_time_ns;
+  for (int i = 0; i < 3; ++i)
+    radar.step_change.rotation_vehicle_rad[static_cast<std::size_t>(i)] = static_cast<float>(turn(i));
+  solved_s_ = -kSolve_s;  // solve at once
+}
+
+void WindowedFilter::decide_load() {
+  if (load_since_s_ < 0.0 || driven_s_ - load_since_s_ < load_config_.watch_s) return;
+  const int step = load_ - 1;
+  const double size = solver_.shared().load_rad[static_cast<std::size_t>(step)];
+  if (std::getenv("LW")) std::fprintf(stderr, "decide at %.0f size %.3f std %.3f\n", driven_s_, size * 57.3, 57.3 * std::sqrt(solver_.load_variance(step)));
+  const double limit = std::max(load_config_.least_rad, load_config_.stds * std::sqrt(solver_.load_variance(step)));
+  if (std::abs(size) > limit) {
+    ++load_changes_;
+  } else {
+    segments_.remove_load(load_);
+    solver_.remove_load(step);
+    --load_;
+  }
+  load_since_s_ = -1.0;
 }
 
 RadarEstimate WindowedFilter::estimate(std::size_t index) const {
@@ -213,7 +310,10 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   const RadarSolution& solution = solver_.radar(index);
   out.state = radar.state;
   out.speed_scale = solver_.shared().speed_scale;
-  out.sensor_to_vehicle = solver_.point(index, driven_s_, 0).sensor_to_vehicle;
+  // The mounting, without the load of the car.
+  out.sensor_to_vehicle = geometry::so3_exp({0.0, -solver_.load_rad(load_), 0.0}) *
+                          solver_.point(index, driven_s_, load_).sensor_to_vehicle;
+  out.step_change = radar.step_change;
   out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
   out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
   // The share of images differs with range and road: it is not known better than to this.
@@ -250,7 +350,7 @@ void WindowedFilter::predict(std::size_t index, const ScanDetections& scan, cons
   std::fill_n(out.begin(), count, 0.0);
   if (index >= radars_.size()) return;
   const Radar& radar = radars_[index];
-  const Point point = solver_.point(index, driven_s_, 0);
+  const Point point = solver_.point(index, driven_s_, load_);
   const ScanModel model =
       model_scan(point, radar.config.mounting_pose.position_m, {ego.speed_mps, ego.yaw_rate_radps, 0.0, 0.0});
   for (std::size_t i = 0; i < count; ++i) {

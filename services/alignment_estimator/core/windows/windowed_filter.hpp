@@ -11,6 +11,8 @@
 #include "services/alignment_estimator/core/filter/graduated_start.hpp"
 #include "services/alignment_estimator/core/filter/noise_scale.hpp"
 #include "services/alignment_estimator/core/method.hpp"
+#include "services/alignment_estimator/core/windows/change_monitor.hpp"
+#include "services/alignment_estimator/core/windows/load_watch.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -27,6 +29,8 @@ class WindowedFilter : public Method {
                std::span<double> out) const override;
 
   [[nodiscard]] const windows::Solver& solver() const { return solver_; }
+  [[nodiscard]] int load_changes() const { return load_changes_; }
+  [[nodiscard]] double load_rad() const { return solver_.load_rad(load_); }
 
  private:
   struct Radar {
@@ -46,6 +50,7 @@ class WindowedFilter : public Method {
     double seconds_of_drive = 0.0;
     double inlier_ratio = -1.0;
     std::uint64_t scans_used = 0, detections_used = 0;
+    AlignmentStepChange step_change{};
     Radar(const RadarConfig& radar, const FilterConfig& filter);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
@@ -54,12 +59,26 @@ class WindowedFilter : public Method {
   void update(std::size_t radar, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s);
   void close_block();
   void begin_block(std::size_t radar);
+  void judge_block();
+  void take_change(std::size_t radar);
+  void decide_load();
+  [[nodiscard]] bool settled(std::size_t radar) const;
 
   FilterConfig config_;
   windows::Priors priors_;
   std::vector<Radar> radars_;
   windows::Solver solver_;
   windows::Segments segments_;
+  windows::ChangeConfig change_config_;
+  windows::LoadConfig load_config_;
+  windows::ChangeMonitor changes_;
+  windows::LoadWatch load_watch_;
+  std::vector<windows::Deviation2> deviations_;
+  std::vector<windows::ChangeVerdict> verdicts_;
+  int load_ = 0;                ///< load steps so far, with one that is being judged
+  double load_since_s_ = -1.0;  ///< driving time at which that one began
+  bool has_stopped_ = false;
+  int load_changes_ = 0;
   EgoTrend trend_;
   Sightings sightings_;
   std::int64_t block_start_ns_ = 0;

@@ -28,6 +28,13 @@ int main(int argc, char** argv) {
     auto& c = spec.real_car;
     if (kind == "disturbed") spec = bench::disturbed_drive(simulator::RoadKind::kMixed, duration, seed + static_cast<std::uint64_t>(d));
     if (kind == "real_car_flat") { c = preset; c.load_pitch_rad = 0; c.road_mirror_share = 0; spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
+    const bool with_event = kind == "step_yaw" || kind == "step_pitch" || kind == "load";
+    if (with_event || kind == "real_car_load") { c = preset; c.load_pitch_rad = kind.find("load") != std::string::npos ? 0.8 / 57.2958 : 0.0; c.load_time_s = 90; spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
+    const std::size_t turned = static_cast<std::size_t>(d) % 4;
+    const double sign = d / 4 % 2 ? 1.0 : -1.0;
+    if (kind == "step_yaw") spec.step_changes.push_back({91.0, turned, {0, 0, sign / 57.2958}});
+    if (kind == "step_pitch") spec.step_changes.push_back({91.0, turned, {0, sign * 2.0 / 57.2958, 0}});
+    if (kind == "drift") for (int i = 0; i < 180; ++i) spec.step_changes.push_back({1.0 + i, turned, {0, 0, sign * 0.4 / 180 / 57.2958 * (i ? 1 : 1)}});
     if (kind == "body") { spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
     if (kind == "real_car") { c = preset; c.load_pitch_rad = 0; spec.body_pitch_std_rad = 0.0052; spec.body_pitch_per_acceleration_radps2pm = 0.0035; }
     if (kind == "scale") c.range_rate_scale = preset.range_rate_scale;
@@ -41,15 +48,25 @@ int main(int argc, char** argv) {
     for (const auto& [name, m] : alignment::kMethodNames) if (name == which) config.method = m;
     bench::RunOptions options;
     options.snapshot_period_s = 60.0;
+    static int loads = 0;
+    static double load_deg = 0, load_at = 0;
+    if (!std::getenv("VERBOSE")) options.look = [&](const alignment::Method& m, double t) {
+      if (const auto* w = dynamic_cast<const alignment::WindowedFilter*>(&m)) {
+        if (w->load_changes() != loads) load_at = t;
+        loads = w->load_changes();
+        load_deg = w->load_rad() * 57.2958;
+      }
+    };
+    options.snapshot_period_s = 1.0;
     if (std::getenv("VERBOSE")) options.look = [&](const alignment::Method& m, double t) {
       const auto* w = dynamic_cast<const alignment::WindowedFilter*>(&m);
       static double next = 0.0;
       if (!w || t < next) return;
       next = t + std::atof(std::getenv("VERBOSE"));
       const auto& s = w->solver();
-      std::printf("t %.1f k %.6f b %.4f g %.4f c %.5f dive %.5f tau %.4f common yaw %.4f pitch %.4f scale %.6f\n", t, s.shared().speed_scale,
+      std::printf("load %.3f t %.1f k %.6f b %.4f g %.4f c %.5f dive %.5f tau %.4f common yaw %.4f (%.1f s) pitch %.4f (%.1f s) scale %.6f (%.1f s)\n", w->load_rad() * 57.3, t, s.shared().speed_scale,
                   s.shared().yaw_rate_bias_radps * 57.3, s.shared().yaw_rate_gain, s.shared().slip_radps2pm, s.shared().pitch_per_acceleration_radps2pm,
-                  s.shared().stamp_s, 57.3 * std::sqrt(s.common().variance[0]), 57.3 * std::sqrt(s.common().variance[1]), std::sqrt(s.common().variance[2]));
+                  s.shared().stamp_s, 57.3 * std::sqrt(s.common().variance[0]), s.correlation_s(0), 57.3 * std::sqrt(s.common().variance[1]), s.correlation_s(1), std::sqrt(s.common().variance[2]), s.correlation_s(2));
       for (std::size_t r = 0; r < s.size(); ++r) {
         const auto& q = s.radar(r);
         std::printf("   radar %zu scale %+.5f tau %.4f pos %.3f %.3f mirror %.2f curve %.3f own yaw %.4f pitch %.4f scale %.6f sd yaw %.4f\n", r, q.state.rate_scale, q.state.stamp_s,
@@ -59,6 +76,9 @@ int main(int argc, char** argv) {
     };
     const auto run = bench::run_drive(spec, [&](const VehicleConfig& v) { return alignment::make_method(v, config); }, options);
     changes += static_cast<int>(run.step_changes.size());
+    for (const auto& s : run.step_changes) std::printf("  change of radar %zu at %.1f s%s\n", s.radar, s.time_s, with_event && s.radar == turned ? " (turned)" : "");
+    if (loads) std::printf("  load changes %d: %.3f deg, first seen %.1f s\n", loads, load_deg, load_at);
+    loads = 0;
     std::printf("drive %d:", d);
     for (const auto& r : run.last().radars) {
       std::printf("  yaw %+.4f±%.4f pitch %+.3f±%.3f roll %+.2f±%.2f |", r.error(3) * 57.3, r.std(3) * 57.3, r.error(2) * 57.3, r.std(2) * 57.3, r.error(1) * 57.3, r.std(1) * 57.3);

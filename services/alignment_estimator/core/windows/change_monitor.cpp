@@ -1,0 +1,106 @@
+#include "services/alignment_estimator/core/windows/change_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "interfaces/messages/header.hpp"
+#include "services/alignment_estimator/core/filter/common_mode.hpp"
+
+namespace boresight::alignment::windows {
+
+Deviation2 deviation_of(const Block& block, double scale_variance, double roll_variance, double rotation_variance,
+                        bool has_elevation, const ChangeConfig& config) {
+  Deviation2 out;
+  if (block.scans == 0 || block.stationary < config.least_detections ||
+      block.fastest_turn_radps > config.most_turn_radps) {
+    return out;
+  }
+  Eigen::Matrix4d information = block.wide_information;
+  const double known = 1e12;
+  information.diagonal() += Eigen::Vector4d(1.0 / std::max(scale_variance, 1e-12),
+                                            has_elevation ? 1.0 / std::max(roll_variance, 1e-12) : known,
+                                            has_elevation ? 1.0 / rotation_variance : known, 1.0 / rotation_variance);
+  const Eigen::Matrix4d covariance = information.inverse();
+  const Eigen::Vector4d turn = covariance * block.wide_score;
+  out.value = turn.tail<2>();
+  out.std = covariance.diagonal().tail<2>().cwiseMax(0.0).cwiseSqrt();
+  out.valid = out.value.allFinite();
+  return out;
+}
+
+double ChangeMonitor::scatter(const Radar& radar, std::size_t axis) const {
+  constexpr double kPriorWindows = 10.0;
+  const double prior = axis == 0 ? config_.pitch_scatter_rad : config_.yaw_scatter_rad;
+  if (radar.history_size == 0) return prior;
+  std::array<double, kHistory> sorted = radar.history[axis];
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(radar.history_size / 2);
+  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(radar.history_size));
+  const double windows = static_cast<double>(radar.history_size);
+  return (*middle / 0.6745 * windows + kPriorWindows * prior) / (windows + kPriorWindows);
+}
+
+void ChangeMonitor::restart(std::size_t index) {
+  Radar& radar = radars_[index];
+  radar.size = radar.next = 0;
+}
+
+void ChangeMonitor::judge(const std::vector<Deviation2>& deviations, std::vector<ChangeVerdict>& verdicts) {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    verdicts[r] = {};
+    if (!deviations[r].valid) continue;
+    Radar& radar = radars_[r];
+    const Eigen::Vector2d value = deviations[r].value;
+    Eigen::Vector2d common = Eigen::Vector2d::Zero();
+    for (int axis = 0; axis < 2; ++axis) {
+      std::array<Deviation, kMaxRadars> others;
+      std::size_t count = 0;
+      for (std::size_t o = 0; o < radars_.size(); ++o) {
+        if (o == r || !deviations[o].valid) continue;
+        others[count++] = {deviations[o].value(axis), deviations[o].std(axis) * deviations[o].std(axis)};
+      }
+      common(axis) = common_mode({others.data(), count}, value(axis)).value_rad;
+    }
+    radar.value[radar.next] = value;
+    radar.own[radar.next] = value - common;
+    radar.std[radar.next] = deviations[r].std;
+    radar.next = (radar.next + 1) % kBlocks;
+    radar.size = std::min(radar.size + 1, kBlocks);
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero(), own_mean = mean;
+    for (std::size_t i = 0; i < radar.size; ++i) {
+      mean += radar.value[i] / static_cast<double>(radar.size);
+      own_mean += radar.own[i] / static_cast<double>(radar.size);
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double least = axis == 0 ? config_.pitch_rad : config_.yaw_rad;
+      const double limit = std::max(least, config_.scatter_factor * scatter(radar, a));
+      const double own = value(axis) - common(axis);
+      verdicts[r].suspect |= std::abs(value(axis)) > limit && std::abs(own) > 0.7 * limit;
+      if (radar.size < kBlocks || !(deviations[r].std(axis) < 0.5 * least)) continue;
+      bool same_sign = true;
+      std::size_t large = 0;
+      for (const Eigen::Vector2d& one : radar.value) {
+        same_sign &= one(axis) * mean(axis) > 0.0;
+        large += std::abs(one(axis)) > 0.5 * limit ? 1 : 0;
+      }
+      verdicts[r].changed |=
+          std::abs(mean(axis)) > limit && std::abs(own_mean(axis)) > limit && same_sign && large + 1 >= kBlocks;
+    }
+    if (verdicts[r].changed) {
+      // The first of the blocks may be from before the change.
+      for (std::size_t back = 1; back <= 3; ++back) {
+        verdicts[r].turn_rad += radar.value[(radar.next + kBlocks - back) % kBlocks] / 3.0;
+      }
+    } else if (radar.size == kBlocks) {
+      for (std::size_t a = 0; a < 2; ++a) {
+        radar.history[a][radar.history_next] = std::abs(mean(static_cast<int>(a)));
+      }
+      radar.history_next = (radar.history_next + 1) % kHistory;
+      radar.history_size = std::min(radar.history_size + 1, kHistory);
+    }
+  }
+}
+
+}  // namespace boresight::alignment::windows

@@ -1,0 +1,66 @@
+// Sudden misalignment of one radar: what its own blocks say, against the scatter that they have shown so far and
+// against what the other radars say at the same time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "services/alignment_estimator/core/windows/block.hpp"
+
+namespace boresight::alignment::windows {
+
+struct ChangeConfig {
+  double yaw_rad = 0.00785;          ///< smallest change that is reported, 0.45°
+  double pitch_rad = 0.0157;         ///< 0.9°
+  double scatter_factor = 6.5;       ///< a change exceeds the scatter of the means of earlier blocks by this
+  double yaw_scatter_rad = 0.00105;  ///< scatter before any block, 0.06°
+  double pitch_scatter_rad = 0.0035;
+  double least_detections = 50.0;  ///< of a block, stationary
+  double most_turn_radps = 0.14;   ///< hard turns test stamps and positions, not the mounting
+};
+
+/// What one block of one radar says about its rotation, with all else known to `known`.
+struct Deviation2 {
+  Eigen::Vector2d value = Eigen::Vector2d::Zero();  ///< pitch and yaw (rad)
+  Eigen::Vector2d std = Eigen::Vector2d::Zero();
+  bool valid = false;
+};
+
+/// Variances of rate scale, roll, and of pitch and yaw before the block.
+[[nodiscard]] Deviation2 deviation_of(const Block& block, double scale_variance, double roll_variance,
+                                      double rotation_variance, bool has_elevation, const ChangeConfig& config);
+
+struct ChangeVerdict {
+  bool suspect = false;  ///< the block must not be learnt from
+  bool changed = false;
+  Eigen::Vector2d turn_rad = Eigen::Vector2d::Zero();  ///< pitch and yaw of the change
+};
+
+class ChangeMonitor {
+ public:
+  static constexpr std::size_t kBlocks = 5;
+  ChangeMonitor(std::size_t radars, const ChangeConfig& config) : config_(config), radars_(radars) {}
+  /// Judges the latest block of every radar.
+  void judge(const std::vector<Deviation2>& deviations, std::vector<ChangeVerdict>& verdicts);
+  /// Number of judged windows of a radar.
+  [[nodiscard]] std::size_t windows(std::size_t radar) const { return radars_[radar].history_size; }
+  void restart(std::size_t radar);
+
+ private:
+  static constexpr std::size_t kHistory = 150;
+  struct Radar {
+    std::array<Eigen::Vector2d, kBlocks> value, own, std;
+    std::size_t size = 0, next = 0;
+    std::array<std::array<double, kHistory>, 2> history{};
+    std::size_t history_size = 0, history_next = 0;
+  };
+  [[nodiscard]] double scatter(const Radar& radar, std::size_t axis) const;
+
+  ChangeConfig config_;
+  std::vector<Radar> radars_;
+};
+
+}  // namespace boresight::alignment::windows
