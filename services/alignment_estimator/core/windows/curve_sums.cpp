@@ -28,8 +28,10 @@ Image image_in_road(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double r
   const double z = judgement.up.dot(u);
   if (!(judgement.height_m > 0.0) || judgement.height_m + range_m * z >= 0.0) return {};
   const double image = -z - 2.0 * judgement.height_m / range_m;
-  const double across = std::sqrt(std::max(1.0 - z * z, 1e-6)),
-               across_image = std::sqrt(std::max(1.0 - image * image, 1e-6));
+  // Steeper than a radar of the road sees.
+  constexpr double kSteepest = 0.5;
+  if (std::abs(image) > kSteepest || z < -kSteepest) return {};
+  const double across = std::sqrt(1.0 - z * z), across_image = std::sqrt(1.0 - image * image);
   const double upward = judgement.up.dot(g), forward = (u.dot(g) - z * upward) / across;
   return {-(across_image - across) * forward - (image - z) * upward,
           -(image * across / across_image + z) * forward + 2.0 * across * upward};

@@ -50,8 +50,10 @@ LoadVerdict LoadWatch::judge(const std::vector<Deviation2>& deviations) {
   LoadVerdict verdict;
   verdict.suspect = large_ >= 2 && large_ <= 2 * kBlocks;
   verdict.stands_out = same_sign && std::abs(latest) > limit && spread < 0.5 * std::abs(latest) &&
-                          apart < 0.7 * std::abs(latest) + kSpread_rad;
-  if (std::getenv("LW")) std::fprintf(stderr, "m %.3f latest %.3f limit %.3f spread %.3f apart %.3f large %zu %d\n", mean*57.3, latest*57.3, limit*57.3, spread*57.3, apart*57.3, large_, verdict.stands_out);
+                       apart < 0.7 * std::abs(latest) + kSpread_rad;
+  if (std::getenv("LW"))
+    std::fprintf(stderr, "m %.3f latest %.3f limit %.3f spread %.3f apart %.3f large %zu %d\n", mean * 57.3,
+                 latest * 57.3, limit * 57.3, spread * 57.3, apart * 57.3, large_, verdict.stands_out);
   if (!verdict.stands_out && large_ == 0) {
     history_[history_next_] = std::abs(latest);
     history_next_ = (history_next_ + 1) % kHistory;

@@ -11,12 +11,12 @@
 namespace boresight::alignment::windows {
 
 struct LoadConfig {
-  double least_rad = 0.00436;   ///< smallest change that is reported, 0.25°
-  double stds = 3.0;            ///< and in its own std
-  double watch_s = 14.0;        ///< driving time until the decision
+  double least_rad = 0.00436;    ///< smallest change that is reported, 0.25°
+  double stds = 3.0;             ///< and in its own std
+  double watch_s = 14.0;         ///< driving time until the decision
   double scatter_rad = 0.00175;  ///< of the means of the common pitch before any block, 0.1°
   double scatter_factor = 4.0;   ///< a mean that stands out is larger than their scatter by this
-  double settle_s = 25.0;       ///< driving time before the first step is allowed
+  double settle_s = 25.0;        ///< driving time before the first step is allowed
 };
 
 struct LoadVerdict {

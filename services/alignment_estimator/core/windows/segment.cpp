@@ -114,9 +114,8 @@ void Segments::join(int first, const MergeNoise& noise) {
       std::array<double, kFluctuations> deviation = own_variances(noise.own[r], of, s);
       for (std::size_t k = 0; k < kFluctuations; ++k) {
         const double tau_s = noise.correlation_s[k];
-        const double common = std::max(share_of_mean(std::max(of.seconds, 0.1), tau_s) -
-                                           share_of_mean(std::max(a_s + b_s, 0.1), tau_s),
-                                       0.0);
+        const double common = std::max(
+            share_of_mean(std::max(of.seconds, 0.1), tau_s) - share_of_mean(std::max(a_s + b_s, 0.1), tau_s), 0.0);
         deviation[k] = 0.5 * deviation[k] + common * noise.common.variance[k];
       }
       const Reduced reduced = reduce(s, s.point, deviation);

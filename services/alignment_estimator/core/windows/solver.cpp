@@ -197,6 +197,42 @@ int own_column(int local) {
   return -1;
 }
 
+/// Where the others stand among the vehicle's.
+int shared_column(int local) {
+  switch (local) {
+    case local::kSpeedScale:
+      return shared::kSpeedScale;
+    case local::kYawRateBias:
+      return shared::kYawRateBias;
+    case local::kYawRateGain:
+      return shared::kYawRateGain;
+    case local::kSlip:
+      return shared::kSlip;
+    case local::kPitchPerAcceleration:
+      return shared::kPitchPerAcceleration;
+    default:
+      return -1;
+  }
+}
+
+/// Covariance of the local parameters. The stamp is the sum of one of the radar and one of the vehicle.
+LocalMatrix covariance_of_constants(const OwnMatrix& own,
+                                    const Eigen::Matrix<double, own::kCount, shared::kConstants>& cross,
+                                    const SharedMatrix& shared) {
+  LocalMatrix p = LocalMatrix::Zero();
+  for (int a = 0; a < local::kCount; ++a) {
+    const int oa = own_column(a), sa = a == local::kStamp ? static_cast<int>(shared::kStamp) : shared_column(a);
+    for (int b = 0; b < local::kCount; ++b) {
+      const int ob = own_column(b), sb = b == local::kStamp ? static_cast<int>(shared::kStamp) : shared_column(b);
+      if (oa >= 0 && ob >= 0) p(a, b) += own(oa, ob);
+      if (sa >= 0 && sb >= 0) p(a, b) += shared(sa, sb);
+      if (oa >= 0 && sb >= 0) p(a, b) += cross(oa, sb);
+      if (sa >= 0 && ob >= 0) p(a, b) += cross(ob, sa);
+    }
+  }
+  return p;
+}
+
 /// A radar's own parameter and the local one that it acts on; the drifts act on the rotation.
 struct OwnAction {
   int own, local;
@@ -356,7 +392,23 @@ bool Solver::step(Segments& segments) {
       if (++next_ == radars_.size()) stage_ = Stage::kCommit;
       return false;
     case Stage::kCommit:
-      if (std::getenv("LW3")) { std::fprintf(stderr, "solve %.0f load %.3f+%.3f pitch steps", time_s_, 57.3*shared_.load_rad[0], 57.3*border_step_(shared::kLoad)); for (auto& w : work_) std::fprintf(stderr, " %.3f", 57.3*w.step(own::kRotation+1)); std::fprintf(stderr, "\n"); for (int i = 0; i < segments.size(); ++i) { std::fprintf(stderr, " %d/%.0f/%d:%.2f(", segments.segment(i).load, segments.segment(i).seconds, segments.segment(i).level, 57.3 * border_step_(shared::kFirstFluctuation + 3*i+1)); for (std::size_t r = 0; r < radars_.size(); ++r) std::fprintf(stderr, "%.2f,", segments.share(i,r).seconds > 0 ? 57.3/std::sqrt(segments.share(i, r).information(local::kRotation+1, local::kRotation+1)) : 0.0); std::fprintf(stderr, ")"); } std::fprintf(stderr, "\n"); }
+      if (std::getenv("LW3")) {
+        std::fprintf(stderr, "solve %.0f load %.3f+%.3f pitch steps", time_s_, 57.3 * shared_.load_rad[0],
+                     57.3 * border_step_(shared::kLoad));
+        for (auto& w : work_) std::fprintf(stderr, " %.3f", 57.3 * w.step(own::kRotation + 1));
+        std::fprintf(stderr, "\n");
+        for (int i = 0; i < segments.size(); ++i) {
+          std::fprintf(stderr, " %d/%.0f/%d:%.2f(", segments.segment(i).load, segments.segment(i).seconds,
+                       segments.segment(i).level, 57.3 * border_step_(shared::kFirstFluctuation + 3 * i + 1));
+          for (std::size_t r = 0; r < radars_.size(); ++r)
+            std::fprintf(stderr, "%.2f,",
+                         segments.share(i, r).seconds > 0 ? 57.3 / std::sqrt(segments.share(i, r).information(
+                                                                       local::kRotation + 1, local::kRotation + 1))
+                                                          : 0.0);
+          std::fprintf(stderr, ")");
+        }
+        std::fprintf(stderr, "\n");
+      }
       learn_common(segments);
       commit();
       stage_ = Stage::kIdle;
@@ -432,6 +484,8 @@ void Solver::learn(Segments& segments, std::size_t index) {
   }
   w.with_shared = with_border.leftCols<shared::kConstants>();
 
+  const LocalMatrix of_constants = covariance_of_constants(
+      w.covariance, w.with_shared, of_border.topLeftCorner<shared::kConstants, shared::kConstants>());
   std::array<double, kFluctuations> sum{};
   double segments_used = 0.0;
   for (int i = 0; i < segments.size(); ++i) {
@@ -449,21 +503,25 @@ void Solver::learn(Segments& segments, std::size_t index) {
       d(touch.local) += border_step_(touch.border);
     }
     const FluctuationVector mean = reduced.posterior * reduced.raw_score - reduced.gain.transpose() * d;
-    // Variance by the other parameters: the radar's own rotation and scale, and the common fluctuation.
-    FluctuationMatrix of_static;
+    // Variance by the other parameters: all constants, and the common fluctuation.
+    LocalMatrix of_static = of_constants;
     for (int a = 0; a < kFluctuations; ++a) {
-      const int own_a = own_column(kFluctuating[static_cast<std::size_t>(a)]);
       const int border_a = shared::kFirstFluctuation + kFluctuations * i + a;
+      const int local_a = kFluctuating[static_cast<std::size_t>(a)];
+      LocalVector with_common;
+      for (int c = 0; c < local::kCount; ++c) {
+        const int own = own_column(c);
+        with_common(c) = own >= 0 ? with_border(own, border_a) : of_border(shared_column(c), border_a);
+      }
+      of_static.col(local_a) += with_common;
+      of_static.row(local_a) += with_common.transpose();
       for (int b = 0; b < kFluctuations; ++b) {
-        const int own_b = own_column(kFluctuating[static_cast<std::size_t>(b)]);
-        const int border_b = shared::kFirstFluctuation + kFluctuations * i + b;
-        of_static(a, b) = w.covariance(own_a, own_b) + with_border(own_a, border_b) + with_border(own_b, border_a) +
-                          of_border(border_a, border_b);
+        of_static(local_a, kFluctuating[static_cast<std::size_t>(b)]) +=
+            of_border(border_a, shared::kFirstFluctuation + kFluctuations * i + b);
       }
     }
-    FluctuationMatrix gain;
-    for (int a = 0; a < kFluctuations; ++a) gain.row(a) = reduced.gain.row(kFluctuating[static_cast<std::size_t>(a)]);
-    const FluctuationMatrix covariance = reduced.posterior + gain.transpose() * of_static * gain;
+    const FluctuationColumns spread = of_static * reduced.gain;
+    const FluctuationMatrix covariance = reduced.posterior + reduced.gain.transpose() * spread;
     double distance = 0.0, freedom = 0.0;
     for (int a = 0; a < kFluctuations; ++a) {
       const double variance = relative * radar.fluctuation.variance[static_cast<std::size_t>(a)];
@@ -563,35 +621,7 @@ void Solver::commit() {
 
 LocalMatrix Solver::local_covariance(std::size_t index) const {
   const RadarSolution& radar = radars_[index];
-  LocalMatrix p = LocalMatrix::Zero();
-  const auto shared_of = [](int c) {
-    switch (c) {
-      case local::kSpeedScale:
-        return static_cast<int>(shared::kSpeedScale);
-      case local::kYawRateBias:
-        return static_cast<int>(shared::kYawRateBias);
-      case local::kYawRateGain:
-        return static_cast<int>(shared::kYawRateGain);
-      case local::kSlip:
-        return static_cast<int>(shared::kSlip);
-      case local::kPitchPerAcceleration:
-        return static_cast<int>(shared::kPitchPerAcceleration);
-      case local::kStamp:
-        return static_cast<int>(shared::kStamp);
-      default:
-        return -1;
-    }
-  };
-  for (int a = 0; a < local::kCount; ++a) {
-    for (int b = 0; b < local::kCount; ++b) {
-      const int oa = own_column(a), ob = own_column(b), sa = shared_of(a), sb = shared_of(b);
-      if (oa >= 0 && ob >= 0) p(a, b) += radar.covariance(oa, ob);
-      if (sa >= 0 && sb >= 0) p(a, b) += shared_covariance_(sa, sb);
-      if (oa >= 0 && sb >= 0) p(a, b) += radar.with_shared(oa, sb);
-      if (sa >= 0 && ob >= 0) p(a, b) += radar.with_shared(ob, sa);
-    }
-  }
-  return p;
+  return covariance_of_constants(radar.covariance, radar.with_shared, shared_covariance_);
 }
 
 }  // namespace boresight::alignment::windows

@@ -241,7 +241,15 @@ void WindowedFilter::judge_block() {
                      s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
                      change_config_);
   }
-  if (std::getenv("LW2")) for (std::size_t r = 0; r < radars_.size(); ++r) { const Block& b = radars_[r].block; if (b.scans == 0) continue; const int p = local::kRotation + 1; std::fprintf(stderr, "%.0f r%zu narrow %.3f (%.3f) wide %.3f  dev %.3f\n", driven_s_, r, 57.3 * b.score(p) / b.information(p, p), 57.3 / std::sqrt(b.information(p, p)), 57.3 * b.wide_score(2) / b.wide_information(2, 2), 57.3 * deviations_[r].value(0)); }
+  if (std::getenv("LW2"))
+    for (std::size_t r = 0; r < radars_.size(); ++r) {
+      const Block& b = radars_[r].block;
+      if (b.scans == 0) continue;
+      const int p = local::kRotation + 1;
+      std::fprintf(stderr, "%.0f r%zu narrow %.3f (%.3f) wide %.3f  dev %.3f\n", driven_s_, r,
+                   57.3 * b.score(p) / b.information(p, p), 57.3 / std::sqrt(b.information(p, p)),
+                   57.3 * b.wide_score(2) / b.wide_information(2, 2), 57.3 * deviations_[r].value(0));
+    }
   changes_.judge(deviations_, verdicts_);
   bool all_settled = true;
   for (std::size_t r = 0; r < radars_.size(); ++r) {
@@ -291,7 +299,9 @@ void WindowedFilter::decide_load() {
   if (load_since_s_ < 0.0 || driven_s_ - load_since_s_ < load_config_.watch_s) return;
   const int step = load_ - 1;
   const double size = solver_.shared().load_rad[static_cast<std::size_t>(step)];
-  if (std::getenv("LW")) std::fprintf(stderr, "decide at %.0f size %.3f std %.3f\n", driven_s_, size * 57.3, 57.3 * std::sqrt(solver_.load_variance(step)));
+  if (std::getenv("LW"))
+    std::fprintf(stderr, "decide at %.0f size %.3f std %.3f\n", driven_s_, size * 57.3,
+                 57.3 * std::sqrt(solver_.load_variance(step)));
   const double limit = std::max(load_config_.least_rad, load_config_.stds * std::sqrt(solver_.load_variance(step)));
   if (std::abs(size) > limit) {
     ++load_changes_;
