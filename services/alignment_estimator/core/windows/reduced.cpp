@@ -1,6 +1,22 @@
 #include "services/alignment_estimator/core/windows/reduced.hpp"
 
+#include <Eigen/Eigenvalues>
+
 namespace boresight::alignment::windows {
+
+void make_positive(Share& share, const LocalVector& scale) {
+  constexpr double kLeast = 1e-3;  // of the prior's information
+  const LocalMatrix scaled = scale.asDiagonal() * share.information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<LocalMatrix> eigen(scaled);
+  const LocalVector inverse = scale.cwiseInverse();
+  const LocalVector kept = (eigen.eigenvalues().array() > kLeast).select(eigen.eigenvalues(), 0.0);
+  const LocalVector is_kept = (eigen.eigenvalues().array() > kLeast).cast<double>();
+  const LocalMatrix& v = eigen.eigenvectors();
+  share.information.noalias() = (inverse.asDiagonal() * v) * kept.asDiagonal() * (inverse.asDiagonal() * v).transpose();
+  const LocalVector along = v.transpose() * scale.cwiseProduct(share.score);
+  share.score = inverse.cwiseProduct(v * is_kept.cwiseProduct(along));
+  share.positive = true;
+}
 
 Reduced reduce(const Share& share, const Point& present, const std::array<double, kFluctuations>& variances) {
   constexpr double kNone = 1e18;  // precision of a fluctuation that does not exist

@@ -26,6 +26,10 @@ struct Reduced {
 [[nodiscard]] Reduced reduce(const Share& share, const Point& present,
                              const std::array<double, kFluctuations>& variances);
 
+/// Drops the directions of which a share knows less than nothing: the correction for the noise of the angles may take
+/// away more than few detections gave. `scale`: of each parameter, its prior std.
+void make_positive(Share& share, const LocalVector& scale);
+
 [[nodiscard]] inline double own_relative(const Segment& segment) {
   return std::ldexp(1.0, -segment.level);
 }

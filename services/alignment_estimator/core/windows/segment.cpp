@@ -23,6 +23,7 @@ void add_to(Share& sum, const Point& point, const LocalVector& score, const Loca
     sum.information += information;
   }
   sum.seconds += seconds;
+  sum.positive = false;
 }
 
 void Segments::begin(int load, const MergeNoise& noise) {

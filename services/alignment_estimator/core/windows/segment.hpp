@@ -16,8 +16,9 @@ struct Share {
   Point point;
   LocalVector score = LocalVector::Zero();
   LocalMatrix information = LocalMatrix::Zero();
-  double seconds = 0.0;  ///< 0: nothing
-  double weight = 1.0;   ///< learnt: a segment that contradicts the others counts less
+  double seconds = 0.0;   ///< 0: nothing
+  bool positive = false;  ///< its information has been made positive
+  double weight = 1.0;    ///< learnt: a segment that contradicts the others counts less
 };
 
 /// A fluctuation of yaw, pitch and scale: constant in a segment, with a variance that is learnt.

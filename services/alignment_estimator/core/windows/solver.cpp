@@ -81,6 +81,18 @@ Solver::Solver(std::size_t radars, const Priors& priors)
       border_inverse_(kMaxShared, kMaxShared),
       border_score_(kMaxShared),
       border_step_(kMaxShared) {
+  const auto scale_of = [](double std) { return std::max(std, 1e-6); };
+  scale_(local::kSpeedScale) = scale_of(priors.speed_scale_std);
+  scale_(local::kRateScale) = scale_of(priors.rate_scale_std);
+  scale_.segment<3>(local::kRotation).setConstant(scale_of(priors.rotation_std_rad));
+  scale_(local::kYawRateBias) = scale_of(priors.yaw_rate_bias_std_radps);
+  scale_(local::kYawRateGain) = scale_of(priors.yaw_rate_gain_std);
+  scale_(local::kSlip) = scale_of(priors.slip_std_radps2pm);
+  scale_(local::kStamp) = scale_of(priors.common_stamp_std_s + priors.stamp_std_s);
+  scale_.segment<2>(local::kPosition).setConstant(scale_of(priors.position_std_m));
+  scale_(local::kPitchPerAcceleration) = scale_of(priors.pitch_per_acceleration_std_radps2pm);
+  scale_.segment<kKnots>(local::kCurve).setConstant(scale_of(priors.curve_std_rad));
+  scale_(local::kMirror) = scale_of(priors.mirror_share_std);
   correlation_s_.fill(priors.common_correlation_s);
   shared_covariance_.setZero();
   shared_covariance_.diagonal() << square(priors.speed_scale_std), square(priors.yaw_rate_bias_std_radps),
@@ -277,7 +289,7 @@ TouchedColumns touched(const Segment& segment, int index) {
 
 }  // namespace
 
-void Solver::gather(const Segments& segments, std::size_t index) {
+void Solver::gather(Segments& segments, std::size_t index) {
   Eliminated& w = work_[index];
   const RadarSolution& radar = radars_[index];
   w.system = radar.prior;
@@ -297,8 +309,9 @@ void Solver::gather(const Segments& segments, std::size_t index) {
   }
   w.score = w.system * off;
   for (int i = 0; i < segments.size(); ++i) {
-    const Share& share = segments.share(i, index);
+    Share& share = segments.share(i, index);
     if (share.seconds <= 0.0) continue;
+    if (!share.positive) make_positive(share, scale_);
     const Segment& segment = segments.segment(i);
     const Reduced r =
         reduce(share, point(index, segment.middle_s, segment.load), own_variances(radar.fluctuation, segment, share));

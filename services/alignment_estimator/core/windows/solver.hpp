@@ -103,7 +103,7 @@ class Solver {
     Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared;
   };
   void begin_border(const Segments& segments);
-  void gather(const Segments& segments, std::size_t radar);
+  void gather(Segments& segments, std::size_t radar);
   void eliminate(std::size_t radar);
   void solve_border();
   void learn(Segments& segments, std::size_t radar);
@@ -118,6 +118,7 @@ class Solver {
   SharedMatrix shared_covariance_;
   std::array<double, shared::kLoads> load_variance_{};
   Fluctuation common_;
+  LocalVector scale_;  ///< of the local parameters: their prior stds
   std::array<double, kFluctuations> correlation_s_;
   double time_s_ = 0.0;
 
