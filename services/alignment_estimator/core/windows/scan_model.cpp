@@ -1,5 +1,7 @@
 #include "services/alignment_estimator/core/windows/scan_model.hpp"
 
+#include <cmath>
+
 namespace boresight::alignment::windows {
 
 ScanModel model_scan(const Point& point, const std::array<double, 3>& position_m, const Motion& motion) {
@@ -20,8 +22,11 @@ ScanModel model_scan(const Point& point, const std::array<double, 3>& position_m
   // (Exp(d)·R)ᵀ·v = Rᵀ·(v + v × d).
   by.middleCols<3>(local::kRotation) = geometry::cross_matrix(v);
   by.col(local::kYawRateBias) = -gain * by_yaw_rate;
-  by.col(local::kYawRateGain) = unbiased * by_yaw_rate;
-  by.col(local::kSlip) << 0.0, -speed * speed * yaw_rate, 0.0;
+  // The noise of a small yaw rate would pose as a yaw rate, and draw the gain down: errors in variables.
+  constexpr double kLeastStds = 5.0;
+  const bool turns = std::abs(unbiased) > kLeastStds * motion.yaw_rate_std_radps;
+  by.col(local::kYawRateGain) = (turns ? unbiased : 0.0) * by_yaw_rate;
+  by.col(local::kSlip) << 0.0, (turns ? -speed * speed * yaw_rate : 0.0), 0.0;
   by.col(local::kStamp) =
       point.speed_scale * acceleration * by_speed + gain * motion.yaw_acceleration_radps2 * by_yaw_rate;
   by.col(local::kPosition) << 0.0, yaw_rate, 0.0;

@@ -15,6 +15,7 @@ struct Motion {
   double yaw_rate_radps = 0.0;
   double acceleration_mps2 = 0.0;
   double yaw_acceleration_radps2 = 0.0;
+  double yaw_rate_std_radps = 0.0;  ///< of the noise of the signal
 };
 
 /// Errors of the motion at one instant: δV, δω, body pitch, side slip.

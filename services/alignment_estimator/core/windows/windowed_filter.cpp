@@ -66,7 +66,8 @@ bool WindowedFilter::usable(const EgoSample& ego) const {
 Motion WindowedFilter::motion_of(const Point& point, const ScanMotion3d& motion) const {
   const double a = std::abs(motion.acceleration_mps2) > 0.5 ? motion.acceleration_mps2 : 0.0;
   const double w = std::abs(motion.yaw_acceleration_radps2) > 0.04 ? motion.yaw_acceleration_radps2 : 0.0;
-  return {motion.speed_mps + point.stamp_s * a, motion.yaw_rate_radps + point.stamp_s * w, a, w};
+  return {motion.speed_mps + point.stamp_s * a, motion.yaw_rate_radps + point.stamp_s * w, a, w,
+          config_.yaw_rate_std_radps};
 }
 
 void WindowedFilter::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {

@@ -74,7 +74,27 @@ int main(int argc, char** argv) {
                     57.3 * std::sqrt(q.fluctuation.variance[1]), std::sqrt(q.fluctuation.variance[2]), 57.3 * std::sqrt(q.covariance(3, 3)));
       }
     };
-    const auto run = bench::run_drive(spec, [&](const VehicleConfig& v) { return alignment::make_method(v, config); }, options);
+    alignment::windows::Priors priors;
+    const std::string off = std::getenv("OFF") ? std::getenv("OFF") : "";
+    const auto is_off = [&](const char* name) { return off.find(name) != std::string::npos; };
+    if (is_off("scale")) priors.rate_scale_std = 0, priors.own_std[2] = 0;
+    if (is_off("gain")) priors.yaw_rate_gain_std = 0;
+    if (is_off("bias")) priors.yaw_rate_bias_std_radps = 0;
+    if (is_off("slip")) priors.slip_std_radps2pm = 0;
+    if (is_off("dive")) priors.pitch_per_acceleration_std_radps2pm = 0;
+    if (is_off("stamp")) priors.stamp_std_s = priors.common_stamp_std_s = 0;
+    if (is_off("position")) priors.position_std_m = 0;
+    if (is_off("curve")) priors.curve_std_rad = 0;
+    if (is_off("mirror")) priors.mirror_share_std = 0;
+    if (is_off("cscale")) priors.common_std[2] = 0;
+    if (is_off("oscale")) priors.own_std[2] = 0;
+    if (is_off("cyaw")) priors.common_std[0] = 0;
+    if (is_off("cpitch")) priors.common_std[1] = 0;
+    const bench::MakeMethod make = [&](const VehicleConfig& v) -> std::unique_ptr<alignment::Method> {
+      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, priors);
+      return alignment::make_method(v, config);
+    };
+    const auto run = bench::run_drive(spec, make, options);
     changes += static_cast<int>(run.step_changes.size());
     for (const auto& s : run.step_changes) std::printf("  change of radar %zu at %.1f s%s\n", s.radar, s.time_s, with_event && s.radar == turned ? " (turned)" : "");
     if (loads) std::printf("  load changes %d: %.3f deg, first seen %.1f s\n", loads, load_deg, load_at);
