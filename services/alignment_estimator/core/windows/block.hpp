@@ -19,7 +19,9 @@ struct Block {
   Eigen::Vector4d wide_score = Eigen::Vector4d::Zero();
   Eigen::Matrix4d wide_information = Eigen::Matrix4d::Zero();
   double detections = 0.0, stationary = 0.0;
-  double fastest_turn_radps = 0.0;
+  /// Largest variance of a yaw by errors of the other parameters (rad²): in a turn, of stamps, positions, gain and
+  /// slip.
+  double turn_variance = 0.0;
   double seconds = 0.0;
   int scans = 0;
 

@@ -13,10 +13,7 @@ namespace boresight::alignment::windows {
 Deviation2 deviation_of(const Block& block, double scale_variance, double roll_variance, double rotation_variance,
                         bool has_elevation, const ChangeConfig& config) {
   Deviation2 out;
-  if (block.scans == 0 || block.stationary < config.least_detections ||
-      block.fastest_turn_radps > config.most_turn_radps) {
-    return out;
-  }
+  if (block.scans == 0 || block.stationary < config.least_detections) return out;
   Eigen::Matrix4d information = block.wide_information;
   const double known = 1e12;
   information.diagonal() += Eigen::Vector4d(1.0 / std::max(scale_variance, 1e-12),
@@ -25,8 +22,8 @@ Deviation2 deviation_of(const Block& block, double scale_variance, double roll_v
   const Eigen::Matrix4d covariance = information.inverse();
   const Eigen::Vector4d turn = covariance * block.wide_score;
   out.value = turn.tail<2>();
-  out.std = covariance.diagonal().tail<2>().cwiseMax(0.0).cwiseSqrt();
-  out.valid = out.value.allFinite();
+  out.std = (covariance.diagonal().tail<2>().cwiseMax(0.0) + Eigen::Vector2d(0.0, block.turn_variance)).cwiseSqrt();
+  out.valid = out.value.allFinite() && out.std(1) < 0.5 * config.yaw_rad;
   return out;
 }
 

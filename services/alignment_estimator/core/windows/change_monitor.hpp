@@ -19,7 +19,6 @@ struct ChangeConfig {
   double yaw_scatter_rad = 0.00105;  ///< scatter before any block, 0.06°
   double pitch_scatter_rad = 0.0035;
   double least_detections = 50.0;  ///< of a block, stationary
-  double most_turn_radps = 0.14;   ///< hard turns test stamps and positions, not the mounting
 };
 
 /// What one block of one radar says about its rotation, with all else known to `known`.

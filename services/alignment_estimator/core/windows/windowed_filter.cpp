@@ -187,7 +187,18 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   windows::add_scan(radar.block, model, sums, variances,
                     {radar.efficiency.of_information(), radar.efficiency.of_score()});
   radar.block.seconds += elapsed_s;
-  radar.block.fastest_turn_radps = std::max(radar.block.fastest_turn_radps, std::abs(ego.yaw_rate_radps));
+  {
+    // Sideways velocity by errors of all but scales and rotation.
+    LocalGate others = radar.gate_covariance;
+    others.middleRows<4>(local::kRateScale).setZero();
+    others.middleCols<4>(local::kRateScale).setZero();
+    others.row(local::kSpeedScale).setZero();
+    others.col(local::kSpeedScale).setZero();
+    const Eigen::Matrix<double, local::kCurve, 1> sideways =
+        model.by_parameter * radar.block.point.sensor_to_vehicle.row(1).transpose();
+    radar.block.turn_variance =
+        std::max(radar.block.turn_variance, sideways.dot(others * sideways) / square(ego.speed_mps));
+  }
   radar.noise.add(sums.common, std::exp(-elapsed_s / kNoiseMemory_s));
   const double share = sums.common.stationary / sums.detections;
   radar.inlier_ratio += (share - radar.inlier_ratio) * (1.0 - std::exp(-elapsed_s / kInlierMemory_s));

@@ -33,6 +33,7 @@ class WindowedFilter : public Method {
   [[nodiscard]] double load_rad() const { return solver_.load_rad(load_); }
 
  private:
+  using LocalGate = Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve>;
   struct Radar {
     RadarConfig config;
     Eigen::Matrix3d nominal;
@@ -42,7 +43,7 @@ class WindowedFilter : public Method {
     Efficiency efficiency;
     windows::Block block;
     windows::Knots knots;
-    Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve> gate_covariance;
+    LocalGate gate_covariance;
     double curve_variance = 0.0;
     bool running = false;
     AlignmentState state = AlignmentState::kNoData;
