@@ -27,14 +27,14 @@ Deviation2 deviation_of(const Block& block, double scale_variance, double roll_v
   return out;
 }
 
-double ChangeMonitor::scatter(const Radar& radar, std::size_t axis) const {
+double ChangeMonitor::scatter(const History& history, std::size_t size, int axis) const {
   constexpr double kPriorWindows = 10.0;
   const double prior = axis == 0 ? config_.pitch_scatter_rad : config_.yaw_scatter_rad;
-  if (radar.history_size == 0) return prior;
-  std::array<double, kHistory> sorted = radar.history[axis];
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(radar.history_size / 2);
-  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(radar.history_size));
-  const double windows = static_cast<double>(radar.history_size);
+  if (size == 0) return prior;
+  History sorted = history;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(size / 2);
+  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(size));
+  const double windows = static_cast<double>(size);
   return (*middle / 0.6745 * windows + kPriorWindows * prior) / (windows + kPriorWindows);
 }
 
@@ -72,9 +72,12 @@ void ChangeMonitor::judge(const std::vector<Deviation2>& deviations, std::vector
     for (int axis = 0; axis < 2; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       const double least = axis == 0 ? config_.pitch_rad : config_.yaw_rad;
-      const double limit = std::max(least, config_.scatter_factor * scatter(radar, a));
+      const double limit =
+          std::max(least, config_.scatter_factor * scatter(radar.own_history[a], radar.history_size, axis));
+      const double all_limit =
+          std::max(least, config_.common_factor * scatter(radar.history[a], radar.history_size, axis));
       const double own = value(axis) - common(axis);
-      verdicts[r].suspect |= std::abs(value(axis)) > limit && std::abs(own) > 0.7 * limit;
+      verdicts[r].suspect |= std::abs(value(axis)) > all_limit && std::abs(own) > 0.7 * limit;
       if (radar.size < kBlocks || !(deviations[r].std(axis) < 0.5 * least)) continue;
       bool same_sign = true;
       std::size_t large = 0;
@@ -83,7 +86,7 @@ void ChangeMonitor::judge(const std::vector<Deviation2>& deviations, std::vector
         large += std::abs(one(axis)) > 0.5 * limit ? 1 : 0;
       }
       verdicts[r].changed |=
-          std::abs(mean(axis)) > limit && std::abs(own_mean(axis)) > limit && same_sign && large + 1 >= kBlocks;
+          std::abs(mean(axis)) > all_limit && std::abs(own_mean(axis)) > limit && same_sign && large + 1 >= kBlocks;
     }
     if (verdicts[r].changed) {
       // The first of the blocks may be from before the change.
@@ -93,6 +96,7 @@ void ChangeMonitor::judge(const std::vector<Deviation2>& deviations, std::vector
     } else if (radar.size == kBlocks) {
       for (std::size_t a = 0; a < 2; ++a) {
         radar.history[a][radar.history_next] = std::abs(mean(static_cast<int>(a)));
+        radar.own_history[a][radar.history_next] = std::abs(own_mean(static_cast<int>(a)));
       }
       radar.history_next = (radar.history_next + 1) % kHistory;
       radar.history_size = std::min(radar.history_size + 1, kHistory);

@@ -16,6 +16,7 @@ struct ChangeConfig {
   double yaw_rad = 0.00785;          ///< smallest change that is reported, 0.45°
   double pitch_rad = 0.0157;         ///< 0.9°
   double scatter_factor = 6.5;       ///< a change exceeds the scatter of the means of earlier blocks by this
+  double common_factor = 4.0;        ///< likewise, with the part that all radars share
   double yaw_scatter_rad = 0.00105;  ///< scatter before any block, 0.06°
   double pitch_scatter_rad = 0.0035;
   double least_detections = 50.0;  ///< of a block, stationary
@@ -50,13 +51,14 @@ class ChangeMonitor {
 
  private:
   static constexpr std::size_t kHistory = 150;
+  using History = std::array<double, kHistory>;
   struct Radar {
     std::array<Eigen::Vector2d, kBlocks> value, own, std;
     std::size_t size = 0, next = 0;
-    std::array<std::array<double, kHistory>, 2> history{};
+    std::array<History, 2> history{}, own_history{};  ///< sizes of the means, with and without the common part
     std::size_t history_size = 0, history_next = 0;
   };
-  [[nodiscard]] double scatter(const Radar& radar, std::size_t axis) const;
+  [[nodiscard]] double scatter(const History& history, std::size_t size, int axis) const;
 
   ChangeConfig config_;
   std::vector<Radar> radars_;

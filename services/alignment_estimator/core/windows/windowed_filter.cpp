@@ -257,6 +257,8 @@ void WindowedFilter::judge_block() {
     for (std::size_t r = 0; r < radars_.size(); ++r) {
       const Block& b = radars_[r].block;
       if (b.scans == 0) continue;
+      std::fprintf(stderr, "YAW %.0f r%zu %.3f (%.3f) valid %d settled %d\n", driven_s_, r,
+                   57.3 * deviations_[r].value(1), 57.3 * deviations_[r].std(1), deviations_[r].valid, settled(r));
       const int p = local::kRotation + 1;
       std::fprintf(stderr, "%.0f r%zu narrow %.3f (%.3f) wide %.3f  dev %.3f\n", driven_s_, r,
                    57.3 * b.score(p) / b.information(p, p), 57.3 / std::sqrt(b.information(p, p)),
