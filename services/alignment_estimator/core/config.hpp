@@ -39,7 +39,7 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 8> kMethodN
 }};
 
 struct Config {
-  MethodName method = MethodName::kBoresight;
+  MethodName method = MethodName::kWindows;
   FilterConfig filter;                   ///< settings of kBoresight
   published::PublishedConfig published;  ///< settings of all other methods
   double publish_period_s = 0.2;

@@ -21,25 +21,28 @@ void add_scan(Block& block, const ScanModel& model, const CurveSums& sums, const
     const double next = factors.information * sums.curve_next(k);
     l(local::kCurve + k, local::kCurve + k + 1) = l(local::kCurve + k + 1, local::kCurve + k) = next;
   }
-  const LocalVector mirror = [&] {
-    LocalVector column;
-    column.head<local::kCurve>().noalias() = gradient * sums.mirror_by_velocity;
-    column.segment<kKnots>(local::kCurve) = sums.mirror_by_curve;
-    column(local::kMirror) = sums.mirror_diagonal;
-    return LocalVector(factors.information * column);
-  }();
-  l.col(local::kMirror) = mirror;
-  l.row(local::kMirror) = mirror.transpose();
+  for (int k = 0; k < 2; ++k) {
+    const CurveSums::Heights& of = sums.heights[static_cast<std::size_t>(k)];
+    LocalVector column = LocalVector::Zero();
+    column.head<local::kCurve>().noalias() = gradient * of.by_velocity;
+    column.segment<kKnots>(local::kCurve) = of.by_curve;
+    column(local::kAbove + k) = of.diagonal;
+    column *= factors.information;
+    l.col(local::kAbove + k) = column;
+    l.row(local::kAbove + k) = column.transpose();
+    s(local::kAbove + k) = factors.score * of.score;
+  }
   s.head<local::kCurve>().noalias() = gradient * score;
   s.segment<kKnots>(local::kCurve) = factors.score * sums.curve_score;
-  s(local::kMirror) = factors.score * sums.mirror_score;
   // The errors of the motion, one after the other: they are independent, and known to their variances.
   Eigen::Matrix<double, local::kCount, kMotionErrors> by_motion;
   by_motion.topRows<local::kCurve>().noalias() = weighted * model.by_motion.transpose();
   by_motion.middleRows<kKnots>(local::kCurve).noalias() =
       factors.information * (sums.curve_by_velocity * model.by_motion.transpose());
-  by_motion.row(local::kMirror).noalias() =
-      factors.information * (model.by_motion * sums.mirror_by_velocity).transpose();
+  for (int k = 0; k < 2; ++k) {
+    by_motion.row(local::kAbove + k).noalias() =
+        factors.information * (model.by_motion * sums.heights[static_cast<std::size_t>(k)].by_velocity).transpose();
+  }
   Eigen::Matrix<double, kMotionErrors, kMotionErrors> own = model.by_motion * information * model.by_motion.transpose();
   Eigen::Matrix<double, kMotionErrors, 1> own_score = model.by_motion * score;
   for (int m = 0; m < kMotionErrors; ++m) {

@@ -24,7 +24,10 @@ enum : int {
   kPosition,                     ///< two: error of the position in the vehicle file, x and y (m)
   kPitchPerAcceleration = kPosition + 2,  ///< rad per m/s², positive with the nose up
   kCurve,                                 ///< kKnots: error of the azimuth, measured − true (rad)
-  kMirror = kCurve + kKnots,  ///< share of the detections below the road that are images of reflectors above it
+  /// The road as a mirror: a reflector stands (1 + this) times as high above the road as its detection; and the share
+  /// of the detections below the road that are images of reflectors above it.
+  kAbove = kCurve + kKnots,
+  kMirror,
   kCount
 };
 }  // namespace local
@@ -39,7 +42,8 @@ enum : int {
   kStamp = kRotation + 3,
   kPosition,
   kCurve = kPosition + 2,
-  kMirror = kCurve + kKnots,
+  kAbove = kCurve + kKnots,
+  kMirror,
   kPitchDrift,  ///< rad/s of the rotation about the vehicle's y and z axes, over the last minutes
   kYawDrift,
   kCount

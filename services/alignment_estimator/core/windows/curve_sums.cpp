@@ -17,24 +17,29 @@ double weighted_square_of(double gate) {
 constexpr double kWideGate = 3.0;
 static const double kMirrorV = std::getenv("MV") ? std::atof(std::getenv("MV")) : 0.25;
 
-/// What the range rate of a detection below the road would gain if the detection were the image of a reflector above
-/// it.
-struct Image {
-  double gain_mps = 0.0, by_elevation = 0.0;
+/// What the range rate of a detection would lose per unit of its height parameter, and the derivative to the elevation.
+struct HeightColumn {
+  double column = 0.0, by_elevation = 0.0;
+  bool below = false;
 };
 
-Image image_in_road(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double range_m,
-                    const CurveJudgement& judgement) {
-  const double z = judgement.up.dot(u);
-  if (!(judgement.height_m > 0.0) || judgement.height_m + range_m * z >= 0.0) return {};
+/// Above the road: the reflector is higher than its detection. Below: the detection is the image of a reflector above.
+HeightColumn height_column(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double along, double by_elevation,
+                           double range_m, const CurveJudgement& judgement) {
+  if (!(judgement.height_m > 0.0) || !(range_m > 1.0)) return {};
+  const double z = judgement.up.dot(u), height = judgement.height_m / range_m + z;  // over the range
+  if (height >= 0.0) {
+    const double across = std::sqrt(std::max(1.0 - z * z, 0.0));
+    return {by_elevation * height, -along * height + by_elevation * across, false};
+  }
   const double image = -z - 2.0 * judgement.height_m / range_m;
   // Steeper than a radar of the road sees.
   constexpr double kSteepest = 0.5;
   if (std::abs(image) > kSteepest || z < -kSteepest) return {};
   const double across = std::sqrt(1.0 - z * z), across_image = std::sqrt(1.0 - image * image);
-  const double upward = judgement.up.dot(g), forward = (u.dot(g) - z * upward) / across;
-  return {-(across_image - across) * forward - (image - z) * upward,
-          -(image * across / across_image + z) * forward + 2.0 * across * upward};
+  const double upward = judgement.up.dot(g), forward = (along - z * upward) / across;
+  return {(across_image - across) * forward + (image - z) * upward,
+          (image * across / across_image + z) * forward - 2.0 * across * upward, true};
 }
 
 }  // namespace
@@ -59,18 +64,20 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double ce_ = 1.0 - 0.5 * error * error;
     const Eigen::Vector3d u(ce_ * run.x[i] + error * run.y[i], ce_ * run.y[i] - error * run.x[i], run.z[i]);
     const double along = u.dot(g);
-    const Image image = run.has_elevation ? image_in_road(u, g, run.range_m[i], judgement) : Image();
-    double e = run.range_rate_mps[i] + along - judgement.mirror_share * image.gain_mps;
-    if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
     const double ce = std::sqrt(u.x() * u.x() + u.y() * u.y());
     const Eigen::Vector3d ea(-u.y(), u.x(), 0.0), eb(-u.x() * u.z() / ce, -u.y() * u.z() / ce, ce);
     const double da = ea.dot(g), db = eb.dot(g);
+    const HeightColumn of_height =
+        run.has_elevation ? height_column(u, g, along, db, run.range_m[i], judgement) : HeightColumn();
+    double e = run.range_rate_mps[i] + along +
+               (of_height.below ? judgement.mirror_share : judgement.height_excess) * of_height.column;
+    if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
     const double va = judgement.angle_factor * run.azimuth_variance[i];
     const double ve = judgement.angle_factor * run.elevation_variance[i];
     const double by_rate =
         judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
     const double by_angle = va * da * da + ve * db * db,
-                 s2 = by_rate + by_angle + kMirrorV * image.gain_mps * image.gain_mps;
+                 s2 = by_rate + by_angle + (of_height.below ? kMirrorV * of_height.column * of_height.column : 0.0);
     const double gate_variance = s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
     if (wide > 0.0) {
       const double t = e * e / ((gate_variance + wide) * kWideGate * kWideGate);
@@ -108,13 +115,11 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     sums.information.noalias() += weight * u * u.transpose() - wa * ea * ea.transpose() - we * eb * eb.transpose();
     // The knots: ∂e/∂c = −h·da. Its derivative to the azimuth has the slope of the hat function, so that a direction
     // that the data cannot see (a scale of the range rates against a stretched curve) gets no push.
-    const bool below = image.gain_mps != 0.0;
-    if (below) {
-      const double column = -image.gain_mps, by_elevation = -image.by_elevation;
-      sums.mirror_score += pull * column + kb * by_elevation;
-      sums.mirror_by_velocity += weight * column * u - we * by_elevation * eb;
-      sums.mirror_diagonal += weight * column * column - we * by_elevation * by_elevation;
-    }
+    CurveSums::Heights& heights = sums.heights[of_height.below ? 1 : 0];
+    const double hc = of_height.column, hb = of_height.by_elevation;
+    heights.score += pull * hc + kb * hb;
+    heights.by_velocity += weight * hc * u - we * hb * eb;
+    heights.diagonal += weight * hc * hc - we * hb * hb;
     for (int side = 0; side < 2; ++side) {
       const int k = knot + side;
       const double h = side == 0 ? h0 : h1, hat = side == 0 ? -slope_of_hat : slope_of_hat;
@@ -124,7 +129,7 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
           (weight * column * u - wa * by_azimuth * ea - we * by_elevation * eb).transpose();
       sums.curve_diagonal(k) +=
           weight * column * column - wa * by_azimuth * by_azimuth - we * by_elevation * by_elevation;
-      if (below) sums.mirror_by_curve(k) += -weight * column * image.gain_mps + we * by_elevation * image.by_elevation;
+      heights.by_curve(k) += weight * column * hc - we * by_elevation * hb;
       if (side == 1) {
         const double c0 = -da * h0, a0 = -(daa * h0 - da * slope_of_hat), b0 = -dab * h0;
         sums.curve_next(knot) += weight * c0 * column - wa * a0 * by_azimuth - we * b0 * by_elevation;

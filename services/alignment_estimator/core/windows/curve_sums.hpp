@@ -2,6 +2,8 @@
 // components of the sensor's velocity g, so that a detection touches 3 × 3 sums and two knots of the curve only.
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 
 #include "services/alignment_estimator/core/filter/scan_sums.hpp"
@@ -26,6 +28,7 @@ struct CurveJudgement {
   double curve_variance = 0.0;                                  ///< of the curve at any azimuth: widens the gate
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();                ///< the vehicle's z axis in the sensor's
   double height_m = 0.0;                                        ///< of the sensor over the road
+  double height_excess = 0.0;                                   ///< see local::kAbove
   double mirror_share = 0.0;                                    ///< see local::kMirror
   double wide_std_mps = 0.0;                                    ///< widens the gate of a radar that may have turned
 };
@@ -36,9 +39,13 @@ struct CurveSums {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, kKnots, 3> curve_by_velocity = Eigen::Matrix<double, kKnots, 3>::Zero();
   Curve curve_diagonal = Curve::Zero(), curve_next = Curve::Zero(), curve_score = Curve::Zero();
-  Eigen::Vector3d mirror_by_velocity = Eigen::Vector3d::Zero();
-  Curve mirror_by_curve = Curve::Zero();
-  double mirror_diagonal = 0.0, mirror_score = 0.0;
+  /// Of detections above and below the road.
+  struct Heights {
+    Eigen::Vector3d by_velocity = Eigen::Vector3d::Zero();
+    Curve by_curve = Curve::Zero();
+    double diagonal = 0.0, score = 0.0;
+  };
+  std::array<Heights, 2> heights;
   Eigen::Matrix3d wide_information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d wide_score = Eigen::Vector3d::Zero();
   double detections = 0.0;

@@ -19,6 +19,7 @@ struct Point {
   Eigen::Vector2d position_error_m{0.0, 0.0};
   double pitch_per_acceleration_radps2pm = 0.0;
   Eigen::Matrix<double, kKnots, 1> curve_rad = Eigen::Matrix<double, kKnots, 1>::Zero();
+  double height_excess = 0.0;
   double mirror_share = 0.0;
 };
 
@@ -35,6 +36,7 @@ struct Point {
   d.segment<2>(local::kPosition) = to.position_error_m - from.position_error_m;
   d(local::kPitchPerAcceleration) = to.pitch_per_acceleration_radps2pm - from.pitch_per_acceleration_radps2pm;
   d.segment<kKnots>(local::kCurve) = to.curve_rad - from.curve_rad;
+  d(local::kAbove) = to.height_excess - from.height_excess;
   d(local::kMirror) = to.mirror_share - from.mirror_share;
   return d;
 }

@@ -22,6 +22,7 @@ struct Priors {
   double position_std_m = 0.03;
   double curve_std_rad = 0.00262;
   double curve_length_rad = 0.262;
+  double height_excess_std = 0.2;
   double mirror_share_std = 1.0;
   double mirror_share_tolerance = 0.15;  ///< the share differs with range and road: it is not known better than this
   double load_std_rad = 0.0105;

@@ -92,6 +92,7 @@ Solver::Solver(std::size_t radars, const Priors& priors)
   scale_.segment<2>(local::kPosition).setConstant(scale_of(priors.position_std_m));
   scale_(local::kPitchPerAcceleration) = scale_of(priors.pitch_per_acceleration_std_radps2pm);
   scale_.segment<kKnots>(local::kCurve).setConstant(scale_of(priors.curve_std_rad));
+  scale_(local::kAbove) = scale_of(priors.height_excess_std);
   scale_(local::kMirror) = scale_of(priors.mirror_share_std);
   correlation_s_.fill(priors.common_correlation_s);
   shared_covariance_.setZero();
@@ -116,6 +117,7 @@ void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool h
     const double precision = axis == 2 || has_elevation ? precision_of(priors_.rotation_std_rad) : kFixed;
     r.prior(own::kRotation + axis, own::kRotation + axis) = precision;
   }
+  r.prior(own::kAbove, own::kAbove) = has_elevation ? precision_of(priors_.height_excess_std) : kFixed;
   r.prior(own::kMirror, own::kMirror) = has_elevation ? precision_of(priors_.mirror_share_std) : kFixed;
   r.prior(own::kStamp, own::kStamp) = precision_of(priors_.stamp_std_s);
   r.prior(own::kPosition, own::kPosition) = r.prior(own::kPosition + 1, own::kPosition + 1) =
@@ -192,6 +194,7 @@ Point Solver::point(std::size_t radar, double time_s, int load) const {
   p.position_error_m = own.position_error_m;
   p.pitch_per_acceleration_radps2pm = shared_.pitch_per_acceleration_radps2pm;
   p.curve_rad = own.curve_rad;
+  p.height_excess = own.height_excess;
   p.mirror_share = own.mirror_share;
   return p;
 }
@@ -204,6 +207,7 @@ int own_column(int local) {
   if (local >= local::kRotation && local < local::kRotation + 3) return own::kRotation + local - local::kRotation;
   if (local == local::kStamp) return own::kStamp;
   if (local == local::kPosition || local == local::kPosition + 1) return own::kPosition + local - local::kPosition;
+  if (local == local::kAbove) return own::kAbove;
   if (local == local::kMirror) return own::kMirror;
   if (local >= local::kCurve) return own::kCurve + local - local::kCurve;
   return -1;
@@ -301,6 +305,7 @@ void Solver::gather(Segments& segments, std::size_t index) {
   off(own::kStamp) = mean.stamp_s - now.stamp_s;
   off.segment<2>(own::kPosition) = mean.position_error_m - now.position_error_m;
   off.segment<kKnots>(own::kCurve) = mean.curve_rad - now.curve_rad;
+  off(own::kAbove) = mean.height_excess - now.height_excess;
   off(own::kMirror) = mean.mirror_share - now.mirror_share;
   off.tail<2>() = -now.drift_radps;
   for (int axis = 0; axis < 2; ++axis) {
@@ -613,6 +618,7 @@ void Solver::commit() {
     s.stamp_s += w.step(own::kStamp);
     s.position_error_m += w.step.segment<2>(own::kPosition);
     s.curve_rad += w.step.segment<kKnots>(own::kCurve);
+    s.height_excess += w.step(own::kAbove);
     s.mirror_share += w.step(own::kMirror);
     s.drift_radps += w.step.tail<2>();
     radar.covariance = w.covariance;

@@ -22,6 +22,7 @@ struct OwnState {
   double stamp_s = 0.0;
   Eigen::Vector2d position_error_m{0.0, 0.0};
   Eigen::Matrix<double, kKnots, 1> curve_rad = Eigen::Matrix<double, kKnots, 1>::Zero();
+  double height_excess = 0.0;
   double mirror_share = 0.0;
   Eigen::Vector2d drift_radps{0.0, 0.0};  ///< of pitch and yaw
 };

@@ -180,6 +180,7 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   judgement.curve_variance = radar.curve_variance;
   judgement.up = radar.block.point.sensor_to_vehicle.row(2).transpose();
   judgement.height_m = radar.config.mounting_pose.position_m[2];
+  judgement.height_excess = radar.block.point.height_excess;
   judgement.mirror_share = radar.block.point.mirror_share;
   judgement.wide_std_mps = 0.012 * std::abs(ego.speed_mps);
   const CurveSums sums = windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
