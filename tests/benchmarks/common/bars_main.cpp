@@ -4,6 +4,7 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,12 @@ bool write(const std::string& path, const Report& report, void (Report::*writer)
   out.flush();
   if (!out) std::fprintf(stderr, "cannot write %s\n", path.c_str());
   return static_cast<bool>(out);
+}
+
+/// 1,000,000 or more, with six zeros at the end: far from every fixed seed, and easy to copy.
+std::uint64_t draw_fresh_seed() {
+  constexpr std::uint64_t kStep = 1'000'000, kSteps = 1'000'000;
+  return kStep * (1 + std::random_device{}() % kSteps);
 }
 
 int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGroup> groups) {
@@ -53,9 +60,21 @@ int run(int argc, char** argv, const BarsProgram& program, std::span<const BarGr
   if (program.first_seed_about != nullptr) {
     app.add_option("--first-seed", options.first_seed, program.first_seed_about)->capture_default_str();
   }
+  options.fresh_seed = 0;
+  if (program.fresh_seed_about != nullptr) {
+    app.add_option("--fresh-seed", options.fresh_seed, program.fresh_seed_about);
+  }
+  if (!program.methods.empty()) {
+    app.add_option("--method", options.method, "judge this method as the product's own; default: that of the product")
+        ->check(CLI::IsMember(program.methods));
+  }
   CLI11_PARSE(app, argc, argv);
+  if (options.fresh_seed == 0) options.fresh_seed = draw_fresh_seed();
 
   if (!options.judges()) std::printf("radar profile %s: no bar is judged\n", options.drives().c_str());
+  if (program.fresh_seed_about != nullptr) {
+    std::printf("fresh seeds from %llu on\n", static_cast<unsigned long long>(options.fresh_seed));
+  }
   Report report(options.drives(), options.judges());
   for (const BarGroup& group : groups) {
     if (!options.wants(group.name)) continue;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "tests/benchmarks/common/options.hpp"
 #include "tests/benchmarks/common/report.hpp"
@@ -21,6 +23,8 @@ struct BarsProgram {
   const char* data_about = nullptr;
   const char* first_seed_about = nullptr;  ///< help text of --first-seed; nullptr: no such option
   bool has_real_car = false;               ///< option --real-car for Options::real_car
+  const char* fresh_seed_about = nullptr;  ///< help text of --fresh-seed; nullptr: no group has fresh seeds
+  std::vector<std::string> methods{};      ///< values of --method for Options::method; empty: no such option
 };
 
 /// For main(). Exit code 0 also if bars fail, 1 on an error.

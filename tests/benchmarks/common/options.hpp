@@ -17,6 +17,8 @@ struct Options {
   std::size_t jobs = 2;          ///< threads
   std::size_t most_seeds = 0;    ///< 0: as many as a bar requires
   std::uint64_t first_seed = 1;  ///< benchmarks with fixed seeds for their bars: other seeds are for tuning
+  std::uint64_t fresh_seed = 1;  ///< first seed of groups with fresh seeds; bars_main() draws it for each run
+  std::string method;            ///< judged as the product's own; empty: the product's default
   std::string data_folder;       ///< folder of recordings; empty: groups of bars that need recordings are skipped
   std::string profile = kJudgedProfile;  ///< of all simulated radars: a shipped radar profile or its file
   bool real_car = false;                 ///< the vehicle has the effects of a real car, all of the preset

@@ -22,6 +22,12 @@ void false_alarms(const Options& options, Report& report);
 void cost(const Options& options, Report& report);
 void plate(const Options& options, Report& report);
 void drive_1(const Options& options, Report& report);
+void real_car(const Options& options, Report& report);
+void real_car_published(const Options& options, Report& report);
+void real_car_drift(const Options& options, Report& report);
+void real_car_no_change(const Options& options, Report& report);
+void real_car_changes(const Options& options, Report& report);
+void real_car_load(const Options& options, Report& report);
 void world(const Options& options, Report& report);
 
 }  // namespace boresight::bench

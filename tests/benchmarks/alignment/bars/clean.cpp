@@ -21,7 +21,7 @@ void clean(const Options& options, Report& report) {
     for (std::size_t seed = 0; seed < seeds; ++seed) {
       specs.push_back(clean_drive(road, options.seconds(120.0), 100 + seed));
     }
-    const auto runs = run_drives(specs, own_method().make, options);
+    const auto runs = run_drives(specs, own_method(options.method).make, options);
     std::vector<std::string> row = {name_of(road)};
     for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
       const auto errors = final_errors(runs, parameter);

@@ -64,7 +64,7 @@ void consistency(const Options& options, Report& report) {
     std::vector<simulator::AlignmentSpec> specs;
     const std::size_t kind_seeds = kind.name == "16 radars" ? options.seeds(16) : seeds;
     for (std::size_t seed = 0; seed < kind_seeds; ++seed) specs.push_back(kind.make(duration_s, 1000 + seed));
-    const auto runs = run_drives(specs, own_method().make, options);
+    const auto runs = run_drives(specs, own_method(options.method).make, options);
     Consistencies of_kind;
     for (const Run& run : runs) add_run(run, duration_s, of_kind);
     std::vector<std::string> row = {kind.name};

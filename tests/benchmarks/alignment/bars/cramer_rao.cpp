@@ -70,7 +70,7 @@ void cramer_rao(const Options& options, Report& report) {
     for (const bool oracle : {true, false}) {
       RunOptions run_options;
       run_options.only_stationary = oracle;
-      const auto runs = run_drives(specs, own_method().make, options, run_options);
+      const auto runs = run_drives(specs, own_method(options.method).make, options, run_options);
       std::vector<std::string> row = {name_of(road), oracle ? "stationary only" : "all, robust"};
       for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
         std::vector<double> ratios;

@@ -52,7 +52,7 @@ void degenerate(const Options& options, Report& report) {
   for (const DegenerateCase& one : kDegenerateCases) {
     std::vector<AlignmentSpec> specs;
     for (std::size_t seed = 0; seed < seeds; ++seed) specs.push_back(one.make(options.seconds(120.0), 1700 + seed));
-    const auto runs = run_drives(specs, own_method().make, options);
+    const auto runs = run_drives(specs, own_method(options.method).make, options);
     double stated = 0.0, all = 0.0;
     for (const Run& run : runs) {
       for (const Snapshot& snapshot : run.snapshots) {

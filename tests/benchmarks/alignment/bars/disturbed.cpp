@@ -49,7 +49,7 @@ void disturbed(const Options& options, Report& report) {
         specs.push_back(disturbed_drive(road, options.seconds(180.0), 300 + seed));
         one.keep(specs.back());
       }
-      const auto runs = run_drives(specs, own_method().make, options);
+      const auto runs = run_drives(specs, own_method(options.method).make, options);
       std::vector<std::string> row = {std::string(one.name) + ", " + name_of(road)};
       for (const int parameter : {kSpeedScale, kYaw, kPitch, kRoll}) {
         const auto errors = final_errors(runs, parameter);

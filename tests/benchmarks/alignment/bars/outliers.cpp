@@ -28,7 +28,7 @@ void outliers(const Options& options, Report& report) {
         for (auto& radar : spec.radars) radar.truth = {five_degrees(), five_degrees(), five_degrees()};
         specs.push_back(spec);
       }
-      const auto runs = run_drives(specs, own_method().make, options);
+      const auto runs = run_drives(specs, own_method(options.method).make, options);
       double captured = 0.0;
       for (const Run& run : runs) {
         const Snapshot& last = run.last();

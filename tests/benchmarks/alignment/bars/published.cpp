@@ -107,7 +107,7 @@ void published(const Options& options, Report& report) {
                             "0.0272", "−0.0201 / 3.2126"});
     }
     // The bar compares under the model of the truth: Burza's planar rows on planar truth, the rotation on a rotation.
-    std::vector<NamedMethod> ours = {own_method()};
+    std::vector<NamedMethod> ours = {own_method(options.method)};
     if (planar_truth) ours.insert(ours.begin(), own_method_with_planar_rows());
     for (const NamedMethod& own : ours) {
       const auto runs = run_drives(specs, own.make, options, run_options);

@@ -15,7 +15,7 @@ void roll(const Options& options, Report& report) {
   }
   RunOptions run_options;
   run_options.snapshot_period_s = 10.0;
-  const auto runs = run_drives(specs, own_method().make, options, run_options);
+  const auto runs = run_drives(specs, own_method(options.method).make, options, run_options);
   const std::string how = "600 s of city: median over " + std::to_string(seeds) + " seeds of the worst radar";
   const auto front = final_errors(runs, kRoll, {0, 1}), rear = final_errors(runs, kRoll, {2, 3});
   report.at_most("roll", "front radars", median(front) / kRadiansPerDegree, 0.3, "°", how);

@@ -76,7 +76,7 @@ void step_change(const Options& options, Report& report) {
       }
       RunOptions run_options;
       run_options.snapshot_period_s = 0.25;
-      const auto runs = run_drives(specs, own_method().make, options, run_options);
+      const auto runs = run_drives(specs, own_method(options.method).make, options, run_options);
       const StepChangeOutcome outcome = outcome_of(specs, runs);
       all_delays_s.insert(all_delays_s.end(), outcome.delays_s.begin(), outcome.delays_s.end());
       std::vector<double> later, later_normalised;

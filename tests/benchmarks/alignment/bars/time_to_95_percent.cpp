@@ -25,7 +25,7 @@ void time_to_95_percent(const Options& options, Report& report) {
         specs.push_back(with_disturbances ? disturbed_drive(road, options.seconds(120.0), 700 + seed)
                                           : clean_drive(road, options.seconds(120.0), 700 + seed));
       }
-      const auto runs = run_drives(specs, own_method().make, options);
+      const auto runs = run_drives(specs, own_method(options.method).make, options);
       std::vector<std::string> row = {std::string(name_of(road)) + (with_disturbances ? ", disturbed" : "")};
       std::vector<std::string> tail;
       for (const int parameter : {kSpeedScale, kYaw, kPitch}) {

@@ -14,9 +14,12 @@ namespace boresight::bench {
 
 class Load {
  public:
+  /// At most kMaxDetections per scan.
   Load(std::size_t radars, double detections_per_scan, double seconds);
 
   [[nodiscard]] const VehicleConfig& vehicle() const { return vehicle_; }
+  /// Gives the method the next scan; returns the number of detections.
+  std::size_t give_scan(alignment::Method& method);
   /// Gives the method one scan of each radar; returns the number of detections.
   std::size_t give_cycle(alignment::Method& method);
   /// Runs through all scans once, so that the method has started.
@@ -34,13 +37,16 @@ class Load {
   std::int64_t duration_ns_;
 };
 
-/// Median time of a cycle of all radars, over `cycles`, after warming up.
+/// Time of a cycle of all radars, over `cycles`, after warming up.
 struct CycleCost {
-  double us_per_cycle;
-  double ns_per_detection;
+  double us_per_cycle;      ///< median
+  double ns_per_detection;  ///< median
+  double mean_us;           ///< per cycle, of the thread's CPU time: with work that is not done in each cycle
   std::size_t allocations;
 };
 [[nodiscard]] CycleCost measure_cycles(Load& load, alignment::Method& method, std::size_t cycles);
+/// The longest call of process() in as many cycles (ms of the thread's CPU time); does not warm up.
+[[nodiscard]] double longest_call_ms(Load& load, alignment::Method& method, std::size_t cycles);
 /// Number of heap allocations; does not warm up.
 [[nodiscard]] std::size_t count_allocations(Load& load, alignment::Method& method, std::size_t cycles);
 

@@ -1,5 +1,7 @@
 #include "tests/benchmarks/alignment/common/methods.hpp"
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "services/alignment_estimator/core/make_method.hpp"
@@ -29,9 +31,25 @@ std::vector<NamedMethod> published_with(const PublishedConfig& config) {
 
 }  // namespace
 
-NamedMethod own_method() {
-  return {"boresight",
-          [](const VehicleConfig& vehicle) { return alignment::make_method(vehicle, alignment::Config{}); }};
+NamedMethod own_method(std::string_view name) {
+  alignment::Config config;
+  std::string shown = "boresight";
+  if (!name.empty()) {
+    const auto known = std::find_if(alignment::kMethodNames.begin(), alignment::kMethodNames.end(),
+                                    [&](const auto& entry) { return entry.first == name; });
+    if (known == alignment::kMethodNames.end()) throw std::invalid_argument("no alignment method " + std::string(name));
+    config.method = known->second;
+    shown = name;
+  }
+  return {shown, [config](const VehicleConfig& vehicle) { return alignment::make_method(vehicle, config); }};
+}
+
+std::string own_method_name(std::string_view name) {
+  if (!name.empty()) return std::string(name);
+  for (const auto& [known, method] : alignment::kMethodNames) {
+    if (method == alignment::Config{}.method) return std::string(known);
+  }
+  throw std::logic_error("the default alignment method has no name");
 }
 
 NamedMethod own_method_with_planar_rows() {

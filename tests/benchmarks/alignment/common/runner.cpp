@@ -6,7 +6,9 @@
 #include "services/alignment_estimator/core/scan_detections.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/geometry/so3.hpp"
+#include "services/common/vehicle/drive_truth.hpp"
 #include "services/simulator/alignment/drive.hpp"
+#include "services/simulator/car/radar_of_car.hpp"
 
 namespace boresight::bench {
 
@@ -74,12 +76,18 @@ Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make, cons
   const std::unique_ptr<alignment::Method> method = make(vehicle);
   const std::size_t radars = vehicle.radars.size();
 
+  std::vector<double> speed_scales;  // true k_v as seen through each radar
+  for (const RadarConfig& radar : vehicle.radars) {
+    const auto of_car = simulator::car::radar_of_car(spec.real_car, spec.seed, radar.id, radar.field_of_view);
+    speed_scales.push_back(speed_scale_seen(spec.speed_scale, of_car.range_rate_scale));
+  }
+
   Run run;
   const auto take_snapshot = [&](double time_s, double driven_s, std::uint64_t iterations) {
     Snapshot snapshot{time_s, driven_s, iterations, {}};
     for (std::size_t r = 0; r < radars; ++r) {
       snapshot.radars.push_back(
-          error_of(method->estimate(r), drive.sensor_to_vehicle(r, kStart_s + time_s), spec.speed_scale));
+          error_of(method->estimate(r), drive.sensor_to_vehicle(r, kStart_s + time_s), speed_scales[r]));
     }
     run.snapshots.push_back(std::move(snapshot));
     if (options.look) options.look(*method, time_s);
@@ -121,7 +129,8 @@ Run run_drive(const simulator::AlignmentSpec& spec, const MakeMethod& make, cons
     method->process(event.radar, *detections, motion);
     ++run.scans;
     if (event.radar == 0) ++iterations;
-    const std::uint32_t count = spec.step_changes.empty() ? 0 : method->estimate(event.radar).step_change.count;
+    const bool is_counted = options.false_changes || !spec.step_changes.empty();
+    const std::uint32_t count = is_counted ? method->estimate(event.radar).step_change.count : 0;
     if (count > step_changes[event.radar]) {
       step_changes[event.radar] = count;
       run.step_changes.push_back({event.radar, now_s});

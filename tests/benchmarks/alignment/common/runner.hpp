@@ -20,7 +20,8 @@ namespace boresight::bench {
 using MakeMethod = std::function<std::unique_ptr<alignment::Method>(const VehicleConfig&)>;
 
 /// Errors are estimate − truth: of k_v, and the rotation vector of R_est·R_trueᵀ in vehicle axes (x roll, y pitch, z
-/// yaw), in this order wherever there are four.
+/// yaw), in this order wherever there are four. The true k_v is what an estimator sees through this radar: with the
+/// radar's own scale of range rates. The true mounting is that on the body, without the pitch of the body by load.
 struct RadarError {
   Eigen::Vector4d error = Eigen::Vector4d::Zero();             ///< 1, rad
   Eigen::Vector4d std = Eigen::Vector4d::Zero();               ///< as the method states them
@@ -61,6 +62,7 @@ struct RunOptions {
   double fine_period_s = 0.1;    ///< in the first 12 s
   bool only_stationary = false;  ///< true inliers: all other detections are marked invalid
   bool residuals = false;        ///< fill Run::corrected and uncorrected
+  bool false_changes = false;    ///< fill Run::step_changes also on drives without a step change
   /// Called with each snapshot; for data that only one method has.
   std::function<void(const alignment::Method&, double time_s)> look;
 };
