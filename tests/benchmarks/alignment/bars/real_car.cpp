@@ -33,6 +33,15 @@ std::vector<std::string> row_of_kind(const std::string& name, const DriveErrors&
   return row;
 }
 
+/// A row for each kind of road.
+void add_roads(const std::vector<Run>& runs, Table& table) {
+  for (std::size_t road = 0; road < std::min(kRoadsInTurn, runs.size()); ++road) {
+    DriveErrors of_road;
+    for (std::size_t i = road; i < runs.size(); i += kRoadsInTurn) of_road.add_drive(runs[i].last());
+    table.rows.push_back(row_of_kind(std::string("… ") + name_of(road_in_turn(road)), of_road));
+  }
+}
+
 void judge_kind(const RealCarKind& kind, const DriveErrors& errors, const std::string& drives, Report& report) {
   const auto how = [&](const Interval& interval) {
     return drives + "; 95 % interval " + number(interval.low) + "–" + number(interval.high);
@@ -78,6 +87,7 @@ void real_car(const Options& options, Report& report) {
     DriveErrors errors;
     for (const Run& run : runs) errors.add_drive(run.last());
     table.rows.push_back(row_of_kind(kind.name, errors));
+    if (kind.is_whole_car) add_roads(runs, table);
     judge_kind(kind, errors, drives_text(drives, duration_s, seed), report);
     seed += kSeedsOfAKind;
   }

@@ -48,7 +48,7 @@ void real_car_no_change(const Options& options, Report& report) {
     table.rows.push_back({name, fixed(of_road_h, 1), std::to_string(count), per_hour(count), std::to_string(with_one),
                           std::to_string(load_count), per_hour(load_count)});
   };
-  for (std::size_t i = 0; i < 3; ++i) add_row(name_of(road_in_turn(i)), i, 3);
+  for (std::size_t i = 0; i < kRoadsInTurn; ++i) add_row(name_of(road_in_turn(i)), i, kRoadsInTurn);
   add_row("**all**", 0, 1);
   report.add(std::move(table));
   std::size_t count = 0;

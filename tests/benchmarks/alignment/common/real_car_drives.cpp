@@ -48,8 +48,8 @@ AlignmentSpec real_car_drive(RoadKind road, double duration_s, std::uint64_t see
 }
 
 RoadKind road_in_turn(std::size_t drive) {
-  constexpr RoadKind kRoadsInTurn[] = {RoadKind::kMixed, RoadKind::kCity, RoadKind::kMotorway};
-  return kRoadsInTurn[drive % 3];
+  constexpr RoadKind kRoads[kRoadsInTurn] = {RoadKind::kMixed, RoadKind::kCity, RoadKind::kMotorway};
+  return kRoads[drive % kRoadsInTurn];
 }
 
 double draw_change_s(std::uint64_t seed) {

@@ -16,6 +16,7 @@ namespace boresight::bench {
 [[nodiscard]] simulator::AlignmentSpec real_car_drive(simulator::RoadKind road, double duration_s, std::uint64_t seed);
 
 /// Mixed, city and motorway roads in turn.
+inline constexpr std::size_t kRoadsInTurn = 3;
 [[nodiscard]] simulator::RoadKind road_in_turn(std::size_t drive);
 
 /// Time of a sudden change, of the seed: 60…120 s after the first message.
