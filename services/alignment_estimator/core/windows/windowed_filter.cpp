@@ -341,12 +341,21 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   out.step_change = radar.step_change;
   out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
   out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
-  // The share of images differs with range and road: it is not known better than to this.
-  constexpr double kMirrorTolerance = 0.15;
+  // Heights over the road: known not to vary with them is nothing. The estimate is the one without an excess of heights;
+  // what the excess would change is a tolerance, and so is the share of images.
+  const double above_variance = solution.covariance(own::kAbove, own::kAbove);
+  if (above_variance > 1e-12) {
+    const Eigen::Vector3d by_above = solution.covariance.block<3, 1>(own::kRotation, own::kAbove) / above_variance;
+    const Eigen::Vector3d change = by_above * solution.state.height_excess;
+    out.sensor_to_vehicle = geometry::so3_exp(-change) * out.sensor_to_vehicle;
+    out.covariance.bottomRightCorner<3, 3>() +=
+        change * change.transpose() - above_variance * by_above * by_above.transpose();
+  }
   const double mirror_variance = solution.covariance(own::kMirror, own::kMirror);
   if (mirror_variance > 1e-9) {
     const Eigen::Vector3d by_mirror = solution.covariance.block<3, 1>(own::kRotation, own::kMirror) / mirror_variance;
-    out.covariance.bottomRightCorner<3, 3>() += square(kMirrorTolerance) * by_mirror * by_mirror.transpose();
+    out.covariance.bottomRightCorner<3, 3>() +=
+        square(priors_.mirror_share_tolerance) * by_mirror * by_mirror.transpose();
   }
   out.covariance.block<3, 1>(1, 0) = solution.with_shared.block<3, 1>(own::kRotation, shared::kSpeedScale);
   out.covariance.block<1, 3>(0, 1) = out.covariance.block<3, 1>(1, 0).transpose();
