@@ -12,12 +12,16 @@ namespace {
 /// Figures of several runs with four radars × 60 detections, for their medians and ranges.
 void judge_cost(const NamedMethod& own, const Options& options, std::size_t cycles, double load_s, Report& report) {
   const std::size_t runs = options.quick ? 2 : 5;
-  std::vector<double> means_us, longest_ms;
+  std::vector<double> means_us, longest_ms, fastest_ms;
   for (std::size_t run = 0; run < runs; ++run) {
     Load load(4, 60.0, load_s);
     const auto method = own.make(load.vehicle());
     means_us.push_back(measure_cycles(load, *method, cycles).mean_us);
-    longest_ms.push_back(longest_call_ms(load, *method, cycles));
+    const std::vector<double> calls_ms = call_times_ms(load, *method, cycles);
+    longest_ms.push_back(quantile(calls_ms, 1.0));
+    // All runs do the same work, so what differs between them is the machine's.
+    if (fastest_ms.empty()) fastest_ms = calls_ms;
+    for (std::size_t i = 0; i < calls_ms.size(); ++i) fastest_ms[i] = std::min(fastest_ms[i], calls_ms[i]);
   }
   const auto how = [&](const std::vector<double>& values) {
     return "median of " + std::to_string(runs) + " runs of " + std::to_string(cycles) + " cycles after " +
@@ -26,6 +30,8 @@ void judge_cost(const NamedMethod& own, const Options& options, std::size_t cycl
   };
   report.at_most("cost", "four radars × 60 detections, mean", median(means_us), 150.0, "µs", how(means_us));
   report.at_most("cost", "longest call of process()", median(longest_ms), 1.0, "ms", how(longest_ms));
+  report.beside("cost", "longest call of process(), each at its fastest", quantile(fastest_ms, 1.0), "ms",
+                "largest over calls of the smallest over " + std::to_string(runs) + " runs that do the same");
 }
 
 void judge_growth(const NamedMethod& own, const Options& options, std::size_t cycles, Report& report) {
@@ -75,9 +81,9 @@ void cost(const Options& options, Report& report) {
     Load load(4, 60.0, load_s);
     const auto method = named.make(load.vehicle());
     const CycleCost cost = measure_cycles(load, *method, cycles);
-    methods.rows.push_back({named.name, fixed(cost.us_per_cycle, 1), fixed(cost.mean_us, 1),
-                            fixed(cost.ns_per_detection, 0), fixed(longest_call_ms(load, *method, cycles), 2),
-                            std::to_string(cost.allocations)});
+    methods.rows.push_back(
+        {named.name, fixed(cost.us_per_cycle, 1), fixed(cost.mean_us, 1), fixed(cost.ns_per_detection, 0),
+         fixed(quantile(call_times_ms(load, *method, cycles), 1.0), 2), std::to_string(cost.allocations)});
     if (&named != &all.back()) continue;
     const std::string how =
         "median of " + std::to_string(cycles) + " cycles after " + fixed(load_s, 0) + " s of driving, one thread";
@@ -86,7 +92,7 @@ void cost(const Options& options, Report& report) {
   }
   report.add(std::move(methods));
   judge_cost(own, options, cycles, load_s, report);
-  judge_growth(own, options, cycles / 4, report);
+  judge_growth(own, options, cycles, report);
 }
 
 }  // namespace boresight::bench

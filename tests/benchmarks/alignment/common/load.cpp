@@ -112,14 +112,14 @@ CycleCost measure_cycles(Load& load, alignment::Method& method, std::size_t cycl
   return {median(each_us), median(each_ns), mean_us, runtime::counted_allocations() - before};
 }
 
-double longest_call_ms(Load& load, alignment::Method& method, std::size_t cycles) {
-  double longest_s = 0.0;
-  for (std::size_t i = 0; i < cycles * load.vehicle().radars.size(); ++i) {
+std::vector<double> call_times_ms(Load& load, alignment::Method& method, std::size_t cycles) {
+  std::vector<double> each_ms(cycles * load.vehicle().radars.size());
+  for (double& call_ms : each_ms) {
     const double begin_s = thread_cpu_s();
     load.give_scan(method);
-    longest_s = std::max(longest_s, thread_cpu_s() - begin_s);
+    call_ms = 1e3 * (thread_cpu_s() - begin_s);
   }
-  return 1e3 * longest_s;
+  return each_ms;
 }
 
 std::size_t count_allocations(Load& load, alignment::Method& method, std::size_t cycles) {

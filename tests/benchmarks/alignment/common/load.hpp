@@ -45,8 +45,8 @@ struct CycleCost {
   std::size_t allocations;
 };
 [[nodiscard]] CycleCost measure_cycles(Load& load, alignment::Method& method, std::size_t cycles);
-/// The longest call of process() in as many cycles (ms of the thread's CPU time); does not warm up.
-[[nodiscard]] double longest_call_ms(Load& load, alignment::Method& method, std::size_t cycles);
+/// Each call of process() in as many cycles (ms of the thread's CPU time); does not warm up.
+[[nodiscard]] std::vector<double> call_times_ms(Load& load, alignment::Method& method, std::size_t cycles);
 /// Number of heap allocations; does not warm up.
 [[nodiscard]] std::size_t count_allocations(Load& load, alignment::Method& method, std::size_t cycles);
 
