@@ -50,9 +50,12 @@ template <typename Statistic>
 /// Of the mean of a Poisson distribution of which `count` was seen: exact, by bisection.
 [[nodiscard]] inline Interval poisson_interval(std::size_t count) {
   constexpr double kTail = 0.025;
-  const auto at_most = [](std::size_t n, double mean) {  // P(X ≤ n)
-    double term = std::exp(-mean), sum = term;
-    for (std::size_t i = 1; i <= n; ++i) sum += term *= mean / static_cast<double>(i);
+  const auto at_most = [](std::size_t n, double mean) {  // P(X ≤ n); logarithms, since e^−mean may be 0
+    double sum = 0.0;
+    for (std::size_t i = 0; i <= n; ++i) {
+      const auto count_i = static_cast<double>(i);
+      sum += std::exp(count_i * std::log(mean) - mean - std::lgamma(count_i + 1.0));
+    }
     return sum;
   };
   const auto mean_with = [&](std::size_t n, double share) {  // P(X ≤ n) = share

@@ -150,6 +150,9 @@ TEST(Intervals, PoissonMeansOfGarwood) {
   EXPECT_NEAR(poisson_interval(3).low, 0.619, 0.001);
   EXPECT_NEAR(poisson_interval(3).high, 8.767, 0.001);
   EXPECT_NEAR(poisson_interval(100).high, 121.63, 0.01);
+  // Nearly normal: ± 1.96 √count.
+  EXPECT_NEAR(poisson_interval(2742).low, 2742.0 - 1.96 * std::sqrt(2742.0), 2.0);
+  EXPECT_NEAR(poisson_interval(2742).high, 2742.0 + 1.96 * std::sqrt(2742.0), 2.0);
 }
 
 TEST(Intervals, ExponentOfAPower) {
