@@ -33,9 +33,20 @@ void Segments::begin(int load, const MergeNoise& noise) {
   ++size_;
 }
 
-void Segments::add(std::size_t radar, const Block& block) {
-  Share& latest = share(size_ - 1, radar);
-  add_to(latest, block.point, block.score, block.information, block.seconds);
+void Segments::add(std::size_t radar, const Block& block, double length_s, const MergeNoise& noise) {
+  // The block's deviation from the mean of the segment.
+  std::array<double, kFluctuations> deviation;
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    const double tau_s = noise.correlation_s[k];
+    deviation[k] = noise.common.variance[k] *
+                   std::max(share_of_mean(std::max(block.seconds, 0.1), tau_s) - share_of_mean(length_s, tau_s), 0.0);
+  }
+  Share part;
+  part.point = block.point;
+  part.score = block.score;
+  part.information = block.information;
+  const Reduced reduced = reduce(part, block.point, deviation);
+  add_to(share(size_ - 1, radar), block.point, reduced.score, reduced.information, block.seconds);
 }
 
 void forget(Share& share, int first_column, int columns) {

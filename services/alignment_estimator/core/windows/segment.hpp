@@ -69,7 +69,8 @@ class Segments {
   /// Begins a segment after the latest one.
   void begin(int load, const MergeNoise& noise);
   /// Adds a block to the latest segment.
-  void add(std::size_t radar, const Block& block);
+  /// `length_s`: that the segment will have.
+  void add(std::size_t radar, const Block& block, double length_s, const MergeNoise& noise);
 
  private:
   void merge(const MergeNoise& noise);

@@ -363,12 +363,12 @@ void Solver::eliminate(std::size_t index) {
   }
 }
 
-void Solver::begin_segment(Segments& segments, int load) const {
+MergeNoise Solver::merge_noise() const {
   MergeNoise noise;
   noise.common = common_;
   noise.correlation_s = correlation_s_;
   for (std::size_t r = 0; r < radars_.size(); ++r) noise.own[r] = radars_[r].fluctuation;
-  segments.begin(load, noise);
+  return noise;
 }
 
 void Solver::begin(double time_s) {

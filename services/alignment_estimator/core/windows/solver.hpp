@@ -72,8 +72,8 @@ class Solver {
   /// Covariance of the local parameters of a radar; of the constants only.
   [[nodiscard]] LocalMatrix local_covariance(std::size_t radar) const;
 
-  /// Begins a segment; older ones that are merged lose the deviations from their common mean.
-  void begin_segment(Segments& segments, int load) const;
+  /// The fluctuations as learnt so far, for segments that are added to or merged.
+  [[nodiscard]] MergeNoise merge_noise() const;
   /// Begins a new solution for this time, then makes it step by step; true: done. The segments must not change
   /// meanwhile. No allocation.
   void begin(double time_s);

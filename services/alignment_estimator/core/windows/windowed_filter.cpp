@@ -223,9 +223,12 @@ void WindowedFilter::close_block() {
   const bool due = segments_.size() == 0 ||
                    segments_.segment(segments_.size() - 1).seconds >= kSegment_s - 0.5 * kBlock_s ||
                    segments_.segment(segments_.size() - 1).load != load_;
-  if (due) solver_.begin_segment(segments_, load_);
+  const MergeNoise noise = solver_.merge_noise();
+  if (due) segments_.begin(load_, noise);
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    if (radars_[r].running && radars_[r].block.scans > 0 && !verdicts_[r].suspect) segments_.add(r, radars_[r].block);
+    if (radars_[r].running && radars_[r].block.scans > 0 && !verdicts_[r].suspect) {
+      segments_.add(r, radars_[r].block, kSegment_s, noise);
+    }
   }
   Segment& latest = segments_.segment(segments_.size() - 1);
   latest.seconds += kBlock_s;
@@ -341,8 +344,8 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   out.step_change = radar.step_change;
   out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
   out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
-  // Heights over the road: known not to vary with them is nothing. The estimate is the one without an excess of heights;
-  // what the excess would change is a tolerance, and so is the share of images.
+  // Heights over the road: known not to vary with them is nothing. The estimate is the one without an excess of
+  // heights; what the excess would change is a tolerance, and so is the share of images.
   const double above_variance = solution.covariance(own::kAbove, own::kAbove);
   if (above_variance > 1e-12) {
     const Eigen::Vector3d by_above = solution.covariance.block<3, 1>(own::kRotation, own::kAbove) / above_variance;

@@ -44,6 +44,20 @@ int main(int argc, char** argv) {
     if (kind == "slip") { c.side_slip_std_rad = preset.side_slip_std_rad; }
     if (kind == "gain") c.yaw_rate_gain = 0.01;
     if (kind == "mirror") c.road_mirror_share = preset.road_mirror_share;
+    if (const char* list = std::getenv("SIMOFF")) {
+      const std::string simoff = list;
+      const auto without = [&](const char* name) { return simoff.find(name) != std::string::npos; };
+      if (without("scale")) c.range_rate_scale = 0;
+      if (without("curve")) c.azimuth_curve_rms_rad = 0;
+      if (without("position")) c.position_error_m = 0;
+      if (without("stamp")) c.stamp_offset_s = 0;
+      if (without("wind")) c.side_slip_std_rad = 0;
+      if (without("bend")) c.slip_coefficient_radps2pm = 0;
+      if (without("gain")) c.yaw_rate_gain = 0;
+      if (without("bias")) c.yaw_rate_bias_radps = 0;
+      if (without("step")) c.speed_step_mps = 0;
+      if (without("body")) spec.body_pitch_std_rad = spec.body_pitch_per_acceleration_radps2pm = 0;
+    }
     alignment::Config config;
     for (const auto& [name, m] : alignment::kMethodNames) if (name == which) config.method = m;
     bench::RunOptions options;
@@ -69,8 +83,8 @@ int main(int argc, char** argv) {
                   s.shared().stamp_s, 57.3 * std::sqrt(s.common().variance[0]), s.correlation_s(0), 57.3 * std::sqrt(s.common().variance[1]), s.correlation_s(1), std::sqrt(s.common().variance[2]), s.correlation_s(2));
       for (std::size_t r = 0; r < s.size(); ++r) {
         const auto& q = s.radar(r);
-        std::printf("   radar %zu scale %+.5f tau %.4f pos %.3f %.3f mirror %.2f curve %.3f own yaw %.4f pitch %.4f scale %.6f sd yaw %.4f\n", r, q.state.rate_scale, q.state.stamp_s,
-                    q.state.position_error_m.x(), q.state.position_error_m.y(), q.state.mirror_share, 57.3 * std::sqrt(q.state.curve_rad.squaredNorm() / 11), 57.3 * std::sqrt(q.fluctuation.variance[0]),
+        std::printf("   radar %zu scale %+.5f tau %.4f pos %.3f %.3f above %.3f mirror %.2f curve %.3f own yaw %.4f pitch %.4f scale %.6f sd yaw %.4f\n", r, q.state.rate_scale, q.state.stamp_s,
+                    q.state.position_error_m.x(), q.state.position_error_m.y(), q.state.height_excess, q.state.mirror_share, 57.3 * std::sqrt(q.state.curve_rad.squaredNorm() / 11), 57.3 * std::sqrt(q.fluctuation.variance[0]),
                     57.3 * std::sqrt(q.fluctuation.variance[1]), std::sqrt(q.fluctuation.variance[2]), 57.3 * std::sqrt(q.covariance(3, 3)));
       }
     };
@@ -86,6 +100,8 @@ int main(int argc, char** argv) {
     if (is_off("position")) priors.position_std_m = 0;
     if (is_off("curve")) priors.curve_std_rad = 0;
     if (is_off("mirror")) priors.mirror_share_std = 0;
+    if (is_off("above")) priors.height_excess_std = 0;
+    if (std::getenv("KAPPA")) priors.height_excess_std = std::atof(std::getenv("KAPPA"));
     if (is_off("cscale")) priors.common_std[2] = 0;
     if (is_off("oscale")) priors.own_std[2] = 0;
     if (is_off("cyaw")) priors.common_std[0] = 0;
