@@ -18,8 +18,9 @@ namespace boresight::alignment {
 /// d about the vehicle's x (roll), y and z (yaw) axes, R(actual) = Exp(d)·R(nominal), right-handed.
 struct RadarEstimate {
   AlignmentState state = AlignmentState::kNoData;
+  AlignmentReason reason = AlignmentReason::kNone;
   std::uint32_t observable = 0;  ///< alignment_axis bits, without those about the sensor's axes
-  double speed_scale = 1.0;
+  double speed_scale = 1.0;      ///< as this radar sees it, see AlignmentEstimate
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of (k_v, d_x, d_y, d_z), as errors Exp(d)·R
   double yaw_rate_bias_radps = 0.0;                      ///< signalled = true + bias; 0 ± 0 where not estimated
@@ -32,6 +33,10 @@ struct RadarEstimate {
   std::uint64_t detections_used = 0;
   double seconds_of_drive = 0.0;  ///< driving time with this radar
   AlignmentStepChange step_change{};
+  AlignmentVehicleChange load_change{};
+  AlignmentVehicleChange speed_change{};
+  AlignmentDrift drift{};
+  AlignmentNuisance nuisance{};  ///< zero where the method does not estimate it
 };
 
 class Method {

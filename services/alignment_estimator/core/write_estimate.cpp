@@ -32,7 +32,11 @@ VehicleForm vehicle_form(const RadarConfig& radar, const RadarEstimate& estimate
 void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, double prior_angle_std_rad,
                     AlignmentEstimate& out) {
   out.state = estimate.state;
-  out.reserved = {};
+  out.reason = estimate.reason;
+  out.finding = AlignmentFinding::kNone;
+  out.finding_value = 0.0F;
+  out.finding_radar = 0;
+  out.reserved = 0;
   const VehicleForm vehicle = vehicle_form(radar, estimate);
   out.speed_scale = static_cast<float>(estimate.speed_scale);
   out.vehicle_yaw_rad = static_cast<float>(vehicle.values(1));
@@ -62,6 +66,10 @@ void write_estimate(const RadarConfig& radar, const RadarEstimate& estimate, dou
   out.slip_coefficient_std_radps2pm = static_cast<float>(estimate.slip_coefficient_std_radps2pm);
   out.angle_noise_scale = static_cast<float>(estimate.angle_noise_scale);
   out.step_change = estimate.step_change;
+  out.load_change = estimate.load_change;
+  out.speed_change = estimate.speed_change;
+  out.drift = estimate.drift;
+  out.nuisance = estimate.nuisance;
 }
 
 }  // namespace boresight::alignment
