@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "services/alignment_estimator/core/small_maths.hpp"
+#include "services/alignment_estimator/core/windows/output.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -335,44 +336,10 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   RadarEstimate out;
   if (index >= radars_.size()) return out;
   const Radar& radar = radars_[index];
-  const RadarSolution& solution = solver_.radar(index);
   out.state = radar.state;
-  out.speed_scale = solver_.shared().speed_scale;
-  // The mounting, without the load of the car.
-  out.sensor_to_vehicle = geometry::so3_exp({0.0, -solver_.load_rad(load_), 0.0}) *
-                          solver_.point(index, driven_s_, load_).sensor_to_vehicle;
+  write_solution(solver_, index, driven_s_, load_, radar.knots, out);
+  if (!radar.running) out.observable = out.nuisance.observable = 0;
   out.step_change = radar.step_change;
-  out.covariance(0, 0) = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
-  out.covariance.bottomRightCorner<3, 3>() = solution.covariance.block<3, 3>(own::kRotation, own::kRotation);
-  // Heights over the road: known not to vary with them is nothing. The estimate is the one without an excess of
-  // heights; what the excess would change is a tolerance, and so is the share of images.
-  const double above_variance = solution.covariance(own::kAbove, own::kAbove);
-  if (above_variance > 1e-12) {
-    const Eigen::Vector3d by_above = solution.covariance.block<3, 1>(own::kRotation, own::kAbove) / above_variance;
-    const Eigen::Vector3d change = by_above * solution.state.height_excess;
-    out.sensor_to_vehicle = geometry::so3_exp(-change) * out.sensor_to_vehicle;
-    out.covariance.bottomRightCorner<3, 3>() +=
-        change * change.transpose() - above_variance * by_above * by_above.transpose();
-  }
-  const double mirror_variance = solution.covariance(own::kMirror, own::kMirror);
-  if (mirror_variance > 1e-9) {
-    const Eigen::Vector3d by_mirror = solution.covariance.block<3, 1>(own::kRotation, own::kMirror) / mirror_variance;
-    out.covariance.bottomRightCorner<3, 3>() +=
-        square(priors_.mirror_share_tolerance) * by_mirror * by_mirror.transpose();
-  }
-  out.covariance.block<3, 1>(1, 0) = solution.with_shared.block<3, 1>(own::kRotation, shared::kSpeedScale);
-  out.covariance.block<1, 3>(0, 1) = out.covariance.block<3, 1>(1, 0).transpose();
-  const auto learnt = [](double variance, double prior_std) { return variance < square(prior_std / 3.0); };
-  if (radar.running) {
-    if (learnt(out.covariance(0, 0), priors_.speed_scale_std)) out.observable |= alignment_axis::kSpeedScale;
-    if (learnt(out.covariance(1, 1), priors_.rotation_std_rad)) out.observable |= alignment_axis::kVehicleRoll;
-    if (learnt(out.covariance(2, 2), priors_.rotation_std_rad)) out.observable |= alignment_axis::kVehiclePitch;
-    if (learnt(out.covariance(3, 3), priors_.rotation_std_rad)) out.observable |= alignment_axis::kVehicleYaw;
-  }
-  out.yaw_rate_bias_radps = solver_.shared().yaw_rate_bias_radps;
-  out.yaw_rate_bias_std_radps = std::sqrt(solver_.shared_covariance()(shared::kYawRateBias, shared::kYawRateBias));
-  out.slip_coefficient_radps2pm = solver_.shared().slip_radps2pm;
-  out.slip_coefficient_std_radps2pm = std::sqrt(solver_.shared_covariance()(shared::kSlip, shared::kSlip));
   out.angle_noise_scale = std::sqrt(radar.noise.angle_variance_factor());
   out.inlier_ratio = std::max(0.0, radar.inlier_ratio);
   out.scans_used = radar.scans_used;
