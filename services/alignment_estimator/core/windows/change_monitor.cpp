@@ -11,7 +11,7 @@
 namespace boresight::alignment::windows {
 
 Deviation2 deviation_of(const Block& block, double scale_variance, double roll_variance, double rotation_variance,
-                        bool has_elevation, const ChangeConfig& config) {
+                        bool has_elevation, double common_scale, const ChangeConfig& config) {
   Deviation2 out;
   if (block.scans == 0 || block.stationary < config.least_detections) return out;
   Eigen::Matrix4d information = block.wide_information;
@@ -20,11 +20,27 @@ Deviation2 deviation_of(const Block& block, double scale_variance, double roll_v
                                             has_elevation ? 1.0 / std::max(roll_variance, 1e-12) : known,
                                             has_elevation ? 1.0 / rotation_variance : known, 1.0 / rotation_variance);
   const Eigen::Matrix4d covariance = information.inverse();
-  const Eigen::Vector4d turn = covariance * block.wide_score;
+  const Eigen::Vector4d turn = covariance * (block.wide_score - common_scale * block.wide_information.col(0));
   out.value = turn.tail<2>();
   out.std = (covariance.diagonal().tail<2>().cwiseMax(0.0) + Eigen::Vector2d(0.0, block.turn_variance)).cwiseSqrt();
   out.valid = out.value.allFinite() && out.std(1) < 0.5 * config.yaw_rad;
   return out;
+}
+
+ScaleDeviation scale_deviation_of(const Block& block, const Eigen::Vector3d& rotation_variances, double scale_variance,
+                                  bool has_elevation, const ChangeConfig& config) {
+  if (block.scans == 0 || block.stationary < config.least_detections) return {};
+  Eigen::Matrix4d information = block.wide_information;
+  const double known = 1e12;
+  information(0, 0) += 1.0 / scale_variance;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool is_known = axis < 2 && !has_elevation;
+    information(axis + 1, axis + 1) += is_known ? known : 1.0 / std::max(rotation_variances(axis), 1e-12);
+  }
+  const Eigen::Matrix4d covariance = information.inverse();
+  const double value = covariance.row(0).dot(block.wide_score), variance = covariance(0, 0);
+  if (!std::isfinite(value) || !(variance > 0.0)) return {};
+  return {value, std::sqrt(variance)};
 }
 
 double ChangeMonitor::scatter(const History& history, std::size_t size, int axis) const {

@@ -12,6 +12,14 @@
 
 namespace boresight::alignment::windows {
 
+/// Smallest step of a quantity that all radars share, and what is known of its scatter; see CommonWatch.
+struct CommonConfig {
+  double least = 0.0;      ///< smallest step that is reported
+  double stds = 6.0;       ///< and in its own std
+  double scatter = 0.0;    ///< std of a block before any block
+  std::size_t after = 10;  ///< blocks since the step, at least
+};
+
 struct ChangeConfig {
   double yaw_rad = 0.00785;          ///< smallest change that is reported, 0.45°
   double pitch_rad = 0.0157;         ///< 0.9°
@@ -19,7 +27,10 @@ struct ChangeConfig {
   double common_factor = 4.0;        ///< likewise, with the part that all radars share
   double yaw_scatter_rad = 0.00105;  ///< scatter before any block, 0.06°
   double pitch_scatter_rad = 0.0035;
-  double least_detections = 50.0;  ///< of a block, stationary
+  double least_detections = 50.0;               ///< of a block, stationary
+  CommonConfig load{0.00436, 6.0, 0.0035, 10};  ///< the body's pitch (rad): 0.25°, 0.2°
+  CommonConfig speed{0.005, 6.0, 0.001, 10};    ///< scale of the speed signal
+  double watch_s = 14.0;  ///< driving time after which a load change that a restart allowed is decided
 };
 
 /// What one block of one radar says about its rotation, with all else known to `known`.
@@ -29,9 +40,19 @@ struct Deviation2 {
   bool valid = false;
 };
 
-/// Variances of rate scale, roll, and of pitch and yaw before the block.
+/// Variances of rate scale, roll, and of pitch and yaw before the block. `common_scale`: error of the scale of the
+/// range rates that all radars show, which is no turn of any of them.
 [[nodiscard]] Deviation2 deviation_of(const Block& block, double scale_variance, double roll_variance,
-                                      double rotation_variance, bool has_elevation, const ChangeConfig& config);
+                                      double rotation_variance, bool has_elevation, double common_scale,
+                                      const ChangeConfig& config);
+
+/// What one block of one radar says about the scale of its range rates, with its rotation known to these variances.
+struct ScaleDeviation {
+  double value = 0.0;
+  double std = 0.0;  ///< 0: nothing
+};
+[[nodiscard]] ScaleDeviation scale_deviation_of(const Block& block, const Eigen::Vector3d& rotation_variances,
+                                                double scale_variance, bool has_elevation, const ChangeConfig& config);
 
 struct ChangeVerdict {
   bool suspect = false;  ///< the block must not be learnt from

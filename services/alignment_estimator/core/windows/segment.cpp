@@ -8,6 +8,8 @@ namespace {
 
 /// Segments of a level before the two oldest of them become one.
 constexpr int kOfLevel = 8;
+/// The time of a load step is not known better.
+constexpr double kUnsure_s = 1.0;
 
 }  // namespace
 
@@ -67,11 +69,20 @@ void Segments::forget(std::size_t radar, int first_column, int columns) {
   for (int i = 0; i < size_; ++i) windows::forget(share(i, radar), first_column, columns);
 }
 
-void Segments::forget_latest(double seconds, int first_column, int columns) {
-  double since = 0.0;
-  for (int i = size_ - 1; i >= 0 && since < seconds; --i) {
-    since += segment(i).seconds;
+void Segments::forget_before(double time_s, int first_column, int columns) {
+  for (int i = 0; i < size_; ++i) {
+    if (segment(i).middle_s - 0.5 * segment(i).seconds >= time_s) break;
     for (std::size_t r = 0; r < radars_; ++r) windows::forget(share(i, r), first_column, columns);
+  }
+}
+
+void Segments::add_load(double time_s) {
+  for (int i = 0; i < size_; ++i) {
+    Segment& of = segment(i);
+    const double begin_s = of.middle_s - 0.5 * of.seconds, end_s = of.middle_s + 0.5 * of.seconds;
+    if (of.middle_s > time_s) ++of.load;
+    if (begin_s >= time_s + kUnsure_s || end_s <= time_s - kUnsure_s) continue;
+    for (std::size_t r = 0; r < radars_; ++r) windows::forget(share(i, r), local::kRotation + 1, 1);
   }
 }
 

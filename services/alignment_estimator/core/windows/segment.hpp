@@ -58,8 +58,10 @@ class Segments {
   void clear() { size_ = 0; }
   /// Takes away what a radar's shares say about some local parameters: they have changed.
   void forget(std::size_t radar, int first_column, int columns);
-  /// Takes away what all radars said about some local parameters in the last seconds.
-  void forget_latest(double seconds, int first_column, int columns);
+  /// Takes away what all radars said about some local parameters in segments that began before this time of the drive.
+  void forget_before(double time_s, int first_column, int columns);
+  /// A load step at this time of the drive: later segments have it, and one from both sides loses its pitch.
+  void add_load(double time_s);
   /// What was seen before the first load step loses its pitch; the others count from there.
   void forget_first_load();
   /// There was no load step of this number.

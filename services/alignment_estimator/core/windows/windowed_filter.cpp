@@ -22,11 +22,6 @@ constexpr std::size_t kMinSightings = 4;
 constexpr double kMaxGap_s = 1.0;
 constexpr double kInlierMemory_s = 10.0, kNoiseMemory_s = 60.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
-constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 5.0;
-constexpr double kDropped_s = 7.0;  ///< of driving before a change is reported: they are from both sides of it
-constexpr std::size_t kWindowsToSettle = 15;
-constexpr double kSettledYaw_rad = 0.0052, kWait_s = 45.0;
-constexpr double kStopped_mps = 0.6;
 /// Largest standard deviations of scale and rotation that widen the gate of a running radar.
 constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
 
@@ -48,9 +43,13 @@ WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig&
       solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
       segments_(std::min(vehicle.radars.size(), kMaxRadars)),
       changes_(std::min(vehicle.radars.size(), kMaxRadars), change_config_),
-      load_watch_(load_config_) {
+      load_watch_(change_config_.load),
+      speed_watch_(change_config_.speed) {
   const std::size_t count = solver_.size();
   deviations_.resize(count);
+  scales_.resize(count);
+  work_.resize(count);
+  work_stds_.resize(count);
   verdicts_.resize(count);
   radars_.reserve(count);
   for (std::size_t r = 0; r < count; ++r) {
@@ -78,7 +77,6 @@ void WindowedFilter::process(std::size_t index, const ScanDetections& scan, cons
   const double elapsed_s = since_s > 0.0 && since_s < kMaxGap_s ? since_s : radar.config.cycle_time_s;
   radar.last_time_ns = scan.time_ns;
   if (solver_.busy()) (void)solver_.step(segments_);
-  if (ego.valid && !ego.stale && std::abs(ego.speed_mps) < kStopped_mps) has_stopped_ = true;
   if (!usable(ego)) {
     radar.state = std::max(radar.state, AlignmentState::kWaiting);
     return;
@@ -208,12 +206,6 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   radar.detections_used += static_cast<std::uint64_t>(sums.common.inliers);
 }
 
-bool WindowedFilter::settled(std::size_t index) const {
-  const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
-  return radars_[index].running && changes_.windows(index) >= kWindowsToSettle &&
-         yaw_variance < square(kSettledYaw_rad);
-}
-
 void WindowedFilter::close_block() {
   has_block_ = false;
   bool any = false;
@@ -248,90 +240,6 @@ void WindowedFilter::close_block() {
   }
 }
 
-void WindowedFilter::judge_block() {
-  for (std::size_t r = 0; r < radars_.size(); ++r) {
-    const RadarSolution& s = solver_.radar(r);
-    deviations_[r] = {};
-    if (!radars_[r].running) continue;
-    deviations_[r] =
-        deviation_of(radars_[r].block, s.covariance(own::kRateScale, own::kRateScale) + s.fluctuation.variance[2],
-                     s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
-                     change_config_);
-  }
-  if (std::getenv("LW2"))
-    for (std::size_t r = 0; r < radars_.size(); ++r) {
-      const Block& b = radars_[r].block;
-      if (b.scans == 0) continue;
-      std::fprintf(stderr, "YAW %.0f r%zu %.3f (%.3f) valid %d settled %d\n", driven_s_, r,
-                   57.3 * deviations_[r].value(1), 57.3 * deviations_[r].std(1), deviations_[r].valid, settled(r));
-      const int p = local::kRotation + 1;
-      std::fprintf(stderr, "%.0f r%zu narrow %.3f (%.3f) wide %.3f  dev %.3f\n", driven_s_, r,
-                   57.3 * b.score(p) / b.information(p, p), 57.3 / std::sqrt(b.information(p, p)),
-                   57.3 * b.wide_score(2) / b.wide_information(2, 2), 57.3 * deviations_[r].value(0));
-    }
-  changes_.judge(deviations_, verdicts_);
-  bool all_settled = true;
-  for (std::size_t r = 0; r < radars_.size(); ++r) {
-    if (!settled(r) || driven_s_ < kWait_s) {
-      all_settled = all_settled && !radars_[r].running;
-      verdicts_[r].suspect = verdicts_[r].changed = false;
-    }
-    if (verdicts_[r].changed) take_change(r);
-  }
-  if (!all_settled || load_since_s_ >= 0.0) return;
-  const LoadVerdict verdict = load_watch_.judge(deviations_);
-  if (verdict.suspect) {
-    for (ChangeVerdict& v : verdicts_) v.suspect = true;
-  }
-  if (!verdict.stands_out && !has_stopped_) return;
-  if (load_ == shared::kLoads) {
-    segments_.forget_first_load();
-    solver_.absorb_first_load();
-    --load_;
-  }
-  ++load_;
-  load_since_s_ = driven_s_;
-  if (verdict.stands_out && !has_stopped_) {
-    // They are from both sides of the step.
-    segments_.forget_latest(static_cast<double>(LoadWatch::kBlocks) + kSegment_s, local::kRotation + 1, 1);
-  }
-  has_stopped_ = false;
-  load_watch_.restart();
-}
-
-void WindowedFilter::take_change(std::size_t index) {
-  Radar& radar = radars_[index];
-  const Eigen::Vector3d turn(0.0, verdicts_[index].turn_rad(0), verdicts_[index].turn_rad(1));
-  solver_.turn(index, turn);
-  segments_.drop_latest(index, kDropped_s);
-  segments_.forget(index, local::kRotation, 3);
-  changes_.restart(index);
-  verdicts_[index].suspect = true;
-  ++radar.step_change.count;
-  radar.step_change.time_ns = radar.last_time_ns;
-  for (int i = 0; i < 3; ++i)
-    radar.step_change.rotation_vehicle_rad[static_cast<std::size_t>(i)] = static_cast<float>(turn(i));
-  solved_s_ = -kSolve_s;  // solve at once
-}
-
-void WindowedFilter::decide_load() {
-  if (load_since_s_ < 0.0 || driven_s_ - load_since_s_ < load_config_.watch_s) return;
-  const int step = load_ - 1;
-  const double size = solver_.shared().load_rad[static_cast<std::size_t>(step)];
-  if (std::getenv("LW"))
-    std::fprintf(stderr, "decide at %.0f size %.3f std %.3f\n", driven_s_, size * 57.3,
-                 57.3 * std::sqrt(solver_.load_variance(step)));
-  const double limit = std::max(load_config_.least_rad, load_config_.stds * std::sqrt(solver_.load_variance(step)));
-  if (std::abs(size) > limit) {
-    ++load_changes_;
-  } else {
-    segments_.remove_load(load_);
-    solver_.remove_load(step);
-    --load_;
-  }
-  load_since_s_ = -1.0;
-}
-
 RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   RadarEstimate out;
   if (index >= radars_.size()) return out;
@@ -340,6 +248,8 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   write_solution(solver_, index, driven_s_, load_, radar.knots, out);
   if (!radar.running) out.observable = out.nuisance.observable = 0;
   out.step_change = radar.step_change;
+  out.load_change = load_change_;
+  out.speed_change = speed_change_;
   out.angle_noise_scale = std::sqrt(radar.noise.angle_variance_factor());
   out.inlier_ratio = std::max(0.0, radar.inlier_ratio);
   out.scans_used = radar.scans_used;

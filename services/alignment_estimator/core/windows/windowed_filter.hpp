@@ -12,7 +12,7 @@
 #include "services/alignment_estimator/core/filter/noise_scale.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/alignment_estimator/core/windows/change_monitor.hpp"
-#include "services/alignment_estimator/core/windows/load_watch.hpp"
+#include "services/alignment_estimator/core/windows/common_watch.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -29,10 +29,12 @@ class WindowedFilter : public Method {
                std::span<double> out) const override;
 
   [[nodiscard]] const windows::Solver& solver() const { return solver_; }
-  [[nodiscard]] int load_changes() const { return load_changes_; }
+  [[nodiscard]] int load_changes() const { return static_cast<int>(load_change_.count); }
   [[nodiscard]] double load_rad() const { return solver_.load_rad(load_); }
 
  private:
+  /// Driving time of a block, of a segment, and between two solutions.
+  static constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 5.0;
   using LocalGate = Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve>;
   struct Radar {
     RadarConfig config;
@@ -52,6 +54,9 @@ class WindowedFilter : public Method {
     double inlier_ratio = -1.0;
     std::uint64_t scans_used = 0, detections_used = 0;
     AlignmentStepChange step_change{};
+    /// Rotation and scale that the vehicle's pitch and scale are counted from; set when the radar is settled.
+    Eigen::Matrix3d reference = Eigen::Matrix3d::Identity();
+    double reference_scale = 0.0;  ///< 0: not set
     Radar(const RadarConfig& radar, const FilterConfig& filter);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
@@ -61,7 +66,10 @@ class WindowedFilter : public Method {
   void close_block();
   void begin_block(std::size_t radar);
   void judge_block();
+  void judge_vehicle();
   void take_change(std::size_t radar);
+  void take_load(const windows::CommonStep& step, std::int64_t time_ns);
+  void take_speed(const windows::CommonStep& step, std::int64_t time_ns);
   void decide_load();
   [[nodiscard]] bool settled(std::size_t radar) const;
 
@@ -71,15 +79,15 @@ class WindowedFilter : public Method {
   windows::Solver solver_;
   windows::Segments segments_;
   windows::ChangeConfig change_config_;
-  windows::LoadConfig load_config_;
   windows::ChangeMonitor changes_;
-  windows::LoadWatch load_watch_;
+  windows::CommonWatch load_watch_, speed_watch_;
   std::vector<windows::Deviation2> deviations_;
+  std::vector<windows::ScaleDeviation> scales_;
   std::vector<windows::ChangeVerdict> verdicts_;
+  std::vector<double> work_, work_stds_;
   int load_ = 0;                ///< load steps so far, with one that is being judged
-  double load_since_s_ = -1.0;  ///< driving time at which that one began
-  bool has_stopped_ = false;
-  int load_changes_ = 0;
+  double load_since_s_ = -1.0;  ///< driving time at which one began that may not have happened: after a restart
+  AlignmentVehicleChange load_change_{}, speed_change_{};
   EgoTrend trend_;
   Sightings sightings_;
   std::int64_t block_start_ns_ = 0;

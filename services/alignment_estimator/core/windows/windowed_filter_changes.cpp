@@ -1,0 +1,158 @@
+// Changes: sudden misalignment of one radar, load, scale of the speed signal, drift.
+#include <algorithm>
+#include <cmath>
+
+#include "services/alignment_estimator/core/small_maths.hpp"
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment {
+
+namespace {
+
+using namespace windows;
+
+constexpr double kDropped_s = 7.0;  ///< of driving before a change is reported: they are from both sides of it
+constexpr std::size_t kWindowsToSettle = 15;
+constexpr double kSettledYaw_rad = 0.0052, kWait_s = 45.0;
+/// Spread between radars of what a block says of the common pitch (rad) and of the common scale. Measured.
+constexpr double kPitchSpread_rad = 0.00175, kScaleSpread = 5e-4;
+/// A common scale of one block beyond this is taken for one: then no radar has turned by it.
+constexpr double kSuspectScale = 0.003;
+
+}  // namespace
+
+bool WindowedFilter::settled(std::size_t index) const {
+  const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
+  return radars_[index].running && changes_.windows(index) >= kWindowsToSettle &&
+         yaw_variance < square(kSettledYaw_rad);
+}
+
+void WindowedFilter::judge_block() {
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    scales_[r] = {};
+    if (!radars_[r].running) continue;
+    const RadarSolution& s = solver_.radar(r);
+    const Eigen::Vector3d rotation = s.covariance.diagonal().segment<3>(own::kRotation) +
+                                     Eigen::Vector3d(0.0, s.fluctuation.variance[1], s.fluctuation.variance[0]);
+    scales_[r] = scale_deviation_of(radars_[r].block, rotation, square(priors_.speed_scale_std), s.has_elevation,
+                                    change_config_);
+    work_[r] = scales_[r].value;
+    work_stds_[r] = scales_[r].std;
+  }
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (!radars_[r].running) work_stds_[r] = 0.0;
+  }
+  const double scale = common_mean(work_, work_stds_, kScaleSpread).value_or(0.0);
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const RadarSolution& s = solver_.radar(r);
+    deviations_[r] = {};
+    if (!radars_[r].running) continue;
+    deviations_[r] =
+        deviation_of(radars_[r].block, s.covariance(own::kRateScale, own::kRateScale) + s.fluctuation.variance[2],
+                     s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
+                     std::abs(scale) > kSuspectScale ? scale : 0.0, change_config_);
+  }
+  changes_.judge(deviations_, verdicts_);
+  bool all_settled = true;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (!settled(r) || driven_s_ < kWait_s) {
+      all_settled = all_settled && !radars_[r].running;
+      verdicts_[r].suspect = verdicts_[r].changed = false;
+    }
+    if (verdicts_[r].changed) take_change(r);
+  }
+  if (all_settled) judge_vehicle();
+}
+
+void WindowedFilter::judge_vehicle() {
+  std::int64_t time_ns = 0;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    Radar& radar = radars_[r];
+    work_stds_[r] = 0.0;
+    if (!radar.running) continue;
+    const Point& point = radar.block.point;
+    const double scale = point.speed_scale * (1.0 + point.rate_scale);
+    if (!(radar.reference_scale > 0.0)) {
+      radar.reference = point.sensor_to_vehicle;
+      radar.reference_scale = scale;
+    }
+    time_ns = std::max(time_ns, radar.last_time_ns);
+    if (!deviations_[r].valid || !(deviations_[r].std(0) > 1e-5)) continue;
+    work_[r] = geometry::so3_log(point.sensor_to_vehicle * radar.reference.transpose()).y() + deviations_[r].value(0);
+    work_stds_[r] = deviations_[r].std(0);
+  }
+  if (const auto pitch = common_mean(work_, work_stds_, kPitchSpread_rad)) {
+    if (const auto step = load_watch_.add(*pitch)) take_load(*step, time_ns);
+  }
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const Radar& radar = radars_[r];
+    work_stds_[r] = radar.running ? scales_[r].std : 0.0;
+    const double scale = radar.block.point.speed_scale * (1.0 + radar.block.point.rate_scale);
+    if (radar.running) work_[r] = scale / radar.reference_scale - 1.0 + scales_[r].value;
+  }
+  if (const auto scale = common_mean(work_, work_stds_, kScaleSpread)) {
+    if (const auto step = speed_watch_.add(*scale)) take_speed(*step, time_ns);
+  }
+}
+
+void WindowedFilter::take_change(std::size_t index) {
+  Radar& radar = radars_[index];
+  const Eigen::Vector3d turn(0.0, verdicts_[index].turn_rad(0), verdicts_[index].turn_rad(1));
+  solver_.turn(index, turn);
+  segments_.drop_latest(index, kDropped_s);
+  segments_.forget(index, local::kRotation, 3);
+  changes_.restart(index);
+  radar.reference = geometry::so3_exp(turn) * radar.reference;
+  verdicts_[index].suspect = true;
+  ++radar.step_change.count;
+  radar.step_change.time_ns = radar.last_time_ns;
+  for (int i = 0; i < 3; ++i)
+    radar.step_change.rotation_vehicle_rad[static_cast<std::size_t>(i)] = static_cast<float>(turn(i));
+  solved_s_ = -kSolve_s;  // solve at once
+}
+
+void WindowedFilter::take_load(const CommonStep& step, std::int64_t time_ns) {
+  if (load_since_s_ >= 0.0) return;
+  if (load_ == shared::kLoads) {
+    segments_.forget_first_load();
+    solver_.absorb_first_load();
+    --load_;
+  }
+  ++load_;
+  segments_.add_load(driven_s_ - static_cast<double>(step.blocks_ago - 1) * kBlock_s);
+  solver_.stop();
+  ++load_change_.count;
+  load_change_.time_ns = time_ns;
+  load_change_.size = static_cast<float>(-step.size);
+  solved_s_ = -kSolve_s;
+}
+
+void WindowedFilter::take_speed(const CommonStep& step, std::int64_t time_ns) {
+  segments_.forget_before(driven_s_ - static_cast<double>(step.blocks_ago - 1) * kBlock_s, local::kSpeedScale, 1);
+  solver_.stop();
+  ++speed_change_.count;
+  speed_change_.time_ns = time_ns;
+  speed_change_.size = static_cast<float>(step.size);
+  solved_s_ = -kSolve_s;
+}
+
+void WindowedFilter::decide_load() {
+  if (load_since_s_ < 0.0 || driven_s_ - load_since_s_ < change_config_.watch_s) return;
+  const int step = load_ - 1;
+  const double size = solver_.shared().load_rad[static_cast<std::size_t>(step)];
+  const double limit =
+      std::max(change_config_.load.least, change_config_.load.stds * std::sqrt(solver_.load_variance(step)));
+  if (std::abs(size) > limit) {
+    ++load_change_.count;
+    load_change_.size = static_cast<float>(-size);
+    for (const Radar& radar : radars_) load_change_.time_ns = std::max(load_change_.time_ns, radar.last_time_ns);
+  } else {
+    segments_.remove_load(load_);
+    solver_.remove_load(step);
+    --load_;
+  }
+  load_since_s_ = -1.0;
+}
+
+}  // namespace boresight::alignment
