@@ -1,6 +1,7 @@
 // The health service's judgement of every sensor and every service.
 #pragma once
 
+#include "interfaces/messages/alignment_estimate.hpp"
 #include "interfaces/messages/header.hpp"
 
 namespace boresight {
@@ -18,6 +19,7 @@ enum class ExtendedQualifier : std::uint8_t {
   kBeginningBlockage = 6,
   kExternalDisturbance = 7,
   kInitialising = 8,  ///< not running long enough to be judged
+  kWrongInput = 9,    ///< an input contradicts the vehicle file: SensorHealth::finding. Not a misalignment
 };
 
 /// Misalignment of one axis against its tolerance.
@@ -38,7 +40,10 @@ struct SensorHealth {
   std::uint32_t radar_id;  ///< 0: unused entry
   DataQualifier data_qualifier;
   ExtendedQualifier extended_qualifier;
-  std::array<std::uint8_t, 2> reserved;
+  AlignmentReason reason;    ///< why the estimate is not converged; kNone if it is, or without one
+  AlignmentFinding finding;  ///< wrong input that the estimator found, with its value and radar as in AlignmentEstimate
+  float finding_value;
+  std::uint32_t finding_radar;
   float rate_hz;
   float expected_rate_hz;
   float last_seen_s;  ///< since the last scan; negative if there was none
@@ -46,8 +51,10 @@ struct SensorHealth {
   AxisHealth yaw;
   AxisHealth pitch;
   AxisHealth roll;
-  float speed_scale;
+  float speed_scale;  ///< k_v as the radar sees it: AlignmentEstimate
   float speed_scale_std;
+  AlignmentValue range_rate_scale;  ///< AlignmentNuisance
+  AlignmentDrift drift;
   /// Effect of the misalignment (Burza 2025, §6): lateral displacement of a detection at the reference range.
   float lateral_displacement_m;
   float reference_range_m;
@@ -62,7 +69,7 @@ struct SensorHealth {
   std::uint64_t e2e_repeated;  ///< messages with the previous counter, dropped
   std::uint64_t e2e_wrong;     ///< messages with a wrong CRC, length, Data ID or sequence, dropped
 };
-static_assert(sizeof(SensorHealth) == 152);
+static_assert(sizeof(SensorHealth) == 192);
 
 enum class ServiceCondition : std::uint8_t {
   kUnknown = 0,  ///< no heartbeat yet
@@ -90,7 +97,7 @@ static_assert(sizeof(ServiceHealth) == 48);
 inline constexpr std::size_t kMaxServices = 16;
 
 struct HealthReport {
-  static constexpr std::uint32_t kVersion = 2;
+  static constexpr std::uint32_t kVersion = 3;
 
   MessageHeader header;
   DataQualifier overall;
@@ -100,11 +107,13 @@ struct HealthReport {
   float latency_p50_ms;  ///< reception to track list, over the last supervision window
   float latency_max_ms;
   std::uint32_t reserved2;
+  AlignmentVehicleChange load_change;   ///< of the vehicle: the latest that an estimate reported
+  AlignmentVehicleChange speed_change;  //
   std::array<SensorHealth, kMaxRadars> sensors;
   std::array<ServiceHealth, kMaxServices> services;
 };
 
 static_assert(kIsPlainMessage<HealthReport>);
-static_assert(sizeof(HealthReport) == 104 + 24 + kMaxRadars * 152 + kMaxServices * 48);
+static_assert(sizeof(HealthReport) == 104 + 24 + 32 + kMaxRadars * 192 + kMaxServices * 48);
 
 }  // namespace boresight

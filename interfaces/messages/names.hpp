@@ -30,15 +30,16 @@ template <typename Enum, std::size_t N>
   return detail::word_of(kNames, qualifier);
 }
 [[nodiscard]] constexpr std::string_view name_of(ExtendedQualifier qualifier) {
-  constexpr std::array<std::string_view, 9> kNames = {"NORMAL",
-                                                      "MISALIGNED",
-                                                      "NO_DATA",
-                                                      "RATE_REDUCED",
-                                                      "INVALID_DATA",
-                                                      "BLOCKED",
-                                                      "BEGINNING_BLOCKAGE",
-                                                      "EXTERNAL_DISTURBANCE",
-                                                      "INITIALISING"};
+  constexpr std::array<std::string_view, 10> kNames = {"NORMAL",
+                                                       "MISALIGNED",
+                                                       "NO_DATA",
+                                                       "RATE_REDUCED",
+                                                       "INVALID_DATA",
+                                                       "BLOCKED",
+                                                       "BEGINNING_BLOCKAGE",
+                                                       "EXTERNAL_DISTURBANCE",
+                                                       "INITIALISING",
+                                                       "WRONG_INPUT"};
   return detail::word_of(kNames, qualifier);
 }
 /// The names of source_condition bits, as in "partly blocked, supply"; empty without bits.
