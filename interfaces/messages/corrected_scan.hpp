@@ -34,7 +34,7 @@ struct ScanGeometry {
   std::array<float, 3> sensor_velocity_vehicle_mps;  ///< over ground, in vehicle axes, with k_v applied
   /// Row-major R(sensor→vehicle), mounting plus correction.
   std::array<float, 9> sensor_to_vehicle;
-  float speed_scale;
+  float speed_scale;    ///< k_v: true / signalled speed
   float ego_speed_mps;  ///< k_v applied; 0 with kNoEgoMotion
   float ego_speed_std_mps;
   float ego_yaw_rate_radps;
@@ -57,7 +57,9 @@ struct CorrectedScan {
   /// Covariance of the rotation error of `geometry.sensor_to_vehicle` about the vehicle's axes: xx, xy, xz, yy, yz, zz
   /// in rad². The error is common to all detections of the radar, in addition to their own standard deviations.
   std::array<float, 6> mounting_covariance;
-  float speed_scale_std;  ///< standard deviation of `geometry.speed_scale`
+  /// Standard deviation of `geometry.speed_scale` as the radar's range rates over ground contain it: without that of
+  /// the radar's own scale of range rates.
+  float speed_scale_std;
   std::array<std::uint32_t, 4> reserved;
 
   DetectionColumn<float> x_vehicle_m;
@@ -66,7 +68,7 @@ struct CorrectedScan {
   DetectionColumn<float> range_m;
   DetectionColumn<float> azimuth_vehicle_rad;    ///< direction of the line of sight in vehicle axes
   DetectionColumn<float> elevation_vehicle_rad;  ///< direction of the line of sight in vehicle axes
-  DetectionColumn<float> range_rate_mps;         ///< as measured
+  DetectionColumn<float> range_rate_mps;         ///< as measured, divided by the radar's own scale of range rates
   /// Range rate over ground: measured range rate minus that of a stationary reflector in the same direction.
   DetectionColumn<float> range_rate_over_ground_mps;
   DetectionColumn<float> rcs_dbsm;

@@ -35,7 +35,7 @@ void write_geometry(const RadarConfig& radar, const Mounting& mounting, const Eg
       scan.mounting_covariance[next++] = static_cast<float>(mounting.covariance(row, column));
     }
   }
-  scan.speed_scale_std = static_cast<float>(std::sqrt(mounting.covariance(0, 0)));
+  scan.speed_scale_std = static_cast<float>(std::sqrt(mounting.covariance(0, 0)) / mounting.range_rate_scale);
 }
 
 bool is_inside(const Eigen::Vector3d& position, const Config& config) {
@@ -93,13 +93,14 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
     out.flags |= pipeline_flag::kAlignmentStale;
   }
 
-  const EgoSample ego = ego_.at(time_ns);
+  const EgoSample ego = ego_.at(time_ns + static_cast<std::int64_t>(mounting.time_offset_s * 1e9));
   const bool compensates = ego.valid && !ego.stale;
   if (!ego.valid) out.flags |= pipeline_flag::kNoEgoMotion;
   if (ego.valid && ego.stale) out.flags |= pipeline_flag::kEgoMotionStale;
   if (!scan.has(scan_field::kElevation)) out.flags |= pipeline_flag::kNoElevation;
-  const EgoVelocity motion = compensates ? ego_velocity(ego, vehicle_.ego, radar->mounting_pose, mounting)
-                                         : EgoVelocity{0.0, 0.0, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
+  const EgoVelocity motion =
+      compensates ? ego_velocity(ego, vehicle_.ego, radar->mounting_pose, mounting)
+                  : EgoVelocity{0.0, 0.0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
   write_geometry(*radar, mounting, compensates ? ego : EgoSample{}, motion, out);
 
   const bool has_elevation = scan.has(scan_field::kElevation);
@@ -118,8 +119,10 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
     if (!finite || (scan.detection_flags[i] & detection_flag::kInvalid) != 0) flags |= corrected_flag::kInvalid;
     if ((scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) flags |= corrected_flag::kAmbiguous;
     const double range = finite ? scan.range_m[i] : 0.0;
-    const double azimuth = finite ? scan.azimuth_rad[i] : 0.0;
-    const double range_rate = finite ? scan.range_rate_mps[i] : 0.0;
+    const double measured_azimuth = finite ? scan.azimuth_rad[i] : 0.0;
+    const AzimuthCurve::Error azimuth_error = mounting.azimuth_curve.at(measured_azimuth);
+    const double azimuth = measured_azimuth - azimuth_error.value_rad;
+    const double range_rate = (finite ? scan.range_rate_mps[i] : 0.0) / mounting.range_rate_scale;
 
     const double ca = std::cos(azimuth), sa = std::sin(azimuth);
     const double ce = std::cos(finite ? elevation : 0.0F), se = std::sin(finite ? elevation : 0.0F);
@@ -163,10 +166,11 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
                         ce,
                         se,
                         range,
-                        over_ground,
+                        mounting.range_rate_scale * over_ground,
                         widening * static_cast<double>(azimuth_std),
                         static_cast<double>(elevation_std),
-                        static_cast<double>(range_rate_std)};
+                        static_cast<double>(range_rate_std),
+                        azimuth_error.std_rad};
       flags |= stationary.passes(sight) ? corrected_flag::kStationary : corrected_flag::kMoving;
     }
     out.detection_flags[i] = flags;

@@ -60,7 +60,35 @@ Split split(const Eigen::Vector3d& turn, Eigen::Matrix3d covariance, const Align
   return out;
 }
 
-/// Applies the estimated yaw-rate bias and slip, if the message contains them.
+bool is_estimated(const AlignmentValue& value) {
+  return std::isfinite(value.value) && std::isfinite(value.std) && value.std > 0.0F;
+}
+
+/// Divides the scale that the radar sees into those of the speed signal and of its range rates.
+void split_speed_scale(const AlignmentNuisance& nuisance, Mounting& mounting) {
+  const AlignmentValue& scale = nuisance.range_rate_scale;
+  if (!is_estimated(scale) || !(scale.value > -0.5F)) return;
+  mounting.range_rate_scale = 1.0 + scale.value;
+  mounting.speed_scale /= mounting.range_rate_scale;
+  mounting.range_rate_scale_variance = std::pow(scale.std, 2);
+}
+
+/// Turns the mounting by the load's pitch if that is certain enough, else widens the covariance by it. Returns whether
+/// it was applied.
+bool add_load(const AlignmentNuisance& nuisance, double max_std_rad, Mounting& mounting) {
+  const AlignmentValue& load = nuisance.load_pitch_rad;
+  if (!is_estimated(load)) return false;
+  constexpr Eigen::Index kAboutY = 2;  // of k_v, x, y, z
+  mounting.covariance(kAboutY, kAboutY) += std::pow(load.std, 2);
+  if (load.std > max_std_rad) {
+    mounting.covariance(kAboutY, kAboutY) += std::pow(load.value, 2);
+    return false;
+  }
+  mounting.sensor_to_vehicle = geometry::so3_exp({0.0, -load.value, 0.0}) * mounting.sensor_to_vehicle;
+  return true;
+}
+
+/// Applies the estimated yaw-rate bias and gain, slip and time offset, if the message contains them.
 void add_motion(const AlignmentEstimate& estimate, Mounting& mounting) {
   const auto known = [&](std::uint32_t axis, float value, float std) {
     return estimate.is_observable(axis) && std::isfinite(value) && std::isfinite(std) && std >= 0.0F;
@@ -72,6 +100,17 @@ void add_motion(const AlignmentEstimate& estimate, Mounting& mounting) {
   if (known(alignment_axis::kSlip, estimate.slip_coefficient_radps2pm, estimate.slip_coefficient_std_radps2pm)) {
     mounting.slip_coefficient_radps2pm = estimate.slip_coefficient_radps2pm;
     mounting.slip_variance = std::pow(estimate.slip_coefficient_std_radps2pm, 2);
+  }
+  const AlignmentNuisance& nuisance = estimate.nuisance;
+  const auto is_learnt = [&](std::uint32_t bit, const AlignmentValue& value) {
+    return (nuisance.observable & bit) != 0 && is_estimated(value);
+  };
+  if (is_learnt(alignment_nuisance::kYawRateGain, nuisance.yaw_rate_gain)) {
+    mounting.yaw_rate_gain = 1.0 + nuisance.yaw_rate_gain.value;
+    mounting.yaw_rate_gain_variance = std::pow(nuisance.yaw_rate_gain.std, 2);
+  }
+  if (is_learnt(alignment_nuisance::kTimeOffset, nuisance.time_offset_s)) {
+    mounting.time_offset_s = nuisance.time_offset_s.value;
   }
 }
 
@@ -99,6 +138,7 @@ Mounting mounting_of(const RadarConfig& radar, const AlignmentEstimate* estimate
   if (estimate->is_observable(alignment_axis::kSpeedScale) &&
       covariance(0, 0) <= square(config.max_speed_scale_std_to_apply)) {
     mounting.speed_scale = estimate->speed_scale;
+    split_speed_scale(estimate->nuisance, mounting);
     mounting.alignment_sequence = estimate->header.sequence;
   } else {
     mounting.covariance(0, 0) += square(estimate->speed_scale - 1.0);
@@ -111,6 +151,10 @@ Mounting mounting_of(const RadarConfig& radar, const AlignmentEstimate* estimate
         mounting.sensor_to_vehicle;
     mounting.alignment_sequence = estimate->header.sequence;
   }
+  if (add_load(estimate->nuisance, config.max_angle_std_to_apply_rad, mounting)) {
+    mounting.alignment_sequence = estimate->header.sequence;
+  }
+  mounting.azimuth_curve = AzimuthCurve(estimate->nuisance);
   add_motion(*estimate, mounting);
   if (std::isfinite(estimate->angle_noise_scale) && estimate->angle_noise_scale > 0.0F) {
     mounting.angle_noise_scale = estimate->angle_noise_scale;

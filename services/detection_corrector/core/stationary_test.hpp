@@ -18,20 +18,22 @@ struct Sight {
   Eigen::Vector3d direction;                                      ///< unit vector, vehicle axes
   double cos_azimuth, sin_azimuth, cos_elevation, sin_elevation;  ///< in the sensor's frame
   double range_m;
-  double range_rate_over_ground_mps;
+  double range_rate_over_ground_mps;  ///< in the radar's own scale: measured range rate + direction·g
   double azimuth_std_rad, elevation_std_rad, range_rate_std_mps;
+  double azimuth_curve_std_rad = 0.0;  ///< of the azimuth's systematic error, not scaled by the angles' noise
 };
 
 /// For the detections of one scan. The threshold is `moving_sigma` stds of the range rate over ground of a stationary
 /// reflector. The std combines the range rate, the angles by the derivative of (R u)·v_s, motion and mounting, and the
-/// motion of the body. There is no other constant in the threshold.
+/// motion of the body. There is no other constant in the threshold. The test runs in the radar's own scale of range
+/// rates, because that scale times k_v is known much better than k_v.
 class StationaryTest {
  public:
   /// `unknown`: for a radar that measures no elevation, otherwise nullptr.
   StationaryTest(const EgoVelocity& motion, const Mounting& mounting, const UnknownElevation* unknown,
                  const Config& config)
-      : velocity_mps_(motion.sensor_mps),
-        velocity_sensor_mps_(mounting.sensor_to_vehicle.transpose() * motion.sensor_mps),
+      : velocity_mps_(motion.seen_mps),
+        velocity_sensor_mps_(mounting.sensor_to_vehicle.transpose() * motion.seen_mps),
         covariance_(motion.covariance),
         unknown_(unknown),
         angle_variance_factor_(mounting.angle_noise_scale * mounting.angle_noise_scale),
@@ -40,12 +42,15 @@ class StationaryTest {
 
   [[nodiscard]] bool passes(const Sight& s) const {
     const Eigen::Vector3d& v = velocity_sensor_mps_;
-    const double by_azimuth = s.cos_elevation * (s.cos_azimuth * v.y() - s.sin_azimuth * v.x()) * s.azimuth_std_rad;
+    const double azimuth_gradient = s.cos_elevation * (s.cos_azimuth * v.y() - s.sin_azimuth * v.x());
+    const double by_azimuth = azimuth_gradient * s.azimuth_std_rad;
+    const double by_curve = azimuth_gradient * s.azimuth_curve_std_rad;
     const double by_elevation =
         (s.cos_elevation * v.z() - s.sin_elevation * (s.cos_azimuth * v.x() + s.sin_azimuth * v.y())) *
         s.elevation_std_rad;
     double variance = angle_variance_factor_ * (by_azimuth * by_azimuth + by_elevation * by_elevation) +
-                      s.range_rate_std_mps * s.range_rate_std_mps + s.direction.dot(covariance_ * s.direction) + floor_;
+                      by_curve * by_curve + s.range_rate_std_mps * s.range_rate_std_mps +
+                      s.direction.dot(covariance_ * s.direction) + floor_;
     double residual = s.range_rate_over_ground_mps;
     if (unknown_ != nullptr) {
       // A stationary reflector above or below the sensor has a smaller range rate than its azimuth predicts. The
@@ -60,7 +65,7 @@ class StationaryTest {
   }
 
  private:
-  Eigen::Vector3d velocity_mps_;         // of the sensor over ground, vehicle axes
+  Eigen::Vector3d velocity_mps_;         // g of the sensor, vehicle axes
   Eigen::Vector3d velocity_sensor_mps_;  // the same in the sensor's frame
   Eigen::Matrix3d covariance_;
   const UnknownElevation* unknown_;
