@@ -28,7 +28,8 @@ ScanModel model_scan(const Point& point, const std::array<double, 3>& position_m
   by.col(local::kYawRateGain) = (turns ? unbiased : 0.0) * by_yaw_rate;
   by.col(local::kSlip) << 0.0, (turns ? -speed * speed * yaw_rate : 0.0), 0.0;
   by.col(local::kStamp) =
-      point.speed_scale * acceleration * by_speed + gain * motion.yaw_acceleration_radps2 * by_yaw_rate;
+      point.speed_scale * motion.clear_acceleration_mps2 * by_speed +
+      gain * motion.clear_yaw_acceleration_radps2 * by_yaw_rate;
   by.col(local::kPosition) << 0.0, yaw_rate, 0.0;
   by.col(local::kPosition + 1) << -yaw_rate, 0.0, 0.0;
   by.col(local::kPitchPerAcceleration) << 0.0, 0.0, acceleration * speed;

@@ -14,7 +14,9 @@ struct Motion {
   double speed_mps = 0.0;
   double yaw_rate_radps = 0.0;
   double acceleration_mps2 = 0.0;
-  double yaw_acceleration_radps2 = 0.0;
+  /// Of signals that change fast enough to tell a time offset; else 0.
+  double clear_acceleration_mps2 = 0.0;
+  double clear_yaw_acceleration_radps2 = 0.0;
   double yaw_rate_std_radps = 0.0;  ///< of the noise of the signal
 };
 

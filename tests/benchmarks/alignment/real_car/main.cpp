@@ -56,6 +56,9 @@ int main(int argc, char** argv) {
       if (without("gain")) c.yaw_rate_gain = 0;
       if (without("bias")) c.yaw_rate_bias_radps = 0;
       if (without("step")) c.speed_step_mps = 0;
+      if (without("mirror")) c.road_mirror_share = 0;
+      if (without("dive")) spec.body_pitch_per_acceleration_radps2pm = 0;
+      if (without("shake")) spec.body_pitch_std_rad = 0;
       if (without("body")) spec.body_pitch_std_rad = spec.body_pitch_per_acceleration_radps2pm = 0;
     }
     alignment::Config config;
@@ -107,7 +110,7 @@ int main(int argc, char** argv) {
     if (is_off("cyaw")) priors.common_std[0] = 0;
     if (is_off("cpitch")) priors.common_std[1] = 0;
     const bench::MakeMethod make = [&](const VehicleConfig& v) -> std::unique_ptr<alignment::Method> {
-      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, priors);
+      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, alignment::windows::WindowsConfig{priors, {}, {}});
       return alignment::make_method(v, config);
     };
     const auto run = bench::run_drive(spec, make, options);
