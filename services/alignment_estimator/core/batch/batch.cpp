@@ -1,0 +1,418 @@
+#include "services/alignment_estimator/core/batch/batch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "services/alignment_estimator/core/batch/estimate_values.hpp"
+#include "services/alignment_estimator/core/windows/output.hpp"
+#include "services/common/geometry/frames.hpp"
+#include "services/common/geometry/so3.hpp"
+
+namespace boresight::alignment::batch {
+
+namespace {
+
+using namespace windows;
+
+constexpr std::size_t kMinDetections = 4;
+constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
+constexpr double kShortestSegment_s = 2.0;  ///< of level 0
+
+}  // namespace
+
+Batch::Batch(const VehicleConfig& vehicle, const FilterConfig& filter, const Priors& priors, const BatchConfig& config)
+    : filter_(filter),
+      priors_(priors),
+      config_(config),
+      clock_(config.block_s),
+      solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
+      segments_(solver_.size()),
+      solved_(solver_.size()) {
+  radars_.reserve(solver_.size());
+  for (std::size_t r = 0; r < solver_.size(); ++r) {
+    radars_.push_back({vehicle.radars[r], RadarSums(vehicle.radars[r], filter, config.noise_memory_s), {}, false, {}});
+    radars_[r].start.sensor_to_vehicle = geometry::sensor_to_vehicle(vehicle.radars[r].mounting_pose, 0.0, 0.0, 0.0);
+  }
+}
+
+bool Batch::usable(const ScanDetections& scan, const EgoSample& ego) const {
+  return scan.count >= kMinDetections && ego.valid && !ego.stale && std::abs(ego.speed_mps) >= filter_.min_speed_mps &&
+         std::abs(ego.speed_mps) < kMaxSpeed_mps && std::abs(ego.yaw_rate_radps) < kMaxYawRate_radps;
+}
+
+void Batch::observe(std::size_t index, const ScanDetections& scan, const EgoSample& ego,
+                    const RadarEstimate& estimate) {
+  if (index >= radars_.size() || pass_ > 0) return;
+  Radar& radar = radars_[index];
+  sees_ = sees_ || scan.count > 0;
+  drives_ = drives_ || (ego.valid && !ego.stale);
+  radar.has_elevation = radar.has_elevation || scan.has_elevation;
+  const bool is_used = usable(scan, ego);
+  if (is_used) block_ = clock_.block_at(scan.time_ns);
+  const std::uint32_t changes = estimate.step_change.count;
+  if (changes > radar.start.step_change.count) {
+    const auto& turn = estimate.step_change.rotation_vehicle_rad;
+    radar.changes.push_back({block_, Eigen::Vector3f(turn[0], turn[1], turn[2]).cast<double>()});
+  }
+  const auto note = [&](std::uint32_t count, std::vector<std::size_t>& reports) {
+    if (count > reports.size()) reports.push_back(block_);
+  };
+  note(estimate.load_change.count, load_reports_);
+  note(estimate.speed_change.count, speed_reports_);
+  radar.start = estimate;
+}
+
+bool Batch::end_pass() {
+  if (pass_ == 0) {
+    plan();
+    if (!problem_.empty()) return false;
+    ++pass_;
+    begin_pass();
+    return true;
+  }
+  if (has_block_) close_block();
+  if (segments_.size() == 0) {
+    problem_ = "the recording gave no scans when it was read again";
+    return false;
+  }
+  const double time_s = clock_.driven_s();
+  const auto loads = static_cast<int>(loads_.size());
+  const std::vector<RadarEstimate> last = estimates(solver_, time_s, loads);
+  if (!loads_found_) find_loads();
+  loads_found_ = true;
+  solved_ = assembled(Side::kAfter, loads_);
+  solve(solver_, solved_, time_s, config_.most_solutions);
+  const std::vector<RadarEstimate> now = estimates(solver_, time_s, static_cast<int>(loads_.size()));
+  double moved = 0.0;
+  for (std::size_t r = 0; r < radars_.size(); ++r) moved = std::max(moved, moved_stds(last[r], now[r]));
+  settled_ = moved < config_.moved_stds;
+  ++pass_;
+  if (settled_ || pass_ >= config_.most_passes) return false;
+  begin_pass();
+  return true;
+}
+
+void Batch::plan() {
+  blocks_ = clock_.blocks();
+  const double driven_s = clock_.driven_s();
+  if (!sees_) {
+    problem_ = "there is no detection in the drive";
+  } else if (!drives_) {
+    problem_ = "no scan has a speed and a yaw rate near its time";
+  } else if (blocks_ == 0) {
+    problem_ = fmt::format("the vehicle never drives at {:.3g} m/s or more with detections", filter_.min_speed_mps);
+  } else if (driven_s < config_.least_drive_s) {
+    problem_ =
+        fmt::format("{:.3g} s of driving at {:.3g} m/s or more are too few for the batch method: it needs {:.3g} s",
+                    driven_s, filter_.min_speed_mps, config_.least_drive_s);
+  } else if (std::none_of(radars_.begin(), radars_.end(), [](const Radar& r) { return r.start.scans_used > 0; })) {
+    problem_ = "no mounting within the prior explains the range rates of any radar";
+  }
+  if (!problem_.empty()) return;
+  windows_ = std::clamp<std::size_t>(static_cast<std::size_t>(driven_s / config_.window_s), 1, kMaxSegments);
+  SharedState& shared = solver_.shared();
+  double most_certain = 0.0;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    Radar& radar = radars_[r];
+    solver_.set_prior(r, geometry::sensor_to_vehicle(radar.config.mounting_pose, 0.0, 0.0, 0.0), radar.has_elevation,
+                      radar.sums.knots().step_rad);
+    if (radar.start.scans_used == 0) continue;
+    const RadarEstimate& e = radar.start;
+    const AlignmentNuisance& n = e.nuisance;
+    OwnState& own = solver_.radar(r).state;
+    own.sensor_to_vehicle = e.sensor_to_vehicle;
+    own.rate_scale = static_cast<double>(n.range_rate_scale.value);
+    own.position_error_m = {static_cast<double>(n.position_x_m.value), static_cast<double>(n.position_y_m.value)};
+    for (std::size_t k = 0; k < kAzimuthCurveKnots; ++k) {
+      own.curve_rad(static_cast<int>(k)) = static_cast<double>(n.azimuth_curve_rad[k]);
+    }
+    own.stamp_s = static_cast<double>(n.time_offset_s.value);
+    radar.sums.set_angle_noise_scale(e.angle_noise_scale);
+    const double certain = 1.0 / std::max(e.covariance(0, 0), 1e-18);
+    if (certain <= most_certain) continue;
+    most_certain = certain;
+    shared.speed_scale = e.speed_scale / (1.0 + own.rate_scale);
+    shared.yaw_rate_bias_radps = e.yaw_rate_bias_radps;
+    shared.slip_radps2pm = e.slip_coefficient_radps2pm;
+    shared.yaw_rate_gain = static_cast<double>(n.yaw_rate_gain.value);
+    shared.pitch_per_acceleration_radps2pm = static_cast<double>(n.pitch_per_acceleration_radps2pm.value);
+  }
+}
+
+void Batch::begin_pass() {
+  clock_ = DrivingClock(config_.block_s);
+  trend_ = {};
+  segments_.clear();
+  window_.clear();
+  phase_.clear();
+  has_block_ = false;
+  for (Radar& radar : radars_) radar.sums.begin_pass();
+}
+
+void Batch::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {
+  if (index >= radars_.size() || pass_ == 0 || !usable(scan, ego)) return;
+  const ScanMotion3d motion = trend_.at(scan.time_ns, ego);
+  // A recording that has grown since the first pass has no windows for the rest.
+  const std::size_t block = std::min(clock_.block_at(scan.time_ns), blocks_ - 1);
+  if (!has_block_ || block != block_) {
+    if (has_block_) close_block();
+    open_block(block);
+  }
+  if (radars_[index].start.scans_used == 0) return;
+  static_cast<void>(radars_[index].sums.add(scan, motion, ego, sightings_));
+}
+
+void Batch::open_block(std::size_t block) {
+  block_ = block;
+  has_block_ = true;
+  const std::size_t window = window_of(block);
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const Radar& radar = radars_[r];
+    const std::size_t phase = radar.phase_of(block, delay_blocks()).value_or(radar.changes.size());
+    windows::Point point = solver_.point(r, middle_s(window), loads_before(loads_, window));
+    point.sensor_to_vehicle = radar.turned_back(phase) * point.sensor_to_vehicle;
+    radars_[r].sums.begin_block(point, solver_, r);
+  }
+}
+
+double Batch::middle_s(std::size_t window) const {
+  return 0.5 * config_.block_s * static_cast<double>(first_block(window) + first_block(window + 1));
+}
+
+int Batch::loads_before(const std::vector<std::size_t>& loads, std::size_t window) {
+  return static_cast<int>(std::count_if(loads.begin(), loads.end(), [&](std::size_t load) { return load <= window; }));
+}
+
+void Batch::close_block() {
+  has_block_ = false;
+  const std::size_t window = window_of(block_);
+  const MergeNoise noise = solver_.merge_noise();
+  if (window_.empty() || window_.back() != window) {
+    segments_.begin(0, noise);
+    window_.push_back(window);
+    phase_.emplace_back(radars_.size(), 0);
+    Segment& segment = segments_.segment(segments_.size() - 1);
+    const double length_s = config_.block_s * static_cast<double>(first_block(window + 1) - first_block(window));
+    segment.middle_s = middle_s(window);
+    segment.level = std::max(0, static_cast<int>(std::lround(std::log2(length_s / kShortestSegment_s))));
+  }
+  segments_.segment(segments_.size() - 1).seconds += config_.block_s;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (radars_[r].sums.block().scans > 0) add_block(r, block_, noise);
+  }
+}
+
+std::optional<std::size_t> Batch::Radar::phase_of(std::size_t block, std::size_t delay_blocks) const {
+  std::size_t phase = 0;
+  for (const Change& change : changes) {
+    if (block > change.block) {
+      ++phase;
+    } else if (block + delay_blocks > change.block) {
+      return std::nullopt;
+    }
+  }
+  return phase;
+}
+
+Eigen::Matrix3d Batch::Radar::turned_back(std::size_t phase) const {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  for (std::size_t i = changes.size(); i > phase; --i) {
+    turn = geometry::so3_exp(-changes[i - 1].turn_vehicle_rad) * turn;
+  }
+  return turn;
+}
+
+void Batch::add_block(std::size_t index, std::size_t block, const MergeNoise& noise) {
+  const std::optional<std::size_t> phase = radars_[index].phase_of(block, delay_blocks());
+  if (!phase) return;
+  const int latest = segments_.size() - 1;
+  std::size_t& of_share = phase_.back()[index];
+  Share& share = segments_.share(latest, index);
+  if (share.seconds > 0.0 && of_share != *phase) share = Share();
+  of_share = *phase;
+  const double length_s =
+      config_.block_s * static_cast<double>(first_block(window_.back() + 1) - first_block(window_.back()));
+  segments_.add(index, radars_[index].sums.block(), length_s, noise);
+}
+
+Segments Batch::assembled(Side side, const std::vector<std::size_t>& loads) const {
+  Segments segments = segments_;
+  const std::size_t speed_change = speed_reports_.empty() ? 0 : window_of(speed_reports_.back());
+  for (int i = 0; i < segments.size(); ++i) {
+    const std::size_t window = window_[static_cast<std::size_t>(i)];
+    segments.segment(i).load = loads_before(loads, window);
+    const bool load_changes = std::find(loads.begin(), loads.end(), window) != loads.end();
+    const bool has_old_speed = !speed_reports_.empty() && window <= speed_change;
+    for (std::size_t r = 0; r < radars_.size(); ++r) {
+      Share& share = segments.share(i, r);
+      if (load_changes) windows::forget(share, local::kRotation + 1, 1);
+      if (has_old_speed) windows::forget(share, local::kSpeedScale, 1);
+      const std::size_t wanted = side == Side::kBefore ? 0 : radars_[r].changes.size();
+      if (phase_[static_cast<std::size_t>(i)][r] != wanted) windows::forget(share, local::kRotation, 3);
+    }
+  }
+  return segments;
+}
+
+std::vector<RadarEstimate> Batch::estimates(const Solver& solver, double time_s, int loads) const {
+  std::vector<RadarEstimate> all(radars_.size());
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), all[r]);
+  }
+  return all;
+}
+
+int Batch::solve(Solver& solver, Segments& segments, double time_s, int most) const {
+  const auto loads = static_cast<int>(loads_.size());
+  for (int i = 1; i <= most; ++i) {
+    const std::vector<RadarEstimate> last = estimates(solver, time_s, loads);
+    solver.solve(segments, time_s);
+    const std::vector<RadarEstimate> now = estimates(solver, time_s, loads);
+    double moved = 0.0;
+    for (std::size_t r = 0; r < radars_.size(); ++r) moved = std::max(moved, moved_stds(last[r], now[r]));
+    if (moved < config_.solved_stds) return i;
+  }
+  return most;
+}
+
+void Batch::find_loads() {
+  constexpr int kTrialSolutions = 8;
+  constexpr double kLeastStds = 2.0;
+  const double time_s = clock_.driven_s();
+  const auto delay = static_cast<std::size_t>(config_.load_delay_s / config_.block_s);
+  for (const std::size_t report : load_reports_) {
+    if (loads_.size() == static_cast<std::size_t>(shared::kLoads)) return;
+    double best = kLeastStds;
+    std::optional<std::size_t> place;
+    for (const std::size_t window : window_) {
+      const bool is_near = first_block(window) <= report && first_block(window + 1) + delay > report;
+      const bool is_taken = std::find(loads_.begin(), loads_.end(), window) != loads_.end();
+      if (!is_near || is_taken || window == 0 || window + 1 >= windows_) continue;
+      std::vector<std::size_t> trial = loads_;
+      const auto step = std::lower_bound(trial.begin(), trial.end(), window) - trial.begin();
+      trial.insert(trial.begin() + step, window);
+      Solver solver = solver_;
+      Segments segments = assembled(Side::kAfter, trial);
+      for (int i = 0; i < kTrialSolutions; ++i) solver.solve(segments, time_s);
+      const auto k = static_cast<std::size_t>(step);
+      const double stds = std::abs(solver.shared().load_rad[k]) /
+                          std::sqrt(std::max(solver.load_variance(static_cast<int>(step)), 1e-18));
+      if (stds <= best) continue;
+      best = stds;
+      place = window;
+    }
+    if (place) loads_.insert(std::lower_bound(loads_.begin(), loads_.end(), *place), *place);
+  }
+}
+
+void Batch::widen_by_jackknife(std::vector<RadarEstimate>& of) const {
+  constexpr int kSolutions = 2;
+  const double time_s = clock_.driven_s();
+  const auto loads = static_cast<int>(loads_.size());
+  const int n = solved_.size();
+  if (n < 2) return;
+  std::vector<Values> sums(of.size(), Values::Zero()), squares(of.size(), Values::Zero());
+  for (int i = 0; i < n; ++i) {
+    Segments without = solved_;
+    for (std::size_t r = 0; r < of.size(); ++r) without.share(i, r) = Share();
+    Solver solver = solver_;
+    for (int k = 0; k < kSolutions; ++k) solver.solve(without, time_s);
+    const std::vector<RadarEstimate> one = estimates(solver, time_s, loads);
+    for (std::size_t r = 0; r < of.size(); ++r) {
+      const Eigen::Matrix3d& about = of[r].sensor_to_vehicle;
+      const Values off = values_of(one[r], about) - values_of(of[r], about);
+      sums[r] += off;
+      squares[r] += off.cwiseAbs2();
+    }
+  }
+  // Variance of the left-out values about their mean, times n − 1.
+  const double count = n;
+  for (std::size_t r = 0; r < of.size(); ++r) {
+    const Values variance = (squares[r] / count - (sums[r] / count).cwiseAbs2()).cwiseMax(0.0) * (count - 1.0);
+    widen(of[r], variance.cwiseSqrt());
+  }
+}
+
+void Batch::finish(RadarEstimate& estimate, const Radar& radar) const {
+  const RadarEstimate& start = radar.start;
+  estimate.step_change = start.step_change;
+  estimate.load_change = start.load_change;
+  estimate.speed_change = start.speed_change;
+  estimate.drift.since_ns = start.drift.since_ns;
+  estimate.state = start.state;
+  estimate.reason = start.reason;
+  if (start.scans_used == 0) {
+    estimate.observable = estimate.nuisance.observable = 0;
+    return;
+  }
+  if (!loads_.empty()) {
+    estimate.load_change.size = static_cast<float>(-solver_.shared().load_rad[loads_.size() - 1]);
+  }
+  estimate.angle_noise_scale = radar.sums.angle_noise_scale();
+  estimate.inlier_ratio = radar.sums.stationary_share();
+  estimate.scans_used = radar.sums.scans();
+  estimate.detections_used = radar.sums.inliers();
+  estimate.seconds_of_drive = radar.sums.seconds();
+  constexpr double kLearntShare = 1.0 / 3.0;  // of the prior's std, as in write_solution()
+  constexpr std::array<std::uint32_t, 4> kBits{alignment_axis::kSpeedScale, alignment_axis::kVehicleRoll,
+                                               alignment_axis::kVehiclePitch, alignment_axis::kVehicleYaw};
+  for (int i = 0; i < 4; ++i) {
+    const double prior = i == 0 ? priors_.speed_scale_std : priors_.rotation_std_rad;
+    if (std::sqrt(estimate.covariance(i, i)) >= kLearntShare * prior) {
+      estimate.observable &= ~kBits[static_cast<std::size_t>(i)];
+    }
+  }
+  // What contradicts the data is judged by the recursive estimator; the rest depends on the standard deviation here.
+  const bool by_std = start.reason == AlignmentReason::kNone || start.reason == AlignmentReason::kLargeStd ||
+                      start.reason == AlignmentReason::kShortDrive || start.reason == AlignmentReason::kNotObservable;
+  if (!by_std || start.state < AlignmentState::kConverging) return;
+  const bool sees_yaw = (estimate.observable & alignment_axis::kVehicleYaw) != 0;
+  const bool sure = sees_yaw && std::sqrt(estimate.covariance(3, 3)) < filter_.converged_yaw_std_rad;
+  estimate.state = sure ? AlignmentState::kConverged : AlignmentState::kConverging;
+  estimate.reason = sure       ? AlignmentReason::kNone
+                    : sees_yaw ? AlignmentReason::kLargeStd
+                               : AlignmentReason::kNotObservable;
+}
+
+void Batch::write_before(Result& result) const {
+  constexpr double kLeast_s = 10.0;
+  if (std::all_of(radars_.begin(), radars_.end(), [](const Radar& r) { return r.changes.empty(); })) return;
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    if (radars_[r].changes.empty()) continue;
+    double seen_s = 0.0;
+    for (int i = 0; i < segments_.size(); ++i) {
+      if (phase_[static_cast<std::size_t>(i)][r] == 0) seen_s += segments_.share(i, r).seconds;
+    }
+    if (seen_s < kLeast_s) continue;
+    Solver solver = solver_;
+    Segments segments = assembled(Side::kBefore, loads_);
+    const double time_s = config_.block_s * static_cast<double>(radars_[r].changes.front().block);
+    solve(solver, segments, time_s, config_.most_solutions);
+    RadarEstimate& before = result.before[r].emplace();
+    write_solution(solver, r, time_s, loads_before(loads_, window_of(radars_[r].changes.front().block)),
+                   radars_[r].sums.knots(), before);
+  }
+}
+
+Result Batch::result() {
+  Result result;
+  result.problem = problem_;
+  result.driven_s = config_.block_s * static_cast<double>(blocks_);
+  result.passes = pass_;
+  result.settled = settled_;
+  result.before.resize(radars_.size());
+  if (!problem_.empty()) {
+    for (const Radar& radar : radars_) result.radars.push_back(radar.start);
+    return result;
+  }
+  result.windows = segments_.size();
+  result.radars = estimates(solver_, clock_.driven_s(), static_cast<int>(loads_.size()));
+  widen_by_jackknife(result.radars);
+  for (std::size_t r = 0; r < radars_.size(); ++r) finish(result.radars[r], radars_[r]);
+  write_before(result);
+  return result;
+}
+
+}  // namespace boresight::alignment::batch
