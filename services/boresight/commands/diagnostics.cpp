@@ -6,7 +6,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -69,7 +72,8 @@ class LinePrinter {
 class StateChanges {
  public:
   bool observe(const diagnostics::SensorHealth& s) {
-    const std::pair verdict(s.data_qualifier(), s.extended_qualifier());
+    const Verdict verdict(s.data_qualifier(), s.extended_qualifier(), s.finding(), s.drift().since_ns() != 0,
+                          s.load_change().time_ns(), s.speed_change().time_ns());
     const auto [known, is_first] = verdicts_.try_emplace({s.vehicle_name(), s.radar_id()}, verdict);
     const bool changed = is_first || known->second != verdict;
     known->second = verdict;
@@ -78,7 +82,10 @@ class StateChanges {
 
  private:
   using Radar = std::pair<std::string, std::uint32_t>;
-  std::map<Radar, std::pair<diagnostics::DataQualifier, diagnostics::ExtendedQualifier>> verdicts_;
+  /// Qualifiers, wrong input, whether the mounting drifts, times of the vehicle's changes.
+  using Verdict = std::tuple<diagnostics::DataQualifier, diagnostics::ExtendedQualifier, std::string, bool,
+                             std::int64_t, std::int64_t>;
+  std::map<Radar, Verdict> verdicts_;
 };
 
 int run_diagnostics(const DiagnosticsOptions& options, const CLI::App& command) {

@@ -9,6 +9,7 @@
 
 #include "interfaces/messages/names.hpp"
 #include "services/boresight/json/text.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
@@ -44,6 +45,10 @@ std::string axis_text(std::string_view name, const diagnostics::AxisHealth& axis
                      axis.beyond_tolerance() ? "beyond" : "within", axis.tolerance_rad() * kDegreesPerRadian);
 }
 
+AlignmentVehicleChange change_of(const diagnostics::VehicleChange& change) {
+  return {change.time_ns(), change.size(), change.count()};
+}
+
 double degrees(float angle_rad) {
   return json::shortest(static_cast<float>(angle_rad * kDegreesPerRadian));
 }
@@ -55,6 +60,17 @@ json::Value object_of(const diagnostics::AxisHealth& axis) {
   object["tolerance_deg"] = degrees(axis.tolerance_rad());
   object["observable"] = axis.observable();
   object["beyond_tolerance"] = axis.beyond_tolerance();
+  return object;
+}
+
+json::Value object_of(const diagnostics::MountingDrift& drift) {
+  constexpr float kSecondsPerMinute = 60.0F;
+  json::Value object;
+  object["since_ns"] = drift.since_ns();
+  object["yaw_degpmin"] = degrees(kSecondsPerMinute * drift.yaw_radps());
+  object["yaw_std_degpmin"] = degrees(kSecondsPerMinute * drift.yaw_std_radps());
+  object["pitch_degpmin"] = degrees(kSecondsPerMinute * drift.pitch_radps());
+  object["pitch_std_degpmin"] = degrees(kSecondsPerMinute * drift.pitch_std_radps());
   return object;
 }
 
@@ -83,6 +99,13 @@ std::string to_line(const diagnostics::SensorHealth& s) {
     line += fmt::format("  lateral displacement {} at {:.0f} m",
                         text::fixed(s.lateral_displacement_m(), 2, " m", text::Sign::kAlways), s.reference_range_m());
   }
+  // The line has the axes already.
+  const bool is_beyond = s.yaw().beyond_tolerance() || s.pitch().beyond_tolerance() || s.roll().beyond_tolerance();
+  if (!is_beyond && !s.explanation().empty()) line += "  " + text::printable(s.explanation());
+  for (const std::string& event : {alignment_words::load_change_sentence(change_of(s.load_change())),
+                                   alignment_words::speed_change_sentence(change_of(s.speed_change()))}) {
+    if (!event.empty()) line += "  " + event;
+  }
   if (s.conditions() != 0) line += "  reported by the sensor: " + words_of_conditions(s.conditions());
   return line;
 }
@@ -95,6 +118,11 @@ std::string to_json(const diagnostics::SensorHealth& s) {
   object["time_ns"] = s.time_ns();
   object["data_qualifier"] = word(s.data_qualifier());
   object["extended_qualifier"] = word(s.extended_qualifier());
+  object["explanation"] = s.explanation();
+  object["reason"] = s.alignment_reason();
+  object["finding"] = s.finding();
+  object["finding_value"] = json::shortest(s.finding_value());
+  object["finding_radar"] = s.finding_radar();
   object["rate_hz"] = json::shortest(s.rate_hz());
   object["expected_rate_hz"] = json::shortest(s.expected_rate_hz());
   object["last_seen_s"] = json::shortest(s.last_seen_s());
@@ -103,6 +131,16 @@ std::string to_json(const diagnostics::SensorHealth& s) {
   object["roll"] = object_of(s.roll());
   object["speed_scale"] = json::shortest(s.speed_scale());
   object["speed_scale_std"] = json::shortest(s.speed_scale_std());
+  object["range_rate_scale"] = json::shortest(s.range_rate_scale());
+  object["range_rate_scale_std"] = json::shortest(s.range_rate_scale_std());
+  object["step_changes"] = s.step_changes();
+  object["drift"] = object_of(s.drift());
+  object["load_change"]["time_ns"] = s.load_change().time_ns();
+  object["load_change"]["pitch_deg"] = degrees(s.load_change().size());
+  object["load_change"]["count"] = s.load_change().count();
+  object["speed_change"]["time_ns"] = s.speed_change().time_ns();
+  object["speed_change"]["scale"] = json::shortest(s.speed_change().size());
+  object["speed_change"]["count"] = s.speed_change().count();
   object["lateral_displacement_m"] = json::shortest(s.lateral_displacement_m());
   object["reference_range_m"] = json::shortest(s.reference_range_m());
   object["scans"] = s.scans();

@@ -77,7 +77,7 @@ std::string_view key_of(AlignmentFinding finding) {
                                                       "azimuth_mirrored",
                                                       "range_rate_mirrored",
                                                       "yaw_rate_mirrored",
-                                                      "azimuth_or_yaw_rate_mirrored",
+                                                      "azimuth_or_yaw_rate",
                                                       "speed_unit",
                                                       "yaw_rate_unit",
                                                       "speed_frozen",

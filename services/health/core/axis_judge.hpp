@@ -38,6 +38,9 @@ class AxisJudge {
     since_ns_ = kNever;
   }
 
+  /// Withdraws the verdict and forgets the estimate: what it was made from is not to be believed.
+  void clear() { *this = AxisJudge(config_, tolerance_rad_); }
+
   [[nodiscard]] bool is_observable() const { return observable_; }
   [[nodiscard]] bool is_beyond() const { return beyond_; }
   /// Beyond tolerance, and so far that the data are not usable.

@@ -64,7 +64,7 @@ void SensorMonitor::observe(const RadarScan& scan, std::int64_t now_ns) {
   detections_per_scan_ = scans_ == 1 ? count : detections_per_scan_ + kSmoothing * (count - detections_per_scan_);
 }
 
-void SensorMonitor::observe(const AlignmentEstimate& estimate) {
+void SensorMonitor::judge_axes(const AlignmentEstimate& estimate) {
   const bool estimating = estimate.state == AlignmentState::kConverging || estimate.state == AlignmentState::kConverged;
   const std::int64_t time_ns = estimate.header.measurement_time_ns;
   const auto judge = [&](Angle& angle, AlignmentParameter parameter, float sensor_rad, std::uint32_t sensor_bit,
@@ -80,6 +80,22 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
         estimate.vehicle_pitch_rad, alignment_axis::kVehiclePitch);
   judge(roll_, AlignmentParameter::kRoll, estimate.alignment_roll_rad, alignment_axis::kRoll, estimate.vehicle_roll_rad,
         alignment_axis::kVehicleRoll);
+}
+
+void SensorMonitor::observe(const AlignmentEstimate& estimate) {
+  reason_ = estimate.reason;
+  finding_ = estimate.finding;
+  finding_value_ = estimate.finding_value;
+  finding_radar_ = estimate.finding_radar;
+  range_rate_scale_ = estimate.nuisance.range_rate_scale;
+  drift_ = estimate.drift;
+  if (finding_ == AlignmentFinding::kNone) {
+    judge_axes(estimate);
+  } else {
+    // The angles were computed from a wrong input. A mounting error cannot be told from them.
+    for (Angle* angle : {&yaw_, &pitch_, &roll_}) angle->clear();
+    drift_ = {};
+  }
   step_changes_ = estimate.step_change.count;
   const double scale_std = std_of(estimate.covariance, AlignmentParameter::kSpeedScale);
   if (!std::isfinite(estimate.speed_scale) || !std::isfinite(scale_std)) return;
@@ -108,6 +124,12 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
   health.roll = roll_.health();
   health.speed_scale = static_cast<float>(speed_scale_);
   health.speed_scale_std = static_cast<float>(speed_scale_std_);
+  health.reason = reason_;
+  health.finding = finding_;
+  health.finding_value = finding_value_;
+  health.finding_radar = finding_radar_;
+  health.range_rate_scale = range_rate_scale_;
+  health.drift = drift_;
   health.lateral_displacement_m = static_cast<float>(config_.reference_range_m * std::sin(health.yaw.error_rad));
   health.reference_range_m = static_cast<float>(config_.reference_range_m);
   health.scans = scans_;
@@ -142,6 +164,9 @@ SensorHealth SensorMonitor::judge(std::int64_t now_ns) {
     if (is_rejected) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kInvalidData);
     const bool young = scans_ == 0 && now_ns - start_ns_ <= deadline_ns_;
     return verdict(DataQualifier::kNotAvailable, young ? ExtendedQualifier::kInitialising : ExtendedQualifier::kNoData);
+  }
+  if (finding_ != AlignmentFinding::kNone) {
+    return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kWrongInput);
   }
   if (inhibited) return verdict(DataQualifier::kNotAvailable, ExtendedQualifier::kMisaligned);
   if (misaligned) return verdict(DataQualifier::kAvailableReduced, ExtendedQualifier::kMisaligned);

@@ -52,10 +52,23 @@ class SensorMonitor {
     [[nodiscard]] bool is_beyond() const { return sensor.is_beyond() || vehicle.is_beyond(); }
     [[nodiscard]] bool is_inhibited() const { return sensor.is_inhibited() || vehicle.is_inhibited(); }
     [[nodiscard]] AxisHealth health() const;
+    void clear() {
+      sensor.clear();
+      vehicle.clear();
+    }
   };
   Angle yaw_;
   Angle pitch_;
   Angle roll_;
+  void judge_axes(const AlignmentEstimate& estimate);
+
+  // Of the latest estimate:
+  AlignmentReason reason_ = AlignmentReason::kNone;
+  AlignmentFinding finding_ = AlignmentFinding::kNone;
+  float finding_value_ = 0.0F;
+  std::uint32_t finding_radar_ = 0;
+  AlignmentValue range_rate_scale_{};
+  AlignmentDrift drift_{};
   std::uint32_t step_changes_ = 0;
   double speed_scale_ = 1.0;
   double speed_scale_std_ = 0.0;

@@ -71,7 +71,12 @@ void Supervision::observe(const RadarScan& scan, std::int64_t now_ns) {
 }
 
 void Supervision::observe(const AlignmentEstimate& estimate) {
-  if (SensorMonitor* const s = sensor(estimate.header.source_id)) s->observe(estimate);
+  SensorMonitor* const s = sensor(estimate.header.source_id);
+  if (s == nullptr) return;
+  s->observe(estimate);
+  // The estimates of all radars report the same event.
+  if (estimate.load_change.time_ns > load_change_.time_ns) load_change_ = estimate.load_change;
+  if (estimate.speed_change.time_ns > speed_change_.time_ns) speed_change_ = estimate.speed_change;
 }
 
 void Supervision::observe(const TrackList& tracks, std::int64_t now_ns) {
@@ -98,6 +103,8 @@ void Supervision::observe(const ServiceStatus& status, std::int64_t now_ns) {
 void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
   out.reserved = {};
   out.reserved2 = 0;
+  out.load_change = load_change_;
+  out.speed_change = speed_change_;
   out.sensors = {};
   out.services = {};
   out.number_of_sensors = static_cast<std::uint32_t>(sensors_.size());
@@ -124,9 +131,11 @@ void Supervision::judge(HealthReport& out, std::int64_t now_ns) {
 
 bool verdicts_differ(const HealthReport& a, const HealthReport& b) {
   if (a.overall != b.overall || a.number_of_sensors != b.number_of_sensors) return true;
+  if (a.load_change.time_ns != b.load_change.time_ns || a.speed_change.time_ns != b.speed_change.time_ns) return true;
   for (std::size_t i = 0; i < a.number_of_sensors; ++i) {
     const SensorHealth &x = a.sensors[i], &y = b.sensors[i];
     if (x.data_qualifier != y.data_qualifier || x.extended_qualifier != y.extended_qualifier) return true;
+    if (x.finding != y.finding || (x.drift.since_ns != 0) != (y.drift.since_ns != 0)) return true;
     if (x.conditions != y.conditions) return true;  // the sensor's own verdict
   }
   for (std::size_t i = 0; i < a.number_of_services && i < kMaxServices; ++i) {

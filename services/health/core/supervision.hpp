@@ -37,8 +37,10 @@ class Supervision {
   Config config_;
   std::vector<SensorMonitor> sensors_;
   std::vector<ServiceMonitor> services_;
-  LatencyHistogram latencies_;           // of the current window
-  LatencyHistogram complete_latencies_;  // of the previous window
+  AlignmentVehicleChange load_change_{};   // the latest that an estimate reported
+  AlignmentVehicleChange speed_change_{};  //
+  LatencyHistogram latencies_;             // of the current window
+  LatencyHistogram complete_latencies_;    // of the previous window
   std::int64_t window_begin_ns_;
 };
 

@@ -31,7 +31,7 @@ bool DiagnosticsWriter::write(const HealthReport& report, std::int64_t time_ns) 
   bool taken = true;
   const std::size_t sensors = std::min<std::size_t>(report.number_of_sensors, kMaxRadars);
   for (std::size_t i = 0; i < sensors; ++i) {
-    diagnostics::SensorHealth sample = to_sensor_health(report.sensors[i], vehicle_, time_ns);
+    diagnostics::SensorHealth sample = to_sensor_health(report, i, vehicle_, time_ns);
     taken = sensor_health_.write(&sample) && taken;
   }
   auto array = to_diagnostic_array(report, vehicle_, time_ns);

@@ -7,6 +7,7 @@
 
 #include "interfaces/catalogue/catalogue.hpp"
 #include "interfaces/messages/names.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
 
@@ -18,10 +19,7 @@ using diagnostic_msgs::msg::dds_::DiagnosticStatus_;
 using diagnostic_msgs::msg::dds_::KeyValue_;
 enum Level : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
 
-std::string radar_name(const VehicleConfig& vehicle, std::uint32_t id) {
-  const RadarConfig* const radar = vehicle.radar(id);
-  return radar != nullptr ? radar->name : fmt::format("radar {}", id);
-}
+using alignment_words::radar_name;
 
 diagnostics::AxisHealth to_axis(const AxisHealth& axis) {
   diagnostics::AxisHealth out;
@@ -30,6 +28,24 @@ diagnostics::AxisHealth to_axis(const AxisHealth& axis) {
   out.tolerance_rad(axis.tolerance_rad);
   out.observable(axis.observable != 0);
   out.beyond_tolerance(axis.beyond_tolerance != 0);
+  return out;
+}
+
+diagnostics::MountingDrift to_drift(const AlignmentDrift& drift) {
+  diagnostics::MountingDrift out;
+  out.since_ns(drift.since_ns);
+  out.yaw_radps(drift.yaw_radps);
+  out.yaw_std_radps(drift.yaw_std_radps);
+  out.pitch_radps(drift.pitch_radps);
+  out.pitch_std_radps(drift.pitch_std_radps);
+  return out;
+}
+
+diagnostics::VehicleChange to_change(const AlignmentVehicleChange& change) {
+  diagnostics::VehicleChange out;
+  out.time_ns(change.time_ns);
+  out.size(change.size);
+  out.count(change.count);
   return out;
 }
 
@@ -56,10 +72,11 @@ void add_axis(DiagnosticStatus_& status, std::string_view name, const AxisHealth
     return;
   }
   add_value(status, name,
-            fmt::format("{}, tolerance {:.2f} deg{}{}",
-                        text::with_std(axis.error_rad * kDegreesPerRadian, axis.std_rad * kDegreesPerRadian, " deg",
+            fmt::format("{}, tolerance {}{}{}",
+                        text::with_std(axis.error_rad * kDegreesPerRadian, axis.std_rad * kDegreesPerRadian, "°",
                                        text::Sign::kAlways),
-                        axis.tolerance_rad * kDegreesPerRadian, axis.beyond_tolerance != 0 ? ", beyond tolerance" : "",
+                        alignment_words::tolerance_text(axis.tolerance_rad),
+                        axis.beyond_tolerance != 0 ? ", beyond tolerance" : "",
                         axis.about_vehicle_axis != 0 ? ", about the vehicle's axis" : ""));
 }
 
@@ -69,7 +86,9 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   status.level_(level_of(sensor.data_qualifier));
   status.name_("boresight/radar/" + name);
   status.hardware_id_(vehicle.name + "/" + name);
-  status.message_(fmt::format("{} {}", name_of(sensor.data_qualifier), name_of(sensor.extended_qualifier)));
+  const std::string explanation = alignment_words::explanation_of(sensor, vehicle);
+  status.message_(fmt::format("{} {}{}{}", name_of(sensor.data_qualifier), name_of(sensor.extended_qualifier),
+                              explanation.empty() ? "" : ": ", explanation));
   add_value(status, "data_qualifier", std::string(name_of(sensor.data_qualifier)));
   add_value(status, "extended_qualifier", std::string(name_of(sensor.extended_qualifier)));
   add_value(status, "rate_hz", fmt::format("{:.1f} of {:.1f}", sensor.rate_hz, sensor.expected_rate_hz));
@@ -78,8 +97,12 @@ DiagnosticStatus_ status_of(const SensorHealth& sensor, const VehicleConfig& veh
   add_axis(status, "roll error", sensor.roll);
   add_value(status, "lateral displacement",
             fmt::format("{:+.2f} m at {:.0f} m", sensor.lateral_displacement_m, sensor.reference_range_m));
+  add_value(status, "alignment", std::string(alignment_words::key_of(sensor.reason)));
+  add_value(status, "wrong input", std::string(alignment_words::key_of(sensor.finding)));
+  add_value(status, "drift", sensor.drift.since_ns == 0 ? "none" : alignment_words::drift_sentence(sensor.drift));
   add_value(status, "step_changes", fmt::format("{}", sensor.step_changes));
   add_value(status, "speed scale", text::with_std(sensor.speed_scale, sensor.speed_scale_std));
+  add_value(status, "range rate scale - 1", text::with_std(sensor.range_rate_scale.value, sensor.range_rate_scale.std));
   add_value(status, "scans", fmt::format("{}, {} lost", sensor.scans, sensor.lost_scans));
   add_value(status, "scans lost before the gateway", fmt::format("{}", sensor.missed_scans));
   add_value(status, "suspect scans", fmt::format("{}", sensor.suspect_scans));
@@ -115,6 +138,9 @@ DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleCo
   status.name_("boresight");
   status.hardware_id_(vehicle.name);
   status.message_(std::string(name_of(report.overall)));
+  const auto event = [](std::string words) { return words.empty() ? std::string("none") : words; };
+  add_value(status, "load change", event(alignment_words::load_change_sentence(report.load_change)));
+  add_value(status, "speed signal", event(alignment_words::speed_change_sentence(report.speed_change)));
   add_value(status, "latency p50", fmt::format("{:.3f} ms", report.latency_p50_ms));
   add_value(status, "latency max", fmt::format("{:.3f} ms", report.latency_max_ms));
   return status;
@@ -122,11 +148,12 @@ DiagnosticStatus_ status_of_pipeline(const HealthReport& report, const VehicleCo
 
 }  // namespace
 
-diagnostics::SensorHealth to_sensor_health(const SensorHealth& sensor, const VehicleConfig& vehicle,
+diagnostics::SensorHealth to_sensor_health(const HealthReport& report, std::size_t index, const VehicleConfig& vehicle,
                                            std::int64_t time_ns) {
   // The enumerations have the same order in the message and in the IDL; a value beyond them is sent as the last one.
   static_assert(static_cast<int>(DataQualifier::kNotAvailable) == diagnostics::NOT_AVAILABLE);
-  static_assert(static_cast<int>(ExtendedQualifier::kInitialising) == diagnostics::INITIALISING);
+  static_assert(static_cast<int>(ExtendedQualifier::kWrongInput) == diagnostics::WRONG_INPUT);
+  const SensorHealth& sensor = report.sensors.at(index);
   diagnostics::SensorHealth out;
   out.radar_id(sensor.radar_id);
   out.radar_name(radar_name(vehicle, sensor.radar_id));
@@ -134,6 +161,11 @@ diagnostics::SensorHealth to_sensor_health(const SensorHealth& sensor, const Veh
   out.time_ns(time_ns);
   out.data_qualifier(static_cast<diagnostics::DataQualifier>(sensor.data_qualifier));
   out.extended_qualifier(static_cast<diagnostics::ExtendedQualifier>(sensor.extended_qualifier));
+  out.explanation(alignment_words::explanation_of(sensor, vehicle));
+  out.alignment_reason(std::string(alignment_words::key_of(sensor.reason)));
+  out.finding(std::string(alignment_words::key_of(sensor.finding)));
+  out.finding_value(sensor.finding_value);
+  out.finding_radar(sensor.finding_radar);
   out.rate_hz(sensor.rate_hz);
   out.expected_rate_hz(sensor.expected_rate_hz);
   out.last_seen_s(sensor.last_seen_s);
@@ -142,6 +174,12 @@ diagnostics::SensorHealth to_sensor_health(const SensorHealth& sensor, const Veh
   out.roll(to_axis(sensor.roll));
   out.speed_scale(sensor.speed_scale);
   out.speed_scale_std(sensor.speed_scale_std);
+  out.range_rate_scale(sensor.range_rate_scale.value);
+  out.range_rate_scale_std(sensor.range_rate_scale.std);
+  out.step_changes(sensor.step_changes);
+  out.drift(to_drift(sensor.drift));
+  out.load_change(to_change(report.load_change));
+  out.speed_change(to_change(report.speed_change));
   out.lateral_displacement_m(sensor.lateral_displacement_m);
   out.reference_range_m(sensor.reference_range_m);
   out.scans(sensor.scans);

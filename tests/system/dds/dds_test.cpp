@@ -64,6 +64,11 @@ HealthReport report() {
   misaligned.e2e_lost = 5;
   misaligned.e2e_repeated = 6;
   misaligned.e2e_wrong = 7;
+  misaligned.step_changes = 3;
+  misaligned.range_rate_scale = {0.0025F, 0.0004F};
+  misaligned.drift = {1'500'000'000, 1e-5F, 1e-6F, -2e-5F, 2e-6F};
+  r.load_change = {2'500'000'000, 0.0136F, 1};
+  r.speed_change = {3'500'000'000, -0.012F, 2};
   misaligned.conditions = source_condition::kSupply | source_condition::kWithoutEgoMotion;
   return r;
 }
@@ -112,6 +117,17 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_TRUE(s.yaw().observable());
   EXPECT_TRUE(s.yaw().beyond_tolerance());
   EXPECT_FALSE(s.pitch().observable());
+  EXPECT_EQ(s.explanation().find("yaw +2.498 ± 0.023°, beyond the tolerance of 1.5°"), 0U) << s.explanation();
+  EXPECT_EQ(s.alignment_reason(), "none");
+  EXPECT_EQ(s.finding(), "none");
+  EXPECT_EQ(s.range_rate_scale(), 0.0025F);
+  EXPECT_EQ(s.range_rate_scale_std(), 0.0004F);
+  EXPECT_EQ(s.step_changes(), 3U);
+  EXPECT_EQ(s.drift().since_ns(), 1'500'000'000);
+  EXPECT_EQ(s.drift().pitch_radps(), -2e-5F);
+  EXPECT_EQ(s.load_change().time_ns(), 2'500'000'000);
+  EXPECT_EQ(s.load_change().size(), 0.0136F);
+  EXPECT_EQ(s.speed_change().count(), 2U);
   EXPECT_EQ(s.scans(), 12'345'678'901ULL);
   EXPECT_EQ(s.missed_scans(), 23'456'789'012ULL);
   EXPECT_EQ(s.suspect_scans(), 34u);
@@ -128,7 +144,8 @@ TEST(Dds, EveryFieldArrivesAndALateReaderGetsTheLatestState) {
   EXPECT_EQ(statuses[0].level_(), 1);
   EXPECT_EQ(statuses[1].level_(), 0);
   EXPECT_EQ(statuses[2].name_(), "boresight/radar/front_right");
-  EXPECT_EQ(statuses[2].message_(), "AVAILABLE_REDUCED MISALIGNED");
+  EXPECT_EQ(statuses[2].message_().find("AVAILABLE_REDUCED MISALIGNED: yaw +2.498 ± 0.023°, beyond the tolerance"), 0U)
+      << statuses[2].message_();
   EXPECT_EQ(statuses[2].level_(), 1);
   std::map<std::string, std::string> values;
   for (const auto& value : statuses[2].values_()) values[value.key_()] = value.value_();
@@ -177,8 +194,25 @@ TEST(Dds, AnotherImplementationReadsBothTopics) {
   EXPECT_NE(output.find("sensor 2 front_right 1 1 yaw 0.0436 suspect 34 conditions 72"), std::string::npos) << output;
 }
 
+TEST(DiagnosticsText, StatesAWrongInputInOneSentence) {
+  HealthReport with_finding = report();
+  SensorHealth& swapped = with_finding.sensors[1];
+  swapped.yaw.beyond_tolerance = 0;
+  swapped.extended_qualifier = ExtendedQualifier::kWrongInput;
+  swapped.reason = AlignmentReason::kWrongInput;
+  swapped.finding = AlignmentFinding::kSpeedUnit;
+  swapped.finding_value = 3.6F;
+  const diagnostics::SensorHealth s = to_sensor_health(with_finding, 1, vehicle(), kTime_ns);
+  EXPECT_EQ(s.extended_qualifier(), diagnostics::WRONG_INPUT);
+  EXPECT_EQ(s.finding(), "speed_unit");
+  const std::string line = diagnostics_text::to_line(s);
+  EXPECT_NE(line.find("AVAILABLE_REDUCED WRONG_INPUT"), std::string::npos) << line;
+  EXPECT_NE(line.find("speed signal in km/h (3.6 times too large)"), std::string::npos) << line;
+  EXPECT_NE(line.find("load changed the vehicle's pitch by +0.78° (nose up)"), std::string::npos) << line;
+}
+
 TEST(DiagnosticsText, StatesVerdictErrorsAndDisplacement) {
-  const diagnostics::SensorHealth s = to_sensor_health(report().sensors[1], vehicle(), kTime_ns);
+  const diagnostics::SensorHealth s = to_sensor_health(report(), 1, vehicle(), kTime_ns);
   const std::string line = diagnostics_text::to_line(s);
   for (const char* part :
        {"front_right", "AVAILABLE_REDUCED MISALIGNED", "yaw +2.498 ± 0.023° (beyond tolerance 1.50°)",
