@@ -23,7 +23,7 @@ double CarTruth::stamp_offset_s(std::uint32_t radar) const {
 }
 
 Eigen::Matrix3d CarTruth::load_rotation(double t_s) const {
-  return geometry::sensor_to_vehicle(0.0, t_s >= load_time_s ? load_pitch_rad : 0.0, 0.0);
+  return geometry::sensor_to_vehicle(0.0, load_pitch_at(t_s), 0.0);
 }
 
 CarTruth read_car_truth(const std::filesystem::path& file) {

@@ -20,6 +20,7 @@ struct CarTruth {
   [[nodiscard]] double stamp_offset_s(std::uint32_t radar) const;
   /// Rotation of the body by the load at a time of the drive, in the axes of the unloaded vehicle.
   [[nodiscard]] Eigen::Matrix3d load_rotation(double t_s) const;
+  [[nodiscard]] double load_pitch_at(double t_s) const { return t_s >= load_time_s ? load_pitch_rad : 0.0; }
 };
 
 /// Throws InputError for a value out of its range. An empty path is a car without effects.

@@ -60,7 +60,8 @@ judge::MountingTruth MountingTruthReader::at(std::uint32_t radar, double t_s) {
   const std::optional<Eigen::Matrix3d> rotation = mounting(radar, t_s);
   if (!rotation) return truth;
   truth.has_rotation = true;
-  truth.rotation = car_.load_rotation(t_s) * *rotation;
+  truth.rotation = car_.load_rotation(0.0) * *rotation;
+  truth.load_pitch_rad = car_.load_pitch_at(t_s) - car_.load_pitch_at(0.0);
   truth.step_changes = angles_.at(radar).step_changes;
   return truth;
 }

@@ -26,8 +26,9 @@ class MountingTruthReader {
   /// Reads truth_sensors.csv as the time goes on, or else the constant angles of truth.csv.
   MountingTruthReader(const TruthSource& truth, const VehicleConfig& vehicle);
 
-  /// The latest truth of a radar up to a time, as an estimator in the car can know it: the rotation includes the pitch
-  /// of the body by load, which turns all radars, and the speed scale includes the radar's own scale of range rates.
+  /// The latest truth of a radar up to a time, as an estimator in the car can know it: the rotation includes the
+  /// load at the start of the drive, which no data tell from a mounting error, and the speed scale includes the radar's
+  /// own scale of range rates. A load that changes later is a state of its own.
   /// Nothing is known of radars that are not in the vehicle file.
   [[nodiscard]] judge::MountingTruth at(std::uint32_t radar, double t_s);
   /// Whether an angle about the radar's own axes or the vehicle's axes is beyond its tolerance in the vehicle file, as

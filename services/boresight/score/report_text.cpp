@@ -210,9 +210,16 @@ std::string alignment_text(const FigureList& f) {
     }
     grid.row(cells);
   }
-  return text + grid.text() +
-         fmt::format("  false step changes an hour: {}\n",
-                     text::fixed(f.value("alignment.false_step_changes_per_hour"), 1));
+  text += grid.text();
+  for (const std::string& radar : radars) {
+    const std::string name = "alignment.radar_" + radar + ".load_pitch";
+    const double error_deg = f.value(name + ".error_deg");
+    if (!std::isfinite(error_deg)) continue;
+    text += fmt::format("  radar {}: pitch by load {}, NEES {}\n", radar,
+                        text::fixed(error_deg, 4, "°", text::Sign::kAlways), text::fixed(f.value(name + ".nees"), 2));
+  }
+  return text + fmt::format("  false step changes an hour: {}\n",
+                            text::fixed(f.value("alignment.false_step_changes_per_hour"), 1));
 }
 
 std::string health_text(const FigureList& f) {

@@ -217,6 +217,9 @@ bool RunAlignment::next(judge::AlignmentSample& sample, std::int64_t& time_ns) {
     for (std::size_t i = 0; i < kVariances.size(); ++i) {
       sample.variances(static_cast<Eigen::Index>(i)) = table_.number_or_nan(kVariances.at(i), 0.0, kMostValue);
     }
+    sample.load_pitch_rad = table_.number_or_nan("load_pitch_rad", -4.0, 4.0);
+    const double load_std_rad = table_.number_or_nan("load_pitch_std_rad", 0.0, kMostValue);
+    sample.load_pitch_variance = load_std_rad * load_std_rad;
     sample.step_changes =
         static_cast<std::uint32_t>(table_.integer("step_changes", 0, std::numeric_limits<std::int32_t>::max()));
     return true;

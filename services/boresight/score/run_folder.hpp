@@ -143,7 +143,9 @@ struct RunVerdicts {
     bool misaligned;
     DataQualifier data_qualifier;
     ExtendedQualifier extended_qualifier;
-    std::uint64_t missed_scans;  ///< 0 without the key
+    std::uint64_t missed_scans;              ///< 0 without the key
+    std::string explanation;                 ///< "" without the key
+    std::array<bool, 3> beyond_tolerance{};  ///< yaw, pitch, roll; false without the key
   };
   std::vector<Radar> radars;
 };

@@ -70,7 +70,7 @@ bool RunHealth::next(RunVerdicts& verdicts) {
         refuse(fmt::format("radars: radar: a whole number 1 … {} is missing", kMaxRadars));
       }
       if (reason == radar.end() || !reason->is_string()) refuse("radars: extended_qualifier: a word is missing");
-      const auto extended = named(reason->get<std::string>(), ExtendedQualifier::kInitialising);
+      const auto extended = named(reason->get<std::string>(), ExtendedQualifier::kWrongInput);
       if (!extended)
         refuse("radars: extended_qualifier: \"" + reason->get<std::string>().substr(0, 40) + "\" is no such word");
       const auto qualifier = radar.find("data_qualifier"), missed = radar.find("missed_scans");
@@ -79,9 +79,21 @@ bool RunHealth::next(RunVerdicts& verdicts) {
                             : DataQualifier::kNotAvailable;
       if (!data)
         refuse("radars: data_qualifier: \"" + qualifier->get<std::string>().substr(0, 40) + "\" is no such word");
+      const auto explanation = radar.find("explanation");
+      const auto is_beyond = [&radar](const char* axis) {
+        const auto found = radar.find(axis);
+        if (found == radar.end() || !found->is_object()) return false;
+        const auto flag = found->find("beyond_tolerance");
+        return flag != found->end() && flag->is_boolean() && flag->get<bool>();
+      };
       verdicts.radars.push_back(
-          {id->get<std::uint32_t>(), *extended == ExtendedQualifier::kMisaligned, *data, *extended,
-           missed != radar.end() && missed->is_number_unsigned() ? missed->get<std::uint64_t>() : 0});
+          {id->get<std::uint32_t>(),
+           *extended == ExtendedQualifier::kMisaligned,
+           *data,
+           *extended,
+           missed != radar.end() && missed->is_number_unsigned() ? missed->get<std::uint64_t>() : 0,
+           explanation != radar.end() && explanation->is_string() ? explanation->get<std::string>() : "",
+           {is_beyond("yaw"), is_beyond("pitch"), is_beyond("roll")}});
     }
     return true;
   }

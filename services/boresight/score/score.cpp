@@ -158,9 +158,15 @@ void note_mounting_truth(const Input& input, Score& result) {
   const CarTruth car = read_car_truth(input.truth.drive);
   if (car.load_pitch_rad != 0.0) {
     result.notes.push_back(
-        fmt::format("alignment: the true mountings include the load from {:g} s on, which pitches the car by {:+g}°; "
-                    "health is judged without it",
-                    car.load_time_s, car.load_pitch_rad * kDegreesPerRadian));
+        car.load_time_s > 0.0
+            ? fmt::format(
+                  "alignment: the load from {:g} s on, which pitches the car by {:+g}°, is judged as load_pitch; "
+                  "the true mountings and health are judged without it",
+                  car.load_time_s, car.load_pitch_rad * kDegreesPerRadian)
+            : fmt::format(
+                  "alignment: the true mountings include the load, which pitches the car by {:+g}° from the start; "
+                  "health is judged without it",
+                  car.load_pitch_rad * kDegreesPerRadian));
   }
   for (const auto& [radar, scale] : car.range_rate_scales) {
     result.notes.push_back(fmt::format(

@@ -15,15 +15,17 @@ void AlignmentJudge::add(const AlignmentSample& estimate, const MountingTruth& t
   if (is_new) radar.first_s = estimate.t_s;
   radar.last_s = std::max(radar.last_s, estimate.t_s);
 
-  std::array<double, kAlignmentParameters> error{kNaN, kNaN, kNaN, kNaN};
+  std::array<double, kJudged> error{kNaN, kNaN, kNaN, kNaN, kNaN};
   error[0] = estimate.speed_scale - truth.speed_scale;
   if (truth.has_rotation) {
     const Eigen::Vector3d turn = geometry::so3_log(estimate.rotation * truth.rotation.transpose());
     for (std::size_t i = 0; i < 3; ++i) error[i + 1] = turn(static_cast<Eigen::Index>(i));
+    error[kAlignmentParameters] = estimate.load_pitch_rad - truth.load_pitch_rad;
   }
   radar.error = error;
-  for (std::size_t i = 0; i < kAlignmentParameters; ++i) {
-    const double variance = estimate.variances(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < kJudged; ++i) {
+    const bool is_load = i == kAlignmentParameters;
+    const double variance = is_load ? estimate.load_pitch_variance : estimate.variances(static_cast<Eigen::Index>(i));
     radar.nees[i] = variance > 0.0 ? error[i] * error[i] / variance : kNaN;
     if (!std::isfinite(error[i]) || estimate.t_s - radar.first_s < kConvergence_s) continue;
     ++radar.samples[i];
@@ -52,13 +54,14 @@ void AlignmentJudge::add(const AlignmentSample& estimate, const MountingTruth& t
 }
 
 void AlignmentJudge::write(FigureList& figures) const {
-  constexpr std::array<const char*, kAlignmentParameters> kParameterNames = {"speed_scale", "rotation_x", "rotation_y",
-                                                                             "rotation_z"};
+  constexpr std::array<const char*, kJudged> kParameterNames = {"speed_scale", "rotation_x", "rotation_y", "rotation_z",
+                                                                "load_pitch"};
   double hours = 0.0, false_changes = 0.0, missed_changes = 0.0;
   bool knows_changes = false;
   for (const auto& [id, radar] : radars_) {
     const std::string name = "alignment.radar_" + std::to_string(id) + ".";
-    for (std::size_t i = 0; i < kAlignmentParameters; ++i) {
+    for (std::size_t i = 0; i < kJudged; ++i) {
+      if (i == kAlignmentParameters && std::isnan(radar.error[i])) continue;  // a run without an estimate of the load
       const double unit = i == 0 ? 1.0 : kDegreesPerRadian;
       const std::string parameter = name + kParameterNames[i];
       const std::string suffix = i == 0 ? "" : "_deg";

@@ -23,12 +23,16 @@ struct AlignmentSample {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< actual × nominalᵀ, vehicle axes
   Eigen::Vector4d variances = Eigen::Vector4d::Zero();     ///< 0 or NaN: not given
   std::uint32_t step_changes = 0;
+  double load_pitch_rad = kNaN;  ///< of the body since the start, positive with the nose up; NaN: not given
+  double load_pitch_variance = kNaN;
 };
 
 struct MountingTruth {
   double speed_scale = kNaN;  ///< NaN: not known
   bool has_rotation = false;
+  /// With the load at the start of the drive, which pitches all radars as a mounting error does.
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  double load_pitch_rad = 0.0;  ///< change of the body's pitch since then
   std::uint32_t step_changes = 0;
 };
 
@@ -46,11 +50,13 @@ class AlignmentJudge {
   void write(FigureList& figures) const;
 
  private:
+  /// The four parameters and the pitch by load.
+  static constexpr std::size_t kJudged = kAlignmentParameters + 1;
   struct RadarErrors {
     double first_s = 0.0, last_s = 0.0;
-    std::array<double, kAlignmentParameters> error{kNaN, kNaN, kNaN, kNaN}, squares{}, nees_sum{};
-    std::array<double, kAlignmentParameters> nees{kNaN, kNaN, kNaN, kNaN};
-    std::array<std::uint64_t, kAlignmentParameters> samples{}, nees_samples{};
+    std::array<double, kJudged> error{kNaN, kNaN, kNaN, kNaN, kNaN}, squares{}, nees_sum{};
+    std::array<double, kJudged> nees{kNaN, kNaN, kNaN, kNaN, kNaN};
+    std::array<std::uint64_t, kJudged> samples{}, nees_samples{};
     std::uint32_t reported = 0, happened = 0;
     std::uint32_t false_changes = 0, found_changes = 0;
     std::deque<double> open_changes_s;

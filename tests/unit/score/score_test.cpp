@@ -12,6 +12,7 @@
 #include "services/boresight/score/object_truth.hpp"
 #include "services/boresight/score/report_text.hpp"
 #include "services/boresight/score/run_folder.hpp"
+#include "services/common/geometry/angles.hpp"
 #include "tests/unit/score/made_run.hpp"
 
 namespace boresight::score {
@@ -239,35 +240,56 @@ TEST(Score, AlignmentAndHealthAreJudgedWithAVehicle) {
 
 const std::string kAlignmentHeader =
     "t_s,time_ns,radar,state,speed_scale,rotation_x_rad,rotation_y_rad,rotation_z_rad,cov_k_k,cov_x_x,cov_y_y,cov_z_z,"
-    "step_changes\n";
+    "step_changes,load_pitch_rad,load_pitch_std_rad\n";
 
-TEST(Score, RealCarsTruthIncludesLoadAndRangeRateScale) {
+/// Figures of a run whose estimate has this pitch of the mounting and this pitch by load after so many scans, with a
+/// true load of 2° from `load_time_s` on.
+Score score_of_loaded_car(double load_time_s, int last_scan, double mounting_pitch_deg, double load_pitch_deg) {
   const fs::path run = made::folder("car_run"), truth = made::folder("car_truth");
   made::write_run(run, kScans, 0.0);
   made::write_truth(truth, kScans);
   made::write_file(truth / "truth.csv",
-                   "quantity,radar,value,unit\nspeed_scale,,1.01,1\nside_slip_std,,0.2,deg\nload_pitch,,2,deg\n"
-                   "load_time,,2,s\nalignment_yaw,1,0,deg\nalignment_pitch,1,0,deg\nalignment_roll,1,0,deg\n"
-                   "range_rate_scale,1,1.002,1\n");
+                   fmt::format("quantity,radar,value,unit\nspeed_scale,,1.01,1\nside_slip_std,,0.2,deg\n"
+                               "load_pitch,,2,deg\nload_time,,{},s\nalignment_yaw,1,0,deg\nalignment_pitch,1,0,deg\n"
+                               "alignment_roll,1,0,deg\nrange_rate_scale,1,1.002,1\n",
+                               load_time_s));
   const VehicleConfig vehicle = one_radar();
-  // Nose up by 2° is −2° about the y axis.
-  const auto errors = [&](int last_scan) {
-    const std::int64_t time_ns = made::kStart_ns + static_cast<std::int64_t>(last_scan) * 100'000'000;
-    made::write_file(
-        run / "alignment.csv",
-        kAlignmentHeader + fmt::format("{:.6f},{},1,converged,{},0,{},0,1e-6,1e-4,1e-4,1e-4,0\n",
-                                       made::kPeriod_s * last_scan, time_ns, 1.01 * 1.002, -2.0 * M_PI / 180.0));
-    made::write_file(run / "health.jsonl", "");
-    return score_of(run, truth, &vehicle);
-  };
-  const Score before = errors(19), after = errors(20);
-  EXPECT_NEAR(before.figures.value("alignment.radar_1.rotation_y.error_deg"), -2.0, 1e-6);
-  EXPECT_NEAR(after.figures.value("alignment.radar_1.rotation_y.error_deg"), 0.0, 1e-6);
-  EXPECT_NEAR(after.figures.value("alignment.radar_1.speed_scale.error"), 0.0, 1e-9);
-  EXPECT_THAT(after.notes,
-              ::testing::Contains(HasSubstr("include the load from 2 s on, which pitches the car by +2°")));
-  EXPECT_THAT(after.notes, ::testing::Contains(HasSubstr("radar 1 includes its own scale of range rates, 1.002")));
-  EXPECT_THAT(after.notes, ::testing::Contains(HasSubstr("side slip of the car, 0.2°")));
+  const std::int64_t time_ns = made::kStart_ns + static_cast<std::int64_t>(last_scan) * 100'000'000;
+  // Nose up is a negative rotation about the y axis.
+  made::write_file(run / "alignment.csv",
+                   kAlignmentHeader + fmt::format("{:.6f},{},1,converged,{},0,{},0,1e-6,1e-4,1e-4,1e-4,0,{},{}\n",
+                                                  made::kPeriod_s * last_scan, time_ns, 1.01 * 1.002,
+                                                  -mounting_pitch_deg * kRadiansPerDegree,
+                                                  load_pitch_deg * kRadiansPerDegree, 0.5 * kRadiansPerDegree));
+  made::write_file(run / "health.jsonl", "");
+  return score_of(run, truth, &vehicle);
+}
+
+TEST(Score, ALaterLoadIsJudgedAsLoadAndNotAsMounting) {
+  const Score before = score_of_loaded_car(2.0, 19, 0.0, 0.0), after = score_of_loaded_car(2.0, 20, 0.0, 1.5);
+  for (const Score* each : {&before, &after}) {
+    EXPECT_NEAR(each->figures.value("alignment.radar_1.rotation_y.error_deg"), 0.0, 1e-6);
+  }
+  EXPECT_NEAR(before.figures.value("alignment.radar_1.load_pitch.error_deg"), 0.0, 1e-6);
+  EXPECT_NEAR(after.figures.value("alignment.radar_1.load_pitch.error_deg"), -0.5, 1e-6);
+  EXPECT_NEAR(after.figures.value("alignment.radar_1.load_pitch.nees"), 1.0, 1e-6);
+  const Score as_mounting = score_of_loaded_car(2.0, 20, 2.0, 0.0);
+  EXPECT_NEAR(as_mounting.figures.value("alignment.radar_1.rotation_y.error_deg"), -2.0, 1e-6);
+  EXPECT_THAT(after.notes, ::testing::Contains(HasSubstr("the load from 2 s on, which pitches the car by +2°")));
+}
+
+TEST(Score, ALoadFromTheStartIsPartOfTheTrueMounting) {
+  const Score score = score_of_loaded_car(0.0, 20, 2.0, 0.0);
+  EXPECT_NEAR(score.figures.value("alignment.radar_1.rotation_y.error_deg"), 0.0, 1e-6);
+  EXPECT_NEAR(score.figures.value("alignment.radar_1.load_pitch.error_deg"), 0.0, 1e-6);
+  EXPECT_THAT(score.notes, ::testing::Contains(HasSubstr("include the load, which pitches the car by +2°")));
+}
+
+TEST(Score, TheTrueSpeedScaleIncludesTheRadarsOwnScale) {
+  const Score score = score_of_loaded_car(2.0, 19, 0.0, 0.0);
+  EXPECT_NEAR(score.figures.value("alignment.radar_1.speed_scale.error"), 0.0, 1e-9);
+  EXPECT_THAT(score.notes, ::testing::Contains(HasSubstr("radar 1 includes its own scale of range rates, 1.002")));
+  EXPECT_THAT(score.notes, ::testing::Contains(HasSubstr("side slip of the car, 0.2°")));
 }
 
 TEST(Score, LoadDoesNotMakeARadarMisaligned) {

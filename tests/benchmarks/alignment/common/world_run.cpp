@@ -1,6 +1,7 @@
 #include "tests/benchmarks/alignment/common/world_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -50,6 +51,9 @@ judge::AlignmentSample sample_of(const alignment::RadarEstimate& estimate, const
   sample.speed_scale = estimate.speed_scale;
   sample.rotation = estimate.sensor_to_vehicle * nominal_of(radar).transpose();
   sample.step_changes = estimate.step_change.count;
+  const AlignmentValue& load = estimate.nuisance.load_pitch_rad;
+  sample.load_pitch_rad = load.value;
+  sample.load_pitch_variance = std::pow(static_cast<double>(load.std), 2);
   for (std::size_t i = 0; i < kParameterBits.size(); ++i) {
     const auto place = static_cast<Eigen::Index>(i);
     const bool is_observable = (estimate.observable & kParameterBits[i]) != 0;
@@ -65,8 +69,10 @@ judge::MountingTruth truth_of(const simulator::RadarEffects& effects, const Rada
   truth.speed_scale = speed_scale_seen(
       effects.speed_scale, simulator::car::radar_of_car(car, seed, radar.id, radar.field_of_view).range_rate_scale);
   truth.has_rotation = true;
-  // The mounting is that on the body, which the load pitches.
-  truth.rotation = geometry::sensor_to_vehicle(0.0, simulator::car::load_pitch_rad(car, t_s), 0.0) *
+  // The mounting is that on the body. No data tell the load at the start from it; a later load is a state of its own.
+  const double load_at_start_rad = simulator::car::load_pitch_rad(car, 0.0);
+  truth.load_pitch_rad = simulator::car::load_pitch_rad(car, t_s) - load_at_start_rad;
+  truth.rotation = geometry::sensor_to_vehicle(0.0, load_at_start_rad, 0.0) *
                    simulator::radar::actual_mounting(radar.mounting_pose, effects, radar.id, t_s) *
                    nominal_of(radar).transpose();
   truth.step_changes = static_cast<std::uint32_t>(
