@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 
 #include "interfaces/messages/header.hpp"
 
@@ -10,38 +11,87 @@ namespace boresight::alignment {
 
 namespace {
 
-FilterConfig read_filter(config::Reader table) {
-  FilterConfig c;
+/// Standard deviations before any data. 0 switches a parameter off.
+void read_prior(config::Reader table, windows::Priors& p, FilterConfig& filter) {
+  p.speed_scale_std = table.number("speed_scale_std", {0.0, 0.5}, p.speed_scale_std);
+  p.rate_scale_std = table.number("range_rate_scale_std", {0.0, 0.1}, p.rate_scale_std);
+  p.rotation_std_rad = table.angle_deg("rotation_std_deg", {0.1, 30.0}, p.rotation_std_rad);
+  p.turned_std_rad = table.angle_deg("turned_std_deg", {0.1, 30.0}, p.turned_std_rad);
+  p.yaw_rate_bias_std_radps = table.angle_deg("yaw_rate_bias_std_deg", {0.0, 10.0}, p.yaw_rate_bias_std_radps);
+  p.yaw_rate_gain_std = table.number("yaw_rate_gain_std", {0.0, 0.5}, p.yaw_rate_gain_std);
+  p.slip_std_radps2pm = table.number("slip_coefficient_std", {0.0, 0.1}, p.slip_std_radps2pm);
+  p.pitch_per_acceleration_std_radps2pm =
+      table.number("pitch_per_acceleration_std", {0.0, 0.1}, p.pitch_per_acceleration_std_radps2pm);
+  p.common_stamp_std_s = table.number("common_time_offset_std_s", {0.0, 1.0}, p.common_stamp_std_s);
+  p.stamp_std_s = table.number("time_offset_std_s", {0.0, 1.0}, p.stamp_std_s);
+  p.position_std_m = table.number("position_std_m", {0.0, 2.0}, p.position_std_m);
+  p.curve_std_rad = table.angle_deg("azimuth_curve_std_deg", {0.0, 5.0}, p.curve_std_rad);
+  p.curve_length_rad = table.angle_deg("azimuth_curve_length_deg", {1.0, 90.0}, p.curve_length_rad);
+  p.height_excess_std = table.number("height_excess_std", {0.0, 5.0}, p.height_excess_std);
+  p.mirror_share_std = table.number("mirror_share_std", {0.0, 5.0}, p.mirror_share_std);
+  p.mirror_share_tolerance = table.number("mirror_share_tolerance", {0.0, 1.0}, p.mirror_share_tolerance);
+  p.load_std_rad = table.angle_deg("load_pitch_std_deg", {0.0, 10.0}, p.load_std_rad);
+  filter.prior_angle_noise_log_std = table.number("angle_noise_log_std", {0.01, 3.0}, filter.prior_angle_noise_log_std);
+}
+
+/// Fluctuations that the model has no cause for; the order of windows::kFluctuating.
+void read_fluctuation(config::Reader table, windows::Priors& p) {
+  const auto read = [&](const std::string& whose, std::array<double, windows::kFluctuations>& std) {
+    std[0] = table.angle_deg(whose + "yaw_std_deg", {0.0, 5.0}, std[0]);
+    std[1] = table.angle_deg(whose + "pitch_std_deg", {0.0, 5.0}, std[1]);
+    std[2] = table.number(whose + "scale_std", {0.0, 0.1}, std[2]);
+  };
+  read("", p.own_std);
+  read("common_", p.common_std);
+  p.log_fluctuation_std = table.number("log_std", {0.01, 5.0}, p.log_fluctuation_std);
+  p.common_correlation_s = table.number("correlation_s", {1.5, 60.0}, p.common_correlation_s);
+  p.log_correlation_std = table.number("log_correlation_std", {0.01, 5.0}, p.log_correlation_std);
+}
+
+void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
+  config::Reader radar = filter.table("step_change");
+  c.yaw_rad = radar.angle_deg("yaw_deg", {0.05, 30.0}, c.yaw_rad);
+  c.pitch_rad = radar.angle_deg("pitch_deg", {0.05, 30.0}, c.pitch_rad);
+  c.scatter_factor = radar.number("scatter_factor", {1.0, 100.0}, c.scatter_factor);
+  c.common_factor = radar.number("common_factor", {1.0, 100.0}, c.common_factor);
+  c.yaw_scatter_rad = radar.angle_deg("yaw_scatter_deg", {0.001, 5.0}, c.yaw_scatter_rad);
+  c.pitch_scatter_rad = radar.angle_deg("pitch_scatter_deg", {0.001, 5.0}, c.pitch_scatter_rad);
+  c.least_detections = radar.number("least_detections", {1.0, 10000.0}, c.least_detections);
+  c.wait_s = radar.number("wait_s", {0.0, 3600.0}, c.wait_s);
+  c.settled_yaw_rad = radar.angle_deg("settled_yaw_deg", {0.001, 30.0}, c.settled_yaw_rad);
+  const auto read_common = [](config::Reader& table, windows::CommonConfig& common) {
+    common.stds = table.number("stds", {1.0, 100.0}, common.stds);
+    common.after = static_cast<std::size_t>(table.integer("blocks", {4, 30}, static_cast<std::int64_t>(common.after)));
+  };
+  config::Reader load = filter.table("load_change");
+  c.load.least = load.angle_deg("least_deg", {0.01, 30.0}, c.load.least);
+  c.load.scatter = load.angle_deg("scatter_deg", {0.001, 5.0}, c.load.scatter);
+  read_common(load, c.load);
+  c.watch_s = load.number("watch_s", {1.0, 3600.0}, c.watch_s);
+  config::Reader speed = filter.table("speed_change");
+  c.speed.least = speed.number("least", {1e-4, 1.0}, c.speed.least);
+  c.speed.scatter = speed.number("scatter", {1e-5, 0.1}, c.speed.scatter);
+  read_common(speed, c.speed);
+}
+
+void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& w) {
   c.min_speed_mps = table.number("min_speed_mps", {1.0, 50.0}, c.min_speed_mps);
   c.outlier_gate_sigma = table.number("outlier_gate_sigma", {2.0, 20.0}, c.outlier_gate_sigma);
   c.azimuth_std_edge = table.number("azimuth_std_edge", {0.05, 1.0}, c.azimuth_std_edge);
-
-  config::Reader prior = table.table("prior");
-  c.prior_speed_scale_std = prior.number("speed_scale_std", {1e-4, 0.5}, c.prior_speed_scale_std);
-  c.prior_rotation_std_rad = prior.angle_deg("rotation_std_deg", {0.1, 30.0}, c.prior_rotation_std_rad);
-  c.prior_yaw_rate_bias_std_radps =
-      prior.angle_deg("yaw_rate_bias_std_deg", {0.0, 10.0}, c.prior_yaw_rate_bias_std_radps);
-  c.prior_slip_coefficient_std_radps2pm =
-      prior.number("slip_coefficient_std", {0.0, 0.1}, c.prior_slip_coefficient_std_radps2pm);
-  c.prior_pitch_per_acceleration_std_radps2pm =
-      prior.number("pitch_per_acceleration_std", {0.0, 0.1}, c.prior_pitch_per_acceleration_std_radps2pm);
-  c.prior_angle_noise_log_std = prior.number("angle_noise_log_std", {0.01, 3.0}, c.prior_angle_noise_log_std);
+  read_prior(table.table("prior"), w.priors, c);
+  read_fluctuation(table.table("fluctuation"), w.priors);
 
   config::Reader drift = table.table("drift");
-  c.rotation_drift_rad_per_sqrt_s =
-      drift.angle_deg("rotation_per_sqrt_s_deg", {0.0, 1.0}, c.rotation_drift_rad_per_sqrt_s);
-  c.speed_scale_drift_per_sqrt_s = drift.number("speed_scale_per_sqrt_s", {0.0, 0.1}, c.speed_scale_drift_per_sqrt_s);
-  c.yaw_rate_bias_drift_radps_per_sqrt_s =
-      drift.angle_deg("yaw_rate_bias_per_sqrt_s_deg", {0.0, 1.0}, c.yaw_rate_bias_drift_radps_per_sqrt_s);
+  constexpr double kPerMinute = 60.0;
+  w.priors.drift_std_radps =
+      drift.angle_deg("std_deg_per_min", {0.0, 10.0}, w.priors.drift_std_radps * kPerMinute) / kPerMinute;
+  w.priors.drift_span_s = drift.number("span_s", {10.0, 36000.0}, w.priors.drift_span_s);
 
   config::Reader motion = table.table("motion");
   c.speed_std_mps = motion.number("speed_std_mps", {1e-4, 5.0}, c.speed_std_mps);
   c.yaw_rate_std_radps = motion.angle_deg("yaw_rate_std_deg", {1e-4, 10.0}, c.yaw_rate_std_radps);
-  c.body_pitch_std_rad = motion.angle_deg("body_pitch_std_deg", {1e-4, 5.0}, c.body_pitch_std_rad);
-  c.side_slip_std_rad = motion.angle_deg("side_slip_std_deg", {1e-4, 5.0}, c.side_slip_std_rad);
-  c.ego_correlation_s = motion.number("ego_correlation_s", {1e-3, 60.0}, c.ego_correlation_s);
-  c.body_correlation_s = motion.number("body_correlation_s", {1e-3, 60.0}, c.body_correlation_s);
-  c.nuisance_memory_s = motion.number("memory_s", {1.0, 36000.0}, c.nuisance_memory_s);
+  w.priors.body_pitch_std_rad = motion.angle_deg("body_pitch_std_deg", {0.0, 5.0}, w.priors.body_pitch_std_rad);
+  w.priors.side_slip_std_rad = motion.angle_deg("side_slip_std_deg", {0.0, 5.0}, w.priors.side_slip_std_rad);
 
   config::Reader start = table.table("start");
   c.start_seconds = start.number("seconds", {0.05, 60.0}, c.start_seconds);
@@ -49,29 +99,19 @@ FilterConfig read_filter(config::Reader table) {
   c.start_passes = static_cast<int>(start.integer("passes", {1, 100}, c.start_passes));
   c.start_scale_mps = start.number("scale_mps", {0.05, 50.0}, c.start_scale_mps);
   c.start_shrink = start.number("shrink", {0.1, 0.99}, c.start_shrink);
-  c.start_inflation = start.number("inflation", {1.0, 1000.0}, c.start_inflation);
 
   config::Reader convergence = table.table("convergence");
   c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
   c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
 
   config::Reader remembered = table.table("remembered");
-  c.memory_inflation = remembered.number("inflation", {1.0, 1000.0}, c.memory_inflation);
-  c.memory_rotation_std_rad = remembered.angle_deg("rotation_std_deg", {0.0, 30.0}, c.memory_rotation_std_rad);
-  c.memory_speed_scale_std = remembered.number("speed_scale_std", {0.0, 0.5}, c.memory_speed_scale_std);
+  windows::RestoreConfig& r = w.restore;
+  r.rotation_std_rad = remembered.angle_deg("rotation_std_deg", {0.0, 30.0}, r.rotation_std_rad);
+  r.rate_scale_std = remembered.number("range_rate_scale_std", {0.0, 0.1}, r.rate_scale_std);
+  r.speed_scale_std = remembered.number("speed_scale_std", {0.0, 0.5}, r.speed_scale_std);
+  r.vehicle_share = remembered.number("vehicle_share", {0.0, 1.0}, r.vehicle_share);
 
-  config::Reader step_change = table.table("step_change");
-  c.step_change_block_s = step_change.number("block_s", {0.1, 60.0}, c.step_change_block_s);
-  c.step_change_yaw_rad = step_change.angle_deg("yaw_deg", {0.05, 30.0}, c.step_change_yaw_rad);
-  c.step_change_pitch_rad = step_change.angle_deg("pitch_deg", {0.05, 30.0}, c.step_change_pitch_rad);
-  c.step_change_sum_blocks = step_change.number("sum_blocks", {0.1, 100.0}, c.step_change_sum_blocks);
-  c.step_change_window_s = step_change.number("window_s", {0.1, 60.0}, c.step_change_window_s);
-  c.step_change_small_stds = step_change.number("small_stds", {0.1, 100.0}, c.step_change_small_stds);
-  c.step_change_small_sum_stds = step_change.number("small_sum_stds", {0.1, 100.0}, c.step_change_small_sum_stds);
-  c.step_change_small_confirm_stds =
-      step_change.number("small_confirm_stds", {0.1, 100.0}, c.step_change_small_confirm_stds);
-  c.step_change_least_rad = step_change.angle_deg("least_deg", {0.0, 30.0}, c.step_change_least_rad);
-  return c;
+  read_changes(table, w.change);
 }
 
 std::array<double, 4> four(config::Reader& table, std::string_view key, config::Range allowed,
@@ -116,6 +156,18 @@ published::PublishedConfig read_published(config::Reader table) {
   return c;
 }
 
+PlausibilityConfig read_plausibility(config::Reader table) {
+  PlausibilityConfig c;
+  c.enabled = table.boolean("enabled", c.enabled);
+  c.window_s = table.number("window_s", {0.1, 5.0}, c.window_s);
+  c.least_share = table.number("least_share", {0.05, 1.0}, c.least_share);
+  c.yaw_limit_rad = table.angle_deg("yaw_limit_deg", {2.0, 45.0}, c.yaw_limit_rad);
+  c.prior_log_odds = table.number("prior_log_odds", {0.0, 100.0}, c.prior_log_odds);
+  c.margin_log = table.number("margin_log", {1.0, 100.0}, c.margin_log);
+  c.least_s = table.number("least_s", {0.5, 600.0}, c.least_s);
+  return c;
+}
+
 std::optional<DriveTruth> read_truth(config::Reader& root) {
   std::string path = root.text("truth_file", "");
   const char* const from_environment = std::getenv("BORESIGHT_TRUTH");
@@ -139,8 +191,9 @@ Settings read_settings(config::Reader root) {
   c.publish_period_s = root.number("publish_period_s", {0.05, 10.0}, c.publish_period_s);
   c.kpi_window_s = root.number("kpi_window_s", {1.0, 3600.0}, c.kpi_window_s);
   c.residual_gate_sigma = root.number("residual_gate_sigma", {2.0, 20.0}, c.residual_gate_sigma);
-  c.filter = read_filter(root.table("filter"));
+  read_filter(root.table("filter"), c.filter, c.windows);
   c.published = read_published(root.table("published"));
+  c.plausibility = read_plausibility(root.table("plausibility"));
   c.truth = read_truth(root);
   MemorySettings& memory = settings.memory;
   config::Reader memory_table = root.table("memory");

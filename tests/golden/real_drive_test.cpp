@@ -70,8 +70,8 @@ TEST_F(RealDrive, NeitherPriorNorStartDecide) {
     change(config);
     return estimate(drive_, car_, config).speed_scale;
   };
-  EXPECT_NEAR(changed([](auto& c) { c.filter.prior_speed_scale_std = 0.01; }), as_it_is.speed_scale, 5e-4);
-  EXPECT_NEAR(changed([](auto& c) { c.filter.prior_speed_scale_std = 0.1; }), as_it_is.speed_scale, 5e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.windows.priors.speed_scale_std = 0.01; }), as_it_is.speed_scale, 5e-4);
+  EXPECT_NEAR(changed([](auto& c) { c.windows.priors.speed_scale_std = 0.1; }), as_it_is.speed_scale, 5e-4);
   EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 1.0; }), as_it_is.speed_scale, 5e-4);
   EXPECT_NEAR(changed([](auto& c) { c.filter.start_scale_mps = 4.0; }), as_it_is.speed_scale, 5e-4);
   // The gate matters, since the accepted residuals are not Gaussian: k_v changes by up to 1.5 per mille from 2 to 8

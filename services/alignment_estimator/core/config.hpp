@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/alignment_estimator/core/plausibility/config.hpp"
 #include "services/alignment_estimator/core/published/config.hpp"
+#include "services/alignment_estimator/core/windows/config.hpp"
 #include "services/common/vehicle/drive_truth.hpp"
 
 namespace boresight::alignment {
@@ -40,8 +42,10 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 8> kMethodN
 
 struct Config {
   MethodName method = MethodName::kWindows;
-  FilterConfig filter;                   ///< settings of kBoresight
+  FilterConfig filter;                   ///< settings of kBoresight and kWindows
+  windows::WindowsConfig windows;        ///< further settings of kWindows
   published::PublishedConfig published;  ///< settings of all other methods
+  PlausibilityConfig plausibility;       ///< search for wrong inputs, beside every method
   double publish_period_s = 0.2;
   double kpi_window_s = 20.0;        ///< time constant of the residual statistics
   double residual_gate_sigma = 4.0;  ///< key figures: detections with larger residuals (in stds) are no inliers
@@ -49,11 +53,13 @@ struct Config {
 
   /// Std of the mounting error before any measurement, as the chosen method assumes it.
   [[nodiscard]] double prior_angle_std_rad() const {
-    return method == MethodName::kBoresight || method == MethodName::kWindows ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
+    if (method == MethodName::kWindows) return windows.priors.rotation_std_rad;
+    return method == MethodName::kBoresight ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
   }
   /// Scans at lower speed are not used.
   [[nodiscard]] double min_speed_mps() const {
-    return method == MethodName::kBoresight || method == MethodName::kWindows ? filter.min_speed_mps : published.min_speed_mps;
+    return method == MethodName::kBoresight || method == MethodName::kWindows ? filter.min_speed_mps
+                                                                              : published.min_speed_mps;
   }
 };
 

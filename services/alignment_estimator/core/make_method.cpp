@@ -16,7 +16,7 @@ std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& 
     case MethodName::kBoresight:
       return std::make_unique<RobustFilter>(vehicle, config.filter);
     case MethodName::kWindows:
-      return std::make_unique<WindowedFilter>(vehicle, config.filter);
+      return std::make_unique<WindowedFilter>(vehicle, config.filter, config.windows);
     case MethodName::kSteepestDescent:
       return make(Kind::kSteepestDescent);
     case MethodName::kNls:

@@ -3,8 +3,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/memory/codec.hpp"
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
 
 namespace boresight::calibrate {
@@ -29,7 +29,7 @@ std::string seed_state_file(const std::filesystem::path& file, const VehicleConf
       [[fallthrough]];
     case Kind::kMissing:
       // The initial state of the estimator.
-      std::make_unique<alignment::RobustFilter>(vehicle, alignment::FilterConfig{})->save(loaded->memory);
+      std::make_unique<alignment::WindowedFilter>(vehicle, alignment::FilterConfig{})->save(loaded->memory);
       break;
   }
   const auto bytes = std::make_unique<alignment::MemoryBytes>();

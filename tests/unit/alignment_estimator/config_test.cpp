@@ -21,50 +21,73 @@ const std::filesystem::path kShipped =
 std::vector<double> numbers(const Settings& s) {
   const FilterConfig& f = s.estimator.filter;
   const published::PublishedConfig& p = s.estimator.published;
+  const windows::Priors& w = s.estimator.windows.priors;
+  const windows::RestoreConfig& r = s.estimator.windows.restore;
+  const windows::ChangeConfig& c = s.estimator.windows.change;
   std::vector<double> all = {
       s.estimator.publish_period_s,
       s.estimator.kpi_window_s,
       s.estimator.residual_gate_sigma,
       s.memory.period_s,
       f.min_speed_mps,
-      f.prior_speed_scale_std,
-      f.prior_rotation_std_rad,
-      f.prior_yaw_rate_bias_std_radps,
-      f.prior_slip_coefficient_std_radps2pm,
-      f.prior_pitch_per_acceleration_std_radps2pm,
-      f.prior_angle_noise_log_std,
-      f.rotation_drift_rad_per_sqrt_s,
-      f.speed_scale_drift_per_sqrt_s,
-      f.yaw_rate_bias_drift_radps_per_sqrt_s,
       f.outlier_gate_sigma,
       f.azimuth_std_edge,
+      f.prior_angle_noise_log_std,
       f.speed_std_mps,
       f.yaw_rate_std_radps,
-      f.body_pitch_std_rad,
-      f.side_slip_std_rad,
-      f.ego_correlation_s,
-      f.body_correlation_s,
-      f.nuisance_memory_s,
       f.start_seconds,
       f.start_detections,
       static_cast<double>(f.start_passes),
       f.start_scale_mps,
       f.start_shrink,
-      f.start_inflation,
       f.converged_yaw_std_rad,
       f.min_seconds_to_converge,
-      f.memory_inflation,
-      f.memory_rotation_std_rad,
-      f.memory_speed_scale_std,
-      f.step_change_block_s,
-      f.step_change_yaw_rad,
-      f.step_change_pitch_rad,
-      f.step_change_sum_blocks,
-      f.step_change_window_s,
-      f.step_change_small_stds,
-      f.step_change_small_sum_stds,
-      f.step_change_small_confirm_stds,
-      f.step_change_least_rad,
+      w.speed_scale_std,
+      w.rate_scale_std,
+      w.rotation_std_rad,
+      w.turned_std_rad,
+      w.yaw_rate_bias_std_radps,
+      w.yaw_rate_gain_std,
+      w.slip_std_radps2pm,
+      w.pitch_per_acceleration_std_radps2pm,
+      w.common_stamp_std_s,
+      w.stamp_std_s,
+      w.position_std_m,
+      w.curve_std_rad,
+      w.curve_length_rad,
+      w.height_excess_std,
+      w.mirror_share_std,
+      w.mirror_share_tolerance,
+      w.load_std_rad,
+      w.log_fluctuation_std,
+      w.common_correlation_s,
+      w.log_correlation_std,
+      w.drift_std_radps,
+      w.drift_span_s,
+      w.body_pitch_std_rad,
+      w.side_slip_std_rad,
+      r.rotation_std_rad,
+      r.rate_scale_std,
+      r.speed_scale_std,
+      r.vehicle_share,
+      c.yaw_rad,
+      c.pitch_rad,
+      c.scatter_factor,
+      c.common_factor,
+      c.yaw_scatter_rad,
+      c.pitch_scatter_rad,
+      c.least_detections,
+      c.wait_s,
+      c.settled_yaw_rad,
+      c.watch_s,
+      c.load.least,
+      c.load.scatter,
+      c.load.stds,
+      static_cast<double>(c.load.after),
+      c.speed.least,
+      c.speed.scatter,
+      c.speed.stds,
+      static_cast<double>(c.speed.after),
       static_cast<double>(p.road_model),
       p.straight_yaw_rate_radps,
       p.min_speed_mps,
@@ -85,10 +108,17 @@ std::vector<double> numbers(const Settings& s) {
       p.converged_angle_rad,
       p.converged_speed_scale,
       static_cast<double>(p.seed),
+      s.estimator.plausibility.window_s,
+      s.estimator.plausibility.least_share,
+      s.estimator.plausibility.yaw_limit_rad,
+      s.estimator.plausibility.prior_log_odds,
+      s.estimator.plausibility.margin_log,
+      s.estimator.plausibility.least_s,
   };
   for (const auto& list : {p.steepest_descent_rate, p.least_squares_rate, p.nelder_mead_edge}) {
     all.insert(all.end(), list.begin(), list.end());
   }
+  for (const auto& list : {w.own_std, w.common_std}) all.insert(all.end(), list.begin(), list.end());
   return all;
 }
 
@@ -111,7 +141,7 @@ TEST(Config, EveryKeyOfTheShippedFileIsReadIntoItsPlace) {
     return numbers(read_settings(config::Reader::parse(text, "x.toml")));
   };
   // station/settings_test.cpp tests the station's settings.
-  EXPECT_GT(test::expect_each_number_is_read(kShipped, read, "station"), 50u);
+  EXPECT_GT(test::expect_each_number_is_read(kShipped, read, "station"), 80u);
 }
 
 TEST(Config, ErrorsAreNamed) {

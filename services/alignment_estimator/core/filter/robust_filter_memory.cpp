@@ -1,6 +1,8 @@
 // Memory from one drive to the next, and the start from a static calibration.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/small_maths.hpp"
@@ -14,31 +16,30 @@ void RobustFilter::save(Memory& memory) const {
   memory.speed_scale = state_.speed_scale;
   memory.yaw_rate_bias_radps = state_.yaw_rate_bias_radps;
   memory.slip_coefficient_radps2pm = state_.slip_radps2pm;
-  const std::size_t size = memory.number_of_parameters();
-  const auto row_of = [](std::size_t parameter) {
-    if (parameter < Memory::kShared) return static_cast<Eigen::Index>(parameter);
-    const std::size_t rest = parameter - Memory::kShared;
-    return column::of_radar(rest / 3) + static_cast<Eigen::Index>(rest % 3);
-  };
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j < size; ++j) {
-      memory.covariance[i * size + j] = state_.covariance(row_of(i), row_of(j));
-    }
-  }
+  constexpr std::array<std::pair<std::size_t, Eigen::Index>, 3> kShared{{{Memory::kSpeedScale, column::kSpeedScale},
+                                                                         {Memory::kYawRateBias, column::kYawRateBias},
+                                                                         {Memory::kSlip, column::kSlip}}};
+  for (const auto& [to, from] : kShared) memory.variance(to, to) = state_.covariance(from, from);
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     const Radar& radar = radars_[r];
     const Eigen::Vector3d turn = geometry::so3_log(state_.sensor_to_vehicle[r] * radar.nominal.transpose());
-    memory.radars[r] = {radar.config.id,
-                        {turn.x(), turn.y(), turn.z()},
-                        std::sqrt(radar.noise.angle_variance_factor()),
-                        radar.seconds_of_drive};
+    Memory::Radar& known = memory.radars[r];
+    known.id = radar.config.id;
+    known.rotation_vehicle_rad = {turn.x(), turn.y(), turn.z()};
+    known.angle_noise_scale = std::sqrt(radar.noise.angle_variance_factor());
+    known.seconds_of_drive = radar.seconds_of_drive;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        known.rotation_variance(i, j) = state_.covariance(column::of_radar(r) + static_cast<Eigen::Index>(i),
+                                                          column::of_radar(r) + static_cast<Eigen::Index>(j));
+      }
+    }
   }
 }
 
 void RobustFilter::restore(const Memory& memory) {
   if (memory.number_of_radars != radars_.size()) return;
-  const std::size_t size = memory.number_of_parameters();
-  const auto variance = [&](std::size_t i) { return memory.covariance[i * size + i]; };
+  const auto variance = [&](std::size_t i) { return memory.variance(i, i); };
   const auto usable_variance = [](double v, double prior_std) { return v > 0.0 && v < square(prior_std); };
   state_.speed_scale = state_.linearised_speed_scale = memory.speed_scale;
   state_.yaw_rate_bias_radps = memory.yaw_rate_bias_radps;
@@ -48,12 +49,14 @@ void RobustFilter::restore(const Memory& memory) {
     if (!usable_variance(v, prior_std)) return square(prior_std);
     return std::min(config_.memory_inflation * v + square(floor_std), square(prior_std));
   };
-  state_.set_variance(column::kSpeedScale,
-                      remembered(variance(0), config_.memory_speed_scale_std, config_.prior_speed_scale_std));
-  state_.set_variance(column::kYawRateBias, remembered(variance(1), 0.25 * config_.prior_yaw_rate_bias_std_radps,
-                                                       config_.prior_yaw_rate_bias_std_radps));
-  state_.set_variance(column::kSlip, remembered(variance(2), 0.25 * config_.prior_slip_coefficient_std_radps2pm,
-                                                config_.prior_slip_coefficient_std_radps2pm));
+  state_.set_variance(column::kSpeedScale, remembered(variance(Memory::kSpeedScale), config_.memory_speed_scale_std,
+                                                      config_.prior_speed_scale_std));
+  state_.set_variance(column::kYawRateBias,
+                      remembered(variance(Memory::kYawRateBias), 0.25 * config_.prior_yaw_rate_bias_std_radps,
+                                 config_.prior_yaw_rate_bias_std_radps));
+  state_.set_variance(column::kSlip,
+                      remembered(variance(Memory::kSlip), 0.25 * config_.prior_slip_coefficient_std_radps2pm,
+                                 config_.prior_slip_coefficient_std_radps2pm));
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     Radar& radar = radars_[r];
     const Memory::Radar& known = memory.radars[r];
@@ -62,9 +65,9 @@ void RobustFilter::restore(const Memory& memory) {
     if (known.id != radar.config.id || !turn.allFinite() || turn.norm() > 1.0) continue;
     state_.sensor_to_vehicle[r] = geometry::so3_exp(turn) * radar.nominal;
     for (std::size_t i = 0; i < 3; ++i) {
-      state_.set_variance(column::of_radar(r) + static_cast<Eigen::Index>(i),
-                          remembered(variance(Memory::kShared + 3 * r + i), config_.memory_rotation_std_rad,
-                                     config_.prior_rotation_std_rad));
+      state_.set_variance(
+          column::of_radar(r) + static_cast<Eigen::Index>(i),
+          remembered(known.rotation_variance(i, i), config_.memory_rotation_std_rad, config_.prior_rotation_std_rad));
     }
     radar.noise.set_angle_scale(known.angle_noise_scale);
     radar.seconds_of_drive = known.seconds_of_drive;

@@ -1,7 +1,10 @@
-// Memory ↔ bytes. Layout, little-endian: "BORALIGN", version (u32), length of all (u32), fingerprint of the vehicle
-// (u64), number of radars (u32), reserved (u32), k_v, yaw-rate bias, slip coefficient (f64); per radar id (u32),
-// reserved (u32), fingerprint (u64), rotation about x, y, z, angle-noise scale, seconds of drive (f64); upper triangle
-// of the covariance row by row (f64); CRC-32/AUTOSAR of all before (u32).
+// Memory ↔ bytes. Layout, little-endian, all numbers f64 but the first ones: "BORALIGN", version (u32), length of all
+// (u32), fingerprint of the vehicle (u64), number of radars (u32), reserved (u32); of the vehicle k_v, yaw-rate bias,
+// yaw-rate gain, slip coefficient, pitch per acceleration, time offset, load pitch, three fluctuation variances, three
+// correlation times, upper triangle of the covariance row by row; per radar id (u32), flags (u32, bit 0: measures
+// elevation), fingerprint (u64), rotation about x, y, z, range-rate scale, time offset, position x and y, azimuth
+// curve, height excess, mirror share, angle-noise scale, seconds of drive, three fluctuation variances, upper triangle
+// of the covariance; CRC-32/AUTOSAR of all before (u32).
 #pragma once
 
 #include <array>
@@ -14,11 +17,14 @@
 
 namespace boresight::alignment {
 
-inline constexpr std::uint32_t kMemoryVersion = 1;
-inline constexpr std::size_t kMemoryHeaderBytes = 56;
-inline constexpr std::size_t kMemoryRadarBytes = 56;
-inline constexpr std::size_t kMaxMemoryBytes = kMemoryHeaderBytes + kMaxRadars * kMemoryRadarBytes +
-                                               Memory::kMaxParameters * (Memory::kMaxParameters + 1) / 2 * 8 + 4;
+inline constexpr std::uint32_t kMemoryVersion = 2;
+inline constexpr std::size_t kMemoryHeaderBytes = 32;
+inline constexpr std::size_t kMemoryVehicleBytes =
+    8 * (7 + 2 * windows::kFluctuations + Memory::kShared * (Memory::kShared + 1) / 2);
+inline constexpr std::size_t kMemoryRadarBytes =
+    16 + 8 * (11 + windows::kKnots + windows::kFluctuations + Memory::kOwn * (Memory::kOwn + 1) / 2);
+inline constexpr std::size_t kMaxMemoryBytes =
+    kMemoryHeaderBytes + kMemoryVehicleBytes + kMaxRadars * kMemoryRadarBytes + 4;
 using MemoryBytes = std::array<std::uint8_t, kMaxMemoryBytes>;
 
 /// Result of reading.
@@ -37,8 +43,8 @@ enum class MemoryVerdict : std::uint8_t {
 /// the identity. No allocation.
 [[nodiscard]] std::size_t encode_memory(const Memory& memory, const Identity& identity, MemoryBytes& out);
 
-/// Removes radars whose mounting or profile differs from `identity`, or that the vehicle no longer has, together with
-/// their rows and columns of the covariance. `rejected_radars` counts them. `out` is written only with kTaken.
+/// Removes radars whose mounting or profile differs from `identity`, or that the vehicle no longer has.
+/// `rejected_radars` counts them. `out` is written only with kTaken.
 [[nodiscard]] MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity& identity, Memory& out,
                                           std::size_t& rejected_radars);
 

@@ -34,36 +34,17 @@ bool seed_from_plate(const RadarConfig& radar, double yaw_rad, double yaw_std_ra
 
 bool put_seed(const RotationSeed& seed, Memory& memory) {
   if (memory.number_of_radars > kMaxRadars) return false;
-  const std::size_t before = memory.number_of_parameters();
   std::size_t radar = 0;
   while (radar < memory.number_of_radars && memory.radars[radar].id != seed.radar_id) ++radar;
   if (radar == kMaxRadars) return false;
-  if (radar == memory.number_of_radars) {
-    ++memory.number_of_radars;
-    // Rows become longer: they are moved from the last to the first, so that none is overwritten before it is read.
-    const std::size_t after = memory.number_of_parameters();
-    for (std::size_t row = before; row-- > 0;) {
-      for (std::size_t column = before; column-- > 0;) {
-        memory.covariance[row * after + column] = memory.covariance[row * before + column];
-      }
-    }
-  }
+  if (radar == memory.number_of_radars) ++memory.number_of_radars;
   Memory::Radar& entry = memory.radars[radar];
   entry = {};
   entry.id = seed.radar_id;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    entry.rotation_vehicle_rad[axis] = seed.rotation_vehicle_rad[static_cast<Eigen::Index>(axis)];
-  }
-  const std::size_t size = memory.number_of_parameters(), first = Memory::kShared + 3 * radar;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t row = first + axis;
-    for (std::size_t other = 0; other < size; ++other) {
-      memory.covariance[row * size + other] = memory.covariance[other * size + row] = 0.0;
-    }
-  }
   for (std::size_t row = 0; row < 3; ++row) {
+    entry.rotation_vehicle_rad[row] = seed.rotation_vehicle_rad[static_cast<Eigen::Index>(row)];
     for (std::size_t column = 0; column < 3; ++column) {
-      memory.covariance[(first + row) * size + first + column] =
+      entry.rotation_variance(row, column) =
           seed.covariance(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
     }
   }

@@ -211,18 +211,19 @@ void PublishedMethod::save(Memory& memory) const {
   memory = {};
   memory.number_of_radars = std::min(radars_.size(), memory.radars.size());
   memory.speed_scale = speed_scale_;
-  const std::size_t size = memory.number_of_parameters();
-  const auto set_variance = [&](std::size_t i, double variance) { memory.covariance[i * size + i] = variance; };
   for (std::size_t r = 0; r < memory.number_of_radars; ++r) {
     const RadarEstimate e = estimate(r);
     const Eigen::Vector3d d = geometry::so3_log(
         e.sensor_to_vehicle * geometry::sensor_to_vehicle(radars_[r].nominal, 0.0, 0.0, 0.0).transpose());
-    memory.radars[r] = {radars_[r].id, {d.x(), d.y(), d.z()}, 1.0, e.seconds_of_drive};
-    const double variance = e.covariance(0, 0);
-    if (r == 0 || variance < memory.covariance[0]) set_variance(0, variance);
+    Memory::Radar& known = memory.radars[r];
+    known.id = radars_[r].id;
+    known.rotation_vehicle_rad = {d.x(), d.y(), d.z()};
+    known.seconds_of_drive = e.seconds_of_drive;
+    double& variance = memory.variance(Memory::kSpeedScale, Memory::kSpeedScale);
+    if (r == 0 || e.covariance(0, 0) < variance) variance = e.covariance(0, 0);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto row = static_cast<Eigen::Index>(i) + 1;
-      set_variance(Memory::kShared + 3 * r + i, e.covariance(row, row));
+      known.rotation_variance(i, i) = e.covariance(row, row);
     }
   }
 }

@@ -126,9 +126,10 @@ void write_solution(const Solver& solver, std::size_t index, double time_s, int 
   }
   const SharedMatrix& common = solver.shared_covariance();
   out.yaw_rate_bias_radps = solver.shared().yaw_rate_bias_radps;
-  out.yaw_rate_bias_std_radps = std::sqrt(common(shared::kYawRateBias, shared::kYawRateBias));
+  const auto std_of = [&](int c, double prior_std) { return prior_std > 0.0 ? std::sqrt(common(c, c)) : 0.0; };
+  out.yaw_rate_bias_std_radps = std_of(shared::kYawRateBias, priors.yaw_rate_bias_std_radps);
   out.slip_coefficient_radps2pm = solver.shared().slip_radps2pm;
-  out.slip_coefficient_std_radps2pm = std::sqrt(common(shared::kSlip, shared::kSlip));
+  out.slip_coefficient_std_radps2pm = std_of(shared::kSlip, priors.slip_std_radps2pm);
   write_nuisance(solver, radar, load, knots, out.nuisance);
   const Eigen::Vector2d drift = radar.state.drift_radps;
   out.drift.pitch_radps = static_cast<float>(-drift(0));

@@ -99,6 +99,7 @@ Solver::Solver(std::size_t radars, const Priors& priors)
   shared_covariance_.diagonal() << square(priors.speed_scale_std), square(priors.yaw_rate_bias_std_radps),
       square(priors.yaw_rate_gain_std), square(priors.slip_std_radps2pm),
       square(priors.pitch_per_acceleration_std_radps2pm), square(priors.common_stamp_std_s);
+  shared_prior_ = shared_covariance_.diagonal().cwiseMax(1.0 / kFixed).cwiseInverse().asDiagonal();
   for (int k = 0; k < kFluctuations; ++k) {
     const auto i = static_cast<std::size_t>(k);
     common_.variance[i] = radars > 1 ? square(priors.common_std[i]) : 0.0;
@@ -445,13 +446,14 @@ void Solver::begin_border(const Segments& segments) {
     border_system_(column, column) += precision;
     border_score_(column) += precision * off;
   };
-  prior(shared::kSpeedScale, priors_.speed_scale_std, 1.0 - shared_.speed_scale);
-  prior(shared::kYawRateBias, priors_.yaw_rate_bias_std_radps, -shared_.yaw_rate_bias_radps);
-  prior(shared::kYawRateGain, priors_.yaw_rate_gain_std, -shared_.yaw_rate_gain);
-  prior(shared::kSlip, priors_.slip_std_radps2pm, -shared_.slip_radps2pm);
-  prior(shared::kPitchPerAcceleration, priors_.pitch_per_acceleration_std_radps2pm,
-        -shared_.pitch_per_acceleration_radps2pm);
-  prior(shared::kStamp, priors_.common_stamp_std_s, -shared_.stamp_s);
+  border_system_.topLeftCorner<shared::kConstants, shared::kConstants>() = shared_prior_;
+  Eigen::Matrix<double, shared::kConstants, 1> off_constants;
+  off_constants << prior_shared_.speed_scale - shared_.speed_scale,
+      prior_shared_.yaw_rate_bias_radps - shared_.yaw_rate_bias_radps,
+      prior_shared_.yaw_rate_gain - shared_.yaw_rate_gain, prior_shared_.slip_radps2pm - shared_.slip_radps2pm,
+      prior_shared_.pitch_per_acceleration_radps2pm - shared_.pitch_per_acceleration_radps2pm,
+      prior_shared_.stamp_s - shared_.stamp_s;
+  border_score_.head<shared::kConstants>().noalias() = shared_prior_ * off_constants;
   for (int step = 0; step < shared::kLoads; ++step) {
     prior(shared::kLoad + step, priors_.load_std_rad, -shared_.load_rad[static_cast<std::size_t>(step)]);
   }

@@ -67,6 +67,15 @@ class Solver {
 
   /// Sets the prior of a radar: its nominal mounting, and the distance of its curve's knots.
   void set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool has_elevation, double knot_step_rad);
+  /// Sets the prior of a radar from an earlier drive: values, and covariance of all but the drift. A parameter that the
+  /// settings do not estimate keeps its nominal value. No allocation.
+  void restore(std::size_t radar, const OwnState& state, const OwnMatrix& covariance, const Fluctuation& fluctuation);
+  /// Likewise of the vehicle's constants.
+  void restore(const SharedState& state, const SharedMatrix& covariance, const Fluctuation& common,
+               const std::array<double, kFluctuations>& correlation_s);
+  /// The rotation of a radar starts again: from its nominal mounting, or from a static calibration.
+  void forget_rotation(std::size_t radar, const Eigen::Matrix3d& nominal);
+  void seed(std::size_t radar, const Eigen::Matrix3d& sensor_to_vehicle, const Eigen::Matrix3d& covariance);
   /// The model's point for the scans of a radar at a time of the drive, after so many load steps.
   [[nodiscard]] Point point(std::size_t radar, double time_s, int load) const;
   /// Covariance of the local parameters of a radar; of the constants only.
@@ -113,9 +122,12 @@ class Solver {
   /// Time from the solution to a segment, over which a mounting drifts.
   [[nodiscard]] double drift_time(double middle_s) const;
 
+  void set_rotation_prior(RadarSolution& radar, const Eigen::Matrix3d& mean, const Eigen::Matrix3d& covariance);
+
   Priors priors_;
   std::vector<RadarSolution> radars_;
-  SharedState shared_;
+  SharedState shared_, prior_shared_;
+  SharedMatrix shared_prior_;  ///< precision
   SharedMatrix shared_covariance_;
   std::array<double, shared::kLoads> load_variance_{};
   Fluctuation common_;

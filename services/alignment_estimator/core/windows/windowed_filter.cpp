@@ -27,21 +27,23 @@ constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
 
 }  // namespace
 
-WindowedFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filter)
+WindowedFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filter, const Priors& priors)
     : config(radar),
       nominal(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0)),
-      unknown(radar, filter.prior_rotation_std_rad),
+      unknown(radar, priors.rotation_std_rad),
       start(filter) {
   const double half = std::max(std::abs(radar.field_of_view.azimuth_min_rad), radar.field_of_view.azimuth_max_rad);
   knots.first_rad = -half;
   knots.step_rad = 2.0 * half / (kKnots - 1);
 }
 
-WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const Priors& priors)
+WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const WindowsConfig& settings)
     : config_(config),
-      priors_(priors),
-      solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
+      priors_(settings.priors),
+      solver_(std::min(vehicle.radars.size(), kMaxRadars), settings.priors),
       segments_(std::min(vehicle.radars.size(), kMaxRadars)),
+      change_config_(settings.change),
+      restore_config_(settings.restore),
       changes_(std::min(vehicle.radars.size(), kMaxRadars), change_config_),
       load_watch_(change_config_.load),
       speed_watch_(change_config_.speed) {
@@ -53,7 +55,7 @@ WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig&
   verdicts_.resize(count);
   radars_.reserve(count);
   for (std::size_t r = 0; r < count; ++r) {
-    radars_.emplace_back(vehicle.radars[r], config);
+    radars_.emplace_back(vehicle.radars[r], config, priors_);
     solver_.set_prior(r, radars_[r].nominal, true, radars_[r].knots.step_rad);
   }
 }
@@ -66,7 +68,11 @@ bool WindowedFilter::usable(const EgoSample& ego) const {
 Motion WindowedFilter::motion_of(const Point& point, const ScanMotion3d& motion) const {
   const double a = std::abs(motion.acceleration_mps2) > 0.5 ? motion.acceleration_mps2 : 0.0;
   const double w = std::abs(motion.yaw_acceleration_radps2) > 0.04 ? motion.yaw_acceleration_radps2 : 0.0;
-  return {motion.speed_mps + point.stamp_s * a, motion.yaw_rate_radps + point.stamp_s * w, a, w,
+  return {motion.speed_mps + point.stamp_s * a,
+          motion.yaw_rate_radps + point.stamp_s * w,
+          motion.acceleration_mps2,
+          a,
+          w,
           config_.yaw_rate_std_radps};
 }
 
@@ -117,7 +123,7 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   StartPrior prior;
   const SharedState& shared = solver_.shared();
   prior.speed_scale = shared.speed_scale;
-  prior.speed_scale_variance = square(priors_.speed_scale_std);
+  prior.speed_scale_variance = std::max(square(priors_.speed_scale_std), 1e-10);
   prior.sensor_to_vehicle = solver_.radar(index).state.sensor_to_vehicle;
   prior.rotation_variance = square(priors_.rotation_std_rad);
   prior.log_angle_noise_std = config_.prior_angle_noise_log_std;
@@ -127,8 +133,10 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   const StartResult& found = radar.start.result();
   bool first = true;
   for (const Radar& other : radars_) first = first && !other.running;
-  if (!sightings_.has_elevation) {
-    solver_.set_prior(index, radar.nominal, false, radar.knots.step_rad);
+  if (sightings_.has_elevation != solver_.radar(index).has_elevation) {
+    set_has_elevation(index, sightings_.has_elevation);
+  } else if (radar.remembered && contradicts_memory(index, found)) {
+    solver_.forget_rotation(index, radar.nominal);
   }
   solver_.radar(index).state.sensor_to_vehicle = found.sensor_to_vehicle;
   if (first) solver_.shared().speed_scale = found.speed_scale;
@@ -165,8 +173,8 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   const auto std_of = [](double stated, double fallback) { return stated > 0.0 ? stated : fallback; };
   const MotionVariances variances{square(std_of(ego.speed_std_mps, config_.speed_std_mps)),
                                   square(std_of(ego.yaw_rate_std_radps, config_.yaw_rate_std_radps)),
-                                  sightings_.has_elevation ? square(0.1 * M_PI / 180.0) : 0.0,
-                                  square(0.05 * M_PI / 180.0)};
+                                  sightings_.has_elevation ? square(priors_.body_pitch_std_rad) : 0.0,
+                                  square(priors_.side_slip_std_rad)};
   CurveJudgement judgement;
   judgement.gate = config_.outlier_gate_sigma;
   judgement.rate_factor = radar.noise.rate_variance_factor();
@@ -246,7 +254,7 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   const Radar& radar = radars_[index];
   out.state = radar.state;
   write_solution(solver_, index, driven_s_, load_, radar.knots, out);
-  if (!radar.running) out.observable = out.nuisance.observable = 0;
+  if (!radar.running && !radar.remembered) out.observable = out.nuisance.observable = 0;
   out.step_change = radar.step_change;
   out.load_change = load_change_;
   out.speed_change = speed_change_;
@@ -266,7 +274,7 @@ void WindowedFilter::predict(std::size_t index, const ScanDetections& scan, cons
   const Radar& radar = radars_[index];
   const Point point = solver_.point(index, driven_s_, load_);
   const ScanModel model =
-      model_scan(point, radar.config.mounting_pose.position_m, {ego.speed_mps, ego.yaw_rate_radps, 0.0, 0.0});
+      model_scan(point, radar.config.mounting_pose.position_m, {ego.speed_mps, ego.yaw_rate_radps, 0.0, 0.0, 0.0, 0.0});
   for (std::size_t i = 0; i < count; ++i) {
     const double mean_cosine = scan.has_elevation ? 1.0 : 1.0 - radar.unknown.at(scan.range_m[i]).lowering;
     out[i] = -mean_cosine * geometry::direction(scan.azimuth_rad[i], scan.elevation_rad[i]).dot(model.g);

@@ -13,6 +13,7 @@
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/alignment_estimator/core/windows/change_monitor.hpp"
 #include "services/alignment_estimator/core/windows/common_watch.hpp"
+#include "services/alignment_estimator/core/windows/config.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -21,12 +22,16 @@ namespace boresight::alignment {
 /// Large: never on the stack.
 class WindowedFilter : public Method {
  public:
-  WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const windows::Priors& priors = {});
+  WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config,
+                 const windows::WindowsConfig& settings = {});
 
   void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) override;
   [[nodiscard]] RadarEstimate estimate(std::size_t radar) const override;
   void predict(std::size_t radar, const ScanDetections& scan, const EgoSample& ego,
                std::span<double> out) const override;
+  void save(Memory& memory) const override;
+  void restore(const Memory& memory) override;
+  bool seed(std::size_t radar, const Eigen::Vector3d& rotation_vehicle_rad, const Eigen::Matrix3d& covariance) override;
 
   [[nodiscard]] const windows::Solver& solver() const { return solver_; }
   [[nodiscard]] int load_changes() const { return static_cast<int>(load_change_.count); }
@@ -48,6 +53,7 @@ class WindowedFilter : public Method {
     LocalGate gate_covariance;
     double curve_variance = 0.0;
     bool running = false;
+    bool remembered = false;  ///< begins from a memory or a static calibration
     AlignmentState state = AlignmentState::kNoData;
     std::int64_t last_time_ns = 0;
     double seconds_of_drive = 0.0;
@@ -57,10 +63,14 @@ class WindowedFilter : public Method {
     /// Rotation and scale that the vehicle's pitch and scale are counted from; set when the radar is settled.
     Eigen::Matrix3d reference = Eigen::Matrix3d::Identity();
     double reference_scale = 0.0;  ///< 0: not set
-    Radar(const RadarConfig& radar, const FilterConfig& filter);
+    Radar(const RadarConfig& radar, const FilterConfig& filter, const windows::Priors& priors);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
   [[nodiscard]] windows::Motion motion_of(const windows::Point& point, const ScanMotion3d& motion) const;
+  /// Begins again with the prior of a radar with or without elevations; a remembered yaw stays.
+  void set_has_elevation(std::size_t radar, bool has_elevation);
+  /// Whether the first scans show another yaw or pitch than the memory: the car may have been repaired.
+  [[nodiscard]] bool contradicts_memory(std::size_t radar, const StartResult& found) const;
   void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
   void update(std::size_t radar, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s);
   void close_block();
@@ -79,6 +89,7 @@ class WindowedFilter : public Method {
   windows::Solver solver_;
   windows::Segments segments_;
   windows::ChangeConfig change_config_;
+  windows::RestoreConfig restore_config_;
   windows::ChangeMonitor changes_;
   windows::CommonWatch load_watch_, speed_watch_;
   std::vector<windows::Deviation2> deviations_;

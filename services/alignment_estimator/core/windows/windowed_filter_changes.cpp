@@ -14,7 +14,6 @@ using namespace windows;
 
 constexpr double kDropped_s = 7.0;  ///< of driving before a change is reported: they are from both sides of it
 constexpr std::size_t kWindowsToSettle = 15;
-constexpr double kSettledYaw_rad = 0.0052, kWait_s = 45.0;
 /// Spread between radars of what a block says of the common pitch (rad) and of the common scale. Measured.
 constexpr double kPitchSpread_rad = 0.00175, kScaleSpread = 5e-4;
 /// A common scale of one block beyond this is taken for one: then no radar has turned by it.
@@ -25,7 +24,7 @@ constexpr double kSuspectScale = 0.003;
 bool WindowedFilter::settled(std::size_t index) const {
   const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
   return radars_[index].running && changes_.windows(index) >= kWindowsToSettle &&
-         yaw_variance < square(kSettledYaw_rad);
+         yaw_variance < square(change_config_.settled_yaw_rad);
 }
 
 void WindowedFilter::judge_block() {
@@ -56,7 +55,7 @@ void WindowedFilter::judge_block() {
   changes_.judge(deviations_, verdicts_);
   bool all_settled = true;
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    if (!settled(r) || driven_s_ < kWait_s) {
+    if (!settled(r) || driven_s_ < change_config_.wait_s) {
       all_settled = all_settled && !radars_[r].running;
       verdicts_[r].suspect = verdicts_[r].changed = false;
     }

@@ -29,6 +29,35 @@ MemoryVerdict verdict(const std::vector<std::uint8_t>& bytes, const Identity& id
   return decode_memory(bytes, identity, out, rejected_radars);
 }
 
+void expect_same(const Memory::Radar& out, const Memory::Radar& in) {
+  EXPECT_EQ(out.id, in.id);
+  EXPECT_EQ(out.has_elevation, in.has_elevation);
+  EXPECT_EQ(out.rotation_vehicle_rad, in.rotation_vehicle_rad);
+  EXPECT_EQ(out.range_rate_scale, in.range_rate_scale);
+  EXPECT_EQ(out.time_offset_s, in.time_offset_s);
+  EXPECT_EQ(out.position_error_m, in.position_error_m);
+  EXPECT_EQ(out.azimuth_curve_rad, in.azimuth_curve_rad);
+  EXPECT_EQ(out.height_excess, in.height_excess);
+  EXPECT_EQ(out.mirror_share, in.mirror_share);
+  EXPECT_EQ(out.angle_noise_scale, in.angle_noise_scale);
+  EXPECT_EQ(out.seconds_of_drive, in.seconds_of_drive);
+  EXPECT_EQ(out.fluctuation_variance, in.fluctuation_variance);
+  EXPECT_EQ(out.covariance, in.covariance);
+}
+
+void expect_same_vehicle(const Memory& out, const Memory& in) {
+  EXPECT_EQ(out.speed_scale, in.speed_scale);
+  EXPECT_EQ(out.yaw_rate_bias_radps, in.yaw_rate_bias_radps);
+  EXPECT_EQ(out.yaw_rate_gain, in.yaw_rate_gain);
+  EXPECT_EQ(out.slip_coefficient_radps2pm, in.slip_coefficient_radps2pm);
+  EXPECT_EQ(out.pitch_per_acceleration_radps2pm, in.pitch_per_acceleration_radps2pm);
+  EXPECT_EQ(out.time_offset_s, in.time_offset_s);
+  EXPECT_EQ(out.load_pitch_rad, in.load_pitch_rad);
+  EXPECT_EQ(out.fluctuation_variance, in.fluctuation_variance);
+  EXPECT_EQ(out.correlation_s, in.correlation_s);
+  EXPECT_EQ(out.covariance, in.covariance);
+}
+
 TEST(MemoryCodec, RoundTripForOneToSixteenRadars) {
   for (const std::size_t radars : {1u, 4u, 16u}) {
     const Identity identity = identity_of(example_vehicle(radars));
@@ -39,16 +68,9 @@ TEST(MemoryCodec, RoundTripForOneToSixteenRadars) {
     std::size_t rejected_radars = 99;
     ASSERT_EQ(decode_memory(bytes, identity, out, rejected_radars), MemoryVerdict::kTaken);
     EXPECT_EQ(rejected_radars, 0u);
-    EXPECT_EQ(out.number_of_radars, radars);
-    EXPECT_EQ(out.speed_scale, memory.speed_scale);
-    EXPECT_EQ(out.slip_coefficient_radps2pm, memory.slip_coefficient_radps2pm);
-    EXPECT_EQ(out.covariance, memory.covariance);
-    for (std::size_t i = 0; i < radars; ++i) {
-      EXPECT_EQ(out.radars[i].id, memory.radars[i].id);
-      EXPECT_EQ(out.radars[i].rotation_vehicle_rad, memory.radars[i].rotation_vehicle_rad);
-      EXPECT_EQ(out.radars[i].angle_noise_scale, 1.1);
-      EXPECT_EQ(out.radars[i].seconds_of_drive, 1000.0);
-    }
+    expect_same_vehicle(out, memory);
+    ASSERT_EQ(out.number_of_radars, radars);
+    for (std::size_t i = 0; i < radars; ++i) expect_same(out.radars[i], memory.radars[i]);
   }
   EXPECT_EQ(encoded(example_memory(16), identity_of(example_vehicle(16))).size(), kMaxMemoryBytes);
 }
@@ -88,17 +110,21 @@ TEST(MemoryCodec, NoiseIsRefusedWithAndWithoutARightChecksum) {
     if (decode_memory(changed, identity, out, rejected_radars) != MemoryVerdict::kTaken) continue;
     ASSERT_LE(out.number_of_radars, kMaxRadars);
     ASSERT_TRUE(std::isfinite(out.speed_scale));
-    const std::size_t n = out.number_of_parameters();
-    for (std::size_t k = 0; k < n; ++k) ASSERT_GT(out.covariance[k * n + k], 0.0);
+    for (std::size_t k = 0; k < Memory::kShared; ++k) ASSERT_GE(out.variance(k, k), 0.0);
+    for (std::size_t r = 0; r < out.number_of_radars; ++r) {
+      for (std::size_t k = 0; k < Memory::kOwn; ++k) ASSERT_GE(out.radars[r].variance(k, k), 0.0);
+    }
   }
 }
 
 TEST(MemoryCodec, AnotherVersionIsDistinguishedFromDamage) {
   const Identity identity = identity_of(example_vehicle(2));
-  auto bytes = encoded(example_memory(2), identity);
-  bytes[8] = 2;
-  seal(bytes);
-  EXPECT_EQ(verdict(bytes, identity), MemoryVerdict::kOtherVersion);
+  for (const int version : {1, 3}) {
+    auto bytes = encoded(example_memory(2), identity);
+    bytes[8] = static_cast<std::uint8_t>(version);
+    seal(bytes);
+    EXPECT_EQ(verdict(bytes, identity), MemoryVerdict::kOtherVersion);
+  }
 }
 
 TEST(MemoryCodec, AnotherVehicleIsForeign) {
@@ -123,37 +149,42 @@ TEST(MemoryCodec, OnlyTheRemountedRadarIsRejected) {
     ASSERT_EQ(decode_memory(bytes, identity_of(vehicle), out, rejected_radars), MemoryVerdict::kTaken);
     EXPECT_EQ(rejected_radars, 1u);
     ASSERT_EQ(out.number_of_radars, 3u);
-    EXPECT_EQ(out.radars[0].id, 1u);
-    EXPECT_EQ(out.radars[1].id, 3u);
-    EXPECT_EQ(out.radars[2].id, 4u);
-    EXPECT_EQ(out.radars[1].rotation_vehicle_rad, memory.radars[2].rotation_vehicle_rad);
-    // Rows 0…2 are shared, 3…5 of radar 1; those of radar 3 were 9…11 and are 6…8 now.
-    const std::size_t n = 12, old_n = 15;
-    ASSERT_EQ(out.number_of_parameters(), n);
-    for (std::size_t r = 0; r < n; ++r) {
-      for (std::size_t c = 0; c < n; ++c) {
-        const std::size_t from_r = r < 6 ? r : r + 3, from_c = c < 6 ? c : c + 3;
-        EXPECT_EQ(out.covariance[r * n + c], memory.covariance[from_r * old_n + from_c]) << r << ", " << c;
-      }
-    }
+    expect_same(out.radars[0], memory.radars[0]);
+    expect_same(out.radars[1], memory.radars[2]);
+    expect_same(out.radars[2], memory.radars[3]);
+    expect_same_vehicle(out, memory);
   }
 }
 
 TEST(MemoryCodec, ImplausibleStatesAreRefused) {
   const Identity identity = identity_of(example_vehicle(2));
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Memory> wrong(8, example_memory(2));
+  std::vector<Memory> wrong(13, example_memory(2));
   wrong[0].speed_scale = nan;
   wrong[1].speed_scale = -1.0;
   wrong[2].radars[1].rotation_vehicle_rad[2] = std::numeric_limits<double>::infinity();
   wrong[3].radars[0].angle_noise_scale = 0.0;
-  wrong[4].covariance[0] = 0.0;
-  wrong[5].covariance[1] = wrong[5].covariance[9] = 1.0;  // a correlation beyond 1
-  wrong[6].covariance[4 * 9 + 4] = nan;
+  wrong[4].covariance[0] = 0.0;                             // not estimated, but correlated
+  wrong[5].variance(0, 1) = wrong[5].variance(1, 0) = 1.0;  // a correlation beyond 1
+  wrong[6].radars[0].rotation_variance(1, 1) = nan;
   wrong[7].radars[1].seconds_of_drive = -1.0;
+  wrong[8].radars[1].variance(3, 4) = wrong[8].radars[1].variance(4, 3) = 1.0;
+  wrong[9].radars[0].fluctuation_variance[1] = -1e-6;
+  wrong[10].correlation_s[0] = nan;
+  wrong[11].radars[1].azimuth_curve_rad[4] = 1.0;
+  wrong[12].load_pitch_rad = 2.0;
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     EXPECT_EQ(verdict(encoded(wrong[i], identity), identity), MemoryVerdict::kImplausible) << i;
   }
+}
+
+TEST(MemoryCodec, ParametersThatAMethodDoesNotEstimateHaveNoVariance) {
+  const Identity identity = identity_of(example_vehicle(1));
+  Memory memory;
+  memory.number_of_radars = 1;
+  memory.radars[0].id = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) memory.radars[0].rotation_variance(axis, axis) = 1e-6;
+  EXPECT_EQ(verdict(encoded(memory, identity), identity), MemoryVerdict::kTaken);
 }
 
 TEST(MemoryCodec, ARadarOfAnotherVehicleIsNotWritten) {

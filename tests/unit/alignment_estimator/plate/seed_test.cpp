@@ -82,16 +82,14 @@ TEST(PlateSeed, refuses_what_it_cannot_turn_into_angles) {
   EXPECT_EQ(seed.radar_id, 99u);
 }
 
-/// A memory whose covariance values encode row and column, to check where they were moved.
+/// A memory whose values tell the radars apart.
 std::unique_ptr<Memory> numbered(std::size_t radars) {
   auto memory = std::make_unique<Memory>();
   memory->number_of_radars = radars;
-  for (std::size_t i = 0; i < radars; ++i) memory->radars[i].id = static_cast<std::uint32_t>(i + 1);
-  const std::size_t size = memory->number_of_parameters();
-  for (std::size_t row = 0; row < size; ++row) {
-    for (std::size_t column = 0; column < size; ++column) {
-      memory->covariance[row * size + column] = 100.0 * static_cast<double>(row) + static_cast<double>(column);
-    }
+  for (std::size_t i = 0; i < radars; ++i) {
+    memory->radars[i].id = static_cast<std::uint32_t>(i + 1);
+    memory->radars[i].range_rate_scale = 1e-3 * static_cast<double>(i + 1);
+    memory->radars[i].covariance.fill(static_cast<double>(i + 1));
   }
   return memory;
 }
@@ -105,16 +103,19 @@ RotationSeed some_seed(std::uint32_t id) {
 }
 
 void expect_only_changed(const Memory& memory, std::size_t radar) {
-  const std::size_t size = memory.number_of_parameters(), first = Memory::kShared + 3 * radar;
   const RotationSeed seed = some_seed(0);
-  for (std::size_t row = 0; row < size; ++row) {
-    for (std::size_t column = 0; column < size; ++column) {
-      const bool in_row = row >= first && row < first + 3, in_column = column >= first && column < first + 3;
-      const double expected = in_row && in_column   ? seed.covariance(static_cast<Eigen::Index>(row - first),
-                                                                      static_cast<Eigen::Index>(column - first))
-                              : in_row || in_column ? 0.0
-                                                    : 100.0 * static_cast<double>(row) + static_cast<double>(column);
-      EXPECT_EQ(memory.covariance[row * size + column], expected) << row << " " << column;
+  for (std::size_t i = 0; i < memory.number_of_radars; ++i) {
+    const Memory::Radar& entry = memory.radars[i];
+    EXPECT_EQ(entry.range_rate_scale, i == radar ? 0.0 : 1e-3 * static_cast<double>(i + 1));
+    for (std::size_t row = 0; row < Memory::kOwn; ++row) {
+      for (std::size_t column = 0; column < Memory::kOwn; ++column) {
+        const bool turns = row >= Memory::kRotation && row < Memory::kRotation + 3 && column >= Memory::kRotation &&
+                           column < Memory::kRotation + 3;
+        const double of_seed = turns ? seed.covariance(static_cast<Eigen::Index>(row - Memory::kRotation),
+                                                       static_cast<Eigen::Index>(column - Memory::kRotation))
+                                     : 0.0;
+        EXPECT_EQ(entry.variance(row, column), i == radar ? of_seed : static_cast<double>(i + 1)) << row << column;
+      }
     }
   }
 }

@@ -329,7 +329,7 @@ TEST(PublishedMethods, ContinueFromTheLastIgnitionCycle) {
     Memory memory;
     first->save(memory);
     EXPECT_EQ(memory.number_of_radars, 4u);
-    EXPECT_GT(memory.covariance[0], 0.0);
+    EXPECT_GT(memory.variance(Memory::kSpeedScale, Memory::kSpeedScale), 0.0);
     const auto second = make_published(kind, world.vehicle, as_published());
     second->restore(memory);
     for (std::size_t r = 0; r < 4; ++r) EXPECT_LT((parameters(*second, r) - parameters(*first, r)).norm(), 1e-9) << r;
