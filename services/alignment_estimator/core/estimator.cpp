@@ -28,7 +28,7 @@ std::optional<Eigen::Matrix3d> actual_mounting(const RadarConfig& radar, const s
 }  // namespace
 
 Estimator::Estimator(const VehicleConfig& vehicle, const Config& config)
-    : config_(config), method_(make_method(vehicle, config)) {
+    : config_(config), method_(make_method(vehicle, config)), plausibility_(vehicle, config.plausibility) {
   radars_.resize(vehicle.radars.size());
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     radars_[i].config = vehicle.radars[i];
@@ -43,8 +43,11 @@ ScanResult Estimator::add_scan(const RadarScan& scan) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   const EgoSample ego = ego_.at(time_ns);
   const bool moves = ego.valid && !ego.stale;
-  if (!radar->seen) begin(static_cast<std::size_t>(radar - radars_.begin()));
-  if (moves) offer(static_cast<std::size_t>(radar - radars_.begin()), scan, ego);
+  const auto index = static_cast<std::size_t>(radar - radars_.begin());
+  if (!radar->seen) begin(index);
+  take_detections(scan, radar->config, detections_);
+  plausibility_.add(index, detections_, ego);
+  if (moves) offer(index, ego);
   const auto period_ns = static_cast<std::int64_t>(config_.publish_period_s * 1e9);
   // By the measurement clock, so that a replay publishes the same estimates at any speed. If the clock went back, the
   // estimate is published at once.
@@ -64,9 +67,8 @@ void Estimator::begin(std::size_t index) {
   radar.convergence.add(0.0, 0, vehicle_form(radar.config, e).values, e.step_change.count);
 }
 
-void Estimator::offer(std::size_t index, const RadarScan& scan, const EgoSample& ego) {
+void Estimator::offer(std::size_t index, const EgoSample& ego) {
   Radar& radar = radars_[index];
-  take_detections(scan, radar.config, detections_);
   method_->process(index, detections_, ego);
   const double since_s =
       radar.last_time_ns == 0 ? 0.0 : static_cast<double>(detections_.time_ns - radar.last_time_ns) * 1e-9;
@@ -96,6 +98,10 @@ RadarEstimate Estimator::estimate(std::size_t radar) const {
   RadarEstimate e = method_->estimate(radar);
   // Methods do not receive scans without ego motion.
   if (radars_[radar].seen) e.state = std::max(e.state, AlignmentState::kWaiting);
+  if (plausibility_.finding(radar).finding != AlignmentFinding::kNone) {
+    e.state = std::min(e.state, AlignmentState::kConverging);
+    e.reason = AlignmentReason::kWrongInput;
+  }
   return e;
 }
 
@@ -103,8 +109,13 @@ bool Estimator::write(std::uint32_t radar_id, AlignmentEstimate& out) const {
   const auto found =
       std::find_if(radars_.begin(), radars_.end(), [&](const Radar& r) { return r.config.id == radar_id; });
   if (found == radars_.end()) return false;
-  const RadarEstimate e = estimate(static_cast<std::size_t>(found - radars_.begin()));
+  const auto index = static_cast<std::size_t>(found - radars_.begin());
+  const RadarEstimate e = estimate(index);
   write_estimate(found->config, e, config_.prior_angle_std_rad(), out);
+  const plausibility::Finding finding = plausibility_.finding(index);
+  out.finding = finding.finding;
+  out.finding_value = static_cast<float>(finding.value);
+  out.finding_radar = finding.radar;
   AlignmentKpis& kpis = out.kpis;
   found->residuals.write(kpis);
   kpis.seconds_of_drive = static_cast<float>(e.seconds_of_drive);

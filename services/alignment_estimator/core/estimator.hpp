@@ -12,6 +12,7 @@
 #include "services/alignment_estimator/core/kpi/residual_statistics.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/alignment_estimator/core/plate/seed.hpp"
+#include "services/alignment_estimator/core/plausibility/plausibility.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -36,8 +37,9 @@ class Estimator {
   /// Writes everything but the header, key figures included; false for an unknown radar.
   [[nodiscard]] bool write(std::uint32_t radar_id, AlignmentEstimate& out) const;
 
-  /// By index in the vehicle's list of radars.
+  /// By index in the vehicle's list of radars. With a wrong input, the estimate is not converged.
   [[nodiscard]] RadarEstimate estimate(std::size_t radar) const;
+  [[nodiscard]] plausibility::Finding finding(std::size_t radar) const { return plausibility_.finding(radar); }
   [[nodiscard]] const ResidualStatistics& residuals(std::size_t radar) const { return radars_[radar].residuals; }
   [[nodiscard]] const Convergence& convergence(std::size_t radar) const { return radars_[radar].convergence; }
 
@@ -63,12 +65,14 @@ class Estimator {
     Convergence convergence;
   };
   void begin(std::size_t index);
-  void offer(std::size_t index, const RadarScan& scan, const EgoSample& ego);
+  /// Gives the scan in `detections_` to the method.
+  void offer(std::size_t index, const EgoSample& ego);
   void observe(std::size_t index, const EgoSample& ego, double elapsed_s);
 
   Config config_;
   EgoHistory ego_;
   std::unique_ptr<Method> method_;
+  plausibility::Plausibility plausibility_;
   std::vector<Radar> radars_;
   ScanDetections detections_;
   std::array<double, kMaxDetections> predicted_;
