@@ -33,7 +33,7 @@ struct Priors {
   std::array<double, kFluctuations> common_std{1.4e-3, 1.7e-3, 3e-4};
   double log_fluctuation_std = 1.0;
   double common_correlation_s = 20.0;  ///< median of their correlation times
-  double log_correlation_std = 0.7;
+  double log_correlation_std = 1.5;
   // Drift of a mounting over the last `drift_span_s`: median of the standard deviation of its rate.
   double drift_std_radps = 9e-7;  ///< 0.003 deg/min (choice)
   double drift_span_s = 180.0;

@@ -21,15 +21,16 @@ ScanModel model_scan(const Point& point, const std::array<double, 3>& position_m
   by.col(local::kRateScale) = v / scale;
   // (Exp(d)·R)ᵀ·v = Rᵀ·(v + v × d).
   by.middleCols<3>(local::kRotation) = geometry::cross_matrix(v);
+  // The product of the roll and of the body's pitch is not used: side slip that goes with braking would pose as roll.
+  by(1, local::kRotation) = 0.0;
   by.col(local::kYawRateBias) = -gain * by_yaw_rate;
   // The noise of a small yaw rate would pose as a yaw rate, and draw the gain down: errors in variables.
   constexpr double kLeastStds = 5.0;
   const bool turns = std::abs(unbiased) > kLeastStds * motion.yaw_rate_std_radps;
   by.col(local::kYawRateGain) = (turns ? unbiased : 0.0) * by_yaw_rate;
   by.col(local::kSlip) << 0.0, (turns ? -speed * speed * yaw_rate : 0.0), 0.0;
-  by.col(local::kStamp) =
-      point.speed_scale * motion.clear_acceleration_mps2 * by_speed +
-      gain * motion.clear_yaw_acceleration_radps2 * by_yaw_rate;
+  by.col(local::kStamp) = point.speed_scale * motion.clear_acceleration_mps2 * by_speed +
+                          gain * motion.clear_yaw_acceleration_radps2 * by_yaw_rate;
   by.col(local::kPosition) << 0.0, yaw_rate, 0.0;
   by.col(local::kPosition + 1) << -yaw_rate, 0.0, 0.0;
   by.col(local::kPitchPerAcceleration) << 0.0, 0.0, acceleration * speed;

@@ -36,11 +36,13 @@ void Segments::begin(int load, const MergeNoise& noise) {
 }
 
 void Segments::add(std::size_t radar, const Block& block, double length_s, const MergeNoise& noise) {
-  // The block's deviation from the mean of the segment.
+  // The block's deviation from the mean of the segment. All radars share it; eliminated from each on its own, it counts
+  // as often as there are radars.
+  const auto radars = static_cast<double>(radars_);
   std::array<double, kFluctuations> deviation;
   for (std::size_t k = 0; k < kFluctuations; ++k) {
     const double tau_s = noise.correlation_s[k];
-    deviation[k] = noise.common.variance[k] *
+    deviation[k] = radars * noise.common.variance[k] *
                    std::max(share_of_mean(std::max(block.seconds, 0.1), tau_s) - share_of_mean(length_s, tau_s), 0.0);
   }
   Share part;
@@ -128,6 +130,7 @@ void Segments::merge(const MergeNoise& noise) {
 }
 
 void Segments::join(int first, const MergeNoise& noise) {
+  const auto radars = static_cast<double>(radars_);
   const double a_s = segment(first).seconds, b_s = segment(first + 1).seconds;
   for (const int part : {first, first + 1}) {
     const Segment& of = segment(part);
@@ -139,7 +142,7 @@ void Segments::join(int first, const MergeNoise& noise) {
         const double tau_s = noise.correlation_s[k];
         const double common = std::max(
             share_of_mean(std::max(of.seconds, 0.1), tau_s) - share_of_mean(std::max(a_s + b_s, 0.1), tau_s), 0.0);
-        deviation[k] = 0.5 * deviation[k] + common * noise.common.variance[k];
+        deviation[k] = 0.5 * deviation[k] + radars * common * noise.common.variance[k];
       }
       const Reduced reduced = reduce(s, s.point, deviation);
       s.information = reduced.information;

@@ -130,6 +130,8 @@ void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool h
   r.covariance = r.prior.diagonal().cwiseMax(1e-12).cwiseInverse().asDiagonal();
   r.covariance.diagonal().segment<kKnots>(own::kCurve).setConstant(square(priors_.curve_std_rad));
   r.covariance.diagonal().tail<2>() << r.drift_variance[0], r.drift_variance[1];
+  r.conditional = r.covariance;
+  r.with_shared.setZero();
   for (std::size_t k = 0; k < kFluctuations; ++k) {
     r.fluctuation.variance[k] = k == 1 && !has_elevation ? 0.0 : square(priors_.own_std[k]);
   }
@@ -164,6 +166,8 @@ void Solver::turn(std::size_t index, const Eigen::Vector3d& turn_vehicle_rad) {
     radar.covariance.col(c).setZero();
     radar.with_shared.row(c).setZero();
     radar.covariance(c, c) = 1.0 / precision;
+    radar.conditional.row(c) = radar.covariance.row(c);
+    radar.conditional.col(c) = radar.covariance.col(c);
   }
 }
 
@@ -575,11 +579,10 @@ void Solver::learn_common(const Segments& segments) {
   for (int k = 0; k < kFluctuations; ++k) {
     double& variance = common_.variance[static_cast<std::size_t>(k)];
     if (!(variance > 0.0)) continue;
-    // Expected log likelihood of the chain with this correlation time, and its sum of squares.
-    double sum = 0.0;
+    // Expected log likelihood of the chain with this correlation time and the variance that fits best to it.
+    double fitting = variance;
     const auto likelihood = [&](double tau_s) {
-      sum = 0.0;
-      double log_noise = 0.0;
+      double sum = 0.0, log_noise = 0.0;
       for (int i = 0; i < segments.size(); ++i) {
         const int column = shared::kFirstFluctuation + kFluctuations * i + k;
         const ChainLink link = chain_link(segments, i, tau_s);
@@ -592,21 +595,23 @@ void Solver::learn_common(const Segments& segments) {
         sum += square_of_noise / link.noise;
         log_noise += std::log(link.noise);
       }
-      return -0.5 * log_noise - 0.5 * sum / variance -
+      const double median_std = priors_.common_std[static_cast<std::size_t>(k)];
+      fitting = learnt_variance(variance, sum, segments.size(), median_std, priors_.log_fluctuation_std);
+      return -0.5 * (log_noise + segments.size() * std::log(fitting) + sum / fitting) -
+             0.5 * square(0.5 * std::log(fitting / square(median_std)) / priors_.log_fluctuation_std) -
              0.5 * square(std::log(tau_s / priors_.common_correlation_s) / priors_.log_correlation_std);
     };
     double& tau_s = correlation_s_[static_cast<std::size_t>(k)];
     const double now_s = tau_s;
     double best = likelihood(now_s);
     for (const double factor : {0.5, 0.8, 1.25, 2.0}) {
-      const double other_s = std::clamp(now_s * factor, 1.5, 60.0), value = likelihood(other_s);
+      const double other_s = std::clamp(now_s * factor, 0.3, 60.0), value = likelihood(other_s);
       if (value <= best) continue;
       best = value;
       tau_s = other_s;
     }
     (void)likelihood(tau_s);
-    variance = learnt_variance(variance, sum, segments.size(), priors_.common_std[static_cast<std::size_t>(k)],
-                               priors_.log_fluctuation_std);
+    variance = fitting;
   }
 }
 
@@ -624,6 +629,7 @@ void Solver::commit() {
     s.mirror_share += w.step(own::kMirror);
     s.drift_radps += w.step.tail<2>();
     radar.covariance = w.covariance;
+    radar.conditional = w.inverse;
     radar.with_shared = w.with_shared;
   }
   shared_.speed_scale += border_step_(shared::kSpeedScale);

@@ -103,6 +103,7 @@ int main(int argc, char** argv) {
     if (is_off("position")) priors.position_std_m = 0;
     if (is_off("curve")) priors.curve_std_rad = 0;
     if (is_off("mirror")) priors.mirror_share_std = 0;
+    if (is_off("tol")) priors.mirror_share_tolerance = 0;
     if (is_off("above")) priors.height_excess_std = 0;
     if (std::getenv("KAPPA")) priors.height_excess_std = std::atof(std::getenv("KAPPA"));
     if (is_off("cscale")) priors.common_std[2] = 0;
@@ -110,7 +111,7 @@ int main(int argc, char** argv) {
     if (is_off("cyaw")) priors.common_std[0] = 0;
     if (is_off("cpitch")) priors.common_std[1] = 0;
     const bench::MakeMethod make = [&](const VehicleConfig& v) -> std::unique_ptr<alignment::Method> {
-      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, alignment::windows::WindowsConfig{priors, {}, {}});
+      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, priors);
       return alignment::make_method(v, config);
     };
     const auto run = bench::run_drive(spec, make, options);
