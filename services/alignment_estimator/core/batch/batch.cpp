@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "services/alignment_estimator/core/batch/estimate_values.hpp"
+#include "services/alignment_estimator/core/small_maths.hpp"
 #include "services/alignment_estimator/core/windows/output.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
@@ -87,6 +88,15 @@ bool Batch::end_pass() {
   const std::vector<RadarEstimate> now = estimates(solver_, time_s, static_cast<int>(loads_.size()));
   double moved = 0.0;
   for (std::size_t r = 0; r < radars_.size(); ++r) moved = std::max(moved, moved_stds(last[r], now[r]));
+  for (std::size_t r = 0; r < radars_.size(); ++r) {
+    const std::optional<Solver> before = solved_before(r);
+    if (!before) continue;
+    const RadarSolution& first = before->radar(r);
+    const Eigen::Matrix3d turned = radars_[r].turned_back(0);
+    radars_[r].first_from_last = first.state.sensor_to_vehicle * solver_.radar(r).state.sensor_to_vehicle.transpose();
+    const double yaw_rad = geometry::so3_log(*radars_[r].first_from_last * turned.transpose()).z();
+    moved = std::max(moved, std::abs(yaw_rad) / std::sqrt(first.covariance(own::kRotation + 2, own::kRotation + 2)));
+  }
   settled_ = moved < config_.moved_stds;
   ++pass_;
   if (settled_ || pass_ >= config_.most_passes) return false;
@@ -217,6 +227,7 @@ std::optional<std::size_t> Batch::Radar::phase_of(std::size_t block, std::size_t
 }
 
 Eigen::Matrix3d Batch::Radar::turned_back(std::size_t phase) const {
+  if (phase == 0 && first_from_last) return *first_from_last;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   for (std::size_t i = changes.size(); i > phase; --i) {
     turn = geometry::so3_exp(-changes[i - 1].turn_vehicle_rad) * turn;
@@ -350,6 +361,16 @@ void Batch::finish(RadarEstimate& estimate, const Radar& radar) const {
   if (!loads_.empty()) {
     estimate.load_change.size = static_cast<float>(-solver_.shared().load_rad[loads_.size() - 1]);
   }
+  if (!radar.has_elevation) {
+    // Pitch and roll are held; they are known no better than before the drive.
+    constexpr std::uint32_t kHeld = alignment_axis::kVehicleRoll | alignment_axis::kVehiclePitch;
+    estimate.observable &= ~kHeld;
+    for (const int axis : {1, 2}) {
+      estimate.covariance.row(axis).setZero();
+      estimate.covariance.col(axis).setZero();
+      estimate.covariance(axis, axis) = square(priors_.rotation_std_rad);
+    }
+  }
   estimate.angle_noise_scale = radar.sums.angle_noise_scale();
   estimate.inlier_ratio = radar.sums.stationary_share();
   estimate.scans_used = radar.sums.scans();
@@ -376,23 +397,32 @@ void Batch::finish(RadarEstimate& estimate, const Radar& radar) const {
                                : AlignmentReason::kNotObservable;
 }
 
-void Batch::write_before(Result& result) const {
+double Batch::first_change_s(std::size_t radar) const {
+  return config_.block_s * static_cast<double>(radars_[radar].changes.front().block);
+}
+
+std::optional<Solver> Batch::solved_before(std::size_t index) const {
   constexpr double kLeast_s = 10.0;
-  if (std::all_of(radars_.begin(), radars_.end(), [](const Radar& r) { return r.changes.empty(); })) return;
+  if (radars_[index].changes.empty()) return std::nullopt;
+  double seen_s = 0.0;
+  for (int i = 0; i < segments_.size(); ++i) {
+    if (phase_[static_cast<std::size_t>(i)][index] == 0) seen_s += segments_.share(i, index).seconds;
+  }
+  if (seen_s < kLeast_s) return std::nullopt;
+  std::optional<Solver> solver = solver_;
+  solver->radar(index).state.sensor_to_vehicle =
+      radars_[index].turned_back(0) * solver->radar(index).state.sensor_to_vehicle;
+  Segments segments = assembled(Side::kBefore, loads_);
+  solve(*solver, segments, first_change_s(index), config_.most_solutions);
+  return solver;
+}
+
+void Batch::write_before(Result& result) const {
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    if (radars_[r].changes.empty()) continue;
-    double seen_s = 0.0;
-    for (int i = 0; i < segments_.size(); ++i) {
-      if (phase_[static_cast<std::size_t>(i)][r] == 0) seen_s += segments_.share(i, r).seconds;
-    }
-    if (seen_s < kLeast_s) continue;
-    Solver solver = solver_;
-    Segments segments = assembled(Side::kBefore, loads_);
-    const double time_s = config_.block_s * static_cast<double>(radars_[r].changes.front().block);
-    solve(solver, segments, time_s, config_.most_solutions);
-    RadarEstimate& before = result.before[r].emplace();
-    write_solution(solver, r, time_s, loads_before(loads_, window_of(radars_[r].changes.front().block)),
-                   radars_[r].sums.knots(), before);
+    const std::optional<Solver> solver = solved_before(r);
+    if (!solver) continue;
+    const int loads = loads_before(loads_, window_of(radars_[r].changes.front().block));
+    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), result.before[r].emplace());
   }
 }
 

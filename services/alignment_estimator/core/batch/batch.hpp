@@ -55,6 +55,8 @@ class Batch {
     std::vector<Change> changes;  ///< sudden misalignments
     /// Number of changes before a block; nothing where the block is from both sides of one.
     [[nodiscard]] std::optional<std::size_t> phase_of(std::size_t block, std::size_t delay_blocks) const;
+    /// Rotation of the mounting before the first change from the present one, as solved.
+    std::optional<Eigen::Matrix3d> first_from_last{};
     /// Rotation about the vehicle's axes from the last mounting to that of a phase.
     [[nodiscard]] Eigen::Matrix3d turned_back(std::size_t phase) const;
   };
@@ -82,6 +84,10 @@ class Batch {
   int solve(windows::Solver& solver, windows::Segments& segments, double time_s, int most) const;
   [[nodiscard]] std::vector<RadarEstimate> estimates(const windows::Solver& solver, double time_s, int loads) const;
   void widen_by_jackknife(std::vector<RadarEstimate>& of) const;
+  /// Solution with the radar's mounting before its first change, at the time of that change; nothing if there was none,
+  /// or too little driving before it.
+  [[nodiscard]] std::optional<windows::Solver> solved_before(std::size_t radar) const;
+  [[nodiscard]] double first_change_s(std::size_t radar) const;
   void write_before(Result& result) const;
   void finish(RadarEstimate& estimate, const Radar& radar) const;
 
