@@ -17,8 +17,6 @@ constexpr std::size_t kMinSightings = 4;
 constexpr double kMaxGap_s = 1.0;
 /// Largest standard deviations of scale and rotation that widen the gate.
 constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
-/// Standard deviations of the body's pitch and of the side slip at one instant, as in the windowed filter.
-constexpr double kBodyPitch_rad = 0.1 * M_PI / 180.0, kSideSlip_rad = 0.05 * M_PI / 180.0;
 
 /// The motion at the time that belongs to the scan. Rates within the noise of the signals would add noise.
 Motion motion_at(const Point& point, const ScanMotion3d& motion, double yaw_rate_std_radps) {
@@ -26,7 +24,12 @@ Motion motion_at(const Point& point, const ScanMotion3d& motion, double yaw_rate
   const auto beyond = [](double value, double least) { return std::abs(value) > least ? value : 0.0; };
   const double a = beyond(motion.acceleration_mps2, kLeastAcceleration_mps2);
   const double w = beyond(motion.yaw_acceleration_radps2, kLeastYawAcceleration_radps2);
-  return {motion.speed_mps + point.stamp_s * a, motion.yaw_rate_radps + point.stamp_s * w, a, w, yaw_rate_std_radps};
+  return {.speed_mps = motion.speed_mps + point.stamp_s * a,
+          .yaw_rate_radps = motion.yaw_rate_radps + point.stamp_s * w,
+          .acceleration_mps2 = motion.acceleration_mps2,
+          .clear_acceleration_mps2 = a,
+          .clear_yaw_acceleration_radps2 = w,
+          .yaw_rate_std_radps = yaw_rate_std_radps};
 }
 
 }  // namespace
@@ -54,6 +57,8 @@ void RadarSums::begin_pass() {
 
 void RadarSums::begin_block(const Point& point, const Solver& solver, std::size_t radar) {
   block_.clear(point);
+  body_pitch_std_rad_ = solver.priors().body_pitch_std_rad;
+  side_slip_std_rad_ = solver.priors().side_slip_std_rad;
   LocalMatrix p = solver.local_covariance(radar);
   for (std::size_t k = 0; k < kFluctuations; ++k) {
     p(kFluctuating[k], kFluctuating[k]) += solver.radar(radar).fluctuation.variance[k] + solver.common().variance[k];
@@ -82,7 +87,8 @@ bool RadarSums::add(const ScanDetections& scan, const ScanMotion3d& motion, cons
   const auto std_of = [](double stated, double fallback) { return stated > 0.0 ? stated : fallback; };
   const MotionVariances variances{square(std_of(ego.speed_std_mps, filter_.speed_std_mps)),
                                   square(std_of(ego.yaw_rate_std_radps, filter_.yaw_rate_std_radps)),
-                                  sightings.has_elevation ? square(kBodyPitch_rad) : 0.0, square(kSideSlip_rad)};
+                                  sightings.has_elevation ? square(body_pitch_std_rad_) : 0.0,
+                                  square(side_slip_std_rad_)};
   CurveJudgement judgement;
   judgement.gate = filter_.outlier_gate_sigma;
   judgement.rate_factor = noise_.rate_variance_factor();

@@ -53,6 +53,7 @@ class RadarSums {
   /// Of the parameters that widen the gate, and of the curve at any azimuth.
   Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve> gate_covariance_;
   double curve_variance_ = 0.0;
+  double body_pitch_std_rad_ = 0.0, side_slip_std_rad_ = 0.0;
   std::int64_t last_time_ns_ = 0;
   double detections_ = 0.0, stationary_ = 0.0, seconds_ = 0.0;
   std::uint64_t scans_ = 0, inliers_ = 0;
