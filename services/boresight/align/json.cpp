@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/boresight/json/text.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -158,11 +159,82 @@ json::Value object_of(const StepChangeEvent& change) {
   return object;
 }
 
+void add_reason(json::Value& object, const RadarResult& radar) {
+  const AlignmentEstimate& m = radar.message;
+  object["reason"] = alignment_words::key_of(m.reason);
+  object["reason_text"] = radar.reason;
+  object["finding"] = alignment_words::key_of(m.finding);
+  object["finding_text"] = radar.finding;
+  object["finding_value"] =
+      m.finding == AlignmentFinding::kNone ? json::Value() : json::Value(json::shortest(m.finding_value));
+  object["finding_radar"] = m.finding_radar == 0 ? json::Value() : json::Value(m.finding_radar);
+}
+
+/// A value of the model with its standard deviation; no key where the method does not estimate it.
+void add_value(json::Value& object, const char* key, const AlignmentValue& value, bool observable,
+               double factor = 1.0) {
+  if (!(value.std > 0.0F)) return;
+  object[key] =
+      estimated(factor * static_cast<double>(value.value), factor * static_cast<double>(value.std), observable);
+}
+
+json::Value curve_of(const AlignmentNuisance& n) {
+  json::Value object;
+  json::Value azimuths = json::Value::array(), errors = json::Value::array(), stds = json::Value::array();
+  for (std::size_t k = 0; k < kAzimuthCurveKnots; ++k) {
+    const float azimuth = n.azimuth_curve_first_rad + static_cast<float>(k) * n.azimuth_curve_step_rad;
+    azimuths.push_back(degrees(static_cast<double>(azimuth)));
+    errors.push_back(degrees(static_cast<double>(n.azimuth_curve_rad.at(k))));
+    stds.push_back(degrees(static_cast<double>(n.azimuth_curve_std_rad.at(k))));
+  }
+  object["azimuth_deg"] = std::move(azimuths);
+  object["error_deg"] = std::move(errors);
+  object["error_std_deg"] = std::move(stds);
+  object["observable"] = (n.observable & alignment_nuisance::kAzimuthCurve) != 0;
+  return object;
+}
+
+/// What the model has of a radar beside its rotation.
+void add_nuisances(json::Value& object, const RadarResult& radar) {
+  const AlignmentNuisance& n = radar.message.nuisance;
+  const auto add = [&](const char* key, const AlignmentValue& value, std::uint32_t bit) {
+    add_value(object, key, value, (n.observable & bit) != 0);
+  };
+  add("range_rate_scale", n.range_rate_scale, alignment_nuisance::kRangeRateScale);
+  add("time_offset_s", n.time_offset_s, alignment_nuisance::kTimeOffset);
+  add("position_x_m", n.position_x_m, alignment_nuisance::kPositionX);
+  add("position_y_m", n.position_y_m, alignment_nuisance::kPositionY);
+  if (n.azimuth_curve_step_rad > 0.0F) object["azimuth_curve"] = curve_of(n);
+  object["yaw_scatter_deg"] = degrees(static_cast<double>(n.yaw_scatter_rad));
+  object["pitch_scatter_deg"] = degrees(static_cast<double>(n.pitch_scatter_rad));
+  constexpr double kSecondsPerMinute = 60.0;
+  const AlignmentDrift& drift = radar.message.drift;
+  json::Value& of_drift = object["drift"];
+  of_drift["since"] = radar.drift_since_s;
+  const auto rate = [&](const char* key, float value) {
+    of_drift[key] = degrees(kSecondsPerMinute * static_cast<double>(value));
+  };
+  rate("yaw_deg_per_min", drift.yaw_radps);
+  rate("yaw_std_deg_per_min", drift.yaw_std_radps);
+  rate("pitch_deg_per_min", drift.pitch_radps);
+  rate("pitch_std_deg_per_min", drift.pitch_std_radps);
+}
+
+json::Value object_of(const MountingBefore& before) {
+  json::Value object;
+  for (std::size_t i = 1; i < kParameters; ++i) {
+    object[key_of(i)] = degrees(before.values.at(i));
+    object[key_of(i, "_std")] = degrees(before.stds.at(i));
+  }
+  return object;
+}
+
 json::Value object_of(const RadarResult& radar) {
   json::Value object;
   object["id"] = radar.id;
   object["name"] = radar.name;
   object["state"] = name_of(radar.message.state);
+  add_reason(object, radar);
   object["measures_elevation"] = radar.measures_elevation;
   add_estimates(object, radar);
   add_matrices(object, radar);
@@ -172,6 +244,8 @@ json::Value object_of(const RadarResult& radar) {
   add_counts(object, radar);
   json::Value& changes = object["step_changes"] = json::Value::array();
   for (const StepChangeEvent& change : radar.step_changes) changes.push_back(object_of(change));
+  if (radar.before_change) object["before_step_changes"] = object_of(*radar.before_change);
+  add_nuisances(object, radar);
   for (std::size_t i = 0; i < radar.support.size(); ++i) object["support"][kSensorNames.at(i)] = radar.support[i];
   if (radar.truth) object["truth"] = object_of(*radar.truth);
   return object;
@@ -248,6 +322,22 @@ void add_ego(json::Value& object, const Result& result) {
       estimated(last.yaw_rate_bias_radps, last.yaw_rate_bias_std_radps, (bits & alignment_axis::kYawRateBias) != 0);
   object["slip_coefficient_radps2pm"] = estimated(last.slip_coefficient_radps2pm, last.slip_coefficient_std_radps2pm,
                                                   (bits & alignment_axis::kSlip) != 0);
+  const AlignmentNuisance& vehicle = result.vehicle_nuisance;
+  const auto add = [&](const char* key, const AlignmentValue& value, std::uint32_t bit, double factor) {
+    add_value(object, key, value, (vehicle.observable & bit) != 0, factor);
+  };
+  add("yaw_rate_gain", vehicle.yaw_rate_gain, alignment_nuisance::kYawRateGain, 1.0);
+  add("pitch_per_acceleration_radps2pm", vehicle.pitch_per_acceleration_radps2pm,
+      alignment_nuisance::kPitchPerAcceleration, 1.0);
+  add("load_pitch_deg", vehicle.load_pitch_rad, alignment_nuisance::kLoadPitch, kDegreesPerRadian);
+  json::Value& loads = object["load_changes"] = json::Value::array();
+  for (const VehicleChangeEvent& change : result.load_changes) {
+    loads.push_back({{"t", change.time_s}, {"pitch_deg", degrees(change.size)}});
+  }
+  json::Value& speeds = object["speed_changes"] = json::Value::array();
+  for (const VehicleChangeEvent& change : result.speed_changes) {
+    speeds.push_back({{"t", change.time_s}, {"relative", significant(change.size)}});
+  }
   if (!result.speed_scale_support.empty()) object["k_v_support"] = result.speed_scale_support;
   if (result.true_speed_scale) object["k_v_error"] = significant(result.speed_scale - *result.true_speed_scale);
 }
@@ -277,6 +367,14 @@ std::string to_json(const Result& result, const Provenance& provenance) {
   object["vehicle"] = result.vehicle;
   object["inputs"] = object_of(provenance);
   object["recording"] = recording_of(result, provenance);
+  object["problem"] = result.problem;
+  if (result.batch) {
+    json::Value& batch = object["batch"];
+    batch["driven_s"] = significant(result.batch->driven_s);
+    batch["windows"] = result.batch->windows;
+    batch["passes"] = result.batch->passes;
+    batch["settled"] = result.batch->settled;
+  }
   add_ego(object, result);
   json::Value& radars = object["radars"] = json::Value::array();
   for (const RadarResult& radar : result.radars) radars.push_back(object_of(radar));

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "services/boresight/align/json.hpp"
 #include "services/boresight/svg/document.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/measured.hpp"
@@ -19,9 +21,9 @@ namespace {
 using svg::Axis;
 using svg::Chart;
 using svg::Point;
-constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kHead = 60.0;
+constexpr double kWidth = 390.0, kHeight = 215.0, kTitle = 20.0, kHead = 60.0, kNoteLine = 17.0;
 constexpr double kMargin = svg::Document::kMargin_px;
-constexpr std::size_t kColumns = 4;
+constexpr std::size_t kColumns = 5;
 
 constexpr svg::Style kNotObservable = svg::line_of(svg::kGrey, 1.6, "2 3");
 constexpr svg::Style kStepChange = svg::line_of(svg::kOrange, 1.2, "4 3");
@@ -41,6 +43,7 @@ class Picture {
  public:
   explicit Picture(const Result& result) : result_(result) {
     for (const Sample& sample : result.series) x_max_ = std::max(x_max_, x(sample));
+    notes_ = notes_of(result);
   }
 
   std::string draw() {
@@ -73,6 +76,32 @@ class Picture {
     if (has_step_change) document_.legend_entry(svg::line_sample(kStepChange), "sudden misalignment");
     document_.legend_entry(svg::line_sample(kBefore), "residuals with the nominal mounting");
     document_.legend_entry(svg::area_sample(kAfter), "residuals with the estimate");
+    for (std::size_t i = 0; i < notes_.size(); ++i) {
+      document_.text(kMargin, kHead + kNoteLine * (static_cast<double>(i) + 0.5), notes_[i]);
+    }
+  }
+
+  /// Reasons, wrong inputs, drifts and changes of the vehicle, a line each.
+  static std::vector<std::string> notes_of(const Result& result) {
+    std::vector<std::string> notes;
+    for (const RadarResult& radar : result.radars) {
+      const std::string drift = alignment_words::drift_sentence(radar.message.drift);
+      for (const std::string& text : {radar.reason, drift}) {
+        if (!text.empty()) {
+          notes.push_back(fmt::format("{} {}, {}: {}", radar.id, radar.name, name_of(radar.message.state), text));
+        }
+      }
+    }
+    const auto add = [&](const VehicleChangeEvent& change, const std::string& sentence) {
+      notes.push_back(fmt::format("{:.1f} s: {}", change.time_s - result.start_s, sentence));
+    };
+    for (const VehicleChangeEvent& change : result.load_changes) {
+      add(change, alignment_words::load_change_sentence({1, static_cast<float>(change.size), 1}));
+    }
+    for (const VehicleChangeEvent& change : result.speed_changes) {
+      add(change, alignment_words::speed_change_sentence({1, static_cast<float>(change.size), 1}));
+    }
+    return notes;
   }
 
   void shared() {
@@ -133,7 +162,35 @@ class Picture {
             radar.step_changes);
     }
     histogram(name, radar.residuals);
+    azimuth_curve(name, radar.message.nuisance);
     end_row();
+  }
+
+  /// Azimuth error over azimuth, with the radar's other parameters as its title.
+  void azimuth_curve(const std::string& name, const AlignmentNuisance& n) {
+    if (!(n.azimuth_curve_step_rad > 0.0F)) return;
+    const auto degrees = [](float angle_rad) { return static_cast<double>(angle_rad) * kDegreesPerRadian; };
+    std::vector<Point> lower, upper, middle;
+    double most = 0.05;  // degrees: smallest span of the axis
+    for (std::size_t k = 0; k < kAzimuthCurveKnots; ++k) {
+      const double x = degrees(n.azimuth_curve_first_rad + static_cast<float>(k) * n.azimuth_curve_step_rad);
+      const double y = degrees(n.azimuth_curve_rad.at(k)), std = degrees(n.azimuth_curve_std_rad.at(k));
+      middle.push_back({x, y});
+      lower.push_back({x, y - 2.0 * std});
+      upper.push_back({x, y + 2.0 * std});
+      most = std::max(most, std::abs(y) + 2.0 * std);
+    }
+    Chart chart(kWidth, kHeight, {middle.front().x, middle.back().x, "azimuth, °", false},
+                {-1.08 * most, 1.08 * most, "error, °", false});
+    chart.band(lower, upper, svg::kUncertainty);
+    chart.line(middle, svg::kEstimate);
+    constexpr double kPercent = 1e2, kMilliseconds = 1e3;
+    const auto value = [](const AlignmentValue& v, double factor, const char* unit) {
+      return text::with_std(factor * static_cast<double>(v.value), factor * static_cast<double>(v.std), unit,
+                            text::Sign::kAlways);
+    };
+    place(chart, name + ", azimuth; scale " + value(n.range_rate_scale, kPercent, " %") + ", stamp " +
+                     value(n.time_offset_s, kMilliseconds, " ms"));
   }
 
   static std::vector<Point> constant(const std::optional<double>& value, double factor) {
@@ -242,7 +299,8 @@ class Picture {
 
   void place(const Chart& chart, const std::string& title) {
     const double left = kMargin + static_cast<double>(column_) * (kWidth + kMargin);
-    const double top = kHead + static_cast<double>(row_) * (kTitle + kHeight);
+    const double top =
+        kHead + kNoteLine * static_cast<double>(notes_.size()) + static_cast<double>(row_) * (kTitle + kHeight);
     document_.text(left + 14.0, top + 16.0, title);
     document_.place(chart, left, top + kTitle);
     if (++column_ == kColumns) end_row();
@@ -255,6 +313,7 @@ class Picture {
 
   const Result& result_;
   double x_max_ = 0.0;
+  std::vector<std::string> notes_;
   std::size_t column_ = 0, row_ = 0;
   svg::Document document_;
 };

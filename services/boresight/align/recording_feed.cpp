@@ -26,12 +26,13 @@ RadarScan* RecordingFeed::begin_scan() {
 
 void RecordingFeed::publish_scan(std::uint32_t radar_id, const ingest::MeasurementTime& time) {
   ++statistics(radar_id).messages;
-  if ((scan_->integrity & input::kDoubtful) != 0) {
-    ++doubtful_;
-    return;
-  }
   scan_->header.source_id = radar_id;
   const double time_s = 1e-9 * static_cast<double>(time.time_ns);
+  if ((scan_->integrity & input::kDoubtful) != 0) {
+    ++doubtful_;
+    if ((scan_->integrity & scan_integrity::kImpossibleCopies) != 0) run_.add_rejected_scan(*scan_, time_s);
+    return;
+  }
   newest_s_ = std::max(newest_s_, time_s);
   waiting_.push_back({time_s, std::move(scan_)});
   if (spare_.empty()) {

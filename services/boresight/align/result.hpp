@@ -37,6 +37,12 @@ struct StepChangeEvent {
   std::array<double, 3> yaw_pitch_roll_rad{};  ///< of the rotation, about the vehicle's axes
 };
 
+/// A change that all radars share.
+struct VehicleChangeEvent {
+  double time_s = 0.0;  ///< at which it was reported
+  double size = 0.0;    ///< of the load: rad of the body's pitch, positive with the nose up; of the speed signal: 1
+};
+
 /// Errors are estimate − truth; angle errors are those of the remaining rotation, R(estimate) = Exp(e)·R(truth), about
 /// the vehicle's axes. The NEES (normalised estimation error squared) is error²/variance.
 struct TruthComparison {
@@ -55,6 +61,11 @@ struct TruthComparison {
   std::array<double, kParameters> seconds_to_95_percent{};
 };
 
+/// Mounting before a sudden misalignment; as in Sample.
+struct MountingBefore {
+  std::array<double, kParameters> values{}, stds{};
+};
+
 struct RadarResult {
   std::uint32_t id = 0;
   std::string name;
@@ -66,6 +77,11 @@ struct RadarResult {
   ResidualSummary residuals;
   double cpu_us_per_scan = 0.0, max_cpu_us_per_scan = 0.0;  ///< NaN if no scan was processed on its own
   std::vector<StepChangeEvent> step_changes;
+  std::string reason;          ///< why the state is what it is, in words; "" if there is nothing to say
+  std::string finding;         ///< sentence of a wrong input; "" without one
+  double drift_since_s = 0.0;  ///< on the recording's clock; NaN: no drift is reported
+  /// batch: before the first sudden misalignment, if there was enough driving before it.
+  std::optional<MountingBefore> before_change;
   /// batch_calibration: for α, β, γ "supported", or why the data do not support the parameter.
   std::vector<std::string> support;
   std::optional<TruthComparison> truth;
@@ -83,6 +99,15 @@ struct Result {
   std::string problem;              ///< why there is no result; "" if there is one
   std::string speed_scale_support;  ///< batch_calibration, as RadarResult::support
   std::vector<RadarResult> radars;
+  std::vector<VehicleChangeEvent> load_changes, speed_changes;
+  AlignmentNuisance vehicle_nuisance{};  ///< of the radar that knows the vehicle's parameters best
+  /// batch: driving time, windows left out in turn, and how often the recording was read.
+  struct Batch {
+    double driven_s = 0.0;
+    int windows = 0, passes = 0;
+    bool settled = false;  ///< the last pass changed nothing that matters
+  };
+  std::optional<Batch> batch;
   bool x_is_iteration = false;
   std::vector<Sample> series;
 };

@@ -9,6 +9,7 @@
 #include "services/alignment_estimator/core/write_estimate.hpp"
 #include "services/boresight/align/batch_calibration.hpp"
 #include "services/boresight/align/stds.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/estimation/unknown.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
@@ -17,7 +18,7 @@ namespace boresight::align {
 
 namespace {
 
-constexpr std::string_view kBatchCalibration = "batch_calibration";
+constexpr std::string_view kBatch = "batch", kBatchCalibration = "batch_calibration";
 /// The origin on the estimator's clock. It leaves room for earlier times, because time 0 means "never".
 constexpr std::int64_t kOrigin_ns = 10'000'000'000;
 
@@ -85,6 +86,7 @@ std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const auto& [name, method] : alignment::kMethodNames) names.emplace_back(name);
+  names.emplace_back(kBatch);
   names.emplace_back(kBatchCalibration);
   return names;
 }
@@ -101,6 +103,13 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     if (name != options_.method) continue;
     options_.config.method = method;
     estimator_ = std::make_unique<alignment::Estimator>(vehicle_, options_.config);
+  }
+  if (options_.method == kBatch) {
+    // The first pass is that of the recursive estimator of the same model.
+    options_.config.method = alignment::Config().method;
+    estimator_ = std::make_unique<alignment::Estimator>(vehicle_, options_.config);
+    batch_ =
+        std::make_unique<alignment::batch::Batch>(vehicle_, options_.config.filter, options_.config.windows.priors);
   }
   if (estimator_ == nullptr && options_.method != kBatchCalibration) {
     throw std::invalid_argument(options_.method + " is no alignment method");
@@ -120,8 +129,16 @@ std::int64_t Run::to_ns(double time_s) {
   return kOrigin_ns + std::llround((time_s - options_.origin_s) * 1e9);
 }
 
+double Run::to_s(std::int64_t time_ns) const {
+  return options_.origin_s + 1e-9 * static_cast<double>(time_ns - kOrigin_ns);
+}
+
 void Run::add_ego(EgoMotion& motion, double time_s) {
   motion.header.measurement_time_ns = to_ns(time_s);
+  if (passes_ > 0) {
+    ego_.add(motion);
+    return;
+  }
   ++ego_motions_;
   if (std::isnan(ego_start_s_)) ego_start_s_ = time_s;
   ego_end_s_ = time_s;
@@ -133,6 +150,13 @@ void Run::add_scan(RadarScan& scan, double time_s) {
   const auto found = std::find_if(radars_.begin(), radars_.end(),
                                   [&](const Radar& r) { return r.config.id == scan.header.source_id; });
   if (found == radars_.end()) return;
+  const auto index = static_cast<std::size_t>(found - radars_.begin());
+  if (passes_ > 0) {
+    scan.header.measurement_time_ns = to_ns(time_s);
+    alignment::take_detections(scan, found->config, *detections_);
+    batch_->process(index, *detections_, ego_.at(scan.header.measurement_time_ns));
+    return;
+  }
   if (std::isnan(start_s_)) start_s_ = next_sample_s_ = end_s_ = time_s;
   observe_until(time_s);
   end_s_ = std::max(end_s_, time_s);
@@ -158,9 +182,20 @@ void Run::add_scan(RadarScan& scan, double time_s) {
     radar.max_cpu_ns = std::max(radar.max_cpu_ns, took_ns);
     ++radar.timed_scans;
   }
-  const alignment::RadarEstimate estimate = estimator_->estimate(static_cast<std::size_t>(found - radars_.begin()));
+  const alignment::RadarEstimate estimate = estimator_->estimate(index);
+  if (batch_) {
+    alignment::take_detections(scan, radar.config, *detections_);
+    batch_->observe(index, *detections_, ego, estimate);
+  }
   observe_step_changes(radar, estimate, options_.origin_s);
+  observe_vehicle_changes(estimate);
   observe_truth(radar, estimate, time_s);
+}
+
+void Run::add_rejected_scan(RadarScan& scan, double time_s) {
+  if (!estimator_) return;
+  scan.header.measurement_time_ns = to_ns(time_s);
+  estimator_->add_rejected_scan(scan);
 }
 
 void Run::observe_step_changes(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s) {
@@ -171,6 +206,21 @@ void Run::observe_step_changes(Radar& radar, const alignment::RadarEstimate& est
   const auto& turn = estimate.step_change.rotation_vehicle_rad;
   radar.step_changes.push_back(
       {origin_s + 1e-9 * static_cast<double>(estimate.step_change.time_ns - kOrigin_ns), {turn[2], -turn[1], turn[0]}});
+}
+
+void Run::observe_vehicle_changes(const alignment::RadarEstimate& estimate) {
+  const auto observe = [&](const AlignmentVehicleChange& change, std::vector<VehicleChangeEvent>& events) {
+    if (change.count > events.size()) events.push_back({to_s(change.time_ns), static_cast<double>(change.size)});
+  };
+  observe(estimate.load_change, load_changes_);
+  observe(estimate.speed_change, speed_changes_);
+}
+
+bool Run::needs_another_pass() {
+  if (batch_ == nullptr || !batch_->end_pass()) return false;
+  ++passes_;
+  ego_ = EgoHistory();
+  return true;
 }
 
 void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s) {
@@ -208,10 +258,16 @@ void Run::observe_until(double time_s) {
 }
 
 Sample Run::sample(double time_s) {
+  std::vector<alignment::RadarEstimate> estimates;
+  for (std::size_t i = 0; i < radars_.size(); ++i) estimates.push_back(estimator_->estimate(i));
+  return sample_of(time_s, estimates);
+}
+
+Sample Run::sample_of(double time_s, const std::vector<alignment::RadarEstimate>& estimates) const {
   Sample sample;
   sample.x = time_s;
   for (std::size_t i = 0; i < radars_.size(); ++i) {
-    const alignment::RadarEstimate e = estimator_->estimate(i);
+    const alignment::RadarEstimate& e = estimates[i];
     const alignment::VehicleForm form = alignment::vehicle_form(radars_[i].config, e);
     sample.radars.push_back({e.state, e.observable, to_array(form.values), stds_of(form)});
     // Shared by all radars, or known to one of them: the smallest std counts.
@@ -253,13 +309,19 @@ Result Run::finish() {
     result.scans += radar.scans;
     result.detections += radar.detections;
   }
-  if (estimator_) {
+  if (batch_) {
+    finish_estimator(result);
+    finish_batch(result);
+  } else if (estimator_) {
     finish_estimator(result);
   } else {
     std::vector<const ResidualSample*> samples;
     for (const Radar& radar : radars_) samples.push_back(&radar.residuals);
     solve_batch_calibration(vehicle_, samples, options_.batch_calibration, options_.batch_calibration_progress, result);
   }
+  result.load_changes = load_changes_;
+  result.speed_changes = speed_changes_;
+  describe(result);
   for (std::size_t i = 0; i < radars_.size(); ++i) {
     RadarResult& r = result.radars[i];
     r.stds = stds_of(alignment::vehicle_form(radars_[i].config, r.estimate));
@@ -285,6 +347,52 @@ void Run::finish_estimator(Result& result) {
     r.estimate = estimator_->estimate(i);
     static_cast<void>(estimator_->write(r.id, r.message));
     if ((r.estimate.observable & alignment_axis::kSpeedScale) != 0) result.speed_scale_observable = true;
+  }
+}
+
+void Run::finish_batch(Result& result) {
+  const alignment::batch::Result found = batch_->result();
+  result.problem = found.problem;
+  if (!found.problem.empty()) return;
+  result.batch = Result::Batch{found.driven_s, found.windows, found.passes, found.settled};
+  const Sample last = sample_of(end_s_, found.radars);
+  result.series.push_back(last);
+  result.speed_scale = last.speed_scale;
+  result.speed_scale_std = last.speed_scale_std;
+  result.speed_scale_observable = false;
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    RadarResult& r = result.radars[i];
+    r.estimate = found.radars[i];
+    if (found.before[i]) {
+      const alignment::VehicleForm before = alignment::vehicle_form(radars_[i].config, *found.before[i]);
+      r.before_change = {to_array(before.values), stds_of(before)};
+    }
+    // Key figures and a wrong input are those of the first pass.
+    const AlignmentEstimate first = r.message;
+    alignment::write_estimate(radars_[i].config, r.estimate, options_.config.prior_angle_std_rad(), r.message);
+    if (first.finding != AlignmentFinding::kNone) {
+      r.message.state = first.state;
+      r.message.reason = first.reason;
+      r.message.finding = first.finding;
+      r.message.finding_value = first.finding_value;
+      r.message.finding_radar = first.finding_radar;
+    }
+    if ((r.estimate.observable & alignment_axis::kSpeedScale) != 0) result.speed_scale_observable = true;
+  }
+}
+
+void Run::describe(Result& result) const {
+  float least_std = std::numeric_limits<float>::infinity();
+  for (const RadarResult& r : result.radars) {
+    const float std = r.message.nuisance.pitch_per_acceleration_radps2pm.std;
+    if (!(std > 0.0F) || std >= least_std) continue;
+    least_std = std;
+    result.vehicle_nuisance = r.message.nuisance;
+  }
+  for (RadarResult& r : result.radars) {
+    r.finding = alignment_words::sentence_of(alignment_words::finding_of(r.message), r.id, vehicle_);
+    r.reason = r.finding.empty() ? std::string(alignment_words::words_of(r.message.reason)) : r.finding;
+    r.drift_since_s = r.message.drift.since_ns == 0 ? kNaN : to_s(r.message.drift.since_ns);
   }
 }
 

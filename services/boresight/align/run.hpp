@@ -13,6 +13,7 @@
 
 #include "interfaces/messages/ego_motion.hpp"
 #include "interfaces/messages/radar_scan.hpp"
+#include "services/alignment_estimator/core/batch/batch.hpp"
 #include "services/alignment_estimator/core/batch_calibration/batch_calibration.hpp"
 #include "services/alignment_estimator/core/config.hpp"
 #include "services/alignment_estimator/core/estimator.hpp"
@@ -24,7 +25,7 @@
 
 namespace boresight::align {
 
-/// Values of --method: the methods of the estimator, and batch_calibration.
+/// Values of --method: the methods of the estimator, batch, and batch_calibration.
 [[nodiscard]] std::vector<std::string> method_names();
 
 class Run {
@@ -46,6 +47,10 @@ class Run {
   /// In the order of time, ego motions before the scans of the same time; headers are written here.
   void add_ego(EgoMotion& motion, double time_s);
   void add_scan(RadarScan& scan, double time_s);
+  /// Of copies of detections: not estimated from, but named as a wrong input.
+  void add_rejected_scan(RadarScan& scan, double time_s);
+  /// After the last input. True: the method needs the same input again, from its beginning.
+  [[nodiscard]] bool needs_another_pass();
   [[nodiscard]] Result finish();
 
  private:
@@ -64,17 +69,26 @@ class Run {
     std::array<double, kParameters> change_begin{}, change_begin_s{}, seconds_to_95_percent{};
   };
   [[nodiscard]] std::int64_t to_ns(double time_s);
+  [[nodiscard]] double to_s(std::int64_t time_ns) const;
   void observe_until(double time_s);
   [[nodiscard]] Sample sample(double time_s);
+  [[nodiscard]] Sample sample_of(double time_s, const std::vector<alignment::RadarEstimate>& estimates) const;
   /// After a scan.
   static void observe_step_changes(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s);
   static void observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s);
+  void observe_vehicle_changes(const alignment::RadarEstimate& estimate);
   void finish_estimator(Result& result);
+  void finish_batch(Result& result);
+  /// Reason, finding and drift in words.
+  void describe(Result& result) const;
   [[nodiscard]] static TruthComparison compare(const Radar& radar, const RadarResult& result);
 
   VehicleConfig vehicle_;
   Options options_;
   std::unique_ptr<alignment::Estimator> estimator_;  ///< null for batch_calibration, which needs all input at once
+  std::unique_ptr<alignment::batch::Batch> batch_;   ///< null for all other methods
+  int passes_ = 0;                                   ///< that are complete
+  std::vector<VehicleChangeEvent> load_changes_, speed_changes_;
   EgoHistory ego_;
   std::vector<Radar> radars_;
   std::unique_ptr<alignment::ScanDetections> detections_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "services/boresight/align/json.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/text/columns.hpp"
 #include "services/common/text/measured.hpp"
@@ -32,6 +33,56 @@ std::size_t name_columns(const std::vector<RadarResult>& radars) {
 std::string angle(double value_rad, double std_rad, bool observable) {
   if (!observable) return "not observable";
   return text::with_std(value_rad * kDegreesPerRadian, std_rad * kDegreesPerRadian, "°", text::Sign::kAlways);
+}
+
+/// "range-rate scale +0.00251 ± 0.00012"; "" where the method does not estimate the value.
+std::string estimated(const char* name, const AlignmentValue& value, double factor, std::string_view unit) {
+  if (!(value.std > 0.0F)) return "";
+  return fmt::format("{} {}", name,
+                     text::with_std(factor * static_cast<double>(value.value), factor * static_cast<double>(value.std),
+                                    unit, text::Sign::kAlways));
+}
+
+std::string curve(const AlignmentNuisance& n) {
+  if (!(n.azimuth_curve_step_rad > 0.0F)) return "";
+  double squares = 0.0, variance = 0.0;
+  for (std::size_t k = 0; k < kAzimuthCurveKnots; ++k) {
+    squares += std::pow(static_cast<double>(n.azimuth_curve_rad.at(k)), 2) / kAzimuthCurveKnots;
+    variance += std::pow(static_cast<double>(n.azimuth_curve_std_rad.at(k)), 2) / kAzimuthCurveKnots;
+  }
+  return "azimuth curve " +
+         text::with_std(std::sqrt(squares) * kDegreesPerRadian, std::sqrt(variance) * kDegreesPerRadian, "° rms");
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string line;
+  for (const std::string& part : parts) {
+    if (!part.empty()) line += (line.empty() ? "" : ", ") + part;
+  }
+  return line;
+}
+
+/// What the model has of a radar beside its rotation; "" for other methods.
+std::string nuisances(const RadarResult& radar) {
+  const AlignmentNuisance& n = radar.message.nuisance;
+  constexpr double kMilliseconds = 1e3, kCentimetres = 1e2, kPercent = 1e2;
+  return joined({estimated("range-rate scale", n.range_rate_scale, kPercent, " %"),
+                 estimated("time offset", n.time_offset_s, kMilliseconds, " ms"),
+                 estimated("position x", n.position_x_m, kCentimetres, " cm"),
+                 estimated("y", n.position_y_m, kCentimetres, " cm"), curve(n)});
+}
+
+std::string changes_of_vehicle(const Result& result) {
+  std::string lines;
+  for (const VehicleChangeEvent& change : result.load_changes) {
+    lines += fmt::format("{:.1f} s: {}\n", change.time_s - result.start_s,
+                         alignment_words::load_change_sentence({1, static_cast<float>(change.size), 1}));
+  }
+  for (const VehicleChangeEvent& change : result.speed_changes) {
+    lines += fmt::format("{:.1f} s: {}\n", change.time_s - result.start_s,
+                         alignment_words::speed_change_sentence({1, static_cast<float>(change.size), 1}));
+  }
+  return lines;
 }
 
 std::string seconds(double value) {
@@ -67,6 +118,19 @@ std::string to_table(const Result& result) {
     if (!r.step_changes.empty())
       table += fmt::format(", {} step change{}", r.step_changes.size(), r.step_changes.size() == 1 ? "" : "s");
     table += '\n';
+    const auto add_line = [&](const std::string& line) {
+      if (!line.empty()) table += "  " + line + '\n';
+    };
+    add_line(r.reason);
+    if (r.before_change) {
+      const auto before = [&](std::size_t i) {
+        return angle(r.before_change->values.at(i), r.before_change->stds.at(i), true);
+      };
+      table += padded("  before the change", name_width) + padded(before(1), kAngle) + padded(before(2), kAngle) +
+               before(3) + '\n';
+    }
+    add_line(alignment_words::drift_sentence(m.drift));
+    add_line(nuisances(r));
     constexpr std::array<const char*, 3> kSensorAxes = {"alpha", "beta", "gamma"};
     for (std::size_t i = 0; i < r.support.size(); ++i) {
       table += padded("", name_width) + kSensorAxes.at(i) + " " + r.support[i] + '\n';
@@ -95,7 +159,20 @@ std::string to_table(const Result& result) {
                                           " rad/(m/s²)", text::Sign::kAlways);
     }
   }
-  return table + '\n';
+  const AlignmentNuisance& vehicle = result.vehicle_nuisance;
+  constexpr double kPercent = 1e2;
+  const std::string of_vehicle = joined(
+      {estimated("yaw-rate gain", vehicle.yaw_rate_gain, kPercent, " %"),
+       estimated("pitch by acceleration", vehicle.pitch_per_acceleration_radps2pm, kDegreesPerRadian, "°/(m/s²)"),
+       result.load_changes.empty() ? "" : estimated("load pitch", vehicle.load_pitch_rad, kDegreesPerRadian, "°")});
+  if (!of_vehicle.empty()) table += '\n' + of_vehicle;
+  table += '\n' + changes_of_vehicle(result);
+  if (result.batch) {
+    table += fmt::format("{:.0f} s of driving in {} windows, read {} times{}\n", result.batch->driven_s,
+                         result.batch->windows, result.batch->passes,
+                         result.batch->settled ? "" : "; the solution still moved at the last time");
+  }
+  return table;
 }
 
 }  // namespace boresight::align

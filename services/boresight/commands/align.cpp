@@ -86,23 +86,37 @@ class Align {
   }
 
   align::Result run_tables(const VehicleConfig& vehicle, align::Run::Options run_options) {
+    std::optional<align::Run> run;
+    do {
+      read_tables(vehicle, run_options, run);
+    } while (run->needs_another_pass());
+    return run->finish();
+  }
+
+  /// One pass over the tables; the first makes the run, and reports what is wrong with the tables.
+  void read_tables(const VehicleConfig& vehicle, align::Run::Options& run_options, std::optional<align::Run>& run) {
+    const bool is_first = !run;
+    input::Problems silent([](const std::string&) {});
+    input::Problems& problems = is_first ? problems_ : silent;
     recording::ByteSource ego_source(options_.ego), drive_source(options_.drive);
-    input::EgoReader ego(ego_source, vehicle.ego, problems_);
-    input::DriveReader drive(drive_source, vehicle, problems_);
+    input::EgoReader ego(ego_source, vehicle.ego, problems);
+    input::DriveReader drive(drive_source, vehicle, problems);
     const auto scan = std::make_unique<RadarScan>();
     EgoMotion motion{};
     double motion_s = 0.0, newest_motion_s = NAN, scan_s = 0.0;
     bool has_motion = ego.next(motion, motion_s);
     bool has_scan = drive.next(*scan, scan_s);
-    run_options.origin_s = has_scan && has_motion ? std::min(scan_s, motion_s) : has_scan ? scan_s : motion_s;
-    align::Run run(vehicle, std::move(run_options));
+    if (is_first) {
+      run_options.origin_s = has_scan && has_motion ? std::min(scan_s, motion_s) : has_scan ? scan_s : motion_s;
+      run.emplace(vehicle, std::move(run_options));
+    }
     for (std::uint64_t scans = 1; has_scan; has_scan = drive.next(*scan, scan_s), ++scans) {
       // Up to one motion beyond the scan, so that its own is interpolated.
       for (; has_motion && !(newest_motion_s > scan_s); has_motion = ego.next(motion, motion_s)) {
         newest_motion_s = motion_s;
-        run.add_ego(motion, motion_s);
+        run->add_ego(motion, motion_s);
       }
-      run.add_scan(*scan, scan_s);
+      run->add_scan(*scan, scan_s);
       constexpr std::uint64_t kScansBetweenLooks = 64;
       if (scans % kScansBetweenLooks != 0) continue;
       stop_if_interrupted();
@@ -110,7 +124,8 @@ class Align {
     }
     bar_.wipe();
     stop_if_interrupted();
-    for (; has_motion; has_motion = ego.next(motion, motion_s)) run.add_ego(motion, motion_s);
+    for (; has_motion; has_motion = ego.next(motion, motion_s)) run->add_ego(motion, motion_s);
+    if (!is_first) return;
     for (const auto& [name, columns] :
          {std::pair(options_.drive, drive.ignored_columns()), std::pair(options_.ego, ego.ignored_columns())}) {
       if (!columns.empty()) tell(fmt::format("{}: ignored columns: {}", name, fmt::join(columns, ", ")));
@@ -119,26 +134,32 @@ class Align {
     for (const auto& [id, lines] : drive.unknown_radars()) {
       complain(fmt::format("{}: radar {} ({} lines) is not in {}", options_.drive, id, lines, provenance_.vehicle));
     }
-    return run.finish();
   }
 
   align::Result run_recordings(align::Run::Options run_options) {
     const VehicleConfig vehicle = options_.configuration.vehicle();
     align::Run run(vehicle, std::move(run_options));
-    align::RecordingFeed feed(run);
-    ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
-    input::play({options_.recordings.begin(), options_.recordings.end()}, gateway, problems_,
-                [this](const recording::Progress& progress) {
-                  stop_if_interrupted();
-                  if (bar_.is_due()) show_progress(progress.position_bytes, progress.total_bytes);
-                });
-    stop_if_interrupted();
-    feed.finish();
-    bar_.wipe();
-    if (feed.rejected() > 0) {
-      tell(fmt::format("{} messages were rejected; `boresight decode --check` lists the reasons", feed.rejected()));
-    }
-    if (feed.doubtful() > 0) tell(fmt::format("{} scans of doubtful integrity were rejected", feed.doubtful()));
+    bool is_first = true;
+    do {
+      align::RecordingFeed feed(run);
+      ingest::Gateway gateway(vehicle, feed, ingest::read_mappings(vehicle));
+      input::Problems silent([](const std::string&) {});
+      input::play({options_.recordings.begin(), options_.recordings.end()}, gateway, is_first ? problems_ : silent,
+                  [this](const recording::Progress& progress) {
+                    stop_if_interrupted();
+                    if (bar_.is_due()) show_progress(progress.position_bytes, progress.total_bytes);
+                  });
+      stop_if_interrupted();
+      feed.finish();
+      bar_.wipe();
+      if (is_first && feed.rejected() > 0) {
+        tell(fmt::format("{} messages were rejected; `boresight decode --check` lists the reasons", feed.rejected()));
+      }
+      if (is_first && feed.doubtful() > 0) {
+        tell(fmt::format("{} scans of doubtful integrity were rejected", feed.doubtful()));
+      }
+      is_first = false;
+    } while (run.needs_another_pass());
     return run.finish();
   }
 
@@ -194,6 +215,9 @@ class Align {
     }
     if (result.scans == 0) complain("there is no detection in the drive");
     if (!result.problem.empty()) complain(result.problem);
+    for (const align::RadarResult& radar : result.radars) {
+      if (!radar.finding.empty()) complain(fmt::format("radar {} {}: {}", radar.id, radar.name, radar.finding));
+    }
     std::uint64_t without_ego = 0;
     for (const align::RadarResult& radar : result.radars) without_ego += radar.scans_without_ego;
     if (without_ego > 0) {
@@ -245,7 +269,9 @@ void add_align_command(CLI::App& app, int& exit_code) {
                               "Vehicle: a name in the folder vehicle/, or a file. Tables need no links in it")
       ->required();
   const CLI::Option* const config = runtime::add_config_option(*command, options->configuration);
-  command->add_option("--method", options->method, "Estimation method")
+  command
+      ->add_option("--method", options->method,
+                   "Estimation method; batch: the most accurate for a recorded drive, which it reads several times")
       ->check(CLI::IsMember(align::method_names()))
       ->capture_default_str();
   command
@@ -261,10 +287,11 @@ void add_align_command(CLI::App& app, int& exit_code) {
   on_call(
       *command, exit_code,
       {"align --drive drive.csv --ego ego.csv --vehicle alignment_drive --json result.json\n"
-       "align --recording radars.pcap --recording ego.candump.log --vehicle demo",
+       "align --recording radars.pcap --recording ego.candump.log --vehicle demo --method batch",
        "the result is complete",
        "the result is doubtful: more than one line in a hundred was skipped, a radar is not in the vehicle file,\n"
-       "       there is no detection, most scans have no ego motion, or batch_calibration found no solution.\n"
+       "       there is no detection, most scans have no ego motion, an input is wrong (swapped radars, sign, unit,\n"
+       "       frozen speed …; the sentence is on standard error), or a batch method found no solution.\n"
        "       The result is written all the same"},
       [options, command, config] {
         const bool has_tables = !options->drive.empty() && !options->ego.empty();
@@ -274,6 +301,9 @@ void add_align_command(CLI::App& app, int& exit_code) {
         }
         if (options->drive == "-" && options->ego == "-") {
           throw UsageError("only one of the tables can be standard input");
+        }
+        if (options->method == "batch" && (options->drive == "-" || options->ego == "-")) {
+          throw UsageError("method batch reads the drive several times, so it cannot be standard input");
         }
         if (options->json == "-" && options->plot == "-") {
           throw UsageError("only one result can go to standard output");

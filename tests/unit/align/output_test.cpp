@@ -173,5 +173,30 @@ TEST(Outputs, SayWhatIsNotObservable) {
   EXPECT_THAT(to_table(result), HasSubstr("+0.573 ± 0.057°"));
 }
 
+TEST(Outputs, NameFindingChangesAndTheOtherParameters) {
+  Result result = empty_result();
+  result.start_s = 0.0;
+  result.end_s = 1.0;
+  RadarResult& radar = result.radars[0];
+  radar.reason = radar.finding = "speed signal in km/h";
+  radar.message.finding = AlignmentFinding::kSpeedUnit;
+  radar.message.finding_value = 3.6F;
+  radar.message.nuisance.range_rate_scale = {0.0025F, 0.00012F};
+  radar.message.nuisance.azimuth_curve_step_rad = 0.2F;
+  radar.before_change = MountingBefore{{1.0, 0.01, 0.0, 0.0}, {0.0, 1e-3, 1.0, 1.0}};
+  result.load_changes.push_back({0.5, 0.0138});
+  const std::string table = to_table(result), json = to_json(result, {}), svg = to_svg(result);
+  for (const std::string& text : {table, svg}) {
+    EXPECT_THAT(text, HasSubstr("speed signal in km/h"));
+    EXPECT_THAT(text, HasSubstr("0.5 s: "));
+    EXPECT_THAT(text, HasSubstr("+0.250 ± 0.012 %"));
+  }
+  EXPECT_THAT(table, HasSubstr("before the change"));
+  EXPECT_THAT(table, HasSubstr("+0.573 ± 0.057°"));
+  EXPECT_THAT(json, HasSubstr("\"finding\":\"speed_unit\""));
+  EXPECT_THAT(json, HasSubstr("\"finding_text\":\"speed signal in km/h\""));
+  EXPECT_THAT(json, HasSubstr("\"load_changes\":[{\"t\":0.5,"));
+}
+
 }  // namespace
 }  // namespace boresight::align

@@ -107,6 +107,37 @@ TEST_F(Align, EveryMethodRunsAndItsResultIsValid) {
   }
 }
 
+TEST_F(Align, BatchReadsTheTablesAgainAndSaysHowOften) {
+  ASSERT_EQ(align(kInputs + "--method batch"), 0) << errors();
+  const auto result = nlohmann::json::parse(json());
+  EXPECT_GE(result.at("batch").at("passes").get<int>(), 3);
+  EXPECT_GE(result.at("batch").at("windows").get<int>(), 3);
+  EXPECT_EQ(result.at("problem"), "");
+  for (const auto& radar : result.at("radars")) {
+    EXPECT_TRUE(radar.at("observable").at("yaw").get<bool>());
+    EXPECT_EQ(radar.at("finding"), "none");
+    EXPECT_GT(radar.at("range_rate_scale").at("std").get<double>(), 0.0);
+    EXPECT_EQ(radar.at("azimuth_curve").at("error_deg").size(), kAzimuthCurveKnots);
+    EXPECT_EQ(radar.at("scans").get<int>(), result.at("recording").at("scans").get<int>() / 4) << "counted once";
+  }
+  EXPECT_THAT(out(), HasSubstr("range-rate scale "));
+  EXPECT_THAT(out(), HasSubstr(" times\n"));
+}
+
+TEST_F(Align, BatchRefusesStandardInputAndNamesAShortDrive) {
+  EXPECT_EQ(align("--drive - --ego ego.csv --vehicle vehicle.toml --method batch < drive.csv"), 2);
+  EXPECT_THAT(errors(), HasSubstr("cannot be standard input"));
+  std::string few;
+  std::istringstream lines(tables_.drive);
+  for (std::string line; std::getline(lines, line);) {
+    if (line[0] == 't' || std::strtod(line.c_str(), nullptr) < 9.0) few += line + "\n";
+  }
+  testing::write_text(folder_ / "few.csv", few);
+  EXPECT_EQ(align("--drive few.csv --ego ego.csv --vehicle vehicle.toml --method batch --json out.json"), 1);
+  EXPECT_THAT(errors(), HasSubstr("are too few for the batch method: it needs 15 s"));
+  EXPECT_TRUE(json::Value::accept(json()));
+}
+
 TEST(BatchCalibration, SaysWhatTheDataSupportAndHowItIterated) {
   simulator::AlignmentSpec spec = simulator::four_corner_radars();
   spec.duration_s = 20.0;

@@ -69,7 +69,8 @@ inline std::vector<std::string> verdicts() {
   never_seen.sensors[0].last_seen_s = -1.0F;
   run::HealthResult seen = never_seen;
   seen.sensors[0].last_seen_s = 0.05F;
-  return {run::to_json_line(never_seen), run::to_json_line(seen)};
+  seen.load_change.time_ns = seen.speed_change.time_ns = seen.sensors[0].drift.since_ns = 1;
+  return {run::to_json_line(never_seen, one_radar()), run::to_json_line(seen, one_radar())};
 }
 
 inline std::vector<std::string> snapshots() {
@@ -111,7 +112,19 @@ inline align::Result unknown_alignment() {
   truth.nees.fill(kUnknown);
   truth.seconds_to_95_percent.fill(kUnknown);
   radar.truth = truth;
+  radar.drift_since_s = kUnknown;
   return result;
+}
+
+/// Every value is estimated.
+inline AlignmentNuisance known_nuisance() {
+  AlignmentNuisance n{};
+  for (AlignmentValue* const value : {&n.range_rate_scale, &n.time_offset_s, &n.position_x_m, &n.position_y_m,
+                                      &n.yaw_rate_gain, &n.pitch_per_acceleration_radps2pm, &n.load_pitch_rad}) {
+    *value = {0.5F, 0.25F};
+  }
+  n.azimuth_curve_step_rad = 0.25F;
+  return n;
 }
 
 inline std::vector<std::string> alignments() {
@@ -121,6 +134,13 @@ inline std::vector<std::string> alignments() {
   align::RadarResult& radar = result.radars.emplace_back();
   radar.name = kName;
   radar.step_changes.resize(1);
+  radar.before_change.emplace();
+  radar.message.finding = AlignmentFinding::kRadarsSwapped;
+  radar.message.finding_radar = 2;
+  radar.message.nuisance = result.vehicle_nuisance = known_nuisance();
+  result.load_changes.resize(1);
+  result.speed_changes.resize(1);
+  result.batch.emplace();
   radar.support = {"supported", "supported", "not supported"};
   radar.message.kpis.scans_to_95_percent.fill(7);
   radar.truth.emplace().mountings.resize(2);
