@@ -58,6 +58,15 @@ ScanResult Estimator::add_scan(const RadarScan& scan) {
   return moves ? ScanResult::kUsed : ScanResult::kNoEgoMotion;
 }
 
+void Estimator::add_rejected_scan(const RadarScan& scan) {
+  for (std::size_t i = 0; i < radars_.size(); ++i) {
+    if (radars_[i].config.id != scan.header.source_id) continue;
+    if (!radars_[i].seen) begin(i);
+    take_detections(scan, radars_[i].config, detections_);
+    plausibility_.add_rejected(i, detections_);
+  }
+}
+
 void Estimator::begin(std::size_t index) {
   Radar& radar = radars_[index];
   const RadarEstimate e = method_->estimate(index);

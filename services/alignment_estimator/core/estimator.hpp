@@ -34,6 +34,8 @@ class Estimator {
 
   void add_ego_motion(const EgoMotion& motion) { ego_.add(motion); }
   [[nodiscard]] ScanResult add_scan(const RadarScan& scan);
+  /// A scan that was rejected because its detections are copies: no estimate, but the reason for none.
+  void add_rejected_scan(const RadarScan& scan);
   /// Writes everything but the header, key figures included; false for an unknown radar.
   [[nodiscard]] bool write(std::uint32_t radar_id, AlignmentEstimate& out) const;
 

@@ -12,7 +12,7 @@ namespace {
 /// Two radars have the same detections in most scans, as they must if one of them sends those of the other, which is
 /// right: logarithm of the likelihood.
 constexpr double kSameDetectionsLog = 12.5;
-/// An explanation that only turns would tell from another one does not speak against that one.
+/// An explanation that only turns would distinguish from another one does not speak against that one.
 constexpr double kAlikeLog = 4.0;
 /// Of 360°, each other's mounting has 20°: logarithm of that likelihood.
 constexpr double kTwoYawsLog = 3.0;
@@ -56,6 +56,7 @@ void Plausibility::decide(std::size_t index, double time_s) {
       if (still.finding == radar.finding.finding && still.radar == radar.finding.radar) found = still;
     }
   }
+  if (found.finding == AlignmentFinding::kSpeedUnit && speed_signal_.may_be_frozen(time_s)) found = {};
   report(radar, found, time_s);
 }
 

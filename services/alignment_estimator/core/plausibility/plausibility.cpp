@@ -98,6 +98,12 @@ void Plausibility::add(std::size_t index, const ScanDetections& scan, const EgoS
   motion.valid += 1.0;
 }
 
+void Plausibility::add_rejected(std::size_t index, const ScanDetections& scan) {
+  if (!config_.enabled) return;
+  static_cast<void>(copies_.add(index, scan, true));
+  decide(index, seconds(scan.time_ns));
+}
+
 void Plausibility::close(std::size_t index, double time_s) {
   Radar& radar = radars_[index];
   Motion& motion = radar.motion;

@@ -41,6 +41,8 @@ class Plausibility {
 
   /// Takes every scan of the radar at index `radar`, also those without valid ego motion.
   void add(std::size_t radar, const ScanDetections& scan, const EgoSample& ego);
+  /// Takes a scan that was rejected because its detections are copies.
+  void add_rejected(std::size_t radar, const ScanDetections& scan);
   [[nodiscard]] Finding finding(std::size_t radar) const { return radars_[radar].finding; }
   /// Logarithm of the likelihood of a hypothesis, relative to the best of this radar: for tests and diagnosis.
   [[nodiscard]] double log_likelihood(std::size_t radar, std::size_t hypothesis) const {

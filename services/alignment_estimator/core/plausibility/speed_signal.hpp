@@ -23,6 +23,8 @@ class SpeedSignal {
   void add_velocity(std::size_t radar, const VelocityFit& fit, const Eigen::Vector2d& velocity_mps, double time_s);
   /// kEgoMotionMissing, kSpeedZero, kSpeedFrozen or kNone.
   [[nodiscard]] AlignmentFinding finding(double time_s) const;
+  /// There is some evidence for a frozen signal, whose value says nothing about its unit.
+  [[nodiscard]] bool may_be_frozen(double time_s) const;
 
  private:
   enum Fault : std::size_t { kMissing, kZero, kFrozen, kFaults };
@@ -30,19 +32,25 @@ class SpeedSignal {
     double seen_s = -1e9;        ///< time of the last window
     double moving_s = -1e9;      ///< and of the last one in which the vehicle moved, with its speed
     double speed_mps = 0.0;      //
-    double reference_mps = 0.0;  ///< speed at the beginning of the constant signal
+    double scale = 0.0;          ///< seen / signalled speed while the signal changed; 0: unknown
+    double reference_mps = 0.0;  ///< seen speed at the beginning of a signal that has never changed
     double reference_s = -1e9;
     std::array<double, kFaults> evidence{};  ///< logarithm of odds, limited
   };
+  [[nodiscard]] bool is_alone(std::size_t radar, double time_s) const;
   [[nodiscard]] bool agrees(std::size_t radar, double speed_mps, double time_s) const;
   void clear(Fault fault);
-  void judge_frozen(Radar& radar, double speed_mps, bool continues);
+  /// Sum of the evidence of active radars over the sufficient one.
+  [[nodiscard]] double sum(Fault fault, double time_s) const;
+  void judge_frozen(Radar& radar, double speed_mps, bool continues, double time_s);
 
   std::vector<Radar> radars_;
   double speed_mps_ = 0.0;
   double constant_since_s_ = -1e9;  ///< the speed has had this value since then
   double missing_since_s_ = 1e18;   ///< no valid motion since then
   bool is_zero_ = false;
+  // Found, until there is a signal or until it changes: a standstill, or the right speed by chance, does not count.
+  bool is_missing_ = false, is_frozen_ = false;
 };
 
 }  // namespace boresight::alignment::plausibility

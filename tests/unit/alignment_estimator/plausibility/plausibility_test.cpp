@@ -239,5 +239,23 @@ TEST(Plausibility, EstimateWithAWrongInputIsNotConverged) {
   }
 }
 
+TEST(Plausibility, RejectedScansOfCopiesAreNamed) {
+  RadarScan scan{};
+  const VehicleConfig vehicle = simulator::AlignmentDrive(simulator::four_corner_radars()).vehicle();
+  Estimator estimator(vehicle, {});
+  scan.header.source_id = vehicle.radars[1].id;
+  scan.number_of_valid_detections = 20;
+  for (std::size_t i = 0; i < 20; ++i) {
+    scan.range_m[i] = 20.0F;
+    scan.range_rate_mps[i] = -7.0F;
+  }
+  for (int i = 0; i < 60; ++i) {
+    scan.header.measurement_time_ns = 1'000'000'000 + i * 50'000'000LL;
+    estimator.add_rejected_scan(scan);
+  }
+  EXPECT_EQ(estimator.finding(1).finding, AlignmentFinding::kCopiedDetections);
+  EXPECT_EQ(estimator.finding(0).finding, AlignmentFinding::kNone);
+}
+
 }  // namespace
 }  // namespace boresight::alignment::plausibility
