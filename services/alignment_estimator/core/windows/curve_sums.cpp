@@ -24,13 +24,15 @@ struct HeightColumn {
 };
 
 /// Above the road: the reflector is higher than its detection. Below: the detection is the image of a reflector above.
-HeightColumn height_column(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double along, double by_elevation,
+/// `upright`: cosine of the roll, between the directions of growing elevation of the sensor and of the vehicle.
+HeightColumn height_column(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double along, double upright,
                            double range_m, const CurveJudgement& judgement) {
   if (!(judgement.height_m > 0.0) || !(range_m > 1.0)) return {};
   const double z = judgement.up.dot(u), height = judgement.height_m / range_m + z;  // over the range
   if (height >= 0.0) {
-    const double across = std::sqrt(std::max(1.0 - z * z, 0.0));
-    return {by_elevation * height, -along * height + by_elevation * across, false};
+    const double across = std::sqrt(std::max(1.0 - z * z, 1e-6));
+    const double rise = (judgement.up.dot(g) - z * along) / across;  // derivative to the vehicle's elevation
+    return {rise * height, upright * (rise * across - along * height), false};
   }
   const double image = -z - 2.0 * judgement.height_m / range_m;
   // Steeper than a radar of the road sees.
@@ -39,7 +41,7 @@ HeightColumn height_column(const Eigen::Vector3d& u, const Eigen::Vector3d& g, d
   const double across = std::sqrt(1.0 - z * z), across_image = std::sqrt(1.0 - image * image);
   const double upward = judgement.up.dot(g), forward = (along - z * upward) / across;
   return {(across_image - across) * forward + (image - z) * upward,
-          (image * across / across_image + z) * forward - 2.0 * across * upward, true};
+          upright * ((image * across / across_image + z) * forward - 2.0 * across * upward), true};
 }
 
 }  // namespace
@@ -68,7 +70,7 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const Eigen::Vector3d ea(-u.y(), u.x(), 0.0), eb(-u.x() * u.z() / ce, -u.y() * u.z() / ce, ce);
     const double da = ea.dot(g), db = eb.dot(g);
     const HeightColumn of_height =
-        run.has_elevation ? height_column(u, g, along, db, run.range_m[i], judgement) : HeightColumn();
+        run.has_elevation ? height_column(u, g, along, judgement.up.dot(eb), run.range_m[i], judgement) : HeightColumn();
     double e = run.range_rate_mps[i] + along +
                (of_height.below ? judgement.mirror_share : judgement.height_excess) * of_height.column;
     if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);

@@ -117,6 +117,14 @@ void write_solution(const Solver& solver, std::size_t index, double time_s, int 
     const Eigen::Vector4d by_mirror = rows.col(own::kMirror) / mirror_variance;
     out.covariance += square(priors.mirror_share_tolerance) * by_mirror * by_mirror.transpose();
   }
+  if (!radar.has_elevation) {
+    // Pitch and roll were taken as nominal. They are not known, and together they turn yaw: half of their product.
+    const double variance = square(priors.rotation_std_rad);
+    out.covariance.middleRows<2>(1).setZero();
+    out.covariance.middleCols<2>(1).setZero();
+    out.covariance(1, 1) = out.covariance(2, 2) = variance;
+    out.covariance(3, 3) += 0.25 * square(variance);
+  }
   out.observable = 0;
   const std::array<std::uint32_t, 4> bits{alignment_axis::kSpeedScale, alignment_axis::kVehicleRoll,
                                           alignment_axis::kVehiclePitch, alignment_axis::kVehicleYaw};
@@ -134,8 +142,11 @@ void write_solution(const Solver& solver, std::size_t index, double time_s, int 
   const Eigen::Vector2d drift = radar.state.drift_radps;
   out.drift.pitch_radps = static_cast<float>(-drift(0));
   out.drift.yaw_radps = static_cast<float>(drift(1));
-  out.drift.pitch_std_radps = static_cast<float>(std::sqrt(radar.covariance(own::kPitchDrift, own::kPitchDrift)));
-  out.drift.yaw_std_radps = static_cast<float>(std::sqrt(radar.covariance(own::kYawDrift, own::kYawDrift)));
+  const auto drift_std = [&](int c) {
+    return priors.drift_std_radps > 0.0 ? static_cast<float>(std::sqrt(radar.covariance(c, c))) : 0.0F;
+  };
+  out.drift.pitch_std_radps = radar.has_elevation ? drift_std(own::kPitchDrift) : 0.0F;
+  out.drift.yaw_std_radps = drift_std(own::kYawDrift);
 }
 
 }  // namespace boresight::alignment::windows

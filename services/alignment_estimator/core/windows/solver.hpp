@@ -39,6 +39,7 @@ using SharedMatrix = Eigen::Matrix<double, shared::kConstants, shared::kConstant
 struct RadarSolution {
   OwnState state;
   OwnMatrix covariance = OwnMatrix::Zero();
+  OwnMatrix conditional = OwnMatrix::Zero();  ///< covariance if all that the radars share were known
   Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared =
       Eigen::Matrix<double, own::kCount, shared::kConstants>::Zero();
   Fluctuation fluctuation;

@@ -50,6 +50,7 @@ void Solver::restore(std::size_t index, const OwnState& state, const OwnMatrix& 
   radar.covariance.setZero();
   radar.covariance.topLeftCorner<kRemembered, kRemembered>() = remembered;
   radar.covariance.diagonal().tail<2>() = of_drift;
+  radar.conditional = radar.covariance;
   radar.with_shared.setZero();
 }
 
@@ -86,6 +87,8 @@ void Solver::set_rotation_prior(RadarSolution& radar, const Eigen::Matrix3d& mea
   radar.covariance.middleRows<3>(own::kRotation).setZero();
   radar.covariance.middleCols<3>(own::kRotation).setZero();
   radar.covariance.block<3, 3>(own::kRotation, own::kRotation) = known;
+  radar.conditional.middleRows<3>(own::kRotation) = radar.covariance.middleRows<3>(own::kRotation);
+  radar.conditional.middleCols<3>(own::kRotation) = radar.covariance.middleCols<3>(own::kRotation);
   radar.with_shared.middleRows<3>(own::kRotation).setZero();
 }
 

@@ -67,27 +67,12 @@ void doubt(const Vector& prior_stds, const Vector& variances, Matrix& covariance
   }
 }
 
-/// The part of a radar's covariance that it shares with others by way of the vehicle's constants.
-OwnMatrix shared_part(const RadarSolution& radar, const SharedMatrix& shared, const SharedVector& prior_stds) {
-  SharedVector scale;
-  for (int i = 0; i < shared::kConstants; ++i) scale(i) = prior_stds(i) > 0.0 ? 1.0 / prior_stds(i) : 0.0;
-  SharedMatrix scaled = scale.asDiagonal() * shared * scale.asDiagonal();
-  for (int i = 0; i < shared::kConstants; ++i) {
-    scaled(i, i) = prior_stds(i) > 0.0 ? scaled(i, i) * (1.0 + 1e-9) : 1.0;
-  }
-  const Eigen::LLT<SharedMatrix> solver(scaled);
-  Eigen::Matrix<double, shared::kConstants, own::kCount> cross = scale.asDiagonal() * radar.with_shared.transpose();
-  if (solver.info() != Eigen::Success) return OwnMatrix::Zero();
-  solver.matrixL().solveInPlace(cross);
-  return cross.transpose() * cross;
-}
-
 }  // namespace
 
-/// The correlations of a radar with the vehicle's constants, and by way of them with the other radars, are lost. With
-/// C + B·S·Bᵀ for the covariance of each of n radars and S for that of the constants, the covariances C + (n +
-/// 1)·B·S·Bᵀ and (n + 1)·S without correlations claim nothing that the joint covariance does not: x₀² + … + x_n² ≥ (Σ
-/// x)²/(n + 1).
+/// The correlations of a radar with what all radars share, and by way of it with the other radars, are lost. With
+/// C + B·S·Bᵀ for the covariance of each of n radars and S for that of the shared parameters, the covariances
+/// C + (n + 1)·B·S·Bᵀ and (n + 1)·S without correlations claim nothing that the joint covariance does not:
+/// (n + 1)·(x₀² + … + x_n²) ≥ (x₀ + … + x_n)².
 void WindowedFilter::save(Memory& memory) const {
   memory = {};
   memory.number_of_radars = radars_.size();
@@ -130,10 +115,7 @@ void WindowedFilter::save(Memory& memory) const {
     known.seconds_of_drive = radar.seconds_of_drive;
     known.fluctuation_variance = solution.fluctuation.variance;
     RememberedMatrix own = solution.covariance.topLeftCorner<kRemembered, kRemembered>();
-    if (parts > 1.0) {
-      own += (parts - 1.0) *
-             shared_part(solution, solver_.shared_covariance(), shared_stds).topLeftCorner<kRemembered, kRemembered>();
-    }
+    own += (parts - 1.0) * (solution.covariance - solution.conditional).topLeftCorner<kRemembered, kRemembered>();
     cap(own_prior_stds(priors_, solution.has_elevation), own);
     Eigen::Map<RememberedMatrix>(known.covariance.data()) = own;
   }
@@ -179,6 +161,7 @@ void WindowedFilter::restore(const Memory& memory) {
     correlation_s[k] = memory.correlation_s[k] > 0.0 ? memory.correlation_s[k] : solver_.correlation_s(k);
   }
   solver_.restore(constants, of_vehicle, common, correlation_s);
+  const auto number = static_cast<double>(radars_.size());
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     Radar& radar = radars_[r];
     const auto last = memory.radars.begin() + static_cast<std::ptrdiff_t>(memory.number_of_radars);
@@ -229,13 +212,14 @@ void WindowedFilter::restore(const Memory& memory) {
         fluctuation.variance[k] = known->fluctuation_variance[k];
       }
     }
-    // What a slow fluctuation has done meanwhile is not known.
+    // What a slow fluctuation has done meanwhile is not known. One of all radars is as large for each of them, and counts
+    // n-fold where it is taken as independent.
     RememberedVector changes = RememberedVector::Zero();
     changes.segment<3>(own::kRotation).setConstant(square(doubts.rotation_std_rad));
     changes(own::kRateScale) = square(doubts.rate_scale_std);
     constexpr std::array<int, kFluctuations> kOwnFluctuating{own::kRotation + 2, own::kRotation + 1, own::kRateScale};
     for (std::size_t k = 0; k < kFluctuations; ++k) {
-      changes(kOwnFluctuating[k]) += fluctuation.variance[k] + common.variance[k];
+      changes(kOwnFluctuating[k]) += fluctuation.variance[k] + number * common.variance[k];
     }
     doubt(stds, changes, own);
     OwnMatrix covariance = OwnMatrix::Zero();
