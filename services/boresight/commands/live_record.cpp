@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -49,13 +51,26 @@ void refuse_later_record(const fs::path& folder, std::int64_t start_ns) {
                   folder.string(), static_cast<double>(start_ns) * 1e-9, static_cast<double>(now_ns) * 1e-9));
 }
 
+/// Rows of this version do not fit under the header of another one.
+void refuse_other_columns(const fs::path& folder) {
+  const fs::path file = folder / "alignment.csv";
+  std::ifstream stream(file);
+  std::string header;
+  if (!std::getline(stream, header) || header == run::kAlignmentHeader) return;
+  throw std::runtime_error(
+      fmt::format("{}:1: its columns are those of another version of boresight; give another folder", file.string()));
+}
+
 /// Makes the folder, and removes what is no record to be continued.
 std::optional<std::int64_t> prepare(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw terminal::OutputError(folder.string(), error.value());
   const std::optional<std::int64_t> start_ns = start_of_record(folder);
-  if (start_ns) refuse_later_record(folder, *start_ns);
+  if (start_ns) {
+    refuse_later_record(folder, *start_ns);
+    refuse_other_columns(folder);
+  }
   fs::remove(folder / "run.json", error);
   if (start_ns) return start_ns;
   for (const std::string_view name : run::kFileNames) {
@@ -72,7 +87,7 @@ std::int64_t unix_now_ns() {
 
 }  // namespace
 
-LiveRecord::LiveRecord(const fs::path& folder)
+LiveRecord::LiveRecord(const fs::path& folder, const VehicleConfig& vehicle)
     : folder_(folder),
       earlier_start_ns_(prepare(folder)),
       epoch_offset_ns_(unix_now_ns() - runtime::monotonic_now_ns()),
@@ -84,7 +99,8 @@ LiveRecord::LiveRecord(const fs::path& folder)
         return files;
       }()),
       snapshots_(std::make_unique<terminal::AppendedFile>(folder / kSnapshotsFile)),
-      writer_([this](run::File file, std::string_view text) { put(file, text); }, earlier_start_ns_.has_value()),
+      writer_([this](run::File file, std::string_view text) { put(file, text); }, vehicle,
+              earlier_start_ns_.has_value()),
       results_({[this](const run::ScanResult& result) { writer_.write(result); },
                 [this](const run::EstimateResult& result) { writer_.write(result); },
                 [this](const run::HealthResult& result) { writer_.write(result); }},

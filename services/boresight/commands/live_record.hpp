@@ -22,7 +22,7 @@ class LiveRecord {
  public:
   /// Makes the folder. Throws terminal::OutputError, or std::runtime_error for tables of another version and for a
   /// record that begins later than now; such a folder stays as it is.
-  explicit LiveRecord(const std::filesystem::path& folder);
+  LiveRecord(const std::filesystem::path& folder, const VehicleConfig& vehicle);
 
   template <typename Message>
   void observe(const Message& message) {

@@ -76,7 +76,7 @@ int run_monitor(const MonitorOptions& options) {
   const VehicleConfig vehicle = options.configuration.vehicle();
   monitor::Accumulator accumulator(vehicle);
   std::optional<LiveRecord> record;
-  if (!options.record.empty()) record.emplace(options.record);
+  if (!options.record.empty()) record.emplace(options.record, vehicle);
   terminal::OutputFile output(options.json.empty() ? "-" : options.json);
 
   say_if_roudi_is_absent();

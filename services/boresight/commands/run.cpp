@@ -125,7 +125,7 @@ class RunDrive {
     // Inputs are opened before the folder is made, so that a wrong name leaves nothing.
     const auto begin_output = [&] {
       folder.emplace(options_.out);
-      writer.emplace([&](run::File file, std::string_view text) { folder->put(file, text); });
+      writer.emplace([&](run::File file, std::string_view text) { folder->put(file, text); }, vehicle_);
     };
     if (has_tables) {
       play_tables(*chain, begin_output);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "interfaces/messages/corrected_scan.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 
 namespace boresight::monitor {
 
@@ -27,6 +29,11 @@ AlignmentDetails details_of(const AlignmentEstimate& e) {
   d.yaw_rate_bias = {e.yaw_rate_bias_radps, e.yaw_rate_bias_std_radps, e.is_observable(alignment_axis::kYawRateBias)};
   d.slip = {e.slip_coefficient_radps2pm, e.slip_coefficient_std_radps2pm, e.is_observable(alignment_axis::kSlip)};
   d.step_changes = e.step_change.count;
+  d.reason = alignment_words::key_of(e.reason);
+  d.finding = alignment_words::key_of(e.finding);
+  d.range_rate_scale = e.nuisance.range_rate_scale.value;
+  d.range_rate_scale_std = e.nuisance.range_rate_scale.std;
+  d.drift = alignment_words::drift_sentence(e.drift);
   d.yaw_seconds_to_95_percent = e.kpis.seconds_to_95_percent[static_cast<std::size_t>(AlignmentParameter::kYaw)];
   d.pitch_seconds_to_95_percent = e.kpis.seconds_to_95_percent[static_cast<std::size_t>(AlignmentParameter::kPitch)];
   d.yaw_drift_radpmin = e.kpis.drift_per_minute[static_cast<std::size_t>(AlignmentParameter::kYaw)];
@@ -37,7 +44,7 @@ AlignmentDetails details_of(const AlignmentEstimate& e) {
 
 }  // namespace
 
-Accumulator::Accumulator(const VehicleConfig& vehicle) {
+Accumulator::Accumulator(const VehicleConfig& vehicle) : vehicle_(vehicle) {
   for (const RadarConfig& config : vehicle.radars) {
     RadarMemory memory;
     memory.seen.id = config.id;
@@ -147,13 +154,24 @@ void Accumulator::observe(const TrackList& list) {
   }
 }
 
+void Accumulator::explain(std::uint32_t radar_id, std::string explanation,
+                          const std::array<bool, 3>& beyond_tolerance) {
+  RadarSnapshot& seen = radar(radar_id).seen;
+  seen.explanation = std::move(explanation);
+  seen.beyond_tolerance = beyond_tolerance;
+}
+
 void Accumulator::observe(const HealthReport& report) {
+  current_.load_change = alignment_words::load_change_sentence(report.load_change);
+  current_.speed_change = alignment_words::speed_change_sentence(report.speed_change);
   for (std::size_t i = 0; i < std::min<std::size_t>(report.number_of_sensors, kMaxRadars); ++i) {
     const SensorHealth& health = report.sensors[i];
     if (health.radar_id == 0) continue;
     RadarSnapshot& seen = radar(health.radar_id).seen;
     seen.data_qualifier = health.data_qualifier;
     seen.extended_qualifier = health.extended_qualifier;
+    explain(health.radar_id, alignment_words::explanation_of(health, vehicle_),
+            {health.yaw.beyond_tolerance != 0, health.pitch.beyond_tolerance != 0, health.roll.beyond_tolerance != 0});
     seen.conditions = health.conditions;
     seen.missed = health.missed_scans;
     seen.suspect = health.suspect_scans;

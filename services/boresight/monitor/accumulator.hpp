@@ -24,6 +24,8 @@ class Accumulator {
   void observe(const TrackList& tracks);
   void observe(const HealthReport& report);
   void observe(const ServiceStatus& status);
+  /// What a health report says of a radar, for a source that has it in words already.
+  void explain(std::uint32_t radar_id, std::string explanation, const std::array<bool, 3>& beyond_tolerance);
 
   [[nodiscard]] Snapshot snapshot(std::int64_t now_ns) const;
 
@@ -36,6 +38,7 @@ class Accumulator {
   [[nodiscard]] RadarMemory& radar(std::uint32_t id);
   [[nodiscard]] ServiceSnapshot& service(std::uint32_t index);
 
+  VehicleConfig vehicle_;
   std::vector<RadarMemory> radars_;
   Snapshot current_;
 };

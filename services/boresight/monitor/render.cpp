@@ -136,19 +136,25 @@ void put_radars(Page& page, const Snapshot& snapshot) {
     const bool known = is_estimated(r);
     page.put(text::padded(r.name, name_width), Ink::kBold);
     page.put(fmt::format("{:<32}", verdict(r)), ink_of(r));
-    const bool beyond = r.extended_qualifier == ExtendedQualifier::kMisaligned;
+    const auto ink = [&r](std::size_t axis) { return r.beyond_tolerance[axis] ? Ink::kBad : Ink::kPlain; };
     const AlignmentDetails& d = r.details;
-    page.put(fmt::format("{:<19}", angle_text(d.yaw, known)), beyond ? Ink::kBad : Ink::kPlain);
+    page.put(fmt::format("{:<19}", angle_text(d.yaw, known)), ink(0));
     page.put(
         fmt::format("{:<21}", known ? text::with_std(r.speed_scale, r.speed_scale_std) : std::string(text::kUnknown)));
     page.put(fmt::format("{:>8.1f}{:>5}{:>7}{:>6}  ", r.rate_hz, r.detections, r.moving, r.ghosts));
     page.put(fmt::format("{:<12}", name_of(r.state)));
-    page.put(fmt::format("{:<19}{:<19}", angle_text(d.pitch, known), angle_text(d.roll, known)));
+    page.put(fmt::format("{:<19}", angle_text(d.pitch, known)), ink(1));
+    page.put(fmt::format("{:<19}", angle_text(d.roll, known)), ink(2));
     page.put(fmt::format("{:>8}{:>12}", text::fixed(d.yaw_seconds_to_95_percent, 1, " s"),
                          text::fixed(d.yaw_drift_radpmin * kDegreesPerRadian, 3, "°", text::Sign::kAlways)));
     page.line();
     if (const std::string text = complaint(r); !text.empty()) {
       page.put(std::string(name_width, ' ') + text, Ink::kWarning);
+      page.line();
+    }
+    if (!r.explanation.empty()) {
+      page.put(std::string(name_width, ' ') + text::printable(r.explanation),
+               r.extended_qualifier == ExtendedQualifier::kNormal ? Ink::kDim : Ink::kWarning);
       page.line();
     }
   }
@@ -169,6 +175,11 @@ void put_ego(Page& page, const Snapshot& snapshot) {
     page.put(slip.observable ? text::with_std(slip.value_rad, slip.std_rad, " rad per m/s²") : "not observable");
   }
   page.line();
+  for (const std::string& event : {snapshot.load_change, snapshot.speed_change}) {
+    if (event.empty()) continue;
+    page.put("         " + text::printable(event));
+    page.line();
+  }
 }
 
 void put_tracks(Page& page, const Snapshot& snapshot, std::size_t limit) {

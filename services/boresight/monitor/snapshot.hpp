@@ -22,6 +22,10 @@
 
 namespace boresight::monitor {
 
+/// Keys of RadarSnapshot::beyond_tolerance.
+inline constexpr std::array<const char*, 3> kBeyondKeys = {"yaw_beyond_tolerance", "pitch_beyond_tolerance",
+                                                           "roll_beyond_tolerance"};
+
 struct AngleEstimate {
   double value_rad = 0.0;
   double std_rad = 0.0;
@@ -35,6 +39,10 @@ struct AlignmentDetails {
   AngleEstimate yaw_rate_bias;  ///< rad/s
   AngleEstimate slip;           ///< rad per m/s²
   std::uint32_t step_changes = 0;
+  std::string reason = "none";                                ///< keys of alignment_words
+  std::string finding = "none";                               //
+  double range_rate_scale = 0.0, range_rate_scale_std = 0.0;  ///< measured / true range rate − 1; 0 ± 0: not estimated
+  std::string drift;                                          ///< a drift that is reported, as a sentence; empty: none
   double yaw_seconds_to_95_percent = std::numeric_limits<double>::quiet_NaN();
   double pitch_seconds_to_95_percent = std::numeric_limits<double>::quiet_NaN();
   double yaw_drift_radpmin = std::numeric_limits<double>::quiet_NaN();
@@ -76,6 +84,9 @@ struct RadarSnapshot {
   AlignmentDetails details;
   DataQualifier data_qualifier = DataQualifier::kNotAvailable;
   ExtendedQualifier extended_qualifier = ExtendedQualifier::kInitialising;
+  /// Of the health report: the wrong input, axes beyond their tolerance, a drift, or why the estimate is not converged.
+  std::string explanation;
+  std::array<bool, 3> beyond_tolerance{};  ///< yaw, pitch, roll
   double yaw_tolerance_rad = 0.0;
   std::uint32_t conditions = 0;  ///< source_condition bits of the sensor; this and the next two from health reports
   std::uint64_t missed = 0;      ///< sent by the sensor, lost or incomplete at the gateway
@@ -115,6 +126,7 @@ struct Snapshot {
   double ego_speed_mps = 0.0;
   double ego_yaw_rate_radps = 0.0;
   std::uint64_t track_lists = 0;
+  std::string load_change, speed_change;  ///< the latest of the vehicle, as sentences; empty: none was reported
   std::vector<RadarSnapshot> radars;      ///< in the order of the vehicle file
   std::vector<TrackSnapshot> tracks;      ///< nearest first
   std::vector<ServiceSnapshot> services;  ///< in the order of the catalogue

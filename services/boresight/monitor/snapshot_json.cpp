@@ -41,6 +41,11 @@ void add_details(json::Value& value, const AlignmentDetails& d) {
   value["vehicle_roll_deg"] = estimate_of(d.roll, kDegreesPerRadian);
   value["yaw_rate_bias_degps"] = estimate_of(d.yaw_rate_bias, kDegreesPerRadian);
   value["slip_coefficient_radps2pm"] = estimate_of(d.slip, 1.0);
+  value["reason"] = d.reason;
+  value["finding"] = d.finding;
+  value["range_rate_scale"] = digits_of(d.range_rate_scale);
+  value["range_rate_scale_std"] = digits_of(d.range_rate_scale_std);
+  value["drift"] = d.drift;
   value["step_changes"] = d.step_changes;
   value["yaw_seconds_to_95_percent"] = digits_of(d.yaw_seconds_to_95_percent);
   value["pitch_seconds_to_95_percent"] = digits_of(d.pitch_seconds_to_95_percent);
@@ -74,6 +79,8 @@ json::Value object_of(const RadarSnapshot& r) {
   value["speed_scale_std"] = digits_of(r.speed_scale_std);
   value["data_qualifier"] = name_of(r.data_qualifier);
   value["extended_qualifier"] = name_of(r.extended_qualifier);
+  value["explanation"] = r.explanation;
+  for (std::size_t i = 0; i < kBeyondKeys.size(); ++i) value[kBeyondKeys[i]] = r.beyond_tolerance[i];
   value["missed"] = r.missed;
   value["suspect"] = r.suspect;
   value["conditions"] = words_of_conditions(r.conditions);
@@ -139,6 +146,8 @@ std::string to_json(const Snapshot& snapshot) {
   value["ego_speed_mps"] = digits_of(snapshot.ego_speed_mps);
   value["ego_yaw_rate_radps"] = digits_of(snapshot.ego_yaw_rate_radps);
   value["track_lists"] = snapshot.track_lists;
+  value["load_change"] = snapshot.load_change;
+  value["speed_change"] = snapshot.speed_change;
   value["radars"] = array_of(snapshot.radars);
   value["tracks"] = array_of(snapshot.tracks);
   value["services"] = array_of(snapshot.services);

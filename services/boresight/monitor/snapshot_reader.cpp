@@ -114,6 +114,11 @@ AlignmentDetails details_at(const Fields& fields) {
   d.yaw_rate_bias = estimate_at(fields, "yaw_rate_bias_degps", kRadiansPerDegree);
   d.slip = estimate_at(fields, "slip_coefficient_radps2pm", 1.0);
   fields.read("step_changes", d.step_changes);
+  d.reason = fields.text("reason");
+  d.finding = fields.text("finding");
+  d.range_rate_scale = fields.number("range_rate_scale");
+  d.range_rate_scale_std = fields.number("range_rate_scale_std");
+  d.drift = fields.text("drift");
   d.yaw_seconds_to_95_percent = fields.number("yaw_seconds_to_95_percent");
   d.pitch_seconds_to_95_percent = fields.number("pitch_seconds_to_95_percent");
   d.yaw_drift_radpmin = fields.number("yaw_drift_degpmin") * kRadiansPerDegree;
@@ -140,7 +145,9 @@ RadarSnapshot radar_at(const Fields& fields) {
   r.speed_scale = fields.number("speed_scale");
   r.speed_scale_std = fields.number("speed_scale_std");
   r.data_qualifier = fields.value("data_qualifier", DataQualifier::kNotAvailable);
-  r.extended_qualifier = fields.value("extended_qualifier", ExtendedQualifier::kInitialising);
+  r.extended_qualifier = fields.value("extended_qualifier", ExtendedQualifier::kWrongInput);
+  r.explanation = fields.text("explanation");
+  for (std::size_t i = 0; i < kBeyondKeys.size(); ++i) r.beyond_tolerance[i] = fields.flag(kBeyondKeys[i]);
   fields.read("missed", r.missed);
   fields.read("suspect", r.suspect);
   fields.read("condition_bits", r.conditions);
@@ -216,6 +223,8 @@ Snapshot snapshot_at(const Fields& fields) {
   snapshot.ego_speed_mps = fields.number("ego_speed_mps");
   snapshot.ego_yaw_rate_radps = fields.number("ego_yaw_rate_radps");
   fields.read("track_lists", snapshot.track_lists);
+  snapshot.load_change = fields.text("load_change");
+  snapshot.speed_change = fields.text("speed_change");
   read_array(fields, "radars", snapshot.radars, radar_at);
   read_array(fields, "tracks", snapshot.tracks, track_at);
   read_array(fields, "services", snapshot.services, service_at);

@@ -140,7 +140,14 @@ class Playback {
             message_of(*estimates_, sample_, radar == nullptr ? MountingPose{} : radar->mounting_pose));
       });
     }
-    if (health_) next_verdicts_.advance(time_ns, [this] { accumulator_.observe(message_of(verdicts_)); });
+    if (health_) {
+      next_verdicts_.advance(time_ns, [this] {
+        accumulator_.observe(message_of(verdicts_));
+        for (const score::RunVerdicts::Radar& radar : verdicts_.radars) {
+          accumulator_.explain(radar.radar, radar.explanation, radar.beyond_tolerance);
+        }
+      });
+    }
     out.snapshots.push_back(accumulator_.snapshot(time_ns));
     out.snapshots.back().services.clear();
   }

@@ -119,16 +119,25 @@ std::string verdict_line(const RadarSummary& radar) {
   const RadarSnapshot& last = radar.last;
   const std::string_view qualifier = name_of(last.data_qualifier);
   const double tolerance_deg = last.yaw_tolerance_rad * kDegreesPerRadian;
+  if (radar.misaligned && !last.explanation.empty())
+    return fmt::format("{}: MISALIGNED, {}", last.name, last.explanation);
+  if (radar.misaligned && !(std::abs(last.yaw.value_rad) > last.yaw_tolerance_rad)) {
+    return fmt::format("{}: MISALIGNED, an axis other than yaw is beyond its tolerance", last.name);
+  }
   if (radar.misaligned) {
-    return fmt::format("{}: MISALIGNED, yaw {}, beyond the tolerance of {:.1f}°", last.name, yaw_text(last),
+    return fmt::format("{}: MISALIGNED, yaw {}, beyond the tolerance of {:.3g}°", last.name, yaw_text(last),
                        tolerance_deg);
   }
   if (last.extended_qualifier != ExtendedQualifier::kNormal) {
-    return fmt::format("{}: {} ({})", last.name, qualifier, name_of(last.extended_qualifier));
+    return fmt::format("{}: {} ({}){}{}", last.name, qualifier, name_of(last.extended_qualifier),
+                       last.explanation.empty() ? "" : ", ", last.explanation);
   }
-  if (!has_estimate(last)) return fmt::format("{}: {}, no alignment estimate", last.name, qualifier);
+  if (!has_estimate(last)) {
+    return fmt::format("{}: {}, no alignment estimate{}{}", last.name, qualifier, last.explanation.empty() ? "" : ": ",
+                       last.explanation);
+  }
   const bool within = std::abs(last.yaw.value_rad) <= last.yaw_tolerance_rad;
-  return fmt::format("{}: {}, yaw {}, {} the tolerance of {:.1f}°", last.name, qualifier, yaw_text(last),
+  return fmt::format("{}: {}, yaw {}, {} the tolerance of {:.3g}°", last.name, qualifier, yaw_text(last),
                      within ? "within" : "not significantly beyond", tolerance_deg);
 }
 

@@ -24,10 +24,11 @@ DataQualifier overall_of(const HealthResult& verdicts) {
 }
 
 bool differ(const HealthResult& a, const HealthResult& b) {
+  if (a.load_change.time_ns != b.load_change.time_ns || a.speed_change.time_ns != b.speed_change.time_ns) return true;
   for (std::size_t i = 0; i < a.number_of_sensors; ++i) {
     const SensorHealth &x = a.sensors[i], &y = b.sensors[i];
     if (x.data_qualifier != y.data_qualifier || x.extended_qualifier != y.extended_qualifier ||
-        x.conditions != y.conditions) {
+        x.conditions != y.conditions || x.finding != y.finding || (x.drift.since_ns != 0) != (y.drift.since_ns != 0)) {
       return true;
     }
   }
@@ -54,7 +55,11 @@ void HealthWatch::observe(const RadarScan& scan) {
 }
 
 void HealthWatch::observe(const AlignmentEstimate& estimate) {
-  if (health::SensorMonitor* const s = sensor(estimate.header.source_id)) s->observe(estimate);
+  health::SensorMonitor* const s = sensor(estimate.header.source_id);
+  if (s == nullptr) return;
+  s->observe(estimate);
+  if (estimate.load_change.time_ns > load_change_.time_ns) load_change_ = estimate.load_change;
+  if (estimate.speed_change.time_ns > speed_change_.time_ns) speed_change_ = estimate.speed_change;
 }
 
 void HealthWatch::take(std::span<const SourceStatistics> sources, std::int64_t own_ns) {
@@ -68,6 +73,8 @@ void HealthWatch::judge(std::int64_t own_ns, bool always, const Report& report) 
   verdicts.number_of_sensors = sensors_.size();
   for (std::size_t i = 0; i < sensors_.size(); ++i) verdicts.sensors[i] = sensors_[i].judge(own_ns);
   verdicts.overall = overall_of(verdicts);
+  verdicts.load_change = load_change_;
+  verdicts.speed_change = speed_change_;
   if (has_reported_ && !always && own_ns < next_report_ns_ && !differ(verdicts, reported_)) return;
   if (own_ns >= next_report_ns_) next_report_ns_ = own_ns + kReportPeriod_ns;
   reported_ = verdicts;

@@ -45,6 +45,7 @@ class HealthWatch {
   VehicleConfig vehicle_;
   health::Config config_;
   std::vector<health::SensorMonitor> sensors_;
+  AlignmentVehicleChange load_change_{}, speed_change_{};  ///< the latest that an estimate reported
   HealthResult reported_;
   bool has_reported_ = false;
   std::int64_t reported_ns_ = 0;

@@ -17,11 +17,13 @@ bool is_radar(std::uint32_t id) {
 }
 
 bool have_same_verdicts(const HealthResult& a, const HealthResult& b) {
+  if (a.load_change.time_ns != b.load_change.time_ns || a.speed_change.time_ns != b.speed_change.time_ns) return false;
   if (a.overall != b.overall || a.number_of_sensors != b.number_of_sensors) return false;
   return std::equal(a.sensors.begin(), a.sensors.begin() + static_cast<std::ptrdiff_t>(a.number_of_sensors),
                     b.sensors.begin(), [](const SensorHealth& x, const SensorHealth& y) {
                       return x.radar_id == y.radar_id && x.data_qualifier == y.data_qualifier &&
-                             x.extended_qualifier == y.extended_qualifier;
+                             x.extended_qualifier == y.extended_qualifier && x.finding == y.finding &&
+                             (x.drift.since_ns != 0) == (y.drift.since_ns != 0);
                     });
 }
 
@@ -117,6 +119,8 @@ void LiveResults::observe(const HealthReport& report) {
   HealthResult verdicts;
   verdicts.at = {report.header.measurement_time_ns, *start_ns_};
   verdicts.overall = report.overall;
+  verdicts.load_change = report.load_change;
+  verdicts.speed_change = report.speed_change;
   for (std::size_t i = 0; i < std::min<std::size_t>(report.number_of_sensors, kMaxRadars); ++i) {
     if (is_radar(report.sensors[i].radar_id)) verdicts.sensors[verdicts.number_of_sensors++] = report.sensors[i];
   }

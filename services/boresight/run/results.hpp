@@ -48,6 +48,8 @@ struct EstimateResult {
 struct HealthResult {
   Moment at;
   DataQualifier overall = DataQualifier::kNotAvailable;
+  AlignmentVehicleChange load_change{};   ///< of the vehicle, the latest
+  AlignmentVehicleChange speed_change{};  //
   std::size_t number_of_sensors = 0;
   std::array<SensorHealth, kMaxRadars> sensors{};
 };

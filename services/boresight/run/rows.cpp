@@ -9,6 +9,7 @@
 #include "services/boresight/run/csv_row.hpp"
 #include "services/boresight/run/origins.hpp"
 #include "services/boresight/run/words.hpp"
+#include "services/common/alignment_words/alignment_words.hpp"
 
 namespace boresight::run {
 
@@ -135,7 +136,11 @@ void append_estimate(std::string& rows, const EstimateResult& result) {
   for (Eigen::Index a = 0; a < result.covariance.rows(); ++a) {
     for (Eigen::Index b = a; b < result.covariance.cols(); ++b) row.number(static_cast<float>(result.covariance(a, b)));
   }
-  row.word(names_of_axes(message.observable)).number(message.kpis.inlier_ratio).number(message.step_change.count).end();
+  row.word(names_of_axes(message.observable)).number(message.kpis.inlier_ratio).number(message.step_change.count);
+  for (const AlignmentValue& value : {message.nuisance.load_pitch_rad, message.nuisance.range_rate_scale}) {
+    row.number(value.value).number(value.std);
+  }
+  row.word(alignment_words::key_of(message.reason)).word(alignment_words::key_of(message.finding)).end();
 }
 
 }  // namespace boresight::run

@@ -28,7 +28,7 @@ inline constexpr std::string_view kTracksHeader =
 inline constexpr std::string_view kAlignmentHeader =
     "t_s,time_ns,radar,state,speed_scale,yaw_rad,pitch_rad,roll_rad,rotation_x_rad,rotation_y_rad,rotation_z_rad,"
     "cov_k_k,cov_k_x,cov_k_y,cov_k_z,cov_x_x,cov_x_y,cov_x_z,cov_y_y,cov_y_z,cov_z_z,observable,inlier_ratio,"
-    "step_changes";
+    "step_changes,load_pitch_rad,load_pitch_std_rad,range_rate_scale,range_rate_scale_std,reason,finding";
 
 /// Names of pipeline_flag bits, joined by '+'; "" if none is set.
 [[nodiscard]] std::string names_of_flags(std::uint32_t pipeline_flags);

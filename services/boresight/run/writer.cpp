@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kEnough_bytes = 1 << 16;
 }
 
-Writer::Writer(Put put, bool has_headers) : put_(std::move(put)) {
+Writer::Writer(Put put, VehicleConfig vehicle, bool has_headers) : put_(std::move(put)), vehicle_(std::move(vehicle)) {
   if (has_headers) return;
   constexpr std::array<std::pair<File, std::string_view>, 5> kHeaders = {{{File::kScans, kScansHeader},
                                                                           {File::kDetections, kDetectionsHeader},
@@ -34,7 +34,7 @@ void Writer::write(const EstimateResult& result) {
 }
 
 void Writer::write(const HealthResult& result) {
-  rows(File::kHealth) += to_json_line(result);
+  rows(File::kHealth) += to_json_line(result, vehicle_);
   hand_over(kEnough_bytes);
 }
 

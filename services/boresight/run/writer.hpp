@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "services/boresight/run/results.hpp"
+#include "services/common/vehicle/vehicle.hpp"
 
 namespace boresight::run {
 
@@ -20,8 +21,9 @@ class Writer {
   /// Appends text to a file.
   using Put = std::function<void(File, std::string_view text)>;
 
-  /// The header lines are the first rows, unless the files have them already.
-  explicit Writer(Put put, bool has_headers = false);
+  /// The header lines are the first rows, unless the files have them already. `vehicle` has the radars' names for the
+  /// sentences of health.jsonl.
+  Writer(Put put, VehicleConfig vehicle, bool has_headers = false);
 
   void write(const ScanResult& result);
   void write(const EstimateResult& result);
@@ -34,10 +36,11 @@ class Writer {
   void hand_over(std::size_t least_bytes);
 
   Put put_;
+  VehicleConfig vehicle_;
   std::array<std::string, kFileNames.size()> rows_;
 };
 
 /// A line of health.jsonl, with line feed.
-[[nodiscard]] std::string to_json_line(const HealthResult& result);
+[[nodiscard]] std::string to_json_line(const HealthResult& result, const VehicleConfig& vehicle);
 
 }  // namespace boresight::run

@@ -103,6 +103,42 @@ TEST(Accumulator, RestartedWriterIsNoLoss) {
   EXPECT_EQ(accumulator.snapshot(3).radars[0].lost, 0U);
 }
 
+TEST(Accumulator, TakesReasonAxisAndChangesAndKeepsThemThroughARecord) {
+  Accumulator accumulator(vehicle());
+  AlignmentEstimate estimate{};
+  estimate.header.source_id = 1;
+  estimate.reason = AlignmentReason::kWrongInput;
+  estimate.finding = AlignmentFinding::kSpeedZero;
+  estimate.nuisance.range_rate_scale = {0.0025F, 0.0005F};
+  accumulator.observe(estimate);
+  HealthReport report{};
+  report.number_of_sensors = 2;
+  report.sensors[0].radar_id = 1;
+  report.sensors[0].extended_qualifier = ExtendedQualifier::kWrongInput;
+  report.sensors[0].finding = AlignmentFinding::kSpeedZero;
+  report.sensors[1].radar_id = 2;
+  report.sensors[1].extended_qualifier = ExtendedQualifier::kMisaligned;
+  report.sensors[1].roll = {0.0733F, 0.0037F, 0.0524F, 1, 1, 0, 0};
+  report.load_change = {5, 0.0136F, 1};
+  accumulator.observe(report);
+  std::istringstream record(to_json(accumulator.snapshot(1)));
+  DamagedLines damaged;
+  const std::vector<Snapshot> read = read_snapshots(record, "record", damaged);
+  ASSERT_EQ(read.size(), 1U);
+  const RadarSnapshot &left = read[0].radars[0], &right = read[0].radars[1];
+  EXPECT_EQ(left.details.reason, "wrong_input");
+  EXPECT_EQ(left.details.finding, "speed_zero");
+  EXPECT_NEAR(left.details.range_rate_scale, 0.0025, 1e-7);
+  EXPECT_EQ(left.extended_qualifier, ExtendedQualifier::kWrongInput);
+  EXPECT_EQ(left.explanation, "speed signal is zero although the vehicle moves");
+  EXPECT_EQ(right.explanation, "roll +4.20 ± 0.21°, beyond the tolerance of 3°");
+  EXPECT_EQ(right.beyond_tolerance, (std::array<bool, 3>{false, false, true}));
+  EXPECT_EQ(read[0].load_change, "load changed the vehicle's pitch by +0.78° (nose up)");
+  const std::string screen = render_screen(read[0], {.width = 300});
+  EXPECT_THAT(screen, ::testing::HasSubstr("beyond the tolerance of 3°"));
+  EXPECT_THAT(screen, ::testing::HasSubstr("load changed the vehicle's pitch"));
+}
+
 TEST(Accumulator, UnknownRadarGetsARow) {
   Accumulator accumulator(vehicle());
   see_scan(accumulator, 9, 1, 0);

@@ -32,6 +32,32 @@ TEST(Summary, GoodDrivePassesAndNamesTheMisalignedRadar) {
   EXPECT_EQ(summary.distinct_confirmed_tracks, 6U);
 }
 
+TEST(Summary, NamesTheAxisThatIsBeyondItsTolerance) {
+  auto snapshots = synthetic_drive();
+  for (auto& s : snapshots) {
+    s.radars[1].yaw.value_rad = 0.0;
+    if (s.radars[1].extended_qualifier == ExtendedQualifier::kMisaligned) {
+      s.radars[1].explanation = "roll +4.20 ± 0.21°, beyond the tolerance of 3°";
+    }
+  }
+  EXPECT_EQ(verdict_line(summarise(snapshots, synthetic_truth()).radars[1]),
+            "front_right: MISALIGNED, roll +4.20 ± 0.21°, beyond the tolerance of 3°");
+  for (auto& s : snapshots) s.radars[1].explanation.clear();
+  EXPECT_EQ(verdict_line(summarise(snapshots, synthetic_truth()).radars[1]),
+            "front_right: MISALIGNED, an axis other than yaw is beyond its tolerance");
+}
+
+TEST(Summary, NamesAWrongInput) {
+  auto snapshots = synthetic_drive();
+  for (auto& s : snapshots) {
+    s.radars[0].data_qualifier = DataQualifier::kAvailableReduced;
+    s.radars[0].extended_qualifier = ExtendedQualifier::kWrongInput;
+    s.radars[0].explanation = "speed signal in km/h (3.6 times too large)";
+  }
+  EXPECT_EQ(verdict_line(summarise(snapshots, synthetic_truth()).radars[0]),
+            "front_left: AVAILABLE_REDUCED (WRONG_INPUT), speed signal in km/h (3.6 times too large)");
+}
+
 TEST(Summary, MissedMisalignmentFails) {
   auto snapshots = synthetic_drive();
   for (auto& s : snapshots) s.radars[1].extended_qualifier = ExtendedQualifier::kNormal;

@@ -55,7 +55,7 @@ inline const simulator::DriveFiles& demo_drive() {
 /// A writer whose files are texts.
 struct TextFiles {
   std::array<std::string, kFileNames.size()> texts;
-  Writer writer{[this](File file, std::string_view text) { texts[static_cast<std::size_t>(file)] += text; }};
+  Writer writer{[this](File file, std::string_view text) { texts[static_cast<std::size_t>(file)] += text; }, {}};
   [[nodiscard]] Listeners listeners() {
     return {[this](const ScanResult& r) { writer.write(r); }, [this](const EstimateResult& r) { writer.write(r); },
             [this](const HealthResult& r) { writer.write(r); }};

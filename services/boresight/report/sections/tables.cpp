@@ -38,7 +38,8 @@ std::string render_table(const Summary& summary) {
         "<td class=n>{}</td><td class=\"{}\">{}</td></tr>\n",
         escape(last.name), last.scans, last.lost, yaw_text(last), true_yaw_text(radar), deviation,
         speed_scale_text(last), last.data_qualifier == DataQualifier::kAvailable ? "good" : "bad",
-        radar.misaligned ? "MISALIGNED" : escape(monitor::verdict(last)));
+        (radar.misaligned ? "MISALIGNED" : escape(monitor::verdict(last))) +
+            (last.explanation.empty() ? "" : ": " + escape(last.explanation)));
   }
   return text + "</table>\n";
 }
