@@ -86,6 +86,8 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   w.priors.drift_std_radps =
       drift.angle_deg("std_deg_per_min", {0.0, 10.0}, w.priors.drift_std_radps * kPerMinute) / kPerMinute;
   w.priors.drift_span_s = drift.number("span_s", {10.0, 36000.0}, w.priors.drift_span_s);
+  w.change.drift_rad = drift.angle_deg("least_deg", {0.01, 30.0}, w.change.drift_rad);
+  w.change.drift_stds = drift.number("stds", {1.0, 100.0}, w.change.drift_stds);
 
   config::Reader motion = table.table("motion");
   c.speed_std_mps = motion.number("speed_std_mps", {1e-4, 5.0}, c.speed_std_mps);
@@ -103,6 +105,8 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   config::Reader convergence = table.table("convergence");
   c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
   c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
+  c.min_inlier_share = convergence.number("min_inlier_share", {0.0, 1.0}, c.min_inlier_share);
+  c.max_noise_scale = convergence.number("max_noise_scale", {1.0, 3.4}, c.max_noise_scale);
 
   config::Reader remembered = table.table("remembered");
   windows::RestoreConfig& r = w.restore;

@@ -41,6 +41,8 @@ struct FilterConfig {
   // Convergence as published.
   double converged_yaw_std_rad = 0.00175;  ///< 0.1°
   double min_seconds_to_converge = 5.0;
+  double min_inlier_share = 0.15;  ///< of stationary detections in recent scans; choice
+  double max_noise_scale = 3.3;    ///< σ of the residuals over the stated ones; choice
 
   // Inflation of a memory from an earlier drive: the car may have been repaired since.
   double memory_inflation = 4.0;

@@ -30,8 +30,10 @@ struct ChangeConfig {
   double least_detections = 50.0;               ///< of a block, stationary
   CommonConfig load{0.00436, 6.0, 0.0035, 10};  ///< the body's pitch (rad): 0.25°, 0.2°
   CommonConfig speed{0.005, 6.0, 0.001, 10};    ///< scale of the speed signal
-  double watch_s = 14.0;  ///< driving time after which a load change that a restart allowed is decided
-  double wait_s = 45.0;   ///< driving time before the first change is reported
+  double drift_rad = 0.00175;                   ///< smallest drift over Priors::drift_span_s that is reported, 0.1°
+  double drift_stds = 4.0;                      ///< and in its own std
+  double watch_s = 14.0;            ///< driving time after which a load change that a restart allowed is decided
+  double wait_s = 25.0;             ///< driving time before the first change is reported
   double settled_yaw_rad = 0.0052;  ///< and a radar's yaw is known better than this, 0.3°
 };
 

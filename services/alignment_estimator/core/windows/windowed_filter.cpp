@@ -60,6 +60,11 @@ WindowedFilter::WindowedFilter(const VehicleConfig& vehicle, const FilterConfig&
   }
 }
 
+void WindowedFilter::step() {
+  if (!solver_.step(segments_)) return;
+  for (std::size_t r = 0; r < radars_.size(); ++r) judge_drift(r);
+}
+
 bool WindowedFilter::usable(const EgoSample& ego) const {
   return ego.valid && !ego.stale && std::abs(ego.speed_mps) >= config_.min_speed_mps &&
          std::abs(ego.speed_mps) < kMaxSpeed_mps && std::abs(ego.yaw_rate_radps) < kMaxYawRate_radps;
@@ -82,15 +87,16 @@ void WindowedFilter::process(std::size_t index, const ScanDetections& scan, cons
   const double since_s = radar.last_time_ns == 0 ? 0.0 : seconds(scan.time_ns - radar.last_time_ns);
   const double elapsed_s = since_s > 0.0 && since_s < kMaxGap_s ? since_s : radar.config.cycle_time_s;
   radar.last_time_ns = scan.time_ns;
-  if (solver_.busy()) (void)solver_.step(segments_);
+  if (solver_.busy()) step();
   if (!usable(ego)) {
-    radar.state = std::max(radar.state, AlignmentState::kWaiting);
+    const bool slow = ego.valid && !ego.stale && std::abs(ego.speed_mps) < config_.min_speed_mps;
+    wait(radar, slow ? AlignmentReason::kTooSlow : AlignmentReason::kNoEgoMotion);
     return;
   }
   take_sightings(scan, radar.config, radar.unknown, config_.azimuth_std_edge, radar.noise.angle_variance_factor(),
                  sightings_);
   if (sightings_.count < kMinSightings) {
-    radar.state = std::max(radar.state, AlignmentState::kWaiting);
+    wait(radar, AlignmentReason::kTooFewDetections);
     return;
   }
   const ScanMotion3d motion = trend_.at(scan.time_ns, ego);
@@ -105,17 +111,32 @@ void WindowedFilter::process(std::size_t index, const ScanDetections& scan, cons
   if (!radar.running) {
     search(index, motion, elapsed_s);
     if (!radar.running) {
-      radar.state = std::max(radar.state, AlignmentState::kWaiting);
+      wait(radar, AlignmentReason::kNoConsistentStart);
       return;
     }
   } else {
     update(index, motion, ego, elapsed_s);
   }
   radar.seconds_of_drive += elapsed_s;
-  const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
-  const bool sure = std::sqrt(yaw_variance) < config_.converged_yaw_std_rad &&
-                    radar.seconds_of_drive >= config_.min_seconds_to_converge;
-  radar.state = sure ? AlignmentState::kConverged : AlignmentState::kConverging;
+  radar.reason = reason_of(index);
+  radar.state = radar.reason == AlignmentReason::kNone ? AlignmentState::kConverged : AlignmentState::kConverging;
+}
+
+void WindowedFilter::wait(Radar& radar, AlignmentReason reason) {
+  radar.state = std::max(radar.state, AlignmentState::kWaiting);
+  if (radar.state == AlignmentState::kWaiting) radar.reason = reason;
+}
+
+AlignmentReason WindowedFilter::reason_of(std::size_t index) const {
+  const Radar& radar = radars_[index];
+  if (radar.inlier_ratio < config_.min_inlier_share) return AlignmentReason::kFewInliers;
+  const double noise = std::max(radar.noise.rate_variance_factor(), radar.noise.angle_variance_factor());
+  if (noise > square(config_.max_noise_scale)) return AlignmentReason::kLargeResidual;
+  const double yaw_std = std::sqrt(solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2));
+  if (!(yaw_std < priors_.rotation_std_rad / 3.0)) return AlignmentReason::kNotObservable;
+  if (!(yaw_std < config_.converged_yaw_std_rad)) return AlignmentReason::kLargeStd;
+  if (radar.seconds_of_drive < config_.min_seconds_to_converge) return AlignmentReason::kShortDrive;
+  return AlignmentReason::kNone;
 }
 
 void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, double elapsed_s) {
@@ -219,7 +240,7 @@ void WindowedFilter::close_block() {
   bool any = false;
   for (const Radar& radar : radars_) any = any || (radar.running && radar.block.scans > 0);
   if (!any) return;
-  while (solver_.busy()) (void)solver_.step(segments_);
+  while (solver_.busy()) step();
   judge_block();
   const bool due = segments_.size() == 0 ||
                    segments_.segment(segments_.size() - 1).seconds >= kSegment_s - 0.5 * kBlock_s ||
@@ -240,8 +261,7 @@ void WindowedFilter::close_block() {
     solver_.begin(driven_s_);
     solved_s_ = driven_s_;
     // At the start every second counts.
-    while (driven_s_ <= kSolve_s && !solver_.step(segments_)) {
-    }
+    while (driven_s_ <= kSolve_s && solver_.busy()) step();
   }
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if (radars_[r].running) begin_block(r);
@@ -253,7 +273,9 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   if (index >= radars_.size()) return out;
   const Radar& radar = radars_[index];
   out.state = radar.state;
+  out.reason = radar.reason;
   write_solution(solver_, index, driven_s_, load_, radar.knots, out);
+  out.drift.since_ns = radar.drift_since_ns;
   if (!radar.running && !radar.remembered) out.observable = out.nuisance.observable = 0;
   out.step_change = radar.step_change;
   out.load_change = load_change_;

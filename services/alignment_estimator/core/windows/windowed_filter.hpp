@@ -22,8 +22,7 @@ namespace boresight::alignment {
 /// Large: never on the stack.
 class WindowedFilter : public Method {
  public:
-  WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config,
-                 const windows::WindowsConfig& settings = {});
+  WindowedFilter(const VehicleConfig& vehicle, const FilterConfig& config, const windows::WindowsConfig& settings = {});
 
   void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego) override;
   [[nodiscard]] RadarEstimate estimate(std::size_t radar) const override;
@@ -55,11 +54,14 @@ class WindowedFilter : public Method {
     bool running = false;
     bool remembered = false;  ///< begins from a memory or a static calibration
     AlignmentState state = AlignmentState::kNoData;
+    AlignmentReason reason = AlignmentReason::kTooFewDetections;
     std::int64_t last_time_ns = 0;
     double seconds_of_drive = 0.0;
     double inlier_ratio = -1.0;
     std::uint64_t scans_used = 0, detections_used = 0;
     AlignmentStepChange step_change{};
+    std::int64_t drift_since_ns = 0;  ///< 0: none
+    int drifting_solutions = 0;       ///< in a row
     /// Rotation and scale that the vehicle's pitch and scale are counted from; set when the radar is settled.
     Eigen::Matrix3d reference = Eigen::Matrix3d::Identity();
     double reference_scale = 0.0;  ///< 0: not set
@@ -73,6 +75,11 @@ class WindowedFilter : public Method {
   [[nodiscard]] bool contradicts_memory(std::size_t radar, const StartResult& found) const;
   void search(std::size_t radar, const ScanMotion3d& motion, double elapsed_s);
   void update(std::size_t radar, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s);
+  /// Makes the next step of the solution.
+  void step();
+  void wait(Radar& radar, AlignmentReason reason);
+  [[nodiscard]] AlignmentReason reason_of(std::size_t radar) const;
+  void judge_drift(std::size_t radar);
   void close_block();
   void begin_block(std::size_t radar);
   void judge_block();

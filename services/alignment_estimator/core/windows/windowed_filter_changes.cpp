@@ -95,6 +95,22 @@ void WindowedFilter::judge_vehicle() {
   }
 }
 
+void WindowedFilter::judge_drift(std::size_t index) {
+  constexpr int kSolutions = 3;  // in a row
+  Radar& radar = radars_[index];
+  const RadarSolution& s = solver_.radar(index);
+  bool drifts = false;
+  for (int axis = 0; axis < 2; ++axis) {
+    const int c = own::kPitchDrift + axis;
+    const double rate = std::abs(s.state.drift_radps(axis)), std = std::sqrt(s.covariance(c, c));
+    const double least = change_config_.drift_rad / priors_.drift_span_s;
+    drifts = drifts || (rate > least && rate > change_config_.drift_stds * std);
+  }
+  radar.drifting_solutions = drifts && radar.running ? radar.drifting_solutions + 1 : 0;
+  if (radar.drifting_solutions == 0) radar.drift_since_ns = 0;
+  if (radar.drifting_solutions == kSolutions) radar.drift_since_ns = radar.last_time_ns;
+}
+
 void WindowedFilter::take_change(std::size_t index) {
   Radar& radar = radars_[index];
   const Eigen::Vector3d turn(0.0, verdicts_[index].turn_rad(0), verdicts_[index].turn_rad(1));

@@ -65,9 +65,11 @@ int main(int argc, char** argv) {
     for (const auto& [name, m] : alignment::kMethodNames) if (name == which) config.method = m;
     bench::RunOptions options;
     options.snapshot_period_s = 60.0;
+    static unsigned drifting = 0; drifting = 0;
     static int loads = 0;
     static double load_deg = 0, load_at = 0;
     if (!std::getenv("VERBOSE")) options.look = [&](const alignment::Method& m, double t) {
+      for (std::size_t r = 0; r < 4; ++r) if (m.estimate(r).drift.since_ns) drifting |= 1u << r;
       if (const auto* w = dynamic_cast<const alignment::WindowedFilter*>(&m)) {
         if (w->load_changes() != loads) load_at = t;
         loads = w->load_changes();
@@ -111,13 +113,14 @@ int main(int argc, char** argv) {
     if (is_off("cyaw")) priors.common_std[0] = 0;
     if (is_off("cpitch")) priors.common_std[1] = 0;
     const bench::MakeMethod make = [&](const VehicleConfig& v) -> std::unique_ptr<alignment::Method> {
-      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, priors);
+      if (config.method == alignment::MethodName::kWindows) return std::make_unique<alignment::WindowedFilter>(v, config.filter, alignment::windows::WindowsConfig{priors, {}, {}});
       return alignment::make_method(v, config);
     };
     const auto run = bench::run_drive(spec, make, options);
     changes += static_cast<int>(run.step_changes.size());
     for (const auto& s : run.step_changes) std::printf("  change of radar %zu at %.1f s%s\n", s.radar, s.time_s, with_event && s.radar == turned ? " (turned)" : "");
     if (loads) std::printf("  load changes %d: %.3f deg, first seen %.1f s\n", loads, load_deg, load_at);
+    if (drifting) std::printf("  drift of radars %u (%u)\n", drifting, with_event || kind == "drift" ? 1u << turned : 0u);
     loads = 0;
     std::printf("drive %d:", d);
     for (const auto& r : run.last().radars) {
