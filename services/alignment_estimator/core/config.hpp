@@ -23,12 +23,11 @@ enum class MethodName : std::uint8_t {
   kTls,
   kNelderMead,
   kAzimuth1d,
-  kBoresightPlanar,
-  kWindows
+  kBoresightPlanar
 };
 
 /// Their names in the configuration and on the command line.
-inline constexpr std::array<std::pair<std::string_view, MethodName>, 8> kMethodNames{{
+inline constexpr std::array<std::pair<std::string_view, MethodName>, 7> kMethodNames{{
     {"boresight", MethodName::kBoresight},
     {"steepest_descent", MethodName::kSteepestDescent},
     {"nls", MethodName::kNls},
@@ -37,13 +36,12 @@ inline constexpr std::array<std::pair<std::string_view, MethodName>, 8> kMethodN
     {"azimuth_1d", MethodName::kAzimuth1d},
     // Boresight's filter with the planar roll model of Burza 2025; it only reproduces the published tables.
     {"boresight_planar", MethodName::kBoresightPlanar},
-    {"windows", MethodName::kWindows},
 }};
 
 struct Config {
-  MethodName method = MethodName::kWindows;
-  FilterConfig filter;                   ///< settings of kBoresight and kWindows
-  windows::WindowsConfig windows;        ///< further settings of kWindows
+  MethodName method = MethodName::kBoresight;
+  FilterConfig filter;                   ///< settings of kBoresight
+  windows::WindowsConfig windows;        ///< of its windows
   published::PublishedConfig published;  ///< settings of all other methods
   PlausibilityConfig plausibility;       ///< search for wrong inputs, beside every method
   double publish_period_s = 0.2;
@@ -53,13 +51,11 @@ struct Config {
 
   /// Std of the mounting error before any measurement, as the chosen method assumes it.
   [[nodiscard]] double prior_angle_std_rad() const {
-    if (method == MethodName::kWindows) return windows.priors.rotation_std_rad;
-    return method == MethodName::kBoresight ? filter.prior_rotation_std_rad : published.prior_angle_std_rad;
+    return method == MethodName::kBoresight ? windows.priors.rotation_std_rad : published.prior_angle_std_rad;
   }
   /// Scans at lower speed are not used.
   [[nodiscard]] double min_speed_mps() const {
-    return method == MethodName::kBoresight || method == MethodName::kWindows ? filter.min_speed_mps
-                                                                              : published.min_speed_mps;
+    return method == MethodName::kBoresight ? filter.min_speed_mps : published.min_speed_mps;
   }
 };
 

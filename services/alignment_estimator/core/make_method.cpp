@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-#include "services/alignment_estimator/core/filter/robust_filter.hpp"
 #include "services/alignment_estimator/core/planar/planar_filter.hpp"
 #include "services/alignment_estimator/core/published/published.hpp"
 #include "services/alignment_estimator/core/windows/windowed_filter.hpp"
@@ -14,8 +13,6 @@ std::unique_ptr<Method> make_method(const VehicleConfig& vehicle, const Config& 
   const auto make = [&](Kind kind) { return published::make_published(kind, vehicle, config.published); };
   switch (config.method) {
     case MethodName::kBoresight:
-      return std::make_unique<RobustFilter>(vehicle, config.filter);
-    case MethodName::kWindows:
       return std::make_unique<WindowedFilter>(vehicle, config.filter, config.windows);
     case MethodName::kSteepestDescent:
       return make(Kind::kSteepestDescent);

@@ -102,27 +102,13 @@ def roll(curves):
     return picture(880, 380, parts + panel.parts)
 
 
-def false_alarms(curves):
-    css = {"clean": "c0 own", "disturbed": "c1 own", "clean, small": "c0 d", "disturbed, small": "c1 d"}
-    names = ("large changes, clean", "large changes, disturbed", "small changes, clean", "small changes, disturbed")
-    parts = [text(20, 24, "Drives without a step change: largest suspicion statistic per minute and radar", "t"),
-             legend(list(zip(css.values(), names)), 20, 46, 840)]
-    panel = Panel((70, 90, 770, 240), (0.0, 1.1), (1e-4, 1.0), "share of minutes above",
-                  "statistic / limit of a suspicion", False, True)
-    for c in curves:
-        panel.line([p for p in c["points"] if p[1] > 0], css[c["label"]])
-    x = panel.x(1.0)
-    panel.parts.append(f'<path class="bar" d="M{x:.1f} 90v240"/>' + text(x - 6, 104, "suspicion", "s", "end"))
-    return picture(880, 380, parts + panel.parts)
-
-
 def draw_all(curves, folder):
     """Draws every figure for which there are curves."""
     folder.mkdir(exist_ok=True)
     drawings = {
         "published": lambda c: convergence(c, "Published set-up, truth: planar roll model (10)(11)"),
         "published_exact": lambda c: convergence(c, "Published set-up, truth: a rotation"),
-        "residuals": residuals, "step_change": step_change, "consistency": consistency, "roll": roll, "false_alarms": false_alarms,
+        "residuals": residuals, "step_change": step_change, "consistency": consistency, "roll": roll,
     }
     for name, draw in drawings.items():
         mine = of_figure(curves, name)

@@ -22,7 +22,6 @@ constexpr BarGroup kGroups[] = {
     {"published_filter", published_filter},
     {"outliers", outliers},
     {"step_change", step_change},
-    {"false_alarms", false_alarms},
     {"cost", cost},
     {"plate", plate},
     {"drive_1", drive_1},

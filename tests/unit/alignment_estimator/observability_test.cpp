@@ -123,7 +123,7 @@ TEST(Observability, OneAzimuthCannotSeparateYawFromSpeed) {
 }
 
 TEST(Observability, AViewAheadDeterminesOnlySpeedAndAViewAsideOnlyYaw) {
-  const double prior_yaw = Config{}.filter.prior_rotation_std_rad, prior_scale = Config{}.filter.prior_speed_scale_std;
+  const double prior_yaw = Config{}.windows.priors.rotation_std_rad, prior_scale = Config{}.windows.priors.speed_scale_std;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const AlignmentEstimate ahead = after(one_azimuth(0.0), 1000, seed);
     EXPECT_EQ(ahead.observable & (alignment_axis::kVehicleYaw | alignment_axis::kYaw), 0u);
@@ -235,7 +235,7 @@ TEST(Observability, WaitsAtAStandstillOrWithoutDetections) {
     EXPECT_EQ(out.observable, 0u) << what;
     EXPECT_EQ(out.speed_scale, 1.0F) << what;
     EXPECT_EQ(out.vehicle_yaw_rad, 0.0F) << what;
-    EXPECT_NEAR(std_of(out, 1), Config{}.filter.prior_rotation_std_rad, 1e-3) << what;
+    EXPECT_NEAR(std_of(out, 1), Config{}.windows.priors.rotation_std_rad, 1e-3) << what;
   }
 }
 

@@ -33,7 +33,8 @@ Batch::Batch(const VehicleConfig& vehicle, const FilterConfig& filter, const Pri
       solved_(solver_.size()) {
   radars_.reserve(solver_.size());
   for (std::size_t r = 0; r < solver_.size(); ++r) {
-    radars_.push_back({vehicle.radars[r], RadarSums(vehicle.radars[r], filter, config.noise_memory_s), {}, false, {}});
+    radars_.push_back(
+        {vehicle.radars[r], RadarSums(vehicle.radars[r], filter, priors_, config.noise_memory_s), {}, false, {}});
     radars_[r].start.sensor_to_vehicle = geometry::sensor_to_vehicle(vehicle.radars[r].mounting_pose, 0.0, 0.0, 0.0);
   }
 }

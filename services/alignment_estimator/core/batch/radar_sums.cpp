@@ -39,11 +39,11 @@ Knots knots_of(const RadarConfig& radar) {
   return {-half, 2.0 * half / (kKnots - 1)};
 }
 
-RadarSums::RadarSums(const RadarConfig& radar, const FilterConfig& config, double noise_memory_s)
+RadarSums::RadarSums(const RadarConfig& radar, const FilterConfig& config, const Priors& priors, double noise_memory_s)
     : config_(radar),
       filter_(config),
       noise_memory_s_(noise_memory_s),
-      unknown_(radar, config.prior_rotation_std_rad),
+      unknown_(radar, priors.rotation_std_rad),
       knots_(knots_of(radar)) {
   gate_covariance_.setZero();
 }

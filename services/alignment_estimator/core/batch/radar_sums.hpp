@@ -8,8 +8,8 @@
 
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/filter/efficiency.hpp"
-#include "services/alignment_estimator/core/filter/motion_model.hpp"
 #include "services/alignment_estimator/core/filter/noise_scale.hpp"
+#include "services/alignment_estimator/core/filter/scan_motion.hpp"
 #include "services/alignment_estimator/core/filter/sightings.hpp"
 #include "services/alignment_estimator/core/windows/block.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
@@ -23,7 +23,7 @@ namespace boresight::alignment::batch {
 
 class RadarSums {
  public:
-  RadarSums(const RadarConfig& radar, const FilterConfig& config, double noise_memory_s);
+  RadarSums(const RadarConfig& radar, const FilterConfig& config, const windows::Priors& priors, double noise_memory_s);
 
   /// Begins a block at this point; the solution's uncertainty widens the gate.
   void begin_block(const windows::Point& point, const windows::Solver& solver, std::size_t radar);

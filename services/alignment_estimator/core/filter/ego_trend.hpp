@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "services/alignment_estimator/core/filter/motion_model.hpp"
+#include "services/alignment_estimator/core/filter/scan_motion.hpp"
 #include "services/common/estimation/ego_history.hpp"
 
 namespace boresight::alignment {

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "services/alignment_estimator/core/filter/spread.hpp"
+#include "services/alignment_estimator/core/windows/scan_model.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::alignment {
@@ -21,8 +22,7 @@ constexpr double kPlausibleStds = 3.5;
 
 }  // namespace
 
-GraduatedStart::GraduatedStart(const FilterConfig& config)
-    : config_(config), columns_(kColumns * kCapacity), model_(1) {}
+GraduatedStart::GraduatedStart(const FilterConfig& config) : config_(config), columns_(kColumns * kCapacity) {}
 
 void GraduatedStart::clear() {
   number_of_scans_ = number_of_sightings_ = 0;
@@ -58,12 +58,11 @@ void GraduatedStart::store(const Sightings& s, const ScanMotion3d& motion) {
 
 void GraduatedStart::begin(const StartPrior& prior) {
   prior_ = prior;
-  model_.speed_scale = model_.linearised_speed_scale = prior.speed_scale;
-  model_.sensor_to_vehicle[0] = model_.linearised[0] = prior.sensor_to_vehicle;
-  model_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
-  model_.slip_radps2pm = prior.slip_radps2pm;
-  model_.elevation_excess[0] = prior.elevation_excess;
-  model_.lowering[0] = 0.0;
+  point_ = {};
+  point_.speed_scale = prior.speed_scale;
+  point_.sensor_to_vehicle = prior.sensor_to_vehicle;
+  point_.yaw_rate_bias_radps = prior.yaw_rate_bias_radps;
+  point_.slip_radps2pm = prior.slip_radps2pm;
   off_.setZero();
   scale_mps_ = config_.start_scale_mps;
 }
@@ -89,6 +88,11 @@ GraduatedStart::Verdict GraduatedStart::add(const Sightings& sightings, const st
   return verdict;
 }
 
+windows::ScanModel GraduatedStart::model_of(const ScanMotion3d& motion, const std::array<double, 3>& position_m) const {
+  return windows::model_scan(point_, position_m,
+                             {motion.speed_mps, motion.yaw_rate_radps, motion.acceleration_mps2, 0.0, 0.0, 0.0});
+}
+
 void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_scale, bool last) {
   Judgement judgement;
   judgement.gate = config_.outlier_gate_sigma;
@@ -100,7 +104,6 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
   std::array<Eigen::Vector3d, kMaxScans> score;
   Eigen::Matrix3d all = Eigen::Matrix3d::Zero(), from_noise = Eigen::Matrix3d::Zero();
   inliers_ = near_ = stationary_ = counted_ = 0.0;
-  double along = 0.0, lowered = 0.0, raised = 0.0;
   bool has_elevation = false;
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
     const Scan& scan = scans_[k];
@@ -118,8 +121,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
                           c + 10 * kCapacity,
                           scan.count,
                           scan.ambiguity_mps};
-    const ScanSums sums =
-        sum_scan(run, sensor_velocity(model_, model_.nuisances, 0, position_m, scan.motion).g, judgement);
+    const ScanSums sums = sum_scan(run, model_of(scan.motion, position_m).g, judgement);
     information[k] = sums.information;
     score[k] = sums.score;
     all += sums.information;
@@ -128,65 +130,41 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
     near_ += sums.near;
     stationary_ += sums.stationary;
     counted_ += static_cast<double>(scan.count);
-    along += sums.along;
-    lowered += sums.lowered;
-    raised += sums.raised;
     has_elevation = has_elevation || scan.has_elevation;
   }
-  model_.lowering[0] = along > 0.0 ? lowered / along : 0.0;
   Spread spread;
   spread.add(all, from_noise, inliers_, 0.0);
   const Support support = spread.support(has_elevation, prior_.log_angle_noise_std);
-  constexpr Eigen::Index kRoll = column::kShared, kPitch = kRoll + 1, kYaw = kRoll + 2;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  normal(0, 0) =
-      1.0 / (prior_.speed_scale_variance + model_.lowering[0] * model_.lowering[0] * prior_.elevation_excess_variance);
+  normal(0, 0) = 1.0 / prior_.speed_scale_variance;
   normal.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / prior_.rotation_variance);
   // The information is reduced throughout, so that a poorly known parameter does not follow the noise.
   const double counts = 1.0 / config_.start_inflation;
   Eigen::Vector4d right = -normal * off_;
-  Eigen::Matrix<double, 4, column::kTouched> cross = Eigen::Matrix<double, 4, column::kTouched>::Zero();
   for (std::size_t k = 0; k < number_of_scans_; ++k) {
-    SensorVelocity velocity = sensor_velocity(model_, model_.nuisances, 0, position_m, scans_[k].motion);
-    velocity.seen(support, 0.0);
-    VelocityGradient known = velocity.gradient;
+    const windows::ScanModel model = model_of(scans_[k].motion, position_m);
     Eigen::Matrix<double, 4, 3> gradient;
-    gradient << known.row(column::kSpeedScale), Eigen::RowVector3d::Zero(), known.row(kPitch), known.row(kYaw);
+    gradient << model.by_parameter.row(windows::local::kSpeedScale), Eigen::RowVector3d::Zero(),
+        model.by_parameter.middleRows<2>(windows::local::kRotation + 1);
+    // Reflectors in one plane do not determine its tilt: it would come from the estimate, not from the radar.
+    if (support.directions < 3) gradient.row(2).setZero();
     const Eigen::Matrix<double, 4, 3> supported = gradient * support.share;
     normal.noalias() += supported * (counts * information[k]) * supported.transpose();
     right.noalias() += supported * (counts * score[k]);
-    if (!last) continue;
-    known.row(kPitch).setZero();
-    known.row(kYaw).setZero();
-    const VelocityGradient known_supported = known * support.share;
-    cross.noalias() += supported * (counts * information[k]) * known_supported.transpose();
   }
   const Eigen::LLT<Eigen::Matrix4d> solver(normal);
   Eigen::Vector4d step = solver.solve(right);
   if (solver.info() != Eigen::Success || !step.allFinite()) step.setZero();
   const double length = step.tail<3>().norm();
   if (length > 0.3) step *= 0.3 / length;
-  model_.speed_scale += step(0);
-  model_.linearised_speed_scale = model_.speed_scale;
-  model_.sensor_to_vehicle[0] = geometry::so3_exp(step.tail<3>()) * model_.sensor_to_vehicle[0];
-  model_.linearised[0] = model_.sensor_to_vehicle[0];
+  point_.speed_scale += step(0);
+  point_.sensor_to_vehicle = geometry::so3_exp(step.tail<3>()) * point_.sensor_to_vehicle;
   off_ += step;
   if (!last) return;
-  result_.speed_scale = model_.speed_scale;
-  result_.sensor_to_vehicle = model_.sensor_to_vehicle[0];
+  result_.speed_scale = point_.speed_scale;
+  result_.sensor_to_vehicle = point_.sensor_to_vehicle;
   result_.covariance = solver.solve(Eigen::Matrix4d::Identity());
-  const Eigen::LLT<Eigen::Matrix3d> rotation(normal.bottomRightCorner<3, 3>());
-  result_.rotation_covariance = rotation.solve(Eigen::Matrix3d::Identity());
-  result_.by_known = -rotation.solve(cross.bottomRows<3>());
-  cross.col(column::kSpeedScale).setZero();
-  result_.speed_scale_by_known = -solver.solve(cross).row(0);
   result_.searched = {false, support.directions == 3, true};
-  result_.spread = spread;
-  result_.taken << model_.speed_scale, model_.yaw_rate_bias_radps, model_.slip_radps2pm,
-      model_.pitch_per_acceleration_radps2pm;
-  result_.lowering = model_.lowering[0];
-  result_.mean_sine = along > 0.0 ? raised / along : 0.0;
-  result_.seconds = seconds_;
   result_.inlier_ratio = counted_ > 0.0 ? stationary_ / counted_ : 0.0;
 }
 

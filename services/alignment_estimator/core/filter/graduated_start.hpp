@@ -10,9 +10,9 @@
 #include <Eigen/Core>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
-#include "services/alignment_estimator/core/filter/motion_model.hpp"
+#include "services/alignment_estimator/core/filter/scan_motion.hpp"
 #include "services/alignment_estimator/core/filter/scan_sums.hpp"
-#include "services/alignment_estimator/core/filter/spread.hpp"
+#include "services/alignment_estimator/core/windows/scan_model.hpp"
 
 namespace boresight::alignment {
 
@@ -24,8 +24,7 @@ struct StartPrior {
   double rotation_variance = 1.0;
   double yaw_rate_bias_radps = 0.0;
   double slip_radps2pm = 0.0;
-  double log_angle_noise_std = 0.0;                                ///< of column::kAngleNoise
-  double elevation_excess = 0.0, elevation_excess_variance = 0.0;  ///< where elevations are not measured
+  double log_angle_noise_std = 0.0;  ///< of ln(real / assumed variance of the angles)
 };
 
 /// Pitch and yaw about the vehicle's axes, and k_v. Half a second contains too little information about roll, which is
@@ -35,17 +34,6 @@ struct StartResult {
   Eigen::Matrix3d sensor_to_vehicle = Eigen::Matrix3d::Identity();
   std::array<bool, 3> searched{};                        ///< axes of the vehicle
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes, inflated
-  /// Sensitivity of the rotation to the parameters that the search took as known (columns of VelocityGradient):
-  /// d rotation / d column. Below: the covariance of the rotation if all of these were known, inflated; likewise of
-  /// k_v.
-  Eigen::Matrix<double, 3, column::kTouched> by_known = Eigen::Matrix<double, 3, column::kTouched>::Zero();
-  Eigen::Matrix<double, 1, column::kTouched> speed_scale_by_known = Eigen::Matrix<double, 1, column::kTouched>::Zero();
-  Eigen::Vector4d taken = Eigen::Vector4d::Zero();  ///< values that the search used for the first four of these columns
-  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Zero();
-  Spread spread;           ///< of the window
-  double lowering = 0.0;   ///< assumed reduction of range rates by unmeasured elevations
-  double mean_sine = 0.0;  ///< mean sine of these elevations
-  double seconds = 0.0;    ///< of the window
   double inlier_ratio = 0.0;
 };
 
@@ -79,6 +67,7 @@ class GraduatedStart {
   };
   void store(const Sightings& sightings, const ScanMotion3d& motion);
   void begin(const StartPrior& prior);
+  [[nodiscard]] windows::ScanModel model_of(const ScanMotion3d& motion, const std::array<double, 3>& position_m) const;
   void pass(const std::array<double, 3>& position_m, double angle_scale, bool last);
   [[nodiscard]] Verdict judge() const;
 
@@ -95,7 +84,7 @@ class GraduatedStart {
   Eigen::Vector4d off_ = Eigen::Vector4d::Zero();
   double inliers_ = 0.0, near_ = 0.0, stationary_ = 0.0, counted_ = 0.0;
   StartResult result_;
-  JointState model_;
+  windows::Point point_;
 };
 
 }  // namespace boresight::alignment

@@ -12,9 +12,6 @@ struct Support {
   /// 1 − f of the score, with f the share that comes from noise, and nothing if f is close to 1. Score and information
   /// then agree: E[T·m] = T·M·Tᵀ·δg, and noise alone never accumulates as information.
   Eigen::Matrix3d share = Eigen::Matrix3d::Zero();
-  /// A: if the angles' variance is exp(δ) times the assumed one, more of the spread is noise, and the measured velocity
-  /// is g + δ·A·g to first order.
-  Eigen::Matrix3d by_angle_noise = Eigen::Matrix3d::Zero();
   int directions = 0;  ///< number of supported directions; two form a plane, whose tilt is not determined
 };
 

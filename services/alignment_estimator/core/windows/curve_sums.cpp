@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace boresight::alignment::windows {
 
@@ -15,7 +14,9 @@ double weighted_square_of(double gate) {
 }
 
 constexpr double kWideGate = 3.0;
-static const double kMirrorV = std::getenv("MV") ? std::atof(std::getenv("MV")) : 0.25;
+/// A detection below the road is an image or it is not, and the share of images is a mean: the variance of one with
+/// equal chance, relative to the square of what its range rate would change.
+constexpr double kImageVariance = 0.25;
 
 /// What the range rate of a detection would lose per unit of its height parameter, and the derivative to the elevation.
 struct HeightColumn {
@@ -69,8 +70,9 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double ce = std::sqrt(u.x() * u.x() + u.y() * u.y());
     const Eigen::Vector3d ea(-u.y(), u.x(), 0.0), eb(-u.x() * u.z() / ce, -u.y() * u.z() / ce, ce);
     const double da = ea.dot(g), db = eb.dot(g);
-    const HeightColumn of_height =
-        run.has_elevation ? height_column(u, g, along, judgement.up.dot(eb), run.range_m[i], judgement) : HeightColumn();
+    const HeightColumn of_height = run.has_elevation
+                                       ? height_column(u, g, along, judgement.up.dot(eb), run.range_m[i], judgement)
+                                       : HeightColumn();
     double e = run.range_rate_mps[i] + along +
                (of_height.below ? judgement.mirror_share : judgement.height_excess) * of_height.column;
     if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
@@ -79,7 +81,8 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double by_rate =
         judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
     const double by_angle = va * da * da + ve * db * db,
-                 s2 = by_rate + by_angle + (of_height.below ? kMirrorV * of_height.column * of_height.column : 0.0);
+                 s2 = by_rate + by_angle +
+                      (of_height.below ? kImageVariance * of_height.column * of_height.column : 0.0);
     const double gate_variance = s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
     if (wide > 0.0) {
       const double t = e * e / ((gate_variance + wide) * kWideGate * kWideGate);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -95,6 +93,8 @@ Solver::Solver(std::size_t radars, const Priors& priors)
   scale_(local::kAbove) = scale_of(priors.height_excess_std);
   scale_(local::kMirror) = scale_of(priors.mirror_share_std);
   correlation_s_.fill(priors.common_correlation_s);
+  median_correlation_s_ = correlation_s_;
+  median_common_std_ = priors.common_std;
   shared_covariance_.setZero();
   shared_covariance_.diagonal() << square(priors.speed_scale_std), square(priors.yaw_rate_bias_std_radps),
       square(priors.yaw_rate_gain_std), square(priors.slip_std_radps2pm),
@@ -134,6 +134,7 @@ void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool h
   r.with_shared.setZero();
   for (std::size_t k = 0; k < kFluctuations; ++k) {
     r.fluctuation.variance[k] = k == 1 && !has_elevation ? 0.0 : square(priors_.own_std[k]);
+    r.median_std[k] = priors_.own_std[k];
   }
 }
 
@@ -415,23 +416,6 @@ bool Solver::step(Segments& segments) {
       if (++next_ == radars_.size()) stage_ = Stage::kCommit;
       return false;
     case Stage::kCommit:
-      if (std::getenv("LW3")) {
-        std::fprintf(stderr, "solve %.0f load %.3f+%.3f pitch steps", time_s_, 57.3 * shared_.load_rad[0],
-                     57.3 * border_step_(shared::kLoad));
-        for (auto& w : work_) std::fprintf(stderr, " %.3f", 57.3 * w.step(own::kRotation + 1));
-        std::fprintf(stderr, "\n");
-        for (int i = 0; i < segments.size(); ++i) {
-          std::fprintf(stderr, " %d/%.0f/%d:%.2f(", segments.segment(i).load, segments.segment(i).seconds,
-                       segments.segment(i).level, 57.3 * border_step_(shared::kFirstFluctuation + 3 * i + 1));
-          for (std::size_t r = 0; r < radars_.size(); ++r)
-            std::fprintf(stderr, "%.2f,",
-                         segments.share(i, r).seconds > 0 ? 57.3 / std::sqrt(segments.share(i, r).information(
-                                                                       local::kRotation + 1, local::kRotation + 1))
-                                                          : 0.0);
-          std::fprintf(stderr, ")");
-        }
-        std::fprintf(stderr, "\n");
-      }
       learn_common(segments);
       commit();
       stage_ = Stage::kIdle;
@@ -562,7 +546,7 @@ void Solver::learn(Segments& segments, std::size_t index) {
   if (segments_used >= 2.0) {
     for (std::size_t k = 0; k < kFluctuations; ++k) {
       radar.fluctuation.variance[k] = learnt_variance(radar.fluctuation.variance[k], sum[k], segments_used,
-                                                      priors_.own_std[k], priors_.log_fluctuation_std);
+                                                      radar.median_std[k], priors_.log_fluctuation_std);
     }
     for (int axis = 0; axis < 2; ++axis) {
       const int c = own::kPitchDrift + axis;
@@ -595,11 +579,12 @@ void Solver::learn_common(const Segments& segments) {
         sum += square_of_noise / link.noise;
         log_noise += std::log(link.noise);
       }
-      const double median_std = priors_.common_std[static_cast<std::size_t>(k)];
+      const double median_std = median_common_std_[static_cast<std::size_t>(k)];
       fitting = learnt_variance(variance, sum, segments.size(), median_std, priors_.log_fluctuation_std);
       return -0.5 * (log_noise + segments.size() * std::log(fitting) + sum / fitting) -
              0.5 * square(0.5 * std::log(fitting / square(median_std)) / priors_.log_fluctuation_std) -
-             0.5 * square(std::log(tau_s / priors_.common_correlation_s) / priors_.log_correlation_std);
+             0.5 * square(std::log(tau_s / median_correlation_s_[static_cast<std::size_t>(k)]) /
+                          priors_.log_correlation_std);
     };
     double& tau_s = correlation_s_[static_cast<std::size_t>(k)];
     const double now_s = tau_s;

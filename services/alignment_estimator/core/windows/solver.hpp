@@ -43,6 +43,7 @@ struct RadarSolution {
   Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared =
       Eigen::Matrix<double, own::kCount, shared::kConstants>::Zero();
   Fluctuation fluctuation;
+  std::array<double, kFluctuations> median_std{};  ///< of the fluctuations before any data: the prior's or a memory's
   std::array<double, 2> drift_variance{};  ///< of the rates of pitch and yaw: learnt
   OwnMatrix prior = OwnMatrix::Zero();     ///< precision
   OwnState prior_state;                    ///< mean
@@ -134,6 +135,8 @@ class Solver {
   Fluctuation common_;
   LocalVector scale_;  ///< of the local parameters: their prior stds
   std::array<double, kFluctuations> correlation_s_;
+  /// Medians before any data: the prior's or a memory's.
+  std::array<double, kFluctuations> median_common_std_, median_correlation_s_;
   double time_s_ = 0.0;
 
   // Work space of the solution that is being made.

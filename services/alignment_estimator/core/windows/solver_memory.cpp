@@ -42,6 +42,7 @@ void Solver::restore(std::size_t index, const OwnState& state, const OwnMatrix& 
   radar.state.drift_radps.setZero();
   radar.prior_state = radar.state;
   radar.fluctuation = fluctuation;
+  for (std::size_t k = 0; k < kFluctuations; ++k) radar.median_std[k] = std::sqrt(fluctuation.variance[k]);
   const Eigen::Matrix<double, kRemembered, kRemembered> remembered =
       covariance.topLeftCorner<kRemembered, kRemembered>();
   radar.prior.setZero();
@@ -61,7 +62,10 @@ void Solver::restore(const SharedState& state, const SharedMatrix& covariance, c
   shared_covariance_ = covariance;
   shared_prior_ = precision_from<shared::kConstants>(covariance);
   common_ = common;
-  correlation_s_ = correlation_s;
+  correlation_s_ = median_correlation_s_ = correlation_s;
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    if (common.variance[k] > 0.0) median_common_std_[k] = std::sqrt(common.variance[k]);
+  }
 }
 
 void Solver::set_rotation_prior(RadarSolution& radar, const Eigen::Matrix3d& mean, const Eigen::Matrix3d& covariance) {

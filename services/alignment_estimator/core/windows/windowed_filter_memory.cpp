@@ -212,8 +212,8 @@ void WindowedFilter::restore(const Memory& memory) {
         fluctuation.variance[k] = known->fluctuation_variance[k];
       }
     }
-    // What a slow fluctuation has done meanwhile is not known. One of all radars is as large for each of them, and counts
-    // n-fold where it is taken as independent.
+    // What a slow fluctuation has done meanwhile is not known. One of all radars is as large for each of them, and
+    // counts n-fold where it is taken as independent.
     RememberedVector changes = RememberedVector::Zero();
     changes.segment<3>(own::kRotation).setConstant(square(doubts.rotation_std_rad));
     changes(own::kRateScale) = square(doubts.rate_scale_std);

@@ -18,7 +18,6 @@ void published_optimum(const Options& options, Report& report);
 void published_filter(const Options& options, Report& report);
 void outliers(const Options& options, Report& report);
 void step_change(const Options& options, Report& report);
-void false_alarms(const Options& options, Report& report);
 void cost(const Options& options, Report& report);
 void plate(const Options& options, Report& report);
 void drive_1(const Options& options, Report& report);

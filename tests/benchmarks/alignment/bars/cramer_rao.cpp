@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
+#include "services/alignment_estimator/core/windows/priors.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/simulator/alignment/bound.hpp"
 #include "services/simulator/alignment/drive.hpp"
@@ -17,10 +18,11 @@ namespace {
 /// Prior knowledge of the bound, equal to the estimator's: bias and slip are unknown, scans below 5 m/s are not used.
 /// A drive may begin in a corner below that speed, which would hold most of its information about roll.
 constexpr alignment::FilterConfig kFilter;
-constexpr simulator::BoundPriors kPriors{.speed_scale_std = kFilter.prior_speed_scale_std,
+constexpr alignment::windows::Priors kKnown;
+constexpr simulator::BoundPriors kPriors{.speed_scale_std = kKnown.speed_scale_std,
                                          .rotation_std_rad = 4.0 * kRadiansPerDegree,
                                          .yaw_rate_bias_std_radps = 0.2 * kRadiansPerDegree,
-                                         .slip_coefficient_std_radps2pm = kFilter.prior_slip_coefficient_std_radps2pm,
+                                         .slip_coefficient_std_radps2pm = kKnown.slip_std_radps2pm,
                                          .min_speed_mps = kFilter.min_speed_mps};
 
 /// Stds in the order of RadarError::error, by radar.

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/simulator/alignment/drive.hpp"
@@ -16,7 +16,7 @@ namespace boresight::alignment {
 class Bench {
  public:
   explicit Bench(const simulator::AlignmentSpec& spec, const FilterConfig& config = {})
-      : drive(spec), vehicle(drive.vehicle()), filter(std::make_unique<RobustFilter>(vehicle, config)) {}
+      : drive(spec), vehicle(drive.vehicle()), filter(std::make_unique<WindowedFilter>(vehicle, config)) {}
 
   /// Runs until the given time of the drive (s since its start); `after` is called after each scan.
   void run(double until_s, const std::function<void(const simulator::AlignmentEvent&)>& after = {}) {
@@ -43,7 +43,7 @@ class Bench {
 
   simulator::AlignmentDrive drive;
   VehicleConfig vehicle;
-  std::unique_ptr<RobustFilter> filter;
+  std::unique_ptr<WindowedFilter> filter;
   EgoHistory history;
   EgoSample ego;
   double time_s = 0.0;

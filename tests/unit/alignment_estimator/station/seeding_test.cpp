@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/estimator.hpp"
-#include "services/alignment_estimator/core/filter/robust_filter.hpp"
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 #include "services/alignment_estimator/core/plate/seed.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
@@ -19,10 +19,10 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 constexpr Eigen::Index kTurnX = 1, kTurnY = 2;  // in RadarEstimate::covariance, behind k_v
 
 /// Radars have the ids 1, 2, 3 …
-bool seed_radar(RobustFilter& filter, const RotationSeed& seed) {
+bool seed_radar(WindowedFilter& filter, const RotationSeed& seed) {
   return filter.seed(seed.radar_id - 1, seed.rotation_vehicle_rad, seed.covariance);
 }
-Memory memory_of(const RobustFilter& filter) {
+Memory memory_of(const WindowedFilter& filter) {
   Memory memory;
   filter.save(memory);
   return memory;
@@ -46,8 +46,8 @@ Eigen::Matrix3d nominal(const RadarConfig& radar) {
 
 TEST(PlateSeed, IsTheStartOfTheEstimator) {
   const VehicleConfig three = vehicle();
-  const auto filter = std::make_unique<RobustFilter>(three, FilterConfig{});
-  RobustFilter& estimator = *filter;
+  const auto filter = std::make_unique<WindowedFilter>(three, FilterConfig{});
+  WindowedFilter& estimator = *filter;
   const RadarEstimate before = estimator.estimate(0);
   RotationSeed seed;
   const double yaw_rad = 0.5 * kDegree_rad, pitch_rad = -0.8 * kDegree_rad;
@@ -75,8 +75,8 @@ TEST(PlateSeed, IsTheStartOfTheEstimator) {
 
 TEST(PlateSeed, OfOneRadarIsKeptWhenAnotherIsSeeded) {
   const VehicleConfig three = vehicle();
-  const auto filter = std::make_unique<RobustFilter>(three, FilterConfig{});
-  RobustFilter& estimator = *filter;
+  const auto filter = std::make_unique<WindowedFilter>(three, FilterConfig{});
+  WindowedFilter& estimator = *filter;
   std::array<RotationSeed, 3> seeds;
   for (std::size_t i = 0; i < 3; ++i) {
     ASSERT_TRUE(seed_from_plate(three.radars[i], 0.01, 1e-4, 0.02, 1e-4, {}, seeds[i]));
@@ -106,8 +106,8 @@ TEST(PlateSeed, IsRefusedWhereItCannotBeUsed) {
   const VehicleConfig three = vehicle();
   RotationSeed seed;
   ASSERT_TRUE(seed_from_plate(three.radars[0], 0.01, 1e-4, 0.02, 1e-4, {}, seed));
-  const auto filter = std::make_unique<RobustFilter>(three, FilterConfig{});
-  RobustFilter& estimator = *filter;
+  const auto filter = std::make_unique<WindowedFilter>(three, FilterConfig{});
+  WindowedFilter& estimator = *filter;
   const RadarEstimate before = estimator.estimate(0);
   RotationSeed wrong = seed;
   wrong.radar_id = 9;
