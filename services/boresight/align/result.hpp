@@ -101,7 +101,7 @@ struct Result {
   std::vector<RadarResult> radars;
   std::vector<VehicleChangeEvent> load_changes, speed_changes;
   AlignmentNuisance vehicle_nuisance{};  ///< of the radar that knows the vehicle's parameters best
-  /// batch: driving time, windows left out in turn, and how often the recording was read.
+  /// batch: driving time, windows not included in turn, and how often the recording was read.
   struct Batch {
     double driven_s = 0.0;
     int windows = 0, passes = 0;

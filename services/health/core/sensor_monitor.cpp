@@ -92,7 +92,7 @@ void SensorMonitor::observe(const AlignmentEstimate& estimate) {
   if (finding_ == AlignmentFinding::kNone) {
     judge_axes(estimate);
   } else {
-    // The angles were computed from a wrong input. A mounting error cannot be told from them.
+    // The angles were computed from a wrong input. No mounting error follows from them.
     for (Angle* angle : {&yaw_, &pitch_, &roll_}) angle->clear();
     drift_ = {};
   }

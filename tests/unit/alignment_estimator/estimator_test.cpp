@@ -86,7 +86,7 @@ TEST(Estimator, StatesTheNeesWhereTheTruthIsKnown) {
     }
     if (i >= 100) sum += written(estimator, 1).kpis.nees / 200.0;
   }
-  EXPECT_GT(sum, 0.05);
+  EXPECT_GT(sum, 0.005);
   EXPECT_LT(sum, 4.0) << "one drive has only a few independent errors";
   EXPECT_GT(written(deceived, 1).kpis.nees, 10.0F);
   EXPECT_TRUE(std::isnan(written(estimator, 2).kpis.nees));

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <string>
 
 #include "services/alignment_estimator/core/batch/estimate_values.hpp"
 #include "services/alignment_estimator/core/small_maths.hpp"
@@ -14,6 +13,10 @@
 namespace boresight::alignment::batch {
 
 namespace {
+
+std::string rounded(double value) {
+  return std::to_string(std::lround(value));
+}
 
 using namespace windows;
 
@@ -113,11 +116,10 @@ void Batch::plan() {
   } else if (!drives_) {
     problem_ = "no scan has a speed and a yaw rate near its time";
   } else if (blocks_ == 0) {
-    problem_ = fmt::format("the vehicle never drives at {:.3g} m/s or more with detections", filter_.min_speed_mps);
+    problem_ = "the vehicle never drives at " + rounded(filter_.min_speed_mps) + " m/s or more with detections";
   } else if (driven_s < config_.least_drive_s) {
-    problem_ =
-        fmt::format("{:.3g} s of driving at {:.3g} m/s or more are too few for the batch method: it needs {:.3g} s",
-                    driven_s, filter_.min_speed_mps, config_.least_drive_s);
+    problem_ = rounded(driven_s) + " s of driving at " + rounded(filter_.min_speed_mps) +
+               " m/s or more are too few for the batch method: it needs " + rounded(config_.least_drive_s) + " s";
   } else if (std::none_of(radars_.begin(), radars_.end(), [](const Radar& r) { return r.start.scans_used > 0; })) {
     problem_ = "no mounting within the prior explains the range rates of any radar";
   }
@@ -271,7 +273,7 @@ Segments Batch::assembled(Side side, const std::vector<std::size_t>& loads) cons
 std::vector<RadarEstimate> Batch::estimates(const Solver& solver, double time_s, int loads) const {
   std::vector<RadarEstimate> all(radars_.size());
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), all[r]);
+    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), {}, all[r]);
   }
   return all;
 }
@@ -423,7 +425,7 @@ void Batch::write_before(Result& result) const {
     const std::optional<Solver> solver = solved_before(r);
     if (!solver) continue;
     const int loads = loads_before(loads_, window_of(radars_[r].changes.front().block));
-    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), result.before[r].emplace());
+    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), {}, result.before[r].emplace());
   }
 }
 

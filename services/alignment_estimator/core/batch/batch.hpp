@@ -39,7 +39,7 @@ class Batch {
   void process(std::size_t radar, const ScanDetections& scan, const EgoSample& ego);
   /// Ends a pass. True: another is needed.
   [[nodiscard]] bool end_pass();
-  /// After the last pass. Takes a second: solves once for each window that is left out.
+  /// After the last pass. Takes a second: solves once for each window that is not included.
   [[nodiscard]] Result result();
 
  private:

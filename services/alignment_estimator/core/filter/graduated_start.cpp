@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "services/alignment_estimator/core/filter/spread.hpp"
 #include "services/alignment_estimator/core/windows/scan_model.hpp"
 #include "services/common/geometry/so3.hpp"
 
@@ -165,6 +164,7 @@ void GraduatedStart::pass(const std::array<double, 3>& position_m, double angle_
   result_.sensor_to_vehicle = point_.sensor_to_vehicle;
   result_.covariance = solver.solve(Eigen::Matrix4d::Identity());
   result_.searched = {false, support.directions == 3, true};
+  result_.spread = spread;
   result_.inlier_ratio = counted_ > 0.0 ? stationary_ / counted_ : 0.0;
 }
 

@@ -1,6 +1,6 @@
 // Finds the rotation of a radar from its first scans alone, among any number of moving objects: graduated non-convexity
 // over a window of scans. One pass per scan keeps the cost of every scan similar.
-// Equations: docs/algorithms/alignment.md (A23).
+// Equations: docs/algorithms/alignment.md (A21).
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include "services/alignment_estimator/core/filter/config.hpp"
 #include "services/alignment_estimator/core/filter/scan_motion.hpp"
 #include "services/alignment_estimator/core/filter/scan_sums.hpp"
+#include "services/alignment_estimator/core/filter/spread.hpp"
 #include "services/alignment_estimator/core/windows/scan_model.hpp"
 
 namespace boresight::alignment {
@@ -35,6 +36,7 @@ struct StartResult {
   std::array<bool, 3> searched{};                        ///< axes of the vehicle
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of k_v and the rotation about the vehicle's axes, inflated
   double inlier_ratio = 0.0;
+  Spread spread;  ///< of the window
 };
 
 class GraduatedStart {

@@ -48,16 +48,18 @@ Support Spread::support(bool has_elevation, double log_noise_std) const {
   solver.compute(share);
   const double least = std::max(kMinRealShare, 5.0 * std::sqrt(2.0 / std::max(inliers_, 1.0)));
   const double margin = std::exp(kDoubtfulStds * log_noise_std);
-  Eigen::Vector3d real = Eigen::Vector3d::Zero();
+  Eigen::Vector3d real = Eigen::Vector3d::Zero(), counts = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double from_noise = std::max(solver.eigenvalues()(i), 0.0);
     if (!(1.0 - margin * from_noise > least)) continue;
     real(i) = 1.0 - from_noise;
+    counts(i) = 1.0;
     ++out.directions;
   }
   const Eigen::Matrix3d axes = l * solver.eigenvectors();  // m = axes·axesᵀ
   const Eigen::Matrix3d inverse_axes = solver.eigenvectors().transpose() * inverse;
   out.share = axes * real.asDiagonal() * inverse_axes;
+  out.supported = axes * counts.asDiagonal() * inverse_axes;
   return out;
 }
 

@@ -12,6 +12,8 @@ struct Support {
   /// 1 − f of the score, with f the share that comes from noise, and nothing if f is close to 1. Score and information
   /// then agree: E[T·m] = T·M·Tᵀ·δg, and noise alone never accumulates as information.
   Eigen::Matrix3d share = Eigen::Matrix3d::Zero();
+  /// The same with 1 for each supported direction: for scores and information that already lack the part of the noise.
+  Eigen::Matrix3d supported = Eigen::Matrix3d::Zero();
   int directions = 0;  ///< number of supported directions; two form a plane, whose tilt is not determined
 };
 

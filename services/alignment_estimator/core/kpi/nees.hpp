@@ -1,5 +1,5 @@
 // Normalised estimation error squared (NEES): compares the error of an estimate with its stated covariance.
-// Equations: docs/algorithms/alignment.md (A25).
+// Equations: docs/algorithms/alignment.md (A17).
 #pragma once
 
 #include <cmath>

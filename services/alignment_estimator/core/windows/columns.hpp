@@ -25,7 +25,7 @@ enum : int {
   kPitchPerAcceleration = kPosition + 2,  ///< rad per m/s², positive with the nose up
   kCurve,                                 ///< kKnots: error of the azimuth, measured − true (rad)
   /// The road as a mirror: a reflector stands (1 + this) times as high above the road as its detection; and the share
-  /// of the detections below the road that are images of reflectors above it.
+  /// of the detections below the road that are mirror images of reflectors above it.
   kAbove = kCurve + kKnots,
   kMirror,
   kCount

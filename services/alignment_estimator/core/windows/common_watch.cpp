@@ -45,7 +45,7 @@ std::optional<CommonStep> CommonWatch::add(double value) {
     const double scatter_sum = squares - after * square(after_mean) - before * square(before_mean);
     const double variance =
         (std::max(scatter_sum, 0.0) + kPriorBlocks * square(config_.scatter)) / (all + kPriorBlocks);
-    // Products of neighbours around the two means: that across the step is left out.
+    // Products of neighbours around the two means: without that across the step.
     const std::size_t first = size_ - n;
     const double ends_after = values_[first] + values_[size_ - 1], ends_before = values_[0] + values_[first - 1];
     const double sum_after = 2.0 * after_sum - ends_after, sum_before = 2.0 * (total - after_sum) - ends_before;

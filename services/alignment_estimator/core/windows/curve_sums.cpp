@@ -14,8 +14,8 @@ double weighted_square_of(double gate) {
 }
 
 constexpr double kWideGate = 3.0;
-/// A detection below the road is an image or it is not, and the share of images is a mean: the variance of one with
-/// equal chance, relative to the square of what its range rate would change.
+/// A detection below the road is a mirror image or it is not, and the share of mirror images is a mean: the variance of
+/// one with equal chance, relative to the square of what its range rate would change.
 constexpr double kImageVariance = 0.25;
 
 /// What the range rate of a detection would lose per unit of its height parameter, and the derivative to the elevation.
@@ -24,8 +24,8 @@ struct HeightColumn {
   bool below = false;
 };
 
-/// Above the road: the reflector is higher than its detection. Below: the detection is the image of a reflector above.
-/// `upright`: cosine of the roll, between the directions of growing elevation of the sensor and of the vehicle.
+/// Above the road: the reflector is higher than its detection. Below: the detection is the mirror image of a reflector
+/// above. `upright`: cosine of the roll, between the directions of growing elevation of the sensor and of the vehicle.
 HeightColumn height_column(const Eigen::Vector3d& u, const Eigen::Vector3d& g, double along, double upright,
                            double range_m, const CurveJudgement& judgement) {
   if (!(judgement.height_m > 0.0) || !(range_m > 1.0)) return {};
@@ -56,6 +56,9 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
   const double ambiguity = run.ambiguity_mps, inverse_ambiguity = ambiguity > 0.0 ? 1.0 / ambiguity : 0.0;
   const double wide = judgement.wide_std_mps * judgement.wide_std_mps;
   const double inverse_step = 1.0 / knots.step_rad;
+  common.information.setZero();
+  common.from_noise.setZero();
+  common.score.setZero();
   sums.detections = static_cast<double>(run.count);
   for (std::size_t i = 0; i < run.count; ++i) {
     const double place = (run.azimuth_rad[i] - knots.first_rad) * inverse_step;
@@ -117,7 +120,13 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     const double ka = slope * va * da, kb = slope * ve * db;
     sums.score += pull * u + ka * ea + kb * eb;
     const double wa = weight * va, we = weight * ve;
-    sums.information.noalias() += weight * u * u.transpose() - wa * ea * ea.transpose() - we * eb * eb.transpose();
+    const double along_square = weight * along * along;
+    common.along += along_square;
+    common.lowered += along_square * run.lowering[i];
+    common.raised += along_square * run.mean_sine[i];
+    const Eigen::Matrix3d from_noise = wa * ea * ea.transpose() + we * eb * eb.transpose();
+    common.from_noise += from_noise;
+    sums.information.noalias() += weight * u * u.transpose() - from_noise;
     // The knots: ∂e/∂c = −h·da. Its derivative to the azimuth has the slope of the hat function, so that a direction
     // that the data cannot see (a scale of the range rates against a stretched curve) gets no push.
     CurveSums::Heights& heights = sums.heights[of_height.below ? 1 : 0];

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "services/alignment_estimator/core/small_maths.hpp"
+#include "services/common/estimation/unknown_elevation.hpp"
 #include "services/common/geometry/so3.hpp"
 
 namespace boresight::alignment::windows {
@@ -86,7 +87,7 @@ void write_nuisance(const Solver& solver, const RadarSolution& radar, int load, 
 }  // namespace
 
 void write_solution(const Solver& solver, std::size_t index, double time_s, int load, const Knots& knots,
-                    RadarEstimate& out) {
+                    const Unmeasured& unmeasured, RadarEstimate& out) {
   const Priors& priors = solver.priors();
   const RadarSolution& radar = solver.radar(index);
   const double by_speed = 1.0 + radar.state.rate_scale, by_rate = solver.shared().speed_scale;
@@ -103,7 +104,7 @@ void write_solution(const Solver& solver, std::size_t index, double time_s, int 
                          square(by_rate) * radar.covariance(own::kRateScale, own::kRateScale) +
                          2.0 * by_speed * by_rate * radar.with_shared(own::kRateScale, shared::kSpeedScale);
   // Heights over the road: that they exceed the detections' is not known. The estimate is the one without an excess;
-  // what the excess would change is a tolerance, and so is the share of images.
+  // what the excess would change is a tolerance, and so is the share of mirror images.
   const double above_variance = radar.covariance(own::kAbove, own::kAbove);
   if (above_variance > 1e-12) {
     const Eigen::Vector4d by_above = rows.col(own::kAbove) / above_variance;
@@ -118,12 +119,18 @@ void write_solution(const Solver& solver, std::size_t index, double time_s, int 
     out.covariance += square(priors.mirror_share_tolerance) * by_mirror * by_mirror.transpose();
   }
   if (!radar.has_elevation) {
-    // Pitch and roll were taken as nominal. They are not known, and together they turn yaw: half of their product.
-    const double variance = square(priors.rotation_std_rad);
+    // Pitch and roll were taken as nominal. They are not known, and together they turn yaw: by half of their product,
+    // and by the mean elevation times the tilt of the line of sight.
+    const double roll = radar.tilt_variance(0), pitch = radar.tilt_variance(1);
     out.covariance.middleRows<2>(1).setZero();
     out.covariance.middleCols<2>(1).setZero();
-    out.covariance(1, 1) = out.covariance(2, 2) = variance;
-    out.covariance(3, 3) += 0.25 * square(variance);
+    out.covariance(1, 1) = roll;
+    out.covariance(2, 2) = pitch;
+    const Eigen::Vector2d ahead = out.sensor_to_vehicle.topLeftCorner<2, 1>().normalized();
+    const double tilt = square(ahead.x()) * roll + square(ahead.y()) * pitch;
+    const double mean_square = square(unmeasured.mean_sine) * (1.0 + square(kElevationExcessStd));
+    out.covariance(3, 3) += mean_square * tilt + 0.25 * roll * pitch;
+    out.covariance(0, 0) += 2.0 * square(out.speed_scale * unmeasured.lowering * kElevationExcessStd);
   }
   out.observable = 0;
   const std::array<std::uint32_t, 4> bits{alignment_axis::kSpeedScale, alignment_axis::kVehicleRoll,

@@ -43,11 +43,12 @@ struct RadarSolution {
   Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared =
       Eigen::Matrix<double, own::kCount, shared::kConstants>::Zero();
   Fluctuation fluctuation;
-  std::array<double, kFluctuations> median_std{};  ///< of the fluctuations before any data: the prior's or a memory's
-  std::array<double, 2> drift_variance{};  ///< of the rates of pitch and yaw: learnt
-  OwnMatrix prior = OwnMatrix::Zero();     ///< precision
-  OwnState prior_state;                    ///< mean
+  std::array<double, kFluctuations> median_std{};  ///< before any data: the prior's, or a larger one of a memory
+  std::array<double, 2> drift_variance{};          ///< of the rates of pitch and yaw: learnt
+  OwnMatrix prior = OwnMatrix::Zero();             ///< precision
+  OwnState prior_state;                            ///< mean
   bool has_elevation = true;
+  Eigen::Vector2d tilt_variance{0.0, 0.0};  ///< of roll and pitch, where they are not measured
 };
 
 class Solver {
@@ -135,8 +136,7 @@ class Solver {
   Fluctuation common_;
   LocalVector scale_;  ///< of the local parameters: their prior stds
   std::array<double, kFluctuations> correlation_s_;
-  /// Medians before any data: the prior's or a memory's.
-  std::array<double, kFluctuations> median_common_std_, median_correlation_s_;
+  std::array<double, kFluctuations> median_common_std_;  ///< before any data: the prior's, or a larger one of a memory
   double time_s_ = 0.0;
 
   // Work space of the solution that is being made.

@@ -1,4 +1,5 @@
 // Priors from an earlier drive, and rotations from a static calibration.
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -42,7 +43,10 @@ void Solver::restore(std::size_t index, const OwnState& state, const OwnMatrix& 
   radar.state.drift_radps.setZero();
   radar.prior_state = radar.state;
   radar.fluctuation = fluctuation;
-  for (std::size_t k = 0; k < kFluctuations; ++k) radar.median_std[k] = std::sqrt(fluctuation.variance[k]);
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    radar.median_std[k] = std::max(radar.median_std[k], std::sqrt(fluctuation.variance[k]));
+    if (fluctuation.variance[k] > 0.0) radar.fluctuation.variance[k] = square(radar.median_std[k]);
+  }
   const Eigen::Matrix<double, kRemembered, kRemembered> remembered =
       covariance.topLeftCorner<kRemembered, kRemembered>();
   radar.prior.setZero();
@@ -62,9 +66,12 @@ void Solver::restore(const SharedState& state, const SharedMatrix& covariance, c
   shared_covariance_ = covariance;
   shared_prior_ = precision_from<shared::kConstants>(covariance);
   common_ = common;
-  correlation_s_ = median_correlation_s_ = correlation_s;
+  correlation_s_ = correlation_s;
+  // A short drive does not show slow fluctuations: a memory makes them larger only.
   for (std::size_t k = 0; k < kFluctuations; ++k) {
-    if (common.variance[k] > 0.0) median_common_std_[k] = std::sqrt(common.variance[k]);
+    if (!(common.variance[k] > 0.0)) continue;
+    median_common_std_[k] = std::max(median_common_std_[k], std::sqrt(common.variance[k]));
+    common_.variance[k] = square(median_common_std_[k]);
   }
 }
 
@@ -103,6 +110,7 @@ void Solver::forget_rotation(std::size_t index, const Eigen::Matrix3d& nominal) 
 
 void Solver::seed(std::size_t index, const Eigen::Matrix3d& sensor_to_vehicle, const Eigen::Matrix3d& covariance) {
   set_rotation_prior(radars_[index], sensor_to_vehicle, covariance);
+  radars_[index].tilt_variance = covariance.diagonal().head<2>();
 }
 
 }  // namespace boresight::alignment::windows

@@ -18,7 +18,7 @@ using namespace windows;
 
 constexpr std::size_t kMinSightings = 4;
 constexpr double kMaxGap_s = 1.0;
-constexpr double kInlierMemory_s = 10.0, kNoiseMemory_s = 60.0;
+constexpr double kInlierMemory_s = 10.0, kNoiseMemory_s = 60.0, kSpreadMemory_s = 600.0;
 constexpr double kMaxSpeed_mps = 120.0, kMaxYawRate_radps = 4.0;
 /// Largest standard deviations of scale and rotation that widen the gate of a running radar.
 constexpr double kGateScale = 0.005, kGateRotation_rad = 0.01;
@@ -160,13 +160,33 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   solver_.radar(index).state.sensor_to_vehicle = found.sensor_to_vehicle;
   if (first) solver_.shared().speed_scale = found.speed_scale;
   radar.running = true;
+  radar.linearised = solver_.point(index, driven_s_, load_).sensor_to_vehicle;
+  radar.linearised_speed_scale = solver_.shared().speed_scale;
   radar.inlier_ratio = found.inlier_ratio;
+  radar.spread = found.spread;
   begin_block(index);
+}
+
+Point WindowedFilter::linearise(std::size_t index) {
+  constexpr double kKnownShare = 1.0 / 3.0;  // of the prior's standard deviation
+  Radar& radar = radars_[index];
+  Point point = solver_.point(index, driven_s_, load_);
+  Eigen::Vector3d turn = geometry::so3_log(point.sensor_to_vehicle * radar.linearised.transpose());
+  for (int axis = 0; axis < 3; ++axis) {
+    const double variance = solver_.radar(index).covariance(own::kRotation + axis, own::kRotation + axis);
+    if (!(variance < square(kKnownShare * priors_.rotation_std_rad))) turn(axis) = 0.0;
+  }
+  radar.linearised = geometry::so3_exp(turn) * radar.linearised;
+  const double scale_variance = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
+  if (scale_variance < square(kKnownShare * priors_.speed_scale_std)) radar.linearised_speed_scale = point.speed_scale;
+  point.sensor_to_vehicle = radar.linearised;
+  point.speed_scale = radar.linearised_speed_scale;
+  return point;
 }
 
 void WindowedFilter::begin_block(std::size_t index) {
   Radar& radar = radars_[index];
-  radar.block.clear(solver_.point(index, driven_s_, load_));
+  radar.block.clear(linearise(index));
   LocalMatrix p = solver_.local_covariance(index);
   const RadarSolution& solution = solver_.radar(index);
   for (std::size_t k = 0; k < kFluctuations; ++k) {
@@ -187,7 +207,7 @@ void WindowedFilter::begin_block(std::size_t index) {
 
 void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const EgoSample& ego, double elapsed_s) {
   Radar& radar = radars_[index];
-  const ScanModel model =
+  ScanModel model =
       model_scan(radar.block.point, radar.config.mounting_pose.position_m, motion_of(radar.block.point, motion));
   const auto std_of = [](double stated, double fallback) { return stated > 0.0 ? stated : fallback; };
   const MotionVariances variances{square(std_of(ego.speed_std_mps, config_.speed_std_mps)),
@@ -209,7 +229,8 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
   judgement.height_excess = radar.block.point.height_excess;
   judgement.mirror_share = radar.block.point.mirror_share;
   judgement.wide_std_mps = 0.012 * std::abs(ego.speed_mps);
-  const CurveSums sums = windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
+  CurveSums sums = windows::sum_scan(sightings_, model.g, radar.block.point.curve_rad, radar.knots, judgement);
+  const int directions = keep_supported(radar, elapsed_s, sums, model);
   radar.efficiency.add(sums.common, elapsed_s);
   windows::add_scan(radar.block, model, sums, variances,
                     {radar.efficiency.of_information(), radar.efficiency.of_score()});
@@ -226,11 +247,37 @@ void WindowedFilter::update(std::size_t index, const ScanMotion3d& motion, const
     radar.block.turn_variance =
         std::max(radar.block.turn_variance, sideways.dot(others * sideways) / square(ego.speed_mps));
   }
-  radar.noise.add(sums.common, std::exp(-elapsed_s / kNoiseMemory_s));
+  // Along one direction the noise of the angles cannot be distinguished from that of the range rates.
+  if (directions >= 2) radar.noise.add(sums.common, std::exp(-elapsed_s / kNoiseMemory_s));
   const double share = sums.common.stationary / sums.detections;
   radar.inlier_ratio += (share - radar.inlier_ratio) * (1.0 - std::exp(-elapsed_s / kInlierMemory_s));
   ++radar.scans_used;
   radar.detections_used += static_cast<std::uint64_t>(sums.common.inliers);
+}
+
+int WindowedFilter::keep_supported(Radar& radar, double elapsed_s, CurveSums& sums, ScanModel& model) {
+  const double keep = std::exp(-elapsed_s / kSpreadMemory_s);
+  // The learnt noise of the angles is not believed to be smaller than stated: where there is no spread, it is not
+  // known.
+  const double doubt = std::max(1.0, 1.0 / radar.noise.angle_variance_factor());
+  radar.spread.add(sums.information + sums.common.from_noise, doubt * sums.common.from_noise, sums.common.inliers,
+                   keep);
+  const Support support = radar.spread.support(sightings_.has_elevation, config_.prior_angle_noise_log_std);
+  if (!sightings_.has_elevation && sums.common.along > 0.0) {
+    const double recent = radar.lowering > 0.0 ? 1.0 - std::exp(-elapsed_s / kNoiseMemory_s) : 1.0;
+    radar.lowering += (sums.common.lowered / sums.common.along - radar.lowering) * recent;
+    radar.mean_sine += (sums.common.raised / sums.common.along - radar.mean_sine) * recent;
+  }
+  if (support.directions == 3) return support.directions;
+  sums.information = support.supported * sums.information * support.supported.transpose();
+  sums.score = support.supported * sums.score;
+  sums.curve_by_velocity *= support.supported.transpose();
+  sums.wide_information = support.supported * sums.wide_information * support.supported.transpose();
+  sums.wide_score = support.supported * sums.wide_score;
+  for (CurveSums::Heights& heights : sums.heights) heights.by_velocity = support.supported * heights.by_velocity;
+  // Reflectors in one plane do not determine its tilt: it would come from the estimate, not from the radar.
+  model.by_parameter.middleRows<2>(local::kRotation).setZero();
+  return support.directions;
 }
 
 void WindowedFilter::close_block() {
@@ -272,7 +319,7 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   const Radar& radar = radars_[index];
   out.state = radar.state;
   out.reason = radar.reason;
-  write_solution(solver_, index, driven_s_, load_, radar.knots, out);
+  write_solution(solver_, index, driven_s_, load_, radar.knots, radar.unmeasured(), out);
   out.drift.since_ns = radar.drift_since_ns;
   if (!radar.running && !radar.remembered) out.observable = out.nuisance.observable = 0;
   out.step_change = radar.step_change;

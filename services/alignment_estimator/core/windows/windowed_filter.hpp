@@ -10,10 +10,12 @@
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
 #include "services/alignment_estimator/core/filter/graduated_start.hpp"
 #include "services/alignment_estimator/core/filter/noise_scale.hpp"
+#include "services/alignment_estimator/core/filter/spread.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/alignment_estimator/core/windows/change_monitor.hpp"
 #include "services/alignment_estimator/core/windows/common_watch.hpp"
 #include "services/alignment_estimator/core/windows/config.hpp"
+#include "services/alignment_estimator/core/windows/output.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -47,10 +49,17 @@ class WindowedFilter : public Method {
     GraduatedStart start;
     NoiseScale noise;
     Efficiency efficiency;
+    Spread spread;
+    /// Sliding means of a radar without elevation: reduction of its range rates, and sine of the elevation.
+    double lowering = 0.0, mean_sine = 0.0;
     windows::Block block;
     windows::Knots knots;
     LocalGate gate_covariance;
     double curve_variance = 0.0;
+    /// Where the blocks are linearised. It follows the estimate about known axes only: along a direction that the data
+    /// do not determine, several points of linearisation would pose as information.
+    Eigen::Matrix3d linearised = Eigen::Matrix3d::Identity();
+    double linearised_speed_scale = 1.0;
     bool running = false;
     bool remembered = false;  ///< begins from a memory or a static calibration
     AlignmentState state = AlignmentState::kNoData;
@@ -66,6 +75,7 @@ class WindowedFilter : public Method {
     Eigen::Matrix3d reference = Eigen::Matrix3d::Identity();
     double reference_scale = 0.0;  ///< 0: not set
     Radar(const RadarConfig& radar, const FilterConfig& filter, const windows::Priors& priors);
+    [[nodiscard]] windows::Unmeasured unmeasured() const { return {lowering, mean_sine}; }
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
   [[nodiscard]] windows::Motion motion_of(const windows::Point& point, const ScanMotion3d& motion) const;
@@ -80,7 +90,10 @@ class WindowedFilter : public Method {
   void wait(Radar& radar, AlignmentReason reason);
   [[nodiscard]] AlignmentReason reason_of(std::size_t radar) const;
   void judge_drift(std::size_t radar);
+  /// Takes away the directions of which only the noise of the angles speaks; returns the number of the others.
+  int keep_supported(Radar& radar, double elapsed_s, windows::CurveSums& sums, windows::ScanModel& model);
   void close_block();
+  [[nodiscard]] windows::Point linearise(std::size_t radar);
   void begin_block(std::size_t radar);
   void judge_block();
   void judge_vehicle();

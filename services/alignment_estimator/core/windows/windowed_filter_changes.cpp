@@ -16,6 +16,8 @@ constexpr double kDropped_s = 7.0;  ///< of driving before a change is reported:
 constexpr std::size_t kWindowsToSettle = 15;
 /// Spread between radars of what a block says of the common pitch (rad) and of the common scale. Measured.
 constexpr double kPitchSpread_rad = 0.00175, kScaleSpread = 5e-4;
+/// A load change between two drives is no surprise: fewer stds suffice. Choice.
+constexpr double kStdsAfterRestart = 3.0;
 /// A common scale of one block beyond this is taken for one: then no radar has turned by it.
 constexpr double kSuspectScale = 0.003;
 
@@ -156,8 +158,7 @@ void WindowedFilter::decide_load() {
   if (load_since_s_ < 0.0 || driven_s_ - load_since_s_ < change_config_.watch_s) return;
   const int step = load_ - 1;
   const double size = solver_.shared().load_rad[static_cast<std::size_t>(step)];
-  const double limit =
-      std::max(change_config_.load.least, change_config_.load.stds * std::sqrt(solver_.load_variance(step)));
+  const double limit = std::max(change_config_.load.least, kStdsAfterRestart * std::sqrt(solver_.load_variance(step)));
   if (std::abs(size) > limit) {
     ++load_change_.count;
     load_change_.size = static_cast<float>(-size);

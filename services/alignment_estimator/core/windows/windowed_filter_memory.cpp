@@ -260,13 +260,12 @@ bool WindowedFilter::seed(std::size_t index, const Eigen::Vector3d& rotation_veh
 void WindowedFilter::set_has_elevation(std::size_t index, bool has_elevation) {
   Radar& radar = radars_[index];
   const Eigen::Matrix3d turned = solver_.radar(index).state.sensor_to_vehicle;
-  const double yaw_rad = geometry::so3_log(turned * radar.nominal.transpose()).z();
-  const double variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
+  const Eigen::Vector2d tilt_variance = solver_.radar(index).tilt_variance;
+  const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
   solver_.set_prior(index, radar.nominal, has_elevation, radar.knots.step_rad);
   if (!radar.remembered) return;
-  Eigen::Vector3d variances = Eigen::Vector3d::Constant(square(priors_.rotation_std_rad));
-  variances.z() = std::max(variance, 1e-12);
-  solver_.seed(index, geometry::so3_exp({0.0, 0.0, yaw_rad}) * radar.nominal, variances.asDiagonal());
+  const Eigen::Vector3d variances(tilt_variance.x(), tilt_variance.y(), std::max(yaw_variance, 1e-12));
+  solver_.seed(index, turned, variances.asDiagonal());
 }
 
 bool WindowedFilter::contradicts_memory(std::size_t index, const StartResult& found) const {

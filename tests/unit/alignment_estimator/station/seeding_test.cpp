@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "services/alignment_estimator/core/estimator.hpp"
-#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 #include "services/alignment_estimator/core/plate/seed.hpp"
+#include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 #include "services/common/geometry/so3.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
 #include "services/simulator/alignment/drive.hpp"
@@ -87,7 +87,9 @@ TEST(PlateSeed, OfOneRadarIsKeptWhenAnotherIsSeeded) {
     Eigen::Matrix3d off = estimate.covariance.bottomRightCorner<3, 3>() - seeds[i].covariance;
     // The variance of yaw includes the effect of an unknown roll and pitch together.
     off(2, 2) -= 0.25 * seeds[i].covariance(0, 0) * seeds[i].covariance(1, 1);
-    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-12) << "radar " << i << ", correlations between its axes included";
+    // What heights over the road may change is a tolerance; it is at most 1e-3 of the variances.
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-3 * seeds[i].covariance.diagonal().maxCoeff())
+        << "radar " << i << ", correlations between its axes included";
     const Eigen::Matrix3d actual = geometry::so3_exp(seeds[i].rotation_vehicle_rad) * nominal(three.radars[i]);
     EXPECT_LT((estimate.sensor_to_vehicle - actual).cwiseAbs().maxCoeff(), 1e-12);
   }

@@ -50,7 +50,7 @@ TEST(ScanModel, EveryDerivativeEqualsADifference) {
     constexpr double kStep = 1e-6;
     for (int c = 0; c < local::kCurve; ++c) {
       Point point = some_point(mount.yaw_deg, mount.pitch_deg, mount.roll_deg);
-      // The product of roll and body pitch is left out of the derivative on purpose.
+      // The product of roll and body pitch is missing in the derivative on purpose.
       if (c == local::kRotation) point.pitch_per_acceleration_radps2pm = 0.0;
       const ScanModel model = model_scan(point, kPosition_m, motion);
       const auto at = [&](double step) {
@@ -274,7 +274,8 @@ TEST(CurveSums, DetectionsBelowTheRoadAreMirrorImages) {
   auto scan = std::make_unique<Sightings>();
   scan->has_elevation = true;
   constexpr double kElevation = -0.06, kRange_m = 20.0;
-  // A radar 0.5 m over the road: at 20 m the road is 0.025 rad below. The image at −0.06 is of a reflector at +0.01.
+  // A radar 0.5 m over the road: at 20 m the road is 0.025 rad below. The mirror image at −0.06 is of a reflector at
+  // +0.01.
   for (int i = 0; i < 20; ++i) add_sighting(*scan, -0.5 + 0.05 * i, kElevation, kRange_m, 0.0, 0.0);
   const double true_elevation = -kElevation - 2.0 * 0.5 / kRange_m;
   for (std::size_t i = 0; i < scan->count; ++i) {

@@ -1,0 +1,107 @@
+// A vehicle with two radars under supervision, and messages for it.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "interfaces/catalogue/catalogue.hpp"
+#include "services/common/geometry/angles.hpp"
+#include "services/common/runtime/allocation_counter.hpp"
+#include "services/health/core/supervision.hpp"
+
+namespace boresight::health {
+
+using catalogue::Service;
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kStart = 1'000'000 * kMillisecond;
+
+inline VehicleConfig two_radars() {
+  VehicleConfig vehicle;
+  vehicle.name = "test";
+  for (std::uint32_t id : {1u, 2u}) {
+    RadarConfig radar;
+    radar.id = id;
+    radar.name = id == 1 ? "left" : "right";
+    radar.tolerance = {
+        .yaw_rad = 1.5 * kRadiansPerDegree, .pitch_rad = 1.5 * kRadiansPerDegree, .roll_rad = 3.0 * kRadiansPerDegree};
+    radar.cycle_time_s = 0.05;
+    radar.deadline_s = 0.25;
+    vehicle.radars.push_back(radar);
+  }
+  return vehicle;
+}
+
+/// A healthy system of two radars and six services. A test stops parts of it.
+class SupervisionTest : public testing::Test {
+ protected:
+  SupervisionTest() {
+    for (std::size_t i = 0; i < catalogue::kNumberOfSupervisedServices; ++i) {
+      status_[i].header.source_id = static_cast<std::uint32_t>(i);
+      status_[i].incarnation_ns = kStart - 100 * kMillisecond;
+      status_[i].state = ServiceState::kRunning;
+    }
+    status_[0].sources[0].source_id = 1;
+    status_[0].sources[1].source_id = 2;
+    for (auto& estimate : estimate_) {
+      estimate.state = AlignmentState::kConverged;
+      estimate.observable = alignment_axis::kSpeedScale | alignment_axis::kYaw;
+      estimate.speed_scale = 1.0F;
+      estimate.covariance = {};
+      estimate.covariance[5] = static_cast<float>(0.02 * kRadiansPerDegree * 0.02 * kRadiansPerDegree);
+    }
+    estimate_[0].header.source_id = 1;
+    estimate_[1].header.source_id = 2;
+  }
+
+  ServiceStatus& status(Service service) { return status_[static_cast<std::size_t>(service)]; }
+  const ServiceHealth& service(Service s) const { return report_->services[static_cast<std::size_t>(s)]; }
+  const SensorHealth& radar(std::uint32_t id) const { return report_->sensors[id - 1]; }
+
+  /// Lets time pass in steps of 10 ms: scans at 20 Hz, heartbeats at 10 Hz, estimates at 5 Hz, except muted ones.
+  void run(double seconds) {
+    const std::int64_t end_ns = now_ + static_cast<std::int64_t>(seconds * 1e9);
+    for (; now_ < end_ns; now_ += 10 * kMillisecond, ++step_) {
+      const bool scan_is_due = step_ % static_cast<std::uint64_t>(scan_every_) == 0;
+      for (std::uint32_t id : {1u, 2u}) {
+        if (!scan_is_due || silent_radar_ == id) continue;
+        scan_->header.source_id = id;
+        scan_->header.source_sequence = ++sequence_[id];
+        scan_->number_of_valid_detections = 40;
+        supervision_.observe(*scan_, now_);
+        ++status_[0].sources[id - 1].messages;
+        for (std::size_t s = 0; s < 5; ++s) {
+          if (!idle_[s]) ++status_[s].outputs;
+        }
+      }
+      if (step_ % 20 == 0) {
+        for (auto& estimate : estimate_) {
+          estimate.header.measurement_time_ns = now_;
+          supervision_.observe(estimate);
+        }
+      }
+      if (step_ % 10 == 0) {
+        for (std::size_t s = 0; s < status_.size(); ++s) {
+          if (!mute_[s]) supervision_.observe(status_[s], now_);
+        }
+      }
+    }
+    supervision_.judge(*report_, now_);
+  }
+
+  Supervision supervision_{two_radars(), Config{}, kStart};
+  std::array<ServiceStatus, catalogue::kNumberOfSupervisedServices> status_{};
+  std::array<AlignmentEstimate, 2> estimate_{};
+  std::array<bool, 6> mute_{};
+  std::array<bool, 6> idle_{};
+  std::array<std::uint64_t, 3> sequence_{};
+  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
+  std::unique_ptr<HealthReport> report_ = std::make_unique<HealthReport>();
+  std::uint32_t silent_radar_ = 0;
+  int scan_every_ = 5;
+  std::int64_t now_ = kStart;
+  std::uint64_t step_ = 0;
+};
+
+}  // namespace boresight::health
