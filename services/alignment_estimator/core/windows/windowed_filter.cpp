@@ -268,13 +268,16 @@ int WindowedFilter::keep_supported(Radar& radar, double elapsed_s, CurveSums& su
     radar.lowering += (sums.common.lowered / sums.common.along - radar.lowering) * recent;
     radar.mean_sine += (sums.common.raised / sums.common.along - radar.mean_sine) * recent;
   }
+  // Scores scatter with all of the information, that of the noise included, but only the rest of it moves them. Both
+  // are multiplied by the share of the rest, so that they agree: E[T·m] = T·M·Tᵀ·δg.
+  const Eigen::Matrix3d& t = support.share;
+  sums.information = t * (sums.information + sums.common.from_noise) * t.transpose();
+  sums.score = t * sums.score;
+  sums.curve_by_velocity *= t.transpose();
+  for (CurveSums::Heights& heights : sums.heights) heights.by_velocity = t * heights.by_velocity;
   if (support.directions == 3) return support.directions;
-  sums.information = support.supported * sums.information * support.supported.transpose();
-  sums.score = support.supported * sums.score;
-  sums.curve_by_velocity *= support.supported.transpose();
   sums.wide_information = support.supported * sums.wide_information * support.supported.transpose();
   sums.wide_score = support.supported * sums.wide_score;
-  for (CurveSums::Heights& heights : sums.heights) heights.by_velocity = support.supported * heights.by_velocity;
   // Reflectors in one plane do not determine its tilt: it would come from the estimate, not from the radar.
   model.by_parameter.middleRows<2>(local::kRotation).setZero();
   return support.directions;
