@@ -43,6 +43,8 @@ void read_fluctuation(config::Reader table, windows::Priors& p) {
   };
   read("", p.own_std);
   read("common_", p.common_std);
+  p.roll_per_pitch = table.number("roll_per_pitch", {0.0, 100.0}, p.roll_per_pitch);
+  p.lasting_pitch = table.number("lasting_pitch", {0.0, 10.0}, p.lasting_pitch);
   p.log_fluctuation_std = table.number("log_std", {0.01, 5.0}, p.log_fluctuation_std);
   p.common_correlation_s = table.number("correlation_s", {1.5, 60.0}, p.common_correlation_s);
   p.log_correlation_std = table.number("log_correlation_std", {0.01, 5.0}, p.log_correlation_std);

@@ -219,7 +219,7 @@ TEST(DiagnosticsText, StatesVerdictErrorsAndDisplacement) {
         "lateral displacement +4.36 m at 100 m", "20.0 Hz", "reported by the sensor: supply, without ego motion"}) {
     EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
   }
-  EXPECT_EQ(line.find("pitch"), std::string::npos) << "not observable";
+  EXPECT_EQ(line.find("  pitch "), std::string::npos) << "not observable: " << line;
   const std::string json = diagnostics_text::to_json(s);
   EXPECT_NE(json.find(R"("radar":"front_right")"), std::string::npos) << json;
   EXPECT_NE(json.find(R"("extended_qualifier":"MISALIGNED")"), std::string::npos) << json;

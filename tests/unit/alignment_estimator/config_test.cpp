@@ -61,6 +61,8 @@ std::vector<double> numbers(const Settings& s) {
       w.mirror_share_std,
       w.mirror_share_tolerance,
       w.load_std_rad,
+      w.roll_per_pitch,
+      w.lasting_pitch,
       w.log_fluctuation_std,
       w.common_correlation_s,
       w.log_correlation_std,

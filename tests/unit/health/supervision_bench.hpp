@@ -90,7 +90,7 @@ class SupervisionTest : public testing::Test {
     supervision_.judge(*report_, now_);
   }
 
-  Supervision supervision_{two_radars(), Config{}, kStart};
+  Supervision supervision_{two_radars(), Config{.set_s = 1.0}, kStart};
   std::array<ServiceStatus, catalogue::kNumberOfSupervisedServices> status_{};
   std::array<AlignmentEstimate, 2> estimate_{};
   std::array<bool, 6> mute_{};

@@ -96,7 +96,7 @@ TEST_F(SupervisionTest, PitchThatIsObservableAboutTheVehicleAxisOnlyCounts) {
   VehicleConfig vehicle = two_radars();
   vehicle.radars[0].mounting_pose.yaw_rad = 45.0 * kRadiansPerDegree;
   vehicle.radars[1].mounting_pose.yaw_rad = 90.0 * kRadiansPerDegree;
-  supervision_ = Supervision(vehicle, Config{}, now_);
+  supervision_ = Supervision(vehicle, Config{.set_s = 1.0}, now_);
   run(3.0);
   for (auto& estimate : estimate_) {
     estimate.observable |= alignment_axis::kVehiclePitch | alignment_axis::kVehicleYaw;

@@ -30,8 +30,8 @@ class NameOfARadar : public ::testing::Test {
     ASSERT_NE(vehicle.find(name), std::string::npos);
     vehicle.replace(vehicle.find(name), name.size(), "'" + testing::kName + "'");
     std::ofstream(folder_ / "my car.toml") << vehicle;
-    EXPECT_THAT(run("simulate --duration 4 --out drive" + kVehicle), HasSubstr("319 scans"));
-    EXPECT_THAT(run("run " + kDrive + " --out run" + kVehicle), HasSubstr("319 scans"));
+    EXPECT_THAT(run("simulate --duration 12 --out drive" + kVehicle), HasSubstr("959 scans"));
+    EXPECT_THAT(run("run " + kDrive + " --out run" + kVehicle), HasSubstr("959 scans"));
   }
   void TearDown() override { fs::remove_all(folder_); }
 

@@ -273,7 +273,7 @@ Segments Batch::assembled(Side side, const std::vector<std::size_t>& loads) cons
 std::vector<RadarEstimate> Batch::estimates(const Solver& solver, double time_s, int loads) const {
   std::vector<RadarEstimate> all(radars_.size());
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), {}, all[r]);
+    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), radars_[r].sums.linearised(), {}, all[r]);
   }
   return all;
 }
@@ -425,7 +425,7 @@ void Batch::write_before(Result& result) const {
     const std::optional<Solver> solver = solved_before(r);
     if (!solver) continue;
     const int loads = loads_before(loads_, window_of(radars_[r].changes.front().block));
-    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), {}, result.before[r].emplace());
+    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), radars_[r].sums.linearised(), {}, result.before[r].emplace());
   }
 }
 

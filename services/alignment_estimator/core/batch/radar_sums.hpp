@@ -34,6 +34,7 @@ class RadarSums {
   void set_angle_noise_scale(double scale) { noise_.set_angle_scale(scale); }
 
   [[nodiscard]] const windows::Block& block() const { return block_; }
+  [[nodiscard]] const Eigen::Matrix3d& linearised() const { return block_.point.sensor_to_vehicle; }
   [[nodiscard]] const windows::Knots& knots() const { return knots_; }
   [[nodiscard]] double angle_noise_scale() const { return std::sqrt(noise_.angle_variance_factor()); }
   [[nodiscard]] double stationary_share() const { return detections_ > 0.0 ? stationary_ / detections_ : 0.0; }

@@ -66,20 +66,23 @@ inline constexpr double kFixedPrecision = 1e18;
   return p;
 }
 
-/// A radar's own parameter and the local one that it acts on; the drifts act on the rotation.
+/// A radar's own parameter and the local one that it acts on. The drifts act on the rotation. A load turns the axes of
+/// the mounting: Exp(λ·y)·Exp(δ) = Exp(d)·Exp(λ·y) with d = Exp(λ·y)·δ, so that its roll acts on yaw.
 struct OwnAction {
   int own, local;
   double factor;
 };
 struct OwnActions {
-  std::array<OwnAction, own::kCount> actions;
-  explicit OwnActions(double drift_time_s) {
+  std::array<OwnAction, own::kCount + 2> actions;
+  OwnActions(double drift_time_s, double load_rad) {
     std::size_t n = 0;
     for (int c = 0; c < local::kCount; ++c) {
       if (own_column(c) >= 0) actions[n++] = {own_column(c), c, 1.0};
     }
     actions[n++] = {own::kPitchDrift, local::kRotation + 1, drift_time_s};
     actions[n++] = {own::kYawDrift, local::kRotation + 2, drift_time_s};
+    actions[n++] = {own::kRotation, local::kRotation + 2, -load_rad};
+    actions[n++] = {own::kRotation + 2, local::kRotation, load_rad};
   }
 };
 

@@ -1,5 +1,6 @@
 #include "services/alignment_estimator/core/windows/output.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "services/alignment_estimator/core/small_maths.hpp"
@@ -86,14 +87,24 @@ void write_nuisance(const Solver& solver, const RadarSolution& radar, int load, 
 
 }  // namespace
 
+double lasting_pitch_variance(const Priors& priors, const RadarSolution& radar) {
+  if (!radar.has_elevation) return 0.0;
+  const double known_before = radar.covariance(own::kRotation + 1, own::kRotation + 1) / radar.pitch_variance_before;
+  return square(priors.lasting_pitch) * radar.fluctuation.variance[1] * std::clamp(1.0 - known_before, 0.0, 1.0);
+}
+
 void write_solution(const Solver& solver, std::size_t index, double time_s, int load, const Knots& knots,
-                    const Unmeasured& unmeasured, RadarEstimate& out) {
+                    const Eigen::Matrix3d& linearised, const Unmeasured& unmeasured, RadarEstimate& out) {
   const Priors& priors = solver.priors();
   const RadarSolution& radar = solver.radar(index);
   const double by_speed = 1.0 + radar.state.rate_scale, by_rate = solver.shared().speed_scale;
   out.speed_scale = by_rate * by_speed;
   const Point now = solver.point(index, time_s, load);
-  out.sensor_to_vehicle = geometry::so3_exp({0.0, -solver.load_rad(load), 0.0}) * now.sensor_to_vehicle;
+  const Eigen::Matrix3d unloaded = geometry::so3_exp({0.0, -solver.load_rad(load), 0.0});
+  // Heights are taken away where the solution is linear. Composed with a rotation that contains an uncertain roll, they
+  // would change yaw.
+  const Eigen::Matrix3d origin = unloaded * linearised;
+  Eigen::Vector3d rotation = geometry::so3_log(unloaded * now.sensor_to_vehicle * origin.transpose());
   const Eigen::Matrix<double, 4, own::kCount> rows = with_own(solver, radar);
   out.covariance.bottomRows<3>().leftCols<1>() =
       by_speed * radar.with_shared.block<3, 1>(own::kRotation, shared::kSpeedScale) +
@@ -110,9 +121,14 @@ void write_solution(const Solver& solver, std::size_t index, double time_s, int 
     const Eigen::Vector4d by_above = rows.col(own::kAbove) / above_variance;
     const Eigen::Vector4d change = by_above * radar.state.height_excess;
     out.speed_scale -= change(0);
-    out.sensor_to_vehicle = geometry::so3_exp(-change.tail<3>()) * out.sensor_to_vehicle;
+    rotation -= change.tail<3>();
     out.covariance += change * change.transpose() - above_variance * by_above * by_above.transpose();
+    // Along another direction of driving the same reflectors would tilt the radar about another axis.
+    const Eigen::Vector4d across(0.0, -change(2), change(1), 0.0);
+    out.covariance += across * across.transpose();
   }
+  out.sensor_to_vehicle = geometry::so3_exp(rotation) * origin;
+  out.covariance(2, 2) += lasting_pitch_variance(priors, radar);
   const double mirror_variance = radar.covariance(own::kMirror, own::kMirror);
   if (mirror_variance > 1e-9) {
     const Eigen::Vector4d by_mirror = rows.col(own::kMirror) / mirror_variance;

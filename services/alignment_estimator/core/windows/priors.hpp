@@ -32,6 +32,10 @@ struct Priors {
   std::array<double, kFluctuations> own_std{5e-4, 9e-4, 5e-4};
   std::array<double, kFluctuations> common_std{1.4e-3, 1.7e-3, 3e-4};
   double log_fluctuation_std = 1.0;
+  /// An error of the elevations that shows as pitch at the speed V shows as roll at the sideways velocity: V/V_y times
+  /// as large, 3 in a turn at a junction. It lasts as long as the scene, so that a turn has one.
+  double roll_per_pitch = 10.0;
+  double lasting_pitch = 1.5;          ///< of the scatter of a radar's pitch: the part that stays for the drive
   double common_correlation_s = 20.0;  ///< median of their correlation times
   double log_correlation_std = 1.5;
   // Drift of a mounting over the last `drift_span_s`: median of the standard deviation of its rate.

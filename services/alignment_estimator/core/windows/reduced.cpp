@@ -18,12 +18,19 @@ void make_positive(Share& share, const LocalVector& scale) {
   share.positive = true;
 }
 
-Reduced reduce(const Share& share, const Point& present, const std::array<double, kFluctuations>& variances) {
+Reduced reduce(const Share& share, const Point& present, const std::array<double, kFluctuations>& variances,
+               double roll_variance) {
   constexpr double kNone = 1e18;  // precision of a fluctuation that does not exist
   Reduced r;
   r.information = share.information;
   r.score = share.score;
   r.score.noalias() += r.information * difference(present, share.point);
+  if (roll_variance > 0.0) {
+    const LocalVector column = r.information.col(local::kRotation);
+    const double gain = 1.0 / (column(local::kRotation) + 1.0 / roll_variance);
+    r.score -= (gain * r.score(local::kRotation)) * column;
+    r.information.noalias() -= gain * column * column.transpose();
+  }
   FluctuationColumns columns;
   for (int k = 0; k < kFluctuations; ++k) columns.col(k) = r.information.col(kFluctuating[static_cast<std::size_t>(k)]);
   FluctuationMatrix m;

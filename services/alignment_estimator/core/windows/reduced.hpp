@@ -22,9 +22,9 @@ struct Reduced {
   FluctuationVector raw_score;
 };
 
-/// Eliminates a fluctuation with these variances; 0: there is none.
+/// Eliminates a fluctuation with these variances, and one of roll; 0: there is none.
 [[nodiscard]] Reduced reduce(const Share& share, const Point& present,
-                             const std::array<double, kFluctuations>& variances);
+                             const std::array<double, kFluctuations>& variances, double roll_variance = 0.0);
 
 /// Drops the directions of which a share knows less than nothing: the correction for the noise of the angles may take
 /// away more than few detections gave. `scale`: of each parameter, its prior std.

@@ -138,13 +138,14 @@ void Segments::join(int first, const MergeNoise& noise) {
       Share& s = share(part, r);
       if (s.seconds <= 0.0) continue;
       std::array<double, kFluctuations> deviation = own_variances(noise.own[r], of, s);
+      const double roll = 0.5 * noise.roll_per_pitch * noise.roll_per_pitch * deviation[1];
       for (std::size_t k = 0; k < kFluctuations; ++k) {
         const double tau_s = noise.correlation_s[k];
         const double common = std::max(
             share_of_mean(std::max(of.seconds, 0.1), tau_s) - share_of_mean(std::max(a_s + b_s, 0.1), tau_s), 0.0);
         deviation[k] = 0.5 * deviation[k] + radars * common * noise.common.variance[k];
       }
-      const Reduced reduced = reduce(s, s.point, deviation);
+      const Reduced reduced = reduce(s, s.point, deviation, roll);
       s.information = reduced.information;
       s.score = reduced.score;
       s.weight = 1.0;

@@ -31,6 +31,7 @@ struct MergeNoise {
   Fluctuation common;
   std::array<double, kFluctuations> correlation_s{20.0, 20.0, 20.0};
   std::array<Fluctuation, kMaxRadars> own{};
+  double roll_per_pitch = 0.0;  ///< std of a radar's own roll over that of its pitch
 };
 
 struct Segment {

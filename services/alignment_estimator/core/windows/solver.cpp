@@ -75,6 +75,7 @@ void Solver::set_prior(std::size_t radar, const Eigen::Matrix3d& nominal, bool h
   r.prior_state = r.state;
   r.has_elevation = has_elevation;
   r.tilt_variance.setConstant(square(priors_.rotation_std_rad));
+  r.pitch_variance_before = square(priors_.rotation_std_rad);
   r.prior.setZero();
   r.prior(own::kRateScale, own::kRateScale) = precision_of(priors_.rate_scale_std);
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,6 +119,7 @@ void Solver::turn(std::size_t index, const Eigen::Vector3d& turn_vehicle_rad) {
   s.sensor_to_vehicle = geometry::so3_exp(turn_vehicle_rad) * s.sensor_to_vehicle;
   s.drift_radps.setZero();
   radar.prior_state.sensor_to_vehicle = s.sensor_to_vehicle;
+  radar.pitch_variance_before = square(priors_.turned_std_rad);
   radar.drift_variance = {radar.has_elevation ? square(priors_.drift_std_radps) : 0.0, square(priors_.drift_std_radps)};
   for (int axis = 0; axis < 3; ++axis) {
     const int c = own::kRotation + axis;
@@ -171,6 +173,7 @@ Point Solver::point(std::size_t radar, double time_s, int load) const {
 MergeNoise Solver::merge_noise() const {
   MergeNoise noise;
   noise.common = common_;
+  noise.roll_per_pitch = priors_.roll_per_pitch;
   noise.correlation_s = correlation_s_;
   for (std::size_t r = 0; r < radars_.size(); ++r) noise.own[r] = radars_[r].fluctuation;
   return noise;

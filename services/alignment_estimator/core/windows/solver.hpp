@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "services/alignment_estimator/core/windows/priors.hpp"
+#include "services/alignment_estimator/core/windows/reduced.hpp"
 #include "services/alignment_estimator/core/windows/segment.hpp"
 
 namespace boresight::alignment::windows {
@@ -47,6 +48,7 @@ struct RadarSolution {
   std::array<double, 2> drift_variance{};          ///< of the rates of pitch and yaw: learnt
   OwnMatrix prior = OwnMatrix::Zero();             ///< precision
   OwnState prior_state;                            ///< mean
+  double pitch_variance_before = 1.0;              ///< of the prior
   bool has_elevation = true;
   Eigen::Vector2d tilt_variance{0.0, 0.0};  ///< of roll and pitch, where they are not measured
 };
@@ -115,6 +117,8 @@ class Solver {
     OwnMatrix covariance;
     Eigen::Matrix<double, own::kCount, shared::kConstants> with_shared;
   };
+  /// Without the radar's own fluctuation, at the present point.
+  [[nodiscard]] Reduced reduced(const Share& share, const Segment& segment, std::size_t radar) const;
   void begin_border(const Segments& segments);
   void gather(Segments& segments, std::size_t radar);
   void eliminate(std::size_t radar);

@@ -10,6 +10,11 @@
 
 namespace boresight::alignment::windows {
 
+Reduced Solver::reduced(const Share& share, const Segment& segment, std::size_t index) const {
+  const std::array<double, kFluctuations> own = own_variances(radars_[index].fluctuation, segment, share);
+  return reduce(share, point(index, segment.middle_s, segment.load), own, square(priors_.roll_per_pitch) * own[1]);
+}
+
 void Solver::gather(Segments& segments, std::size_t index) {
   Eliminated& w = work_[index];
   const RadarSolution& radar = radars_[index];
@@ -35,9 +40,8 @@ void Solver::gather(Segments& segments, std::size_t index) {
     if (share.seconds <= 0.0) continue;
     if (!share.positive) make_positive(share, scale_);
     const Segment& segment = segments.segment(i);
-    const Reduced r =
-        reduce(share, point(index, segment.middle_s, segment.load), own_variances(radar.fluctuation, segment, share));
-    const OwnActions of_own(drift_time(segment.middle_s));
+    const Reduced r = reduced(share, segment, index);
+    const OwnActions of_own(drift_time(segment.middle_s), load_rad(segment.load));
     const TouchedColumns t = touched(segment, i);
     for (const OwnAction& a : of_own.actions) {
       w.score(a.own) += a.factor * r.score(a.local);

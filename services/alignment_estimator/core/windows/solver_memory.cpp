@@ -49,6 +49,7 @@ void Solver::restore(std::size_t index, const OwnState& state, const OwnMatrix& 
   }
   const Eigen::Matrix<double, kRemembered, kRemembered> remembered =
       covariance.topLeftCorner<kRemembered, kRemembered>();
+  radar.pitch_variance_before = std::max(remembered(own::kRotation + 1, own::kRotation + 1), 1e-12);
   radar.prior.setZero();
   radar.prior.topLeftCorner<kRemembered, kRemembered>() = precision_from<kRemembered>(remembered);
   const Eigen::Vector2d of_drift = radar.covariance.diagonal().tail<2>();
@@ -79,6 +80,7 @@ void Solver::set_rotation_prior(RadarSolution& radar, const Eigen::Matrix3d& mea
   stop();
   radar.state.sensor_to_vehicle = radar.prior_state.sensor_to_vehicle = mean;
   radar.state.drift_radps.setZero();
+  radar.pitch_variance_before = covariance(1, 1);
   Eigen::Matrix3d known = covariance;
   if (!radar.has_elevation) {
     known.topRows<2>().setZero();

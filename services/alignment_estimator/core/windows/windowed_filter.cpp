@@ -29,7 +29,8 @@ WindowedFilter::Radar::Radar(const RadarConfig& radar, const FilterConfig& filte
     : config(radar),
       nominal(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0)),
       unknown(radar, priors.rotation_std_rad),
-      start(filter) {
+      start(filter),
+      linearised(nominal) {
   const double half = std::max(std::abs(radar.field_of_view.azimuth_min_rad), radar.field_of_view.azimuth_max_rad);
   knots.first_rad = -half;
   knots.step_rad = 2.0 * half / (kKnots - 1);
@@ -168,13 +169,16 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
 }
 
 Point WindowedFilter::linearise(std::size_t index) {
-  constexpr double kKnownShare = 1.0 / 3.0;  // of the prior's standard deviation
+  // Of the prior's standard deviation. What is known of the scale limits yaw, and the reverse, where the data determine
+  // neither; roll is known later than all else.
+  constexpr double kKnownShare = 0.2, kKnownShareOfRoll = 1.0 / 3.0;
   Radar& radar = radars_[index];
   Point point = solver_.point(index, driven_s_, load_);
   Eigen::Vector3d turn = geometry::so3_log(point.sensor_to_vehicle * radar.linearised.transpose());
   for (int axis = 0; axis < 3; ++axis) {
     const double variance = solver_.radar(index).covariance(own::kRotation + axis, own::kRotation + axis);
-    if (!(variance < square(kKnownShare * priors_.rotation_std_rad))) turn(axis) = 0.0;
+    const double share = axis == 0 ? kKnownShareOfRoll : kKnownShare;
+    if (!(variance < square(share * priors_.rotation_std_rad))) turn(axis) = 0.0;
   }
   radar.linearised = geometry::so3_exp(turn) * radar.linearised;
   const double scale_variance = solver_.shared_covariance()(shared::kSpeedScale, shared::kSpeedScale);
@@ -192,7 +196,7 @@ void WindowedFilter::begin_block(std::size_t index) {
   for (std::size_t k = 0; k < kFluctuations; ++k) {
     p(kFluctuating[k], kFluctuating[k]) += solution.fluctuation.variance[k] + solver_.common().variance[k];
   }
-  const bool young = driven_s_ < kSolve_s;
+  const bool young = driven_s_ < kStart_s;
   Eigen::Matrix<double, local::kCount, 1> cap = Eigen::Matrix<double, local::kCount, 1>::Ones();
   const auto limit = [&](int column, double std) {
     cap(column) = std::min(1.0, std / std::sqrt(p(column, column) + 1e-20));
@@ -305,11 +309,11 @@ void WindowedFilter::close_block() {
   driven_s_ += kBlock_s;
   latest.middle_s = driven_s_ - 0.5 * latest.seconds;
   decide_load();
-  if (driven_s_ - solved_s_ >= kSolve_s || driven_s_ <= kSolve_s) {
+  if (driven_s_ - solved_s_ >= kSolve_s || driven_s_ <= kStart_s) {
     solver_.begin(driven_s_);
     solved_s_ = driven_s_;
     // At the start every second counts.
-    while (driven_s_ <= kSolve_s && solver_.busy()) step();
+    while (driven_s_ <= kStart_s && solver_.busy()) step();
   }
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if (radars_[r].running) begin_block(r);
@@ -322,7 +326,7 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   const Radar& radar = radars_[index];
   out.state = radar.state;
   out.reason = radar.reason;
-  write_solution(solver_, index, driven_s_, load_, radar.knots, radar.unmeasured(), out);
+  write_solution(solver_, index, driven_s_, load_, radar.knots, radar.linearised, radar.unmeasured(), out);
   out.drift.since_ns = radar.drift_since_ns;
   if (!radar.running && !radar.remembered) out.observable = out.nuisance.observable = 0;
   out.step_change = radar.step_change;

@@ -39,8 +39,8 @@ class WindowedFilter : public Method {
   [[nodiscard]] double load_rad() const { return solver_.load_rad(load_); }
 
  private:
-  /// Driving time of a block, of a segment, and between two solutions.
-  static constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 5.0;
+  /// Driving time of a block, of a segment, and between two solutions; at the start every block gives one.
+  static constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 2.0, kStart_s = 5.0;
   using LocalGate = Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve>;
   struct Radar {
     RadarConfig config;
@@ -49,6 +49,9 @@ class WindowedFilter : public Method {
     GraduatedStart start;
     NoiseScale noise;
     Efficiency efficiency;
+    /// As they were before the blocks that may be from a turned radar: its residuals are no noise.
+    NoiseScale noise_before;
+    Efficiency efficiency_before;
     Spread spread;
     /// Sliding means of a radar without elevation: reduction of its range rates, and sine of the elevation.
     double lowering = 0.0, mean_sine = 0.0;
@@ -58,7 +61,7 @@ class WindowedFilter : public Method {
     double curve_variance = 0.0;
     /// Where the blocks are linearised. It follows the estimate about known axes only: along a direction that the data
     /// do not determine, several points of linearisation would pose as information.
-    Eigen::Matrix3d linearised = Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d linearised;
     double linearised_speed_scale = 1.0;
     bool running = false;
     bool remembered = false;  ///< begins from a memory or a static calibration

@@ -62,6 +62,9 @@ void WindowedFilter::judge_block() {
       verdicts_[r].suspect = verdicts_[r].changed = false;
     }
     if (verdicts_[r].changed) take_change(r);
+    if (verdicts_[r].suspect || !radars_[r].running) continue;
+    radars_[r].noise_before = radars_[r].noise;
+    radars_[r].efficiency_before = radars_[r].efficiency;
   }
   if (all_settled) judge_vehicle();
 }
@@ -120,7 +123,10 @@ void WindowedFilter::take_change(std::size_t index) {
   segments_.drop_latest(index, kDropped_s);
   segments_.forget(index, local::kRotation, 3);
   changes_.restart(index);
+  radar.noise = radar.noise_before;
+  radar.efficiency = radar.efficiency_before;
   radar.reference = geometry::so3_exp(turn) * radar.reference;
+  radar.linearised = geometry::so3_exp(turn) * radar.linearised;
   verdicts_[index].suspect = true;
   ++radar.step_change.count;
   radar.step_change.time_ns = radar.last_time_ns;

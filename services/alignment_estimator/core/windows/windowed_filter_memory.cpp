@@ -116,6 +116,7 @@ void WindowedFilter::save(Memory& memory) const {
     known.fluctuation_variance = solution.fluctuation.variance;
     RememberedMatrix own = solution.covariance.topLeftCorner<kRemembered, kRemembered>();
     own += (parts - 1.0) * (solution.covariance - solution.conditional).topLeftCorner<kRemembered, kRemembered>();
+    own(own::kRotation + 1, own::kRotation + 1) += lasting_pitch_variance(priors_, solution);
     cap(own_prior_stds(priors_, solution.has_elevation), own);
     Eigen::Map<RememberedMatrix>(known.covariance.data()) = own;
   }

@@ -53,10 +53,11 @@ std::unique_ptr<Problem> problem(unsigned seed, bool elevation_of_1 = true, bool
 }
 
 // Columns of the dense problem: each radar's own, the vehicle's constants and loads, the common fluctuations of each
-// segment, then each radar's own ones of each segment.
+// segment, then each radar's own ones of each segment, and its roll's.
 constexpr int kConstants = kRadars * own::kCount, kCommon = kConstants + shared::kConstants + shared::kLoads;
 constexpr int kOwnFluctuation = kCommon + kFluctuations * kSegments;
-constexpr int kDense = kOwnFluctuation + kRadars * kFluctuations * kSegments;
+constexpr int kOwnRoll = kOwnFluctuation + kRadars * kFluctuations * kSegments;
+constexpr int kDense = kOwnRoll + kRadars * kSegments;
 struct Dense {
   Eigen::VectorXd step;
   Eigen::MatrixXd covariance;
@@ -86,6 +87,7 @@ Eigen::MatrixXd action(int radar, int segment) {
     a(row, kCommon + kFluctuations * segment + k) = 1.0;
     a(row, kOwnFluctuation + kFluctuations * (kSegments * radar + segment) + k) = 1.0;
   }
+  a(local::kRotation, kOwnRoll + kSegments * radar + segment) = 1.0;
   return a;
 }
 
@@ -106,6 +108,8 @@ Dense dense_solution(const Problem& p) {
         const double std = prior.own_std[static_cast<std::size_t>(k)];
         information(c, c) = k == 1 && !radar.has_elevation ? 1e18 : 1.0 / (std * std);
       }
+      const int roll = kOwnRoll + kSegments * r + s;
+      information(roll, roll) = radar.has_elevation ? std::pow(prior.roll_per_pitch * prior.own_std[1], -2) : 1e18;
     }
   }
   const std::array<double, shared::kConstants> stds{prior.speed_scale_std,
