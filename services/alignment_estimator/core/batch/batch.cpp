@@ -425,7 +425,8 @@ void Batch::write_before(Result& result) const {
     const std::optional<Solver> solver = solved_before(r);
     if (!solver) continue;
     const int loads = loads_before(loads_, window_of(radars_[r].changes.front().block));
-    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), radars_[r].sums.linearised(), {}, result.before[r].emplace());
+    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), radars_[r].sums.linearised(), {},
+                   result.before[r].emplace());
   }
 }
 
