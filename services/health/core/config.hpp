@@ -11,7 +11,7 @@ struct Config {
   double restart_memory_s = 3.0;    ///< time for which a service counts as restarted
   // Misalignment: an axis is beyond tolerance if the lower end of its confidence interval is.
   double confidence_sigma = 2.33;    ///< one-sided 99 %
-  double set_s = 3.0;                ///< of an axis beyond its tolerance until it is reported: longer than one solution, 2 s
+  double set_s = 3.0;                ///< time for which an axis must be beyond its tolerance to be reported
   double clear_s = 5.0;              ///< time for which it must be within to withdraw the report
   double clear_ratio = 0.9;          ///< within: the interval's upper end is below this share of the tolerance
   double inhibit_rad = 0.1274;       ///< 7.3°: beyond it the sensor is NOT_AVAILABLE

@@ -154,7 +154,7 @@ class IgnitionCycles : public testing::Test {
     const Eigen::Vector3d remembered(radar.rotation_vehicle_rad.data());
     EXPECT_NEAR(first.vehicle_yaw_rad, geometry::fixed_axes_angles(geometry::so3_exp(remembered))(0), 3e-4);
     EXPECT_NEAR(first.speed_scale, memory.speed_scale * (1.0 + radar.range_rate_scale), 2e-4);
-    EXPECT_NEAR(yaw_std(first), doubted, 0.1 * doubted);
+    EXPECT_NEAR(yaw_std(first), doubted, 0.2 * doubted) << "what the excess of heights does to yaw counts, too";
     EXPECT_LT(std::sqrt(variance), 0.9 * doubted) << "otherwise the standard deviation was not increased";
     EXPECT_TRUE(first.is_observable(alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale));
     EXPECT_NEAR(first.kpis.seconds_of_drive, memory.radars[kMisaligned - 1].seconds_of_drive, 0.1);
