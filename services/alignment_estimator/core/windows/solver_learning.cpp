@@ -138,7 +138,7 @@ void Solver::learn_common(const Segments& segments) {
     const double median_std = median_common_std_[static_cast<std::size_t>(k)];
     // Innovations of the chain: sums of their expected squares, relative to the variance of the fluctuation.
     struct Chain {
-      double sum = 0.0, known = 0.0, log_noise = 0.0;
+      double sum = 0.0, log_noise = 0.0;
     };
     const auto chain_of = [&](double tau_s) {
       Chain chain;
@@ -152,7 +152,6 @@ void Solver::learn_common(const Segments& segments) {
           spread += square(link.keep) * inverse(last, last) - 2.0 * link.keep * inverse(column, last);
         }
         chain.sum += (square(mean) + spread) / link.noise;
-        chain.known += square(std::max(1.0 - spread / (link.noise * variance), 0.0));
         chain.log_noise += std::log(link.noise);
       }
       return chain;

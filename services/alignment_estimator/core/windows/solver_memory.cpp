@@ -80,7 +80,7 @@ void Solver::set_rotation_prior(RadarSolution& radar, const Eigen::Matrix3d& mea
   stop();
   radar.state.sensor_to_vehicle = radar.prior_state.sensor_to_vehicle = mean;
   radar.state.drift_radps.setZero();
-  radar.pitch_variance_before = covariance(1, 1);
+  radar.pitch_variance_before = std::max(covariance(1, 1), 1e-12);
   Eigen::Matrix3d known = covariance;
   if (!radar.has_elevation) {
     known.topRows<2>().setZero();
