@@ -50,6 +50,19 @@ void read_fluctuation(config::Reader table, windows::Priors& p) {
   p.log_correlation_std = table.number("log_correlation_std", {0.01, 5.0}, p.log_correlation_std);
 }
 
+void read_sums(config::Reader table, windows::SumsConfig& s) {
+  s.noise_memory_s = table.number("noise_memory_s", {1.0, 3600.0}, s.noise_memory_s);
+  s.spread_memory_s = table.number("spread_memory_s", {1.0, 36000.0}, s.spread_memory_s);
+  s.gate_scale = table.number("gate_scale", {0.0, 0.1}, s.gate_scale);
+  s.start_gate_scale = table.number("start_gate_scale", {0.0, 0.1}, s.start_gate_scale);
+  s.gate_yaw_rad = table.angle_deg("gate_yaw_deg", {0.0, 10.0}, s.gate_yaw_rad);
+  s.wide_share = table.number("wide_share", {0.0, 0.1}, s.wide_share);
+  s.clear_acceleration_mps2 = table.number("clear_acceleration_mps2", {0.0, 5.0}, s.clear_acceleration_mps2);
+  s.clear_yaw_acceleration_radps2 =
+      table.angle_deg("clear_yaw_acceleration_deg", {0.0, 90.0}, s.clear_yaw_acceleration_radps2);
+  s.known_share = table.number("known_share", {0.01, 1.0}, s.known_share);
+}
+
 void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   config::Reader radar = filter.table("step_change");
   c.yaw_rad = radar.angle_deg("yaw_deg", {0.05, 30.0}, c.yaw_rad);
@@ -60,19 +73,29 @@ void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   c.pitch_scatter_rad = radar.angle_deg("pitch_scatter_deg", {0.001, 5.0}, c.pitch_scatter_rad);
   c.least_detections = radar.number("least_detections", {1.0, 10000.0}, c.least_detections);
   c.wait_s = radar.number("wait_s", {0.0, 3600.0}, c.wait_s);
+  c.prior_blocks = radar.number("prior_blocks", {0.0, 1000.0}, c.prior_blocks);
+  c.settled_blocks =
+      static_cast<std::size_t>(radar.integer("settled_blocks", {1, 150}, static_cast<std::int64_t>(c.settled_blocks)));
+  c.unsure_s = radar.number("unsure_s", {0.0, 60.0}, c.unsure_s);
   c.settled_yaw_rad = radar.angle_deg("settled_yaw_deg", {0.001, 30.0}, c.settled_yaw_rad);
   const auto read_common = [](config::Reader& table, windows::CommonConfig& common) {
     common.stds = table.number("stds", {1.0, 100.0}, common.stds);
+    common.prior_blocks = table.number("prior_blocks", {0.0, 1000.0}, common.prior_blocks);
+    common.later_share = table.number("later_share", {0.0, 1.0}, common.later_share);
     common.after = static_cast<std::size_t>(table.integer("blocks", {4, 30}, static_cast<std::int64_t>(common.after)));
   };
   config::Reader load = filter.table("load_change");
   c.load.least = load.angle_deg("least_deg", {0.01, 30.0}, c.load.least);
   c.load.scatter = load.angle_deg("scatter_deg", {0.001, 5.0}, c.load.scatter);
   read_common(load, c.load);
+  c.load.between_radars = load.angle_deg("between_radars_deg", {0.001, 5.0}, c.load.between_radars);
+  c.load_after_restart_stds = load.number("after_restart_stds", {1.0, 100.0}, c.load_after_restart_stds);
   c.watch_s = load.number("watch_s", {1.0, 3600.0}, c.watch_s);
   config::Reader speed = filter.table("speed_change");
   c.speed.least = speed.number("least", {1e-4, 1.0}, c.speed.least);
   c.speed.scatter = speed.number("scatter", {1e-5, 0.1}, c.speed.scatter);
+  c.speed.between_radars = speed.number("between_radars", {1e-5, 0.1}, c.speed.between_radars);
+  c.suspect_scale = speed.number("suspect", {1e-4, 1.0}, c.suspect_scale);
   read_common(speed, c.speed);
 }
 
@@ -82,6 +105,7 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   c.azimuth_std_edge = table.number("azimuth_std_edge", {0.05, 1.0}, c.azimuth_std_edge);
   read_prior(table.table("prior"), w.priors, c);
   read_fluctuation(table.table("fluctuation"), w.priors);
+  read_sums(table.table("sums"), w.sums);
 
   config::Reader drift = table.table("drift");
   constexpr double kPerMinute = 60.0;
@@ -108,6 +132,7 @@ void read_filter(config::Reader table, FilterConfig& c, windows::WindowsConfig& 
   c.converged_yaw_std_rad = convergence.angle_deg("yaw_std_deg", {0.001, 5.0}, c.converged_yaw_std_rad);
   c.min_seconds_to_converge = convergence.number("min_seconds", {0.0, 600.0}, c.min_seconds_to_converge);
   c.min_inlier_share = convergence.number("min_inlier_share", {0.0, 1.0}, c.min_inlier_share);
+  c.inlier_memory_s = convergence.number("inlier_memory_s", {0.1, 600.0}, c.inlier_memory_s);
   c.max_noise_scale = convergence.number("max_noise_scale", {1.0, 3.4}, c.max_noise_scale);
 
   config::Reader remembered = table.table("remembered");

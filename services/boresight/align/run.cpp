@@ -108,8 +108,7 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     // The first pass is that of the recursive estimator of the same model.
     options_.config.method = alignment::Config().method;
     estimator_ = std::make_unique<alignment::Estimator>(vehicle_, options_.config);
-    batch_ =
-        std::make_unique<alignment::batch::Batch>(vehicle_, options_.config.filter, options_.config.windows.priors);
+    batch_ = std::make_unique<alignment::batch::Batch>(vehicle_, options_.config.filter, options_.config.windows);
   }
   if (estimator_ == nullptr && options_.method != kBatchCalibration) {
     throw std::invalid_argument(options_.method + " is no alignment method");

@@ -26,18 +26,19 @@ constexpr double kShortestSegment_s = 2.0;  ///< of level 0
 
 }  // namespace
 
-Batch::Batch(const VehicleConfig& vehicle, const FilterConfig& filter, const Priors& priors, const BatchConfig& config)
+Batch::Batch(const VehicleConfig& vehicle, const FilterConfig& filter, const WindowsConfig& windows,
+             const BatchConfig& config)
     : filter_(filter),
-      priors_(priors),
+      priors_(windows.priors),
       config_(config),
       clock_(config.block_s),
-      solver_(std::min(vehicle.radars.size(), kMaxRadars), priors),
+      solver_(std::min(vehicle.radars.size(), kMaxRadars), windows.priors),
       segments_(solver_.size()),
       solved_(solver_.size()) {
   radars_.reserve(solver_.size());
   for (std::size_t r = 0; r < solver_.size(); ++r) {
     radars_.push_back(
-        {vehicle.radars[r], RadarSums(vehicle.radars[r], filter, priors_, config.noise_memory_s), {}, false, {}});
+        {vehicle.radars[r], RadarSums(vehicle.radars[r], filter, windows.priors, windows.sums), {}, {}, false, {}});
     radars_[r].start.sensor_to_vehicle = geometry::sensor_to_vehicle(vehicle.radars[r].mounting_pose, 0.0, 0.0, 0.0);
   }
 }
@@ -161,7 +162,11 @@ void Batch::begin_pass() {
   window_.clear();
   phase_.clear();
   has_block_ = false;
-  for (Radar& radar : radars_) radar.sums.begin_pass();
+  for (Radar& radar : radars_) {
+    radar.sums.forget_time();
+    radar.sums.begin_block({}, {}, LocalMatrix::Zero(), false);
+    radar.totals = {};
+  }
 }
 
 void Batch::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {
@@ -174,7 +179,15 @@ void Batch::process(std::size_t index, const ScanDetections& scan, const EgoSamp
     open_block(block);
   }
   if (radars_[index].start.scans_used == 0) return;
-  static_cast<void>(radars_[index].sums.add(scan, motion, ego, sightings_));
+  Radar& radar = radars_[index];
+  const double elapsed_s = radar.sums.elapsed_s(scan.time_ns);
+  if (!radar.sums.take(scan, sightings_)) return;
+  const RadarSums::Counts counts = radar.sums.add(sightings_, motion, ego, elapsed_s);
+  radar.totals.detections += counts.detections;
+  radar.totals.stationary += counts.stationary;
+  radar.totals.inliers += counts.inliers;
+  radar.totals.seconds += elapsed_s;
+  ++radar.totals.scans;
 }
 
 void Batch::open_block(std::size_t block) {
@@ -186,7 +199,7 @@ void Batch::open_block(std::size_t block) {
     const std::size_t phase = radar.phase_of(block, delay_blocks()).value_or(radar.changes.size());
     windows::Point point = solver_.point(r, middle_s(window), loads_before(loads_, window));
     point.sensor_to_vehicle = radar.turned_back(phase) * point.sensor_to_vehicle;
-    radars_[r].sums.begin_block(point, solver_, r);
+    radars_[r].sums.begin_block(point, point, solver_.block_covariance(r), false);
   }
 }
 
@@ -217,27 +230,6 @@ void Batch::close_block() {
   }
 }
 
-std::optional<std::size_t> Batch::Radar::phase_of(std::size_t block, std::size_t delay_blocks) const {
-  std::size_t phase = 0;
-  for (const Change& change : changes) {
-    if (block > change.block) {
-      ++phase;
-    } else if (block + delay_blocks > change.block) {
-      return std::nullopt;
-    }
-  }
-  return phase;
-}
-
-Eigen::Matrix3d Batch::Radar::turned_back(std::size_t phase) const {
-  if (phase == 0 && first_from_last) return *first_from_last;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  for (std::size_t i = changes.size(); i > phase; --i) {
-    turn = geometry::so3_exp(-changes[i - 1].turn_vehicle_rad) * turn;
-  }
-  return turn;
-}
-
 void Batch::add_block(std::size_t index, std::size_t block, const MergeNoise& noise) {
   const std::optional<std::size_t> phase = radars_[index].phase_of(block, delay_blocks());
   if (!phase) return;
@@ -249,25 +241,6 @@ void Batch::add_block(std::size_t index, std::size_t block, const MergeNoise& no
   const double length_s =
       config_.block_s * static_cast<double>(first_block(window_.back() + 1) - first_block(window_.back()));
   segments_.add(index, radars_[index].sums.block(), length_s, noise);
-}
-
-Segments Batch::assembled(Side side, const std::vector<std::size_t>& loads) const {
-  Segments segments = segments_;
-  const std::size_t speed_change = speed_reports_.empty() ? 0 : window_of(speed_reports_.back());
-  for (int i = 0; i < segments.size(); ++i) {
-    const std::size_t window = window_[static_cast<std::size_t>(i)];
-    segments.segment(i).load = loads_before(loads, window);
-    const bool load_changes = std::find(loads.begin(), loads.end(), window) != loads.end();
-    const bool has_old_speed = !speed_reports_.empty() && window <= speed_change;
-    for (std::size_t r = 0; r < radars_.size(); ++r) {
-      Share& share = segments.share(i, r);
-      if (load_changes) windows::forget(share, local::kRotation + 1, 1);
-      if (has_old_speed) windows::forget(share, local::kSpeedScale, 1);
-      const std::size_t wanted = side == Side::kBefore ? 0 : radars_[r].changes.size();
-      if (phase_[static_cast<std::size_t>(i)][r] != wanted) windows::forget(share, local::kRotation, 3);
-    }
-  }
-  return segments;
 }
 
 std::vector<RadarEstimate> Batch::estimates(const Solver& solver, double time_s, int loads) const {
@@ -289,164 +262,6 @@ int Batch::solve(Solver& solver, Segments& segments, double time_s, int most) co
     if (moved < config_.solved_stds) return i;
   }
   return most;
-}
-
-void Batch::find_loads() {
-  constexpr int kTrialSolutions = 8;
-  constexpr double kLeastStds = 2.0;
-  const double time_s = clock_.driven_s();
-  const auto delay = static_cast<std::size_t>(config_.load_delay_s / config_.block_s);
-  for (const std::size_t report : load_reports_) {
-    if (loads_.size() == static_cast<std::size_t>(shared::kLoads)) return;
-    double best = kLeastStds;
-    std::optional<std::size_t> place;
-    for (const std::size_t window : window_) {
-      const bool is_near = first_block(window) <= report && first_block(window + 1) + delay > report;
-      const bool is_taken = std::find(loads_.begin(), loads_.end(), window) != loads_.end();
-      if (!is_near || is_taken || window == 0 || window + 1 >= windows_) continue;
-      std::vector<std::size_t> trial = loads_;
-      const auto step = std::lower_bound(trial.begin(), trial.end(), window) - trial.begin();
-      trial.insert(trial.begin() + step, window);
-      Solver solver = solver_;
-      Segments segments = assembled(Side::kAfter, trial);
-      for (int i = 0; i < kTrialSolutions; ++i) solver.solve(segments, time_s);
-      const auto k = static_cast<std::size_t>(step);
-      const double stds = std::abs(solver.shared().load_rad[k]) /
-                          std::sqrt(std::max(solver.load_variance(static_cast<int>(step)), 1e-18));
-      if (stds <= best) continue;
-      best = stds;
-      place = window;
-    }
-    if (place) loads_.insert(std::lower_bound(loads_.begin(), loads_.end(), *place), *place);
-  }
-}
-
-void Batch::widen_by_jackknife(std::vector<RadarEstimate>& of) const {
-  constexpr int kSolutions = 2;
-  const double time_s = clock_.driven_s();
-  const auto loads = static_cast<int>(loads_.size());
-  const int n = solved_.size();
-  if (n < 2) return;
-  std::vector<Values> sums(of.size(), Values::Zero()), squares(of.size(), Values::Zero());
-  for (int i = 0; i < n; ++i) {
-    Segments without = solved_;
-    for (std::size_t r = 0; r < of.size(); ++r) without.share(i, r) = Share();
-    Solver solver = solver_;
-    for (int k = 0; k < kSolutions; ++k) solver.solve(without, time_s);
-    const std::vector<RadarEstimate> one = estimates(solver, time_s, loads);
-    for (std::size_t r = 0; r < of.size(); ++r) {
-      const Eigen::Matrix3d& about = of[r].sensor_to_vehicle;
-      const Values off = values_of(one[r], about) - values_of(of[r], about);
-      sums[r] += off;
-      squares[r] += off.cwiseAbs2();
-    }
-  }
-  // Variance of the left-out values about their mean, times n − 1.
-  const double count = n;
-  for (std::size_t r = 0; r < of.size(); ++r) {
-    const Values variance = (squares[r] / count - (sums[r] / count).cwiseAbs2()).cwiseMax(0.0) * (count - 1.0);
-    widen(of[r], variance.cwiseSqrt());
-  }
-}
-
-void Batch::finish(RadarEstimate& estimate, const Radar& radar) const {
-  const RadarEstimate& start = radar.start;
-  estimate.step_change = start.step_change;
-  estimate.load_change = start.load_change;
-  estimate.speed_change = start.speed_change;
-  estimate.drift.since_ns = start.drift.since_ns;
-  estimate.state = start.state;
-  estimate.reason = start.reason;
-  if (start.scans_used == 0) {
-    estimate.observable = estimate.nuisance.observable = 0;
-    return;
-  }
-  if (!loads_.empty()) {
-    estimate.load_change.size = static_cast<float>(-solver_.shared().load_rad[loads_.size() - 1]);
-  }
-  if (!radar.has_elevation) {
-    // Pitch and roll are held; they are known no better than before the drive.
-    constexpr std::uint32_t kHeld = alignment_axis::kVehicleRoll | alignment_axis::kVehiclePitch;
-    estimate.observable &= ~kHeld;
-    for (const int axis : {1, 2}) {
-      estimate.covariance.row(axis).setZero();
-      estimate.covariance.col(axis).setZero();
-      estimate.covariance(axis, axis) = square(priors_.rotation_std_rad);
-    }
-  }
-  estimate.angle_noise_scale = radar.sums.angle_noise_scale();
-  estimate.inlier_ratio = radar.sums.stationary_share();
-  estimate.scans_used = radar.sums.scans();
-  estimate.detections_used = radar.sums.inliers();
-  estimate.seconds_of_drive = radar.sums.seconds();
-  constexpr double kLearntShare = 1.0 / 3.0;  // of the prior's std, as in write_solution()
-  constexpr std::array<std::uint32_t, 4> kBits{alignment_axis::kSpeedScale, alignment_axis::kVehicleRoll,
-                                               alignment_axis::kVehiclePitch, alignment_axis::kVehicleYaw};
-  for (int i = 0; i < 4; ++i) {
-    const double prior = i == 0 ? priors_.speed_scale_std : priors_.rotation_std_rad;
-    if (std::sqrt(estimate.covariance(i, i)) >= kLearntShare * prior) {
-      estimate.observable &= ~kBits[static_cast<std::size_t>(i)];
-    }
-  }
-  // What contradicts the data is judged by the recursive estimator; the rest depends on the standard deviation here.
-  const bool by_std = start.reason == AlignmentReason::kNone || start.reason == AlignmentReason::kLargeStd ||
-                      start.reason == AlignmentReason::kShortDrive || start.reason == AlignmentReason::kNotObservable;
-  if (!by_std || start.state < AlignmentState::kConverging) return;
-  const bool sees_yaw = (estimate.observable & alignment_axis::kVehicleYaw) != 0;
-  const bool sure = sees_yaw && std::sqrt(estimate.covariance(3, 3)) < filter_.converged_yaw_std_rad;
-  estimate.state = sure ? AlignmentState::kConverged : AlignmentState::kConverging;
-  estimate.reason = sure       ? AlignmentReason::kNone
-                    : sees_yaw ? AlignmentReason::kLargeStd
-                               : AlignmentReason::kNotObservable;
-}
-
-double Batch::first_change_s(std::size_t radar) const {
-  return config_.block_s * static_cast<double>(radars_[radar].changes.front().block);
-}
-
-std::optional<Solver> Batch::solved_before(std::size_t index) const {
-  constexpr double kLeast_s = 10.0;
-  if (radars_[index].changes.empty()) return std::nullopt;
-  double seen_s = 0.0;
-  for (int i = 0; i < segments_.size(); ++i) {
-    if (phase_[static_cast<std::size_t>(i)][index] == 0) seen_s += segments_.share(i, index).seconds;
-  }
-  if (seen_s < kLeast_s) return std::nullopt;
-  std::optional<Solver> solver = solver_;
-  solver->radar(index).state.sensor_to_vehicle =
-      radars_[index].turned_back(0) * solver->radar(index).state.sensor_to_vehicle;
-  Segments segments = assembled(Side::kBefore, loads_);
-  solve(*solver, segments, first_change_s(index), config_.most_solutions);
-  return solver;
-}
-
-void Batch::write_before(Result& result) const {
-  for (std::size_t r = 0; r < radars_.size(); ++r) {
-    const std::optional<Solver> solver = solved_before(r);
-    if (!solver) continue;
-    const int loads = loads_before(loads_, window_of(radars_[r].changes.front().block));
-    write_solution(*solver, r, first_change_s(r), loads, radars_[r].sums.knots(), radars_[r].sums.linearised(), {},
-                   result.before[r].emplace());
-  }
-}
-
-Result Batch::result() {
-  Result result;
-  result.problem = problem_;
-  result.driven_s = config_.block_s * static_cast<double>(blocks_);
-  result.passes = pass_;
-  result.settled = settled_;
-  result.before.resize(radars_.size());
-  if (!problem_.empty()) {
-    for (const Radar& radar : radars_) result.radars.push_back(radar.start);
-    return result;
-  }
-  result.windows = segments_.size();
-  result.radars = estimates(solver_, clock_.driven_s(), static_cast<int>(loads_.size()));
-  widen_by_jackknife(result.radars);
-  for (std::size_t r = 0; r < radars_.size(); ++r) finish(result.radars[r], radars_[r]);
-  write_before(result);
-  return result;
 }
 
 }  // namespace boresight::alignment::batch

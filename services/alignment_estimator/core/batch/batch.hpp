@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,9 +11,9 @@
 
 #include "services/alignment_estimator/core/batch/config.hpp"
 #include "services/alignment_estimator/core/batch/driving_clock.hpp"
-#include "services/alignment_estimator/core/batch/radar_sums.hpp"
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
 #include "services/alignment_estimator/core/method.hpp"
+#include "services/alignment_estimator/core/windows/radar_sums.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
 
 namespace boresight::alignment::batch {
@@ -30,7 +31,7 @@ struct Result {
 /// Memory is bounded: no scan is kept.
 class Batch {
  public:
-  Batch(const VehicleConfig& vehicle, const FilterConfig& filter, const windows::Priors& priors = {},
+  Batch(const VehicleConfig& vehicle, const FilterConfig& filter, const windows::WindowsConfig& windows = {},
         const BatchConfig& config = {});
 
   /// First pass: a scan that the recursive estimator has processed, and its estimate of the radar since then.
@@ -47,9 +48,15 @@ class Batch {
     std::size_t block = 0;  ///< at which it was reported
     Eigen::Vector3d turn_vehicle_rad{0.0, 0.0, 0.0};
   };
+  /// Of the latest pass.
+  struct Totals {
+    std::uint64_t scans = 0;
+    double detections = 0.0, stationary = 0.0, inliers = 0.0, seconds = 0.0;
+  };
   struct Radar {
     RadarConfig config;
-    RadarSums sums;
+    windows::RadarSums sums;
+    Totals totals;
     RadarEstimate start;  ///< of the recursive estimator, at the end
     bool has_elevation = false;
     std::vector<Change> changes;  ///< sudden misalignments

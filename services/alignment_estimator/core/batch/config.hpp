@@ -13,7 +13,6 @@ struct BatchConfig {
   double moved_stds = 0.1;      ///< a pass that moves no parameter by more than this is the last
   double solved_stds = 0.01;    ///< likewise for the solutions within a pass
   int most_solutions = 25;      ///< of a pass
-  double noise_memory_s = 60.0;
   /// Driving time before the report of a sudden misalignment that is from both sides of it; longest time from a change
   /// of the load to its report.
   double step_change_delay_s = 7.0, load_delay_s = 60.0;

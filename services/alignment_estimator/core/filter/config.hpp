@@ -27,6 +27,7 @@ struct FilterConfig {
   double converged_yaw_std_rad = 0.00175;  ///< 0.1°
   double min_seconds_to_converge = 5.0;
   double min_inlier_share = 0.15;  ///< of stationary detections in recent scans; choice
+  double inlier_memory_s = 10.0;   ///< over which they are counted; choice
   double max_noise_scale = 3.3;    ///< σ of the residuals over the stated ones; choice
 };
 

@@ -44,14 +44,13 @@ ScaleDeviation scale_deviation_of(const Block& block, const Eigen::Vector3d& rot
 }
 
 double ChangeMonitor::scatter(const History& history, std::size_t size, int axis) const {
-  constexpr double kPriorWindows = 10.0;
   const double prior = axis == 0 ? config_.pitch_scatter_rad : config_.yaw_scatter_rad;
   if (size == 0) return prior;
   History sorted = history;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(size / 2);
   std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(size));
   const double windows = static_cast<double>(size);
-  return (*middle / 0.6745 * windows + kPriorWindows * prior) / (windows + kPriorWindows);
+  return (*middle / 0.6745 * windows + config_.prior_blocks * prior) / (windows + config_.prior_blocks);
 }
 
 void ChangeMonitor::restart(std::size_t index) {

@@ -14,10 +14,13 @@ namespace boresight::alignment::windows {
 
 /// Smallest step of a quantity that all radars share, and what is known of its scatter; see CommonWatch.
 struct CommonConfig {
-  double least = 0.0;      ///< smallest step that is reported
-  double stds = 6.0;       ///< and in its own std
-  double scatter = 0.0;    ///< std of a block before any block
-  std::size_t after = 10;  ///< blocks since the step, at least
+  double least = 0.0;           ///< smallest step that is reported
+  double stds = 6.0;            ///< and in its own std
+  double scatter = 0.0;         ///< std of a block before any block
+  std::size_t after = 10;       ///< blocks since the step, at least
+  double prior_blocks = 10.0;   ///< weight of `scatter` in the learnt one
+  double between_radars = 0.0;  ///< std of one radar's value about the common one
+  double later_share = 0.6;     ///< of the step that the later half of the blocks since must show: a burst is no step
 };
 
 struct ChangeConfig {
@@ -27,13 +30,21 @@ struct ChangeConfig {
   double common_factor = 4.0;        ///< likewise, with the part that all radars share
   double yaw_scatter_rad = 0.00105;  ///< scatter before any block, 0.06°
   double pitch_scatter_rad = 0.0035;
-  double least_detections = 50.0;               ///< of a block, stationary
-  CommonConfig load{0.00436, 6.0, 0.0035, 10};  ///< the body's pitch (rad): 0.25°, 0.2°
-  CommonConfig speed{0.005, 6.0, 0.001, 10};    ///< scale of the speed signal
-  double drift_rad = 0.00175;                   ///< smallest drift over Priors::drift_span_s that is reported, 0.1°
-  double drift_stds = 4.0;                      ///< and in its own std
-  double watch_s = 14.0;            ///< driving time after which a load change that a restart allowed is decided
-  double wait_s = 25.0;             ///< driving time before the first change is reported
+  double least_detections = 50.0;   ///< of a block, stationary
+  double prior_blocks = 10.0;       ///< weight of the two before in the learnt scatter
+  std::size_t settled_blocks = 15;  ///< judged before the first report
+  double unsure_s = 7.0;            ///< driving time before a report that is from both sides of the change
+  /// The body's pitch (rad): least 0.25°, scatter 0.2°, between radars 0.1°.
+  CommonConfig load{.least = 0.00436, .scatter = 0.0035, .between_radars = 0.00175};
+  double load_after_restart_stds = 3.0;  ///< a load change between two drives is no surprise
+  /// Scale of the speed signal.
+  CommonConfig speed{.least = 0.005, .scatter = 0.001, .between_radars = 5e-4};
+  double suspect_scale =
+      0.003;                   ///< an error of the scale of one block that all radars show: then none has turned by it
+  double drift_rad = 0.00175;  ///< smallest drift over Priors::drift_span_s that is reported, 0.1°
+  double drift_stds = 4.0;     ///< and in its own std
+  double watch_s = 14.0;       ///< driving time after which a load change that a restart allowed is decided
+  double wait_s = 25.0;        ///< driving time before the first change is reported
   double settled_yaw_rad = 0.0052;  ///< and a radar's yaw is known better than this, 0.3°
 };
 

@@ -9,14 +9,10 @@ namespace boresight::alignment::windows {
 
 namespace {
 
-/// Weight of the scatter before any block, in blocks.
-constexpr double kPriorBlocks = 10.0;
 /// A step is looked for among these and older blocks; it is reported when it is old enough.
 constexpr std::size_t kMinAfter = 4;
 /// Largest correlation of two neighbouring blocks that is believed.
 constexpr double kMaxCorrelation = 0.95;
-/// The later half of the blocks since a step must show this share of it: a burst is no step.
-constexpr double kLaterShare = 0.6;
 
 }  // namespace
 
@@ -44,7 +40,7 @@ std::optional<CommonStep> CommonWatch::add(double value) {
     const double after_mean = after_sum / after, before_mean = (total - after_sum) / before;
     const double scatter_sum = squares - after * square(after_mean) - before * square(before_mean);
     const double variance =
-        (std::max(scatter_sum, 0.0) + kPriorBlocks * square(config_.scatter)) / (all + kPriorBlocks);
+        (std::max(scatter_sum, 0.0) + config_.prior_blocks * square(config_.scatter)) / (all + config_.prior_blocks);
     // Products of neighbours around the two means: without that across the step.
     const std::size_t first = size_ - n;
     const double ends_after = values_[first] + values_[size_ - 1], ends_before = values_[0] + values_[first - 1];
@@ -52,7 +48,8 @@ std::optional<CommonStep> CommonWatch::add(double value) {
     const double covariance_sum = products - values_[first] * values_[first - 1] - after_mean * sum_after -
                                   before_mean * sum_before + (after - 1.0) * square(after_mean) +
                                   (before - 1.0) * square(before_mean);
-    const double correlation = std::clamp(covariance_sum / ((all + kPriorBlocks) * variance), 0.0, kMaxCorrelation);
+    const double correlation =
+        std::clamp(covariance_sum / ((all + config_.prior_blocks) * variance), 0.0, kMaxCorrelation);
     const double std = std::sqrt(variance * (1.0 + correlation) / (1.0 - correlation) * (1.0 / after + 1.0 / before));
     const double size = after_mean - before_mean;
     if (!(std::abs(size) / std > largest)) continue;
@@ -60,7 +57,7 @@ std::optional<CommonStep> CommonWatch::add(double value) {
     double later = 0.0;
     for (std::size_t i = size_ - n / 2; i < size_; ++i)
       later += (values_[i] - before_mean) / static_cast<double>(n / 2);
-    const bool stays = later / size > kLaterShare;
+    const bool stays = later / size > config_.later_share;
     best.reset();
     if (n >= config_.after && stays && std::abs(size) > config_.least && largest > config_.stds)
       best = CommonStep{size, std, n};

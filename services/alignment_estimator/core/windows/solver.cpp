@@ -262,4 +262,12 @@ LocalMatrix Solver::local_covariance(std::size_t index) const {
   return covariance_of_constants(radar.covariance, radar.with_shared, shared_covariance_);
 }
 
+LocalMatrix Solver::block_covariance(std::size_t index) const {
+  LocalMatrix p = local_covariance(index);
+  for (std::size_t k = 0; k < kFluctuations; ++k) {
+    p(kFluctuating[k], kFluctuating[k]) += radars_[index].fluctuation.variance[k] + common_.variance[k];
+  }
+  return p;
+}
+
 }  // namespace boresight::alignment::windows

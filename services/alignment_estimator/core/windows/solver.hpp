@@ -84,6 +84,8 @@ class Solver {
   /// The model's point for the scans of a radar at a time of the drive, after so many load steps.
   [[nodiscard]] Point point(std::size_t radar, double time_s, int load) const;
   /// Covariance of the local parameters of a radar; of the constants only.
+  /// Of the local parameters in a block: with the fluctuations.
+  [[nodiscard]] LocalMatrix block_covariance(std::size_t radar) const;
   [[nodiscard]] LocalMatrix local_covariance(std::size_t radar) const;
 
   /// The fluctuations as learnt so far, for segments that are added to or merged.

@@ -6,16 +6,13 @@
 #include <vector>
 
 #include "services/alignment_estimator/core/filter/config.hpp"
-#include "services/alignment_estimator/core/filter/efficiency.hpp"
 #include "services/alignment_estimator/core/filter/ego_trend.hpp"
 #include "services/alignment_estimator/core/filter/graduated_start.hpp"
-#include "services/alignment_estimator/core/filter/noise_scale.hpp"
-#include "services/alignment_estimator/core/filter/spread.hpp"
 #include "services/alignment_estimator/core/method.hpp"
 #include "services/alignment_estimator/core/windows/change_monitor.hpp"
 #include "services/alignment_estimator/core/windows/common_watch.hpp"
 #include "services/alignment_estimator/core/windows/config.hpp"
-#include "services/alignment_estimator/core/windows/output.hpp"
+#include "services/alignment_estimator/core/windows/radar_sums.hpp"
 #include "services/alignment_estimator/core/windows/solver.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -41,26 +38,15 @@ class WindowedFilter : public Method {
  private:
   /// Driving time of a block, of a segment, and between two solutions; at the start every block gives one.
   static constexpr double kBlock_s = 1.0, kSegment_s = 2.0, kSolve_s = 2.0, kStart_s = 5.0;
-  using LocalGate = Eigen::Matrix<double, windows::local::kCurve, windows::local::kCurve>;
   struct Radar {
     RadarConfig config;
     Eigen::Matrix3d nominal;
-    UnknownElevation unknown;
     GraduatedStart start;
-    NoiseScale noise;
-    Efficiency efficiency;
-    /// As they were before the blocks that may be from a turned radar: its residuals are no noise.
-    NoiseScale noise_before;
-    Efficiency efficiency_before;
-    Spread spread;
-    /// Sliding means of a radar without elevation: reduction of its range rates, and sine of the elevation.
-    double lowering = 0.0, mean_sine = 0.0;
-    windows::Block block;
-    windows::Knots knots;
-    LocalGate gate_covariance;
-    double curve_variance = 0.0;
-    /// Where the blocks are linearised. It follows the estimate about known axes only: along a direction that the data
-    /// do not determine, several points of linearisation would pose as information.
+    windows::RadarSums sums;
+    /// As it was before the blocks that may be from a turned radar: its residuals are no noise.
+    windows::RadarSums::Learnt learnt_before;
+    /// Where the derivatives are taken. It follows the estimate about known axes only: along a direction that the data
+    /// do not determine, derivatives at several points would pose as information (first-estimates Jacobian).
     Eigen::Matrix3d linearised;
     double linearised_speed_scale = 1.0;
     bool running = false;
@@ -77,11 +63,9 @@ class WindowedFilter : public Method {
     /// Rotation and scale that the vehicle's pitch and scale are counted from; set when the radar is settled.
     Eigen::Matrix3d reference = Eigen::Matrix3d::Identity();
     double reference_scale = 0.0;  ///< 0: not set
-    Radar(const RadarConfig& radar, const FilterConfig& filter, const windows::Priors& priors);
-    [[nodiscard]] windows::Unmeasured unmeasured() const { return {lowering, mean_sine}; }
+    Radar(const RadarConfig& radar, const FilterConfig& filter, const windows::WindowsConfig& settings);
   };
   [[nodiscard]] bool usable(const EgoSample& ego) const;
-  [[nodiscard]] windows::Motion motion_of(const windows::Point& point, const ScanMotion3d& motion) const;
   /// Begins again with the prior of a radar with or without elevations; a remembered yaw stays.
   void set_has_elevation(std::size_t radar, bool has_elevation);
   /// Whether the first scans show another yaw or pitch than the memory: the car may have been repaired.
@@ -93,10 +77,9 @@ class WindowedFilter : public Method {
   void wait(Radar& radar, AlignmentReason reason);
   [[nodiscard]] AlignmentReason reason_of(std::size_t radar) const;
   void judge_drift(std::size_t radar);
-  /// Takes away the directions of which only the noise of the angles speaks; returns the number of the others.
-  int keep_supported(Radar& radar, double elapsed_s, windows::CurveSums& sums, windows::ScanModel& model);
   void close_block();
-  [[nodiscard]] windows::Point linearise(std::size_t radar);
+  /// The latest solution, where it is known.
+  [[nodiscard]] windows::Point derivatives_at(std::size_t radar);
   void begin_block(std::size_t radar);
   void judge_block();
   void judge_vehicle();
@@ -108,6 +91,7 @@ class WindowedFilter : public Method {
 
   FilterConfig config_;
   windows::Priors priors_;
+  windows::SumsConfig sums_config_;
   std::vector<Radar> radars_;
   windows::Solver solver_;
   windows::Segments segments_;

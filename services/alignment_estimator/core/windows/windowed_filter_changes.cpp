@@ -8,24 +8,11 @@
 
 namespace boresight::alignment {
 
-namespace {
-
 using namespace windows;
-
-constexpr double kDropped_s = 7.0;  ///< of driving before a change is reported: they are from both sides of it
-constexpr std::size_t kWindowsToSettle = 15;
-/// Spread between radars of what a block says of the common pitch (rad) and of the common scale. Measured.
-constexpr double kPitchSpread_rad = 0.00175, kScaleSpread = 5e-4;
-/// A load change between two drives is no surprise: fewer stds suffice. Choice.
-constexpr double kStdsAfterRestart = 3.0;
-/// A common scale of one block beyond this is taken for one: then no radar has turned by it.
-constexpr double kSuspectScale = 0.003;
-
-}  // namespace
 
 bool WindowedFilter::settled(std::size_t index) const {
   const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
-  return radars_[index].running && changes_.windows(index) >= kWindowsToSettle &&
+  return radars_[index].running && changes_.windows(index) >= change_config_.settled_blocks &&
          yaw_variance < square(change_config_.settled_yaw_rad);
 }
 
@@ -36,7 +23,7 @@ void WindowedFilter::judge_block() {
     const RadarSolution& s = solver_.radar(r);
     const Eigen::Vector3d rotation = s.covariance.diagonal().segment<3>(own::kRotation) +
                                      Eigen::Vector3d(0.0, s.fluctuation.variance[1], s.fluctuation.variance[0]);
-    scales_[r] = scale_deviation_of(radars_[r].block, rotation, square(priors_.speed_scale_std), s.has_elevation,
+    scales_[r] = scale_deviation_of(radars_[r].sums.block(), rotation, square(priors_.speed_scale_std), s.has_elevation,
                                     change_config_);
     work_[r] = scales_[r].value;
     work_stds_[r] = scales_[r].std;
@@ -44,15 +31,15 @@ void WindowedFilter::judge_block() {
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     if (!radars_[r].running) work_stds_[r] = 0.0;
   }
-  const double scale = common_mean(work_, work_stds_, kScaleSpread).value_or(0.0);
+  const double scale = common_mean(work_, work_stds_, change_config_.speed.between_radars).value_or(0.0);
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     const RadarSolution& s = solver_.radar(r);
     deviations_[r] = {};
     if (!radars_[r].running) continue;
-    deviations_[r] =
-        deviation_of(radars_[r].block, s.covariance(own::kRateScale, own::kRateScale) + s.fluctuation.variance[2],
-                     s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
-                     std::abs(scale) > kSuspectScale ? scale : 0.0, change_config_);
+    deviations_[r] = deviation_of(
+        radars_[r].sums.block(), s.covariance(own::kRateScale, own::kRateScale) + s.fluctuation.variance[2],
+        s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
+        std::abs(scale) > change_config_.suspect_scale ? scale : 0.0, change_config_);
   }
   changes_.judge(deviations_, verdicts_);
   bool all_settled = true;
@@ -63,8 +50,7 @@ void WindowedFilter::judge_block() {
     }
     if (verdicts_[r].changed) take_change(r);
     if (verdicts_[r].suspect || !radars_[r].running) continue;
-    radars_[r].noise_before = radars_[r].noise;
-    radars_[r].efficiency_before = radars_[r].efficiency;
+    radars_[r].learnt_before = radars_[r].sums.learnt();
   }
   if (all_settled) judge_vehicle();
 }
@@ -75,7 +61,7 @@ void WindowedFilter::judge_vehicle() {
     Radar& radar = radars_[r];
     work_stds_[r] = 0.0;
     if (!radar.running) continue;
-    const Point& point = radar.block.point;
+    const Point& point = radar.sums.block().point;
     const double scale = point.speed_scale * (1.0 + point.rate_scale);
     if (!(radar.reference_scale > 0.0)) {
       radar.reference = point.sensor_to_vehicle;
@@ -86,16 +72,16 @@ void WindowedFilter::judge_vehicle() {
     work_[r] = geometry::so3_log(point.sensor_to_vehicle * radar.reference.transpose()).y() + deviations_[r].value(0);
     work_stds_[r] = deviations_[r].std(0);
   }
-  if (const auto pitch = common_mean(work_, work_stds_, kPitchSpread_rad)) {
+  if (const auto pitch = common_mean(work_, work_stds_, change_config_.load.between_radars)) {
     if (const auto step = load_watch_.add(*pitch)) take_load(*step, time_ns);
   }
   for (std::size_t r = 0; r < radars_.size(); ++r) {
     const Radar& radar = radars_[r];
     work_stds_[r] = radar.running ? scales_[r].std : 0.0;
-    const double scale = radar.block.point.speed_scale * (1.0 + radar.block.point.rate_scale);
+    const double scale = radar.sums.block().point.speed_scale * (1.0 + radar.sums.block().point.rate_scale);
     if (radar.running) work_[r] = scale / radar.reference_scale - 1.0 + scales_[r].value;
   }
-  if (const auto scale = common_mean(work_, work_stds_, kScaleSpread)) {
+  if (const auto scale = common_mean(work_, work_stds_, change_config_.speed.between_radars)) {
     if (const auto step = speed_watch_.add(*scale)) take_speed(*step, time_ns);
   }
 }
@@ -120,11 +106,10 @@ void WindowedFilter::take_change(std::size_t index) {
   Radar& radar = radars_[index];
   const Eigen::Vector3d turn(0.0, verdicts_[index].turn_rad(0), verdicts_[index].turn_rad(1));
   solver_.turn(index, turn);
-  segments_.drop_latest(index, kDropped_s);
+  segments_.drop_latest(index, change_config_.unsure_s);
   segments_.forget(index, local::kRotation, 3);
   changes_.restart(index);
-  radar.noise = radar.noise_before;
-  radar.efficiency = radar.efficiency_before;
+  radar.sums.set_learnt(radar.learnt_before);
   radar.reference = geometry::so3_exp(turn) * radar.reference;
   radar.linearised = geometry::so3_exp(turn) * radar.linearised;
   verdicts_[index].suspect = true;
@@ -164,7 +149,8 @@ void WindowedFilter::decide_load() {
   if (load_since_s_ < 0.0 || driven_s_ - load_since_s_ < change_config_.watch_s) return;
   const int step = load_ - 1;
   const double size = solver_.shared().load_rad[static_cast<std::size_t>(step)];
-  const double limit = std::max(change_config_.load.least, kStdsAfterRestart * std::sqrt(solver_.load_variance(step)));
+  const double limit = std::max(change_config_.load.least,
+                                change_config_.load_after_restart_stds * std::sqrt(solver_.load_variance(step)));
   if (std::abs(size) > limit) {
     ++load_change_.count;
     load_change_.size = static_cast<float>(-size);

@@ -111,7 +111,7 @@ void WindowedFilter::save(Memory& memory) const {
     for (int k = 0; k < kKnots; ++k) known.azimuth_curve_rad[static_cast<std::size_t>(k)] = state.curve_rad(k);
     known.height_excess = state.height_excess;
     known.mirror_share = state.mirror_share;
-    known.angle_noise_scale = std::sqrt(radar.noise.angle_variance_factor());
+    known.angle_noise_scale = radar.sums.angle_noise_scale();
     known.seconds_of_drive = radar.seconds_of_drive;
     known.fluctuation_variance = solution.fluctuation.variance;
     RememberedMatrix own = solution.covariance.topLeftCorner<kRemembered, kRemembered>();
@@ -173,7 +173,7 @@ void WindowedFilter::restore(const Memory& memory) {
     RememberedMatrix own = Eigen::Map<const RememberedMatrix>(known->covariance.data());
     if (!turn.allFinite() || turn.norm() > 1.0 || !own.allFinite()) continue;
     const bool has_elevation = known->has_elevation;
-    solver_.set_prior(r, radar.nominal, has_elevation, radar.knots.step_rad);
+    solver_.set_prior(r, radar.nominal, has_elevation, radar.sums.knots().step_rad);
     const RadarSolution& fresh = solver_.radar(r);
     const RememberedVector stds = own_prior_stds(priors_, has_elevation);
     OwnState state;
@@ -226,7 +226,7 @@ void WindowedFilter::restore(const Memory& memory) {
     OwnMatrix covariance = OwnMatrix::Zero();
     covariance.topLeftCorner<kRemembered, kRemembered>() = own;
     solver_.restore(r, state, covariance, fluctuation);
-    radar.noise.set_angle_scale(known->angle_noise_scale);
+    radar.sums.set_angle_noise_scale(known->angle_noise_scale);
     radar.seconds_of_drive = known->seconds_of_drive;
     radar.running = false;
     radar.remembered = true;
@@ -263,7 +263,7 @@ void WindowedFilter::set_has_elevation(std::size_t index, bool has_elevation) {
   const Eigen::Matrix3d turned = solver_.radar(index).state.sensor_to_vehicle;
   const Eigen::Vector2d tilt_variance = solver_.radar(index).tilt_variance;
   const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
-  solver_.set_prior(index, radar.nominal, has_elevation, radar.knots.step_rad);
+  solver_.set_prior(index, radar.nominal, has_elevation, radar.sums.knots().step_rad);
   if (!radar.remembered) return;
   const Eigen::Vector3d variances(tilt_variance.x(), tilt_variance.y(), std::max(yaw_variance, 1e-12));
   solver_.seed(index, turned, variances.asDiagonal());
