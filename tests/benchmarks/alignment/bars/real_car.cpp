@@ -73,9 +73,9 @@ void real_car(const Options& options, Report& report) {
   const NamedMethod own = own_method(options.method);
   Table table{"real_car",
               "method `" + own_method_name(options.method) +
-                  "` at the end of drives with what a real car adds: rms over drives and radars (95 % interval by "
-                  "bootstrap over drives), median of the size; NEES; share of true values in the 95 % intervals, k_v / "
-                  "yaw / pitch / roll. k_v as seen through each radar; roll where it is reported as observable",
+                  "` at the end of drives with what a real car adds. Rms over drives and radars (95 % interval by "
+                  "bootstrap over drives), median of the size. NEES. Share of true values in the 95 % intervals, k_v / "
+                  "yaw / pitch / roll. K_v as seen through each radar. Roll where it is reported as observable",
               {"effect", "yaw °", "pitch °", "NEES k_v", "NEES yaw", "NEES pitch", "NEES roll", "covered, %"},
               {}};
   RunOptions run_options;

@@ -96,9 +96,9 @@ void real_car_changes(const Options& options, Report& report) {
   std::uint64_t seed = first_seed_of(FreshSeeds::kChanges, options);
   Table table{"real_car_changes",
               "method `" + own_method_name(options.method) +
-                  "`, real_car, one radar turned at a random time from 60 to 120 s: delay of the report in s, median "
-                  "(95 % interval) and 95 % quantile; share reported within 10 s; reports of another radar and before "
-                  "the change; 20 s later: median of the error's size, and share in the 95 % interval, yaw / pitch. " +
+                  "`, real_car, one radar turned at a random time from 60 to 120 s. Delay of the report in s, median "
+                  "(95 % interval) and 95 % quantile. Share reported within 10 s. Reports of another radar and before "
+                  "the change. 20 s later: median of the error's size, and share in the 95 % interval, yaw / pitch. " +
                   std::to_string(drives) + " drives of each change, seeds from " + std::to_string(seed) + " on",
               {"change", "radar", "drives", "delay s", "95 % s", "in 10 s, %", "other radar", "before", "yaw °",
                "pitch °", "covered, %"},

@@ -33,7 +33,7 @@ void real_car_drift(const Options& options, Report& report) {
   Table table{"real_car_drift",
               "method `" + own_method_name(options.method) + "`: yaw of a radar that turns by " +
                   number(kDrift_rad / kRadiansPerDegree) + "° in " + fixed(duration_s, 0) +
-                  " s, at the end: median of the error's size (95 % interval), 95 % quantile, NEES; sudden changes "
+                  " s, at the end: median of the error's size (95 % interval), 95 % quantile, NEES. Sudden changes "
                   "reported. Each radar in turn, both signs",
               {"car", "error °", "95 % °", "NEES yaw", "covered, %", "sudden changes"},
               {}};

@@ -45,10 +45,10 @@ void real_car_load(const Options& options, Report& report) {
   Table table{
       "real_car_load",
       "method `" + own_method_name(options.method) +
-          "`, real_car, load changed at a random time from 60 to 120 s, nose up and down: delay of the report "
-          "in s, median (95 % interval); share reported within 30 s; reports of a load before; sudden changes "
-          "of a radar reported after and before; pitch of the mounting at the end, rms (95 % interval) and 95 % "
-          "quantile; its NEES. " +
+          "`, real_car, load changed at a random time from 60 to 120 s, nose up and down. Delay of the report "
+          "in s, median (95 % interval). Share reported within 30 s. Reports of a load before. Sudden changes "
+          "of a radar reported after and before. Pitch of the mounting at the end, rms (95 % interval) and 95 % "
+          "quantile. Its NEES. " +
           drives_text(drives, duration_s, seed),
       {"load", "delay s", "in 30 s, %", "load before", "radar after", "radar before", "pitch °", "95 % °",
        "NEES pitch"},
