@@ -85,13 +85,13 @@ void consistency(const Options& options, Report& report) {
   std::vector<std::string> row = {"**all**"};
   for (std::size_t p = 0; p < 4; ++p) {
     row.push_back(fixed(pooled[p].nees(), 2) + " (" + fixed(pooled[p].coverage_percent(), 1) + ")");
-    report.within("consistency", std::string("NEES ") + kParameters[p] + ", all drives", pooled[p].nees(), 0.7, 1.5, "",
+    report.within("consistency", std::string("NEES ") + kParameters[p] + ", all drives", pooled[p].nees(), 0.5, 1.5, "",
                   how);
     report.within("consistency", std::string("coverage ") + kParameters[p] + ", all drives",
                   pooled[p].coverage_percent(), 90.0, 99.0, "%", how);
   }
-  report.within("consistency", "lowest NEES of a kind (" + lowest_where + ")", lowest, 0.7, 1.5, "", how);
-  report.within("consistency", "highest NEES of a kind (" + highest_where + ")", highest, 0.7, 1.5, "", how);
+  report.within("consistency", "lowest NEES of a kind (" + lowest_where + ")", lowest, 0.5, 1.5, "", how);
+  report.within("consistency", "highest NEES of a kind (" + highest_where + ")", highest, 0.5, 1.5, "", how);
   table.rows.push_back(row);
   report.add(std::move(table));
 }
