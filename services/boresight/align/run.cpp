@@ -8,6 +8,7 @@
 #include "services/alignment_estimator/core/scan_detections.hpp"
 #include "services/alignment_estimator/core/write_estimate.hpp"
 #include "services/boresight/align/batch_calibration.hpp"
+#include "services/boresight/align/samples.hpp"
 #include "services/boresight/align/stds.hpp"
 #include "services/common/alignment_words/alignment_words.hpp"
 #include "services/common/estimation/unknown.hpp"
@@ -21,65 +22,6 @@ namespace {
 constexpr std::string_view kBatch = "batch", kBatchCalibration = "batch_calibration";
 /// The origin on the estimator's clock. It leaves room for earlier times, because time 0 means "never".
 constexpr std::int64_t kOrigin_ns = 10'000'000'000;
-
-std::array<double, kParameters> to_array(const Eigen::Vector4d& v) {
-  return {v(0), v(1), v(2), v(3)};
-}
-
-/// k_v of the vehicle: the mean of the radars' k_v, weighted by variance, if each radar has its own. The errors have a
-/// common part, so the smallest std is used undivided.
-void share_speed_scale(Sample& sample) {
-  double sum = 0.0, weights = 0.0, best_std = std::numeric_limits<double>::infinity();
-  for (const Sample::Radar& radar : sample.radars) {
-    if ((radar.observable & alignment_axis::kSpeedScale) == 0) continue;
-    const double weight = 1.0 / std::max(1e-18, radar.stds[0] * radar.stds[0]);
-    sum += weight * radar.values[0];
-    weights += weight;
-    best_std = std::min(best_std, radar.stds[0]);
-  }
-  if (weights > 0.0) {
-    sample.speed_scale = sum / weights;
-    sample.speed_scale_std = best_std;
-  } else if (!sample.radars.empty()) {
-    sample.speed_scale = sample.radars.front().values[0];
-    sample.speed_scale_std = sample.radars.front().stds[0];
-  }
-}
-
-/// The truth of the vehicle's speed scale as share_speed_scale() combines it: the mean of what each radar sees, with
-/// the weights of the estimate.
-std::optional<double> true_speed_scale(const Truth& truth, const Result& result) {
-  double sum = 0.0, weights = 0.0;
-  for (const RadarResult& radar : result.radars) {
-    const std::optional<double> seen = truth.speed_scale_seen_by(radar.id);
-    if (!seen || (radar.estimate.observable & alignment_axis::kSpeedScale) == 0) continue;
-    const double weight = 1.0 / std::max(1e-18, radar.stds[0] * radar.stds[0]);
-    sum += weight * *seen;
-    weights += weight;
-  }
-  return weights > 0.0 ? sum / weights : truth.speed_scale;
-}
-
-/// The true mountings in the order of time; none if the truth does not contain the radar.
-std::vector<TruthComparison::Mounting> true_mountings(const Truth& truth, const RadarConfig& config) {
-  std::vector<TruthComparison::Mounting> mountings;
-  const auto known = truth.radars.find(config.id);
-  if (known == truth.radars.end()) return mountings;
-  const auto add = [&](double from_s, const Truth::Radar& radar) {
-    const Eigen::Matrix3d actual = true_mounting(radar, config.mounting_pose);
-    const Eigen::Vector3d angles = alignment::vehicle_angles(config, actual);
-    mountings.push_back(
-        {from_s, actual, {truth.speed_scale_seen_by(config.id).value_or(kNaN), angles(0), angles(1), angles(2)}});
-  };
-  Truth::Radar radar = known->second;
-  add(-std::numeric_limits<double>::infinity(), radar);
-  for (const Truth::StepChange& step_change : truth.step_changes) {
-    if (step_change.radar != config.id) continue;
-    radar.sensor_rad = step_change.sensor_rad;
-    add(step_change.time_s, radar);
-  }
-  return mountings;
-}
 
 }  // namespace
 
@@ -114,12 +56,8 @@ Run::Run(const VehicleConfig& vehicle, Options options)
     throw std::invalid_argument(options_.method + " is no alignment method");
   }
   for (const RadarConfig& config : vehicle_.radars) {
-    Radar& radar = radars_.emplace_back();
-    radar.config = config;
-    radar.nominal = geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0);
-    radar.seconds_to_95_percent.fill(kNaN);
-    radar.change_begin[0] = 1.0;
-    if (options_.truth) radar.truth = true_mountings(*options_.truth, config);
+    radars_.emplace_back(config, geometry::sensor_to_vehicle(config.mounting_pose, 0.0, 0.0, 0.0),
+                         TruthWatch(options_.truth, config));
   }
 }
 
@@ -188,7 +126,7 @@ void Run::add_scan(RadarScan& scan, double time_s) {
   }
   observe_step_changes(radar, estimate, options_.origin_s);
   observe_vehicle_changes(estimate);
-  observe_truth(radar, estimate, time_s);
+  radar.truth.observe(radar.config, estimate, time_s);
 }
 
 void Run::add_rejected_scan(RadarScan& scan, double time_s) {
@@ -222,32 +160,6 @@ bool Run::needs_another_pass() {
   return true;
 }
 
-void Run::observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s) {
-  if (radar.truth.empty()) return;
-  while (radar.true_now + 1 < radar.truth.size() && radar.truth[radar.true_now + 1].from_s <= time_s) {
-    const auto before = radar.truth[radar.true_now].values;
-    const auto after = radar.truth[++radar.true_now].values;
-    for (std::size_t i = 1; i < kParameters; ++i) {
-      constexpr double kSame_rad = 1e-5;
-      if (std::abs(after.at(i) - before.at(i)) < kSame_rad) continue;
-      radar.change_begin.at(i) = before.at(i);
-      radar.change_begin_s.at(i) = estimate.seconds_of_drive;
-      radar.seconds_to_95_percent.at(i) = kNaN;
-    }
-  }
-  const auto values = to_array(alignment::vehicle_form(radar.config, estimate).values);
-  for (std::size_t i = 0; i < kParameters; ++i) {
-    const double goal = radar.truth[radar.true_now].values.at(i);
-    const bool is_there = std::abs(values.at(i) - goal) <= 0.05 * std::abs(goal - radar.change_begin.at(i));
-    double& reached_s = radar.seconds_to_95_percent.at(i);
-    if (!is_there) {
-      reached_s = kNaN;
-    } else if (std::isnan(reached_s)) {
-      reached_s = estimate.seconds_of_drive - radar.change_begin_s.at(i);
-    }
-  }
-}
-
 void Run::observe_until(double time_s) {
   constexpr double kInterval_s = 1.0, kLongestGap_s = 10.0;
   if (!estimator_) return;
@@ -259,29 +171,7 @@ void Run::observe_until(double time_s) {
 Sample Run::sample(double time_s) {
   std::vector<alignment::RadarEstimate> estimates;
   for (std::size_t i = 0; i < radars_.size(); ++i) estimates.push_back(estimator_->estimate(i));
-  return sample_of(time_s, estimates);
-}
-
-Sample Run::sample_of(double time_s, const std::vector<alignment::RadarEstimate>& estimates) const {
-  Sample sample;
-  sample.x = time_s;
-  for (std::size_t i = 0; i < radars_.size(); ++i) {
-    const alignment::RadarEstimate& e = estimates[i];
-    const alignment::VehicleForm form = alignment::vehicle_form(radars_[i].config, e);
-    sample.radars.push_back({e.state, e.observable, to_array(form.values), stds_of(form)});
-    // Shared by all radars, or known to one of them: the smallest std counts.
-    const auto has_smaller_std = [](double std, double than) { return std > 0.0 && (than == 0.0 || std < than); };
-    if (has_smaller_std(e.yaw_rate_bias_std_radps, sample.yaw_rate_bias_std_radps)) {
-      sample.yaw_rate_bias_radps = e.yaw_rate_bias_radps;
-      sample.yaw_rate_bias_std_radps = e.yaw_rate_bias_std_radps;
-    }
-    if (has_smaller_std(e.slip_coefficient_std_radps2pm, sample.slip_coefficient_std_radps2pm)) {
-      sample.slip_coefficient_radps2pm = e.slip_coefficient_radps2pm;
-      sample.slip_coefficient_std_radps2pm = e.slip_coefficient_std_radps2pm;
-    }
-  }
-  share_speed_scale(sample);
-  return sample;
+  return sample_of(vehicle_, time_s, estimates);
 }
 
 Result Run::finish() {
@@ -325,7 +215,7 @@ Result Run::finish() {
     RadarResult& r = result.radars[i];
     r.stds = stds_of(alignment::vehicle_form(radars_[i].config, r.estimate));
     r.residuals = radars_[i].residuals.judge(r.estimate, radars_[i].config, radars_[i].nominal);
-    if (!radars_[i].truth.empty()) r.truth = compare(radars_[i], r);
+    if (radars_[i].truth.is_known()) r.truth = radars_[i].truth.compare(radars_[i].config, r);
   }
   if (options_.truth) {
     result.true_speed_scale = true_speed_scale(*options_.truth, result);
@@ -354,7 +244,7 @@ void Run::finish_batch(Result& result) {
   result.problem = found.problem;
   if (!found.problem.empty()) return;
   result.batch = Result::Batch{found.driven_s, found.windows, found.passes, found.settled};
-  const Sample last = sample_of(end_s_, found.radars);
+  const Sample last = sample_of(vehicle_, end_s_, found.radars);
   result.series.push_back(last);
   result.speed_scale = last.speed_scale;
   result.speed_scale_std = last.speed_scale_std;
@@ -393,28 +283,6 @@ void Run::describe(Result& result) const {
     r.reason = r.finding.empty() ? std::string(alignment_words::words_of(r.message.reason)) : r.finding;
     r.drift_since_s = r.message.drift.since_ns == 0 ? kNaN : to_s(r.message.drift.since_ns);
   }
-}
-
-TruthComparison Run::compare(const Radar& radar, const RadarResult& result) {
-  TruthComparison comparison;
-  comparison.mountings = radar.truth;
-  comparison.seconds_to_95_percent = radar.seconds_to_95_percent;
-  const TruthComparison::Mounting& truth = radar.truth[radar.true_now];
-  const Eigen::Matrix3d& estimated = result.estimate.sensor_to_vehicle;
-  const auto values = to_array(alignment::vehicle_form(radar.config, result.estimate).values);
-  const std::array<double, kParameters>& stds = result.stds;
-  for (std::size_t i = 0; i < kParameters; ++i) {
-    comparison.errors.at(i) = values.at(i) - truth.values.at(i);
-    const double normalised = comparison.errors.at(i) / stds.at(i);
-    comparison.nees.at(i) = stds.at(i) > 0.0 ? normalised * normalised : kNaN;
-  }
-  const Eigen::Vector3d difference =
-      geometry::euler_angles(estimated) - geometry::euler_angles(truth.sensor_to_vehicle);
-  for (std::size_t i = 0; i < 3; ++i) {
-    comparison.sensor_errors_rad.at(i) = geometry::wrap_angle(difference(static_cast<Eigen::Index>(i)));
-  }
-  comparison.true_now = radar.true_now;
-  return comparison;
 }
 
 }  // namespace boresight::align

@@ -20,6 +20,7 @@
 #include "services/boresight/align/residuals.hpp"
 #include "services/boresight/align/result.hpp"
 #include "services/boresight/align/truth_file.hpp"
+#include "services/boresight/align/truth_watch.hpp"
 #include "services/common/estimation/ego_history.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 
@@ -57,6 +58,7 @@ class Run {
   struct Radar {
     RadarConfig config;
     Eigen::Matrix3d nominal;
+    TruthWatch truth;
     bool measures_elevation = false;
     std::uint64_t scans = 0, scans_without_ego = 0, detections = 0;
     std::int64_t cpu_ns = 0, max_cpu_ns = 0;
@@ -64,24 +66,20 @@ class Run {
     ResidualSample residuals;
     std::uint32_t step_changes_seen = 0;
     std::vector<StepChangeEvent> step_changes;
-    std::vector<TruthComparison::Mounting> truth;  ///< empty if unknown
-    std::size_t true_now = 0;
-    std::array<double, kParameters> change_begin{}, change_begin_s{}, seconds_to_95_percent{};
+    Radar(const RadarConfig& of, const Eigen::Matrix3d& nominal_mounting, TruthWatch watch)
+        : config(of), nominal(nominal_mounting), truth(std::move(watch)) {}
   };
   [[nodiscard]] std::int64_t to_ns(double time_s);
   [[nodiscard]] double to_s(std::int64_t time_ns) const;
   void observe_until(double time_s);
   [[nodiscard]] Sample sample(double time_s);
-  [[nodiscard]] Sample sample_of(double time_s, const std::vector<alignment::RadarEstimate>& estimates) const;
   /// After a scan.
   static void observe_step_changes(Radar& radar, const alignment::RadarEstimate& estimate, double origin_s);
-  static void observe_truth(Radar& radar, const alignment::RadarEstimate& estimate, double time_s);
   void observe_vehicle_changes(const alignment::RadarEstimate& estimate);
   void finish_estimator(Result& result);
   void finish_batch(Result& result);
   /// Reason, finding and drift in words.
   void describe(Result& result) const;
-  [[nodiscard]] static TruthComparison compare(const Radar& radar, const RadarResult& result);
 
   VehicleConfig vehicle_;
   Options options_;
