@@ -126,7 +126,8 @@ Mounting mounting_of(const RadarConfig& radar, const AlignmentEstimate* estimate
           .asDiagonal();
   mounting.yaw_rate_bias_variance = square(config.unknown_yaw_rate_bias_std_radps);
   mounting.slip_variance = square(config.unknown_slip_std_radps2pm);
-  if (estimate == nullptr) return mounting;
+  // Of wrong inputs an estimate says nothing, however sure it is.
+  if (estimate == nullptr || estimate->finding != AlignmentFinding::kNone) return mounting;
 
   const Eigen::Vector3d turn(estimate->vehicle_roll_rad, -estimate->vehicle_pitch_rad, estimate->vehicle_yaw_rad);
   const Eigen::Matrix4d covariance = covariance_of(*estimate);

@@ -114,6 +114,17 @@ TEST(Mounting, WithoutAnEstimateItIsTheNominalMounting) {
   EXPECT_NEAR(mounting.covariance(3, 3), std::pow(Config{}.unknown_rotation_std_rad, 2), 1e-12);
 }
 
+TEST(Mounting, AnEstimateFromWrongInputsIsNotApplied) {
+  const RadarConfig to = radar(45.0);
+  AlignmentEstimate e = estimate(to, stds(0.1, 0.1, 0.1), kAll);
+  e.finding = AlignmentFinding::kRadarsSwapped;
+  const Mounting nominal = mounting_of(to, nullptr, Config{}), mounting = mounting_of(to, &e, Config{});
+  EXPECT_EQ(mounting.sensor_to_vehicle, nominal.sensor_to_vehicle);
+  EXPECT_EQ(mounting.covariance, nominal.covariance);
+  EXPECT_EQ(mounting.speed_scale, nominal.speed_scale);
+  EXPECT_EQ(mounting.alignment_sequence, 0u);
+}
+
 TEST(Mounting, AnUnappliedEstimateWidensTheCovariance) {
   // About x it is uncertain: there the truth lies 1.5° ± 4° from the nominal mounting, about the other axes as
   // estimated.
