@@ -61,6 +61,26 @@ TEST(ChangeMonitor, AStepOfOneRadarIsReportedForThatRadar) {
   }
 }
 
+TEST(ChangeMonitor, ANewSceneIsNoStep) {
+  // A mirroring road changes the elevations by up to twice the std that the radar has shown.
+  for (const double lasting_deg : {0.0, 0.5}) {
+    ChangeMonitor monitor(4, {});
+    Blocks blocks(3, 0.03);
+    for (Deviation2& value : blocks.values) value.lasting = {lasting_deg * kRadiansPerDegree, 0.0};
+    std::vector<ChangeVerdict> verdicts(4);
+    static_cast<void>(blocks_to_change(monitor, blocks, verdicts, 60));
+    blocks.turned = 1;
+    blocks.turn = {1.2 * kRadiansPerDegree, 0.0};
+    const int after = blocks_to_change(monitor, blocks, verdicts, 30);
+    if (lasting_deg > 0.0) {
+      EXPECT_EQ(after, 99);
+      EXPECT_FALSE(verdicts[1].suspect);
+    } else {
+      EXPECT_LE(after, 6);
+    }
+  }
+}
+
 TEST(ChangeMonitor, AStepIsSuspectBeforeItIsReported) {
   ChangeMonitor monitor(4, {});
   Blocks blocks(2, 0.03);
