@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/alignment_estimator/core/filter/residual.hpp"
+
 namespace boresight::alignment::windows {
 
 namespace {
-
-/// E[w z²]/E[w] of a Gaussian residual z under Tukey's weight w.
-double weighted_square_of(double gate) {
-  const double b = 1.0 / (gate * gate);
-  return (1.0 - 6.0 * b + 15.0 * b * b) / (1.0 - 2.0 * b + 3.0 * b * b);
-}
 
 constexpr double kWideGate = 3.0;
 /// A detection below the road is a mirror image or it is not, and the share of mirror images is a mean: the variance of
@@ -52,7 +48,7 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
   CurveSums sums;
   ScanSums& common = sums.common;
   const double inverse_gate_square = 1.0 / (judgement.gate * judgement.gate);
-  const double mean_square = weighted_square_of(judgement.gate);
+  const double mean_square = weighted_square(judgement.gate);
   const double ambiguity = run.ambiguity_mps, inverse_ambiguity = ambiguity > 0.0 ? 1.0 / ambiguity : 0.0;
   const double wide = judgement.wide_std_mps * judgement.wide_std_mps;
   const double inverse_step = 1.0 / knots.step_rad;
@@ -69,24 +65,24 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     // Turned by −error about the sensor's z axis, to second order.
     const double ce_ = 1.0 - 0.5 * error * error;
     const Eigen::Vector3d u(ce_ * run.x[i] + error * run.y[i], ce_ * run.y[i] - error * run.x[i], run.z[i]);
-    const double along = u.dot(g);
     const double ce = std::sqrt(u.x() * u.x() + u.y() * u.y());
     const Eigen::Vector3d ea(-u.y(), u.x(), 0.0), eb(-u.x() * u.z() / ce, -u.y() * u.z() / ce, ce);
-    const double da = ea.dot(g), db = eb.dot(g);
+    AngleDerivatives d(u.x(), u.y(), u.z(), ce, g.x(), g.y(), g.z());
+    d.va = judgement.angle_factor * run.azimuth_variance[i];
+    d.ve = judgement.angle_factor * run.elevation_variance[i];
+    d.va_slope = run.azimuth_std_slope[i];
     const HeightColumn of_height = run.has_elevation
-                                       ? height_column(u, g, along, judgement.up.dot(eb), run.range_m[i], judgement)
+                                       ? height_column(u, g, d.along, judgement.up.dot(eb), run.range_m[i], judgement)
                                        : HeightColumn();
-    double e = run.range_rate_mps[i] + along +
+    double e = run.range_rate_mps[i] + d.along +
                (of_height.below ? judgement.mirror_share : judgement.height_excess) * of_height.column;
     if (ambiguity > 0.0) e -= ambiguity * std::nearbyint(e * inverse_ambiguity);
-    const double va = judgement.angle_factor * run.azimuth_variance[i];
-    const double ve = judgement.angle_factor * run.elevation_variance[i];
     const double by_rate =
-        judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * along * along;
-    const double by_angle = va * da * da + ve * db * db,
-                 s2 = by_rate + by_angle +
-                      (of_height.below ? kImageVariance * of_height.column * of_height.column : 0.0);
-    const double gate_variance = s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * da * da;
+        judgement.rate_factor * run.range_rate_variance[i] + run.lowering_variance[i] * d.along * d.along;
+    const double by_angle = d.va * d.da * d.da + d.ve * d.db * d.db;
+    const double s2 =
+        by_rate + by_angle + (of_height.below ? kImageVariance * of_height.column * of_height.column : 0.0);
+    const double gate_variance = s2 + u.dot(judgement.velocity_variance * u) + judgement.curve_variance * d.da * d.da;
     if (wide > 0.0) {
       const double t = e * e / ((gate_variance + wide) * kWideGate * kWideGate);
       if (t < 1.0) {
@@ -95,32 +91,19 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
         sums.wide_information.noalias() += weight * u * u.transpose();
       }
     }
-    const double z2 = e * e / gate_variance, t = z2 * inverse_gate_square;
-    if (t >= 1.0) {
-      if (t < 9.0) common.near += 1.0;
+    const double z2 = e * e / gate_variance;
+    const TukeyWeight tukey{z2 * inverse_gate_square};
+    if (tukey.t >= 1.0) {
+      if (tukey.t < 9.0) common.near += 1.0;
       continue;
     }
-    const double q = 1.0 - t, w = q * q, curvature = q * (1.0 - 5.0 * t);
-    common.inliers += 1.0;
-    common.weights += w;
-    common.curvature += curvature;
-    common.squares += w * w * z2;
-    if (w > 0.2) common.stationary += 1.0;
-    const double inverse = 1.0 / s2, weight = w * inverse, slope = curvature * inverse;
-    // Second derivatives of the range rate, and of its variance: see scan_sums.cpp for the terms of errors in
-    // variables.
-    const double daa = -along + u.z() * g.z(), dab = -(g.y() * u.x() - g.x() * u.y()) * u.z() / ce;
-    const double s2a = 2.0 * (da * daa * va + da * da * va * run.azimuth_std_slope[i] + db * dab * ve);
-    const double s2b = 2.0 * (da * dab * va - db * along * ve);
-    const double ca = da * va, cb = db * ve;
-    const double by_variance = (1.0 - 12.0 * t + 15.0 * t * t) * (s2a * ca + s2b * cb);
-    const double by_skew =
-        6.0 * inverse_gate_square * (1.0 - 5.0 * t) * (daa * ca * ca + 2.0 * dab * ca * cb - along * cb * cb);
-    const double pull = -weight * e - inverse / gate_variance * (by_variance + by_skew);
-    const double ka = slope * va * da, kb = slope * ve * db;
+    count(tukey, z2, common);
+    const double inverse = 1.0 / s2, weight = tukey.w * inverse, slope = tukey.curvature * inverse;
+    const double pull = pull_of(e, tukey, inverse, gate_variance, inverse_gate_square, d);
+    const double ka = slope * d.va * d.da, kb = slope * d.ve * d.db;
     sums.score += pull * u + ka * ea + kb * eb;
-    const double wa = weight * va, we = weight * ve;
-    const double along_square = weight * along * along;
+    const double wa = weight * d.va, we = weight * d.ve;
+    const double along_square = weight * d.along * d.along;
     common.along += along_square;
     common.lowered += along_square * run.lowering[i];
     common.raised += along_square * run.mean_sine[i];
@@ -137,7 +120,7 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
     for (int side = 0; side < 2; ++side) {
       const int k = knot + side;
       const double h = side == 0 ? h0 : h1, hat = side == 0 ? -slope_of_hat : slope_of_hat;
-      const double column = -da * h, by_azimuth = -(daa * h + da * hat), by_elevation = -dab * h;
+      const double column = -d.da * h, by_azimuth = -(d.daa * h + d.da * hat), by_elevation = -d.dab * h;
       sums.curve_score(k) += pull * column + ka * by_azimuth + kb * by_elevation;
       sums.curve_by_velocity.row(k) +=
           (weight * column * u - wa * by_azimuth * ea - we * by_elevation * eb).transpose();
@@ -145,17 +128,11 @@ CurveSums sum_scan(const Sightings& run, const Eigen::Vector3d& g, const Curve& 
           weight * column * column - wa * by_azimuth * by_azimuth - we * by_elevation * by_elevation;
       heights.by_curve(k) += weight * column * hc - we * by_elevation * hb;
       if (side == 1) {
-        const double c0 = -da * h0, a0 = -(daa * h0 - da * slope_of_hat), b0 = -dab * h0;
+        const double c0 = -d.da * h0, a0 = -(d.daa * h0 - d.da * slope_of_hat), b0 = -d.dab * h0;
         sums.curve_next(knot) += weight * c0 * column - wa * a0 * by_azimuth - we * b0 * by_elevation;
       }
     }
-    const double share = 1.0 / gate_variance, of_rate = by_rate * share, of_angle = by_angle * share;
-    const double excess = w * (z2 - mean_square);
-    common.noise_score_rate += excess * of_rate;
-    common.noise_score_angle += excess * of_angle;
-    common.noise_rate_rate += w * of_rate * of_rate;
-    common.noise_rate_angle += w * of_rate * of_angle;
-    common.noise_angle_angle += w * of_angle * of_angle;
+    add_noise(tukey.w, z2, mean_square, by_rate / gate_variance, by_angle / gate_variance, common);
   }
   return sums;
 }
