@@ -246,7 +246,8 @@ void Batch::add_block(std::size_t index, std::size_t block, const MergeNoise& no
 std::vector<RadarEstimate> Batch::estimates(const Solver& solver, double time_s, int loads) const {
   std::vector<RadarEstimate> all(radars_.size());
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), radars_[r].sums.linearised(), {}, all[r]);
+    write_solution(solver, r, time_s, loads, radars_[r].sums.knots(), radars_[r].sums.linearised(),
+                   radars_[r].sums.unmeasured(), all[r]);
   }
   return all;
 }

@@ -176,6 +176,9 @@ TEST(Batch, RadarWithoutElevationHasAYawAndNoPitch) {
     EXPECT_EQ(e.observable & (alignment_axis::kVehiclePitch | alignment_axis::kVehicleRoll), 0u);
     EXPECT_NE(e.observable & alignment_axis::kVehicleYaw, 0u);
     EXPECT_LT(std::abs(error_rad(spec, r, e, 40.0).z()), 0.1 * kRadiansPerDegree);
+    // The mean cosine of unknown elevations is not known better than this.
+    EXPECT_GT(std_of(e, 0), 3e-4);
+    EXPECT_LT(std::abs(e.speed_scale - spec.speed_scale), 3.0 * std_of(e, 0));
   }
 }
 
