@@ -90,6 +90,7 @@ void read_changes(config::Reader& filter, windows::ChangeConfig& c) {
   read_common(load, c.load);
   c.load.between_radars = load.angle_deg("between_radars_deg", {0.001, 5.0}, c.load.between_radars);
   c.load_after_restart_stds = load.number("after_restart_stds", {1.0, 100.0}, c.load_after_restart_stds);
+  c.load_wait_s = load.number("wait_s", {0.0, 3600.0}, c.load_wait_s);
   c.watch_s = load.number("watch_s", {1.0, 3600.0}, c.watch_s);
   config::Reader speed = filter.table("speed_change");
   c.speed.least = speed.number("least", {1e-4, 1.0}, c.speed.least);

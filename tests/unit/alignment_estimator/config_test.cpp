@@ -98,6 +98,7 @@ std::vector<double> numbers(const Settings& s) {
       static_cast<double>(c.settled_blocks),
       c.unsure_s,
       c.load_after_restart_stds,
+      c.load_wait_s,
       c.suspect_scale,
       c.watch_s,
       c.drift_rad,

@@ -36,6 +36,7 @@ struct ChangeConfig {
   double unsure_s = 7.0;            ///< driving time before a report that is from both sides of the change
   /// The body's pitch (rad): least 0.25°, scatter 0.2°, between radars 0.1°.
   CommonConfig load{.least = 0.00436, .scatter = 0.0035, .between_radars = 0.00175};
+  double load_wait_s = 5.0;              ///< driving time before the blocks that are compared, choice
   double load_after_restart_stds = 3.0;  ///< a load change between two drives is no surprise
   /// Scale of the speed signal.
   CommonConfig speed{.least = 0.005, .scatter = 0.001, .between_radars = 5e-4};

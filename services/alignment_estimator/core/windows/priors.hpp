@@ -37,7 +37,7 @@ struct Priors {
   double roll_per_pitch = 10.0;
   double lasting_pitch = 1.5;          ///< of the scatter of a radar's pitch: the part that stays for the drive
   double common_correlation_s = 20.0;  ///< median of their correlation times
-  double log_correlation_std = 1.5;
+  double log_correlation_std = 0.75;
   // Drift of a mounting over the last `drift_span_s`: median of the standard deviation of its rate.
   double drift_std_radps = 9e-7;  ///< 0.003 deg/min (choice)
   double drift_span_s = 180.0;

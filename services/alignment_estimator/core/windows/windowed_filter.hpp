@@ -87,6 +87,8 @@ class WindowedFilter : public Method {
   void take_load(const windows::CommonStep& step, std::int64_t time_ns);
   void take_speed(const windows::CommonStep& step, std::int64_t time_ns);
   void decide_load();
+  /// Yaw is known well enough to judge a change of all radars; settled: also of this radar.
+  [[nodiscard]] bool knows_yaw(std::size_t radar) const;
   [[nodiscard]] bool settled(std::size_t radar) const;
 
   FilterConfig config_;

@@ -10,10 +10,14 @@ namespace boresight::alignment {
 
 using namespace windows;
 
-bool WindowedFilter::settled(std::size_t index) const {
+bool WindowedFilter::knows_yaw(std::size_t index) const {
   const double yaw_variance = solver_.radar(index).covariance(own::kRotation + 2, own::kRotation + 2);
-  return radars_[index].running && changes_.windows(index) >= change_config_.settled_blocks &&
-         yaw_variance < square(change_config_.settled_yaw_rad);
+  return radars_[index].running && yaw_variance < square(change_config_.settled_yaw_rad);
+}
+
+bool WindowedFilter::settled(std::size_t index) const {
+  return knows_yaw(index) && changes_.windows(index) >= change_config_.settled_blocks &&
+         driven_s_ >= change_config_.wait_s;
 }
 
 void WindowedFilter::judge_block() {
@@ -43,17 +47,17 @@ void WindowedFilter::judge_block() {
     deviations_[r].lasting(0) = std::sqrt(lasting_pitch_variance(priors_, s));
   }
   changes_.judge(deviations_, verdicts_);
-  bool all_settled = true;
+  bool all_known = driven_s_ >= change_config_.load_wait_s;
   for (std::size_t r = 0; r < radars_.size(); ++r) {
-    if (!settled(r) || driven_s_ < change_config_.wait_s) {
-      all_settled = all_settled && !radars_[r].running;
+    all_known = all_known && (knows_yaw(r) || !radars_[r].running);
+    if (!settled(r)) {
       verdicts_[r].suspect = verdicts_[r].changed = false;
     }
     if (verdicts_[r].changed) take_change(r);
     if (verdicts_[r].suspect || !radars_[r].running) continue;
     radars_[r].learnt_before = radars_[r].sums.learnt();
   }
-  if (all_settled) judge_vehicle();
+  if (all_known) judge_vehicle();
 }
 
 void WindowedFilter::judge_vehicle() {
