@@ -20,8 +20,8 @@ struct Unmeasured {
 [[nodiscard]] double lasting_pitch_variance(const Priors& priors, const RadarSolution& radar);
 
 /// Writes scale, rotation, their covariance, observability and the other parameters of the model. `load`: number of
-/// load steps so far; the rotation is the mounting without them. `linearised`: rotation of the latest block's point,
-/// where the solution's differences are vectors. State, reason, counts and events stay as they are.
+/// load steps so far; the rotation is the mounting without them. `linearised`: rotation at which the derivatives were
+/// taken and the solution's differences are vectors. State, reason, counts and events stay as they are.
 void write_solution(const Solver& solver, std::size_t radar, double time_s, int load, const Knots& knots,
                     const Eigen::Matrix3d& linearised, const Unmeasured& unmeasured, RadarEstimate& out);
 
