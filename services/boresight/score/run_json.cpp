@@ -74,9 +74,9 @@ bool RunHealth::next(RunVerdicts& verdicts) {
       if (!extended)
         refuse("radars: extended_qualifier: \"" + reason->get<std::string>().substr(0, 40) + "\" is no such word");
       const auto qualifier = radar.find("data_qualifier"), missed = radar.find("missed_scans");
-      const auto data = qualifier != radar.end() && qualifier->is_string()
-                            ? named(qualifier->get<std::string>(), DataQualifier::kNotAvailable)
-                            : DataQualifier::kNotAvailable;
+      if (qualifier != radar.end() && !qualifier->is_string()) refuse("radars: data_qualifier: is no word");
+      const auto data = qualifier != radar.end() ? named(qualifier->get<std::string>(), DataQualifier::kNotAvailable)
+                                                 : DataQualifier::kNotAvailable;
       if (!data)
         refuse("radars: data_qualifier: \"" + qualifier->get<std::string>().substr(0, 40) + "\" is no such word");
       const auto explanation = radar.find("explanation");

@@ -395,6 +395,8 @@ TEST(RunHealth, DamagedLineIsNamed) {
   EXPECT_THAT(
       error(R"({"t_s":1,"time_ns":1,"radars":[{"radar":1,"extended_qualifier":"NORMAL","data_qualifier":"MAYBE"}]})"),
       HasSubstr("\"MAYBE\" is no such word"));
+  EXPECT_THAT(error(R"({"t_s":1,"time_ns":1,"radars":[{"radar":1,"extended_qualifier":"NORMAL","data_qualifier":7}]})"),
+              HasSubstr("data_qualifier: is no word"));
 }
 
 TEST(RunSummary, NumbersOfTheTimingAreTakenWithTheirPaths) {
