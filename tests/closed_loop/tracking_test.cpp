@@ -61,8 +61,8 @@ TEST_P(Tracking, FindsEveryVehicleSoonWithFewFalseTracks) {
     EXPECT_LE(figures.afterwards.value("tracks.false.all_ranges.tracks"), 6.0);
     EXPECT_LE(figures.before_aligned.value("tracks.false.all_ranges.tracks"), 2.0);
   }
-  // Any change of the mounting estimate changes those of one drive: over eight seeds of demo_drive they are 0.083 in the
-  // mean, with a std of 0.047 from drive to drive.
+  // Any change of the mounting estimate changes those of one drive: over eight seeds of demo_drive they are 0.083 in
+  // the mean, with a std of 0.047 from drive to drive.
   EXPECT_LT(duplicates, 0.16);
 }
 
