@@ -27,7 +27,7 @@ struct ChangeConfig {
   double yaw_rad = 0.00785;          ///< smallest change that is reported, 0.45°
   double pitch_rad = 0.0157;         ///< 0.9°
   double scatter_factor = 6.5;       ///< a change exceeds the scatter of the means of earlier blocks by this
-  double common_factor = 4.0;        ///< likewise, with the part that all radars share; and the pitch of a scene
+  double common_factor = 4.0;        ///< likewise, with the part that all radars share; and the std of pitch
   double yaw_scatter_rad = 0.00105;  ///< scatter before any block, 0.06°
   double pitch_scatter_rad = 0.0035;
   double least_detections = 50.0;   ///< of a block, stationary
@@ -53,7 +53,8 @@ struct ChangeConfig {
 struct Deviation2 {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();  ///< pitch and yaw (rad)
   Eigen::Vector2d std = Eigen::Vector2d::Zero();
-  /// Std of what stays while the scene is the same, such as errors of elevations by a mirroring road.
+  /// Std of the estimate that the value is counted from: what stays while the scene is the same, such as errors of
+  /// elevations by a mirroring road.
   Eigen::Vector2d lasting = Eigen::Vector2d::Zero();
   bool valid = false;
 };
