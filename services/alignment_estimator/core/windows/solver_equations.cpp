@@ -130,7 +130,12 @@ void Solver::solve_border() {
   auto inverse = border_inverse_.topLeftCorner(border_, border_);
   inverse.setIdentity();
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> solver(system);
-  solver.solveInPlace(inverse);
+  // Some columns at a time: the work space of all of them would be on the heap.
+  constexpr Eigen::Index kColumns = 32;
+  for (Eigen::Index first = 0; first < border_; first += kColumns) {
+    auto columns = inverse.middleCols(first, std::min<Eigen::Index>(kColumns, border_ - first));
+    solver.solveInPlace(columns);
+  }
   border_step_.head(border_).noalias() = inverse * border_score_.head(border_);
 }
 
