@@ -64,14 +64,14 @@ def consistency(curves):
     height = 22 * len(kinds)
     parts = [text(20, 24, "Consistency of the stated σ by kind of drive; green: required range; values beyond are drawn at the edge", "t"),
              legend([(f"c{i}", name) for i, name in enumerate(axes)], 20, 46, 840)]
-    nees = Panel((170, 90, 320, height), (0.25, 8.0), (0.0, float(len(kinds))), "NEES", "", True, False)
+    nees = Panel((170, 90, 320, height), (0.05, 8.0), (0.0, float(len(kinds))), "NEES", "", True, False)
     cover = Panel((530, 90, 320, height), (70.0, 100.0), (0.0, float(len(kinds))), "true values inside the 95 % interval, %")
-    for panel, low, high in ((nees, 0.7, 1.5), (cover, 90.0, 99.0)):
+    for panel, low, high in ((nees, 0.5, 1.5), (cover, 90.0, 99.0)):
         # Rows are kinds of drive, without a numeric axis.
         panel.parts = [p for p in panel.parts if 'text-anchor="end"' not in p]
         panel.band(low, high, vertical=True)
         if panel is nees:
-            for value in (0.25, 0.5, 2.0, 4.0, 8.0):
+            for value in (0.05, 0.2, 0.5, 2.0, 4.0, 8.0):
                 panel.parts.append(text(panel.x(value), panel.top + height + 15, f"{value:g}", "s", "middle"))
     for row, kind in enumerate(kinds):
         y = 90 + 22 * row + 14
