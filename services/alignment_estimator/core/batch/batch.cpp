@@ -162,11 +162,7 @@ void Batch::begin_pass() {
   window_.clear();
   phase_.clear();
   has_block_ = false;
-  for (Radar& radar : radars_) {
-    radar.sums.forget_time();
-    radar.sums.begin_block({}, {}, LocalMatrix::Zero(), false);
-    radar.totals = {};
-  }
+  for (Radar& radar : radars_) radar.totals = {};
 }
 
 void Batch::process(std::size_t index, const ScanDetections& scan, const EgoSample& ego) {

@@ -1,5 +1,5 @@
 // One residual of a range rate: Tukey's weight, errors in variables, noise. Shared by the sums without and with a
-// curve. Equations: docs/algorithms/alignment.md (A12)(A13).
+// curve. Equations: docs/algorithms/alignment.md (A10)–(A12).
 #pragma once
 
 #include <cmath>
@@ -30,22 +30,20 @@ inline void count(const TukeyWeight& tukey, double z2, ScanSums& sums) {
   if (tukey.w > 0.2) sums.stationary += 1.0;
 }
 
-/// Derivatives of the range rate to azimuth (a) and elevation (b), and variances of the angles.
+/// Derivatives of the range rate to azimuth (a) and elevation (b).
 struct AngleDerivatives {
-  double along;           ///< u·g
-  double da, db;          ///< first
-  double daa, dab;        ///< second; that to the elevation twice is −along
-  double va, ve;          ///< variances
-  double va_slope = 0.0;  ///< relative slope of the azimuth's std to the azimuth
+  double along;               ///< u·g
+  double da, db;              ///< first
+  double daa, dab;            ///< second; that to the elevation twice is −along
+  double va = 0.0, ve = 0.0;  ///< variances of the angles
+  double va_slope = 0.0;      ///< relative slope of the azimuth's std to the azimuth
 
   AngleDerivatives(double x, double y, double z, double across, double gx, double gy, double gz)
       : along(x * gx + y * gy + z * gz),
         da(x * gy - y * gx),
         db((-x * z * gx - y * z * gy) / across + across * gz),
         daa(-along + z * gz),
-        dab(-(gy * x - gx * y) * z / across),
-        va(0.0),
-        ve(0.0) {}
+        dab(-(gy * x - gx * y) * z / across) {}
 };
 
 /// Errors in variables: the noise ε of the angles is in the residual and in the gradient, so E[ψ(e)·ε] = Cov(e,

@@ -87,7 +87,7 @@ void ChangeMonitor::judge(const std::vector<Deviation2>& deviations, std::vector
     for (int axis = 0; axis < 2; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       const double least = axis == 0 ? config_.pitch_rad : config_.yaw_rad;
-      const double beyond = std::max(least, config_.common_factor * deviations[r].lasting(axis));
+      const double beyond = std::max(least, config_.common_factor * deviations[r].estimate_std(axis));
       const double limit =
           std::max(beyond, config_.scatter_factor * scatter(radar.own_history[a], radar.history_size, axis));
       const double all_limit =

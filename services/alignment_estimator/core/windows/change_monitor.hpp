@@ -53,9 +53,9 @@ struct ChangeConfig {
 struct Deviation2 {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();  ///< pitch and yaw (rad)
   Eigen::Vector2d std = Eigen::Vector2d::Zero();
-  /// Std of the estimate that the value is counted from: what stays while the scene is the same, such as errors of
-  /// elevations by a mirroring road.
-  Eigen::Vector2d lasting = Eigen::Vector2d::Zero();
+  /// Std of the estimate that the value is counted from; 0: it does not limit a report. On a mirroring road the
+  /// elevations, and so pitch, change with the scene.
+  Eigen::Vector2d estimate_std = Eigen::Vector2d::Zero();
   bool valid = false;
 };
 

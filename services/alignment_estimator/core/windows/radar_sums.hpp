@@ -36,7 +36,6 @@ class RadarSums {
 
   /// Driving time that a scan stands for: since the scan before, or a cycle after a gap.
   [[nodiscard]] double elapsed_s(std::int64_t time_ns);
-  void forget_time() { last_time_ns_ = 0; }
   /// The detections of a scan that can be used. False: too few.
   [[nodiscard]] bool take(const ScanDetections& scan, Sightings& sightings) const;
   /// Begins a block. Residuals are those at `point`, derivatives those at `derivatives_at`: along a direction that the

@@ -147,7 +147,7 @@ void WindowedFilter::search(std::size_t index, const ScanMotion3d& motion, doubl
   begin_block(index);
 }
 
-Point WindowedFilter::derivatives_at(std::size_t index) {
+Point WindowedFilter::move_derivatives(std::size_t index) {
   Radar& radar = radars_[index];
   Point point = solver_.point(index, driven_s_, load_);
   const auto is_known = [&](double variance, double prior_std) {
@@ -167,7 +167,7 @@ Point WindowedFilter::derivatives_at(std::size_t index) {
 }
 
 void WindowedFilter::begin_block(std::size_t index) {
-  radars_[index].sums.begin_block(solver_.point(index, driven_s_, load_), derivatives_at(index),
+  radars_[index].sums.begin_block(solver_.point(index, driven_s_, load_), move_derivatives(index),
                                   solver_.block_covariance(index), driven_s_ < kStart_s);
 }
 

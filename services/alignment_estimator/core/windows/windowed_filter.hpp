@@ -60,7 +60,7 @@ class WindowedFilter : public Method {
     AlignmentStepChange step_change{};
     std::int64_t drift_since_ns = 0;  ///< 0: none
     int drifting_solutions = 0;       ///< in a row
-    /// Rotation and scale that the vehicle's pitch and scale are counted from; set when the radar is settled.
+    /// Rotation and scale that the vehicle's pitch and scale are counted from: of the first block that is compared.
     Eigen::Matrix3d reference = Eigen::Matrix3d::Identity();
     double reference_scale = 0.0;  ///< 0: not set
     Radar(const RadarConfig& radar, const FilterConfig& filter, const windows::WindowsConfig& settings);
@@ -78,8 +78,8 @@ class WindowedFilter : public Method {
   [[nodiscard]] AlignmentReason reason_of(std::size_t radar) const;
   void judge_drift(std::size_t radar);
   void close_block();
-  /// The latest solution, where it is known.
-  [[nodiscard]] windows::Point derivatives_at(std::size_t radar);
+  /// Moves `linearised` to the latest solution about known axes. Returns the point of the derivatives.
+  [[nodiscard]] windows::Point move_derivatives(std::size_t radar);
   void begin_block(std::size_t radar);
   void judge_block();
   void judge_vehicle();

@@ -44,7 +44,7 @@ void WindowedFilter::judge_block() {
         radars_[r].sums.block(), s.covariance(own::kRateScale, own::kRateScale) + s.fluctuation.variance[2],
         s.covariance(own::kRotation, own::kRotation), square(priors_.rotation_std_rad), s.has_elevation,
         std::abs(scale) > change_config_.suspect_scale ? scale : 0.0, change_config_);
-    if (s.has_elevation) deviations_[r].lasting(0) = std::sqrt(estimate(r).covariance(2, 2));
+    if (s.has_elevation) deviations_[r].estimate_std(0) = std::sqrt(estimate(r).covariance(2, 2));
   }
   changes_.judge(deviations_, verdicts_);
   bool all_known = driven_s_ >= change_config_.load_wait_s;

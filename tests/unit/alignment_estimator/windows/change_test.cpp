@@ -62,17 +62,17 @@ TEST(ChangeMonitor, AStepOfOneRadarIsReportedForThatRadar) {
 }
 
 TEST(ChangeMonitor, ANewSceneIsNoStep) {
-  // A mirroring road changes the elevations by up to twice the std that the radar has shown.
-  for (const double lasting_deg : {0.0, 0.5}) {
+  // On a mirroring road the elevations change with the scene; the std of pitch says so.
+  for (const double estimate_deg : {0.0, 0.5}) {
     ChangeMonitor monitor(4, {});
     Blocks blocks(3, 0.03);
-    for (Deviation2& value : blocks.values) value.lasting = {lasting_deg * kRadiansPerDegree, 0.0};
+    for (Deviation2& value : blocks.values) value.estimate_std = {estimate_deg * kRadiansPerDegree, 0.0};
     std::vector<ChangeVerdict> verdicts(4);
     static_cast<void>(blocks_to_change(monitor, blocks, verdicts, 60));
     blocks.turned = 1;
     blocks.turn = {1.2 * kRadiansPerDegree, 0.0};
     const int after = blocks_to_change(monitor, blocks, verdicts, 30);
-    if (lasting_deg > 0.0) {
+    if (estimate_deg > 0.0) {
       EXPECT_EQ(after, 99);
       EXPECT_FALSE(verdicts[1].suspect);
     } else {

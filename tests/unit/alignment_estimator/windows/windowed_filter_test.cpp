@@ -281,14 +281,32 @@ TEST(WindowedFilter, ATrueChangeIsReportedForItsRadar) {
   EXPECT_LT(std::abs(bench.error_rad(1).z()), 0.15 * kRadiansPerDegree);
 }
 
+TEST(WindowedFilter, ALoadSoonAfterTheStartIsNoPitchOfTheRadars) {
+  simulator::AlignmentSpec spec = aligned_real_car(21, 90.0);
+  spec.real_car.load_pitch_rad = 0.7 * kRadiansPerDegree;
+  spec.real_car.load_time_s = 30.0;
+  WindowsBench bench(spec);
+  bench.run(90.0);
+  EXPECT_EQ(bench.filter->load_changes(), 1);
+  EXPECT_NEAR(std::abs(bench.filter->load_rad()), 0.7 * kRadiansPerDegree, 0.25 * kRadiansPerDegree);
+  for (std::size_t r = 0; r < 4; ++r) {
+    const Eigen::Matrix3d now = bench.drive.sensor_to_vehicle(r, simulator::AlignmentDrive::kStart_s);
+    const double pitch = geometry::so3_log(bench.filter->estimate(r).sensor_to_vehicle * now.transpose()).y();
+    EXPECT_LT(std::abs(pitch), 0.25 * kRadiansPerDegree) << r;
+    EXPECT_EQ(bench.filter->estimate(r).step_change.count, 0u) << r;
+  }
+}
+
 TEST(WindowedFilter, AllocatesNothing) {
-  WindowsBench bench(aligned_real_car(17, 60.0));
+  // Until the segments are full: the vehicle's system is largest then.
+  constexpr double kDuration_s = 110.0;
+  WindowsBench bench(aligned_real_car(17, kDuration_s));
   std::vector<double> predicted(kMaxDetections);
   auto memory = std::make_unique<Memory>();
   std::uint64_t allocations = 0;
   int scans = 0;
-  bench.run(60.0, [&](const simulator::AlignmentEvent& event) {
-    if (++scans > 2'600) return;
+  bench.run(kDuration_s, [&](const simulator::AlignmentEvent& event) {
+    ++scans;
     const std::uint64_t before = runtime::counted_allocations();
     {
       const runtime::CountAllocations count;
