@@ -20,7 +20,7 @@ TEXTS = SOURCES | {".md", ".toml", ".txt", ".sh", ".py", ".cmake", ".service", "
 IMPURE = re.compile(r"^(iceoryx|fastdds|fastrtps|spdlog|fmt/|CLI/|toml\+\+|pcap|sys/|netinet/|arpa/|linux/|net/|poll\.h|"
                     r"unistd\.h|fcntl\.h|time\.h|signal\.h|pthread|chrono|ctime|thread|mutex|condition_variable|future|"
                     r"filesystem|fstream|iostream|cstdio|stdio\.h|services/common/runtime/)")
-PURE_ROOMS = ("interfaces", "services/common/geometry", "services/common/estimation", "services/common/vehicle", "services/common/e2e", "services/common/someip",
+PURE_ROOMS = ("interfaces", "services/common/extended_object", "services/common/geometry", "services/common/estimation", "services/common/vehicle", "services/common/e2e", "services/common/someip",
               "services/ingest_gateway/dbc")
 PURE_FOLDERS = {"core", "codecs"}
 # Printing into a buffer is no input or output, but <format> is not in this compiler yet.
