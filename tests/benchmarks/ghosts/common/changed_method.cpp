@@ -32,11 +32,7 @@ const CorrectedScan& ChangedMethod::changed(const CorrectedScan& scan) {
 void ChangedMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   method_->classify(changed(scan), out);
   if (change_.passes_probabilities) return;
-  for (std::size_t i = 0; i < out.number_of_valid_detections; ++i) {
-    const Provenance label = out.provenance[i];
-    const bool direct = label == Provenance::kMoving || label == Provenance::kStationary;
-    out.ghost_probability[i] = direct ? 0.0F : 1.0F;
-  }
+  for (std::size_t i = 0; i < out.number_of_valid_detections; ++i) out.set_certain(i, out.provenance[i]);
 }
 
 }  // namespace boresight::bench

@@ -64,7 +64,7 @@ void count_detections(const ClassifiedScan& scan, const std::vector<DetectionTru
     const Provenance is = truth[i].provenance;
     out.confusion.add(is, scan.provenance[i], rejected);
     if (rejected || (scan.detection_flags[i] & corrected_flag::kMoving) == 0) continue;
-    out.reliability.add(static_cast<double>(scan.ghost_probability[i]),
+    out.reliability.add(static_cast<double>(scan.ghost_probability(i)),
                         is != Provenance::kMoving && is != Provenance::kStationary);
   }
 }

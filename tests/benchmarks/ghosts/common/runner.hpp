@@ -21,7 +21,6 @@ namespace boresight::bench {
 using judge::Confusion;
 using judge::FalseTracks;
 using judge::GhostTrack;
-using judge::kTruths;
 
 /// Type-1 ghosts farther than kApart_m from the box of their object. The others lie where a part of the object itself
 /// could be: no test of positions can distinguish them.

@@ -47,7 +47,7 @@ Percent percent_truly_moving(const std::vector<Outcome>& outcomes) {
   for (const Outcome& o : outcomes) {
     const auto right = static_cast<double>(o.confusion.count(Provenance::kMoving, Provenance::kMoving));
     double all = 0.0;
-    for (const Provenance truth : kTruths) all += static_cast<double>(o.confusion.count(truth, Provenance::kMoving));
+    for (const Provenance truth : kOrigins) all += static_cast<double>(o.confusion.count(truth, Provenance::kMoving));
     if (all > 0.0) values.push_back(100.0 * right / all);
   }
   return {median(values), quantile(values, 0.0)};

@@ -4,12 +4,14 @@ namespace boresight::bench {
 
 Table confusion_table(const std::string& name, const std::string& caption, const std::vector<Outcome>& outcomes) {
   Table table{name, caption, {"truth (count)"}, {}};
-  for (const Provenance label : kTruths) table.header.emplace_back(name_of(label));
+  for (const Provenance label : kOrigins) table.header.emplace_back(name_of(label));
   table.header.insert(table.header.end(), {"unclassified", "ghost, either type", "rejected"});
-  for (const Provenance truth : kTruths) {
+  for (const Provenance truth : kOrigins) {
+    // The truth of a simulated drive names no ambiguities.
+    if (truth == Provenance::kAmbiguity) continue;
     std::vector<std::string> row = {std::string(name_of(truth)) +
                                     (" (" + fixed(median_count(outcomes, truth), 0) + ")")};
-    for (const Provenance label : kTruths) row.push_back(fixed(percent_classified(outcomes, truth, label).median, 2));
+    for (const Provenance label : kOrigins) row.push_back(fixed(percent_classified(outcomes, truth, label).median, 2));
     row.push_back(fixed(percent_classified(outcomes, truth, Provenance::kUnknown).median, 2));
     row.push_back(fixed(percent_classified_ghost(outcomes, truth).median, 2));
     row.push_back(fixed(percent_rejected(outcomes, truth).median, 1));

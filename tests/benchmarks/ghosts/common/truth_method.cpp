@@ -13,17 +13,14 @@ void TruthMethod::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   const std::size_t count = ghosts::pass_on(scan, out);
   out.number_of_reflector_segments = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    out.provenance[i] = Provenance::kUnknown;
-    out.ghost_probability[i] = 0.0f;
+    out.set_certain(i, Provenance::kUnknown);
     if ((scan.detection_flags[i] & corrected_flag::kRejected) != 0) continue;
     if ((scan.detection_flags[i] & corrected_flag::kMoving) == 0) {
-      out.provenance[i] = Provenance::kStationary;
+      out.set_certain(i, Provenance::kStationary);
       continue;
     }
-    out.provenance[i] = (*truth_)[i].provenance;
-    if (out.provenance[i] == Provenance::kMoving && is_mislabelled()) out.provenance[i] = Provenance::kGhostType1;
-    const bool is_direct = out.provenance[i] == Provenance::kMoving || out.provenance[i] == Provenance::kStationary;
-    out.ghost_probability[i] = is_direct ? 0.0f : 1.0f;
+    const Provenance truth = (*truth_)[i].provenance;
+    out.set_certain(i, truth == Provenance::kMoving && is_mislabelled() ? Provenance::kGhostType1 : truth);
   }
 }
 

@@ -70,7 +70,7 @@ const std::vector<Explained>& Explainer::explain(const Observed& observed) {
                      .label = scan.provenance[i],
                      .rejected = (scan.detection_flags[i] & corrected_flag::kRejected) != 0,
                      .found_moving = (scan.detection_flags[i] & corrected_flag::kMoving) != 0,
-                     .ghost_probability = scan.ghost_probability[i],
+                     .ghost_probability = scan.ghost_probability(i),
                      .x_vehicle_m = place.x(),
                      .y_vehicle_m = place.y(),
                      .range_m = scan.range_m[i],

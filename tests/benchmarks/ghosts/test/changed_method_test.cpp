@@ -37,7 +37,7 @@ TEST_F(ChangedMethodTest, WithoutRcsTheProbabilityDoesNotDependOnIt) {
   const auto probability_at = [&](bool gets_rcs, float rcs_dbsm) {
     scan_->rcs_dbsm[1] = rcs_dbsm;
     ChangedMethod(config_, {.gets_rcs = gets_rcs}).classify(*scan_, *out_);
-    return out_->ghost_probability[1];
+    return out_->ghost_probability(1);
   };
   EXPECT_NE(probability_at(true, 5.0f), probability_at(true, -30.0f));
   EXPECT_EQ(probability_at(false, 5.0f), probability_at(false, -30.0f));
@@ -46,12 +46,12 @@ TEST_F(ChangedMethodTest, WithoutRcsTheProbabilityDoesNotDependOnIt) {
 
 TEST_F(ChangedMethodTest, PassesOnlyLabelsToTheTracker) {
   ChangedMethod(config_, {}).classify(*scan_, *out_);
-  EXPECT_GT(out_->ghost_probability[1], 0.0f);
-  EXPECT_LT(out_->ghost_probability[1], 1.0f);
+  EXPECT_GT(out_->ghost_probability(1), 0.0f);
+  EXPECT_LT(out_->ghost_probability(1), 1.0f);
   const Provenance label = out_->provenance[1];
   ChangedMethod(config_, {.passes_probabilities = false}).classify(*scan_, *out_);
   EXPECT_EQ(out_->provenance[1], label);
-  EXPECT_EQ(out_->ghost_probability[1], label == Provenance::kMoving ? 0.0f : 1.0f);
+  EXPECT_EQ(out_->ghost_probability(1), label == Provenance::kMoving ? 0.0f : 1.0f);
 }
 
 TEST_F(ChangedMethodTest, KeepsTracksFromTheMethod) {

@@ -26,7 +26,7 @@ std::uint32_t count_moving_labels(TruthMethod method) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < kAll; ++i) {
     const bool moves = out->provenance[i] == Provenance::kMoving;
-    EXPECT_EQ(out->ghost_probability[i], moves ? 0.0F : 1.0F);
+    EXPECT_EQ(out->ghost_probability(i), moves ? 0.0F : 1.0F);
     EXPECT_TRUE(i < kMovingOnes || !moves) << "random errors never label a ghost as moving";
     count += moves ? 1 : 0;
   }

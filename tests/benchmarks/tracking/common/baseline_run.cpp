@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kAnything = 1e9;
-/// Columns of the covariance over (x, y, vx, vy, ax, ay), upper triangle row by row.
-constexpr std::array<const char*, 6> kStateNames = {"x", "y", "vx", "vy", "ax", "ay"};
+/// Columns of the covariance over (x, y, vx, vy), upper triangle row by row.
+constexpr std::array<const char*, 4> kStateNames = {"x", "y", "vx", "vy"};
 
 std::string covariance_header() {
   std::string header;
@@ -34,17 +34,15 @@ std::string covariance_header() {
 
 std::string row_of(const std::string& key, const BaselineTrack& track, const BaselineSettings& settings) {
   std::string row =
-      fmt::format("{},{},{},{},moving,unknown,,{:.3f},{:.3f},{:.4f},{:.4f},0,{:.4f},{:.4f},0,0,{:.5f},{},{},0,{}", key,
+      fmt::format("{},{},{},{},moving,unknown,,{:.3f},{:.3f},{:.4f},{:.4f},0,{:.4f},{:.4f},{:.5f},{},{},0,{}", key,
                   track.id, track.confirmed ? "confirmed" : "tentative", track.measured ? "measured" : "predicted",
                   track.age_s, track.since_update_s, track.position_m.x(), track.position_m.y(), track.velocity_mps.x(),
                   track.velocity_mps.y(), std::atan2(track.velocity_mps.y(), track.velocity_mps.x()), settings.length_m,
                   settings.width_m, track.detections);
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    for (Eigen::Index j = i; j < 6; ++j) {
-      row += i < 4 && j < 4 ? fmt::format(",{:.6g}", track.covariance(i, j)) : std::string(",");
-    }
+  for (Eigen::Index i = 0; i < track.covariance.rows(); ++i) {
+    for (Eigen::Index j = i; j < track.covariance.cols(); ++j) row += fmt::format(",{:.6g}", track.covariance(i, j));
   }
-  return row + "\n";
+  return row + fmt::format(",{}\n", track.hits);
 }
 
 }  // namespace
@@ -59,9 +57,9 @@ void run_baseline(const fs::path& run, const VehicleConfig& vehicle, const fs::p
   std::ofstream scans_out(out / "scans.csv"), tracks_out(out / "tracks.csv");
   scans_out << "t_s,time_ns,radar,scan,detections,moving,tracks,confirmed\n";
   tracks_out << "t_s,time_ns,radar,scan,id,status,update,movement,class,existence,age_s,since_update_s,x_vehicle_m,"
-                "y_vehicle_m,z_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,ax_over_ground_mps2,ay_over_ground_mps2,"
-                "heading_rad,length_m,width_m,height_m,detections" +
-                    covariance_header() + "\n";
+                "y_vehicle_m,z_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,heading_rad,length_m,width_m,height_m,"
+                "detections" +
+                    covariance_header() + ",hits\n";
   BaselineTracker tracker(vehicle, settings);
   bool has_row = rows.next();
   std::vector<BaselineDetection> detections;

@@ -16,6 +16,11 @@ namespace {
 
 constexpr std::size_t kNoCluster = static_cast<std::size_t>(-1);
 
+/// Hits among the latest looks, of which each has a bit.
+int hits_of(std::uint32_t looks, int latest) {
+  return std::popcount(looks & static_cast<std::uint32_t>((std::uint64_t{1} << latest) - 1));
+}
+
 }  // namespace
 
 BaselineTracker::BaselineTracker(const VehicleConfig& vehicle, const BaselineSettings& settings)
@@ -160,24 +165,23 @@ void BaselineTracker::step(const BaselineScan& scan) {
   move_ego(scan);
   find_clusters(scan);
   associate();
-  const auto looks_mask = (std::uint32_t{1} << settings_.confirm_looks) - 1;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     State& track = states_[k];
     track.detections = 0;
     if (cluster_of_[k] != kNoCluster) {
       const Cluster& cluster = clusters_[cluster_of_[k]];
       update(track, cluster);
-      track.looks = (track.looks << 1 | 1U) & looks_mask;
+      track.looks = track.looks << 1 | 1U;
       track.misses = 0;
       track.updated_s = *time_s_;
       track.detections = cluster.detections;
       track.measured = true;
     } else if (sees(scan, track)) {
-      track.looks = (track.looks << 1) & looks_mask;
+      track.looks = track.looks << 1;
       ++track.misses;
       track.measured = false;
     }
-    if (std::popcount(track.looks) >= settings_.confirm_hits) track.confirmed = true;
+    if (hits_of(track.looks, settings_.confirm_looks) >= settings_.confirm_hits) track.confirmed = true;
   }
   std::erase_if(states_, [&](const State& track) {
     return track.misses >= settings_.delete_misses || *time_s_ - track.updated_s > settings_.longest_unseen_s;
@@ -205,6 +209,7 @@ std::vector<BaselineTrack> BaselineTracker::tracks() const {
       track.velocity_mps = to_vehicle * state.mean.tail<2>();
       track.covariance = turn * state.covariance * turn.transpose();
       track.detections = state.detections;
+      track.hits = static_cast<std::uint32_t>(hits_of(state.looks, settings_.score_looks));
     }
   }
   return tracks;

@@ -27,6 +27,7 @@ struct BaselineSettings {
   double radial_speed_std_mps = 1.0;        ///< choice: of the first velocity along the line of sight
   double tangential_speed_std_mps = 10.0;   ///< choice: across it, where nothing is measured
   int confirm_hits = 3, confirm_looks = 5;  ///< choice: usual 3 of 5
+  int score_looks = 20;                     ///< at most 32; choice: a second of one radar
   int delete_misses = 5;                    ///< choice
   double longest_unseen_s = 1.0;            ///< choice: outside of all fields of view
   double length_m = 4.5, width_m = 1.8;     ///< choice: a car
@@ -55,6 +56,7 @@ struct BaselineTrack {
   Eigen::Vector2d position_m, velocity_mps;  ///< vehicle frame; velocity over ground
   Eigen::Matrix4d covariance;                ///< over x, y, v_x, v_y
   std::uint32_t detections = 0;
+  std::uint32_t hits = 0;  ///< in the last `score_looks` looks: the larger, the surer that there is an object
 };
 
 class BaselineTracker {

@@ -82,6 +82,13 @@ TEST_F(Baseline, DeletesATrackAfterFiveMisses) {
   EXPECT_TRUE(tracker_.tracks().empty());
 }
 
+TEST_F(Baseline, StatesItsHitsInTheLatestLooks) {
+  for (int i = 0; i < 25; ++i) step({{{20.0, 0.0}, 2.0}});
+  EXPECT_EQ(tracker_.tracks().at(0).hits, 20u);
+  for (int i = 0; i < 3; ++i) step({});
+  EXPECT_EQ(tracker_.tracks().at(0).hits, 17u);
+}
+
 TEST_F(Baseline, FalseDetectionsOfOneScanAreNotConfirmed) {
   for (int i = 0; i < 10; ++i) step({{{20.0 + 20.0 * (i % 3), 10.0 * (i % 4)}, 9.0}});
   EXPECT_EQ(confirmed(), 0u);
