@@ -1,5 +1,5 @@
-// One radar cycle with the provenance of each detection. Provenance is the detection's origin: direct echo of a moving
-// or stationary object, multipath ghost, or clutter.
+// One radar cycle with the provenance of each detection, and the probability of every origin. Provenance is the
+// detection's origin: direct echo of a moving or stationary object, multipath ghost, clutter, or an ambiguity.
 #pragma once
 
 #include "interfaces/messages/corrected_scan.hpp"
@@ -15,8 +15,25 @@ enum class Provenance : std::uint8_t {
   kStationary = 2,  ///< direct reflection of a stationary object
   kGhostType1 = 3,  ///< last bounce on the target: in the target's direction, but farther away
   kGhostType2 = 4,  ///< last bounce on a reflector: mirrored behind the reflector
-  kClutter = 5,
+  kClutter = 5,     ///< false detection of another cause: noise, interference
+  kAmbiguity = 6,   ///< Doppler or azimuth ambiguity of a real reflection: right echo, wrong range rate or angle
 };
+
+/// Every origin that a detection can have, in the order of their probabilities.
+inline constexpr std::array kOrigins = {Provenance::kMoving,     Provenance::kStationary, Provenance::kGhostType1,
+                                        Provenance::kGhostType2, Provenance::kClutter,    Provenance::kAmbiguity};
+inline constexpr std::size_t kNumberOfOrigins = 6;
+static_assert(kOrigins.size() == kNumberOfOrigins);
+/// With kUnknown.
+inline constexpr std::size_t kNumberOfProvenances = kNumberOfOrigins + 1;
+
+/// Index of an origin, which is not kUnknown, in `kOrigins` and in all arrays of probabilities.
+[[nodiscard]] constexpr std::size_t index_of_origin(Provenance origin) {
+  return static_cast<std::size_t>(origin) - 1;
+}
+
+/// Probabilities of the origins of one detection, 0…1, in the order of `kOrigins`.
+using OriginProbabilities = std::array<float, kNumberOfOrigins>;
 
 /// A straight segment of a stationary reflector (guard rail, wall) in the vehicle frame's x-y plane.
 struct ReflectorSegment {
@@ -32,7 +49,7 @@ inline constexpr std::size_t kMaxReflectorSegments = 64;
 /// Detections of one radar cycle, classified; same order as in the CorrectedScan. Detections that the corrector
 /// rejected (`corrected_flag::kRejected`) have `kUnknown` provenance.
 struct ClassifiedScan {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;
   std::uint32_t number_of_valid_detections;
@@ -52,15 +69,41 @@ struct ClassifiedScan {
   DetectionColumn<float> range_std_m;
   DetectionColumn<float> azimuth_std_rad;
   DetectionColumn<float> range_rate_std_mps;
-  DetectionColumn<float> ghost_probability;  ///< 0…1
+  /// By index_of_origin(), 0…1. They sum to 1 for each classified detection, and are all 0 for an unclassified one.
+  std::array<DetectionColumn<float>, kNumberOfOrigins> origin_probability;
   DetectionColumn<std::uint16_t> detection_flags;
-  DetectionColumn<Provenance> provenance;
+  DetectionColumn<Provenance> provenance;  ///< one label by the ghost filter's rule, for displays and statistics
   std::array<ReflectorSegment, kMaxReflectorSegments> reflector_segments;
+
+  /// Probability of an origin, which is not kUnknown, of detection i.
+  [[nodiscard]] float& probability(Provenance origin, std::size_t i) {
+    return origin_probability[index_of_origin(origin)][i];
+  }
+  [[nodiscard]] float probability(Provenance origin, std::size_t i) const {
+    return origin_probability[index_of_origin(origin)][i];
+  }
+  /// Probability that a detection is no direct reflection at its true range rate and angle: 1 − moving − stationary,
+  /// as the sum of the other origins, which rounds less. 0 for an unclassified detection.
+  [[nodiscard]] float ghost_probability(std::size_t i) const {
+    return probability(Provenance::kGhostType1, i) + probability(Provenance::kGhostType2, i) +
+           probability(Provenance::kClutter, i) + probability(Provenance::kAmbiguity, i);
+  }
+  void set_probabilities(std::size_t i, const OriginProbabilities& probabilities) {
+    for (std::size_t k = 0; k < kNumberOfOrigins; ++k) origin_probability[k][i] = probabilities[k];
+  }
+  /// Label and probability 1 for one origin; kUnknown: unclassified.
+  void set_certain(std::size_t i, Provenance origin) {
+    provenance[i] = origin;
+    set_probabilities(i, {});
+    if (origin != Provenance::kUnknown) probability(origin, i) = 1.0F;
+  }
 };
 
 static_assert(kIsPlainMessage<ClassifiedScan>);
 static_assert(alignof(ClassifiedScan) == 64);
 static_assert(offsetof(ClassifiedScan, x_vehicle_m) == 256);
-static_assert(sizeof(ClassifiedScan) == 256 + 11 * 4096 + 2048 + 1024 + kMaxReflectorSegments * 24);
+static_assert(offsetof(ClassifiedScan, origin_probability) == 256 + 10 * 4096);
+static_assert(sizeof(ClassifiedScan) ==
+              256 + (10 + kNumberOfOrigins) * 4096 + 2048 + 1024 + kMaxReflectorSegments * 24);
 
 }  // namespace boresight

@@ -63,8 +63,14 @@ template <typename Enum, std::size_t N>
   return detail::word_of(kNames, movement);
 }
 [[nodiscard]] constexpr std::string_view name_of(Provenance provenance) {
-  constexpr std::array<std::string_view, 6> kNames = {"unknown", "moving", "stationary", "type 1", "type 2", "clutter"};
+  constexpr std::array<std::string_view, kNumberOfProvenances> kNames = {"unknown", "moving",  "stationary", "type 1",
+                                                                         "type 2",  "clutter", "ambiguity"};
   return detail::word_of(kNames, provenance);
+}
+[[nodiscard]] constexpr std::string_view name_of(ObjectClass object_class) {
+  constexpr std::array<std::string_view, kNumberOfObjectClasses> kNames = {"unknown",     "car",        "truck",
+                                                                           "two_wheeler", "pedestrian", "van"};
+  return detail::word_of(kNames, object_class);
 }
 [[nodiscard]] constexpr std::string_view name_of(Fault fault) {
   constexpr std::array<std::string_view, kNumberOfFaults> kNames = {"input lost",

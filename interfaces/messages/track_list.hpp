@@ -9,53 +9,81 @@ enum class TrackStatus : std::uint8_t { kTentative = 0, kConfirmed = 1 };
 /// Whether the latest scan with the object in its field of view detected it.
 enum class TrackUpdate : std::uint8_t { kMeasured = 0, kPredicted = 1 };
 enum class MovementState : std::uint8_t { kUnknown = 0, kMoving = 1, kStationary = 2, kStopped = 3 };
-enum class ObjectClass : std::uint8_t { kUnknown = 0, kCar = 1, kTruck = 2, kTwoWheeler = 3, kPedestrian = 4 };
+enum class ObjectClass : std::uint8_t {
+  kUnknown = 0,
+  kCar = 1,
+  kTruck = 2,
+  kTwoWheeler = 3,
+  kPedestrian = 4,
+  kVan = 5,
+};
+inline constexpr std::size_t kNumberOfObjectClasses = 6;
 
-/// State order of `Track::covariance`.
-inline constexpr std::size_t kTrackStateSize = 6;
+/// Rows of `Track::covariance`: x, y, v_x, v_y, heading, length, width.
+inline constexpr std::size_t kTrackStateSize = 7;
 
-/// One object. Positions in the vehicle frame at the list's measurement time; velocity and acceleration over ground,
-/// expressed in vehicle axes.
+/// Bits of `Track::flags`: why an object may be undetected, and whether its detections are its own.
+namespace track_flag {
+inline constexpr std::uint32_t kOutOfView = 1u << 0;    ///< no radar that delivered lately has the object in view
+inline constexpr std::uint32_t kOccluded = 1u << 1;     ///< another object hides it
+inline constexpr std::uint32_t kZeroDoppler = 1u << 2;  ///< too slow along the line of sight to be detected as moving
+inline constexpr std::uint32_t kMerged = 1u << 3;       ///< close to another object: they share detections
+}  // namespace track_flag
+
+/// Bits of `TrackList::tracker_flags`: limits that the tracker reached in this step.
+namespace tracker_flag {
+inline constexpr std::uint32_t kWorkBudgetReached = 1u << 0;  ///< the search for associations was ended early
+inline constexpr std::uint32_t kCapacityReached = 1u << 1;    ///< detections, hypotheses or objects were dropped
+}  // namespace tracker_flag
+
+/// One object. Positions in the vehicle frame at the list's measurement time; velocity over ground, expressed in
+/// vehicle axes.
 struct Track {
   std::uint32_t tracking_id;  ///< never reused while the tracker runs; 0 is no track
   TrackStatus status;
   TrackUpdate update;
   MovementState movement;
-  ObjectClass object_class;
+  ObjectClass object_class;  ///< the likeliest one of `class_probability`
   float age_s;
   float time_since_update_s;
   float existence_probability;  ///< 0…1
-  float heading_rad;            ///< direction of the length axis in the vehicle frame
-  float length_m;               ///< full extents of the object's box
+  float mirror_probability;  ///< 0…1: that the track is a mirror image of another object, by its detections' origins
+  float heading_rad;         ///< direction of the length axis in the vehicle frame
+  float length_m;            ///< full extents of the object's box
   float width_m;
-  float height_m;  ///< 0 if no radar measured elevation
-  std::array<float, 3> position_vehicle_m;
+  float height_m;                           ///< 0 if no radar measured elevation
+  std::array<float, 3> position_vehicle_m;  ///< centre of the box
   std::array<float, 2> velocity_over_ground_mps;
-  std::array<float, 2> acceleration_over_ground_mps2;
-  std::uint32_t number_of_detections;  ///< associated in this scan
-  std::array<std::uint32_t, 3> reserved;
-  /// Row-major 6 × 6 over (x, y, v_x, v_y, a_x, a_y).
-  alignas(16) std::array<float, kTrackStateSize * kTrackStateSize> covariance;
+  std::uint32_t number_of_detections;                           ///< associated in this scan
+  std::uint32_t flags;                                          ///< track_flag bits
+  std::array<float, kNumberOfObjectClasses> class_probability;  ///< by ObjectClass, 0…1; they sum to 1
+  /// Row-major 7 × 7 over (x, y, v_x, v_y, heading, length, width); m, m/s, rad.
+  std::array<float, kTrackStateSize * kTrackStateSize> covariance;
 };
-static_assert(sizeof(Track) == 224);
+static_assert(sizeof(Track) == 288);
+static_assert(offsetof(Track, class_probability) == 68);
+static_assert(offsetof(Track, covariance) == 92);
 
 inline constexpr std::size_t kMaxTracks = 128;
 
-/// All tracks after the scan `header.source_id` / `header.source_sequence`; entries 0…number_of_tracks−1 are valid.
+/// All tracks after the scan `header.source_id` / `header.source_sequence`; entries 0…number_of_tracks−1 are valid,
+/// confirmed ones first. Every track above the tracker's reporting limit is in the list with its existence, tentative
+/// ones too. From which existence on a track counts is the reader's choice; `status` is the default choice.
 struct TrackList {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   MessageHeader header;
   std::uint32_t number_of_tracks;
   std::uint32_t number_of_confirmed_tracks;
-  std::uint32_t flags;           ///< pipeline_flag bits of the scan
-  std::uint32_t dropped_tracks;  ///< objects beyond kMaxTracks
-  std::uint64_t reserved;
+  std::uint32_t flags;                   ///< pipeline_flag bits of the scan
+  std::uint32_t dropped_tracks;          ///< objects beyond kMaxTracks
+  std::uint32_t tracker_flags;           ///< tracker_flag bits
+  std::uint32_t likelihood_evaluations;  ///< work of the step; the same input gives the same number
   alignas(64) std::array<Track, kMaxTracks> tracks;
 };
 
 static_assert(kIsPlainMessage<TrackList>);
 static_assert(offsetof(TrackList, tracks) == 128);
-static_assert(sizeof(TrackList) == 128 + kMaxTracks * 224);
+static_assert(sizeof(TrackList) == 128 + kMaxTracks * sizeof(Track));
 
 }  // namespace boresight

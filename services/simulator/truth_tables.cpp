@@ -74,7 +74,7 @@ View dirt_over(const FieldOfView& view, std::span<const radar::Dirt> dirt) {
 }
 
 struct Counts {
-  std::array<unsigned, 6> of{};
+  std::array<unsigned, kNumberOfProvenances> of{};
   [[nodiscard]] unsigned operator[](Provenance p) const { return of[static_cast<std::size_t>(p)]; }
   [[nodiscard]] unsigned sum() const {
     unsigned n = 0;

@@ -52,8 +52,8 @@ struct AlignmentDetails {
 
 /// Labels of the detections in all scans of the ghost filter that the monitor received.
 struct LabelCounts {
-  std::array<std::uint64_t, 6> classified{};  ///< by Provenance
-  std::uint64_t rejected = 0;                 ///< by the corrector before; not classified
+  std::array<std::uint64_t, kNumberOfProvenances> classified{};  ///< by Provenance
+  std::uint64_t rejected = 0;                                    ///< by the corrector before; not classified
   std::uint64_t scans = 0;
   std::uint64_t scans_without_tracks = 0;  ///< classified without tracks, or with outdated ones
 
@@ -98,6 +98,9 @@ struct TrackSnapshot {
   std::uint32_t id = 0;
   bool confirmed = false;
   MovementState movement = MovementState::kUnknown;
+  ObjectClass object_class = ObjectClass::kUnknown;
+  double existence = 0.0;           ///< probability
+  double mirror_probability = 0.0;  ///< that it is a mirror image of another object
   double x_m = 0.0;
   double y_m = 0.0;
   double vx_mps = 0.0;

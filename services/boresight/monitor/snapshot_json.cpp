@@ -95,6 +95,9 @@ json::Value object_of(const TrackSnapshot& t) {
   value["id"] = t.id;
   value["confirmed"] = t.confirmed;
   value["movement"] = name_of(t.movement);
+  value["class"] = name_of(t.object_class);
+  value["existence"] = digits_of(t.existence);
+  value["mirror_probability"] = digits_of(t.mirror_probability);
   value["x_m"] = digits_of(t.x_m);
   value["y_m"] = digits_of(t.y_m);
   value["vx_mps"] = digits_of(t.vx_mps);

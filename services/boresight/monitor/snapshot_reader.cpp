@@ -167,6 +167,9 @@ TrackSnapshot track_at(const Fields& fields) {
   fields.read("id", t.id);
   t.confirmed = fields.flag("confirmed");
   t.movement = fields.value("movement", MovementState::kStopped);
+  t.object_class = fields.value("class", ObjectClass::kVan);
+  t.existence = fields.number("existence");
+  t.mirror_probability = fields.number("mirror_probability");
   t.x_m = fields.number("x_m");
   t.y_m = fields.number("y_m");
   t.vx_mps = fields.number("vx_mps");

@@ -158,7 +158,7 @@ class Finder {
       for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
         view.detections.push_back(
             {radar, scan.x_vehicle_m[i], scan.y_vehicle_m[i], scan.range_rate_over_ground_mps[i],
-             scan.ghost_probability[i], scan.provenance[i], (scan.detection_flags[i] & corrected_flag::kRejected) != 0,
+             scan.ghost_probability(i), scan.provenance[i], (scan.detection_flags[i] & corrected_flag::kRejected) != 0,
              recent->truth == nullptr ? std::optional<Provenance>() : recent->truth->detections[i].provenance});
       }
     }

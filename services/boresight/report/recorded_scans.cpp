@@ -29,7 +29,7 @@ void put_detection(const score::RunDetection& row, std::size_t i, ClassifiedScan
   scan.x_vehicle_m[i] = static_cast<float>(row.x_vehicle_m);
   scan.y_vehicle_m[i] = static_cast<float>(row.y_vehicle_m);
   scan.range_rate_over_ground_mps[i] = known_or_zero(row.range_rate_over_ground_mps);
-  scan.ghost_probability[i] = known_or_zero(row.p_ghost);
+  for (std::size_t k = 0; k < kNumberOfOrigins; ++k) scan.origin_probability[k][i] = known_or_zero(row.p_origin[k]);
 }
 
 Track track_of(const score::RunTrack& row) {

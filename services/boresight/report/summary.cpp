@@ -31,7 +31,7 @@ class Counter {
 struct RadarSums {
   Counter scans;
   Counter lost;
-  std::array<Counter, 6> classified;
+  std::array<Counter, kNumberOfProvenances> classified;  ///< by Provenance
   Counter rejected, scans_with_labels, without_tracks;
   double nees = 0.0;
   int known_nees = 0;

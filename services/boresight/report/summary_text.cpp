@@ -154,6 +154,7 @@ std::string labels_text(const monitor::LabelCounts& labels) {
     const bool ghost = label == Provenance::kGhostType1 || label == Provenance::kGhostType2;
     put((ghost ? "ghost " : "") + std::string(name_of(label)), labels.of(label));
   }
+  if (labels.of(Provenance::kAmbiguity) > 0) put(name_of(Provenance::kAmbiguity), labels.of(Provenance::kAmbiguity));
   if (labels.of(Provenance::kUnknown) > 0) put("not classified", labels.of(Provenance::kUnknown));
   if (labels.rejected > 0) put("rejected by the corrector", labels.rejected);
   return text;

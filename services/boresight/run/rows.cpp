@@ -7,7 +7,6 @@
 
 #include "services/boresight/run/counts.hpp"
 #include "services/boresight/run/csv_row.hpp"
-#include "services/boresight/run/origins.hpp"
 #include "services/boresight/run/words.hpp"
 #include "services/common/alignment_words/alignment_words.hpp"
 
@@ -15,8 +14,11 @@ namespace boresight::run {
 
 namespace {
 
-static_assert(kFlagWords.size() == kNumberOfPipelineFlags && kOriginWords.size() == kNumberOfOrigins &&
-              kRejectionWords.size() == kNumberOfRejections);
+static_assert(kFlagWords.size() == kNumberOfPipelineFlags && kOriginWords.size() == kNumberOfProvenances &&
+              kRejectionWords.size() == kNumberOfRejections && kClassWords.size() == kNumberOfObjectClasses);
+
+/// Of the rows of Track::covariance: x, y, v_x, v_y; the others are heading, length, width.
+constexpr std::size_t kNumberOfMotionStates = 4;
 
 template <typename Enum, std::size_t N>
 std::string_view word_of(const std::array<std::string_view, N>& words, Enum value) {
@@ -68,7 +70,8 @@ void append_scan(std::string& rows, const ScanResult& result) {
   row.number_if(has_ego, geometry.sensor_velocity_vehicle_mps[0]);
   row.number_if(has_ego, geometry.sensor_velocity_vehicle_mps[1]);
   row.number_if(has_ego, geometry.ego_speed_mps).number_if(has_ego, geometry.ego_yaw_rate_radps);
-  row.number(moving).number(result.tracks.number_of_tracks).number(result.tracks.number_of_confirmed_tracks).end();
+  row.number(moving).number(result.tracks.number_of_tracks).number(result.tracks.number_of_confirmed_tracks);
+  row.word(joined(kTrackerFlagWords, result.tracks.tracker_flags)).number(result.tracks.likelihood_evaluations).end();
 }
 
 void append_detections(std::string& rows, const ScanResult& result) {
@@ -88,8 +91,8 @@ void append_detections(std::string& rows, const ScanResult& result) {
     row.number_if(has_position, classified.z_vehicle_m[i]);
     row.number_if(has_ego && std::isfinite(scan.range_rate_mps[i]), classified.range_rate_over_ground_mps[i]);
     row.word(word_of(kOriginWords, classified.provenance[i]));
-    const auto p = probabilities_of(classified.provenance[i], classified.ghost_probability[i], flags);
-    for (std::size_t k = 0; k < OriginProbabilities{}.size(); ++k) row.number_if(p.has_value(), p ? (*p)[k] : 0.0F);
+    const bool is_classified = classified.provenance[i] != Provenance::kUnknown;
+    for (const Provenance origin : kOrigins) row.number_if(is_classified, classified.probability(origin, i));
     row.word(word_of(kRejectionWords, rejection_of(flags))).end();
   }
 }
@@ -113,14 +116,19 @@ void append_tracks(std::string& rows, const ScanResult& result) {
     CsvRow row = begin_row(rows, result);
     row.number(track.tracking_id).word(word_of(kStatusWords, track.status)).word(word_of(kUpdateWords, track.update));
     row.word(word_of(kMovementWords, track.movement)).word(word_of(kClassWords, track.object_class));
-    row.number(track.existence_probability).number(track.age_s).number(track.time_since_update_s);
+    row.number(track.existence_probability).number(track.mirror_probability);
+    for (const float probability : track.class_probability) row.number(probability);
+    row.word(joined(kTrackFlagWords, track.flags)).number(track.age_s).number(track.time_since_update_s);
     for (const float position_m : track.position_vehicle_m) row.number(position_m);
     for (const float velocity_mps : track.velocity_over_ground_mps) row.number(velocity_mps);
-    for (const float acceleration_mps2 : track.acceleration_over_ground_mps2) row.number(acceleration_mps2);
     row.number(track.heading_rad).number(track.length_m).number(track.width_m).number(track.height_m);
+    const auto covariance = [&track](std::size_t a, std::size_t b) {
+      return track.covariance[a * kTrackStateSize + b];
+    };
+    for (std::size_t k = kNumberOfMotionStates; k < kTrackStateSize; ++k) row.number(std::sqrt(covariance(k, k)));
     row.number(track.number_of_detections);
-    for (std::size_t a = 0; a < kTrackStateSize; ++a) {
-      for (std::size_t b = a; b < kTrackStateSize; ++b) row.number(track.covariance[a * kTrackStateSize + b]);
+    for (std::size_t a = 0; a < kNumberOfMotionStates; ++a) {
+      for (std::size_t b = a; b < kNumberOfMotionStates; ++b) row.number(covariance(a, b));
     }
     row.end();
   }

@@ -12,19 +12,18 @@ namespace boresight::run {
 /// Header lines without line feed.
 inline constexpr std::string_view kScansHeader =
     "t_s,time_ns,radar,scan,detections,flags,sensor_x_m,sensor_y_m,sensor_vx_mps,sensor_vy_mps,ego_speed_mps,"
-    "ego_yaw_rate_radps,moving,tracks,confirmed";
+    "ego_yaw_rate_radps,moving,tracks,confirmed,tracker_flags,likelihood_evaluations";
 inline constexpr std::string_view kDetectionsHeader =
     "t_s,time_ns,radar,scan,index,range_m,azimuth_rad,elevation_rad,range_rate_mps,rcs_dbsm,x_vehicle_m,y_vehicle_m,"
     "z_vehicle_m,range_rate_over_ground_mps,origin,p_moving,p_stationary,p_ghost_type_1,p_ghost_type_2,p_clutter,"
-    "rejected";
+    "p_ambiguity,rejected";
 inline constexpr std::string_view kReflectorsHeader =
     "t_s,time_ns,radar,scan,index,x1_vehicle_m,y1_vehicle_m,x2_vehicle_m,y2_vehicle_m,residual_std_m,detections";
 inline constexpr std::string_view kTracksHeader =
-    "t_s,time_ns,radar,scan,id,status,update,movement,class,existence,age_s,since_update_s,x_vehicle_m,y_vehicle_m,"
-    "z_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,ax_over_ground_mps2,ay_over_ground_mps2,heading_rad,length_m,"
-    "width_m,height_m,detections,cov_x_x,cov_x_y,cov_x_vx,cov_x_vy,cov_x_ax,cov_x_ay,cov_y_y,cov_y_vx,cov_y_vy,"
-    "cov_y_ax,cov_y_ay,cov_vx_vx,cov_vx_vy,cov_vx_ax,cov_vx_ay,cov_vy_vy,cov_vy_ax,cov_vy_ay,cov_ax_ax,cov_ax_ay,"
-    "cov_ay_ay";
+    "t_s,time_ns,radar,scan,id,status,update,movement,class,existence,mirror_probability,p_unknown,p_car,p_truck,"
+    "p_two_wheeler,p_pedestrian,p_van,flags,age_s,since_update_s,x_vehicle_m,y_vehicle_m,z_vehicle_m,"
+    "vx_over_ground_mps,vy_over_ground_mps,heading_rad,length_m,width_m,height_m,heading_std_rad,length_std_m,"
+    "width_std_m,detections,cov_x_x,cov_x_y,cov_x_vx,cov_x_vy,cov_y_y,cov_y_vx,cov_y_vy,cov_vx_vx,cov_vx_vy,cov_vy_vy";
 inline constexpr std::string_view kAlignmentHeader =
     "t_s,time_ns,radar,state,speed_scale,yaw_rad,pitch_rad,roll_rad,rotation_x_rad,rotation_y_rad,rotation_z_rad,"
     "cov_k_k,cov_k_x,cov_k_y,cov_k_z,cov_x_x,cov_x_y,cov_x_z,cov_y_y,cov_y_z,cov_z_z,observable,inlier_ratio,"

@@ -11,8 +11,8 @@ inline constexpr std::array<std::string_view, 7> kFlagWords = {"no_alignment",  
                                                                "ego_motion_stale", "no_elevation",    "no_tracks",
                                                                "tracks_stale"};
 /// By Provenance.
-inline constexpr std::array<std::string_view, 6> kOriginWords = {"unknown",      "moving",       "stationary",
-                                                                 "ghost_type_1", "ghost_type_2", "clutter"};
+inline constexpr std::array<std::string_view, 7> kOriginWords = {
+    "unknown", "moving", "stationary", "ghost_type_1", "ghost_type_2", "clutter", "ambiguity"};
 /// By Rejection.
 inline constexpr std::array<std::string_view, 4> kRejectionWords = {"", "invalid", "outside_region", "weak"};
 /// By bit of alignment_axis.
@@ -24,7 +24,13 @@ inline constexpr std::array<std::string_view, 2> kUpdateWords = {"measured", "pr
 /// By MovementState.
 inline constexpr std::array<std::string_view, 4> kMovementWords = {"unknown", "moving", "stationary", "stopped"};
 /// By ObjectClass.
-inline constexpr std::array<std::string_view, 5> kClassWords = {"unknown", "car", "truck", "two_wheeler", "pedestrian"};
+inline constexpr std::array<std::string_view, 6> kClassWords = {"unknown",     "car",        "truck",
+                                                                "two_wheeler", "pedestrian", "van"};
+/// By bit of track_flag.
+inline constexpr std::array<std::string_view, 4> kTrackFlagWords = {"out_of_view", "occluded", "zero_doppler",
+                                                                    "merged"};
+/// By bit of tracker_flag.
+inline constexpr std::array<std::string_view, 2> kTrackerFlagWords = {"work_budget_reached", "capacity_reached"};
 /// By AlignmentState.
 inline constexpr std::array<std::string_view, 4> kStateWords = {"no_data", "waiting", "converging", "converged"};
 

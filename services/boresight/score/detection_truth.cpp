@@ -16,9 +16,8 @@ namespace {
 constexpr double kLatestScan_s = 4e9;
 
 std::optional<Provenance> provenance_of(std::string_view word) {
-  for (const Provenance each : {Provenance::kMoving, Provenance::kStationary, Provenance::kGhostType1,
-                                Provenance::kGhostType2, Provenance::kClutter, Provenance::kUnknown}) {
-    if (judge::table_word(each) == word) return each;
+  for (std::size_t i = 0; i < kNumberOfProvenances; ++i) {
+    if (judge::table_word(static_cast<Provenance>(i)) == word) return static_cast<Provenance>(i);
   }
   return std::nullopt;
 }
@@ -47,7 +46,7 @@ void DetectionTruth::take_row(double t_s) {
   } else {
     scan = static_cast<std::uint64_t>(table_.integer("scan", 1, std::numeric_limits<std::int64_t>::max()));
     const std::optional<Provenance> provenance = provenance_of(table_.text("provenance"));
-    if (!provenance) table_.refuse("provenance", "moving, stationary, ghost_type_1, ghost_type_2, clutter");
+    if (!provenance) table_.refuse("provenance", "moving, stationary, ghost_type_1, ghost_type_2, clutter, ambiguity");
     origin.provenance = *provenance;
     const std::string_view cause = table_.text("cause");
     if (!cause.empty()) origin.cause = *causes_.emplace(cause).first;

@@ -70,9 +70,9 @@ constexpr std::array<const char*, judge::kBands + 1> kShownBands = {"0-30 m", "3
 constexpr std::array<std::size_t, judge::kBands + 1> kBandOrder = {judge::kAllBands, 0, 1, 2};
 
 std::string detections_text(const FigureList& f) {
-  constexpr std::array<Provenance, 6> kShownOrigins = {Provenance::kMoving,     Provenance::kStationary,
-                                                       Provenance::kGhostType1, Provenance::kGhostType2,
-                                                       Provenance::kClutter,    Provenance::kUnknown};
+  constexpr std::array kShownOrigins = {Provenance::kMoving,     Provenance::kStationary, Provenance::kGhostType1,
+                                        Provenance::kGhostType2, Provenance::kClutter,    Provenance::kAmbiguity,
+                                        Provenance::kUnknown};
   std::string text = fmt::format("\nDetections: {} scans judged, {} without truth\n",
                                  count(f.value("detections.scans")), count(f.value("detections.scans_without_truth")));
   if (!(f.value("detections.scans") > 0.0)) return text;

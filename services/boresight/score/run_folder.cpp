@@ -60,11 +60,15 @@ double value_or_nan(const Table& table, std::string_view column) {
   return table.number_or_nan(column, -kMostValue, kMostValue);
 }
 
+/// Columns of the probabilities, in the order of kOrigins.
+constexpr std::array<std::string_view, kNumberOfOrigins> kProbabilityColumns = {
+    "p_moving", "p_stationary", "p_ghost_type_1", "p_ghost_type_2", "p_clutter", "p_ambiguity"};
+
 std::vector<std::string_view> columns_of_detections(RunDetections::Detail detail) {
   std::vector<std::string_view> columns = {"t_s", "time_ns", "radar", "scan", "index", "origin", "rejected"};
   if (detail == RunDetections::Detail::kAll) {
-    columns.insert(columns.end(), {"x_vehicle_m", "y_vehicle_m", "range_rate_over_ground_mps", "p_ghost_type_1",
-                                   "p_ghost_type_2", "p_clutter"});
+    columns.insert(columns.end(), {"x_vehicle_m", "y_vehicle_m", "range_rate_over_ground_mps"});
+    columns.insert(columns.end(), kProbabilityColumns.begin(), kProbabilityColumns.end());
   }
   return columns;
 }
@@ -76,9 +80,8 @@ void read_details(const Table& table, RunDetection& detection) {
   detection.x_vehicle_m = value_or_nan(table, "x_vehicle_m");
   detection.y_vehicle_m = value_or_nan(table, "y_vehicle_m");
   detection.range_rate_over_ground_mps = value_or_nan(table, "range_rate_over_ground_mps");
-  detection.p_ghost = 0.0;
-  for (const char* const column : {"p_ghost_type_1", "p_ghost_type_2", "p_clutter"}) {
-    detection.p_ghost += table.number_or_nan(column, 0.0, 1.0);
+  for (std::size_t i = 0; i < kNumberOfOrigins; ++i) {
+    detection.p_origin[i] = table.number_or_nan(kProbabilityColumns[i], 0.0, 1.0);
   }
 }
 

@@ -1,6 +1,7 @@
 // Reads the tables of a run folder (config/schema/run.md), each from its beginning to its end.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -72,7 +73,7 @@ struct RunDetection {
   double p_moving = kNaN;  ///< NaN: not given
   // With Detail::kAll only; NaN where the table has no value:
   std::uint16_t rejection = 0;  ///< corrected_flag bit of the reason
-  double p_ghost = kNaN;        ///< of both types and of clutter together
+  std::array<double, kNumberOfOrigins> p_origin = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};  ///< by index_of_origin()
   double x_vehicle_m = kNaN, y_vehicle_m = kNaN, range_rate_over_ground_mps = kNaN;
 };
 

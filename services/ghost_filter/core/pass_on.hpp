@@ -8,8 +8,8 @@
 
 namespace boresight::ghosts {
 
-/// Writes everything of `out` but the header, provenances, ghost probabilities and reflector segments; returns the
-/// number of detections.
+/// Writes everything of `out` but the header, provenances, probabilities and reflector segments; returns the number of
+/// detections.
 std::size_t pass_on(const CorrectedScan& scan, ClassifiedScan& out);
 
 }  // namespace boresight::ghosts

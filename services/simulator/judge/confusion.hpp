@@ -9,10 +9,6 @@
 
 namespace boresight::judge {
 
-inline constexpr std::array<Provenance, 5> kTruths = {Provenance::kMoving, Provenance::kStationary,
-                                                      Provenance::kGhostType1, Provenance::kGhostType2,
-                                                      Provenance::kClutter};
-
 class Confusion {
  public:
   /// `rejected`: the corrector rejected the detection (invalid, weak, outside of the region). It is counted separately.
@@ -32,7 +28,7 @@ class Confusion {
   }
 
  private:
-  static constexpr std::size_t kSize = 6;
+  static constexpr std::size_t kSize = kNumberOfProvenances;
   static std::size_t index(Provenance provenance);
   std::array<std::array<std::uint64_t, kSize>, kSize> counts_{};
   std::array<std::uint64_t, kSize> rejected_{};

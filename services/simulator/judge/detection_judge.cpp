@@ -9,9 +9,9 @@ namespace boresight::judge {
 
 namespace {
 
-constexpr std::array<Provenance, 6> kTrueOrigins = {Provenance::kMoving,     Provenance::kStationary,
-                                                    Provenance::kGhostType1, Provenance::kGhostType2,
-                                                    Provenance::kClutter,    Provenance::kUnknown};
+constexpr std::array kTrueOrigins = {Provenance::kMoving,     Provenance::kStationary, Provenance::kGhostType1,
+                                     Provenance::kGhostType2, Provenance::kClutter,    Provenance::kAmbiguity,
+                                     Provenance::kUnknown};
 
 /// "0.05": a probability without zeros at its end.
 std::string short_number(double value) {

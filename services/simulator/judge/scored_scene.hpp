@@ -51,13 +51,13 @@ inline constexpr std::size_t kAllBands = kBands;  ///< index of "all_ranges"
   return std::nullopt;
 }
 
-/// By ObjectClass.
+/// Classes of the figures, by ObjectClass: vans count as cars, as in class_of_word().
 inline constexpr std::size_t kClasses = 5;
 inline constexpr std::array<std::string_view, kClasses> kClassNames = {"unknown", "car", "truck", "two_wheeler",
                                                                        "pedestrian"};
 
 [[nodiscard]] constexpr std::size_t index_of(ObjectClass object_class) {
-  const auto index = static_cast<std::size_t>(object_class);
+  const auto index = static_cast<std::size_t>(object_class == ObjectClass::kVan ? ObjectClass::kCar : object_class);
   return index < kClasses ? index : 0;
 }
 

@@ -13,8 +13,8 @@ namespace boresight::judge {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kWords = {"unknown",      "moving",       "stationary",
-                                                    "ghost_type_1", "ghost_type_2", "clutter"};
+constexpr std::array<std::string_view, kNumberOfProvenances> kWords = {
+    "unknown", "moving", "stationary", "ghost_type_1", "ghost_type_2", "clutter", "ambiguity"};
 
 /// Calls `row(cells)` for every line below the header; a line is not valid if it returns false.
 template <std::size_t N, typename Row>

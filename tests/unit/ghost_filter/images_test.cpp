@@ -140,7 +140,7 @@ TEST_F(MirrorFilterTest, NothingIsItsOwnImageInAMirrorAlongTheLineOfSight) {
     });
     if (k < 40) continue;
     ++scans;
-    ghost_probability += static_cast<double>(out_->ghost_probability[car]);
+    ghost_probability += static_cast<double>(out_->ghost_probability(car));
   }
   EXPECT_LE(ghost_probability / static_cast<double>(scans), 0.01) << "0.03 where it may be its own image";
 }

@@ -213,7 +213,8 @@ TEST_F(MirrorFilterTest, TheOrderOfDetectionsTellsNothing) {
     turn(scan_->range_rate_over_ground_mps);
     turn(scan_->rcs_dbsm);
     classify();
-    std::vector<float> told(&out_->ghost_probability[0], &out_->ghost_probability[0] + n);
+    std::vector<float> told;
+    for (std::uint32_t i = 0; i < n; ++i) told.push_back(out_->ghost_probability(i));
     if (turned) std::reverse(told.begin(), told.end());
     return told;
   };
@@ -350,7 +351,7 @@ TEST_F(MirrorFilterTest, AWeakDetectionAllAloneIsClutter) {
     if (t_s_ > 0.99) alone = direct({40.0, 15.0}, {-20.0, 9.0}, -18.0);
   });
   EXPECT_EQ(label(alone), Provenance::kClutter);
-  EXPECT_GT(out_->ghost_probability[alone], 0.5F);
+  EXPECT_GT(out_->ghost_probability(alone), 0.5F);
 }
 
 TEST_F(MirrorFilterTest, WhatIsSeenNowAndThenMovesAsSoonAsItIsSeenAgain) {
@@ -453,7 +454,7 @@ TEST_F(MirrorFilterTest, RejectedUndecidedAndNotFiniteAreUnknown) {
   classify();
   for (const auto i : {rejected, undecided, broken}) {
     EXPECT_EQ(label(i), Provenance::kUnknown);
-    EXPECT_EQ(out_->ghost_probability[i], 0.0F);
+    for (const Provenance origin : kOrigins) EXPECT_EQ(out_->probability(origin, i), 0.0F);
   }
   EXPECT_EQ(out_->number_of_valid_detections, 3u);
 }

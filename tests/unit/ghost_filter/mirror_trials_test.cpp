@@ -235,7 +235,7 @@ TEST_F(MirrorFilterTest, WhatNeverShowsAnImageIsHardlyBelievedToMirror) {
         }
       });
     }
-    const double ghost = out_->ghost_probability[there];
+    const double ghost = out_->ghost_probability(there);
     return ghost / (1.0 - ghost);
   };
   const double mirror = odds_of_ghost(true), hedge = odds_of_ghost(false);

@@ -106,9 +106,15 @@ TEST_F(PublishedMethod, BehindARailIsAType2Ghost) {
   const auto beyond_its_end = add(110.0, -14.0, corrected_flag::kMoving, 8.0);
   classify();
   EXPECT_EQ(out_->provenance[ghost], Provenance::kGhostType2);
-  EXPECT_GT(out_->ghost_probability[ghost], 0.5F);
+  EXPECT_GT(out_->ghost_probability(ghost), 0.5F);
   EXPECT_EQ(out_->provenance[in_front], Provenance::kMoving);
-  EXPECT_LT(out_->ghost_probability[in_front], 0.5F);
+  EXPECT_LT(out_->ghost_probability(in_front), 0.5F);
+  for (std::uint32_t i = 0; i < out_->number_of_valid_detections; ++i) {
+    float sum = 0.0F;
+    for (const Provenance origin : kOrigins) sum += out_->probability(origin, i);
+    EXPECT_NEAR(sum, 1.0F, 1e-6F);
+    EXPECT_GE(out_->probability(out_->provenance[i], i), 0.9F) << "the method has labels only";
+  }
   // The line of sight to it crosses y = −7 at x ≈ 57: still the rail.
   EXPECT_EQ(out_->provenance[beyond_its_end], Provenance::kGhostType2);
   EXPECT_EQ(out_->provenance[0], Provenance::kStationary);

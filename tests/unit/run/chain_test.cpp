@@ -1,7 +1,6 @@
 // The chain on a simulated drive: determinism, counts, order of the stages.
 #include <gmock/gmock.h>
 
-#include "services/boresight/run/origins.hpp"
 #include "services/boresight/run/rows.hpp"
 #include "services/boresight/run/summary.hpp"
 #include "tests/unit/run/drive_in_memory.hpp"
@@ -117,28 +116,13 @@ TEST(RunChain, ProbabilitiesOfEveryRowSumToOne) {
     }
     ++classified;
     double sum = 0.0;
-    for (const char* const origin : {"moving", "stationary", "ghost_type_1", "ghost_type_2", "clutter"}) {
+    for (const char* const origin : {"moving", "stationary", "ghost_type_1", "ghost_type_2", "clutter", "ambiguity"}) {
       sum += std::stod(row.at(std::string("p_") + origin));
     }
     ASSERT_NEAR(sum, 1.0, 1e-5);
     EXPECT_EQ(row.at("rejected"), "");
   }
   EXPECT_GT(classified, 1000u);
-}
-
-TEST(RunOrigins, HoldOnlyWhatTheMessageStates) {
-  const auto expect = [](Provenance label, float ghost, std::uint16_t flags, OriginProbabilities wanted) {
-    const auto p = probabilities_of(label, ghost, flags);
-    ASSERT_TRUE(p.has_value());
-    for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR((*p)[i], wanted[i], 1e-6F) << i;
-  };
-  expect(Provenance::kMoving, 0.3F, corrected_flag::kStationary, {0.7F, 0.0F, 0.1F, 0.1F, 0.1F});
-  expect(Provenance::kStationary, 0.0F, 0, {0.0F, 1.0F, 0.0F, 0.0F, 0.0F});
-  expect(Provenance::kGhostType2, 0.8F, corrected_flag::kMoving, {0.2F, 0.0F, 0.0F, 0.8F, 0.0F});
-  expect(Provenance::kClutter, 0.6F, corrected_flag::kStationary, {0.0F, 0.4F, 0.0F, 0.0F, 0.6F});
-  expect(Provenance::kGhostType1, 0.5F, 0, {0.25F, 0.25F, 0.5F, 0.0F, 0.0F});
-  EXPECT_FALSE(probabilities_of(Provenance::kUnknown, 0.5F, 0).has_value());
-  EXPECT_FALSE(probabilities_of(Provenance::kMoving, NAN, 0).has_value());
 }
 
 TEST(RunRows, RejectedDetectionsNameTheFirstReason) {

@@ -29,8 +29,8 @@ inline fs::path folder(const std::string& name) {
 
 inline const std::string kTrackHeader =
     "t_s,time_ns,radar,scan,id,status,update,movement,class,existence,age_s,since_update_s,x_vehicle_m,y_vehicle_m,"
-    "z_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,ax_over_ground_mps2,ay_over_ground_mps2,heading_rad,length_m,"
-    "width_m,height_m,detections,cov_x_x,cov_x_y,cov_y_y\n";
+    "z_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,heading_rad,length_m,width_m,height_m,detections,cov_x_x,"
+    "cov_x_y,cov_y_y\n";
 
 /// `scans` scans of radar 1 with two detections and a track `track_error_m` ahead of the car. `start_ns`: time of the
 /// first scan.
@@ -44,8 +44,8 @@ inline void write_run(const fs::path& run, int scans, double track_error_m, std:
     scan_rows += key + ",2,0,1,1,x\n";
     detection_rows += key + ",0,moving,0.9,\n" + key + ",1,stationary,0.1,\n";
     track_rows +=
-        fmt::format("{},7,confirmed,measured,moving,car,0.99,1,0,{:.3f},2,0,11,0,0,0,0,4.5,1.8,1.5,2,0.04,0,0.04\n",
-                    key, 20.0 + 1.0 * kPeriod_s * i + track_error_m);
+        fmt::format("{},7,confirmed,measured,moving,car,0.99,1,0,{:.3f},2,0,11,0,0,4.5,1.8,1.5,2,0.04,0,0.04\n", key,
+                    20.0 + 1.0 * kPeriod_s * i + track_error_m);
   }
   write_file(run / "scans.csv", scan_rows);
   write_file(run / "detections.csv", detection_rows);

@@ -60,7 +60,7 @@ TEST(RunFolder, ATrackWhoseCovarianceIsNoNumberIsRefused) {
     made::write_file(folder / "tracks.csv",
                      made::kTrackHeader +
                          "0,1700000000000000000,1,1,7,confirmed,measured,moving,car,0.99,1,0,20,2,0,"
-                         "11,0,0,0,0,4.5,1.8,1.5,2," +
+                         "11,0,0,4.5,1.8,1.5,2," +
                          cells + "\n");
     EXPECT_THAT(refusal_of([&] {
                   RunScan scan;

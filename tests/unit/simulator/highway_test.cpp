@@ -16,7 +16,7 @@ TEST(HighwayMultipath, HasThePublishedCountsWithinAFifth) {
   const Scenario highway = scenario("highway_multipath");
   for (const std::uint64_t seed : {1, 2, 3}) {
     Drive drive(highway, vehicle, seed, highway.duration_s);
-    std::array<std::size_t, 6> counts{};
+    std::array<std::size_t, kNumberOfProvenances> counts{};
     std::array<std::size_t, 5> scans{};
     while (const Event* event = drive.next()) {
       if (event->scan == nullptr) continue;

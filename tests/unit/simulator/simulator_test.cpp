@@ -107,7 +107,7 @@ TEST(Simulator, TheSpeedSignalDiffersByTheScaleOnly) {
 
 TEST(Simulator, TruthNamesEveryKindOfDetection) {
   Drive drive(scenario("demo_drive"), demo(), 1, 20.0);
-  std::array<std::size_t, 6> kinds{};
+  std::array<std::size_t, kNumberOfProvenances> kinds{};
   while (const Event* event = drive.next()) {
     if (event->scan == nullptr) continue;
     ASSERT_EQ(event->truth->size(), event->scan->number_of_valid_detections);

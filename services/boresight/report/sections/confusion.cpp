@@ -14,8 +14,10 @@ std::string render_matrix(const judge::Confusion& confusion) {
   for (const LabelStyle& style : kLabelStyles)
     text += fmt::format("<th class=n>{}{}</th>", style.label == Provenance::kUnknown ? "" : "as ", style.words);
   text += "<th class=n>as a ghost of any type</th><th class=n>rejected before</th></tr>\n";
-  for (const Provenance truth : judge::kTruths) {
+  for (const Provenance truth : kOrigins) {
     const std::uint64_t count = confusion.count(truth);
+    // The truth of a simulated drive names no ambiguities.
+    if (truth == Provenance::kAmbiguity && count + confusion.rejected(truth) == 0) continue;
     text += fmt::format("<tr><td>{}</td><td class=n>{}</td>", style_of(truth).words, count);
     for (const LabelStyle& style : kLabelStyles) {
       if (count == 0) {

@@ -23,12 +23,13 @@ struct LabelStyle {
   [[nodiscard]] constexpr svg::Style area() const { return svg::area_of(colour); }
 };
 
-inline constexpr std::array<LabelStyle, 6> kLabelStyles = {{
+inline constexpr std::array<LabelStyle, kNumberOfProvenances> kLabelStyles = {{
     {Provenance::kMoving, "moving", "#0072b2", svg::Shape::kCircle, false},
     {Provenance::kStationary, "stationary", svg::kGrey, svg::Shape::kDash, true},
     {Provenance::kGhostType1, "ghost type 1", "#d98200", svg::Shape::kTriangle, false},
     {Provenance::kGhostType2, "ghost type 2", "#b8478f", svg::Shape::kDiamond, false},
     {Provenance::kClutter, "clutter", "#00805f", svg::Shape::kCross, true},
+    {Provenance::kAmbiguity, "ambiguity", "#3a9bd0", svg::Shape::kSquare, false},
     {Provenance::kUnknown, "not classified", svg::kInk, svg::Shape::kSquare, true},
 }};
 

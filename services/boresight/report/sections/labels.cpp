@@ -34,10 +34,10 @@ LabelCounts sum_of(const Snapshot& snapshot) {
   return sum;
 }
 
-/// Shares between one snapshot and the next, in percent, stacked from below: moving, ghosts, clutter.
+/// Shares between one snapshot and the next, in percent, stacked from below: moving, ghosts, clutter, ambiguities.
 std::string render_shares(const ReportInput& input, const TimeBase& time) {
-  constexpr std::array<Provenance, 4> kDrawn = {Provenance::kMoving, Provenance::kGhostType1, Provenance::kGhostType2,
-                                                Provenance::kClutter};
+  constexpr std::array kDrawn = {Provenance::kMoving, Provenance::kGhostType1, Provenance::kGhostType2,
+                                 Provenance::kClutter, Provenance::kAmbiguity};
   std::array<std::vector<Point>, kDrawn.size() + 1> edges;
   double highest = 5.0;
   for (std::size_t i = 1; i < input.snapshots.size(); ++i) {

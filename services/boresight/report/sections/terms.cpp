@@ -27,10 +27,13 @@ constexpr std::array kTerms = {
          "parameter. It is 1 on average if the stated covariance is right."},
     Term{"Provenance",
          "Origin of a detection: direct reflection of a moving or of a stationary object, ghost of type 1 "
-         "or 2, or clutter."},
+         "or 2, clutter, or ambiguity."},
     Term{"Ghost",
          "Detection of a moving object by way of a mirror, for example a guard rail. It appears where no object "
          "is. Type 1: last reflection at the object. Type 2: last reflection at the mirror."},
+    Term{"Ambiguity",
+         "Detection of a real reflection with a wrong range rate or angle, because the radar measures both only up to "
+         "multiples of an interval."},
     Term{"Rejected by the corrector",
          "The detection corrector marked the detection as invalid, weak or outside the "
          "region of interest. No later stage uses it."},

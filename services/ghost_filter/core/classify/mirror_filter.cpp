@@ -240,12 +240,14 @@ void MirrorFilter::learn_strength(const Densities& densities, const Measured& m)
 void MirrorFilter::write_verdict(const Densities& densities, std::size_t i, ClassifiedScan& out) const {
   const double sum = densities.sum();
   if (!(sum > 0.0)) {
-    out.provenance[i] = Provenance::kClutter;
-    out.ghost_probability[i] = 0.5F;
+    out.set_certain(i, Provenance::kClutter);  // no origin explains it
     return;
   }
+  const auto share = [sum](double density) { return static_cast<float>(density / sum); };
+  constexpr float kOfAmbiguity = 0.0F;  // the method has no model of ambiguities
+  out.set_probabilities(i, {share(densities.moving), share(densities.stationary), share(densities.type1),
+                            share(densities.type2), share(densities.clutter), kOfAmbiguity});
   const double unreal = densities.type1 + densities.type2 + densities.clutter;
-  out.ghost_probability[i] = static_cast<float>(unreal / sum);
   if (unreal < config_.classes.decision_probability * sum) {
     out.provenance[i] = densities.moving >= densities.stationary ? Provenance::kMoving : Provenance::kStationary;
   } else if (densities.clutter > densities.type1 + densities.type2) {
@@ -292,8 +294,7 @@ void MirrorFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
 
   verdicts_.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    out.provenance[i] = Provenance::kUnknown;
-    out.ghost_probability[i] = 0.0F;
+    out.set_certain(i, Provenance::kUnknown);
     if (kinds_[i] == Kind::kLeftOut || kinds_[i] == Kind::kNotTold) continue;
     const bool moving = kinds_[i] == Kind::kMoving;
     const Measured& m = measured_[i];

@@ -25,7 +25,7 @@ class MirrorFilter final : public Method {
   explicit MirrorFilter(const MirrorConfig& config);
 
   void add_tracks(const TrackList& tracks) override;
-  /// `ghost_probability` is the probability that a detection is no direct reflection: a ghost or clutter.
+  /// The probability of an origin is its share of the densities of all origins where the detection is.
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
   [[nodiscard]] std::size_t map_points() const override { return map_.grid().size(); }
 

@@ -27,17 +27,13 @@ class Filter final : public Method {
   [[nodiscard]] std::size_t map_points() const override { return map_.points().size(); }
 
  private:
-  struct Verdict {
-    Provenance provenance;
-    float ghost_probability;
-  };
   [[nodiscard]] bool takes_part(const CorrectedScan& scan, std::size_t i) const;
   /// By a constant threshold, Le Ba Thanh 2023, (1)(2), whatever the corrector makes of the detection's uncertainty.
   [[nodiscard]] bool is_stationary(const CorrectedScan& scan, std::size_t i) const;
   /// The segments in the vehicle frame of this scan: found anew when they are due, moved otherwise.
   void update_segments(const CorrectedScan& scan, std::size_t count);
   void predict_tracks(const CorrectedScan& scan);
-  [[nodiscard]] Verdict judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const;
+  [[nodiscard]] Provenance judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const;
   Config config_;
   StationaryMap map_;
   ReflectorFinder finder_;
