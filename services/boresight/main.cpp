@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   boresight::add_decode_command(app, exit_code);
   boresight::add_demo_command(app, exit_code);
   boresight::add_diagnostics_command(app, exit_code);
+  boresight::add_gospa_command(app, exit_code);
   boresight::add_monitor_command(app, exit_code);
   boresight::add_record_command(app, exit_code);
   boresight::add_report_command(app, exit_code);
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
   boresight::add_score_command(app, exit_code);
   boresight::add_simulate_command(app, exit_code);
   boresight::add_supervise_command(app, exit_code);
+  boresight::add_track_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

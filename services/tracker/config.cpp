@@ -1,5 +1,7 @@
 #include "services/tracker/config.hpp"
 
+#include "services/tracker/core/make_tracker.hpp"
+
 namespace boresight::tracking {
 
 namespace {
@@ -8,10 +10,99 @@ std::size_t count(config::Reader& reader, std::string_view key, std::size_t fall
   return static_cast<std::size_t>(reader.integer(key, {1, 32}, static_cast<std::int64_t>(fallback)));
 }
 
-}  // namespace
+/// A number of the configuration: key, value, allowed range.
+struct Number {
+  std::string_view key;
+  double* value;
+  config::Range allowed;
+};
 
-Config read_config(config::Reader root) {
-  Config c;
+void read(config::Reader table, std::initializer_list<Number> numbers) {
+  for (const Number& n : numbers) *n.value = table.number(n.key, n.allowed, *n.value);
+}
+
+void read_model(config::Reader& root, RadarModelParameters& m) {
+  DetectionParameters& d = m.detection;
+  read(root.table("detection"), {{"probability", &d.detection_probability, {0.01, 0.999}},
+                                 {"view_edge_rad", &d.view_edge_rad, {0.001, 1.0}},
+                                 {"range_edge_m", &d.range_edge_m, {0.01, 50.0}},
+                                 {"stationary_sigma", &d.stationary_sigma, {0.1, 20.0}},
+                                 {"motion_std_mps", &d.motion_std_mps, {0.0, 5.0}},
+                                 {"body_range_rate_std_mps", &d.body_range_rate_std_mps, {0.0, 5.0}},
+                                 {"spread", &d.spread, {0.01, 4.0}},
+                                 {"held_factor", &d.held_factor, {1.0, 20.0}},
+                                 {"count", &d.count, {0.01, 100.0}},
+                                 {"count_shape", &d.count_shape, {0.1, 100.0}},
+                                 {"count_range_m", &d.count_range_m, {1.0, 300.0}},
+                                 {"count_power", &d.count_power, {0.0, 4.0}}});
+  BirthParameters& b = m.birth;
+  read(root.table("birth"), {{"slow_density_per_m2", &b.slow.density_per_m2, {1e-12, 1.0}},
+                             {"slow_speed_std_mps", &b.slow.speed_std_mps, {0.1, 100.0}},
+                             {"density_per_m2", &b.any.density_per_m2, {1e-12, 1.0}},
+                             {"speed_std_mps", &b.any.speed_std_mps, {0.1, 100.0}},
+                             {"traffic_density_per_m2", &b.traffic.density_per_m2, {1e-12, 1.0}},
+                             {"traffic_speed_std_mps", &b.traffic.speed_std_mps, {0.1, 100.0}},
+                             {"half_length_m", &b.half_length_m, {0.1, 10.0}},
+                             {"vehicle_length_m", &b.vehicle_length_m, {0.1, 30.0}},
+                             {"vehicle_width_m", &b.vehicle_width_m, {0.1, 5.0}},
+                             {"person_m", &b.person_m, {0.05, 5.0}},
+                             {"vehicle_speed_mps", &b.vehicle_speed_mps, {0.1, 20.0}},
+                             {"same_speed_chi2", &b.same_speed_chi2, {0.1, 100.0}},
+                             {"link_distance_m", &b.link_distance_m, {0.1, 20.0}},
+                             {"link_range_rate_mps", &b.link_range_rate_mps, {0.01, 20.0}}});
+  ClutterParameters& c = m.clutter;
+  read(root.table("clutter"), {{"memory_s", &c.memory_s, {0.1, 100.0}},
+                               {"table_scans", &c.table_scans, {0.0, 1000.0}},
+                               {"with_ego_factor", &c.with_ego_factor, {0.01, 1000.0}},
+                               {"origin_weight", &c.origin_weight, {0.0, 2.0}},
+                               {"origin_limit", &c.origin_limit, {0.0, 20.0}},
+                               {"origin_memory_s", &c.origin_memory_s, {0.1, 1000.0}}});
+  SourceParameters& s = m.source;
+  read(root.table("source"), {{"share", &s.share, {0.0, 1.0}},
+                              {"life_s", &s.life_s, {0.01, 10.0}},
+                              {"more", &s.more, {0.01, 0.99}},
+                              {"lasting_share", &s.lasting_share, {0.0, 1.0}},
+                              {"other_radar", &s.other_radar, {0.001, 1.0}},
+                              {"side_lobes", &s.side_lobes, {0.0, 100.0}},
+                              {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}}});
+  MotionParameters& k = m.motion;
+  read(root.table("motion"), {{"acceleration_density_m2ps3", &k.acceleration_density, {1e-4, 100.0}},
+                              {"rate_memory_s", &k.rate_memory_s, {0.05, 100.0}},
+                              {"rate_min_shape", &k.rate_min_shape, {0.0, 10.0}},
+                              {"extent_memory_s", &k.extent_memory_s, {0.05, 100.0}},
+                              {"extent_min_dof", &k.extent_min_dof, {6.5, 20.0}},
+                              {"object_life_s", &m.object_life_s, {0.1, 1000.0}},
+                              {"longest_gap_s", &m.longest_gap_s, {0.1, 100.0}},
+                              {"latest_scan_s", &m.latest_scan_s, {0.0, 10.0}}});
+}
+
+void read_search(config::Reader table, pmbm::Parameters& p) {
+  read(table, {{"gate_chi2", &p.gate_chi2, {1.0, 100.0}},
+               {"prune_weight", &p.prune_weight, {1e-9, 0.1}},
+               {"candidate_log", &p.candidate_log, {0.0, 30.0}},
+               {"merge_distance", &p.merge_distance, {0.0, 100.0}},
+               {"min_existence", &p.min_existence, {1e-6, 0.5}},
+               {"min_poisson_weight", &p.min_poisson_weight, {1e-9, 0.5}}});
+  p.work_budget =
+      static_cast<std::uint32_t>(table.integer("work_budget", {100, 1e8}, static_cast<std::int64_t>(p.work_budget)));
+}
+
+void read_capacity(config::Reader table, pmbm::Capacity& c) {
+  const auto capacity = [&table](std::string_view key, config::Range allowed, std::size_t& value) {
+    value = static_cast<std::size_t>(table.integer(key, allowed, static_cast<std::int64_t>(value)));
+  };
+  capacity("measurements", {16, 1024}, c.measurements);
+  capacity("objects", {16, 4096}, c.objects);
+  capacity("local_hypotheses", {64, 30000}, c.local_hypotheses);
+  capacity("group_objects", {4, 256}, c.group_objects);
+  capacity("group_measurements", {16, 1024}, c.group_measurements);
+  capacity("rows", {1, 64}, c.rows);
+  capacity("candidates", {1, 256}, c.candidates);
+}
+
+/// Settings of the rule-based tracker.
+RulesConfig read_rules(config::Reader& root) {
+  RulesConfig c;
   config::Reader clusters = root.table("clusters");
   c.cluster_radius_m = clusters.number("radius_m", {0.1, 20.0}, c.cluster_radius_m);
   c.cluster_min_points = count(clusters, "min_points", c.cluster_min_points);
@@ -50,6 +141,31 @@ Config read_config(config::Reader root) {
     life.reject("confirm_evidence", "must not exceed confirm_window");
   }
   if (c.delete_misses > c.delete_window) life.reject("delete_misses", "must not exceed delete_window");
+  return c;
+}
+
+}  // namespace
+
+Config read_config(config::Reader root) {
+  Config c;
+  std::vector<std::pair<std::string_view, std::string>> names;
+  const std::vector<std::string> known = tracker_names();
+  for (const std::string& name : known) names.emplace_back(name, name);
+  c.tracker = root.choice("tracker", names, c.tracker);
+  read_model(root, c.model);
+  read_search(root.table("search"), c.pmbm);
+  read_capacity(root.table("capacity"), c.capacity);
+  read(root.table("box"), {{"evidence_share", &c.box.evidence_share, {0.0, 1.0}},
+                           {"forget_s", &c.box.forget_s, {0.1, 1e4}},
+                           {"side_slip_mps", &c.box.side_slip_mps, {0.0, 5.0}},
+                           {"turn_rate_std_radps", &c.box.turn_rate_std_radps, {0.0, 3.0}},
+                           {"offset_gain", &c.box.offset_gain, {0.01, 1.0}}});
+  ReportParameters& r = c.report;
+  read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
+                              {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},
+                              {"least_existence", &r.least_existence, {0.001, 0.5}},
+                              {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}}});
+  c.rules = read_rules(root);
   root.finish();
   return c;
 }

@@ -1,26 +1,28 @@
 // boresight-tracker: classified scans in, a track list for each out.
 #include "services/common/runtime/service_main.hpp"
 #include "services/tracker/config.hpp"
-#include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/make_tracker.hpp"
 
 using namespace boresight;
 
 namespace {
 
 int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Config& config) {
-  tracking::Tracker tracker(vehicle, config);
+  const auto tracker = tracking::make_tracker(config.tracker, vehicle, config);
   runtime::Publisher<TrackList> tracks(node);
   node.on<ClassifiedScan>([&](const ClassifiedScan& scan) {
-    const tracking::StepResult result = tracker.step(scan);
+    const tracking::StepResult result = tracker->step(scan);
     if (result.out_of_order) node.fault(Fault::kTimeJump, "scan older than the tracks");
     if (result.restarted) node.fault(Fault::kTimeJump, "measurement time jumped: tracks dropped");
-    if (result.dropped_clusters > 0) {
-      node.fault(Fault::kCapacity, "more than 128 clusters in a scan", result.dropped_clusters);
+    if (result.budget_reached) node.fault(Fault::kCapacity, "search for associations ended at its work budget");
+    if (result.dropped_detections > 0) {
+      node.fault(Fault::kCapacity, "more detections in a scan than the tracker has room for",
+                 result.dropped_detections);
     }
-    if (result.dropped_tracks > 0) {
-      node.fault(Fault::kCapacity, "more objects than tracks have room", result.dropped_tracks);
+    if (result.dropped_objects > 0) {
+      node.fault(Fault::kCapacity, "more objects than tracks have room", result.dropped_objects);
     }
-    tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) { tracker.write(out); });
+    tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) { tracker->write(out); });
   });
   return node.spin();
 }

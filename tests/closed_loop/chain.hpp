@@ -9,7 +9,7 @@
 #include "services/detection_corrector/core/corrector.hpp"
 #include "services/ghost_filter/core/method.hpp"
 #include "services/simulator/drive.hpp"
-#include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight::closed_loop {
 
@@ -52,13 +52,13 @@ class Front {
 class Back {
  public:
   Back(const VehicleConfig& vehicle, std::unique_ptr<ghosts::Method> method)
-      : method_(std::move(method)), tracker_(vehicle, tracking::Config{}) {}
+      : method_(std::move(method)), tracker_(tracking::make_tracker(tracking::Config{}.tracker, vehicle, {})) {}
 
   void take(const CorrectedScan& corrected) {
     classified->header = tracks->header = corrected.header;
     method_->classify(corrected, *classified);
-    tracker_.step(*classified);
-    tracker_.write(*tracks);
+    tracker_->step(*classified);
+    tracker_->write(*tracks);
     method_->add_tracks(*tracks);
   }
 
@@ -67,7 +67,7 @@ class Back {
 
  private:
   std::unique_ptr<ghosts::Method> method_;
-  tracking::Tracker tracker_;
+  std::unique_ptr<tracking::MultiObjectTracker> tracker_;
 };
 
 }  // namespace boresight::closed_loop

@@ -28,6 +28,7 @@
 #include "services/common/runtime/stop_signal.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
+#include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight {
 
@@ -38,6 +39,7 @@ struct RunOptions {
   std::string detections, ego;
   std::filesystem::path out;
   runtime::Configuration configuration;
+  std::string tracker;  ///< empty: the one of the configuration
   bool quiet = false;
 };
 
@@ -102,7 +104,8 @@ class RunDrive {
   int run() {
     const bool has_tables = options_.recordings.empty();
     vehicle_ = options_.configuration.vehicle(has_tables ? config::VehicleUse::kOffline : config::VehicleUse::kLive);
-    const run::Settings settings = run::read_settings(options_.configuration);
+    run::Settings settings = run::read_settings(options_.configuration);
+    if (!options_.tracker.empty()) settings.tracker.tracker = options_.tracker;
     summary_.inputs = {.version = BORESIGHT_VERSION,
                        .recordings = {},
                        .detections = options_.detections,
@@ -293,6 +296,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "Folder for the results; files of an earlier run in it are replaced")
       ->type_name("DIR")
       ->required();
+  command->add_option("--tracker", options->tracker, "Tracker instead of the one in services/tracker.toml")
+      ->check(CLI::IsMember(tracking::tracker_names()));
   command->add_flag("--quiet", options->quiet, "No progress bar and no summary; problems are reported all the same");
   on_call(
       *command, exit_code,

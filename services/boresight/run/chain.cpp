@@ -5,6 +5,7 @@
 
 #include "services/common/geometry/frames.hpp"
 #include "services/common/geometry/so3.hpp"
+#include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight::run {
 
@@ -22,7 +23,7 @@ Chain::Chain(const VehicleConfig& vehicle, const Settings& settings, Listeners l
       estimator_(vehicle, settings.estimator),
       corrector_(vehicle, settings.corrector),
       ghosts_(ghosts::make_method(settings.ghosts)),
-      tracker_(vehicle, settings.tracker),
+      tracker_(tracking::make_tracker(settings.tracker.tracker, vehicle, settings.tracker)),
       health_(vehicle, settings.health) {
   for (const RadarConfig& radar : vehicle.radars) {
     nominal_.push_back(geometry::sensor_to_vehicle(radar.mounting_pose, 0.0, 0.0, 0.0));
@@ -101,12 +102,13 @@ bool Chain::add_scan(RadarScan& scan, std::int64_t time_ns) {
   timed(times_.corrector, [&] { corrector_.correct(scan, *corrected_); });
   timed(times_.ghost_filter, [&] { ghosts_->classify(*corrected_, *classified_); });
   timed(times_.tracker, [&] {
-    const tracking::StepResult step = tracker_.step(*classified_);
+    const tracking::StepResult step = tracker_->step(*classified_);
     counts_.scans_out_of_order += step.out_of_order ? 1 : 0;
     counts_.tracker_restarts += step.restarted ? 1 : 0;
-    counts_.dropped_clusters += step.dropped_clusters;
-    counts_.dropped_tracks += step.dropped_tracks;
-    tracker_.write(*tracks_);
+    counts_.tracker_at_budget += step.budget_reached ? 1 : 0;
+    counts_.tracker_dropped_detections += step.dropped_detections;
+    counts_.tracker_dropped_objects += step.dropped_objects;
+    tracker_->write(*tracks_);
   });
   timed(times_.ghost_filter, [&] { ghosts_->add_tracks(*tracks_); });
   const ScanResult result{{time_ns, start_ns_}, number, scan, *classified_, *tracks_};

@@ -17,7 +17,8 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/detection_corrector/core/corrector.hpp"
 #include "services/ghost_filter/core/method.hpp"
-#include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/config.hpp"
+#include "services/tracker/core/multi_object_tracker.hpp"
 
 namespace boresight::run {
 
@@ -85,7 +86,7 @@ class Chain {
   alignment::Estimator estimator_;
   corrector::Corrector corrector_;
   std::unique_ptr<ghosts::Method> ghosts_;
-  tracking::Tracker tracker_;
+  std::unique_ptr<tracking::MultiObjectTracker> tracker_;
   HealthWatch health_;
   std::vector<Eigen::Matrix3d> nominal_;  // R(sensor→vehicle) by index of the radar
   std::unique_ptr<CorrectedScan> corrected_ = std::make_unique<CorrectedScan>();

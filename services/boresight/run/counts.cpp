@@ -25,7 +25,7 @@ void add(const ScanResult& result, Counts& counts) {
     if (rejection != Rejection::kNone) {
       ++radar.rejections[static_cast<std::size_t>(rejection)];
     } else {
-      ++radar.origins[std::min(static_cast<std::size_t>(result.classified.provenance[i]), kNumberOfOrigins - 1)];
+      ++radar.origins[std::min(static_cast<std::size_t>(result.classified.provenance[i]), kNumberOfProvenances - 1)];
     }
   }
 }

@@ -10,7 +10,6 @@
 
 namespace boresight::run {
 
-inline constexpr std::size_t kNumberOfOrigins = 6;
 inline constexpr std::size_t kNumberOfPipelineFlags = 7;
 
 /// Why the corrector rejected a detection; the first that applies.
@@ -22,7 +21,7 @@ struct RadarCounts {
   std::uint64_t detections = 0;
   std::uint64_t dropped_detections = 0;                                  ///< beyond the capacity of a scan
   std::array<std::uint64_t, kNumberOfRejections> rejections{};           ///< detections; kNone stays 0
-  std::array<std::uint64_t, kNumberOfOrigins> origins{};                 ///< detections that were not rejected
+  std::array<std::uint64_t, kNumberOfProvenances> origins{};             ///< detections that were not rejected
   std::array<std::uint64_t, scan_integrity::kNumberOfBits> integrity{};  ///< scans with that fault
   std::array<std::uint64_t, kNumberOfPipelineFlags> flags{};             ///< scans that lacked that input
   std::uint64_t estimates = 0;                                           ///< published by the alignment estimator
@@ -34,9 +33,9 @@ struct Counts {
   std::uint64_t tracks = 0;               ///< in all track lists
   std::uint64_t scans_out_of_order = 0;   ///< older than the tracks
   std::uint64_t tracker_restarts = 0;     ///< measurement time jumped: all tracks were dropped
-  std::uint64_t dropped_clusters = 0;
-  std::uint64_t dropped_tracks = 0;
-  std::array<RadarCounts, kMaxRadars + 1> radars{};  ///< by radar id
+  std::uint64_t tracker_at_budget = 0;    ///< scans in which the search for associations ended at its work budget
+  std::uint64_t tracker_dropped_detections = 0, tracker_dropped_objects = 0;  ///< beyond a capacity
+  std::array<RadarCounts, kMaxRadars + 1> radars{};                           ///< by radar id
 };
 
 /// CPU time of the stages, ns.

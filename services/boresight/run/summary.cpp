@@ -141,8 +141,9 @@ json::Value tracker_losses_of(const Counts& counts) {
   json::Value value;
   value["scans_out_of_order"] = counts.scans_out_of_order;
   value["restarts"] = counts.tracker_restarts;
-  value["dropped_clusters"] = counts.dropped_clusters;
-  value["dropped_tracks"] = counts.dropped_tracks;
+  value["scans_at_work_budget"] = counts.tracker_at_budget;
+  value["dropped_detections"] = counts.tracker_dropped_detections;
+  value["dropped_objects"] = counts.tracker_dropped_objects;
   return value;
 }
 

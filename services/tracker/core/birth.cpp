@@ -10,7 +10,7 @@ namespace boresight::tracking {
 namespace {
 
 /// Velocity over ground of what is new, and its covariance; its heading where the road tells it.
-void begin_velocity(KinematicState& state, const Cluster& cluster, const OwnRoad& road, const Config& config) {
+void begin_velocity(KinematicState& state, const Cluster& cluster, const OwnRoad& road, const RulesConfig& config) {
   constexpr double kMoves_mps = 0.5, kAside_mps = 1.5;  // who changes lanes, or walks across
   const Eigen::Vector2d& sight = cluster.line_of_sight;
   const double rate_mps = cluster.range_rate_over_ground_mps;
@@ -34,7 +34,7 @@ void begin_velocity(KinematicState& state, const Cluster& cluster, const OwnRoad
 }  // namespace
 
 TrackedObject new_track(const Cluster& cluster, const Eigen::Vector2d& sensor_m, bool has_elevation,
-                        const OwnRoad& road, const Config& config) {
+                        const OwnRoad& road, const RulesConfig& config) {
   TrackedObject track;
   Extent& extent = track.extent;
   Vector6d& mean = track.state.mean;

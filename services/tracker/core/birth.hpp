@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 
 #include "services/tracker/core/clusters.hpp"
-#include "services/tracker/core/config.hpp"
 #include "services/tracker/core/own_road.hpp"
+#include "services/tracker/core/rules_config.hpp"
 #include "services/tracker/core/tracked_object.hpp"
 
 namespace boresight::tracking {
@@ -14,6 +14,6 @@ namespace boresight::tracking {
 /// sight, and nothing how fast it goes across; but what is far away on the own road most likely drives along it.
 /// `sensor_m` is where the scan was taken from, vehicle frame.
 [[nodiscard]] TrackedObject new_track(const Cluster& cluster, const Eigen::Vector2d& sensor_m, bool has_elevation,
-                                      const OwnRoad& road, const Config& config);
+                                      const OwnRoad& road, const RulesConfig& config);
 
 }  // namespace boresight::tracking

@@ -13,12 +13,12 @@ namespace {
 constexpr double kLeastReal = 0.01;
 
 double realness_of(const ClassifiedScan& scan, std::size_t i) {
-  return std::clamp(1.0 - static_cast<double>(scan.ghost_probability[i]), kLeastReal, 1.0);
+  return std::clamp(1.0 - static_cast<double>(scan.ghost_probability(i)), kLeastReal, 1.0);
 }
 
 }  // namespace
 
-Clusterer::Clusterer(const Config& config) : config_(config), dbscan_(kMaxDetections) {
+Clusterer::Clusterer(const RulesConfig& config) : config_(config), dbscan_(kMaxDetections) {
   points_.reserve(kMaxDetections);
   index_.reserve(kMaxDetections);
   members_.reserve(kMaxDetections);
@@ -38,7 +38,7 @@ std::span<const Cluster> Clusterer::find(const ClassifiedScan& scan, std::span<c
     const bool finite = std::isfinite(scan.range_rate_over_ground_mps[i]) && std::isfinite(scan.range_m[i]) &&
                         std::isfinite(scan.range_std_m[i]) && std::isfinite(scan.azimuth_std_rad[i]) &&
                         std::isfinite(scan.range_rate_std_mps[i]) && std::isfinite(scan.z_vehicle_m[i]) &&
-                        std::isfinite(scan.ghost_probability[i]);
+                        std::isfinite(scan.ghost_probability(i));
     if (!p.allFinite() || !finite) continue;
     points_.push_back(p);
     index_.push_back(static_cast<std::uint32_t>(i));

@@ -12,8 +12,8 @@
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/common/geometry/assignment.hpp"
 #include "services/common/geometry/dbscan.hpp"
-#include "services/tracker/core/config.hpp"
 #include "services/tracker/core/owners.hpp"
+#include "services/tracker/core/rules_config.hpp"
 
 namespace boresight::tracking {
 
@@ -40,7 +40,7 @@ struct Cluster {
 
 class Clusterer {
  public:
-  explicit Clusterer(const Config& config);
+  explicit Clusterer(const RulesConfig& config);
   /// Groups the detections of provenance kMoving, by place and then by range rate. At most Assignment::kCapacity
   /// clusters; further ones are counted. Where objects are known to be closer to each other than a cluster's radius,
   /// each detection is of the one that it is likeliest of (owners.hpp).
@@ -63,7 +63,7 @@ class Clusterer {
   /// One cluster, of points by index, those first that show the body's range rate; with the velocity, if it is known.
   void add(const ClassifiedScan& scan, std::span<std::uint32_t> members, const Eigen::Vector2d& velocity_mps);
 
-  Config config_;
+  RulesConfig config_;
   geometry::Dbscan dbscan_;
   std::vector<Eigen::Vector2d> points_;
   std::vector<std::uint32_t> index_;    // detection of each point

@@ -11,7 +11,7 @@ namespace boresight::tracking {
 
 namespace {
 
-bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector2d& sensor, const Config& config) {
+bool are_one(const TrackedObject& a, const TrackedObject& b, const Eigen::Vector2d& sensor, const RulesConfig& config) {
   const Eigen::Vector2d p = a.state.mean.head<2>(), q = b.state.mean.head<2>();
   const Eigen::Vector2d velocity = a.state.mean.segment<2>(2);
   const double apart_mps = (velocity - b.state.mean.segment<2>(2)).norm();
@@ -69,7 +69,7 @@ std::optional<Eigen::Vector2d> nearer_end(const TrackedObject& kept, const Track
 
 }  // namespace
 
-void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m, const Config& config) {
+void remove_duplicates(std::vector<TrackedObject>& tracks, const Eigen::Vector2d& sensor_m, const RulesConfig& config) {
   for (std::size_t a = 0; a < tracks.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks.size();) {
       if (!are_one(tracks[a], tracks[b], sensor_m, config)) {

@@ -7,12 +7,12 @@ namespace boresight::tracking {
 
 namespace {
 
-struct View {
+struct Sighting {
   Eigen::Vector2d sight;  ///< unit vector to the track
   double range_m;
 };
 
-View view_of(const TrackedObject& track, const Eigen::Vector2d& sensor_m) {
+Sighting view_of(const TrackedObject& track, const Eigen::Vector2d& sensor_m) {
   const Eigen::Vector2d sight = track.state.mean.head<2>() - sensor_m;
   const double range_m = std::max(1e-3, sight.norm());
   return {sight / range_m, range_m};
@@ -23,7 +23,7 @@ double longer_m(const TrackedObject& track) {
   return std::max(0.0, 0.5 * (track.extent.length_m - Extent::kCarLength_m));
 }
 
-bool may_be_image_of(const TrackedObject& track, const View& seen, const TrackedObject& other,
+bool may_be_image_of(const TrackedObject& track, const Sighting& seen, const TrackedObject& other,
                      const Eigen::Vector2d& sensor_m) {
   constexpr double kYounger_s = 0.5;  // both may have come into sight at once, or one been missed at first
   constexpr double kLoss_db = 3.0;    // at the least, of what each bounce costs
@@ -36,7 +36,7 @@ bool may_be_image_of(const TrackedObject& track, const View& seen, const Tracked
       !(other.extent.strongest_dbsm > track.extent.strongest_dbsm + kLoss_db)) {
     return false;
   }
-  const View from = view_of(other, sensor_m);
+  const Sighting from = view_of(other, sensor_m);
   // Of a long one, any part may be what is mirrored.
   const double part_m = longer_m(other);
   if (seen.range_m < from.range_m - part_m - kNearer_m || seen.range_m > from.range_m + part_m + kMostDetour_m) {
@@ -73,8 +73,8 @@ bool shows_in_side(const TrackedObject& vehicle, const TrackedObject& other, con
 }  // namespace
 
 double image_wait_s(const TrackedObject& track, std::span<const TrackedObject> tracks, const Eigen::Vector2d& sensor_m,
-                    const Config& config) {
-  const View seen = view_of(track, sensor_m);
+                    const RulesConfig& config) {
+  const Sighting seen = view_of(track, sensor_m);
   double wait_s = 0.0;
   for (const TrackedObject& other : tracks) {
     if (&other == &track || !may_be_image_of(track, seen, other, sensor_m)) continue;

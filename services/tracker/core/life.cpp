@@ -15,7 +15,7 @@ std::uint32_t window_mask(std::size_t scans) {
 
 }  // namespace
 
-void count_scan(TrackedObject& track, const Config& config, double wait_s) {
+void count_scan(TrackedObject& track, const RulesConfig& config, double wait_s) {
   constexpr double kDetection = 0.8, kHitGain = 0.5;
   const bool hit = track.detections > 0;
   track.history = track.history << 1 | (hit ? 1u : 0u);
@@ -38,7 +38,7 @@ void count_scan(TrackedObject& track, const Config& config, double wait_s) {
   if (weak && !long_enough && track.extent.was_small && Extent::outruns_people(speed_mps)) track.confirmed = false;
 }
 
-bool is_dead(const TrackedObject& track, const Config& config) {
+bool is_dead(const TrackedObject& track, const RulesConfig& config) {
   if (track.since_update_s > config.coast_s || !track.state.mean.allFinite() || !track.state.covariance.allFinite() ||
       !std::isfinite(track.state.heading.rad)) {
     return true;

@@ -1,11 +1,11 @@
-// Settings of the tracker; the defaults are what config/services/tracker.toml ships.
+// Settings of the rule-based tracker.
 #pragma once
 
 #include <cstddef>
 
 namespace boresight::tracking {
 
-struct Config {
+struct RulesConfig {
   double cluster_radius_m = 3.5;
   std::size_t cluster_min_points = 1;
   double cluster_max_range_rate_spread_mps = 4.0;  ///< a detection that moves otherwise belongs to another cluster

@@ -20,10 +20,18 @@ void write_track(const TrackedObject& track, double stopped_speed_mps, Track& t)
   t.position_vehicle_m = {static_cast<float>(m(0)), static_cast<float>(m(1)),
                           static_cast<float>(0.5 * track.extent.height_m)};
   t.velocity_over_ground_mps = {static_cast<float>(m(2)), static_cast<float>(m(3))};
-  t.acceleration_over_ground_mps2 = {static_cast<float>(m(4)), static_cast<float>(m(5))};
   t.number_of_detections = track.detections;
-  t.reserved = {};
-  Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>>(t.covariance.data()) = track.state.covariance.cast<float>();
+  t.mirror_probability = 0.0F;
+  t.flags = 0;
+  t.class_probability = {};
+  t.class_probability[static_cast<std::size_t>(t.object_class)] = 1.0F;
+  // The extent has no covariance here: its usual errors.
+  constexpr float kHeadingStd_rad = 0.1F, kLengthStd_m = 0.5F, kWidthStd_m = 0.3F;
+  Eigen::Map<Eigen::Matrix<float, kTrackStateSize, kTrackStateSize, Eigen::RowMajor>> covariance(t.covariance.data());
+  covariance.setZero();
+  covariance.topLeftCorner<4, 4>() = track.state.covariance.topLeftCorner<4, 4>().cast<float>();
+  covariance.diagonal().tail<3>() << kHeadingStd_rad * kHeadingStd_rad, kLengthStd_m * kLengthStd_m,
+      kWidthStd_m * kWidthStd_m;
 }
 
 }  // namespace boresight::tracking

@@ -25,7 +25,7 @@ namespace {
 /// Of what a cluster's range rate says of its body, beside the sensor's noise. People are nothing but limbs, and of
 /// what is new it is not known what is a wheel; but a vehicle is rigid, and what is left of wheels in the mean is a
 /// share of the speed.
-double range_rate_std_mps(const TrackedObject& track, const Config& config) {
+double range_rate_std_mps(const TrackedObject& track, const RulesConfig& config) {
   constexpr double kOfSpeed = 0.04, kRigid = 0.5;
   if (!track.confirmed || track.extent.is_small) return config.range_rate_std_mps;
   const double of_wheels = kOfSpeed * track.state.mean.segment<2>(2).norm();
@@ -34,7 +34,7 @@ double range_rate_std_mps(const TrackedObject& track, const Config& config) {
 
 /// The cluster as a measurement of the centre of the box that it is seen of.
 PositionRate measurement_of(const Cluster& cluster, const TrackedObject& track, const Eigen::Vector2d& sensor,
-                            const Config& config) {
+                            const RulesConfig& config) {
   // What the faces say errs the same way from scan to scan, and the more the larger they are.
   constexpr double kLeast = 0.5;  // of a person who walks
   const double share = std::clamp(track.extent.length_m / Extent::kCarLength_m, kLeast, 1.0);
@@ -52,7 +52,7 @@ PositionRate measurement_of(const Cluster& cluster, const TrackedObject& track, 
 }
 
 /// Whether the range rate alone is within the gate; else nothing need be asked about the place.
-bool rate_fits(const Cluster& cluster, const KinematicState& state, const Config& config) {
+bool rate_fits(const Cluster& cluster, const KinematicState& state, const RulesConfig& config) {
   const Eigen::Vector2d& sight = cluster.mean_sight;
   const double off_mps = cluster.range_rate_over_ground_mps - sight.dot(state.mean.segment<2>(2));
   const double variance = cluster.range_rate_variance + config.range_rate_std_mps * config.range_rate_std_mps +
@@ -132,7 +132,7 @@ void follow_heading(TrackedObject& track, const Cluster& cluster, const Eigen::V
 
 }  // namespace
 
-Tracker::Tracker(const VehicleConfig& vehicle, const Config& config)
+Tracker::Tracker(const VehicleConfig& vehicle, const RulesConfig& config)
     : vehicle_(vehicle), config_(config), clusterer_(config) {
   tracks_.reserve(kMaxTracks);
   for (const RadarConfig& radar : vehicle_.radars) {
@@ -165,7 +165,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
   road_ = OwnRoad(scan.geometry);
   const bool has_elevation = (scan.flags & pipeline_flag::kNoElevation) == 0;
   const std::span<const Cluster> clusters = join_parts(clusterer_.find(scan, known()));
-  result.dropped_clusters = clusterer_.dropped();
+  result.dropped_detections = clusterer_.dropped();
   const Eigen::Vector2d sensor(scan.geometry.sensor_position_vehicle_m[0], scan.geometry.sensor_position_vehicle_m[1]);
   assign(clusters, sensor, has_elevation);
   push_off(scan.geometry.ego_speed_mps);
@@ -177,7 +177,7 @@ StepResult Tracker::step(const ClassifiedScan& scan) {
     start_track(clusters[c], sensor, has_elevation);
   }
   remove_duplicates(tracks_, sensor, config_);
-  result.dropped_tracks = dropped_tracks_;
+  result.dropped_objects = dropped_tracks_;
   return result;
 }
 
@@ -367,7 +367,8 @@ void Tracker::write(TrackList& out) const {
   out.number_of_confirmed_tracks = 0;
   out.flags = flags_;
   out.dropped_tracks = dropped_tracks_;
-  out.reserved = 0;
+  out.tracker_flags = dropped_tracks_ > 0 ? tracker_flag::kCapacityReached : 0;
+  out.likelihood_evaluations = 0;
   for (const bool confirmed : {true, false}) {
     for (const TrackedObject& track : tracks_) {
       if (track.confirmed != confirmed) continue;

@@ -10,29 +10,23 @@
 #include "services/common/geometry/assignment.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/tracker/core/clusters.hpp"
-#include "services/tracker/core/config.hpp"
+#include "services/tracker/core/multi_object_tracker.hpp"
 #include "services/tracker/core/own_road.hpp"
+#include "services/tracker/core/rules_config.hpp"
 #include "services/tracker/core/tracked_object.hpp"
 
 namespace boresight::tracking {
 
-/// What a scan made the tracker do besides tracking.
-struct StepResult {
-  bool out_of_order = false;  ///< older than the tracks: taken as if of their time
-  bool restarted = false;     ///< the clock jumped: all tracks were dropped
-  std::uint32_t dropped_clusters = 0;
-  std::uint32_t dropped_tracks = 0;  ///< objects that found no room
-};
-
-class Tracker {
+/// The rule-based tracker.
+class Tracker final : public MultiObjectTracker {
  public:
-  Tracker(const VehicleConfig& vehicle, const Config& config);
+  Tracker(const VehicleConfig& vehicle, const RulesConfig& config);
 
   /// Takes one scan, of any radar, at its own measurement time.
-  StepResult step(const ClassifiedScan& scan);
+  StepResult step(const ClassifiedScan& scan) override;
 
   /// Writes everything but the header; confirmed tracks first, by id.
-  void write(TrackList& out) const;
+  void write(TrackList& out) const override;
 
  private:
   void predict_all(double elapsed_s, const ScanGeometry& geometry);
@@ -52,7 +46,7 @@ class Tracker {
   void judge(const ClassifiedScan& scan);
 
   VehicleConfig vehicle_;
-  Config config_;
+  RulesConfig config_;
   Clusterer clusterer_;
   geometry::Assignment assignment_;
   std::vector<TrackedObject> tracks_;

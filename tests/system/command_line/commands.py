@@ -16,8 +16,8 @@ DRIVE = TMP / "drive"
 TABLES = TMP / "tables"
 FULL = TMP / "full"  # a file system without room
 
-COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "monitor",
-            "record", "report", "run", "score", "simulate", "supervise")
+COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "gospa", "monitor",
+            "record", "report", "run", "score", "simulate", "supervise", "track")
 # Commands whose input is not there: exit code 3, and the message names the input.
 MISSING_INPUT = (
     "align --recording ABSENT --vehicle demo",
@@ -29,12 +29,14 @@ MISSING_INPUT = (
     "decode --profile ars548 --csv ABSENT",
     "decode --vehicle demo --check ABSENT",
     "demo --recording ABSENT --vehicle demo",
+    "gospa ABSENT ABSENT",
     "report ABSENT --vehicle demo",
     "run ABSENT --vehicle demo --out OUT",
     "run --detections ABSENT --ego TABLES/ego.csv --vehicle alignment_drive --out OUT",
     "score ABSENT --truth DRIVE",
     "score DRIVE --truth ABSENT",
     "report LIVE --vehicle demo --truth ABSENT",
+    "track --measurements ABSENT --params ABSENT --out OUT",
 )
 # A wrong command line or configuration: exit code 2, and the message contains the second text.
 USAGE = (
@@ -51,6 +53,7 @@ USAGE = (
     ("decode --vehicle demo --csv --check x", "--csv, --ego and --check"),
     ("demo --vehicle absent", "names there: alignment_drive, "),
     ("diagnostics --domain 999", "--domain"),
+    ("gospa x y --base root", "--base"),
     ("monitor --vehicle absent", "names there: alignment_drive, "),
     ("record --vehicle absent --out x", "names there: alignment_drive, "),
     ("record --out x", "nothing to record"),
@@ -64,6 +67,7 @@ USAGE = (
     ("simulate --vehicle absent --out OUT", "names there: alignment_drive, "),
     ("simulate --vehicle demo --config RECORD --out OUT", "is a file; give the folder"),
     ("supervise --vehicle absent", "names there: alignment_drive, "),
+    ("track --measurements x --params y --out z --tracker absent", "--tracker"),
     ("catalogue --roudi --markdown", "--markdown"),
 )
 # An output without room: exit code 3, and the message names the file and the cause.

@@ -64,7 +64,7 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
       << text_of(harness::log_of_alone("ghost_filter"));
   const auto alone = scans(0);
   EXPECT_TRUE(std::all_of(alone.begin(), alone.end(), never_had_tracks)) << "there is no tracker";
-  std::array<std::size_t, 6> classified{};
+  std::array<std::size_t, kNumberOfProvenances> classified{};
   std::size_t with_segments = 0;
   for (const Sample* scan : alone) {
     for (std::size_t i = 0; i < classified.size(); ++i) classified[i] += scan->labels[i];

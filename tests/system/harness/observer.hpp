@@ -18,9 +18,9 @@ struct Sample {
   MessageHeader header;
   std::uint32_t count;  ///< valid detections, tracks, or valid sensors
   std::uint32_t confirmed_tracks;
-  std::uint32_t flags;                  ///< pipeline_flag bits
-  std::array<std::uint32_t, 6> labels;  ///< ClassifiedScan: detections by Provenance
-  std::uint32_t segments;               ///< ClassifiedScan: reflectors
+  std::uint32_t flags;                                     ///< pipeline_flag bits
+  std::array<std::uint32_t, kNumberOfProvenances> labels;  ///< ClassifiedScan: detections by Provenance
+  std::uint32_t segments;                                  ///< ClassifiedScan: reflectors
   std::uint64_t alignment_sequence;
   /// CorrectedScan and ClassifiedScan: 1 if it corresponds index by index to its radar scan, 2 if not, 0 if that scan
   /// was not received in time.

@@ -68,7 +68,7 @@ TEST(Monitor, RecordThatBeginsLaterThanNowIsNotContinued) {
   const fs::path folder = "/tmp/record_before_restart";
   fs::create_directories(folder);
   std::string scans(run::kScansHeader);
-  scans += "\n2.000000,9000000002000000000,1,7,0,,3.5,0,0,0,0,0,0,0,0\n";
+  scans += "\n2.000000,9000000002000000000,1,7,0,,3.5,0,0,0,0,0,0,0,0,,0\n";
   std::ofstream(folder / "scans.csv") << scans;
   std::ofstream(folder / "run.json") << "{}\n";
   harness::Child monitor = monitor_with({"--record", folder.string()}, "/tmp/not_continued");

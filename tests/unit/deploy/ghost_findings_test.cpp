@@ -49,11 +49,12 @@ class Drive {
     scans += fmt::format("{},{},,3.5,0.5,2\n", key, detections);
     for (int i = 0; i < detections; ++i) {
       const bool is_rejected = k % 3 == 2 && i == 3;
-      rows += fmt::format("{},{},20.0,{},0.0,{},0.0,0.0,0.0,{}\n", key, i, i == 1 ? "9.00" : "0.0",
-                          i == 0   ? "moving"
-                          : i == 1 ? label
-                                   : "stationary",
-                          is_rejected ? "outside_region" : "");
+      rows +=
+          fmt::format("{},{},20.0,{},0.0,{},{},{}\n", key, i, i == 1 ? "9.00" : "0.0",
+                      i == 0   ? "moving"
+                      : i == 1 ? label
+                               : "stationary",
+                      i == 1 ? "0.2,0.1,0.1,0.4,0.15,0.05" : "0.9,0.1,0,0,0,0", is_rejected ? "outside_region" : "");
     }
     reflectors += key + ",0.0,4.5,40.0,4.5\n";
     for (const int t : {0, 1}) {
@@ -80,8 +81,8 @@ class Drive {
     };
     write("scans.csv", "t_s,time_ns,radar,scan,detections,flags,sensor_x_m,sensor_y_m,tracks", scans);
     write("detections.csv",
-          "t_s,time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_ghost_type_1,"
-          "p_ghost_type_2,p_clutter,rejected",
+          "t_s,time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_moving,"
+          "p_stationary,p_ghost_type_1,p_ghost_type_2,p_clutter,p_ambiguity,rejected",
           rows);
     write("reflectors.csv", "t_s,time_ns,radar,scan,x1_vehicle_m,y1_vehicle_m,x2_vehicle_m,y2_vehicle_m", reflectors);
     write(

@@ -72,6 +72,9 @@ void see_tracks(Accumulator& accumulator) {
   list->tracks[1].status = TrackStatus::kConfirmed;
   list->tracks[1].position_vehicle_m = {-10.0F, -2.0F, 0.0F};
   list->tracks[1].velocity_over_ground_mps = {13.0F, 0.0F};
+  list->tracks[1].object_class = ObjectClass::kVan;
+  list->tracks[1].existence_probability = 0.75F;
+  list->tracks[1].mirror_probability = 0.125F;
   for (std::size_t i = 0; i < kNumberOfStages; ++i) {
     const auto begin_ns = static_cast<std::int64_t>(1'000'000 + i * 300'000);
     list->header.stages[i] = {begin_ns, begin_ns + 100'000};
@@ -226,6 +229,9 @@ TEST(SnapshotLines, AreReadBackWithEveryValueAlsoWhenTheLastIsCutOff) {
   EXPECT_EQ(snapshots[0].radars[1].conditions, written.radars[1].conditions);
   EXPECT_NEAR(snapshots[0].radars[1].details.pitch.value_rad, written.radars[1].details.pitch.value_rad, 1e-9);
   EXPECT_TRUE(std::isnan(snapshots[0].radars[1].details.pitch_seconds_to_95_percent));
+  EXPECT_EQ(snapshots[0].tracks[0].object_class, ObjectClass::kVan);
+  EXPECT_EQ(snapshots[0].tracks[0].existence, 0.75);
+  EXPECT_EQ(snapshots[0].tracks[0].mirror_probability, 0.125);
 }
 
 TEST(SnapshotLines, StateConditionsAnglesAndLabels) {
@@ -234,9 +240,10 @@ TEST(SnapshotLines, StateConditionsAnglesAndLabels) {
   EXPECT_THAT(line, ::testing::HasSubstr(R"("missed":12,"suspect":3,"conditions":"partly blocked, unsynchronised")"));
   EXPECT_THAT(line, ::testing::HasSubstr(R"("vehicle_pitch_deg":{"value":-0.7)"));
   EXPECT_THAT(line, ::testing::HasSubstr(R"("pitch_seconds_to_95_percent":null)"));
-  EXPECT_THAT(line, ::testing::HasSubstr(
-                        R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
-                        R"("clutter":1,"rejected":1},"classified_scans":1,"classified_without_tracks":1)"));
+  EXPECT_THAT(line,
+              ::testing::HasSubstr(
+                  R"("classified":{"unknown":0,"moving":2,"stationary":0,"ghost_type_1":0,"ghost_type_2":1,)"
+                  R"("clutter":1,"ambiguity":0,"rejected":1},"classified_scans":1,"classified_without_tracks":1)"));
 }
 
 TEST(SnapshotLines, NameOfARadarMayHoldAnyCharacter) {

@@ -42,8 +42,8 @@ class RunFolder {
                           geometry::sensor_to_vehicle(one_radar().radars[0].mounting_pose, 0.0, 0.0, 0.0).transpose());
     std::string scans = "time_ns,radar,scan,detections,flags,sensor_x_m,sensor_y_m,ego_speed_mps,tracks,t_s\n";
     std::string detections =
-        "time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_ghost_type_1,"
-        "p_ghost_type_2,p_clutter,rejected,t_s\n";
+        "time_ns,radar,scan,index,x_vehicle_m,y_vehicle_m,range_rate_over_ground_mps,origin,p_moving,p_stationary,"
+        "p_ghost_type_1,p_ghost_type_2,p_clutter,p_ambiguity,rejected,t_s\n";
     std::string tracks =
         "time_ns,radar,scan,id,status,movement,x_vehicle_m,y_vehicle_m,vx_over_ground_mps,vy_over_ground_mps,age_s,"
         "heading_rad,length_m,width_m,detections,t_s\n";
@@ -56,7 +56,7 @@ class RunFolder {
       const std::int64_t time_ns = kRunStart_ns + std::int64_t{100'000'000} * k;
       const std::string key = fmt::format("{},2,{}", time_ns, k + 1);
       scans += fmt::format("{},2,{},3.6,0.7,12.5,1,{}\n", key, k == 0 ? "no_tracks" : "", t_s);
-      detections += fmt::format("{0},0,20,1,5,moving,0,0,0,,{1}\n{0},1,9,9,0,stationary,0,0,0,weak,{1}\n", key, t_s);
+      detections += fmt::format("{0},0,20,1,5,moving,1,0,0,0,0,0,,{1}\n{0},1,9,9,0,unknown,,,,,,,weak,{1}\n", key, t_s);
       tracks += fmt::format("{},7,confirmed,moving,20,1,10,0,2,0,4.5,1.8,1,{}\n", key, t_s);
       const double variance = kRotationStd_rad * kRotationStd_rad;
       alignment +=

@@ -16,7 +16,7 @@ TEST(TracksBeside, AreNotDrawnToWhatLiesOnAnother) {
   constexpr double kTruckFlank_m = -2.35;
   constexpr int kHidden = 110, kEnd = 118;
   const Eigen::Vector2d truck_mps(3.0, 0.0);
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   double truck_x = 30.0, car_x = 16.0;
   for (int i = 0; i < kEnd; ++i) {
@@ -64,7 +64,7 @@ void creep(Tracker& tracker, int scans, double car_mps, double car_y_m, int from
 
 TEST(TracksBeside, AreNotGivenWhatIsNearAnotherAndMovesAsThatOneDoes) {
   constexpr int kHidden = 100;
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   creep(tracker, kHidden + 4, 1.6, -0.3, 0, kHidden, [](Scene& scene, int i) {
     // Noise, or a mirror: nearer to the car's box than to the truck's, with the truck's range rate.
     if (i >= kHidden) scene.add({24.5 + 0.05 * i * 1.6, -1.0}, {1.2, 0.0});
@@ -81,7 +81,7 @@ TEST(TracksBeside, AreNotGivenWhatIsNearAnotherAndMovesAsThatOneDoes) {
 TEST(TracksBeside, BeginBesideATruckThatMovesOtherwise) {
   constexpr int kAppears = 100;
   for (const auto& [car_mps, tracks] : {std::pair{1.6, 2u}, {1.25, 1u}}) {
-    Tracker tracker(two_radars(), Config{});
+    Tracker tracker(two_radars(), RulesConfig{});
     creep(tracker, kAppears + 10, car_mps, -0.6, kAppears, kAppears + 10);
     const auto list = std::make_unique<TrackList>();
     tracker.write(*list);

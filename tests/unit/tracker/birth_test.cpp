@@ -10,7 +10,7 @@ namespace {
 
 /// Scans until the object is confirmed, whose detections may be ghosts with that probability; 0: never.
 int scans_to_confirm(double ghost_probability) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   for (int i = 0; i < 40; ++i) {
@@ -35,7 +35,7 @@ TEST(TrackerBirth, NeedsEvidenceThatIsReal) {
 
 /// Seconds from the first detection until an object that goes away is confirmed, whose detections are all as strong.
 double seconds_to_confirm(double speed_mps, float rcs_dbsm) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   for (int i = 0; i < 100; ++i) {
@@ -61,7 +61,7 @@ TEST(TrackerBirth, WhatIsWeakerThanAnythingAsFastHasToWait) {
 }
 
 TEST(TrackerBirth, WhoIsTakenForAPersonAndOutrunsThemHasToWaitAfterAll) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   double x = 20.0, confirmed_s = 0.0;
@@ -85,7 +85,7 @@ TEST(TrackerBirth, WhoIsTakenForAPersonAndOutrunsThemHasToWaitAfterAll) {
 /// `truck`: one drives behind the car in the next lane, at its speed.
 double seconds_beside_a_car(const Eigen::Vector2d& beside_m, const Eigen::Vector2d& velocity_mps, float rcs_dbsm,
                             bool truck = false) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   for (int i = 0; i < 60; ++i) {
@@ -127,7 +127,7 @@ TEST(TrackerBirth, WhatMayBeAnotherOnesImageHasToWait) {
 /// bend of that curvature.
 Eigen::Vector2d velocity_at_birth(const Eigen::Vector2d& at_m, const Eigen::Vector2d& velocity_mps,
                                   double curvature_per_m = 0.0) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   scene.begin(1000 * kMillisecond);
   scene.scan->geometry.ego_speed_mps = 20.0F;
@@ -161,7 +161,7 @@ TEST(TrackerBirth, ElsewhereOnlyTheRangeRateIsKnown) {
 }
 
 TEST(TrackerBirth, WhatCrossesFarAheadIsFollowedAllTheSame) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   for (int i = 0; i < 60; ++i) {
@@ -179,7 +179,7 @@ TEST(TrackerBirth, WhatCrossesFarAheadIsFollowedAllTheSame) {
 }
 
 TEST(TrackerBirth, AnImageThatIsFoundBeforeItsObjectWaitsAfterAll) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   const Eigen::Vector2d along(15.0, 0.0);
@@ -206,7 +206,7 @@ TEST(TrackerBirth, AnImageThatIsFoundBeforeItsObjectWaitsAfterAll) {
 }
 
 TEST(TrackerBirth, WhoComesBesideAPersonIsNoPartOfThem) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   for (int i = 0; i < 40; ++i) {
@@ -224,7 +224,7 @@ TEST(TrackerBirth, WhoComesBesideAPersonIsNoPartOfThem) {
 }
 
 TEST(TrackerBirth, SeveralRadarsAtOneInstantAreOneLook) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   for (int i = 0; i < 8; ++i) {

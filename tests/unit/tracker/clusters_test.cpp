@@ -13,7 +13,7 @@ TEST(Clusterer, GroupsWhatIsNearAndMovesAlike) {
   scene.add({60.0, 10.0}, {-8.0, 0.0});
   scene.add({30.0, 5.0}, {0.0, 0.0}, Provenance::kStationary);
   scene.add({31.0, 5.0}, {9.0, 0.0}, Provenance::kGhostType2);
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 3u);
   EXPECT_EQ(clusters[0].number_of_detections, 3u);
@@ -30,7 +30,7 @@ TEST(Clusterer, EachDetectionCountsAsMuchAsItIsReal) {
   scene.add({20.0, 0.0}, {10.0, 0.0});
   scene.add({23.0, 0.0}, {12.0, 0.0}, Provenance::kMoving, 0.75);
   scene.add({60.0, 0.0}, {10.0, 0.0}, Provenance::kMoving, 0.9);
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 2u);
   EXPECT_NEAR(clusters[0].position_m.x(), 20.6, 1e-5);
@@ -45,7 +45,7 @@ TEST(Clusterer, WheelsHaveNoPartInTheBodysRangeRate) {
   scene.begin(kMillisecond);
   for (const double x : {20.0, 20.5, 21.0}) scene.add({x, 0.0}, {2.0, 0.0});
   scene.add({21.5, 0.0}, {3.9, 0.0});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   ASSERT_EQ(clusterer.find(*scene.scan).size(), 1u);
   EXPECT_NEAR(clusterer.find(*scene.scan)[0].range_rate_over_ground_mps, 2.0, 1e-4);
   EXPECT_NEAR(clusterer.find(*scene.scan)[0].position_m.x(), 20.75, 1e-5) << "but they are where it is";
@@ -61,7 +61,7 @@ TEST(Clusterer, JoinsTwoPartsByTheirWeight) {
   scene.begin(kMillisecond);
   for (const double x : {20.0, 20.0, 20.0, 28.0}) scene.add({x, 0.0}, {10.0, 0.0});
   scene.add({60.0, 0.0}, {10.0, 0.0});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   ASSERT_EQ(clusterer.find(*scene.scan).size(), 3u);
   const auto clusters = clusterer.join(0, 1);
   ASSERT_EQ(clusters.size(), 2u);
@@ -76,7 +76,7 @@ TEST(Clusterer, UncertaintyIsLargestAcrossTheLineOfSight) {
   scene.begin(kMillisecond);
   scene.add({63.6, 60.0}, {10.0, 0.0});
   scene.scan->azimuth_std_rad[0] = 0.03F;
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);
   const Eigen::Vector2d u = clusters[0].line_of_sight, v(-u.y(), u.x());
@@ -92,7 +92,7 @@ TEST(Clusterer, IsAsStrongAsItsStrongestDetection) {
   scene.begin(kMillisecond);
   scene.add({20.0, 0.0}, {1.0, 0.0});
   scene.add({20.5, 0.0}, {1.0, 0.0});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   EXPECT_TRUE(std::isnan(clusterer.find(*scene.scan)[0].strongest_dbsm)) << "the sensor measures none";
   scene.scan->fields |= scan_field::kRcs;
   scene.scan->rcs_dbsm[0] = std::numeric_limits<float>::quiet_NaN();
@@ -107,7 +107,7 @@ TEST(Clusterer, WhatIsSeenOfPeopleWhoPassEachOtherIsOfTheNearest) {
   scene.begin(kMillisecond);
   for (const double y : {-0.1, 0.1, 0.9, 1.1}) scene.add({12.0, y}, {0.0, 1.3});
   scene.add({14.0, 0.5}, {0.0, 1.3});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   EXPECT_EQ(clusterer.find(*scene.scan).size(), 1u);
   const std::array<KnownPlace, 2> people{
       {{{12.0, 0.0}, {1.0, 0.0}, {0.5, 0.3}, true}, {{12.0, 1.0}, {1.0, 0.0}, {0.5, 0.3}, true}}};
@@ -127,7 +127,7 @@ TEST(Clusterer, WhatNoLimbShowsIsNotOfThePersonBesideACar) {
   for (const double y : {-0.95, 0.0, 0.95}) scene.add({11.8, y}, drives);
   const std::array<KnownPlace, 2> both{
       {{{12.3, -1.9}, {-1.0, 0.0}, {0.5, 0.3}, true, walks}, {{14.0, 0.0}, {1.0, 0.0}, {2.25, 0.95}, false, drives}}};
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   const auto clusters = clusterer.find(*scene.scan, both);
   ASSERT_EQ(clusters.size(), 2u);
   EXPECT_EQ(clusters[0].number_of_detections, 3u);
@@ -142,7 +142,7 @@ TEST(Clusterer, WhatIsSeenOfVehiclesSideBySideIsOfTheNearestBox) {
   // The flank of the one in the left lane, and the rear of the one in the own lane, less than a radius apart.
   for (const double x : {16.0, 18.0, 20.0}) scene.add({x, 2.7}, {15.0, 0.0});
   for (const double y : {-0.8, 0.8}) scene.add({17.8, y}, {14.0, 0.0});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   EXPECT_EQ(clusterer.find(*scene.scan).size(), 1u);
   const KnownPlace left{{18.0, 3.6}, {1.0, 0.0}, {2.25, 0.9}, false}, own{{20.2, 0.0}, {1.0, 0.0}, {2.25, 0.9}, false};
   const std::array<KnownPlace, 2> both{left, own};
@@ -158,7 +158,7 @@ TEST(Clusterer, WhatLiesBesideOneVehicleIsAnothersIfItMovesOtherwise) {
   // A truck's flank and, in the next lane, the rear of a car that no track is of yet.
   for (const double x : {16.0, 18.0, 20.0}) scene.add({x, -2.4}, {1.2, 0.0});
   for (const double y : {0.4, 1.0}) scene.add({17.8, y}, {1.6, 0.0});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   KnownPlace truck{{22.0, -3.6}, {1.0, 0.0}, {8.25, 1.25}, false, {1.2, 0.0}};
   const auto clusters = clusterer.find(*scene.scan, {&truck, 1});
   ASSERT_EQ(clusters.size(), 2u);
@@ -177,7 +177,7 @@ TEST(Clusterer, RangeRatesOfAVehicleAlongsideAreThoseThatItsVelocityShows) {
   // The flank's ends and its middle show from −11 to 16 m/s, and a wheel what the middle does.
   for (const double x : {2.1, 3.9, 6.6}) scene.add({x, -2.2}, velocity);
   scene.add({5.6, -2.2}, {4.0, 0.0});
-  Clusterer clusterer(Config{});
+  Clusterer clusterer(RulesConfig{});
   EXPECT_EQ(clusterer.find(*scene.scan).size(), 3u) << "by range rate alone the middle is one with the wheel";
   KnownPlace alongside{{4.4, -3.1}, {1.0, 0.0}, {2.25, 0.9}, false, velocity};
   const auto clusters = clusterer.find(*scene.scan, {&alongside, 1});
@@ -199,8 +199,8 @@ TEST(Clusterer, NumbersThatAreNoneAreLeftOut) {
   scene.scan->range_rate_over_ground_mps[2] = std::numeric_limits<float>::infinity();
   for (int i = 0; i < 4; ++i) scene.add({21.0, 0.5}, {10.0, 0.0});
   scene.scan->range_std_m[3] = scene.scan->azimuth_std_rad[4] = scene.scan->range_rate_std_mps[5] =
-      scene.scan->ghost_probability[6] = std::numeric_limits<float>::quiet_NaN();
-  Clusterer clusterer(Config{});
+      scene.scan->probability(Provenance::kClutter, 6) = std::numeric_limits<float>::quiet_NaN();
+  Clusterer clusterer(RulesConfig{});
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);
   EXPECT_EQ(clusters[0].number_of_detections, 1u);
@@ -210,7 +210,7 @@ TEST(Clusterer, MoreClustersThanRoomAreCounted) {
   Scene scene;
   scene.begin(kMillisecond);
   for (int i = 0; i < 200; ++i) scene.add({10.0 + 10.0 * (i % 20), -50.0 + 10.0 * (i / 20.0)}, {10.0, 0.0});
-  Config config;
+  RulesConfig config;
   config.cluster_radius_m = 0.1;
   Clusterer clusterer(config);
   EXPECT_EQ(clusterer.find(*scene.scan).size(), geometry::Assignment::kCapacity);

@@ -51,7 +51,7 @@ TEST(Heading, DoesNotBeginAcrossTheLineOfSightByAVelocityThatMayBeNone) {
 /// How the box of the one track heads after each of so many scans, rad; `add` fills them.
 template <typename Add>
 std::vector<double> headings(int scans, const Add& add) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   std::vector<double> found_rad;
@@ -152,7 +152,7 @@ TEST(RangeRate, OfALongBodyNearbyIsThatOfTheMeanOfItsDirections) {
   scene.begin(kMillisecond);
   const Eigen::Vector2d velocity(0.4, 0.0);  // so slow that none of it looks like a wheel
   for (const double x : {3.0, 5.0, 7.0, 9.0}) scene.add({x, -2.0}, velocity);
-  Clusterer clusterer{Config{}};
+  Clusterer clusterer{RulesConfig{}};
   const auto clusters = clusterer.find(*scene.scan);
   ASSERT_EQ(clusters.size(), 1u);
   EXPECT_NEAR(clusters[0].mean_sight.dot(velocity), clusters[0].range_rate_over_ground_mps, 1e-6);

@@ -26,19 +26,19 @@ TrackedObject object_at(double x_m, double y_m, double speed_mps, double length_
 double wait_s(double x_m, double y_m, double speed_mps) {
   const std::vector<TrackedObject> tracks{object_at(x_m, y_m, speed_mps, 4.5, -6.0, 0.2),
                                           object_at(32.0, -3.6, 1.2, 16.0, 15.0, 9.0)};
-  return image_wait_s(tracks[0], tracks, kMirrorSensor_m, Config{});
+  return image_wait_s(tracks[0], tracks, kMirrorSensor_m, RulesConfig{});
 }
 
 TEST(Images, OfATrucksRearAreNearerThanItsMiddle) {
-  EXPECT_EQ(wait_s(26.0, 7.6, 1.2), Config{}.confirm_image_age_s);
-  EXPECT_EQ(wait_s(40.0, 7.6, 1.2), Config{}.confirm_image_age_s) << "of its front";
+  EXPECT_EQ(wait_s(26.0, 7.6, 1.2), RulesConfig{}.confirm_image_age_s);
+  EXPECT_EQ(wait_s(40.0, 7.6, 1.2), RulesConfig{}.confirm_image_age_s) << "of its front";
   EXPECT_EQ(wait_s(20.0, 7.6, 1.2), 0.0) << "nearer than its rear is";
   EXPECT_EQ(wait_s(52.0, 7.6, 1.2), 0.0) << "farther than any detour by the next lane";
 }
 
 TEST(Images, MoveAsTheirObjects) {
   EXPECT_EQ(wait_s(28.0, 0.0, 1.5), 0.0) << "in a jam, the next lane's 0.3 m/s are a car's own";
-  EXPECT_EQ(wait_s(28.0, 0.0, 1.3), Config{}.confirm_image_age_s);
+  EXPECT_EQ(wait_s(28.0, 0.0, 1.3), RulesConfig{}.confirm_image_age_s);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::size_t left_of_two(double ahead_m, double left_m, bool confirmed) {
   tracks[1].state.mean.head<2>() += Eigen::Vector2d(ahead_m, left_m);
   tracks[1].state.mean(2) += 2.5;
   tracks[1].confirmed = confirmed;
-  remove_duplicates(tracks, {-0.8, 0.0}, Config{});
+  remove_duplicates(tracks, {-0.8, 0.0}, RulesConfig{});
   return tracks.size();
 }
 
@@ -62,7 +62,7 @@ std::size_t left_in_file(double across_mps) {
   }
   tracks[1].state.mean(0) += 7.5;
   tracks[1].state.mean(3) = across_mps;
-  remove_duplicates(tracks, {0.0, 0.0}, Config{});
+  remove_duplicates(tracks, {0.0, 0.0}, RulesConfig{});
   return tracks.size();
 }
 
@@ -83,7 +83,7 @@ TEST(Duplicates, WhoStandsBesideAVehicleIsNoPartOfItButAWheelIs) {
     tracks[1].extent.length_m = 1.2;
     tracks[1].extent.width_m = 0.7;
     tracks[1].state.mean(1) -= 0.5 * Extent::kCarWidth_m + beside_m;
-    remove_duplicates(tracks, {0.0, 0.0}, Config{});
+    remove_duplicates(tracks, {0.0, 0.0}, RulesConfig{});
     return tracks.size();
   };
   EXPECT_EQ(left_of(0.3), 1U) << "a wheel";
@@ -103,7 +103,7 @@ TEST(Duplicates, ABoxDrawnToAPersonWhomItPassesDoesNotSwallowThem) {
     tracks[1].extent.width_m = 0.7;
     tracks[1].state.mean(1) -= 0.5 * Extent::kCarWidth_m - deep_m;
     tracks[1].state.mean(2) = -1.2;
-    remove_duplicates(tracks, {0.0, 0.0}, Config{});
+    remove_duplicates(tracks, {0.0, 0.0}, RulesConfig{});
     return tracks.size();
   };
   EXPECT_EQ(left_of(0.2, 5.0), 2U);
@@ -123,7 +123,7 @@ TEST(Extent, TellsTheShortestWayOffTheOwnVehicle) {
 
 TEST(TrackerOwnVehicle, NothingIsTrackedThroughIt) {
   // A car drives beside; ghosts on the own side of it that the filter does not tell draw its track over.
-  Tracker tracker(four_corners(), Config{});
+  Tracker tracker(four_corners(), RulesConfig{});
   Scene scene;
   TrackList list;
   std::int64_t now = 1'000'000 * kMillisecond;
@@ -149,7 +149,7 @@ TEST(TrackerOwnVehicle, NothingIsTrackedThroughIt) {
 
 TEST(TrackerDuplicates, TwoThatWereLongTrackedAtTheirOwnSpeedsStayTwo) {
   // One overtakes the other after three seconds, so closely, by what is seen of both, that it passes through its box.
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   TrackList list;
   std::int64_t now = 1'000'000 * kMillisecond;
@@ -174,7 +174,7 @@ TEST(TrackerDuplicates, TwoThatWereLongTrackedAtTheirOwnSpeedsStayTwo) {
 
 TEST(TrackerDuplicates, LimbsThatWereLongTrackedAtTheirOwnSpeedsAreOne) {
   // As small and weak as limbs are, and at speeds of their own; in the end they are in one place.
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   TrackList list;
   for (int i = 0; i < 55; ++i) {
@@ -197,7 +197,7 @@ TEST(TrackerDuplicates, LimbsThatWereLongTrackedAtTheirOwnSpeedsAreOne) {
 /// them, `check(track, t_s)` looks at their tracks.
 template <typename Add, typename Check>
 void expect_two_that_stay(int scans, const Add& add, const Check& check) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   TrackList list;
   std::set<std::uint32_t> ids;

@@ -116,7 +116,7 @@ struct Seen {
 
 /// What is tracked after eight seconds, a scan each 50 ms.
 std::unique_ptr<TrackList> tracked(const std::vector<Seen>& vehicles) {
-  Config config;
+  RulesConfig config;
   config.cluster_radius_m = 2.5;  // so that the middle of a gap that a piece may have is surely no cluster's
   Tracker tracker(two_radars(), config);
   Scene scene;
@@ -145,7 +145,7 @@ TEST(Pieces, OfATruckWhoseAxlesAreFarApartBecomeOneTrack) {
 
 TEST(Pieces, OfWhichTheRearComesIntoSightLastReachBackToIt) {
   // A truck at 20 m/s: its front half first, then, seven metres nearer, its rear.
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   double rear_m = 0.0;

@@ -65,7 +65,8 @@ class Scene {
     scan->azimuth_std_rad[i] = 0.005F;
     scan->range_rate_std_mps[i] = 0.05F;
     scan->provenance[i] = provenance;
-    scan->ghost_probability[i] = static_cast<float>(ghost_probability);
+    const auto unreal = static_cast<float>(ghost_probability);
+    scan->set_probabilities(i, {1.0F - unreal, 0.0F, 0.0F, 0.0F, unreal, 0.0F});
   }
   std::unique_ptr<ClassifiedScan> scan = std::make_unique<ClassifiedScan>();
 };
@@ -73,7 +74,7 @@ class Scene {
 /// By how much the last of 41 scans changes what `value` reads from the only track; `add` fills the scans.
 template <typename Add, typename Value>
 double changed_by_last_scan(const Add& add, const Value& value) {
-  Tracker tracker(two_radars(), Config{});
+  Tracker tracker(two_radars(), RulesConfig{});
   Scene scene;
   const auto list = std::make_unique<TrackList>();
   double before = 0.0;

@@ -29,7 +29,7 @@ class Stopping : public testing::Test {
   void drive(bool seen_standing, bool by_a_wall, double braking_s = 6.0, double ahead_m = 0.3,
              const Eigen::Vector2d& wall_m = {-40.0, 40.0}, bool across = false) {
     x_ = 14.0;
-    tracker_ = Tracker(two_radars(), Config{});
+    tracker_ = Tracker(two_radars(), RulesConfig{});
     for (int i = 0; i < 160; ++i) {
       const double t = 0.05 * i, v = std::max(0.0, 8.0 * (1.0 - t / braking_s));
       x_ += 0.05 * v;
@@ -51,7 +51,7 @@ class Stopping : public testing::Test {
     tracker_.write(*list_);
   }
   double x_ = 0.0;
-  Tracker tracker_{two_radars(), Config{}};
+  Tracker tracker_{two_radars(), RulesConfig{}};
   Scene scene_;
   std::unique_ptr<TrackList> list_ = std::make_unique<TrackList>();
 };

@@ -24,7 +24,7 @@ class TrackerTest : public testing::Test {
     tracker_.step(*scene_.scan);
     now_ += 50 * kMillisecond;
   }
-  Tracker tracker_{two_radars(), Config{}};
+  Tracker tracker_{two_radars(), RulesConfig{}};
   Scene scene_;
   std::unique_ptr<TrackList> list_ = std::make_unique<TrackList>();
   std::int64_t now_ = 1'000'000 * kMillisecond;
@@ -189,7 +189,7 @@ TEST_F(TrackerTest, EstimatesPlaceVelocityAndBox) {
 TEST_F(TrackerTest, KnowsWhereAPersonGoesWhoCrossesTheLineOfSight) {
   // Hardly a range rate: the velocity shows by the place only, which is as sure as a person is small.
   const auto walk = [&](double rcs_dbsm) {
-    Tracker tracker(two_radars(), Config{});
+    Tracker tracker(two_radars(), RulesConfig{});
     const Eigen::Vector2d v(0.0, 1.3);
     for (int k = 0; k < 40; ++k) {
       scene_.begin(now_ + k * 50 * kMillisecond);
@@ -266,11 +266,15 @@ TEST_F(TrackerTest, OutputHasNothingOfTheStaleChunk) {
   const Track& t = list().tracks[0];
   EXPECT_EQ(list().dropped_tracks, 0u);
   EXPECT_EQ(list().flags, 0u);
-  EXPECT_EQ(list().reserved, 0u);
-  EXPECT_EQ(t.reserved, (std::array<std::uint32_t, 3>{}));
-  EXPECT_TRUE(std::isfinite(t.time_since_update_s) && std::isfinite(t.acceleration_over_ground_mps2[0]) &&
+  EXPECT_EQ(list().tracker_flags, 0u);
+  EXPECT_EQ(t.flags, 0u);
+  EXPECT_TRUE(std::isfinite(t.time_since_update_s) && std::isfinite(t.mirror_probability) &&
               std::isfinite(t.position_vehicle_m[2]));
-  const Eigen::Map<const Eigen::Matrix<float, 6, 6>> covariance(t.covariance.data());
+  float sum = 0.0F;
+  for (const float probability : t.class_probability) sum += probability;
+  EXPECT_EQ(sum, 1.0F);
+  EXPECT_EQ(t.class_probability[static_cast<std::size_t>(t.object_class)], 1.0F);
+  const Eigen::Map<const Eigen::Matrix<float, kTrackStateSize, kTrackStateSize>> covariance(t.covariance.data());
   EXPECT_TRUE(covariance.allFinite());
   EXPECT_GT(covariance.diagonal().minCoeff(), 0.0F);
 }
@@ -373,7 +377,7 @@ TEST_F(TrackerTest, MoreObjectsThanRoomAreCounted) {
     }
     const StepResult result = tracker_.step(*scene_.scan);
     EXPECT_LE(list().number_of_tracks, kMaxTracks);
-    EXPECT_EQ(result.dropped_tracks, list().dropped_tracks);
+    EXPECT_EQ(result.dropped_objects, list().dropped_tracks);
     if (list().dropped_tracks > 0) return;
     now_ += 5 * kMillisecond;
   }

@@ -1,0 +1,126 @@
+#include "services/tracker/core/ggiw/component.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace boresight::tracking {
+
+template <typename Real>
+void predict(Component<Real>& c, const MotionParameters& motion, double elapsed_s) {
+  const auto t = static_cast<Real>(elapsed_s);
+  const auto q = static_cast<Real>(elapsed_s > 0.0 ? motion.acceleration_density : 0.0);
+  c.position_m = c.position_m + t * c.velocity_mps;
+  const Matrix2<Real> pv = c.position_velocity_covariance;
+  const Symmetric2<Real> vv = c.velocity_covariance;
+  const Symmetric2<Real> cross{Real(2) * pv.xx, pv.xy + pv.yx, Real(2) * pv.yy};
+  const Symmetric2<Real> identity{1, 0, 1};
+  c.position_covariance = c.position_covariance + t * cross + (t * t) * vv + (q * t * t * t / Real(3)) * identity;
+  c.position_velocity_covariance = pv + t * full(vv) + (q * t * t / Real(2)) * full(identity);
+  c.velocity_covariance = vv + (q * t) * identity;
+  if (elapsed_s <= 0.0) return;
+
+  const auto keep_rate = static_cast<Real>(std::exp(-elapsed_s / motion.rate_memory_s));
+  c.rate_shape *= keep_rate;
+  c.rate_inverse_scale *= keep_rate;
+  const auto min_shape = static_cast<Real>(motion.rate_min_shape);
+  if (c.rate_shape < min_shape) {
+    c.rate_inverse_scale *= min_shape / c.rate_shape;
+    c.rate_shape = min_shape;
+  }
+  const auto keep_extent = static_cast<Real>(std::exp(-elapsed_s / motion.extent_memory_s));
+  const auto min_dof = static_cast<Real>(motion.extent_min_dof);
+  Symmetric2<Real> mean = extent(c);
+  const Real middle = trace(mean) / Real(2), half = (mean.xx - mean.yy) / Real(2);
+  const Real least = middle - std::sqrt(half * half + mean.xy * mean.xy);
+  const auto min_extent = static_cast<Real>(motion.extent_min_m2);
+  if (least < min_extent) mean = mean + (min_extent - least) * identity;
+  c.extent_dof = std::max(min_dof, Real(6) + keep_extent * (c.extent_dof - Real(6)));
+  c.extent_scale = (c.extent_dof - Real(6)) * mean;
+}
+
+template <typename Real>
+Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
+  if (mixture.size() == 1) return *mixture.front().component;
+  Real sum = 0;
+  for (const auto& m : mixture) sum += m.weight;
+  Component<Real> out;
+  out.source = {0, 0, 0, mixture.front().component->source.radar};
+  out.extent_dof = 0;
+  Symmetric2<Real> mean_extent;
+  Real rate = 0, rate_squares = 0;
+  for (const auto& m : mixture) {
+    const Component<Real>& c = *m.component;
+    const Real w = m.weight / sum, mean_rate = c.rate_shape / c.rate_inverse_scale;
+    out.position_m = out.position_m + w * c.position_m;
+    out.velocity_mps = out.velocity_mps + w * c.velocity_mps;
+    out.extent_dof += w * c.extent_dof;
+    mean_extent = mean_extent + w * extent(c);
+    rate += w * mean_rate;
+    rate_squares += w * (mean_rate / c.rate_inverse_scale + mean_rate * mean_rate);
+    out.source.object += w * c.source.object;
+    out.source.side_lobe += w * c.source.side_lobe;
+    out.source.lasting_source += w * c.source.lasting_source;
+    if (c.source.radar != out.source.radar) out.source.radar = -1;
+    out.mirror += w * c.mirror;
+  }
+  for (const auto& m : mixture) {
+    const Component<Real>& c = *m.component;
+    const Real w = m.weight / sum;
+    const Vector2<Real> dp = c.position_m - out.position_m, dv = c.velocity_mps - out.velocity_mps;
+    out.position_covariance = out.position_covariance + w * (c.position_covariance + outer(dp));
+    out.velocity_covariance = out.velocity_covariance + w * (c.velocity_covariance + outer(dv));
+    out.position_velocity_covariance =
+        out.position_velocity_covariance + w * (c.position_velocity_covariance + outer(dp, dv));
+  }
+  const Real variance = std::max(rate_squares - rate * rate, rate * rate * std::numeric_limits<Real>::epsilon());
+  out.rate_inverse_scale = rate / variance;
+  out.rate_shape = rate * out.rate_inverse_scale;
+  out.extent_scale = (out.extent_dof - Real(6)) * mean_extent;
+  return out;
+}
+
+template <typename Real>
+Component<Real> join(const WeightedComponent<Real>& a, const WeightedComponent<Real>& b, Real spread) {
+  const Component<Real>&ca = *a.component, &cb = *b.component;
+  const Real rate_a = a.weight * ca.rate_shape / ca.rate_inverse_scale,
+             rate_b = b.weight * cb.rate_shape / cb.rate_inverse_scale;
+  const std::array<WeightedComponent<Real>, 2> parts{{{rate_a, &ca}, {rate_b, &cb}}};
+  Component<Real> out = merge<Real>(parts);
+  const Real wa = rate_a / (rate_a + rate_b), wb = Real(1) - wa;
+  const Symmetric2<Real> between = (wa * wb) * outer(ca.position_m - cb.position_m);
+  out.position_covariance = wa * ca.position_covariance + wb * cb.position_covariance;
+  out.velocity_covariance = wa * ca.velocity_covariance + wb * cb.velocity_covariance;
+  out.position_velocity_covariance = wa * ca.position_velocity_covariance + wb * cb.position_velocity_covariance;
+  out.extent_scale = out.extent_scale + ((out.extent_dof - Real(6)) / spread) * between;
+  // The rates of the parts add up.
+  const Real sum = ca.rate_shape / ca.rate_inverse_scale + cb.rate_shape / cb.rate_inverse_scale;
+  out.rate_inverse_scale = out.rate_shape / sum;
+  return out;
+}
+
+template <typename Real>
+Real distance(const Component<Real>& a, const Component<Real>& b) {
+  const Vector2<Real> dp = a.position_m - b.position_m, dv = a.velocity_mps - b.velocity_mps;
+  const Symmetric2<Real> xa = extent(a), xb = extent(b), dx = xa - xb;
+  const Real mean = (trace(xa) + trace(xb)) / Real(2);
+  const Real rate_ratio = std::log(a.rate_shape * b.rate_inverse_scale / (a.rate_inverse_scale * b.rate_shape));
+  const Real of_extent = (dx.xx * dx.xx + Real(2) * dx.xy * dx.xy + dx.yy * dx.yy) / (mean * mean) *
+                         (a.extent_dof + b.extent_dof - Real(12)) / Real(16);
+  const Real of_rate = rate_ratio * rate_ratio * (a.rate_shape + b.rate_shape) / Real(8);
+  return (quadratic(inverse(a.position_covariance), dp) + quadratic(inverse(b.position_covariance), dp)) / Real(2) +
+         (quadratic(inverse(a.velocity_covariance), dv) + quadratic(inverse(b.velocity_covariance), dv)) / Real(4) +
+         of_extent + of_rate;
+}
+
+template void predict(Component<double>&, const MotionParameters&, double);
+template void predict(Component<float>&, const MotionParameters&, double);
+template Component<double> merge(std::span<const WeightedComponent<double>>);
+template Component<float> merge(std::span<const WeightedComponent<float>>);
+template Component<double> join(const WeightedComponent<double>&, const WeightedComponent<double>&, double);
+template Component<float> join(const WeightedComponent<float>&, const WeightedComponent<float>&, float);
+template double distance(const Component<double>&, const Component<double>&);
+template float distance(const Component<float>&, const Component<float>&);
+
+}  // namespace boresight::tracking

@@ -1,0 +1,280 @@
+#include "services/tracker/core/ggiw/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace boresight::tracking {
+
+namespace {
+
+template <typename Real>
+constexpr Real kLogPi = Real(1.1447298858494001741434);
+template <typename Real>
+constexpr Real kLogTwoPi = Real(1.8378770664093454835607);
+/// Keeps the logarithm of a missed detection finite where the chance of no point underflows.
+template <typename Real>
+constexpr Real kLeastMissed = Real(1e-30);
+/// A likelihood ratio of sources beyond e^20 decides by itself.
+template <typename Real>
+constexpr Real kLogCertain = Real(20);
+
+/// log Γ(a + more) − log Γ(a) for a above 60: Stirling's series.
+template <typename Real>
+Real log_gamma_growth(Real a, Real more) {
+  const Real b = a + more;
+  const auto rest = [](Real x) { return (Real(1) - Real(1) / (Real(30) * x * x)) / (Real(12) * x); };
+  return (b - Real(0.5)) * std::log(b) - (a - Real(0.5)) * std::log(a) - more + rest(b) - rest(a);
+}
+
+/// What range rates of information Λ do to a velocity of covariance C. With adj S = S⁻¹ det S,
+///   det(I + CΛ) = 1 + tr CΛ + det C det Λ,   (I + CΛ)⁻¹C = (C + det C adj Λ) / det(I + CΛ):
+/// sums of positive terms, which no rounding makes indefinite.
+template <typename Real>
+struct RateUpdate {
+  Symmetric2<Real> information;  // Λ
+  Vector2<Real> innovation;      // d
+  Real information_determinant, factor_determinant;
+  Symmetric2<Real> covariance;  // (I + CΛ)⁻¹C
+  Vector2<Real> correction;     // (I + CΛ)⁻¹C d
+
+  RateUpdate(const Cell<Real>& cell, const Vector2<Real>& velocity, const Symmetric2<Real>& c, Real variance) {
+    const Real f = Real(1) / variance;
+    information = f * cell.sight_squares;
+    innovation = f * cell.sight_rate - information * velocity;
+    information_determinant = std::max(Real(0), determinant(information));
+    const Real c_determinant = std::max(Real(0), determinant(c));
+    const Real product = c.xx * information.xx + Real(2) * c.xy * information.xy + c.yy * information.yy;
+    factor_determinant = Real(1) + std::max(Real(0), product) + c_determinant * information_determinant;
+    covariance = (Real(1) / factor_determinant) * (c + c_determinant * adjugate(information));
+    correction = covariance * innovation;
+  }
+};
+
+}  // namespace
+
+template <typename Real>
+Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
+    : view_(view),
+      position_m_(c.position_m),
+      velocity_mps_(c.velocity_mps),
+      position_covariance_(c.position_covariance),
+      velocity_covariance_(c.velocity_covariance),
+      position_velocity_covariance_(c.position_velocity_covariance),
+      extent_scale_(c.extent_scale),
+      extent_dof_(c.extent_dof),
+      rate_shape_(c.rate_shape),
+      rate_inverse_scale_(c.rate_inverse_scale),
+      detection_probability_(view.detection_probability),
+      source_(c.source) {
+  const Symmetric2<Real> x = extent(c);
+  scatter_ = view.spread * x + view.noise_m2;
+  held_scatter_ = (view.held * view.spread) * x + view.noise_m2;
+  extent_root_ = square_root(x);
+  shape_ = extent_root_ * inverse(square_root(scatter_));
+  measurement_covariance_ = position_covariance_ + scatter_;
+  measurement_information_ = inverse(measurement_covariance_);
+  log_half_determinant_ = std::log(determinant(measurement_covariance_)) / Real(2);
+
+  const Real log_x = std::log(determinant(x)), log_scatter = std::log(determinant(scatter_));
+  log_exposure_ = std::log(view.exposure);
+  log_rate_step_ = std::log(rate_inverse_scale_ + view.exposure);
+  expected_ = view.exposure * rate_shape_ / rate_inverse_scale_;
+  // p(0 | seen) of the gamma-Poisson: (β / (β + exposure))^α
+  log_none_ = rate_shape_ * (std::log(rate_inverse_scale_) - log_rate_step_);
+  missed_ =
+      std::max(kLeastMissed<Real>, Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
+  per_detection_ = (log_x - log_scatter) / Real(2) - kLogPi<Real>;
+  constant_ = (extent_dof_ - Real(3)) / Real(2) * std::log(determinant(extent_scale_)) + log_scatter / Real(2) +
+              std::log(std::max(detection_probability_, Real(1e-9)));
+  by_count_[0] = 0;
+  log_count_[0] = log_none_;
+  extent_terms_ = log_none_;
+  tabulated_ = 1;
+}
+
+template <typename Real>
+void Prediction<Real>::tabulate(std::size_t n) {
+  for (; tabulated_ <= n && tabulated_ < kTabulated; ++tabulated_) {
+    const auto k = static_cast<Real>(tabulated_);
+    // From k − 1 to k detections: gamma function of the rate, multivariate gamma function of the extent.
+    const Real rate = std::log(rate_shape_ + k - Real(1)) - log_rate_step_ + log_exposure_;
+    const Real a = (extent_dof_ + k - Real(4)) / Real(2);
+    extent_terms_ += rate + std::log(a - Real(0.5));
+    log_count_[tabulated_] = log_count_[tabulated_ - 1] + rate - std::log(k);
+    by_count_[tabulated_] = extent_terms_ + constant_ + k * per_detection_ - std::log(k);
+  }
+}
+
+template <typename Real>
+Real Prediction<Real>::interpolated(const std::array<Real, kTabulated>& table, Real n) {
+  const std::size_t low = n < Real(1) ? 1 : static_cast<std::size_t>(n);
+  if (tabulated_ < low + 2) tabulate(low + 3);
+  const Real fraction = n < Real(1) ? Real(0) : n - static_cast<Real>(low);
+  return fraction == Real(0) ? table[low] : table[low] + fraction * (table[low + 1] - table[low]);
+}
+
+template <typename Real>
+Real Prediction<Real>::rates_beyond_table(Real more) const {
+  return log_gamma_growth(rate_shape_ + kLastTabulated, more) + more * (log_exposure_ - log_rate_step_);
+}
+
+template <typename Real>
+Real Prediction<Real>::terms_by_count(Real n) {
+  if (n <= kLastTabulated) return interpolated(by_count_, n);
+  const Real more = n - kLastTabulated;
+  tabulate(kTabulated);
+  return by_count_.back() + rates_beyond_table(more) + log_gamma_growth(extent_dof_ + kLastTabulated - Real(4), more) +
+         more * (per_detection_ - std::numbers::ln2_v<Real>)-std::log(n / kLastTabulated);
+}
+
+template <typename Real>
+Real Prediction<Real>::log_count(Real n) {
+  if (n <= kLastTabulated) return interpolated(log_count_, n);
+  const Real more = n - kLastTabulated;
+  tabulate(kTabulated);
+  return log_count_.back() + rates_beyond_table(more) - log_gamma_growth(kLastTabulated + Real(1), more);
+}
+
+template <typename Real>
+Real Prediction<Real>::log_source_ratio(Real n) {
+  const Real more = view_.source_more, whole = std::max(n, Real(1));
+  const Real seen = Real(1) - std::exp(log_none_);
+  return std::log(Real(1) - more) + (whole - Real(1)) * std::log(more) -
+         (log_count(whole) - std::log(std::max(seen, Real(1e-12))));
+}
+
+template <typename Real>
+Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
+  return Real(0.5) + Real(0.5) * std::clamp(cell.on_ring / cell.n, Real(0), Real(1));
+}
+
+template <typename Real>
+Real Prediction<Real>::log_class_weight(const Cell<Real>& cell) {
+  if (source_.object >= Real(1)) return 0;
+  const Real clutter = source_.lasting_source + source_.brief_source();
+  return std::log(source_.object + source_.side_lobe * on_ring(cell) +
+                  clutter * view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(cell.n))));
+}
+
+template <typename Real>
+Real Prediction<Real>::log_likelihood(const Cell<Real>& cell) {
+  const Real n = cell.n, f = Real(1) / n;
+  const Symmetric2<Real> s = position_covariance_ + f * scatter_;
+  const Real det = determinant(s), root = std::sqrt(det);
+  const Real h = Real(1) / std::sqrt(trace(s) + Real(2) * root);
+  const Symmetric2<Real> s_root{(s.xx + root) * h, s.xy * h, (s.yy + root) * h};  // determinant: root
+  const Vector2<Real> e = cell.mean() - position_m_;
+  const Vector2<Real> whitened{(s_root.yy * e.x - s_root.xy * e.y) / root, (s_root.xx * e.y - s_root.xy * e.x) / root};
+  const Symmetric2<Real> posterior = extent_scale_ + congruent(shape_, cell.scatter()) + outer(extent_root_ * whitened);
+  Real log_p = terms_by_count(n) - (extent_dof_ + n - Real(3)) / Real(2) * std::log(determinant(posterior)) -
+               std::log(det) / Real(2);
+  if (view_.range_rate_variance > 0) {
+    const Symmetric2<Real> information{s.yy / det, -s.xy / det, s.xx / det};
+    const Matrix2<Real> vp = transpose(position_velocity_covariance_);
+    const Vector2<Real> velocity = velocity_mps_ + vp * (information * e);
+    const Symmetric2<Real> c = velocity_covariance_ - congruent(vp, information);
+    const RateUpdate<Real> rate(cell, velocity, c, view_.range_rate_variance);
+    const Real chi2 =
+        (cell.rate_squares - Real(2) * dot(cell.sight_rate, velocity) + quadratic(cell.sight_squares, velocity)) /
+            view_.range_rate_variance -
+        dot(rate.innovation, rate.correction);
+    log_p -= (n * (kLogTwoPi<Real> + std::log(view_.range_rate_variance)) + std::log(rate.factor_determinant) + chi2) /
+             Real(2);
+  }
+  return log_p - cell.log_clutter + log_class_weight(cell);
+}
+
+template <typename Real>
+Real Prediction<Real>::log_intensity(const Measurement<Real>& z) const {
+  Real log_p = std::log(expected_) - kLogTwoPi<Real> - log_half_determinant_ - place_distance(z.position_m) / Real(2);
+  if (view_.range_rate_variance > 0) {
+    const Real variance = view_.range_rate_variance + quadratic(velocity_covariance_, z.sight);
+    log_p -= (kLogTwoPi<Real> + std::log(variance) + range_rate_distance(z)) / Real(2);
+  }
+  return log_p - z.log_clutter;
+}
+
+template <typename Real>
+Real Prediction<Real>::range_rate_distance(const Measurement<Real>& z) const {
+  if (view_.range_rate_variance <= 0) return 0;
+  const Real e = z.range_rate_mps - dot(z.sight, velocity_mps_);
+  return e * e / (view_.range_rate_variance + quadratic(velocity_covariance_, z.sight));
+}
+
+template <typename Real>
+Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Cell<Real>& cell) {
+  Component<Real> out = prior;
+  const Real n = cell.n;
+  const Symmetric2<Real> r = (Real(1) / n) * held_scatter_, s = prior.position_covariance + r, information = inverse(s);
+  const Vector2<Real> e = cell.mean() - prior.position_m, w = information * e;
+  const Matrix2<Real> pv = prior.position_velocity_covariance, vp = transpose(pv);
+  out.position_m = prior.position_m + prior.position_covariance * w;
+  out.velocity_mps = prior.velocity_mps + vp * w;
+  const Matrix2<Real> gain = prior.position_covariance * information, v_gain = vp * information;
+  const Matrix2<Real> keep = Matrix2<Real>{1, 0, 0, 1} - gain;
+  // Joseph form: (I − KH) P (I − KH)ᵀ + K R Kᵀ
+  out.position_covariance = congruent(keep, prior.position_covariance) + congruent(gain, r);
+  out.position_velocity_covariance = keep * pv;
+  const Matrix2<Real> cross = v_gain * pv;
+  out.velocity_covariance = prior.velocity_covariance -
+                            Symmetric2<Real>{Real(2) * cross.xx, cross.xy + cross.yx, Real(2) * cross.yy} +
+                            congruent(v_gain, s);
+
+  out.extent_scale =
+      prior.extent_scale + congruent(shape_, cell.scatter()) + outer(extent_root_ * (inverse(square_root(s)) * e));
+  out.extent_dof = prior.extent_dof + n;
+  out.rate_shape = prior.rate_shape + n;
+  out.rate_inverse_scale = prior.rate_inverse_scale + view_.exposure;
+  const Real of_mirror = n / (n + rate_shape_);
+  out.mirror = prior.mirror + of_mirror * (cell.mirror / n - prior.mirror);
+
+  if (source_.object < Real(1)) {
+    const Real ratio = view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(n)));
+    const Real lobe = source_.side_lobe * on_ring(cell), lasting = source_.lasting_source * ratio;
+    const Real sum = source_.object + lobe + lasting + source_.brief_source() * ratio;
+    out.source.object = source_.object / sum;
+    out.source.side_lobe = lobe / sum;
+    out.source.lasting_source = lasting / sum;
+  }
+  if (view_.source_seen < Real(1)) out.source.radar = -1;
+
+  if (view_.range_rate_variance > 0) {
+    const Symmetric2<Real> c = out.velocity_covariance;
+    const RateUpdate<Real> rate(cell, out.velocity_mps, c, view_.range_rate_variance);
+    out.velocity_mps = out.velocity_mps + rate.correction;
+    out.velocity_covariance = rate.covariance;
+    // Place: x̂ += P_pv y with y = (I + ΛC)⁻¹d, P_pp −= P_pv (I + ΛC)⁻¹Λ P_vp
+    const Real f = Real(1) / rate.factor_determinant;
+    const Matrix2<Real> solve = f * (Matrix2<Real>{1, 0, 0, 1} + adjugate(c) * adjugate(rate.information));
+    const Vector2<Real> y = solve * rate.innovation;
+    const Matrix2<Real> before = out.position_velocity_covariance;
+    const Symmetric2<Real> information_of_place = f * (rate.information + rate.information_determinant * adjugate(c));
+    out.position_m = out.position_m + before * y;
+    out.position_covariance = out.position_covariance - congruent(before, information_of_place);
+    out.position_velocity_covariance = before * solve;
+  }
+  return out;
+}
+
+template <typename Real>
+Component<Real> Prediction<Real>::missed_component(const Component<Real>& prior) const {
+  Component<Real> out = prior;
+  // Not detected, or detected with no point: a mixture of two gammas by its moments.
+  const Real share = detection_probability_ * std::exp(log_none_) / missed_;
+  constexpr Real kNegligible = Real(1e-3);
+  if (share <= kNegligible) return out;
+  const Real before = prior.rate_shape / prior.rate_inverse_scale;
+  const Real scale = prior.rate_inverse_scale + view_.exposure, after = prior.rate_shape / scale;
+  const Real mean = (Real(1) - share) * before + share * after;
+  const Real variance = (Real(1) - share) * (before / prior.rate_inverse_scale + before * before) +
+                        share * (after / scale + after * after) - mean * mean;
+  out.rate_inverse_scale = mean / variance;
+  out.rate_shape = mean * out.rate_inverse_scale;
+  return out;
+}
+
+template class Prediction<double>;
+template class Prediction<float>;
+
+}  // namespace boresight::tracking

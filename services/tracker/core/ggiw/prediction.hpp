@@ -1,0 +1,102 @@
+// A component as one scan is expected to show it, and the likelihood of a cell under it.
+//
+// The likelihood is collapsed: place, velocity, extent and rate of detections are integrated out in closed form
+// (Granström and Orguner 2012, (27)…(33); Granström, Fatemi and Svensson 2020, table I). The range rates ṙᵢ = uᵢᵀ v +
+// noise enter as an information update of the velocity that is left after the positions:
+//   p(ṙ | v ~ N(v̂, C)) = N(0; …) with Λ = Σ uᵢuᵢᵀ / σ², d = Σ uᵢṙᵢ / σ² − Λ v̂ and χ² = Σ (ṙᵢ − uᵢᵀv̂)² / σ² − dᵀ(I +
+//   CΛ)⁻¹C d.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "services/tracker/core/ggiw/component.hpp"
+
+namespace boresight::tracking {
+
+/// What the sensor of a scan is to an object at its predicted place.
+template <typename Real>
+struct View {
+  Real detection_probability = 0;  ///< in view, not hidden, not blind to its range rate
+  Real exposure = 1;               ///< expected number of detections relative to the nominal range
+  Symmetric2<Real> noise_m2;       ///< of one position
+  Real range_rate_variance = 0;    ///< m²/s²; 0: range rates are not used
+  Real spread = Real(0.25);        ///< detections scatter with spread · X
+  Real held = 1;                   ///< variance of the mean of detections over several scans, relative to white ones
+  Real source_more = Real(0.25);   ///< chance that a source of clutter gives one more detection
+  Real source_seen = 1;            ///< chance that a source of clutter is there for this radar, too
+};
+
+template <typename Real>
+class Prediction {
+ public:
+  Prediction() = default;
+  Prediction(const Component<Real>& component, const View<Real>& view);
+
+  /// log of P_D · p(cell | component) over the product of the cell's clutter densities; n ≥ 1, fractions allowed.
+  [[nodiscard]] Real log_likelihood(const Cell<Real>& cell);
+  /// The density of one measurement's place and range rate times the expected number, over its clutter density; log.
+  [[nodiscard]] Real log_intensity(const Measurement<Real>& z) const;
+  /// Squared Mahalanobis distances of place and of range rate to the prediction of one measurement.
+  [[nodiscard]] Real place_distance(const Vector2<Real>& position_m) const {
+    return quadratic(measurement_information_, position_m - position_m_);
+  }
+  [[nodiscard]] Real range_rate_distance(const Measurement<Real>& z) const;
+  /// 1 − P_D + P_D · p(no detection | seen): "detected, but no point" included.
+  [[nodiscard]] Real missed() const { return missed_; }
+
+  /// The component with the cell as its detections.
+  [[nodiscard]] Component<Real> updated(const Component<Real>& component, const Cell<Real>& cell);
+  /// The component after a scan that shows nothing of it.
+  [[nodiscard]] Component<Real> missed_component(const Component<Real>& component) const;
+
+  /// How much likelier so many detections are of a source of clutter than of an object; log.
+  [[nodiscard]] Real log_source_ratio(Real n);
+  void move_to(const Vector2<Real>& position_m) { position_m_ = position_m; }
+  [[nodiscard]] const Vector2<Real>& position_m() const { return position_m_; }
+  [[nodiscard]] const Vector2<Real>& velocity_mps() const { return velocity_mps_; }
+  [[nodiscard]] const Symmetric2<Real>& velocity_covariance() const { return velocity_covariance_; }
+  [[nodiscard]] Symmetric2<Real> extent_m2() const { return (Real(1) / (extent_dof_ - Real(6))) * extent_scale_; }
+  [[nodiscard]] const Symmetric2<Real>& scatter_m2() const { return scatter_; }
+  [[nodiscard]] const Symmetric2<Real>& position_covariance() const { return position_covariance_; }
+  [[nodiscard]] Real range_rate_variance() const { return view_.range_rate_variance; }
+  [[nodiscard]] Real detection_probability() const { return detection_probability_; }
+  /// Squared semi-axes of the gate for a squared distance of 1, along the axes.
+  [[nodiscard]] const Symmetric2<Real>& measurement_covariance() const { return measurement_covariance_; }
+
+ private:
+  static constexpr std::size_t kTabulated = 64;  // beyond it, the gamma functions are computed by a series
+  static constexpr auto kLastTabulated = static_cast<Real>(kTabulated - 1);
+
+  void tabulate(std::size_t n);
+  [[nodiscard]] Real interpolated(const std::array<Real, kTabulated>& table, Real n);
+  /// Of `more` detections than tabulated: gamma function of the rate.
+  [[nodiscard]] Real rates_beyond_table(Real more) const;
+  /// Terms of the likelihood that depend on the number of detections alone.
+  [[nodiscard]] Real terms_by_count(Real n);
+  /// log p(n | object).
+  [[nodiscard]] Real log_count(Real n);
+  [[nodiscard]] Real log_class_weight(const Cell<Real>& cell);
+  [[nodiscard]] Real on_ring(const Cell<Real>& cell) const;
+
+  View<Real> view_;
+  Vector2<Real> position_m_, velocity_mps_;
+  Symmetric2<Real> position_covariance_, velocity_covariance_;
+  Matrix2<Real> position_velocity_covariance_;
+  Symmetric2<Real> scatter_;       // R = spread · X + noise: of one detection
+  Symmetric2<Real> held_scatter_;  // held · spread · X + noise: of one, where its place is held from scan to scan
+  Symmetric2<Real> extent_root_;   // X^½
+  Matrix2<Real> shape_;            // B = X^½ R^−½
+  Symmetric2<Real> measurement_covariance_, measurement_information_;
+  Symmetric2<Real> extent_scale_;
+  Real extent_dof_ = 8;
+  Real rate_shape_ = 1, rate_inverse_scale_ = 1, expected_ = 0;
+  Real detection_probability_ = 0, missed_ = 1, log_half_determinant_ = 0;
+  SourceClasses<Real> source_;
+  // Terms of the likelihood that depend on the number of detections alone, and log p(n | object).
+  std::array<Real, kTabulated> by_count_{}, log_count_{};
+  std::size_t tabulated_ = 0;
+  Real log_rate_step_ = 0, log_exposure_ = 0, extent_terms_ = 0, per_detection_ = 0, constant_ = 0, log_none_ = 0;
+};
+
+}  // namespace boresight::tracking

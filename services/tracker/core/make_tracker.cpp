@@ -1,0 +1,47 @@
+#include "services/tracker/core/make_tracker.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/model/scenario_model.hpp"
+#include "services/tracker/core/output/ellipse_reporter.hpp"
+#include "services/tracker/core/output/track_reporter.hpp"
+#include "services/tracker/core/phd/phd_filter.hpp"
+#include "services/tracker/core/pmbm/pmbm_filter.hpp"
+#include "services/tracker/core/point_process_tracker.hpp"
+#include "services/tracker/core/tracker.hpp"
+
+namespace boresight::tracking {
+
+namespace {
+
+std::unique_ptr<Filter> make_filter(std::string_view name, const Config& config) {
+  if (name == "pmbm") return std::make_unique<pmbm::PmbmFilter>(config.pmbm, config.capacity);
+  if (name == "phd") return std::make_unique<phd::PhdFilter>(config.phd, phd::Capacity{});
+  throw std::invalid_argument("unknown tracker \"" + std::string(name) + "\"");
+}
+
+}  // namespace
+
+std::vector<std::string> tracker_names() {
+  return {"rules", "pmbm", "phd"};
+}
+
+std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const VehicleConfig& vehicle,
+                                                 const Config& config) {
+  if (name == "rules") return std::make_unique<Tracker>(vehicle, config.rules);
+  auto filter = make_filter(name, config);
+  auto model = std::make_unique<RadarModel>(vehicle, config.model);
+  auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.box, config.capacity.objects);
+  return std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
+}
+
+std::unique_ptr<MultiObjectTracker> make_scenario_tracker(std::string_view name, const LinearScenario& scenario) {
+  Config config;
+  config.pmbm = {};  // what is learnt of radars does not hold here
+  return std::make_unique<PointProcessTracker>(std::make_unique<ScenarioModel>(scenario), make_filter(name, config),
+                                               std::make_unique<EllipseReporter>());
+}
+
+}  // namespace boresight::tracking

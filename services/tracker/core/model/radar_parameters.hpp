@@ -1,0 +1,74 @@
+// Numbers of the radar model. Levels that differ from radar to radar are learnt; these are where learning starts.
+#pragma once
+
+#include "services/tracker/core/ggiw/component.hpp"
+
+namespace boresight::tracking {
+
+struct DetectionParameters {
+  double detection_probability = 0.95;  ///< of an object in view (measured: radar-statistics R)
+  double view_edge_rad = 0.06;          ///< softness of the edges of the field of view
+  double range_edge_m = 2.0;
+  double stationary_sigma = 4.0;         ///< what deviates less from a stationary reflector looks like one
+  double motion_std_mps = 0.05;          ///< of the sensor's own velocity, in that test
+  double body_range_rate_std_mps = 0.2;  ///< of an object's parts, beside the sensor's noise
+  double spread = 0.25;                  ///< covariance of reflections relative to the extent
+  double held_factor = 5.0;  ///< places of reflections are held for some scans: their mean is that much worse
+  double count = 1.5;        ///< mean detections a scan at `count_range_m`
+  double count_shape = 2.0;  ///< of the gamma over objects
+  double count_range_m = 30.0;
+  double count_power = 0.8;  ///< the mean falls with range^−power
+};
+
+/// Undetected objects of one kind of motion: density, and each component of the velocity.
+struct BirthKind {
+  double density_per_m2 = 1e-5;
+  double speed_std_mps = 10.0;
+  bool with_traffic = false;  ///< about the own vehicle's velocity instead of about zero
+};
+
+struct BirthParameters {
+  BirthKind slow{1e-5, 1.5, false};    ///< people
+  BirthKind any{2e-5, 10.0, false};    ///< vehicles of all directions
+  BirthKind traffic{2e-5, 4.0, true};  ///< vehicles that drive as the own one
+  double half_length_m = 1.5;          ///< of a new object
+  double vehicle_length_m = 4.4;       ///< parts of one vehicle lie nearer along its course …
+  double vehicle_width_m = 1.4;        ///< … and across; those of two do not
+  double person_m = 0.6;               ///< the same of people, in any direction
+  double vehicle_speed_mps = 3.0;      ///< from about here on objects take the place of vehicles
+  double same_speed_chi2 = 9.0;        ///< squared distance of velocities up to which two objects move alike
+  double link_distance_m = 2.5;        ///< detections of one new object are nearer
+  double link_range_rate_mps = 1.0;
+};
+
+struct ClutterParameters {
+  double memory_s = 3.0;          ///< of the learnt intensity
+  double table_scans = 4.0;       ///< weight of the starting table
+  double with_ego_factor = 8.0;   ///< start level of echoes that keep pace with the own vehicle
+  double origin_weight = 1.0;     ///< of the ghost filter's log odds that a detection is no moving object's
+  double origin_limit = 3.0;      ///< largest magnitude of these log odds that counts: evidence must saturate
+  double origin_memory_s = 10.0;  ///< of the radar's mean share of moving objects' detections, against which they count
+};
+
+struct SourceParameters {
+  double share = 0.15;           ///< of clutter that comes from sources that last
+  double life_s = 0.3;           ///< of such a source
+  double more = 0.25;            ///< chance of one more detection of it in a scan
+  double lasting_share = 0.05;   ///< of these sources that last as long as objects
+  double other_radar = 0.3;      ///< chance that another radar detects the source, too
+  double side_lobes = 1.5;       ///< detections a scan that an object gives at other azimuths
+  double side_lobe_birth = 0.1;  ///< of these that begin a source which lasts
+};
+
+struct RadarModelParameters {
+  DetectionParameters detection;
+  BirthParameters birth;
+  ClutterParameters clutter;
+  SourceParameters source;
+  MotionParameters motion{2.0, 1.0, 1.0, 2.0, 8.0};
+  double object_life_s = 8.0;  ///< mean time that an object stays in the scene
+  double longest_gap_s = 2.0;  ///< after a longer one all tracks are dropped
+  double latest_scan_s = 0.3;  ///< a scan that is later than this is a jump of the clock
+};
+
+}  // namespace boresight::tracking

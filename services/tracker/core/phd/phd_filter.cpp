@@ -1,0 +1,500 @@
+#include "services/tracker/core/phd/phd_filter.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace boresight::tracking::phd {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNothing = -kInfinity;
+constexpr double kUnseen = 1e-3;       // of detection: no measurement of the scan is its own
+constexpr std::uint32_t kNew = 0;      // identity of a newborn component
+constexpr std::size_t kBeforeCap = 2;  // room for components before the lightest are dropped
+constexpr double kLeastShare = 1e-3;   // of a measurement: less changes nothing
+
+/// What the parts shared with the PMBM filter need. A stored group is one component.
+pmbm::Parameters shared(const Parameters& p) {
+  pmbm::Parameters out;
+  out.gate_chi2 = p.gate_chi2;
+  out.merge_distance = p.merge_distance;
+  out.min_poisson_weight = p.min_poisson_weight;
+  return out;
+}
+
+pmbm::Capacity shared(const Capacity& c) {
+  pmbm::Capacity out;
+  out.measurements = c.measurements;
+  out.objects = out.local_hypotheses = out.groups = c.components;
+  out.group_objects = 2 * c.group_components;  // Grouping leaves half of it to new objects
+  out.group_measurements = c.group_measurements;
+  out.rows = out.candidates = 1;
+  out.poisson_components = c.poisson_components;
+  return out;
+}
+
+/// Existence of a Bernoulli component that is missed with probability q.
+double missed_existence(double r, double q) {
+  return r < 1.0 ? r * q / (1.0 - r + r * q) : 1.0;
+}
+
+}  // namespace
+
+PhdFilter::PhdFilter(const Parameters& parameters, const Capacity& c)
+    : parameters_(parameters),
+      capacity_(c),
+      poisson_(shared(parameters), shared(c)),
+      store_(shared(c)),
+      grouping_(shared(parameters), shared(c)),
+      partitions_(c),
+      identity_index_(std::bit_ceil(2 * c.components + 2)),
+      next_index_(std::bit_ceil(2 * c.components + 2)),
+      sets_(c.group_measurements) {
+  keys_.reserve(c.measurements);
+  for (std::size_t i = 0; i < c.measurements; ++i) keys_.push_back(mixed(i + 1));
+  identities_.reserve(c.components);
+  next_identities_.reserve(c.components);
+  heaviest_.reserve(c.components);
+  corrected_.reserve(kBeforeCap * c.components);
+  components_.reserve(c.group_components);
+  identity_.reserve(c.group_components);
+  predictions_.reserve(c.group_components);
+  log_weights_.reserve(c.group_components);
+  expected_.reserve(c.group_components);
+  existence_.reserve(c.group_components);
+  z_.reserve(c.group_measurements);
+  scan_index_.reserve(c.group_measurements);
+  children_.reserve(c.group_children);
+  assigned_.reserve(c.group_measurements);
+  assigned_object_.reserve(c.group_measurements);
+  objects_.reserve(c.group_components);
+  shares_.reserve(c.group_measurements * c.group_components);
+  order_.reserve(c.group_measurements);
+  blocks_.reserve(c.group_measurements + 1);
+  block_z_.reserve(c.group_measurements);
+  block_keys_.reserve(c.group_measurements);
+  block_labels_.reserve(c.group_measurements);
+  block_shares_.reserve(c.group_measurements * c.group_components);
+  log_terms_.reserve(c.cells * (c.group_components + 1));
+  log_d_.reserve(c.cells);
+  omega_.reserve(c.partitions);
+  cell_probability_.reserve(c.cells);
+  cell_explained_.reserve(c.cells);
+  by_weight_.reserve(std::max(kBeforeCap * c.components, c.group_children));
+  is_merged_.reserve(c.group_children);
+  mixture_.reserve(c.group_children);
+  estimates_.reserve(c.components);
+  explained_.reserve(c.measurements);
+}
+
+void PhdFilter::clear() {
+  poisson_.clear();
+  store_.clear();
+  identities_.clear();
+  estimates_.clear();
+}
+
+double PhdFilter::cardinality() const {
+  double sum = 0.0;
+  for (std::size_t g = 0; g < store_.size(); ++g) sum += store_.pool(g).front().existence;
+  return sum;
+}
+
+void PhdFilter::step(Model& model, double elapsed_s) {
+  work_ = {};
+  explained_.assign(model.measurements().size(), 0.0);
+  corrected_.clear();
+  std::size_t cut = 0;
+
+  predict(model, elapsed_s);  // (1)
+  poisson_.begin_scan(model);
+  for (const pmbm::WorkItem& item : grouping_.find(model, poisson_, store_, cut)) {
+    begin_group(model, item);
+    for (std::size_t block = 0; block + 1 < blocks_.size(); ++block) {  // (5)
+      partition(model, block);
+      weigh_partitions(model);         // (3) and (4)
+      correct_detected(model, block);  // (2), second sum
+    }
+    correct_missed();  // (2), first sum, or (6)
+    reduce();
+  }
+  poisson_.end_scan(model);
+  identify();  // (7)
+  report();
+
+  work_.budget_reached = work_.likelihood_evaluations > parameters_.work_budget;
+  work_.dropped_objects += static_cast<std::uint32_t>(cut);
+}
+
+void PhdFilter::predict(const Model& model, double elapsed_s) {
+  identity_index_.clear();
+  for (std::size_t i = 0; i < identities_.size(); ++i) {
+    static_cast<void>(identity_index_.insert(identities_[i].id, static_cast<int>(i)));
+    identities_[i].missed = identities_[i].detected = 0.0;
+  }
+  // Of an identity, the mean survival of its components counts; `missed` serves as their sum.
+  for (std::size_t g = 0; g < store_.size(); ++g) {
+    pmbm::LocalHypothesis& local = store_.pool(g).front();
+    local.existence *= model.predict(local.component, elapsed_s);
+    identities_[static_cast<std::size_t>(identity_index_.find(store_.ids(g).front()))].missed += local.existence;
+  }
+  for (Identity& identity : identities_) {
+    identity.existence *= identity.missed / identity.weight;
+    identity.weight = identity.missed;
+    identity.missed = 0.0;
+  }
+  poisson_.predict(model, elapsed_s);
+}
+
+void PhdFilter::begin_group(Model& model, const pmbm::WorkItem& item) {
+  components_.clear();
+  identity_.clear();
+  predictions_.clear();
+  log_weights_.clear();
+  expected_.clear();
+  existence_.clear();
+  children_.clear();
+  for (const std::size_t g : grouping_.groups(item)) {
+    const pmbm::LocalHypothesis& local = store_.pool(g).front();
+    const Component<double>& c = local.component;
+    const View<double> view = model.view(c);
+    components_.push_back({store_.ids(g).front(), 0.0, local});
+    identity_.push_back(static_cast<std::size_t>(identity_index_.find(components_.back().id)));
+    predictions_.emplace_back(c, view);
+    log_weights_.push_back(std::log(local.existence));
+    expected_.push_back(view.exposure * c.rate_shape / c.rate_inverse_scale);
+    existence_.push_back(identities_[identity_.back()].existence * c.source.object);
+  }
+  z_.clear();
+  scan_index_.clear();
+  blocks_.clear();
+  for (const std::size_t i : grouping_.measurements(item)) {
+    z_.push_back(model.measurements()[i]);
+    scan_index_.push_back(i);
+  }
+  if (z_.empty()) return;
+  model.begin_group(z_, predictions_, existence_);
+  poisson_.begin_group(model, z_);
+  assign();
+  find_blocks(model);
+}
+
+bool PhdFilter::is_in_gate(const Prediction<double>& p, const Measurement<double>& z) const {
+  return p.detection_probability() >= kUnseen && p.place_distance(z.position_m) <= parameters_.gate_chi2 &&
+         p.range_rate_distance(z) <= parameters_.gate_chi2;
+}
+
+void PhdFilter::assign() {
+  const std::size_t n = z_.size();
+  objects_.clear();
+  for (const std::size_t i : identity_) {
+    const bool is_object = identities_[i].existence >= parameters_.object_probability;
+    if (is_object && std::find(objects_.begin(), objects_.end(), i) == objects_.end()) objects_.push_back(i);
+  }
+  assigned_.assign(n, Partitions::kNone);
+  assigned_object_.assign(n, Partitions::kNone);
+  shares_.assign(n * objects_.size(), 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    double* shares = shares_.data() + i * objects_.size();
+    double best = kNothing, sum = 1.0;  // clutter is 1
+    for (std::size_t j = 0; j < components_.size(); ++j) {
+      if (!is_in_gate(predictions_[j], z_[i])) continue;
+      const double log_intensity = predictions_[j].log_intensity(z_[i]);
+      // Each measurement to the identity with the largest predicted intensity.
+      if (log_weights_[j] + log_intensity > best) {
+        best = log_weights_[j] + log_intensity;
+        assigned_[i] = static_cast<std::int16_t>(identity_[j]);
+      }
+      // Objects share it by their intensities, given that they exist.
+      const auto object = std::find(objects_.begin(), objects_.end(), identity_[j]);
+      if (object == objects_.end()) continue;
+      const double intensity = components_[j].local.existence / identity_of(j).weight * std::exp(log_intensity);
+      shares[object - objects_.begin()] += intensity;
+      sum += intensity;
+    }
+    double most = 0.0;
+    for (std::size_t k = 0; k < objects_.size(); ++k) {
+      shares[k] = shares[k] < kLeastShare * sum ? 0.0 : shares[k] / sum;
+      if (shares[k] <= most) continue;
+      most = shares[k];
+      assigned_object_[i] = static_cast<std::int16_t>(k);
+    }
+  }
+}
+
+void PhdFilter::find_blocks(const Model& model) {
+  // Measurements that share a cell in one of the coarsest partitions are in one block.
+  const std::size_t n = z_.size();
+  sets_.reset(n);
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = a + 1; b < n; ++b) {
+      const bool is_one_object = assigned_[a] != Partitions::kNone && assigned_[a] == assigned_[b];
+      if (is_one_object || model.are_linked(z_[a], z_[b])) sets_.join(a, b);
+    }
+  }
+  for (std::size_t k = 0; k < objects_.size(); ++k) {
+    std::size_t first = n;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (shares_[i * objects_.size() + k] <= 0.0) continue;
+      if (first == n) first = i;
+      sets_.join(first, i);
+    }
+  }
+  order_.clear();
+  for (std::size_t i = 0; i < n; ++i) order_.push_back(i);
+  std::sort(order_.begin(), order_.end(), [this](std::size_t a, std::size_t b) {
+    const std::size_t root_a = sets_.root(a), root_b = sets_.root(b);
+    return root_a != root_b ? root_a < root_b : a < b;
+  });
+  for (std::size_t k = 0; k < n; ++k) {
+    if (k == 0 || sets_.root(order_[k]) != sets_.root(order_[k - 1])) blocks_.push_back(k);
+  }
+  blocks_.push_back(n);
+}
+
+void PhdFilter::add_child(const Hypothesis& child) {
+  if (children_.size() == children_.capacity()) {
+    ++work_.dropped_objects;
+    return;
+  }
+  children_.push_back(child);
+}
+
+void PhdFilter::correct_missed() {
+  for (std::size_t j = 0; j < components_.size(); ++j) {
+    const pmbm::LocalHypothesis& local = components_[j].local;
+    Identity& identity = identity_of(j);
+    const double q = predictions_[j].missed();
+    identity.missed += q * local.existence;
+    const double not_detected = 1.0 - std::min(1.0, identity.detected);
+    const double weight = (parameters_.as_published ? 1.0 : not_detected) * q * local.existence;
+    // Of a certain object, the share in its existence counts: some misses must not end it.
+    const double held = not_detected * missed_existence(identity.existence, q) * local.existence / identity.weight;
+    const double importance = std::max(weight, held);
+    if (importance < parameters_.prune_weight) continue;
+    add_child({components_[j].id, importance, {weight, 0.0, {}, predictions_[j].missed_component(local.component)}});
+  }
+}
+
+void PhdFilter::partition(const Model& model, std::size_t block) {
+  const std::span<const std::size_t> members{order_.data() + blocks_[block], blocks_[block + 1] - blocks_[block]};
+  block_z_.clear();
+  block_keys_.clear();
+  for (const std::size_t i : members) {
+    block_z_.push_back(z_[i]);
+    block_keys_.push_back(keys_[scan_index_[i]]);
+  }
+  partitions_.begin(block_z_, block_keys_);
+
+  block_labels_.clear();
+  block_shares_.clear();
+  for (const std::size_t i : members) {
+    block_labels_.push_back(assigned_object_[i]);
+    const double* shares = shares_.data() + i * objects_.size();
+    block_shares_.insert(block_shares_.end(), shares, shares + objects_.size());
+  }
+  // The first is weighed even when the work budget is spent: it makes no new objects of clutter.
+  partitions_.add_predicted(model, block_labels_, Rest::kAlone);
+  for (const Rest rest : {Rest::kAlone, Rest::kLinked}) {
+    partitions_.add_shared(model, block_labels_, block_shares_, objects_.size(), rest);
+  }
+  block_labels_.clear();
+  for (const std::size_t i : members) block_labels_.push_back(assigned_[i]);
+  for (const Rest rest : {Rest::kAlone, Rest::kLinked}) partitions_.add_predicted(model, block_labels_, rest);
+
+  partitions_.add_by_distance(model);
+  partitions_.add_split([this](const Cell<double>& cell) {
+    double nearest = parameters_.gate_chi2, expected = kInfinity;
+    for (std::size_t j = 0; j < components_.size(); ++j) {
+      const double d2 = predictions_[j].place_distance(cell.mean());
+      if (d2 >= nearest) continue;
+      nearest = d2;
+      expected = expected_[j];
+    }
+    return expected;
+  });
+}
+
+void PhdFilter::weigh_cell(Model& model, std::size_t index) {
+  const Cell<double>& cell = partitions_.cells()[index];
+  const std::size_t births = components_.size();
+  double* terms = log_terms_.data() + index * (births + 1);
+  const double of_clutter = cell.n == 1.0 ? 0.0 : kNothing;
+  double best = of_clutter;
+  for (std::size_t j = 0; j < births; ++j) {
+    Prediction<double>& p = predictions_[j];
+    const bool is_far = p.detection_probability() < kUnseen || p.place_distance(cell.mean()) > parameters_.gate_chi2;
+    terms[j] = is_far ? kNothing : log_weights_[j] + p.log_likelihood(cell);
+    if (!is_far) ++work_.likelihood_evaluations;
+    best = std::max(best, terms[j]);
+  }
+  terms[births] = poisson_.log_likelihood(model, cell);
+  ++work_.likelihood_evaluations;
+  best = std::max(best, terms[births]);
+  log_d_[index] = kNothing;
+  if (best == kNothing) return;
+  double sum = std::exp(of_clutter - best);
+  for (std::size_t j = 0; j <= births; ++j) sum += std::exp(terms[j] - best);
+  log_d_[index] = best + std::log(sum);
+}
+
+void PhdFilter::weigh_partitions(Model& model) {
+  constexpr double kUnknown = kInfinity;
+  const std::size_t cells = partitions_.cells().size();
+  log_terms_.resize(cells * (components_.size() + 1));
+  log_d_.assign(cells, kUnknown);
+  cell_probability_.assign(cells, 0.0);
+  omega_.clear();
+  double best = kNothing, sum = 0.0;
+  for (std::size_t p = 0; p < partitions_.size(); ++p) {
+    if (p > 0 && work_.likelihood_evaluations > parameters_.work_budget) break;
+    double log_product = partitions_.log_count(p);
+    for (const std::int16_t c : partitions_.cells_of(p)) {
+      const auto cell = static_cast<std::size_t>(c);
+      if (log_d_[cell] == kUnknown) weigh_cell(model, cell);
+      log_product += log_d_[cell];
+    }
+    omega_.push_back(log_product);
+    best = std::max(best, log_product);
+  }
+  if (best == kNothing) {  // nothing explains these measurements
+    omega_.clear();
+    return;
+  }
+  for (double& omega : omega_) sum += omega = std::exp(omega - best);
+  for (std::size_t p = 0; p < omega_.size(); ++p) {
+    omega_[p] /= sum;
+    for (const std::int16_t c : partitions_.cells_of(p)) cell_probability_[static_cast<std::size_t>(c)] += omega_[p];
+  }
+}
+
+void PhdFilter::correct_detected(Model& model, std::size_t block) {
+  const std::size_t births = components_.size();
+  cell_explained_.assign(partitions_.cells().size(), 0.0);
+  for (std::size_t c = 0; c < partitions_.cells().size(); ++c) {
+    if (cell_probability_[c] < parameters_.prune_weight) continue;
+    const Cell<double>& cell = partitions_.cells()[c];
+    const double* terms = log_terms_.data() + c * (births + 1);
+    for (std::size_t j = 0; j < births; ++j) {
+      const double share = std::exp(terms[j] - log_d_[c]), weight = cell_probability_[c] * share;
+      identity_of(j).detected += weight;
+      if (weight < parameters_.prune_weight) continue;
+      const Component<double> updated = predictions_[j].updated(components_[j].local.component, cell);
+      cell_explained_[c] += share * updated.source.object;
+      add_child({components_[j].id, weight, {weight, cell.n, cell.scatter(), updated}});
+    }
+    const double weight = cell_probability_[c] * std::exp(terms[births] - log_d_[c]);
+    Component<double> newborn;
+    if (weight < parameters_.prune_weight || !poisson_.first_detected(model, cell, newborn)) continue;
+    add_child({kNew, weight, {weight, cell.n, cell.scatter(), newborn}});
+  }
+  for (std::size_t p = 0; p < omega_.size(); ++p) {
+    const auto labels = partitions_.labels(p);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (labels[i] == Partitions::kNone) continue;
+      const std::size_t in_scan = scan_index_[order_[blocks_[block] + i]];
+      explained_[in_scan] += omega_[p] * cell_explained_[static_cast<std::size_t>(labels[i])];
+    }
+  }
+}
+
+void PhdFilter::reduce() {
+  by_weight_.clear();
+  for (std::size_t i = 0; i < children_.size(); ++i) by_weight_.push_back(i);
+  std::sort(by_weight_.begin(), by_weight_.end(), [this](std::size_t a, std::size_t b) {
+    const double weight_a = children_[a].local.existence, weight_b = children_[b].local.existence;
+    return weight_a != weight_b ? weight_a > weight_b : a < b;
+  });
+  is_merged_.assign(children_.size(), 0);
+  for (const std::size_t i : by_weight_) {
+    if (is_merged_[i] != 0) continue;
+    if (corrected_.size() == corrected_.capacity()) {
+      ++work_.dropped_objects;
+      continue;
+    }
+    // What is like the heaviest component left becomes one with it, and takes its identity and its source.
+    const Hypothesis& heaviest = children_[i];
+    double weight = 0.0, importance = 0.0;
+    mixture_.clear();
+    for (const std::size_t j : by_weight_) {
+      if (is_merged_[j] != 0) continue;
+      const pmbm::LocalHypothesis& other = children_[j].local;
+      if (j != i && distance(heaviest.local.component, other.component) >= parameters_.merge_distance) continue;
+      is_merged_[j] = 1;
+      weight += other.existence;
+      importance = std::max(importance, children_[j].importance);
+      mixture_.push_back({other.existence, &other.component});
+    }
+    corrected_.push_back({heaviest.id,
+                          std::max(weight, importance),
+                          {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_)}});
+    corrected_.back().local.component.source = heaviest.local.component.source;
+  }
+}
+
+void PhdFilter::identify() {
+  for (Identity& identity : identities_) {
+    const double a = std::min(1.0, identity.detected), q = identity.missed / identity.weight;
+    identity.existence = a + (1.0 - a) * missed_existence(identity.existence, q);
+  }
+  by_weight_.clear();
+  for (std::size_t i = 0; i < corrected_.size(); ++i) by_weight_.push_back(i);
+  if (corrected_.size() > capacity_.components) {
+    std::sort(by_weight_.begin(), by_weight_.end(), [this](std::size_t a, std::size_t b) {
+      const double of_a = corrected_[a].importance, of_b = corrected_[b].importance;
+      return of_a != of_b ? of_a > of_b : a < b;
+    });
+    by_weight_.resize(capacity_.components);
+    work_.dropped_objects += static_cast<std::uint32_t>(corrected_.size() - capacity_.components);
+  }
+  std::sort(by_weight_.begin(), by_weight_.end(), [this](std::size_t a, std::size_t b) {
+    const double weight_a = corrected_[a].local.existence, weight_b = corrected_[b].local.existence;
+    return weight_a != weight_b ? weight_a > weight_b : a < b;
+  });
+  next_identities_.clear();
+  next_index_.clear();
+  heaviest_.clear();
+  store_.clear();
+  for (const std::size_t i : by_weight_) {
+    Hypothesis& h = corrected_[i];
+    int index = next_index_.find(h.id);
+    // Published, a second component of an identity that is as heavy as an object is another object.
+    const bool is_other = parameters_.as_published && index >= 0 && h.local.existence >= parameters_.object_probability;
+    if (h.id == kNew || is_other) {
+      h.id = next_id_++;
+      index = -1;
+    }
+    if (index >= 0) {
+      next_identities_[static_cast<std::size_t>(index)].weight += h.local.existence;
+    } else {
+      const int before = identity_index_.find(h.id);
+      const double existence =
+          before >= 0 ? identities_[static_cast<std::size_t>(before)].existence : std::min(1.0, h.local.existence);
+      static_cast<void>(next_index_.insert(h.id, static_cast<int>(next_identities_.size())));
+      next_identities_.push_back({h.id, existence, h.local.existence, 0.0, 0.0});
+      heaviest_.push_back(store_.size());
+    }
+    static_cast<void>(store_.store_alone(h.id, h.local));  // has room for capacity_.components
+  }
+  std::swap(identities_, next_identities_);
+}
+
+void PhdFilter::report() {
+  estimates_.clear();
+  for (std::size_t k = 0; k < identities_.size(); ++k) {
+    const Identity& identity = identities_[k];
+    const pmbm::LocalHypothesis& local = store_.pool(heaviest_[k]).front();
+    const double existence = parameters_.as_published ? std::min(1.0, identity.weight) : identity.existence;
+    if (existence < parameters_.report_existence) continue;
+    estimates_.push_back({identity.id, existence * local.component.source.object, existence, local.detections > 0.0,
+                          local.detections, local.scatter, &local.component});
+  }
+  std::sort(estimates_.begin(), estimates_.end(), [](const ObjectEstimate& a, const ObjectEstimate& b) {
+    return a.existence != b.existence ? a.existence > b.existence : a.id < b.id;
+  });
+}
+
+}  // namespace boresight::tracking::phd

@@ -1,0 +1,124 @@
+// GGIW-PHD filter (Mahler 2009; Granström and Orguner 2012): the intensity of objects as a mixture of weighted
+// components. With p_S the probability of survival, q that of no detection, L_j(W) the likelihood of the cell W under
+// component j over its clutter densities, w_j the predicted weights and f_j the predicted components:
+//   D₋(x) = ∫ p_S(x′) f(x | x′) D(x′) dx′ + births                                        (1) prediction
+//   D(x)  = Σ_j q_j w_j f_j(x) + Σ_p ω_p Σ_{W ∈ p} Σ_j w_j L_j(W) / d_W · f_j(x | W)      (2) correction
+//   ω_p   = Π_{W ∈ p} d_W / Σ_p′ Π_{W ∈ p′} d_W                                           (3) weight of a partition
+//   d_W   = [|W| = 1] + Σ_j w_j L_j(W)                                                    (4) weight of a cell
+// Where two blocks of measurements share no cell in any partition, the products of (3) separate. So each block is
+// partitioned alone, and all combinations count:
+//   ω_{p × p′} = ω_p ω_p′                                                                 (5)
+// A Poisson intensity does not know that a component is one object: it also keeps what has been detected as not
+// detected, and one scan without detection lowers a weight to q. So the filter goes beyond the papers in one point: an
+// identity, the components that descend from one newborn component, is one object. With a the expected number of its
+// detected components, at most 1, the first sum of (2) and the existence r of the estimates are
+//   Σ_j q_j (1 − a) w_j f_j                                                               (6)
+//   r = a + (1 − a) r₋ q / (1 − r₋ + r₋ q),  r₋ = p_S r                                   (7)
+// where the second term of (7) is that of a Bernoulli component (Musicki, Evans and Stankovic 1994). With
+// Parameters::as_published, the sum is that of (2), and the existence of an estimate is min(Σ w, 1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "services/tracker/core/filter.hpp"
+#include "services/tracker/core/fixed_table.hpp"
+#include "services/tracker/core/phd/parameters.hpp"
+#include "services/tracker/core/phd/partitions.hpp"
+#include "services/tracker/core/pmbm/group.hpp"
+#include "services/tracker/core/pmbm/grouping.hpp"
+#include "services/tracker/core/pmbm/poisson_part.hpp"
+
+namespace boresight::tracking::phd {
+
+class PhdFilter final : public Filter {
+ public:
+  PhdFilter(const Parameters& parameters, const Capacity& capacity);
+
+  void step(Model& model, double elapsed_s) override;
+  void clear() override;
+  [[nodiscard]] std::span<const ObjectEstimate> estimates() const override { return estimates_; }
+  [[nodiscard]] std::span<const double> explained() const override { return explained_; }
+  [[nodiscard]] const FilterWork& work() const override { return work_; }
+
+  /// Expected number of objects that have been detected: the sum of the weights, births apart.
+  [[nodiscard]] double cardinality() const;
+
+ private:
+  struct Hypothesis {
+    std::uint32_t id = 0;
+    double importance = 0.0;      ///< weight, or share in the existence of the identity where that is more
+    pmbm::LocalHypothesis local;  ///< `existence` is the weight
+  };
+  /// The components of one identity are hypotheses about one object.
+  struct Identity {
+    std::uint32_t id = 0;
+    double existence = 0.0;  ///< r
+    double weight = 0.0;     ///< Σ w
+    double missed = 0.0;     ///< Σ q w
+    double detected = 0.0;   ///< a
+  };
+
+  void predict(const Model& model, double elapsed_s);
+  void begin_group(Model& model, const pmbm::WorkItem& item);
+  void assign();
+  void find_blocks(const Model& model);
+  void correct_missed();
+  void partition(const Model& model, std::size_t block);
+  void weigh_partitions(Model& model);
+  void weigh_cell(Model& model, std::size_t cell);
+  void correct_detected(Model& model, std::size_t block);
+  void reduce();
+  void add_child(const Hypothesis& child);
+  void identify();
+  void report();
+  [[nodiscard]] Identity& identity_of(std::size_t component) { return identities_[identity_[component]]; }
+  [[nodiscard]] bool is_in_gate(const Prediction<double>& p, const Measurement<double>& z) const;
+
+  Parameters parameters_;
+  Capacity capacity_;
+  pmbm::PoissonPart poisson_;  // births that nothing has detected yet; they connect no groups
+  pmbm::GroupStore store_;     // the components, each a group of its own
+  pmbm::Grouping grouping_;
+  Partitions partitions_;
+  std::vector<std::uint64_t> keys_;
+  std::vector<Identity> identities_, next_identities_;
+  FixedTable identity_index_, next_index_;  // id → index
+  std::vector<std::size_t> heaviest_;       // component of each identity, in the store
+  std::vector<Hypothesis> corrected_;       // of all groups
+
+  // The group: predicted components, measurements, corrected components.
+  std::vector<Hypothesis> components_;
+  std::vector<std::size_t> identity_;
+  std::vector<Prediction<double>> predictions_;
+  std::vector<double> log_weights_, expected_, existence_;
+  std::vector<Measurement<double>> z_;
+  std::vector<std::size_t> scan_index_;
+  std::vector<Hypothesis> children_;
+  // Assignment by prediction: identity of each measurement; shares of the identities that count as objects.
+  std::vector<std::int16_t> assigned_, assigned_object_;  // assigned_object_: index in objects_
+  std::vector<std::size_t> objects_;                      // identities
+  std::vector<double> shares_;                            // measurements × objects
+  DisjointSets sets_;
+  std::vector<std::size_t> order_, blocks_;  // measurements block by block; start of each block in order_
+
+  // The block.
+  std::vector<Measurement<double>> block_z_;
+  std::vector<std::uint64_t> block_keys_;
+  std::vector<std::int16_t> block_labels_;
+  std::vector<double> block_shares_;
+  std::vector<double> log_terms_;  // cells × (components and births): log w_j L_j(W)
+  std::vector<double> log_d_;      // of the cells
+  std::vector<double> omega_;      // of the partitions
+  std::vector<double> cell_probability_, cell_explained_;
+
+  std::vector<std::size_t> by_weight_;              // scratch
+  std::vector<char> is_merged_;                     // scratch
+  std::vector<WeightedComponent<double>> mixture_;  // scratch
+  std::vector<ObjectEstimate> estimates_;
+  std::vector<double> explained_;
+  FilterWork work_;
+  std::uint32_t next_id_ = 1;
+};
+
+}  // namespace boresight::tracking::phd

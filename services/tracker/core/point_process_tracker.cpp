@@ -1,0 +1,40 @@
+#include "services/tracker/core/point_process_tracker.hpp"
+
+#include <utility>
+
+namespace boresight::tracking {
+
+PointProcessTracker::PointProcessTracker(std::unique_ptr<Model> model, std::unique_ptr<Filter> filter,
+                                         std::unique_ptr<Reporter> reporter)
+    : model_(std::move(model)), filter_(std::move(filter)), reporter_(std::move(reporter)) {}
+
+StepResult PointProcessTracker::step(const ClassifiedScan& scan) {
+  const ScanStart start = model_->begin_scan(scan);
+  if (start.restarted) {
+    filter_->clear();
+    reporter_->clear();
+  }
+  filter_->step(*model_, start.elapsed_s);
+  model_->learn(filter_->explained(), filter_->estimates());
+  reporter_->take(filter_->estimates(), start.elapsed_s);
+
+  const FilterWork& work = filter_->work();
+  flags_ = scan.flags;
+  result_ = {start.out_of_order,       start.restarted,      work.budget_reached,
+             start.dropped_detections, work.dropped_objects, work.likelihood_evaluations};
+  return result_;
+}
+
+void PointProcessTracker::write(TrackList& out) const {
+  out.number_of_tracks = out.number_of_confirmed_tracks = out.dropped_tracks = 0;
+  out.flags = flags_;
+  out.likelihood_evaluations = result_.likelihood_evaluations;
+  out.tracker_flags = 0;
+  if (result_.budget_reached) out.tracker_flags |= tracker_flag::kWorkBudgetReached;
+  reporter_->write(out);
+  if (result_.dropped_detections + result_.dropped_objects + out.dropped_tracks > 0) {
+    out.tracker_flags |= tracker_flag::kCapacityReached;
+  }
+}
+
+}  // namespace boresight::tracking
