@@ -1,7 +1,6 @@
-#include "services/tracker/core/ggiw/cell.hpp"
-
 #include <gtest/gtest.h>
 
+#include "services/tracker/core/ggiw/cell.hpp"
 #include "tests/unit/tracker/support.hpp"
 
 namespace boresight::tracking {
@@ -9,8 +8,8 @@ namespace {
 
 support::Detections cell_detections(support::Random& random, std::size_t n) {
   const support::Reference object = support::random_object(random);
-  support::Detections z = support::draw_detections(random, object.mean, object.extent(),
-                                                   support::random_view(random, true), n, -5.0);
+  support::Detections z =
+      support::draw_detections(random, object.mean, object.extent(), support::random_view(random, true), n, -5.0);
   for (auto& m : z) {
     m.log_clutter = support::uniform(random, -9.0, -3.0);
     m.side_lobe_share = support::uniform(random, 0.0, 1.0);

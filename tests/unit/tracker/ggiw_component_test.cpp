@@ -1,10 +1,9 @@
-#include "services/tracker/core/ggiw/component.hpp"
-
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "services/tracker/core/ggiw/component.hpp"
 #include "tests/unit/tracker/support.hpp"
 
 namespace boresight::tracking {

@@ -67,8 +67,7 @@ WholeTrackNees simulate_nees(const ConsistencyCase& the_case, std::uint64_t seed
     Component<double> c = support::component_of(prior);
     Eigen::Vector4d truth = prior.mean + draw_gaussian(random, prior.covariance);
     const Eigen::Matrix2d extent = draw_object_extent(random, prior);
-    const double rate =
-        std::gamma_distribution<double>(prior.rate_shape, 1.0 / prior.rate_inverse_scale)(random);
+    const double rate = std::gamma_distribution<double>(prior.rate_shape, 1.0 / prior.rate_inverse_scale)(random);
     double of_track = 0.0;
     for (std::size_t scan = 0; scan < the_case.scans; ++scan) {
       truth = f * truth + draw_gaussian(random, q);

@@ -52,8 +52,8 @@ TEST(CellLikelihood, EqualsThePublishedFormula) {
   for (int run = 0; run < 400; ++run) {
     const auto n = static_cast<std::size_t>(1 + run % 20);
     const LikelihoodCase c = random_likelihood_case(random, run % 2 == 0, n);
-    const double expected = support::log_likelihood_reference(support::reference_of(support::component_of(c.object)),
-                                                              c.view, c.z);
+    const double expected =
+        support::log_likelihood_reference(support::reference_of(support::component_of(c.object)), c.view, c.z);
     EXPECT_NEAR(log_likelihood_of(c), expected, 1e-8 * (1.0 + std::abs(expected))) << n << " detections";
   }
 }
@@ -89,8 +89,8 @@ double sampled_log_likelihood(support::Random& random, const LikelihoodCase& c, 
   for (int i = 0; i < samples; ++i) {
     const double x = support::normal(random), y = support::normal(random);
     const Eigen::Vector2d place = c.object.mean.head<2>() + place_root * Eigen::Vector2d(x, y);
-    const Eigen::Matrix2d r = c.view.spread * draw_extent(random, c.object.dof, c.object.scale) +
-                              support::eigen(c.view.noise_m2);
+    const Eigen::Matrix2d r =
+        c.view.spread * draw_extent(random, c.object.dof, c.object.scale) + support::eigen(c.view.noise_m2);
     const Eigen::Matrix2d information = r.inverse();
     const Eigen::Vector2d e = s.mean - place;
     const double p = std::exp(-s.n * std::log(2.0 * std::numbers::pi) - 0.5 * s.n * std::log(r.determinant()) -
@@ -100,9 +100,8 @@ double sampled_log_likelihood(support::Random& random, const LikelihoodCase& c, 
   }
   const double mean = sum / samples;
   standard_error = std::sqrt((squares / samples - mean * mean) / samples) / mean;
-  const double count = gamma_integral(c.object, [&](double rate) {
-    return std::exp(-rate * c.view.exposure) * std::pow(rate * c.view.exposure, s.n);
-  });
+  const double count = gamma_integral(
+      c.object, [&](double rate) { return std::exp(-rate * c.view.exposure) * std::pow(rate * c.view.exposure, s.n); });
   double log_p = std::log(c.view.detection_probability) + std::log(mean) + std::log(count);
   for (const auto& z : c.z) log_p -= z.log_clutter;
   return log_p;
@@ -114,11 +113,12 @@ LikelihoodCase small_case() {
   c.object.rate_shape = 6.0;
   c.object.rate_inverse_scale = 2.0;
   c.object.dof = 14.0;
-  c.object.scale = 8.0 * support::rotation(0.4) * Eigen::Vector2d(4.0, 1.0).asDiagonal() *
-                   support::rotation(0.4).transpose();
+  c.object.scale =
+      8.0 * support::rotation(0.4) * Eigen::Vector2d(4.0, 1.0).asDiagonal() * support::rotation(0.4).transpose();
   c.view.detection_probability = 0.8;
   c.view.exposure = 1.3;
-  for (const Eigen::Vector2d& at : {Eigen::Vector2d(10.5, 2.1), Eigen::Vector2d(9.4, 1.2), Eigen::Vector2d(10.9, 2.4)}) {
+  for (const Eigen::Vector2d& at :
+       {Eigen::Vector2d(10.5, 2.1), Eigen::Vector2d(9.4, 1.2), Eigen::Vector2d(10.9, 2.4)}) {
     c.z.push_back(support::detection_at(at, {0.0, 0.0}, 0.0, -3.0));
   }
   return c;
@@ -187,7 +187,8 @@ TEST(CellLikelihood, IsTheSameInRotatedAxes) {
   for (int run = 0; run < 100; ++run) {
     const LikelihoodCase c = random_likelihood_case(random, run % 2 == 0, 1 + static_cast<std::size_t>(run % 9));
     const double angle = support::uniform(random, -3.0, 3.0);
-    const LikelihoodCase turned{support::rotated(c.object, angle), support::rotated(c.view, angle), support::rotated(c.z, angle)};
+    const LikelihoodCase turned{support::rotated(c.object, angle), support::rotated(c.view, angle),
+                                support::rotated(c.z, angle)};
     EXPECT_NEAR(log_likelihood_of(turned), log_likelihood_of(c), 1e-9 * (1.0 + std::abs(log_likelihood_of(c))));
   }
 }
@@ -253,7 +254,8 @@ TEST(MissedDetection, ProbabilityAndThoseOfAllCountsAddUpToOne) {
   for (int run = 0; run < 20; ++run) {
     const LikelihoodCase c = random_likelihood_case(random, false, 1);
     Prediction<double> p(support::component_of(c.object), c.view);
-    const double more = c.view.source_more, none = std::exp(support::log_count_reference(c.object, c.view.exposure, 0.0));
+    const double more = c.view.source_more,
+                 none = std::exp(support::log_count_reference(c.object, c.view.exposure, 0.0));
     double sum = none;
     for (int n = 1; n < 400; ++n) {
       const double log_geometric = std::log(1.0 - more) + (n - 1) * std::log(more);
@@ -268,16 +270,16 @@ TEST(Intensity, OfOneMeasurementIsTheExpectedNumberTimesItsDensityOverClutter) {
   for (int run = 0; run < 100; ++run) {
     const LikelihoodCase c = random_likelihood_case(random, run % 2 == 0, 1);
     const Prediction<double> p(support::component_of(c.object), c.view);
-    const Eigen::Vector2d u = support::eigen(c.z[0].sight), e = support::eigen(c.z[0].position_m) - c.object.mean.head<2>();
-    const Eigen::Matrix2d s = c.object.covariance.topLeftCorner<2, 2>() + c.view.spread * c.object.extent() +
-                              support::eigen(c.view.noise_m2);
+    const Eigen::Vector2d u = support::eigen(c.z[0].sight),
+                          e = support::eigen(c.z[0].position_m) - c.object.mean.head<2>();
+    const Eigen::Matrix2d s =
+        c.object.covariance.topLeftCorner<2, 2>() + c.view.spread * c.object.extent() + support::eigen(c.view.noise_m2);
     double expected = std::log(c.view.exposure * c.object.rate_shape / c.object.rate_inverse_scale) +
                       support::log_gaussian(e, s) - c.z[0].log_clutter;
     EXPECT_NEAR(p.place_distance(c.z[0].position_m), e.dot(s.inverse() * e), 1e-9);
     if (c.view.range_rate_variance > 0.0) {
       const double error = c.z[0].range_rate_mps - u.dot(c.object.mean.tail<2>());
-      const double variance =
-          c.view.range_rate_variance + u.dot(c.object.covariance.bottomRightCorner<2, 2>() * u);
+      const double variance = c.view.range_rate_variance + u.dot(c.object.covariance.bottomRightCorner<2, 2>() * u);
       expected -= 0.5 * (std::log(2.0 * std::numbers::pi * variance) + error * error / variance);
       EXPECT_NEAR(p.range_rate_distance(c.z[0]), error * error / variance, 1e-9);
     } else {

@@ -1,7 +1,6 @@
-#include "services/tracker/core/ggiw/planar.hpp"
-
 #include <gtest/gtest.h>
 
+#include "services/tracker/core/ggiw/planar.hpp"
 #include "tests/unit/tracker/support.hpp"
 
 namespace boresight::tracking {

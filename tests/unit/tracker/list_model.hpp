@@ -18,12 +18,12 @@ class ListModel final : public Model {
   MotionParameters motion;
   View<double> sensor;
   double survival = 0.99;
-  Detections list;                            ///< of the next scan
-  std::vector<PoissonComponent> born;         ///< of the next scan
-  double anywhere_per_m2 = 0.0;               ///< density of births at any place; 0: none
-  Component<double> newborn_prior;            ///< of such a birth, at the mean of its detections
-  double link_m = 5.0, link_mps = 4.0;        ///< detections of one newborn are not farther apart
-  double one_within_m = 0.0;                  ///< objects nearer to each other are parts of one
+  Detections list;                      ///< of the next scan
+  std::vector<PoissonComponent> born;   ///< of the next scan
+  double anywhere_per_m2 = 0.0;         ///< density of births at any place; 0: none
+  Component<double> newborn_prior;      ///< of such a birth, at the mean of its detections
+  double link_m = 5.0, link_mps = 4.0;  ///< detections of one newborn are not farther apart
+  double one_within_m = 0.0;            ///< objects nearer to each other are parts of one
 
   ScanStart begin_scan(const ClassifiedScan&) override { return {}; }
   [[nodiscard]] std::span<const Measurement<double>> measurements() const override { return list; }

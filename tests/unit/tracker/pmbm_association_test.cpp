@@ -1,12 +1,11 @@
 // Associations that the search finds, against the enumeration of all of them.
-#include "services/tracker/core/pmbm/association.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "services/tracker/core/pmbm/association.hpp"
 #include "tests/unit/tracker/list_model.hpp"
 #include "tests/unit/tracker/support.hpp"
 
@@ -38,7 +37,8 @@ SmallScene random_small_scene(support::Random& random, double distance_m) {
     r.scale = 24.0 * Eigen::Vector2d(4.0, 1.0).asDiagonal();
     s.objects.push_back(r);
     s.existence.push_back(support::uniform(random, 0.5, 0.99));
-    const Detections z = support::draw_detections(random, r.mean, r.extent(), s.model.sensor, random() % 4, log_clutter);
+    const Detections z =
+        support::draw_detections(random, r.mean, r.extent(), s.model.sensor, random() % 4, log_clutter);
     s.z.insert(s.z.end(), z.begin(), z.end());
   }
   s.z.push_back(support::detection_at(
@@ -50,9 +50,9 @@ SmallScene random_small_scene(support::Random& random, double distance_m) {
 
 struct Enumeration {
   double log_best = -1e300, log_all = 0.0;
-  std::vector<int> best;                     ///< object of each measurement, −1: clutter
-  std::array<double, 2> existence{};         ///< after the scan
-  std::vector<double> explained;             ///< of each measurement, by an object
+  std::vector<int> best;              ///< object of each measurement, −1: clutter
+  std::array<double, 2> existence{};  ///< after the scan
+  std::vector<double> explained;      ///< of each measurement, by an object
 };
 
 Enumeration enumerate(const SmallScene& s) {
@@ -156,10 +156,11 @@ TEST(Association, FindsTheLikeliestOfAllAssociations) {
       const Enumeration expected = enumerate(s);
       const Searched searched = search_scene(s);
       // The likeliest hard association is among the candidates; softly shared, it need not be the first.
-      const bool has_best = std::any_of(searched.candidates.begin(), searched.candidates.end(), [&](const Candidate& c) {
-        return std::equal(c.labels.begin(), c.labels.end(), expected.best.begin(),
-                          [](std::int16_t a, int b) { return a == b; });
-      });
+      const bool has_best =
+          std::any_of(searched.candidates.begin(), searched.candidates.end(), [&](const Candidate& c) {
+            return std::equal(c.labels.begin(), c.labels.end(), expected.best.begin(),
+                              [](std::int16_t a, int b) { return a == b; });
+          });
       found += has_best ? 1 : 0;
     }
     EXPECT_GE(found, kRuns * 95 / 100) << distance_m;

@@ -114,9 +114,9 @@ TEST(PmbmFilter, ObjectsFarApartAreAsInFiltersOfTheirOwn) {
       const std::size_t n = support::uniform(random, 0.0, 1.0) < 0.9 ? 1 + random() % 8 : 0;
       Detections z = support::draw_detections(random, truth, car_extent(), model.sensor, n, log_clutter);
       if (scan % 3 == 0) {  // and false ones about it
-        z.push_back(support::detection_at(truth.head<2>() + Eigen::Vector2d(support::uniform(random, -8.0, 8.0),
-                                                                            support::uniform(random, -8.0, 8.0)),
-                                          truth.tail<2>(), support::uniform(random, -5.0, 5.0), log_clutter));
+        z.push_back(support::detection_at(
+            truth.head<2>() + Eigen::Vector2d(support::uniform(random, -8.0, 8.0), support::uniform(random, -8.0, 8.0)),
+            truth.tail<2>(), support::uniform(random, -5.0, 5.0), log_clutter));
       }
       return z;
     };
@@ -203,8 +203,7 @@ TEST(PmbmFilter, CrossingObjectsKeepTheirIdentity) {
 double expected_births(const ListModel& model, std::span<const Measurement<double>> z) {
   double sum = 0.0;
   for (const PoissonComponent& b : model.born) {
-    sum += b.weight *
-           std::exp(support::log_likelihood_reference(support::reference_of(b.component), model.sensor, z));
+    sum += b.weight * std::exp(support::log_likelihood_reference(support::reference_of(b.component), model.sensor, z));
   }
   return sum;
 }
@@ -249,7 +248,8 @@ TEST(PmbmBirth, StateIsTheMixtureOfAllBirthComponents) {
   support::Random random(5);
   const Eigen::Vector4d at(25.0, 4.0, 6.0, -2.0);
   model.born = {support::car_birth(at, 0.2), support::car_birth(at + Eigen::Vector4d(5.0, 3.0, -1.0, 0.0), 0.3)};
-  model.list = support::draw_detections(random, at + Eigen::Vector4d(2.5, 1.5, 0.0, 0.0), car_extent(), model.sensor, 6, kNoClutter);
+  model.list = support::draw_detections(random, at + Eigen::Vector4d(2.5, 1.5, 0.0, 0.0), car_extent(), model.sensor, 6,
+                                        kNoClutter);
   std::vector<Component<double>> updated;
   std::vector<WeightedComponent<double>> mixture;
   for (const PoissonComponent& b : model.born) {
@@ -311,8 +311,8 @@ TEST(PmbmFilter, WeightsOfAllHypothesesAddUpToOne) {
         const double speed = scan < 6 ? 0.0 : scan < 12 ? -1.0 : 1.0;  // together and apart again
         t.x() += kCarStep_s * speed * (t.x() - 29.0);
         const std::size_t n = scan == 0 ? 6 : random() % 7;
-        const Detections z = support::draw_detections(random, t, car_extent(), model.sensor, n,
-                                                      scan == 0 ? kNoClutter : log_clutter);
+        const Detections z =
+            support::draw_detections(random, t, car_extent(), model.sensor, n, scan == 0 ? kNoClutter : log_clutter);
         model.list.insert(model.list.end(), z.begin(), z.end());
       }
       filter.step(model, kCarStep_s);

@@ -1,6 +1,4 @@
 // Groups of hypotheses in work and in store, by hand-made tables.
-#include "services/tracker/core/pmbm/group.hpp"
-
 #include <array>
 #include <cmath>
 #include <vector>
@@ -8,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/tracker/core/pmbm/group.hpp"
 #include "tests/unit/tracker/support.hpp"
 
 namespace boresight::tracking::pmbm {
@@ -120,7 +119,8 @@ TEST(GroupReduction, JoinsRowsThatNameTheSameHypotheses) {
 
 TEST(GroupReduction, MergesRowsWhoseHypothesesAreAlikeByTheirMoments) {
   // 0.2 m apart with 1 m of deviation: alike.
-  Group g = group_of(small_capacity(), {1}, {local_at(0.0, 1.0, 3.0), local_at(0.2, 0.5, 1.0)}, {{0.6, {0}}, {0.4, {1}}});
+  Group g =
+      group_of(small_capacity(), {1}, {local_at(0.0, 1.0, 3.0), local_at(0.2, 0.5, 1.0)}, {{0.6, {0}}, {0.4, {1}}});
   g.merge_similar_rows(1.0);
   ASSERT_EQ(g.rows(), 1U);
   EXPECT_NEAR(std::exp(g.log_weights[0]), 1.0, 1e-12);
@@ -139,14 +139,16 @@ TEST(GroupReduction, KeepsRowsWhoseHypothesesDiffer) {
 }
 
 TEST(GroupReduction, MergesRowsThatDifferInTheExistenceOfOneObjectOnly) {
-  Group g = group_of(small_capacity(), {1, 2}, {local_at(0.0, 1.0), local_at(50.0, 0.9)}, {{0.7, {0, 1}}, {0.3, {0, -1}}});
+  Group g =
+      group_of(small_capacity(), {1, 2}, {local_at(0.0, 1.0), local_at(50.0, 0.9)}, {{0.7, {0, 1}}, {0.3, {0, -1}}});
   const double before = g.existence(1);
   g.merge_similar_rows(1.0);
   ASSERT_EQ(g.rows(), 1U);
   EXPECT_NEAR(g.existence(1), before, 1e-12);
   EXPECT_NEAR(g.pool[static_cast<std::size_t>(g.at(0, 1))].component.position_m.x, 50.0, 1e-12);
   // Not if two objects differ: their existences depend on each other.
-  Group two = group_of(small_capacity(), {1, 2}, {local_at(0.0, 1.0), local_at(50.0, 1.0)}, {{0.5, {0, -1}}, {0.5, {-1, 1}}});
+  Group two =
+      group_of(small_capacity(), {1, 2}, {local_at(0.0, 1.0), local_at(50.0, 1.0)}, {{0.5, {0, -1}}, {0.5, {-1, 1}}});
   two.merge_similar_rows(1.0);
   EXPECT_EQ(two.rows(), 2U);
 }
@@ -155,7 +157,8 @@ TEST(GroupReduction, KeepsTheExistenceOfEachObjectWhenMerging) {
   support::Random random(1);
   for (int run = 0; run < 200; ++run) {
     std::vector<LocalHypothesis> locals;
-    for (int i = 0; i < 6; ++i) locals.push_back(local_at(0.3 * support::normal(random), support::uniform(random, 0.2, 1.0)));
+    for (int i = 0; i < 6; ++i)
+      locals.push_back(local_at(0.3 * support::normal(random), support::uniform(random, 0.2, 1.0)));
     std::vector<TableRow> rows;
     double total = 0.0;
     for (int r = 0; r < 4; ++r) {
@@ -201,9 +204,9 @@ TEST(GroupReduction, PrunesUnlikelyRowsAndThoseBeyondTheMost) {
 
 TEST(GroupStore, GivesBackTheColumnsThatWereStored) {
   const Capacity capacity = small_capacity();
-  const Group g = group_of(capacity, {11, 12, 13},
-                           {local_at(0.0, 1.0), local_at(1.0, 0.9), local_at(2.0, 0.8), local_at(3.0, 0.7)},
-                           {{0.6, {3, 0, 1}}, {0.4, {2, 0, -1}}});
+  const Group g =
+      group_of(capacity, {11, 12, 13}, {local_at(0.0, 1.0), local_at(1.0, 0.9), local_at(2.0, 0.8), local_at(3.0, 0.7)},
+               {{0.6, {3, 0, 1}}, {0.4, {2, 0, -1}}});
   GroupStore store(capacity);
   const std::array<std::size_t, 2> columns{0, 2};
   ASSERT_TRUE(store.store(g, columns));
@@ -231,7 +234,8 @@ TEST(GroupStore, JoinsGroupsToTheProductOfTheirRows) {
   const Capacity capacity = small_capacity();
   GroupStore store(capacity);
   const std::array<std::size_t, 1> first{0};
-  ASSERT_TRUE(store.store(group_of(capacity, {1}, {local_at(0.0, 1.0), local_at(1.0, 1.0)}, {{0.7, {0}}, {0.3, {1}}}), first));
+  ASSERT_TRUE(
+      store.store(group_of(capacity, {1}, {local_at(0.0, 1.0), local_at(1.0, 1.0)}, {{0.7, {0}}, {0.3, {1}}}), first));
   ASSERT_TRUE(store.store(group_of(capacity, {2}, {local_at(8.0, 0.9)}, {{0.6, {0}}, {0.4, {-1}}}), first));
   ASSERT_TRUE(store.store_alone(3, local_at(20.0, 0.5)));
   Group g(capacity);
@@ -249,7 +253,8 @@ TEST(GroupStore, JoinsGroupsToTheProductOfTheirRows) {
   // With room for two rows, the two likeliest products stay.
   Group few(capacity);
   for (std::size_t i = 0; i < 2; ++i) ASSERT_TRUE(store.join_into(few, i, 2));
-  EXPECT_THAT(weights_of(few.log_weights), ElementsAre(testing::DoubleNear(0.42, 1e-12), testing::DoubleNear(0.28, 1e-12)));
+  EXPECT_THAT(weights_of(few.log_weights),
+              ElementsAre(testing::DoubleNear(0.42, 1e-12), testing::DoubleNear(0.28, 1e-12)));
 }
 
 TEST(GroupStore, RefusesToJoinWhatHasNoRoomAndLeavesTheGroupAsItIs) {

@@ -117,10 +117,10 @@ inline Component<double> component_of(const Reference& r) {
 inline void expect_equal(const Reference& value, const Reference& expected, double tolerance) {
   const Eigen::Vector4d std = expected.covariance.diagonal().cwiseSqrt();
   EXPECT_LT((value.mean - expected.mean).cwiseQuotient(std).norm(), tolerance) << value.mean.transpose();
-  EXPECT_LT((std.cwiseInverse().asDiagonal() * (value.covariance - expected.covariance) *
-             std.cwiseInverse().asDiagonal())
-                .norm(),
-            tolerance);
+  EXPECT_LT(
+      (std.cwiseInverse().asDiagonal() * (value.covariance - expected.covariance) * std.cwiseInverse().asDiagonal())
+          .norm(),
+      tolerance);
   EXPECT_NEAR(value.rate_shape, expected.rate_shape, tolerance * expected.rate_shape);
   EXPECT_NEAR(value.rate_inverse_scale, expected.rate_inverse_scale, tolerance * expected.rate_inverse_scale);
   EXPECT_NEAR(value.dof, expected.dof, tolerance * expected.dof);
@@ -205,22 +205,20 @@ inline double log_likelihood_reference(const Reference& r, const View<double>& v
   log_p += 0.5 * n * std::log(x.determinant() / noise.determinant()) +
            0.5 * std::log(noise.determinant() / innovation_covariance.determinant());
   if (view.range_rate_variance > 0.0) {
-    const Eigen::Matrix2d gain =
-        r.covariance.bottomLeftCorner<2, 2>() * innovation_covariance.inverse();
+    const Eigen::Matrix2d gain = r.covariance.bottomLeftCorner<2, 2>() * innovation_covariance.inverse();
     const Eigen::Vector2d velocity = r.mean.tail<2>() + gain * e;
-    const Eigen::Matrix2d c =
-        r.covariance.bottomRightCorner<2, 2>() - gain * innovation_covariance * gain.transpose();
+    const Eigen::Matrix2d c = r.covariance.bottomRightCorner<2, 2>() - gain * innovation_covariance * gain.transpose();
     const Eigen::Index size = s.rates.size();
-    log_p += log_gaussian(s.rates - s.sights * velocity,
-                          s.sights * c * s.sights.transpose() +
-                              view.range_rate_variance * Eigen::MatrixXd::Identity(size, size));
+    log_p += log_gaussian(
+        s.rates - s.sights * velocity,
+        s.sights * c * s.sights.transpose() + view.range_rate_variance * Eigen::MatrixXd::Identity(size, size));
   }
   for (const auto& m : z) log_p -= m.log_clutter;
   return log_p;
 }
 
-/// Kalman update with all positions and range rates stacked into one vector, Joseph form; extent and rate as in Granström,
-/// Fatemi and Svensson 2020, with E[X] for X and X^½ S^−½ there, too.
+/// Kalman update with all positions and range rates stacked into one vector, Joseph form; extent and rate as in
+/// Granström, Fatemi and Svensson 2020, with E[X] for X and X^½ S^−½ there, too.
 inline Reference updated_reference(const Reference& prior, const View<double>& view,
                                    std::span<const Measurement<double>> z) {
   const Sums s = sums_of(z);

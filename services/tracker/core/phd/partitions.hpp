@@ -4,9 +4,10 @@
 // once.
 //
 // Where predicted objects overlap, no single partition is likely, but very many are alike. One shared partition stands
-// for them: each measurement is divided among the objects, s_ik to object k and the rest to clutter. With d of a cell
-// as in phd_filter.hpp and C_k = Σ_i s_ik z_i, Jensen's inequality bounds the sum over all assignments from below:
-//   Σ Π_k d(W_k) ≥ exp(Σ_k log d(C_k) + H),  H = − Σ_ik s_ik log s_ik, clutter included
+// for them: each measurement is divided among the objects, s_ik to object k and the rest to clutter. Jensen's
+// inequality bounds the sum over all assignments from below; with d of a cell (phd_filter.hpp) at the mean C_k = Σ_i
+// s_ik z_i:
+//   Σ Π_k d(W_k) ≈ exp(Σ_k log d(C_k) + H),  H = − Σ_ik s_ik log s_ik, clutter included
 #pragma once
 
 #include <array>
@@ -60,7 +61,7 @@ class Partitions {
   /// Single linkage at each different distance from 0 up to the model's link distance, the coarsest first. Where there
   /// are more of them than room, they are spread evenly.
   void add_by_distance(const Model& model);
-  /// Of each partition, one with one cell split in two by k-means, where so many detections rather are of two objects.
+  /// Repeats each partition with one cell split in two by k-means, where so many detections rather are of two objects.
   /// `expected` gives the expected number of detections of an object at the place of a cell.
   template <typename Expected>
   void add_split(const Expected& expected);
@@ -70,7 +71,7 @@ class Partitions {
   [[nodiscard]] std::span<const std::int16_t> cells_of(std::size_t partition) const {
     return {lists_.data() + partitions_[partition].first_cell, partitions_[partition].number_of_cells};
   }
-  /// Of each measurement the index of the cell that holds the most of it, or kNone.
+  /// Index of the cell that holds the most of each measurement, or kNone.
   [[nodiscard]] std::span<const std::int16_t> labels(std::size_t partition) const {
     return {labels_.data() + partition * z_.size(), z_.size()};
   }

@@ -11,12 +11,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNothing = -kInfinity;
-constexpr double kUnseen = 1e-3;       // of detection: no measurement of the scan is its own
 constexpr std::uint32_t kNew = 0;      // identity of a newborn component
 constexpr std::size_t kBeforeCap = 2;  // room for components before the lightest are dropped
-constexpr double kLeastShare = 1e-3;   // of a measurement: less changes nothing
 
-/// What the parts shared with the PMBM filter need. A stored group is one component.
+/// Settings of the parts shared with the PMBM filter. A stored group is one component.
 pmbm::Parameters shared(const Parameters& p) {
   pmbm::Parameters out;
   out.gate_chi2 = p.gate_chi2;
@@ -49,10 +47,10 @@ PhdFilter::PhdFilter(const Parameters& parameters, const Capacity& c)
       poisson_(shared(parameters), shared(c)),
       store_(shared(c)),
       grouping_(shared(parameters), shared(c)),
+      assignment_(parameters, c),
       partitions_(c),
       identity_index_(std::bit_ceil(2 * c.components + 2)),
-      next_index_(std::bit_ceil(2 * c.components + 2)),
-      sets_(c.group_measurements) {
+      next_index_(std::bit_ceil(2 * c.components + 2)) {
   keys_.reserve(c.measurements);
   for (std::size_t i = 0; i < c.measurements; ++i) keys_.push_back(mixed(i + 1));
   identities_.reserve(c.components);
@@ -60,24 +58,14 @@ PhdFilter::PhdFilter(const Parameters& parameters, const Capacity& c)
   heaviest_.reserve(c.components);
   corrected_.reserve(kBeforeCap * c.components);
   components_.reserve(c.group_components);
-  identity_.reserve(c.group_components);
+  predicted_.reserve(c.group_components);
   predictions_.reserve(c.group_components);
-  log_weights_.reserve(c.group_components);
-  expected_.reserve(c.group_components);
   existence_.reserve(c.group_components);
   z_.reserve(c.group_measurements);
   scan_index_.reserve(c.group_measurements);
   children_.reserve(c.group_children);
-  assigned_.reserve(c.group_measurements);
-  assigned_object_.reserve(c.group_measurements);
-  objects_.reserve(c.group_components);
-  shares_.reserve(c.group_measurements * c.group_components);
-  order_.reserve(c.group_measurements);
-  blocks_.reserve(c.group_measurements + 1);
   block_z_.reserve(c.group_measurements);
   block_keys_.reserve(c.group_measurements);
-  block_labels_.reserve(c.group_measurements);
-  block_shares_.reserve(c.group_measurements * c.group_components);
   log_terms_.reserve(c.cells * (c.group_components + 1));
   log_d_.reserve(c.cells);
   omega_.reserve(c.partitions);
@@ -113,7 +101,7 @@ void PhdFilter::step(Model& model, double elapsed_s) {
   poisson_.begin_scan(model);
   for (const pmbm::WorkItem& item : grouping_.find(model, poisson_, store_, cut)) {
     begin_group(model, item);
-    for (std::size_t block = 0; block + 1 < blocks_.size(); ++block) {  // (5)
+    for (std::size_t block = 0; block < assignment_.blocks(); ++block) {  // (5)
       partition(model, block);
       weigh_partitions(model);         // (3) and (4)
       correct_detected(model, block);  // (2), second sum
@@ -135,7 +123,7 @@ void PhdFilter::predict(const Model& model, double elapsed_s) {
     static_cast<void>(identity_index_.insert(identities_[i].id, static_cast<int>(i)));
     identities_[i].missed = identities_[i].detected = 0.0;
   }
-  // Of an identity, the mean survival of its components counts; `missed` serves as their sum.
+  // An identity survives as its components do on average; `missed` holds the sum for a while.
   for (std::size_t g = 0; g < store_.size(); ++g) {
     pmbm::LocalHypothesis& local = store_.pool(g).front();
     local.existence *= model.predict(local.component, elapsed_s);
@@ -151,108 +139,34 @@ void PhdFilter::predict(const Model& model, double elapsed_s) {
 
 void PhdFilter::begin_group(Model& model, const pmbm::WorkItem& item) {
   components_.clear();
-  identity_.clear();
+  predicted_.clear();
   predictions_.clear();
-  log_weights_.clear();
-  expected_.clear();
   existence_.clear();
   children_.clear();
   for (const std::size_t g : grouping_.groups(item)) {
     const pmbm::LocalHypothesis& local = store_.pool(g).front();
     const Component<double>& c = local.component;
     const View<double> view = model.view(c);
-    components_.push_back({store_.ids(g).front(), 0.0, local});
-    identity_.push_back(static_cast<std::size_t>(identity_index_.find(components_.back().id)));
+    const auto index = static_cast<std::size_t>(identity_index_.find(store_.ids(g).front()));
+    const Identity& identity = identities_[index];
+    components_.push_back(c);
+    predicted_.push_back({index, local.existence, std::log(local.existence), local.existence / identity.weight,
+                          view.exposure * c.rate_shape / c.rate_inverse_scale,
+                          identity.existence >= parameters_.object_probability});
     predictions_.emplace_back(c, view);
-    log_weights_.push_back(std::log(local.existence));
-    expected_.push_back(view.exposure * c.rate_shape / c.rate_inverse_scale);
-    existence_.push_back(identities_[identity_.back()].existence * c.source.object);
+    existence_.push_back(identity.existence * c.source.object);
   }
   z_.clear();
   scan_index_.clear();
-  blocks_.clear();
   for (const std::size_t i : grouping_.measurements(item)) {
     z_.push_back(model.measurements()[i]);
     scan_index_.push_back(i);
   }
-  if (z_.empty()) return;
-  model.begin_group(z_, predictions_, existence_);
-  poisson_.begin_group(model, z_);
-  assign();
-  find_blocks(model);
-}
-
-bool PhdFilter::is_in_gate(const Prediction<double>& p, const Measurement<double>& z) const {
-  return p.detection_probability() >= kUnseen && p.place_distance(z.position_m) <= parameters_.gate_chi2 &&
-         p.range_rate_distance(z) <= parameters_.gate_chi2;
-}
-
-void PhdFilter::assign() {
-  const std::size_t n = z_.size();
-  objects_.clear();
-  for (const std::size_t i : identity_) {
-    const bool is_object = identities_[i].existence >= parameters_.object_probability;
-    if (is_object && std::find(objects_.begin(), objects_.end(), i) == objects_.end()) objects_.push_back(i);
+  if (!z_.empty()) {
+    model.begin_group(z_, predictions_, existence_);
+    poisson_.begin_group(model, z_);
   }
-  assigned_.assign(n, Partitions::kNone);
-  assigned_object_.assign(n, Partitions::kNone);
-  shares_.assign(n * objects_.size(), 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    double* shares = shares_.data() + i * objects_.size();
-    double best = kNothing, sum = 1.0;  // clutter is 1
-    for (std::size_t j = 0; j < components_.size(); ++j) {
-      if (!is_in_gate(predictions_[j], z_[i])) continue;
-      const double log_intensity = predictions_[j].log_intensity(z_[i]);
-      // Each measurement to the identity with the largest predicted intensity.
-      if (log_weights_[j] + log_intensity > best) {
-        best = log_weights_[j] + log_intensity;
-        assigned_[i] = static_cast<std::int16_t>(identity_[j]);
-      }
-      // Objects share it by their intensities, given that they exist.
-      const auto object = std::find(objects_.begin(), objects_.end(), identity_[j]);
-      if (object == objects_.end()) continue;
-      const double intensity = components_[j].local.existence / identity_of(j).weight * std::exp(log_intensity);
-      shares[object - objects_.begin()] += intensity;
-      sum += intensity;
-    }
-    double most = 0.0;
-    for (std::size_t k = 0; k < objects_.size(); ++k) {
-      shares[k] = shares[k] < kLeastShare * sum ? 0.0 : shares[k] / sum;
-      if (shares[k] <= most) continue;
-      most = shares[k];
-      assigned_object_[i] = static_cast<std::int16_t>(k);
-    }
-  }
-}
-
-void PhdFilter::find_blocks(const Model& model) {
-  // Measurements that share a cell in one of the coarsest partitions are in one block.
-  const std::size_t n = z_.size();
-  sets_.reset(n);
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t b = a + 1; b < n; ++b) {
-      const bool is_one_object = assigned_[a] != Partitions::kNone && assigned_[a] == assigned_[b];
-      if (is_one_object || model.are_linked(z_[a], z_[b])) sets_.join(a, b);
-    }
-  }
-  for (std::size_t k = 0; k < objects_.size(); ++k) {
-    std::size_t first = n;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (shares_[i * objects_.size() + k] <= 0.0) continue;
-      if (first == n) first = i;
-      sets_.join(first, i);
-    }
-  }
-  order_.clear();
-  for (std::size_t i = 0; i < n; ++i) order_.push_back(i);
-  std::sort(order_.begin(), order_.end(), [this](std::size_t a, std::size_t b) {
-    const std::size_t root_a = sets_.root(a), root_b = sets_.root(b);
-    return root_a != root_b ? root_a < root_b : a < b;
-  });
-  for (std::size_t k = 0; k < n; ++k) {
-    if (k == 0 || sets_.root(order_[k]) != sets_.root(order_[k - 1])) blocks_.push_back(k);
-  }
-  blocks_.push_back(n);
+  assignment_.find(model, z_, predicted_, predictions_);
 }
 
 void PhdFilter::add_child(const Hypothesis& child) {
@@ -265,46 +179,29 @@ void PhdFilter::add_child(const Hypothesis& child) {
 
 void PhdFilter::correct_missed() {
   for (std::size_t j = 0; j < components_.size(); ++j) {
-    const pmbm::LocalHypothesis& local = components_[j].local;
     Identity& identity = identity_of(j);
     const double q = predictions_[j].missed();
-    identity.missed += q * local.existence;
+    identity.missed += q * predicted_[j].weight;
     const double not_detected = 1.0 - std::min(1.0, identity.detected);
-    const double weight = (parameters_.as_published ? 1.0 : not_detected) * q * local.existence;
-    // Of a certain object, the share in its existence counts: some misses must not end it.
-    const double held = not_detected * missed_existence(identity.existence, q) * local.existence / identity.weight;
+    const double weight = (parameters_.as_published ? 1.0 : not_detected) * q * predicted_[j].weight;
+    // A certain object survives some misses: the component's share in the existence counts, too.
+    const double held = not_detected * missed_existence(identity.existence, q) * predicted_[j].share;
     const double importance = std::max(weight, held);
     if (importance < parameters_.prune_weight) continue;
-    add_child({components_[j].id, importance, {weight, 0.0, {}, predictions_[j].missed_component(local.component)}});
+    const Component<double> missed = predictions_[j].missed_component(components_[j]);
+    add_child({identity.id, importance, {weight, 0.0, {}, missed}});
   }
 }
 
 void PhdFilter::partition(const Model& model, std::size_t block) {
-  const std::span<const std::size_t> members{order_.data() + blocks_[block], blocks_[block + 1] - blocks_[block]};
   block_z_.clear();
   block_keys_.clear();
-  for (const std::size_t i : members) {
+  for (const std::size_t i : assignment_.block(block)) {
     block_z_.push_back(z_[i]);
     block_keys_.push_back(keys_[scan_index_[i]]);
   }
   partitions_.begin(block_z_, block_keys_);
-
-  block_labels_.clear();
-  block_shares_.clear();
-  for (const std::size_t i : members) {
-    block_labels_.push_back(assigned_object_[i]);
-    const double* shares = shares_.data() + i * objects_.size();
-    block_shares_.insert(block_shares_.end(), shares, shares + objects_.size());
-  }
-  // The first is weighed even when the work budget is spent: it makes no new objects of clutter.
-  partitions_.add_predicted(model, block_labels_, Rest::kAlone);
-  for (const Rest rest : {Rest::kAlone, Rest::kLinked}) {
-    partitions_.add_shared(model, block_labels_, block_shares_, objects_.size(), rest);
-  }
-  block_labels_.clear();
-  for (const std::size_t i : members) block_labels_.push_back(assigned_[i]);
-  for (const Rest rest : {Rest::kAlone, Rest::kLinked}) partitions_.add_predicted(model, block_labels_, rest);
-
+  assignment_.add_partitions(model, block, partitions_);
   partitions_.add_by_distance(model);
   partitions_.add_split([this](const Cell<double>& cell) {
     double nearest = parameters_.gate_chi2, expected = kInfinity;
@@ -312,7 +209,7 @@ void PhdFilter::partition(const Model& model, std::size_t block) {
       const double d2 = predictions_[j].place_distance(cell.mean());
       if (d2 >= nearest) continue;
       nearest = d2;
-      expected = expected_[j];
+      expected = predicted_[j].expected_detections;
     }
     return expected;
   });
@@ -326,9 +223,10 @@ void PhdFilter::weigh_cell(Model& model, std::size_t index) {
   double best = of_clutter;
   for (std::size_t j = 0; j < births; ++j) {
     Prediction<double>& p = predictions_[j];
-    const bool is_far = p.detection_probability() < kUnseen || p.place_distance(cell.mean()) > parameters_.gate_chi2;
-    terms[j] = is_far ? kNothing : log_weights_[j] + p.log_likelihood(cell);
-    if (!is_far) ++work_.likelihood_evaluations;
+    terms[j] = kNothing;
+    if (!is_seen(p) || p.place_distance(cell.mean()) > parameters_.gate_chi2) continue;
+    terms[j] = predicted_[j].log_weight + p.log_likelihood(cell);
+    ++work_.likelihood_evaluations;
     best = std::max(best, terms[j]);
   }
   terms[births] = poisson_.log_likelihood(model, cell);
@@ -382,20 +280,21 @@ void PhdFilter::correct_detected(Model& model, std::size_t block) {
       const double share = std::exp(terms[j] - log_d_[c]), weight = cell_probability_[c] * share;
       identity_of(j).detected += weight;
       if (weight < parameters_.prune_weight) continue;
-      const Component<double> updated = predictions_[j].updated(components_[j].local.component, cell);
+      const Component<double> updated = predictions_[j].updated(components_[j], cell);
       cell_explained_[c] += share * updated.source.object;
-      add_child({components_[j].id, weight, {weight, cell.n, cell.scatter(), updated}});
+      add_child({identity_of(j).id, weight, {weight, cell.n, cell.scatter(), updated}});
     }
     const double weight = cell_probability_[c] * std::exp(terms[births] - log_d_[c]);
     Component<double> newborn;
     if (weight < parameters_.prune_weight || !poisson_.first_detected(model, cell, newborn)) continue;
     add_child({kNew, weight, {weight, cell.n, cell.scatter(), newborn}});
   }
+  const auto members = assignment_.block(block);
   for (std::size_t p = 0; p < omega_.size(); ++p) {
     const auto labels = partitions_.labels(p);
     for (std::size_t i = 0; i < labels.size(); ++i) {
       if (labels[i] == Partitions::kNone) continue;
-      const std::size_t in_scan = scan_index_[order_[blocks_[block] + i]];
+      const std::size_t in_scan = scan_index_[members[i]];
       explained_[in_scan] += omega_[p] * cell_explained_[static_cast<std::size_t>(labels[i])];
     }
   }
@@ -415,7 +314,7 @@ void PhdFilter::reduce() {
       ++work_.dropped_objects;
       continue;
     }
-    // What is like the heaviest component left becomes one with it, and takes its identity and its source.
+    // Components like the heaviest one left become one with it. Identity and source are those of the heaviest.
     const Hypothesis& heaviest = children_[i];
     double weight = 0.0, importance = 0.0;
     mixture_.clear();

@@ -23,6 +23,7 @@
 
 #include "services/tracker/core/filter.hpp"
 #include "services/tracker/core/fixed_table.hpp"
+#include "services/tracker/core/phd/assignment.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
 #include "services/tracker/core/phd/partitions.hpp"
 #include "services/tracker/core/pmbm/group.hpp"
@@ -61,25 +62,23 @@ class PhdFilter final : public Filter {
 
   void predict(const Model& model, double elapsed_s);
   void begin_group(Model& model, const pmbm::WorkItem& item);
-  void assign();
-  void find_blocks(const Model& model);
-  void correct_missed();
   void partition(const Model& model, std::size_t block);
   void weigh_partitions(Model& model);
   void weigh_cell(Model& model, std::size_t cell);
   void correct_detected(Model& model, std::size_t block);
+  void correct_missed();
   void reduce();
   void add_child(const Hypothesis& child);
   void identify();
   void report();
-  [[nodiscard]] Identity& identity_of(std::size_t component) { return identities_[identity_[component]]; }
-  [[nodiscard]] bool is_in_gate(const Prediction<double>& p, const Measurement<double>& z) const;
+  [[nodiscard]] Identity& identity_of(std::size_t component) { return identities_[predicted_[component].identity]; }
 
   Parameters parameters_;
   Capacity capacity_;
   pmbm::PoissonPart poisson_;  // births that nothing has detected yet; they connect no groups
   pmbm::GroupStore store_;     // the components, each a group of its own
   pmbm::Grouping grouping_;
+  Assignment assignment_;
   Partitions partitions_;
   std::vector<std::uint64_t> keys_;
   std::vector<Identity> identities_, next_identities_;
@@ -88,25 +87,17 @@ class PhdFilter final : public Filter {
   std::vector<Hypothesis> corrected_;       // of all groups
 
   // The group: predicted components, measurements, corrected components.
-  std::vector<Hypothesis> components_;
-  std::vector<std::size_t> identity_;
+  std::vector<Component<double>> components_;
+  std::vector<Predicted> predicted_;
   std::vector<Prediction<double>> predictions_;
-  std::vector<double> log_weights_, expected_, existence_;
+  std::vector<double> existence_;
   std::vector<Measurement<double>> z_;
   std::vector<std::size_t> scan_index_;
   std::vector<Hypothesis> children_;
-  // Assignment by prediction: identity of each measurement; shares of the identities that count as objects.
-  std::vector<std::int16_t> assigned_, assigned_object_;  // assigned_object_: index in objects_
-  std::vector<std::size_t> objects_;                      // identities
-  std::vector<double> shares_;                            // measurements × objects
-  DisjointSets sets_;
-  std::vector<std::size_t> order_, blocks_;  // measurements block by block; start of each block in order_
 
   // The block.
   std::vector<Measurement<double>> block_z_;
   std::vector<std::uint64_t> block_keys_;
-  std::vector<std::int16_t> block_labels_;
-  std::vector<double> block_shares_;
   std::vector<double> log_terms_;  // cells × (components and births): log w_j L_j(W)
   std::vector<double> log_d_;      // of the cells
   std::vector<double> omega_;      // of the partitions

@@ -15,7 +15,7 @@ constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();  // source
 constexpr std::size_t kMemorySize = 8192;
 constexpr std::size_t kKnownSize = 2048;
 /// Rounds of moves of whole cells, sweeps of single measurements: both end earlier at a local optimum.
-constexpr int kRounds = 3, kSweeps = 6;
+constexpr int kRounds = 12, kSweeps = 6;
 /// Rows this much less likely than the best, and moves that lose this much before the ascent, are not searched.
 constexpr double kNotSearchedLog = 12.0;
 /// A singleton beyond e^30 times as likely as clutter is no clutter.
@@ -234,7 +234,7 @@ bool Association::is_allowed(const State& s, std::size_t z, std::size_t cell) co
 }
 
 void Association::ascend(State& s) {
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kSweeps && !is_spent(); ++sweep) {
     bool moved = false;
     for (std::size_t i = 0; i < z_.size(); ++i) {
       const int from = s.labels[i];
@@ -475,6 +475,20 @@ void Association::search_row(std::size_t row, double log_weight) {
     }
     rescore(trial_);
     keep(trial_, row, log_weight);
+  }
+  // Each missed object may have one of the measurements that seem to be clutter.
+  for (std::size_t t = 0; t < state_.objects; ++t) {
+    if (state_.cells[t].n > 0.0) continue;
+    for (std::size_t i = 0; i < z_.size() && !is_spent(); ++i) {
+      if (state_.labels[i] >= 0 || !is_allowed(state_, i, t)) continue;
+      Cell<double> one;
+      one.add(z_[i], keys_[i]);
+      if (object_value(t, one) < state_.values[t] + log_alone_[i] - parameters_.candidate_log) continue;
+      trial_ = state_;
+      trial_.labels[i] = static_cast<std::int16_t>(t);
+      rescore(trial_);
+      keep(trial_, row, log_weight);
+    }
   }
 }
 

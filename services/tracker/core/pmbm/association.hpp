@@ -19,6 +19,7 @@ namespace boresight::tracking::pmbm {
 /// One association of a row of the group. Cells 0 … objects − 1 are those of the row's objects, then those of new ones.
 struct Candidate {
   double log_weight = 0.0;
+  std::uint64_t key = 0;  ///< of row and hard association
   std::size_t row = 0, objects = 0;
   std::vector<std::int16_t> labels;  ///< cell of each measurement, −1: clutter or the first of a new object alone
   std::vector<Cell<double>> cells;   ///< softly shared; `key` is that of the hard cell

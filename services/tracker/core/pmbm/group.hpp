@@ -1,8 +1,10 @@
 // A group: objects whose detections may be mixed up, with their global hypotheses. Groups are independent.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,8 +15,8 @@ namespace boresight::tracking::pmbm {
 
 /// Room for local hypotheses of a group in work.
 [[nodiscard]] constexpr std::size_t group_pool(const Capacity& c) {
-  const std::size_t wanted = c.group_objects * c.candidates;
-  return wanted < c.local_hypotheses ? wanted : c.local_hypotheses;
+  constexpr std::size_t kMost = std::numeric_limits<std::int16_t>::max();  // a table names them by 16 bits
+  return std::min({c.group_objects * c.candidates, c.local_hypotheses, kMost});
 }
 
 /// One hypothesis about one object: a Bernoulli component.

@@ -37,8 +37,10 @@ void Grouping::connect(std::size_t a, std::size_t b, std::size_t& cut) {
   b = root(b);
   if (a == b) return;
   Node &na = nodes_[a], &nb = nodes_[b];
-  // Half of the room for objects is left to new ones.
-  if (2 * (na.objects + nb.objects) > capacity_.group_objects || 2 * (na.locals + nb.locals) > group_pool(capacity_) ||
+  // Where objects are joined, half of the room is left to new ones.
+  const bool joins_objects = na.objects > 0 && nb.objects > 0;
+  if ((joins_objects && (2 * (na.objects + nb.objects) > capacity_.group_objects ||
+                         2 * (na.locals + nb.locals) > group_pool(capacity_))) ||
       na.measurements + nb.measurements > capacity_.group_measurements) {
     ++cut;
     return;
@@ -62,7 +64,8 @@ void Grouping::for_near(std::span<const Measurement<double>> z, const Vector2<do
 std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& poisson, const GroupStore& store,
                                          std::size_t& cut) {
   const auto z = model.measurements();
-  const std::size_t n = z.size(), groups = store.size();
+  const std::size_t n = std::min(z.size(), capacity_.measurements), groups = store.size();
+  cut += z.size() - n;
   nodes_.clear();
   for (std::size_t i = 0; i < n; ++i) nodes_.push_back({i, 0, 1, 0, 1});
   for (std::size_t g = 0; g < groups; ++g) {
@@ -150,6 +153,8 @@ std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& 
     item.size = objects * rows * static_cast<double>(item.measurements + 1);
   }
   std::sort(items_.begin(), items_.end(), [](const WorkItem& a, const WorkItem& b) {
+    // What may be new comes last: it takes the room that objects leave.
+    if ((a.groups == 0) != (b.groups == 0)) return b.groups == 0;
     if (a.size != b.size) return a.size < b.size;
     return a.first_measurement != b.first_measurement ? a.first_measurement < b.first_measurement
                                                       : a.first_group < b.first_group;

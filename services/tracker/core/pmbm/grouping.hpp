@@ -23,8 +23,8 @@ class Grouping {
  public:
   Grouping(const Parameters& parameters, const Capacity& capacity);
 
-  /// The items in the order of their size. A connection that would make a group larger than its capacity is not made;
-  /// `cut` counts these.
+  /// The items in the order of their size, those without objects last. A connection that would make a group larger than
+  /// its capacity is not made, and no more measurements are looked at than there is room for; `cut` counts both.
   std::span<const WorkItem> find(const Model& model, const PoissonPart& poisson, const GroupStore& store,
                                  std::size_t& cut);
   [[nodiscard]] std::span<const std::size_t> groups(const WorkItem& item) const {

@@ -12,10 +12,9 @@ struct Parameters {
   double candidate_log = 7.0;   ///< associations less likely than the best by e^−this are no hypotheses
   double merge_distance = 1.0;  ///< local hypotheses nearer than this are one (component.hpp, distance)
   double min_existence = 0.1;   ///< below it an object goes back to the Poisson part
-  double min_poisson_weight = 1e-3;  ///< below it a component of the Poisson part is dropped
-  double report_existence = 0.05;    ///< objects below it are not reported
-  std::uint32_t work_budget =
-      16000;  ///< likelihood evaluations of a scan; beyond it no further association is searched
+  double min_poisson_weight = 1e-3;   ///< below it a component of the Poisson part is dropped
+  double report_existence = 0.05;     ///< objects below it are not reported
+  std::uint32_t work_budget = 16000;  ///< likelihood evaluations of a scan; beyond it nothing is searched or shared
 };
 
 /// Largest numbers, reserved at the start.

@@ -13,7 +13,10 @@ double missed_existence(double r, double q) {
   return r * q / (1.0 - r + r * q);
 }
 
-constexpr std::size_t kTableSize = 8192;  // at least twice a group's pool
+/// Of a table with so many entries.
+std::size_t table_size(std::size_t entries) {
+  return std::bit_ceil(2 * entries + 2);
+}
 
 }  // namespace
 
@@ -27,8 +30,8 @@ PmbmFilter::PmbmFilter(const Parameters& parameters, const Capacity& capacity)
       association_(parameters, capacity),
       before_(capacity),
       after_(capacity),
-      updated_(kTableSize),
-      new_objects_(kTableSize) {
+      updated_(table_size(group_pool(capacity))),
+      new_objects_(table_size(capacity.group_objects)) {
   keys_.reserve(capacity.measurements);
   for (std::size_t i = 0; i < capacity.measurements; ++i) keys_.push_back(mixed(i + 1));
   group_z_.reserve(capacity.group_measurements);
@@ -36,9 +39,9 @@ PmbmFilter::PmbmFilter(const Parameters& parameters, const Capacity& capacity)
   new_locals_.reserve(capacity.group_objects);
   columns_.reserve(capacity.group_objects);
   by_local_.reserve(group_pool(capacity));
-  mixture_.reserve(capacity.candidates);
+  mixture_.reserve(std::max(capacity.candidates, capacity.rows));
   estimates_.reserve(capacity.objects);
-  explained_.reserve(capacity.measurements);
+  explained_.reserve(std::max(capacity.measurements, kMaxDetections));
 }
 
 void PmbmFilter::clear() {

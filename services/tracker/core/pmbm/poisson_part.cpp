@@ -98,6 +98,7 @@ void PoissonPart::begin_group(const Model& model, std::span<const Measurement<do
 double PoissonPart::log_likelihood(Model& model, const Cell<double>& cell) {
   double best = kImpossible, sum = 0.0;
   const auto add = [&best, &sum](double log_value) {
+    if (log_value == kImpossible) return;
     if (log_value > best) {
       sum = sum * std::exp(best - log_value) + 1.0;
       best = log_value;

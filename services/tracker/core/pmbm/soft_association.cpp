@@ -18,7 +18,12 @@ void Association::keep(const State& s, std::size_t row, double log_weight) {
     key += mixed(s.cells[b].key ^ (b < s.objects ? mixed(1000003U * (b + 1)) : 0x5555U));
   }
   if (known_.find(key) >= 0) return;
-  static_cast<void>(known_.insert(key, 1));
+  // When the table is full, what is still kept is known by its own key.
+  if (!known_.insert(key, 1) &&
+      std::any_of(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(number_of_candidates_),
+                  [key](const Candidate& c) { return c.key == key; })) {
+    return;
+  }
   // When full, the least likely makes room.
   std::size_t place = number_of_candidates_;
   if (place == candidates_.size()) {
@@ -31,11 +36,13 @@ void Association::keep(const State& s, std::size_t row, double log_weight) {
     ++number_of_candidates_;
   }
   Candidate& c = candidates_[place];
+  c.key = key;
   c.row = row;
   c.objects = s.objects;
   c.labels.assign(s.labels.begin(), s.labels.end());
   c.cells.assign(s.cells.begin(), s.cells.end());
-  c.log_weight = log_weight + s.score + soften(s, c.cells);
+  c.log_weight = log_weight + s.score;
+  if (!is_spent()) c.log_weight += soften(s, c.cells);
 }
 
 /// Each measurement is of each cell by its leave-one-out predictive weight. Returns the log of how much all
@@ -57,7 +64,7 @@ double Association::soften(const State& s, std::vector<Cell<double>>& out) {
     share_[i * stride + (s.labels[i] < 0 ? cells : static_cast<std::size_t>(s.labels[i]))] = 1.0;
   }
   double log_added = 0.0;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kPasses && !is_spent(); ++pass) {
     bool any_shared = false;
     next_share_.assign(share_.begin(), share_.end());
     for (std::size_t i = 0; i < n; ++i) {
