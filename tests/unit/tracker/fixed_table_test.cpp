@@ -56,6 +56,7 @@ TEST(FixedTable, HoldsTheKeyZeroLikeAnyOther) {
   EXPECT_EQ(table.find(0), 3);
 }
 
+#ifndef BORESIGHT_SANITIZED  // where it takes half a minute
 TEST(FixedTable, IsEmptyAfterAsManyClearingsAsItsCounterCounts) {
   // Five days of a filter that clears it 10,000 times a second.
   FixedTable table(8);
@@ -66,6 +67,7 @@ TEST(FixedTable, IsEmptyAfterAsManyClearingsAsItsCounterCounts) {
   EXPECT_TRUE(table.insert(5, 2));
   EXPECT_EQ(table.find(5), 2);
 }
+#endif
 
 TEST(MixedKeys, DifferInHalfOfTheirBitsForNeighbours) {
   std::unordered_set<std::uint64_t> seen;

@@ -121,6 +121,21 @@ TEST(Forgetting, StopsAtTheLeastShapeAndDegreesOfFreedom) {
   EXPECT_NEAR(extent(c).yy, 1.0, kRounding);
 }
 
+TEST(Forgetting, KeepsTheExtentAboveItsLeastEigenvalue) {
+  // Far below the measurement noise an extent is not observable, and its update makes it thinner and thinner.
+  MotionParameters motion = motion_of(1.0, 1.0, 1.0);
+  motion.extent_min_m2 = 0.01;
+  const Eigen::Matrix2d turn = support::rotation(0.6);
+  Component<double> c;
+  c.extent_dof = 20.0;
+  c.extent_scale = support::symmetric_of(14.0 * turn * Eigen::Vector2d(4.0, 1e-6).asDiagonal() * turn.transpose());
+  predict(c, motion, 0.1);
+  const Eigen::Vector2d eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(support::eigen(extent(c))).eigenvalues();
+  EXPECT_NEAR(eigenvalues(0), 0.01, 1e-9);
+  EXPECT_NEAR(eigenvalues(1), 4.01, 1e-3);
+}
+
 TEST(Prediction, OfTheRotatedObjectIsTheRotatedPrediction) {
   support::Random random(6);
   for (int run = 0; run < 100; ++run) {

@@ -159,7 +159,11 @@ SoakResult soak(std::uint64_t updates) {
   return result;
 }
 
+#ifdef BORESIGHT_SANITIZED
+constexpr std::uint64_t kUpdates = 500'000;
+#else
 constexpr std::uint64_t kUpdates = 10'000'000;
+#endif
 
 TEST(ComponentSoak, InDoubleStaysPositiveDefiniteForTenMillionUpdates) {
   const SoakResult result = soak<double>(kUpdates);

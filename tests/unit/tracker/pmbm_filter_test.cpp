@@ -293,6 +293,77 @@ TEST(PmbmBirth, WithoutDetectionsWaitsInThePoissonPart) {
   EXPECT_NEAR(filter.estimates()[0].existence, e / (1.0 + e), 0.01);
 }
 
+TEST(PmbmBirth, OfWeightZeroIsNone) {
+  ListModel model = support::car_model(false);
+  support::Random random(11);
+  const Eigen::Vector4d none(25.0, 4.0, 0.0, 0.0), some(34.0, 4.0, 0.0, 0.0);
+  model.list = support::draw_detections(random, some, car_extent(), model.sensor, 6, -9.0);
+  model.born = {support::car_birth(none, 0.0)};
+  PmbmFilter empty(Parameters{}, Capacity{});
+  empty.step(model, kCarStep_s);
+  EXPECT_TRUE(empty.estimates().empty());
+  model.born = {support::car_birth(none, 0.0), support::car_birth(some, 0.05)};
+  PmbmFilter filter(Parameters{}, Capacity{});
+  filter.step(model, kCarStep_s);
+  ASSERT_EQ(filter.estimates().size(), 1U);
+  EXPECT_GT(filter.estimates()[0].existence, 0.9);
+  EXPECT_TRUE(std::isfinite(filter.estimates()[0].component->position_m.x));
+}
+
+/// A model with births at any place.
+ListModel anywhere_model(bool has_range_rates) {
+  ListModel model = support::car_model(has_range_rates);
+  model.newborn_prior = support::car_birth(Eigen::Vector4d::Zero(), 1.0).component;
+  model.newborn_prior.position_covariance = {900.0, 0.0, 900.0};
+  model.anywhere_per_m2 = 1e-4;
+  return model;
+}
+
+TEST(PmbmBirth, IsNotHiddenByOneFalseDetectionInTheObject) {
+  // It lies in the middle of the object, but its range rate is of another velocity.
+  int born = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    support::Random random(seed);
+    ListModel model = anywhere_model(true);
+    const double log_clutter = support::car_log_clutter(model);
+    const Eigen::Vector4d truth(30.0, 5.0, 1.0, 0.0);
+    model.list = support::draw_detections(random, truth, car_extent(), model.sensor, 6, log_clutter);
+    model.list.push_back(support::detection_at({30.0, 5.0}, truth.tail<2>(), 6.0, log_clutter));
+    PmbmFilter filter(Parameters{}, Capacity{});
+    filter.step(model, kCarStep_s);
+    born += !filter.estimates().empty() && filter.estimates()[0].existence > 0.9 ? 1 : 0;
+  }
+  EXPECT_GE(born, 18);
+}
+
+/// Mean number of objects born in the first scan of ten cars in a queue, whose detections are all linked.
+double born_of_queue(double distance_m) {
+  constexpr int kRuns = 20, kCars = 10;
+  double born = 0.0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    support::Random random(seed);
+    ListModel model = anywhere_model(false);
+    model.list.clear();
+    for (int i = 0; i < kCars; ++i) {
+      const Detections z =
+          support::draw_detections(random, {30.0 + distance_m * i, 0.0, 0.0, 0.0}, car_extent(), model.sensor, 8, -9.0);
+      model.list.insert(model.list.end(), z.begin(), z.end());
+    }
+    PmbmFilter filter(Parameters{}, Capacity{});
+    filter.step(model, kCarStep_s);
+    born += static_cast<double>(std::count_if(filter.estimates().begin(), filter.estimates().end(),
+                                              [](const ObjectEstimate& e) { return e.existence > 0.5; })) /
+            kRuns;
+  }
+  return born;
+}
+
+TEST(PmbmBirth, OfManyObjectsInAQueueIsOfMostInTheFirstScan) {
+  EXPECT_NEAR(born_of_queue(7.0), 10.0, 0.5);
+  // 2 m from bumper to bumper, and the detections of a car scatter by 1 m.
+  EXPECT_GT(born_of_queue(6.0), 7.5);
+}
+
 TEST(PmbmFilter, WeightsOfAllHypothesesAddUpToOne) {
   // Objects that exist for sure and never end: their existence is the sum of the weights of all hypotheses.
   support::Random random(7);
