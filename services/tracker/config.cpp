@@ -34,7 +34,9 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                                  {"count", &d.count, {0.01, 100.0}},
                                  {"count_shape", &d.count_shape, {0.1, 100.0}},
                                  {"count_range_m", &d.count_range_m, {1.0, 300.0}},
-                                 {"count_power", &d.count_power, {0.0, 4.0}}});
+                                 {"count_power", &d.count_power, {0.0, 4.0}},
+                                 {"count_least", &d.count_least, {0.001, 1.0}},
+                                 {"count_most", &d.count_most, {1.0, 100.0}}});
   BirthParameters& b = m.birth;
   read(root.table("birth"), {{"slow_density_per_m2", &b.slow.density_per_m2, {1e-12, 1.0}},
                              {"slow_speed_std_mps", &b.slow.speed_std_mps, {0.1, 100.0}},
@@ -43,6 +45,7 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                              {"traffic_density_per_m2", &b.traffic.density_per_m2, {1e-12, 1.0}},
                              {"traffic_speed_std_mps", &b.traffic.speed_std_mps, {0.1, 100.0}},
                              {"half_length_m", &b.half_length_m, {0.1, 10.0}},
+                             {"extent_dof", &b.extent_dof, {6.5, 100.0}},
                              {"vehicle_length_m", &b.vehicle_length_m, {0.1, 30.0}},
                              {"vehicle_width_m", &b.vehicle_width_m, {0.1, 5.0}},
                              {"person_m", &b.person_m, {0.05, 5.0}},
@@ -64,6 +67,11 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"lasting_share", &s.lasting_share, {0.0, 1.0}},
                               {"other_radar", &s.other_radar, {0.001, 1.0}},
                               {"side_lobes", &s.side_lobes, {0.0, 100.0}},
+                              {"side_lobe_existence", &s.side_lobe_existence, {0.0, 1.0}},
+                              {"side_lobe_range_std_m", &s.side_lobe_range_std_m, {0.01, 20.0}},
+                              {"side_lobe_range_rate_std_mps", &s.side_lobe_range_rate_std_mps, {0.01, 10.0}},
+                              {"side_lobe_chi2", &s.side_lobe_chi2, {0.1, 100.0}},
+                              {"side_lobe_least_deviations", &s.side_lobe_least_deviations, {0.0, 20.0}},
                               {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}}});
   MotionParameters& k = m.motion;
   read(root.table("motion"), {{"acceleration_density_m2ps3", &k.acceleration_density, {1e-4, 100.0}},
@@ -71,6 +79,7 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"rate_min_shape", &k.rate_min_shape, {0.0, 10.0}},
                               {"extent_memory_s", &k.extent_memory_s, {0.05, 100.0}},
                               {"extent_min_dof", &k.extent_min_dof, {6.5, 20.0}},
+                              {"extent_min_m2", &k.extent_min_m2, {1e-6, 1.0}},
                               {"object_life_s", &m.object_life_s, {0.1, 1000.0}},
                               {"longest_gap_s", &m.longest_gap_s, {0.1, 100.0}},
                               {"latest_scan_s", &m.latest_scan_s, {0.0, 10.0}}});

@@ -4,8 +4,9 @@
 // these axes, outside or inside. l and w are half of length and width. Left-right and front-rear are mirror symmetric,
 // so "near end" is the end at sign(s_x)·l and "near side" the side at sign(s_y)·w.
 //
-// 1. Which part reflects. A share q (`interior_share`) of the reflections comes from within the box: underbody, axles,
-// what is seen through windows. The rest comes from the faces in view, in proportion to their projected lengths
+// 1. Which part reflects. A share q (`interior_share`) of the reflections comes from within the box: from the
+// underbody, the axles and the interior behind the windows. The rest comes from the visible faces. Each visible face
+// has a share in proportion to its projected length
 //
 //     (2)   a_end = 2w · h_x / √(h_x² + s_y²),   a_side = 2l · h_y / √(h_y² + s_x²),
 //           h_x = ⌊|s_x| − l⌋,   h_y = ⌊|s_y| − w⌋,   ⌊d⌋ = max(0, d) rounded within ± `corner_radius_m`,

@@ -13,8 +13,6 @@ namespace boresight::tracking {
 
 namespace {
 
-constexpr double kNothing = -std::numeric_limits<double>::infinity();
-
 /// P(standard normal < x)
 double normal_cdf(double x) {
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);
@@ -152,25 +150,28 @@ double RadarModel::log_origin(double p) const {
 void RadarModel::add_side_lobes() {
   if (radar_ == nullptr) return;
   // An object gives weaker detections at its own range and range rate at other azimuths: more clutter there.
-  constexpr double kRateStd_mps = 0.4, kRangeStd_m = 1.0, kDeviations2 = 9.0, kOwn = 2.5, kLeastExistence = 0.5;
-  constexpr double kNearest_m = 3.0;
+  const SourceParameters& s = parameters_.source;
+  constexpr double kNearest_m = 3.0;  // nearer, the ring would be shorter than the object
   for (const KnownObject& o : objects_) {
-    if (o.existence < kLeastExistence) continue;
+    if (o.existence < s.side_lobe_existence) continue;
     const Vector2<double> d = o.position_m - sensor_m_;
     const double range_m = std::sqrt(squared_norm(d));
     if (range_m > radar_->range_max_m || range_m <= 0.0) continue;
     const Vector2<double> sight = (1.0 / range_m) * d;
     const double rate_mps = dot(sight, o.velocity_mps);
-    const double range_std_m =
-        std::sqrt(kRangeStd_m * kRangeStd_m + parameters_.detection.spread * quadratic(o.extent_m2, sight));
+    const double range_std_m = std::sqrt(s.side_lobe_range_std_m * s.side_lobe_range_std_m +
+                                         parameters_.detection.spread * quadratic(o.extent_m2, sight));
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       Measurement<double>& z = measurements_[i];
-      const double a = (places_[i].range_m - range_m) / range_std_m, b = (z.range_rate_mps - rate_mps) / kRateStd_mps;
+      const double a = (places_[i].range_m - range_m) / range_std_m,
+                   b = (z.range_rate_mps - rate_mps) / s.side_lobe_range_rate_std_mps;
       const double deviation2 = a * a + b * b;
-      if (deviation2 > kDeviations2) continue;
-      if (squared_norm(z.position_m - o.position_m) < kOwn * kOwn * range_std_m * range_std_m) continue;  // its own
-      const double added = o.existence * parameters_.source.side_lobes * std::exp(-0.5 * deviation2) /
-                           (2.0 * std::numbers::pi * range_std_m * kRateStd_mps) /
+      if (deviation2 > s.side_lobe_chi2) continue;
+      if (squared_norm(z.position_m - o.position_m) <
+          s.side_lobe_least_deviations * s.side_lobe_least_deviations * range_std_m * range_std_m)
+        continue;  // its own
+      const double added = o.existence * s.side_lobes * std::exp(-0.5 * deviation2) /
+                           (2.0 * std::numbers::pi * range_std_m * s.side_lobe_range_rate_std_mps) /
                            (2.0 * radar_->half_view_rad * std::max(kNearest_m, range_m));
       const double base = std::exp(z.log_clutter), was = z.side_lobe_share * base;
       z.on_ring = 1.0;
@@ -202,9 +203,8 @@ Symmetric2<double> RadarModel::noise_at(const Vector2<double>& sight, double ran
 }
 
 double RadarModel::exposure_at(double range_m) const {
-  constexpr double kLeast = 0.3, kMost = 3.0;
-  return std::clamp(std::pow(parameters_.detection.count_range_m / range_m, parameters_.detection.count_power), kLeast,
-                    kMost);
+  const DetectionParameters& d = parameters_.detection;
+  return std::clamp(std::pow(d.count_range_m / range_m, d.count_power), d.count_least, d.count_most);
 }
 
 View<double> RadarModel::view(const Component<double>& c) const {
@@ -223,7 +223,8 @@ View<double> RadarModel::view(const Component<double>& c) const {
                             normal_cdf((radar_->half_view_rad - std::abs(azimuth_rad)) / azimuth_std) *
                             normal_cdf((radar_->range_max_m - range_m) / range_std);
   const double rate_mps = dot(sight, c.velocity_mps);
-  // Blind to what moves along the line of sight no more than a stationary reflector seems to.
+  // An object whose range rate over ground is below the limit of the corrector's test is classified as stationary: it
+  // is not detected as moving.
   const double by_azimuth =
       (sensor_velocity_mps_.x * sight.y - sensor_velocity_mps_.y * sight.x) * radar_->azimuth_std_rad;
   const double stationary_std = std::sqrt(radar_->range_rate_std_mps * radar_->range_rate_std_mps +
@@ -243,141 +244,6 @@ View<double> RadarModel::view(const Component<double>& c) const {
   v.source_more = parameters_.source.more;
   v.source_seen = c.source.radar >= 0 && c.source.radar != radar_index_ ? parameters_.source.other_radar : 1.0;
   return v;
-}
-
-void RadarModel::begin_group(std::span<const Measurement<double>> group, std::span<const Prediction<double>> objects,
-                             std::span<const double> existence) {
-  group_objects_ = objects;
-  group_existence_ = existence;
-  if (group.empty() || radar_ == nullptr) return;
-  Vector2<double> middle;
-  for (const auto& z : group) middle = middle + (1.0 / static_cast<double>(group.size())) * z.position_m;
-  const DetectionParameters& d = parameters_.detection;
-  const BirthParameters& b = parameters_.birth;
-  constexpr double kFar_m = 30.0, kDof = 9.0, kNearest_m = 0.5;
-  View<double> v;
-  const Vector2<double> sight_m = middle - sensor_m_;
-  const double range_m = std::max(kNearest_m, std::sqrt(squared_norm(sight_m)));
-  v.detection_probability = d.detection_probability;
-  v.exposure = exposure_at(range_m);
-  v.noise_m2 = noise_at((1.0 / range_m) * sight_m, range_m);
-  v.range_rate_variance =
-      radar_->range_rate_std_mps * radar_->range_rate_std_mps + d.body_range_rate_std_mps * d.body_range_rate_std_mps;
-  v.spread = d.spread;
-  v.source_more = parameters_.source.more;
-  const std::array kinds = {b.slow, b.any, b.traffic};
-  for (std::size_t k = 0; k < kBirthKinds; ++k) {
-    Component<double> c;
-    c.position_m = middle;
-    c.rate_shape = d.count_shape;
-    c.rate_inverse_scale = d.count_shape / d.count;
-    c.position_covariance = {kFar_m * kFar_m, 0.0, kFar_m * kFar_m};
-    const double variance = kinds[k].speed_std_mps * kinds[k].speed_std_mps;
-    c.velocity_covariance = {variance, 0.0, variance};
-    if (kinds[k].with_traffic) c.velocity_mps = sensor_velocity_mps_;
-    c.extent_dof = kDof;
-    const double scale = (kDof - 6.0) * b.half_length_m * b.half_length_m;
-    c.extent_scale = {scale, 0.0, scale};
-    // The density of the badly known place is taken away again.
-    newborn_[k] = {c, Prediction<double>(c, v),
-                   std::log(kinds[k].density_per_m2) + std::log(2.0 * std::numbers::pi * kFar_m * kFar_m)};
-  }
-}
-
-RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell) {
-  const BirthParameters& b = parameters_.birth;
-  const SourceParameters& s = parameters_.source;
-  const double f = 1.0 / cell.n;
-  const Vector2<double> mean = cell.mean();
-  double claimed = 0.0;
-  for (std::size_t l = 0; l < group_objects_.size(); ++l) {
-    const Prediction<double>& p = group_objects_[l];
-    const Vector2<double> d = mean - p.position_m();
-    const double speed_mps = std::sqrt(squared_norm(p.velocity_mps()));
-    const Vector2<double> along = speed_mps > 0.0 ? (1.0 / speed_mps) * p.velocity_mps() : Vector2<double>{1.0, 0.0};
-    const Vector2<double> half = taken_m(speed_mps, quadratic(p.extent_m2(), along));
-    const double x = dot(d, along) / half.x, y = (along.x * d.y - along.y * d.x) / half.y;
-    // The chance that the place lies in what the object takes, falling off about its edge; the range rates must agree.
-    const double r2 = x * x + y * y;
-    const double mean_rate = dot(cell.sight_rate, p.velocity_mps()) * f;
-    const double deviation =
-        (cell.rate_squares * f - 2.0 * mean_rate + quadratic(cell.sight_squares, p.velocity_mps()) * f) /
-        (p.range_rate_variance() + quadratic(p.velocity_covariance(), along));
-    claimed = std::max(claimed, group_existence_[l] * std::exp(-0.7 * r2 * r2 - 0.5 * deviation / b.same_speed_chi2));
-  }
-  constexpr double kLeastFree = 1e-6, kLeastShare = 1e-12;
-  const double log_free = std::log(std::max(kLeastFree, 1.0 - claimed));
-  NewbornWeights w;
-  std::array<double, kBirthKinds> log_p{};
-  for (std::size_t k = 0; k < kBirthKinds; ++k) {
-    newborn_[k].prediction.move_to(mean);
-    log_p[k] = newborn_[k].prediction.log_likelihood(cell);
-    w.object[k] = log_p[k] + newborn_[k].log_density + log_free;
-  }
-  // A source of clutter lies where clutter is, and its range rate is as clutter's: the density of an object's range
-  // rate is taken away, that of the clutter put in its place.
-  Newborn& any = newborn_[1];
-  const double variance = b.any.speed_std_mps * b.any.speed_std_mps + any.prediction.range_rate_variance();
-  const double log_rate = -0.5 * std::log(2.0 * std::numbers::pi * variance) - 0.5 * cell.rate_squares * f / variance;
-  const double flat = log_p[1] + any.log_density - std::log(b.any.density_per_m2) + cell.log_clutter * f - log_rate;
-  w.source = s.share > 0.0 ? flat + std::log(s.share) + any.prediction.log_source_ratio(cell.n) : kNothing;
-  w.side_lobe = s.side_lobes > 0.0 && s.side_lobe_birth > 0.0
-                    ? flat + std::log(s.side_lobe_birth * std::max(kLeastShare, cell.side_lobe_share * f))
-                    : kNothing;
-  w.top = std::max(w.source, w.side_lobe);
-  for (const double o : w.object) w.top = std::max(w.top, o);
-  w.sum = std::exp(w.source - w.top) + std::exp(w.side_lobe - w.top);
-  for (const double o : w.object) w.sum += std::exp(o - w.top);
-  return w;
-}
-
-double RadarModel::log_newborn(const Cell<double>& cell) {
-  const NewbornWeights w = newborn_weights(cell);
-  return w.top + std::log(w.sum);
-}
-
-Component<double> RadarModel::newborn(const Cell<double>& cell) {
-  const NewbornWeights w = newborn_weights(cell);
-  std::array<Component<double>, kBirthKinds> updated;
-  std::array<WeightedComponent<double>, kBirthKinds> mixture;
-  double object = 0.0;
-  for (std::size_t k = 0; k < kBirthKinds; ++k) {
-    Component<double> at = newborn_[k].component;
-    at.position_m = cell.mean();
-    updated[k] = newborn_[k].prediction.updated(at, cell);
-    const double weight = std::exp(w.object[k] - w.top);
-    object += weight;
-    mixture[k] = {weight + 1e-12, &updated[k]};  // a sum of zero cannot be normalised
-  }
-  Component<double> c = merge<double>(mixture);
-  c.source.object = object / w.sum;
-  c.source.side_lobe = std::exp(w.side_lobe - w.top) / w.sum;
-  c.source.lasting_source = std::exp(w.source - w.top) / w.sum * parameters_.source.lasting_share;
-  c.source.radar = radar_index_;
-  c.mirror = cell.mirror / cell.n;
-  return c;
-}
-
-Vector2<double> RadarModel::taken_m(double speed_mps, double extent_along_m2) const {
-  const BirthParameters& b = parameters_.birth;
-  // From one end of a vehicle to the other; of a long one by its extent.
-  const double length_m = std::max(b.vehicle_length_m, 2.0 * std::sqrt(extent_along_m2));
-  const double share = speed_mps * speed_mps / (speed_mps * speed_mps + b.vehicle_speed_mps * b.vehicle_speed_mps);
-  return {b.person_m + share * (length_m - b.person_m), b.person_m + share * (b.vehicle_width_m - b.person_m)};
-}
-
-bool RadarModel::are_one(const Component<double>& a, const Component<double>& b) const {
-  const Vector2<double> d = a.position_m - b.position_m;
-  const Vector2<double> v = 0.5 * (a.velocity_mps + b.velocity_mps);
-  const double speed_mps = std::sqrt(squared_norm(v));
-  constexpr double kFar_m = 30.0;
-  if (squared_norm(d) > kFar_m * kFar_m) return false;
-  const Vector2<double> along = speed_mps > 0.0 ? (1.0 / speed_mps) * v : Vector2<double>{1.0, 0.0};
-  const Vector2<double> half = taken_m(speed_mps, std::max(quadratic(extent(a), along), quadratic(extent(b), along)));
-  const double x = dot(d, along) / half.x, y = (along.x * d.y - along.y * d.x) / half.y;
-  if (x * x > 1.0 || y * y > 1.0) return false;
-  const Symmetric2<double> apart = a.velocity_covariance + b.velocity_covariance;
-  return quadratic(inverse(apart), a.velocity_mps - b.velocity_mps) < parameters_.birth.same_speed_chi2;
 }
 
 bool RadarModel::are_linked(const Measurement<double>& a, const Measurement<double>& b) const {

@@ -17,7 +17,8 @@ struct DetectionParameters {
   double count = 1.5;        ///< mean detections a scan at `count_range_m`
   double count_shape = 2.0;  ///< of the gamma over objects
   double count_range_m = 30.0;
-  double count_power = 0.8;  ///< the mean falls with range^−power
+  double count_least = 0.3, count_most = 3.0;  ///< bounds of the mean relative to that at `count_range_m`
+  double count_power = 0.8;                    ///< the mean falls with range^−power
 };
 
 /// Undetected objects of one kind of motion: density, and each component of the velocity.
@@ -31,6 +32,7 @@ struct BirthParameters {
   BirthKind slow{1e-5, 1.5, false};    ///< people
   BirthKind any{2e-5, 10.0, false};    ///< vehicles of all directions
   BirthKind traffic{2e-5, 4.0, true};  ///< vehicles that drive as the own one
+  double extent_dof = 9.0;             ///< of a new object's inverse Wishart: how sure its extent is
   double half_length_m = 1.5;          ///< of a new object
   double vehicle_length_m = 4.4;       ///< parts of one vehicle lie nearer along its course …
   double vehicle_width_m = 1.4;        ///< … and across; those of two do not
@@ -51,13 +53,18 @@ struct ClutterParameters {
 };
 
 struct SourceParameters {
-  double share = 0.15;           ///< of clutter that comes from sources that last
-  double life_s = 0.3;           ///< of such a source
-  double more = 0.25;            ///< chance of one more detection of it in a scan
-  double lasting_share = 0.05;   ///< of these sources that last as long as objects
-  double other_radar = 0.3;      ///< chance that another radar detects the source, too
-  double side_lobes = 1.5;       ///< detections a scan that an object gives at other azimuths
-  double side_lobe_birth = 0.1;  ///< of these that begin a source which lasts
+  double share = 0.15;                        ///< of clutter that comes from sources that last
+  double life_s = 0.3;                        ///< of such a source
+  double more = 0.25;                         ///< chance of one more detection of it in a scan
+  double lasting_share = 0.05;                ///< of these sources that last as long as objects
+  double other_radar = 0.3;                   ///< chance that another radar detects the source, too
+  double side_lobes = 1.5;                    ///< detections a scan that an object gives at other azimuths
+  double side_lobe_existence = 0.5;           ///< objects below it are not expected to have side lobes
+  double side_lobe_range_std_m = 1.0;         ///< of a side lobe's range about its object's
+  double side_lobe_range_rate_std_mps = 0.4;  ///< of a side lobe's range rate about its object's
+  double side_lobe_chi2 = 9.0;                ///< squared distance up to which a detection may be a side lobe
+  double side_lobe_least_deviations = 2.5;    ///< nearer to the object, in its own deviations, detections are its own
+  double side_lobe_birth = 0.1;               ///< of these that begin a source which lasts
 };
 
 struct RadarModelParameters {
