@@ -46,10 +46,14 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                              {"traffic_speed_std_mps", &b.traffic.speed_std_mps, {0.1, 100.0}},
                              {"half_length_m", &b.half_length_m, {0.1, 10.0}},
                              {"extent_dof", &b.extent_dof, {6.5, 100.0}},
-                             {"vehicle_length_m", &b.vehicle_length_m, {0.1, 30.0}},
-                             {"vehicle_width_m", &b.vehicle_width_m, {0.1, 5.0}},
+                             {"gap_along_m", &b.gap_along_m, {0.0, 10.0}},
+                             {"gap_across_m", &b.gap_across_m, {0.0, 5.0}},
+                             {"headway_s", &b.headway_s, {0.0, 5.0}},
+                             {"close_share", &b.close_share, {1e-3, 1.0}},
                              {"person_m", &b.person_m, {0.05, 5.0}},
-                             {"vehicle_speed_mps", &b.vehicle_speed_mps, {0.1, 20.0}},
+                             {"neighbour_density_per_m2", &b.neighbour_density_per_m2, {1e-9, 1.0}},
+                             {"neighbour_speed_std_mps", &b.neighbour_speed_std_mps, {0.1, 20.0}},
+                             {"part_odds", &b.part_odds, {1e-3, 1e6}},
                              {"same_speed_chi2", &b.same_speed_chi2, {0.1, 100.0}},
                              {"link_distance_m", &b.link_distance_m, {0.1, 20.0}},
                              {"link_range_rate_mps", &b.link_range_rate_mps, {0.01, 20.0}}});
@@ -67,11 +71,13 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"lasting_share", &s.lasting_share, {0.0, 1.0}},
                               {"other_radar", &s.other_radar, {0.001, 1.0}},
                               {"side_lobes", &s.side_lobes, {0.0, 100.0}},
-                              {"side_lobe_existence", &s.side_lobe_existence, {0.0, 1.0}},
+                              {"parent_existence", &s.parent_existence, {0.0, 1.0}},
                               {"side_lobe_range_std_m", &s.side_lobe_range_std_m, {0.01, 20.0}},
                               {"side_lobe_range_rate_std_mps", &s.side_lobe_range_rate_std_mps, {0.01, 10.0}},
                               {"side_lobe_chi2", &s.side_lobe_chi2, {0.1, 100.0}},
                               {"side_lobe_least_deviations", &s.side_lobe_least_deviations, {0.0, 20.0}},
+                              {"ambiguity_share", &s.ambiguity_share, {0.0, 1.0}},
+                              {"ambiguity_width_mps", &s.ambiguity_width_mps, {1.0, 1000.0}},
                               {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}}});
   MotionParameters& k = m.motion;
   read(root.table("motion"), {{"acceleration_density_m2ps3", &k.acceleration_density, {1e-4, 100.0}},
@@ -164,11 +170,12 @@ Config read_config(config::Reader root) {
   read_model(root, c.model);
   read_search(root.table("search"), c.pmbm);
   read_capacity(root.table("capacity"), c.capacity);
-  read(root.table("box"), {{"evidence_share", &c.box.evidence_share, {0.0, 1.0}},
-                           {"forget_s", &c.box.forget_s, {0.1, 1e4}},
-                           {"side_slip_mps", &c.box.side_slip_mps, {0.0, 5.0}},
-                           {"turn_rate_std_radps", &c.box.turn_rate_std_radps, {0.0, 3.0}},
-                           {"offset_gain", &c.box.offset_gain, {0.01, 1.0}}});
+  BoxParameters& x = c.model.box;
+  read(root.table("box"), {{"evidence_share", &x.evidence_share, {0.0, 1.0}},
+                           {"forget_s", &x.forget_s, {0.1, 1e4}},
+                           {"side_slip_mps", &x.side_slip_mps, {0.0, 5.0}},
+                           {"turn_rate_std_radps", &x.turn_rate_std_radps, {0.0, 3.0}},
+                           {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}}});
   ReportParameters& r = c.report;
   read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
                               {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},

@@ -23,9 +23,9 @@ void set(ObjectClassTable& table, Group M::*group, double Group::*value, const R
 void set_size(ObjectClassTable& t) {
   using S = SizePrior;
   // m, boxes: 0.73, 1.68 (bicycle) … 2.10 (motorcycle), 4.61, 6.7 (truck) … 12.0 (trailer); van choice
-  set(t, &M::size, &S::length_mean_m, {0.73, 1.8, 4.6, 5.6, 10.0});
+  set(t, &M::size, &S::length_mean_m, {0.73, 1.8, 4.6, 5.6, 12.0});
   // m, choice: cars mostly 4.0 … 5.2; trucks 6 … 16.5, the longest in the EU (Directive 96/53/EC)
-  set(t, &M::size, &S::length_std_m, {0.2, 0.2, 0.4, 0.6, 3.0});
+  set(t, &M::size, &S::length_std_m, {0.2, 0.2, 0.4, 0.6, 3.5});
   // m, boxes: 0.66, 0.60 … 0.76, 1.95 (1.85 without mirrors, choice), 2.46; 2.55 is the widest in the EU; van choice
   set(t, &M::size, &S::width_mean_m, {0.67, 0.7, 1.85, 2.0, 2.5});
   // m, choice
@@ -81,6 +81,8 @@ void set_places(ObjectClassTable& t) {
   set(t, &M::places, &P::corner_radius_m, {0.3, 0.3, 0.3, 0.3, 0.3});
   // 1, measured: §7, positions last about 2–3 scans
   set(t, &M::places, &P::scan_correlation, {0.67, 0.67, 0.67, 0.67, 0.67});
+  // 1, choice: a scan shows a long vehicle in one spot (R §2: half of the scans 4.2 m or less) or all over
+  set(t, &M::places, &P::common_share, {0.0, 0.0, 0.1, 0.2, 0.5});
   // m, choice: a sixth to a quarter of the mean depth
   set(t, &M::places, &P::lasting_std_m, {0.05, 0.1, 0.2, 0.25, 0.5});
 }

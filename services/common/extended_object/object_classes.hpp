@@ -44,6 +44,7 @@ struct ReflectionPlaces {
   double face_depth_std_m = 0.0;  ///< about that mean
   double corner_radius_m = 0.0;   ///< a face comes into view while the sensor passes twice this distance
   double scan_correlation = 0.0;  ///< of one reflection's place, from a scan to the next one 75 ms later
+  double common_share = 0.0;      ///< of their variance that all reflections of one scan have in common
   double lasting_std_m = 0.0;     ///< of an object's own mean depth about that of its class
 };
 

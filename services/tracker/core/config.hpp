@@ -4,7 +4,6 @@
 #include <string>
 
 #include "services/tracker/core/model/radar_parameters.hpp"
-#include "services/tracker/core/output/box_estimator.hpp"
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
@@ -18,7 +17,6 @@ struct Config {
   pmbm::Parameters pmbm{.min_existence = 0.02};  ///< nothing returns to a Poisson part where births are everywhere
   pmbm::Capacity capacity;
   phd::Parameters phd;
-  BoxParameters box;
   ReportParameters report;
   RulesConfig rules;
 };

@@ -32,8 +32,8 @@ std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const Ve
                                                  const Config& config) {
   if (name == "rules") return std::make_unique<Tracker>(vehicle, config.rules);
   auto filter = make_filter(name, config);
-  auto model = std::make_unique<RadarModel>(vehicle, config.model);
-  auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.box, config.capacity.objects);
+  auto model = std::make_unique<RadarModel>(vehicle, config.model, config.capacity.objects);
+  auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.capacity.objects);
   return std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
 }
 

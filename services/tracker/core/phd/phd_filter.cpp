@@ -282,12 +282,12 @@ void PhdFilter::correct_detected(Model& model, std::size_t block) {
       if (weight < parameters_.prune_weight) continue;
       const Component<double> updated = predictions_[j].updated(components_[j], cell);
       cell_explained_[c] += share * updated.source.object;
-      add_child({identity_of(j).id, weight, {weight, cell.n, cell.scatter(), updated}});
+      add_child({identity_of(j).id, weight, {weight, cell.n, cell.scatter(), updated, cell.mean()}});
     }
     const double weight = cell_probability_[c] * std::exp(terms[births] - log_d_[c]);
     Component<double> newborn;
     if (weight < parameters_.prune_weight || !poisson_.first_detected(model, cell, newborn)) continue;
-    add_child({kNew, weight, {weight, cell.n, cell.scatter(), newborn}});
+    add_child({kNew, weight, {weight, cell.n, cell.scatter(), newborn, cell.mean()}});
   }
   const auto members = assignment_.block(block);
   for (std::size_t p = 0; p < omega_.size(); ++p) {
@@ -329,7 +329,8 @@ void PhdFilter::reduce() {
     }
     corrected_.push_back({heaviest.id,
                           std::max(weight, importance),
-                          {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_)}});
+                          {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_),
+                           heaviest.local.mean_m}});
     corrected_.back().local.component.source = heaviest.local.component.source;
   }
 }
@@ -366,6 +367,7 @@ void PhdFilter::identify() {
       h.id = next_id_++;
       index = -1;
     }
+    h.local.component.label = h.id;
     if (index >= 0) {
       next_identities_[static_cast<std::size_t>(index)].weight += h.local.existence;
     } else {
@@ -389,7 +391,7 @@ void PhdFilter::report() {
     const double existence = parameters_.as_published ? std::min(1.0, identity.weight) : identity.existence;
     if (existence < parameters_.report_existence) continue;
     estimates_.push_back({identity.id, existence * local.component.source.object, existence, local.detections > 0.0,
-                          local.detections, local.scatter, &local.component});
+                          local.detections, local.scatter, &local.component, local.mean_m});
   }
   std::sort(estimates_.begin(), estimates_.end(), [](const ObjectEstimate& a, const ObjectEstimate& b) {
     return a.existence != b.existence ? a.existence > b.existence : a.id < b.id;
