@@ -10,7 +10,6 @@
 #include "services/tracker/core/phd/phd_filter.hpp"
 #include "services/tracker/core/pmbm/pmbm_filter.hpp"
 #include "services/tracker/core/point_process_tracker.hpp"
-#include "services/tracker/core/tracker.hpp"
 
 namespace boresight::tracking {
 
@@ -25,12 +24,11 @@ std::unique_ptr<Filter> make_filter(std::string_view name, const Config& config)
 }  // namespace
 
 std::vector<std::string> tracker_names() {
-  return {"rules", "pmbm", "phd"};
+  return {"pmbm", "phd"};
 }
 
 std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const VehicleConfig& vehicle,
                                                  const Config& config) {
-  if (name == "rules") return std::make_unique<Tracker>(vehicle, config.rules);
   auto filter = make_filter(name, config);
   auto model = std::make_unique<RadarModel>(vehicle, config.model, config.capacity.objects);
   auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.capacity.objects);

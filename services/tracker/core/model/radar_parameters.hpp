@@ -30,7 +30,7 @@ struct BirthKind {
 };
 
 struct BirthParameters {
-  BirthKind slow{1e-5, 1.5, false};              ///< people
+  BirthKind slow{3e-6, 1.5, false};              ///< people
   BirthKind any{2e-5, 10.0, false};              ///< vehicles of all directions
   BirthKind traffic{2e-5, 4.0, true};            ///< vehicles that drive as the own one
   double extent_dof = 9.0;                       ///< of a new object's inverse Wishart: how sure its extent is
