@@ -23,7 +23,7 @@ void set(ObjectClassTable& table, Group M::*group, double Group::*value, const R
 void set_size(ObjectClassTable& t) {
   using S = SizePrior;
   // m, boxes: 0.73, 1.68 (bicycle) … 2.10 (motorcycle), 4.61, 6.7 (truck) … 12.0 (trailer); van choice
-  set(t, &M::size, &S::length_mean_m, {0.73, 1.8, 4.6, 5.6, 12.0});
+  set(t, &M::size, &S::length_mean_m, {0.73, 1.8, 4.6, 5.6, 10.5});
   // m, choice: cars mostly 4.0 … 5.2; trucks 6 … 16.5, the longest in the EU (Directive 96/53/EC)
   set(t, &M::size, &S::length_std_m, {0.2, 0.2, 0.4, 0.6, 3.5});
   // m, boxes: 0.66, 0.60 … 0.76, 1.95 (1.85 without mirrors, choice), 2.46; 2.55 is the widest in the EU; van choice
