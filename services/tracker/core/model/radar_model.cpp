@@ -133,6 +133,8 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
                                    scan.probability(Provenance::kGhostType2, i));
     ClutterPlace place;
     place.range_m = static_cast<double>(scan.range_m[i]);
+    // A radar that reaches farther than its configuration states has objects there in view, too.
+    radar_->range_max_m = std::max(radar_->range_max_m, place.range_m);
     place.azimuth_share = geometry::wrap_angle(azimuth_rad + axes_.heading_rad - facing_rad_) / radar_->half_view_rad;
     place.range_rate_over_ground_mps = rate_mps;
     place.range_rate_mps = rate_mps - dot(z.sight, sensor_velocity_mps_);
