@@ -127,6 +127,8 @@ Config read_config(config::Reader root) {
                            {"forget_s", &x.forget_s, {0.1, 1e4}},
                            {"side_slip_mps", &x.side_slip_mps, {0.0, 5.0}},
                            {"turn_rate_std_radps", &x.turn_rate_std_radps, {0.0, 3.0}},
+                           {"parallel_share", &x.parallel_share, {0.0, 0.5}},
+                           {"parallel_std_rad", &x.parallel_std_rad, {0.001, 3.0}},
                            {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}}});
   ReportParameters& r = c.report;
   read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},

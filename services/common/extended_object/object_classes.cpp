@@ -42,6 +42,9 @@ void set_motion(ObjectClassTable& t) {
   set(t, &M::motion, &K::largest_speed_mps, {5.0, 15.0, 70.0, 50.0, 32.0});
   // m/s, choice: about the typical speed; 10 worked on the drives of R. Less hides fast objects, more admits clutter
   set(t, &M::motion, &K::birth_speed_std_mps, {1.3, 4.0, 10.0, 10.0, 9.0});
+  // 1, m/s, choice: vehicles in jams and at junctions
+  set(t, &M::motion, &K::slow_share, {0.0, 0.1, 0.2, 0.2, 0.2});
+  set(t, &M::motion, &K::slow_speed_std_mps, {1.3, 1.5, 1.5, 1.5, 1.5});
   // m²/s³, choice: q = σ² · 1 s of accelerations of 0.5, 0.7, 1.4, 1.2, 0.7 m/s². Less is smoother and later in
   // manoeuvres
   set(t, &M::motion, &K::along_acceleration_density_m2ps3, {0.25, 0.5, 2.0, 1.5, 0.5});

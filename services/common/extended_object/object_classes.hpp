@@ -23,6 +23,8 @@ struct MotionPrior {
   double typical_speed_mps = 0.0;
   double largest_speed_mps = 0.0;
   double birth_speed_std_mps = 0.0;               ///< of each component of the velocity of a newly appearing one
+  double slow_share = 0.0;                        ///< of its objects: in a jam, at a junction
+  double slow_speed_std_mps = 1.0;                ///< of theirs
   double along_acceleration_density_m2ps3 = 0.0;  ///< q of white acceleration along the heading
   double across_acceleration_density_m2ps3 = 0.0;
 };

@@ -95,8 +95,8 @@ struct SeenMixture {
 struct ReflectionMoments {
   double share_in_view = 1.0;
   Eigen::Vector2d mean_m{0.0, 0.0};
-  Eigen::Vector2d mean_by_length{0.0, 0.0};              ///< ∂m/∂L
-  Eigen::Matrix2d scatter_m2 = Eigen::Matrix2d::Zero();  ///< S: of one reflection about m
+  Eigen::Vector2d mean_by_length{0.0, 0.0};                     ///< ∂m/∂L
+  Eigen::Matrix2d scatter_m2 = Eigen::Matrix2d::Zero();         ///< S: of one reflection about m
   Eigen::Matrix2d scatter_by_length = Eigen::Matrix2d::Zero();  ///< ∂S/∂L
   Eigen::Matrix2d common_m2 = Eigen::Matrix2d::Zero();   ///< to add once a scan to S/n: places are held for 2–3 scans
   Eigen::Matrix2d lasting_m2 = Eigen::Matrix2d::Zero();  ///< of m, as long as the object lasts

@@ -94,6 +94,8 @@ std::vector<double> numbers(const Config& config) {
                              config.model.box.forget_s,
                              config.model.box.side_slip_mps,
                              config.model.box.turn_rate_std_radps,
+                             config.model.box.parallel_share,
+                             config.model.box.parallel_std_rad,
                              config.model.box.known_heading_rad,
                              config.report.confirmed_existence,
                              config.report.hold_log_odds_per_s,

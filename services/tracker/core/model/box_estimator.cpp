@@ -69,6 +69,7 @@ BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const
                                                                to_box * Eigen::Vector2d(kAfar_m, 0.0), {}, 1.0);
       middle[static_cast<std::size_t>(i)] = to_box.transpose() * moments.mean_m;
       any.depth_m += middle[static_cast<std::size_t>(i)].x() / kHeadings;
+      any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / kHeadings;
     }
     for (const Eigen::Vector2d& m : middle) {
       any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / kHeadings;
@@ -87,7 +88,34 @@ BoxMemory BoxEstimator::begin() const {
   return m;
 }
 
-void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, double elapsed_s) const {
+BoxEstimator::Course BoxEstimator::on_road(const Course& course, double road_rad, double vehicle_probability) const {
+  struct Way {
+    double weight, rad, variance_rad2;
+  };
+  const double std2 = parameters_.parallel_std_rad * parameters_.parallel_std_rad;
+  const double share = vehicle_probability * parameters_.parallel_share, sum = std2 + course.variance_rad2;
+  const auto along = [&](double rad) {
+    const double e = geometry::wrap_angle(course.rad - rad);
+    return Way{share * std::exp(-0.5 * e * e / sum) / std::sqrt(2.0 * std::numbers::pi * sum), rad + std2 / sum * e,
+               std2 * course.variance_rad2 / sum};
+  };
+  const std::array<Way, 3> ways = {
+      along(road_rad), along(road_rad + std::numbers::pi),
+      Way{(1.0 - 2.0 * share) / (2.0 * std::numbers::pi), course.rad, course.variance_rad2}};
+  const Way& best =
+      *std::max_element(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.weight < b.weight; });
+  double weights = 0.0, mean = 0.0, squares = 0.0;
+  for (const Way& w : ways) {
+    const double off = geometry::wrap_angle(w.rad - best.rad);
+    weights += w.weight;
+    mean += w.weight * off;
+    squares += w.weight * (w.variance_rad2 + off * off);
+  }
+  mean /= weights;
+  return {geometry::wrap_angle(best.rad + mean), squares / weights - mean * mean};
+}
+
+void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, double elapsed_s, double road_rad) const {
   const double speed_mps = std::sqrt(squared_norm(o.velocity_mps));
   const double time_s = std::max(0.0, elapsed_s);
   // At rest nothing turns.
@@ -96,8 +124,13 @@ void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, doubl
   if (speed_mps <= 0.0) return;
   const Vector2<double> across{-o.velocity_mps.y / speed_mps, o.velocity_mps.x / speed_mps};
   const double slip = parameters_.side_slip_mps;
-  const double variance = (quadratic(o.velocity_covariance, across) + slip * slip) / (speed_mps * speed_mps);
-  const double course_rad = std::atan2(o.velocity_mps.y, o.velocity_mps.x);
+  const auto vehicle = static_cast<std::size_t>(extended_object::RoadUserClass::kTwoWheeler);
+  double vehicle_probability = 0.0;
+  for (std::size_t k = vehicle; k < kRoadUserClasses; ++k) vehicle_probability += m.probability[k];
+  const auto [course_rad, variance] =
+      on_road({std::atan2(o.velocity_mps.y, o.velocity_mps.x),
+               (quadratic(o.velocity_covariance, across) + slip * slip) / (speed_mps * speed_mps)},
+              road_rad, vehicle_probability);
   const double change_rad = geometry::wrap_angle(course_rad - m.heading_rad);
   // Successive courses share their errors: the surer one counts, they are not averaged. The later one knows more, where
   // they contradict each other.
@@ -117,9 +150,14 @@ void BoxEstimator::weigh_classes(BoxMemory& m) const {
   double best = -1e300, sum = 0.0;
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     const ObjectClassModel& c = table_[k];
-    const double sigma = c.motion.birth_speed_std_mps, speed = m.largest_speed_mps;
-    // Speeds of a class are normal about zero in each direction, up to the largest.
-    const double of_speed = -2.0 * std::log(sigma) - 0.5 * speed * speed / (sigma * sigma);
+    const double speed = m.largest_speed_mps;
+    // Speeds of a class are normal about zero in each direction, up to the largest; some of its objects are slow.
+    const auto density = [speed](double sigma) {
+      return std::exp(-0.5 * speed * speed / (sigma * sigma)) / (sigma * sigma);
+    };
+    constexpr double kLeast = 1e-30;
+    const double of_speed = std::log(kLeast + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
+                                     c.motion.slow_share * density(c.motion.slow_speed_std_mps));
     const double over = std::max(0.0, speed - c.motion.largest_speed_mps);
     m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence;
     best = std::max(best, m.probability[k]);
@@ -204,7 +242,7 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
 
 void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObservation& scan,
                           const ClassViews& views) const {
-  follow_course(m, o, scan.elapsed_s);
+  follow_course(m, o, scan.elapsed_s, scan.road_rad);
   const double keep = std::exp(-std::max(0.0, scan.elapsed_s) / parameters_.forget_s);
   for (ClassBox& c : m.classes) c.log_evidence *= keep;
   const bool is_viewed =
@@ -232,7 +270,28 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
       }
     }
   }
+  if (scan.detections > 0.0 && !is_viewed) learn_without_heading(m, scan);
   weigh_classes(m);
+}
+
+void BoxEstimator::learn_without_heading(BoxMemory& m, const BoxObservation& scan) const {
+  const double n = scan.detections, noise = 0.5 * trace(scan.noise_m2);
+  std::array<double, kRoadUserClasses> log_p{};
+  double top = -1e300;
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    const ObjectClassModel& model = table_[k];
+    // Seen half from the side.
+    const double expected = extended_object::expected_detections(
+        model.count, scan.range_m, Eigen::Vector2d(std::numbers::sqrt2 / 2.0, std::numbers::sqrt2 / 2.0));
+    const double variance = any_heading_[k].scatter_m2 + noise;
+    log_p[k] = log_count(model.count, expected, n) -
+               std::log(1.0 - extended_object::no_detection_probability(model.count, expected)) -
+               0.5 * trace(scan.scatter) / variance - (n - 1.0) * std::log(variance);
+    top = std::max(top, log_p[k]);
+  }
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    m.classes[k].log_evidence += parameters_.evidence_share * (log_p[k] - top);
+  }
 }
 
 double BoxEstimator::inside(const BoxMemory& m, std::size_t k, const Vector2<double>& from_point_m,

@@ -30,6 +30,8 @@ struct BoxParameters {
   double forget_s = 20.0;             ///< of the evidence for classes
   double side_slip_mps = 0.15;        ///< between heading and course
   double turn_rate_std_radps = 0.15;  ///< change of heading of a moving object
+  double parallel_share = 0.35;       ///< of vehicles that drive as the own one does, and as many against it
+  double parallel_std_rad = 0.15;     ///< of their headings about that
   double known_heading_rad = 0.35;    ///< deviation from which on the heading places the box
 };
 
@@ -55,6 +57,8 @@ using ClassViews = std::array<ClassView, extended_object::kRoadUserClasses>;
 /// The detections of an object in a scan, in local axes.
 struct BoxObservation {
   double elapsed_s = 0.0;
+  double road_rad = 0.0;        ///< heading of the own vehicle
+  double range_m = 0.0;         ///< from the sensor
   Symmetric2<double> noise_m2;  ///< of one position
   double detections = 0.0;      ///< 0: none
   Vector2<double> mean_m;
@@ -112,7 +116,14 @@ class BoxEstimator {
   [[nodiscard]] const extended_object::ObjectClassTable& table() const { return table_; }
 
  private:
-  void follow_course(BoxMemory& memory, const Component<double>& object, double elapsed_s) const;
+  void follow_course(BoxMemory& memory, const Component<double>& object, double elapsed_s, double road_rad) const;
+  struct Course {
+    double rad, variance_rad2;
+  };
+  /// A course given that most vehicles drive along the road.
+  [[nodiscard]] Course on_road(const Course& course, double road_rad, double vehicle_probability) const;
+  /// Evidence for classes from number and spread of the detections, the heading unknown.
+  void learn_without_heading(BoxMemory& memory, const BoxObservation& scan) const;
   void weigh_classes(BoxMemory& memory) const;
   /// log p(scan | class), and what the scan tells about the class's length.
   double learn_class(ClassBox& box, const ClassView& view, const extended_object::ObjectClassModel& model,
@@ -124,6 +135,7 @@ class BoxEstimator {
   /// from the sensor, and the variances along the line of sight and across.
   struct AnyHeading {
     double depth_m = 0.0, along_m2 = 0.0, across_m2 = 0.0;
+    double scatter_m2 = 0.0;  ///< of one reflection in each direction
   };
   std::array<AnyHeading, extended_object::kRoadUserClasses> any_heading_;
 };

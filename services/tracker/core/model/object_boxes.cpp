@@ -51,7 +51,7 @@ const ObjectBoxes::Record* ObjectBoxes::see(const Component<double>& predicted, 
   return &r;
 }
 
-void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_s) {
+void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad) {
   std::swap(records_, before_);
   records_.clear();
   for (const ObjectEstimate& e : objects) {
@@ -64,8 +64,9 @@ void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_
       r.label = e.id;
       r.memory = estimator_.begin();
     }
-    BoxObservation o{
-        elapsed_s, r.noise_m2, e.detections, e.mean_m, e.scatter, r.predicted_m, r.predicted_covariance_m2};
+    BoxObservation o{elapsed_s,  road_rad,      std::sqrt(squared_norm(e.component->position_m - viewpoint_.sensor_m)),
+                     r.noise_m2, e.detections,  e.mean_m,
+                     e.scatter,  r.predicted_m, r.predicted_covariance_m2};
     estimator_.update(r.memory, *e.component, o, r.is_seen ? r.views : ClassViews{});
   }
   index_.clear();

@@ -34,7 +34,7 @@ class ObjectBoxes {
   /// The record of a predicted object with its views; null if nothing is remembered of it.
   [[nodiscard]] const Record* see(const Component<double>& predicted, const Symmetric2<double>& noise_m2);
   /// Takes the objects after a scan that came `elapsed_s` after the one before; others are forgotten.
-  void learn(std::span<const ObjectEstimate> objects, double elapsed_s);
+  void learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad);
   [[nodiscard]] Box box(const Component<double>& object) const;
   [[nodiscard]] const BoxEstimator& estimator() const { return estimator_; }
 
