@@ -327,10 +327,10 @@ void PhdFilter::reduce() {
       importance = std::max(importance, children_[j].importance);
       mixture_.push_back({other.existence, &other.component});
     }
-    corrected_.push_back({heaviest.id,
-                          std::max(weight, importance),
-                          {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_),
-                           heaviest.local.mean_m}});
+    corrected_.push_back(
+        {heaviest.id,
+         std::max(weight, importance),
+         {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_), heaviest.local.mean_m}});
     corrected_.back().local.component.source = heaviest.local.component.source;
   }
 }
