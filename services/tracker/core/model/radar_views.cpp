@@ -1,5 +1,5 @@
-// What the radar of a scan is to an object: whether it has it in view and can tell it from stationary reflectors, where its
-// detections lie, and how many there are.
+// What the radar of a scan is to an object: whether it has it in view and can tell it from stationary reflectors, where
+// its detections lie, and how many there are.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
