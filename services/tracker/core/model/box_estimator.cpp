@@ -206,7 +206,8 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
 }
 
 double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const ObjectClassModel& model,
-                                 const BoxObservation& scan, const Eigen::Matrix2d& to_local) const {
+                                 const BoxObservation& scan, const Eigen::Matrix2d& to_local,
+                                 const Eigen::Vector2d& to_sensor_of_point) const {
   const double n = scan.detections;
   const Eigen::Matrix2d noise = to_local.transpose() * eigen(scan.noise_m2) * to_local;
   double log_p = log_count(model.count, v.expected_detections, n) -
@@ -218,22 +219,30 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
   const Eigen::Matrix2d known =
       to_local.transpose() * eigen(scan.predicted_covariance_m2) * to_local + v.offset_covariance_m2 + noise / n;
   log_p += log_normal(e, known + scatter_of_mean);
-  // Places are held from scan to scan.
-  const Eigen::Matrix2d s = known + extended_object::held_noise_factor(model.places.scan_correlation) * scatter_of_mean;
-  const auto correct_length = [&](double gain, double by_length, double innovation) {
-    const double before_m = box.length_m;
-    box.length_m = std::max(0.3 * model.size.length_mean_m, before_m + gain * innovation);
-    box.length_variance_m2 *= 1.0 - gain * by_length;
-    box.point_m += (box.length_m - before_m) * box.point_by_length;
-  };
-  const Eigen::Vector2d by_length = v.reflections.mean_by_length - box.point_by_length;
-  const Eigen::RowVector2d gain = box.length_variance_m2 * by_length.transpose() * s.inverse();
-  correct_length(1.0, gain.dot(by_length), gain.dot(e));
+  // Length and tracked point are corrected by one innovation, so their errors are correlated from then on: c. The
+  // filter corrects the point by its own gain; Joseph form of both. Places are held from scan to scan.
+  const Eigen::Vector2d g = v.reflections.mean_by_length - box.point_by_length, c = box.tracked_by_length_m2;
+  const double variance = box.length_variance_m2;
+  const Eigen::Matrix2d p = to_local.transpose() * eigen(scan.predicted_covariance_m2) * to_local;
+  const Eigen::Matrix2d of_filter =
+      known + extended_object::held_noise_factor(model.places.scan_correlation) * scatter_of_mean;
+  const Eigen::Matrix2d s = of_filter + c * g.transpose() + g * c.transpose();
+  const Eigen::Vector2d by_length = c + variance * g, gain = s.inverse() * by_length;
+  const Eigen::Matrix2d point_gain = p * of_filter.inverse(), r = of_filter - p - variance * g * g.transpose();
+  box.tracked_by_length_m2 = (Eigen::Matrix2d::Identity() - point_gain) * (c - (p + c * g.transpose()) * gain) -
+                             point_gain * g * (variance - by_length.dot(gain)) + point_gain * r * gain;
+  const double before_m = box.length_m;
+  box.length_m = std::max(0.3 * model.size.length_mean_m, before_m + gain.dot(e));
+  box.point_m += (box.length_m - before_m) * box.point_by_length;
+  // The object's own depth lasts: no number of scans averages it away.
+  const double by_depth =
+      model.places.lasting_std_m * (v.to_sensor - to_sensor_of_point).dot(g) / std::max(1e-9, g.squaredNorm());
+  box.length_variance_m2 = std::min(variance, std::max(variance - by_length.dot(gain), by_depth * by_depth));
 
   constexpr double kPair = 1.5;
   if (n > kPair) {
     const Eigen::Matrix2d scatter = to_local.transpose() * eigen(scan.scatter) * to_local;
-    const Eigen::Matrix2d expected = v.reflections.scatter_m2 + noise;
+    const Eigen::Matrix2d expected = (1.0 - common) * v.reflections.scatter_m2 + noise;
     const double dof = n - 1.0;
     log_p -= 0.5 * (expected.inverse() * scatter).trace() + 0.5 * dof * std::log(expected.determinant());
   }
@@ -242,12 +251,18 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
 
 void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObservation& scan,
                           const ClassViews& views) const {
+  const bool had_point = m.has_point;
   follow_course(m, o, scan.elapsed_s, scan.road_rad);
+  // The heading jumped: views and tracked points are in axes of the old one.
+  const bool is_turned = had_point && !m.has_point;
+  if (is_turned) {
+    for (ClassBox& c : m.classes) c.point_m = c.point_by_length = c.tracked_by_length_m2 = Eigen::Vector2d::Zero();
+  }
   const double keep = std::exp(-std::max(0.0, scan.elapsed_s) / parameters_.forget_s);
   for (ClassBox& c : m.classes) c.log_evidence *= keep;
   const bool is_viewed =
       std::any_of(views.begin(), views.end(), [](const ClassView& v) { return v.probability > 0.0; });
-  if (scan.detections > 0.0 && is_viewed) {
+  if (scan.detections > 0.0 && is_viewed && !is_turned) {
     if (!m.has_point) {
       for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
         m.classes[k].point_m = views[k].reflections.mean_m;
@@ -261,7 +276,7 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
       double top = -1e300;
       for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
         if (views[k].probability <= 0.0) continue;
-        log_p[k] = learn_class(m.classes[k], views[k], table_[k], scan, to_local);
+        log_p[k] = learn_class(m.classes[k], views[k], table_[k], scan, to_local, m.to_sensor);
         top = std::max(top, log_p[k]);
       }
       // Classes that are not computed keep their distance.
@@ -270,7 +285,7 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
       }
     }
   }
-  if (scan.detections > 0.0 && !is_viewed) learn_without_heading(m, scan);
+  if (scan.detections > 0.0 && !is_viewed && !m.has_point) learn_without_heading(m, scan);
   weigh_classes(m);
 }
 

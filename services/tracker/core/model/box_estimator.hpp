@@ -70,8 +70,9 @@ struct BoxObservation {
 struct ClassBox {
   double log_evidence = 0.0;
   double length_m = 0.0, length_variance_m2 = 0.0;
-  Eigen::Vector2d point_m{0.0, 0.0};          ///< ρ, box axes
-  Eigen::Vector2d point_by_length{0.0, 0.0};  ///< ∂ρ/∂L
+  Eigen::Vector2d tracked_by_length_m2{0.0, 0.0};  ///< covariance of the tracked point and the length, box axes
+  Eigen::Vector2d point_m{0.0, 0.0};               ///< ρ, box axes
+  Eigen::Vector2d point_by_length{0.0, 0.0};       ///< ∂ρ/∂L
 };
 
 /// What is remembered of an object.
@@ -127,7 +128,8 @@ class BoxEstimator {
   void weigh_classes(BoxMemory& memory) const;
   /// log p(scan | class), and what the scan tells about the class's length.
   double learn_class(ClassBox& box, const ClassView& view, const extended_object::ObjectClassModel& model,
-                     const BoxObservation& scan, const Eigen::Matrix2d& to_local) const;
+                     const BoxObservation& scan, const Eigen::Matrix2d& to_local,
+                     const Eigen::Vector2d& to_sensor_of_point) const;
 
   extended_object::ObjectClassTable table_;
   BoxParameters parameters_;

@@ -64,9 +64,16 @@ void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_
       r.label = e.id;
       r.memory = estimator_.begin();
     }
-    BoxObservation o{elapsed_s,  road_rad,      std::sqrt(squared_norm(e.component->position_m - viewpoint_.sensor_m)),
-                     r.noise_m2, e.detections,  e.mean_m,
-                     e.scatter,  r.predicted_m, r.predicted_covariance_m2};
+    // Nothing is known yet of the scan that an object began with.
+    const BoxObservation o{elapsed_s,
+                           road_rad,
+                           std::sqrt(squared_norm(e.component->position_m - viewpoint_.sensor_m)),
+                           r.noise_m2,
+                           r.is_seen ? e.detections : 0.0,
+                           e.mean_m,
+                           e.scatter,
+                           r.predicted_m,
+                           r.predicted_covariance_m2};
     estimator_.update(r.memory, *e.component, o, r.is_seen ? r.views : ClassViews{});
   }
   index_.clear();

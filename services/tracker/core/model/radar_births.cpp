@@ -60,12 +60,15 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const Vector2<double> mean = cell.mean();
   double claimed = 0.0;
   const Vector2<double> way = mean - sensor_m_;
-  const Vector2<double> sight = (1.0 / std::sqrt(std::max(1e-6, squared_norm(way)))) * way;
+  constexpr double kLeastRange_m = 1e-3;
+  const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(way)));
+  const Vector2<double> sight = (1.0 / range_m) * way;
+  const Symmetric2<double> noise = noise_at(sight, range_m);
   for (std::size_t l = 0; l < group_objects_.size(); ++l) {
     const Prediction<double>& p = group_objects_[l];
     if (group_existence_[l] <= claimed) continue;
     // The chance that the place is taken; the range rates must agree.
-    const double taken = group_existence_[l] * taken_by(p.label(), p.position_m(), p.position_covariance(),
+    const double taken = group_existence_[l] * taken_by(p.label(), p.position_m(), p.position_covariance() + f * noise,
                                                         std::sqrt(squared_norm(p.velocity_mps())), mean);
     if (taken <= claimed) continue;
     const double mean_rate = dot(cell.sight_rate, p.velocity_mps()) * f;

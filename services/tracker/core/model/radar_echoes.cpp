@@ -51,7 +51,9 @@ void RadarModel::add_wide_range_rates() {
   for (const KnownObject& o : objects_) {
     if (o.existence < s.parent_existence) continue;
     const Component<double>& c = o.component;
-    const ObjectBoxes::Record* object = boxes_.see(c, noise_at({1.0, 0.0}, 0.0));
+    const Vector2<double> way = c.position_m - sensor_m_;
+    const double range_m = std::max(1e-3, std::sqrt(squared_norm(way)));
+    const ObjectBoxes::Record* object = boxes_.see(c, noise_at((1.0 / range_m) * way, range_m));
     if (object == nullptr || !object->memory.has_point) continue;
     const double cosine = std::cos(object->memory.heading_rad), sine = std::sin(object->memory.heading_rad);
     const double speed_mps = std::sqrt(squared_norm(c.velocity_mps));

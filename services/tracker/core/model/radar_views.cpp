@@ -76,9 +76,8 @@ View<double> RadarModel::view(const Component<double>& c) const {
   const double share = read_box(c, v);
   v.detection_probability = p.detection_probability;
   if (share >= 0.0) {
-    // A quarter of the object in view is enough to be detected, of fewer points.
-    constexpr double kEnough = 0.25, kLeastShare = 1e-3;
-    v.detection_probability *= std::min(1.0, share / kEnough);
+    // Of what is out of view there are no detections: their number says it.
+    constexpr double kLeastShare = 1e-3;
     v.exposure = std::max(kLeastShare, share);
   } else {
     v.detection_probability *= in_view(c);
@@ -123,8 +122,11 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
   }
   if (sum <= 0.0) return kUnknown;
   const ClassView& longer = object->views[kLong];
+  const bool is_long_only = shorter.weight <= kUnlikely;
+  const double all =
+      (is_long_only ? 0.0 : shorter.weight) + (longer.probability > kUnlikely ? longer.probability : 0.0);
   v.number_of_readings = 0;
-  if (shorter.weight > kUnlikely) {
+  if (!is_long_only) {
     shorter.offset_m = (1.0 / shorter.weight) * shorter.offset_m;
     for (std::size_t k = 0; k < object->views.size(); ++k) {
       if (k == kLong) continue;
@@ -134,6 +136,7 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
           shorter.covariance_m2 +
           (by_class.probability / shorter.weight) * (covariance_to_local(by_class.offset_covariance_m2) + outer(off));
     }
+    shorter.weight /= all;
     v.readings[v.number_of_readings++] = shorter;
   }
   if (longer.probability > kUnlikely) {
@@ -141,8 +144,8 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
     const Symmetric2<double> covariance = covariance_to_local(longer.offset_covariance_m2),
                              scatter = covariance_to_local(longer.reflections.scatter_m2);
     const double spot = boxes_.estimator().table()[kLong].places.common_share;
-    v.readings[v.number_of_readings++] = {(1.0 - spot) * longer.probability, offset, covariance, true, scatter};
-    v.readings[v.number_of_readings++] = {spot * longer.probability, offset, covariance + scatter, false, {}};
+    v.readings[v.number_of_readings++] = {(1.0 - spot) * longer.probability / all, offset, covariance, true, scatter};
+    v.readings[v.number_of_readings++] = {spot * longer.probability / all, offset, covariance + scatter, false, {}};
   }
   v.range_rate_variance = radar_->range_rate_std_mps * radar_->range_rate_std_mps + rate_variance / sum;
   return share / sum;

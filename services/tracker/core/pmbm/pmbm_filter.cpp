@@ -258,7 +258,7 @@ void PmbmFilter::join_parts(Model& model) {
   for (std::size_t g = 0; g < current_.size(); ++g) {
     for (std::size_t c = 0; c < current_.ids(g).size(); ++c) {
       const ObjectEstimate e = estimate(g, c);
-      if (e.existence > kLikely) likely_.push_back({g, c, e.component});
+      if (e.existence > kLikely) likely_.push_back({g, c, e.id, e.component});
     }
   }
   for (std::size_t a = 0; a < likely_.size(); ++a) {
@@ -268,20 +268,19 @@ void PmbmFilter::join_parts(Model& model) {
       const double whole_in_part = model.log_odds_of_part(*part.component, *whole.component);
       if (std::max(part_in_whole, whole_in_part) <= 0.0) continue;
       if (whole_in_part > part_in_whole) std::swap(whole, part);
-      const std::uint32_t label = std::min(whole.component->label, part.component->label);
+      const std::uint32_t label = std::min(whole.label, part.label);
       model.join(*whole.component, *part.component, label);
       // Detections of both add up.
       const double rate = part.component->rate_shape / part.component->rate_inverse_scale;
-      for (std::size_t r = 0; r < current_.log_weights(whole.group).size(); ++r) {
-        const std::int16_t l = current_.at(whole.group, r, whole.column);
-        if (l < 0) continue;
-        Component<double>& c = current_.pool(whole.group)[static_cast<std::size_t>(l)].component;
-        if (r == 0 || c.label != label)
-          c.rate_inverse_scale = c.rate_shape / (c.rate_shape / c.rate_inverse_scale + rate);
+      for (LocalHypothesis& local : current_.pool(whole.group)) {
+        Component<double>& c = local.component;
+        if (c.label != whole.label) continue;
+        c.rate_inverse_scale = c.rate_shape / (c.rate_shape / c.rate_inverse_scale + rate);
         c.label = label;
       }
       current_.rename(whole.group, whole.column, label);
       current_.erase(part.group, part.column);
+      whole.label = label;
       likely_[a] = whole;
       likely_.erase(likely_.begin() + static_cast<std::ptrdiff_t>(b--));
     }

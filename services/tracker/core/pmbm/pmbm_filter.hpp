@@ -60,6 +60,7 @@ class PmbmFilter final : public Filter {
   std::vector<double> explained_;
   struct Likely {
     std::size_t group, column;
+    std::uint32_t label;
     const Component<double>* component;
   };
   std::vector<Likely> likely_;  // scratch: objects that exist
