@@ -37,7 +37,8 @@ std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const Ve
 
 std::unique_ptr<MultiObjectTracker> make_scenario_tracker(std::string_view name, const LinearScenario& scenario) {
   Config config;
-  config.pmbm = {};  // what is learnt of radars does not hold here
+  config.pmbm = {};                  // what is learnt of radars does not hold here
+  config.pmbm.merge_distance = 4.0;  // of targets with ten detections a scan; choice: 3 … 6 are alike
   return std::make_unique<PointProcessTracker>(std::make_unique<ScenarioModel>(scenario), make_filter(name, config),
                                                std::make_unique<EllipseReporter>());
 }

@@ -182,8 +182,7 @@ void RadarModel::learn(std::span<const double> explained, std::span<const Object
   boxes_.learn(objects, elapsed_s_, axes_.heading_rad);
   if (radar_ == nullptr) return;
   for (std::size_t i = 0; i < explained.size() && i < places_.size(); ++i) {
-    radar_->clutter.add(places_[i], std::max(0.0, 1.0 - explained[i]) *
-                                        (1.0 - measurements_[i].wide_share));
+    radar_->clutter.add(places_[i], std::max(0.0, 1.0 - explained[i]) * (1.0 - measurements_[i].wide_share));
   }
 }
 

@@ -8,7 +8,6 @@ namespace boresight::tracking::pmbm {
 
 namespace {
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-constexpr double kUnseen = 1e-3;  // of detection: nothing of the scan is its own
 }  // namespace
 
 Grouping::Grouping(const Parameters& parameters, const Capacity& capacity)
@@ -82,7 +81,7 @@ std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& 
   for (std::size_t g = 0; g < groups; ++g) {
     for (const LocalHypothesis& local : store.pool(g)) {
       const View<double> view = model.view(local.component);
-      if (view.detection_probability < kUnseen) continue;
+      if (view.detection_probability < parameters_.min_detection_probability) continue;
       const Component<double>& c = local.component;
       for (std::size_t k = 0; k < view.number_of_readings; ++k) {
         const Reading<double>& reading = view.readings[k];

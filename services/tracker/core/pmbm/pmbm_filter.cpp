@@ -64,7 +64,7 @@ void PmbmFilter::step(Model& model, double elapsed_s) {
   poisson_.end_scan(model);
   std::swap(current_, next_);
   join_parts(model);
-  work_.budget_reached = work_.likelihood_evaluations > parameters_.work_budget;
+  work_.budget_reached = association_.take_was_cut() || work_.likelihood_evaluations > parameters_.work_budget;
   work_.dropped_objects += static_cast<std::uint32_t>(cut);
   report();
 }
@@ -222,8 +222,7 @@ void PmbmFilter::reduce(const Model& model) {
       const std::int16_t l = after_.at(r, c);
       if (l < 0) continue;
       const LocalHypothesis& local = after_.pool[static_cast<std::size_t>(l)];
-      constexpr double kLeast = 1e-12;  // keeps the sum of weights above zero
-      mixture_.push_back({std::exp(after_.log_weights[r]) * local.existence + kLeast, &local.component});
+      mixture_.push_back({std::exp(after_.log_weights[r]) * local.existence, &local.component});
     }
     if (!model.has_births_anywhere() && !mixture_.empty() && existence > parameters_.min_poisson_weight) {
       poisson_.take_back(existence, merge<double>(mixture_));
