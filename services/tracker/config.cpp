@@ -6,10 +6,6 @@ namespace boresight::tracking {
 
 namespace {
 
-std::size_t count(config::Reader& reader, std::string_view key, std::size_t fallback) {
-  return static_cast<std::size_t>(reader.integer(key, {1, 32}, static_cast<std::int64_t>(fallback)));
-}
-
 /// A number of the configuration: key, value, allowed range.
 struct Number {
   std::string_view key;
@@ -46,10 +42,14 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                              {"traffic_speed_std_mps", &b.traffic.speed_std_mps, {0.1, 100.0}},
                              {"half_length_m", &b.half_length_m, {0.1, 10.0}},
                              {"extent_dof", &b.extent_dof, {6.5, 100.0}},
-                             {"vehicle_length_m", &b.vehicle_length_m, {0.1, 30.0}},
-                             {"vehicle_width_m", &b.vehicle_width_m, {0.1, 5.0}},
+                             {"gap_along_m", &b.gap_along_m, {0.0, 10.0}},
+                             {"gap_across_m", &b.gap_across_m, {0.0, 5.0}},
+                             {"headway_s", &b.headway_s, {0.0, 5.0}},
+                             {"close_share", &b.close_share, {1e-3, 1.0}},
                              {"person_m", &b.person_m, {0.05, 5.0}},
-                             {"vehicle_speed_mps", &b.vehicle_speed_mps, {0.1, 20.0}},
+                             {"neighbour_density_per_m2", &b.neighbour_density_per_m2, {1e-9, 1.0}},
+                             {"neighbour_speed_std_mps", &b.neighbour_speed_std_mps, {0.1, 20.0}},
+                             {"part_odds", &b.part_odds, {1e-3, 1e6}},
                              {"same_speed_chi2", &b.same_speed_chi2, {0.1, 100.0}},
                              {"link_distance_m", &b.link_distance_m, {0.1, 20.0}},
                              {"link_range_rate_mps", &b.link_range_rate_mps, {0.01, 20.0}}});
@@ -67,11 +67,13 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"lasting_share", &s.lasting_share, {0.0, 1.0}},
                               {"other_radar", &s.other_radar, {0.001, 1.0}},
                               {"side_lobes", &s.side_lobes, {0.0, 100.0}},
-                              {"side_lobe_existence", &s.side_lobe_existence, {0.0, 1.0}},
+                              {"parent_existence", &s.parent_existence, {0.0, 1.0}},
                               {"side_lobe_range_std_m", &s.side_lobe_range_std_m, {0.01, 20.0}},
                               {"side_lobe_range_rate_std_mps", &s.side_lobe_range_rate_std_mps, {0.01, 10.0}},
                               {"side_lobe_chi2", &s.side_lobe_chi2, {0.1, 100.0}},
                               {"side_lobe_least_deviations", &s.side_lobe_least_deviations, {0.0, 20.0}},
+                              {"ambiguity_share", &s.ambiguity_share, {0.0, 1.0}},
+                              {"ambiguity_width_mps", &s.ambiguity_width_mps, {1.0, 1000.0}},
                               {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}}});
   MotionParameters& k = m.motion;
   read(root.table("motion"), {{"acceleration_density_m2ps3", &k.acceleration_density, {1e-4, 100.0}},
@@ -109,50 +111,6 @@ void read_capacity(config::Reader table, pmbm::Capacity& c) {
   capacity("candidates", {1, 256}, c.candidates);
 }
 
-/// Settings of the rule-based tracker.
-RulesConfig read_rules(config::Reader& root) {
-  RulesConfig c;
-  config::Reader clusters = root.table("clusters");
-  c.cluster_radius_m = clusters.number("radius_m", {0.1, 20.0}, c.cluster_radius_m);
-  c.cluster_min_points = count(clusters, "min_points", c.cluster_min_points);
-  c.cluster_max_range_rate_spread_mps =
-      clusters.number("max_range_rate_spread_mps", {0.1, 50.0}, c.cluster_max_range_rate_spread_mps);
-  config::Reader filter = root.table("filter");
-  c.gate_chi2 = filter.number("gate_chi2", {1.0, 100.0}, c.gate_chi2);
-  c.jerk_std_mps3 = filter.number("jerk_std_mps3", {0.01, 100.0}, c.jerk_std_mps3);
-  c.centre_std_m = filter.number("centre_std_m", {0.01, 10.0}, c.centre_std_m);
-  c.range_rate_std_mps = filter.number("range_rate_std_mps", {0.01, 10.0}, c.range_rate_std_mps);
-  c.start_position_std_m = filter.number("start_position_std_m", {0.0, 20.0}, c.start_position_std_m);
-  c.start_speed_std_mps = filter.number("start_speed_std_mps", {0.1, 100.0}, c.start_speed_std_mps);
-  c.start_acceleration_std_mps2 =
-      filter.number("start_acceleration_std_mps2", {0.1, 50.0}, c.start_acceleration_std_mps2);
-  config::Reader parts = root.table("parts");
-  c.part_margin_m = parts.number("part_margin_m", {0.0, 20.0}, c.part_margin_m);
-  c.duplicate_margin_m = parts.number("duplicate_margin_m", {0.0, 20.0}, c.duplicate_margin_m);
-  c.duplicate_speed_mps = parts.number("duplicate_speed_mps", {0.0, 50.0}, c.duplicate_speed_mps);
-  config::Reader life = root.table("life");
-  c.confirm_hits = count(life, "confirm_hits", c.confirm_hits);
-  c.confirm_window = count(life, "confirm_window", c.confirm_window);
-  c.confirm_evidence = life.number("confirm_evidence", {0.0, 32.0}, c.confirm_evidence);
-  c.confirm_age_s = life.number("confirm_age_s", {0.0, 5.0}, c.confirm_age_s);
-  c.confirm_image_age_s = life.number("confirm_image_age_s", {0.0, 60.0}, c.confirm_image_age_s);
-  c.confirm_side_image_age_s = life.number("confirm_side_image_age_s", {0.0, 60.0}, c.confirm_side_image_age_s);
-  c.confirm_weak_age_s = life.number("confirm_weak_age_s", {0.0, 60.0}, c.confirm_weak_age_s);
-  c.start_realness = life.number("start_realness", {0.0, 1.0}, c.start_realness);
-  c.delete_misses = count(life, "delete_misses", c.delete_misses);
-  c.delete_window = count(life, "delete_window", c.delete_window);
-  c.delete_age_s = life.number("delete_age_s", {0.0, 5.0}, c.delete_age_s);
-  c.coast_s = life.number("coast_s", {0.05, 10.0}, c.coast_s);
-  c.blind_range_rate_mps = life.number("blind_range_rate_mps", {0.0, 10.0}, c.blind_range_rate_mps);
-  c.stopped_speed_mps = life.number("stopped_speed_mps", {0.0, 5.0}, c.stopped_speed_mps);
-  if (c.confirm_hits > c.confirm_window) life.reject("confirm_hits", "must not exceed confirm_window");
-  if (c.confirm_evidence > static_cast<double>(c.confirm_window)) {
-    life.reject("confirm_evidence", "must not exceed confirm_window");
-  }
-  if (c.delete_misses > c.delete_window) life.reject("delete_misses", "must not exceed delete_window");
-  return c;
-}
-
 }  // namespace
 
 Config read_config(config::Reader root) {
@@ -164,17 +122,19 @@ Config read_config(config::Reader root) {
   read_model(root, c.model);
   read_search(root.table("search"), c.pmbm);
   read_capacity(root.table("capacity"), c.capacity);
-  read(root.table("box"), {{"evidence_share", &c.box.evidence_share, {0.0, 1.0}},
-                           {"forget_s", &c.box.forget_s, {0.1, 1e4}},
-                           {"side_slip_mps", &c.box.side_slip_mps, {0.0, 5.0}},
-                           {"turn_rate_std_radps", &c.box.turn_rate_std_radps, {0.0, 3.0}},
-                           {"offset_gain", &c.box.offset_gain, {0.01, 1.0}}});
+  BoxParameters& x = c.model.box;
+  read(root.table("box"), {{"evidence_share", &x.evidence_share, {0.0, 1.0}},
+                           {"forget_s", &x.forget_s, {0.1, 1e4}},
+                           {"side_slip_mps", &x.side_slip_mps, {0.0, 5.0}},
+                           {"turn_rate_std_radps", &x.turn_rate_std_radps, {0.0, 3.0}},
+                           {"parallel_share", &x.parallel_share, {0.0, 0.5}},
+                           {"parallel_std_rad", &x.parallel_std_rad, {0.001, 3.0}},
+                           {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}}});
   ReportParameters& r = c.report;
   read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
                               {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},
                               {"least_existence", &r.least_existence, {0.001, 0.5}},
                               {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}}});
-  c.rules = read_rules(root);
   root.finish();
   return c;
 }

@@ -20,9 +20,14 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Confi
                  result.dropped_detections);
     }
     if (result.dropped_objects > 0) {
-      node.fault(Fault::kCapacity, "more objects than tracks have room", result.dropped_objects);
+      node.fault(Fault::kCapacity, "more objects than the tracker has room for", result.dropped_objects);
     }
-    tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) { tracker->write(out); });
+    std::uint32_t dropped_tracks = 0;
+    tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) {
+      tracker->write(out);
+      dropped_tracks = out.dropped_tracks;
+    });
+    if (dropped_tracks > 0) node.fault(Fault::kCapacity, "more tracks than a list has room for", dropped_tracks);
   });
   return node.spin();
 }

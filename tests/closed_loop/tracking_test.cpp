@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdio>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -31,57 +32,64 @@ Figures judge_and_print(const DriveOfFigures& of) {
   return f;
 }
 
+using Drive = std::tuple<const char*, const char*>;  // scenario, radar profile
+
+/// With the statistics of real radars: an object that is far, half hidden, or crosses the line of sight is found late.
+class TracksOfRealRadars : public testing::TestWithParam<Drive> {};
+
+TEST_P(TracksOfRealRadars, AreAtTheirObjectsWithFewFalseOnes) {
+  constexpr std::array<std::uint64_t, 2> kSeeds{1, 2};
+  const auto [scenario, profile] = GetParam();
+  std::array<Figures, kSeeds.size()> drives;
+  for (std::size_t i = 0; i < kSeeds.size(); ++i) {
+    drives[i] = judge_and_print({.scenario = scenario, .profile = profile, .seed = kSeeds[i], .duration_s = 20.0});
+  }
+  const auto mean = [&](const auto& figure) {
+    double sum = 0.0;
+    for (const Figures& f : drives) sum += figure(f) / static_cast<double>(kSeeds.size());
+    return sum;
+  };
+  const auto of_objects = [&](const char* name) { return mean([&](const Figures& f) { return f.of_objects(name); }); };
+  EXPECT_GE(of_objects("stays_found"), 0.9 * of_objects("stays"));
+  EXPECT_GT(of_objects("tracked_share"), 0.85);
+  EXPECT_LT(of_objects("along_rms_m"), 0.8);
+  EXPECT_LT(of_objects("across_rms_m"), 0.5);
+  EXPECT_LT(of_objects("heading_rms_deg"), 6.0);
+  EXPECT_LT(of_objects("identity_switches"), 1.5 * of_objects("stays"));
+  EXPECT_LT(mean([](const Figures& f) { return f.drive.value("tracks.duplicates.mean_at_a_time"); }), 0.16);
+  EXPECT_LT(mean([](const Figures& f) { return f.afterwards.value("tracks.false.all_ranges.mean_at_a_time"); }), 1.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, TracksOfRealRadars,
+                         testing::Combine(testing::Values("demo_drive", "aligned_drive", "straight_rail"),
+                                          testing::Values("series_77ghz", "can_cluster")));
+
+/// The plain radars of the profile "ideal" show both ends and the rotating parts of a vehicle in every scan, which no
+/// real radar does and the tracker's model of an object denies. They still lose no object.
+class TracksOfPlainRadars : public testing::TestWithParam<const char*> {};
+
 void expect_objects(const Figures& figures) {
   EXPECT_EQ(figures.of_objects("stays_found"), figures.of_objects("stays"));
   EXPECT_GT(figures.of_objects("stays"), 0.0);
-  // In the remaining scans an object is new, half hidden, or crosses the line of sight and has no range rate over
-  // ground.
-  EXPECT_GT(figures.of_objects("tracked_share"), 0.97);
-  // From behind, a car's length is not visible; its track lies at the visible end.
-  EXPECT_LT(figures.of_objects("along_rms_m"), 0.6);
-  EXPECT_LT(figures.of_objects("across_rms_m"), 0.55);
-  EXPECT_LT(figures.of_objects("speed_rms_mps"), 2.2);
-  EXPECT_LT(figures.of_objects("heading_rms_deg"), 6.8);
+  EXPECT_GT(figures.of_objects("tracked_share"), 0.9);
+  EXPECT_LT(figures.of_objects("delay_max_s"), 1.5);
 }
 
-class Tracking : public testing::TestWithParam<const char*> {};
-
-TEST_P(Tracking, FindsEveryVehicleSoonWithFewFalseTracks) {
-  constexpr std::array<std::uint64_t, 3> kSeeds{1, 2, 3};
-  double duplicates = 0.0;
-  for (const std::uint64_t seed : kSeeds) {
-    const Figures figures = judge_and_print({.scenario = GetParam(), .profile = "ideal", .seed = seed});
-    expect_objects(figures);
-    const double stays = figures.of_objects("stays");
-    EXPECT_LT(figures.of_objects("delay_max_s"), 0.5);
-    EXPECT_LE(figures.of_objects("identity_switches"), 2.0 * stays);
-    EXPECT_LE(static_cast<double>(figures.ids), 3.0 * stays);
-    duplicates += figures.drive.value("tracks.duplicates.mean_at_a_time") / kSeeds.size();
-    EXPECT_LT(figures.afterwards.value("tracks.false.all_ranges.mean_at_a_time"), 0.2);
-    EXPECT_LE(figures.afterwards.value("tracks.false.all_ranges.tracks"), 6.0);
-    EXPECT_LE(figures.before_aligned.value("tracks.false.all_ranges.tracks"), 2.0);
-  }
-  // Any change of the mounting estimate changes those of one drive: over eight seeds of demo_drive they are 0.083 in
-  // the mean, with a std of 0.047 from drive to drive.
-  EXPECT_LT(duplicates, 0.16);
+TEST_P(TracksOfPlainRadars, LoseNoObject) {
+  expect_objects(judge_and_print({.scenario = GetParam(), .profile = "ideal"}));
 }
 
 // The published method (Le Ba Thanh 2023) is the baseline. Its test for stationary objects is a constant threshold, and
-// it detects no ghosts beside an object, so both cause false tracks. It still loses no object.
-TEST_P(Tracking, FindsEveryVehicleWithThePublishedGhostFilterToo) {
+// it detects no ghosts beside an object, so both cause false tracks.
+TEST_P(TracksOfPlainRadars, LoseNoObjectWithThePublishedGhostFilterEither) {
   const Figures figures =
       judge_and_print({.scenario = GetParam(), .profile = "ideal", .method = ghosts::MethodName::kPublished});
   expect_objects(figures);
   EXPECT_LT(figures.afterwards.value("tracks.false.all_ranges.mean_at_a_time"), 4.0);
 }
 
-// Real radars have no limits yet: the figures are printed beside those of the ideal ones.
-TEST_P(Tracking, IsJudgedWithTheStatisticsOfARealRadarToo) {
-  const Figures figures = judge_and_print({.scenario = GetParam(), .profile = "series_77ghz", .duration_s = 20.0});
-  EXPECT_GT(figures.of_objects("objects_found"), 0.0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenarios, Tracking, testing::Values("demo_drive", "aligned_drive", "straight_rail"));
+INSTANTIATE_TEST_SUITE_P(Scenarios, TracksOfPlainRadars,
+                         testing::Values("demo_drive", "aligned_drive", "straight_rail"));
 
 }  // namespace
 }  // namespace boresight::closed_loop

@@ -109,6 +109,7 @@ bool Chain::add_scan(RadarScan& scan, std::int64_t time_ns) {
     counts_.tracker_dropped_detections += step.dropped_detections;
     counts_.tracker_dropped_objects += step.dropped_objects;
     tracker_->write(*tracks_);
+    counts_.tracker_dropped_objects += tracks_->dropped_tracks;
   });
   timed(times_.ghost_filter, [&] { ghosts_->add_tracks(*tracks_); });
   const ScanResult result{{time_ns, start_ns_}, number, scan, *classified_, *tracks_};

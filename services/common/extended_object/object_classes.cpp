@@ -23,9 +23,9 @@ void set(ObjectClassTable& table, Group M::*group, double Group::*value, const R
 void set_size(ObjectClassTable& t) {
   using S = SizePrior;
   // m, boxes: 0.73, 1.68 (bicycle) … 2.10 (motorcycle), 4.61, 6.7 (truck) … 12.0 (trailer); van choice
-  set(t, &M::size, &S::length_mean_m, {0.73, 1.8, 4.6, 5.6, 10.0});
+  set(t, &M::size, &S::length_mean_m, {0.73, 1.8, 4.6, 5.6, 10.5});
   // m, choice: cars mostly 4.0 … 5.2; trucks 6 … 16.5, the longest in the EU (Directive 96/53/EC)
-  set(t, &M::size, &S::length_std_m, {0.2, 0.2, 0.4, 0.6, 3.0});
+  set(t, &M::size, &S::length_std_m, {0.2, 0.2, 0.4, 0.6, 3.5});
   // m, boxes: 0.66, 0.60 … 0.76, 1.95 (1.85 without mirrors, choice), 2.46; 2.55 is the widest in the EU; van choice
   set(t, &M::size, &S::width_mean_m, {0.67, 0.7, 1.85, 2.0, 2.5});
   // m, choice
@@ -42,6 +42,9 @@ void set_motion(ObjectClassTable& t) {
   set(t, &M::motion, &K::largest_speed_mps, {5.0, 15.0, 70.0, 50.0, 32.0});
   // m/s, choice: about the typical speed; 10 worked on the drives of R. Less hides fast objects, more admits clutter
   set(t, &M::motion, &K::birth_speed_std_mps, {1.3, 4.0, 10.0, 10.0, 9.0});
+  // 1, m/s, choice: vehicles in jams and at junctions
+  set(t, &M::motion, &K::slow_share, {0.0, 0.1, 0.2, 0.2, 0.2});
+  set(t, &M::motion, &K::slow_speed_std_mps, {1.3, 1.5, 1.5, 1.5, 1.5});
   // m²/s³, choice: q = σ² · 1 s of accelerations of 0.5, 0.7, 1.4, 1.2, 0.7 m/s². Less is smoother and later in
   // manoeuvres
   set(t, &M::motion, &K::along_acceleration_density_m2ps3, {0.25, 0.5, 2.0, 1.5, 0.5});
@@ -81,6 +84,8 @@ void set_places(ObjectClassTable& t) {
   set(t, &M::places, &P::corner_radius_m, {0.3, 0.3, 0.3, 0.3, 0.3});
   // 1, measured: §7, positions last about 2–3 scans
   set(t, &M::places, &P::scan_correlation, {0.67, 0.67, 0.67, 0.67, 0.67});
+  // 1, choice: a scan shows a long vehicle in one spot (R §2: half of the scans 4.2 m or less) or all over
+  set(t, &M::places, &P::common_share, {0.0, 0.0, 0.1, 0.2, 0.5});
   // m, choice: a sixth to a quarter of the mean depth
   set(t, &M::places, &P::lasting_std_m, {0.05, 0.1, 0.2, 0.25, 0.5});
 }

@@ -23,6 +23,8 @@ struct MotionPrior {
   double typical_speed_mps = 0.0;
   double largest_speed_mps = 0.0;
   double birth_speed_std_mps = 0.0;               ///< of each component of the velocity of a newly appearing one
+  double slow_share = 0.0;                        ///< of its objects: in a jam, at a junction
+  double slow_speed_std_mps = 1.0;                ///< of theirs
   double along_acceleration_density_m2ps3 = 0.0;  ///< q of white acceleration along the heading
   double across_acceleration_density_m2ps3 = 0.0;
 };
@@ -44,6 +46,7 @@ struct ReflectionPlaces {
   double face_depth_std_m = 0.0;  ///< about that mean
   double corner_radius_m = 0.0;   ///< a face comes into view while the sensor passes twice this distance
   double scan_correlation = 0.0;  ///< of one reflection's place, from a scan to the next one 75 ms later
+  double common_share = 0.0;      ///< of their variance that all reflections of one scan have in common
   double lasting_std_m = 0.0;     ///< of an object's own mean depth about that of its class
 };
 

@@ -76,10 +76,28 @@ using ReflectionMixture = std::array<ReflectionComponent, kReflectionComponents>
 [[nodiscard]] double position_density(const ReflectionMixture& mixture, const Eigen::Vector2d& point_box_m,
                                       const Eigen::Matrix2d& covariance_box_m2);
 
+/// Field of view of a radar in the plane, in box axes: what lies outside does not reflect for this radar.
+struct ViewSector {
+  Eigen::Vector2d facing{1.0, 0.0};  ///< unit vector along its middle
+  double half_angle_rad = 4.0;       ///< from π on: all around
+  double edge_rad = 0.0;             ///< softness of its edges, one standard deviation
+};
+
+/// The mixture (4) with each Gaussian weighted by its share within the sector; weights sum to `share`.
+struct SeenMixture {
+  ReflectionMixture mixture;
+  double share = 1.0;  ///< of the reflections that are in view
+};
+[[nodiscard]] SeenMixture seen_in(const ReflectionMixture& mixture, const Eigen::Vector2d& sensor_box_m,
+                                  const ViewSector& sector);
+
 /// Mean offset m of the reflections from the centre of the box, and its errors; box axes.
 struct ReflectionMoments {
+  double share_in_view = 1.0;
   Eigen::Vector2d mean_m{0.0, 0.0};
-  Eigen::Matrix2d scatter_m2 = Eigen::Matrix2d::Zero();  ///< S: of one reflection about m
+  Eigen::Vector2d mean_by_length{0.0, 0.0};                     ///< ∂m/∂L
+  Eigen::Matrix2d scatter_m2 = Eigen::Matrix2d::Zero();         ///< S: of one reflection about m
+  Eigen::Matrix2d scatter_by_length = Eigen::Matrix2d::Zero();  ///< ∂S/∂L
   Eigen::Matrix2d common_m2 = Eigen::Matrix2d::Zero();   ///< to add once a scan to S/n: places are held for 2–3 scans
   Eigen::Matrix2d lasting_m2 = Eigen::Matrix2d::Zero();  ///< of m, as long as the object lasts
 };
@@ -89,10 +107,10 @@ struct SizeStd {
   double length_std_m = 0.0, width_std_m = 0.0;
 };
 
-/// `detections`: number n of the scan whose mean is used; less than 1 counts as 1.
+/// `detections`: number n of the scan whose mean is used; less than 1 counts as 1. Moments are those within the sector.
 [[nodiscard]] ReflectionMoments reflection_moments(const ReflectionPlaces& places, double length_m, double width_m,
                                                    const Eigen::Vector2d& sensor_box_m, const SizeStd& size_std,
-                                                   double detections);
+                                                   double detections, const ViewSector& sector = {});
 
 /// κ of (5).
 [[nodiscard]] double held_noise_factor(double scan_correlation);

@@ -4,23 +4,19 @@
 #include <string>
 
 #include "services/tracker/core/model/radar_parameters.hpp"
-#include "services/tracker/core/output/box_estimator.hpp"
 #include "services/tracker/core/output/track_reporter.hpp"
 #include "services/tracker/core/phd/parameters.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
-#include "services/tracker/core/rules_config.hpp"
 
 namespace boresight::tracking {
 
 struct Config {
-  std::string tracker = "rules";  ///< name for make_tracker()
+  std::string tracker = "pmbm";  ///< name for make_tracker()
   RadarModelParameters model;
   pmbm::Parameters pmbm{.min_existence = 0.02};  ///< nothing returns to a Poisson part where births are everywhere
   pmbm::Capacity capacity;
   phd::Parameters phd;
-  BoxParameters box;
   ReportParameters report;
-  RulesConfig rules;
 };
 
 }  // namespace boresight::tracking

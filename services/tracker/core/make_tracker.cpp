@@ -10,7 +10,6 @@
 #include "services/tracker/core/phd/phd_filter.hpp"
 #include "services/tracker/core/pmbm/pmbm_filter.hpp"
 #include "services/tracker/core/point_process_tracker.hpp"
-#include "services/tracker/core/tracker.hpp"
 
 namespace boresight::tracking {
 
@@ -25,21 +24,21 @@ std::unique_ptr<Filter> make_filter(std::string_view name, const Config& config)
 }  // namespace
 
 std::vector<std::string> tracker_names() {
-  return {"rules", "pmbm", "phd"};
+  return {"pmbm", "phd"};
 }
 
 std::unique_ptr<MultiObjectTracker> make_tracker(std::string_view name, const VehicleConfig& vehicle,
                                                  const Config& config) {
-  if (name == "rules") return std::make_unique<Tracker>(vehicle, config.rules);
   auto filter = make_filter(name, config);
-  auto model = std::make_unique<RadarModel>(vehicle, config.model);
-  auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.box, config.capacity.objects);
+  auto model = std::make_unique<RadarModel>(vehicle, config.model, config.capacity.objects);
+  auto reporter = std::make_unique<TrackReporter>(*model, config.report, config.capacity.objects);
   return std::make_unique<PointProcessTracker>(std::move(model), std::move(filter), std::move(reporter));
 }
 
 std::unique_ptr<MultiObjectTracker> make_scenario_tracker(std::string_view name, const LinearScenario& scenario) {
   Config config;
-  config.pmbm = {};  // what is learnt of radars does not hold here
+  config.pmbm = {};                  // what is learnt of radars does not hold here
+  config.pmbm.merge_distance = 4.0;  // of targets with ten detections a scan; choice: 3 … 6 are alike
   return std::make_unique<PointProcessTracker>(std::make_unique<ScenarioModel>(scenario), make_filter(name, config),
                                                std::make_unique<EllipseReporter>());
 }

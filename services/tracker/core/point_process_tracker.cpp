@@ -1,5 +1,6 @@
 #include "services/tracker/core/point_process_tracker.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace boresight::tracking {
@@ -7,6 +8,12 @@ namespace boresight::tracking {
 PointProcessTracker::PointProcessTracker(std::unique_ptr<Model> model, std::unique_ptr<Filter> filter,
                                          std::unique_ptr<Reporter> reporter)
     : model_(std::move(model)), filter_(std::move(filter)), reporter_(std::move(reporter)) {}
+
+double PointProcessTracker::advance(const ScanStart& start) {
+  const double newer_s = start.elapsed_s - (start.restarted ? 0.0 : behind_s_);
+  behind_s_ = std::max(0.0, -newer_s);
+  return std::max(0.0, newer_s);
+}
 
 StepResult PointProcessTracker::step(const ClassifiedScan& scan) {
   const ScanStart start = model_->begin_scan(scan);
@@ -16,7 +23,7 @@ StepResult PointProcessTracker::step(const ClassifiedScan& scan) {
   }
   filter_->step(*model_, start.elapsed_s);
   model_->learn(filter_->explained(), filter_->estimates());
-  reporter_->take(filter_->estimates(), start.elapsed_s);
+  reporter_->take(filter_->estimates(), advance(start));
 
   const FilterWork& work = filter_->work();
   flags_ = scan.flags;

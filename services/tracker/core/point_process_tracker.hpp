@@ -18,10 +18,14 @@ class PointProcessTracker final : public MultiObjectTracker {
   void write(TrackList& out) const override;
 
  private:
+  /// How much later than any scan before this one is; 0 out of order.
+  double advance(const ScanStart& start);
+
   std::unique_ptr<Model> model_;
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<Reporter> reporter_;
   StepResult result_;
+  double behind_s_ = 0.0;    // of the scan, in measurement time, behind the newest one
   std::uint32_t flags_ = 0;  // of the scan
 };
 

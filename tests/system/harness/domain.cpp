@@ -12,6 +12,7 @@
 #include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/simulator/drive_writer.hpp"
+#include "services/simulator/scenario/read_profile.hpp"
 
 namespace boresight::harness {
 
@@ -103,10 +104,12 @@ std::unique_ptr<Child> start_alone(const std::string& service, const fs::path& c
   });
 }
 
-std::vector<fs::path> simulated_drive(double duration_s, const std::string& scenario) {
+std::vector<fs::path> simulated_drive(double duration_s, const std::string& scenario_name, const std::string& profile) {
   const VehicleConfig vehicle = config::read_vehicle_file(kConfig / "vehicle" / "demo.toml");
+  simulator::Scenario scenario = simulator::scenario(scenario_name);
+  if (!profile.empty()) simulator::use_profile(scenario, profile);
   const simulator::DriveFiles files =
-      simulator::write_drive(simulator::scenario(scenario), vehicle, 1, duration_s, "/tmp/drive", [](double) {});
+      simulator::write_drive(scenario, vehicle, 1, duration_s, "/tmp/drive", [](double) {});
   return {files.radars, files.ego};
 }
 

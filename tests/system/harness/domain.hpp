@@ -43,8 +43,10 @@ class Domain {
                                                  const std::filesystem::path& config = shipped_configuration());
 [[nodiscard]] std::filesystem::path log_of_alone(const std::string& service);
 
-/// Simulates a drive of the demo vehicle into /tmp/drive; returns its recordings, the ego signals last.
+/// Simulates a drive of the demo vehicle into /tmp/drive; returns its recordings, the ego signals last. `profile`: of
+/// all radars; empty: that of the scenario.
 [[nodiscard]] std::vector<std::filesystem::path> simulated_drive(double duration_s,
-                                                                 const std::string& scenario = "demo_drive");
+                                                                 const std::string& scenario = "demo_drive",
+                                                                 const std::string& profile = {});
 
 }  // namespace boresight::harness

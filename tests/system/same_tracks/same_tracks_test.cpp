@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 // The processes run at the same time, so an estimate may reach the detection corrector a scan earlier or later than in
 // `boresight run`. This changes a track by millimetres, and a decision at a threshold now and then: a weak track is
 // confirmed earlier or later, or not at all, and ids, which count births, differ from then on. So tracks are compared
-// by position. The limits are choices, twice and more what four calls on a busy machine showed: a median of 5 mm, and
-// 1 … 5 % of the tracks without partner.
+// by position, on a drive with the statistics of a real radar. The limits are choices, twice and more what four calls
+// on a busy machine showed: a median of 5 mm, and 1 … 5 % of the tracks without partner.
 constexpr double kMedian_m = 0.02;
 constexpr double kPartner_m = 0.5;
 constexpr double kMostWithoutPartner_share = 0.1;
@@ -99,7 +99,7 @@ std::vector<double> distances_m(const List& from, const List& to) {
 }
 
 TEST(SameTracks, ProcessesThatLoseNoScanGiveTheTracksOfTheRunCommand) {
-  const std::vector<fs::path> recordings = harness::simulated_drive(kDrive_s);
+  const std::vector<fs::path> recordings = harness::simulated_drive(kDrive_s, "demo_drive", "can_cluster");
   const fs::path attached = "/tmp/same_tracks_attached";
   fs::remove(attached);
   harness::Child observer([&] { return record_lists(attached); });

@@ -308,7 +308,8 @@ TEST(CellLikelihood, OfAPossibleClutterSourceIsThatOfAMixtureOfSources) {
     const double ratio = 0.7 * std::pow(0.3, n - 1.0) / (std::exp(log_object) / (1.0 - none));
     const double ring = 0.5 + 0.5 * cell.on_ring / n;
     const double capped = std::min(ratio, std::exp(20.0));
-    const double object = 0.5, lobe = 0.2 * ring, lasting = 0.1 * 0.6 * capped, brief = 0.2 * 0.6 * capped;
+    const double object = 0.5, lobe = 0.2 * ring, lasting = 0.1 * 0.6 * std::min(1.0, capped),
+                 brief = 0.2 * 0.6 * capped;
     const double sum = object + lobe + lasting + brief;
     EXPECT_NEAR(of_mixture.log_likelihood(cell) - of_object.log_likelihood(cell), std::log(sum), 1e-8);
     const Component<double> updated = of_mixture.updated(component, cell);

@@ -52,9 +52,10 @@ class ListModel final : public Model {
     return squared_norm(a.position_m - b.position_m) <= link_m * link_m &&
            (sensor.range_rate_variance <= 0.0 || std::abs(a.range_rate_mps - b.range_rate_mps) <= link_mps);
   }
-  [[nodiscard]] bool are_one(const Component<double>& a, const Component<double>& b) const override {
-    return squared_norm(a.position_m - b.position_m) < one_within_m * one_within_m;
+  [[nodiscard]] double log_odds_of_part(const Component<double>& a, const Component<double>& b) override {
+    return squared_norm(a.position_m - b.position_m) < one_within_m * one_within_m ? 1.0 : -1.0;
   }
+  void join(const Component<double>&, const Component<double>&, std::uint32_t) override {}
   [[nodiscard]] double spread() const override { return sensor.spread; }
   [[nodiscard]] double link_distance_m() const override { return link_m; }
   void learn(std::span<const double>, std::span<const ObjectEstimate>) override {}

@@ -264,7 +264,7 @@ support::Detections crowd_detections(support::Random& random, ListModel& model) 
 }
 
 TEST(PmbmBudget, BoundsTheWorkOfACrowdAndIsReported) {
-  for (const std::uint32_t budget : {0U, 200U, 2000U, 16000U}) {
+  for (const std::uint32_t budget : {0U, 200U, 2000U, 6000U}) {
     support::Random random(6);
     ListModel model = support::car_model(false);
     Parameters parameters;
@@ -277,7 +277,8 @@ TEST(PmbmBudget, BoundsTheWorkOfACrowdAndIsReported) {
       expect_sound(filter, Capacity{}, model);
       // The step that spends the rest of the budget is finished: one pass over the measurements and cells of a group.
       EXPECT_LT(filter.work().likelihood_evaluations, budget + 2000U);
-      EXPECT_EQ(filter.work().budget_reached, filter.work().likelihood_evaluations > budget);
+      // A search that ended at its share of the budget is reported, too.
+      EXPECT_TRUE(filter.work().budget_reached || filter.work().likelihood_evaluations <= budget);
       EXPECT_FALSE(filter.estimates().empty()) << "what is known stays";
       reached += filter.work().budget_reached ? 1 : 0;
     }

@@ -14,7 +14,7 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
-#include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight::tracking {
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -38,8 +38,9 @@ class Scene {
  public:
   Scene() { std::memset(static_cast<void*>(scan.get()), 0, sizeof(ClassifiedScan)); }
 
-  /// Begins a scan of the radar; the ego vehicle stands still.
-  void begin(std::int64_t time_ns, std::uint32_t radar_id = 1) {
+  /// Begins a scan of the radar. The ego vehicle stands still, or drives with that speed and yaw rate.
+  void begin(std::int64_t time_ns, std::uint32_t radar_id = 1, double ego_speed_mps = 0.0,
+             double ego_yaw_rate_radps = 0.0) {
     scan->header.source_id = radar_id;
     scan->header.measurement_time_ns = time_ns;
     scan->number_of_valid_detections = 0;
@@ -50,6 +51,10 @@ class Scene {
     Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(scan->geometry.sensor_to_vehicle.data()) =
         geometry::sensor_to_vehicle(radar_id == 1 ? 0.0 : 90.0 * kRadiansPerDegree, 0.0, 0.0).cast<float>();
     scan->geometry.speed_scale = 1.0F;
+    scan->geometry.ego_speed_mps = static_cast<float>(ego_speed_mps);
+    scan->geometry.ego_yaw_rate_radps = static_cast<float>(ego_yaw_rate_radps);
+    scan->geometry.sensor_velocity_vehicle_mps = {static_cast<float>(ego_speed_mps),
+                                                  static_cast<float>(3.6 * ego_yaw_rate_radps), 0.0F};
   }
   void add(const Eigen::Vector2d& position_m, const Eigen::Vector2d& velocity_mps,
            Provenance provenance = Provenance::kMoving, double ghost_probability = 0.0) {
@@ -65,29 +70,12 @@ class Scene {
     scan->azimuth_std_rad[i] = 0.005F;
     scan->range_rate_std_mps[i] = 0.05F;
     scan->provenance[i] = provenance;
+    scan->detection_flags[i] =
+        provenance == Provenance::kStationary ? corrected_flag::kStationary : corrected_flag::kMoving;
     const auto unreal = static_cast<float>(ghost_probability);
     scan->set_probabilities(i, {1.0F - unreal, 0.0F, 0.0F, 0.0F, unreal, 0.0F});
   }
   std::unique_ptr<ClassifiedScan> scan = std::make_unique<ClassifiedScan>();
 };
-
-/// By how much the last of 41 scans changes what `value` reads from the only track; `add` fills the scans.
-template <typename Add, typename Value>
-double changed_by_last_scan(const Add& add, const Value& value) {
-  Tracker tracker(two_radars(), RulesConfig{});
-  Scene scene;
-  const auto list = std::make_unique<TrackList>();
-  double before = 0.0;
-  for (int i = 0; i <= 40; ++i) {
-    tracker.write(*list);
-    before = static_cast<double>(value(list->tracks[0]));
-    scene.begin((1000 + 50 * i) * kMillisecond);
-    add(scene, i, i == 40);
-    tracker.step(*scene.scan);
-  }
-  tracker.write(*list);
-  EXPECT_EQ(list->number_of_tracks, 1u);
-  return static_cast<double>(value(list->tracks[0])) - before;
-}
 
 }  // namespace boresight::tracking

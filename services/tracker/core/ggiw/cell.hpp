@@ -17,6 +17,7 @@ struct Measurement {
   Real log_clutter = 0;      ///< log of the expected clutter per m² (and m/s) there
   Real side_lobe_share = 0;  ///< share of that clutter which is side lobes of objects
   Real on_ring = 0;          ///< 1 where it has range and range rate of an existing object at another azimuth
+  Real wide_share = 0;       ///< share of that clutter which is objects' detections of other range rates
   Real mirror = 0;           ///< probability that it is a mirror image, by the ghost filter
 };
 
@@ -29,7 +30,7 @@ struct Cell {
   Symmetric2<Real> sight_squares;  ///< Σ u uᵀ
   Vector2<Real> sight_rate;        ///< Σ u ṙ
   Real rate_squares = 0;           ///< Σ ṙ²
-  Real log_clutter = 0, side_lobe_share = 0, on_ring = 0, mirror = 0;
+  Real log_clutter = 0, side_lobe_share = 0, on_ring = 0, wide_share = 0, mirror = 0;
   std::uint64_t key = 0;  ///< exclusive or of the measurements' keys: equal cells have equal keys
 
   void add(const Measurement<Real>& z, Real weight) {
@@ -42,6 +43,7 @@ struct Cell {
     log_clutter += weight * z.log_clutter;
     side_lobe_share += weight * z.side_lobe_share;
     on_ring += weight * z.on_ring;
+    wide_share += weight * z.wide_share;
     mirror += weight * z.mirror;
   }
   void add(const Measurement<Real>& z, std::uint64_t z_key) {
@@ -62,6 +64,7 @@ struct Cell {
     log_clutter += other.log_clutter;
     side_lobe_share += other.side_lobe_share;
     on_ring += other.on_ring;
+    wide_share += other.wide_share;
     mirror += other.mirror;
     key ^= other.key;
   }

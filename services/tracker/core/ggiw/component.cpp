@@ -1,7 +1,6 @@
 #include "services/tracker/core/ggiw/component.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -46,6 +45,7 @@ Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
   Real sum = 0;
   for (const auto& m : mixture) sum += m.weight;
   Component<Real> out;
+  out.label = mixture.front().component->label;
   out.source = {0, 0, 0, mixture.front().component->source.radar};
   out.extent_dof = 0;
   Symmetric2<Real> mean_extent;
@@ -82,25 +82,6 @@ Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
 }
 
 template <typename Real>
-Component<Real> join(const WeightedComponent<Real>& a, const WeightedComponent<Real>& b, Real spread) {
-  const Component<Real>&ca = *a.component, &cb = *b.component;
-  const Real rate_a = a.weight * ca.rate_shape / ca.rate_inverse_scale,
-             rate_b = b.weight * cb.rate_shape / cb.rate_inverse_scale;
-  const std::array<WeightedComponent<Real>, 2> parts{{{rate_a, &ca}, {rate_b, &cb}}};
-  Component<Real> out = merge<Real>(parts);
-  const Real wa = rate_a / (rate_a + rate_b), wb = Real(1) - wa;
-  const Symmetric2<Real> between = (wa * wb) * outer(ca.position_m - cb.position_m);
-  out.position_covariance = wa * ca.position_covariance + wb * cb.position_covariance;
-  out.velocity_covariance = wa * ca.velocity_covariance + wb * cb.velocity_covariance;
-  out.position_velocity_covariance = wa * ca.position_velocity_covariance + wb * cb.position_velocity_covariance;
-  out.extent_scale = out.extent_scale + ((out.extent_dof - Real(6)) / spread) * between;
-  // The rates of the parts add up.
-  const Real sum = ca.rate_shape / ca.rate_inverse_scale + cb.rate_shape / cb.rate_inverse_scale;
-  out.rate_inverse_scale = out.rate_shape / sum;
-  return out;
-}
-
-template <typename Real>
 Real distance(const Component<Real>& a, const Component<Real>& b) {
   const Vector2<Real> dp = a.position_m - b.position_m, dv = a.velocity_mps - b.velocity_mps;
   const Symmetric2<Real> xa = extent(a), xb = extent(b), dx = xa - xb;
@@ -118,8 +99,6 @@ template void predict(Component<double>&, const MotionParameters&, double);
 template void predict(Component<float>&, const MotionParameters&, double);
 template Component<double> merge(std::span<const WeightedComponent<double>>);
 template Component<float> merge(std::span<const WeightedComponent<float>>);
-template Component<double> join(const WeightedComponent<double>&, const WeightedComponent<double>&, double);
-template Component<float> join(const WeightedComponent<float>&, const WeightedComponent<float>&, float);
 template double distance(const Component<double>&, const Component<double>&);
 template float distance(const Component<float>&, const Component<float>&);
 

@@ -3,6 +3,7 @@
 // differences.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "services/tracker/core/ggiw/cell.hpp"
@@ -26,6 +27,7 @@ struct SourceClasses {
 
 template <typename Real>
 struct Component {
+  std::uint32_t label = 0;                      ///< of the object; 0: none yet
   Real rate_shape = 1, rate_inverse_scale = 1;  ///< α, β of the gamma: detections a scan at unit exposure
   Vector2<Real> position_m, velocity_mps;
   Symmetric2<Real> position_covariance;        ///< m²
@@ -68,11 +70,6 @@ struct WeightedComponent {
 /// One component with the moments of the mixture; weights need not be normalised.
 template <typename Real>
 [[nodiscard]] Component<Real> merge(std::span<const WeightedComponent<Real>> mixture);
-
-/// One object of which two components are parts, by their expected detections: what lies between their places is extent
-/// and no uncertainty. `spread`: covariance of detections relative to the extent.
-template <typename Real>
-[[nodiscard]] Component<Real> join(const WeightedComponent<Real>& a, const WeightedComponent<Real>& b, Real spread);
 
 /// Dissimilarity: half the symmetric squared Mahalanobis distances of place and velocity, and terms of extent and rate.
 template <typename Real>

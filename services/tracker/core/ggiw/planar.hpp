@@ -79,6 +79,11 @@ template <typename Real>
 constexpr Real trace(const Symmetric2<Real>& s) {
   return s.xx + s.yy;
 }
+/// tr(A B)
+template <typename Real>
+constexpr Real product_trace(const Symmetric2<Real>& a, const Symmetric2<Real>& b) {
+  return a.xx * b.xx + Real(2) * a.xy * b.xy + a.yy * b.yy;
+}
 /// S⁻¹ det S
 template <typename Real>
 constexpr Symmetric2<Real> adjugate(const Symmetric2<Real>& s) {

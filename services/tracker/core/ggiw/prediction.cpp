@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace boresight::tracking {
@@ -56,6 +57,7 @@ struct RateUpdate {
 template <typename Real>
 Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
     : view_(view),
+      label_(c.label),
       position_m_(c.position_m),
       velocity_mps_(c.velocity_mps),
       position_covariance_(c.position_covariance),
@@ -72,9 +74,18 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
   held_scatter_ = (view.held * view.spread) * x + view.noise_m2;
   extent_root_ = square_root(x);
   shape_ = extent_root_ * inverse(square_root(scatter_));
-  measurement_covariance_ = position_covariance_ + scatter_;
-  measurement_information_ = inverse(measurement_covariance_);
-  log_half_determinant_ = std::log(determinant(measurement_covariance_)) / Real(2);
+  for (std::size_t k = 0; k < view.number_of_readings; ++k) {
+    const Reading<Real>& reading = view.readings[k];
+    Place& place = places_[k];
+    place.offset_m = reading.offset_m;
+    place.prior_m2 = position_covariance_ + reading.covariance_m2;
+    place.knows_scatter = reading.knows_scatter;
+    place.scatter_m2 = reading.knows_scatter ? reading.scatter_m2 + view.noise_m2 : scatter_;
+    place.covariance_m2 = place.prior_m2 + place.scatter_m2;
+    place.information = inverse(place.covariance_m2);
+    place.log_half_determinant = std::log(determinant(place.covariance_m2)) / Real(2);
+    place.log_weight = view.number_of_readings > 1 ? std::log(reading.weight) : Real(0);
+  }
 
   const Real log_x = std::log(determinant(x)), log_scatter = std::log(determinant(scatter_));
   log_exposure_ = std::log(view.exposure);
@@ -152,23 +163,43 @@ Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
 template <typename Real>
 Real Prediction<Real>::log_class_weight(const Cell<Real>& cell) {
   if (source_.object >= Real(1)) return 0;
-  const Real clutter = source_.lasting_source + source_.brief_source();
+  const Real ratio = std::exp(std::min(kLogCertain<Real>, log_source_ratio(cell.n)));
   return std::log(source_.object + source_.side_lobe * on_ring(cell) +
-                  clutter * view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(cell.n))));
+                  view_.source_seen *
+                      (source_.lasting_source * std::min(Real(1), ratio) + source_.brief_source() * ratio));
 }
 
 template <typename Real>
-Real Prediction<Real>::log_likelihood(const Cell<Real>& cell) {
-  const Real n = cell.n, f = Real(1) / n;
-  const Symmetric2<Real> s = position_covariance_ + f * scatter_;
+Real Prediction<Real>::place_distance(const Vector2<Real>& position_m) const {
+  Real least = quadratic(places_[0].information, position_m - position_m_ - places_[0].offset_m);
+  for (std::size_t k = 1; k < view_.number_of_readings; ++k) {
+    least = std::min(least, quadratic(places_[k].information, position_m - position_m_ - places_[k].offset_m));
+  }
+  return least;
+}
+
+template <typename Real>
+Real Prediction<Real>::log_by(const Place& place, const Cell<Real>& cell) {
+  const Real n = cell.n;
+  const Symmetric2<Real> s = place.prior_m2 + (Real(1) / n) * place.scatter_m2;
   const Real det = determinant(s), root = std::sqrt(det);
-  const Real h = Real(1) / std::sqrt(trace(s) + Real(2) * root);
-  const Symmetric2<Real> s_root{(s.xx + root) * h, s.xy * h, (s.yy + root) * h};  // determinant: root
-  const Vector2<Real> e = cell.mean() - position_m_;
-  const Vector2<Real> whitened{(s_root.yy * e.x - s_root.xy * e.y) / root, (s_root.xx * e.y - s_root.xy * e.x) / root};
-  const Symmetric2<Real> posterior = extent_scale_ + congruent(shape_, cell.scatter()) + outer(extent_root_ * whitened);
-  Real log_p = terms_by_count(n) - (extent_dof_ + n - Real(3)) / Real(2) * std::log(determinant(posterior)) -
-               std::log(det) / Real(2);
+  const Vector2<Real> e = cell.mean() - position_m_ - place.offset_m;
+  Real log_p = place.log_weight - std::log(det) / Real(2);
+  if (place.knows_scatter) {
+    log_p += log_count(n) + std::lgamma(n + Real(1)) + std::log(std::max(detection_probability_, Real(1e-9))) -
+             n * kLogTwoPi<Real> - std::log(n) -
+             ((n - Real(1)) * std::log(determinant(place.scatter_m2)) +
+              product_trace(inverse(place.scatter_m2), cell.scatter()) + quadratic(inverse(s), e)) /
+                 Real(2);
+  } else {
+    const Real h = Real(1) / std::sqrt(trace(s) + Real(2) * root);
+    const Symmetric2<Real> s_root{(s.xx + root) * h, s.xy * h, (s.yy + root) * h};  // determinant: root
+    const Vector2<Real> whitened{(s_root.yy * e.x - s_root.xy * e.y) / root,
+                                 (s_root.xx * e.y - s_root.xy * e.x) / root};
+    const Symmetric2<Real> posterior =
+        extent_scale_ + congruent(shape_, cell.scatter()) + outer(extent_root_ * whitened);
+    log_p += terms_by_count(n) - (extent_dof_ + n - Real(3)) / Real(2) * std::log(determinant(posterior));
+  }
   if (view_.range_rate_variance > 0) {
     const Symmetric2<Real> information{s.yy / det, -s.xy / det, s.xx / det};
     const Matrix2<Real> vp = transpose(position_velocity_covariance_);
@@ -182,12 +213,40 @@ Real Prediction<Real>::log_likelihood(const Cell<Real>& cell) {
     log_p -= (n * (kLogTwoPi<Real> + std::log(view_.range_rate_variance)) + std::log(rate.factor_determinant) + chi2) /
              Real(2);
   }
+  return log_p;
+}
+
+template <typename Real>
+Real Prediction<Real>::log_likelihood(const Cell<Real>& cell) {
+  Real log_p = log_by(places_[0], cell);
+  for (std::size_t k = 1; k < view_.number_of_readings; ++k) {
+    const Real other = log_by(places_[k], cell), top = std::max(log_p, other);
+    log_p = top + std::log1p(std::exp(std::min(log_p, other) - top));
+  }
   return log_p - cell.log_clutter + log_class_weight(cell);
 }
 
 template <typename Real>
+std::array<Real, View<Real>::kMaxReadings> Prediction<Real>::weights_of(const Cell<Real>& cell) {
+  std::array<Real, View<Real>::kMaxReadings> weight{1};
+  if (view_.number_of_readings == 1) return weight;
+  Real top = std::numeric_limits<Real>::lowest(), sum = 0;
+  for (std::size_t k = 0; k < view_.number_of_readings; ++k) top = std::max(top, weight[k] = log_by(places_[k], cell));
+  for (std::size_t k = 0; k < view_.number_of_readings; ++k) sum += weight[k] = std::exp(weight[k] - top);
+  for (Real& w : weight) w /= sum;
+  return weight;
+}
+
+template <typename Real>
 Real Prediction<Real>::log_intensity(const Measurement<Real>& z) const {
-  Real log_p = std::log(expected_) - kLogTwoPi<Real> - log_half_determinant_ - place_distance(z.position_m) / Real(2);
+  Real log_p = 0;
+  for (std::size_t k = 0; k < view_.number_of_readings; ++k) {
+    const Place& p = places_[k];
+    const Real of_place = p.log_weight - p.log_half_determinant -
+                          quadratic(p.information, z.position_m - position_m_ - p.offset_m) / Real(2);
+    log_p = k == 0 ? of_place : std::max(log_p, of_place);
+  }
+  log_p += std::log(expected_) - kLogTwoPi<Real>;
   if (view_.range_rate_variance > 0) {
     const Real variance = view_.range_rate_variance + quadratic(velocity_covariance_, z.sight);
     log_p -= (kLogTwoPi<Real> + std::log(variance) + range_rate_distance(z)) / Real(2);
@@ -206,8 +265,21 @@ template <typename Real>
 Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Cell<Real>& cell) {
   Component<Real> out = prior;
   const Real n = cell.n;
-  const Symmetric2<Real> r = (Real(1) / n) * held_scatter_, s = prior.position_covariance + r, information = inverse(s);
-  const Vector2<Real> e = cell.mean() - prior.position_m, w = information * e;
+  // The readings as one measurement, by their moments.
+  const auto weights = weights_of(cell);
+  Vector2<Real> offset;
+  Symmetric2<Real> r;
+  Real by_extent = 0;
+  for (std::size_t k = 0; k < view_.number_of_readings; ++k) offset = offset + weights[k] * view_.readings[k].offset_m;
+  for (std::size_t k = 0; k < view_.number_of_readings; ++k) {
+    const Reading<Real>& reading = view_.readings[k];
+    const Symmetric2<Real> scatter =
+        reading.knows_scatter ? view_.held * reading.scatter_m2 + view_.noise_m2 : held_scatter_;
+    r = r + weights[k] * ((Real(1) / n) * scatter + reading.covariance_m2 + outer(reading.offset_m - offset));
+    if (!reading.knows_scatter) by_extent += weights[k];
+  }
+  const Symmetric2<Real> s = prior.position_covariance + r, information = inverse(s);
+  const Vector2<Real> e = cell.mean() - prior.position_m - offset, w = information * e;
   const Matrix2<Real> pv = prior.position_velocity_covariance, vp = transpose(pv);
   out.position_m = prior.position_m + prior.position_covariance * w;
   out.velocity_mps = prior.velocity_mps + vp * w;
@@ -221,9 +293,9 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
                             Symmetric2<Real>{Real(2) * cross.xx, cross.xy + cross.yx, Real(2) * cross.yy} +
                             congruent(v_gain, s);
 
-  out.extent_scale =
-      prior.extent_scale + congruent(shape_, cell.scatter()) + outer(extent_root_ * (inverse(square_root(s)) * e));
-  out.extent_dof = prior.extent_dof + n;
+  out.extent_scale = prior.extent_scale + by_extent * (congruent(shape_, cell.scatter()) +
+                                                       outer(extent_root_ * (inverse(square_root(s)) * e)));
+  out.extent_dof = prior.extent_dof + by_extent * n;
   out.rate_shape = prior.rate_shape + n;
   out.rate_inverse_scale = prior.rate_inverse_scale + view_.exposure;
   const Real of_mirror = n / (n + rate_shape_);
@@ -231,7 +303,8 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
 
   if (source_.object < Real(1)) {
     const Real ratio = view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(n)));
-    const Real lobe = source_.side_lobe * on_ring(cell), lasting = source_.lasting_source * ratio;
+    const Real lobe = source_.side_lobe * on_ring(cell),
+               lasting = source_.lasting_source * std::min(view_.source_seen, ratio);
     const Real sum = source_.object + lobe + lasting + source_.brief_source() * ratio;
     out.source.object = source_.object / sum;
     out.source.side_lobe = lobe / sum;

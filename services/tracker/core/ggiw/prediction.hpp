@@ -14,9 +14,20 @@
 
 namespace boresight::tracking {
 
+/// Where an object's detections lie, by one reading of what the object is.
+template <typename Real>
+struct Reading {
+  Real weight = 1;                 ///< its probability
+  Vector2<Real> offset_m;          ///< of the middle of the detections from the tracked point
+  Symmetric2<Real> covariance_m2;  ///< of the offset
+  bool knows_scatter = false;      ///< detections scatter with `scatter_m2` and not with the extent
+  Symmetric2<Real> scatter_m2;
+};
+
 /// What the sensor of a scan is to an object at its predicted place.
 template <typename Real>
 struct View {
+  static constexpr std::size_t kMaxReadings = 3;
   Real detection_probability = 0;  ///< in view, not hidden, not blind to its range rate
   Real exposure = 1;               ///< expected number of detections relative to the nominal range
   Symmetric2<Real> noise_m2;       ///< of one position
@@ -25,6 +36,8 @@ struct View {
   Real held = 1;                   ///< variance of the mean of detections over several scans, relative to white ones
   Real source_more = Real(0.25);   ///< chance that a source of clutter gives one more detection
   Real source_seen = 1;            ///< chance that a source of clutter is there for this radar, too
+  std::array<Reading<Real>, kMaxReadings> readings{};  ///< weights sum to 1
+  std::size_t number_of_readings = 1;
 };
 
 template <typename Real>
@@ -38,9 +51,7 @@ class Prediction {
   /// The density of one measurement's place and range rate times the expected number, over its clutter density; log.
   [[nodiscard]] Real log_intensity(const Measurement<Real>& z) const;
   /// Squared Mahalanobis distances of place and of range rate to the prediction of one measurement.
-  [[nodiscard]] Real place_distance(const Vector2<Real>& position_m) const {
-    return quadratic(measurement_information_, position_m - position_m_);
-  }
+  [[nodiscard]] Real place_distance(const Vector2<Real>& position_m) const;
   [[nodiscard]] Real range_rate_distance(const Measurement<Real>& z) const;
   /// 1 − P_D + P_D · p(no detection | seen): "detected, but no point" included.
   [[nodiscard]] Real missed() const { return missed_; }
@@ -62,7 +73,8 @@ class Prediction {
   [[nodiscard]] Real range_rate_variance() const { return view_.range_rate_variance; }
   [[nodiscard]] Real detection_probability() const { return detection_probability_; }
   /// Squared semi-axes of the gate for a squared distance of 1, along the axes.
-  [[nodiscard]] const Symmetric2<Real>& measurement_covariance() const { return measurement_covariance_; }
+  [[nodiscard]] const Symmetric2<Real>& measurement_covariance() const { return places_[0].covariance_m2; }
+  [[nodiscard]] std::uint32_t label() const { return label_; }
 
  private:
   static constexpr std::size_t kTabulated = 64;  // beyond it, the gamma functions are computed by a series
@@ -79,7 +91,22 @@ class Prediction {
   [[nodiscard]] Real log_class_weight(const Cell<Real>& cell);
   [[nodiscard]] Real on_ring(const Cell<Real>& cell) const;
 
+  /// One measurement as expected by one reading of what the object is.
+  struct Place {
+    Vector2<Real> offset_m;
+    Symmetric2<Real> prior_m2;    ///< of the middle of the detections: place and offset
+    bool knows_scatter = false;   ///< `scatter_m2` does not depend on the extent
+    Symmetric2<Real> scatter_m2;  ///< of one detection, noise included
+    Symmetric2<Real> covariance_m2, information;
+    Real log_weight = 0, log_half_determinant = 0;
+  };
+  /// log of the likelihood of a cell by one reading, without clutter and classes of sources.
+  [[nodiscard]] Real log_by(const Place& place, const Cell<Real>& cell);
+  /// Of the readings, given that the cell is the object's; they sum to 1.
+  [[nodiscard]] std::array<Real, View<Real>::kMaxReadings> weights_of(const Cell<Real>& cell);
+
   View<Real> view_;
+  std::uint32_t label_ = 0;
   Vector2<Real> position_m_, velocity_mps_;
   Symmetric2<Real> position_covariance_, velocity_covariance_;
   Matrix2<Real> position_velocity_covariance_;
@@ -87,11 +114,11 @@ class Prediction {
   Symmetric2<Real> held_scatter_;  // held · spread · X + noise: of one, where its place is held from scan to scan
   Symmetric2<Real> extent_root_;   // X^½
   Matrix2<Real> shape_;            // B = X^½ R^−½
-  Symmetric2<Real> measurement_covariance_, measurement_information_;
+  std::array<Place, View<Real>::kMaxReadings> places_;
   Symmetric2<Real> extent_scale_;
   Real extent_dof_ = 8;
   Real rate_shape_ = 1, rate_inverse_scale_ = 1, expected_ = 0;
-  Real detection_probability_ = 0, missed_ = 1, log_half_determinant_ = 0;
+  Real detection_probability_ = 0, missed_ = 1;
   SourceClasses<Real> source_;
   // Terms of the likelihood that depend on the number of detections alone, and log p(n | object).
   std::array<Real, kTabulated> by_count_{}, log_count_{};

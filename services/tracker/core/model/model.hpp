@@ -33,6 +33,7 @@ struct ObjectEstimate {
   double detections = 0.0;                       ///< their number; fractional where shared
   Symmetric2<double> scatter;                    ///< Σ (z − z̄)(z − z̄)ᵀ of them, m²
   const Component<double>* component = nullptr;  ///< of the likeliest hypothesis; valid until the next step
+  Vector2<double> mean_m{};                      ///< of the detections
 };
 
 class Model {
@@ -59,8 +60,11 @@ class Model {
   [[nodiscard]] virtual double log_newborn(const Cell<double>& cell) = 0;
   [[nodiscard]] virtual Component<double> newborn(const Cell<double>& cell) = 0;
 
-  /// Whether two objects would lie in each other and move alike: then they are parts of one.
-  [[nodiscard]] virtual bool are_one(const Component<double>& a, const Component<double>& b) const = 0;
+  /// log of how much likelier `part` is a part of the object `whole` than an object of its own, over the odds that are
+  /// asked for; both exist, and have known speeds.
+  [[nodiscard]] virtual double log_odds_of_part(const Component<double>& whole, const Component<double>& part) = 0;
+  /// The object `whole` has the part from now on; what is known of it is that of the object `label`.
+  virtual void join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) = 0;
   /// Covariance of detections relative to the extent.
   [[nodiscard]] virtual double spread() const = 0;
   /// Whether two measurements may be of one new object.

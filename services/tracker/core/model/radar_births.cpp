@@ -59,20 +59,23 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const double f = 1.0 / cell.n;
   const Vector2<double> mean = cell.mean();
   double claimed = 0.0;
+  const Vector2<double> way = mean - sensor_m_;
+  constexpr double kLeastRange_m = 1e-3;
+  const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(way)));
+  const Vector2<double> sight = (1.0 / range_m) * way;
+  const Symmetric2<double> noise = noise_at(sight, range_m);
   for (std::size_t l = 0; l < group_objects_.size(); ++l) {
     const Prediction<double>& p = group_objects_[l];
-    const Vector2<double> d = mean - p.position_m();
-    const double speed_mps = std::sqrt(squared_norm(p.velocity_mps()));
-    const Vector2<double> along = speed_mps > 0.0 ? (1.0 / speed_mps) * p.velocity_mps() : Vector2<double>{1.0, 0.0};
-    const Vector2<double> half = taken_m(speed_mps, quadratic(p.extent_m2(), along));
-    const double x = dot(d, along) / half.x, y = (along.x * d.y - along.y * d.x) / half.y;
-    // The chance that the place lies in what the object takes, falling off about its edge; the range rates must agree.
-    const double r2 = x * x + y * y;
+    if (group_existence_[l] <= claimed) continue;
+    // The chance that the place is taken; the range rates must agree.
+    const double taken = group_existence_[l] * taken_by(p.label(), p.position_m(), p.position_covariance() + f * noise,
+                                                        std::sqrt(squared_norm(p.velocity_mps())), mean);
+    if (taken <= claimed) continue;
     const double mean_rate = dot(cell.sight_rate, p.velocity_mps()) * f;
     const double deviation =
         (cell.rate_squares * f - 2.0 * mean_rate + quadratic(cell.sight_squares, p.velocity_mps()) * f) /
-        (p.range_rate_variance() + quadratic(p.velocity_covariance(), along));
-    claimed = std::max(claimed, group_existence_[l] * std::exp(-0.7 * r2 * r2 - 0.5 * deviation / b.same_speed_chi2));
+        (p.range_rate_variance() + quadratic(p.velocity_covariance(), sight));
+    claimed = std::max(claimed, taken * std::exp(-0.5 * deviation / b.same_speed_chi2));
   }
   constexpr double kLeastFree = 1e-6, kLeastShare = 1e-12;
   const double log_free = std::log(std::max(kLeastFree, 1.0 - claimed));
@@ -89,7 +92,8 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const double variance = b.any.speed_std_mps * b.any.speed_std_mps + any.prediction.range_rate_variance();
   const double log_rate = -0.5 * std::log(2.0 * std::numbers::pi * variance) - 0.5 * cell.rate_squares * f / variance;
   const double flat = log_p[1] + any.log_density - std::log(b.any.density_per_m2) + cell.log_clutter * f - log_rate;
-  w.source = s.share > 0.0 ? flat + std::log(s.share) + any.prediction.log_source_ratio(cell.n) : kNever;
+  const double other = std::max(kLeastShare, 1.0 - cell.wide_share * f);
+  w.source = s.share > 0.0 ? flat + std::log(s.share * other) + any.prediction.log_source_ratio(cell.n) : kNever;
   w.side_lobe = s.side_lobes > 0.0 && s.side_lobe_birth > 0.0
                     ? flat + std::log(s.side_lobe_birth * std::max(kLeastShare, cell.side_lobe_share * f))
                     : kNever;
@@ -125,28 +129,6 @@ Component<double> RadarModel::newborn(const Cell<double>& cell) {
   c.source.radar = radar_index_;
   c.mirror = cell.mirror / cell.n;
   return c;
-}
-
-Vector2<double> RadarModel::taken_m(double speed_mps, double extent_along_m2) const {
-  const BirthParameters& b = parameters_.birth;
-  // From one end of a vehicle to the other; of a long one by its extent.
-  const double length_m = std::max(b.vehicle_length_m, 2.0 * std::sqrt(extent_along_m2));
-  const double share = speed_mps * speed_mps / (speed_mps * speed_mps + b.vehicle_speed_mps * b.vehicle_speed_mps);
-  return {b.person_m + share * (length_m - b.person_m), b.person_m + share * (b.vehicle_width_m - b.person_m)};
-}
-
-bool RadarModel::are_one(const Component<double>& a, const Component<double>& b) const {
-  const Vector2<double> d = a.position_m - b.position_m;
-  const Vector2<double> v = 0.5 * (a.velocity_mps + b.velocity_mps);
-  const double speed_mps = std::sqrt(squared_norm(v));
-  constexpr double kFar_m = 30.0;
-  if (squared_norm(d) > kFar_m * kFar_m) return false;
-  const Vector2<double> along = speed_mps > 0.0 ? (1.0 / speed_mps) * v : Vector2<double>{1.0, 0.0};
-  const Vector2<double> half = taken_m(speed_mps, std::max(quadratic(extent(a), along), quadratic(extent(b), along)));
-  const double x = dot(d, along) / half.x, y = (along.x * d.y - along.y * d.x) / half.y;
-  if (x * x > 1.0 || y * y > 1.0) return false;
-  const Symmetric2<double> apart = a.velocity_covariance + b.velocity_covariance;
-  return quadratic(inverse(apart), a.velocity_mps - b.velocity_mps) < parameters_.birth.same_speed_chi2;
 }
 
 }  // namespace boresight::tracking

@@ -13,11 +13,6 @@ namespace boresight::tracking {
 
 namespace {
 
-/// P(standard normal < x)
-double normal_cdf(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
 constexpr double kSlowest_mps = 0.3;  // about where the corrector's test of stationary detections ends
 constexpr std::size_t kMaxKnownObjects = kMaxTracks;
 
@@ -40,7 +35,9 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
   return transpose(rotation()) * m * rotation();
 }
 
-RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters) : parameters_(parameters) {
+RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
+    : parameters_(parameters),
+      boxes_(BoxEstimator(extended_object::object_class_table_defaults(), parameters.box), max_objects) {
   for (const RadarConfig& r : vehicle.radars) {
     const FieldOfView& f = r.field_of_view;
     const double half_rad = 0.5 * (f.azimuth_max_rad - f.azimuth_min_rad);
@@ -67,10 +64,15 @@ ScanStart RadarModel::begin_scan(const ClassifiedScan& scan) {
   if (start.restarted) {
     axes_ = {};
     objects_.clear();
+    boxes_.clear();
   }
+  elapsed_s_ = start.elapsed_s;
   move_axes(scan, start.elapsed_s);
   read_detections(scan);
-  add_side_lobes();
+  if (radar_ != nullptr) {
+    add_side_lobes();
+    add_wide_range_rates();
+  }
   return start;
 }
 
@@ -80,7 +82,7 @@ void RadarModel::move_axes(const ClassifiedScan& scan, double elapsed_s) {
   const geometry::EgoStep step = geometry::ego_step(speed_mps, yaw_rate_radps, elapsed_s);
   displacement_m_ = axes_.to_local({step.translation_m.x(), step.translation_m.y()});
   axes_.heading_rad = geometry::wrap_angle(axes_.heading_rad + yaw_rate_radps * elapsed_s);
-  for (KnownObject& o : objects_) o.position_m = o.position_m + elapsed_s * o.velocity_mps - displacement_m_;
+  for (KnownObject& o : objects_) predict(o.component, elapsed_s);
 }
 
 void RadarModel::read_detections(const ClassifiedScan& scan) {
@@ -101,10 +103,16 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   facing_rad_ = axes_.heading_rad + yaw_rad + radar_->view_middle_rad;
   sensor_velocity_mps_ = axes_.to_local(
       {static_cast<double>(g.sensor_velocity_vehicle_mps[0]), static_cast<double>(g.sensor_velocity_vehicle_mps[1])});
+  boxes_.begin_scan({sensor_m_, facing_rad_, radar_->half_view_rad, parameters_.detection.view_edge_rad});
   const double time_s = static_cast<double>(time_ns_) * 1e-9;
   radar_->clutter.begin_scan(time_s);
   const double keep = std::exp(-std::abs(time_s - radar_->moving_time_s) / parameters_.clutter.origin_memory_s);
   radar_->moving_time_s = time_s;
+  radar_->wide_seen *= keep;
+  radar_->wide_expected *= keep;
+  constexpr double kPrior = 2.0;
+  radar_->wide_seen += (1.0 - keep) * kPrior;
+  radar_->wide_expected += (1.0 - keep) * kPrior;
   constexpr double kPriorShare = 0.5;  // with the weight of one detection
   radar_->moving_sum = keep * radar_->moving_sum + (1.0 - keep) * kPriorShare;
   radar_->moving_count = keep * radar_->moving_count + (1.0 - keep);
@@ -115,7 +123,8 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
     const Vector2<double> at{static_cast<double>(scan.x_vehicle_m[i]), static_cast<double>(scan.y_vehicle_m[i])};
     const auto azimuth_rad = static_cast<double>(scan.azimuth_vehicle_rad[i]);
     const Vector2<double> sight{std::cos(azimuth_rad), std::sin(azimuth_rad)};
-    if (!std::isfinite(at.x + at.y + sight.x + rate_mps)) continue;
+    const auto moving = static_cast<double>(scan.probability(Provenance::kMoving, i));
+    if (!std::isfinite(at.x + at.y + sight.x + rate_mps + moving + static_cast<double>(scan.range_m[i]))) continue;
     Measurement<double> z;
     z.position_m = axes_.to_local(at);
     z.sight = axes_.to_local(sight);
@@ -124,10 +133,11 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
                                    scan.probability(Provenance::kGhostType2, i));
     ClutterPlace place;
     place.range_m = static_cast<double>(scan.range_m[i]);
+    // A radar that reaches farther than its configuration states has objects there in view, too.
+    radar_->range_max_m = std::max(radar_->range_max_m, place.range_m);
     place.azimuth_share = geometry::wrap_angle(azimuth_rad + axes_.heading_rad - facing_rad_) / radar_->half_view_rad;
     place.range_rate_over_ground_mps = rate_mps;
     place.range_rate_mps = rate_mps - dot(z.sight, sensor_velocity_mps_);
-    const auto moving = static_cast<double>(scan.probability(Provenance::kMoving, i));
     z.log_clutter = std::log(radar_->clutter.intensity(place)) + log_origin(moving);
     radar_->moving_sum += moving;
     radar_->moving_count += 1.0;
@@ -147,40 +157,6 @@ double RadarModel::log_origin(double p) const {
   return c.origin_weight * std::clamp(against(p) - usual, -c.origin_limit, c.origin_limit);
 }
 
-void RadarModel::add_side_lobes() {
-  if (radar_ == nullptr) return;
-  // An object gives weaker detections at its own range and range rate at other azimuths: more clutter there.
-  const SourceParameters& s = parameters_.source;
-  constexpr double kNearest_m = 3.0;  // nearer, the ring would be shorter than the object
-  for (const KnownObject& o : objects_) {
-    if (o.existence < s.side_lobe_existence) continue;
-    const Vector2<double> d = o.position_m - sensor_m_;
-    const double range_m = std::sqrt(squared_norm(d));
-    if (range_m > radar_->range_max_m || range_m <= 0.0) continue;
-    const Vector2<double> sight = (1.0 / range_m) * d;
-    const double rate_mps = dot(sight, o.velocity_mps);
-    const double range_std_m = std::sqrt(s.side_lobe_range_std_m * s.side_lobe_range_std_m +
-                                         parameters_.detection.spread * quadratic(o.extent_m2, sight));
-    for (std::size_t i = 0; i < measurements_.size(); ++i) {
-      Measurement<double>& z = measurements_[i];
-      const double a = (places_[i].range_m - range_m) / range_std_m,
-                   b = (z.range_rate_mps - rate_mps) / s.side_lobe_range_rate_std_mps;
-      const double deviation2 = a * a + b * b;
-      if (deviation2 > s.side_lobe_chi2) continue;
-      if (squared_norm(z.position_m - o.position_m) <
-          s.side_lobe_least_deviations * s.side_lobe_least_deviations * range_std_m * range_std_m)
-        continue;  // its own
-      const double added = o.existence * s.side_lobes * std::exp(-0.5 * deviation2) /
-                           (2.0 * std::numbers::pi * range_std_m * s.side_lobe_range_rate_std_mps) /
-                           (2.0 * radar_->half_view_rad * std::max(kNearest_m, range_m));
-      const double base = std::exp(z.log_clutter), was = z.side_lobe_share * base;
-      z.on_ring = 1.0;
-      z.log_clutter = std::log(base + added);
-      z.side_lobe_share = (was + added) / (base + added);
-    }
-  }
-}
-
 double RadarModel::predict(Component<double>& c, double elapsed_s) const {
   tracking::predict(c, parameters_.motion, elapsed_s);
   c.position_m = c.position_m - displacement_m_;
@@ -195,57 +171,6 @@ double RadarModel::predict(Component<double>& c, double elapsed_s) const {
   return survival;
 }
 
-Symmetric2<double> RadarModel::noise_at(const Vector2<double>& sight, double range_m) const {
-  const double along = radar_->range_std_m * radar_->range_std_m;
-  const double across = range_m * range_m * radar_->azimuth_std_rad * radar_->azimuth_std_rad;
-  return {along * sight.x * sight.x + across * sight.y * sight.y, (along - across) * sight.x * sight.y,
-          along * sight.y * sight.y + across * sight.x * sight.x};
-}
-
-double RadarModel::exposure_at(double range_m) const {
-  const DetectionParameters& d = parameters_.detection;
-  return std::clamp(std::pow(d.count_range_m / range_m, d.count_power), d.count_least, d.count_most);
-}
-
-View<double> RadarModel::view(const Component<double>& c) const {
-  View<double> v;
-  if (radar_ == nullptr) return v;
-  const DetectionParameters& p = parameters_.detection;
-  const Vector2<double> d = c.position_m - sensor_m_;
-  constexpr double kNearest_m = 0.5;
-  const double range_m = std::max(kNearest_m, std::sqrt(squared_norm(d)));
-  const Vector2<double> sight = (1.0 / range_m) * d;
-  const double azimuth_rad = geometry::wrap_angle(std::atan2(d.y, d.x) - facing_rad_);
-  const double place_variance = 0.5 * trace(c.position_covariance);
-  const double azimuth_std = std::sqrt(p.view_edge_rad * p.view_edge_rad + place_variance / (range_m * range_m));
-  const double range_std = std::sqrt(p.range_edge_m * p.range_edge_m + place_variance);
-  v.detection_probability = p.detection_probability *
-                            normal_cdf((radar_->half_view_rad - std::abs(azimuth_rad)) / azimuth_std) *
-                            normal_cdf((radar_->range_max_m - range_m) / range_std);
-  const double rate_mps = dot(sight, c.velocity_mps);
-  // An object whose range rate over ground is below the limit of the corrector's test is classified as stationary: it
-  // is not detected as moving.
-  const double by_azimuth =
-      (sensor_velocity_mps_.x * sight.y - sensor_velocity_mps_.y * sight.x) * radar_->azimuth_std_rad;
-  const double stationary_std = std::sqrt(radar_->range_rate_std_mps * radar_->range_rate_std_mps +
-                                          by_azimuth * by_azimuth + p.motion_std_mps * p.motion_std_mps);
-  const double limit_mps = p.stationary_sigma * stationary_std;
-  const double rate_std =
-      std::sqrt(radar_->range_rate_std_mps * radar_->range_rate_std_mps +
-                p.body_range_rate_std_mps * p.body_range_rate_std_mps + quadratic(c.velocity_covariance, sight));
-  v.detection_probability *=
-      normal_cdf((rate_mps - limit_mps) / rate_std) + normal_cdf((-rate_mps - limit_mps) / rate_std);
-  v.exposure = exposure_at(range_m);
-  v.noise_m2 = noise_at(sight, range_m);
-  v.range_rate_variance =
-      radar_->range_rate_std_mps * radar_->range_rate_std_mps + p.body_range_rate_std_mps * p.body_range_rate_std_mps;
-  v.spread = p.spread;
-  v.held = p.held_factor;
-  v.source_more = parameters_.source.more;
-  v.source_seen = c.source.radar >= 0 && c.source.radar != radar_index_ ? parameters_.source.other_radar : 1.0;
-  return v;
-}
-
 bool RadarModel::are_linked(const Measurement<double>& a, const Measurement<double>& b) const {
   const double m = parameters_.birth.link_distance_m;
   return squared_norm(a.position_m - b.position_m) <= m * m &&
@@ -254,9 +179,10 @@ bool RadarModel::are_linked(const Measurement<double>& a, const Measurement<doub
 
 void RadarModel::learn(std::span<const double> explained, std::span<const ObjectEstimate> objects) {
   note_objects(objects);
+  boxes_.learn(objects, elapsed_s_, axes_.heading_rad);
   if (radar_ == nullptr) return;
   for (std::size_t i = 0; i < explained.size() && i < places_.size(); ++i) {
-    radar_->clutter.add(places_[i], std::max(0.0, 1.0 - explained[i]));
+    radar_->clutter.add(places_[i], std::max(0.0, 1.0 - explained[i]) * (1.0 - measurements_[i].wide_share));
   }
 }
 
@@ -264,7 +190,7 @@ void RadarModel::note_objects(std::span<const ObjectEstimate> objects) {
   objects_.clear();
   for (const ObjectEstimate& e : objects) {
     if (objects_.size() == kMaxKnownObjects) break;
-    objects_.push_back({e.component->position_m, e.component->velocity_mps, extent(*e.component), e.existence});
+    objects_.push_back({*e.component, e.existence});
   }
 }
 

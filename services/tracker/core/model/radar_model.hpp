@@ -11,6 +11,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/tracker/core/model/clutter_map.hpp"
 #include "services/tracker/core/model/model.hpp"
+#include "services/tracker/core/model/object_boxes.hpp"
 #include "services/tracker/core/model/radar_parameters.hpp"
 
 namespace boresight::tracking {
@@ -29,7 +30,7 @@ struct LocalAxes {
 
 class RadarModel final : public Model {
  public:
-  RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters);
+  RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects);
 
   ScanStart begin_scan(const ClassifiedScan& scan) override;
   [[nodiscard]] std::span<const Measurement<double>> measurements() const override { return measurements_; }
@@ -41,15 +42,17 @@ class RadarModel final : public Model {
                    std::span<const double> existence) override;
   [[nodiscard]] double log_newborn(const Cell<double>& cell) override;
   [[nodiscard]] Component<double> newborn(const Cell<double>& cell) override;
-  [[nodiscard]] bool are_one(const Component<double>& a, const Component<double>& b) const override;
+  [[nodiscard]] double log_odds_of_part(const Component<double>& whole, const Component<double>& part) override;
+  void join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) override;
   [[nodiscard]] double spread() const override { return parameters_.detection.spread; }
   [[nodiscard]] bool are_linked(const Measurement<double>& a, const Measurement<double>& b) const override;
   [[nodiscard]] double link_distance_m() const override { return parameters_.birth.link_distance_m; }
   void learn(std::span<const double> explained, std::span<const ObjectEstimate> objects) override;
 
   [[nodiscard]] const LocalAxes& axes() const { return axes_; }
-  /// The sensor of the scan, in local axes.
-  [[nodiscard]] const Vector2<double>& sensor_m() const { return sensor_m_; }
+  /// Of an object after the scan, in local axes; and the probabilities of its classes.
+  [[nodiscard]] Box box(const Component<double>& object) const { return boxes_.box(object); }
+  [[nodiscard]] const BoxMemory* memory(std::uint32_t label) const;
 
  private:
   struct Radar {
@@ -57,11 +60,11 @@ class RadarModel final : public Model {
     double view_middle_rad = 0.0, half_view_rad = 0.0, range_max_m = 0.0;  // in the sensor's frame
     double range_std_m = 0.0, azimuth_std_rad = 0.0, range_rate_std_mps = 0.0;
     ClutterMap clutter;
+    double wide_seen = 2.0, wide_expected = 2.0;  // detections of objects with wide range rates, and those of the table
     double moving_sum = 0.5, moving_count = 1.0, moving_time_s = 0.0;  // of the ghost filter's probabilities
   };
   struct KnownObject {
-    Vector2<double> position_m, velocity_mps;
-    Symmetric2<double> extent_m2;
+    Component<double> component;
     double existence = 0.0;
   };
   static constexpr std::size_t kBirthKinds = 3;
@@ -84,15 +87,28 @@ class RadarModel final : public Model {
   [[nodiscard]] double log_origin(double moving_probability) const;
   void read_detections(const ClassifiedScan& scan);
   void add_side_lobes();
-  /// Half the size of the place that an object takes about its reflections, along its course and across: nothing else
-  /// can be there.
-  [[nodiscard]] Vector2<double> taken_m(double speed_mps, double extent_along_m2) const;
+  void add_wide_range_rates();
+  /// Probability that an object takes a place: nothing else can be there.
+  [[nodiscard]] double taken_by(std::uint32_t label, const Vector2<double>& position_m,
+                                const Symmetric2<double>& covariance_m2, double speed_mps,
+                                const Vector2<double>& place_m) const;
   [[nodiscard]] Symmetric2<double> noise_at(const Vector2<double>& sight, double range_m) const;
   [[nodiscard]] double exposure_at(double range_m) const;
   [[nodiscard]] NewbornWeights newborn_weights(const Cell<double>& cell);
 
+  /// Probability that an object of unknown heading is in view by azimuth.
+  [[nodiscard]] double in_view(const Component<double>& component) const;
+  /// Probability that its detections are not taken for those of a stationary object.
+  [[nodiscard]] double seems_moving(const Vector2<double>& sight, const Component<double>& component,
+                                    double range_rate_variance) const;
+  /// Where an object's detections lie, by what it may be, and the variance of their range rates. Returns the share of
+  /// its reflections that are in view, or −1 while its heading is not known.
+  double read_box(const Component<double>& component, View<double>& view) const;
+
   RadarModelParameters parameters_;
+  mutable ObjectBoxes boxes_;  // views are computed when first asked for
   std::vector<Radar> radars_;
+  double elapsed_s_ = 0.0;
   LocalAxes axes_;
   std::int64_t time_ns_ = 0;
   bool has_time_ = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "services/tracker/core/ggiw/component.hpp"
+#include "services/tracker/core/model/box_estimator.hpp"
 
 namespace boresight::tracking {
 
@@ -11,7 +12,7 @@ struct DetectionParameters {
   double range_edge_m = 2.0;
   double stationary_sigma = 4.0;         ///< what deviates less from a stationary reflector looks like one
   double motion_std_mps = 0.05;          ///< of the sensor's own velocity, in that test
-  double body_range_rate_std_mps = 0.2;  ///< of an object's parts, beside the sensor's noise
+  double body_range_rate_std_mps = 0.3;  ///< of an object's parts whose heading is not known, beside the sensor's noise
   double spread = 0.25;                  ///< covariance of reflections relative to the extent
   double held_factor = 5.0;  ///< places of reflections are held for some scans: their mean is that much worse
   double count = 1.5;        ///< mean detections a scan at `count_range_m`
@@ -29,17 +30,20 @@ struct BirthKind {
 };
 
 struct BirthParameters {
-  BirthKind slow{1e-5, 1.5, false};    ///< people
-  BirthKind any{2e-5, 10.0, false};    ///< vehicles of all directions
-  BirthKind traffic{2e-5, 4.0, true};  ///< vehicles that drive as the own one
-  double extent_dof = 9.0;             ///< of a new object's inverse Wishart: how sure its extent is
-  double half_length_m = 1.5;          ///< of a new object
-  double vehicle_length_m = 4.4;       ///< parts of one vehicle lie nearer along its course …
-  double vehicle_width_m = 1.4;        ///< … and across; those of two do not
-  double person_m = 0.6;               ///< the same of people, in any direction
-  double vehicle_speed_mps = 3.0;      ///< from about here on objects take the place of vehicles
-  double same_speed_chi2 = 9.0;        ///< squared distance of velocities up to which two objects move alike
-  double link_distance_m = 2.5;        ///< detections of one new object are nearer
+  BirthKind slow{3e-6, 1.5, false};              ///< people
+  BirthKind any{2e-5, 10.0, false};              ///< vehicles of all directions
+  BirthKind traffic{2e-5, 4.0, true};            ///< vehicles that drive as the own one
+  double extent_dof = 9.0;                       ///< of a new object's inverse Wishart: how sure its extent is
+  double half_length_m = 1.5;                    ///< of a new object
+  double gap_along_m = 1.0, gap_across_m = 0.5;  ///< no other object is nearer to the box of one
+  double headway_s = 0.5;                        ///< few drivers keep a shorter one …
+  double close_share = 0.03;                     ///< … this share of them
+  double person_m = 0.6;                         ///< the same of objects whose heading is not known, in any direction
+  double neighbour_density_per_m2 = 5e-3;        ///< of other vehicles about a vehicle
+  double neighbour_speed_std_mps = 1.5;          ///< of each component of their velocities about its own
+  double part_odds = 10.0;       ///< from here on two objects are one: a lost object costs more than a double one
+  double same_speed_chi2 = 9.0;  ///< squared distance of velocities up to which two objects move alike
+  double link_distance_m = 2.5;  ///< detections of one new object are nearer
   double link_range_rate_mps = 1.0;
 };
 
@@ -59,11 +63,13 @@ struct SourceParameters {
   double lasting_share = 0.05;                ///< of these sources that last as long as objects
   double other_radar = 0.3;                   ///< chance that another radar detects the source, too
   double side_lobes = 1.5;                    ///< detections a scan that an object gives at other azimuths
-  double side_lobe_existence = 0.5;           ///< objects below it are not expected to have side lobes
+  double parent_existence = 0.5;              ///< objects below it have neither side lobes nor wide range rates
   double side_lobe_range_std_m = 1.0;         ///< of a side lobe's range about its object's
   double side_lobe_range_rate_std_mps = 0.4;  ///< of a side lobe's range rate about its object's
   double side_lobe_chi2 = 9.0;                ///< squared distance up to which a detection may be a side lobe
   double side_lobe_least_deviations = 2.5;    ///< nearer to the object, in its own deviations, detections are its own
+  double ambiguity_share = 0.04;              ///< of an object's detections that have a wrong Doppler ambiguity
+  double ambiguity_width_mps = 100.0;         ///< their range rates are anywhere in so much
   double side_lobe_birth = 0.1;               ///< of these that begin a source which lasts
 };
 
@@ -72,6 +78,7 @@ struct RadarModelParameters {
   BirthParameters birth;
   ClutterParameters clutter;
   SourceParameters source;
+  BoxParameters box;
   MotionParameters motion{2.0, 1.0, 1.0, 2.0, 8.0};
   double object_life_s = 8.0;  ///< mean time that an object stays in the scene
   double longest_gap_s = 2.0;  ///< after a longer one all tracks are dropped

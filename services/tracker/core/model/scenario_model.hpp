@@ -1,6 +1,7 @@
 // The model of simulated scenarios: linear measurements of the position, uniform clutter, births at known places.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "services/tracker/core/model/linear_scenario.hpp"
@@ -22,7 +23,10 @@ class ScenarioModel final : public Model {
                    std::span<const double>) override {}
   [[nodiscard]] double log_newborn(const Cell<double>&) override;
   [[nodiscard]] Component<double> newborn(const Cell<double>&) override { return {}; }
-  [[nodiscard]] bool are_one(const Component<double>&, const Component<double>&) const override { return false; }
+  [[nodiscard]] double log_odds_of_part(const Component<double>&, const Component<double>&) override {
+    return -std::numeric_limits<double>::infinity();
+  }
+  void join(const Component<double>&, const Component<double>&, std::uint32_t) override {}
   [[nodiscard]] double spread() const override { return scenario_.spread; }
   [[nodiscard]] bool are_linked(const Measurement<double>& a, const Measurement<double>& b) const override;
   [[nodiscard]] double link_distance_m() const override { return link_distance_m_; }

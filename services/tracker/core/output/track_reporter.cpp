@@ -18,27 +18,23 @@ double log_odds(double p) {
 }
 
 /// Class probabilities and the likeliest class.
-void set_class(const Box& box, Track& t) {
+void set_class(const BoxMemory& object, Track& t) {
   using extended_object::RoadUserClass;
   constexpr std::array kClasses = {ObjectClass::kPedestrian, ObjectClass::kTwoWheeler, ObjectClass::kCar,
                                    ObjectClass::kVan, ObjectClass::kTruck};
   static_assert(kClasses.size() == extended_object::kRoadUserClasses);
   std::size_t likeliest = 0;
   for (std::size_t k = 0; k < kClasses.size(); ++k) {
-    t.class_probability[static_cast<std::size_t>(kClasses[k])] = static_cast<float>(box.probability[k]);
-    if (box.probability[k] > box.probability[likeliest]) likeliest = k;
+    t.class_probability[static_cast<std::size_t>(kClasses[k])] = static_cast<float>(object.probability[k]);
+    if (object.probability[k] > object.probability[likeliest]) likeliest = k;
   }
   t.object_class = kClasses[likeliest];
 }
 
 }  // namespace
 
-TrackReporter::TrackReporter(const RadarModel& model, const ReportParameters& parameters, const BoxParameters& box,
-                             std::size_t max_objects)
-    : model_(&model),
-      parameters_(parameters),
-      box_(extended_object::object_class_table_defaults(), box),
-      index_(std::bit_ceil(2 * max_objects + 2)) {
+TrackReporter::TrackReporter(const RadarModel& model, const ReportParameters& parameters, std::size_t max_objects)
+    : model_(&model), parameters_(parameters), index_(std::bit_ceil(2 * max_objects + 2)) {
   records_.reserve(max_objects);
   before_.reserve(max_objects);
   tracks_.reserve(kMaxTracks);
@@ -58,18 +54,13 @@ void TrackReporter::take(std::span<const ObjectEstimate> objects, double elapsed
   tracks_.clear();
   dropped_ = confirmed_ = 0;
   for (const ObjectEstimate& e : objects) {
-    Record r{e.id, 0.0, 0.0, log_odds(e.existence), {}};
+    Record r{e.id, 0.0, 0.0, log_odds(e.existence)};
     if (const int known = index_.find(e.id); known >= 0) {
       const Record& b = before_[static_cast<std::size_t>(known)];
       r.age_s = b.age_s + time_s;
       r.since_detection_s = e.detected ? 0.0 : b.since_detection_s + time_s;
       r.held_log_odds = std::max(r.held_log_odds, b.held_log_odds - parameters_.hold_log_odds_per_s * time_s);
-      r.box = b.box;
-    } else {
-      r.box = box_.begin();
     }
-    box_.update(r.box, *e.component,
-                {model_->sensor_m(), model_->view(*e.component).noise_m2, e.detections, e.scatter, time_s});
     if (records_.size() < records_.capacity()) records_.push_back(r);
     if (e.existence < parameters_.least_existence) continue;
     if (tracks_.size() == kMaxTracks) {
@@ -91,7 +82,7 @@ void TrackReporter::take(std::span<const ObjectEstimate> objects, double elapsed
 void TrackReporter::write_track(const ObjectEstimate& e, const Record& r, Track& t) const {
   const LocalAxes& axes = model_->axes();
   const Component<double>& c = *e.component;
-  const Box box = box_.box(r.box, c);
+  const Box box = model_->box(c);
   const Vector2<double> position = axes.to_vehicle(Vector2<double>{box.centre_m.x(), box.centre_m.y()});
   const Vector2<double> velocity = axes.to_vehicle(c.velocity_mps);
   t = {};
@@ -101,7 +92,7 @@ void TrackReporter::write_track(const ObjectEstimate& e, const Record& r, Track&
   t.update = e.detected ? TrackUpdate::kMeasured : TrackUpdate::kPredicted;
   const double speed_mps = std::sqrt(squared_norm(velocity));
   t.movement = speed_mps < parameters_.stopped_speed_mps ? MovementState::kStopped : MovementState::kMoving;
-  set_class(box, t);
+  if (const BoxMemory* object = model_->memory(e.id); object != nullptr) set_class(*object, t);
   t.age_s = static_cast<float>(r.age_s);
   t.time_since_update_s = static_cast<float>(r.since_detection_s);
   t.existence_probability = static_cast<float>(e.existence);

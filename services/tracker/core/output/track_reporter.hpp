@@ -6,13 +6,12 @@
 
 #include "services/tracker/core/fixed_table.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
-#include "services/tracker/core/output/box_estimator.hpp"
 #include "services/tracker/core/output/reporter.hpp"
 
 namespace boresight::tracking {
 
 struct ReportParameters {
-  double confirmed_existence = 0.5;   ///< from here on a track's status is confirmed
+  double confirmed_existence = 0.9;   ///< from here on a track's status is confirmed
   double hold_log_odds_per_s = 25.0;  ///< the log odds that decide the status fall no faster
   double least_existence = 0.05;      ///< tracks below it are not published
   double stopped_speed_mps = 0.5;     ///< below it a track is reported as stopped
@@ -20,8 +19,7 @@ struct ReportParameters {
 
 class TrackReporter final : public Reporter {
  public:
-  TrackReporter(const RadarModel& model, const ReportParameters& parameters, const BoxParameters& box,
-                std::size_t max_objects);
+  TrackReporter(const RadarModel& model, const ReportParameters& parameters, std::size_t max_objects);
 
   void clear() override;
   void take(std::span<const ObjectEstimate> objects, double elapsed_s) override;
@@ -33,13 +31,11 @@ class TrackReporter final : public Reporter {
     std::uint32_t id = 0;
     double age_s = 0.0, since_detection_s = 0.0;
     double held_log_odds = 0.0;
-    BoxMemory box;
   };
   void write_track(const ObjectEstimate& object, const Record& record, Track& out) const;
 
   const RadarModel* model_;
   ReportParameters parameters_;
-  BoxEstimator box_;
   std::vector<Record> records_, before_;
   FixedTable index_;  // of before_ by id
   std::vector<Track> tracks_;

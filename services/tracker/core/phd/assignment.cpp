@@ -9,7 +9,6 @@ namespace boresight::tracking::phd {
 namespace {
 
 constexpr double kNoGain = -std::numeric_limits<double>::infinity();
-constexpr double kLeastShare = 1e-3;  // of a measurement: less changes nothing
 
 }  // namespace
 
@@ -68,7 +67,7 @@ void Assignment::assign(std::span<const Measurement<double>> z, std::span<const 
     }
     double most = 0.0;
     for (std::size_t k = 0; k < columns; ++k) {
-      shares[k] = shares[k] < kLeastShare * sum ? 0.0 : shares[k] / sum;
+      shares[k] = shares[k] < parameters_.min_share * sum ? 0.0 : shares[k] / sum;
       if (shares[k] <= most) continue;
       most = shares[k];
       assigned_object_[i] = static_cast<std::int16_t>(k);

@@ -22,12 +22,6 @@ struct Predicted {
   bool is_object = false;  ///< the identity exists as likely as not
 };
 
-/// Whether a component may have detections in the scan.
-[[nodiscard]] inline bool is_seen(const Prediction<double>& p) {
-  constexpr double kUnseen = 1e-3;
-  return p.detection_probability() >= kUnseen;
-}
-
 class Assignment {
  public:
   Assignment(const Parameters& parameters, const Capacity& capacity);
@@ -46,6 +40,10 @@ class Assignment {
  private:
   void assign(std::span<const Measurement<double>> z, std::span<const Predicted> components,
               std::span<const Prediction<double>> predictions);
+  /// Whether a component may have detections in the scan.
+  [[nodiscard]] bool is_seen(const Prediction<double>& p) const {
+    return p.detection_probability() >= parameters_.min_detection_probability;
+  }
   void find_blocks(const Model& model, std::span<const Measurement<double>> z);
 
   Parameters parameters_;

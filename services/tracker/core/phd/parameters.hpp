@@ -10,10 +10,12 @@ struct Parameters {
   double gate_chi2 = 13.816;    ///< squared distance of a measurement to an object: 0.999 of two degrees of freedom
   double prune_weight = 0.03;   ///< lighter components are dropped (choice: 0.001 … 0.03 differ in work)
   double merge_distance = 4.0;  ///< nearer components are one (ggiw/component.hpp, distance; choice: 2 … 6 are alike)
-  double min_poisson_weight = 1e-3;   ///< lighter components of the intensity of births are dropped
-  double object_probability = 0.5;    ///< an identity that exists as surely counts as an object in the prediction
-  bool as_published = false;          ///< a component may be any number of objects: (2) instead of (6) and (7)
-  double report_existence = 0.05;     ///< objects below it are not reported
+  double min_poisson_weight = 1e-3;         ///< lighter components of the intensity of births are dropped
+  double min_detection_probability = 1e-3;  ///< of an object: below it nothing of the scan is its own (choice: time)
+  double min_share = 1e-3;                  ///< of a measurement: an object has no less of it (choice: time)
+  double object_probability = 0.5;          ///< an identity that exists as surely counts as an object in the prediction
+  bool as_published = false;                ///< a component may be any number of objects: (2) instead of (6) and (7)
+  double report_existence = 0.05;           ///< objects below it are not reported
   std::uint32_t work_budget = 16000;  ///< likelihood evaluations of a scan; beyond it no further partition is weighed
 };
 

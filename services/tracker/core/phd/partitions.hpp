@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -119,14 +120,13 @@ class Partitions {
 
 template <typename Expected>
 void Partitions::add_split(const Expected& expected) {
-  constexpr double kLogTwo = 0.69314718055994530942;
   for (std::size_t p = 0; p < size(); ++p) {
     if (partitions_[p].key == 0) continue;
     for (std::size_t k = 0; k < partitions_[p].number_of_cells; ++k) {
       const std::int16_t c = cells_of(p)[k];
       const Cell<double>& cell = cells_[static_cast<std::size_t>(c)];
       // Poisson(n; 2γ) > Poisson(n; γ)
-      if (cell.n > 1.0 && cell.n * kLogTwo > expected(cell)) split(p, c);
+      if (cell.n > 1.0 && cell.n * std::numbers::ln2 > expected(cell)) split(p, c);
     }
   }
 }

@@ -18,8 +18,9 @@ constexpr std::size_t kBeforeCap = 2;  // room for components before the lightes
 pmbm::Parameters shared(const Parameters& p) {
   pmbm::Parameters out;
   out.gate_chi2 = p.gate_chi2;
-  out.merge_distance = p.merge_distance;
+  out.birth_merge_distance = 2.0 * p.merge_distance;
   out.min_poisson_weight = p.min_poisson_weight;
+  out.min_detection_probability = p.min_detection_probability;
   return out;
 }
 
@@ -106,11 +107,11 @@ void PhdFilter::step(Model& model, double elapsed_s) {
       weigh_partitions(model);         // (3) and (4)
       correct_detected(model, block);  // (2), second sum
     }
-    correct_missed();  // (2), first sum, or (6)
+    correct_missed();  // (7)
     reduce();
   }
   poisson_.end_scan(model);
-  identify();  // (7)
+  identify();  // (6)
   report();
 
   work_.budget_reached = work_.likelihood_evaluations > parameters_.work_budget;
@@ -123,7 +124,7 @@ void PhdFilter::predict(const Model& model, double elapsed_s) {
     static_cast<void>(identity_index_.insert(identities_[i].id, static_cast<int>(i)));
     identities_[i].missed = identities_[i].detected = 0.0;
   }
-  // An identity survives as its components do on average; `missed` holds the sum for a while.
+  // An identity survives as its components do; `missed` holds the sum of their weights for a while.
   for (std::size_t g = 0; g < store_.size(); ++g) {
     pmbm::LocalHypothesis& local = store_.pool(g).front();
     local.existence *= model.predict(local.component, elapsed_s);
@@ -183,13 +184,11 @@ void PhdFilter::correct_missed() {
     const double q = predictions_[j].missed();
     identity.missed += q * predicted_[j].weight;
     const double not_detected = 1.0 - std::min(1.0, identity.detected);
-    const double weight = (parameters_.as_published ? 1.0 : not_detected) * q * predicted_[j].weight;
-    // A certain object survives some misses: the component's share in the existence counts, too.
-    const double held = not_detected * missed_existence(identity.existence, q) * predicted_[j].share;
-    const double importance = std::max(weight, held);
-    if (importance < parameters_.prune_weight) continue;
-    const Component<double> missed = predictions_[j].missed_component(components_[j]);
-    add_child({identity.id, importance, {weight, 0.0, {}, missed}});
+    const double weight = parameters_.as_published
+                              ? q * predicted_[j].weight
+                              : not_detected * missed_existence(identity.existence, q) * predicted_[j].share;
+    if (weight < parameters_.prune_weight) continue;
+    add_child({identity.id, {weight, 0.0, {}, predictions_[j].missed_component(components_[j])}});
   }
 }
 
@@ -224,7 +223,9 @@ void PhdFilter::weigh_cell(Model& model, std::size_t index) {
   for (std::size_t j = 0; j < births; ++j) {
     Prediction<double>& p = predictions_[j];
     terms[j] = kNothing;
-    if (!is_seen(p) || p.place_distance(cell.mean()) > parameters_.gate_chi2) continue;
+    if (p.detection_probability() < parameters_.min_detection_probability ||
+        p.place_distance(cell.mean()) > parameters_.gate_chi2)
+      continue;
     terms[j] = predicted_[j].log_weight + p.log_likelihood(cell);
     ++work_.likelihood_evaluations;
     best = std::max(best, terms[j]);
@@ -282,12 +283,12 @@ void PhdFilter::correct_detected(Model& model, std::size_t block) {
       if (weight < parameters_.prune_weight) continue;
       const Component<double> updated = predictions_[j].updated(components_[j], cell);
       cell_explained_[c] += share * updated.source.object;
-      add_child({identity_of(j).id, weight, {weight, cell.n, cell.scatter(), updated}});
+      add_child({identity_of(j).id, {weight, cell.n, cell.scatter(), updated, cell.mean()}});
     }
     const double weight = cell_probability_[c] * std::exp(terms[births] - log_d_[c]);
     Component<double> newborn;
     if (weight < parameters_.prune_weight || !poisson_.first_detected(model, cell, newborn)) continue;
-    add_child({kNew, weight, {weight, cell.n, cell.scatter(), newborn}});
+    add_child({kNew, {weight, cell.n, cell.scatter(), newborn, cell.mean()}});
   }
   const auto members = assignment_.block(block);
   for (std::size_t p = 0; p < omega_.size(); ++p) {
@@ -298,6 +299,15 @@ void PhdFilter::correct_detected(Model& model, std::size_t block) {
       explained_[in_scan] += omega_[p] * cell_explained_[static_cast<std::size_t>(labels[i])];
     }
   }
+}
+
+bool PhdFilter::is_object(std::uint32_t id) const {
+  const int index = id == kNew ? -1 : identity_index_.find(id);
+  return index >= 0 && identities_[static_cast<std::size_t>(index)].existence >= parameters_.object_probability;
+}
+
+bool PhdFilter::may_merge(const Hypothesis& a, const Hypothesis& b) const {
+  return parameters_.as_published || a.id == b.id || !is_object(a.id) || !is_object(b.id);
 }
 
 void PhdFilter::reduce() {
@@ -316,20 +326,22 @@ void PhdFilter::reduce() {
     }
     // Components like the heaviest one left become one with it. Identity and source are those of the heaviest.
     const Hypothesis& heaviest = children_[i];
-    double weight = 0.0, importance = 0.0;
+    double weight = 0.0;
     mixture_.clear();
     for (const std::size_t j : by_weight_) {
       if (is_merged_[j] != 0) continue;
       const pmbm::LocalHypothesis& other = children_[j].local;
-      if (j != i && distance(heaviest.local.component, other.component) >= parameters_.merge_distance) continue;
+      if (j != i && (!may_merge(heaviest, children_[j]) ||
+                     distance(heaviest.local.component, other.component) >= parameters_.merge_distance)) {
+        continue;
+      }
       is_merged_[j] = 1;
       weight += other.existence;
-      importance = std::max(importance, children_[j].importance);
       mixture_.push_back({other.existence, &other.component});
     }
-    corrected_.push_back({heaviest.id,
-                          std::max(weight, importance),
-                          {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_)}});
+    corrected_.push_back(
+        {heaviest.id,
+         {weight, heaviest.local.detections, heaviest.local.scatter, merge<double>(mixture_), heaviest.local.mean_m}});
     corrected_.back().local.component.source = heaviest.local.component.source;
   }
 }
@@ -341,18 +353,14 @@ void PhdFilter::identify() {
   }
   by_weight_.clear();
   for (std::size_t i = 0; i < corrected_.size(); ++i) by_weight_.push_back(i);
-  if (corrected_.size() > capacity_.components) {
-    std::sort(by_weight_.begin(), by_weight_.end(), [this](std::size_t a, std::size_t b) {
-      const double of_a = corrected_[a].importance, of_b = corrected_[b].importance;
-      return of_a != of_b ? of_a > of_b : a < b;
-    });
-    by_weight_.resize(capacity_.components);
-    work_.dropped_objects += static_cast<std::uint32_t>(corrected_.size() - capacity_.components);
-  }
   std::sort(by_weight_.begin(), by_weight_.end(), [this](std::size_t a, std::size_t b) {
     const double weight_a = corrected_[a].local.existence, weight_b = corrected_[b].local.existence;
     return weight_a != weight_b ? weight_a > weight_b : a < b;
   });
+  if (corrected_.size() > capacity_.components) {
+    by_weight_.resize(capacity_.components);
+    work_.dropped_objects += static_cast<std::uint32_t>(corrected_.size() - capacity_.components);
+  }
   next_identities_.clear();
   next_index_.clear();
   heaviest_.clear();
@@ -366,6 +374,7 @@ void PhdFilter::identify() {
       h.id = next_id_++;
       index = -1;
     }
+    h.local.component.label = h.id;
     if (index >= 0) {
       next_identities_[static_cast<std::size_t>(index)].weight += h.local.existence;
     } else {
@@ -378,6 +387,13 @@ void PhdFilter::identify() {
     }
     static_cast<void>(store_.store_alone(h.id, h.local));  // has room for capacity_.components
   }
+  for (std::size_t g = 0; g < store_.size() && !parameters_.as_published; ++g) {
+    const Identity& identity = next_identities_[static_cast<std::size_t>(next_index_.find(store_.ids(g).front()))];
+    store_.pool(g).front().existence *= identity.existence / identity.weight;
+  }
+  for (Identity& identity : next_identities_) {
+    if (!parameters_.as_published) identity.weight = identity.existence;
+  }
   std::swap(identities_, next_identities_);
 }
 
@@ -389,7 +405,7 @@ void PhdFilter::report() {
     const double existence = parameters_.as_published ? std::min(1.0, identity.weight) : identity.existence;
     if (existence < parameters_.report_existence) continue;
     estimates_.push_back({identity.id, existence * local.component.source.object, existence, local.detections > 0.0,
-                          local.detections, local.scatter, &local.component});
+                          local.detections, local.scatter, &local.component, local.mean_m});
   }
   std::sort(estimates_.begin(), estimates_.end(), [](const ObjectEstimate& a, const ObjectEstimate& b) {
     return a.existence != b.existence ? a.existence > b.existence : a.id < b.id;

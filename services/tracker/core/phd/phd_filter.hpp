@@ -9,13 +9,14 @@
 // partitioned alone, and all combinations count:
 //   ω_{p × p′} = ω_p ω_p′                                                                 (5)
 // A Poisson intensity does not know that a component is one object: it also keeps what has been detected as not
-// detected, and one scan without detection lowers a weight to q. So the filter goes beyond the papers in one point: an
-// identity, the components that descend from one newborn component, is one object. With a the expected number of its
-// detected components, at most 1, the first sum of (2) and the existence r of the estimates are
-//   Σ_j q_j (1 − a) w_j f_j                                                               (6)
-//   r = a + (1 − a) r₋ q / (1 − r₋ + r₋ q),  r₋ = p_S r                                   (7)
-// where the second term of (7) is that of a Bernoulli component (Musicki, Evans and Stankovic 1994). With
-// Parameters::as_published, the sum is that of (2), and the existence of an estimate is min(Σ w, 1).
+// detected, and one scan without detection lowers a weight to q: the next detections then go to another object nearby.
+// So the filter goes beyond the papers: an identity, the components that descend from one newborn component, is one
+// object. Its weights sum to the probability r that it exists. With a the expected number of its detected components,
+// at most 1, r is that of a Bernoulli component (Musicki, Evans and Stankovic 1994), and the first sum of (2) becomes
+// (7); then the weights of each identity are scaled to sum r:
+//   r = a + (1 − a) r₋ q / (1 − r₋ + r₋ q),  r₋ = Σ_j w_j                                 (6)
+//   Σ_j (1 − a) q_j w_j f_j / (1 − r₋ + r₋ q_j)                                           (7)
+// With Parameters::as_published, the sum is that of (2), and the existence of an estimate is min(Σ w, 1).
 #pragma once
 
 #include <cstdint>
@@ -48,14 +49,13 @@ class PhdFilter final : public Filter {
  private:
   struct Hypothesis {
     std::uint32_t id = 0;
-    double importance = 0.0;      ///< weight, or share in the existence of the identity where that is more
     pmbm::LocalHypothesis local;  ///< `existence` is the weight
   };
   /// The components of one identity are hypotheses about one object.
   struct Identity {
     std::uint32_t id = 0;
     double existence = 0.0;  ///< r
-    double weight = 0.0;     ///< Σ w
+    double weight = 0.0;     ///< Σ w; r, unless as published
     double missed = 0.0;     ///< Σ q w
     double detected = 0.0;   ///< a
   };
@@ -69,7 +69,10 @@ class PhdFilter final : public Filter {
   void correct_missed();
   void reduce();
   void add_child(const Hypothesis& child);
+  /// Whether components may become one: not if their identities are two objects.
+  [[nodiscard]] bool may_merge(const Hypothesis& a, const Hypothesis& b) const;
   void identify();
+  [[nodiscard]] bool is_object(std::uint32_t id) const;
   void report();
   [[nodiscard]] Identity& identity_of(std::size_t component) { return identities_[predicted_[component].identity]; }
 

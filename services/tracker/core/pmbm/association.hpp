@@ -1,28 +1,36 @@
 // Association within a group: which measurements are of which object, which are the first of a new one, which are
-// clutter. Coordinate ascent on the collapsed joint likelihood and moves of whole cells find the likely associations;
-// in each, the measurements are then shared softly by leave-one-out predictive weights (algorithms.md 3.1.1, points 3
-// and 4).
+// clutter. Coordinate ascent on the collapsed joint likelihood and moves of whole cells (cell_moves.cpp) find the
+// likely associations; in each, the measurements are then shared softly by leave-one-out predictive weights
+// (soft_association.cpp; algorithms.md 3.1.1, points 3 and 4).
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "services/tracker/core/fixed_table.hpp"
 #include "services/tracker/core/model/model.hpp"
+#include "services/tracker/core/pmbm/cell_memory.hpp"
 #include "services/tracker/core/pmbm/group.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
 #include "services/tracker/core/pmbm/poisson_part.hpp"
 
 namespace boresight::tracking::pmbm {
 
-/// One association of a row of the group. Cells 0 … objects − 1 are those of the row's objects, then those of new ones.
-struct Candidate {
-  double log_weight = 0.0;
-  std::uint64_t key = 0;  ///< of row and hard association
-  std::size_t row = 0, objects = 0;
+/// Cells 0 … objects − 1 are those of a row's objects, then those of new ones.
+struct Cells {
+  std::size_t objects = 0;
   std::vector<std::int16_t> labels;  ///< cell of each measurement, −1: clutter or the first of a new object alone
-  std::vector<Cell<double>> cells;   ///< softly shared; `key` is that of the hard cell
+  std::vector<Cell<double>> cells;
+};
+
+/// An association of a row of the group. Its cells are softly shared; their `key` is that of the hard cell.
+struct Candidate : Cells {
+  double log_hard = 0.0;    ///< weight of the hard association
+  double log_weight = 0.0;  ///< with that of the associations which differ from it in shared measurements
+  std::uint64_t key = 0;    ///< of row and hard association
+  std::size_t row = 0;
 };
 
 class Association {
@@ -35,6 +43,9 @@ class Association {
                                     std::span<const Measurement<double>> measurements,
                                     std::span<const std::uint64_t> keys, std::uint32_t& work);
 
+  /// Whether a search ended at its budget since the last call of this.
+  [[nodiscard]] bool take_was_cut() { return std::exchange(was_cut_, false); }
+
   /// Of the group last searched: prediction of a local hypothesis.
   [[nodiscard]] Prediction<double>& prediction(std::size_t local) { return predictions_[local]; }
   /// log of the intensity of a new object for a measurement alone, and log(1 + that).
@@ -43,41 +54,55 @@ class Association {
 
  private:
   /// A hard association in work.
-  struct State {
-    std::vector<std::int16_t> labels;
-    std::vector<Cell<double>> cells;
+  struct State : Cells {
     std::vector<double> values;  // log of each cell
-    std::size_t objects = 0;
     double score = 0.0;
   };
-  struct Remembered {
-    std::uint64_t key = 0;
-    double value = 0.0;
-  };
 
-  void reserve(State& state, const Capacity& capacity) const;
+  void reserve(Cells& cells) const;
   void prepare(Model& model, PoissonPart& poisson, const Group& group);
-  void start(State& state) const;
-  void search_row(std::size_t row, double log_weight);
-  void ascend(State& state);
-  void compact(State& state);
-  void rescore(State& state);
-  void cluster_rest(State& state);
-  /// Cells of new objects that are likelier to be nothing but clutter become that.
-  void dissolve_unlikely(State& state);
-  bool split(const State& state, std::size_t cell);
-  void consider(State& trial, std::size_t row, double log_weight);
-  void move_cells(std::size_t cell, std::size_t row, double log_weight);
-  void keep(const State& state, std::size_t row, double log_weight);
-  double soften(const State& state, std::vector<Cell<double>>& out);
-  [[nodiscard]] double cell_value(const State& state, std::size_t cell, const Cell<double>& content);
+  void take_row(std::size_t row);
+
+  // Likelihoods.
+  [[nodiscard]] double cell_value(const Cells& cells, std::size_t cell, const Cell<double>& content);
   [[nodiscard]] double object_value(std::size_t object, const Cell<double>& content);
   [[nodiscard]] double new_value(const Cell<double>& content);
-  [[nodiscard]] bool is_allowed(const State& state, std::size_t z, std::size_t cell) const;
   [[nodiscard]] double dissolved(const State& state, std::size_t cell) const;
-  [[nodiscard]] bool is_spent() const { return *work_ > parameters_.work_budget; }
-  template <typename Compute>
-  double remembered(const Cell<double>& content, std::size_t source, const Compute& compute);
+  [[nodiscard]] bool is_allowed(const Cells& cells, std::size_t z, std::size_t cell) const;
+  void rescore(State& state);
+
+  // Start of a row, and ascent by single measurements.
+  void find_starts();
+  void start(State& state) const;
+  void cluster_rest(State& state);
+  void ascend(State& state);
+  void compact(State& state);
+
+  // Moves of whole cells.
+  void search_row();
+  void move_cell(std::size_t cell);
+  void split_cell(std::size_t cell);
+  bool split(const State& state, std::size_t cell);
+  void exchange_cells(std::size_t cell);
+  void relabel(std::size_t from, std::int16_t to);
+  void consider(State& trial);
+  void dissolve_unlikely(State& state);
+  void keep_alternatives();
+
+  // Candidates.
+  void keep(const State& state);
+  [[nodiscard]] std::size_t prune(std::size_t number);
+  double share_hard(const Cells& hard);
+  void share_again(const Cells& hard);
+  [[nodiscard]] double normalise_shares(std::size_t z, std::size_t cells);
+  void gather_shares();
+  void soften(Candidate& candidate);
+
+  [[nodiscard]] bool is_spent() {
+    const bool spent = *work_ > search_limit_;
+    was_cut_ = was_cut_ || spent;
+    return spent;
+  }
 
   Parameters parameters_;
   Capacity capacity_;
@@ -90,15 +115,24 @@ class Association {
   std::span<const Measurement<double>> z_;
   std::span<const std::uint64_t> keys_;
   std::uint32_t* work_ = nullptr;
+  bool was_cut_ = false;
+  std::uint32_t search_limit_ = 0;                  // of work_; the rest is left to sharing
   std::vector<Prediction<double>> predictions_;     // of the pool
   std::vector<double> log_existence_, log_missed_;  // of the pool
   std::vector<double> existence_;                   // as an object, over all rows
   std::vector<char> gated_;                         // pool × measurements
   std::vector<double> log_new_, log_alone_;         // of the measurements
-  std::vector<std::size_t> locals_;                 // of the row's objects
+
+  // The row.
+  std::size_t row_ = 0;
+  double log_row_ = 0.0;             // its weight
+  std::vector<std::size_t> locals_;  // of its objects
 
   // The search.
-  State state_, best_, trial_, second_;
+  std::vector<Candidate> starts_;  // of the rows
+  std::size_t number_of_starts_ = 0;
+  double log_top_ = 0.0;  // of the likeliest hard association so far
+  State state_, best_, trial_;
   bool improved_ = false;
   std::vector<Cell<double>> old_cells_;
   std::vector<std::size_t> side_a_, side_b_, members_;
@@ -106,12 +140,17 @@ class Association {
   std::vector<Candidate> candidates_;
   std::size_t number_of_candidates_ = 0;
   FixedTable known_;
-  std::vector<Remembered> memory_;
-  std::uint64_t salt_ = 1;
-  std::vector<double> share_, next_share_, gain_;
+  CellMemory memory_;
+  std::vector<double> share_, next_share_, gain_;  // measurements × (cells and clutter); of one measurement
   std::vector<Cell<double>> soft_;
+  std::vector<double> soft_values_;
   std::vector<char> is_shared_;
   std::vector<std::int16_t> renamed_;
 };
+
+/// Logs below it count as it: a difference of two of them is then a number.
+inline constexpr double kLeastLog = -1e4;
+/// A log that is larger by less is not: the search would exchange equals for ever.
+inline constexpr double kRounding = 1e-6;
 
 }  // namespace boresight::tracking::pmbm

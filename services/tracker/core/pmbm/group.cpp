@@ -120,6 +120,7 @@ void Group::merge_similar_rows(double merge_distance) {
         const bool second = a < 0 || (b >= 0 && wj > wi);
         merged.detections = second ? lb.detections : la.detections;
         merged.scatter = second ? lb.scatter : la.scatter;
+        merged.mean_m = second ? lb.mean_m : la.mean_m;
         if (a < 0 || b < 0) {
           merged.component = second ? lb.component : la.component;
         } else {
@@ -184,6 +185,11 @@ std::span<const double> GroupStore::log_weights(std::size_t g) const {
 std::int16_t GroupStore::at(std::size_t g, std::size_t row, std::size_t column) const {
   const Span& s = spans_[g];
   return table_[s.table + row * s.columns + column];
+}
+
+void GroupStore::erase(std::size_t group, std::size_t column) {
+  const Span& s = spans_[group];
+  for (std::size_t r = 0; r < s.rows; ++r) table_[s.table + r * s.columns + column] = -1;
 }
 
 bool GroupStore::store(const Group& group, std::span<const std::size_t> columns) {

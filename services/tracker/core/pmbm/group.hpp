@@ -25,6 +25,7 @@ struct LocalHypothesis {
   double detections = 0.0;     ///< in the latest scan
   Symmetric2<double> scatter;  ///< of these about their mean, m²
   Component<double> component;
+  Vector2<double> mean_m{};  ///< of the detections
 };
 
 /// A global hypothesis (row) names for each object (column) one local hypothesis of the pool, or none (−1).
@@ -80,6 +81,8 @@ class GroupStore {
   [[nodiscard]] bool is_single(std::size_t group) const {
     return spans_[group].columns == 1 && spans_[group].rows == 1;
   }
+  /// The object is in no row any more.
+  void erase(std::size_t group, std::size_t column);
   void rename(std::size_t group, std::size_t column, std::uint32_t id) { ids_[spans_[group].ids + column] = id; }
 
   /// Stores the columns `columns` of a group, with the locals that their rows name; false if there is no room.

@@ -8,7 +8,6 @@ namespace boresight::tracking::pmbm {
 
 namespace {
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-constexpr double kUnseen = 1e-3;  // of detection: nothing of the scan is its own
 }  // namespace
 
 Grouping::Grouping(const Parameters& parameters, const Capacity& capacity)
@@ -82,20 +81,25 @@ std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& 
   for (std::size_t g = 0; g < groups; ++g) {
     for (const LocalHypothesis& local : store.pool(g)) {
       const View<double> view = model.view(local.component);
-      if (view.detection_probability < kUnseen) continue;
+      if (view.detection_probability < parameters_.min_detection_probability) continue;
       const Component<double>& c = local.component;
-      const Symmetric2<double> s = c.position_covariance + view.spread * extent(c) + view.noise_m2;
-      const Symmetric2<double> information = inverse(s);
-      for_near(z, c.position_m, std::sqrt(parameters_.gate_chi2 * s.xx), [&](std::size_t i, const auto& m) {
-        if (quadratic(information, m.position_m - c.position_m) > parameters_.gate_chi2) return;
-        if (view.range_rate_variance > 0.0) {
-          const double e = m.range_rate_mps - dot(m.sight, c.velocity_mps);
-          const double variance = view.range_rate_variance + quadratic(c.velocity_covariance, m.sight);
-          if (e * e > parameters_.gate_chi2 * variance) return;
-        }
-        enters_[i] = 1;
-        connect(i, n + g, cut);
-      });
+      for (std::size_t k = 0; k < view.number_of_readings; ++k) {
+        const Reading<double>& reading = view.readings[k];
+        const Symmetric2<double> s = c.position_covariance + reading.covariance_m2 + view.noise_m2 +
+                                     (reading.knows_scatter ? reading.scatter_m2 : view.spread * extent(c));
+        const Symmetric2<double> information = inverse(s);
+        const Vector2<double> middle = c.position_m + reading.offset_m;
+        for_near(z, middle, std::sqrt(parameters_.gate_chi2 * s.xx), [&](std::size_t i, const auto& m) {
+          if (quadratic(information, m.position_m - middle) > parameters_.gate_chi2) return;
+          if (view.range_rate_variance > 0.0) {
+            const double e = m.range_rate_mps - dot(m.sight, c.velocity_mps);
+            const double variance = view.range_rate_variance + quadratic(c.velocity_covariance, m.sight);
+            if (e * e > parameters_.gate_chi2 * variance) return;
+          }
+          enters_[i] = 1;
+          connect(i, n + g, cut);
+        });
+      }
     }
   }
   for (std::size_t i = 0; i < n; ++i) {

@@ -41,6 +41,7 @@ PmbmFilter::PmbmFilter(const Parameters& parameters, const Capacity& capacity)
   by_local_.reserve(group_pool(capacity));
   mixture_.reserve(std::max(capacity.candidates, capacity.rows));
   estimates_.reserve(capacity.objects);
+  likely_.reserve(capacity.objects);
   explained_.reserve(std::max(capacity.measurements, kMaxDetections));
 }
 
@@ -63,7 +64,7 @@ void PmbmFilter::step(Model& model, double elapsed_s) {
   poisson_.end_scan(model);
   std::swap(current_, next_);
   join_parts(model);
-  work_.budget_reached = work_.likelihood_evaluations > parameters_.work_budget;
+  work_.budget_reached = association_.take_was_cut() || work_.likelihood_evaluations > parameters_.work_budget;
   work_.dropped_objects += static_cast<std::uint32_t>(cut);
   report();
 }
@@ -147,7 +148,7 @@ void PmbmFilter::make_rows(Model& model, std::span<const Candidate> candidates) 
         if (cell.n == 0.0) {
           next = {missed_existence(local.existence, p.missed()), 0.0, {}, p.missed_component(local.component)};
         } else {
-          next = {1.0, cell.n, cell.scatter(), p.updated(local.component, cell)};
+          next = {1.0, cell.n, cell.scatter(), p.updated(local.component, cell), cell.mean()};
         }
         index = after_.add_local(next);
         if (index < 0) {
@@ -175,8 +176,9 @@ void PmbmFilter::make_rows(Model& model, std::span<const Candidate> candidates) 
 void PmbmFilter::add_new_object(Model& model, std::size_t row, const Cell<double>& cell, double existence) {
   int column = new_objects_.find(cell.key);
   if (column < 0) {
-    LocalHypothesis local{existence, cell.n, cell.scatter(), {}};
+    LocalHypothesis local{existence, cell.n, cell.scatter(), {}, cell.mean()};
     if (!poisson_.first_detected(model, cell, local.component)) return;
+    local.component.label = next_id_;
     const int index = after_.columns() < after_.stride ? after_.add_local(local) : -1;
     if (index < 0) {
       ++work_.dropped_objects;
@@ -220,8 +222,7 @@ void PmbmFilter::reduce(const Model& model) {
       const std::int16_t l = after_.at(r, c);
       if (l < 0) continue;
       const LocalHypothesis& local = after_.pool[static_cast<std::size_t>(l)];
-      constexpr double kLeast = 1e-12;  // keeps the sum of weights above zero
-      mixture_.push_back({std::exp(after_.log_weights[r]) * local.existence + kLeast, &local.component});
+      mixture_.push_back({std::exp(after_.log_weights[r]) * local.existence, &local.component});
     }
     if (!model.has_births_anywhere() && !mixture_.empty() && existence > parameters_.min_poisson_weight) {
       poisson_.take_back(existence, merge<double>(mixture_));
@@ -250,57 +251,73 @@ void PmbmFilter::store() {
   }
 }
 
-void PmbmFilter::join_parts(const Model& model) {
-  for (std::size_t a = 0; a < current_.size(); ++a) {
-    if (!current_.is_single(a)) continue;
-    LocalHypothesis& first = current_.pool(a)[0];
-    const auto is_likely = [](const LocalHypothesis& l) { return l.existence * l.component.source.object > 0.5; };
-    if (!is_likely(first)) continue;
-    for (std::size_t b = a + 1; b < current_.size() && first.existence > 0.0; ++b) {
-      if (!current_.is_single(b)) continue;
-      LocalHypothesis& second = current_.pool(b)[0];
-      if (!is_likely(second) || !model.are_one(first.component, second.component)) continue;
-      // Both cannot exist as two: what speaks for either speaks for the one that they are parts of.
-      LocalHypothesis joined;
-      joined.existence = std::max(first.existence, second.existence);
-      joined.detections = first.detections + second.detections;
-      joined.scatter = first.scatter + second.scatter;
-      joined.component =
-          join<double>({first.existence, &first.component}, {second.existence, &second.component}, model.spread());
-      current_.rename(a, 0, std::min(current_.ids(a)[0], current_.ids(b)[0]));
-      first = joined;
-      second.existence = 0.0;
+void PmbmFilter::join_parts(Model& model) {
+  constexpr double kLikely = 0.5;
+  likely_.clear();
+  for (std::size_t g = 0; g < current_.size(); ++g) {
+    for (std::size_t c = 0; c < current_.ids(g).size(); ++c) {
+      const ObjectEstimate e = estimate(g, c);
+      if (e.existence > kLikely) likely_.push_back({g, c, e.id, e.component});
     }
   }
+  for (std::size_t a = 0; a < likely_.size(); ++a) {
+    for (std::size_t b = a + 1; b < likely_.size(); ++b) {
+      Likely whole = likely_[a], part = likely_[b];
+      const double part_in_whole = model.log_odds_of_part(*whole.component, *part.component);
+      const double whole_in_part = model.log_odds_of_part(*part.component, *whole.component);
+      if (std::max(part_in_whole, whole_in_part) <= 0.0) continue;
+      if (whole_in_part > part_in_whole) std::swap(whole, part);
+      const std::uint32_t label = std::min(whole.label, part.label);
+      model.join(*whole.component, *part.component, label);
+      // Detections of both add up.
+      const double rate = part.component->rate_shape / part.component->rate_inverse_scale;
+      for (LocalHypothesis& local : current_.pool(whole.group)) {
+        Component<double>& c = local.component;
+        if (c.label != whole.label) continue;
+        c.rate_inverse_scale = c.rate_shape / (c.rate_shape / c.rate_inverse_scale + rate);
+        c.label = label;
+      }
+      current_.rename(whole.group, whole.column, label);
+      current_.erase(part.group, part.column);
+      whole.label = label;
+      likely_[a] = whole;
+      likely_.erase(likely_.begin() + static_cast<std::ptrdiff_t>(b--));
+    }
+  }
+}
+
+ObjectEstimate PmbmFilter::estimate(std::size_t g, std::size_t c) {
+  const auto pool = current_.pool(g);
+  const auto weights = current_.log_weights(g);
+  by_local_.assign(pool.size(), 0.0);
+  ObjectEstimate e;
+  double best = 0.0;
+  for (std::size_t r = 0; r < weights.size(); ++r) {
+    const std::int16_t index = current_.at(g, r, c);
+    if (index < 0) continue;
+    const auto l = static_cast<std::size_t>(index);
+    const double w = std::exp(weights[r]) * pool[l].existence;
+    e.source_existence += w;
+    e.existence += w * pool[l].component.source.object;
+    by_local_[l] += w;
+    if (by_local_[l] <= best) continue;
+    best = by_local_[l];
+    e.component = &pool[l].component;
+    e.detections = pool[l].detections;
+    e.scatter = pool[l].scatter;
+    e.mean_m = pool[l].mean_m;
+  }
+  e.id = current_.ids(g)[c];
+  e.detected = e.detections > 0.0;
+  return e;
 }
 
 void PmbmFilter::report() {
   estimates_.clear();
   for (std::size_t g = 0; g < current_.size(); ++g) {
-    const auto pool = current_.pool(g);
-    const auto weights = current_.log_weights(g);
     for (std::size_t c = 0; c < current_.ids(g).size(); ++c) {
-      by_local_.assign(pool.size(), 0.0);
-      ObjectEstimate e;
-      double best = 0.0;
-      for (std::size_t r = 0; r < weights.size(); ++r) {
-        const std::int16_t index = current_.at(g, r, c);
-        if (index < 0) continue;
-        const auto l = static_cast<std::size_t>(index);
-        const double w = std::exp(weights[r]) * pool[l].existence;
-        e.source_existence += w;
-        e.existence += w * pool[l].component.source.object;
-        by_local_[l] += w;
-        if (by_local_[l] <= best) continue;
-        best = by_local_[l];
-        e.component = &pool[l].component;
-        e.detections = pool[l].detections;
-        e.scatter = pool[l].scatter;
-      }
-      if (e.source_existence < parameters_.report_existence || e.component == nullptr) continue;
-      e.id = current_.ids(g)[c];
-      e.detected = e.detections > 0.0;
-      estimates_.push_back(e);
+      const ObjectEstimate e = estimate(g, c);
+      if (e.component != nullptr && e.source_existence >= parameters_.report_existence) estimates_.push_back(e);
     }
   }
   std::sort(estimates_.begin(), estimates_.end(), [](const ObjectEstimate& a, const ObjectEstimate& b) {

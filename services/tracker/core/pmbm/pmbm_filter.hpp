@@ -37,7 +37,8 @@ class PmbmFilter final : public Filter {
   /// Objects that are the same in all rows leave the group.
   void store();
   /// Objects that lie in each other and move alike are parts of one.
-  void join_parts(const Model& model);
+  void join_parts(Model& model);
+  [[nodiscard]] ObjectEstimate estimate(std::size_t group, std::size_t column);
   void report();
 
   Parameters parameters_;
@@ -57,6 +58,12 @@ class PmbmFilter final : public Filter {
   std::vector<WeightedComponent<double>> mixture_;
   std::vector<ObjectEstimate> estimates_;
   std::vector<double> explained_;
+  struct Likely {
+    std::size_t group, column;
+    std::uint32_t label;
+    const Component<double>* component;
+  };
+  std::vector<Likely> likely_;  // scratch: objects that exist
   FilterWork work_;
   std::uint32_t next_id_ = 1;
 };

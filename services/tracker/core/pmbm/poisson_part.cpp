@@ -10,10 +10,6 @@ namespace boresight::tracking::pmbm {
 namespace {
 
 constexpr double kImpossible = -std::numeric_limits<double>::infinity();
-/// A component e^−8 times as likely as the likeliest changes nothing.
-constexpr double kNegligibleLog = 8.0;
-/// Twice the gate: beyond it a component cannot be the source of a cell.
-constexpr double kFarGates = 2.0;
 
 }  // namespace
 
@@ -34,7 +30,7 @@ void PoissonPart::predict(const Model& model, double elapsed_s) {
   for (const PoissonComponent& birth : births) {
     PoissonComponent sum = birth;
     for (std::size_t i = 0; i < components_.size();) {
-      if (distance(sum.component, components_[i].component) > 2.0 * parameters_.merge_distance) {
+      if (distance(sum.component, components_[i].component) > parameters_.birth_merge_distance) {
         ++i;
         continue;
       }
@@ -89,7 +85,7 @@ void PoissonPart::begin_group(const Model& model, std::span<const Measurement<do
   near_.clear();
   for (std::size_t i = 0; i < predictions_.size(); ++i) {
     const bool is_near = std::any_of(group.begin(), group.end(), [&](const Measurement<double>& z) {
-      return predictions_[i].place_distance(z.position_m) < kFarGates * parameters_.gate_chi2;
+      return predictions_[i].place_distance(z.position_m) < 2.0 * parameters_.gate_chi2;
     });
     if (is_near) near_.push_back(i);
   }
@@ -108,7 +104,7 @@ double PoissonPart::log_likelihood(Model& model, const Cell<double>& cell) {
   };
   const Vector2<double> mean = cell.mean();
   for (const std::size_t i : near_) {
-    if (predictions_[i].place_distance(mean) > kFarGates * parameters_.gate_chi2) continue;
+    if (predictions_[i].place_distance(mean) > 2.0 * parameters_.gate_chi2) continue;
     add(log_weights_[i] + predictions_[i].log_likelihood(cell));
   }
   if (model.has_births_anywhere()) add(model.log_newborn(cell));
@@ -121,7 +117,7 @@ bool PoissonPart::first_detected(Model& model, const Cell<double>& cell, Compone
   const Vector2<double> mean = cell.mean();
   double best = kImpossible;
   for (const std::size_t i : near_) {
-    if (predictions_[i].place_distance(mean) > kFarGates * parameters_.gate_chi2) continue;
+    if (predictions_[i].place_distance(mean) > 2.0 * parameters_.gate_chi2) continue;
     log_detected_.push_back(log_weights_[i] + predictions_[i].log_likelihood(cell));
     detected_.push_back(predictions_[i].updated(components_[i].component, cell));
     best = std::max(best, log_detected_.back());
@@ -134,8 +130,7 @@ bool PoissonPart::first_detected(Model& model, const Cell<double>& cell, Compone
   if (detected_.empty()) return false;
   mixture_.clear();
   for (std::size_t i = 0; i < detected_.size(); ++i) {
-    if (log_detected_[i] > best - kNegligibleLog)
-      mixture_.push_back({std::exp(log_detected_[i] - best), &detected_[i]});
+    mixture_.push_back({std::exp(log_detected_[i] - best), &detected_[i]});
   }
   out = merge<double>(mixture_);
   return true;

@@ -1,4 +1,9 @@
-// The second half of the association: a hard association becomes a candidate with softly shared measurements.
+// The second half of the association: hard associations become candidates, and candidates share their measurements.
+//
+// A candidate stands for all associations that differ from it in shared measurements. By the chain rule, their weight
+// together is p(A) / Π_i P(A_i | A_1 … A_{i−1}), with A_i the cell of measurement i in the hard association A. The
+// search takes the leave-one-out probability for each factor, which is known from hard cells but too large: it is given
+// all others. For the candidates that are left, the factors are the shares, which are given no other for certain.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,11 +13,15 @@
 namespace boresight::tracking::pmbm {
 
 namespace {
-constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 }  // namespace
 
-void Association::keep(const State& s, std::size_t row, double log_weight) {
-  std::uint64_t key = mixed(0xabcdefU + row);
+void Association::keep(const State& s) {
+  const double log_hard = log_row_ + s.score;
+  log_top_ = std::max(log_top_, log_hard);
+  std::uint64_t key = mixed(0xabcdefU + row_);
   for (std::size_t b = 0; b < s.cells.size(); ++b) {
     if (s.cells[b].n == 0.0) continue;
     key += mixed(s.cells[b].key ^ (b < s.objects ? mixed(1000003U * (b + 1)) : 0x5555U));
@@ -24,6 +33,7 @@ void Association::keep(const State& s, std::size_t row, double log_weight) {
                   [key](const Candidate& c) { return c.key == key; })) {
     return;
   }
+  const double log_weight = log_hard + share_hard(s);
   // When full, the least likely makes room.
   std::size_t place = number_of_candidates_;
   if (place == candidates_.size()) {
@@ -31,110 +41,144 @@ void Association::keep(const State& s, std::size_t row, double log_weight) {
         std::min_element(candidates_.begin(), candidates_.end(),
                          [](const Candidate& a, const Candidate& b) { return a.log_weight < b.log_weight; }) -
         candidates_.begin());
-    if (candidates_[place].log_weight >= log_weight + s.score) return;
+    if (candidates_[place].log_weight >= log_weight) return;
   } else {
     ++number_of_candidates_;
   }
   Candidate& c = candidates_[place];
+  static_cast<Cells&>(c) = s;
+  c.log_hard = log_hard;
+  c.log_weight = log_weight;
   c.key = key;
-  c.row = row;
-  c.objects = s.objects;
-  c.labels.assign(s.labels.begin(), s.labels.end());
-  c.cells.assign(s.cells.begin(), s.cells.end());
-  c.log_weight = log_weight + s.score;
-  if (!is_spent()) c.log_weight += soften(s, c.cells);
+  c.row = row_;
 }
 
-/// Each measurement is of each cell by its leave-one-out predictive weight. Returns the log of how much all
-/// associations that differ in single measurements add to the weight of this one.
-double Association::soften(const State& s, std::vector<Cell<double>>& out) {
-  const std::size_t cells = s.cells.size(), n = z_.size(), stride = cells + 1;
-  if (cells == 0 || n == 0) return 0.0;
-  constexpr int kPasses = 3;
-  constexpr double kNegligible = 7.0;  // log
-  constexpr double kShared = 1.001;    // sum of weights relative to the largest
-  constexpr double kAlone = 0.999;     // a cell of less without the measurement is its own only
-  constexpr double kFraction = 1e-9;   // marks a cell as soft, so that its value is not remembered
-  constexpr double kOwn = std::numeric_limits<double>::infinity();
+/// The likeliest first; returns how many of them count.
+std::size_t Association::prune(std::size_t number) {
+  const auto begin = candidates_.begin();
+  std::sort(begin, begin + static_cast<std::ptrdiff_t>(number),
+            [](const Candidate& a, const Candidate& b) { return a.log_weight > b.log_weight; });
+  const double limit = candidates_[0].log_weight + std::log(parameters_.prune_weight);
+  number = std::min(number, capacity_.candidates);
+  while (number > 1 && candidates_[number - 1].log_weight < limit) --number;
+  return number;
+}
+
+/// Shares of one measurement from its gains; returns the log of the sum of exp(gain).
+double Association::normalise_shares(std::size_t z, std::size_t cells) {
+  double* shares = &next_share_[z * (cells + 1)];
+  const double best = *std::max_element(gain_.begin(), gain_.end());
+  double sum = 0.0;
+  for (std::size_t b = 0; b <= cells; ++b) {
+    const double g = std::exp(gain_[b] - best);
+    shares[b] = g < parameters_.min_share ? 0.0 : g;
+    sum += shares[b];
+  }
+  for (std::size_t b = 0; b <= cells; ++b) shares[b] /= sum;
+  return best + std::log(sum);
+}
+
+/// Shares each measurement by leave-one-out predictive weights, the others as in the hard association. Returns the log
+/// of the product of 1 / the shares of the hard association.
+double Association::share_hard(const Cells& hard) {
+  const std::size_t cells = hard.cells.size(), n = z_.size(), stride = cells + 1;
   share_.assign(n * stride, 0.0);
+  next_share_.assign(n * stride, 0.0);
   gain_.assign(stride, 0.0);
   is_shared_.assign(n, 0);
-  soft_.assign(s.cells.begin(), s.cells.end());
-  for (std::size_t i = 0; i < n; ++i) {
-    share_[i * stride + (s.labels[i] < 0 ? cells : static_cast<std::size_t>(s.labels[i]))] = 1.0;
-  }
   double log_added = 0.0;
-  for (int pass = 0; pass < kPasses && !is_spent(); ++pass) {
-    bool any_shared = false;
-    next_share_.assign(share_.begin(), share_.end());
-    for (std::size_t i = 0; i < n; ++i) {
-      if (pass > 0 && is_shared_[i] == 0) continue;
-      const double* has = &share_[i * stride];
-      double best = log_alone_[i];
-      bool is_own = false;
-      gain_[cells] = log_alone_[i];
-      for (std::size_t b = 0; b < cells; ++b) {
-        gain_[b] = kNever;
-        const bool is_label = s.labels[i] == static_cast<std::int16_t>(b);
-        if (!is_label && !is_allowed(s, i, b)) continue;
-        Cell<double> without = soft_[b];
-        if (has[b] > 0.0) {
-          if (pass == 0) {
-            without.remove(z_[i], keys_[i]);
-          } else {
-            without.add(z_[i], -has[b]);
-          }
-        }
-        if (without.n < kAlone) {
-          if (is_label) {
-            gain_[b] = kOwn;
-            is_own = true;
-          }
-          continue;
-        }
-        Cell<double> with = without;
-        if (pass == 0) {
-          with.add(z_[i], keys_[i]);
-        } else {
-          with.add(z_[i], 1.0);
-          with.n += kFraction;
-          without.n += kFraction;
-        }
-        gain_[b] = cell_value(s, b, with) - cell_value(s, b, without);
-        best = std::max(best, gain_[b]);
-      }
-      if (is_own) {
-        for (double& g : gain_) g = g == kOwn ? 0.0 : kNever;
-        best = 0.0;
-      }
-      double sum = 0.0;
-      for (double& g : gain_) {
-        g = g < best - kNegligible ? 0.0 : std::exp(g - best);
-        sum += g;
-      }
-      if (pass == 0) {
-        const double of_label = gain_[s.labels[i] < 0 ? cells : static_cast<std::size_t>(s.labels[i])];
-        if (of_label > 0.0) log_added += std::log(sum / of_label);
-        is_shared_[i] = sum > kShared ? 1 : 0;
-      }
-      any_shared = any_shared || is_shared_[i] != 0;
-      for (std::size_t b = 0; b < stride; ++b) next_share_[i * stride + b] = gain_[b] / sum;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t own = hard.labels[i] < 0 ? cells : static_cast<std::size_t>(hard.labels[i]);
+    if (own < cells && hard.cells[own].n < 2.0) {  // what a cell has alone is not shared: it would be an object less
+      next_share_[i * stride + own] = 1.0;
+      continue;
     }
-    if (!any_shared) break;
-    share_.swap(next_share_);
     for (std::size_t b = 0; b < cells; ++b) {
-      const std::uint64_t key = soft_[b].key;
-      soft_[b] = Cell<double>{};
-      soft_[b].key = key;
-      for (std::size_t i = 0; i < n; ++i) {
-        const double w = share_[i * stride + b];
-        if (w > 0.0) soft_[b].add(z_[i], w);
+      gain_[b] = -kInfinity;
+      if (b != own && (hard.cells[b].n < 1.0 || !is_allowed(hard, i, b))) continue;
+      Cell<double> with = hard.cells[b], without = with;
+      if (b == own) {
+        without.remove(z_[i], keys_[i]);
+      } else {
+        with.add(z_[i], keys_[i]);
       }
+      gain_[b] = cell_value(hard, b, with) - cell_value(hard, b, without);
+    }
+    gain_[cells] = log_alone_[i];
+    log_added += normalise_shares(i, cells) - gain_[own];
+    is_shared_[i] = next_share_[i * stride + own] < 1.0 ? 1 : 0;
+  }
+  return log_added;
+}
+
+/// The same, the others shared.
+void Association::share_again(const Cells& hard) {
+  const std::size_t cells = hard.cells.size(), stride = cells + 1;
+  const auto soft_value = [&](std::size_t b, const Cell<double>& content) {
+    ++*work_;
+    return b < hard.objects ? log_existence_[locals_[b]] + predictions_[locals_[b]].log_likelihood(content)
+                            : std::max(kLeastLog, poisson_->log_likelihood(*model_, content));
+  };
+  soft_values_.assign(cells, kInfinity);  // of soft_, where it was asked for
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    if (is_shared_[i] == 0) continue;
+    const std::size_t own = hard.labels[i] < 0 ? cells : static_cast<std::size_t>(hard.labels[i]);
+    if (own < cells && soft_[own].n - share_[i * stride + own] < 1.0) {
+      std::fill_n(next_share_.begin() + static_cast<std::ptrdiff_t>(i * stride), stride, 0.0);
+      next_share_[i * stride + own] = 1.0;
+      continue;
+    }
+    for (std::size_t b = 0; b < cells; ++b) {
+      gain_[b] = -kInfinity;
+      const double has = share_[i * stride + b];
+      if (b != own && !is_allowed(hard, i, b)) continue;
+      Cell<double> without = soft_[b];
+      without.add(z_[i], -has);
+      if (without.n < 1.0) continue;
+      Cell<double> with = without;
+      with.add(z_[i], 1.0);
+      if (has == 0.0 && soft_values_[b] == kInfinity) soft_values_[b] = soft_value(b, without);
+      gain_[b] = soft_value(b, with) - (has == 0.0 ? soft_values_[b] : soft_value(b, without));
+    }
+    gain_[cells] = log_alone_[i];
+    static_cast<void>(normalise_shares(i, cells));
+  }
+}
+
+void Association::gather_shares() {
+  const std::size_t cells = soft_.size(), stride = cells + 1;
+  share_.swap(next_share_);
+  for (std::size_t b = 0; b < cells; ++b) {
+    soft_[b] = Cell<double>{};
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+      const double w = share_[i * stride + b];
+      if (w > 0.0) soft_[b].add(z_[i], w);
     }
   }
-  constexpr double kLeast = 0.5;  // less than half a measurement is no detection
-  for (std::size_t b = 0; b < cells; ++b) out[b] = s.cells[b].n > 0.0 && soft_[b].n >= kLeast ? soft_[b] : s.cells[b];
-  return log_added;
+  next_share_.assign(share_.begin(), share_.end());
+}
+
+void Association::soften(Candidate& c) {
+  take_row(c.row);
+  static_cast<void>(share_hard(c));
+  if (std::none_of(is_shared_.begin(), is_shared_.end(), [](char is_shared) { return is_shared != 0; })) return;
+  const std::size_t cells = c.cells.size(), stride = cells + 1;
+  soft_.assign(cells, Cell<double>{});
+  gather_shares();
+  for (int pass = 1; pass < parameters_.sharing_passes; ++pass) {
+    share_again(c);
+    gather_shares();
+  }
+  c.log_weight = c.log_hard;
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    const std::size_t own = c.labels[i] < 0 ? cells : static_cast<std::size_t>(c.labels[i]);
+    c.log_weight -= std::log(std::max(parameters_.min_share, share_[i * stride + own]));
+  }
+  for (std::size_t b = 0; b < cells; ++b) {
+    if (c.cells[b].n == 0.0 || soft_[b].n < 0.5) continue;  // less than half a measurement is no detection
+    soft_[b].key = c.cells[b].key;
+    c.cells[b] = soft_[b];
+  }
 }
 
 }  // namespace boresight::tracking::pmbm

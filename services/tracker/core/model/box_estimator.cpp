@@ -1,0 +1,392 @@
+#include "services/tracker/core/model/box_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/LU>
+
+#include "services/common/extended_object/detection_count.hpp"
+#include "services/common/extended_object/range_rate_model.hpp"
+#include "services/common/geometry/frames.hpp"
+
+namespace boresight::tracking {
+
+namespace {
+
+using extended_object::kRoadUserClasses;
+using extended_object::ObjectClassModel;
+
+constexpr double kUnlikely = 1e-3;  // classes below it are not computed
+
+Eigen::Matrix2d rotation(double heading_rad) {
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  Eigen::Matrix2d r;
+  r << c, -s, s, c;
+  return r;
+}
+
+Eigen::Matrix2d eigen(const Symmetric2<double>& s) {
+  Eigen::Matrix2d m;
+  m << s.xx, s.xy, s.xy, s.yy;
+  return m;
+}
+
+Eigen::Vector2d eigen(const Vector2<double>& v) {
+  return {v.x, v.y};
+}
+
+Eigen::Matrix2d squared(const Eigen::Vector2d& v) {
+  return v * v.transpose();
+}
+
+/// log p(n) of the gamma-Poisson distribution.
+double log_count(const extended_object::DetectionCount& model, double mean, double n) {
+  const double k = model.dispersion_shape;
+  return std::lgamma(k + n) - std::lgamma(k) - std::lgamma(n + 1.0) + k * std::log(k / (k + mean)) +
+         n * std::log(mean / (k + mean));
+}
+
+/// log of a normal density without its constant.
+double log_normal(const Eigen::Vector2d& e, const Eigen::Matrix2d& covariance) {
+  return -0.5 * e.dot(covariance.inverse() * e) - 0.5 * std::log(covariance.determinant());
+}
+
+}  // namespace
+
+BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const BoxParameters& parameters)
+    : table_(table), parameters_(parameters) {
+  constexpr double kAfar_m = 1e3;
+  constexpr int kHeadings = 16;
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    AnyHeading& any = any_heading_[k];
+    const auto& size = table_[k].size;
+    std::array<Eigen::Vector2d, kHeadings> middle;
+    for (int i = 0; i < kHeadings; ++i) {
+      // In axes along the line of sight: to the sensor, and across.
+      const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * i / kHeadings);
+      const auto moments = extended_object::reflection_moments(table_[k].places, size.length_mean_m, size.width_mean_m,
+                                                               to_box * Eigen::Vector2d(kAfar_m, 0.0), {}, 1.0);
+      middle[static_cast<std::size_t>(i)] = to_box.transpose() * moments.mean_m;
+      any.depth_m += middle[static_cast<std::size_t>(i)].x() / kHeadings;
+      any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / kHeadings;
+    }
+    for (const Eigen::Vector2d& m : middle) {
+      any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / kHeadings;
+      any.across_m2 += m.y() * m.y() / kHeadings;
+    }
+  }
+}
+
+BoxMemory BoxEstimator::begin() const {
+  BoxMemory m;
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    m.classes[k].length_m = table_[k].size.length_mean_m;
+    m.classes[k].length_variance_m2 = table_[k].size.length_std_m * table_[k].size.length_std_m;
+  }
+  weigh_classes(m);
+  return m;
+}
+
+BoxEstimator::Course BoxEstimator::on_road(const Course& course, double road_rad, double vehicle_probability) const {
+  struct Way {
+    double weight, rad, variance_rad2;
+  };
+  const double std2 = parameters_.parallel_std_rad * parameters_.parallel_std_rad;
+  const double share = vehicle_probability * parameters_.parallel_share, sum = std2 + course.variance_rad2;
+  const auto along = [&](double rad) {
+    const double e = geometry::wrap_angle(course.rad - rad);
+    return Way{share * std::exp(-0.5 * e * e / sum) / std::sqrt(2.0 * std::numbers::pi * sum), rad + std2 / sum * e,
+               std2 * course.variance_rad2 / sum};
+  };
+  const std::array<Way, 3> ways = {
+      along(road_rad), along(road_rad + std::numbers::pi),
+      Way{(1.0 - 2.0 * share) / (2.0 * std::numbers::pi), course.rad, course.variance_rad2}};
+  const Way& best =
+      *std::max_element(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.weight < b.weight; });
+  double weights = 0.0, mean = 0.0, squares = 0.0;
+  for (const Way& w : ways) {
+    const double off = geometry::wrap_angle(w.rad - best.rad);
+    weights += w.weight;
+    mean += w.weight * off;
+    squares += w.weight * (w.variance_rad2 + off * off);
+  }
+  mean /= weights;
+  return {geometry::wrap_angle(best.rad + mean), squares / weights - mean * mean};
+}
+
+void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, double elapsed_s, double road_rad) const {
+  const double speed_mps = std::sqrt(squared_norm(o.velocity_mps));
+  const double time_s = std::max(0.0, elapsed_s);
+  // At rest nothing turns.
+  const double moving = speed_mps / (speed_mps + 1.0);
+  m.heading_variance_rad2 += parameters_.turn_rate_std_radps * parameters_.turn_rate_std_radps * time_s * moving;
+  if (speed_mps <= 0.0) return;
+  const Vector2<double> across{-o.velocity_mps.y / speed_mps, o.velocity_mps.x / speed_mps};
+  const double slip = parameters_.side_slip_mps;
+  const auto vehicle = static_cast<std::size_t>(extended_object::RoadUserClass::kTwoWheeler);
+  double vehicle_probability = 0.0;
+  for (std::size_t k = vehicle; k < kRoadUserClasses; ++k) vehicle_probability += m.probability[k];
+  const auto [course_rad, variance] =
+      on_road({std::atan2(o.velocity_mps.y, o.velocity_mps.x),
+               (quadratic(o.velocity_covariance, across) + slip * slip) / (speed_mps * speed_mps)},
+              road_rad, vehicle_probability);
+  const double change_rad = geometry::wrap_angle(course_rad - m.heading_rad);
+  // Successive courses share their errors: the surer one counts, they are not averaged. The later one knows more, where
+  // they contradict each other.
+  constexpr double kContradiction = 9.0;
+  if (variance < m.heading_variance_rad2 ||
+      change_rad * change_rad > kContradiction * (variance + m.heading_variance_rad2)) {
+    if (std::abs(change_rad) > parameters_.known_heading_rad) m.has_point = false;
+    m.heading_rad = course_rad;
+    m.heading_variance_rad2 = variance;
+  }
+  const Vector2<double> along{o.velocity_mps.x / speed_mps, o.velocity_mps.y / speed_mps};
+  m.largest_speed_mps =
+      std::max(m.largest_speed_mps, speed_mps - 2.0 * std::sqrt(quadratic(o.velocity_covariance, along)));
+}
+
+void BoxEstimator::weigh_classes(BoxMemory& m) const {
+  double best = -1e300, sum = 0.0;
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    const ObjectClassModel& c = table_[k];
+    const double speed = m.largest_speed_mps;
+    // Speeds of a class are normal about zero in each direction, up to the largest; some of its objects are slow.
+    const auto density = [speed](double sigma) {
+      return std::exp(-0.5 * speed * speed / (sigma * sigma)) / (sigma * sigma);
+    };
+    constexpr double kLeast = 1e-30;
+    const double of_speed = std::log(kLeast + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
+                                     c.motion.slow_share * density(c.motion.slow_speed_std_mps));
+    const double over = std::max(0.0, speed - c.motion.largest_speed_mps);
+    m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence;
+    best = std::max(best, m.probability[k]);
+  }
+  for (double& x : m.probability) sum += x = std::exp(x - best);
+  for (double& x : m.probability) x /= sum;
+}
+
+ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& position_m, double speed_mps,
+                              const Viewpoint& from) const {
+  ClassViews views;
+  if (!knows_heading(m)) return views;
+  const Eigen::Matrix2d to_box = rotation(m.heading_rad).transpose();
+  const Eigen::Vector2d sensor = to_box * (eigen(from.sensor_m) - eigen(position_m));
+  const Eigen::Vector2d facing = to_box * Eigen::Vector2d(std::cos(from.facing_rad), std::sin(from.facing_rad));
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    // The tracked point is chosen for all classes at once.
+    if (m.probability[k] < kUnlikely && m.has_point) continue;
+    const ClassBox& box = m.classes[k];
+    const ObjectClassModel& model = table_[k];
+    ClassView& v = views[k];
+    v.probability = m.probability[k];
+    const Eigen::Vector2d sensor_box = sensor + box.point_m;
+    v.reflections = extended_object::reflection_moments(model.places, box.length_m, model.size.width_mean_m, sensor_box,
+                                                        {}, 1.0, {facing, from.half_view_rad, from.view_edge_rad});
+    constexpr double kNearest_m = 0.1;
+    const double range_m = std::max(kNearest_m, sensor_box.norm());
+    v.to_sensor = sensor_box / range_m;
+    v.expected_detections =
+        v.reflections.share_in_view * extended_object::expected_detections(model.count, range_m, v.to_sensor);
+    const auto rates =
+        extended_object::range_rate_mixture(model.micro_doppler, -v.to_sensor, -v.to_sensor.x() * speed_mps, speed_mps);
+    v.wide_share = rates[2].weight;
+    v.range_rate_variance_m2ps2 =
+        (rates[0].weight * rates[0].variance_m2ps2 + rates[1].weight * rates[1].variance_m2ps2) /
+        (rates[0].weight + rates[1].weight);
+    if (!m.has_point) continue;
+    v.offset_m = v.reflections.mean_m - box.point_m;
+    const double depth_std_m = model.places.lasting_std_m;
+    const Eigen::Vector2d turned(-v.offset_m.y(), v.offset_m.x());
+    v.offset_covariance_m2 = box.length_variance_m2 * squared(v.reflections.mean_by_length - box.point_by_length) +
+                             depth_std_m * depth_std_m * squared(v.to_sensor - m.to_sensor) +
+                             m.heading_variance_rad2 * squared(turned);
+  }
+  return views;
+}
+
+double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const ObjectClassModel& model,
+                                 const BoxObservation& scan, const Eigen::Matrix2d& to_local,
+                                 const Eigen::Vector2d& to_sensor_of_point) const {
+  const double n = scan.detections;
+  const Eigen::Matrix2d noise = to_local.transpose() * eigen(scan.noise_m2) * to_local;
+  double log_p = log_count(model.count, v.expected_detections, n) -
+                 std::log(1.0 - extended_object::no_detection_probability(model.count, v.expected_detections));
+  // Place of the middle, (1).
+  const Eigen::Vector2d e = to_local.transpose() * (eigen(scan.mean_m) - eigen(scan.predicted_m)) - v.offset_m;
+  const double common = model.places.common_share;
+  const Eigen::Matrix2d scatter_of_mean = (common + (1.0 - common) / n) * v.reflections.scatter_m2;
+  const Eigen::Matrix2d known =
+      to_local.transpose() * eigen(scan.predicted_covariance_m2) * to_local + v.offset_covariance_m2 + noise / n;
+  log_p += log_normal(e, known + scatter_of_mean);
+  // Length and tracked point are corrected by one innovation, so their errors are correlated from then on: c. The
+  // filter corrects the point by its own gain; Joseph form of both. Places are held from scan to scan.
+  const Eigen::Vector2d g = v.reflections.mean_by_length - box.point_by_length, c = box.tracked_by_length_m2;
+  const double variance = box.length_variance_m2;
+  const Eigen::Matrix2d p = to_local.transpose() * eigen(scan.predicted_covariance_m2) * to_local;
+  const Eigen::Matrix2d of_filter =
+      known + extended_object::held_noise_factor(model.places.scan_correlation) * scatter_of_mean;
+  const Eigen::Matrix2d s = of_filter + c * g.transpose() + g * c.transpose();
+  const Eigen::Vector2d by_length = c + variance * g, gain = s.inverse() * by_length;
+  const Eigen::Matrix2d point_gain = p * of_filter.inverse(), r = of_filter - p - variance * g * g.transpose();
+  box.tracked_by_length_m2 = (Eigen::Matrix2d::Identity() - point_gain) * (c - (p + c * g.transpose()) * gain) -
+                             point_gain * g * (variance - by_length.dot(gain)) + point_gain * r * gain;
+  const double before_m = box.length_m;
+  box.length_m = std::max(0.3 * model.size.length_mean_m, before_m + gain.dot(e));
+  box.point_m += (box.length_m - before_m) * box.point_by_length;
+  // The object's own depth lasts: no number of scans averages it away.
+  const double by_depth =
+      model.places.lasting_std_m * (v.to_sensor - to_sensor_of_point).dot(g) / std::max(1e-9, g.squaredNorm());
+  box.length_variance_m2 = std::min(variance, std::max(variance - by_length.dot(gain), by_depth * by_depth));
+
+  constexpr double kPair = 1.5;
+  if (n > kPair) {
+    const Eigen::Matrix2d scatter = to_local.transpose() * eigen(scan.scatter) * to_local;
+    const Eigen::Matrix2d expected = (1.0 - common) * v.reflections.scatter_m2 + noise;
+    const double dof = n - 1.0;
+    log_p -= 0.5 * (expected.inverse() * scatter).trace() + 0.5 * dof * std::log(expected.determinant());
+  }
+  return log_p;
+}
+
+void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObservation& scan,
+                          const ClassViews& views) const {
+  const bool had_point = m.has_point;
+  follow_course(m, o, scan.elapsed_s, scan.road_rad);
+  // The heading jumped: views and tracked points are in axes of the old one.
+  const bool is_turned = had_point && !m.has_point;
+  if (is_turned) {
+    for (ClassBox& c : m.classes) c.point_m = c.point_by_length = c.tracked_by_length_m2 = Eigen::Vector2d::Zero();
+  }
+  const double keep = std::exp(-std::max(0.0, scan.elapsed_s) / parameters_.forget_s);
+  for (ClassBox& c : m.classes) c.log_evidence *= keep;
+  const bool is_viewed =
+      std::any_of(views.begin(), views.end(), [](const ClassView& v) { return v.probability > 0.0; });
+  if (scan.detections > 0.0 && is_viewed && !is_turned) {
+    if (!m.has_point) {
+      for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+        m.classes[k].point_m = views[k].reflections.mean_m;
+        m.classes[k].point_by_length = views[k].reflections.mean_by_length;
+      }
+      m.to_sensor = views.front().to_sensor;
+      m.has_point = true;
+    } else {
+      const Eigen::Matrix2d to_local = rotation(m.heading_rad);
+      std::array<double, kRoadUserClasses> log_p{};
+      double top = -1e300;
+      for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+        if (views[k].probability <= 0.0) continue;
+        log_p[k] = learn_class(m.classes[k], views[k], table_[k], scan, to_local, m.to_sensor);
+        top = std::max(top, log_p[k]);
+      }
+      // Classes that are not computed keep their distance.
+      for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+        if (views[k].probability > 0.0) m.classes[k].log_evidence += parameters_.evidence_share * (log_p[k] - top);
+      }
+    }
+  }
+  if (scan.detections > 0.0 && !is_viewed && !m.has_point) learn_without_heading(m, scan);
+  weigh_classes(m);
+}
+
+void BoxEstimator::learn_without_heading(BoxMemory& m, const BoxObservation& scan) const {
+  const double n = scan.detections, noise = 0.5 * trace(scan.noise_m2);
+  std::array<double, kRoadUserClasses> log_p{};
+  double top = -1e300;
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    const ObjectClassModel& model = table_[k];
+    // Seen half from the side.
+    const double expected = extended_object::expected_detections(
+        model.count, scan.range_m, Eigen::Vector2d(std::numbers::sqrt2 / 2.0, std::numbers::sqrt2 / 2.0));
+    const double variance = any_heading_[k].scatter_m2 + noise;
+    log_p[k] = log_count(model.count, expected, n) -
+               std::log(1.0 - extended_object::no_detection_probability(model.count, expected)) -
+               0.5 * trace(scan.scatter) / variance - (n - 1.0) * std::log(variance);
+    top = std::max(top, log_p[k]);
+  }
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    m.classes[k].log_evidence += parameters_.evidence_share * (log_p[k] - top);
+  }
+}
+
+double BoxEstimator::inside(const BoxMemory& m, std::size_t k, const Vector2<double>& from_point_m,
+                            const Symmetric2<double>& covariance_m2, const Eigen::Vector2d& margin_m) const {
+  if (!m.has_point) return 0.0;
+  const ClassBox& c = m.classes[k];
+  const Eigen::Matrix2d to_box = rotation(m.heading_rad).transpose();
+  const Eigen::Vector2d from_point = to_box * eigen(from_point_m), at = c.point_m + from_point;
+  const Eigen::Vector2d half = 0.5 * Eigen::Vector2d(c.length_m, table_[k].size.width_mean_m) + margin_m;
+  const Eigen::Vector2d turned(-from_point.y(), from_point.x());
+  const Eigen::Matrix2d p =
+      to_box * eigen(covariance_m2) * to_box.transpose() + m.heading_variance_rad2 * squared(turned);
+  // The farther an end from the tracked point, the more the length that is uncertain moves it.
+  const auto before = [&](double end, double distance_m) {
+    const double by_length = 0.5 * end - c.point_by_length.x();
+    return 0.5 * std::erfc(-distance_m / std::sqrt(2.0 * (p(0, 0) + by_length * by_length * c.length_variance_m2)));
+  };
+  const double sigma = std::sqrt(2.0 * p(1, 1));
+  const double across = 0.5 * (std::erf((half.y() - at.y()) / sigma) + std::erf((half.y() + at.y()) / sigma));
+  return std::max(0.0, across * (before(1.0, half.x() - at.x()) + before(-1.0, half.x() + at.x()) - 1.0));
+}
+
+void BoxEstimator::add_part(BoxMemory& m, const Vector2<double>& from_point_m,
+                            const Symmetric2<double>& covariance_m2) const {
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    ClassBox& c = m.classes[k];
+    constexpr double kLeast = 1e-4;
+    c.log_evidence += std::log(std::max(kLeast, inside(m, k, from_point_m, covariance_m2, {0.0, 0.0})) /
+                               (c.length_m * table_[k].size.width_mean_m));
+  }
+  weigh_classes(m);
+}
+
+Box BoxEstimator::box(const BoxMemory& m, const Component<double>& o, const Vector2<double>& sensor_m) const {
+  Box out;
+  out.heading_rad = m.heading_rad;
+  constexpr double kUniform = std::numbers::pi * std::numbers::pi / 3.0;
+  out.heading_variance_rad2 = std::min(m.heading_variance_rad2, kUniform);
+  const Eigen::Vector2d p = eigen(o.position_m);
+  // From the tracked point to the centre, and its covariance.
+  std::array<Eigen::Vector2d, kRoadUserClasses> way;
+  std::array<Eigen::Matrix2d, kRoadUserClasses> covariance;
+  const Eigen::Matrix2d to_local = rotation(m.heading_rad);
+  const Eigen::Matrix2d from_sight = rotation(std::atan2(sensor_m.y - o.position_m.y, sensor_m.x - o.position_m.x));
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    const ClassBox& c = m.classes[k];
+    if (m.has_point) {
+      const double depth_std_m = table_[k].places.lasting_std_m;
+      way[k] = -(to_local * c.point_m);
+      covariance[k] = to_local *
+                      (c.length_variance_m2 * squared(c.point_by_length) +
+                       depth_std_m * depth_std_m * Eigen::Matrix2d::Identity()) *
+                      to_local.transpose();
+      // A heading that is wrong turns the way.
+      covariance[k] += out.heading_variance_rad2 * squared(Eigen::Vector2d(-way[k].y(), way[k].x()));
+    } else {
+      const AnyHeading& any = any_heading_[k];
+      way[k] = -(from_sight * Eigen::Vector2d(any.depth_m, 0.0));
+      covariance[k] = from_sight * Eigen::Vector2d(any.along_m2, any.across_m2).asDiagonal() * from_sight.transpose();
+    }
+    const double w = m.probability[k];
+    out.centre_m += w * (p + way[k]);
+    out.length_m += w * c.length_m;
+    out.width_m += w * table_[k].size.width_mean_m;
+    out.height_m += w * table_[k].size.height_m;
+  }
+  out.covariance_m2 = eigen(o.position_covariance);
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    const double w = m.probability[k];
+    const ClassBox& c = m.classes[k];
+    const Eigen::Vector2d d = p + way[k] - out.centre_m;
+    const double dl = c.length_m - out.length_m, dw = table_[k].size.width_mean_m - out.width_m;
+    out.covariance_m2 += w * (squared(d) + covariance[k]);
+    out.length_variance_m2 += w * (c.length_variance_m2 + dl * dl);
+    out.width_variance_m2 += w * (table_[k].size.width_std_m * table_[k].size.width_std_m + dw * dw);
+    out.centre_length_covariance_m2 += w * dl * d;
+    // The centre moves with the length that is uncertain.
+    if (m.has_point) out.centre_length_covariance_m2 -= w * c.length_variance_m2 * (to_local * c.point_by_length);
+  }
+  return out;
+}
+
+}  // namespace boresight::tracking

@@ -1,0 +1,48 @@
+// Boxes of the tracked objects by their labels. All hypotheses of an object share one: its class and size are no part
+// of the association.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "services/tracker/core/fixed_table.hpp"
+#include "services/tracker/core/model/box_estimator.hpp"
+#include "services/tracker/core/model/model.hpp"
+
+namespace boresight::tracking {
+
+class ObjectBoxes {
+ public:
+  struct Record {
+    std::uint32_t label = 0;
+    BoxMemory memory;
+    // In the scan, computed for the first hypothesis that is asked for.
+    bool is_seen = false;
+    Vector2<double> predicted_m;
+    Symmetric2<double> predicted_covariance_m2, noise_m2;
+    ClassViews views;
+  };
+
+  ObjectBoxes(const BoxEstimator& estimator, std::size_t max_objects);
+
+  void clear();
+  /// Notes that the object `whole` has a part; what is remembered of it is that of `label` from now on.
+  void join(const Component<double>& whole, const Component<double>& part, std::uint32_t label);
+  void begin_scan(const Viewpoint& viewpoint);
+  [[nodiscard]] const Record* find(std::uint32_t label) const;
+  /// The record of a predicted object with its views; null if nothing is remembered of it.
+  [[nodiscard]] const Record* see(const Component<double>& predicted, const Symmetric2<double>& noise_m2);
+  /// Takes the objects after a scan that came `elapsed_s` after the one before; others are forgotten.
+  void learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad);
+  [[nodiscard]] Box box(const Component<double>& object) const;
+  [[nodiscard]] const BoxEstimator& estimator() const { return estimator_; }
+
+ private:
+  BoxEstimator estimator_;
+  Viewpoint viewpoint_;
+  std::vector<Record> records_, before_;
+  FixedTable index_;  // of records_ by label
+};
+
+}  // namespace boresight::tracking

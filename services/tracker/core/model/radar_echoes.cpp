@@ -1,0 +1,105 @@
+// Detections that tracked objects give beside those of their bodies: side lobes at other azimuths, and range rates of
+// moving parts or off by a Doppler ambiguity in their boxes. They add to the clutter there, so that nothing new starts.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "services/common/extended_object/range_rate_model.hpp"
+#include "services/tracker/core/model/radar_model.hpp"
+
+namespace boresight::tracking {
+
+void RadarModel::add_side_lobes() {
+  // An object gives weaker detections at its own range and range rate at other azimuths: more clutter there.
+  const SourceParameters& s = parameters_.source;
+  constexpr double kNearest_m = 3.0;  // nearer, the ring would be shorter than the object
+  for (const KnownObject& o : objects_) {
+    if (o.existence < s.parent_existence) continue;
+    const Vector2<double> d = o.component.position_m - sensor_m_;
+    const double range_m = std::sqrt(squared_norm(d));
+    if (range_m > radar_->range_max_m || range_m <= 0.0) continue;
+    const Vector2<double> sight = (1.0 / range_m) * d;
+    const double rate_mps = dot(sight, o.component.velocity_mps);
+    const double range_std_m = std::sqrt(s.side_lobe_range_std_m * s.side_lobe_range_std_m +
+                                         parameters_.detection.spread * quadratic(extent(o.component), sight));
+    for (std::size_t i = 0; i < measurements_.size(); ++i) {
+      Measurement<double>& z = measurements_[i];
+      const double a = (places_[i].range_m - range_m) / range_std_m,
+                   b = (z.range_rate_mps - rate_mps) / s.side_lobe_range_rate_std_mps;
+      const double deviation2 = a * a + b * b;
+      if (deviation2 > s.side_lobe_chi2) continue;
+      if (squared_norm(z.position_m - o.component.position_m) <
+          s.side_lobe_least_deviations * s.side_lobe_least_deviations * range_std_m * range_std_m)
+        continue;  // its own
+      const double added = o.existence * s.side_lobes * std::exp(-0.5 * deviation2) /
+                           (2.0 * std::numbers::pi * range_std_m * s.side_lobe_range_rate_std_mps) /
+                           (2.0 * radar_->half_view_rad * std::max(kNearest_m, range_m));
+      const double base = std::exp(z.log_clutter), was = z.side_lobe_share * base;
+      z.on_ring = 1.0;
+      z.log_clutter = std::log(base + added);
+      z.side_lobe_share = (was + added) / (base + added);
+    }
+  }
+}
+
+void RadarModel::add_wide_range_rates() {
+  const SourceParameters& s = parameters_.source;
+  constexpr double kFar_m = 20.0, kUnlikely = 0.01, kLeast = 1e-12;
+  const BoxEstimator& boxes = boxes_.estimator();
+  const double level = radar_->wide_seen / radar_->wide_expected;
+  double seen = 0.0, expected = 0.0;
+  for (const KnownObject& o : objects_) {
+    if (o.existence < s.parent_existence) continue;
+    const Component<double>& c = o.component;
+    const Vector2<double> way = c.position_m - sensor_m_;
+    const double range_m = std::max(1e-3, std::sqrt(squared_norm(way)));
+    const ObjectBoxes::Record* object = boxes_.see(c, noise_at((1.0 / range_m) * way, range_m));
+    if (object == nullptr || !object->memory.has_point) continue;
+    const double cosine = std::cos(object->memory.heading_rad), sine = std::sin(object->memory.heading_rad);
+    const double speed_mps = std::sqrt(squared_norm(c.velocity_mps));
+    for (const ClassView& view : object->views) {
+      expected += o.existence * view.probability * view.expected_detections * (view.wide_share + s.ambiguity_share);
+    }
+    for (std::size_t i = 0; i < measurements_.size(); ++i) {
+      Measurement<double>& z = measurements_[i];
+      const Vector2<double> d = z.position_m - c.position_m;
+      if (squared_norm(d) > kFar_m * kFar_m) continue;
+      const Symmetric2<double> covariance = c.position_covariance + noise_at(z.sight, places_[i].range_m);
+      const double body_mps = dot(z.sight, c.velocity_mps);
+      const Eigen::Vector2d sight_box(cosine * z.sight.x + sine * z.sight.y, cosine * z.sight.y - sine * z.sight.x);
+      double added = 0.0, inside_any = 0.0, body_variance = 0.0;
+      for (std::size_t k = 0; k < object->views.size(); ++k) {
+        const ClassView& view = object->views[k];
+        if (view.probability < kUnlikely) continue;
+        const double inside = boxes.inside(object->memory, k, d, covariance, {0.0, 0.0});
+        if (inside < kUnlikely) continue;
+        const auto rates =
+            extended_object::range_rate_mixture(boxes.table()[k].micro_doppler, sight_box, body_mps, speed_mps);
+        const double deviation = z.range_rate_mps - rates[2].mean_mps;
+        const double of_parts = rates[2].weight * std::exp(-0.5 * deviation * deviation / rates[2].variance_m2ps2) /
+                                std::sqrt(2.0 * std::numbers::pi * rates[2].variance_m2ps2);
+        added += view.probability * view.expected_detections * inside /
+                 (object->memory.classes[k].length_m * boxes.table()[k].size.width_mean_m) *
+                 (of_parts + s.ambiguity_share / s.ambiguity_width_mps);
+        inside_any += view.probability * inside;
+        body_variance += view.probability * view.range_rate_variance_m2ps2;
+      }
+      added *= o.existence * level;
+      if (added < kLeast) continue;
+      // What deviates so much is no detection of the body.
+      constexpr double kDeviates = 3.0;
+      const double variance = body_variance + radar_->range_rate_std_mps * radar_->range_rate_std_mps +
+                              quadratic(c.velocity_covariance, z.sight);
+      const double off_mps = z.range_rate_mps - body_mps;
+      if (off_mps * off_mps > kDeviates * kDeviates * variance) seen += o.existence * inside_any;
+      const double base = std::exp(z.log_clutter);
+      z.side_lobe_share *= base / (base + added);
+      z.wide_share = (z.wide_share * base + added) / (base + added);
+      z.log_clutter = std::log(base + added);
+    }
+  }
+  radar_->wide_seen += seen;
+  radar_->wide_expected += expected;
+}
+
+}  // namespace boresight::tracking

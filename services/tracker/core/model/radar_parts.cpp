@@ -1,0 +1,96 @@
+// Places that objects take, and objects that are parts of one.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "services/tracker/core/model/radar_model.hpp"
+
+namespace boresight::tracking {
+
+namespace {
+
+constexpr double kFar_m = 30.0;  // farther apart, no two places are of one road user
+
+/// log of a normal density.
+double log_density(const Vector2<double>& e, const Symmetric2<double>& covariance) {
+  return -0.5 * quadratic(inverse(covariance), e) - 0.5 * std::log(determinant(covariance)) -
+         std::log(2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+double RadarModel::taken_by(std::uint32_t label, const Vector2<double>& position_m,
+                            const Symmetric2<double>& covariance_m2, double speed_mps,
+                            const Vector2<double>& place_m) const {
+  const BirthParameters& b = parameters_.birth;
+  const Vector2<double> d = place_m - position_m;
+  if (squared_norm(d) > kFar_m * kFar_m) return 0.0;
+  const BoxMemory* object = memory(label);
+  if (object == nullptr || !object->has_point) {
+    const double r2 = squared_norm(d) / (b.person_m * b.person_m);
+    return std::exp(-0.7 * r2 * r2);
+  }
+  double taken = 0.0;
+  const double headway_m = b.headway_s * speed_mps;
+  for (std::size_t k = 0; k < object->probability.size(); ++k) {
+    constexpr double kUnlikely = 0.01;
+    if (object->probability[k] < kUnlikely) continue;
+    const auto within = [&](double along_m) {
+      return boxes_.estimator().inside(*object, k, d, covariance_m2, {along_m, b.gap_across_m});
+    };
+    taken += object->probability[k] *
+             ((1.0 - b.close_share) * within(b.gap_along_m + headway_m) + b.close_share * within(b.gap_along_m));
+  }
+  return taken;
+}
+
+double RadarModel::log_odds_of_part(const Component<double>& whole, const Component<double>& part) {
+  constexpr double kNever = -std::numeric_limits<double>::infinity();
+  const BirthParameters& b = parameters_.birth;
+  const Vector2<double> d = part.position_m - whole.position_m;
+  if (squared_norm(d) > kFar_m * kFar_m) return kNever;
+  const BoxMemory *of_whole = memory(whole.label), *of_part = memory(part.label);
+  if (of_whole == nullptr || of_part == nullptr || !of_whole->has_point || !of_part->has_point) return kNever;
+  const BoxEstimator& boxes = boxes_.estimator();
+  const Symmetric2<double> covariance = whole.position_covariance + part.position_covariance;
+  double one = 0.0, apart = 0.0;
+  const double headway_m = b.headway_s * std::sqrt(squared_norm(whole.velocity_mps));
+  for (std::size_t k = 0; k < of_whole->probability.size(); ++k) {
+    const double p = of_whole->probability[k];
+    constexpr double kUnlikely = 1e-3;
+    if (p < kUnlikely) continue;
+    // Reflections anywhere in the box; two objects do not overlap.
+    const auto& size = boxes.table()[k].size;
+    one +=
+        p * boxes.inside(*of_whole, k, d, covariance, {0.0, 0.0}) / (of_whole->classes[k].length_m * size.width_mean_m);
+    for (std::size_t l = 0; l < of_part->probability.size(); ++l) {
+      const double q = of_part->probability[l];
+      if (q < kUnlikely) continue;
+      const ClassBox& other = of_part->classes[l];
+      const double c = std::cos(of_part->heading_rad), s = std::sin(of_part->heading_rad);
+      const Vector2<double> centre = {d.x - c * other.point_m.x() + s * other.point_m.y(),
+                                      d.y - s * other.point_m.x() - c * other.point_m.y()};
+      const Symmetric2<double> spread = covariance + (other.length_variance_m2 * other.point_by_length.squaredNorm()) *
+                                                         Symmetric2<double>{c * c, c * s, s * s};
+      const auto overlap = [&](double gap_m) {
+        return boxes.inside(*of_whole, k, centre, spread,
+                            {0.5 * other.length_m + gap_m, 0.5 * boxes.table()[l].size.width_mean_m});
+      };
+      apart += p * q * (1.0 - (1.0 - b.close_share) * overlap(headway_m) - b.close_share * overlap(0.0));
+    }
+  }
+  constexpr double kLeastApart = 1e-3;  // boxes are not that sure
+  const Vector2<double> dv = part.velocity_mps - whole.velocity_mps;
+  const Symmetric2<double> cv = whole.velocity_covariance + part.velocity_covariance;
+  const double between = b.neighbour_speed_std_mps * b.neighbour_speed_std_mps;
+  return std::log(one) + log_density(dv, cv) - std::log(std::max(kLeastApart, apart)) -
+         std::log(b.neighbour_density_per_m2) - log_density(dv, cv + Symmetric2<double>{between, 0.0, between}) -
+         std::log(b.part_odds);
+}
+
+void RadarModel::join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) {
+  boxes_.join(whole, part, label);
+}
+
+}  // namespace boresight::tracking

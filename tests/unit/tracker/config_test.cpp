@@ -1,0 +1,150 @@
+// The shipped file: every key, with the default's value.
+#include "services/tracker/config.hpp"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "services/tracker/core/make_tracker.hpp"
+#include "tests/unit/shipped_config.hpp"
+
+namespace boresight::tracking {
+namespace {
+
+const std::filesystem::path kShipped = std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/services/tracker.toml";
+
+std::vector<double> numbers(const Config& config) {
+  const DetectionParameters& d = config.model.detection;
+  const BirthParameters& b = config.model.birth;
+  const ClutterParameters& c = config.model.clutter;
+  const SourceParameters& s = config.model.source;
+  const MotionParameters& k = config.model.motion;
+  const pmbm::Parameters& p = config.pmbm;
+  const pmbm::Capacity& m = config.capacity;
+  std::vector<double> all = {d.detection_probability,
+                             d.view_edge_rad,
+                             d.range_edge_m,
+                             d.stationary_sigma,
+                             d.motion_std_mps,
+                             d.body_range_rate_std_mps,
+                             d.spread,
+                             d.held_factor,
+                             d.count,
+                             d.count_shape,
+                             d.count_range_m,
+                             d.count_power,
+                             d.count_least,
+                             d.count_most,
+                             b.slow.density_per_m2,
+                             b.slow.speed_std_mps,
+                             b.any.density_per_m2,
+                             b.any.speed_std_mps,
+                             b.traffic.density_per_m2,
+                             b.traffic.speed_std_mps,
+                             b.half_length_m,
+                             b.extent_dof,
+                             b.gap_along_m,
+                             b.gap_across_m,
+                             b.headway_s,
+                             b.close_share,
+                             b.person_m,
+                             b.neighbour_density_per_m2,
+                             b.neighbour_speed_std_mps,
+                             b.part_odds,
+                             b.same_speed_chi2,
+                             b.link_distance_m,
+                             b.link_range_rate_mps,
+                             c.memory_s,
+                             c.table_scans,
+                             c.with_ego_factor,
+                             c.origin_weight,
+                             c.origin_limit,
+                             c.origin_memory_s,
+                             s.share,
+                             s.life_s,
+                             s.more,
+                             s.lasting_share,
+                             s.other_radar,
+                             s.side_lobes,
+                             s.parent_existence,
+                             s.side_lobe_range_std_m,
+                             s.side_lobe_range_rate_std_mps,
+                             s.side_lobe_chi2,
+                             s.side_lobe_least_deviations,
+                             s.ambiguity_share,
+                             s.ambiguity_width_mps,
+                             s.side_lobe_birth,
+                             k.acceleration_density,
+                             k.rate_memory_s,
+                             k.rate_min_shape,
+                             k.extent_memory_s,
+                             k.extent_min_dof,
+                             k.extent_min_m2,
+                             config.model.object_life_s,
+                             config.model.longest_gap_s,
+                             config.model.latest_scan_s,
+                             p.gate_chi2,
+                             p.prune_weight,
+                             p.candidate_log,
+                             p.merge_distance,
+                             p.min_existence,
+                             p.min_poisson_weight,
+                             static_cast<double>(p.work_budget),
+                             config.model.box.evidence_share,
+                             config.model.box.forget_s,
+                             config.model.box.side_slip_mps,
+                             config.model.box.turn_rate_std_radps,
+                             config.model.box.parallel_share,
+                             config.model.box.parallel_std_rad,
+                             config.model.box.known_heading_rad,
+                             config.report.confirmed_existence,
+                             config.report.hold_log_odds_per_s,
+                             config.report.least_existence,
+                             config.report.stopped_speed_mps};
+  for (const std::size_t capacity :
+       {m.measurements, m.objects, m.local_hypotheses, m.group_objects, m.group_measurements, m.rows, m.candidates}) {
+    all.push_back(static_cast<double>(capacity));
+  }
+  return all;
+}
+
+Config parsed(const std::string& text) {
+  return read_config(config::Reader::parse(text, "x.toml"));
+}
+
+TEST(TrackerConfig, ShippedFileHasTheDefaults) {
+  const Config read = read_config(config::Reader::open(kShipped));
+  EXPECT_EQ(read.tracker, Config{}.tracker);
+  EXPECT_EQ(numbers(read), numbers(Config{}));
+}
+
+TEST(TrackerConfig, EveryKeyIsReadIntoItsPlace) {
+  const auto read = [](const std::string& text) { return numbers(parsed(text)); };
+  // The largest number of measurements is the shipped one: one more is refused.
+  std::vector<double> expected = numbers(Config{});
+  EXPECT_EQ(test::expect_each_number_is_read(kShipped, read, "capacity"), expected.size() - 7);
+  const Config config = parsed(
+      "[capacity]\nmeasurements = 100\nobjects = 101\nlocal_hypotheses = 102\ngroup_objects = 103\n"
+      "group_measurements = 104\nrows = 5\ncandidates = 106\n");
+  const pmbm::Capacity& c = config.capacity;
+  EXPECT_EQ(std::vector({c.measurements, c.objects, c.local_hypotheses, c.group_objects, c.group_measurements, c.rows,
+                         c.candidates}),
+            (std::vector<std::size_t>{100, 101, 102, 103, 104, 5, 106}));
+}
+
+TEST(TrackerConfig, UnknownTrackerOrKeyIsRefused) {
+  EXPECT_THROW(static_cast<void>(parsed("tracker = \"rules\"")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[life]\nconfirm_hits = 4")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[report]\nconfirmed = 0.5")), config::Error);
+}
+
+TEST(TrackerConfig, EveryNamedTrackerCanBeMadeAndTheFirstIsTheDefault) {
+  EXPECT_EQ(tracker_names().front(), Config{}.tracker);
+  VehicleConfig vehicle;
+  vehicle.radars.emplace_back().id = 1;
+  for (const std::string& name : tracker_names()) EXPECT_NE(make_tracker(name, vehicle, {}), nullptr) << name;
+  EXPECT_THROW(static_cast<void>(make_tracker("rules", vehicle, {})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace boresight::tracking
