@@ -28,9 +28,9 @@ struct Parameters {
 struct Capacity {
   std::size_t measurements = 1024;      ///< of a scan
   std::size_t objects = 384;            ///< tracked, tentative ones included
-  std::size_t local_hypotheses = 4096;  ///< of all objects
+  std::size_t local_hypotheses = 8192;  ///< of all objects
   std::size_t groups = 512;
-  std::size_t group_objects = 64;  ///< a group grows no further: its gates are cut there
+  std::size_t group_objects = 128;  ///< a group grows no further: its gates are cut there
   std::size_t group_measurements = 256;
   std::size_t rows = 16;        ///< global hypotheses of a group
   std::size_t candidates = 48;  ///< associations of a group that become hypotheses; twice as many are collected
