@@ -9,6 +9,11 @@
 
 namespace boresight::tracking {
 
+/// Existence of a Bernoulli component that was not detected, q being the chance of that if it exists: (T9).
+[[nodiscard]] inline double missed_existence(double r, double q) {
+  return r < 1.0 ? r * q / (1.0 - r + r * q) : 1.0;
+}
+
 /// Work and losses of one step.
 struct FilterWork {
   std::uint32_t likelihood_evaluations = 0;

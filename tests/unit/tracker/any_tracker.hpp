@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -55,6 +57,23 @@ class AnyTracker : public testing::TestWithParam<std::string> {
   StepResult step_empty(std::uint32_t radar = 1) {
     scene_.begin(now_, radar);
     return take();
+  }
+  /// Two vehicles, one of which approaches, keep one identity each; they have a second to be confirmed.
+  void expect_two_identities(const Moving& one, const Moving& other, int scans) {
+    std::map<bool, std::set<std::uint32_t>> ids;  // by whether the vehicle approaches
+    for (int i = 0; i < scans; ++i) {
+      scene_.begin(now_);
+      add(one.after(kScan_s * i));
+      add(other.after(kScan_s * i));
+      take();
+      if (i < 20) continue;
+      EXPECT_EQ(list().number_of_confirmed_tracks, 2u) << i;
+      for (std::size_t k = 0; k < list_->number_of_confirmed_tracks; ++k) {
+        ids[list_->tracks[k].velocity_over_ground_mps[0] < 0.0F].insert(list_->tracks[k].tracking_id);
+      }
+    }
+    EXPECT_EQ(ids[false].size(), 1u);
+    EXPECT_EQ(ids[true].size(), 1u);
   }
   StepResult take() {
     const StepResult result = tracker_->step(*scene_.scan);

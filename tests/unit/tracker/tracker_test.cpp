@@ -46,39 +46,11 @@ TEST_P(AnyTracker, ConfirmedTracksComeFirst) {
 }
 
 TEST_P(AnyTracker, VehiclesThatPassEachOtherKeepTheirIdentities) {
-  std::map<bool, std::set<std::uint32_t>> ids;  // by whether the vehicle approaches
-  for (int i = 0; i < 80; ++i) {
-    const double t = kScan_s * i;
-    scene_.begin(now_);
-    add(Moving{{25.0, 0.0}, {12.0, 0.0}}.after(t));
-    add(Moving{{95.0, 3.4}, {-14.0, 0.0}}.after(t));
-    take();
-    if (i < 20) continue;
-    EXPECT_EQ(list().number_of_confirmed_tracks, 2u) << i;
-    for (std::size_t k = 0; k < list_->number_of_confirmed_tracks; ++k) {
-      ids[list_->tracks[k].velocity_over_ground_mps[0] < 0.0F].insert(list_->tracks[k].tracking_id);
-    }
-  }
-  EXPECT_EQ(ids[false].size(), 1u);
-  EXPECT_EQ(ids[true].size(), 1u);
+  expect_two_identities({{25.0, 0.0}, {12.0, 0.0}}, {{95.0, 3.4}, {-14.0, 0.0}}, 80);
 }
 
 TEST_P(AnyTracker, CrossingObjectsKeepTheirIdentities) {
-  std::map<bool, std::set<std::uint32_t>> ids;
-  for (int i = 0; i < 90; ++i) {
-    const double t = kScan_s * i;
-    scene_.begin(now_);
-    add(Moving{{20.0, 12.0}, {8.0, -5.0}}.after(t));
-    add(Moving{{60.0, -3.0}, {-9.0, 0.0}}.after(t));
-    take();
-    if (i < 20) continue;
-    EXPECT_EQ(list().number_of_confirmed_tracks, 2u) << i;
-    for (std::size_t k = 0; k < list_->number_of_confirmed_tracks; ++k) {
-      ids[list_->tracks[k].velocity_over_ground_mps[0] < 0.0F].insert(list_->tracks[k].tracking_id);
-    }
-  }
-  EXPECT_EQ(ids[false].size(), 1u);
-  EXPECT_EQ(ids[true].size(), 1u);
+  expect_two_identities({{20.0, 12.0}, {8.0, -5.0}}, {{60.0, -3.0}, {-9.0, 0.0}}, 90);
 }
 
 TEST_P(AnyTracker, PeopleWhoComeTogetherAndWalkAbreastKeepTheirIdentities) {

@@ -9,6 +9,19 @@
 
 namespace boresight::tracking {
 
+namespace {
+
+/// `share` is that of the kind which is added, of the clutter at the measurement.
+void add_clutter(Measurement<double>& z, double added, double& share) {
+  const double base = std::exp(z.log_clutter), sum = base + added, was = share * base;
+  z.side_lobe_share *= base / sum;
+  z.wide_share *= base / sum;
+  share = (was + added) / sum;
+  z.log_clutter = std::log(sum);
+}
+
+}  // namespace
+
 void RadarModel::add_side_lobes() {
   // An object gives weaker detections at its own range and range rate at other azimuths: more clutter there.
   const SourceParameters& s = parameters_.source;
@@ -34,10 +47,8 @@ void RadarModel::add_side_lobes() {
       const double added = o.existence * s.side_lobes * std::exp(-0.5 * deviation2) /
                            (2.0 * std::numbers::pi * range_std_m * s.side_lobe_range_rate_std_mps) /
                            (2.0 * radar_->half_view_rad * std::max(kNearest_m, range_m));
-      const double base = std::exp(z.log_clutter), was = z.side_lobe_share * base;
       z.on_ring = 1.0;
-      z.log_clutter = std::log(base + added);
-      z.side_lobe_share = (was + added) / (base + added);
+      add_clutter(z, added, z.side_lobe_share);
     }
   }
 }
@@ -92,10 +103,7 @@ void RadarModel::add_wide_range_rates() {
                               quadratic(c.velocity_covariance, z.sight);
       const double off_mps = z.range_rate_mps - body_mps;
       if (off_mps * off_mps > kDeviates * kDeviates * variance) seen += o.existence * inside_any;
-      const double base = std::exp(z.log_clutter);
-      z.side_lobe_share *= base / (base + added);
-      z.wide_share = (z.wide_share * base + added) / (base + added);
-      z.log_clutter = std::log(base + added);
+      add_clutter(z, added, z.wide_share);
     }
   }
   radar_->wide_seen += seen;

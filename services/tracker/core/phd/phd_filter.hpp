@@ -47,6 +47,7 @@ class PhdFilter final : public Filter {
   [[nodiscard]] double cardinality() const;
 
  private:
+  static constexpr std::uint32_t kNew = 0;  ///< identity of a newborn component
   struct Hypothesis {
     std::uint32_t id = 0;
     pmbm::LocalHypothesis local;  ///< `existence` is the weight

@@ -8,11 +8,6 @@ namespace boresight::tracking::pmbm {
 
 namespace {
 
-/// Existence of a Bernoulli that was not detected: r q / (1 − r + r q).
-double missed_existence(double r, double q) {
-  return r * q / (1.0 - r + r * q);
-}
-
 /// Of a table with so many entries.
 std::size_t table_size(std::size_t entries) {
   return std::bit_ceil(2 * entries + 2);
