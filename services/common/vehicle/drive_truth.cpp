@@ -18,6 +18,7 @@ double DriveTruth::speed_scale_seen_by(std::uint32_t radar) const {
 
 DriveTruth read_drive_truth(std::istream& input) {
   constexpr double kRadians = M_PI / 180.0;
+  constexpr double kMostScans = 9007199254740992.0;  // 2^53: a count is exact in a double up to here
   DriveTruth truth;
   for (std::string line; std::getline(input, line);) {
     std::istringstream columns(line);
@@ -34,7 +35,7 @@ DriveTruth read_drive_truth(std::istream& input) {
     if (cells[0] == "alignment_pitch") radar().pitch_rad = value * kRadians;
     if (cells[0] == "alignment_roll") radar().roll_rad = value * kRadians;
     if (cells[0] == "range_rate_scale") radar().range_rate_scale = value;
-    if (cells[0] == "scans" && value >= 0.0) radar().scans = static_cast<std::uint64_t>(value);
+    if (cells[0] == "scans" && value >= 0.0 && value <= kMostScans) radar().scans = static_cast<std::uint64_t>(value);
   }
   return truth;
 }

@@ -211,12 +211,14 @@ TEST(TruthTable, SkipsValuesThatAreMissingOrNoNumbers) {
   std::istringstream table(
       "quantity,radar,value,unit\nspeed_scale,,1.012,1\n"
       "alignment_yaw,2,2.5,deg\nalignment_pitch,2,0.4,deg\nalignment_roll,2,-0.7,deg\nscans,2,899,1\n"
+      "scans,3,3e29,1\n"
       "alignment_yaw,3,nan,deg\nalignment_yaw,4,,deg\nalignment_yaw,1\nalignment_yaw,17,1.0,deg\n"
       "alignment_yaw,1,0.5,deg\n");
   const DriveTruth drive = read_drive_truth(table);
   EXPECT_DOUBLE_EQ(drive.speed_scale, 1.012);
   ASSERT_EQ(drive.radars.size(), 2U);
   EXPECT_EQ(drive.radars.at(2).scans, 899u);
+  EXPECT_FALSE(drive.radars.contains(3)) << "no number of scans";
   EXPECT_NEAR(drive.radars.at(2).yaw_rad, kMisaligned_rad, 1e-12);
   EXPECT_TRUE(std::isnan(drive.radars.at(1).pitch_rad));
 
