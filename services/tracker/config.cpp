@@ -63,6 +63,7 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
   SourceParameters& s = m.source;
   read(root.table("source"), {{"share", &s.share, {0.0, 1.0}},
                               {"life_s", &s.life_s, {0.01, 10.0}},
+                              {"wander_m", &s.wander_m, {0.0, 20.0}},
                               {"more", &s.more, {0.01, 0.99}},
                               {"lasting_share", &s.lasting_share, {0.0, 1.0}},
                               {"other_radar", &s.other_radar, {0.001, 1.0}},
@@ -126,7 +127,10 @@ Config read_config(config::Reader root) {
   read(root.table("box"), {{"evidence_share", &x.evidence_share, {0.0, 1.0}},
                            {"forget_s", &x.forget_s, {0.1, 1e4}},
                            {"side_slip_mps", &x.side_slip_mps, {0.0, 5.0}},
-                           {"turn_rate_std_radps", &x.turn_rate_std_radps, {0.0, 3.0}},
+                           {"lateral_acceleration_mps2", &x.turn.lateral_acceleration_mps2, {0.01, 20.0}},
+                           {"turn_radius_m", &x.turn.radius_m, {0.1, 100.0}},
+                           {"turn_time_s", &x.turn.time_s, {0.0, 10.0}},
+                           {"turn_held_factor", &x.turn.held_factor, {0.0, 1000.0}},
                            {"parallel_share", &x.parallel_share, {0.0, 0.5}},
                            {"parallel_std_rad", &x.parallel_std_rad, {0.001, 3.0}},
                            {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}}});

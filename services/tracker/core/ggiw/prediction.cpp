@@ -16,10 +16,6 @@ constexpr Real kLogTwoPi = Real(1.8378770664093454835607);
 /// Keeps the logarithm of a missed detection finite where the chance of no point underflows.
 template <typename Real>
 constexpr Real kLeastMissed = Real(1e-30);
-/// A likelihood ratio of sources beyond e^20 decides by itself.
-template <typename Real>
-constexpr Real kLogCertain = Real(20);
-
 /// log Γ(a + more) − log Γ(a) for a above 60: Stirling's series.
 template <typename Real>
 Real log_gamma_growth(Real a, Real more) {
@@ -38,11 +34,19 @@ struct RateUpdate {
   Real information_determinant, factor_determinant;
   Symmetric2<Real> covariance;  // (I + CΛ)⁻¹C
   Vector2<Real> correction;     // (I + CΛ)⁻¹C d
+  Real turn_determinant, turn_chi2;
 
-  RateUpdate(const Cell<Real>& cell, const Vector2<Real>& velocity, const Symmetric2<Real>& c, Real variance) {
-    const Real f = Real(1) / variance;
+  RateUpdate(const Cell<Real>& cell, const Vector2<Real>& velocity, const Symmetric2<Real>& c, const View<Real>& view) {
+    const Real f = Real(1) / view.range_rate_variance;
     information = f * cell.sight_squares;
     innovation = f * cell.sight_rate - information * velocity;
+    // An unknown turn rate looks like a velocity w · N(0, 1) in addition.
+    const Vector2<Real> w = view.turn_mps, of_turn = information * w;
+    const Real by_turn = dot(w, innovation);
+    turn_determinant = Real(1) + dot(w, of_turn);
+    turn_chi2 = by_turn * by_turn / turn_determinant;
+    information = information - (Real(1) / turn_determinant) * outer(of_turn);
+    innovation = innovation - (by_turn / turn_determinant) * of_turn;
     information_determinant = std::max(Real(0), determinant(information));
     const Real c_determinant = std::max(Real(0), determinant(c));
     const Real product = c.xx * information.xx + Real(2) * c.xy * information.xy + c.yy * information.yy;
@@ -156,6 +160,17 @@ Real Prediction<Real>::log_source_ratio(Real n) {
 }
 
 template <typename Real>
+Real Prediction<Real>::source_place_ratio(const Cell<Real>& cell) const {
+  const Real wander = view_.source_wander_m2;
+  const Symmetric2<Real> s = places_[0].prior_m2 + (Real(1) / cell.n) * places_[0].scatter_m2;
+  const Symmetric2<Real> wide = s + Symmetric2<Real>{wander, 0, wander};
+  const Vector2<Real> e = cell.mean() - position_m_ - places_[0].offset_m;
+  const Real log_ratio =
+      (std::log(determinant(s) / determinant(wide)) + quadratic(inverse(s), e) - quadratic(inverse(wide), e)) / Real(2);
+  return std::exp(std::min(Real(0), log_ratio));
+}
+
+template <typename Real>
 Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
   return Real(0.5) + Real(0.5) * std::clamp(cell.on_ring / cell.n, Real(0), Real(1));
 }
@@ -163,10 +178,10 @@ Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
 template <typename Real>
 Real Prediction<Real>::log_class_weight(const Cell<Real>& cell) {
   if (source_.object >= Real(1)) return 0;
-  const Real ratio = std::exp(std::min(kLogCertain<Real>, log_source_ratio(cell.n)));
+  const Real at_place = source_place_ratio(cell);
+  const Real ratio = at_place * std::exp(std::min(Real(0), log_source_ratio(cell.n)));
   return std::log(source_.object + source_.side_lobe * on_ring(cell) +
-                  view_.source_seen *
-                      (source_.lasting_source * std::min(Real(1), ratio) + source_.brief_source() * ratio));
+                  view_.source_seen * (source_.lasting_source + source_.brief_source()) * ratio);
 }
 
 template <typename Real>
@@ -205,12 +220,13 @@ Real Prediction<Real>::log_by(const Place& place, const Cell<Real>& cell) {
     const Matrix2<Real> vp = transpose(position_velocity_covariance_);
     const Vector2<Real> velocity = velocity_mps_ + vp * (information * e);
     const Symmetric2<Real> c = velocity_covariance_ - congruent(vp, information);
-    const RateUpdate<Real> rate(cell, velocity, c, view_.range_rate_variance);
+    const RateUpdate<Real> rate(cell, velocity, c, view_);
     const Real chi2 =
         (cell.rate_squares - Real(2) * dot(cell.sight_rate, velocity) + quadratic(cell.sight_squares, velocity)) /
             view_.range_rate_variance -
-        dot(rate.innovation, rate.correction);
-    log_p -= (n * (kLogTwoPi<Real> + std::log(view_.range_rate_variance)) + std::log(rate.factor_determinant) + chi2) /
+        rate.turn_chi2 - dot(rate.innovation, rate.correction);
+    log_p -= (n * (kLogTwoPi<Real> + std::log(view_.range_rate_variance)) +
+              std::log(rate.factor_determinant * rate.turn_determinant) + chi2) /
              Real(2);
   }
   return log_p;
@@ -302,9 +318,9 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
   out.mirror = prior.mirror + of_mirror * (cell.mirror / n - prior.mirror);
 
   if (source_.object < Real(1)) {
-    const Real ratio = view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(n)));
-    const Real lobe = source_.side_lobe * on_ring(cell),
-               lasting = source_.lasting_source * std::min(view_.source_seen, ratio);
+    // That there is exactly one detection speaks for no source: some radars report one of each object.
+    const Real ratio = view_.source_seen * source_place_ratio(cell) * std::exp(std::min(Real(0), log_source_ratio(n)));
+    const Real lobe = source_.side_lobe * on_ring(cell), lasting = source_.lasting_source * ratio;
     const Real sum = source_.object + lobe + lasting + source_.brief_source() * ratio;
     out.source.object = source_.object / sum;
     out.source.side_lobe = lobe / sum;
@@ -314,7 +330,7 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
 
   if (view_.range_rate_variance > 0) {
     const Symmetric2<Real> c = out.velocity_covariance;
-    const RateUpdate<Real> rate(cell, out.velocity_mps, c, view_.range_rate_variance);
+    const RateUpdate<Real> rate(cell, out.velocity_mps, c, view_);
     out.velocity_mps = out.velocity_mps + rate.correction;
     out.velocity_covariance = rate.covariance;
     // Place: x̂ += P_pv y with y = (I + ΛC)⁻¹d, P_pp −= P_pv (I + ΛC)⁻¹Λ P_vp

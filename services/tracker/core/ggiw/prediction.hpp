@@ -32,9 +32,11 @@ struct View {
   Real exposure = 1;               ///< expected number of detections relative to the nominal range
   Symmetric2<Real> noise_m2;       ///< of one position
   Real range_rate_variance = 0;    ///< m²/s²; 0: range rates are not used
+  Vector2<Real> turn_mps;          ///< what an unknown turn rate pretends to be velocity: one standard deviation
   Real spread = Real(0.25);        ///< detections scatter with spread · X
   Real held = 1;                   ///< variance of the mean of detections over several scans, relative to white ones
   Real source_more = Real(0.25);   ///< chance that a source of clutter gives one more detection
+  Real source_wander_m2 = 0;       ///< variance of the place of a source of clutter about its predicted one
   Real source_seen = 1;            ///< chance that a source of clutter is there for this radar, too
   std::array<Reading<Real>, kMaxReadings> readings{};  ///< weights sum to 1
   std::size_t number_of_readings = 1;
@@ -89,6 +91,9 @@ class Prediction {
   /// log p(n | object).
   [[nodiscard]] Real log_count(Real n);
   [[nodiscard]] Real log_class_weight(const Cell<Real>& cell);
+  /// How much likelier the cell's place is of a source of clutter, which wanders about what motion predicts, than of an
+  /// object; at most 1, since an object that is elsewhere may have turned.
+  [[nodiscard]] Real source_place_ratio(const Cell<Real>& cell) const;
   [[nodiscard]] Real on_ring(const Cell<Real>& cell) const;
 
   /// One measurement as expected by one reading of what the object is.

@@ -40,11 +40,16 @@ Eigen::Matrix2d squared(const Eigen::Vector2d& v) {
   return v * v.transpose();
 }
 
-/// log p(n) of the gamma-Poisson distribution.
-double log_count(const extended_object::DetectionCount& model, double mean, double n) {
+/// log of the probability of all counts of an object whose own level is gamma distributed, without terms that all
+/// classes share: its level lasts, so that counts alone never make sure of a class.
+double log_counts(const extended_object::DetectionCount& model, double n, double expected, double log_expected) {
   const double k = model.dispersion_shape;
-  return std::lgamma(k + n) - std::lgamma(k) - std::lgamma(n + 1.0) + k * std::log(k / (k + mean)) +
-         n * std::log(mean / (k + mean));
+  return std::lgamma(k + n) - std::lgamma(k) + k * std::log(k) - (k + n) * std::log(k + expected) + log_expected;
+}
+
+/// log of the density of a scatter of n detections about their mean, without its constant.
+double log_scatter(const Eigen::Matrix2d& scatter, const Eigen::Matrix2d& covariance, double n) {
+  return -0.5 * (covariance.inverse() * scatter).trace() - 0.5 * (n - 1.0) * std::log(covariance.determinant());
 }
 
 /// log of a normal density without its constant.
@@ -118,19 +123,18 @@ BoxEstimator::Course BoxEstimator::on_road(const Course& course, double road_rad
 void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, double elapsed_s, double road_rad) const {
   const double speed_mps = std::sqrt(squared_norm(o.velocity_mps));
   const double time_s = std::max(0.0, elapsed_s);
-  // At rest nothing turns.
-  const double moving = speed_mps / (speed_mps + 1.0);
-  m.heading_variance_rad2 += parameters_.turn_rate_std_radps * parameters_.turn_rate_std_radps * time_s * moving;
+  const double turn_radps = turn_rate_std_radps(parameters_.turn, speed_mps * speed_mps);
+  m.heading_variance_rad2 += 2.0 * turn_radps * turn_radps * parameters_.turn.time_s * time_s;
   if (speed_mps <= 0.0) return;
   const Vector2<double> across{-o.velocity_mps.y / speed_mps, o.velocity_mps.x / speed_mps};
   const double slip = parameters_.side_slip_mps;
   const auto vehicle = static_cast<std::size_t>(extended_object::RoadUserClass::kTwoWheeler);
   double vehicle_probability = 0.0;
   for (std::size_t k = vehicle; k < kRoadUserClasses; ++k) vehicle_probability += m.probability[k];
-  const auto [course_rad, variance] =
-      on_road({std::atan2(o.velocity_mps.y, o.velocity_mps.x),
-               (quadratic(o.velocity_covariance, across) + slip * slip) / (speed_mps * speed_mps)},
-              road_rad, vehicle_probability);
+  // What the road says of the heading counts once, for the first course.
+  const Course course{std::atan2(o.velocity_mps.y, o.velocity_mps.x),
+                      (quadratic(o.velocity_covariance, across) + slip * slip) / (speed_mps * speed_mps)};
+  const auto [course_rad, variance] = knows_heading(m) ? course : on_road(course, road_rad, vehicle_probability);
   const double change_rad = geometry::wrap_angle(course_rad - m.heading_rad);
   // Successive courses share their errors: the surer one counts, they are not averaged. The later one knows more, where
   // they contradict each other.
@@ -159,11 +163,34 @@ void BoxEstimator::weigh_classes(BoxMemory& m) const {
     const double of_speed = std::log(kLeast + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
                                      c.motion.slow_share * density(c.motion.slow_speed_std_mps));
     const double over = std::max(0.0, speed - c.motion.largest_speed_mps);
-    m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence;
+    m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence +
+                       log_counts(c.count, m.detections, m.classes[k].expected, m.classes[k].log_expected);
     best = std::max(best, m.probability[k]);
   }
   for (double& x : m.probability) sum += x = std::exp(x - best);
   for (double& x : m.probability) x /= sum;
+}
+
+void BoxEstimator::count(BoxMemory& m, double n, const std::array<double, kRoadUserClasses>& expected) const {
+  const double share = parameters_.evidence_share;
+  m.detections += share * n;
+  const auto likeliest = static_cast<std::size_t>(
+      std::distance(m.probability.begin(), std::max_element(m.probability.begin(), m.probability.end())));
+  std::array<double, kRoadUserClasses> seen{};
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    // There are detections: scans without any may be those where the object was hidden.
+    constexpr double kLeast = 1e-6;
+    const double m_k = std::max(kLeast, expected[k]);
+    seen[k] = m_k / (1.0 - extended_object::no_detection_probability(table_[k].count, m_k));
+  }
+  const double usual = m.classes[likeliest].expected, now = seen[likeliest];
+  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    ClassBox& c = m.classes[k];
+    // Classes that are not computed keep their ratio.
+    const double mean = expected[k] > 0.0 || usual <= 0.0 ? seen[k] : now * c.expected / usual;
+    c.log_expected += share * n * std::log(mean);
+    c.expected += share * mean;
+  }
 }
 
 ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& position_m, double speed_mps,
@@ -210,8 +237,7 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
                                  const Eigen::Vector2d& to_sensor_of_point) const {
   const double n = scan.detections;
   const Eigen::Matrix2d noise = to_local.transpose() * eigen(scan.noise_m2) * to_local;
-  double log_p = log_count(model.count, v.expected_detections, n) -
-                 std::log(1.0 - extended_object::no_detection_probability(model.count, v.expected_detections));
+  double log_p = 0.0;
   // Place of the middle, (1).
   const Eigen::Vector2d e = to_local.transpose() * (eigen(scan.mean_m) - eigen(scan.predicted_m)) - v.offset_m;
   const double common = model.places.common_share;
@@ -242,9 +268,15 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
   constexpr double kPair = 1.5;
   if (n > kPair) {
     const Eigen::Matrix2d scatter = to_local.transpose() * eigen(scan.scatter) * to_local;
-    const Eigen::Matrix2d expected = (1.0 - common) * v.reflections.scatter_m2 + noise;
-    const double dof = n - 1.0;
-    log_p -= 0.5 * (expected.inverse() * scatter).trace() + 0.5 * dof * std::log(expected.determinant());
+    // From all over the object, or from one third of its length.
+    const Eigen::Matrix2d whole = v.reflections.scatter_m2 + noise;
+    Eigen::Matrix2d spot = v.reflections.scatter_m2;
+    spot.col(0) /= 3.0;
+    spot.row(0) /= 3.0;
+    spot += noise;
+    const double of_whole = log_scatter(scatter, whole, n), of_spot = log_scatter(scatter, spot, n);
+    const double top = std::max(of_whole, of_spot);
+    log_p += top + std::log((1.0 - common) * std::exp(of_whole - top) + common * std::exp(of_spot - top));
   }
   return log_p;
 }
@@ -259,7 +291,12 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
     for (ClassBox& c : m.classes) c.point_m = c.point_by_length = c.tracked_by_length_m2 = Eigen::Vector2d::Zero();
   }
   const double keep = std::exp(-std::max(0.0, scan.elapsed_s) / parameters_.forget_s);
-  for (ClassBox& c : m.classes) c.log_evidence *= keep;
+  m.detections *= keep;
+  for (ClassBox& c : m.classes) {
+    c.log_evidence *= keep;
+    c.expected *= keep;
+    c.log_expected *= keep;
+  }
   const bool is_viewed =
       std::any_of(views.begin(), views.end(), [](const ClassView& v) { return v.probability > 0.0; });
   if (scan.detections > 0.0 && is_viewed && !is_turned) {
@@ -272,13 +309,15 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
       m.has_point = true;
     } else {
       const Eigen::Matrix2d to_local = rotation(m.heading_rad);
-      std::array<double, kRoadUserClasses> log_p{};
+      std::array<double, kRoadUserClasses> log_p{}, counts{};
       double top = -1e300;
       for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
         if (views[k].probability <= 0.0) continue;
+        counts[k] = views[k].expected_detections;
         log_p[k] = learn_class(m.classes[k], views[k], table_[k], scan, to_local, m.to_sensor);
         top = std::max(top, log_p[k]);
       }
+      count(m, scan.detections, counts);
       // Classes that are not computed keep their distance.
       for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
         if (views[k].probability > 0.0) m.classes[k].log_evidence += parameters_.evidence_share * (log_p[k] - top);
@@ -291,7 +330,7 @@ void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObs
 
 void BoxEstimator::learn_without_heading(BoxMemory& m, const BoxObservation& scan) const {
   const double n = scan.detections, noise = 0.5 * trace(scan.noise_m2);
-  std::array<double, kRoadUserClasses> log_p{};
+  std::array<double, kRoadUserClasses> log_p{}, counts{};
   double top = -1e300;
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     const ObjectClassModel& model = table_[k];
@@ -299,11 +338,11 @@ void BoxEstimator::learn_without_heading(BoxMemory& m, const BoxObservation& sca
     const double expected = extended_object::expected_detections(
         model.count, scan.range_m, Eigen::Vector2d(std::numbers::sqrt2 / 2.0, std::numbers::sqrt2 / 2.0));
     const double variance = any_heading_[k].scatter_m2 + noise;
-    log_p[k] = log_count(model.count, expected, n) -
-               std::log(1.0 - extended_object::no_detection_probability(model.count, expected)) -
-               0.5 * trace(scan.scatter) / variance - (n - 1.0) * std::log(variance);
+    counts[k] = expected;
+    log_p[k] = -0.5 * trace(scan.scatter) / variance - (n - 1.0) * std::log(variance);
     top = std::max(top, log_p[k]);
   }
+  count(m, n, counts);
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     m.classes[k].log_evidence += parameters_.evidence_share * (log_p[k] - top);
   }

@@ -22,17 +22,18 @@
 #include "services/common/extended_object/object_classes.hpp"
 #include "services/common/extended_object/reflection_model.hpp"
 #include "services/tracker/core/ggiw/component.hpp"
+#include "services/tracker/core/model/turning.hpp"
 
 namespace boresight::tracking {
 
 struct BoxParameters {
-  double evidence_share = 0.2;        ///< of a scan's log likelihood of a class: scans are not independent
-  double forget_s = 20.0;             ///< of the evidence for classes
-  double side_slip_mps = 0.15;        ///< between heading and course
-  double turn_rate_std_radps = 0.15;  ///< change of heading of a moving object
-  double parallel_share = 0.35;       ///< of vehicles that drive as the own one does, and as many against it
-  double parallel_std_rad = 0.15;     ///< of their headings about that
-  double known_heading_rad = 0.35;    ///< deviation from which on the heading places the box
+  double evidence_share = 0.2;      ///< of a scan's log likelihood of a class: scans are not independent
+  double forget_s = 20.0;           ///< of the evidence for classes
+  double side_slip_mps = 0.15;      ///< between heading and course
+  TurnParameters turn;              ///< change of heading of a moving object
+  double parallel_share = 0.35;     ///< of vehicles that drive as the own one does, and as many against it
+  double parallel_std_rad = 0.15;   ///< of their headings about that
+  double known_heading_rad = 0.35;  ///< deviation from which on the heading places the box
 };
 
 /// A radar, in local axes.
@@ -69,6 +70,7 @@ struct BoxObservation {
 
 struct ClassBox {
   double log_evidence = 0.0;
+  double expected = 0.0, log_expected = 0.0;  ///< Σ m and Σ n log m over scans with n detections, m expected
   double length_m = 0.0, length_variance_m2 = 0.0;
   Eigen::Vector2d tracked_by_length_m2{0.0, 0.0};  ///< covariance of the tracked point and the length, box axes
   Eigen::Vector2d point_m{0.0, 0.0};               ///< ρ, box axes
@@ -81,6 +83,7 @@ struct BoxMemory {
   std::array<double, extended_object::kRoadUserClasses> probability{};
   double heading_rad = 0.0, heading_variance_rad2 = 1e3;
   double largest_speed_mps = 0.0;       ///< of which it is sure
+  double detections = 0.0;              ///< Σ n, as in ClassBox
   bool has_point = false;               ///< ρ is known
   Eigen::Vector2d to_sensor{0.0, 0.0};  ///< u_ρ, box axes
 };
@@ -126,6 +129,8 @@ class BoxEstimator {
   /// Evidence for classes from number and spread of the detections, the heading unknown.
   void learn_without_heading(BoxMemory& memory, const BoxObservation& scan) const;
   void weigh_classes(BoxMemory& memory) const;
+  /// Notes n detections where each class expects some; 0: not computed.
+  void count(BoxMemory& memory, double n, const std::array<double, extended_object::kRoadUserClasses>& expected) const;
   /// log p(scan | class), and what the scan tells about the class's length.
   double learn_class(ClassBox& box, const ClassView& view, const extended_object::ObjectClassModel& model,
                      const BoxObservation& scan, const Eigen::Matrix2d& to_local,

@@ -44,6 +44,7 @@ void RadarModel::begin_group(std::span<const Measurement<double>> group, std::sp
     const double variance = kinds[k].speed_std_mps * kinds[k].speed_std_mps;
     c.velocity_covariance = {variance, 0.0, variance};
     if (kinds[k].with_traffic) c.velocity_mps = sensor_velocity_mps_;
+    v.turn_mps = turn_at(sight_m, c);
     c.extent_dof = b.extent_dof;
     const double scale = (b.extent_dof - 6.0) * b.half_length_m * b.half_length_m;
     c.extent_scale = {scale, 0.0, scale};

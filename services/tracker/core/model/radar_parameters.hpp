@@ -59,6 +59,7 @@ struct ClutterParameters {
 struct SourceParameters {
   double share = 0.15;                        ///< of clutter that comes from sources that last
   double life_s = 0.3;                        ///< of such a source
+  double wander_m = 0.3;                      ///< of its place about that which its motion predicts
   double more = 0.25;                         ///< chance of one more detection of it in a scan
   double lasting_share = 0.05;                ///< of these sources that last as long as objects
   double other_radar = 0.3;                   ///< chance that another radar detects the source, too

@@ -59,6 +59,13 @@ double RadarModel::seems_moving(const Vector2<double>& sight, const Component<do
   return normal_cdf((rate_mps - limit_mps) / rate_std) + normal_cdf((-rate_mps - limit_mps) / rate_std);
 }
 
+Vector2<double> RadarModel::turn_at(const Vector2<double>& from_sensor_m, const Component<double>& c) const {
+  const TurnParameters& turn = parameters_.box.turn;
+  const double rate_radps = std::sqrt(turn.held_factor) *
+                            turn_rate_std_radps(turn, squared_norm(c.velocity_mps) + trace(c.velocity_covariance));
+  return {-rate_radps * from_sensor_m.y, rate_radps * from_sensor_m.x};
+}
+
 View<double> RadarModel::view(const Component<double>& c) const {
   View<double> v;
   if (radar_ == nullptr) return v;
@@ -70,9 +77,11 @@ View<double> RadarModel::view(const Component<double>& c) const {
   v.spread = p.spread;
   v.held = p.held_factor;
   v.source_more = parameters_.source.more;
+  v.source_wander_m2 = parameters_.source.wander_m * parameters_.source.wander_m;
   v.source_seen = c.source.radar >= 0 && c.source.radar != radar_index_ ? parameters_.source.other_radar : 1.0;
   v.range_rate_variance =
       radar_->range_rate_std_mps * radar_->range_rate_std_mps + p.body_range_rate_std_mps * p.body_range_rate_std_mps;
+  v.turn_mps = turn_at(to_point, c);
   const double share = read_box(c, v);
   v.detection_probability = p.detection_probability;
   if (share >= 0.0) {
