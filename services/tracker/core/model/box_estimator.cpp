@@ -66,7 +66,7 @@ BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const
       // In axes along the line of sight: to the sensor, and across.
       const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * i / kHeadings);
       const auto moments = extended_object::reflection_moments(table_[k].places, size.length_mean_m, size.width_mean_m,
-                                                               to_box * Eigen::Vector2d(kAfar_m, 0.0), {}, 1.0);
+                                                               to_box * Eigen::Vector2d(kAfar_m, 0.0));
       middle[static_cast<std::size_t>(i)] = to_box.transpose() * moments.mean_m;
       any.depth_m += middle[static_cast<std::size_t>(i)].x() / kHeadings;
       any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / kHeadings;
@@ -182,7 +182,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
     v.probability = m.probability[k];
     const Eigen::Vector2d sensor_box = sensor + box.point_m;
     v.reflections = extended_object::reflection_moments(model.places, box.length_m, model.size.width_mean_m, sensor_box,
-                                                        {}, 1.0, {facing, from.half_view_rad, from.view_edge_rad});
+                                                        {facing, from.half_view_rad, from.view_edge_rad});
     constexpr double kNearest_m = 0.1;
     const double range_m = std::max(kNearest_m, sensor_box.norm());
     v.to_sensor = sensor_box / range_m;
