@@ -30,12 +30,13 @@ double smooth_step(double x, double radius) {
 /// Projected length of a face, equation (2). `before_m`: of the sensor before its plane; `along_m`: beside its middle.
 double projected_length_m(double face_m, double before_m, double along_m, double radius_m) {
   const double height_m = rounded_positive(before_m, radius_m);
-  return face_m * height_m / (std::hypot(height_m, along_m) + kLeastLength_m);
+  return face_m * height_m / (Eigen::Vector2d(height_m, along_m).norm() + kLeastLength_m);
 }
 
 /// c of equation (3) along an axis of the box.
 double mean_cosine(double along_m, double across_m, double half_m) {
-  const double ends_m = std::hypot(along_m + half_m, across_m) + std::hypot(along_m - half_m, across_m);
+  const double ends_m =
+      Eigen::Vector2d(along_m + half_m, across_m).norm() + Eigen::Vector2d(along_m - half_m, across_m).norm();
   return 2.0 * along_m / (ends_m + kLeastLength_m);
 }
 
