@@ -99,12 +99,13 @@ void Group::merge_similar_rows(double merge_distance) {
         ++different;
         if (a < 0 || b < 0) {
           ++existing;
+          alike = different == 1;
           continue;
         }
-        alike = distance(pool[static_cast<std::size_t>(a)].component, pool[static_cast<std::size_t>(b)].component) <
-                merge_distance;
+        alike = existing == 0 && distance(pool[static_cast<std::size_t>(a)].component,
+                                          pool[static_cast<std::size_t>(b)].component, merge_distance) < merge_distance;
       }
-      if (!alike || (existing > 0 && different > 1) || pool.size() + different > pool.capacity()) {
+      if (!alike || pool.size() + different > pool.capacity()) {
         ++j;
         continue;
       }
