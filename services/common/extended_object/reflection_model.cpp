@@ -118,9 +118,9 @@ ReflectionMixture reflection_mixture(const ReflectionPlaces& places, double leng
 SeenMixture seen_in(const ReflectionMixture& mixture, const Eigen::Vector2d& sensor_box_m, const ViewSector& sector) {
   SeenMixture seen{mixture, 1.0};
   if (sector.half_angle_rad >= M_PI) return seen;
-  // Where nothing is in view the moments are those of the part nearest to the edge. Eight deviations from the edge a
-  // part is in view or not, to rounding.
-  constexpr double kLeastShare = 1e-9, kSureDeviations = 8.0;
+  // Where nothing is in view the moments are those of the part nearest to the edge. Seven deviations from the edge a
+  // part is in view or not by 1e-12.
+  constexpr double kLeastShare = 1e-9, kSureDeviations = 7.0;
   seen.share = 0.0;
   for (ReflectionComponent& c : seen.mixture) {
     const Eigen::Vector2d way = c.mean_m - sensor_box_m;

@@ -74,7 +74,9 @@ double Association::normalise_shares(std::size_t z, std::size_t cells) {
     shares[b] = g < parameters_.min_share ? 0.0 : g;
     sum += shares[b];
   }
-  for (std::size_t b = 0; b <= cells; ++b) shares[b] /= sum;
+  for (std::size_t b = 0; b <= cells; ++b) {
+    if (shares[b] > 0.0) shares[b] /= sum;
+  }
   return best + std::log(sum);
 }
 
