@@ -30,12 +30,13 @@ double smooth_step(double x, double radius) {
 /// Projected length of a face, equation (2). `before_m`: of the sensor before its plane; `along_m`: beside its middle.
 double projected_length_m(double face_m, double before_m, double along_m, double radius_m) {
   const double height_m = rounded_positive(before_m, radius_m);
-  return face_m * height_m / (std::hypot(height_m, along_m) + kLeastLength_m);
+  return face_m * height_m / (Eigen::Vector2d(height_m, along_m).norm() + kLeastLength_m);
 }
 
 /// c of equation (3) along an axis of the box.
 double mean_cosine(double along_m, double across_m, double half_m) {
-  const double ends_m = std::hypot(along_m + half_m, across_m) + std::hypot(along_m - half_m, across_m);
+  const double ends_m =
+      Eigen::Vector2d(along_m + half_m, across_m).norm() + Eigen::Vector2d(along_m - half_m, across_m).norm();
   return 2.0 * along_m / (ends_m + kLeastLength_m);
 }
 
@@ -54,19 +55,20 @@ PartWeights part_weights(const ReflectionPlaces& places, const Eigen::Vector2d& 
   return {faces * end, faces * side, 1.0 - faces * (end + side)};
 }
 
-struct MeanCovariance {
-  Eigen::Vector2d mean;
-  Eigen::Matrix2d covariance;
-};
-MeanCovariance moments_of(const SeenMixture& seen) {
-  MeanCovariance m{Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
-  for (const ReflectionComponent& c : seen.mixture) m.mean += c.weight / seen.share * c.mean_m;
+Eigen::Vector2d mean_of(const SeenMixture& seen) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const ReflectionComponent& c : seen.mixture) mean += c.weight / seen.share * c.mean_m;
+  return mean;
+}
+
+Eigen::Matrix2d covariance_of(const SeenMixture& seen, const Eigen::Vector2d& mean_m) {
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   for (const ReflectionComponent& c : seen.mixture) {
-    const Eigen::Vector2d off = c.mean_m - m.mean;
-    m.covariance += c.weight / seen.share * off * off.transpose();
-    m.covariance.diagonal() += c.weight / seen.share * c.variance_m2;
+    const Eigen::Vector2d off = c.mean_m - mean_m;
+    covariance += c.weight / seen.share * off * off.transpose();
+    covariance.diagonal() += c.weight / seen.share * c.variance_m2;
   }
-  return m;
+  return covariance;
 }
 
 double normal_density(const Eigen::Vector2d& offset, const Eigen::Matrix2d& covariance) {
@@ -116,17 +118,25 @@ ReflectionMixture reflection_mixture(const ReflectionPlaces& places, double leng
 SeenMixture seen_in(const ReflectionMixture& mixture, const Eigen::Vector2d& sensor_box_m, const ViewSector& sector) {
   SeenMixture seen{mixture, 1.0};
   if (sector.half_angle_rad >= M_PI) return seen;
-  // Where nothing is in view the moments are those of the part nearest to the edge.
-  constexpr double kLeastShare = 1e-9;
+  // Where nothing is in view the moments are those of the part nearest to the edge. Seven deviations from the edge a
+  // part is in view or not by 1e-12.
+  constexpr double kLeastShare = 1e-9, kSureDeviations = 7.0;
   seen.share = 0.0;
   for (ReflectionComponent& c : seen.mixture) {
     const Eigen::Vector2d way = c.mean_m - sensor_box_m;
     const double range2 = std::max(way.squaredNorm(), kLeastLength_m);
-    const double angle = std::atan2(sector.facing.x() * way.y() - sector.facing.y() * way.x(), sector.facing.dot(way));
     const double across = (c.variance_m2.x() * way.y() * way.y() + c.variance_m2.y() * way.x() * way.x()) / range2;
     const double std_rad = std::sqrt(sector.edge_rad * sector.edge_rad + across / range2);
-    const double inside = 0.5 * std::erfc((std::abs(angle) - sector.half_angle_rad) / (M_SQRT2 * std_rad));
-    c.weight *= std::max(kLeastShare, inside);
+    const double ahead = sector.facing.dot(way),
+                 aside = std::abs(sector.facing.x() * way.y() - sector.facing.y() * way.x());
+    // Most parts are clear of the edge by bounds of their angle: its tangent ahead, a right angle and its sine behind.
+    const double sure_rad = kSureDeviations * std_rad;
+    if (ahead < 0.0 && 0.5 * M_PI - ahead / std::sqrt(range2) >= sector.half_angle_rad + sure_rad) {
+      c.weight *= kLeastShare;
+    } else if (ahead <= 0.0 || aside > ahead * (sector.half_angle_rad - sure_rad)) {
+      const double beyond_rad = std::atan2(aside, ahead) - sector.half_angle_rad;
+      c.weight *= std::max(kLeastShare, 0.5 * std::erfc(beyond_rad / (M_SQRT2 * std_rad)));
+    }
     seen.share += c.weight;
   }
   return seen;
@@ -144,30 +154,18 @@ double position_density(const ReflectionMixture& mixture, const Eigen::Vector2d&
 }
 
 ReflectionMoments reflection_moments(const ReflectionPlaces& places, double length_m, double width_m,
-                                     const Eigen::Vector2d& sensor_box_m, const SizeStd& size_std, double detections,
-                                     const ViewSector& sector) {
-  const SeenMixture seen = seen_in(reflection_mixture(places, length_m, width_m, sensor_box_m), sensor_box_m, sector);
-  const MeanCovariance m = moments_of(seen);
+                                     const Eigen::Vector2d& sensor_box_m, const ViewSector& sector) {
+  const auto seen_of = [&](double length) {
+    return seen_in(reflection_mixture(places, length, width_m, sensor_box_m), sensor_box_m, sector);
+  };
+  const SeenMixture seen = seen_of(length_m);
   ReflectionMoments result;
   result.share_in_view = seen.share;
-  result.mean_m = m.mean;
-  result.scatter_m2 = m.covariance;
-  result.common_m2 = (held_noise_factor(places.scan_correlation) - 1.0) / std::max(1.0, detections) * m.covariance;
-
-  const auto at = [&](double length, double width) {
-    return moments_of(seen_in(reflection_mixture(places, length, width, sensor_box_m), sensor_box_m, sector));
-  };
-  // ∂m/∂(L, W) by central differences; a box is no smaller than nothing.
-  constexpr double kStep_m = 1e-3;
-  const double shorter = std::max(0.0, length_m - kStep_m), narrower = std::max(0.0, width_m - kStep_m);
-  const MeanCovariance long_one = at(length_m + kStep_m, width_m), short_one = at(shorter, width_m);
-  result.mean_by_length = (long_one.mean - short_one.mean) / (length_m + kStep_m - shorter);
-  result.scatter_by_length = (long_one.covariance - short_one.covariance) / (length_m + kStep_m - shorter);
-  const Eigen::Vector2d by_length = result.mean_by_length * size_std.length_std_m;
-  const Eigen::Vector2d by_width = (at(length_m, width_m + kStep_m).mean - at(length_m, narrower).mean) /
-                                   (width_m + kStep_m - narrower) * size_std.width_std_m;
-  const Eigen::Vector2d depth = places.lasting_std_m * sensor_box_m / std::max(sensor_box_m.norm(), kLeastLength_m);
-  result.lasting_m2 = by_length * by_length.transpose() + by_width * by_width.transpose() + depth * depth.transpose();
+  result.mean_m = mean_of(seen);
+  result.scatter_m2 = covariance_of(seen, result.mean_m);
+  // ∂m/∂L by a step of which neither curvature nor rounding is seen.
+  constexpr double kStep_m = 1e-7;
+  result.mean_by_length = (mean_of(seen_of(length_m + kStep_m)) - result.mean_m) / kStep_m;
   return result;
 }
 

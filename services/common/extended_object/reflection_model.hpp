@@ -42,9 +42,9 @@
 //
 //     (5)   κ = 1 + 2ρ + 2ρ² + … = (1 + ρ) / (1 − ρ).
 //
-// A filter without a state for the offset therefore adds (κ − 1) S/n to each scan: `common_m2`. A filter with such a
-// state gives it the variance S/n and the correlation ρ instead. What an uncertain size does to m lasts:
-// `lasting_m2` = J diag(σ_L², σ_W²) Jᵀ + σ² u uᵀ, J = ∂m/∂(L, W), u the direction to the sensor, σ = `lasting_std_m`.
+// A filter without a state for the offset therefore takes κ S/n in each scan. A filter with such a state gives it the
+// variance S/n and the correlation ρ instead. What an uncertain length does to m, by ∂m/∂L, lasts, and so does the
+// object's own depth, with the deviation `lasting_std_m` towards the sensor.
 #pragma once
 
 #include <array>
@@ -91,26 +91,16 @@ struct SeenMixture {
 [[nodiscard]] SeenMixture seen_in(const ReflectionMixture& mixture, const Eigen::Vector2d& sensor_box_m,
                                   const ViewSector& sector);
 
-/// Mean offset m of the reflections from the centre of the box, and its errors; box axes.
+/// Mean offset m of the reflections in view from the centre of the box, and their scatter; box axes.
 struct ReflectionMoments {
   double share_in_view = 1.0;
   Eigen::Vector2d mean_m{0.0, 0.0};
-  Eigen::Vector2d mean_by_length{0.0, 0.0};                     ///< ∂m/∂L
-  Eigen::Matrix2d scatter_m2 = Eigen::Matrix2d::Zero();         ///< S: of one reflection about m
-  Eigen::Matrix2d scatter_by_length = Eigen::Matrix2d::Zero();  ///< ∂S/∂L
-  Eigen::Matrix2d common_m2 = Eigen::Matrix2d::Zero();   ///< to add once a scan to S/n: places are held for 2–3 scans
-  Eigen::Matrix2d lasting_m2 = Eigen::Matrix2d::Zero();  ///< of m, as long as the object lasts
+  Eigen::Vector2d mean_by_length{0.0, 0.0};              ///< ∂m/∂L
+  Eigen::Matrix2d scatter_m2 = Eigen::Matrix2d::Zero();  ///< S: of one reflection about m
 };
 
-/// Standard deviations of the length and width of a box.
-struct SizeStd {
-  double length_std_m = 0.0, width_std_m = 0.0;
-};
-
-/// `detections`: number n of the scan whose mean is used; less than 1 counts as 1. Moments are those within the sector.
 [[nodiscard]] ReflectionMoments reflection_moments(const ReflectionPlaces& places, double length_m, double width_m,
-                                                   const Eigen::Vector2d& sensor_box_m, const SizeStd& size_std,
-                                                   double detections, const ViewSector& sector = {});
+                                                   const Eigen::Vector2d& sensor_box_m, const ViewSector& sector = {});
 
 /// κ of (5).
 [[nodiscard]] double held_noise_factor(double scan_correlation);

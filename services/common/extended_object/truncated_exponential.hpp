@@ -20,9 +20,10 @@ struct MeanVariance {
     return {half_length_m * a * (1.0 / 3.0 - a2 / 45.0 + 2.0 * a2 * a2 / 945.0),
             half_length_m * half_length_m * (1.0 / 3.0 - a2 / 15.0 + 2.0 * a2 * a2 / 189.0)};
   }
-  const double sinh = std::sinh(a);
-  return {half_length_m * (1.0 / std::tanh(a) - 1.0 / a),
-          half_length_m * half_length_m * (1.0 / (a * a) - 1.0 / (sinh * sinh))};
+  // With e = exp(−2|a|) − 1: coth |a| = −(2 + e)/e, 1/sinh² a = 4 (1 + e)/e².
+  const double e = std::expm1(-2.0 * std::abs(a));
+  return {half_length_m * (std::copysign((2.0 + e) / e, a) - 1.0 / a),
+          half_length_m * half_length_m * (1.0 / (a * a) - 4.0 * (1.0 + e) / (e * e))};
 }
 
 }  // namespace boresight::extended_object

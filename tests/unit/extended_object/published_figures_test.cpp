@@ -160,7 +160,7 @@ TEST(PublishedFigures, PlacesOnATruck) {
 // the line of sight, over all aspects of its drives.
 TEST(PublishedFigures, MeanOffsetOfACarFromBehind) {
   const ReflectionMoments m =
-      reflection_moments(model_of(kPublishedTable, RoadUserClass::kCar).places, 4.6, 1.85, {-30.0, 0.0}, {}, 1.0);
+      reflection_moments(model_of(kPublishedTable, RoadUserClass::kCar).places, 4.6, 1.85, {-30.0, 0.0});
   expect_near("centre behind the reflections, m", -m.mean_m.x(), 1.27, 0.15);
 }
 

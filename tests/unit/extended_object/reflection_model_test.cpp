@@ -65,7 +65,7 @@ TEST(ReflectionDensity, IntegratesToOneAndHasTheStatedMoments) {
     const double length = m.size.length_mean_m, width = m.size.width_mean_m;
     for (const Vector2d& sensor : sensors_around(m.size)) {
       const ReflectionMixture mixture = reflection_mixture(m.places, length, width, sensor);
-      const ReflectionMoments moments = reflection_moments(m.places, length, width, sensor, {}, 1.0);
+      const ReflectionMoments moments = reflection_moments(m.places, length, width, sensor);
       const Integral numeric = integrate([&](const Vector2d& at) { return position_density(mixture, at, noise); },
                                          Vector2d(0.5 * length, 0.5 * width) + Vector2d(2.5, 2.5), 0.06);
       EXPECT_NEAR(numeric.mass, 1.0, 1e-3) << sensor.transpose();
@@ -93,7 +93,7 @@ TEST(ReflectionDensity, MomentsAreThoseOfSamples) {
     mean += at / kSamples;
     square += at * at.transpose() / kSamples;
   }
-  const ReflectionMoments moments = reflection_moments(truck.places, 12.0, 2.5, sensor, {}, 1.0);
+  const ReflectionMoments moments = reflection_moments(truck.places, 12.0, 2.5, sensor);
   EXPECT_LT((mean - moments.mean_m).norm(), 0.02);
   EXPECT_LT((square - mean * mean.transpose() - moments.scatter_m2).norm(), 0.05);
 }
@@ -116,7 +116,7 @@ TEST(ReflectionDensity, CuttingIntoGaussiansKeepsTheMomentsOfTheContinuousModel)
     };
     const Vector2d rate = Vector2d(mean_slope({1.0, 0.0}, half.x()), mean_slope({0.0, 1.0}, half.y())) / places.decay_m;
     const Integral numeric = integrate([&](const Vector2d& at) { return std::exp(rate.dot(at)); }, half, 0.01);
-    const ReflectionMoments moments = reflection_moments(places, 2.0 * half.x(), 2.0 * half.y(), sensor, {}, 1.0);
+    const ReflectionMoments moments = reflection_moments(places, 2.0 * half.x(), 2.0 * half.y(), sensor);
     EXPECT_LT((numeric.mean - moments.mean_m).norm(), 1e-3) << sensor.transpose();
     EXPECT_LT((numeric.covariance - moments.scatter_m2).norm(), 2e-3) << sensor.transpose();
   }
@@ -296,9 +296,8 @@ TEST(DetectionDensity, IsFiniteInDegenerateCases) {
           weights += c.weight;
         }
         EXPECT_NEAR(weights, 1.0, 1e-12);
-        const ReflectionMoments moments = reflection_moments(m.places, size.x(), size.y(), sensor, {0.4, 0.1}, 0.0);
-        EXPECT_TRUE(moments.mean_m.allFinite() && moments.scatter_m2.allFinite());
-        EXPECT_TRUE(moments.common_m2.allFinite() && moments.lasting_m2.allFinite());
+        const ReflectionMoments moments = reflection_moments(m.places, size.x(), size.y(), sensor);
+        EXPECT_TRUE(moments.mean_m.allFinite() && moments.mean_by_length.allFinite() && moments.scatter_m2.allFinite());
         for (const Vector2d& at : {sensor, Vector2d(0.0, 0.0), Vector2d(500.0, 1.0)}) {
           ObservedDetection detection;  // without noise
           detection.position_m = at;
@@ -312,7 +311,7 @@ TEST(DetectionDensity, IsFiniteInDegenerateCases) {
 }
 
 // Places that are held from scan to scan with correlation ρ: the mean over many scans of n of them.
-TEST(ReflectionMoments, HeldPlacesAverageAsScatterPlusCommon) {
+TEST(HeldNoiseFactor, IsThatOfTheMeanOverManyScans) {
   const ReflectionPlaces& places = model_of(kReflectionTable, RoadUserClass::kCar).places;
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -330,26 +329,22 @@ TEST(ReflectionMoments, HeldPlacesAverageAsScatterPlusCommon) {
     }
     variance += sum * sum / kRuns;
   }
-  const ReflectionMoments m = reflection_moments(places, 4.6, 1.85, {-20.0, 0.0}, {}, kDetections);
-  const double scatter = m.scatter_m2(0, 0);
-  EXPECT_NEAR((scatter / kDetections + m.common_m2(0, 0)) / kScans / (scatter * variance), 1.0, 0.1);
+  EXPECT_NEAR(held_noise_factor(places.scan_correlation) / (kDetections * kScans * variance), 1.0, 0.1);
 }
 
-TEST(ReflectionMoments, UncertainLengthMovesTheCentreByHalfBehindAnEnd) {
+TEST(ReflectionMoments, LengthMovesTheCentreByHalfBehindAnEnd) {
   ReflectionPlaces places = model_of(kReflectionTable, RoadUserClass::kCar).places;
   places.interior_share = 0.0;
-  places.lasting_std_m = 0.3;
-  const ReflectionMoments m = reflection_moments(places, 4.6, 1.85, {-50.0, 0.0}, {0.4, 0.1}, 1.0);
+  const ReflectionMoments m = reflection_moments(places, 4.6, 1.85, {-50.0, 0.0});
   EXPECT_NEAR(m.mean_m.x(), -2.3 + places.face_depth_m, 1e-9);
-  EXPECT_NEAR(m.lasting_m2(0, 0), 0.2 * 0.2 + 0.3 * 0.3, 1e-9);
-  EXPECT_NEAR(m.lasting_m2(1, 1), 0.0, 1e-9);
+  EXPECT_NEAR(m.mean_by_length.x(), -0.5, 1e-6);
+  EXPECT_NEAR(m.mean_by_length.y(), 0.0, 1e-6);
 }
 
 TEST(ReflectionMoments, MeanLiesTowardsTheSensorWithinTheBox) {
   for (const ObjectClassModel& m : kReflectionTable) {
     for (const Vector2d& sensor : sensors_around(m.size)) {
-      const ReflectionMoments moments =
-          reflection_moments(m.places, m.size.length_mean_m, m.size.width_mean_m, sensor, {}, 1.0);
+      const ReflectionMoments moments = reflection_moments(m.places, m.size.length_mean_m, m.size.width_mean_m, sensor);
       EXPECT_GT(moments.mean_m.dot(sensor), 0.0);
       EXPECT_LT(std::abs(moments.mean_m.x()), 0.5 * m.size.length_mean_m);
       EXPECT_LT(std::abs(moments.mean_m.y()), 0.5 * m.size.width_mean_m);

@@ -115,18 +115,18 @@ TEST(BoxEstimator, PlacesOfTheBoxAreInsideAndThoseBesideAreNot) {
   const Component<double> c = driving({30.0, 0.0}, 0.0, 10.0);
   const BoxMemory m = remembered(e, c, {{0.0, 0.0}});
   const Symmetric2<double> small{0.01, 0.0, 0.01};
-  const auto at = [&](double x, double y) { return e.inside(m, kBoxCar, {x, y}, small, {0.0, 0.0}); };
+  const auto at = [&](double x, double y) { return e.inside(m, kBoxCar, e.place(m, {x, y}, small), {0.0, 0.0}); };
   EXPECT_GT(at(1.5, 0.0), 0.95);
   EXPECT_LT(at(1.5, 3.0), 1e-3);
   EXPECT_LT(at(-3.0, 0.0), 1e-3);
   EXPECT_LT(at(8.0, 0.0), 1e-3);
-  EXPECT_GT(e.inside(m, kBoxCar, {1.5, 1.5}, small, {0.0, 1.5}), 0.95) << "the margin counts";
+  EXPECT_GT(e.inside(m, kBoxCar, e.place(m, {1.5, 1.5}, small), {0.0, 1.5}), 0.95) << "the margin counts";
   for (double x = -20.0; x <= 20.0; x += 0.5) {
     for (double y = -5.0; y <= 5.0; y += 0.5) {
       const double p = at(x, y);
       EXPECT_GE(p, 0.0);
       EXPECT_LE(p, 1.0);
-      EXPECT_GE(e.inside(m, kBoxCar, {x, y}, small, {1.0, 1.0}), p - 1e-12);
+      EXPECT_GE(e.inside(m, kBoxCar, e.place(m, {x, y}, small), {1.0, 1.0}), p - 1e-12);
     }
   }
 }
@@ -173,7 +173,7 @@ TEST(BoxEstimator, UnknownHeadingHasNoViewsAndABoxBehindTheReflections) {
   EXPECT_GT(b.centre_m.x(), 20.02) << "people are likeliest at rest, and they are small";
   EXPECT_NEAR(b.centre_m.y(), 0.0, 1e-6);
   EXPECT_LE(b.heading_variance_rad2, std::numbers::pi * std::numbers::pi / 3.0 + 1e-12);
-  EXPECT_EQ(e.inside(m, kBoxCar, {0.0, 0.0}, {0.1, 0.0, 0.1}, {1.0, 1.0}), 0.0);
+  EXPECT_EQ(e.inside(m, kBoxCar, e.place(m, {0.0, 0.0}, {0.1, 0.0, 0.1}), {1.0, 1.0}), 0.0);
 }
 
 TEST(BoxEstimator, StopsWithTheHeadingOfItsDrive) {

@@ -71,6 +71,7 @@ std::vector<double> numbers(const Config& config) {
                              s.side_lobe_range_rate_std_mps,
                              s.side_lobe_chi2,
                              s.side_lobe_least_deviations,
+                             s.wander_m,
                              s.ambiguity_share,
                              s.ambiguity_width_mps,
                              s.side_lobe_birth,

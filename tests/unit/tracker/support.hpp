@@ -211,7 +211,8 @@ inline double log_likelihood_reference(const Reference& r, const View<double>& v
     const Eigen::Index size = s.rates.size();
     log_p += log_gaussian(
         s.rates - s.sights * velocity,
-        s.sights * c * s.sights.transpose() + view.range_rate_variance * Eigen::MatrixXd::Identity(size, size));
+        s.sights * (c + eigen(view.turn_mps) * eigen(view.turn_mps).transpose()) * s.sights.transpose() +
+            view.range_rate_variance * Eigen::MatrixXd::Identity(size, size));
   }
   for (const auto& m : z) log_p -= m.log_clutter;
   return log_p;
@@ -237,6 +238,11 @@ inline Reference updated_reference(const Reference& prior, const View<double>& v
     h.block<1, 2>(2 * n + i, 2) = s.sights.row(i);
     noise(2 * n + i, 2 * n + i) = view.range_rate_variance;
     error(2 * n + i) = s.rates(i) - s.sights.row(i) * prior.mean.tail<2>();
+  }
+  // The turn rate is one number for all range rates.
+  if (has_rates) {
+    const Eigen::VectorXd turn = s.sights * eigen(view.turn_mps);
+    noise.bottomRightCorner(n, n) += turn * turn.transpose();
   }
   Reference out = prior;
   const Eigen::MatrixXd innovation_covariance = h * prior.covariance * h.transpose() + noise;
@@ -275,6 +281,7 @@ inline View<double> random_view(Random& random, bool has_range_rates) {
   v.noise_m2 = symmetric_of(random_positive<2>(random, 0.2));
   v.range_rate_variance = has_range_rates ? uniform(random, 0.01, 0.3) : 0.0;
   v.spread = uniform(random, 0.2, 1.0);
+  if (has_range_rates) v.turn_mps = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0)};
   return v;
 }
 /// Seen from the origin; the range rate belongs to the line of sight to the detection itself, as in the model.

@@ -82,24 +82,27 @@ Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
 }
 
 template <typename Real>
-Real distance(const Component<Real>& a, const Component<Real>& b) {
-  const Vector2<Real> dp = a.position_m - b.position_m, dv = a.velocity_mps - b.velocity_mps;
+Real distance(const Component<Real>& a, const Component<Real>& b, Real limit) {
+  const Vector2<Real> dp = a.position_m - b.position_m;
+  Real sum = (quadratic(inverse(a.position_covariance), dp) + quadratic(inverse(b.position_covariance), dp)) / Real(2);
+  if (sum >= limit) return sum;
+  const Vector2<Real> dv = a.velocity_mps - b.velocity_mps;
+  sum += (quadratic(inverse(a.velocity_covariance), dv) + quadratic(inverse(b.velocity_covariance), dv)) / Real(4);
+  if (sum >= limit) return sum;
   const Symmetric2<Real> xa = extent(a), xb = extent(b), dx = xa - xb;
   const Real mean = (trace(xa) + trace(xb)) / Real(2);
+  sum += (dx.xx * dx.xx + Real(2) * dx.xy * dx.xy + dx.yy * dx.yy) / (mean * mean) *
+         (a.extent_dof + b.extent_dof - Real(12)) / Real(16);
+  if (sum >= limit) return sum;
   const Real rate_ratio = std::log(a.rate_shape * b.rate_inverse_scale / (a.rate_inverse_scale * b.rate_shape));
-  const Real of_extent = (dx.xx * dx.xx + Real(2) * dx.xy * dx.xy + dx.yy * dx.yy) / (mean * mean) *
-                         (a.extent_dof + b.extent_dof - Real(12)) / Real(16);
-  const Real of_rate = rate_ratio * rate_ratio * (a.rate_shape + b.rate_shape) / Real(8);
-  return (quadratic(inverse(a.position_covariance), dp) + quadratic(inverse(b.position_covariance), dp)) / Real(2) +
-         (quadratic(inverse(a.velocity_covariance), dv) + quadratic(inverse(b.velocity_covariance), dv)) / Real(4) +
-         of_extent + of_rate;
+  return sum + rate_ratio * rate_ratio * (a.rate_shape + b.rate_shape) / Real(8);
 }
 
 template void predict(Component<double>&, const MotionParameters&, double);
 template void predict(Component<float>&, const MotionParameters&, double);
 template Component<double> merge(std::span<const WeightedComponent<double>>);
 template Component<float> merge(std::span<const WeightedComponent<float>>);
-template double distance(const Component<double>&, const Component<double>&);
-template float distance(const Component<float>&, const Component<float>&);
+template double distance(const Component<double>&, const Component<double>&, double);
+template float distance(const Component<float>&, const Component<float>&, float);
 
 }  // namespace boresight::tracking

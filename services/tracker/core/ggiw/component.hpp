@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "services/tracker/core/ggiw/cell.hpp"
@@ -72,7 +73,9 @@ template <typename Real>
 [[nodiscard]] Component<Real> merge(std::span<const WeightedComponent<Real>> mixture);
 
 /// Dissimilarity: half the symmetric squared Mahalanobis distances of place and velocity, and terms of extent and rate.
+/// Terms that cannot bring it below `limit` any more are left out.
 template <typename Real>
-[[nodiscard]] Real distance(const Component<Real>& a, const Component<Real>& b);
+[[nodiscard]] Real distance(const Component<Real>& a, const Component<Real>& b,
+                            Real limit = std::numeric_limits<Real>::infinity());
 
 }  // namespace boresight::tracking

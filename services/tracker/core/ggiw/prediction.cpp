@@ -100,8 +100,10 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
   missed_ =
       std::max(kLeastMissed<Real>, Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
   per_detection_ = (log_x - log_scatter) / Real(2) - kLogPi<Real>;
-  constant_ = (extent_dof_ - Real(3)) / Real(2) * std::log(determinant(extent_scale_)) + log_scatter / Real(2) +
-              std::log(std::max(detection_probability_, Real(1e-9)));
+  log_detection_ = std::log(std::max(detection_probability_, Real(1e-9)));
+  constant_ =
+      (extent_dof_ - Real(3)) / Real(2) * std::log(determinant(extent_scale_)) + log_scatter / Real(2) + log_detection_;
+  if (view.range_rate_variance > 0) log_range_rate_ = kLogTwoPi<Real> + std::log(view.range_rate_variance);
   by_count_[0] = 0;
   log_count_[0] = log_none_;
   extent_terms_ = log_none_;
@@ -153,10 +155,14 @@ Real Prediction<Real>::log_count(Real n) {
 
 template <typename Real>
 Real Prediction<Real>::log_source_ratio(Real n) {
-  const Real more = view_.source_more, whole = std::max(n, Real(1));
-  const Real seen = Real(1) - std::exp(log_none_);
-  return std::log(Real(1) - more) + (whole - Real(1)) * std::log(more) -
-         (log_count(whole) - std::log(std::max(seen, Real(1e-12))));
+  if (!knows_source_) {
+    knows_source_ = true;
+    const Real seen = Real(1) - std::exp(log_none_);
+    log_source_one_ = std::log((Real(1) - view_.source_more) * std::max(seen, Real(1e-12)));
+    log_source_more_ = std::log(view_.source_more);
+  }
+  const Real whole = std::max(n, Real(1));
+  return log_source_one_ + (whole - Real(1)) * log_source_more_ - log_count(whole);
 }
 
 template <typename Real>
@@ -199,10 +205,9 @@ Real Prediction<Real>::log_by(const Place& place, const Cell<Real>& cell) {
   const Symmetric2<Real> s = place.prior_m2 + (Real(1) / n) * place.scatter_m2;
   const Real det = determinant(s), root = std::sqrt(det);
   const Vector2<Real> e = cell.mean() - position_m_ - place.offset_m;
-  Real log_p = place.log_weight - std::log(det) / Real(2);
+  Real log_p = place.log_weight, determinants = det;
   if (place.knows_scatter) {
-    log_p += log_count(n) + std::lgamma(n + Real(1)) + std::log(std::max(detection_probability_, Real(1e-9))) -
-             n * kLogTwoPi<Real> - std::log(n) -
+    log_p += log_count(n) + std::lgamma(n + Real(1)) + log_detection_ - n * kLogTwoPi<Real> - std::log(n) -
              ((n - Real(1)) * std::log(determinant(place.scatter_m2)) +
               product_trace(inverse(place.scatter_m2), cell.scatter()) + quadratic(inverse(s), e)) /
                  Real(2);
@@ -225,11 +230,10 @@ Real Prediction<Real>::log_by(const Place& place, const Cell<Real>& cell) {
         (cell.rate_squares - Real(2) * dot(cell.sight_rate, velocity) + quadratic(cell.sight_squares, velocity)) /
             view_.range_rate_variance -
         rate.turn_chi2 - dot(rate.innovation, rate.correction);
-    log_p -= (n * (kLogTwoPi<Real> + std::log(view_.range_rate_variance)) +
-              std::log(rate.factor_determinant * rate.turn_determinant) + chi2) /
-             Real(2);
+    log_p -= (n * log_range_rate_ + chi2) / Real(2);
+    determinants *= rate.factor_determinant * rate.turn_determinant;
   }
-  return log_p;
+  return log_p - std::log(determinants) / Real(2);
 }
 
 template <typename Real>
@@ -265,7 +269,8 @@ Real Prediction<Real>::log_intensity(const Measurement<Real>& z) const {
   log_p += std::log(expected_) - kLogTwoPi<Real>;
   if (view_.range_rate_variance > 0) {
     const Real variance = view_.range_rate_variance + quadratic(velocity_covariance_, z.sight);
-    log_p -= (kLogTwoPi<Real> + std::log(variance) + range_rate_distance(z)) / Real(2);
+    const Real e = z.range_rate_mps - dot(z.sight, velocity_mps_);
+    log_p -= (kLogTwoPi<Real> + std::log(variance) + e * e / variance) / Real(2);
   }
   return log_p - z.log_clutter;
 }

@@ -129,6 +129,10 @@ class Prediction {
   std::array<Real, kTabulated> by_count_{}, log_count_{};
   std::size_t tabulated_ = 0;
   Real log_rate_step_ = 0, log_exposure_ = 0, extent_terms_ = 0, per_detection_ = 0, constant_ = 0, log_none_ = 0;
+  Real log_detection_ = 0, log_range_rate_ = 0;  // of P_D; of 2π and the variance of a range rate
+  // Of a source of clutter, found when first asked for: log of one detection and of each more, over p(seen).
+  bool knows_source_ = false;
+  Real log_source_one_ = 0, log_source_more_ = 0;
 };
 
 }  // namespace boresight::tracking

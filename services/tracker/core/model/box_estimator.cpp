@@ -71,7 +71,7 @@ BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const
       // In axes along the line of sight: to the sensor, and across.
       const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * i / kHeadings);
       const auto moments = extended_object::reflection_moments(table_[k].places, size.length_mean_m, size.width_mean_m,
-                                                               to_box * Eigen::Vector2d(kAfar_m, 0.0), {}, 1.0);
+                                                               to_box * Eigen::Vector2d(kAfar_m, 0.0));
       middle[static_cast<std::size_t>(i)] = to_box.transpose() * moments.mean_m;
       any.depth_m += middle[static_cast<std::size_t>(i)].x() / kHeadings;
       any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / kHeadings;
@@ -209,7 +209,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
     v.probability = m.probability[k];
     const Eigen::Vector2d sensor_box = sensor + box.point_m;
     v.reflections = extended_object::reflection_moments(model.places, box.length_m, model.size.width_mean_m, sensor_box,
-                                                        {}, 1.0, {facing, from.half_view_rad, from.view_edge_rad});
+                                                        {facing, from.half_view_rad, from.view_edge_rad});
     constexpr double kNearest_m = 0.1;
     const double range_m = std::max(kNearest_m, sensor_box.norm());
     v.to_sensor = sensor_box / range_m;
@@ -348,33 +348,50 @@ void BoxEstimator::learn_without_heading(BoxMemory& m, const BoxObservation& sca
   }
 }
 
-double BoxEstimator::inside(const BoxMemory& m, std::size_t k, const Vector2<double>& from_point_m,
-                            const Symmetric2<double>& covariance_m2, const Eigen::Vector2d& margin_m) const {
+BoxEstimator::Place BoxEstimator::place(const BoxMemory& m, const Vector2<double>& from_point_m,
+                                        const Symmetric2<double>& covariance_m2) const {
+  const Eigen::Matrix2d to_box = rotation(m.heading_rad).transpose();
+  const Eigen::Vector2d from_point = to_box * eigen(from_point_m), turned(-from_point.y(), from_point.x());
+  return {from_point, to_box * eigen(covariance_m2) * to_box.transpose() + m.heading_variance_rad2 * squared(turned)};
+}
+
+double BoxEstimator::inside(const BoxMemory& m, std::size_t k, const Place& place,
+                            const Eigen::Vector2d& margin_m) const {
   if (!m.has_point) return 0.0;
   const ClassBox& c = m.classes[k];
-  const Eigen::Matrix2d to_box = rotation(m.heading_rad).transpose();
-  const Eigen::Vector2d from_point = to_box * eigen(from_point_m), at = c.point_m + from_point;
+  const Eigen::Vector2d at = c.point_m + place.from_point_m;
   const Eigen::Vector2d half = 0.5 * Eigen::Vector2d(c.length_m, table_[k].size.width_mean_m) + margin_m;
-  const Eigen::Vector2d turned(-from_point.y(), from_point.x());
-  const Eigen::Matrix2d p =
-      to_box * eigen(covariance_m2) * to_box.transpose() + m.heading_variance_rad2 * squared(turned);
+  // Beyond six deviations from a side the probability is below 1e-9.
+  constexpr double kOutside = 6.0;
+  const double beside_m = std::abs(at.y()) - half.y(), variance = place.covariance_m2(1, 1);
+  if (beside_m > 0.0 && beside_m * beside_m > kOutside * kOutside * variance) return 0.0;
   // The farther an end from the tracked point, the more the length that is uncertain moves it.
-  const auto before = [&](double end, double distance_m) {
+  const auto variance_of = [&](double end) {
     const double by_length = 0.5 * end - c.point_by_length.x();
-    return 0.5 * std::erfc(-distance_m / std::sqrt(2.0 * (p(0, 0) + by_length * by_length * c.length_variance_m2)));
+    return place.covariance_m2(0, 0) + by_length * by_length * c.length_variance_m2;
   };
-  const double sigma = std::sqrt(2.0 * p(1, 1));
+  const double front_m = half.x() - at.x(), rear_m = half.x() + at.x();
+  const double of_front = variance_of(1.0), of_rear = variance_of(-1.0);
+  if ((front_m < 0.0 && front_m * front_m > kOutside * kOutside * of_front) ||
+      (rear_m < 0.0 && rear_m * rear_m > kOutside * kOutside * of_rear)) {
+    return 0.0;
+  }
+  const auto before = [](double distance_m, double variance_m2) {
+    return 0.5 * std::erfc(-distance_m / std::sqrt(2.0 * variance_m2));
+  };
+  const double sigma = std::sqrt(2.0 * variance);
   const double across = 0.5 * (std::erf((half.y() - at.y()) / sigma) + std::erf((half.y() + at.y()) / sigma));
-  return std::max(0.0, across * (before(1.0, half.x() - at.x()) + before(-1.0, half.x() + at.x()) - 1.0));
+  return std::max(0.0, across * (before(front_m, of_front) + before(rear_m, of_rear) - 1.0));
 }
 
 void BoxEstimator::add_part(BoxMemory& m, const Vector2<double>& from_point_m,
                             const Symmetric2<double>& covariance_m2) const {
+  const Place part = place(m, from_point_m, covariance_m2);
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     ClassBox& c = m.classes[k];
     constexpr double kLeast = 1e-4;
-    c.log_evidence += std::log(std::max(kLeast, inside(m, k, from_point_m, covariance_m2, {0.0, 0.0})) /
-                               (c.length_m * table_[k].size.width_mean_m));
+    c.log_evidence +=
+        std::log(std::max(kLeast, inside(m, k, part, {0.0, 0.0})) / (c.length_m * table_[k].size.width_mean_m));
   }
   weigh_classes(m);
 }

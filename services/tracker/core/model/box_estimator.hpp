@@ -111,10 +111,17 @@ class BoxEstimator {
               const ClassViews& views) const;
   [[nodiscard]] Box box(const BoxMemory& memory, const Component<double>& object,
                         const Vector2<double>& sensor_m) const;
+  /// A place relative to an object's tracked point, in box axes; the covariance is that of the difference.
+  struct Place {
+    Eigen::Vector2d from_point_m{0.0, 0.0};
+    Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
+  };
+  [[nodiscard]] Place place(const BoxMemory& memory, const Vector2<double>& from_point_m,
+                            const Symmetric2<double>& covariance_m2) const;
   /// Probability that a place lies in the object's box grown by `margin_m`, if it is of the class; 0 while its heading
-  /// is unknown. The covariance is that of the difference of the place and the tracked point.
-  [[nodiscard]] double inside(const BoxMemory& memory, std::size_t object_class, const Vector2<double>& from_point_m,
-                              const Symmetric2<double>& covariance_m2, const Eigen::Vector2d& margin_m) const;
+  /// is unknown.
+  [[nodiscard]] double inside(const BoxMemory& memory, std::size_t object_class, const Place& place,
+                              const Eigen::Vector2d& margin_m) const;
   /// Reflections at a place are the object's: it is of a class whose box holds them.
   void add_part(BoxMemory& memory, const Vector2<double>& from_point_m, const Symmetric2<double>& covariance_m2) const;
   [[nodiscard]] const extended_object::ObjectClassTable& table() const { return table_; }

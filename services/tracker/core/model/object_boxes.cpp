@@ -18,7 +18,10 @@ void ObjectBoxes::clear() {
 
 void ObjectBoxes::begin_scan(const Viewpoint& viewpoint) {
   viewpoint_ = viewpoint;
-  for (Record& r : records_) r.is_seen = false;
+  for (Record& r : records_) {
+    r.is_seen = false;
+    r.readings.reset();
+  }
 }
 
 void ObjectBoxes::join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) {
@@ -36,7 +39,7 @@ const ObjectBoxes::Record* ObjectBoxes::find(std::uint32_t label) const {
   return i < 0 ? nullptr : &records_[static_cast<std::size_t>(i)];
 }
 
-const ObjectBoxes::Record* ObjectBoxes::see(const Component<double>& predicted, const Symmetric2<double>& noise_m2) {
+ObjectBoxes::Record* ObjectBoxes::see(const Component<double>& predicted, const Symmetric2<double>& noise_m2) {
   const int i = index_.find(predicted.label);
   if (i < 0) return nullptr;
   Record& r = records_[static_cast<std::size_t>(i)];

@@ -2,7 +2,9 @@
 // of the association.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,14 @@
 #include "services/tracker/core/model/model.hpp"
 
 namespace boresight::tracking {
+
+/// Where an object's detections lie in a scan, by what it may be; local axes.
+struct BoxReadings {
+  std::size_t number = 0;  ///< 0: its heading is not known
+  std::array<Reading<double>, View<double>::kMaxReadings> readings{};
+  double share_in_view = 0.0;              ///< of its reflections
+  double range_rate_variance_m2ps2 = 0.0;  ///< without the sensor's noise
+};
 
 class ObjectBoxes {
  public:
@@ -22,6 +32,7 @@ class ObjectBoxes {
     Vector2<double> predicted_m;
     Symmetric2<double> predicted_covariance_m2, noise_m2;
     ClassViews views;
+    std::optional<BoxReadings> readings;
   };
 
   ObjectBoxes(const BoxEstimator& estimator, std::size_t max_objects);
@@ -32,7 +43,7 @@ class ObjectBoxes {
   void begin_scan(const Viewpoint& viewpoint);
   [[nodiscard]] const Record* find(std::uint32_t label) const;
   /// The record of a predicted object with its views; null if nothing is remembered of it.
-  [[nodiscard]] const Record* see(const Component<double>& predicted, const Symmetric2<double>& noise_m2);
+  [[nodiscard]] Record* see(const Component<double>& predicted, const Symmetric2<double>& noise_m2);
   /// Takes the objects after a scan that came `elapsed_s` after the one before; others are forgotten.
   void learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad);
   [[nodiscard]] Box box(const Component<double>& object) const;

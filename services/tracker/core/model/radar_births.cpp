@@ -69,14 +69,14 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
     const Prediction<double>& p = group_objects_[l];
     if (group_existence_[l] <= claimed) continue;
     // The chance that the place is taken; the range rates must agree.
-    const double taken = group_existence_[l] * taken_by(p.label(), p.position_m(), p.position_covariance() + f * noise,
-                                                        std::sqrt(squared_norm(p.velocity_mps())), mean);
-    if (taken <= claimed) continue;
     const double mean_rate = dot(cell.sight_rate, p.velocity_mps()) * f;
     const double deviation =
         (cell.rate_squares * f - 2.0 * mean_rate + quadratic(cell.sight_squares, p.velocity_mps()) * f) /
         (p.range_rate_variance() + quadratic(p.velocity_covariance(), sight));
-    claimed = std::max(claimed, taken * std::exp(-0.5 * deviation / b.same_speed_chi2));
+    const double agreeing = group_existence_[l] * std::exp(-0.5 * deviation / b.same_speed_chi2);
+    if (agreeing <= claimed) continue;
+    claimed = std::max(claimed, agreeing * taken_by(p.label(), p.position_m(), p.position_covariance() + f * noise,
+                                                    std::sqrt(squared_norm(p.velocity_mps())), mean));
   }
   constexpr double kLeastFree = 1e-6, kLeastShare = 1e-12;
   const double log_free = std::log(std::max(kLeastFree, 1.0 - claimed));

@@ -78,11 +78,12 @@ void RadarModel::add_wide_range_rates() {
       const Symmetric2<double> covariance = c.position_covariance + noise_at(z.sight, places_[i].range_m);
       const double body_mps = dot(z.sight, c.velocity_mps);
       const Eigen::Vector2d sight_box(cosine * z.sight.x + sine * z.sight.y, cosine * z.sight.y - sine * z.sight.x);
+      const BoxEstimator::Place place = boxes.place(object->memory, d, covariance);
       double added = 0.0, inside_any = 0.0, body_variance = 0.0;
       for (std::size_t k = 0; k < object->views.size(); ++k) {
         const ClassView& view = object->views[k];
         if (view.probability < kUnlikely) continue;
-        const double inside = boxes.inside(object->memory, k, d, covariance, {0.0, 0.0});
+        const double inside = boxes.inside(object->memory, k, place, {0.0, 0.0});
         if (inside < kUnlikely) continue;
         const auto rates =
             extended_object::range_rate_mixture(boxes.table()[k].micro_doppler, sight_box, body_mps, speed_mps);

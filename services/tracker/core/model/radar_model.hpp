@@ -106,6 +106,8 @@ class RadarModel final : public Model {
   /// Where an object's detections lie, by what it may be, and the variance of their range rates. Returns the share of
   /// its reflections that are in view, or −1 while its heading is not known.
   double read_box(const Component<double>& component, View<double>& view) const;
+  /// The same for all hypotheses of an object.
+  [[nodiscard]] BoxReadings readings_of(const ObjectBoxes::Record& object) const;
 
   RadarModelParameters parameters_;
   mutable ObjectBoxes boxes_;  // views are computed when first asked for

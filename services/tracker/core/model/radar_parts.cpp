@@ -33,11 +33,12 @@ double RadarModel::taken_by(std::uint32_t label, const Vector2<double>& position
   }
   double taken = 0.0;
   const double headway_m = b.headway_s * speed_mps;
+  const BoxEstimator::Place place = boxes_.estimator().place(*object, d, covariance_m2);
   for (std::size_t k = 0; k < object->probability.size(); ++k) {
     constexpr double kUnlikely = 0.01;
     if (object->probability[k] < kUnlikely) continue;
     const auto within = [&](double along_m) {
-      return boxes_.estimator().inside(*object, k, d, covariance_m2, {along_m, b.gap_across_m});
+      return boxes_.estimator().inside(*object, k, place, {along_m, b.gap_across_m});
     };
     taken += object->probability[k] *
              ((1.0 - b.close_share) * within(b.gap_along_m + headway_m) + b.close_share * within(b.gap_along_m));
@@ -53,40 +54,45 @@ double RadarModel::log_odds_of_part(const Component<double>& whole, const Compon
   const BoxMemory *of_whole = memory(whole.label), *of_part = memory(part.label);
   if (of_whole == nullptr || of_part == nullptr || !of_whole->has_point || !of_part->has_point) return kNever;
   const BoxEstimator& boxes = boxes_.estimator();
-  const Symmetric2<double> covariance = whole.position_covariance + part.position_covariance;
-  double one = 0.0, apart = 0.0;
-  const double headway_m = b.headway_s * std::sqrt(squared_norm(whole.velocity_mps));
-  for (std::size_t k = 0; k < of_whole->probability.size(); ++k) {
-    const double p = of_whole->probability[k];
-    constexpr double kUnlikely = 1e-3;
-    if (p < kUnlikely) continue;
-    // Reflections anywhere in the box; two objects do not overlap.
-    const auto& size = boxes.table()[k].size;
-    one +=
-        p * boxes.inside(*of_whole, k, d, covariance, {0.0, 0.0}) / (of_whole->classes[k].length_m * size.width_mean_m);
-    for (std::size_t l = 0; l < of_part->probability.size(); ++l) {
-      const double q = of_part->probability[l];
-      if (q < kUnlikely) continue;
-      const ClassBox& other = of_part->classes[l];
-      const double c = std::cos(of_part->heading_rad), s = std::sin(of_part->heading_rad);
-      const Vector2<double> centre = {d.x - c * other.point_m.x() + s * other.point_m.y(),
-                                      d.y - s * other.point_m.x() - c * other.point_m.y()};
-      const Symmetric2<double> spread = covariance + (other.length_variance_m2 * other.point_by_length.squaredNorm()) *
-                                                         Symmetric2<double>{c * c, c * s, s * s};
-      const auto overlap = [&](double gap_m) {
-        return boxes.inside(*of_whole, k, centre, spread,
-                            {0.5 * other.length_m + gap_m, 0.5 * boxes.table()[l].size.width_mean_m});
-      };
-      apart += p * q * (1.0 - (1.0 - b.close_share) * overlap(headway_m) - b.close_share * overlap(0.0));
-    }
-  }
-  constexpr double kLeastApart = 1e-3;  // boxes are not that sure
   const Vector2<double> dv = part.velocity_mps - whole.velocity_mps;
   const Symmetric2<double> cv = whole.velocity_covariance + part.velocity_covariance;
   const double between = b.neighbour_speed_std_mps * b.neighbour_speed_std_mps;
-  return std::log(one) + log_density(dv, cv) - std::log(std::max(kLeastApart, apart)) -
-         std::log(b.neighbour_density_per_m2) - log_density(dv, cv + Symmetric2<double>{between, 0.0, between}) -
-         std::log(b.part_odds);
+  const double of_motion = log_density(dv, cv) - std::log(b.neighbour_density_per_m2) -
+                           log_density(dv, cv + Symmetric2<double>{between, 0.0, between}) - std::log(b.part_odds);
+  constexpr double kUnlikely = 1e-3;
+  constexpr double kLeastApart = 1e-3;  // boxes are not that sure
+  // Reflections anywhere in the box; two objects do not overlap.
+  const Symmetric2<double> covariance = whole.position_covariance + part.position_covariance;
+  const BoxEstimator::Place place = boxes.place(*of_whole, d, covariance);
+  double one = 0.0;
+  for (std::size_t k = 0; k < of_whole->probability.size(); ++k) {
+    if (of_whole->probability[k] < kUnlikely) continue;
+    one += of_whole->probability[k] * boxes.inside(*of_whole, k, place, {0.0, 0.0}) /
+           (of_whole->classes[k].length_m * boxes.table()[k].size.width_mean_m);
+  }
+  // Most pairs are two objects however little they are apart.
+  if (std::log(one / kLeastApart) + of_motion <= 0.0) return kNever;
+  double apart = 0.0;
+  const double headway_m = b.headway_s * std::sqrt(squared_norm(whole.velocity_mps));
+  const double c = std::cos(of_part->heading_rad), s = std::sin(of_part->heading_rad);
+  for (std::size_t l = 0; l < of_part->probability.size(); ++l) {
+    if (of_part->probability[l] < kUnlikely) continue;
+    const ClassBox& other = of_part->classes[l];
+    const Vector2<double> centre = {d.x - c * other.point_m.x() + s * other.point_m.y(),
+                                    d.y - s * other.point_m.x() - c * other.point_m.y()};
+    const Symmetric2<double> spread = covariance + (other.length_variance_m2 * other.point_by_length.squaredNorm()) *
+                                                       Symmetric2<double>{c * c, c * s, s * s};
+    const BoxEstimator::Place at = boxes.place(*of_whole, centre, spread);
+    for (std::size_t k = 0; k < of_whole->probability.size(); ++k) {
+      if (of_whole->probability[k] < kUnlikely) continue;
+      const auto overlap = [&](double gap_m) {
+        return boxes.inside(*of_whole, k, at, {0.5 * other.length_m + gap_m, 0.5 * boxes.table()[l].size.width_mean_m});
+      };
+      apart += of_whole->probability[k] * of_part->probability[l] *
+               (1.0 - (1.0 - b.close_share) * overlap(headway_m) - b.close_share * overlap(0.0));
+    }
+  }
+  return std::log(one) - std::log(std::max(kLeastApart, apart)) + of_motion;
 }
 
 void RadarModel::join(const Component<double>& whole, const Component<double>& part, std::uint32_t label) {

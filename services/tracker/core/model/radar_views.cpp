@@ -13,6 +13,8 @@ namespace {
 
 /// P(standard normal < x)
 double normal_cdf(double x) {
+  constexpr double kCertain = 8.5;  // 0 or 1 to rounding
+  if (std::abs(x) > kCertain) return x > 0.0 ? 1.0 : 0.0;
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);
 }
 
@@ -105,9 +107,21 @@ View<double> RadarModel::view(const Component<double>& c) const {
 
 double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
   constexpr double kUnknown = -1.0;
-  const ObjectBoxes::Record* object = c.label == 0 ? nullptr : boxes_.see(c, v.noise_m2);
-  if (object == nullptr || !boxes_.estimator().knows_heading(object->memory)) return kUnknown;
-  const double cosine = std::cos(object->memory.heading_rad), sine = std::sin(object->memory.heading_rad);
+  ObjectBoxes::Record* object = c.label == 0 ? nullptr : boxes_.see(c, v.noise_m2);
+  if (object == nullptr) return kUnknown;
+  if (!object->readings) object->readings = readings_of(*object);
+  const BoxReadings& box = *object->readings;
+  if (box.number == 0) return kUnknown;
+  v.number_of_readings = box.number;
+  v.readings = box.readings;
+  v.range_rate_variance = radar_->range_rate_std_mps * radar_->range_rate_std_mps + box.range_rate_variance_m2ps2;
+  return box.share_in_view;
+}
+
+BoxReadings RadarModel::readings_of(const ObjectBoxes::Record& object) const {
+  BoxReadings box;
+  if (!boxes_.estimator().knows_heading(object.memory)) return box;
+  const double cosine = std::cos(object.memory.heading_rad), sine = std::sin(object.memory.heading_rad);
   const auto to_local = [&](const Eigen::Vector2d& b) {
     return Vector2<double>{cosine * b.x() - sine * b.y(), sine * b.x() + cosine * b.y()};
   };
@@ -120,8 +134,8 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
   constexpr double kUnlikely = 0.01;
   Reading<double> shorter{0.0, {}, {}, false, {}};
   double share = 0.0, rate_variance = 0.0, sum = 0.0;
-  for (std::size_t k = 0; k < object->views.size(); ++k) {
-    const ClassView& by_class = object->views[k];
+  for (std::size_t k = 0; k < object.views.size(); ++k) {
+    const ClassView& by_class = object.views[k];
     sum += by_class.probability;
     share += by_class.probability * by_class.reflections.share_in_view;
     rate_variance += by_class.probability * by_class.range_rate_variance_m2ps2;
@@ -129,35 +143,35 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
     shorter.weight += by_class.probability;
     shorter.offset_m = shorter.offset_m + by_class.probability * to_local(by_class.offset_m);
   }
-  if (sum <= 0.0) return kUnknown;
-  const ClassView& longer = object->views[kLong];
+  if (sum <= 0.0) return box;
+  const ClassView& longer = object.views[kLong];
   const bool is_long_only = shorter.weight <= kUnlikely;
   const double all =
       (is_long_only ? 0.0 : shorter.weight) + (longer.probability > kUnlikely ? longer.probability : 0.0);
-  v.number_of_readings = 0;
   if (!is_long_only) {
     shorter.offset_m = (1.0 / shorter.weight) * shorter.offset_m;
-    for (std::size_t k = 0; k < object->views.size(); ++k) {
+    for (std::size_t k = 0; k < object.views.size(); ++k) {
       if (k == kLong) continue;
-      const ClassView& by_class = object->views[k];
+      const ClassView& by_class = object.views[k];
       const Vector2<double> off = to_local(by_class.offset_m) - shorter.offset_m;
       shorter.covariance_m2 =
           shorter.covariance_m2 +
           (by_class.probability / shorter.weight) * (covariance_to_local(by_class.offset_covariance_m2) + outer(off));
     }
     shorter.weight /= all;
-    v.readings[v.number_of_readings++] = shorter;
+    box.readings[box.number++] = shorter;
   }
   if (longer.probability > kUnlikely) {
     const Vector2<double> offset = to_local(longer.offset_m);
     const Symmetric2<double> covariance = covariance_to_local(longer.offset_covariance_m2),
                              scatter = covariance_to_local(longer.reflections.scatter_m2);
     const double spot = boxes_.estimator().table()[kLong].places.common_share;
-    v.readings[v.number_of_readings++] = {(1.0 - spot) * longer.probability / all, offset, covariance, true, scatter};
-    v.readings[v.number_of_readings++] = {spot * longer.probability / all, offset, covariance + scatter, false, {}};
+    box.readings[box.number++] = {(1.0 - spot) * longer.probability / all, offset, covariance, true, scatter};
+    box.readings[box.number++] = {spot * longer.probability / all, offset, covariance + scatter, false, {}};
   }
-  v.range_rate_variance = radar_->range_rate_std_mps * radar_->range_rate_std_mps + rate_variance / sum;
-  return share / sum;
+  box.range_rate_variance_m2ps2 = rate_variance / sum;
+  box.share_in_view = share / sum;
+  return box;
 }
 
 }  // namespace boresight::tracking

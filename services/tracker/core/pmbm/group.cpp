@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -16,7 +17,7 @@ std::size_t working_rows(const Capacity& c) {
 
 }  // namespace
 
-Group::Group(const Capacity& c) : stride(c.group_objects) {
+Group::Group(const Capacity& c) : stride(c.group_objects), alike(std::bit_ceil(2 * group_pool(c))) {
   ids.reserve(c.group_objects);
   pool.reserve(group_pool(c));
   log_weights.reserve(working_rows(c));
@@ -33,7 +34,8 @@ void Group::clear() {
 bool Group::add_row(double log_weight) {
   if (log_weights.size() == log_weights.capacity()) return false;
   log_weights.push_back(log_weight);
-  table.insert(table.end(), stride, std::int16_t{-1});
+  table.resize(table.size() + stride);
+  std::fill(table.end() - static_cast<std::ptrdiff_t>(stride), table.end(), std::int16_t{-1});
   return true;
 }
 
@@ -89,22 +91,34 @@ void Group::join_equal_rows() {
 }
 
 void Group::merge_similar_rows(double merge_distance) {
+  // Many rows differ in the same hypotheses.
+  alike.clear();
+  const auto are_alike = [&](std::int16_t a, std::int16_t b) {
+    const auto la = static_cast<std::size_t>(a), lb = static_cast<std::size_t>(b);
+    const std::uint64_t key = la * pool.capacity() + lb;
+    int known = alike.find(key);
+    if (known < 0) {
+      known = distance(pool[la].component, pool[lb].component, merge_distance) < merge_distance ? 1 : 0;
+      static_cast<void>(alike.insert(key, known));
+    }
+    return known == 1;
+  };
   for (std::size_t i = 0; i < rows(); ++i) {
     for (std::size_t j = i + 1; j < rows();) {
       std::size_t different = 0, existing = 0;
-      bool alike = true;
-      for (std::size_t c = 0; c < columns() && alike; ++c) {
+      bool is_one = true;
+      for (std::size_t c = 0; c < columns() && is_one; ++c) {
         const std::int16_t a = at(i, c), b = at(j, c);
         if (a == b) continue;
         ++different;
         if (a < 0 || b < 0) {
           ++existing;
+          is_one = different == 1;
           continue;
         }
-        alike = distance(pool[static_cast<std::size_t>(a)].component, pool[static_cast<std::size_t>(b)].component) <
-                merge_distance;
+        is_one = existing == 0 && are_alike(a, b);
       }
-      if (!alike || (existing > 0 && different > 1) || pool.size() + different > pool.capacity()) {
+      if (!is_one || pool.size() + different > pool.capacity()) {
         ++j;
         continue;
       }

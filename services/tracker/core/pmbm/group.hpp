@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "services/tracker/core/fixed_table.hpp"
 #include "services/tracker/core/ggiw/component.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
 
@@ -35,6 +36,7 @@ struct Group {
   std::vector<double> log_weights;  // of the rows
   std::vector<std::int16_t> table;  // rows × stride
   std::size_t stride = 0;           // room for columns
+  FixedTable alike;                 // scratch: pairs of the pool
 
   explicit Group(const Capacity& capacity);
   void clear();

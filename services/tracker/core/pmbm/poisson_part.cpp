@@ -122,6 +122,10 @@ bool PoissonPart::first_detected(Model& model, const Cell<double>& cell, Compone
     detected_.push_back(predictions_[i].updated(components_[i].component, cell));
     best = std::max(best, log_detected_.back());
   }
+  if (model.has_births_anywhere() && detected_.empty()) {
+    out = model.newborn(cell);
+    return true;
+  }
   if (model.has_births_anywhere() && detected_.size() < detected_.capacity()) {
     log_detected_.push_back(model.log_newborn(cell));
     detected_.push_back(model.newborn(cell));

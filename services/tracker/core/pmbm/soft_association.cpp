@@ -70,11 +70,13 @@ double Association::normalise_shares(std::size_t z, std::size_t cells) {
   const double best = *std::max_element(gain_.begin(), gain_.end());
   double sum = 0.0;
   for (std::size_t b = 0; b <= cells; ++b) {
-    const double g = std::exp(gain_[b] - best);
+    const double g = gain_[b] == -kInfinity ? 0.0 : std::exp(gain_[b] - best);
     shares[b] = g < parameters_.min_share ? 0.0 : g;
     sum += shares[b];
   }
-  for (std::size_t b = 0; b <= cells; ++b) shares[b] /= sum;
+  for (std::size_t b = 0; b <= cells; ++b) {
+    if (shares[b] > 0.0) shares[b] /= sum;
+  }
   return best + std::log(sum);
 }
 
@@ -82,7 +84,7 @@ double Association::normalise_shares(std::size_t z, std::size_t cells) {
 /// of the product of 1 / the shares of the hard association.
 double Association::share_hard(const Cells& hard) {
   const std::size_t cells = hard.cells.size(), n = z_.size(), stride = cells + 1;
-  share_.assign(n * stride, 0.0);
+  share_.resize(n * stride);
   next_share_.assign(n * stride, 0.0);
   gain_.assign(stride, 0.0);
   is_shared_.assign(n, 0);
