@@ -42,6 +42,7 @@ std::vector<double> numbers(const Config& config) {
                              b.traffic.density_per_m2,
                              b.traffic.speed_std_mps,
                              b.half_length_m,
+                             b.place_std_m,
                              b.extent_dof,
                              b.gap_along_m,
                              b.gap_across_m,
@@ -56,9 +57,14 @@ std::vector<double> numbers(const Config& config) {
                              b.link_range_rate_mps,
                              c.memory_s,
                              c.table_scans,
+                             c.least_range_rate_mps,
                              c.with_ego_factor,
+                             c.pace_mps,
+                             c.pace_over_ground_mps,
+                             c.pace_cell_m,
                              c.origin_weight,
                              c.origin_limit,
+                             c.origin_prior,
                              c.origin_memory_s,
                              s.share,
                              s.life_s,
@@ -69,10 +75,13 @@ std::vector<double> numbers(const Config& config) {
                              s.parent_existence,
                              s.side_lobe_range_std_m,
                              s.side_lobe_range_rate_std_mps,
+                             s.side_lobe_nearest_m,
                              s.side_lobe_chi2,
                              s.side_lobe_least_deviations,
                              s.ambiguity_share,
                              s.ambiguity_width_mps,
+                             s.wide_chi2,
+                             s.wide_prior,
                              s.side_lobe_birth,
                              k.acceleration_density,
                              k.rate_memory_s,
@@ -87,6 +96,7 @@ std::vector<double> numbers(const Config& config) {
                              p.prune_weight,
                              p.candidate_log,
                              p.merge_distance,
+                             p.join_existence,
                              p.min_existence,
                              p.min_poisson_weight,
                              static_cast<double>(p.work_budget),
@@ -97,6 +107,11 @@ std::vector<double> numbers(const Config& config) {
                              config.model.box.parallel_share,
                              config.model.box.parallel_std_rad,
                              config.model.box.known_heading_rad,
+                             config.model.box.contradiction_chi2,
+                             config.model.box.sure_speed_sigma,
+                             config.model.box.least_length_share,
+                             config.model.box.least_doubt,
+                             config.model.box.least_probability,
                              config.report.confirmed_existence,
                              config.report.hold_log_odds_per_s,
                              config.report.least_existence,
@@ -130,6 +145,30 @@ TEST(TrackerConfig, EveryKeyIsReadIntoItsPlace) {
   EXPECT_EQ(std::vector({c.measurements, c.objects, c.local_hypotheses, c.group_objects, c.group_measurements, c.rows,
                          c.candidates}),
             (std::vector<std::size_t>{100, 101, 102, 103, 104, 5, 106}));
+}
+
+TEST(TrackerConfig, ClutterTableIsRead) {
+  const auto tables = [](const Config& config) {
+    const ClutterParameters& c = config.model.clutter;
+    std::vector<double> all(c.table_range_edges_m.begin(), c.table_range_edges_m.end());
+    all.insert(all.end(), c.table_by_range.begin(), c.table_by_range.end());
+    all.insert(all.end(), c.table_rate_edges_mps.begin(), c.table_rate_edges_mps.end());
+    all.insert(all.end(), c.table_by_rate.begin(), c.table_by_rate.end());
+    return all;
+  };
+  EXPECT_EQ(tables(read_config(config::Reader::open(kShipped))), tables(Config{}));
+  const Config config = parsed(
+      "[clutter]\ntable_range_edges_m = [1, 2, 3, 4]\ntable_by_range = [0.5, 0.6, 0.7, 0.8, 0.9]\n"
+      "table_rate_edges_mps = [11, 12, 13, 14, 15, 16]\ntable_by_rate = [21, 22, 23, 24, 25, 26]\n");
+  EXPECT_EQ(tables(config),
+            (std::vector<double>{1, 2, 3, 4, 0.5, 0.6, 0.7, 0.8, 0.9, 11, 12, 13, 14, 15, 16, 21, 22, 23, 24, 25, 26}));
+}
+
+TEST(TrackerConfig, ClutterTableMustHaveEdgesThatIncrease) {
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_range_edges_m = [10, 25, 25, 75]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_range_edges_m = [10, 25, 75]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_rate_edges_mps = [1, 2, 5, 20, 10, 60]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\nleast_range_rate_mps = 1.0")), config::Error);
 }
 
 TEST(TrackerConfig, UnknownTrackerOrKeyIsRefused) {

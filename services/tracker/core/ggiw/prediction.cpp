@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "services/tracker/core/numeric.hpp"
+
 namespace boresight::tracking {
 
 namespace {
@@ -13,12 +15,6 @@ template <typename Real>
 constexpr Real kLogPi = Real(1.1447298858494001741434);
 template <typename Real>
 constexpr Real kLogTwoPi = Real(1.8378770664093454835607);
-/// Keeps the logarithm of a missed detection finite where the chance of no point underflows.
-template <typename Real>
-constexpr Real kLeastMissed = Real(1e-30);
-/// A likelihood ratio of sources beyond e^20 decides by itself.
-template <typename Real>
-constexpr Real kLogCertain = Real(20);
 
 /// log Γ(a + more) − log Γ(a) for a above 60: Stirling's series.
 template <typename Real>
@@ -94,7 +90,7 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
   // p(0 | seen) of the gamma-Poisson: (β / (β + exposure))^α
   log_none_ = rate_shape_ * (std::log(rate_inverse_scale_) - log_rate_step_);
   missed_ =
-      std::max(kLeastMissed<Real>, Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
+      std::max(Real(kLeastDensity), Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
   per_detection_ = (log_x - log_scatter) / Real(2) - kLogPi<Real>;
   constant_ = (extent_dof_ - Real(3)) / Real(2) * std::log(determinant(extent_scale_)) + log_scatter / Real(2) +
               std::log(std::max(detection_probability_, Real(1e-9)));
@@ -163,7 +159,7 @@ Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
 template <typename Real>
 Real Prediction<Real>::log_class_weight(const Cell<Real>& cell) {
   if (source_.object >= Real(1)) return 0;
-  const Real ratio = std::exp(std::min(kLogCertain<Real>, log_source_ratio(cell.n)));
+  const Real ratio = std::min(Real(1 / kLeastProbability), std::exp(log_source_ratio(cell.n)));
   return std::log(source_.object + source_.side_lobe * on_ring(cell) +
                   view_.source_seen *
                       (source_.lasting_source * std::min(Real(1), ratio) + source_.brief_source() * ratio));
@@ -302,7 +298,7 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
   out.mirror = prior.mirror + of_mirror * (cell.mirror / n - prior.mirror);
 
   if (source_.object < Real(1)) {
-    const Real ratio = view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(n)));
+    const Real ratio = view_.source_seen * std::min(Real(1 / kLeastProbability), std::exp(log_source_ratio(n)));
     const Real lobe = source_.side_lobe * on_ring(cell),
                lasting = source_.lasting_source * std::min(view_.source_seen, ratio);
     const Real sum = source_.object + lobe + lasting + source_.brief_source() * ratio;
@@ -335,8 +331,7 @@ Component<Real> Prediction<Real>::missed_component(const Component<Real>& prior)
   Component<Real> out = prior;
   // Not detected, or detected with no point: a mixture of two gammas by its moments.
   const Real share = detection_probability_ * std::exp(log_none_) / missed_;
-  constexpr Real kNegligible = Real(1e-3);
-  if (share <= kNegligible) return out;
+  if (share <= Real(0)) return out;
   const Real before = prior.rate_shape / prior.rate_inverse_scale;
   const Real scale = prior.rate_inverse_scale + view_.exposure, after = prior.rate_shape / scale;
   const Real mean = (Real(1) - share) * before + share * after;

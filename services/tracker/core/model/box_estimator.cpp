@@ -9,6 +9,7 @@
 #include "services/common/extended_object/detection_count.hpp"
 #include "services/common/extended_object/range_rate_model.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
@@ -16,8 +17,6 @@ namespace {
 
 using extended_object::kRoadUserClasses;
 using extended_object::ObjectClassModel;
-
-constexpr double kUnlikely = 1e-3;  // classes below it are not computed
 
 Eigen::Matrix2d rotation(double heading_rad) {
   const double c = std::cos(heading_rad), s = std::sin(heading_rad);
@@ -134,16 +133,16 @@ void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, doubl
   const double change_rad = geometry::wrap_angle(course_rad - m.heading_rad);
   // Successive courses share their errors: the surer one counts, they are not averaged. The later one knows more, where
   // they contradict each other.
-  constexpr double kContradiction = 9.0;
   if (variance < m.heading_variance_rad2 ||
-      change_rad * change_rad > kContradiction * (variance + m.heading_variance_rad2)) {
+      change_rad * change_rad > parameters_.contradiction_chi2 * (variance + m.heading_variance_rad2)) {
     if (std::abs(change_rad) > parameters_.known_heading_rad) m.has_point = false;
     m.heading_rad = course_rad;
     m.heading_variance_rad2 = variance;
   }
   const Vector2<double> along{o.velocity_mps.x / speed_mps, o.velocity_mps.y / speed_mps};
   m.largest_speed_mps =
-      std::max(m.largest_speed_mps, speed_mps - 2.0 * std::sqrt(quadratic(o.velocity_covariance, along)));
+      std::max(m.largest_speed_mps,
+               speed_mps - parameters_.sure_speed_sigma * std::sqrt(quadratic(o.velocity_covariance, along)));
 }
 
 void BoxEstimator::weigh_classes(BoxMemory& m) const {
@@ -155,9 +154,9 @@ void BoxEstimator::weigh_classes(BoxMemory& m) const {
     const auto density = [speed](double sigma) {
       return std::exp(-0.5 * speed * speed / (sigma * sigma)) / (sigma * sigma);
     };
-    constexpr double kLeast = 1e-30;
-    const double of_speed = std::log(kLeast + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
-                                     c.motion.slow_share * density(c.motion.slow_speed_std_mps));
+    const double of_speed =
+        std::log(kLeastDensity + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
+                 c.motion.slow_share * density(c.motion.slow_speed_std_mps));
     const double over = std::max(0.0, speed - c.motion.largest_speed_mps);
     m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence;
     best = std::max(best, m.probability[k]);
@@ -175,7 +174,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
   const Eigen::Vector2d facing = to_box * Eigen::Vector2d(std::cos(from.facing_rad), std::sin(from.facing_rad));
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     // The tracked point is chosen for all classes at once.
-    if (m.probability[k] < kUnlikely && m.has_point) continue;
+    if (m.probability[k] < parameters_.least_probability && m.has_point) continue;
     const ClassBox& box = m.classes[k];
     const ObjectClassModel& model = table_[k];
     ClassView& v = views[k];
@@ -183,8 +182,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
     const Eigen::Vector2d sensor_box = sensor + box.point_m;
     v.reflections = extended_object::reflection_moments(model.places, box.length_m, model.size.width_mean_m, sensor_box,
                                                         {}, 1.0, {facing, from.half_view_rad, from.view_edge_rad});
-    constexpr double kNearest_m = 0.1;
-    const double range_m = std::max(kNearest_m, sensor_box.norm());
+    const double range_m = std::max(kLeastRange_m, sensor_box.norm());
     v.to_sensor = sensor_box / range_m;
     v.expected_detections =
         v.reflections.share_in_view * extended_object::expected_detections(model.count, range_m, v.to_sensor);
@@ -232,15 +230,14 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
   box.tracked_by_length_m2 = (Eigen::Matrix2d::Identity() - point_gain) * (c - (p + c * g.transpose()) * gain) -
                              point_gain * g * (variance - by_length.dot(gain)) + point_gain * r * gain;
   const double before_m = box.length_m;
-  box.length_m = std::max(0.3 * model.size.length_mean_m, before_m + gain.dot(e));
+  box.length_m = std::max(parameters_.least_length_share * model.size.length_mean_m, before_m + gain.dot(e));
   box.point_m += (box.length_m - before_m) * box.point_by_length;
   // The object's own depth lasts: no number of scans averages it away.
   const double by_depth =
       model.places.lasting_std_m * (v.to_sensor - to_sensor_of_point).dot(g) / std::max(1e-9, g.squaredNorm());
   box.length_variance_m2 = std::min(variance, std::max(variance - by_length.dot(gain), by_depth * by_depth));
 
-  constexpr double kPair = 1.5;
-  if (n > kPair) {
+  if (n > 1.0) {
     const Eigen::Matrix2d scatter = to_local.transpose() * eigen(scan.scatter) * to_local;
     const Eigen::Matrix2d expected = (1.0 - common) * v.reflections.scatter_m2 + noise;
     const double dof = n - 1.0;
@@ -333,9 +330,9 @@ void BoxEstimator::add_part(BoxMemory& m, const Vector2<double>& from_point_m,
                             const Symmetric2<double>& covariance_m2) const {
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     ClassBox& c = m.classes[k];
-    constexpr double kLeast = 1e-4;
-    c.log_evidence += std::log(std::max(kLeast, inside(m, k, from_point_m, covariance_m2, {0.0, 0.0})) /
-                               (c.length_m * table_[k].size.width_mean_m));
+    c.log_evidence +=
+        std::log(std::max(parameters_.least_doubt, inside(m, k, from_point_m, covariance_m2, {0.0, 0.0})) /
+                 (c.length_m * table_[k].size.width_mean_m));
   }
   weigh_classes(m);
 }
@@ -343,8 +340,8 @@ void BoxEstimator::add_part(BoxMemory& m, const Vector2<double>& from_point_m,
 Box BoxEstimator::box(const BoxMemory& m, const Component<double>& o, const Vector2<double>& sensor_m) const {
   Box out;
   out.heading_rad = m.heading_rad;
-  constexpr double kUniform = std::numbers::pi * std::numbers::pi / 3.0;
-  out.heading_variance_rad2 = std::min(m.heading_variance_rad2, kUniform);
+  // No less is known than that every heading is alike.
+  out.heading_variance_rad2 = std::min(m.heading_variance_rad2, std::numbers::pi * std::numbers::pi / 3.0);
   const Eigen::Vector2d p = eigen(o.position_m);
   // From the tracked point to the centre, and its covariance.
   std::array<Eigen::Vector2d, kRoadUserClasses> way;

@@ -1,16 +1,14 @@
 // Places that objects take, and objects that are parts of one.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
 namespace {
-
-constexpr double kFar_m = 30.0;  // farther apart, no two places are of one road user
 
 /// log of a normal density.
 double log_density(const Vector2<double>& e, const Symmetric2<double>& covariance) {
@@ -25,17 +23,15 @@ double RadarModel::taken_by(std::uint32_t label, const Vector2<double>& position
                             const Vector2<double>& place_m) const {
   const BirthParameters& b = parameters_.birth;
   const Vector2<double> d = place_m - position_m;
-  if (squared_norm(d) > kFar_m * kFar_m) return 0.0;
   const BoxMemory* object = memory(label);
   if (object == nullptr || !object->has_point) {
     const double r2 = squared_norm(d) / (b.person_m * b.person_m);
-    return std::exp(-0.7 * r2 * r2);
+    return std::exp(-std::numbers::ln2 * r2 * r2);
   }
   double taken = 0.0;
   const double headway_m = b.headway_s * speed_mps;
   for (std::size_t k = 0; k < object->probability.size(); ++k) {
-    constexpr double kUnlikely = 0.01;
-    if (object->probability[k] < kUnlikely) continue;
+    if (object->probability[k] < parameters_.box.least_probability) continue;
     const auto within = [&](double along_m) {
       return boxes_.estimator().inside(*object, k, d, covariance_m2, {along_m, b.gap_across_m});
     };
@@ -46,27 +42,25 @@ double RadarModel::taken_by(std::uint32_t label, const Vector2<double>& position
 }
 
 double RadarModel::log_odds_of_part(const Component<double>& whole, const Component<double>& part) {
-  constexpr double kNever = -std::numeric_limits<double>::infinity();
   const BirthParameters& b = parameters_.birth;
   const Vector2<double> d = part.position_m - whole.position_m;
-  if (squared_norm(d) > kFar_m * kFar_m) return kNever;
+  if (squared_norm(d) > reach_m_ * reach_m_) return -kInfinity;
   const BoxMemory *of_whole = memory(whole.label), *of_part = memory(part.label);
-  if (of_whole == nullptr || of_part == nullptr || !of_whole->has_point || !of_part->has_point) return kNever;
+  if (of_whole == nullptr || of_part == nullptr || !of_whole->has_point || !of_part->has_point) return -kInfinity;
   const BoxEstimator& boxes = boxes_.estimator();
   const Symmetric2<double> covariance = whole.position_covariance + part.position_covariance;
   double one = 0.0, apart = 0.0;
   const double headway_m = b.headway_s * std::sqrt(squared_norm(whole.velocity_mps));
   for (std::size_t k = 0; k < of_whole->probability.size(); ++k) {
     const double p = of_whole->probability[k];
-    constexpr double kUnlikely = 1e-3;
-    if (p < kUnlikely) continue;
+    if (p < parameters_.box.least_probability) continue;
     // Reflections anywhere in the box; two objects do not overlap.
     const auto& size = boxes.table()[k].size;
     one +=
         p * boxes.inside(*of_whole, k, d, covariance, {0.0, 0.0}) / (of_whole->classes[k].length_m * size.width_mean_m);
     for (std::size_t l = 0; l < of_part->probability.size(); ++l) {
       const double q = of_part->probability[l];
-      if (q < kUnlikely) continue;
+      if (q < parameters_.box.least_probability) continue;
       const ClassBox& other = of_part->classes[l];
       const double c = std::cos(of_part->heading_rad), s = std::sin(of_part->heading_rad);
       const Vector2<double> centre = {d.x - c * other.point_m.x() + s * other.point_m.y(),
@@ -80,11 +74,10 @@ double RadarModel::log_odds_of_part(const Component<double>& whole, const Compon
       apart += p * q * (1.0 - (1.0 - b.close_share) * overlap(headway_m) - b.close_share * overlap(0.0));
     }
   }
-  constexpr double kLeastApart = 1e-3;  // boxes are not that sure
   const Vector2<double> dv = part.velocity_mps - whole.velocity_mps;
   const Symmetric2<double> cv = whole.velocity_covariance + part.velocity_covariance;
   const double between = b.neighbour_speed_std_mps * b.neighbour_speed_std_mps;
-  return std::log(one) + log_density(dv, cv) - std::log(std::max(kLeastApart, apart)) -
+  return std::log(one) + log_density(dv, cv) - std::log(std::max(parameters_.box.least_doubt, apart)) -
          std::log(b.neighbour_density_per_m2) - log_density(dv, cv + Symmetric2<double>{between, 0.0, between}) -
          std::log(b.part_odds);
 }

@@ -6,6 +6,7 @@
 
 #include "services/common/geometry/frames.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
@@ -63,8 +64,7 @@ View<double> RadarModel::view(const Component<double>& c) const {
   View<double> v;
   if (radar_ == nullptr) return v;
   const DetectionParameters& p = parameters_.detection;
-  constexpr double kNearest_m = 0.5;
-  const auto range_of = [&](const Vector2<double>& d) { return std::max(kNearest_m, std::sqrt(squared_norm(d))); };
+  const auto range_of = [&](const Vector2<double>& d) { return std::max(kLeastRange_m, std::sqrt(squared_norm(d))); };
   const Vector2<double> to_point = c.position_m - sensor_m_;
   v.noise_m2 = noise_at((1.0 / range_of(to_point)) * to_point, range_of(to_point));
   v.spread = p.spread;
@@ -73,12 +73,11 @@ View<double> RadarModel::view(const Component<double>& c) const {
   v.source_seen = c.source.radar >= 0 && c.source.radar != radar_index_ ? parameters_.source.other_radar : 1.0;
   v.range_rate_variance =
       radar_->range_rate_std_mps * radar_->range_rate_std_mps + p.body_range_rate_std_mps * p.body_range_rate_std_mps;
-  const double share = read_box(c, v);
+  const std::optional<double> share = read_box(c, v);
   v.detection_probability = p.detection_probability;
-  if (share >= 0.0) {
+  if (share.has_value()) {
     // Of what is out of view there are no detections: their number says it.
-    constexpr double kLeastShare = 1e-3;
-    v.exposure = std::max(kLeastShare, share);
+    v.exposure = std::max(kLeastProbability, *share);
   } else {
     v.detection_probability *= in_view(c);
   }
@@ -94,10 +93,9 @@ View<double> RadarModel::view(const Component<double>& c) const {
   return v;
 }
 
-double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
-  constexpr double kUnknown = -1.0;
+std::optional<double> RadarModel::read_box(const Component<double>& c, View<double>& v) const {
   const ObjectBoxes::Record* object = c.label == 0 ? nullptr : boxes_.see(c, v.noise_m2);
-  if (object == nullptr || !boxes_.estimator().knows_heading(object->memory)) return kUnknown;
+  if (object == nullptr || !boxes_.estimator().knows_heading(object->memory)) return std::nullopt;
   const double cosine = std::cos(object->memory.heading_rad), sine = std::sin(object->memory.heading_rad);
   const auto to_local = [&](const Eigen::Vector2d& b) {
     return Vector2<double>{cosine * b.x() - sine * b.y(), sine * b.x() + cosine * b.y()};
@@ -108,7 +106,7 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
   // Classes of about a car's size are one reading by its moments. A truck is two: its detections come from one spot or
   // from all over it.
   constexpr auto kLong = static_cast<std::size_t>(extended_object::RoadUserClass::kTruck);
-  constexpr double kUnlikely = 0.01;
+  const double least = parameters_.box.least_probability;
   Reading<double> shorter{0.0, {}, {}, false, {}};
   double share = 0.0, rate_variance = 0.0, sum = 0.0;
   for (std::size_t k = 0; k < object->views.size(); ++k) {
@@ -120,11 +118,10 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
     shorter.weight += by_class.probability;
     shorter.offset_m = shorter.offset_m + by_class.probability * to_local(by_class.offset_m);
   }
-  if (sum <= 0.0) return kUnknown;
+  if (sum <= 0.0) return std::nullopt;
   const ClassView& longer = object->views[kLong];
-  const bool is_long_only = shorter.weight <= kUnlikely;
-  const double all =
-      (is_long_only ? 0.0 : shorter.weight) + (longer.probability > kUnlikely ? longer.probability : 0.0);
+  const bool is_long_only = shorter.weight <= least;
+  const double all = (is_long_only ? 0.0 : shorter.weight) + (longer.probability > least ? longer.probability : 0.0);
   v.number_of_readings = 0;
   if (!is_long_only) {
     shorter.offset_m = (1.0 / shorter.weight) * shorter.offset_m;
@@ -139,7 +136,7 @@ double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
     shorter.weight /= all;
     v.readings[v.number_of_readings++] = shorter;
   }
-  if (longer.probability > kUnlikely) {
+  if (longer.probability > least) {
     const Vector2<double> offset = to_local(longer.offset_m);
     const Symmetric2<double> covariance = covariance_to_local(longer.offset_covariance_m2),
                              scatter = covariance_to_local(longer.reflections.scatter_m2);
