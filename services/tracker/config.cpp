@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 
+#include "services/common/runtime/config/object_classes_file.hpp"
 #include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight::tracking {
@@ -179,6 +180,12 @@ Config read_config(config::Reader root) {
                               {"least_existence", &r.least_existence, {0.001, 0.5}},
                               {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}}});
   root.finish();
+  return c;
+}
+
+Config read_config(const runtime::Configuration& files) {
+  Config c = read_config(config::Reader::open(files.service_file("tracker")));
+  c.model.classes = config::read_object_classes(config::Reader::open(files.service_file("object_classes")));
   return c;
 }
 

@@ -2,6 +2,7 @@
 #include "services/tracker/config.hpp"
 
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -169,6 +170,22 @@ TEST(TrackerConfig, ClutterTableMustHaveEdgesThatIncrease) {
   EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_range_edges_m = [10, 25, 75]")), config::Error);
   EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_rate_edges_mps = [1, 2, 5, 20, 10, 60]")), config::Error);
   EXPECT_THROW(static_cast<void>(parsed("[clutter]\nleast_range_rate_mps = 1.0")), config::Error);
+}
+
+TEST(TrackerConfig, ClassesComeFromTheirOwnFile) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tracker_config";
+  std::filesystem::create_directories(folder / "services");
+  std::ofstream(folder / "services/tracker.toml") << "[report]\nstopped_speed_mps = 0.7\n";
+  std::ofstream(folder / "services/object_classes.toml") << "[size]\nlength_mean_m = [1, 2, 4, 6, 12]\n";
+  runtime::Configuration files;
+  files.directory = folder;
+  const Config config = read_config(files);
+  EXPECT_EQ(config.report.stopped_speed_mps, 0.7);
+  EXPECT_EQ(config.model.classes.back().size.length_mean_m, 12.0);
+  EXPECT_EQ(config.model.classes.back().size.width_mean_m, Config{}.model.classes.back().size.width_mean_m);
+  std::filesystem::remove(folder / "services/object_classes.toml");
+  EXPECT_THROW(static_cast<void>(read_config(files)), config::Error);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(TrackerConfig, UnknownTrackerOrKeyIsRefused) {

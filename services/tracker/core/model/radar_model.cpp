@@ -29,10 +29,9 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
 }
 
 RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
-    : parameters_(parameters),
-      boxes_(BoxEstimator(extended_object::object_class_table_defaults(), parameters.box), max_objects) {
+    : parameters_(parameters), boxes_(BoxEstimator(parameters.classes, parameters.box), max_objects) {
   // One in a thousand is longer than the mean by more than three deviations.
-  for (const auto& c : boxes_.estimator().table()) {
+  for (const auto& c : parameters.classes) {
     reach_m_ = std::max(reach_m_, c.size.length_mean_m + 3.0 * c.size.length_std_m);
   }
   for (const RadarConfig& r : vehicle.radars) {

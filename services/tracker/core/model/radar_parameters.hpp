@@ -95,6 +95,7 @@ struct RadarModelParameters {
   ClutterParameters clutter;
   SourceParameters source;
   BoxParameters box;
+  extended_object::ObjectClassTable classes = extended_object::object_class_table_defaults();
   MotionParameters motion{2.0, 1.0, 1.0, 2.0, 8.0};
   double object_life_s = 8.0;  ///< mean time that an object stays in the scene
   double longest_gap_s = 2.0;  ///< after a longer one all tracks are dropped
