@@ -31,7 +31,7 @@ void read_array(config::Reader& table, std::string_view key, config::Range allow
 
 void read_clutter(config::Reader table, ClutterParameters& c) {
   read(table, {{"memory_s", &c.memory_s, {0.1, 100.0}},
-               {"table_scans", &c.table_scans, {0.0, 1000.0}},
+               {"table_scans", &c.table_scans, {0.01, 1000.0}},
                {"least_range_rate_mps", &c.least_range_rate_mps, {0.0, 5.0}},
                {"with_ego_factor", &c.with_ego_factor, {0.01, 1000.0}},
                {"pace_mps", &c.pace_mps, {0.01, 10.0}},

@@ -56,23 +56,23 @@ double log_normal(const Eigen::Vector2d& e, const Eigen::Matrix2d& covariance) {
 BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const BoxParameters& parameters)
     : table_(table), parameters_(parameters) {
   constexpr double kAfar_m = 1e3;
-  constexpr int kHeadings = 16;
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     AnyHeading& any = any_heading_[k];
     const auto& size = table_[k].size;
-    std::array<Eigen::Vector2d, kHeadings> middle;
-    for (int i = 0; i < kHeadings; ++i) {
+    std::array<Eigen::Vector2d, 16> middle;  // of each of so many headings
+    const auto headings = static_cast<double>(middle.size());
+    for (std::size_t i = 0; i < middle.size(); ++i) {
       // In axes along the line of sight: to the sensor, and across.
-      const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * i / kHeadings);
+      const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * static_cast<double>(i) / headings);
       const auto moments = extended_object::reflection_moments(table_[k].places, size.length_mean_m, size.width_mean_m,
                                                                to_box * Eigen::Vector2d(kAfar_m, 0.0), {}, 1.0);
-      middle[static_cast<std::size_t>(i)] = to_box.transpose() * moments.mean_m;
-      any.depth_m += middle[static_cast<std::size_t>(i)].x() / kHeadings;
-      any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / kHeadings;
+      middle[i] = to_box.transpose() * moments.mean_m;
+      any.depth_m += middle[i].x() / headings;
+      any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / headings;
     }
     for (const Eigen::Vector2d& m : middle) {
-      any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / kHeadings;
-      any.across_m2 += m.y() * m.y() / kHeadings;
+      any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / headings;
+      any.across_m2 += m.y() * m.y() / headings;
     }
   }
 }

@@ -35,7 +35,8 @@ class ClutterMap {
  private:
   // Cells: ranges and range rates of both signs as the table has them, and sectors.
   static constexpr std::size_t kRanges = std::tuple_size_v<decltype(ClutterParameters::table_by_range)>;
-  static constexpr std::size_t kRates = 2 * std::tuple_size_v<decltype(ClutterParameters::table_by_rate)>;
+  static constexpr std::size_t kOneWayRates = std::tuple_size_v<decltype(ClutterParameters::table_by_rate)>;
+  static constexpr std::size_t kRates = kOneWayRates + kOneWayRates;
   static constexpr std::size_t kSectors = 7, kPaceRanges = 10, kPaceSectors = 15;
   /// Edges of the table, from the nearest range and the largest range rate of approach on.
   [[nodiscard]] double range_edge_m(std::size_t edge) const;
