@@ -1,5 +1,10 @@
 #include "services/tracker/config.hpp"
 
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "services/common/runtime/config/object_classes_file.hpp"
 #include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight::tracking {
@@ -15,6 +20,41 @@ struct Number {
 
 void read(config::Reader table, std::initializer_list<Number> numbers) {
   for (const Number& n : numbers) *n.value = table.number(n.key, n.allowed, *n.value);
+}
+
+/// An array of numbers under one key.
+template <std::size_t kSize>
+void read_array(config::Reader& table, std::string_view key, config::Range allowed, std::array<double, kSize>& values) {
+  const std::vector<double> read = table.numbers(key, kSize, allowed, {values.begin(), values.end()});
+  std::copy(read.begin(), read.end(), values.begin());
+}
+
+void read_clutter(config::Reader table, ClutterParameters& c) {
+  read(table, {{"memory_s", &c.memory_s, {0.1, 100.0}},
+               {"table_scans", &c.table_scans, {0.01, 1000.0}},
+               {"least_range_rate_mps", &c.least_range_rate_mps, {0.0, 5.0}},
+               {"with_ego_factor", &c.with_ego_factor, {0.01, 1000.0}},
+               {"pace_mps", &c.pace_mps, {0.01, 10.0}},
+               {"pace_over_ground_mps", &c.pace_over_ground_mps, {0.0, 20.0}},
+               {"pace_cell_m", &c.pace_cell_m, {1.0, 100.0}},
+               {"origin_weight", &c.origin_weight, {0.0, 2.0}},
+               {"origin_limit", &c.origin_limit, {0.0, 20.0}},
+               {"origin_prior", &c.origin_prior, {0.001, 0.999}},
+               {"origin_memory_s", &c.origin_memory_s, {0.1, 1000.0}}});
+  read_array(table, "table_range_edges_m", {1.0, 1000.0}, c.table_range_edges_m);
+  read_array(table, "table_by_range", {1e-12, 1.0}, c.table_by_range);
+  read_array(table, "table_rate_edges_mps", {0.1, 200.0}, c.table_rate_edges_mps);
+  read_array(table, "table_by_rate", {1e-3, 1e3}, c.table_by_rate);
+  const auto increases = [&table](std::string_view key, const auto& edges) {
+    if (std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) != edges.end()) {
+      table.reject(key, "each edge must be greater than the one before");
+    }
+  };
+  increases("table_range_edges_m", c.table_range_edges_m);
+  increases("table_rate_edges_mps", c.table_rate_edges_mps);
+  if (c.least_range_rate_mps >= c.table_rate_edges_mps.front()) {
+    table.reject("least_range_rate_mps", "must be below the first of table_rate_edges_mps");
+  }
 }
 
 void read_model(config::Reader& root, RadarModelParameters& m) {
@@ -41,6 +81,7 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                              {"traffic_density_per_m2", &b.traffic.density_per_m2, {1e-12, 1.0}},
                              {"traffic_speed_std_mps", &b.traffic.speed_std_mps, {0.1, 100.0}},
                              {"half_length_m", &b.half_length_m, {0.1, 10.0}},
+                             {"place_std_m", &b.place_std_m, {5.0, 1000.0}},
                              {"extent_dof", &b.extent_dof, {6.5, 100.0}},
                              {"gap_along_m", &b.gap_along_m, {0.0, 10.0}},
                              {"gap_across_m", &b.gap_across_m, {0.0, 5.0}},
@@ -48,18 +89,13 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                              {"close_share", &b.close_share, {1e-3, 1.0}},
                              {"person_m", &b.person_m, {0.05, 5.0}},
                              {"neighbour_density_per_m2", &b.neighbour_density_per_m2, {1e-9, 1.0}},
+                             {"company_density_per_m2", &b.company_density_per_m2, {1e-9, 10.0}},
                              {"neighbour_speed_std_mps", &b.neighbour_speed_std_mps, {0.1, 20.0}},
                              {"part_odds", &b.part_odds, {1e-3, 1e6}},
                              {"same_speed_chi2", &b.same_speed_chi2, {0.1, 100.0}},
                              {"link_distance_m", &b.link_distance_m, {0.1, 20.0}},
                              {"link_range_rate_mps", &b.link_range_rate_mps, {0.01, 20.0}}});
-  ClutterParameters& c = m.clutter;
-  read(root.table("clutter"), {{"memory_s", &c.memory_s, {0.1, 100.0}},
-                               {"table_scans", &c.table_scans, {0.0, 1000.0}},
-                               {"with_ego_factor", &c.with_ego_factor, {0.01, 1000.0}},
-                               {"origin_weight", &c.origin_weight, {0.0, 2.0}},
-                               {"origin_limit", &c.origin_limit, {0.0, 20.0}},
-                               {"origin_memory_s", &c.origin_memory_s, {0.1, 1000.0}}});
+  read_clutter(root.table("clutter"), m.clutter);
   SourceParameters& s = m.source;
   read(root.table("source"), {{"share", &s.share, {0.0, 1.0}},
                               {"life_s", &s.life_s, {0.01, 10.0}},
@@ -71,10 +107,13 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"parent_existence", &s.parent_existence, {0.0, 1.0}},
                               {"side_lobe_range_std_m", &s.side_lobe_range_std_m, {0.01, 20.0}},
                               {"side_lobe_range_rate_std_mps", &s.side_lobe_range_rate_std_mps, {0.01, 10.0}},
+                              {"side_lobe_nearest_m", &s.side_lobe_nearest_m, {0.1, 20.0}},
                               {"side_lobe_chi2", &s.side_lobe_chi2, {0.1, 100.0}},
                               {"side_lobe_least_deviations", &s.side_lobe_least_deviations, {0.0, 20.0}},
                               {"ambiguity_share", &s.ambiguity_share, {0.0, 1.0}},
                               {"ambiguity_width_mps", &s.ambiguity_width_mps, {1.0, 1000.0}},
+                              {"wide_chi2", &s.wide_chi2, {0.1, 100.0}},
+                              {"wide_prior", &s.wide_prior, {0.01, 1000.0}},
                               {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}}});
   MotionParameters& k = m.motion;
   read(root.table("motion"), {{"acceleration_density_m2ps3", &k.acceleration_density, {1e-4, 100.0}},
@@ -93,6 +132,7 @@ void read_search(config::Reader table, pmbm::Parameters& p) {
                {"prune_weight", &p.prune_weight, {1e-9, 0.1}},
                {"candidate_log", &p.candidate_log, {0.0, 30.0}},
                {"merge_distance", &p.merge_distance, {0.0, 100.0}},
+               {"join_existence", &p.join_existence, {0.01, 0.999}},
                {"min_existence", &p.min_existence, {1e-6, 0.5}},
                {"min_poisson_weight", &p.min_poisson_weight, {1e-9, 0.5}}});
   p.work_budget =
@@ -133,13 +173,24 @@ Config read_config(config::Reader root) {
                            {"turn_held_factor", &x.turn.held_factor, {0.0, 1000.0}},
                            {"parallel_share", &x.parallel_share, {0.0, 0.5}},
                            {"parallel_std_rad", &x.parallel_std_rad, {0.001, 3.0}},
-                           {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}}});
+                           {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}},
+                           {"contradiction_chi2", &x.contradiction_chi2, {0.1, 100.0}},
+                           {"sure_speed_sigma", &x.sure_speed_sigma, {0.0, 10.0}},
+                           {"least_length_share", &x.least_length_share, {0.01, 1.0}},
+                           {"least_doubt", &x.least_doubt, {1e-9, 0.5}},
+                           {"least_probability", &x.least_probability, {1e-6, 0.1}}});
   ReportParameters& r = c.report;
   read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
                               {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},
                               {"least_existence", &r.least_existence, {0.001, 0.5}},
                               {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}}});
   root.finish();
+  return c;
+}
+
+Config read_config(const runtime::Configuration& files) {
+  Config c = read_config(config::Reader::open(files.service_file("tracker")));
+  c.model.classes = config::read_object_classes(config::Reader::open(files.service_file("object_classes")));
   return c;
 }
 

@@ -35,10 +35,10 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Confi
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runtime::service_main(
-      catalogue::Service::kTracker, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
-        const VehicleConfig vehicle = files.vehicle();
-        const tracking::Config config = tracking::read_config(config::Reader::open(files.service_file("tracker")));
-        return [vehicle, config](runtime::Node& node) { return run(node, vehicle, config); };
-      });
+  return runtime::service_main(catalogue::Service::kTracker, argc, argv,
+                               [](const runtime::Configuration& files) -> runtime::Run {
+                                 const VehicleConfig vehicle = files.vehicle();
+                                 const tracking::Config config = tracking::read_config(files);
+                                 return [vehicle, config](runtime::Node& node) { return run(node, vehicle, config); };
+                               });
 }

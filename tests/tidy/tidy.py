@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import citations
+import constants
 import words
 
 ALLOWED_TOP_LEVEL = {"CMakeLists.txt", "services", "interfaces", "deploy", "tests", "config", "docs", "README.md",
@@ -132,7 +133,7 @@ def check_format(root, files):
 
 
 CHECKS = (check_top_level, check_purity, check_units, check_text, check_rooms, check_format, words.findings,
-          citations.findings)
+          citations.findings, constants.findings)
 
 
 def violations(root):

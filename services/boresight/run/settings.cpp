@@ -13,14 +13,14 @@ Settings read_settings(const runtime::Configuration& configuration) {
   return {.estimator = alignment::read_settings(open("alignment_estimator")).estimator,
           .corrector = corrector::read_config(open("detection_corrector")),
           .ghosts = ghosts::read_config(open("ghost_filter")),
-          .tracker = tracking::read_config(open("tracker")),
+          .tracker = tracking::read_config(configuration),
           .health = health::read_config(open("health")).supervision};
 }
 
 std::vector<std::pair<std::string, std::string>> settings_files(const runtime::Configuration& configuration) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const char* const service :
-       {"alignment_estimator", "detection_corrector", "ghost_filter", "tracker", "health"}) {
+       {"alignment_estimator", "detection_corrector", "ghost_filter", "tracker", "object_classes", "health"}) {
     files.emplace_back(service, configuration.service_file(service).string());
   }
   return files;

@@ -13,7 +13,7 @@ namespace boresight::run {
 /// Throws config::Error.
 [[nodiscard]] Settings read_settings(const runtime::Configuration& configuration);
 
-/// Service and file of each.
+/// Name and file of each: the services, and the classes of objects that they share.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings_files(
     const runtime::Configuration& configuration);
 

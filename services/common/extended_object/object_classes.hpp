@@ -1,10 +1,11 @@
 // What a road user of a class is like, before and as a radar detects it: the single table of numbers for tracker, ghost
-// filter and judge. The values and their origin stand in object_classes.cpp.
+// filter and judge. The shipped values and their origin stand in config/services/object_classes.toml.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace boresight::extended_object {
@@ -82,10 +83,19 @@ using ObjectClassTable = std::array<ObjectClassModel, kRoadUserClasses>;
   return table[static_cast<std::size_t>(c)];
 }
 
-/// "pedestrian", "two_wheeler", "car", "van", "truck": also the names of tables in configuration files.
+/// "pedestrian", "two_wheeler", "car", "van", "truck": the order of values in configuration files.
 [[nodiscard]] std::string_view name_of(RoadUserClass c);
 
-/// The table that the product ships. Configuration replaces single values of it.
+/// One number of the table, as configuration names it.
+struct ObjectClassField {
+  std::string_view section, key;  ///< no section: at the top. Fields of a section stand together
+  double least, greatest;         ///< allowed values
+  std::array<double, kRoadUserClasses> defaults;
+  double& (*value_of)(ObjectClassModel& model);
+};
+[[nodiscard]] std::span<const ObjectClassField> object_class_fields();
+
+/// The table that the product ships.
 [[nodiscard]] ObjectClassTable object_class_table_defaults();
 
 }  // namespace boresight::extended_object

@@ -40,7 +40,7 @@ std::unique_ptr<MultiObjectTracker> make_scenario_tracker(std::string_view name,
   config.pmbm = {};                  // what is learnt of radars does not hold here
   config.pmbm.merge_distance = 4.0;  // of targets with ten detections a scan; choice: 3 … 6 are alike
   return std::make_unique<PointProcessTracker>(std::make_unique<ScenarioModel>(scenario), make_filter(name, config),
-                                               std::make_unique<EllipseReporter>());
+                                               std::make_unique<EllipseReporter>(scenario.confirmed_existence));
 }
 
 }  // namespace boresight::tracking

@@ -40,7 +40,7 @@ TEST(ObjectClassTable, LargerClassesAreLongerAndDetectedMoreOften) {
   }
 }
 
-TEST(ObjectClassTable, NamesAreThoseOfConfigurationTables) {
+TEST(ObjectClassTable, NamesAreInTheOrderOfConfigurationFiles) {
   EXPECT_EQ(name_of(RoadUserClass::kPedestrian), "pedestrian");
   EXPECT_EQ(name_of(RoadUserClass::kTwoWheeler), "two_wheeler");
   EXPECT_EQ(name_of(RoadUserClass::kTruck), "truck");

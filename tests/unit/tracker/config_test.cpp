@@ -2,6 +2,7 @@
 #include "services/tracker/config.hpp"
 
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +43,7 @@ std::vector<double> numbers(const Config& config) {
                              b.traffic.density_per_m2,
                              b.traffic.speed_std_mps,
                              b.half_length_m,
+                             b.place_std_m,
                              b.extent_dof,
                              b.gap_along_m,
                              b.gap_across_m,
@@ -49,6 +51,7 @@ std::vector<double> numbers(const Config& config) {
                              b.close_share,
                              b.person_m,
                              b.neighbour_density_per_m2,
+                             b.company_density_per_m2,
                              b.neighbour_speed_std_mps,
                              b.part_odds,
                              b.same_speed_chi2,
@@ -56,9 +59,14 @@ std::vector<double> numbers(const Config& config) {
                              b.link_range_rate_mps,
                              c.memory_s,
                              c.table_scans,
+                             c.least_range_rate_mps,
                              c.with_ego_factor,
+                             c.pace_mps,
+                             c.pace_over_ground_mps,
+                             c.pace_cell_m,
                              c.origin_weight,
                              c.origin_limit,
+                             c.origin_prior,
                              c.origin_memory_s,
                              s.share,
                              s.life_s,
@@ -69,11 +77,14 @@ std::vector<double> numbers(const Config& config) {
                              s.parent_existence,
                              s.side_lobe_range_std_m,
                              s.side_lobe_range_rate_std_mps,
+                             s.side_lobe_nearest_m,
                              s.side_lobe_chi2,
                              s.side_lobe_least_deviations,
                              s.wander_m,
                              s.ambiguity_share,
                              s.ambiguity_width_mps,
+                             s.wide_chi2,
+                             s.wide_prior,
                              s.side_lobe_birth,
                              k.acceleration_density,
                              k.rate_memory_s,
@@ -88,6 +99,7 @@ std::vector<double> numbers(const Config& config) {
                              p.prune_weight,
                              p.candidate_log,
                              p.merge_distance,
+                             p.join_existence,
                              p.min_existence,
                              p.min_poisson_weight,
                              static_cast<double>(p.work_budget),
@@ -101,6 +113,11 @@ std::vector<double> numbers(const Config& config) {
                              config.model.box.parallel_share,
                              config.model.box.parallel_std_rad,
                              config.model.box.known_heading_rad,
+                             config.model.box.contradiction_chi2,
+                             config.model.box.sure_speed_sigma,
+                             config.model.box.least_length_share,
+                             config.model.box.least_doubt,
+                             config.model.box.least_probability,
                              config.report.confirmed_existence,
                              config.report.hold_log_odds_per_s,
                              config.report.least_existence,
@@ -134,6 +151,46 @@ TEST(TrackerConfig, EveryKeyIsReadIntoItsPlace) {
   EXPECT_EQ(std::vector({c.measurements, c.objects, c.local_hypotheses, c.group_objects, c.group_measurements, c.rows,
                          c.candidates}),
             (std::vector<std::size_t>{100, 101, 102, 103, 104, 5, 106}));
+}
+
+TEST(TrackerConfig, ClutterTableIsRead) {
+  const auto tables = [](const Config& config) {
+    const ClutterParameters& c = config.model.clutter;
+    std::vector<double> all(c.table_range_edges_m.begin(), c.table_range_edges_m.end());
+    all.insert(all.end(), c.table_by_range.begin(), c.table_by_range.end());
+    all.insert(all.end(), c.table_rate_edges_mps.begin(), c.table_rate_edges_mps.end());
+    all.insert(all.end(), c.table_by_rate.begin(), c.table_by_rate.end());
+    return all;
+  };
+  EXPECT_EQ(tables(read_config(config::Reader::open(kShipped))), tables(Config{}));
+  const Config config = parsed(
+      "[clutter]\ntable_range_edges_m = [1, 2, 3, 4]\ntable_by_range = [0.5, 0.6, 0.7, 0.8, 0.9]\n"
+      "table_rate_edges_mps = [11, 12, 13, 14, 15, 16]\ntable_by_rate = [21, 22, 23, 24, 25, 26]\n");
+  EXPECT_EQ(tables(config),
+            (std::vector<double>{1, 2, 3, 4, 0.5, 0.6, 0.7, 0.8, 0.9, 11, 12, 13, 14, 15, 16, 21, 22, 23, 24, 25, 26}));
+}
+
+TEST(TrackerConfig, ClutterTableMustHaveEdgesThatIncrease) {
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_range_edges_m = [10, 25, 25, 75]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_range_edges_m = [10, 25, 75]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\ntable_rate_edges_mps = [1, 2, 5, 20, 10, 60]")), config::Error);
+  EXPECT_THROW(static_cast<void>(parsed("[clutter]\nleast_range_rate_mps = 1.0")), config::Error);
+}
+
+TEST(TrackerConfig, ClassesComeFromTheirOwnFile) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tracker_config";
+  std::filesystem::create_directories(folder / "services");
+  std::ofstream(folder / "services/tracker.toml") << "[report]\nstopped_speed_mps = 0.7\n";
+  std::ofstream(folder / "services/object_classes.toml") << "[size]\nlength_mean_m = [1, 2, 4, 6, 12]\n";
+  runtime::Configuration files;
+  files.directory = folder;
+  const Config config = read_config(files);
+  EXPECT_EQ(config.report.stopped_speed_mps, 0.7);
+  EXPECT_EQ(config.model.classes.back().size.length_mean_m, 12.0);
+  EXPECT_EQ(config.model.classes.back().size.width_mean_m, Config{}.model.classes.back().size.width_mean_m);
+  std::filesystem::remove(folder / "services/object_classes.toml");
+  EXPECT_THROW(static_cast<void>(read_config(files)), config::Error);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(TrackerConfig, UnknownTrackerOrKeyIsRefused) {

@@ -51,7 +51,8 @@ TEST(CellLikelihood, EqualsThePublishedFormula) {
   support::Random random(1);
   for (int run = 0; run < 400; ++run) {
     const auto n = static_cast<std::size_t>(1 + run % 20);
-    const LikelihoodCase c = random_likelihood_case(random, run % 2 == 0, n);
+    LikelihoodCase c = random_likelihood_case(random, run % 2 == 0, n);
+    c.view.turn_mps = {support::uniform(random, -2.0, 2.0), support::uniform(random, -2.0, 2.0)};
     const double expected =
         support::log_likelihood_reference(support::reference_of(support::component_of(c.object)), c.view, c.z);
     EXPECT_NEAR(log_likelihood_of(c), expected, 1e-8 * (1.0 + std::abs(expected))) << n << " detections";

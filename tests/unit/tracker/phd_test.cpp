@@ -57,7 +57,7 @@ class PhdPartitions : public ::testing::Test {
   ListModel model_ = car_model(false);
   Detections z_;
   std::vector<std::uint64_t> keys_;
-  Partitions partitions_{Capacity{}};
+  Partitions partitions_{Parameters{}, Capacity{}};
 };
 
 TEST_F(PhdPartitions, ByDistanceIsEachSingleLinkageOnceFromTheCoarsest) {

@@ -185,6 +185,15 @@ Eigen::Vector2d place_of(const RadarBench& bench, std::size_t object) {
   return support::eigen(bench.objects[object].component.position_m);
 }
 
+TEST(RadarModel, BoxesFollowTheTableOfClasses) {
+  VehicleConfig vehicle;
+  vehicle.radars.emplace_back().id = 1;
+  RadarModelParameters parameters;
+  const double length_m = RadarModel(vehicle, parameters, 8).box({}).length_m;
+  for (auto& c : parameters.classes) c.size.length_mean_m *= 2.0;
+  EXPECT_NEAR(RadarModel(vehicle, parameters, 8).box({}).length_m, 2.0 * length_m, 1e-9);
+}
+
 TEST(RadarModel, NothingNewIsBornInTheBoxOfAnObject) {
   RadarBench bench;
   const Eigen::Vector2d velocity(8.0, 0.0);

@@ -281,7 +281,6 @@ inline View<double> random_view(Random& random, bool has_range_rates) {
   v.noise_m2 = symmetric_of(random_positive<2>(random, 0.2));
   v.range_rate_variance = has_range_rates ? uniform(random, 0.01, 0.3) : 0.0;
   v.spread = uniform(random, 0.2, 1.0);
-  if (has_range_rates) v.turn_mps = {uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0)};
   return v;
 }
 /// Seen from the origin; the range rate belongs to the line of sight to the detection itself, as in the model.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "services/tracker/core/numeric.hpp"
+
 namespace boresight::tracking {
 
 namespace {
@@ -13,9 +15,7 @@ template <typename Real>
 constexpr Real kLogPi = Real(1.1447298858494001741434);
 template <typename Real>
 constexpr Real kLogTwoPi = Real(1.8378770664093454835607);
-/// Keeps the logarithm of a missed detection finite where the chance of no point underflows.
-template <typename Real>
-constexpr Real kLeastMissed = Real(1e-30);
+
 /// log Γ(a + more) − log Γ(a) for a above 60: Stirling's series.
 template <typename Real>
 Real log_gamma_growth(Real a, Real more) {
@@ -98,9 +98,9 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
   // p(0 | seen) of the gamma-Poisson: (β / (β + exposure))^α
   log_none_ = rate_shape_ * (std::log(rate_inverse_scale_) - log_rate_step_);
   missed_ =
-      std::max(kLeastMissed<Real>, Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
+      std::max(Real(kLeastDensity), Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
   per_detection_ = (log_x - log_scatter) / Real(2) - kLogPi<Real>;
-  log_detection_ = std::log(std::max(detection_probability_, Real(1e-9)));
+  log_detection_ = std::log(std::max(detection_probability_, Real(kLeastProbability)));
   constant_ =
       (extent_dof_ - Real(3)) / Real(2) * std::log(determinant(extent_scale_)) + log_scatter / Real(2) + log_detection_;
   if (view.range_rate_variance > 0) log_range_rate_ = kLogTwoPi<Real> + std::log(view.range_rate_variance);
@@ -356,8 +356,7 @@ Component<Real> Prediction<Real>::missed_component(const Component<Real>& prior)
   Component<Real> out = prior;
   // Not detected, or detected with no point: a mixture of two gammas by its moments.
   const Real share = detection_probability_ * std::exp(log_none_) / missed_;
-  constexpr Real kNegligible = Real(1e-3);
-  if (share <= kNegligible) return out;
+  if (share <= Real(0)) return out;
   const Real before = prior.rate_shape / prior.rate_inverse_scale;
   const Real scale = prior.rate_inverse_scale + view_.exposure, after = prior.rate_shape / scale;
   const Real mean = (Real(1) - share) * before + share * after;

@@ -9,6 +9,7 @@
 #include "services/common/extended_object/detection_count.hpp"
 #include "services/common/extended_object/range_rate_model.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
@@ -16,8 +17,6 @@ namespace {
 
 using extended_object::kRoadUserClasses;
 using extended_object::ObjectClassModel;
-
-constexpr double kUnlikely = 1e-3;  // classes below it are not computed
 
 Eigen::Matrix2d rotation(double heading_rad) {
   const double c = std::cos(heading_rad), s = std::sin(heading_rad);
@@ -62,23 +61,23 @@ double log_normal(const Eigen::Vector2d& e, const Eigen::Matrix2d& covariance) {
 BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const BoxParameters& parameters)
     : table_(table), parameters_(parameters) {
   constexpr double kAfar_m = 1e3;
-  constexpr int kHeadings = 16;
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     AnyHeading& any = any_heading_[k];
     const auto& size = table_[k].size;
-    std::array<Eigen::Vector2d, kHeadings> middle;
-    for (int i = 0; i < kHeadings; ++i) {
+    std::array<Eigen::Vector2d, 16> middle;  // of each of so many headings
+    const auto headings = static_cast<double>(middle.size());
+    for (std::size_t i = 0; i < middle.size(); ++i) {
       // In axes along the line of sight: to the sensor, and across.
-      const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * i / kHeadings);
+      const Eigen::Matrix2d to_box = rotation(2.0 * std::numbers::pi * static_cast<double>(i) / headings);
       const auto moments = extended_object::reflection_moments(table_[k].places, size.length_mean_m, size.width_mean_m,
                                                                to_box * Eigen::Vector2d(kAfar_m, 0.0));
-      middle[static_cast<std::size_t>(i)] = to_box.transpose() * moments.mean_m;
-      any.depth_m += middle[static_cast<std::size_t>(i)].x() / kHeadings;
-      any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / kHeadings;
+      middle[i] = to_box.transpose() * moments.mean_m;
+      any.depth_m += middle[i].x() / headings;
+      any.scatter_m2 += 0.5 * moments.scatter_m2.trace() / headings;
     }
     for (const Eigen::Vector2d& m : middle) {
-      any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / kHeadings;
-      any.across_m2 += m.y() * m.y() / kHeadings;
+      any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / headings;
+      any.across_m2 += m.y() * m.y() / headings;
     }
   }
 }
@@ -138,16 +137,16 @@ void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, doubl
   const double change_rad = geometry::wrap_angle(course_rad - m.heading_rad);
   // Successive courses share their errors: the surer one counts, they are not averaged. The later one knows more, where
   // they contradict each other.
-  constexpr double kContradiction = 9.0;
   if (variance < m.heading_variance_rad2 ||
-      change_rad * change_rad > kContradiction * (variance + m.heading_variance_rad2)) {
+      change_rad * change_rad > parameters_.contradiction_chi2 * (variance + m.heading_variance_rad2)) {
     if (std::abs(change_rad) > parameters_.known_heading_rad) m.has_point = false;
     m.heading_rad = course_rad;
     m.heading_variance_rad2 = variance;
   }
   const Vector2<double> along{o.velocity_mps.x / speed_mps, o.velocity_mps.y / speed_mps};
   m.largest_speed_mps =
-      std::max(m.largest_speed_mps, speed_mps - 2.0 * std::sqrt(quadratic(o.velocity_covariance, along)));
+      std::max(m.largest_speed_mps,
+               speed_mps - parameters_.sure_speed_sigma * std::sqrt(quadratic(o.velocity_covariance, along)));
 }
 
 void BoxEstimator::weigh_classes(BoxMemory& m) const {
@@ -159,9 +158,9 @@ void BoxEstimator::weigh_classes(BoxMemory& m) const {
     const auto density = [speed](double sigma) {
       return std::exp(-0.5 * speed * speed / (sigma * sigma)) / (sigma * sigma);
     };
-    constexpr double kLeast = 1e-30;
-    const double of_speed = std::log(kLeast + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
-                                     c.motion.slow_share * density(c.motion.slow_speed_std_mps));
+    const double of_speed =
+        std::log(kLeastDensity + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
+                 c.motion.slow_share * density(c.motion.slow_speed_std_mps));
     const double over = std::max(0.0, speed - c.motion.largest_speed_mps);
     m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence +
                        log_counts(c.count, m.detections, m.classes[k].expected, m.classes[k].log_expected);
@@ -179,8 +178,7 @@ void BoxEstimator::count(BoxMemory& m, double n, const std::array<double, kRoadU
   std::array<double, kRoadUserClasses> seen{};
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     // There are detections: scans without any may be those where the object was hidden.
-    constexpr double kLeast = 1e-6;
-    const double m_k = std::max(kLeast, expected[k]);
+    const double m_k = std::max(kLeastProbability, expected[k]);
     seen[k] = m_k / (1.0 - extended_object::no_detection_probability(table_[k].count, m_k));
   }
   const double usual = m.classes[likeliest].expected, now = seen[likeliest];
@@ -202,7 +200,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
   const Eigen::Vector2d facing = to_box * Eigen::Vector2d(std::cos(from.facing_rad), std::sin(from.facing_rad));
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     // The tracked point is chosen for all classes at once.
-    if (m.probability[k] < kUnlikely && m.has_point) continue;
+    if (m.probability[k] < parameters_.least_probability && m.has_point) continue;
     const ClassBox& box = m.classes[k];
     const ObjectClassModel& model = table_[k];
     ClassView& v = views[k];
@@ -210,8 +208,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
     const Eigen::Vector2d sensor_box = sensor + box.point_m;
     v.reflections = extended_object::reflection_moments(model.places, box.length_m, model.size.width_mean_m, sensor_box,
                                                         {facing, from.half_view_rad, from.view_edge_rad});
-    constexpr double kNearest_m = 0.1;
-    const double range_m = std::max(kNearest_m, sensor_box.norm());
+    const double range_m = std::max(kLeastRange_m, sensor_box.norm());
     v.to_sensor = sensor_box / range_m;
     v.expected_detections =
         v.reflections.share_in_view * extended_object::expected_detections(model.count, range_m, v.to_sensor);
@@ -258,15 +255,14 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
   box.tracked_by_length_m2 = (Eigen::Matrix2d::Identity() - point_gain) * (c - (p + c * g.transpose()) * gain) -
                              point_gain * g * (variance - by_length.dot(gain)) + point_gain * r * gain;
   const double before_m = box.length_m;
-  box.length_m = std::max(0.3 * model.size.length_mean_m, before_m + gain.dot(e));
+  box.length_m = std::max(parameters_.least_length_share * model.size.length_mean_m, before_m + gain.dot(e));
   box.point_m += (box.length_m - before_m) * box.point_by_length;
   // The object's own depth lasts: no number of scans averages it away.
   const double by_depth =
       model.places.lasting_std_m * (v.to_sensor - to_sensor_of_point).dot(g) / std::max(1e-9, g.squaredNorm());
   box.length_variance_m2 = std::min(variance, std::max(variance - by_length.dot(gain), by_depth * by_depth));
 
-  constexpr double kPair = 1.5;
-  if (n > kPair) {
+  if (n > 1.0) {
     const Eigen::Matrix2d scatter = to_local.transpose() * eigen(scan.scatter) * to_local;
     // From all over the object, or from one third of its length.
     const Eigen::Matrix2d whole = v.reflections.scatter_m2 + noise;
@@ -361,10 +357,9 @@ double BoxEstimator::inside(const BoxMemory& m, std::size_t k, const Place& plac
   const ClassBox& c = m.classes[k];
   const Eigen::Vector2d at = c.point_m + place.from_point_m;
   const Eigen::Vector2d half = 0.5 * Eigen::Vector2d(c.length_m, table_[k].size.width_mean_m) + margin_m;
-  // Beyond six deviations from a side the probability is below 1e-9.
-  constexpr double kOutside = 6.0;
+  constexpr double outside_chi2 = kCertainDeviations * kCertainDeviations;
   const double beside_m = std::abs(at.y()) - half.y(), variance = place.covariance_m2(1, 1);
-  if (beside_m > 0.0 && beside_m * beside_m > kOutside * kOutside * variance) return 0.0;
+  if (beside_m > 0.0 && beside_m * beside_m > outside_chi2 * variance) return 0.0;
   // The farther an end from the tracked point, the more the length that is uncertain moves it.
   const auto variance_of = [&](double end) {
     const double by_length = 0.5 * end - c.point_by_length.x();
@@ -372,8 +367,8 @@ double BoxEstimator::inside(const BoxMemory& m, std::size_t k, const Place& plac
   };
   const double front_m = half.x() - at.x(), rear_m = half.x() + at.x();
   const double of_front = variance_of(1.0), of_rear = variance_of(-1.0);
-  if ((front_m < 0.0 && front_m * front_m > kOutside * kOutside * of_front) ||
-      (rear_m < 0.0 && rear_m * rear_m > kOutside * kOutside * of_rear)) {
+  if ((front_m < 0.0 && front_m * front_m > outside_chi2 * of_front) ||
+      (rear_m < 0.0 && rear_m * rear_m > outside_chi2 * of_rear)) {
     return 0.0;
   }
   const auto before = [](double distance_m, double variance_m2) {
@@ -389,9 +384,8 @@ void BoxEstimator::add_part(BoxMemory& m, const Vector2<double>& from_point_m,
   const Place part = place(m, from_point_m, covariance_m2);
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
     ClassBox& c = m.classes[k];
-    constexpr double kLeast = 1e-4;
-    c.log_evidence +=
-        std::log(std::max(kLeast, inside(m, k, part, {0.0, 0.0})) / (c.length_m * table_[k].size.width_mean_m));
+    c.log_evidence += std::log(std::max(parameters_.least_doubt, inside(m, k, part, {0.0, 0.0})) /
+                               (c.length_m * table_[k].size.width_mean_m));
   }
   weigh_classes(m);
 }
@@ -399,8 +393,8 @@ void BoxEstimator::add_part(BoxMemory& m, const Vector2<double>& from_point_m,
 Box BoxEstimator::box(const BoxMemory& m, const Component<double>& o, const Vector2<double>& sensor_m) const {
   Box out;
   out.heading_rad = m.heading_rad;
-  constexpr double kUniform = std::numbers::pi * std::numbers::pi / 3.0;
-  out.heading_variance_rad2 = std::min(m.heading_variance_rad2, kUniform);
+  // No less is known than that every heading is alike.
+  out.heading_variance_rad2 = std::min(m.heading_variance_rad2, std::numbers::pi * std::numbers::pi / 3.0);
   const Eigen::Vector2d p = eigen(o.position_m);
   // From the tracked point to the centre, and its covariance.
   std::array<Eigen::Vector2d, kRoadUserClasses> way;

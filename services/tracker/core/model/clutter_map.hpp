@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <tuple>
 
 #include "services/tracker/core/model/radar_parameters.hpp"
 
@@ -20,9 +21,8 @@ struct ClutterPlace {
 
 class ClutterMap {
  public:
-  /// Half the angle of view and the largest range give the areas of the cells; slower than `min_range_rate_mps` nothing
-  /// enters.
-  ClutterMap(const ClutterParameters& parameters, double half_view_rad, double range_max_m, double min_range_rate_mps);
+  /// Half the angle of view and the largest range give the areas of the cells.
+  ClutterMap(const ClutterParameters& parameters, double half_view_rad, double range_max_m);
 
   /// Expected detections per m² and m/s at a place.
   [[nodiscard]] double intensity(const ClutterPlace& place) const;
@@ -33,7 +33,14 @@ class ClutterMap {
   void add(const ClutterPlace& place, double unexplained);
 
  private:
-  static constexpr std::size_t kRanges = 5, kSectors = 7, kRates = 12, kPaceRanges = 10, kPaceSectors = 15;
+  // Cells: ranges and range rates of both signs as the table has them, and sectors.
+  static constexpr std::size_t kRanges = std::tuple_size_v<decltype(ClutterParameters::table_by_range)>;
+  static constexpr std::size_t kOneWayRates = std::tuple_size_v<decltype(ClutterParameters::table_by_rate)>;
+  static constexpr std::size_t kRates = kOneWayRates + kOneWayRates;
+  static constexpr std::size_t kSectors = 7, kPaceRanges = 10, kPaceSectors = 15;
+  /// Edges of the table, from the nearest range and the largest range rate of approach on.
+  [[nodiscard]] double range_edge_m(std::size_t edge) const;
+  [[nodiscard]] double rate_edge_mps(std::size_t edge) const;
   [[nodiscard]] std::size_t cell(const ClutterPlace& place) const;
   [[nodiscard]] std::size_t pace_cell(const ClutterPlace& place) const;
   [[nodiscard]] bool keeps_pace(const ClutterPlace& place) const;
@@ -42,7 +49,7 @@ class ClutterMap {
   [[nodiscard]] double pace_volume(std::size_t cell) const;
 
   ClutterParameters parameters_;
-  double half_view_rad_, range_max_m_, min_range_rate_mps_;
+  double half_view_rad_, range_max_m_;
   std::array<double, kRanges * kSectors * kRates> sum_{};
   std::array<double, kPaceRanges * kPaceSectors> pace_sum_{};
   double scans_ = 0.0, time_s_ = 0.0;

@@ -32,6 +32,9 @@ struct LinearScenario {
   Eigen::Vector2d area_min_m{-100.0, -100.0}, area_max_m{100.0, 100.0};
   double birth_weight = 0.02;  ///< expected births for each component and step
   std::vector<ScenarioBirth> births;
+  double confirmed_existence = 0.5;  ///< from here on a track is confirmed (choice: likelier than not)
+  double speed_sigma = 3.0;          ///< deviations of the velocity of births that its limit includes (choice)
+  double link_sigma = 4.0;           ///< detections of one new object deviate less from each other (choice)
 };
 
 }  // namespace boresight::tracking

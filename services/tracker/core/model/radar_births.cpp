@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
-
-namespace {
-constexpr double kNever = -std::numeric_limits<double>::infinity();
-}  // namespace
 
 void RadarModel::begin_group(std::span<const Measurement<double>> group, std::span<const Prediction<double>> objects,
                              std::span<const double> existence) {
@@ -23,10 +19,9 @@ void RadarModel::begin_group(std::span<const Measurement<double>> group, std::sp
   for (const auto& z : group) middle = middle + (1.0 / static_cast<double>(group.size())) * z.position_m;
   const DetectionParameters& d = parameters_.detection;
   const BirthParameters& b = parameters_.birth;
-  constexpr double kFar_m = 30.0, kNearest_m = 0.5;
   View<double> v;
   const Vector2<double> sight_m = middle - sensor_m_;
-  const double range_m = std::max(kNearest_m, std::sqrt(squared_norm(sight_m)));
+  const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(sight_m)));
   v.detection_probability = d.detection_probability;
   v.exposure = exposure_at(range_m);
   v.noise_m2 = noise_at((1.0 / range_m) * sight_m, range_m);
@@ -40,7 +35,7 @@ void RadarModel::begin_group(std::span<const Measurement<double>> group, std::sp
     c.position_m = middle;
     c.rate_shape = d.count_shape;
     c.rate_inverse_scale = d.count_shape / d.count;
-    c.position_covariance = {kFar_m * kFar_m, 0.0, kFar_m * kFar_m};
+    c.position_covariance = {b.place_std_m * b.place_std_m, 0.0, b.place_std_m * b.place_std_m};
     const double variance = kinds[k].speed_std_mps * kinds[k].speed_std_mps;
     c.velocity_covariance = {variance, 0.0, variance};
     if (kinds[k].with_traffic) c.velocity_mps = sensor_velocity_mps_;
@@ -49,8 +44,9 @@ void RadarModel::begin_group(std::span<const Measurement<double>> group, std::sp
     const double scale = (b.extent_dof - 6.0) * b.half_length_m * b.half_length_m;
     c.extent_scale = {scale, 0.0, scale};
     // The density of the badly known place is taken away again.
-    newborn_[k] = {c, Prediction<double>(c, v),
-                   std::log(kinds[k].density_per_m2) + std::log(2.0 * std::numbers::pi * kFar_m * kFar_m)};
+    newborn_[k] = {
+        c, Prediction<double>(c, v),
+        std::log(kinds[k].density_per_m2) + std::log(2.0 * std::numbers::pi * b.place_std_m * b.place_std_m)};
   }
 }
 
@@ -61,7 +57,6 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const Vector2<double> mean = cell.mean();
   double claimed = 0.0;
   const Vector2<double> way = mean - sensor_m_;
-  constexpr double kLeastRange_m = 1e-3;
   const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(way)));
   const Vector2<double> sight = (1.0 / range_m) * way;
   const Symmetric2<double> noise = noise_at(sight, range_m);
@@ -78,8 +73,7 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
     claimed = std::max(claimed, agreeing * taken_by(p.label(), p.position_m(), p.position_covariance() + f * noise,
                                                     std::sqrt(squared_norm(p.velocity_mps())), mean));
   }
-  constexpr double kLeastFree = 1e-6, kLeastShare = 1e-12;
-  const double log_free = std::log(std::max(kLeastFree, 1.0 - claimed));
+  const double log_free = std::log(std::max(kLeastProbability, 1.0 - claimed));
   NewbornWeights w;
   std::array<double, kBirthKinds> log_p{};
   for (std::size_t k = 0; k < kBirthKinds; ++k) {
@@ -93,11 +87,11 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const double variance = b.any.speed_std_mps * b.any.speed_std_mps + any.prediction.range_rate_variance();
   const double log_rate = -0.5 * std::log(2.0 * std::numbers::pi * variance) - 0.5 * cell.rate_squares * f / variance;
   const double flat = log_p[1] + any.log_density - std::log(b.any.density_per_m2) + cell.log_clutter * f - log_rate;
-  const double other = std::max(kLeastShare, 1.0 - cell.wide_share * f);
-  w.source = s.share > 0.0 ? flat + std::log(s.share * other) + any.prediction.log_source_ratio(cell.n) : kNever;
+  const double other = std::max(kLeastProbability, 1.0 - cell.wide_share * f);
+  w.source = s.share > 0.0 ? flat + std::log(s.share * other) + any.prediction.log_source_ratio(cell.n) : -kInfinity;
   w.side_lobe = s.side_lobes > 0.0 && s.side_lobe_birth > 0.0
-                    ? flat + std::log(s.side_lobe_birth * std::max(kLeastShare, cell.side_lobe_share * f))
-                    : kNever;
+                    ? flat + std::log(s.side_lobe_birth * std::max(kLeastProbability, cell.side_lobe_share * f))
+                    : -kInfinity;
   w.top = std::max(w.source, w.side_lobe);
   for (const double o : w.object) w.top = std::max(w.top, o);
   w.sum = std::exp(w.source - w.top) + std::exp(w.side_lobe - w.top);
@@ -121,7 +115,7 @@ Component<double> RadarModel::newborn(const Cell<double>& cell) {
     updated[k] = newborn_[k].prediction.updated(at, cell);
     const double weight = std::exp(w.object[k] - w.top);
     object += weight;
-    mixture[k] = {weight + 1e-12, &updated[k]};  // a sum of zero cannot be normalised
+    mixture[k] = {weight + kLeastDensity, &updated[k]};  // a sum of zero cannot be normalised
   }
   Component<double> c = merge<double>(mixture);
   c.source.object = object / w.sum;

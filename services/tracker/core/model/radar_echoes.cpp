@@ -6,6 +6,7 @@
 
 #include "services/common/extended_object/range_rate_model.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
@@ -25,7 +26,6 @@ void add_clutter(Measurement<double>& z, double added, double& share) {
 void RadarModel::add_side_lobes() {
   // An object gives weaker detections at its own range and range rate at other azimuths: more clutter there.
   const SourceParameters& s = parameters_.source;
-  constexpr double kNearest_m = 3.0;  // nearer, the ring would be shorter than the object
   for (const KnownObject& o : objects_) {
     if (o.existence < s.parent_existence) continue;
     const Vector2<double> d = o.component.position_m - sensor_m_;
@@ -46,7 +46,7 @@ void RadarModel::add_side_lobes() {
         continue;  // its own
       const double added = o.existence * s.side_lobes * std::exp(-0.5 * deviation2) /
                            (2.0 * std::numbers::pi * range_std_m * s.side_lobe_range_rate_std_mps) /
-                           (2.0 * radar_->half_view_rad * std::max(kNearest_m, range_m));
+                           (2.0 * radar_->half_view_rad * std::max(s.side_lobe_nearest_m, range_m));
       z.on_ring = 1.0;
       add_clutter(z, added, z.side_lobe_share);
     }
@@ -55,15 +55,15 @@ void RadarModel::add_side_lobes() {
 
 void RadarModel::add_wide_range_rates() {
   const SourceParameters& s = parameters_.source;
-  constexpr double kFar_m = 20.0, kUnlikely = 0.01, kLeast = 1e-12;
   const BoxEstimator& boxes = boxes_.estimator();
+  const double least = parameters_.box.least_probability;
   const double level = radar_->wide_seen / radar_->wide_expected;
   double seen = 0.0, expected = 0.0;
   for (const KnownObject& o : objects_) {
     if (o.existence < s.parent_existence) continue;
     const Component<double>& c = o.component;
     const Vector2<double> way = c.position_m - sensor_m_;
-    const double range_m = std::max(1e-3, std::sqrt(squared_norm(way)));
+    const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(way)));
     const ObjectBoxes::Record* object = boxes_.see(c, noise_at((1.0 / range_m) * way, range_m));
     if (object == nullptr || !object->memory.has_point) continue;
     const double cosine = std::cos(object->memory.heading_rad), sine = std::sin(object->memory.heading_rad);
@@ -74,7 +74,7 @@ void RadarModel::add_wide_range_rates() {
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       Measurement<double>& z = measurements_[i];
       const Vector2<double> d = z.position_m - c.position_m;
-      if (squared_norm(d) > kFar_m * kFar_m) continue;
+      if (squared_norm(d) > reach_m_ * reach_m_) continue;
       const Symmetric2<double> covariance = c.position_covariance + noise_at(z.sight, places_[i].range_m);
       const double body_mps = dot(z.sight, c.velocity_mps);
       const Eigen::Vector2d sight_box(cosine * z.sight.x + sine * z.sight.y, cosine * z.sight.y - sine * z.sight.x);
@@ -82,9 +82,9 @@ void RadarModel::add_wide_range_rates() {
       double added = 0.0, inside_any = 0.0, body_variance = 0.0;
       for (std::size_t k = 0; k < object->views.size(); ++k) {
         const ClassView& view = object->views[k];
-        if (view.probability < kUnlikely) continue;
+        if (view.probability < least) continue;
         const double inside = boxes.inside(object->memory, k, place, {0.0, 0.0});
-        if (inside < kUnlikely) continue;
+        if (inside < least) continue;
         const auto rates =
             extended_object::range_rate_mixture(boxes.table()[k].micro_doppler, sight_box, body_mps, speed_mps);
         const double deviation = z.range_rate_mps - rates[2].mean_mps;
@@ -97,13 +97,12 @@ void RadarModel::add_wide_range_rates() {
         body_variance += view.probability * view.range_rate_variance_m2ps2;
       }
       added *= o.existence * level;
-      if (added < kLeast) continue;
+      if (added <= 0.0) continue;
       // What deviates so much is no detection of the body.
-      constexpr double kDeviates = 3.0;
       const double variance = body_variance + radar_->range_rate_std_mps * radar_->range_rate_std_mps +
                               quadratic(c.velocity_covariance, z.sight);
       const double off_mps = z.range_rate_mps - body_mps;
-      if (off_mps * off_mps > kDeviates * kDeviates * variance) seen += o.existence * inside_any;
+      if (off_mps * off_mps > s.wide_chi2 * variance) seen += o.existence * inside_any;
       add_clutter(z, added, z.wide_share);
     }
   }

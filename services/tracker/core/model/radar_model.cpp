@@ -3,20 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "services/common/geometry/ego_step.hpp"
 #include "services/common/geometry/frames.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
-
-namespace {
-
-constexpr double kSlowest_mps = 0.3;  // about where the corrector's test of stationary detections ends
-constexpr std::size_t kMaxKnownObjects = kMaxTracks;
-
-}  // namespace
 
 Matrix2<double> LocalAxes::rotation() const {
   const double c = std::cos(heading_rad), s = std::sin(heading_rad);
@@ -36,18 +29,22 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
 }
 
 RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
-    : parameters_(parameters),
-      boxes_(BoxEstimator(extended_object::object_class_table_defaults(), parameters.box), max_objects) {
+    : parameters_(parameters), boxes_(BoxEstimator(parameters.classes, parameters.box), max_objects) {
+  // One in a thousand is longer than the mean by more than three deviations.
+  for (const auto& c : parameters.classes) {
+    reach_m_ = std::max(reach_m_, c.size.length_mean_m + 3.0 * c.size.length_std_m);
+  }
   for (const RadarConfig& r : vehicle.radars) {
     const FieldOfView& f = r.field_of_view;
     const double half_rad = 0.5 * (f.azimuth_max_rad - f.azimuth_min_rad);
     radars_.push_back({r.id, 0.5 * (f.azimuth_max_rad + f.azimuth_min_rad), half_rad, f.range_max_m,
                        r.noise.range_std_m, r.noise.azimuth_std_rad, r.noise.range_rate_std_mps,
-                       ClutterMap(parameters.clutter, half_rad, f.range_max_m, kSlowest_mps)});
+                       ClutterMap(parameters.clutter, half_rad, f.range_max_m), parameters.source.wide_prior,
+                       parameters.source.wide_prior, parameters.clutter.origin_prior});
   }
   measurements_.reserve(kMaxDetections);
   places_.reserve(kMaxDetections);
-  objects_.reserve(kMaxKnownObjects);
+  objects_.reserve(kMaxTracks);
 }
 
 ScanStart RadarModel::begin_scan(const ClassifiedScan& scan) {
@@ -110,11 +107,9 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   radar_->moving_time_s = time_s;
   radar_->wide_seen *= keep;
   radar_->wide_expected *= keep;
-  constexpr double kPrior = 2.0;
-  radar_->wide_seen += (1.0 - keep) * kPrior;
-  radar_->wide_expected += (1.0 - keep) * kPrior;
-  constexpr double kPriorShare = 0.5;  // with the weight of one detection
-  radar_->moving_sum = keep * radar_->moving_sum + (1.0 - keep) * kPriorShare;
+  radar_->wide_seen += (1.0 - keep) * parameters_.source.wide_prior;
+  radar_->wide_expected += (1.0 - keep) * parameters_.source.wide_prior;
+  radar_->moving_sum = keep * radar_->moving_sum + (1.0 - keep) * parameters_.clutter.origin_prior;
   radar_->moving_count = keep * radar_->moving_count + (1.0 - keep);
   for (std::uint32_t i = 0; i < scan.number_of_valid_detections && i < kMaxDetections; ++i) {
     if (scan.provenance[i] == Provenance::kUnknown || (scan.detection_flags[i] & corrected_flag::kMoving) == 0)
@@ -149,8 +144,7 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
 double RadarModel::log_origin(double p) const {
   const ClutterParameters& c = parameters_.clutter;
   const auto against = [](double share) {
-    constexpr double kCertain = 1e-6;
-    const double q = std::clamp(share, kCertain, 1.0 - kCertain);
+    const double q = std::clamp(share, kLeastProbability, 1.0 - kLeastProbability);
     return std::log((1.0 - q) / q);
   };
   const double usual = against(radar_->moving_sum / radar_->moving_count);
@@ -189,7 +183,7 @@ void RadarModel::learn(std::span<const double> explained, std::span<const Object
 void RadarModel::note_objects(std::span<const ObjectEstimate> objects) {
   objects_.clear();
   for (const ObjectEstimate& e : objects) {
-    if (objects_.size() == kMaxKnownObjects) break;
+    if (objects_.size() == kMaxTracks) break;
     objects_.push_back({*e.component, e.existence});
   }
 }

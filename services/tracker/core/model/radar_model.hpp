@@ -60,8 +60,8 @@ class RadarModel final : public Model {
     double view_middle_rad = 0.0, half_view_rad = 0.0, range_max_m = 0.0;  // in the sensor's frame
     double range_std_m = 0.0, azimuth_std_rad = 0.0, range_rate_std_mps = 0.0;
     ClutterMap clutter;
-    double wide_seen = 2.0, wide_expected = 2.0;  // detections of objects with wide range rates, and those of the table
-    double moving_sum = 0.5, moving_count = 1.0, moving_time_s = 0.0;  // of the ghost filter's probabilities
+    double wide_seen = 0.0, wide_expected = 0.0;  // detections of objects with wide range rates, and those of the table
+    double moving_sum = 0.0, moving_count = 1.0, moving_time_s = 0.0;  // of the ghost filter's probabilities
   };
   struct KnownObject {
     Component<double> component;
@@ -104,12 +104,13 @@ class RadarModel final : public Model {
   [[nodiscard]] double seems_moving(const Vector2<double>& sight, const Component<double>& component,
                                     double range_rate_variance) const;
   /// Where an object's detections lie, by what it may be, and the variance of their range rates. Returns the share of
-  /// its reflections that are in view, or −1 while its heading is not known.
-  double read_box(const Component<double>& component, View<double>& view) const;
+  /// its reflections that are in view; none while its heading is not known.
+  std::optional<double> read_box(const Component<double>& component, View<double>& view) const;
   /// The same for all hypotheses of an object.
   [[nodiscard]] BoxReadings readings_of(const ObjectBoxes::Record& object) const;
 
   RadarModelParameters parameters_;
+  double reach_m_ = 0.0;       ///< hardly any road user is longer: places farther apart are not of one
   mutable ObjectBoxes boxes_;  // views are computed when first asked for
   std::vector<Radar> radars_;
   double elapsed_s_ = 0.0;

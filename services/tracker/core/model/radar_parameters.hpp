@@ -1,6 +1,8 @@
 // Numbers of the radar model. Levels that differ from radar to radar are learnt; these are where learning starts.
 #pragma once
 
+#include <array>
+
 #include "services/tracker/core/ggiw/component.hpp"
 #include "services/tracker/core/model/box_estimator.hpp"
 
@@ -35,11 +37,13 @@ struct BirthParameters {
   BirthKind traffic{2e-5, 4.0, true};            ///< vehicles that drive as the own one
   double extent_dof = 9.0;                       ///< of a new object's inverse Wishart: how sure its extent is
   double half_length_m = 1.5;                    ///< of a new object
+  double place_std_m = 30.0;                     ///< of a new object before its detections: wide against its cell
   double gap_along_m = 1.0, gap_across_m = 0.5;  ///< no other object is nearer to the box of one
   double headway_s = 0.5;                        ///< few drivers keep a shorter one …
   double close_share = 0.03;                     ///< … this share of them
   double person_m = 0.6;                         ///< the same of objects whose heading is not known, in any direction
   double neighbour_density_per_m2 = 5e-3;        ///< of other vehicles about a vehicle
+  double company_density_per_m2 = 0.1;           ///< of other people about a person
   double neighbour_speed_std_mps = 1.5;          ///< of each component of their velocities about its own
   double part_odds = 10.0;       ///< from here on two objects are one: a lost object costs more than a double one
   double same_speed_chi2 = 9.0;  ///< squared distance of velocities up to which two objects move alike
@@ -48,11 +52,21 @@ struct BirthParameters {
 };
 
 struct ClutterParameters {
-  double memory_s = 3.0;          ///< of the learnt intensity
-  double table_scans = 4.0;       ///< weight of the starting table
-  double with_ego_factor = 8.0;   ///< start level of echoes that keep pace with the own vehicle
-  double origin_weight = 1.0;     ///< of the ghost filter's log odds that a detection is no moving object's
-  double origin_limit = 3.0;      ///< largest magnitude of these log odds that counts: evidence must saturate
+  double memory_s = 3.0;     ///< of the learnt intensity
+  double table_scans = 4.0;  ///< weight of the starting table
+  // The starting table: intensity between edges of the range, times a factor between edges of the |range rate|.
+  std::array<double, 4> table_range_edges_m{10.0, 25.0, 50.0, 75.0};            ///< from 0 to the largest range
+  std::array<double, 5> table_by_range{1.6e-4, 9e-5, 3.5e-5, 1.2e-5, 6e-6};     ///< per m² and m/s
+  std::array<double, 6> table_rate_edges_mps{1.0, 2.0, 5.0, 10.0, 20.0, 60.0};  ///< from 0
+  std::array<double, 6> table_by_rate{4.9, 4.9, 2.3, 1.1, 1.1, 0.3};
+  double least_range_rate_mps = 0.3;  ///< over ground: slower detections are classified as stationary
+  double pace_mps = 1.0;              ///< largest |measured range rate| of an echo that keeps pace
+  double pace_over_ground_mps = 2.0;  ///< and its least one over ground: else the own vehicle hardly moves
+  double pace_cell_m = 10.0;          ///< size along the range of a cell of such echoes
+  double with_ego_factor = 8.0;       ///< start level of echoes that keep pace with the own vehicle
+  double origin_weight = 1.0;         ///< of the ghost filter's log odds that a detection is no moving object's
+  double origin_limit = 3.0;          ///< largest magnitude of these log odds that counts: evidence must saturate
+  double origin_prior = 0.5;          ///< start of that share, with the weight of one detection
   double origin_memory_s = 10.0;  ///< of the radar's mean share of moving objects' detections, against which they count
 };
 
@@ -67,10 +81,13 @@ struct SourceParameters {
   double parent_existence = 0.5;              ///< objects below it have neither side lobes nor wide range rates
   double side_lobe_range_std_m = 1.0;         ///< of a side lobe's range about its object's
   double side_lobe_range_rate_std_mps = 0.4;  ///< of a side lobe's range rate about its object's
+  double side_lobe_nearest_m = 3.0;           ///< at nearer objects the ring of side lobes is no shorter
   double side_lobe_chi2 = 9.0;                ///< squared distance up to which a detection may be a side lobe
   double side_lobe_least_deviations = 2.5;    ///< nearer to the object, in its own deviations, detections are its own
   double ambiguity_share = 0.04;              ///< of an object's detections that have a wrong Doppler ambiguity
   double ambiguity_width_mps = 100.0;         ///< their range rates are anywhere in so much
+  double wide_chi2 = 9.0;                     ///< squared deviation of a range rate that is not the body's
+  double wide_prior = 2.0;                    ///< expected detections that the table's level of these counts as
   double side_lobe_birth = 0.1;               ///< of these that begin a source which lasts
 };
 
@@ -80,6 +97,7 @@ struct RadarModelParameters {
   ClutterParameters clutter;
   SourceParameters source;
   BoxParameters box;
+  extended_object::ObjectClassTable classes = extended_object::object_class_table_defaults();
   MotionParameters motion{2.0, 1.0, 1.0, 2.0, 8.0};
   double object_life_s = 8.0;  ///< mean time that an object stays in the scene
   double longest_gap_s = 2.0;  ///< after a longer one all tracks are dropped

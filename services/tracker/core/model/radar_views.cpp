@@ -6,6 +6,7 @@
 
 #include "services/common/geometry/frames.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
@@ -13,8 +14,7 @@ namespace {
 
 /// P(standard normal < x)
 double normal_cdf(double x) {
-  constexpr double kCertain = 8.5;  // 0 or 1 to rounding
-  if (std::abs(x) > kCertain) return x > 0.0 ? 1.0 : 0.0;
+  if (std::abs(x) > kCertainDeviations) return x > 0.0 ? 1.0 : 0.0;
   return 0.5 * std::erfc(-x / std::numbers::sqrt2);
 }
 
@@ -72,8 +72,7 @@ View<double> RadarModel::view(const Component<double>& c) const {
   View<double> v;
   if (radar_ == nullptr) return v;
   const DetectionParameters& p = parameters_.detection;
-  constexpr double kNearest_m = 0.5;
-  const auto range_of = [&](const Vector2<double>& d) { return std::max(kNearest_m, std::sqrt(squared_norm(d))); };
+  const auto range_of = [&](const Vector2<double>& d) { return std::max(kLeastRange_m, std::sqrt(squared_norm(d))); };
   const Vector2<double> to_point = c.position_m - sensor_m_;
   v.noise_m2 = noise_at((1.0 / range_of(to_point)) * to_point, range_of(to_point));
   v.spread = p.spread;
@@ -84,12 +83,11 @@ View<double> RadarModel::view(const Component<double>& c) const {
   v.range_rate_variance =
       radar_->range_rate_std_mps * radar_->range_rate_std_mps + p.body_range_rate_std_mps * p.body_range_rate_std_mps;
   v.turn_mps = turn_at(to_point, c);
-  const double share = read_box(c, v);
+  const std::optional<double> share = read_box(c, v);
   v.detection_probability = p.detection_probability;
-  if (share >= 0.0) {
+  if (share.has_value()) {
     // Of what is out of view there are no detections: their number says it.
-    constexpr double kLeastShare = 1e-3;
-    v.exposure = std::max(kLeastShare, share);
+    v.exposure = std::max(kLeastProbability, *share);
   } else {
     v.detection_probability *= in_view(c);
   }
@@ -105,13 +103,12 @@ View<double> RadarModel::view(const Component<double>& c) const {
   return v;
 }
 
-double RadarModel::read_box(const Component<double>& c, View<double>& v) const {
-  constexpr double kUnknown = -1.0;
+std::optional<double> RadarModel::read_box(const Component<double>& c, View<double>& v) const {
   ObjectBoxes::Record* object = c.label == 0 ? nullptr : boxes_.see(c, v.noise_m2);
-  if (object == nullptr) return kUnknown;
+  if (object == nullptr) return std::nullopt;
   if (!object->readings) object->readings = readings_of(*object);
   const BoxReadings& box = *object->readings;
-  if (box.number == 0) return kUnknown;
+  if (box.number == 0) return std::nullopt;
   v.number_of_readings = box.number;
   v.readings = box.readings;
   v.range_rate_variance = radar_->range_rate_std_mps * radar_->range_rate_std_mps + box.range_rate_variance_m2ps2;
@@ -131,7 +128,7 @@ BoxReadings RadarModel::readings_of(const ObjectBoxes::Record& object) const {
   // Classes of about a car's size are one reading by its moments. A truck is two: its detections come from one spot or
   // from all over it.
   constexpr auto kLong = static_cast<std::size_t>(extended_object::RoadUserClass::kTruck);
-  constexpr double kUnlikely = 0.01;
+  const double least = parameters_.box.least_probability;
   Reading<double> shorter{0.0, {}, {}, false, {}};
   double share = 0.0, rate_variance = 0.0, sum = 0.0;
   for (std::size_t k = 0; k < object.views.size(); ++k) {
@@ -145,9 +142,8 @@ BoxReadings RadarModel::readings_of(const ObjectBoxes::Record& object) const {
   }
   if (sum <= 0.0) return box;
   const ClassView& longer = object.views[kLong];
-  const bool is_long_only = shorter.weight <= kUnlikely;
-  const double all =
-      (is_long_only ? 0.0 : shorter.weight) + (longer.probability > kUnlikely ? longer.probability : 0.0);
+  const bool is_long_only = shorter.weight <= least;
+  const double all = (is_long_only ? 0.0 : shorter.weight) + (longer.probability > least ? longer.probability : 0.0);
   if (!is_long_only) {
     shorter.offset_m = (1.0 / shorter.weight) * shorter.offset_m;
     for (std::size_t k = 0; k < object.views.size(); ++k) {
@@ -161,7 +157,7 @@ BoxReadings RadarModel::readings_of(const ObjectBoxes::Record& object) const {
     shorter.weight /= all;
     box.readings[box.number++] = shorter;
   }
-  if (longer.probability > kUnlikely) {
+  if (longer.probability > least) {
     const Vector2<double> offset = to_local(longer.offset_m);
     const Symmetric2<double> covariance = covariance_to_local(longer.offset_covariance_m2),
                              scatter = covariance_to_local(longer.reflections.scatter_m2);

@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
 ScenarioModel::ScenarioModel(const LinearScenario& s) : scenario_(s) {
   motion_.acceleration_density = s.acceleration_density;
-  motion_.rate_memory_s = s.rate_forgetting > 1.0 ? s.step_s / std::log(s.rate_forgetting) : 1e12;
+  motion_.rate_memory_s = s.rate_forgetting > 1.0 ? s.step_s / std::log(s.rate_forgetting) : kInfinity;
   motion_.extent_memory_s = s.extent_memory_s;
   view_.detection_probability = s.detection_probability;
   view_.noise_m2 = {s.noise_variance_m2, 0.0, s.noise_variance_m2};
   view_.range_rate_variance = s.range_rate_std_mps * s.range_rate_std_mps;
   view_.spread = s.spread;
   const Eigen::Vector2d span_m = s.area_max_m - s.area_min_m;
-  constexpr double kLeastClutter = 1e-9;  // keeps the logarithm finite
-  log_clutter_ = std::log(std::max(kLeastClutter, s.clutter_per_scan) / (span_m.x() * span_m.y()));
+  log_clutter_ = std::log(std::max(kLeastProbability, s.clutter_per_scan) / (span_m.x() * span_m.y()));
   if (s.range_rate_std_mps > 0.0) log_clutter_ -= std::log(s.clutter_range_rate_span_mps);
   for (const ScenarioBirth& b : s.births) {
     PoissonComponent birth;
@@ -31,14 +31,13 @@ ScenarioModel::ScenarioModel(const LinearScenario& s) : scenario_(s) {
     c.rate_shape = b.rate_shape;
     c.rate_inverse_scale = b.rate_inverse_scale;
     births_.push_back(birth);
-    constexpr double kSpeedDeviations = 3.0;
     greatest_speed_mps_ =
-        std::max(greatest_speed_mps_, (b.mean.tail<2>().cwiseAbs() + kSpeedDeviations * b.std.tail<2>()).norm());
-    // Detections of one newborn lie within four standard deviations of each other along its long axis.
+        std::max(greatest_speed_mps_, (b.mean.tail<2>().cwiseAbs() + s.speed_sigma * b.std.tail<2>()).norm());
+    // Detections of one newborn lie within some standard deviations of each other along its long axis.
     const Symmetric2<double> r = s.spread * extent(c) + view_.noise_m2;
     const double mean = 0.5 * trace(r), half = 0.5 * (r.xx - r.yy);
-    constexpr double kDeviations = 4.0;
-    link_distance_m_ = std::max(link_distance_m_, kDeviations * std::sqrt(mean + std::sqrt(half * half + r.xy * r.xy)));
+    link_distance_m_ =
+        std::max(link_distance_m_, s.link_sigma * std::sqrt(mean + std::sqrt(half * half + r.xy * r.xy)));
   }
   measurements_.reserve(kMaxDetections);
 }
@@ -69,15 +68,14 @@ double ScenarioModel::predict(Component<double>& component, double elapsed_s) co
 }
 
 double ScenarioModel::log_newborn(const Cell<double>&) {
-  return -std::numeric_limits<double>::infinity();
+  return -kInfinity;
 }
 
 bool ScenarioModel::are_linked(const Measurement<double>& a, const Measurement<double>& b) const {
   if (squared_norm(a.position_m - b.position_m) > link_distance_m_ * link_distance_m_) return false;
   if (view_.range_rate_variance <= 0.0) return true;
   // Of one velocity: ṙ_a − ṙ_b = (u_a − u_b)ᵀ v + noise.
-  constexpr double kDeviations = 4.0;
-  const double limit_mps = kDeviations * std::sqrt(2.0 * view_.range_rate_variance) +
+  const double limit_mps = scenario_.link_sigma * std::sqrt(2.0 * view_.range_rate_variance) +
                            greatest_speed_mps_ * std::sqrt(squared_norm(a.sight - b.sight));
   return std::abs(a.range_rate_mps - b.range_rate_mps) <= limit_mps;
 }

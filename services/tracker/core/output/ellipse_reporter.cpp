@@ -5,11 +5,7 @@
 
 namespace boresight::tracking {
 
-namespace {
-constexpr double kConfirmed = 0.5;
-}
-
-EllipseReporter::EllipseReporter() {
+EllipseReporter::EllipseReporter(double confirmed_existence) : confirmed_existence_(confirmed_existence) {
   tracks_.reserve(kMaxTracks);
 }
 
@@ -23,7 +19,7 @@ void EllipseReporter::take(std::span<const ObjectEstimate> objects, double /*ela
     const double spread = std::sqrt(half * half + x.xy * x.xy);
     Track t{};
     t.tracking_id = e.id;
-    t.status = e.existence > kConfirmed ? TrackStatus::kConfirmed : TrackStatus::kTentative;
+    t.status = e.existence > confirmed_existence_ ? TrackStatus::kConfirmed : TrackStatus::kTentative;
     t.update = e.detected ? TrackUpdate::kMeasured : TrackUpdate::kPredicted;
     t.movement = MovementState::kUnknown;
     t.class_probability[static_cast<std::size_t>(ObjectClass::kUnknown)] = 1.0F;

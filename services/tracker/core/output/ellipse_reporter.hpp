@@ -9,12 +9,13 @@ namespace boresight::tracking {
 
 class EllipseReporter final : public Reporter {
  public:
-  EllipseReporter();
+  explicit EllipseReporter(double confirmed_existence);
   void clear() override { tracks_.clear(); }
   void take(std::span<const ObjectEstimate> objects, double elapsed_s) override;
   void write(TrackList& out) const override;
 
  private:
+  double confirmed_existence_;
   std::vector<Track> tracks_;
 };
 

@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "services/common/geometry/frames.hpp"
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking {
 
 namespace {
 
 double log_odds(double p) {
-  constexpr double kCertain = 1e-9;
-  const double q = std::clamp(p, kCertain, 1.0 - kCertain);
+  const double q = std::clamp(p, kLeastProbability, 1.0 - kLeastProbability);
   return std::log(q / (1.0 - q));
 }
 

@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking::phd {
-
-namespace {
-
-constexpr double kNoGain = -std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 Assignment::Assignment(const Parameters& parameters, const Capacity& c)
     : parameters_(parameters), sets_(c.group_measurements) {
@@ -44,7 +39,7 @@ void Assignment::assign(std::span<const Measurement<double>> z, std::span<const 
   shares_.assign(z.size() * columns, 0.0);
   for (std::size_t i = 0; i < z.size(); ++i) {
     const std::span<double> shares{shares_.data() + i * columns, columns};
-    double best = kNoGain, sum = 1.0;  // clutter is 1
+    double best = -kInfinity, sum = 1.0;  // clutter is 1
     for (std::size_t j = 0; j < components.size(); ++j) {
       const Predicted& c = components[j];
       const Prediction<double>& p = predictions[j];

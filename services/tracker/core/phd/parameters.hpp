@@ -13,9 +13,11 @@ struct Parameters {
   double min_poisson_weight = 1e-3;         ///< lighter components of the intensity of births are dropped
   double min_detection_probability = 1e-3;  ///< of an object: below it nothing of the scan is its own (choice: time)
   double min_share = 1e-3;                  ///< of a measurement: an object has no less of it (choice: time)
-  double object_probability = 0.5;          ///< an identity that exists as surely counts as an object in the prediction
-  bool as_published = false;                ///< a component may be any number of objects: (2) instead of (6) and (7)
-  double report_existence = 0.05;           ///< objects below it are not reported
+  double least_entropy = 0.1;         ///< of sharing: below it the partition of the prediction does (choice: time)
+  double least_cell = 0.5;            ///< measurements of a shared cell: fewer are no detection (choice)
+  double object_probability = 0.5;    ///< an identity that exists as surely counts as an object in the prediction
+  bool as_published = false;          ///< a component may be any number of objects: (2) instead of (6) and (7)
+  double report_existence = 0.05;     ///< objects below it are not reported
   std::uint32_t work_budget = 16000;  ///< likelihood evaluations of a scan; beyond it no further partition is weighed
 };
 

@@ -3,18 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking::phd {
-
-namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr double kLeastEntropy = 0.1;  // below it a shared partition is the prediction partition
-constexpr double kLeastCell = 0.5;     // less than half a measurement is no detection
-constexpr double kFraction = 1e-9;     // marks a shared cell: it is never a single detection of clutter
-
-}  // namespace
 
 void DisjointSets::reset(std::size_t n) {
   parents_.clear();
@@ -29,8 +21,8 @@ std::size_t DisjointSets::root(std::size_t index) {
   return index;
 }
 
-Partitions::Partitions(const Capacity& c)
-    : capacity_(c), cell_of_key_(std::bit_ceil(2 * c.cells + 2)), sets_(c.group_measurements) {
+Partitions::Partitions(const Parameters& parameters, const Capacity& c)
+    : parameters_(parameters), capacity_(c), cell_of_key_(std::bit_ceil(2 * c.cells + 2)), sets_(c.group_measurements) {
   const std::size_t n = c.group_measurements;
   cells_.reserve(c.cells);
   partitions_.reserve(c.partitions);
@@ -141,11 +133,12 @@ void Partitions::add_shared(const Model& model, std::span<const std::int16_t> ob
     }
     add_entropy(clutter);
   }
-  if (partition.log_count < kLeastEntropy || !has_room(columns + n)) return;
+  if (partition.log_count < parameters_.least_entropy || !has_room(columns + n)) return;
   indices_.assign(columns, kNone);
   for (std::size_t k = 0; k < columns; ++k) {
-    if (shared_[k].n < kLeastCell) continue;
-    shared_[k].n += kFraction;
+    if (shared_[k].n < parameters_.least_cell) continue;
+    // A shared cell is never a single detection of clutter.
+    if (shared_[k].n == 1.0) shared_[k].n = std::nextafter(shared_[k].n, kInfinity);
     indices_[k] = static_cast<std::int16_t>(cells_.size());
     cells_.push_back(shared_[k]);
     lists_.push_back(indices_[k]);
@@ -183,7 +176,7 @@ void Partitions::find_tree(const Model& model) {
   // Prim's algorithm: single linkage joins along the tree of shortest distances.
   const std::size_t n = z_.size();
   tree_.clear();
-  nearest_.assign(n, kFar);
+  nearest_.assign(n, kInfinity);
   via_.assign(n, 0);
   std::size_t latest = 0;
   nearest_[0] = -1.0;  // negative: in the tree
@@ -198,7 +191,7 @@ void Partitions::find_tree(const Model& model) {
       }
       if (next == n || nearest_[i] < nearest_[next]) next = i;
     }
-    if (nearest_[next] < kFar) tree_.push_back({nearest_[next], next, via_[next]});
+    if (nearest_[next] < kInfinity) tree_.push_back({nearest_[next], next, via_[next]});
     nearest_[next] = -1.0;
     latest = next;
   }
@@ -236,8 +229,7 @@ void Partitions::split(std::size_t partition, std::int16_t cell) {
   const double angle_rad = 0.5 * std::atan2(2.0 * s.xy, s.xx - s.yy);
   Vector2<double> middle = whole.mean(), direction{std::cos(angle_rad), std::sin(angle_rad)};
   new_labels_.assign(n, 0);
-  constexpr int kRounds = 10;
-  for (int round = 0; round < kRounds; ++round) {
+  for (std::size_t round = 0; round < n; ++round) {
     std::array<Vector2<double>, 2> sum{};
     std::array<double, 2> count{};
     bool changed = round == 0;

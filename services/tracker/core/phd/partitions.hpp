@@ -46,7 +46,7 @@ class Partitions {
  public:
   static constexpr std::int16_t kNone = -1;  ///< no object, no cell
 
-  explicit Partitions(const Capacity& capacity);
+  Partitions(const Parameters& parameters, const Capacity& capacity);
 
   /// Starts a set of measurements, without partitions. The spans must outlive the work on it.
   void begin(std::span<const Measurement<double>> measurements, std::span<const std::uint64_t> keys);
@@ -97,6 +97,7 @@ class Partitions {
   void find_tree(const Model& model);
   void split(std::size_t partition, std::int16_t cell);
 
+  Parameters parameters_;
   Capacity capacity_;
   std::span<const Measurement<double>> z_;
   std::span<const std::uint64_t> keys_;

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking::phd {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNothing = -kInfinity;
-constexpr std::size_t kBeforeCap = 2;  // room for components before the lightest are dropped
 
 /// Settings of the parts shared with the PMBM filter. A stored group is one component.
 pmbm::Parameters shared(const Parameters& p) {
@@ -43,7 +40,7 @@ PhdFilter::PhdFilter(const Parameters& parameters, const Capacity& c)
       store_(shared(c)),
       grouping_(shared(parameters), shared(c)),
       assignment_(parameters, c),
-      partitions_(c),
+      partitions_(parameters, c),
       identity_index_(std::bit_ceil(2 * c.components + 2)),
       next_index_(std::bit_ceil(2 * c.components + 2)) {
   keys_.reserve(c.measurements);
@@ -51,7 +48,7 @@ PhdFilter::PhdFilter(const Parameters& parameters, const Capacity& c)
   identities_.reserve(c.components);
   next_identities_.reserve(c.components);
   heaviest_.reserve(c.components);
-  corrected_.reserve(kBeforeCap * c.components);
+  corrected_.reserve(2 * c.components);  // before the lightest are dropped
   components_.reserve(c.group_components);
   predicted_.reserve(c.group_components);
   predictions_.reserve(c.group_components);
@@ -66,7 +63,7 @@ PhdFilter::PhdFilter(const Parameters& parameters, const Capacity& c)
   omega_.reserve(c.partitions);
   cell_probability_.reserve(c.cells);
   cell_explained_.reserve(c.cells);
-  by_weight_.reserve(std::max(kBeforeCap * c.components, c.group_children));
+  by_weight_.reserve(std::max(2 * c.components, c.group_children));
   is_merged_.reserve(c.group_children);
   mixture_.reserve(c.group_children);
   estimates_.reserve(c.components);
@@ -212,11 +209,11 @@ void PhdFilter::weigh_cell(Model& model, std::size_t index) {
   const Cell<double>& cell = partitions_.cells()[index];
   const std::size_t births = components_.size();
   double* terms = log_terms_.data() + index * (births + 1);
-  const double of_clutter = cell.n == 1.0 ? 0.0 : kNothing;
+  const double of_clutter = cell.n == 1.0 ? 0.0 : -kInfinity;
   double best = of_clutter;
   for (std::size_t j = 0; j < births; ++j) {
     Prediction<double>& p = predictions_[j];
-    terms[j] = kNothing;
+    terms[j] = -kInfinity;
     if (p.detection_probability() < parameters_.min_detection_probability ||
         p.place_distance(cell.mean()) > parameters_.gate_chi2)
       continue;
@@ -227,33 +224,32 @@ void PhdFilter::weigh_cell(Model& model, std::size_t index) {
   terms[births] = poisson_.log_likelihood(model, cell);
   ++work_.likelihood_evaluations;
   best = std::max(best, terms[births]);
-  log_d_[index] = kNothing;
-  if (best == kNothing) return;
+  log_d_[index] = -kInfinity;
+  if (best == -kInfinity) return;
   double sum = std::exp(of_clutter - best);
   for (std::size_t j = 0; j <= births; ++j) sum += std::exp(terms[j] - best);
   log_d_[index] = best + std::log(sum);
 }
 
 void PhdFilter::weigh_partitions(Model& model) {
-  constexpr double kUnknown = kInfinity;
   const std::size_t cells = partitions_.cells().size();
   log_terms_.resize(cells * (components_.size() + 1));
-  log_d_.assign(cells, kUnknown);
+  log_d_.assign(cells, kInfinity);  // not known yet
   cell_probability_.assign(cells, 0.0);
   omega_.clear();
-  double best = kNothing, sum = 0.0;
+  double best = -kInfinity, sum = 0.0;
   for (std::size_t p = 0; p < partitions_.size(); ++p) {
     if (p > 0 && work_.likelihood_evaluations > parameters_.work_budget) break;
     double log_product = partitions_.log_count(p);
     for (const std::int16_t c : partitions_.cells_of(p)) {
       const auto cell = static_cast<std::size_t>(c);
-      if (log_d_[cell] == kUnknown) weigh_cell(model, cell);
+      if (log_d_[cell] == kInfinity) weigh_cell(model, cell);
       log_product += log_d_[cell];
     }
     omega_.push_back(log_product);
     best = std::max(best, log_product);
   }
-  if (best == kNothing) {  // nothing explains these measurements
+  if (best == -kInfinity) {  // nothing explains these measurements
     omega_.clear();
     return;
   }

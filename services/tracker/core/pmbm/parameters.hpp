@@ -16,6 +16,7 @@ struct Parameters {
   double birth_merge_distance = 2.0;        ///< the same of an undetected object and a birth (choice)
   double min_existence = 0.1;               ///< below it an object goes back to the Poisson part
   double min_poisson_weight = 1e-3;         ///< below it a component of the Poisson part is dropped
+  double join_existence = 0.5;              ///< objects above it may be parts of one
   double min_detection_probability = 1e-3;  ///< of an object: below it nothing of the scan is its own (choice: time)
   double min_share = 1e-3;                  ///< of a measurement: a cell with less of it has none (choice: time)
   int sharing_passes = 3;                   ///< of soft sharing, the first among hard cells (choice: 2 is worse)

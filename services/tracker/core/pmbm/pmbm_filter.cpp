@@ -247,12 +247,11 @@ void PmbmFilter::store() {
 }
 
 void PmbmFilter::join_parts(Model& model) {
-  constexpr double kLikely = 0.5;
   likely_.clear();
   for (std::size_t g = 0; g < current_.size(); ++g) {
     for (std::size_t c = 0; c < current_.ids(g).size(); ++c) {
       const ObjectEstimate e = estimate(g, c);
-      if (e.existence > kLikely) likely_.push_back({g, c, e.id, e.component});
+      if (e.existence > parameters_.join_existence) likely_.push_back({g, c, e.id, e.component});
     }
   }
   for (std::size_t a = 0; a < likely_.size(); ++a) {

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "services/tracker/core/numeric.hpp"
 
 namespace boresight::tracking::pmbm {
-
-namespace {
-
-constexpr double kImpossible = -std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 PoissonPart::PoissonPart(const Parameters& parameters, const Capacity& capacity) : parameters_(parameters) {
   components_.reserve(capacity.poisson_components);
@@ -92,9 +87,9 @@ void PoissonPart::begin_group(const Model& model, std::span<const Measurement<do
 }
 
 double PoissonPart::log_likelihood(Model& model, const Cell<double>& cell) {
-  double best = kImpossible, sum = 0.0;
+  double best = -kInfinity, sum = 0.0;
   const auto add = [&best, &sum](double log_value) {
-    if (log_value == kImpossible) return;
+    if (log_value == -kInfinity) return;
     if (log_value > best) {
       sum = sum * std::exp(best - log_value) + 1.0;
       best = log_value;
@@ -108,14 +103,14 @@ double PoissonPart::log_likelihood(Model& model, const Cell<double>& cell) {
     add(log_weights_[i] + predictions_[i].log_likelihood(cell));
   }
   if (model.has_births_anywhere()) add(model.log_newborn(cell));
-  return best == kImpossible ? kImpossible : best + std::log(sum);
+  return best == -kInfinity ? -kInfinity : best + std::log(sum);
 }
 
 bool PoissonPart::first_detected(Model& model, const Cell<double>& cell, Component<double>& out) {
   detected_.clear();
   log_detected_.clear();
   const Vector2<double> mean = cell.mean();
-  double best = kImpossible;
+  double best = -kInfinity;
   for (const std::size_t i : near_) {
     if (predictions_[i].place_distance(mean) > 2.0 * parameters_.gate_chi2) continue;
     log_detected_.push_back(log_weights_[i] + predictions_[i].log_likelihood(cell));

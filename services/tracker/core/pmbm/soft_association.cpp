@@ -6,17 +6,11 @@
 // all others. For the candidates that are left, the factors are the shares, which are given no other for certain.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "services/tracker/core/numeric.hpp"
 #include "services/tracker/core/pmbm/association.hpp"
 
 namespace boresight::tracking::pmbm {
-
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 void Association::keep(const State& s) {
   const double log_hard = log_row_ + s.score;
