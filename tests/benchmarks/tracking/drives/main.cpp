@@ -12,13 +12,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
 #include "tests/benchmarks/tracking/drives/report/findings.hpp"
 #include "tests/benchmarks/tracking/drives/runs/drive_folder.hpp"
+#include "tests/benchmarks/tracking/drives/runs/place.hpp"
 #include "tests/benchmarks/tracking/drives/runs/run_reader.hpp"
 
 namespace {
@@ -36,28 +36,6 @@ struct Arguments {
   double longest_s = 0.0;
   bool quick = false, keeps_all = false, runs_again = false;
   std::string keep, programs, config{BORESIGHT_SOURCE_DIR "/config"}, only, json;
-};
-
-/// A folder that is removed at the end, unless the user named it.
-class Place {
- public:
-  explicit Place(const std::string& kept)
-      : path_(kept.empty() ? fs::temp_directory_path() / fmt::format("boresight_tracking_drives_{}", getpid())
-                           : fs::path(kept)),
-        is_kept_(!kept.empty()) {
-    fs::create_directories(path_);
-  }
-  ~Place() {
-    std::error_code ignored;
-    if (!is_kept_) fs::remove_all(path_, ignored);
-  }
-  Place(const Place&) = delete;
-  Place& operator=(const Place&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool is_kept_;
 };
 
 std::vector<std::string> scenarios_with_moving_objects() {
@@ -130,7 +108,7 @@ std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vecto
 }
 
 int run(const Arguments& arguments) {
-  const Place place(arguments.keep);
+  const Place place("boresight_tracking_drives", arguments.keep);
   DriveSetup setup;
   setup.programs = arguments.programs;
   setup.place = place.path();
