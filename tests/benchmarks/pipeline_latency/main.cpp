@@ -1,15 +1,14 @@
 // boresight-bench-pipeline_latency [SECONDS = 20]: run it by tests/system/isolated, or where no other RouDi runs.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <memory>
-#include <numeric>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "services/simulator/wire/ars548_encoder.hpp"
 #include "services/simulator/wire/pcap_writer.hpp"
+#include "tests/benchmarks/common/statistics.hpp"
 #include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
 #include "tests/benchmarks/pipeline_latency/load/crowded_road.hpp"
 #include "tests/system/harness/domain.hpp"
@@ -52,20 +51,9 @@ std::filesystem::path write_load(double seconds, double ego_speed_mps) {
   return file;
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) /
-         static_cast<double>(std::max<std::size_t>(values.size(), 1));
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
 void print(const char* what, const std::vector<double>& ns) {
-  std::printf("%-34s %9.0f %9.0f %9.0f %9.0f\n", what, mean(ns) * 1e-3, quantile(ns, 0.5) * 1e-3,
-              quantile(ns, 0.99) * 1e-3, quantile(ns, 1.0) * 1e-3);
+  std::printf("%-34s %9.0f %9.0f %9.0f %9.0f\n", what, bench::mean(ns) * 1e-3, bench::quantile(ns, 0.5) * 1e-3,
+              bench::quantile(ns, 0.99) * 1e-3, bench::quantile(ns, 1.0) * 1e-3);
 }
 
 void print_bar(const char* what, double figure_ms, double most_ms) {
@@ -114,10 +102,11 @@ int run(double seconds) {
   print("between the processes (IPC)", ipc);
   print("total", total);
   print("bare iceoryx chain, same hops", bare);
-  std::printf("IPC share / bare chain at p50: %.2f (at most 1.3)\n", quantile(ipc, 0.5) / quantile(bare, 0.5));
+  std::printf("IPC share / bare chain at p50: %.2f (at most 1.3)\n",
+              bench::quantile(ipc, 0.5) / bench::quantile(bare, 0.5));
   const std::vector<double>& tracker_ns = processing[kNumberOfStages - 1];
-  print_bar("tracker, mean", mean(tracker_ns) * 1e-6, kMostTrackerMean_ms);
-  print_bar("tracker, p99", quantile(tracker_ns, 0.99) * 1e-6, kMostTrackerP99_ms);
+  print_bar("tracker, mean", bench::mean(tracker_ns) * 1e-6, kMostTrackerMean_ms);
+  print_bar("tracker, p99", bench::quantile(tracker_ns, 0.99) * 1e-6, kMostTrackerP99_ms);
   return 0;
 }
 
