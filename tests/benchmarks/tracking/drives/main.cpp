@@ -12,13 +12,14 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/parallel.hpp"
+#include "tests/benchmarks/tracking/drives/perfect/perfect_run.hpp"
 #include "tests/benchmarks/tracking/drives/report/findings.hpp"
 #include "tests/benchmarks/tracking/drives/runs/drive_folder.hpp"
+#include "tests/benchmarks/tracking/drives/runs/place.hpp"
 #include "tests/benchmarks/tracking/drives/runs/run_reader.hpp"
 
 namespace {
@@ -36,28 +37,6 @@ struct Arguments {
   double longest_s = 0.0;
   bool quick = false, keeps_all = false, runs_again = false;
   std::string keep, programs, config{BORESIGHT_SOURCE_DIR "/config"}, only, json;
-};
-
-/// A folder that is removed at the end, unless the user named it.
-class Place {
- public:
-  explicit Place(const std::string& kept)
-      : path_(kept.empty() ? fs::temp_directory_path() / fmt::format("boresight_tracking_drives_{}", getpid())
-                           : fs::path(kept)),
-        is_kept_(!kept.empty()) {
-    fs::create_directories(path_);
-  }
-  ~Place() {
-    std::error_code ignored;
-    if (!is_kept_) fs::remove_all(path_, ignored);
-  }
-  Place(const Place&) = delete;
-  Place& operator=(const Place&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool is_kept_;
 };
 
 std::vector<std::string> scenarios_with_moving_objects() {
@@ -101,6 +80,18 @@ ScoredDrive read_drive(const NamedRun& run, const fs::path& truth) {
   return drive;
 }
 
+/// The run with true origins has measured the default tracker beside its own.
+void add_step_times(const std::vector<NamedRun>& runs, std::size_t drive, std::vector<Contestant>& contestants) {
+  const auto perfect =
+      std::find_if(runs.begin(), runs.end(), [](const NamedRun& run) { return run.name == kPerfectTracker; });
+  if (perfect == runs.end()) return;
+  const StepTimes times = read_step_times(perfect->folder);
+  for (std::size_t c = 0; c < runs.size(); ++c) {
+    if (runs[c].name == kDefaultTracker) contestants[c].steps_ms[drive] = times.filtered_ms;
+    if (runs[c].name == kPerfectTracker) contestants[c].steps_ms[drive] = times.perfect_ms;
+  }
+}
+
 /// The drives of a profile, simulated, run and read. Their folders are deleted at once unless they are kept.
 std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vector<DriveSpec>& drives, std::size_t jobs,
                                        bool is_kept) {
@@ -108,6 +99,8 @@ std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vecto
   std::vector<Contestant> contestants(count);
   for (std::size_t c = 0; c < count; ++c) {
     contestants[c].is_baseline = c >= setup.trackers.size();
+    contestants[c].has_true_origins = c < setup.trackers.size() && setup.trackers[c] == kPerfectTracker;
+    contestants[c].steps_ms.resize(drives.size());
     contestants[c].drives.resize(drives.size());
     contestants[c].ms_per_scan.resize(drives.size(), NAN);
   }
@@ -120,6 +113,7 @@ std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vecto
       contestants[c].drives[d] = read_drive(runs[c], folder / "drive");
       contestants[c].ms_per_scan[d] = tracker_ms_per_scan(runs[c].folder, contestants[c].drives[d].lists().size());
     }
+    add_step_times(runs, d, contestants);
     if (is_kept) {
       trim(setup, drives[d]);
     } else {
@@ -130,7 +124,7 @@ std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vecto
 }
 
 int run(const Arguments& arguments) {
-  const Place place(arguments.keep);
+  const Place place("boresight_tracking_drives", arguments.keep);
   DriveSetup setup;
   setup.programs = arguments.programs;
   setup.place = place.path();
@@ -187,7 +181,8 @@ int main(int argc, char** argv) {
     app.add_option("--scenarios", arguments.scenarios, "names or files; default: all with moving objects");
     app.add_option("--profiles", arguments.profiles, "radar profiles, names or files")->capture_default_str();
     app.add_option("--trackers", arguments.trackers,
-                   "names for `boresight run --tracker`; \"default\" is the one without this option")
+                   "names for `boresight run --tracker`; \"default\" is the one without this option, \"perfect\" the "
+                   "same with the true origin of each detection")
         ->capture_default_str();
     app.add_option("--seeds", arguments.seeds, "drives of each scenario and profile")
         ->check(CLI::Range(1, 1000))
@@ -211,6 +206,7 @@ int main(int argc, char** argv) {
     if (arguments.quick) {
       arguments.scenarios = {"highway_multipath"};
       arguments.profiles = {"series_77ghz"};
+      arguments.trackers = {kDefaultTracker, kPerfectTracker};
       arguments.seeds = 1;
       arguments.longest_s = 4.0;
     }

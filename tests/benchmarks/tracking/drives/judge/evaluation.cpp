@@ -70,6 +70,7 @@ TrackerResult result_of(const Contestant& contestant, const std::vector<JudgedOb
   TrackerResult result;
   result.name = contestant.name;
   result.is_baseline = contestant.is_baseline;
+  result.has_true_origins = contestant.has_true_origins;
   for (std::size_t i = 0; i < kFixedRules.size(); ++i) {
     // A baseline has no existence.
     if (contestant.is_baseline && i != kConfirmed) continue;
@@ -79,6 +80,7 @@ TrackerResult result_of(const Contestant& contestant, const std::vector<JudgedOb
     if (!contestant.is_baseline) result.reliability += drive.reliability();
   }
   result.ms_per_scan = contestant.ms_per_scan;
+  for (const std::vector<double>& of_drive : contestant.steps_ms) append_to(result.step_ms, of_drive);
   return result;
 }
 
@@ -98,10 +100,12 @@ void Outcome::append(const Outcome& other) {
 void TrackerResult::append(const TrackerResult& other) {
   name = other.name;
   is_baseline = other.is_baseline;
+  has_true_origins = other.has_true_origins;
   for (std::size_t i = 0; i < kFalseTracks.size(); ++i) at_false_tracks[i].append(other.at_false_tracks[i]);
   for (std::size_t i = 0; i < kFixedRules.size(); ++i) fixed[i].append(other.fixed[i]);
   reliability += other.reliability;
   append_to(ms_per_scan, other.ms_per_scan);
+  append_to(step_ms, other.step_ms);
 }
 
 void Evaluation::append(const Evaluation& other) {

@@ -29,8 +29,10 @@ inline constexpr std::array<FixedRule, 3> kFixedRules = {
 struct Contestant {
   std::string name;
   bool is_baseline = false;
+  bool has_true_origins = false;
   std::vector<ScoredDrive> drives;
-  std::vector<double> ms_per_scan;  ///< of each drive; NaN: not known
+  std::vector<double> ms_per_scan;            ///< of each drive; NaN: not known
+  std::vector<std::vector<double>> steps_ms;  ///< of each drive: CPU time of each scan; may be empty
 };
 
 /// An object that is in view for long enough to be found.
@@ -54,10 +56,12 @@ struct Outcome {
 struct TrackerResult {
   std::string name;
   bool is_baseline = false;
+  bool has_true_origins = false;
   std::array<Outcome, kFalseTracks.size()> at_false_tracks;
   std::array<Outcome, kFixedRules.size()> fixed;
   Reliability reliability;
   std::vector<double> ms_per_scan;
+  std::vector<double> step_ms;  ///< of each scan; empty: not known
   void append(const TrackerResult& other);
 };
 

@@ -10,6 +10,7 @@
 
 #include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/tracking/common/baseline_run.hpp"
+#include "tests/benchmarks/tracking/drives/perfect/perfect_run.hpp"
 #include "tests/benchmarks/tracking/drives/runs/process.hpp"
 #include "tests/benchmarks/tracking/drives/runs/run_reader.hpp"
 
@@ -71,7 +72,11 @@ class DriveFolder {
   [[nodiscard]] fs::path run(const std::string& tracker) const {
     fs::path folder = folder_ / ("run_" + tracker);
     if (fs::exists(folder / "run.json") && !setup_.runs_again) return folder;
-    make_run(tracker, folder);
+    if (tracker == kPerfectTracker) {
+      make_perfect_run(folder);
+    } else {
+      make_run(tracker, folder);
+    }
     return folder;
   }
 
@@ -111,6 +116,18 @@ class DriveFolder {
                                       "--quiet"};
     if (tracker != kDefaultTracker) words.insert(words.end(), {"--tracker", tracker});
     run_program(words, log_, {0, kDoubtful});
+    fs::remove_all(folder);
+    fs::rename(fresh, folder);
+  }
+
+  void make_perfect_run(const fs::path& folder) const {
+    simulate_if_missing();
+    const fs::path drive = folder_ / "drive", fresh = folder.string() + ".new";
+    fs::remove_all(fresh);
+    runtime::Configuration configuration;
+    configuration.directory = setup_.config;
+    configuration.vehicle_name = setup_.vehicle;
+    run_with_true_origins({drive / kRecording, drive / kEgo}, drive, configuration, fresh);
     fs::remove_all(folder);
     fs::rename(fresh, folder);
   }

@@ -1,7 +1,7 @@
 // Simulates a drive and runs the chain and the baselines over it, each into a folder of its own.
 //
 //     PLACE/PROFILE/SCENARIO_SEED/drive        recordings and truth
-//                                /run_TRACKER  of `boresight run`
+//                                /run_TRACKER  of `boresight run`, or with true origins
 //                                /baseline_N   of the baseline with N detections a cluster at least
 //
 // Folders that are there are used again.
@@ -18,6 +18,8 @@ namespace boresight::bench::tracking {
 
 /// Name of the tracker that `boresight run` takes without the option --tracker.
 inline constexpr const char* kDefaultTracker = "default";
+/// The default tracker with the true origin of each detection.
+inline constexpr const char* kPerfectTracker = "perfect";
 
 struct DriveSetup {
   std::filesystem::path programs;      ///< folder of the program boresight
@@ -25,7 +27,7 @@ struct DriveSetup {
   std::filesystem::path place;         ///< of the folders of drives
   std::string vehicle = "demo";        ///< as the option --vehicle
   VehicleConfig baseline_vehicle;      ///< the same
-  std::vector<std::string> trackers;   ///< names of --tracker
+  std::vector<std::string> trackers;   ///< names of --tracker, or one of those above
   std::vector<std::size_t> baselines;  ///< fewest detections of a cluster
   bool keeps_all = false;              ///< also recordings and detections, a quarter of a gigabyte a drive
   bool runs_again = false;             ///< runs of the chain that are there are replaced

@@ -12,8 +12,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kLargestScore = 1e9;
-
 /// Time of the run at which the clock of the truth is 0.
 std::int64_t truth_origin(const fs::path& run, const score::TruthSource& truth, const score::RunScan& first) {
   std::optional<std::int64_t> stated_ns;
@@ -25,34 +23,21 @@ std::int64_t truth_origin(const fs::path& run, const score::TruthSource& truth, 
 }  // namespace
 
 RunReader::RunReader(const fs::path& run, const fs::path& truth, std::string score_column)
-    : score_column_(std::move(score_column)),
-      car_(score::read_car_truth(score::find_truth(truth).drive)),
-      scans_(run),
-      tracks_(run),
-      scores_(run / "tracks.csv", {"id", score_column_}),
+    : car_(score::read_car_truth(score::find_truth(truth).drive)),
+      lists_(run, std::move(score_column)),
       objects_(score::find_truth(truth).objects, score::find_truth(truth).objects_are_boxes,
                score::find_truth(truth).visibility) {
-  has_scan_ = scans_.next(scan_);
-  if (has_scan_) origin_ns_ = truth_origin(run, score::find_truth(truth), scan_);
-}
-
-void RunReader::read_tracks(std::vector<ListedTrack>& tracks) {
-  tracks_.take(scan_, list_);
-  tracks.clear();
-  for (const judge::ScoredTrack& track : list_) {
-    do {
-      if (!scores_.next()) throw score::InputError(scores_.name() + ": ends early");
-    } while (scores_.integer("id", 0, UINT32_MAX) != track.id);
-    tracks.push_back({track, scores_.number(score_column_, 0.0, kLargestScore)});
-  }
+  has_list_ = lists_.next();
+  if (has_list_) origin_ns_ = truth_origin(run, score::find_truth(truth), lists_.scan());
 }
 
 bool RunReader::next(Scene& scene) {
-  for (; has_scan_; has_scan_ = scans_.next(scan_)) {
-    read_tracks(scene.tracks);
-    scene.t_s = 1e-9 * static_cast<double>(scan_.time_ns - origin_ns_) - car_.stamp_offset_s(scan_.radar);
+  for (; has_list_; has_list_ = lists_.next()) {
+    scene.tracks = lists_.tracks();
+    const score::RunScan& scan = lists_.scan();
+    scene.t_s = 1e-9 * static_cast<double>(scan.time_ns - origin_ns_) - car_.stamp_offset_s(scan.radar);
     if (!objects_.at(scene.t_s, scene.objects)) continue;
-    has_scan_ = scans_.next(scan_);
+    has_list_ = lists_.next();
     return true;
   }
   return false;

@@ -4,19 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "services/boresight/score/car_truth.hpp"
 #include "services/boresight/score/object_truth.hpp"
-#include "services/boresight/score/run_folder.hpp"
-#include "services/boresight/score/table.hpp"
 #include "tests/benchmarks/tracking/drives/judge/scene.hpp"
+#include "tests/benchmarks/tracking/drives/runs/list_reader.hpp"
 
 namespace boresight::bench::tracking {
-
-/// Column of tracks.csv that holds the score.
-inline constexpr const char* kExistenceColumn = "existence";
-inline constexpr const char* kHitsColumn = "hits";
 
 class RunReader {
  public:
@@ -27,18 +21,11 @@ class RunReader {
   [[nodiscard]] bool next(Scene& scene);
 
  private:
-  void read_tracks(std::vector<ListedTrack>& tracks);
-
-  std::string score_column_;
   score::CarTruth car_;
-  score::RunScans scans_;
-  score::RunTracks tracks_;
-  score::Table scores_;  // tracks.csv again, for the column of the score
+  ListReader lists_;
   score::ObjectTruth objects_;
-  score::RunScan scan_;
-  std::vector<judge::ScoredTrack> list_;
   std::int64_t origin_ns_ = 0;
-  bool has_scan_ = false;
+  bool has_list_ = false;
 };
 
 /// CPU time of the tracker a scan, ms; NaN if run.json does not state it.

@@ -1,0 +1,167 @@
+#include "tests/benchmarks/tracking/drives/perfect/perfect_run.hpp"
+
+#include <array>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <nlohmann/json.hpp>
+#include <time.h>
+
+#include "services/boresight/json/text.hpp"
+#include "services/boresight/run/chain.hpp"
+#include "services/boresight/run/gateway_feed.hpp"
+#include "services/boresight/run/settings.hpp"
+#include "services/boresight/run/writer.hpp"
+#include "services/boresight/score/car_truth.hpp"
+#include "services/boresight/score/truth_source.hpp"
+#include "services/common/recording/reader.hpp"
+#include "services/ingest_gateway/core/gateway.hpp"
+#include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
+#include "services/tracker/core/make_tracker.hpp"
+#include "tests/benchmarks/tracking/drives/perfect/true_origins.hpp"
+
+namespace boresight::bench::tracking {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kTimesFile = "step_times.csv";
+constexpr double kMillisecondsPerNanosecond = 1e-6;
+
+std::int64_t cpu_ns() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+/// What the truth says about the scans of a run.
+class OriginsOfScans {
+ public:
+  explicit OriginsOfScans(const fs::path& truth)
+      : source_(score::find_truth(truth)),
+        car_(score::read_car_truth(source_.drive)),
+        origins_(source_.detections, source_.detections_are_labels) {}
+
+  void set(const run::ScanResult& result, ClassifiedScan& scan) {
+    if (!begin_ns_) {
+      const double since_start_s = 1e-6 * static_cast<double>(result.at.since_start_us());
+      begin_ns_ = score::truth_origin_ns(score::first_time_s(source_).value_or(0.0), result.at.time_ns, since_start_s);
+    }
+    const std::uint32_t radar = result.scan.header.source_id;
+    const double t_s = 1e-9 * static_cast<double>(result.at.time_ns - *begin_ns_) - car_.stamp_offset_s(radar);
+    const auto* const origins = origins_.find(radar, t_s, result.number, scan.number_of_valid_detections);
+    if (origins == nullptr) throw std::runtime_error(fmt::format("radar {}, scan {}: no truth", radar, result.number));
+    set_true_origins(*origins, scan);
+  }
+
+ private:
+  score::TruthSource source_;
+  score::CarTruth car_;
+  score::DetectionTruth origins_;
+  std::optional<std::int64_t> begin_ns_;  // of the truth, on the clock of the run
+};
+
+class PerfectRun {
+ public:
+  PerfectRun(const VehicleConfig& vehicle, const run::Settings& settings, const fs::path& truth, const fs::path& out)
+      : vehicle_(vehicle),
+        origins_(truth),
+        tracker_(boresight::tracking::make_tracker(settings.tracker.tracker, vehicle, settings.tracker)),
+        out_(out),
+        scans_(out / "scans.csv"),
+        tracks_file_(out / "tracks.csv"),
+        times_(out / kTimesFile),
+        writer_([this](run::File file, std::string_view text) { put(file, text); }, vehicle),
+        chain_(std::make_unique<run::Chain>(
+            vehicle, settings, run::Listeners{[this](const run::ScanResult& result) { add(result); }, {}, {}},
+            cpu_ns)) {
+    fmt::print(times_, "filtered_ms,perfect_ms\n");
+  }
+
+  void play(const std::vector<fs::path>& recordings) {
+    const auto reader =
+        recording::open_recordings(recordings, [](const std::string& problem) { throw std::runtime_error(problem); });
+    run::GatewayFeed feed(*chain_);
+    ingest::Gateway gateway(vehicle_, feed, ingest::read_mappings(vehicle_));
+    for (recording::Frame frame; reader->next(frame);) {
+      chain_->advance(frame.stamp_ns);
+      gateway.take(frame, {frame.stamp_ns, 0, TimeSource::kLinkArrival});
+    }
+    gateway.finish();
+    chain_->finish();
+    finish();
+  }
+
+ private:
+  void put(run::File file, std::string_view text) {
+    if (file == run::File::kScans) scans_ << text;
+    if (file == run::File::kTracks) tracks_file_ << text;
+  }
+
+  void add(const run::ScanResult& result) {
+    *scan_ = result.classified;
+    origins_.set(result, *scan_);
+    const std::int64_t begin_ns = cpu_ns();
+    static_cast<void>(tracker_->step(*scan_));
+    tracker_->write(*tracks_);
+    const std::int64_t step_ns = cpu_ns() - begin_ns;
+    const std::int64_t filtered_ns = chain_->stage_times().tracker;
+    tracks_->header = result.tracks.header;
+    writer_.write(run::ScanResult{result.at, result.number, result.scan, *scan_, *tracks_});
+    fmt::print(times_, "{:.6f},{:.6f}\n", kMillisecondsPerNanosecond * static_cast<double>(filtered_ns - filtered_ns_),
+               kMillisecondsPerNanosecond * static_cast<double>(step_ns));
+    perfect_ns_ += step_ns;
+    filtered_ns_ = filtered_ns;
+  }
+
+  void finish() {
+    writer_.flush();
+    for (std::ofstream* const file : {&scans_, &tracks_file_, &times_}) {
+      file->close();
+      if (!*file) throw std::runtime_error(out_.string() + ": cannot be written");
+    }
+    json::Value summary;
+    summary["vehicle"] = vehicle_.name;
+    summary["recording_s"] = 1e-9 * static_cast<double>(chain_->length_ns());
+    summary["timing"]["cpu_s_by_stage"]["tracker"] = 1e-9 * static_cast<double>(perfect_ns_);
+    std::ofstream(out_ / "run.json") << json::document(summary);
+  }
+
+  const VehicleConfig& vehicle_;
+  OriginsOfScans origins_;
+  std::unique_ptr<boresight::tracking::MultiObjectTracker> tracker_;
+  fs::path out_;
+  std::ofstream scans_, tracks_file_, times_;
+  run::Writer writer_;
+  std::unique_ptr<ClassifiedScan> scan_ = std::make_unique<ClassifiedScan>();
+  std::unique_ptr<TrackList> tracks_ = std::make_unique<TrackList>();
+  std::int64_t filtered_ns_ = 0, perfect_ns_ = 0;
+  std::unique_ptr<run::Chain> chain_;
+};
+
+}  // namespace
+
+void run_with_true_origins(const std::vector<fs::path>& recordings, const fs::path& truth,
+                           const runtime::Configuration& configuration, const fs::path& out) {
+  fs::create_directories(out);
+  const VehicleConfig vehicle = configuration.vehicle();
+  PerfectRun(vehicle, run::read_settings(configuration), truth, out).play(recordings);
+}
+
+StepTimes read_step_times(const fs::path& run) {
+  constexpr double kLongest_ms = 1e6;
+  StepTimes times;
+  score::Table table(run / kTimesFile, {"filtered_ms", "perfect_ms"});
+  while (table.next()) {
+    times.filtered_ms.push_back(table.number("filtered_ms", 0.0, kLongest_ms));
+    times.perfect_ms.push_back(table.number("perfect_ms", 0.0, kLongest_ms));
+  }
+  return times;
+}
+
+}  // namespace boresight::bench::tracking
