@@ -43,6 +43,8 @@ struct Track {
   TrackStatus status;
   TrackUpdate update;
   MovementState movement;
+/// Nothing was dropped, but objects that share detections were associated apart: there were more than a group holds.
+inline constexpr std::uint32_t kGatesCut = 1u << 2;
   ObjectClass object_class;  ///< the likeliest one of `class_probability`
   float age_s;
   float time_since_update_s;

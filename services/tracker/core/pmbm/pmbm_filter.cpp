@@ -53,14 +53,14 @@ void PmbmFilter::step(Model& model, double elapsed_s) {
   explained_.assign(model.measurements().size(), 0.0);
   predict(model, elapsed_s);
   poisson_.begin_scan(model);
-  std::size_t cut = 0;
   next_.clear();
-  for (const WorkItem& item : grouping_.find(model, poisson_, current_, cut)) update(model, item);
+  // Gates of (T4), with the offsets of (T11) and (T12), connect objects and measurements to independent groups. Each
+  // has its association by (T10) with the likelihoods of (T13), its update by (T5) to (T9), and its reduction.
+  for (const WorkItem& item : grouping_.find(model, poisson_, current_, work_)) update(model, item);
   poisson_.end_scan(model);
   std::swap(current_, next_);
   join_parts(model);
   work_.budget_reached = association_.take_was_cut() || work_.likelihood_evaluations > parameters_.work_budget;
-  work_.dropped_objects += static_cast<std::uint32_t>(cut);
   report();
 }
 
