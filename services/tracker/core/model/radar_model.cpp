@@ -37,7 +37,8 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
 
 RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
     : parameters_(parameters),
-      boxes_(BoxEstimator(extended_object::object_class_table_defaults(), parameters.box), max_objects) {
+      boxes_(BoxEstimator(extended_object::object_class_table_defaults(), parameters.box), max_objects),
+      occlusion_(kMaxKnownObjects) {
   for (const RadarConfig& r : vehicle.radars) {
     const FieldOfView& f = r.field_of_view;
     const double half_rad = 0.5 * (f.azimuth_max_rad - f.azimuth_min_rad);
@@ -89,6 +90,7 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   measurements_.clear();
   places_.clear();
   radar_ = nullptr;
+  radar_index_ = -1;
   for (std::size_t k = 0; k < radars_.size(); ++k) {
     if (radars_[k].id != scan.header.source_id) continue;
     radar_ = &radars_[k];
@@ -146,6 +148,12 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   }
 }
 
+void RadarModel::find_occlusion() {
+  occlusion_.begin_scan(sensor_m_);
+  for (const KnownObject& o : objects_) occlusion_.add(o.component.label, o.existence, boxes_.box(o.component));
+  occlusion_.find();
+}
+
 double RadarModel::log_origin(double p) const {
   const ClutterParameters& c = parameters_.clutter;
   const auto against = [](double share) {
@@ -181,6 +189,7 @@ void RadarModel::learn(std::span<const double> explained, std::span<const Object
   note_objects(objects);
   boxes_.learn(objects, elapsed_s_, axes_.heading_rad);
   if (radar_ == nullptr) return;
+  find_occlusion();
   for (std::size_t i = 0; i < explained.size() && i < places_.size(); ++i) {
     radar_->clutter.add(places_[i], std::max(0.0, 1.0 - explained[i]) * (1.0 - measurements_[i].wide_share));
   }
