@@ -131,7 +131,8 @@ void PmbmFilter::make_rows(Model& model, std::span<const Candidate> candidates) 
     for (std::size_t c = 0; c < before_.columns(); ++c) {
       const std::int16_t l = before_.at(candidate.row, c);
       if (l < 0) continue;
-      const Cell<double>& cell = candidate.cells[object++];
+      const std::size_t cell_index = object++;
+      const Cell<double>& cell = candidate.cells[cell_index];
       // The same hypothesis with the same cell is one, in whichever row.
       const std::uint64_t soft = mixed(std::bit_cast<std::uint64_t>(cell.n + 3.7 * cell.sum.x));
       const std::uint64_t key = mixed(cell.key ^ mixed(77U + static_cast<std::uint64_t>(l)) ^ soft);
@@ -142,8 +143,12 @@ void PmbmFilter::make_rows(Model& model, std::span<const Candidate> candidates) 
         LocalHypothesis next;
         if (cell.n == 0.0) {
           next = {missed_existence(local.existence, p.missed()), 0.0, {}, p.missed_component(local.component)};
+          for (std::size_t i = 0; i < group_z_.size() && next.shared == 0.0; ++i) {
+            if (association_.is_taken(candidate, static_cast<std::size_t>(l), i)) next.shared = 1.0;
+          }
         } else {
-          next = {1.0, cell.n, cell.scatter(), p.updated(local.component, cell), cell.mean()};
+          next = {
+              1.0, cell.n, cell.scatter(), p.updated(local.component, cell), cell.mean(), candidate.shared[cell_index]};
         }
         index = after_.add_local(next);
         if (index < 0) {
@@ -301,6 +306,7 @@ ObjectEstimate PmbmFilter::estimate(std::size_t g, std::size_t c) {
     e.detections = pool[l].detections;
     e.scatter = pool[l].scatter;
     e.mean_m = pool[l].mean_m;
+    e.shared = pool[l].shared;
   }
   e.id = current_.ids(g)[c];
   e.detected = e.detections > 0.0;
