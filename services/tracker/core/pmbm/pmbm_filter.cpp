@@ -46,12 +46,11 @@ void PmbmFilter::clear() {
   estimates_.clear();
 }
 
-// Granström, Fatemi and Svensson 2020, §III: prediction, then for each independent group association, update and
-// reduction.
+// Granström, Fatemi and Svensson 2020, §III. Equations: docs/algorithms/tracking.md.
 void PmbmFilter::step(Model& model, double elapsed_s) {
   work_ = {};
   explained_.assign(model.measurements().size(), 0.0);
-  predict(model, elapsed_s);
+  predict(model, elapsed_s);  // (T2) and (T3), of the Bernoulli components and the Poisson part
   poisson_.begin_scan(model);
   next_.clear();
   // Gates of (T4), with the offsets of (T11) and (T12), connect objects and measurements to independent groups. Each
@@ -59,7 +58,7 @@ void PmbmFilter::step(Model& model, double elapsed_s) {
   for (const WorkItem& item : grouping_.find(model, poisson_, current_, work_)) update(model, item);
   poisson_.end_scan(model);
   std::swap(current_, next_);
-  join_parts(model);
+  join_parts(model);  // (T15)
   work_.budget_reached = association_.take_was_cut() || work_.likelihood_evaluations > parameters_.work_budget;
   report();
 }
