@@ -6,7 +6,7 @@
 namespace boresight {
 
 enum class TrackStatus : std::uint8_t { kTentative = 0, kConfirmed = 1 };
-/// Whether the latest scan with the object in its field of view detected it.
+/// Whether the scan of this list detected the object, whichever radar's it is. `Track::flags` tell why it may not have.
 enum class TrackUpdate : std::uint8_t { kMeasured = 0, kPredicted = 1 };
 enum class MovementState : std::uint8_t { kUnknown = 0, kMoving = 1, kStationary = 2, kStopped = 3 };
 enum class ObjectClass : std::uint8_t {
@@ -22,18 +22,29 @@ inline constexpr std::size_t kNumberOfObjectClasses = 6;
 /// Rows of `Track::covariance`: x, y, v_x, v_y, heading, length, width.
 inline constexpr std::size_t kTrackStateSize = 7;
 
-/// Bits of `Track::flags`: why an object may be undetected, and whether its detections are its own.
+/// Bits of `Track::flags`: why the object may be undetected, or has no detections of its own.
+///
+/// They describe the latest scan of each radar that delivered lately. A radar detects an object if it has the object in
+/// view, no other object hides it, it moves along the line of sight, and its detections are its own. The first of these
+/// that fails is that radar's reason. The flag is the reason of the radar that comes farthest in this order: at most
+/// one bit is set, and none if a radar should detect the object. A track that is predicted for long and has no flag is
+/// missed for a reason that the tracker does not know.
 namespace track_flag {
-inline constexpr std::uint32_t kOutOfView = 1u << 0;    ///< no radar that delivered lately has the object in view
-inline constexpr std::uint32_t kOccluded = 1u << 1;     ///< another object hides it
-inline constexpr std::uint32_t kZeroDoppler = 1u << 2;  ///< too slow along the line of sight to be detected as moving
-inline constexpr std::uint32_t kMerged = 1u << 3;       ///< close to another object: they share detections
+inline constexpr std::uint32_t kOutOfView = 1u << 0;  ///< no radar that delivered lately has the object in view
+inline constexpr std::uint32_t kOccluded = 1u << 1;   ///< other objects hide it from all that have it in view
+inline constexpr std::uint32_t kZeroDoppler = 1u
+                                              << 2;  ///< too slow along these lines of sight to be detected as moving
+/// Another object has a part of its detections, by their probabilities; or it has none, and those in its gate are
+/// another object's.
+inline constexpr std::uint32_t kMerged = 1u << 3;
 }  // namespace track_flag
 
 /// Bits of `TrackList::tracker_flags`: limits that the tracker reached in this step.
 namespace tracker_flag {
 inline constexpr std::uint32_t kWorkBudgetReached = 1u << 0;  ///< the search for associations was ended early
 inline constexpr std::uint32_t kCapacityReached = 1u << 1;    ///< detections, hypotheses or objects were dropped
+/// Nothing was dropped, but objects that share detections were associated apart: there were more than a group holds.
+inline constexpr std::uint32_t kGatesCut = 1u << 2;
 }  // namespace tracker_flag
 
 /// One object. Positions in the vehicle frame at the list's measurement time; velocity over ground, expressed in

@@ -183,7 +183,10 @@ Config read_config(config::Reader root) {
   read(root.table("report"), {{"confirmed_existence", &r.confirmed_existence, {0.01, 0.999999}},
                               {"hold_log_odds_per_s", &r.hold_log_odds_per_s, {0.0, 1e6}},
                               {"least_existence", &r.least_existence, {0.001, 0.5}},
-                              {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}}});
+                              {"stopped_speed_mps", &r.stopped_speed_mps, {0.0, 5.0}},
+                              {"flag_probability", &r.flags.likely, {0.01, 0.99}},
+                              {"merged_share", &r.flags.merged_share, {0.01, 1.0}},
+                              {"recent_scan_s", &r.flags.recent_scan_s, {0.01, 10.0}}});
   root.finish();
   return c;
 }

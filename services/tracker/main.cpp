@@ -22,6 +22,10 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Confi
     if (result.dropped_objects > 0) {
       node.fault(Fault::kCapacity, "more objects than the tracker has room for", result.dropped_objects);
     }
+    if (result.cut_gates > 0) {
+      node.fault(Fault::kCapacity, "more objects near each other than the tracker associates jointly",
+                 result.cut_gates);
+    }
     std::uint32_t dropped_tracks = 0;
     tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) {
       tracker->write(out);

@@ -62,6 +62,9 @@ int run_track(const TrackOptions& options, const CLI::App& command) {
   if (run.budget_reached > 0) {
     report_problem(command, fmt::format("the work budget ended the search in {} scans", run.budget_reached));
   }
+  if (run.gates_cut > 0) {
+    report_problem(command, fmt::format("crowds were associated in parts in {} scans", run.gates_cut));
+  }
   if (run.dropped_detections + run.dropped_objects > 0) {
     report_problem(command, fmt::format("{} detections and {} objects were dropped for want of capacity",
                                         run.dropped_detections, run.dropped_objects));

@@ -106,6 +106,7 @@ bool Chain::add_scan(RadarScan& scan, std::int64_t time_ns) {
     counts_.scans_out_of_order += step.out_of_order ? 1 : 0;
     counts_.tracker_restarts += step.restarted ? 1 : 0;
     counts_.tracker_at_budget += step.budget_reached ? 1 : 0;
+    counts_.tracker_cut_gates += step.cut_gates > 0 ? 1 : 0;
     counts_.tracker_dropped_detections += step.dropped_detections;
     counts_.tracker_dropped_objects += step.dropped_objects;
     tracker_->write(*tracks_);

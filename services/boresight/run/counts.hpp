@@ -34,6 +34,7 @@ struct Counts {
   std::uint64_t scans_out_of_order = 0;   ///< older than the tracks
   std::uint64_t tracker_restarts = 0;     ///< measurement time jumped: all tracks were dropped
   std::uint64_t tracker_at_budget = 0;    ///< scans in which the search for associations ended at its work budget
+  std::uint64_t tracker_cut_gates = 0;    ///< scans in which objects that share detections were associated apart
   std::uint64_t tracker_dropped_detections = 0, tracker_dropped_objects = 0;  ///< beyond a capacity
   std::array<RadarCounts, kMaxRadars + 1> radars{};                           ///< by radar id
 };

@@ -142,6 +142,7 @@ json::Value tracker_losses_of(const Counts& counts) {
   value["scans_out_of_order"] = counts.scans_out_of_order;
   value["restarts"] = counts.tracker_restarts;
   value["scans_at_work_budget"] = counts.tracker_at_budget;
+  value["scans_with_cut_gates"] = counts.tracker_cut_gates;
   value["dropped_detections"] = counts.tracker_dropped_detections;
   value["dropped_objects"] = counts.tracker_dropped_objects;
   return value;

@@ -30,7 +30,8 @@ inline constexpr std::array<std::string_view, 6> kClassWords = {"unknown",     "
 inline constexpr std::array<std::string_view, 4> kTrackFlagWords = {"out_of_view", "occluded", "zero_doppler",
                                                                     "merged"};
 /// By bit of tracker_flag.
-inline constexpr std::array<std::string_view, 2> kTrackerFlagWords = {"work_budget_reached", "capacity_reached"};
+inline constexpr std::array<std::string_view, 3> kTrackerFlagWords = {"work_budget_reached", "capacity_reached",
+                                                                      "gates_cut"};
 /// By AlignmentState.
 inline constexpr std::array<std::string_view, 4> kStateWords = {"no_data", "waiting", "converging", "converged"};
 

@@ -68,6 +68,7 @@ TrackerRun run_tracker(const MakeTracker& make, const std::vector<std::vector<Me
       }
       run.estimates.push_back(std::move(estimates));
       run.budget_reached += result.budget_reached ? 1 : 0;
+      run.gates_cut += result.cut_gates > 0 ? 1 : 0;
       run.dropped_detections += result.dropped_detections;
       run.dropped_objects += result.dropped_objects;
       run.likelihood_evaluations += result.likelihood_evaluations;

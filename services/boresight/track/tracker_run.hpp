@@ -22,6 +22,7 @@ struct TrackerRun {
   ObjectsByStep estimates;
   std::vector<double> cpu_ms;                                 ///< of each scan, the least of all passes
   std::size_t budget_reached = 0;                             ///< number of scans
+  std::size_t gates_cut = 0;                                  ///< number of scans
   std::uint64_t dropped_detections = 0, dropped_objects = 0;  ///< over all scans
   std::uint64_t likelihood_evaluations = 0;                   ///< over all scans
   bool is_repeatable = true;                                  ///< all passes had the same estimates

@@ -18,7 +18,9 @@ namespace boresight::tracking {
 struct FilterWork {
   std::uint32_t likelihood_evaluations = 0;
   bool budget_reached = false;
-  std::uint32_t dropped_objects = 0;  ///< hypotheses that found no room
+  std::uint32_t dropped_detections = 0;  ///< measurements beyond the capacity of a scan
+  std::uint32_t dropped_objects = 0;     ///< hypotheses that found no room
+  std::uint32_t cut_gates = 0;           ///< connections that would have made a group too large: nothing is lost
 };
 
 class Filter {

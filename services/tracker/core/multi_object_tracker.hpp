@@ -15,6 +15,7 @@ struct StepResult {
   bool budget_reached = false;               ///< the search for associations stopped at its work budget
   std::uint32_t dropped_detections = 0;      ///< detections beyond a capacity
   std::uint32_t dropped_objects = 0;         ///< objects and hypotheses of objects beyond a capacity
+  std::uint32_t cut_gates = 0;               ///< groups were kept apart that share detections: a simpler association
   std::uint32_t likelihood_evaluations = 0;  ///< work of the step
 };
 

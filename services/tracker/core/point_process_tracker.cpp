@@ -27,8 +27,10 @@ StepResult PointProcessTracker::step(const ClassifiedScan& scan) {
 
   const FilterWork& work = filter_->work();
   flags_ = scan.flags;
-  result_ = {start.out_of_order,       start.restarted,      work.budget_reached,
-             start.dropped_detections, work.dropped_objects, work.likelihood_evaluations};
+  result_ = {start.out_of_order,         start.restarted,
+             work.budget_reached,        start.dropped_detections + work.dropped_detections,
+             work.dropped_objects,       work.cut_gates,
+             work.likelihood_evaluations};
   return result_;
 }
 
@@ -38,6 +40,7 @@ void PointProcessTracker::write(TrackList& out) const {
   out.likelihood_evaluations = result_.likelihood_evaluations;
   out.tracker_flags = 0;
   if (result_.budget_reached) out.tracker_flags |= tracker_flag::kWorkBudgetReached;
+  if (result_.cut_gates > 0) out.tracker_flags |= tracker_flag::kGatesCut;
   reporter_->write(out);
   if (result_.dropped_detections + result_.dropped_objects + out.dropped_tracks > 0) {
     out.tracker_flags |= tracker_flag::kCapacityReached;

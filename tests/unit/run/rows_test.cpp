@@ -19,7 +19,8 @@ class RowsOfAScan : public ::testing::Test {
     classified_->set_probabilities(0, {0.25F, 0.125F, 0.0625F, 0.5F, 0.03125F, 0.03125F});
     classified_->detection_flags[1] = corrected_flag::kWeak;
     tracks_->number_of_tracks = tracks_->number_of_confirmed_tracks = 1;
-    tracks_->tracker_flags = tracker_flag::kWorkBudgetReached | tracker_flag::kCapacityReached;
+    tracks_->tracker_flags =
+        tracker_flag::kWorkBudgetReached | tracker_flag::kCapacityReached | tracker_flag::kGatesCut;
     tracks_->likelihood_evaluations = 1234;
     Track& track = tracks_->tracks[0];
     track.tracking_id = 7;
@@ -93,7 +94,7 @@ TEST_F(RowsOfAScan, StateTheProbabilitiesAndTheUncertaintyOfATrack) {
 TEST_F(RowsOfAScan, StateTheWorkAndTheLimitsOfTheTracker) {
   const testing::Table scans = rows(File::kScans);
   ASSERT_EQ(scans.size(), 1u);
-  EXPECT_EQ(scans[0].at("tracker_flags"), "work_budget_reached+capacity_reached");
+  EXPECT_EQ(scans[0].at("tracker_flags"), "work_budget_reached+capacity_reached+gates_cut");
   EXPECT_EQ(scans[0].at("likelihood_evaluations"), "1234");
 }
 

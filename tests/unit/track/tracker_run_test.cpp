@@ -29,6 +29,7 @@ class CountingTracker final : public tracking::MultiObjectTracker {
     result.budget_reached = steps_ == 2;
     result.dropped_detections = 1;
     result.dropped_objects = 2;
+    result.cut_gates = steps_ == 1 ? 3 : 0;
     result.likelihood_evaluations = 10;
     return result;
   }
@@ -72,6 +73,7 @@ TEST(TrackerRuns, TakeTheLeastCpuTimeOfEachScanAndTheEstimatesOfTheFirstPass) {
   EXPECT_EQ(run.budget_reached, 1U);
   EXPECT_EQ(run.dropped_detections, 3U);
   EXPECT_EQ(run.dropped_objects, 6U);
+  EXPECT_EQ(run.gates_cut, 1U) << "scans";
   EXPECT_EQ(run.likelihood_evaluations, 30U);
 }
 

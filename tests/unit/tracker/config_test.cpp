@@ -121,7 +121,10 @@ std::vector<double> numbers(const Config& config) {
                              config.report.confirmed_existence,
                              config.report.hold_log_odds_per_s,
                              config.report.least_existence,
-                             config.report.stopped_speed_mps};
+                             config.report.stopped_speed_mps,
+                             config.report.flags.likely,
+                             config.report.flags.merged_share,
+                             config.report.flags.recent_scan_s};
   for (const std::size_t capacity :
        {m.measurements, m.objects, m.local_hypotheses, m.group_objects, m.group_measurements, m.rows, m.candidates}) {
     all.push_back(static_cast<double>(capacity));

@@ -314,8 +314,8 @@ TEST(CellLikelihood, OfAPossibleClutterSourceIsThatOfAMixtureOfSources) {
                                   (c.view.spread * c.object.extent() + support::eigen(c.view.noise_m2)) / n;
     const Eigen::Matrix2d wide = place + 0.5 * Eigen::Matrix2d::Identity();
     const Eigen::Vector2d e = support::eigen(cell.mean()) - c.object.mean.head<2>();
-    const double log_place = 0.5 * (std::log(place.determinant() / wide.determinant()) +
-                                    e.dot(place.inverse() * e) - e.dot(wide.inverse() * e));
+    const double log_place = 0.5 * (std::log(place.determinant() / wide.determinant()) + e.dot(place.inverse() * e) -
+                                    e.dot(wide.inverse() * e));
     const double source = 0.6 * std::min(1.0, ratio) * std::exp(std::min(0.0, log_place));
     const double object = 0.5, lobe = 0.2 * ring, lasting = 0.1 * source, brief = 0.2 * source;
     const double sum = object + lobe + lasting + brief;

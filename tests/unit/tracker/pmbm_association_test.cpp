@@ -201,8 +201,30 @@ TEST(Association, SharesEachMeasurementOnceBetweenObjectsAndClutter) {
         shared += cell.n;
       }
       EXPECT_LE(shared, static_cast<double>(s.z.size()) + 1e-9);
+      ASSERT_EQ(c.shared.size(), c.cells.size());
+      for (const double share : c.shared) {
+        EXPECT_GE(share, -1e-9);
+        EXPECT_LE(share, 1.0);
+      }
     }
   }
+}
+
+TEST(Association, StatesTheShareOfACellThatOtherCellsHave) {
+  support::Random random(7);
+  SmallScene s = random_small_scene(random, 3.0);
+  s.existence = {0.99, 0.99};
+  s.z.clear();
+  const double log_clutter = support::car_log_clutter(s.model);
+  for (const double y_m : {-0.3, 3.3, 1.5}) {  // of the one, of the other, and between them
+    for (const double x_m : {29.5, 30.5})
+      s.z.push_back(support::detection_at({x_m, y_m}, {0.0, 0.0}, 0.0, log_clutter));
+  }
+  const Candidate between = search_scene(s).candidates.front();
+  EXPECT_GT(between.shared[0] + between.shared[1], 0.2);
+  s.z.resize(4);
+  const Candidate apart = search_scene(s).candidates.front();
+  EXPECT_LT(apart.shared[0] + apart.shared[1], 0.02);
 }
 
 TEST(Association, IsOneCandidateWhereNothingIsAmbiguous) {
@@ -217,6 +239,7 @@ TEST(Association, IsOneCandidateWhereNothingIsAmbiguous) {
   const Searched searched = search_scene(s);
   ASSERT_EQ(searched.candidates.size(), 1U);
   EXPECT_EQ(searched.candidates[0].labels, (std::vector<std::int16_t>{0, 0, 0, 0, 0, 1, 1, 1, 1, 1}));
+  EXPECT_LT(searched.candidates[0].shared[0] + searched.candidates[0].shared[1], 1e-6);
   double expected = 0.0;
   for (std::size_t o = 0; o < 2; ++o) {
     expected += support::log_likelihood_reference(s.objects[o], s.model.sensor, std::span(s.z).subspan(5 * o, 5));

@@ -213,7 +213,8 @@ TEST(PmbmCapacity, HundredsOfMeasurementsAtOnePlaceAreOneObjectOrSeveralButNoFau
         filter.step(model, kScan_s);
         expect_sound(filter, capacity, model);
         ASSERT_FALSE(filter.estimates().empty()) << n;
-        EXPECT_EQ(filter.work().dropped_objects > 0, n > capacity.group_measurements) << n << " detections";
+        EXPECT_EQ(filter.work().cut_gates > 0, n > capacity.group_measurements) << n << " detections";
+        EXPECT_EQ(filter.work().dropped_detections, 0U);
       }
     }
   }

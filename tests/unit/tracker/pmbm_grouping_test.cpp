@@ -41,7 +41,7 @@ struct GroupingScene {
   std::span<const WorkItem> find() {
     poisson.predict(model, 0.1);
     poisson.begin_scan(model);
-    return grouping.find(model, poisson, store, cut);
+    return grouping.find(model, poisson, store, work);
   }
   std::vector<std::size_t> groups(const WorkItem& item) const {
     return {grouping.groups(item).begin(), grouping.groups(item).end()};
@@ -55,7 +55,7 @@ struct GroupingScene {
   PoissonPart poisson;
   GroupStore store;
   Grouping grouping;
-  std::size_t cut = 0;
+  FilterWork work;
 };
 
 TEST(Grouping, GivesEachStoredGroupTheMeasurementsInItsGate) {
@@ -72,7 +72,7 @@ TEST(Grouping, GivesEachStoredGroupTheMeasurementsInItsGate) {
   EXPECT_THAT(s.measurements(items[0]), ElementsAre(0U));
   EXPECT_THAT(s.groups(items[1]), ElementsAre(0U));
   EXPECT_THAT(s.measurements(items[1]), ElementsAre(1U, 3U));
-  EXPECT_EQ(s.cut, 0U);
+  EXPECT_EQ(s.work.cut_gates, 0U);
 }
 
 TEST(Grouping, JoinsGroupsThatShareAMeasurementOrLinkedMeasurements) {
@@ -155,7 +155,8 @@ TEST(Grouping, CutsConnectionsBeyondTheRoomOfAGroupAndCountsThem) {
   s.measure(26.0);
   const auto items = s.find();
   EXPECT_THAT(items, SizeIs(2));
-  EXPECT_GT(s.cut, 0U);
+  EXPECT_GT(s.work.cut_gates, 0U);
+  EXPECT_EQ(s.work.dropped_detections + s.work.dropped_objects, 0U) << "nothing is lost";
   std::size_t groups = 0, measurements = 0;
   for (const WorkItem& item : items) {
     EXPECT_LE(item.groups, 2U);
@@ -184,7 +185,7 @@ TEST(Grouping, GivesMeasurementsToAGroupThatFillsMoreThanHalfOfItsRoom) {
   ASSERT_THAT(items, SizeIs(1));
   EXPECT_THAT(s.groups(items[0]), ElementsAre(0U));
   EXPECT_THAT(s.measurements(items[0]), ElementsAre(0U, 1U));
-  EXPECT_EQ(s.cut, 0U);
+  EXPECT_EQ(s.work.cut_gates, 0U);
 }
 
 TEST(Grouping, LooksAtNoMoreMeasurementsThanThereIsRoomForAndCountsTheOthers) {
@@ -196,7 +197,8 @@ TEST(Grouping, LooksAtNoMoreMeasurementsThanThereIsRoomForAndCountsTheOthers) {
   const auto items = s.find();
   ASSERT_THAT(items, SizeIs(1));
   EXPECT_THAT(s.measurements(items[0]), ElementsAre(0U, 1U, 2U));
-  EXPECT_EQ(s.cut, 2U);
+  EXPECT_EQ(s.work.dropped_detections, 2U);
+  EXPECT_EQ(s.work.cut_gates, 0U);
 }
 
 TEST(Grouping, EqualsAConnectedComponentSearchOfRandomScenes) {
@@ -240,7 +242,7 @@ TEST(Grouping, EqualsAConnectedComponentSearchOfRandomScenes) {
       EXPECT_EQ(static_cast<std::size_t>(std::count(label.begin(), label.end(), label[members[0]])), members.size());
     }
     EXPECT_EQ(seen, n + objects);
-    EXPECT_EQ(s.cut, 0U);
+    EXPECT_EQ(s.work.cut_gates, 0U);
   }
 }
 

@@ -209,10 +209,10 @@ inline double log_likelihood_reference(const Reference& r, const View<double>& v
     const Eigen::Vector2d velocity = r.mean.tail<2>() + gain * e;
     const Eigen::Matrix2d c = r.covariance.bottomRightCorner<2, 2>() - gain * innovation_covariance * gain.transpose();
     const Eigen::Index size = s.rates.size();
-    log_p += log_gaussian(
-        s.rates - s.sights * velocity,
-        s.sights * (c + eigen(view.turn_mps) * eigen(view.turn_mps).transpose()) * s.sights.transpose() +
-            view.range_rate_variance * Eigen::MatrixXd::Identity(size, size));
+    log_p +=
+        log_gaussian(s.rates - s.sights * velocity,
+                     s.sights * (c + eigen(view.turn_mps) * eigen(view.turn_mps).transpose()) * s.sights.transpose() +
+                         view.range_rate_variance * Eigen::MatrixXd::Identity(size, size));
   }
   for (const auto& m : z) log_p -= m.log_clutter;
   return log_p;

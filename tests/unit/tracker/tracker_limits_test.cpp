@@ -191,5 +191,16 @@ TEST(PmbmTracker, CapacityThatIsReachedIsFlagged) {
   });
 }
 
+TEST(PmbmTracker, CrowdThatIsAssociatedInPartsIsFlaggedAndNothingIsDropped) {
+  Config config;
+  config.capacity.group_objects = 4;
+  expect_limit_is_reached(config, 1.5, 3.0, [](const StepResult& result, const TrackList& list) {
+    EXPECT_EQ((list.tracker_flags & tracker_flag::kGatesCut) != 0u, result.cut_gates > 0u);
+    EXPECT_EQ((list.tracker_flags & tracker_flag::kCapacityReached) != 0u,
+              result.dropped_objects + result.dropped_detections + list.dropped_tracks > 0u);
+    return result.cut_gates > 0 && result.dropped_objects == 0;
+  });
+}
+
 }  // namespace
 }  // namespace boresight::tracking

@@ -73,7 +73,7 @@ template <typename Real>
 [[nodiscard]] Component<Real> merge(std::span<const WeightedComponent<Real>> mixture);
 
 /// Dissimilarity: half the symmetric squared Mahalanobis distances of place and velocity, and terms of extent and rate.
-/// Terms that cannot bring it below `limit` any more are left out.
+/// Above `limit` it is a lower bound.
 template <typename Real>
 [[nodiscard]] Real distance(const Component<Real>& a, const Component<Real>& b,
                             Real limit = std::numeric_limits<Real>::infinity());

@@ -27,18 +27,18 @@
 namespace boresight::tracking {
 
 struct BoxParameters {
-  double evidence_share = 0.2;        ///< of a scan's log likelihood of a class: scans are not independent
-  double forget_s = 20.0;             ///< of the evidence for classes
-  double side_slip_mps = 0.15;        ///< between heading and course
-  TurnParameters turn;                ///< change of heading of a moving object
-  double parallel_share = 0.35;       ///< of vehicles that drive as the own one does, and as many against it
-  double parallel_std_rad = 0.15;     ///< of their headings about that
-  double known_heading_rad = 0.35;    ///< deviation from which on the heading places the box
-  double contradiction_chi2 = 9.0;    ///< squared distance from which on a course replaces a surer heading
-  double sure_speed_sigma = 2.0;      ///< deviations below its speed that an object surely exceeds
-  double least_length_share = 0.3;    ///< of the mean length of its class: no object is shorter
-  double least_doubt = 1e-3;          ///< that a box holds a place or stays apart from another: no less likely
-  double least_probability = 0.01;    ///< less likely classes are not computed
+  double evidence_share = 0.2;      ///< of a scan's log likelihood of a class: scans are not independent
+  double forget_s = 20.0;           ///< of the evidence for classes
+  double side_slip_mps = 0.15;      ///< between heading and course
+  TurnParameters turn;              ///< change of heading of a moving object
+  double parallel_share = 0.35;     ///< of vehicles that drive as the own one does, and as many against it
+  double parallel_std_rad = 0.15;   ///< of their headings about that
+  double known_heading_rad = 0.35;  ///< deviation from which on the heading places the box
+  double contradiction_chi2 = 9.0;  ///< squared distance from which on a course replaces a surer heading
+  double sure_speed_sigma = 2.0;    ///< deviations below its speed that an object surely exceeds
+  double least_length_share = 0.3;  ///< of the mean length of its class: no object is shorter
+  double least_doubt = 1e-3;        ///< that a box holds a place or stays apart from another: no less likely
+  double least_probability = 0.01;  ///< less likely classes are not computed
 };
 
 /// A radar, in local axes.

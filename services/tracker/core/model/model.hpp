@@ -34,6 +34,9 @@ struct ObjectEstimate {
   Symmetric2<double> scatter;                    ///< Σ (z − z̄)(z − z̄)ᵀ of them, m²
   const Component<double>* component = nullptr;  ///< of the likeliest hypothesis; valid until the next step
   Vector2<double> mean_m{};                      ///< of the detections
+  /// Share of its detections that are another object's by their weights. Of an object without detections: 1 if another
+  /// has detections in its gate.
+  double shared = 0.0;
 };
 
 class Model {

@@ -29,7 +29,9 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
 }
 
 RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
-    : parameters_(parameters), boxes_(BoxEstimator(parameters.classes, parameters.box), max_objects) {
+    : parameters_(parameters),
+      boxes_(BoxEstimator(parameters.classes, parameters.box), max_objects),
+      occlusion_(kMaxKnownObjects) {
   // One in a thousand is longer than the mean by more than three deviations.
   for (const auto& c : parameters.classes) {
     reach_m_ = std::max(reach_m_, c.size.length_mean_m + 3.0 * c.size.length_std_m);
@@ -86,6 +88,7 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   measurements_.clear();
   places_.clear();
   radar_ = nullptr;
+  radar_index_ = -1;
   for (std::size_t k = 0; k < radars_.size(); ++k) {
     if (radars_[k].id != scan.header.source_id) continue;
     radar_ = &radars_[k];
@@ -141,6 +144,12 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   }
 }
 
+void RadarModel::find_occlusion() {
+  occlusion_.begin_scan(sensor_m_);
+  for (const KnownObject& o : objects_) occlusion_.add(o.component.label, o.existence, boxes_.box(o.component));
+  occlusion_.find();
+}
+
 double RadarModel::log_origin(double p) const {
   const ClutterParameters& c = parameters_.clutter;
   const auto against = [](double share) {
@@ -175,6 +184,7 @@ void RadarModel::learn(std::span<const double> explained, std::span<const Object
   note_objects(objects);
   boxes_.learn(objects, elapsed_s_, axes_.heading_rad);
   if (radar_ == nullptr) return;
+  find_occlusion();
   for (std::size_t i = 0; i < explained.size() && i < places_.size(); ++i) {
     radar_->clutter.add(places_[i], std::max(0.0, 1.0 - explained[i]) * (1.0 - measurements_[i].wide_share));
   }

@@ -12,6 +12,7 @@
 #include "services/tracker/core/model/clutter_map.hpp"
 #include "services/tracker/core/model/model.hpp"
 #include "services/tracker/core/model/object_boxes.hpp"
+#include "services/tracker/core/model/radar_occlusion.hpp"
 #include "services/tracker/core/model/radar_parameters.hpp"
 
 namespace boresight::tracking {
@@ -28,6 +29,13 @@ struct LocalAxes {
   [[nodiscard]] Matrix2<double> rotation() const;
 };
 
+/// What the radar of a scan may detect of an object, as moving.
+struct Sight {
+  double in_view = 0.0;       ///< probability that it is in view
+  double hidden_share = 0.0;  ///< share of it that other tracked objects hide
+  double seems_moving = 0.0;  ///< probability that its range rate is not taken for that of a stationary object
+};
+
 class RadarModel final : public Model {
  public:
   RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects);
@@ -35,7 +43,7 @@ class RadarModel final : public Model {
   ScanStart begin_scan(const ClassifiedScan& scan) override;
   [[nodiscard]] std::span<const Measurement<double>> measurements() const override { return measurements_; }
   double predict(Component<double>& component, double elapsed_s) const override;
-  [[nodiscard]] View<double> view(const Component<double>& component) const override;
+  [[nodiscard]] View<double> view(const Component<double>& component) const override { return look(component).view; }
   [[nodiscard]] std::span<const PoissonComponent> births() const override { return {}; }
   [[nodiscard]] bool has_births_anywhere() const override { return true; }
   void begin_group(std::span<const Measurement<double>> group, std::span<const Prediction<double>> objects,
@@ -50,6 +58,10 @@ class RadarModel final : public Model {
   void learn(std::span<const double> explained, std::span<const ObjectEstimate> objects) override;
 
   [[nodiscard]] const LocalAxes& axes() const { return axes_; }
+  /// Index of the radar of the scan, −1 if it is none of the vehicle's.
+  [[nodiscard]] int radar_index() const { return radar_index_; }
+  /// Of an object after the scan.
+  [[nodiscard]] Sight sight(const Component<double>& component) const;
   /// Of an object after the scan, in local axes; and the probabilities of its classes.
   [[nodiscard]] Box box(const Component<double>& object) const { return boxes_.box(object); }
   [[nodiscard]] const BoxMemory* memory(std::uint32_t label) const;
@@ -62,6 +74,10 @@ class RadarModel final : public Model {
     ClutterMap clutter;
     double wide_seen = 0.0, wide_expected = 0.0;  // detections of objects with wide range rates, and those of the table
     double moving_sum = 0.0, moving_count = 1.0, moving_time_s = 0.0;  // of the ghost filter's probabilities
+  };
+  struct Look {
+    View<double> view;
+    Sight sight;
   };
   struct KnownObject {
     Component<double> component;
@@ -86,6 +102,7 @@ class RadarModel final : public Model {
   /// log of how much likelier than for the radar's usual detection it is that this one is no moving object's.
   [[nodiscard]] double log_origin(double moving_probability) const;
   void read_detections(const ClassifiedScan& scan);
+  void find_occlusion();
   void add_side_lobes();
   void add_wide_range_rates();
   /// Probability that an object takes a place: nothing else can be there.
@@ -98,6 +115,7 @@ class RadarModel final : public Model {
 
   /// Velocity that an unknown turn rate of an object pretends to a radar, equation (T16); one standard deviation.
   [[nodiscard]] Vector2<double> turn_at(const Vector2<double>& from_sensor_m, const Component<double>& component) const;
+  [[nodiscard]] Look look(const Component<double>& component) const;
   /// Probability that an object of unknown heading is in view by azimuth.
   [[nodiscard]] double in_view(const Component<double>& component) const;
   /// Probability that its detections are not taken for those of a stationary object.
@@ -112,6 +130,7 @@ class RadarModel final : public Model {
   RadarModelParameters parameters_;
   double reach_m_ = 0.0;       ///< hardly any road user is longer: places farther apart are not of one
   mutable ObjectBoxes boxes_;  // views are computed when first asked for
+  Occlusion occlusion_;
   std::vector<Radar> radars_;
   double elapsed_s_ = 0.0;
   LocalAxes axes_;

@@ -68,9 +68,11 @@ Vector2<double> RadarModel::turn_at(const Vector2<double>& from_sensor_m, const 
   return {-rate_radps * from_sensor_m.y, rate_radps * from_sensor_m.x};
 }
 
-View<double> RadarModel::view(const Component<double>& c) const {
-  View<double> v;
-  if (radar_ == nullptr) return v;
+RadarModel::Look RadarModel::look(const Component<double>& c) const {
+  Look out;
+  if (radar_ == nullptr) return out;
+  View<double>& v = out.view;
+  Sight& sight = out.sight;
   const DetectionParameters& p = parameters_.detection;
   const auto range_of = [&](const Vector2<double>& d) { return std::max(kLeastRange_m, std::sqrt(squared_norm(d))); };
   const Vector2<double> to_point = c.position_m - sensor_m_;
@@ -84,12 +86,13 @@ View<double> RadarModel::view(const Component<double>& c) const {
       radar_->range_rate_std_mps * radar_->range_rate_std_mps + p.body_range_rate_std_mps * p.body_range_rate_std_mps;
   v.turn_mps = turn_at(to_point, c);
   const std::optional<double> share = read_box(c, v);
-  v.detection_probability = p.detection_probability;
+  double by_azimuth = 1.0;
   if (share.has_value()) {
     // Of what is out of view there are no detections: their number says it.
     v.exposure = std::max(kLeastProbability, *share);
+    sight.in_view = *share;
   } else {
-    v.detection_probability *= in_view(c);
+    sight.in_view = by_azimuth = in_view(c);
   }
   Vector2<double> middle = to_point;
   for (std::size_t k = 0; k < v.number_of_readings; ++k) {
@@ -97,10 +100,18 @@ View<double> RadarModel::view(const Component<double>& c) const {
   }
   const double range_m = range_of(middle);
   const double range_std = std::sqrt(p.range_edge_m * p.range_edge_m + 0.5 * trace(c.position_covariance));
-  v.detection_probability *= normal_cdf((radar_->range_max_m - range_m) / range_std) *
-                             seems_moving((1.0 / range_m) * middle, c, v.range_rate_variance);
+  const double by_range = normal_cdf((radar_->range_max_m - range_m) / range_std);
+  sight.in_view *= by_range;
+  sight.seems_moving = seems_moving((1.0 / range_m) * middle, c, v.range_rate_variance);
+  v.detection_probability = p.detection_probability * by_azimuth * (by_range * sight.seems_moving);
   v.exposure *= exposure_at(range_m);
-  return v;
+  return out;
+}
+
+Sight RadarModel::sight(const Component<double>& c) const {
+  Sight out = look(c).sight;
+  if (radar_ != nullptr) out.hidden_share = occlusion_.hidden_share(c.label);
+  return out;
 }
 
 std::optional<double> RadarModel::read_box(const Component<double>& c, View<double>& v) const {

@@ -43,6 +43,7 @@ TrackReporter::TrackReporter(const RadarModel& model, const ReportParameters& pa
 void TrackReporter::clear() {
   records_.clear();
   tracks_.clear();
+  scans_.clear();
 }
 
 void TrackReporter::take(std::span<const ObjectEstimate> objects, double elapsed_s) {
@@ -51,6 +52,7 @@ void TrackReporter::take(std::span<const ObjectEstimate> objects, double elapsed
   index_.clear();
   for (std::size_t i = 0; i < before_.size(); ++i) static_cast<void>(index_.insert(before_[i].id, static_cast<int>(i)));
   const double time_s = std::max(0.0, elapsed_s);
+  scans_.add(model_->radar_index(), time_s);
   tracks_.clear();
   dropped_ = confirmed_ = 0;
   for (const ObjectEstimate& e : objects) {
@@ -60,7 +62,9 @@ void TrackReporter::take(std::span<const ObjectEstimate> objects, double elapsed
       r.age_s = b.age_s + time_s;
       r.since_detection_s = e.detected ? 0.0 : b.since_detection_s + time_s;
       r.held_log_odds = std::max(r.held_log_odds, b.held_log_odds - parameters_.hold_log_odds_per_s * time_s);
+      r.detectability = b.detectability;
     }
+    r.detectability.set(model_->radar_index(), obstacle(model_->sight(*e.component), e.shared, parameters_.flags));
     if (records_.size() < records_.capacity()) records_.push_back(r);
     if (e.existence < parameters_.least_existence) continue;
     if (tracks_.size() == kMaxTracks) {
@@ -104,6 +108,7 @@ void TrackReporter::write_track(const ObjectEstimate& e, const Record& r, Track&
   t.position_vehicle_m = {static_cast<float>(position.x), static_cast<float>(position.y),
                           static_cast<float>(0.5 * box.height_m)};
   t.velocity_over_ground_mps = {static_cast<float>(velocity.x), static_cast<float>(velocity.y)};
+  t.flags = r.detectability.flags(scans_, parameters_.flags);
   t.number_of_detections = static_cast<std::uint32_t>(std::lround(e.detections));
   const auto set = [&t](std::size_t row, std::size_t column, double value) {
     t.covariance[row * kTrackStateSize + column] = static_cast<float>(value);

@@ -6,6 +6,7 @@
 
 #include "services/tracker/core/fixed_table.hpp"
 #include "services/tracker/core/model/radar_model.hpp"
+#include "services/tracker/core/output/detectability.hpp"
 #include "services/tracker/core/output/reporter.hpp"
 
 namespace boresight::tracking {
@@ -15,6 +16,7 @@ struct ReportParameters {
   double hold_log_odds_per_s = 25.0;  ///< the log odds that decide the status fall no faster
   double least_existence = 0.05;      ///< tracks below it are not published
   double stopped_speed_mps = 0.5;     ///< below it a track is reported as stopped
+  DetectabilityParameters flags;
 };
 
 class TrackReporter final : public Reporter {
@@ -31,6 +33,7 @@ class TrackReporter final : public Reporter {
     std::uint32_t id = 0;
     double age_s = 0.0, since_detection_s = 0.0;
     double held_log_odds = 0.0;
+    Detectability detectability{};
   };
   void write_track(const ObjectEstimate& object, const Record& record, Track& out) const;
 
@@ -38,6 +41,7 @@ class TrackReporter final : public Reporter {
   ReportParameters parameters_;
   std::vector<Record> records_, before_;
   FixedTable index_;  // of before_ by id
+  RecentScans scans_;
   std::vector<Track> tracks_;
   std::uint32_t dropped_ = 0, confirmed_ = 0;
 };

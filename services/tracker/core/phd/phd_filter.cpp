@@ -87,11 +87,10 @@ void PhdFilter::step(Model& model, double elapsed_s) {
   work_ = {};
   explained_.assign(model.measurements().size(), 0.0);
   corrected_.clear();
-  std::size_t cut = 0;
 
   predict(model, elapsed_s);  // (1)
   poisson_.begin_scan(model);
-  for (const pmbm::WorkItem& item : grouping_.find(model, poisson_, store_, cut)) {
+  for (const pmbm::WorkItem& item : grouping_.find(model, poisson_, store_, work_)) {
     begin_group(model, item);
     for (std::size_t block = 0; block < assignment_.blocks(); ++block) {  // (5)
       partition(model, block);
@@ -106,7 +105,6 @@ void PhdFilter::step(Model& model, double elapsed_s) {
   report();
 
   work_.budget_reached = work_.likelihood_evaluations > parameters_.work_budget;
-  work_.dropped_objects += static_cast<std::uint32_t>(cut);
 }
 
 void PhdFilter::predict(const Model& model, double elapsed_s) {

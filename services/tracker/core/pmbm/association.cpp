@@ -45,7 +45,10 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
   soft_.reserve(max_cells_);
   soft_values_.reserve(max_cells_);
   candidates_.resize(2 * capacity.candidates);
-  for (Candidate& c : candidates_) reserve(c);
+  for (Candidate& c : candidates_) {
+    reserve(c);
+    c.shared.reserve(max_cells_);
+  }
   starts_.resize(capacity.rows);
   for (Candidate& c : starts_) reserve(c);
 }

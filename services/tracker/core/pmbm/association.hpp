@@ -31,6 +31,7 @@ struct Candidate : Cells {
   double log_weight = 0.0;  ///< with that of the associations which differ from it in shared measurements
   std::uint64_t key = 0;    ///< of row and hard association
   std::size_t row = 0;
+  std::vector<double> shared;  ///< of each cell: share of its measurements that other cells have
 };
 
 class Association {
@@ -48,6 +49,10 @@ class Association {
 
   /// Of the group last searched: prediction of a local hypothesis.
   [[nodiscard]] Prediction<double>& prediction(std::size_t local) { return predictions_[local]; }
+  /// Whether a measurement is in the gate of a local hypothesis and belongs to a cell of the candidate.
+  [[nodiscard]] bool is_taken(const Candidate& candidate, std::size_t local, std::size_t z) const {
+    return gated_[local * z_.size() + z] != 0 && candidate.labels[z] >= 0;
+  }
   /// log of the intensity of a new object for a measurement alone, and log(1 + that).
   [[nodiscard]] double log_new(std::size_t z) const { return log_new_[z]; }
   [[nodiscard]] double log_alone(std::size_t z) const { return log_alone_[z]; }

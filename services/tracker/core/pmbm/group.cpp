@@ -135,6 +135,7 @@ void Group::merge_similar_rows(double merge_distance) {
         merged.detections = second ? lb.detections : la.detections;
         merged.scatter = second ? lb.scatter : la.scatter;
         merged.mean_m = second ? lb.mean_m : la.mean_m;
+        merged.shared = second ? lb.shared : la.shared;
         if (a < 0 || b < 0) {
           merged.component = second ? lb.component : la.component;
         } else {

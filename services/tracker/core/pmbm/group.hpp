@@ -27,6 +27,7 @@ struct LocalHypothesis {
   Symmetric2<double> scatter;  ///< of these about their mean, m²
   Component<double> component;
   Vector2<double> mean_m{};  ///< of the detections
+  double shared = 0.0;       ///< as of ObjectEstimate
 };
 
 /// A global hypothesis (row) names for each object (column) one local hypothesis of the pool, or none (−1).

@@ -31,7 +31,7 @@ std::size_t Grouping::root(std::size_t node) {
   return node;
 }
 
-void Grouping::connect(std::size_t a, std::size_t b, std::size_t& cut) {
+void Grouping::connect(std::size_t a, std::size_t b, FilterWork& work) {
   a = root(a);
   b = root(b);
   if (a == b) return;
@@ -41,7 +41,7 @@ void Grouping::connect(std::size_t a, std::size_t b, std::size_t& cut) {
   if ((joins_objects && (2 * (na.objects + nb.objects) > capacity_.group_objects ||
                          2 * (na.locals + nb.locals) > group_pool(capacity_))) ||
       na.measurements + nb.measurements > capacity_.group_measurements) {
-    ++cut;
+    ++work.cut_gates;
     return;
   }
   na.parent = b;
@@ -61,10 +61,10 @@ void Grouping::for_near(std::span<const Measurement<double>> z, const Vector2<do
 }
 
 std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& poisson, const GroupStore& store,
-                                         std::size_t& cut) {
+                                         FilterWork& work) {
   const auto z = model.measurements();
   const std::size_t n = std::min(z.size(), capacity_.measurements), groups = store.size();
-  cut += z.size() - n;
+  work.dropped_detections += static_cast<std::uint32_t>(z.size() - n);
   nodes_.clear();
   for (std::size_t i = 0; i < n; ++i) nodes_.push_back({i, 0, 1, 0, 1});
   for (std::size_t g = 0; g < groups; ++g) {
@@ -97,7 +97,7 @@ std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& 
             if (e * e > parameters_.gate_chi2 * variance) return;
           }
           enters_[i] = 1;
-          connect(i, n + g, cut);
+          connect(i, n + g, work);
         });
       }
     }
@@ -110,7 +110,7 @@ std::span<const WorkItem> Grouping::find(const Model& model, const PoissonPart& 
     if (enters_[by_x_[a]] == 0) continue;
     for (std::size_t b = a + 1; b < n && x_[b] - x_[a] <= link_m; ++b) {
       if (enters_[by_x_[b]] == 0 || !model.are_linked(z[by_x_[a]], z[by_x_[b]])) continue;
-      connect(by_x_[a], by_x_[b], cut);
+      connect(by_x_[a], by_x_[b], work);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "services/tracker/core/filter.hpp"
 #include "services/tracker/core/model/model.hpp"
 #include "services/tracker/core/pmbm/group.hpp"
 #include "services/tracker/core/pmbm/poisson_part.hpp"
@@ -24,9 +25,9 @@ class Grouping {
   Grouping(const Parameters& parameters, const Capacity& capacity);
 
   /// The items in the order of their size, those without objects last. A connection that would make a group larger than
-  /// its capacity is not made, and no more measurements are looked at than there is room for; `cut` counts both.
+  /// its capacity is not made, and no more measurements are looked at than there is room for; `work` counts both.
   std::span<const WorkItem> find(const Model& model, const PoissonPart& poisson, const GroupStore& store,
-                                 std::size_t& cut);
+                                 FilterWork& work);
   [[nodiscard]] std::span<const std::size_t> groups(const WorkItem& item) const {
     return {groups_.data() + item.first_group, item.groups};
   }
@@ -40,7 +41,7 @@ class Grouping {
     std::size_t objects = 0, rows = 1, locals = 0, measurements = 0;
   };
   std::size_t root(std::size_t node);
-  void connect(std::size_t a, std::size_t b, std::size_t& cut);
+  void connect(std::size_t a, std::size_t b, FilterWork& work);
   template <typename Visit>
   void for_near(std::span<const Measurement<double>> z, const Vector2<double>& centre, double half_width_m,
                 const Visit& visit) const;

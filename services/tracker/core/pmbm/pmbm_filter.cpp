@@ -46,21 +46,20 @@ void PmbmFilter::clear() {
   estimates_.clear();
 }
 
-// Granström, Fatemi and Svensson 2020, §III: prediction, then for each independent group association, update and
-// reduction.
+// Granström, Fatemi and Svensson 2020, §III. Equations: docs/algorithms/tracking.md.
 void PmbmFilter::step(Model& model, double elapsed_s) {
   work_ = {};
   explained_.assign(model.measurements().size(), 0.0);
-  predict(model, elapsed_s);
+  predict(model, elapsed_s);  // (T2) and (T3), of the Bernoulli components and the Poisson part
   poisson_.begin_scan(model);
-  std::size_t cut = 0;
   next_.clear();
-  for (const WorkItem& item : grouping_.find(model, poisson_, current_, cut)) update(model, item);
+  // Gates of (T4), with the offsets of (T11) and (T12), connect objects and measurements to independent groups. Each
+  // has its association by (T10) with the likelihoods of (T13), its update by (T5) to (T9), and its reduction.
+  for (const WorkItem& item : grouping_.find(model, poisson_, current_, work_)) update(model, item);
   poisson_.end_scan(model);
   std::swap(current_, next_);
-  join_parts(model);
+  join_parts(model);  // (T15)
   work_.budget_reached = association_.take_was_cut() || work_.likelihood_evaluations > parameters_.work_budget;
-  work_.dropped_objects += static_cast<std::uint32_t>(cut);
   report();
 }
 
@@ -131,7 +130,8 @@ void PmbmFilter::make_rows(Model& model, std::span<const Candidate> candidates) 
     for (std::size_t c = 0; c < before_.columns(); ++c) {
       const std::int16_t l = before_.at(candidate.row, c);
       if (l < 0) continue;
-      const Cell<double>& cell = candidate.cells[object++];
+      const std::size_t cell_index = object++;
+      const Cell<double>& cell = candidate.cells[cell_index];
       // The same hypothesis with the same cell is one, in whichever row.
       const std::uint64_t soft = mixed(std::bit_cast<std::uint64_t>(cell.n + 3.7 * cell.sum.x));
       const std::uint64_t key = mixed(cell.key ^ mixed(77U + static_cast<std::uint64_t>(l)) ^ soft);
@@ -142,8 +142,12 @@ void PmbmFilter::make_rows(Model& model, std::span<const Candidate> candidates) 
         LocalHypothesis next;
         if (cell.n == 0.0) {
           next = {missed_existence(local.existence, p.missed()), 0.0, {}, p.missed_component(local.component)};
+          for (std::size_t i = 0; i < group_z_.size() && next.shared == 0.0; ++i) {
+            if (association_.is_taken(candidate, static_cast<std::size_t>(l), i)) next.shared = 1.0;
+          }
         } else {
-          next = {1.0, cell.n, cell.scatter(), p.updated(local.component, cell), cell.mean()};
+          next = {
+              1.0, cell.n, cell.scatter(), p.updated(local.component, cell), cell.mean(), candidate.shared[cell_index]};
         }
         index = after_.add_local(next);
         if (index < 0) {
@@ -300,6 +304,7 @@ ObjectEstimate PmbmFilter::estimate(std::size_t g, std::size_t c) {
     e.detections = pool[l].detections;
     e.scatter = pool[l].scatter;
     e.mean_m = pool[l].mean_m;
+    e.shared = pool[l].shared;
   }
   e.id = current_.ids(g)[c];
   e.detected = e.detections > 0.0;

@@ -45,6 +45,7 @@ void Association::keep(const State& s) {
   c.log_weight = log_weight;
   c.key = key;
   c.row = row_;
+  c.shared.assign(c.cells.size(), 0.0);
 }
 
 /// The likeliest first; returns how many of them count.
@@ -172,6 +173,10 @@ void Association::soften(Candidate& c) {
   }
   for (std::size_t b = 0; b < cells; ++b) {
     if (c.cells[b].n == 0.0 || soft_[b].n < 0.5) continue;  // less than half a measurement is no detection
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+      const double* shares = &share_[i * stride];
+      c.shared[b] += shares[b] * (1.0 - shares[b] - shares[cells]) / soft_[b].n;
+    }
     soft_[b].key = c.cells[b].key;
     c.cells[b] = soft_[b];
   }
