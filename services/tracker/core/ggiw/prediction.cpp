@@ -156,17 +156,18 @@ Real Prediction<Real>::log_source_ratio(Real n) {
 }
 
 template <typename Real>
-Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
-  return Real(0.5) + Real(0.5) * std::clamp(cell.on_ring / cell.n, Real(0), Real(1));
+typename Prediction<Real>::ClassWeights Prediction<Real>::class_weights(Real n) {
+  const Real log_ratio = std::min(kLogCertain<Real>, log_source_ratio(n));
+  const Real ratio = std::exp(log_ratio), at_most = std::min(Real(1), ratio), seen = view_.source_seen;
+  // A side lobe is one detection as a rule. More of them speak against it, one does not speak for it.
+  const Real lobe = source_.side_lobe * seen * std::exp(view_.evidence_share * std::min(Real(0), log_ratio));
+  const Real lasting = source_.lasting_source * seen * at_most;
+  return {lobe, lasting, source_.object + lobe + lasting + source_.brief_source() * seen * ratio};
 }
 
 template <typename Real>
 Real Prediction<Real>::log_class_weight(const Cell<Real>& cell) {
-  if (source_.object >= Real(1)) return 0;
-  const Real ratio = std::exp(std::min(kLogCertain<Real>, log_source_ratio(cell.n)));
-  return std::log(source_.object + source_.side_lobe * on_ring(cell) +
-                  view_.source_seen *
-                      (source_.lasting_source * std::min(Real(1), ratio) + source_.brief_source() * ratio));
+  return source_.object >= Real(1) ? Real(0) : std::log(class_weights(cell.n).sum);
 }
 
 template <typename Real>
@@ -300,15 +301,16 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
   out.rate_inverse_scale = prior.rate_inverse_scale + view_.exposure;
   const Real of_mirror = n / (n + rate_shape_);
   out.mirror = prior.mirror + of_mirror * (cell.mirror / n - prior.mirror);
+  if (cell.strengths > 0) {
+    out.strengths = prior.strengths + cell.strengths;
+    out.strength_db = (prior.strengths * prior.strength_db + cell.strength_sum) / out.strengths;
+  }
 
   if (source_.object < Real(1)) {
-    const Real ratio = view_.source_seen * std::exp(std::min(kLogCertain<Real>, log_source_ratio(n)));
-    const Real lobe = source_.side_lobe * on_ring(cell),
-               lasting = source_.lasting_source * std::min(view_.source_seen, ratio);
-    const Real sum = source_.object + lobe + lasting + source_.brief_source() * ratio;
-    out.source.object = source_.object / sum;
-    out.source.side_lobe = lobe / sum;
-    out.source.lasting_source = lasting / sum;
+    const ClassWeights w = class_weights(n);
+    out.source.object = source_.object / w.sum;
+    out.source.side_lobe = w.side_lobe / w.sum;
+    out.source.lasting_source = w.lasting_source / w.sum;
   }
   if (view_.source_seen < Real(1)) out.source.radar = -1;
 

@@ -36,6 +36,7 @@ struct View {
   Real held = 1;                   ///< variance of the mean of detections over several scans, relative to white ones
   Real source_more = Real(0.25);   ///< chance that a source of clutter gives one more detection
   Real source_seen = 1;            ///< chance that a source of clutter is there for this radar, too
+  Real evidence_share = 1;         ///< of a scan's log likelihood of lasting classes: scans are not independent
   std::array<Reading<Real>, kMaxReadings> readings{};  ///< weights sum to 1
   std::size_t number_of_readings = 1;
 };
@@ -89,7 +90,12 @@ class Prediction {
   /// log p(n | object).
   [[nodiscard]] Real log_count(Real n);
   [[nodiscard]] Real log_class_weight(const Cell<Real>& cell);
-  [[nodiscard]] Real on_ring(const Cell<Real>& cell) const;
+  /// Probabilities of the classes before the scan times the likelihood of the number of detections, relative to an
+  /// object's.
+  struct ClassWeights {
+    Real side_lobe, lasting_source, sum;
+  };
+  [[nodiscard]] ClassWeights class_weights(Real n);
 
   /// One measurement as expected by one reading of what the object is.
   struct Place {
