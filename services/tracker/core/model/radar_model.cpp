@@ -213,7 +213,8 @@ void RadarModel::note_objects(std::span<const ObjectEstimate> objects) {
   objects_.clear();
   for (const ObjectEstimate& e : objects) {
     if (objects_.size() == kMaxKnownObjects) break;
-    objects_.push_back({*e.component, e.existence, e.source_existence * e.component->source.side_lobe, {}, 0.0, 0.0});
+    objects_.push_back(
+        {*e.component, e.existence, e.source_existence * e.component->source.side_lobe, {}, 0.0, 0.0, 0.0});
   }
 }
 

@@ -77,6 +77,7 @@ class RadarModel final : public Model {
     double side_lobe = 0.0;  // probability that it is a side lobe
     Ring ring;               // in the scan
     double ring_depth_m2 = 0.0;
+    double in_beam = 0.0;        // probability that it exists in view of the radar
     double lobes_on_ring = 0.0;  // expected number of side lobes on its ring
   };
   struct MeanStrength {
@@ -125,6 +126,8 @@ class RadarModel final : public Model {
                                     const Symmetric2<double>& noise_m2, const Vector2<double>& sight) const;
   /// How much likelier the difference of the strengths is of a side lobe and its parent than of two objects.
   [[nodiscard]] double strength_odds(const MeanStrength& lobe, const MeanStrength& parent) const;
+  /// Probability that a known object is one; 0 for others.
+  [[nodiscard]] double side_lobe_of(std::uint32_t label) const;
   [[nodiscard]] LobeEvidence side_lobe_evidence(const Component<double>& component) const;
   /// The newborn `component` is a side lobe of an object that is not established with the odds `hidden` to an object.
   void begin_side_lobe(SourceClasses<double>& source, const Component<double>& component, double hidden) const;

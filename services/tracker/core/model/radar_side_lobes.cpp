@@ -103,6 +103,7 @@ void RadarModel::find_rings() {
     o.ring = ring_of(o.component);
     o.ring_depth_m2 = s.side_lobe_range_std_m * s.side_lobe_range_std_m + o.ring.range_variance_m2 +
                       parameters_.detection.spread * quadratic(extent(o.component), o.ring.sight);
+    o.in_beam = o.ring.range_m > radar_->range_max_m ? 0.0 : o.existence * in_view(o.component);
     o.lobes_on_ring = 0.0;
   }
   for (KnownObject& parent : objects_) {
@@ -124,8 +125,8 @@ double RadarModel::side_lobe_level(double lobes_on_ring) const {
 void RadarModel::add_side_lobes() {
   const SourceParameters& s = parameters_.source;
   for (const KnownObject& o : objects_) {
-    if (o.existence < s.parent_existence || o.ring.range_m > radar_->range_max_m) continue;
-    const double level = o.existence * side_lobe_level(o.lobes_on_ring);
+    if (o.in_beam < s.parent_existence) continue;
+    const double level = o.in_beam * side_lobe_level(o.lobes_on_ring);
     const MeanStrength strength{o.component.strength_db, o.component.strengths};
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       Measurement<double>& z = measurements_[i];
@@ -173,32 +174,39 @@ void RadarModel::find_partners() {
   }
 }
 
+double RadarModel::side_lobe_of(std::uint32_t label) const {
+  if (label == 0) return 0.0;
+  const auto known = std::find_if(objects_.begin(), objects_.end(),
+                                  [label](const KnownObject& o) { return o.component.label == label; });
+  return known == objects_.end() ? 0.0 : known->side_lobe;
+}
+
 RadarModel::LobeEvidence RadarModel::side_lobe_evidence(const Component<double>& c) const {
   const SourceParameters& s = parameters_.source;
   const BirthParameters& b = parameters_.birth;
   const Ring ring = ring_of(c);
-  double own_lobe = 0.0;
-  for (const KnownObject& o : objects_) {
-    if (c.label != 0 && o.component.label == c.label) own_lobe = o.side_lobe;
-  }
   const double flat = b.any.density_per_m2 / (std::sqrt(2.0 * std::numbers::pi) * b.any.speed_std_mps);
   const Symmetric2<double> noise = noise_at(ring.sight, ring.range_m);
   LobeEvidence e;
   for (const KnownObject& o : objects_) {
-    if ((c.label != 0 && o.component.label == c.label) || o.ring.range_m > radar_->range_max_m) continue;
+    const double off_m = ring.range_m - o.ring.range_m;
+    if (off_m * off_m > s.side_lobe_chi2 * (o.ring_depth_m2 + ring.range_variance_m2) || o.in_beam <= 0.0 ||
+        (c.label != 0 && o.component.label == c.label)) {
+      continue;
+    }
     const double distance = ring_distance(o, ring);
     if (distance > s.side_lobe_chi2) continue;
     const double beside = beside_share(o, c.position_m, noise + c.position_covariance, ring.sight);
     if (beside <= 0.0) continue;
-    e.on_ring = std::max(e.on_ring, o.existence * beside);
-    const double lasting = s.side_lobe_birth * side_lobe_level(std::max(0.0, o.lobes_on_ring - own_lobe));
+    e.on_ring = std::max(e.on_ring, o.in_beam * beside);
+    const double lasting = s.side_lobe_birth * side_lobe_level(std::max(0.0, o.lobes_on_ring - side_lobe_of(c.label)));
     // Another vehicle drives about as this one does.
     const double apart_mps = dot(ring.sight, c.velocity_mps - o.component.velocity_mps);
     const double apart_variance = b.neighbour_speed_std_mps * b.neighbour_speed_std_mps +
                                   ring.range_rate_variance_m2ps2 +
                                   quadratic(o.component.velocity_covariance, ring.sight);
     const double object = b.neighbour_density_per_m2 * centred_density(apart_mps, apart_variance) + flat;
-    e.odds += o.existence * beside * lasting * side_lobe_density(o, ring, distance) / object *
+    e.odds += o.in_beam * beside * lasting * side_lobe_density(o, ring, distance) / object *
               strength_odds({c.strength_db, c.strengths}, {o.component.strength_db, o.component.strengths});
   }
   return e;
@@ -212,7 +220,7 @@ void RadarModel::begin_side_lobe(SourceClasses<double>& source, const Component<
 
 void RadarModel::weigh_side_lobe(Component<double>& c) const {
   SourceClasses<double>& source = c.source;
-  constexpr double kNever = 1e-9;
+  constexpr double kNever = 1e-5;  // no ring that it comes to later makes it a side lobe
   const bool is_of_other_radar = source.radar >= 0 && source.radar != radar_index_;
   if (source.side_lobe < kNever || source.side_lobe_odds <= 0.0 || is_of_other_radar) return;
   const LobeEvidence e = side_lobe_evidence(c);
