@@ -13,32 +13,31 @@ namespace {
 
 class SideLobes : public testing::TestWithParam<std::string> {
  protected:
-  void begin(bool states_strength = true) {
-    scene_.begin(now_ns_, 1, kSpeed_mps);
+  void begin(bool states_strength, std::uint32_t radar = 1) {
+    scene_.begin(now_ns_, radar, kSpeed_mps);
     if (states_strength) scene_.scan->fields |= scan_field::kRcs;
     now_ns_ += 50 * kMillisecond;
   }
-  /// A vehicle at the speed of the own one, its rear at `rear_m`.
+  /// A vehicle ahead at the speed of the own one, its rear at `rear_m`.
   void add_vehicle(const Eigen::Vector2d& rear_m, double length_m, double strength_dbsm, unsigned detections) {
     for (unsigned k = 0; k < detections; ++k) {
       const Eigen::Vector2d off(length_m * std::abs(normal_(random_)) / 2.0, 0.6 * normal_(random_));
-      add(rear_m + off, strength_dbsm + 4.0 * normal_(random_), 1.0);
+      const Eigen::Vector2d sight = (rear_m + off - Eigen::Vector2d(3.6, 0.0)).normalized();
+      add(rear_m + off, kSpeed_mps * sight.x(), strength_dbsm);
     }
   }
-  /// The echo enters at another azimuth: range and range rate are those of the vehicle ahead.
-  void add_side_lobe(double range_m, double azimuth_rad, double strength_dbsm) {
+  /// An echo at another azimuth with the range and the range rate relative to the sensor of its object.
+  void add_side_lobe(double range_m, double azimuth_rad, double range_rate_mps, double strength_dbsm) {
     const double at_rad = azimuth_rad + 0.005 * normal_(random_), at_m = range_m + 0.1 * normal_(random_);
-    add({3.6 + at_m * std::cos(at_rad), at_m * std::sin(at_rad)}, strength_dbsm + 4.0 * normal_(random_),
-        std::cos(at_rad));
+    add({3.6 + at_m * std::cos(at_rad), at_m * std::sin(at_rad)}, range_rate_mps + kSpeed_mps * std::cos(at_rad),
+        strength_dbsm);
   }
-  /// `share` of the own speed is the range rate over ground.
-  void add(const Eigen::Vector2d& at_m, double strength_dbsm, double share) {
+  void add(const Eigen::Vector2d& at_m, double range_rate_over_ground_mps, double strength_dbsm) {
     const std::uint32_t i = scene_.scan->number_of_valid_detections;
-    scene_.add(at_m, {kSpeed_mps, 0.0});
-    scene_.scan->rcs_dbsm[i] = static_cast<float>(strength_dbsm);
-    const Eigen::Vector2d sight = (at_m - Eigen::Vector2d(3.6, 0.0)).normalized();
-    const double rate_mps = share < 1.0 ? share * kSpeed_mps : sight.x() * kSpeed_mps;
-    scene_.scan->range_rate_over_ground_mps[i] = static_cast<float>(rate_mps + 0.05 * normal_(random_));
+    scene_.add(at_m, {0.0, 0.0});
+    scene_.scan->range_rate_over_ground_mps[i] =
+        static_cast<float>(range_rate_over_ground_mps + 0.05 * normal_(random_));
+    scene_.scan->rcs_dbsm[i] = static_cast<float>(strength_dbsm + 4.0 * normal_(random_));
   }
   /// Tracks after the scan that are likelier than that.
   unsigned tracks(double existence) {
@@ -57,7 +56,7 @@ class SideLobes : public testing::TestWithParam<std::string> {
       begin(states_strength);
       add_vehicle({60.0, 0.0}, 3.0, 10.0, 5);
       for (const double azimuth_deg : {-20.0, -11.0, -6.0, 6.0, 11.0, 20.0}) {
-        if (uniform_(random_) < 0.7) add_side_lobe(56.0, azimuth_deg * kRadiansPerDegree, -5.0);
+        if (uniform_(random_) < 0.7) add_side_lobe(56.4, azimuth_deg * kRadiansPerDegree, 0.0, -5.0);
       }
       alone += tracks(kConfirmed) == 1 && k >= 20 ? 1 : 0;
     }
@@ -103,6 +102,28 @@ TEST_P(SideLobes, CarsAbreastOfUnknownStrengthAreBothConfirmed) {
 
 TEST_P(SideLobes, WeakCarBesideAStrongOneIsConfirmed) {
   EXPECT_GE(scans_with_both(10.0, 0.0, true, 3), 90) << "of 100";
+}
+
+TEST_P(SideLobes, OfATurnedRadarAreNoVehicles) {
+  // On the left a vehicle keeps pace and drives away from the lane. Range rates over ground of its side lobes are far
+  // from its own: only those relative to the sensor are the same.
+  constexpr double kAway_mps = 3.0, kLeft_rad = 90.0 * kRadiansPerDegree;
+  const Eigen::Vector2d sensor_m(3.6, 0.0), velocity_mps(kSpeed_mps, kAway_mps);
+  int alone = 0;
+  for (int k = 0; k < 120; ++k) {
+    const double range_m = 40.0 + 0.05 * k * kAway_mps;
+    begin(true, 2);
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector2d off(0.8 * normal_(random_), std::abs(normal_(random_)));
+      const Eigen::Vector2d at_m = sensor_m + Eigen::Vector2d(0.0, range_m) + off;
+      add(at_m, (at_m - sensor_m).normalized().dot(velocity_mps), 8.0);
+    }
+    for (const double off_deg : {-25.0, -15.0, 15.0, 25.0}) {
+      if (uniform_(random_) < 0.7) add_side_lobe(range_m, kLeft_rad + off_deg * kRadiansPerDegree, kAway_mps, -7.0);
+    }
+    alone += tracks(kConfirmed) == 1 && k >= 20 ? 1 : 0;
+  }
+  EXPECT_GE(alone, 99) << "of 100";
 }
 
 INSTANTIATE_TEST_SUITE_P(Trackers, SideLobes, testing::ValuesIn(tracker_names()),

@@ -160,7 +160,7 @@ typename Prediction<Real>::ClassWeights Prediction<Real>::class_weights(Real n) 
   const Real log_ratio = std::min(kLogCertain<Real>, log_source_ratio(n));
   const Real ratio = std::exp(log_ratio), at_most = std::min(Real(1), ratio), seen = view_.source_seen;
   // A side lobe is one detection as a rule. More of them speak against it, one does not speak for it.
-  const Real lobe = source_.side_lobe * seen * std::exp(view_.evidence_share * std::min(Real(0), log_ratio));
+  const Real lobe = source_.side_lobe * seen * (log_ratio < 0 ? std::exp(view_.evidence_share * log_ratio) : Real(1));
   const Real lasting = source_.lasting_source * seen * at_most;
   return {lobe, lasting, source_.object + lobe + lasting + source_.brief_source() * seen * ratio};
 }
