@@ -198,7 +198,8 @@ RadarModel::LobeEvidence RadarModel::side_lobe_evidence(const Component<double>&
     if (distance > s.side_lobe_chi2) continue;
     const double beside = beside_share(o, c.position_m, noise + c.position_covariance, ring.sight);
     if (beside <= 0.0) continue;
-    e.on_ring = std::max(e.on_ring, o.in_beam * beside);
+    // That it may lie in the main lobe is in the odds. It does not leave the ring by that.
+    e.on_ring = std::max(e.on_ring, o.in_beam);
     const double lasting = s.side_lobe_birth * side_lobe_level(std::max(0.0, o.lobes_on_ring - side_lobe_of(c.label)));
     // Another vehicle drives about as this one does.
     const double apart_mps = dot(ring.sight, c.velocity_mps - o.component.velocity_mps);
