@@ -109,12 +109,19 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"side_lobe_range_rate_std_mps", &s.side_lobe_range_rate_std_mps, {0.01, 10.0}},
                               {"side_lobe_nearest_m", &s.side_lobe_nearest_m, {0.1, 20.0}},
                               {"side_lobe_chi2", &s.side_lobe_chi2, {0.1, 100.0}},
+                              {"main_lobe_rad", &s.main_lobe_rad, {0.0, 0.5}},
                               {"side_lobe_least_deviations", &s.side_lobe_least_deviations, {0.0, 20.0}},
                               {"ambiguity_share", &s.ambiguity_share, {0.0, 1.0}},
                               {"ambiguity_width_mps", &s.ambiguity_width_mps, {1.0, 1000.0}},
                               {"wide_chi2", &s.wide_chi2, {0.1, 100.0}},
                               {"wide_prior", &s.wide_prior, {0.01, 1000.0}},
-                              {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}}});
+                              {"side_lobe_birth", &s.side_lobe_birth, {0.0, 1.0}},
+                              {"side_lobe_shape", &s.side_lobe_shape, {0.01, 100.0}},
+                              {"side_lobe_strength_db", &s.side_lobe_strength_db, {-100.0, 100.0}},
+                              {"side_lobe_strength_std_db", &s.side_lobe_strength_std_db, {0.1, 1000.0}},
+                              {"object_strength_std_db", &s.object_strength_std_db, {0.1, 1000.0}},
+                              {"strength_std_db", &s.strength_std_db, {0.1, 1000.0}},
+                              {"strength_memory_s", &s.strength_memory_s, {0.05, 1000.0}}});
   MotionParameters& k = m.motion;
   read(root.table("motion"), {{"acceleration_density_m2ps3", &k.acceleration_density, {1e-4, 100.0}},
                               {"rate_memory_s", &k.rate_memory_s, {0.05, 100.0}},

@@ -13,7 +13,9 @@ support::Detections cell_detections(support::Random& random, std::size_t n) {
   for (auto& m : z) {
     m.log_clutter = support::uniform(random, -9.0, -3.0);
     m.side_lobe_share = support::uniform(random, 0.0, 1.0);
-    m.on_ring = support::uniform(random, 0.0, 1.0);
+    m.partner = support::uniform(random, 0.0, 1.0);
+    m.strength_db = support::uniform(random, -20.0, 20.0);
+    m.strengths = support::uniform(random, 0.0, 1.0) < 0.7 ? 1.0 : 0.0;
     m.mirror = support::uniform(random, 0.0, 1.0);
   }
   return z;
@@ -30,7 +32,9 @@ void expect_equal_cells(const Cell<double>& a, const Cell<double>& b) {
   EXPECT_NEAR(a.rate_squares, b.rate_squares, 1e-9);
   EXPECT_NEAR(a.log_clutter, b.log_clutter, 1e-12);
   EXPECT_NEAR(a.side_lobe_share, b.side_lobe_share, 1e-12);
-  EXPECT_NEAR(a.on_ring, b.on_ring, 1e-12);
+  EXPECT_NEAR(a.partner, b.partner, 1e-12);
+  EXPECT_NEAR(a.strength_sum, b.strength_sum, 1e-12);
+  EXPECT_EQ(a.strengths, b.strengths);
   EXPECT_NEAR(a.mirror, b.mirror, 1e-12);
 }
 

@@ -297,7 +297,7 @@ TEST(CellLikelihood, OfAPossibleClutterSourceIsThatOfAMixtureOfSources) {
     c.view.source_seen = 0.6;
     c.view.source_more = 0.3;
     c.view.source_wander_m2 = 0.5;
-    for (auto& z : c.z) z.on_ring = support::uniform(random, 0.0, 1.0);
+    c.view.evidence_share = 0.3;
     const Cell<double> cell = support::cell_of(c.z);
     Component<double> component = support::component_of(c.object);
     Prediction<double> of_object(component, c.view);
@@ -308,7 +308,6 @@ TEST(CellLikelihood, OfAPossibleClutterSourceIsThatOfAMixtureOfSources) {
     const double none = std::exp(support::log_count_reference(c.object, c.view.exposure, 0.0));
     const double log_object = support::log_count_reference(c.object, c.view.exposure, n) - std::lgamma(n + 1.0);
     const double ratio = 0.7 * std::pow(0.3, n - 1.0) / (std::exp(log_object) / (1.0 - none));
-    const double ring = 0.5 + 0.5 * cell.on_ring / n;
     // Neither exactly one detection nor a place far from the predicted one speaks for a source.
     const Eigen::Matrix2d place = c.object.covariance.topLeftCorner<2, 2>() +
                                   (c.view.spread * c.object.extent() + support::eigen(c.view.noise_m2)) / n;
@@ -317,7 +316,8 @@ TEST(CellLikelihood, OfAPossibleClutterSourceIsThatOfAMixtureOfSources) {
     const double log_place = 0.5 * (std::log(place.determinant() / wide.determinant()) + e.dot(place.inverse() * e) -
                                     e.dot(wide.inverse() * e));
     const double source = 0.6 * std::min(1.0, ratio) * std::exp(std::min(0.0, log_place));
-    const double object = 0.5, lobe = 0.2 * ring, lasting = 0.1 * source, brief = 0.2 * source;
+    const double object = 0.5, lobe = 0.2 * 0.6 * std::pow(std::min(1.0, ratio), 0.3), lasting = 0.1 * source,
+                 brief = 0.2 * source;
     const double sum = object + lobe + lasting + brief;
     EXPECT_NEAR(of_mixture.log_likelihood(cell) - of_object.log_likelihood(cell), std::log(sum), 1e-8);
     const Component<double> updated = of_mixture.updated(component, cell);

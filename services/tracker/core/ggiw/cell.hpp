@@ -16,9 +16,11 @@ struct Measurement {
   Real range_rate_mps = 0;   ///< over ground
   Real log_clutter = 0;      ///< log of the expected clutter per m² (and m/s) there
   Real side_lobe_share = 0;  ///< share of that clutter which is side lobes of objects
-  Real on_ring = 0;          ///< 1 where it has range and range rate of an existing object at another azimuth
+  Real partner = 0;          ///< chance that the scan shows the object whose side lobe it may be
   Real wide_share = 0;       ///< share of that clutter which is objects' detections of other range rates
   Real mirror = 0;           ///< probability that it is a mirror image, by the ghost filter
+  Real strength_db = 0;      ///< over the radar's usual detection
+  Real strengths = 0;        ///< 1 where the radar states the strength
 };
 
 /// Sums over measurements; the number is fractional where measurements are shared between cells.
@@ -30,8 +32,9 @@ struct Cell {
   Symmetric2<Real> sight_squares;  ///< Σ u uᵀ
   Vector2<Real> sight_rate;        ///< Σ u ṙ
   Real rate_squares = 0;           ///< Σ ṙ²
-  Real log_clutter = 0, side_lobe_share = 0, on_ring = 0, wide_share = 0, mirror = 0;
-  std::uint64_t key = 0;  ///< exclusive or of the measurements' keys: equal cells have equal keys
+  Real log_clutter = 0, side_lobe_share = 0, partner = 0, wide_share = 0, mirror = 0;
+  Real strength_sum = 0, strengths = 0;  ///< of detections whose strength the radar states; dB
+  std::uint64_t key = 0;                 ///< exclusive or of the measurements' keys: equal cells have equal keys
 
   void add(const Measurement<Real>& z, Real weight) {
     n += weight;
@@ -42,9 +45,11 @@ struct Cell {
     rate_squares += weight * z.range_rate_mps * z.range_rate_mps;
     log_clutter += weight * z.log_clutter;
     side_lobe_share += weight * z.side_lobe_share;
-    on_ring += weight * z.on_ring;
+    partner += weight * z.partner;
     wide_share += weight * z.wide_share;
     mirror += weight * z.mirror;
+    strength_sum += weight * z.strengths * z.strength_db;
+    strengths += weight * z.strengths;
   }
   void add(const Measurement<Real>& z, std::uint64_t z_key) {
     add(z, Real(1));
@@ -63,9 +68,11 @@ struct Cell {
     rate_squares += other.rate_squares;
     log_clutter += other.log_clutter;
     side_lobe_share += other.side_lobe_share;
-    on_ring += other.on_ring;
+    partner += other.partner;
     wide_share += other.wide_share;
     mirror += other.mirror;
+    strength_sum += other.strength_sum;
+    strengths += other.strengths;
     key ^= other.key;
   }
   [[nodiscard]] Vector2<Real> mean() const { return (Real(1) / n) * sum; }

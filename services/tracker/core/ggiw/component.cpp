@@ -46,10 +46,10 @@ Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
   for (const auto& m : mixture) sum += m.weight;
   Component<Real> out;
   out.label = mixture.front().component->label;
-  out.source = {0, 0, 0, mixture.front().component->source.radar};
+  out.source = {0, 0, 0, mixture.front().component->source.radar, 0, 0, 0};
   out.extent_dof = 0;
   Symmetric2<Real> mean_extent;
-  Real rate = 0, rate_squares = 0;
+  Real rate = 0, rate_squares = 0, strength_sum = 0;
   for (const auto& m : mixture) {
     const Component<Real>& c = *m.component;
     const Real w = m.weight / sum, mean_rate = c.rate_shape / c.rate_inverse_scale;
@@ -62,8 +62,13 @@ Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
     out.source.object += w * c.source.object;
     out.source.side_lobe += w * c.source.side_lobe;
     out.source.lasting_source += w * c.source.lasting_source;
+    out.source.hidden_parent += w * c.source.hidden_parent;
+    out.source.kept_ring += w * c.source.kept_ring;
+    out.source.side_lobe_odds += w * c.source.side_lobe_odds;
     if (c.source.radar != out.source.radar) out.source.radar = -1;
     out.mirror += w * c.mirror;
+    out.strengths += w * c.strengths;
+    strength_sum += w * c.strengths * c.strength_db;
   }
   for (const auto& m : mixture) {
     const Component<Real>& c = *m.component;
@@ -74,6 +79,7 @@ Component<Real> merge(std::span<const WeightedComponent<Real>> mixture) {
     out.position_velocity_covariance =
         out.position_velocity_covariance + w * (c.position_velocity_covariance + outer(dp, dv));
   }
+  if (out.strengths > 0) out.strength_db = strength_sum / out.strengths;
   const Real variance = std::max(rate_squares - rate * rate, rate * rate * std::numeric_limits<Real>::epsilon());
   out.rate_inverse_scale = rate / variance;
   out.rate_shape = rate * out.rate_inverse_scale;

@@ -19,6 +19,10 @@ struct SourceClasses {
   Real side_lobe = 0;       ///< a side lobe of an object: same range and range rate, other azimuth
   Real lasting_source = 0;  ///< clutter that lasts as long as objects do
   int radar = -1;           ///< index of the only radar that has detected it; −1: several
+  // Of a side lobe, as the model of the world judges it from scan to scan.
+  Real hidden_parent = 0;   ///< odds to an object that its parent is not established
+  Real kept_ring = 1;       ///< likelihood of the scans so far in which it was on the ring of no known object
+  Real side_lobe_odds = 0;  ///< to an object, by place, range rate and strength in the latest scan
 
   [[nodiscard]] Real brief_source() const {
     const Real rest = Real(1) - object - side_lobe - lasting_source;
@@ -37,7 +41,8 @@ struct Component {
   Real extent_dof = 8;                         ///< v of the inverse Wishart
   Symmetric2<Real> extent_scale;               ///< V, m²
   SourceClasses<Real> source;
-  Real mirror = 0;  ///< probability that its detections are mirror images, mean of the latest
+  Real mirror = 0;                      ///< probability that its detections are mirror images, mean of the latest
+  Real strength_db = 0, strengths = 0;  ///< mean over the latest detections, and their number
 };
 
 /// E[X] = V / (v − 6), m².

@@ -158,7 +158,7 @@ Real Prediction<Real>::log_source_ratio(Real n) {
   if (!knows_source_) {
     knows_source_ = true;
     const Real seen = Real(1) - std::exp(log_none_);
-    log_source_one_ = std::log((Real(1) - view_.source_more) * std::max(seen, Real(1e-12)));
+    log_source_one_ = std::log((Real(1) - view_.source_more) * std::max(seen, Real(kLeastProbability)));
     log_source_more_ = std::log(view_.source_more);
   }
   const Real whole = std::max(n, Real(1));
@@ -177,17 +177,19 @@ Real Prediction<Real>::source_place_ratio(const Cell<Real>& cell) const {
 }
 
 template <typename Real>
-Real Prediction<Real>::on_ring(const Cell<Real>& cell) const {
-  return Real(0.5) + Real(0.5) * std::clamp(cell.on_ring / cell.n, Real(0), Real(1));
+typename Prediction<Real>::ClassWeights Prediction<Real>::class_weights(const Cell<Real>& cell) {
+  // More than one detection speak against side lobes and sources; one speaks for neither: some radars report one of
+  // each object.
+  const Real log_ratio = std::min(Real(0), log_source_ratio(cell.n)), seen = view_.source_seen;
+  const Real lobe = source_.side_lobe * seen * std::exp(view_.evidence_share * log_ratio);
+  const Real source = seen * source_place_ratio(cell) * std::exp(log_ratio);
+  const Real lasting = source_.lasting_source * source;
+  return {lobe, lasting, source_.object + lobe + lasting + source_.brief_source() * source};
 }
 
 template <typename Real>
 Real Prediction<Real>::log_class_weight(const Cell<Real>& cell) {
-  if (source_.object >= Real(1)) return 0;
-  const Real at_place = source_place_ratio(cell);
-  const Real ratio = at_place * std::exp(std::min(Real(0), log_source_ratio(cell.n)));
-  return std::log(source_.object + source_.side_lobe * on_ring(cell) +
-                  view_.source_seen * (source_.lasting_source + source_.brief_source()) * ratio);
+  return source_.object >= Real(1) ? Real(0) : std::log(class_weights(cell).sum);
 }
 
 template <typename Real>
@@ -321,15 +323,16 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
   out.rate_inverse_scale = prior.rate_inverse_scale + view_.exposure;
   const Real of_mirror = n / (n + rate_shape_);
   out.mirror = prior.mirror + of_mirror * (cell.mirror / n - prior.mirror);
+  if (cell.strengths > 0) {
+    out.strengths = prior.strengths + cell.strengths;
+    out.strength_db = (prior.strengths * prior.strength_db + cell.strength_sum) / out.strengths;
+  }
 
   if (source_.object < Real(1)) {
-    // That there is exactly one detection speaks for no source: some radars report one of each object.
-    const Real ratio = view_.source_seen * source_place_ratio(cell) * std::exp(std::min(Real(0), log_source_ratio(n)));
-    const Real lobe = source_.side_lobe * on_ring(cell), lasting = source_.lasting_source * ratio;
-    const Real sum = source_.object + lobe + lasting + source_.brief_source() * ratio;
-    out.source.object = source_.object / sum;
-    out.source.side_lobe = lobe / sum;
-    out.source.lasting_source = lasting / sum;
+    const ClassWeights w = class_weights(cell);
+    out.source.object = source_.object / w.sum;
+    out.source.side_lobe = w.side_lobe / w.sum;
+    out.source.lasting_source = w.lasting_source / w.sum;
   }
   if (view_.source_seen < Real(1)) out.source.radar = -1;
 

@@ -38,6 +38,7 @@ struct View {
   Real source_more = Real(0.25);   ///< chance that a source of clutter gives one more detection
   Real source_wander_m2 = 0;       ///< variance of the place of a source of clutter about its predicted one
   Real source_seen = 1;            ///< chance that a source of clutter is there for this radar, too
+  Real evidence_share = 1;         ///< of a scan's log likelihood of lasting classes: scans are not independent
   std::array<Reading<Real>, kMaxReadings> readings{};  ///< weights sum to 1
   std::size_t number_of_readings = 1;
 };
@@ -94,7 +95,12 @@ class Prediction {
   /// How much likelier the cell's place is of a source of clutter, which wanders about what motion predicts, than of an
   /// object; at most 1, since an object that is elsewhere may have turned.
   [[nodiscard]] Real source_place_ratio(const Cell<Real>& cell) const;
-  [[nodiscard]] Real on_ring(const Cell<Real>& cell) const;
+  /// Probabilities of the classes before the scan times the likelihood of the number of detections and their place,
+  /// relative to an object's.
+  struct ClassWeights {
+    Real side_lobe, lasting_source, sum;
+  };
+  [[nodiscard]] ClassWeights class_weights(const Cell<Real>& cell);
 
   /// One measurement as expected by one reading of what the object is.
   struct Place {

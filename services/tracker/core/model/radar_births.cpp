@@ -29,6 +29,7 @@ void RadarModel::begin_group(std::span<const Measurement<double>> group, std::sp
       radar_->range_rate_std_mps * radar_->range_rate_std_mps + d.body_range_rate_std_mps * d.body_range_rate_std_mps;
   v.spread = d.spread;
   v.source_more = parameters_.source.more;
+  v.evidence_share = parameters_.box.evidence_share;
   const std::array kinds = {b.slow, b.any, b.traffic};
   for (std::size_t k = 0; k < kBirthKinds; ++k) {
     Component<double> c;
@@ -92,10 +93,16 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   w.side_lobe = s.side_lobes > 0.0 && s.side_lobe_birth > 0.0
                     ? flat + std::log(s.side_lobe_birth * std::max(kLeastProbability, cell.side_lobe_share * f))
                     : -kInfinity;
+  // An object that is not established either may give the cell as its side lobe: as many of them as of the objects
+  // themselves, and the parent is detected now.
+  const double missed = 1.0 - parameters_.detection.detection_probability;
+  const double partner = missed + (1.0 - missed) * std::clamp(cell.partner * f, 0.0, 1.0);
+  w.hidden_parent =
+      s.side_lobes * s.side_lobe_birth * partner * std::exp(std::min(0.0, any.prediction.log_source_ratio(cell.n)));
   w.top = std::max(w.source, w.side_lobe);
   for (const double o : w.object) w.top = std::max(w.top, o);
   w.sum = std::exp(w.source - w.top) + std::exp(w.side_lobe - w.top);
-  for (const double o : w.object) w.sum += std::exp(o - w.top);
+  for (const double o : w.object) w.sum += (1.0 + w.hidden_parent) * std::exp(o - w.top);
   return w;
 }
 
@@ -119,9 +126,10 @@ Component<double> RadarModel::newborn(const Cell<double>& cell) {
   }
   Component<double> c = merge<double>(mixture);
   c.source.object = object / w.sum;
-  c.source.side_lobe = std::exp(w.side_lobe - w.top) / w.sum;
+  c.source.side_lobe = (std::exp(w.side_lobe - w.top) + w.hidden_parent * object) / w.sum;
   c.source.lasting_source = std::exp(w.source - w.top) / w.sum * parameters_.source.lasting_share;
   c.source.radar = radar_index_;
+  begin_side_lobe(c.source, c, w.hidden_parent);
   c.mirror = cell.mirror / cell.n;
   return c;
 }

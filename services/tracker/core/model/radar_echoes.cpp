@@ -1,5 +1,5 @@
-// Detections that tracked objects give beside those of their bodies: side lobes at other azimuths, and range rates of
-// moving parts or off by a Doppler ambiguity in their boxes. They add to the clutter there, so that nothing new starts.
+// Detections in the boxes of tracked objects with range rates of moving parts or off by a Doppler ambiguity. They add
+// to the clutter there, so that nothing new starts.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,47 +10,12 @@
 
 namespace boresight::tracking {
 
-namespace {
-
-/// `share` is that of the kind which is added, of the clutter at the measurement.
-void add_clutter(Measurement<double>& z, double added, double& share) {
+void RadarModel::add_clutter(Measurement<double>& z, double added, double& share) {
   const double base = std::exp(z.log_clutter), sum = base + added, was = share * base;
   z.side_lobe_share *= base / sum;
   z.wide_share *= base / sum;
   share = (was + added) / sum;
   z.log_clutter = std::log(sum);
-}
-
-}  // namespace
-
-void RadarModel::add_side_lobes() {
-  // An object gives weaker detections at its own range and range rate at other azimuths: more clutter there.
-  const SourceParameters& s = parameters_.source;
-  for (const KnownObject& o : objects_) {
-    if (o.existence < s.parent_existence) continue;
-    const Vector2<double> d = o.component.position_m - sensor_m_;
-    const double range_m = std::sqrt(squared_norm(d));
-    if (range_m > radar_->range_max_m || range_m <= 0.0) continue;
-    const Vector2<double> sight = (1.0 / range_m) * d;
-    const double rate_mps = dot(sight, o.component.velocity_mps);
-    const double range_std_m = std::sqrt(s.side_lobe_range_std_m * s.side_lobe_range_std_m +
-                                         parameters_.detection.spread * quadratic(extent(o.component), sight));
-    for (std::size_t i = 0; i < measurements_.size(); ++i) {
-      Measurement<double>& z = measurements_[i];
-      const double a = (places_[i].range_m - range_m) / range_std_m,
-                   b = (z.range_rate_mps - rate_mps) / s.side_lobe_range_rate_std_mps;
-      const double deviation2 = a * a + b * b;
-      if (deviation2 > s.side_lobe_chi2) continue;
-      if (squared_norm(z.position_m - o.component.position_m) <
-          s.side_lobe_least_deviations * s.side_lobe_least_deviations * range_std_m * range_std_m)
-        continue;  // its own
-      const double added = o.existence * s.side_lobes * std::exp(-0.5 * deviation2) /
-                           (2.0 * std::numbers::pi * range_std_m * s.side_lobe_range_rate_std_mps) /
-                           (2.0 * radar_->half_view_rad * std::max(s.side_lobe_nearest_m, range_m));
-      z.on_ring = 1.0;
-      add_clutter(z, added, z.side_lobe_share);
-    }
-  }
 }
 
 void RadarModel::add_wide_range_rates() {

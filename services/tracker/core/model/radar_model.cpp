@@ -31,7 +31,7 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
 RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
     : parameters_(parameters),
       boxes_(BoxEstimator(parameters.classes, parameters.box), max_objects),
-      occlusion_(kMaxKnownObjects) {
+      occlusion_(kMaxTracks) {
   // One in a thousand is longer than the mean by more than three deviations.
   for (const auto& c : parameters.classes) {
     reach_m_ = std::max(reach_m_, c.size.length_mean_m + 3.0 * c.size.length_std_m);
@@ -47,6 +47,7 @@ RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters&
   measurements_.reserve(kMaxDetections);
   places_.reserve(kMaxDetections);
   objects_.reserve(kMaxTracks);
+  by_range_.reserve(kMaxDetections);
 }
 
 ScanStart RadarModel::begin_scan(const ClassifiedScan& scan) {
@@ -69,6 +70,8 @@ ScanStart RadarModel::begin_scan(const ClassifiedScan& scan) {
   move_axes(scan, start.elapsed_s);
   read_detections(scan);
   if (radar_ != nullptr) {
+    find_rings();
+    find_partners();
     add_side_lobes();
     add_wide_range_rates();
   }
@@ -81,7 +84,7 @@ void RadarModel::move_axes(const ClassifiedScan& scan, double elapsed_s) {
   const geometry::EgoStep step = geometry::ego_step(speed_mps, yaw_rate_radps, elapsed_s);
   displacement_m_ = axes_.to_local({step.translation_m.x(), step.translation_m.y()});
   axes_.heading_rad = geometry::wrap_angle(axes_.heading_rad + yaw_rate_radps * elapsed_s);
-  for (KnownObject& o : objects_) predict(o.component, elapsed_s);
+  for (KnownObject& o : objects_) move(o.component, elapsed_s);
 }
 
 void RadarModel::read_detections(const ClassifiedScan& scan) {
@@ -114,6 +117,8 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   radar_->wide_expected += (1.0 - keep) * parameters_.source.wide_prior;
   radar_->moving_sum = keep * radar_->moving_sum + (1.0 - keep) * parameters_.clutter.origin_prior;
   radar_->moving_count = keep * radar_->moving_count + (1.0 - keep);
+  radar_->strength_sum_db *= keep;
+  radar_->strengths *= keep;
   for (std::uint32_t i = 0; i < scan.number_of_valid_detections && i < kMaxDetections; ++i) {
     if (scan.provenance[i] == Provenance::kUnknown || (scan.detection_flags[i] & corrected_flag::kMoving) == 0)
       continue;
@@ -129,6 +134,13 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
     z.range_rate_mps = rate_mps;
     z.mirror = static_cast<double>(scan.probability(Provenance::kGhostType1, i) +
                                    scan.probability(Provenance::kGhostType2, i));
+    const auto strength_db = static_cast<double>(scan.rcs_dbsm[i]);
+    if ((scan.fields & scan_field::kRcs) != 0 && std::isfinite(strength_db)) {
+      z.strength_db = strength_db;
+      z.strengths = 1.0;
+      radar_->strength_sum_db += strength_db;
+      radar_->strengths += 1.0;
+    }
     ClutterPlace place;
     place.range_m = static_cast<double>(scan.range_m[i]);
     // A radar that reaches farther than its configuration states has objects there in view, too.
@@ -142,6 +154,10 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
     measurements_.push_back(z);
     places_.push_back(place);
   }
+  // Radars differ in what they state.
+  if (radar_->strengths <= 0.0) return;
+  const double usual_db = radar_->strength_sum_db / radar_->strengths;
+  for (Measurement<double>& z : measurements_) z.strength_db -= z.strengths * usual_db;
 }
 
 void RadarModel::find_occlusion() {
@@ -161,11 +177,18 @@ double RadarModel::log_origin(double p) const {
 }
 
 double RadarModel::predict(Component<double>& c, double elapsed_s) const {
+  const double survival = move(c, elapsed_s);
+  if (radar_ != nullptr) weigh_side_lobe(c);
+  return survival;
+}
+
+double RadarModel::move(Component<double>& c, double elapsed_s) const {
   tracking::predict(c, parameters_.motion, elapsed_s);
   c.position_m = c.position_m - displacement_m_;
   const double time_s = std::max(0.0, elapsed_s);
   const double as_object = std::exp(-time_s / parameters_.object_life_s);
   const double as_source = std::exp(-time_s / parameters_.source.life_s);
+  c.strengths *= std::exp(-time_s / parameters_.source.strength_memory_s);
   const double lasting = c.source.object + c.source.side_lobe + c.source.lasting_source;
   const double survival = lasting * as_object + std::max(0.0, 1.0 - lasting) * as_source;
   c.source.object *= as_object / survival;
@@ -194,7 +217,8 @@ void RadarModel::note_objects(std::span<const ObjectEstimate> objects) {
   objects_.clear();
   for (const ObjectEstimate& e : objects) {
     if (objects_.size() == kMaxTracks) break;
-    objects_.push_back({*e.component, e.existence});
+    objects_.push_back(
+        {*e.component, e.existence, e.source_existence * e.component->source.side_lobe, {}, 0.0, 0.0, 0.0});
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "interfaces/messages/radar_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/tracker/core/model/clutter_map.hpp"
@@ -74,14 +75,33 @@ class RadarModel final : public Model {
     ClutterMap clutter;
     double wide_seen = 0.0, wide_expected = 0.0;  // detections of objects with wide range rates, and those of the table
     double moving_sum = 0.0, moving_count = 1.0, moving_time_s = 0.0;  // of the ghost filter's probabilities
+    double strength_sum_db = 0.0, strengths = 0.0;                     // of moving detections
   };
   struct Look {
     View<double> view;
     Sight sight;
   };
+  /// Range and range rate as the radar of the scan measures them, the same for an object and its side lobes.
+  struct Ring {
+    double range_m = 0.0, range_rate_mps = 0.0;  // relative to the sensor
+    double range_variance_m2 = 0.0, range_rate_variance_m2ps2 = 0.0;
+    Vector2<double> sight;
+  };
   struct KnownObject {
     Component<double> component;
     double existence = 0.0;
+    double side_lobe = 0.0;  // probability that it is a side lobe
+    Ring ring;               // in the scan
+    double ring_depth_m2 = 0.0;
+    double in_beam = 0.0;        // probability that it exists in view of the radar
+    double lobes_on_ring = 0.0;  // expected number of side lobes on its ring
+  };
+  struct MeanStrength {
+    double mean_db = 0.0, number = 0.0;
+  };
+  /// For a component that is a side lobe of known objects.
+  struct LobeEvidence {
+    double odds = 0.0, on_ring = 0.0;
   };
   static constexpr std::size_t kBirthKinds = 3;
   /// A new object of one kind of motion, at a place known so badly that any cell near is as likely as any other.
@@ -94,6 +114,7 @@ class RadarModel final : public Model {
   struct NewbornWeights {
     std::array<double, kBirthKinds> object{};
     double source = 0.0, side_lobe = 0.0, top = 0.0, sum = 0.0;  // sum: relative to e^top
+    double hidden_parent = 0.0;                                  // odds to an object
   };
 
   /// The objects after a scan; their side lobes are expected in the next one.
@@ -103,8 +124,33 @@ class RadarModel final : public Model {
   [[nodiscard]] double log_origin(double moving_probability) const;
   void read_detections(const ClassifiedScan& scan);
   void find_occlusion();
+  /// Adds expected detections of a kind with so much `share` of the clutter at the measurement.
+  static void add_clutter(Measurement<double>& z, double added, double& share);
   void add_side_lobes();
   void add_wide_range_rates();
+  /// Chances that the scan shows what the measurements are side lobes of.
+  void find_partners();
+  void find_rings();
+  [[nodiscard]] Ring ring_of(const Component<double>& component) const;
+  /// Squared distance of a place from the ring of an object, in deviations of side lobes.
+  [[nodiscard]] double ring_distance(const KnownObject& parent, const Ring& place) const;
+  /// Density of one side lobe per m² and m/s, at that distance from the ring.
+  [[nodiscard]] double side_lobe_density(const KnownObject& parent, const Ring& place, double distance) const;
+  /// Expected number of side lobes of an object that has so many lasting ones.
+  [[nodiscard]] double side_lobe_level(double lobes_on_ring) const;
+  /// Probability that a detection there is beside the main lobe on the object and beside its body.
+  [[nodiscard]] double beside_share(const KnownObject& object, const Vector2<double>& place_m,
+                                    const Symmetric2<double>& noise_m2, const Vector2<double>& sight) const;
+  /// How much likelier the difference of the strengths is of a side lobe and its parent than of two objects.
+  [[nodiscard]] double strength_odds(const MeanStrength& lobe, const MeanStrength& parent) const;
+  /// Probability that a known object is one; 0 for others.
+  [[nodiscard]] double side_lobe_of(std::uint32_t label) const;
+  [[nodiscard]] LobeEvidence side_lobe_evidence(const Component<double>& component) const;
+  /// The newborn `component` is a side lobe of an object that is not established with the odds `hidden` to an object.
+  void begin_side_lobe(SourceClasses<double>& source, const Component<double>& component, double hidden) const;
+  void weigh_side_lobe(Component<double>& component) const;
+  /// Prediction of place, extent and classes without the evidence for side lobes.
+  double move(Component<double>& component, double elapsed_s) const;
   /// Probability that an object takes a place: nothing else can be there.
   [[nodiscard]] double taken_by(std::uint32_t label, const Vector2<double>& position_m,
                                 const Symmetric2<double>& covariance_m2, double speed_mps,
@@ -147,6 +193,7 @@ class RadarModel final : public Model {
   std::vector<Measurement<double>> measurements_;
   std::vector<ClutterPlace> places_;
   std::vector<KnownObject> objects_;
+  std::vector<std::size_t> by_range_;  // measurements
 
   // The group.
   std::array<Newborn, kBirthKinds> newborn_;

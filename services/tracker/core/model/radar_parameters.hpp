@@ -83,12 +83,19 @@ struct SourceParameters {
   double side_lobe_range_rate_std_mps = 0.4;  ///< of a side lobe's range rate about its object's
   double side_lobe_nearest_m = 3.0;           ///< at nearer objects the ring of side lobes is no shorter
   double side_lobe_chi2 = 9.0;                ///< squared distance up to which a detection may be a side lobe
+  double main_lobe_rad = 0.07;                ///< half its width: side lobes are beside it
   double side_lobe_least_deviations = 2.5;    ///< nearer to the object, in its own deviations, detections are its own
   double ambiguity_share = 0.04;              ///< of an object's detections that have a wrong Doppler ambiguity
   double ambiguity_width_mps = 100.0;         ///< their range rates are anywhere in so much
   double wide_chi2 = 9.0;                     ///< squared deviation of a range rate that is not the body's
   double wide_prior = 2.0;                    ///< expected detections that the table's level of these counts as
   double side_lobe_birth = 0.1;               ///< of these that begin a source which lasts
+  double side_lobe_shape = 0.5;               ///< of the gamma of lasting side lobes over objects: few give most
+  double side_lobe_strength_db = -13.0;       ///< of a side lobe over its object
+  double side_lobe_strength_std_db = 10.0;
+  double object_strength_std_db = 7.0;  ///< of mean strengths over objects
+  double strength_std_db = 7.5;         ///< of one detection about the object's mean
+  double strength_memory_s = 3.0;       ///< of an object's mean strength
 };
 
 struct RadarModelParameters {

@@ -81,6 +81,7 @@ RadarModel::Look RadarModel::look(const Component<double>& c) const {
   v.held = p.held_factor;
   v.source_more = parameters_.source.more;
   v.source_wander_m2 = parameters_.source.wander_m * parameters_.source.wander_m;
+  v.evidence_share = parameters_.box.evidence_share;
   v.source_seen = c.source.radar >= 0 && c.source.radar != radar_index_ ? parameters_.source.other_radar : 1.0;
   v.range_rate_variance =
       radar_->range_rate_std_mps * radar_->range_rate_std_mps + p.body_range_rate_std_mps * p.body_range_rate_std_mps;
