@@ -2,7 +2,7 @@
 import math
 
 import tables
-from results import BASELINES, DEFAULT, PERFECT, TRACKERS, estimate, numbers
+from results import BASELINES, DEFAULT, PERFECT, TRACKERS, estimate, numbers, ratio_of_means
 from svg import Panel, legend, picture, text
 
 CSS = {"pmbm": "c0", "phd": "c2", PERFECT: "c3", "baseline 1+": "c1", "baseline 2+": "c5"}
@@ -25,6 +25,10 @@ def legend_of(names, *more):
 
 def dot(x, y, css, radius=3.2):
     return f'<circle class="f{css}" cx="{x:.1f}" cy="{y:.1f}" r="{radius}"/>'
+
+
+def ring(x, y, css):
+    return f'<circle class="{css}" fill="none" cx="{x:.1f}" cy="{y:.1f}" r="5.5"/>'
 
 
 def whisker(x0, y0, x1, y1, css):
@@ -107,7 +111,8 @@ def existence(drives):
 
 
 def rows_panel(box, limits, title, x_label, groups, required=None, log_x=False):
-    """A panel of names: groups are (name, [(css, (figure, low, high), limit or None)]), from the top on. `required`: (low, high) of
+    """A panel of names: groups are (name, [(css, (figure, low, high), limit, second figure)]), from the top on; limit and second figure may
+    be None. `required`: (low, high) of
     accepted values, either may be None. A value beyond the axis is drawn at its end, with the number."""
     left, top, width, height = box
     panel = Panel(box, limits, (0.0, 1.0), title, log_x=log_x)
@@ -127,7 +132,7 @@ def rows_panel(box, limits, title, x_label, groups, required=None, log_x=False):
         if i:
             panel.parts.append(f'<path class="g" d="M{left} {y:.1f}h{width}"/>')
         panel.parts.append(text(left - 8, y + 0.5 * step * len(entries) + 4, name, "", "end"))
-        for css, values, most in entries:
+        for css, values, most, second in entries:
             y += step
             if most is not None:
                 panel.parts.append(f'<path class="bar" d="M{panel.x(most):.1f} {y - 0.6 * step:.1f}v{1.2 * step:.1f}"/>')
@@ -137,6 +142,8 @@ def rows_panel(box, limits, title, x_label, groups, required=None, log_x=False):
             figure, low, high = values
             panel.parts.append(whisker(panel.x(low), y, panel.x(high), y, css + " l"))
             panel.parts.append(dot(panel.x(figure), y, css, 3.8))
+            if second is not None:
+                panel.parts.append(ring(panel.x(second), y, css))
             if figure > limits[1]:
                 panel.parts.append(text(left + width - 8, y + 4, f"{figure:.3g}", "s", "end"))
         y += step
@@ -160,13 +167,14 @@ def errors(drives):
 
     groups = []
     for of in tables.CLASSES:
-        entries = [(CSS[name], values(drives.row("ellipse", scope, tracker=name, **{"class": of}), "inside %"), None) for name in names]
+        entries = [(CSS[name], values(drives.row("ellipse", scope, tracker=name, **{"class": of}), "inside %"), None, None)
+                   for name in names]
         if any(entry[1] for entry in entries):
             groups.append((tables.CLASS_NAMES[of], entries))
     parts += rows_panel((120, 105, 310, 330), (0.0, 100.0), "position errors in the stated 95 % ellipse, %", "", groups, REQUIRED_INSIDE)
     top = 105
     for column, title in tables.CAR_ERRORS.items():
-        entries = [(CSS[name], values(drives.row("cars", scope, tracker=name), column), None) for name in names]
+        entries = [(CSS[name], values(drives.row("cars", scope, tracker=name), column), None, None) for name in names]
         most = CAR_LIMITS[column]
         highest = max([most] + [entry[1][2] for entry in entries if entry[1]])
         what, _, unit = title.partition(", ")
@@ -194,10 +202,10 @@ def gospa_rows(results, column, index):
             entries = []
             for row in (row for row in rows if row["scenario"] == scenario):
                 most = required.get((group, scenario, base)) if row["tracker"] == "pmbm" else None
-                entries.append((CSS.get(row["tracker"], "c4"), estimate(row[column]), most))
+                entries.append((CSS.get(row["tracker"], "c4"), estimate(row[column]), most, ratio_of_means(row, index)))
                 reference, oracle = numbers(row["reference"]), numbers(row["oracle"])
                 if len(reference) == 2 and len(oracle) == 2:
-                    entries.append(("c4" if row["tracker"] == "pmbm" else "c5", [reference[index] / oracle[index]] * 3, None))
+                    entries.append(("c4" if row["tracker"] == "pmbm" else "c5", [reference[index] / oracle[index]] * 3, None, None))
             name = scenario.partition(" targets")[0] + " targets" if group == "made" else scenario
             yield (f"{title}: {name}" if title else name), entries
 
@@ -206,7 +214,8 @@ def gospa(results):
     """GOSPA over the oracle's."""
     parts = [text(20, 24, "Simulated scenarios: GOSPA of a tracker over that of the oracle. 1: no better tracker can be expected", "t"),
              legend([("c0 own", "pmbm"), ("c2", "phd"), ("c4", "reference PMBM code"), ("c5", "reference PHD code"),
-                     ("bar", "required of pmbm")], 20, 46, WIDTH - 40)]
+                     ("bar", "required of pmbm")], 20, 46, WIDTH - 40),
+             text(20, 64, "Dot: median over the seeds, with its 95 % interval. Ring: ratio of the means over the seeds, which a single bad seed moves", "s")]
     left, width = 200, 300
     bottom = 0
     for k, (column, title) in enumerate((("ratio squared", "squared base distance"), ("ratio true", "true base distance"))):

@@ -27,6 +27,13 @@ def estimate(text):
     return (found + found[:1] * 2)[:3] if found else None
 
 
+def ratio_of_means(row, base):
+    """GOSPA over the oracle's, both means over all runs, of a row of tracking_scenarios. base: 0 squared, 1 true. None for one run: it is
+    the ratio itself."""
+    own, oracle = numbers(row["GOSPA squared / true"]), numbers(row["oracle"])
+    return own[base] / oracle[base] if len(own) == 2 and len(oracle) == 2 and row["runs"] != "1" else None
+
+
 class Drives:
     """Files of tracking_drives about the same drives, as one: {(kind, scope): [row by column]}."""
 

@@ -1,7 +1,7 @@
 """The tables of docs/tracking.md."""
 import re
 
-from results import BASELINES, DEFAULT, PERFECT, TRACKERS
+from results import BASELINES, DEFAULT, PERFECT, TRACKERS, ratio_of_means
 
 EVERY = (*TRACKERS, *BASELINES)
 NOT_MEASURED, DOES_NOT_APPLY = "not measured", "—"
@@ -80,6 +80,10 @@ def scenario_rows(results):
         found = {row["tracker"]: text_of(row) for row in rows}
         return [title, *(DOES_NOT_APPLY if name in BASELINES else found.get(name, NOT_MEASURED) for name in EVERY)]
 
+    def ratio(row):
+        means = ratio_of_means(row, 0)
+        return row["ratio squared"] + (f", means {means:.3f}" if means else "")
+
     for group in SCENARIO_GROUPS:
         rows = results.tables.get(group)
         if rows is None:
@@ -87,7 +91,7 @@ def scenario_rows(results):
             continue
         for scenario in dict.fromkeys(row["scenario"] for row in rows):
             mine = [row for row in rows if row["scenario"] == scenario]
-            yield line(f"GOSPA over the oracle's, {group}: {scenario}", mine, lambda row: row["ratio squared"])
+            yield line(f"GOSPA over the oracle's, {group}: {scenario}", mine, ratio)
     rows = results.tables.get("split_merge", [])
     first = rows[:1] and rows[0]["scenario"]
     yield line("five targets that merge and split: GOSPA, true base / lost targets", [r for r in rows if r["scenario"] == first],

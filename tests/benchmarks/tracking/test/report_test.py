@@ -63,6 +63,13 @@ class ReportTest(unittest.TestCase):
         self.assertIn("−1.0 (−2.0 … 0.5)", tables.differences(read_all(drives(["default"])).drives))
         self.assertEqual(tables.with_minus("xia_c30-2, 1.0–2.0, -3"), "xia_c30-2, 1.0–2.0, −3")
 
+    def test_the_ratio_of_means_shows_a_bad_seed(self):
+        row = {"GOSPA squared / true": "3.000 / 2.000", "oracle": "1.500 / 1.600", "runs": "8"}
+        self.assertEqual(read.ratio_of_means(row, 0), 2.0)
+        self.assertEqual(read.ratio_of_means(row, 1), 1.25)
+        self.assertIsNone(read.ratio_of_means({**row, "runs": "1"}, 0))
+        self.assertIsNone(read.ratio_of_means({**row, "oracle": "—"}, 0))
+
     def test_figures_are_drawn_of_what_there_is(self):
         for with_curve in (True, False):
             results = read_all(drives(["default", "phd"], with_curve=with_curve))
