@@ -2,8 +2,10 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -63,13 +65,14 @@ void run(const EffectSetup& setup, Report& report) {
 
 int main(int argc, char** argv) {
   EffectSetup setup;
-  std::string data = BORESIGHT_SHARED_DATA, config = BORESIGHT_SOURCE_DIR "/config";
+  std::string data = BORESIGHT_SHARED_DATA, config = BORESIGHT_SOURCE_DIR "/config", json;
   CLI::App app{
       "Recordings of what real radars do, through the whole chain. Exit code 0 also if bars fail, 1 on an "
       "error."};
   app.add_option("--data", data, "folder of real_effects/")->capture_default_str();
   app.add_option("--config", config, "folder with services/")->capture_default_str();
   app.add_option("--tracker", setup.tracker, "tracker instead of the one in services/tracker.toml");
+  app.add_option("--json", json, "write bars to this file");
   CLI11_PARSE(app, argc, argv);
   try {
     setup.programs = fs::read_symlink("/proc/self/exe").parent_path();
@@ -84,6 +87,11 @@ int main(int argc, char** argv) {
     Report report;
     run(setup, report);
     report.print(std::cout);
+    if (json.empty()) return 0;
+    std::ofstream out(json);
+    report.write_json(out);
+    out.flush();
+    if (!out) throw std::runtime_error(json + ": cannot be written");
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

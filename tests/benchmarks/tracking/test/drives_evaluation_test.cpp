@@ -69,6 +69,18 @@ TEST(DrivesEvaluation, TakesTheBetterBaselineAndNoMoreFalseTracksThanIt) {
   EXPECT_NEAR(mean_share(baseline.objects), 14.0 / 21.0, 1e-12);
 }
 
+TEST(DrivesEvaluation, CurveIsOfEachTrackerAlone) {
+  const Evaluation evaluation = evaluate("made", {contestant("product", false, {drive_with(21, 0.3, 4, 0.3)}),
+                                                  contestant("baseline", true, {drive_with(14, 9.0, 1, 1.0)})});
+  const TrackerResult& product = evaluation.trackers.at(0);
+  EXPECT_DOUBLE_EQ(product.at_false_tracks.back().false_tracks(), 1.0) << "as many as the baseline";
+  for (std::size_t i = 0; i < kCurveFalseTracks.size(); ++i) {
+    const double most = std::min(4.0, kCurveFalseTracks.at(i));
+    EXPECT_NEAR(product.curve.at(i).false_tracks(), most, 1e-9);
+    EXPECT_NEAR(tracked_estimate(product.curve.at(i), {0}).figure, 100.0 * most / 4.0, 1e-9);
+  }
+}
+
 TEST(DrivesEvaluation, ObjectsThatAreSeenForTooShortATimeAreNotJudged) {
   ScoredDrive drive;
   for (int i = 0; i < 9; ++i) drive.add(scene(0.1 * i, {}, {car(1, 20.0)}));

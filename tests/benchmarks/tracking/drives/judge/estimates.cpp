@@ -59,6 +59,15 @@ double tracked_percent(const Outcome& outcome, const std::vector<std::size_t>& o
   return kPercent * sum / static_cast<double>(objects.size());
 }
 
+Estimate tracked_estimate(const Outcome& outcome, const std::vector<std::size_t>& objects) {
+  return ratio(
+      objects,
+      [&](std::size_t i) {
+        return Term{outcome.objects[i].share(), 1.0};
+      },
+      [](double mean) { return kPercent * mean; });
+}
+
 double tracked_percent_of_lists(const Outcome& outcome) {
   ObjectTally sum;
   for (const ObjectTally& object : outcome.objects) sum.add(object, 1.0);

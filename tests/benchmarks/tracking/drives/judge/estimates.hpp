@@ -20,7 +20,9 @@ struct Estimate {
 
 /// Mean share of lists in which the objects are tracked, %.
 [[nodiscard]] double tracked_percent(const Outcome& outcome, const std::vector<std::size_t>& objects);
-/// The same with each object weighted by its lists in view: the tracked_share of `boresight score`.
+/// The same with its interval.
+[[nodiscard]] Estimate tracked_estimate(const Outcome& outcome, const std::vector<std::size_t>& objects);
+/// tracked_percent() with each object weighted by its lists in view: the tracked_share of `boresight score`.
 [[nodiscard]] double tracked_percent_of_lists(const Outcome& outcome);
 /// Mean over the objects of the difference of their shares, percentage points; paired.
 [[nodiscard]] Estimate difference_points(const Outcome& tracker, const Outcome& baseline,

@@ -79,6 +79,9 @@ TrackerResult result_of(const Contestant& contestant, const std::vector<JudgedOb
   for (const ScoredDrive& drive : contestant.drives) {
     if (!contestant.is_baseline) result.reliability += drive.reliability();
   }
+  for (std::size_t i = 0; i < kCurveFalseTracks.size(); ++i) {
+    result.curve[i] = at_false_tracks(contestant, objects, kCurveFalseTracks[i]);
+  }
   result.ms_per_scan = contestant.ms_per_scan;
   for (const std::vector<double>& of_drive : contestant.steps_ms) append_to(result.step_ms, of_drive);
   return result;
@@ -102,6 +105,7 @@ void TrackerResult::append(const TrackerResult& other) {
   is_baseline = other.is_baseline;
   has_true_origins = other.has_true_origins;
   for (std::size_t i = 0; i < kFalseTracks.size(); ++i) at_false_tracks[i].append(other.at_false_tracks[i]);
+  for (std::size_t i = 0; i < kCurveFalseTracks.size(); ++i) curve[i].append(other.curve[i]);
   for (std::size_t i = 0; i < kFixedRules.size(); ++i) fixed[i].append(other.fixed[i]);
   reliability += other.reliability;
   append_to(ms_per_scan, other.ms_per_scan);

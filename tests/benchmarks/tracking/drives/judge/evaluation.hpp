@@ -13,6 +13,8 @@ namespace boresight::bench::tracking {
 
 /// False tracks at a time at which trackers are compared.
 inline constexpr std::array<double, 3> kFalseTracks = {1.0, 2.0, 4.0};
+/// The same for a curve of each tracker alone.
+inline constexpr std::array<double, 8> kCurveFalseTracks = {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
 
 /// A way to choose which tracks count that needs no truth.
 struct FixedRule {
@@ -58,6 +60,7 @@ struct TrackerResult {
   bool is_baseline = false;
   bool has_true_origins = false;
   std::array<Outcome, kFalseTracks.size()> at_false_tracks;
+  std::array<Outcome, kCurveFalseTracks.size()> curve;
   std::array<Outcome, kFixedRules.size()> fixed;
   Reliability reliability;
   std::vector<double> ms_per_scan;

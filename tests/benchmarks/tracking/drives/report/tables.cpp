@@ -69,6 +69,21 @@ Table equal_false_tracks(const Evaluation& evaluation) {
   return table;
 }
 
+Table curve(const Evaluation& evaluation) {
+  Table table = new_table(evaluation, kTracked,
+                          "time tracked at each tracker's own thresholds (95 % interval of a bootstrap over objects)",
+                          {"tracker", "false tracks", "reached", "tracked %"});
+  const std::vector<std::size_t> objects = objects_of_class(evaluation, judge::kClasses);
+  for_all(evaluation, [&](const TrackerResult& result) {
+    for (std::size_t i = 0; i < kCurveFalseTracks.size(); ++i) {
+      const Outcome& outcome = result.curve.at(i);
+      table.rows.push_back({result.name, number(kCurveFalseTracks.at(i)), fixed(outcome.false_tracks(), 3),
+                            interval_text(tracked_estimate(outcome, objects), 1)});
+    }
+  });
+  return table;
+}
+
 Table differences(const Evaluation& evaluation) {
   Table table =
       new_table(evaluation, kTracked,
@@ -178,6 +193,7 @@ Table times(const Evaluation& evaluation) {
 
 void add_tables(const Evaluation& evaluation, Findings& findings) {
   findings.tables.push_back({kTracked, equal_false_tracks(evaluation)});
+  findings.tables.push_back({kTracked, curve(evaluation)});
   findings.tables.push_back({kTracked, differences(evaluation)});
   findings.tables.push_back({kTracked, fixed_rules(evaluation)});
   for (const TrackerResult& tracker : evaluation.trackers) {
