@@ -172,12 +172,13 @@ Config read_config(config::Reader root) {
   read_capacity(root.table("capacity"), c.capacity);
   BoxParameters& x = c.model.box;
   read(root.table("box"), {{"evidence_share", &x.evidence_share, {0.0, 1.0}},
+                           {"stray_share", &x.stray_share, {0.0, 0.99}},
+                           {"stray_m", &x.stray_m, {0.1, 20.0}},
                            {"forget_s", &x.forget_s, {0.1, 1e4}},
                            {"side_slip_mps", &x.side_slip_mps, {0.0, 5.0}},
                            {"lateral_acceleration_mps2", &x.turn.lateral_acceleration_mps2, {0.01, 20.0}},
                            {"turn_radius_m", &x.turn.radius_m, {0.1, 100.0}},
                            {"turn_time_s", &x.turn.time_s, {0.0, 10.0}},
-                           {"turn_held_factor", &x.turn.held_factor, {0.0, 1000.0}},
                            {"parallel_share", &x.parallel_share, {0.0, 0.5}},
                            {"parallel_std_rad", &x.parallel_std_rad, {0.001, 3.0}},
                            {"known_heading_rad", &x.known_heading_rad, {0.01, 3.0}},

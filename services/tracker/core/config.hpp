@@ -13,7 +13,7 @@ namespace boresight::tracking {
 struct Config {
   std::string tracker = "pmbm";  ///< name for make_tracker()
   RadarModelParameters model;
-  pmbm::Parameters pmbm{.min_existence = 0.02};  ///< nothing returns to a Poisson part where births are everywhere
+  pmbm::Parameters pmbm{.min_existence = 0.07};  ///< nothing returns to a Poisson part where births are everywhere
   pmbm::Capacity capacity;
   phd::Parameters phd;
   ReportParameters report;

@@ -270,9 +270,14 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
     spot.col(0) /= 3.0;
     spot.row(0) /= 3.0;
     spot += noise;
-    const double of_whole = log_scatter(scatter, whole, n), of_spot = log_scatter(scatter, spot, n);
-    const double top = std::max(of_whole, of_spot);
-    log_p += top + std::log((1.0 - common) * std::exp(of_whole - top) + common * std::exp(of_spot - top));
+    // Now and then one of the detections is not the object's: that speaks against no class.
+    const Eigen::Matrix2d with_stray = whole + parameters_.stray_m * parameters_.stray_m * Eigen::Matrix2d::Identity();
+    const double of_whole = log_scatter(scatter, whole, n), of_spot = log_scatter(scatter, spot, n),
+                 of_stray = log_scatter(scatter, with_stray, n);
+    const double top = std::max({of_whole, of_spot, of_stray}), stray = parameters_.stray_share;
+    log_p +=
+        top + std::log((1.0 - stray) * ((1.0 - common) * std::exp(of_whole - top) + common * std::exp(of_spot - top)) +
+                       stray * std::exp(of_stray - top));
   }
   return log_p;
 }

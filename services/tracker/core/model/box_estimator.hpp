@@ -28,6 +28,8 @@ namespace boresight::tracking {
 
 struct BoxParameters {
   double evidence_share = 0.2;      ///< of a scan's log likelihood of a class: scans are not independent
+  double stray_share = 0.1;         ///< of scans where a detection is not the object's
+  double stray_m = 2.5;             ///< how far from the others
   double forget_s = 20.0;           ///< of the evidence for classes
   double side_slip_mps = 0.15;      ///< between heading and course
   TurnParameters turn;              ///< change of heading of a moving object

@@ -63,8 +63,7 @@ double RadarModel::seems_moving(const Vector2<double>& sight, const Component<do
 
 Vector2<double> RadarModel::turn_at(const Vector2<double>& from_sensor_m, const Component<double>& c) const {
   const TurnParameters& turn = parameters_.box.turn;
-  const double rate_radps = std::sqrt(turn.held_factor) *
-                            turn_rate_std_radps(turn, squared_norm(c.velocity_mps) + trace(c.velocity_covariance));
+  const double rate_radps = turn_rate_std_radps(turn, squared_norm(c.velocity_mps) + trace(c.velocity_covariance));
   return {-rate_radps * from_sensor_m.y, rate_radps * from_sensor_m.x};
 }
 

@@ -9,7 +9,6 @@ struct TurnParameters {
   double lateral_acceleration_mps2 = 2.0;  ///< one standard deviation
   double radius_m = 6.0;                   ///< of the sharpest turn
   double time_s = 1.0;                     ///< how long a turn rate lasts
-  double held_factor = 4.0;  ///< a turn rate lasts for some scans: what it does to their range rates is that much worse
 };
 
 /// Standard deviation of the turn rate at a speed v: a v / (v² + a R), about v / R when slow and a / v when fast.
