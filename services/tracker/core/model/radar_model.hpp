@@ -159,7 +159,7 @@ class RadarModel final : public Model {
   [[nodiscard]] double exposure_at(double range_m) const;
   [[nodiscard]] NewbornWeights newborn_weights(const Cell<double>& cell);
 
-  /// Velocity that an unknown turn rate of an object pretends to a radar, equation (T16); one standard deviation.
+  /// Velocity that an unknown turn rate of an object pretends to a radar, equation (T18); one standard deviation.
   [[nodiscard]] Vector2<double> turn_at(const Vector2<double>& from_sensor_m, const Component<double>& component) const;
   [[nodiscard]] Look look(const Component<double>& component) const;
   /// Probability that an object of unknown heading is in view by azimuth.
