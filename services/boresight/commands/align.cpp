@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -24,6 +23,7 @@
 #include "services/boresight/input/play.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
+#include "services/common/runtime/clock.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 #include "services/simulator/drive.hpp"
 
@@ -38,12 +38,6 @@ struct AlignOptions {
   bool has_config = false;  ///< the settings are read from the folder of the configuration
   std::string method = "boresight";
 };
-
-std::int64_t cpu_time_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 class Align {
  public:
@@ -63,7 +57,7 @@ class Align {
                    .recordings = options_.recordings};
     align::Run::Options run_options;
     run_options.method = options_.method;
-    run_options.cpu_time_ns = cpu_time_ns;
+    run_options.cpu_time_ns = runtime::thread_cpu_time_ns;
     run_options.batch_calibration_progress = [this](auto phase, double share) { show_batch_calibration(phase, share); };
     if (options_.has_config) {
       run_options.config = alignment::read_settings(config::Reader::open(settings_file())).estimator;

@@ -3,7 +3,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -25,6 +24,7 @@
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
 #include "services/common/recording/reader.hpp"
+#include "services/common/runtime/clock.hpp"
 #include "services/common/runtime/stop_signal.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
@@ -42,12 +42,6 @@ struct RunOptions {
   std::string tracker;  ///< empty: the one of the configuration
   bool quiet = false;
 };
-
-std::int64_t run_cpu_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 /// A folder, which is made if it does not exist. It is removed again if it was made here and is empty at the end.
 class MadeFolder {
@@ -114,17 +108,17 @@ class RunDrive {
                        .configuration = options_.configuration.directory.string(),
                        .settings_files = run::settings_files(options_.configuration)};
     for (const auto& file : options_.recordings) summary_.inputs.recordings.push_back(file.string());
-    begin_cpu_ns_ = run_cpu_ns();
+    begin_cpu_ns_ = runtime::thread_cpu_time_ns();
 
     std::optional<RunFolder> folder;
     std::optional<run::Writer> writer;
     const auto write = [&](const auto& result) {
-      const std::int64_t from_ns = run_cpu_ns();
+      const std::int64_t from_ns = runtime::thread_cpu_time_ns();
       writer->write(result);
-      write_ns_ += run_cpu_ns() - from_ns;
+      write_ns_ += runtime::thread_cpu_time_ns() - from_ns;
     };
-    const auto chain =
-        std::make_unique<run::Chain>(vehicle_, settings, run::Listeners{write, write, write}, run_cpu_ns);
+    const auto chain = std::make_unique<run::Chain>(vehicle_, settings, run::Listeners{write, write, write},
+                                                    runtime::thread_cpu_time_ns);
     // Inputs are opened before the folder is made, so that a wrong name leaves nothing.
     const auto begin_output = [&] {
       folder.emplace(options_.out);
@@ -208,7 +202,7 @@ class RunDrive {
     summary_.sources = chain.sources;
     summary_.timing.stages = chain.stage_times();
     summary_.timing.write_s = static_cast<double>(write_ns_) / 1e9;
-    summary_.timing.cpu_s = static_cast<double>(run_cpu_ns() - begin_cpu_ns_) / 1e9;
+    summary_.timing.cpu_s = static_cast<double>(runtime::thread_cpu_time_ns() - begin_cpu_ns_) / 1e9;
     summary_.timing.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 

@@ -1,6 +1,5 @@
 // `boresight track`: a tracker over the measurements of a simulated scenario.
 #include <cstdint>
-#include <ctime>
 #include <memory>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "services/boresight/track/measurement_table.hpp"
 #include "services/boresight/track/scenario_file.hpp"
 #include "services/boresight/track/tracker_run.hpp"
+#include "services/common/runtime/clock.hpp"
 #include "services/tracker/core/make_tracker.hpp"
 
 namespace boresight {
@@ -25,12 +25,6 @@ struct TrackOptions {
   std::string tracker = "pmbm";
   std::size_t passes = 1;
 };
-
-std::int64_t thread_cpu_time_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 void check_range_rates(const TrackOptions& options, bool has_parameter, bool has_column) {
   if (has_column && !has_parameter) {
@@ -49,7 +43,7 @@ int run_track(const TrackOptions& options, const CLI::App& command) {
   check_range_rates(options, scenario.model.range_rate_std_mps > 0.0, table.has_range_rates);
   const auto make = [&] { return tracking::make_scenario_tracker(options.tracker, scenario.model); };
   const track::TrackerRun run = track::run_tracker(make, table.scans, scenario.model.step_s, options.passes,
-                                                   thread_cpu_time_ns, stop_if_interrupted);
+                                                   runtime::thread_cpu_time_ns, stop_if_interrupted);
   terminal::write_file(options.out, track::estimates_csv(run.estimates));
 
   if (options.out != "-") {

@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kLeastLength_m = 1e-9;     // keeps quotients finite for boxes of size 0
 constexpr double kLeastVariance_m2 = 1e-6;  // (1 mm)²: densities of boxes of size 0 without noise stay finite
-constexpr std::size_t kParts = 3;           // of what extends along the length
-static_assert(kReflectionComponents == 1 + 2 * kParts);
 
 /// max(0, x), rounded within ±radius: once continuously differentiable, and 0 up to −radius.
 double rounded_positive(double x, double radius) {
@@ -89,7 +87,7 @@ ReflectionMixture reflection_mixture(const ReflectionPlaces& places, double leng
   const double decay = std::max(places.decay_m, kLeastLength_m);
   const double along_rate = mean_cosine(x, y, half.x()) / decay;
   const MeanVariance across = truncated_exponential(mean_cosine(y, x, half.y()) / decay, half.y());
-  const MeanVariance in_part = truncated_exponential(along_rate, half.x() / kParts);
+  const MeanVariance in_part = truncated_exponential(along_rate, half.x() / kLengthParts);
   const Eigen::Vector2d depth = (0.5 * half).cwiseMin(places.face_depth_m);
   const Eigen::Vector2d depth_std = (0.5 * half).cwiseMin(places.face_depth_std_m);
 
@@ -101,15 +99,15 @@ ReflectionMixture reflection_mixture(const ReflectionPlaces& places, double leng
   mixture[0] = component(weights.end, std::copysign(half.x() - depth.x(), x), depth_std.x() * depth_std.x(),
                          across.mean, across.variance);
   const double side_y = std::copysign(half.y() - depth.y(), y), side_variance = depth_std.y() * depth_std.y();
-  const double part_m = length_m / kParts;
+  const double part_m = length_m / kLengthParts;
   const double next = std::exp(-std::abs(along_rate) * part_m);  // share of a part by that of its nearer neighbour
   const double sum = 1.0 + next + next * next;
-  for (std::size_t k = 0; k < kParts; ++k) {
-    const std::size_t behind = along_rate > 0.0 ? kParts - 1 - k : k;
+  for (std::size_t k = 0; k < kLengthParts; ++k) {
+    const std::size_t behind = along_rate > 0.0 ? kLengthParts - 1 - k : k;
     const double share = (behind == 0 ? 1.0 : behind == 1 ? next : next * next) / sum;
     const double mean_x = (static_cast<double>(k) - 1.0) * part_m + in_part.mean;
     mixture[1 + k] = component(share * weights.side, mean_x, in_part.variance, side_y, side_variance);
-    mixture[1 + kParts + k] =
+    mixture[1 + kLengthParts + k] =
         component(share * weights.interior, mean_x, in_part.variance, across.mean, across.variance);
   }
   return mixture;

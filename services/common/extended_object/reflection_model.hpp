@@ -65,7 +65,8 @@ struct ReflectionComponent {
 };
 
 /// Near end; near side in three parts from rear to front; interior in three parts from rear to front. Weights sum to 1.
-inline constexpr std::size_t kReflectionComponents = 7;
+inline constexpr std::size_t kLengthParts = 3;  ///< of what extends along the length
+inline constexpr std::size_t kReflectionComponents = 1 + 2 * kLengthParts;
 using ReflectionMixture = std::array<ReflectionComponent, kReflectionComponents>;
 
 /// The mixture (4) without measurement noise. `sensor_box_m`: the sensor in box axes, OrientedBox::to_box().

@@ -20,5 +20,8 @@ std::int64_t monotonic_now_ns() {
 std::int64_t realtime_now_ns() {
   return read_ns(CLOCK_REALTIME);
 }
+std::int64_t thread_cpu_time_ns() {
+  return read_ns(CLOCK_THREAD_CPUTIME_ID);
+}
 
 }  // namespace boresight::runtime

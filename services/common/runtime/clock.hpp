@@ -9,5 +9,7 @@ namespace boresight::runtime {
 [[nodiscard]] std::int64_t monotonic_now_ns();
 /// CLOCK_REALTIME in nanoseconds since the epoch, for readers off the ECU and for sensor stamps.
 [[nodiscard]] std::int64_t realtime_now_ns();
+/// CPU time of the calling thread in nanoseconds.
+[[nodiscard]] std::int64_t thread_cpu_time_ns();
 
 }  // namespace boresight::runtime

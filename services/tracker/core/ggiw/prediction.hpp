@@ -28,7 +28,7 @@ struct Reading {
 template <typename Real>
 struct View {
   static constexpr std::size_t kMaxReadings = 3;
-  Real detection_probability = 0;  ///< in view, not hidden, not blind to its range rate
+  Real detection_probability = 0;  ///< in view, not blind to its range rate
   Real exposure = 1;               ///< expected number of detections relative to the nominal range
   Symmetric2<Real> noise_m2;       ///< of one position
   Real range_rate_variance = 0;    ///< m²/s²; 0: range rates are not used

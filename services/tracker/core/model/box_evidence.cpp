@@ -118,8 +118,8 @@ double BoxEstimator::learn_class(ClassBox& box, const ClassView& v, const Object
     // From all over the object, or from one third of its length.
     const Eigen::Matrix2d whole = v.reflections.scatter_m2 + noise;
     Eigen::Matrix2d spot = v.reflections.scatter_m2;
-    spot.col(0) /= 3.0;
-    spot.row(0) /= 3.0;
+    spot.col(0) /= extended_object::kLengthParts;
+    spot.row(0) /= extended_object::kLengthParts;
     spot += noise;
     // Now and then one of the detections is not the object's: that speaks against no class.
     const Eigen::Matrix2d with_stray = whole + parameters_.stray_m * parameters_.stray_m * Eigen::Matrix2d::Identity();

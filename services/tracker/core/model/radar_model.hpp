@@ -131,6 +131,11 @@ class RadarModel final : public Model {
   /// Chances that the scan shows what the measurements are side lobes of.
   void find_partners();
   void find_rings();
+  /// Variances of a place about the ring of an object.
+  struct RingSpread {
+    double range_m2, range_rate_m2ps2;
+  };
+  [[nodiscard]] RingSpread ring_spread(const KnownObject& parent, const Ring& place) const;
   [[nodiscard]] Ring ring_of(const Component<double>& component) const;
   /// Squared distance of a place from the ring of an object, in deviations of side lobes.
   [[nodiscard]] double ring_distance(const KnownObject& parent, const Ring& place) const;

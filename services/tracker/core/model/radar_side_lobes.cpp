@@ -34,21 +34,21 @@ RadarModel::Ring RadarModel::ring_of(const Component<double>& c) const {
           quadratic(c.velocity_covariance, sight), sight};
 }
 
+RadarModel::RingSpread RadarModel::ring_spread(const KnownObject& parent, const Ring& r) const {
+  const double rate_std_mps = parameters_.source.side_lobe_range_rate_std_mps;
+  return {parent.ring_depth_m2 + r.range_variance_m2,
+          rate_std_mps * rate_std_mps + parent.ring.range_rate_variance_m2ps2 + r.range_rate_variance_m2ps2};
+}
+
 double RadarModel::ring_distance(const KnownObject& parent, const Ring& r) const {
-  const SourceParameters& s = parameters_.source;
-  const double range_variance = parent.ring_depth_m2 + r.range_variance_m2;
-  const double rate_variance = s.side_lobe_range_rate_std_mps * s.side_lobe_range_rate_std_mps +
-                               parent.ring.range_rate_variance_m2ps2 + r.range_rate_variance_m2ps2;
+  const RingSpread spread = ring_spread(parent, r);
   const double a = r.range_m - parent.ring.range_m, b = r.range_rate_mps - parent.ring.range_rate_mps;
-  return a * a / range_variance + b * b / rate_variance;
+  return a * a / spread.range_m2 + b * b / spread.range_rate_m2ps2;
 }
 
 double RadarModel::side_lobe_density(const KnownObject& parent, const Ring& r, double distance) const {
-  const SourceParameters& s = parameters_.source;
-  const double range_variance = parent.ring_depth_m2 + r.range_variance_m2;
-  const double rate_variance = s.side_lobe_range_rate_std_mps * s.side_lobe_range_rate_std_mps +
-                               parent.ring.range_rate_variance_m2ps2 + r.range_rate_variance_m2ps2;
-  return std::exp(-0.5 * distance) / (2.0 * std::numbers::pi * std::sqrt(range_variance * rate_variance)) /
+  const RingSpread spread = ring_spread(parent, r);
+  return std::exp(-0.5 * distance) / (2.0 * std::numbers::pi * std::sqrt(spread.range_m2 * spread.range_rate_m2ps2)) /
          (2.0 * radar_->half_view_rad * std::max(parameters_.source.side_lobe_nearest_m, parent.ring.range_m));
 }
 
