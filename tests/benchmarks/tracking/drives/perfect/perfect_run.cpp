@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <nlohmann/json.hpp>
-#include <time.h>
 
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/run/chain.hpp"
@@ -19,6 +18,7 @@
 #include "services/boresight/score/car_truth.hpp"
 #include "services/boresight/score/truth_source.hpp"
 #include "services/common/recording/reader.hpp"
+#include "services/common/runtime/clock.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
 #include "services/ingest_gateway/mapping/vehicle_mappings.hpp"
 #include "services/tracker/core/make_tracker.hpp"
@@ -32,12 +32,6 @@ namespace {
 
 constexpr const char* kTimesFile = "step_times.csv";
 constexpr double kMillisecondsPerNanosecond = 1e-6;
-
-std::int64_t cpu_ns() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 /// What the truth says about the scans of a run.
 class OriginsOfScans {
@@ -79,7 +73,7 @@ class PerfectRun {
         writer_([this](run::File file, std::string_view text) { put(file, text); }, vehicle),
         chain_(std::make_unique<run::Chain>(
             vehicle, settings, run::Listeners{[this](const run::ScanResult& result) { add(result); }, {}, {}},
-            cpu_ns)) {
+            runtime::thread_cpu_time_ns)) {
     fmt::print(times_, "filtered_ms,perfect_ms\n");
   }
 
@@ -106,10 +100,10 @@ class PerfectRun {
   void add(const run::ScanResult& result) {
     *scan_ = result.classified;
     origins_.set(result, *scan_);
-    const std::int64_t begin_ns = cpu_ns();
+    const std::int64_t begin_ns = runtime::thread_cpu_time_ns();
     static_cast<void>(tracker_->step(*scan_));
     tracker_->write(*tracks_);
-    const std::int64_t step_ns = cpu_ns() - begin_ns;
+    const std::int64_t step_ns = runtime::thread_cpu_time_ns() - begin_ns;
     const std::int64_t filtered_ns = chain_->stage_times().tracker;
     tracks_->header = result.tracks.header;
     writer_.write(run::ScanResult{result.at, result.number, result.scan, *scan_, *tracks_});
