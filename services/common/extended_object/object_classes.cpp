@@ -27,8 +27,8 @@ std::span<const ObjectClassField> object_class_fields() {
   // Section, key, allowed range, and the defaults of pedestrian, two-wheeler, car, van, truck.
   static constexpr ObjectClassField kFields[] = {
       {"", "prior_share", 1e-6, 1.0, {0.2, 0.05, 0.55, 0.05, 0.15}, prior_share},
-      {"size", "length_mean_m", 0.1, 30.0, {0.73, 1.8, 4.6, 5.6, 10.5}, at<&M::size, &S::length_mean_m>},
-      {"size", "length_std_m", 0.01, 10.0, {0.2, 0.2, 0.4, 0.6, 3.5}, at<&M::size, &S::length_std_m>},
+      {"size", "length_mean_m", 0.1, 30.0, {0.73, 1.8, 4.6, 5.6, 11.0}, at<&M::size, &S::length_mean_m>},
+      {"size", "length_std_m", 0.01, 10.0, {0.2, 0.2, 0.4, 0.6, 4.5}, at<&M::size, &S::length_std_m>},
       {"size", "width_mean_m", 0.1, 5.0, {0.67, 0.7, 1.85, 2.0, 2.5}, at<&M::size, &S::width_mean_m>},
       {"size", "width_std_m", 0.01, 2.0, {0.15, 0.15, 0.1, 0.1, 0.1}, at<&M::size, &S::width_std_m>},
       {"size", "height_m", 0.1, 6.0, {1.75, 1.7, 1.6, 2.4, 3.3}, at<&M::size, &S::height_m>},
