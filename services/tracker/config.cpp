@@ -134,16 +134,39 @@ void read_model(config::Reader& root, RadarModelParameters& m) {
                               {"latest_scan_s", &m.latest_scan_s, {0.0, 10.0}}});
 }
 
+std::uint32_t read_work_budget(config::Reader& table, std::uint32_t usual) {
+  return static_cast<std::uint32_t>(table.integer("work_budget", {100, 1e8}, static_cast<std::int64_t>(usual)));
+}
+
+// min_poisson_weight and birth_merge_distance have no effect on radars: births are everywhere.
 void read_search(config::Reader table, pmbm::Parameters& p) {
   read(table, {{"gate_chi2", &p.gate_chi2, {1.0, 100.0}},
+               {"cell_gate_chi2", &p.cell_gate_chi2, {1.0, 100.0}},
                {"prune_weight", &p.prune_weight, {1e-9, 0.1}},
                {"candidate_log", &p.candidate_log, {0.0, 30.0}},
+               {"search_log", &p.search_log, {0.0, 30.0}},
                {"merge_distance", &p.merge_distance, {0.0, 100.0}},
                {"join_existence", &p.join_existence, {0.01, 0.999}},
                {"min_existence", &p.min_existence, {1e-6, 0.5}},
-               {"min_poisson_weight", &p.min_poisson_weight, {1e-9, 0.5}}});
-  p.work_budget =
-      static_cast<std::uint32_t>(table.integer("work_budget", {100, 1e8}, static_cast<std::int64_t>(p.work_budget)));
+               {"min_detection_probability", &p.min_detection_probability, {1e-9, 0.5}},
+               {"min_share", &p.min_share, {1e-9, 0.5}},
+               {"first_cell_links", &p.first_cell_links, {0.0, 10.0}},
+               {"report_existence", &p.report_existence, {1e-6, 0.5}}});
+  p.sharing_passes = static_cast<int>(table.integer("sharing_passes", {1, 20}, p.sharing_passes));
+  p.work_budget = read_work_budget(table, p.work_budget);
+}
+
+void read_phd(config::Reader table, phd::Parameters& p) {
+  read(table, {{"gate_chi2", &p.gate_chi2, {1.0, 100.0}},
+               {"prune_weight", &p.prune_weight, {1e-9, 0.5}},
+               {"merge_distance", &p.merge_distance, {0.0, 100.0}},
+               {"min_detection_probability", &p.min_detection_probability, {1e-9, 0.5}},
+               {"min_share", &p.min_share, {1e-9, 0.5}},
+               {"least_entropy", &p.least_entropy, {0.0, 10.0}},
+               {"least_cell", &p.least_cell, {0.01, 2.0}},
+               {"object_probability", &p.object_probability, {0.01, 0.99}},
+               {"report_existence", &p.report_existence, {1e-6, 0.5}}});
+  p.work_budget = read_work_budget(table, p.work_budget);
 }
 
 void read_capacity(config::Reader table, pmbm::Capacity& c) {
@@ -169,6 +192,7 @@ Config read_config(config::Reader root) {
   c.tracker = root.choice("tracker", names, c.tracker);
   read_model(root, c.model);
   read_search(root.table("search"), c.pmbm);
+  read_phd(root.table("phd"), c.phd);
   read_capacity(root.table("capacity"), c.capacity);
   BoxParameters& x = c.model.box;
   read(root.table("box"), {{"evidence_share", &x.evidence_share, {0.0, 1.0}},

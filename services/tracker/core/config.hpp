@@ -13,7 +13,8 @@ namespace boresight::tracking {
 struct Config {
   std::string tracker = "pmbm";  ///< name for make_tracker()
   RadarModelParameters model;
-  pmbm::Parameters pmbm{.min_existence = 0.07};  ///< nothing returns to a Poisson part where births are everywhere
+  /// Nothing returns to a Poisson part where births are everywhere; echoes of radars last.
+  pmbm::Parameters pmbm{.min_existence = 0.07, .join_existence = 0.95};
   pmbm::Capacity capacity;
   phd::Parameters phd;
   ReportParameters report;
