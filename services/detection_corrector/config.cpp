@@ -28,6 +28,15 @@ Config read_config(config::Reader root) {
   c.moving_sigma = moving.number("sigma", {0.5, 20.0}, c.moving_sigma);
   c.body_motion_std_mps = moving.number("body_motion_std_mps", {0.0, 10.0}, c.body_motion_std_mps);
   c.azimuth_std_edge = moving.number("azimuth_std_edge", {0.01, 1.0}, c.azimuth_std_edge);
+  config::Reader noise = root.table("stated_noise");
+  StatedNoiseConfig& n = c.stated_noise;
+  n.prior_detections = noise.number("prior_detections", {1.0, 1e6}, n.prior_detections);
+  n.time_constant_s = noise.number("time_constant_s", {1.0, 36000.0}, n.time_constant_s);
+  n.other_share = noise.number("other_share", {0.001, 0.5}, n.other_share);
+  n.other_width_mps = noise.number("other_width_mps", {0.5, 100.0}, n.other_width_mps);
+  n.least_scale = noise.number("least_scale", {0.01, 1.0}, n.least_scale);
+  n.most_scale = noise.number("most_scale", {1.0, 100.0}, n.most_scale);
+  n.least_speed_mps = noise.number("least_speed_mps", {0.0, 50.0}, n.least_speed_mps);
   config::Reader unknown = root.table("unknown");
   c.unknown_rotation_std_rad = unknown.angle_deg("rotation_std_deg", {0.0, 20.0}, c.unknown_rotation_std_rad);
   c.unknown_speed_scale_std = unknown.number("speed_scale_std", {0.0, 0.5}, c.unknown_speed_scale_std);

@@ -5,6 +5,18 @@
 
 namespace boresight::corrector {
 
+/// How the ratio of actual to stated range-rate noise is learnt.
+struct StatedNoiseConfig {
+  double prior_detections = 300.0;  ///< weight of the stated noise, in stationary detections
+  double time_constant_s = 60.0;    ///< of forgetting the evidence
+  double other_share = 0.1;         ///< of detections that are not of a stationary reflector
+  double other_width_mps = 2.0;     ///< half of their range rates over ground are below it
+  double least_scale = 0.2;         ///< limits of actual / stated std
+  double most_scale = 5.0;
+  /// Nothing is learnt at lower speeds: in a standing vehicle the same reflectors repeat the same errors.
+  double least_speed_mps = 1.0;
+};
+
 struct Config {
   /// Box in the vehicle frame; detections outside get a flag.
   std::array<double, 3> region_min_m{-100.0, -60.0, -2.0};
@@ -30,6 +42,7 @@ struct Config {
   double unknown_slip_std_radps2pm = 0.003;         // of the rear axle, rad per m/s²
   double alignment_max_age_s = 2.0;
   double ego_max_age_s = 0.2;
+  StatedNoiseConfig stated_noise;
 };
 
 }  // namespace boresight::corrector

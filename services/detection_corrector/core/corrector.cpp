@@ -56,6 +56,7 @@ Corrector::Corrector(const VehicleConfig& vehicle, const Config& config)
     : vehicle_(vehicle), config_(config), ego_(static_cast<std::int64_t>(config.ego_max_age_s * 1e9)) {
   for (const RadarConfig& radar : vehicle_.radars) {
     unknown_elevations_.emplace_back(radar, config_.unknown_rotation_std_rad);
+    noises_.emplace_back(config_.stated_noise);
   }
 }
 
@@ -67,7 +68,13 @@ bool Corrector::add_alignment(const AlignmentEstimate& estimate) {
   return true;
 }
 
-void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
+double Corrector::range_rate_noise_scale(std::uint32_t radar_id) const {
+  const RadarConfig* const radar = vehicle_.radar(radar_id);
+  if (radar == nullptr) return 1.0;
+  return std::sqrt(noises_[static_cast<std::size_t>(radar - vehicle_.radars.data())].variance_factor());
+}
+
+void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
   const std::uint32_t id = scan.header.source_id;
   const RadarConfig* const radar = vehicle_.radar(id);
   const std::size_t count =
@@ -108,8 +115,11 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
   const bool has_rcs = scan.has(scan_field::kRcs);
   const Eigen::Matrix3d& rotation = mounting.sensor_to_vehicle;
   const Eigen::Vector3d origin(radar->mounting_pose.position_m.data());
-  const UnknownElevation& unknown = unknown_elevations_[static_cast<std::size_t>(radar - vehicle_.radars.data())];
+  const auto index = static_cast<std::size_t>(radar - vehicle_.radars.data());
+  const UnknownElevation& unknown = unknown_elevations_[index];
+  RangeRateNoise& noise = noises_[index];
   const StationaryTest stationary(motion, mounting, has_elevation ? nullptr : &unknown, config_);
+  std::size_t with_noise = 0;
 
   for (std::size_t i = 0; i < count; ++i) {
     const float elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
@@ -171,10 +181,17 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) const {
                         static_cast<double>(elevation_std),
                         static_cast<double>(range_rate_std),
                         azimuth_error.std_rad};
-      flags |= stationary.passes(sight) ? corrected_flag::kStationary : corrected_flag::kMoving;
+      // The noise of the vehicle file is not the radar's statement.
+      const bool states_rate = has_stds && range_rate_std == scan.range_rate_std_mps[i];
+      const Innovation innovation = stationary.innovation(sight);
+      const bool passes = stationary.passes(innovation, states_rate ? noise.variance_factor() : 1.0);
+      if (states_rate) innovations_[with_noise++] = innovation;
+      flags |= passes ? corrected_flag::kStationary : corrected_flag::kMoving;
     }
     out.detection_flags[i] = flags;
   }
+  if (std::abs(motion.speed_mps) < config_.stated_noise.least_speed_mps) return;
+  noise.learn({innovations_.data(), with_noise}, stationary.common(), time_ns);
 }
 
 }  // namespace boresight::corrector

@@ -14,6 +14,7 @@
 #include "services/common/vehicle/vehicle.hpp"
 #include "services/detection_corrector/core/config.hpp"
 #include "services/detection_corrector/core/mounting.hpp"
+#include "services/detection_corrector/core/range_rate_noise.hpp"
 
 namespace boresight::corrector {
 
@@ -30,8 +31,11 @@ class Corrector {
   [[nodiscard]] bool knows(std::uint32_t radar_id) const { return vehicle_.radar(radar_id) != nullptr; }
 
   /// Writes everything of `out` except the header. `out.flags` names missing side inputs. A scan of an unknown radar
-  /// gives an empty output.
-  void correct(const RadarScan& scan, CorrectedScan& out) const;
+  /// gives an empty output. Learns the radar's range-rate noise from the scan, for the scans after it.
+  void correct(const RadarScan& scan, CorrectedScan& out);
+
+  /// Learnt ratio of actual to stated std of a radar's range rates; 1 for an unknown radar.
+  [[nodiscard]] double range_rate_noise_scale(std::uint32_t radar_id) const;
 
  private:
   struct Latest {
@@ -42,7 +46,9 @@ class Corrector {
   Config config_;
   EgoHistory ego_;
   std::vector<UnknownElevation> unknown_elevations_;  // one per radar of the vehicle, in their order
+  std::vector<RangeRateNoise> noises_;                // likewise
   std::array<Latest, kMaxRadars + 1> alignment_{};
+  std::array<Innovation, kMaxDetections> innovations_{};  // of the scan, as far as the radar states its noise
 };
 
 }  // namespace boresight::corrector

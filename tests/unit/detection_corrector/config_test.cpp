@@ -22,6 +22,14 @@ TEST(CorrectorConfig, TheShippedFileHasTheDefaults) {
   EXPECT_EQ(read.unknown_speed_scale_std, expected.unknown_speed_scale_std);
   EXPECT_NEAR(read.unknown_yaw_rate_bias_std_radps, expected.unknown_yaw_rate_bias_std_radps, 1e-5);
   EXPECT_EQ(read.unknown_slip_std_radps2pm, expected.unknown_slip_std_radps2pm);
+  const StatedNoiseConfig& noise = read.stated_noise;
+  EXPECT_EQ(noise.prior_detections, expected.stated_noise.prior_detections);
+  EXPECT_EQ(noise.time_constant_s, expected.stated_noise.time_constant_s);
+  EXPECT_EQ(noise.other_share, expected.stated_noise.other_share);
+  EXPECT_EQ(noise.other_width_mps, expected.stated_noise.other_width_mps);
+  EXPECT_EQ(noise.least_scale, expected.stated_noise.least_scale);
+  EXPECT_EQ(noise.most_scale, expected.stated_noise.most_scale);
+  EXPECT_EQ(noise.least_speed_mps, expected.stated_noise.least_speed_mps);
 }
 
 }  // namespace
