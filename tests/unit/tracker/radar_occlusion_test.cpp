@@ -38,7 +38,6 @@ TwoShares shares_of(const Box& front, const Box& back, double existence = 1.0) {
   occlusion.begin_scan(kOccludedFrom_m);
   occlusion.add(1, existence, front);
   occlusion.add(2, 1.0, back);
-  occlusion.find();
   return {occlusion.hidden_share(2), occlusion.hidden_share(1)};
 }
 
@@ -69,7 +68,6 @@ TEST(Occlusion, TwoInFrontHideAsIndependentOnes) {
   occlusion.add(1, 0.5, box_at({15.0, 1.0}, 4.6, 1.8));
   occlusion.add(2, 0.5, box_at({25.0, 1.0}, 4.6, 1.8));
   occlusion.add(3, 1.0, box_at({80.0, 1.0}, 4.6, 1.8));
-  occlusion.find();
   EXPECT_NEAR(occlusion.hidden_share(2), 0.5, 0.1) << "nearly all of it";
   EXPECT_NEAR(occlusion.hidden_share(3), 0.75, 0.01);
 }
@@ -145,7 +143,6 @@ TEST(Occlusion, ObjectsBeyondTheCapacityAndAroundTheSensorAreLeftOutAndNothingIs
     occlusion.add(2, 1.0, box_at({20.0, 1.0}, 4.6, 1.8));
     occlusion.add(3, 1.0, box_at({60.0, 1.0}, 4.6, 1.8));
     occlusion.add(4, 1.0, box_at({10.0, 1.0}, 4.6, 1.8));
-    occlusion.find();
     EXPECT_EQ(occlusion.hidden_share(1), 0.0);
     EXPECT_LT(occlusion.hidden_share(2), 0.01) << "the fourth has no room";
     EXPECT_GT(occlusion.hidden_share(3), 0.95);

@@ -163,7 +163,6 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
 void RadarModel::find_occlusion() {
   occlusion_.begin_scan(sensor_m_);
   for (const KnownObject& o : objects_) occlusion_.add(o.component.label, o.existence, boxes_.box(o.component));
-  occlusion_.find();
 }
 
 double RadarModel::log_origin(double p) const {

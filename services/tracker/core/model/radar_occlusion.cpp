@@ -49,7 +49,6 @@ void Occlusion::add(std::uint32_t label, double existence, const Box& box) {
   Outline o{};
   o.label = label;
   o.existence = existence;
-  o.free = 1.0;
   o.centre_m = Vector2<double>{box.centre_m.x(), box.centre_m.y()} - sensor_m_;
   o.cosine = std::cos(box.heading_rad);
   o.sine = std::sin(box.heading_rad);
@@ -81,12 +80,6 @@ void Occlusion::add(std::uint32_t label, double existence, const Box& box) {
   outlines_.push_back(o);
 }
 
-void Occlusion::find() {
-  for (std::size_t i = 0; i < outlines_.size(); ++i) {
-    for (std::size_t k = i + 1; k < outlines_.size(); ++k) hide(outlines_[i], outlines_[k]);
-  }
-}
-
 Occlusion::Chord Occlusion::chord(const Outline& o, const Vector2<double>& sight) {
   const auto to_box = [&o](const Vector2<double>& v) {
     return Vector2<double>{o.cosine * v.x + o.sine * v.y, o.cosine * v.y - o.sine * v.x};
@@ -99,31 +92,41 @@ Occlusion::Chord Occlusion::chord(const Outline& o, const Vector2<double>& sight
           std::min((x + o.half_length_m) / along, (y + o.half_width_m) / across)};
 }
 
-void Occlusion::hide(Outline& a, Outline& b) {
-  double middle_rad = b.middle_rad - a.middle_rad;  // of b, relative to that of a
+bool Occlusion::are_in_line(const Outline& a, const Outline& b, Pair& pair) {
+  double middle_rad = b.middle_rad - a.middle_rad;
   if (std::abs(middle_rad) > std::numbers::pi) middle_rad -= std::copysign(2.0 * std::numbers::pi, middle_rad);
   const double variance_rad2 = a.azimuth_variance_rad2 + b.azimuth_variance_rad2;
   const double gap_rad = std::abs(middle_rad) - a.half_rad - b.half_rad;
-  if (gap_rad > 0.0 && gap_rad * gap_rad > kCertainDeviations * kCertainDeviations * variance_rad2) return;
+  if (gap_rad > 0.0 && gap_rad * gap_rad > kCertainDeviations * kCertainDeviations * variance_rad2) return false;
   // A line of sight in the middle of the azimuths of both, or of the gap between them.
   const double at_rad =
       0.5 * (std::max(-a.half_rad, middle_rad - b.half_rad) + std::min(a.half_rad, middle_rad + b.half_rad));
   const double tangent = std::tan(at_rad), per_unit = std::sqrt(1.0 + tangent * tangent);
   const Vector2<double> sight{a.sight.x - tangent * a.sight.y, a.sight.y + tangent * a.sight.x};
-  const Chord of_a = chord(a, sight), of_b = chord(b, sight);
-  const double range_std = std::sqrt(a.range_variance_m2 + b.range_variance_m2) / per_unit;
-  const double std_rad = std::sqrt(variance_rad2);
-  const double b_behind = below((of_b.middle() - of_a.leave) / range_std);
-  const double a_behind = below((of_a.middle() - of_b.leave) / range_std);
-  if (b_behind > 0.0)
-    b.free *= 1.0 - a.existence * b_behind * covered_share(b.half_rad, -middle_rad, a.half_rad, std_rad);
-  if (a_behind > 0.0)
-    a.free *= 1.0 - b.existence * a_behind * covered_share(a.half_rad, middle_rad, b.half_rad, std_rad);
+  pair = {middle_rad, std::sqrt(variance_rad2), std::sqrt(a.range_variance_m2 + b.range_variance_m2) / per_unit,
+          chord(a, sight), chord(b, sight)};
+  return true;
 }
 
 double Occlusion::hidden_share(std::uint32_t label) const {
-  const int i = index_.find(label);
-  return i < 0 ? 0.0 : 1.0 - outlines_[static_cast<std::size_t>(i)].free;
+  const int index = index_.find(label);
+  if (index < 0) return 0.0;
+  const auto own = static_cast<std::size_t>(index);
+  const Outline& o = outlines_[own];
+  double free = 1.0;
+  Pair pair{};
+  for (std::size_t i = 0; i < outlines_.size(); ++i) {
+    const Outline& other = outlines_[i];
+    // Of each pair, the one that was added first is a.
+    const bool is_a = own < i;
+    if (i == own || !(is_a ? are_in_line(o, other, pair) : are_in_line(other, o, pair))) continue;
+    const Chord &of_own = is_a ? pair.a : pair.b, &of_other = is_a ? pair.b : pair.a;
+    const double behind = below((of_own.middle() - of_other.leave) / pair.range_std);
+    if (behind <= 0.0) continue;
+    const double from_own_rad = is_a ? pair.middle_rad : -pair.middle_rad;
+    free *= 1.0 - other.existence * behind * covered_share(o.half_rad, from_own_rad, other.half_rad, pair.std_rad);
+  }
+  return 1.0 - free;
 }
 
 }  // namespace boresight::tracking

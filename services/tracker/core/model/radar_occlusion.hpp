@@ -31,9 +31,7 @@ class Occlusion {
   void begin_scan(const Vector2<double>& sensor_m);
   /// Beyond the capacity, an object hides nothing and nothing hides it.
   void add(std::uint32_t label, double existence, const Box& box);
-  /// After the last add().
-  void find();
-  /// h of (2); 0 of an object that was not added.
+  /// h of (2), of the objects added so far; 0 of one that was not added.
   [[nodiscard]] double hidden_share(std::uint32_t label) const;
 
  private:
@@ -46,7 +44,6 @@ class Occlusion {
     double range_m, range_variance_m2;
     double middle_rad, half_rad, azimuth_variance_rad2;
     Vector2<double> sight;  // unit vector to the middle
-    double free = 1.0;      // 1 − h
   };
   /// Where a line of sight enters and leaves a box, as multiples of its vector.
   struct Chord {
@@ -54,8 +51,14 @@ class Occlusion {
     [[nodiscard]] double middle() const { return 0.5 * (enter + leave); }
   };
   [[nodiscard]] static Chord chord(const Outline& outline, const Vector2<double>& sight);
-  /// Factors of (2) for both.
-  static void hide(Outline& a, Outline& b);
+  /// Lines of sight to two outlines, for a factor of (2).
+  struct Pair {
+    double middle_rad;  // of b, relative to that of a
+    double std_rad, range_std;
+    Chord a, b;
+  };
+  /// False if neither hides anything of the other.
+  [[nodiscard]] static bool are_in_line(const Outline& a, const Outline& b, Pair& pair);
 
   Vector2<double> sensor_m_;
   std::vector<Outline> outlines_;
