@@ -106,6 +106,8 @@ void RadarModel::find_rings() {
   }
   for (KnownObject& parent : objects_) {
     for (const KnownObject& o : objects_) {
+      const double off_m = o.ring.range_m - parent.ring.range_m;
+      if (off_m * off_m > s.side_lobe_chi2 * (parent.ring_depth_m2 + o.ring.range_variance_m2)) continue;
       if (o.side_lobe > 0.0 && &o != &parent && ring_distance(parent, o.ring) <= s.side_lobe_chi2) {
         parent.lobes_on_ring += o.side_lobe;
       }
