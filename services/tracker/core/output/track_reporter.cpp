@@ -64,7 +64,8 @@ void TrackReporter::take(std::span<const ObjectEstimate> objects, double elapsed
       r.held_log_odds = std::max(r.held_log_odds, b.held_log_odds - parameters_.hold_log_odds_per_s * time_s);
       r.detectability = b.detectability;
     }
-    r.detectability.set(model_->radar_index(), obstacle(model_->sight(*e.component, parameters_.flags.likely), e.shared, parameters_.flags));
+    r.detectability.set(model_->radar_index(),
+                        obstacle(model_->sight(*e.component, parameters_.flags.likely), e.shared, parameters_.flags));
     if (records_.size() < records_.capacity()) records_.push_back(r);
     if (e.existence < parameters_.least_existence) continue;
     if (tracks_.size() == kMaxTracks) {

@@ -19,6 +19,7 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
     : parameters_(parameters),
       capacity_(capacity),
       max_cells_(2 * capacity.group_objects),
+      gates_(capacity.rows, capacity.group_objects, capacity.group_measurements),
       known_(2 * capacity.known_associations),
       memory_(capacity.remembered_cells) {
   const std::size_t locals = group_pool(capacity), n = capacity.group_measurements;
@@ -39,8 +40,10 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
   done_.reserve(n);
   is_shared_.reserve(n);
   renamed_.reserve(max_cells_);
-  share_.reserve(n * (max_cells_ + 1));
-  next_share_.reserve(n * (max_cells_ + 1));
+  first_link_.reserve(n + 1);
+  own_link_.reserve(n);
+  for (auto* v : {&share_, &next_share_}) v->reserve(n * (max_cells_ + 1));
+  linked_.reserve(n * (max_cells_ + 1));
   gain_.reserve(max_cells_ + 1);
   soft_.reserve(max_cells_);
   soft_values_.reserve(max_cells_);
@@ -95,8 +98,10 @@ std::span<const Candidate> Association::search(Model& model, PoissonPart& poisso
 /// The likeliest association near the prediction of each row, the likeliest row first.
 void Association::find_starts() {
   number_of_starts_ = std::min(group_->rows(), starts_.size());
+  gates_.clear(number_of_starts_, z_.size());
   for (std::size_t row = 0; row < number_of_starts_; ++row) {
     take_row(row);
+    find_gates();
     start(state_);
     rescore(state_);
     cluster_rest(state_);
@@ -119,6 +124,15 @@ void Association::take_row(std::size_t row) {
   locals_.clear();
   for (std::size_t c = 0; c < group_->columns(); ++c) {
     if (group_->at(row, c) >= 0) locals_.push_back(static_cast<std::size_t>(group_->at(row, c)));
+  }
+}
+
+void Association::find_gates() {
+  for (std::size_t t = 0; t < locals_.size(); ++t) {
+    const char* is_gated = &gated_[locals_[t] * z_.size()];
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+      if (is_gated[i] != 0) gates_.add(row_, t, i);
+    }
   }
 }
 
@@ -173,13 +187,12 @@ void Association::start(State& s) const {
   s.values.clear();
   for (std::size_t i = 0; i < n; ++i) {
     double best = log_alone_[i];
-    for (std::size_t t = 0; t < s.objects; ++t) {
-      if (gated_[locals_[t] * n + i] == 0) continue;
+    gates_.for_objects(row_, i, [&](std::size_t t) {
       const double intensity = predictions_[locals_[t]].log_intensity(z_[i]);
-      if (intensity <= best) continue;
+      if (intensity <= best) return;
       best = intensity;
       s.labels[i] = static_cast<std::int16_t>(t);
-    }
+    });
   }
 }
 
@@ -235,14 +248,6 @@ void Association::rescore(State& s) {
   }
 }
 
-bool Association::is_allowed(const Cells& s, std::size_t z, std::size_t cell) const {
-  if (cell < s.objects) return gated_[locals_[cell] * z_.size() + z] != 0;
-  const Cell<double>& c = s.cells[cell];
-  if (c.n == 0.0) return false;
-  const double reach_m = 2.0 * model_->link_distance_m();
-  return squared_norm(c.mean() - z_[z].position_m) < reach_m * reach_m;
-}
-
 void Association::ascend(State& s) {
   for (bool moved = true; moved && !is_spent();) {
     moved = false;
@@ -265,17 +270,17 @@ void Association::ascend(State& s) {
         best = log_alone_[i];
         to = -1;
       }
-      for (std::size_t b = 0; b < s.cells.size(); ++b) {
-        if (static_cast<int>(b) == from || !is_allowed(s, i, b)) continue;
+      for_allowed(s, i, [&](std::size_t b) {
+        if (static_cast<int>(b) == from) return;
         Cell<double> with = s.cells[b];
         with.add(z_[i], keys_[i]);
         const double value = cell_value(s, b, with), gain = value - s.values[b];
-        if (gain <= best) continue;
+        if (gain <= best) return;
         best = gain;
         to = static_cast<int>(b);
         to_value = value;
         to_cell = with;
-      }
+      });
       if (to == from) continue;
       moved = true;
       s.score += best - base;

@@ -15,6 +15,7 @@
 #include "services/tracker/core/pmbm/group.hpp"
 #include "services/tracker/core/pmbm/parameters.hpp"
 #include "services/tracker/core/pmbm/poisson_part.hpp"
+#include "services/tracker/core/pmbm/row_gates.hpp"
 
 namespace boresight::tracking::pmbm {
 
@@ -67,13 +68,16 @@ class Association {
   void reserve(Cells& cells) const;
   void prepare(Model& model, PoissonPart& poisson, const Group& group);
   void take_row(std::size_t row);
+  void find_gates();
 
   // Likelihoods.
   [[nodiscard]] double cell_value(const Cells& cells, std::size_t cell, const Cell<double>& content);
   [[nodiscard]] double object_value(std::size_t object, const Cell<double>& content);
   [[nodiscard]] double new_value(const Cell<double>& content);
   [[nodiscard]] double dissolved(const State& state, std::size_t cell) const;
-  [[nodiscard]] bool is_allowed(const Cells& cells, std::size_t z, std::size_t cell) const;
+  /// Visits the cells that may take a measurement, in their order: of objects with it in the gate, of new ones near it.
+  template <typename Visit>
+  void for_allowed(const Cells& cells, std::size_t z, const Visit& visit) const;
   void rescore(State& state);
 
   // Start of a row, and ascent by single measurements.
@@ -99,7 +103,7 @@ class Association {
   [[nodiscard]] std::size_t prune(std::size_t number);
   double share_hard(const Cells& hard);
   void share_again(const Cells& hard);
-  [[nodiscard]] double normalise_shares(std::size_t z, std::size_t cells);
+  [[nodiscard]] double normalise_shares(std::size_t z);
   void gather_shares();
   void soften(Candidate& candidate);
 
@@ -132,6 +136,7 @@ class Association {
   std::size_t row_ = 0;
   double log_row_ = 0.0;             // its weight
   std::vector<std::size_t> locals_;  // of its objects
+  RowGates gates_;                   // of all rows
 
   // The search.
   std::vector<Candidate> starts_;  // of the rows
@@ -146,12 +151,26 @@ class Association {
   std::size_t number_of_candidates_ = 0;
   FixedTable known_;
   CellMemory memory_;
-  std::vector<double> share_, next_share_, gain_;  // measurements × (cells and clutter); of one measurement
+  // Shares of an association: each measurement has links to the cells that may have it, and then to clutter.
+  std::vector<std::size_t> first_link_, own_link_;  // of the measurements; to the cell of the hard association
+  std::vector<std::size_t> linked_;                 // of the links: cell; clutter is the number of cells
+  std::vector<double> share_, next_share_;          // of the links
+  std::vector<double> gain_;                        // of the links of one measurement
   std::vector<Cell<double>> soft_;
   std::vector<double> soft_values_;
   std::vector<char> is_shared_;
   std::vector<std::int16_t> renamed_;
 };
+
+template <typename Visit>
+void Association::for_allowed(const Cells& s, std::size_t z, const Visit& visit) const {
+  gates_.for_objects(row_, z, visit);
+  const double reach_m = 2.0 * model_->link_distance_m();
+  for (std::size_t b = s.objects; b < s.cells.size(); ++b) {
+    const Cell<double>& c = s.cells[b];
+    if (c.n != 0.0 && squared_norm(c.mean() - z_[z].position_m) < reach_m * reach_m) visit(b);
+  }
+}
 
 /// Logs below it count as it: a difference of two of them is then a number.
 inline constexpr double kLeastLog = -1e4;

@@ -161,7 +161,7 @@ void Association::keep_alternatives() {
   for (std::size_t t = 0; t < state_.objects; ++t) {
     if (state_.cells[t].n > 0.0) continue;
     for (std::size_t i = 0; i < z_.size() && !is_spent(); ++i) {
-      if (state_.labels[i] >= 0 || !is_allowed(state_, i, t)) continue;
+      if (state_.labels[i] >= 0 || !gates_.has(row_, t, i)) continue;
       Cell<double> one;
       one.add(z_[i], keys_[i]);
       if (object_value(t, one) < state_.values[t] + log_alone_[i] - parameters_.candidate_log) continue;

@@ -60,57 +60,73 @@ std::size_t Association::prune(std::size_t number) {
 }
 
 /// Shares of one measurement from its gains; returns the log of the sum of exp(gain).
-double Association::normalise_shares(std::size_t z, std::size_t cells) {
-  double* shares = &next_share_[z * (cells + 1)];
+double Association::normalise_shares(std::size_t z) {
+  double* shares = &next_share_[first_link_[z]];
   const double best = *std::max_element(gain_.begin(), gain_.end());
   double sum = 0.0;
-  for (std::size_t b = 0; b <= cells; ++b) {
-    const double g = gain_[b] == -kInfinity ? 0.0 : std::exp(gain_[b] - best);
-    shares[b] = g < parameters_.min_share ? 0.0 : g;
-    sum += shares[b];
+  for (std::size_t k = 0; k < gain_.size(); ++k) {
+    const double g = gain_[k] == -kInfinity ? 0.0 : std::exp(gain_[k] - best);
+    shares[k] = g < parameters_.min_share ? 0.0 : g;
+    sum += shares[k];
   }
-  for (std::size_t b = 0; b <= cells; ++b) {
-    if (shares[b] > 0.0) shares[b] /= sum;
-  }
+  for (std::size_t k = 0; k < gain_.size(); ++k) shares[k] /= sum;
   return best + std::log(sum);
 }
 
 /// Shares each measurement by leave-one-out predictive weights, the others as in the hard association. Returns the log
 /// of the product of 1 / the shares of the hard association.
 double Association::share_hard(const Cells& hard) {
-  const std::size_t cells = hard.cells.size(), n = z_.size(), stride = cells + 1;
-  share_.resize(n * stride);
-  next_share_.assign(n * stride, 0.0);
-  gain_.assign(stride, 0.0);
+  const std::size_t cells = hard.cells.size(), n = z_.size();
+  first_link_.clear();
+  own_link_.clear();
+  linked_.clear();
+  next_share_.clear();
   is_shared_.assign(n, 0);
   double log_added = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t own = hard.labels[i] < 0 ? cells : static_cast<std::size_t>(hard.labels[i]);
+    first_link_.push_back(linked_.size());
     if (own < cells && hard.cells[own].n < 2.0) {  // what a cell has alone is not shared: it would be an object less
-      next_share_[i * stride + own] = 1.0;
+      own_link_.push_back(linked_.size());
+      linked_.push_back(own);
+      next_share_.push_back(1.0);
       continue;
     }
-    for (std::size_t b = 0; b < cells; ++b) {
-      gain_[b] = -kInfinity;
-      if (b != own && (hard.cells[b].n < 1.0 || !is_allowed(hard, i, b))) continue;
-      Cell<double> with = hard.cells[b], without = with;
-      if (b == own) {
-        without.remove(z_[i], keys_[i]);
-      } else {
-        with.add(z_[i], keys_[i]);
-      }
-      gain_[b] = cell_value(hard, b, with) - cell_value(hard, b, without);
-    }
-    gain_[cells] = log_alone_[i];
-    log_added += normalise_shares(i, cells) - gain_[own];
-    is_shared_[i] = next_share_[i * stride + own] < 1.0 ? 1 : 0;
+    gain_.clear();
+    const auto link = [&](std::size_t b, double gain) {
+      if (b == own) own_link_.push_back(linked_.size());
+      linked_.push_back(b);
+      gain_.push_back(gain);
+    };
+    const auto link_own = [&] {
+      Cell<double> without = hard.cells[own];
+      without.remove(z_[i], keys_[i]);
+      const double value = cell_value(hard, own, hard.cells[own]);
+      link(own, value - cell_value(hard, own, without));
+    };
+    for_allowed(hard, i, [&](std::size_t b) {
+      if (own < b && own_link_.size() == i) link_own();  // it may be outside the gate
+      if (b == own) return link_own();
+      if (hard.cells[b].n < 1.0) return;
+      Cell<double> with = hard.cells[b];
+      with.add(z_[i], keys_[i]);
+      const double value = cell_value(hard, b, with);
+      link(b, value - cell_value(hard, b, hard.cells[b]));
+    });
+    if (own < cells && own_link_.size() == i) link_own();
+    link(cells, log_alone_[i]);
+    next_share_.resize(linked_.size());
+    log_added += normalise_shares(i) - gain_[own_link_[i] - first_link_[i]];
+    is_shared_[i] = next_share_[own_link_[i]] < 1.0 ? 1 : 0;
   }
+  first_link_.push_back(linked_.size());
+  share_.resize(linked_.size());
   return log_added;
 }
 
 /// The same, the others shared.
 void Association::share_again(const Cells& hard) {
-  const std::size_t cells = hard.cells.size(), stride = cells + 1;
+  const std::size_t cells = hard.cells.size();
   const auto soft_value = [&](std::size_t b, const Cell<double>& content) {
     ++*work_;
     return b < hard.objects ? log_existence_[locals_[b]] + predictions_[locals_[b]].log_likelihood(content)
@@ -119,37 +135,37 @@ void Association::share_again(const Cells& hard) {
   soft_values_.assign(cells, kInfinity);  // of soft_, where it was asked for
   for (std::size_t i = 0; i < z_.size(); ++i) {
     if (is_shared_[i] == 0) continue;
-    const std::size_t own = hard.labels[i] < 0 ? cells : static_cast<std::size_t>(hard.labels[i]);
-    if (own < cells && soft_[own].n - share_[i * stride + own] < 1.0) {
-      std::fill_n(next_share_.begin() + static_cast<std::ptrdiff_t>(i * stride), stride, 0.0);
-      next_share_[i * stride + own] = 1.0;
+    const std::size_t own = linked_[own_link_[i]];
+    if (own < cells && soft_[own].n - share_[own_link_[i]] < 1.0) {
+      for (std::size_t k = first_link_[i]; k < first_link_[i + 1]; ++k) next_share_[k] = k == own_link_[i] ? 1.0 : 0.0;
       continue;
     }
-    for (std::size_t b = 0; b < cells; ++b) {
-      gain_[b] = -kInfinity;
-      const double has = share_[i * stride + b];
-      if (b != own && !is_allowed(hard, i, b)) continue;
+    gain_.clear();
+    for (std::size_t k = first_link_[i]; k + 1 < first_link_[i + 1]; ++k) {
+      const std::size_t b = linked_[k];
+      const double has = share_[k];
       Cell<double> without = soft_[b];
       without.add(z_[i], -has);
-      if (without.n < 1.0) continue;
+      if (without.n < 1.0) {
+        gain_.push_back(-kInfinity);
+        continue;
+      }
       Cell<double> with = without;
       with.add(z_[i], 1.0);
       if (has == 0.0 && soft_values_[b] == kInfinity) soft_values_[b] = soft_value(b, without);
-      gain_[b] = soft_value(b, with) - (has == 0.0 ? soft_values_[b] : soft_value(b, without));
+      gain_.push_back(soft_value(b, with) - (has == 0.0 ? soft_values_[b] : soft_value(b, without)));
     }
-    gain_[cells] = log_alone_[i];
-    static_cast<void>(normalise_shares(i, cells));
+    gain_.push_back(log_alone_[i]);
+    static_cast<void>(normalise_shares(i));
   }
 }
 
 void Association::gather_shares() {
-  const std::size_t cells = soft_.size(), stride = cells + 1;
   share_.swap(next_share_);
-  for (std::size_t b = 0; b < cells; ++b) {
-    soft_[b] = Cell<double>{};
-    for (std::size_t i = 0; i < z_.size(); ++i) {
-      const double w = share_[i * stride + b];
-      if (w > 0.0) soft_[b].add(z_[i], w);
+  for (Cell<double>& cell : soft_) cell = Cell<double>{};
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    for (std::size_t k = first_link_[i]; k < first_link_[i + 1]; ++k) {
+      if (linked_[k] < soft_.size() && share_[k] > 0.0) soft_[linked_[k]].add(z_[i], share_[k]);
     }
   }
   next_share_.assign(share_.begin(), share_.end());
@@ -159,7 +175,7 @@ void Association::soften(Candidate& c) {
   take_row(c.row);
   static_cast<void>(share_hard(c));
   if (std::none_of(is_shared_.begin(), is_shared_.end(), [](char is_shared) { return is_shared != 0; })) return;
-  const std::size_t cells = c.cells.size(), stride = cells + 1;
+  const std::size_t cells = c.cells.size();
   soft_.assign(cells, Cell<double>{});
   gather_shares();
   for (int pass = 1; pass < parameters_.sharing_passes; ++pass) {
@@ -168,15 +184,21 @@ void Association::soften(Candidate& c) {
   }
   c.log_weight = c.log_hard;
   for (std::size_t i = 0; i < z_.size(); ++i) {
-    const std::size_t own = c.labels[i] < 0 ? cells : static_cast<std::size_t>(c.labels[i]);
-    c.log_weight -= std::log(std::max(parameters_.min_share, share_[i * stride + own]));
+    c.log_weight -= std::log(std::max(parameters_.min_share, share_[own_link_[i]]));
+  }
+  const auto is_softened = [&](std::size_t b) {
+    return c.cells[b].n != 0.0 && soft_[b].n >= 0.5;  // less than half a measurement is no detection
+  };
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    const std::size_t last = first_link_[i + 1] - 1;
+    const double of_clutter = linked_[last] == cells ? share_[last] : 0.0;
+    for (std::size_t k = first_link_[i]; k <= last; ++k) {
+      const std::size_t b = linked_[k];
+      if (b < cells && is_softened(b)) c.shared[b] += share_[k] * (1.0 - share_[k] - of_clutter) / soft_[b].n;
+    }
   }
   for (std::size_t b = 0; b < cells; ++b) {
-    if (c.cells[b].n == 0.0 || soft_[b].n < 0.5) continue;  // less than half a measurement is no detection
-    for (std::size_t i = 0; i < z_.size(); ++i) {
-      const double* shares = &share_[i * stride];
-      c.shared[b] += shares[b] * (1.0 - shares[b] - shares[cells]) / soft_[b].n;
-    }
+    if (!is_softened(b)) continue;
     soft_[b].key = c.cells[b].key;
     c.cells[b] = soft_[b];
   }
