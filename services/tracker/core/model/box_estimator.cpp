@@ -21,6 +21,8 @@ BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const
     : table_(table), parameters_(parameters) {
   constexpr double kAfar_m = 1e3;
   for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
+    const double shape = table_[k].count.dispersion_shape;
+    prior_[k] = {std::log(table_[k].prior_share), std::lgamma(shape), shape * std::log(shape)};
     AnyHeading& any = any_heading_[k];
     const auto& size = table_[k].size;
     std::array<Eigen::Vector2d, 16> middle;  // of each of so many headings
@@ -38,17 +40,10 @@ BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const
       any.along_m2 += (m.x() - any.depth_m) * (m.x() - any.depth_m) / headings;
       any.across_m2 += m.y() * m.y() / headings;
     }
+    begun_.classes[k].length_m = size.length_mean_m;
+    begun_.classes[k].length_variance_m2 = size.length_std_m * size.length_std_m;
   }
-}
-
-BoxMemory BoxEstimator::begin() const {
-  BoxMemory m;
-  for (std::size_t k = 0; k < kRoadUserClasses; ++k) {
-    m.classes[k].length_m = table_[k].size.length_mean_m;
-    m.classes[k].length_variance_m2 = table_[k].size.length_std_m * table_[k].size.length_std_m;
-  }
-  weigh_classes(m);
-  return m;
+  weigh_classes(begun_);
 }
 
 BoxEstimator::Course BoxEstimator::on_road(const Course& course, double road_rad, double vehicle_probability) const {

@@ -107,7 +107,8 @@ class BoxEstimator {
  public:
   BoxEstimator(const extended_object::ObjectClassTable& table, const BoxParameters& parameters);
 
-  [[nodiscard]] BoxMemory begin() const;
+  /// Of an object that nothing is known of.
+  [[nodiscard]] const BoxMemory& begin() const { return begun_; }
   [[nodiscard]] bool knows_heading(const BoxMemory& memory) const {
     return memory.heading_variance_rad2 < parameters_.known_heading_rad * parameters_.known_heading_rad;
   }
@@ -143,6 +144,9 @@ class BoxEstimator {
   /// Evidence for classes from number and spread of the detections, the heading unknown.
   void learn_without_heading(BoxMemory& memory, const BoxObservation& scan) const;
   void weigh_classes(BoxMemory& memory) const;
+  /// log of the probability of all counts of an object of class k whose own level is gamma distributed, without terms
+  /// that all classes share: its level lasts, so that counts alone never make sure of a class.
+  [[nodiscard]] double log_counts(std::size_t k, double n, const ClassBox& box) const;
   /// Notes n detections where each class expects some; 0: not computed.
   void count(BoxMemory& memory, double n, const std::array<double, extended_object::kRoadUserClasses>& expected) const;
   /// log p(scan | class), and what the scan tells about the class's length.
@@ -159,6 +163,12 @@ class BoxEstimator {
     double scatter_m2 = 0.0;  ///< of one reflection in each direction
   };
   std::array<AnyHeading, extended_object::kRoadUserClasses> any_heading_;
+  /// Of each class: logs of its share and of terms of its number of detections.
+  struct Prior {
+    double log_share = 0.0, log_gamma_of_shape = 0.0, shape_log_shape = 0.0;
+  };
+  std::array<Prior, extended_object::kRoadUserClasses> prior_;
+  BoxMemory begun_;
 };
 
 }  // namespace boresight::tracking

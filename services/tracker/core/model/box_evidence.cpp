@@ -19,13 +19,6 @@ using extended_object::ObjectClassModel;
 
 namespace {
 
-/// log of the probability of all counts of an object whose own level is gamma distributed, without terms that all
-/// classes share: its level lasts, so that counts alone never make sure of a class.
-double log_counts(const extended_object::DetectionCount& model, double n, double expected, double log_expected) {
-  const double k = model.dispersion_shape;
-  return std::lgamma(k + n) - std::lgamma(k) + k * std::log(k) - (k + n) * std::log(k + expected) + log_expected;
-}
-
 /// log of the density of a scatter of n detections about their mean, without its constant.
 double log_scatter(const Eigen::Matrix2d& scatter, const Eigen::Matrix2d& covariance, double n) {
   return -0.5 * (covariance.inverse() * scatter).trace() - 0.5 * (n - 1.0) * std::log(covariance.determinant());
@@ -37,6 +30,12 @@ double log_normal(const Eigen::Vector2d& e, const Eigen::Matrix2d& covariance) {
 }
 
 }  // namespace
+
+double BoxEstimator::log_counts(std::size_t k, double n, const ClassBox& box) const {
+  const double shape = table_[k].count.dispersion_shape;
+  return std::lgamma(shape + n) - prior_[k].log_gamma_of_shape + prior_[k].shape_log_shape -
+         (shape + n) * std::log(shape + box.expected) + box.log_expected;
+}
 
 void BoxEstimator::weigh_classes(BoxMemory& m) const {
   double best = -1e300, sum = 0.0;
@@ -51,8 +50,8 @@ void BoxEstimator::weigh_classes(BoxMemory& m) const {
         std::log(kLeastDensity + (1.0 - c.motion.slow_share) * density(c.motion.birth_speed_std_mps) +
                  c.motion.slow_share * density(c.motion.slow_speed_std_mps));
     const double over = std::max(0.0, speed - c.motion.largest_speed_mps);
-    m.probability[k] = std::log(c.prior_share) + of_speed - over * over + m.classes[k].log_evidence +
-                       log_counts(c.count, m.detections, m.classes[k].expected, m.classes[k].log_expected);
+    m.probability[k] = prior_[k].log_share + of_speed - over * over + m.classes[k].log_evidence +
+                       log_counts(k, m.detections, m.classes[k]);
     best = std::max(best, m.probability[k]);
   }
   for (double& x : m.probability) sum += x = std::exp(x - best);

@@ -56,7 +56,7 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const SourceParameters& s = parameters_.source;
   const double f = 1.0 / cell.n;
   const Vector2<double> mean = cell.mean();
-  double claimed = 0.0;
+  double claimed = 1e-17;  // less does not change 1 − claimed
   const Vector2<double> way = mean - sensor_m_;
   const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(way)));
   const Vector2<double> sight = (1.0 / range_m) * way;

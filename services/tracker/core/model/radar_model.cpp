@@ -47,6 +47,7 @@ RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters&
   measurements_.reserve(kMaxDetections);
   places_.reserve(kMaxDetections);
   objects_.reserve(kMaxTracks);
+  lobes_.reserve(kMaxTracks);
   by_range_.reserve(kMaxDetections);
 }
 

@@ -198,6 +198,11 @@ class RadarModel final : public Model {
   std::vector<Measurement<double>> measurements_;
   std::vector<ClutterPlace> places_;
   std::vector<KnownObject> objects_;
+  struct Lobe {
+    double range_m, range_variance_m2;
+    const KnownObject* object;
+  };
+  std::vector<Lobe> lobes_;            // known objects that may be side lobes
   std::vector<std::size_t> by_range_;  // measurements
 
   // The group.

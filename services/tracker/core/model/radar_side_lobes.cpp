@@ -104,12 +104,16 @@ void RadarModel::find_rings() {
     o.in_beam = o.ring.range_m > radar_->range_max_m ? 0.0 : o.existence * in_view(o.component);
     o.lobes_on_ring = 0.0;
   }
+  lobes_.clear();
+  for (const KnownObject& o : objects_) {
+    if (o.side_lobe > 0.0) lobes_.push_back({o.ring.range_m, o.ring.range_variance_m2, &o});
+  }
   for (KnownObject& parent : objects_) {
-    for (const KnownObject& o : objects_) {
-      const double off_m = o.ring.range_m - parent.ring.range_m;
-      if (off_m * off_m > s.side_lobe_chi2 * (parent.ring_depth_m2 + o.ring.range_variance_m2)) continue;
-      if (o.side_lobe > 0.0 && &o != &parent && ring_distance(parent, o.ring) <= s.side_lobe_chi2) {
-        parent.lobes_on_ring += o.side_lobe;
+    for (const Lobe& lobe : lobes_) {
+      const double off_m = lobe.range_m - parent.ring.range_m;
+      if (off_m * off_m > s.side_lobe_chi2 * (parent.ring_depth_m2 + lobe.range_variance_m2)) continue;
+      if (lobe.object != &parent && ring_distance(parent, lobe.object->ring) <= s.side_lobe_chi2) {
+        parent.lobes_on_ring += lobe.object->side_lobe;
       }
     }
   }
