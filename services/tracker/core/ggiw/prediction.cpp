@@ -59,6 +59,32 @@ struct RateUpdate {
 }  // namespace
 
 template <typename Real>
+Absence<Real>::Absence(const Component<Real>& c, const View<Real>& view)
+    : exposure_(view.exposure),
+      detection_probability_(view.detection_probability),
+      log_rate_step_(std::log(c.rate_inverse_scale + view.exposure)),
+      // Of the gamma-Poisson: (β / (β + exposure))^α
+      log_none_(c.rate_shape * (std::log(c.rate_inverse_scale) - log_rate_step_)),
+      probability_(std::max(Real(kLeastDensity),
+                            Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_))) {}
+
+template <typename Real>
+Component<Real> Absence<Real>::after(const Component<Real>& prior) const {
+  Component<Real> out = prior;
+  // Not detected, or detected with no point: a mixture of two gammas by its moments.
+  const Real share = detection_probability_ * std::exp(log_none_) / probability_;
+  if (share <= Real(0)) return out;
+  const Real before = prior.rate_shape / prior.rate_inverse_scale;
+  const Real scale = prior.rate_inverse_scale + exposure_, after = prior.rate_shape / scale;
+  const Real mean = (Real(1) - share) * before + share * after;
+  const Real variance = (Real(1) - share) * (before / prior.rate_inverse_scale + before * before) +
+                        share * (after / scale + after * after) - mean * mean;
+  out.rate_inverse_scale = mean / variance;
+  out.rate_shape = mean * out.rate_inverse_scale;
+  return out;
+}
+
+template <typename Real>
 Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
     : view_(view),
       label_(c.label),
@@ -72,6 +98,7 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
       rate_shape_(c.rate_shape),
       rate_inverse_scale_(c.rate_inverse_scale),
       detection_probability_(view.detection_probability),
+      absence_(c, view),
       source_(c.source) {
   const Symmetric2<Real> x = extent(c);
   scatter_ = view.spread * x + view.noise_m2;
@@ -93,20 +120,15 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
 
   const Real log_x = std::log(determinant(x)), log_scatter = std::log(determinant(scatter_));
   log_exposure_ = std::log(view.exposure);
-  log_rate_step_ = std::log(rate_inverse_scale_ + view.exposure);
   expected_ = view.exposure * rate_shape_ / rate_inverse_scale_;
-  // p(0 | seen) of the gamma-Poisson: (β / (β + exposure))^α
-  log_none_ = rate_shape_ * (std::log(rate_inverse_scale_) - log_rate_step_);
-  missed_ =
-      std::max(Real(kLeastDensity), Real(1) - detection_probability_ + detection_probability_ * std::exp(log_none_));
   per_detection_ = (log_x - log_scatter) / Real(2) - kLogPi<Real>;
   log_detection_ = std::log(std::max(detection_probability_, Real(kLeastProbability)));
   constant_ =
       (extent_dof_ - Real(3)) / Real(2) * std::log(determinant(extent_scale_)) + log_scatter / Real(2) + log_detection_;
   if (view.range_rate_variance > 0) log_range_rate_ = kLogTwoPi<Real> + std::log(view.range_rate_variance);
   by_count_[0] = 0;
-  log_count_[0] = log_none_;
-  extent_terms_ = log_none_;
+  log_count_[0] = absence_.log_none();
+  extent_terms_ = absence_.log_none();
   tabulated_ = 1;
 }
 
@@ -115,7 +137,7 @@ void Prediction<Real>::tabulate(std::size_t n) {
   for (; tabulated_ <= n && tabulated_ < kTabulated; ++tabulated_) {
     const auto k = static_cast<Real>(tabulated_);
     // From k − 1 to k detections: gamma function of the rate, multivariate gamma function of the extent.
-    const Real rate = std::log(rate_shape_ + k - Real(1)) - log_rate_step_ + log_exposure_;
+    const Real rate = std::log(rate_shape_ + k - Real(1)) - absence_.log_rate_step() + log_exposure_;
     const Real a = (extent_dof_ + k - Real(4)) / Real(2);
     extent_terms_ += rate + std::log(a - Real(0.5));
     log_count_[tabulated_] = log_count_[tabulated_ - 1] + rate - std::log(k);
@@ -133,7 +155,7 @@ Real Prediction<Real>::interpolated(const std::array<Real, kTabulated>& table, R
 
 template <typename Real>
 Real Prediction<Real>::rates_beyond_table(Real more) const {
-  return log_gamma_growth(rate_shape_ + kLastTabulated, more) + more * (log_exposure_ - log_rate_step_);
+  return log_gamma_growth(rate_shape_ + kLastTabulated, more) + more * (log_exposure_ - absence_.log_rate_step());
 }
 
 template <typename Real>
@@ -157,7 +179,7 @@ template <typename Real>
 Real Prediction<Real>::log_source_ratio(Real n) {
   if (!knows_source_) {
     knows_source_ = true;
-    const Real seen = Real(1) - std::exp(log_none_);
+    const Real seen = Real(1) - std::exp(absence_.log_none());
     log_source_one_ = std::log((Real(1) - view_.source_more) * std::max(seen, Real(kLeastProbability)));
     log_source_more_ = std::log(view_.source_more);
   }
@@ -354,22 +376,8 @@ Component<Real> Prediction<Real>::updated(const Component<Real>& prior, const Ce
   return out;
 }
 
-template <typename Real>
-Component<Real> Prediction<Real>::missed_component(const Component<Real>& prior) const {
-  Component<Real> out = prior;
-  // Not detected, or detected with no point: a mixture of two gammas by its moments.
-  const Real share = detection_probability_ * std::exp(log_none_) / missed_;
-  if (share <= Real(0)) return out;
-  const Real before = prior.rate_shape / prior.rate_inverse_scale;
-  const Real scale = prior.rate_inverse_scale + view_.exposure, after = prior.rate_shape / scale;
-  const Real mean = (Real(1) - share) * before + share * after;
-  const Real variance = (Real(1) - share) * (before / prior.rate_inverse_scale + before * before) +
-                        share * (after / scale + after * after) - mean * mean;
-  out.rate_inverse_scale = mean / variance;
-  out.rate_shape = mean * out.rate_inverse_scale;
-  return out;
-}
-
+template class Absence<double>;
+template class Absence<float>;
 template class Prediction<double>;
 template class Prediction<float>;
 

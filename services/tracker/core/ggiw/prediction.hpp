@@ -43,6 +43,26 @@ struct View {
   std::size_t number_of_readings = 1;
 };
 
+/// A scan that shows nothing of a component.
+template <typename Real>
+class Absence {
+ public:
+  Absence() = default;
+  Absence(const Component<Real>& component, const View<Real>& view);
+
+  /// 1 − P_D + P_D · p(no detection | seen): "detected, but no point" included.
+  [[nodiscard]] Real probability() const { return probability_; }
+  /// The component after the scan.
+  [[nodiscard]] Component<Real> after(const Component<Real>& component) const;
+  /// log p(no detection | seen)
+  [[nodiscard]] Real log_none() const { return log_none_; }
+  /// log(β + exposure) of the rate's gamma.
+  [[nodiscard]] Real log_rate_step() const { return log_rate_step_; }
+
+ private:
+  Real exposure_ = 1, detection_probability_ = 0, log_rate_step_ = 0, log_none_ = 0, probability_ = 1;
+};
+
 template <typename Real>
 class Prediction {
  public:
@@ -56,13 +76,15 @@ class Prediction {
   /// Squared Mahalanobis distances of place and of range rate to the prediction of one measurement.
   [[nodiscard]] Real place_distance(const Vector2<Real>& position_m) const;
   [[nodiscard]] Real range_rate_distance(const Measurement<Real>& z) const;
-  /// 1 − P_D + P_D · p(no detection | seen): "detected, but no point" included.
-  [[nodiscard]] Real missed() const { return missed_; }
+  /// Of Absence.
+  [[nodiscard]] Real missed() const { return absence_.probability(); }
 
   /// The component with the cell as its detections.
   [[nodiscard]] Component<Real> updated(const Component<Real>& component, const Cell<Real>& cell);
   /// The component after a scan that shows nothing of it.
-  [[nodiscard]] Component<Real> missed_component(const Component<Real>& component) const;
+  [[nodiscard]] Component<Real> missed_component(const Component<Real>& component) const {
+    return absence_.after(component);
+  }
 
   /// How much likelier so many detections are of a source of clutter than of an object; log.
   [[nodiscard]] Real log_source_ratio(Real n);
@@ -129,12 +151,13 @@ class Prediction {
   Symmetric2<Real> extent_scale_;
   Real extent_dof_ = 8;
   Real rate_shape_ = 1, rate_inverse_scale_ = 1, expected_ = 0;
-  Real detection_probability_ = 0, missed_ = 1;
+  Real detection_probability_ = 0;
+  Absence<Real> absence_;
   SourceClasses<Real> source_;
   // Terms of the likelihood that depend on the number of detections alone, and log p(n | object).
-  std::array<Real, kTabulated> by_count_{}, log_count_{};
+  std::array<Real, kTabulated> by_count_, log_count_;  // the first `tabulated_`
   std::size_t tabulated_ = 0;
-  Real log_rate_step_ = 0, log_exposure_ = 0, extent_terms_ = 0, per_detection_ = 0, constant_ = 0, log_none_ = 0;
+  Real log_exposure_ = 0, extent_terms_ = 0, per_detection_ = 0, constant_ = 0;
   Real log_detection_ = 0, log_range_rate_ = 0;  // of P_D; of 2π and the variance of a range rate
   // Of a source of clutter, found when first asked for: log of one detection and of each more, over p(seen).
   bool knows_source_ = false;

@@ -1,26 +1,34 @@
 #include "services/tracker/core/model/object_boxes.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 namespace boresight::tracking {
 
 ObjectBoxes::ObjectBoxes(const BoxEstimator& estimator, std::size_t max_objects)
-    : estimator_(estimator), index_(std::bit_ceil(2 * max_objects + 2)) {
-  records_.reserve(max_objects);
-  before_.reserve(max_objects);
+    : estimator_(estimator),
+      max_objects_(max_objects),
+      records_(2 * max_objects),
+      index_(std::bit_ceil(2 * max_objects + 2)) {
+  used_.reserve(records_.size());
+  free_.reserve(records_.size());
+  is_kept_.reserve(records_.size());
+  clear();
 }
 
 void ObjectBoxes::clear() {
-  records_.clear();
+  used_.clear();
+  free_.clear();
+  for (std::size_t i = records_.size(); i > 0; --i) free_.push_back(i - 1);
   index_.clear();
 }
 
 void ObjectBoxes::begin_scan(const Viewpoint& viewpoint) {
   viewpoint_ = viewpoint;
-  for (Record& r : records_) {
-    r.is_seen = false;
-    r.readings.reset();
+  for (const std::size_t i : used_) {
+    records_[i].is_seen = false;
+    records_[i].readings.reset();
   }
 }
 
@@ -54,19 +62,27 @@ ObjectBoxes::Record* ObjectBoxes::see(const Component<double>& predicted, const 
   return &r;
 }
 
+std::size_t ObjectBoxes::begin_record(std::uint32_t label) {
+  const std::size_t i = free_.back();
+  free_.pop_back();
+  Record& r = records_[i];
+  r.label = label;
+  r.memory = estimator_.begin();
+  r.is_seen = false;
+  r.readings.reset();
+  return i;
+}
+
 void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad) {
-  std::swap(records_, before_);
-  records_.clear();
-  for (const ObjectEstimate& e : objects) {
-    if (records_.size() == records_.capacity()) break;
-    Record& r = records_.emplace_back();
-    // Of the round before: the table is built anew below.
-    if (const int known = index_.find(e.id); known >= 0) {
-      r = before_[static_cast<std::size_t>(known)];
-    } else {
-      r.label = e.id;
-      r.memory = estimator_.begin();
-    }
+  static const ClassViews kNotSeen{};
+  is_kept_.assign(records_.size(), 0);
+  const std::size_t had = used_.size();
+  for (const ObjectEstimate& e : objects.first(std::min(objects.size(), max_objects_))) {
+    const int known = index_.find(e.id);
+    const std::size_t i = known >= 0 ? static_cast<std::size_t>(known) : begin_record(e.id);
+    Record& r = records_[i];
+    is_kept_[i] = 1;
+    used_.push_back(i);
     // Nothing is known yet of the scan that an object began with.
     const BoxObservation o{elapsed_s,
                            road_rad,
@@ -77,12 +93,14 @@ void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_
                            e.scatter,
                            r.predicted_m,
                            r.predicted_covariance_m2};
-    estimator_.update(r.memory, *e.component, o, r.is_seen ? r.views : ClassViews{});
+    estimator_.update(r.memory, *e.component, o, r.is_seen ? r.views : kNotSeen);
   }
+  for (std::size_t k = 0; k < had; ++k) {
+    if (is_kept_[used_[k]] == 0) free_.push_back(used_[k]);
+  }
+  used_.erase(used_.begin(), used_.begin() + static_cast<std::ptrdiff_t>(had));
   index_.clear();
-  for (std::size_t i = 0; i < records_.size(); ++i) {
-    static_cast<void>(index_.insert(records_[i].label, static_cast<int>(i)));
-  }
+  for (const std::size_t i : used_) static_cast<void>(index_.insert(records_[i].label, static_cast<int>(i)));
 }
 
 Box ObjectBoxes::box(const Component<double>& object) const {

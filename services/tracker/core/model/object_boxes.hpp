@@ -52,8 +52,13 @@ class ObjectBoxes {
  private:
   BoxEstimator estimator_;
   Viewpoint viewpoint_;
-  std::vector<Record> records_, before_;
-  FixedTable index_;  // of records_ by label
+  [[nodiscard]] std::size_t begin_record(std::uint32_t label);
+
+  std::size_t max_objects_;
+  std::vector<Record> records_;           // for twice the objects: those of a scan and of the one before
+  std::vector<std::size_t> used_, free_;  // of records_
+  std::vector<char> is_kept_;             // of records_
+  FixedTable index_;                      // of records_ by label
 };
 
 }  // namespace boresight::tracking

@@ -34,6 +34,7 @@ PmbmFilter::PmbmFilter(const Parameters& parameters, const Capacity& capacity)
   new_locals_.reserve(capacity.group_objects);
   columns_.reserve(capacity.group_objects);
   by_local_.reserve(group_pool(capacity));
+  by_object_.reserve(capacity.group_objects);
   mixture_.reserve(std::max(capacity.candidates, capacity.rows));
   estimates_.reserve(capacity.objects);
   likely_.reserve(capacity.objects);
@@ -102,11 +103,11 @@ void PmbmFilter::update_undetected(Model& model) {
   after_.ids.assign(before_.ids.begin(), before_.ids.end());
   by_local_.clear();
   for (const LocalHypothesis& local : before_.pool) {
-    const Prediction<double> p(local.component, model.view(local.component));
-    const double q = p.missed();
+    const Absence<double> absence(local.component, model.view(local.component));
+    const double q = absence.probability();
     by_local_.push_back(std::log(1.0 - local.existence + local.existence * q));
     static_cast<void>(
-        after_.add_local({missed_existence(local.existence, q), 0.0, {}, p.missed_component(local.component)}));
+        after_.add_local({missed_existence(local.existence, q), 0.0, {}, absence.after(local.component)}));
   }
   for (std::size_t r = 0; r < before_.rows(); ++r) {
     after_.add_row(before_.log_weights[r]);
@@ -195,17 +196,16 @@ void PmbmFilter::add_new_object(Model& model, std::size_t row, const Cell<double
 void PmbmFilter::note_explained(std::span<const Candidate> candidates, std::span<const std::size_t> measurements) {
   for (std::size_t r = 0; r < after_.rows(); ++r) {
     const double weight = std::exp(after_.log_weights[r]);
-    std::size_t object = 0;
+    by_object_.clear();  // its existence in this row
     for (std::size_t c = 0; c < before_.columns(); ++c) {
       if (before_.at(candidates[r].row, c) < 0) continue;
       const std::int16_t l = after_.at(r, c);
-      const auto label = static_cast<std::int16_t>(object++);
-      if (l < 0) continue;
-      const LocalHypothesis& local = after_.pool[static_cast<std::size_t>(l)];
-      const double share = weight * local.existence;
-      for (std::size_t i = 0; i < measurements.size(); ++i) {
-        if (candidates[r].labels[i] == label) explained_[measurements[i]] += share;
-      }
+      by_object_.push_back(l < 0 ? 0.0 : weight * after_.pool[static_cast<std::size_t>(l)].existence);
+    }
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+      const std::int16_t label = candidates[r].labels[i];
+      if (label < 0 || static_cast<std::size_t>(label) >= by_object_.size()) continue;
+      explained_[measurements[i]] += by_object_[static_cast<std::size_t>(label)];
     }
   }
 }

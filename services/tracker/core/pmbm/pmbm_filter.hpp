@@ -55,6 +55,7 @@ class PmbmFilter final : public Filter {
   std::vector<int> new_locals_;       // pool index of each column's new object
   std::vector<std::size_t> columns_;  // scratch
   std::vector<double> by_local_;      // scratch
+  std::vector<double> by_object_;     // scratch
   std::vector<WeightedComponent<double>> mixture_;
   std::vector<ObjectEstimate> estimates_;
   std::vector<double> explained_;
