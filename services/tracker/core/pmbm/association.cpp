@@ -19,6 +19,7 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
     : parameters_(parameters),
       capacity_(capacity),
       max_cells_(2 * capacity.group_objects),
+      log_min_share_(std::log(parameters.min_share)),
       gates_(capacity.rows, capacity.group_objects, capacity.group_measurements),
       known_(2 * capacity.known_associations),
       memory_(capacity.remembered_cells) {
@@ -26,6 +27,8 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
   predictions_.reserve(locals);
   log_existence_.reserve(locals);
   log_missed_.reserve(locals);
+  source_keys_.reserve(locals);
+  for (std::size_t l = 0; l < locals; ++l) source_keys_.push_back(CellMemory::source_key(l + 1));
   existence_.reserve(locals);
   gated_.reserve(locals * n);
   log_new_.reserve(n);
@@ -35,7 +38,8 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
     reserve(*s);
     s->values.reserve(max_cells_);
   }
-  old_cells_.reserve(max_cells_);
+  contents_.reserve(max_cells_);
+  changed_.reserve(max_cells_);
   for (auto* v : {&side_a_, &side_b_, &members_}) v->reserve(n);
   done_.reserve(n);
   is_shared_.reserve(n);
@@ -199,7 +203,7 @@ void Association::start(State& s) const {
 double Association::object_value(std::size_t object, const Cell<double>& content) {
   const std::size_t l = locals_[object];
   if (content.n == 0.0) return log_missed_[l];
-  return memory_.value(content.key, l + 1, [&] {
+  return memory_.value(content.key, source_keys_[l], [&] {
     ++*work_;
     return log_existence_[l] + predictions_[l].log_likelihood(content);
   });
@@ -207,7 +211,7 @@ double Association::object_value(std::size_t object, const Cell<double>& content
 
 double Association::new_value(const Cell<double>& content) {
   if (content.n == 0.0) return 0.0;
-  return memory_.value(content.key, 0, [&] {
+  return memory_.value(content.key, CellMemory::source_key(0), [&] {
     ++*work_;
     const double log_new = poisson_->log_likelihood(*model_, content);
     // A single measurement may be clutter as well.
@@ -227,28 +231,46 @@ double Association::dissolved(const State& s, std::size_t cell) const {
   return value;
 }
 
+/// Sums the cells that are marked anew, in the order of the measurements.
+void Association::sum_changed(State& s) const {
+  for (std::size_t b = 0; b < s.cells.size(); ++b) {
+    if (changed_[b] != 0) s.cells[b] = Cell<double>{};
+  }
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    if (s.labels[i] < 0) continue;
+    const auto b = static_cast<std::size_t>(s.labels[i]);
+    if (changed_[b] != 0) s.cells[b].add(z_[i], keys_[i]);
+  }
+}
+
 void Association::rescore(State& s) {
-  // Cells that did not change keep their value.
+  // Cells that did not change keep their sums and their value.
   const std::size_t had = s.values.size();
   s.values.resize(s.cells.size(), 0.0);
-  old_cells_.assign(s.cells.begin(), s.cells.end());
-  for (Cell<double>& c : s.cells) c = Cell<double>{};
+  contents_.assign(s.cells.size(), {});
   s.score = 0.0;
   for (std::size_t i = 0; i < z_.size(); ++i) {
-    if (s.labels[i] >= 0) {
-      s.cells[static_cast<std::size_t>(s.labels[i])].add(z_[i], keys_[i]);
-    } else {
+    if (s.labels[i] < 0) {
       s.score += log_alone_[i];
+      continue;
     }
+    Content& c = contents_[static_cast<std::size_t>(s.labels[i])];
+    c.key ^= keys_[i];
+    c.n += 1.0;
   }
+  changed_.assign(s.cells.size(), 0);
   for (std::size_t b = 0; b < s.cells.size(); ++b) {
-    const bool changed = b >= had || s.cells[b].key != old_cells_[b].key || s.cells[b].n != old_cells_[b].n;
-    if (changed || s.cells[b].n == 0.0) s.values[b] = cell_value(s, b, s.cells[b]);
+    if (s.cells[b].key != contents_[b].key || s.cells[b].n != contents_[b].n) changed_[b] = 1;
+  }
+  sum_changed(s);
+  for (std::size_t b = 0; b < s.cells.size(); ++b) {
+    if (b >= had || changed_[b] != 0 || s.cells[b].n == 0.0) s.values[b] = cell_value(s, b, s.cells[b]);
     s.score += s.values[b];
   }
 }
 
 void Association::ascend(State& s) {
+  changed_.assign(s.cells.size(), 0);
   for (bool moved = true; moved && !is_spent();) {
     moved = false;
     for (std::size_t i = 0; i < z_.size(); ++i) {
@@ -284,17 +306,19 @@ void Association::ascend(State& s) {
       if (to == from) continue;
       moved = true;
       s.score += best - base;
-      if (from >= 0) {
-        s.cells[static_cast<std::size_t>(from)] = left;
-        s.values[static_cast<std::size_t>(from)] = left_value;
-      }
-      if (to >= 0) {
-        s.cells[static_cast<std::size_t>(to)] = to_cell;
-        s.values[static_cast<std::size_t>(to)] = to_value;
-      }
+      const auto set = [&](int cell, const Cell<double>& content, double value) {
+        if (cell < 0) return;
+        const auto b = static_cast<std::size_t>(cell);
+        s.cells[b] = content;
+        s.values[b] = value;
+        changed_[b] = 1;
+      };
+      set(from, left, left_value);
+      set(to, to_cell, to_value);
       s.labels[i] = static_cast<std::int16_t>(to);
     }
   }
+  sum_changed(s);  // no rounding of what came and went
 }
 
 void Association::compact(State& s) {

@@ -79,6 +79,7 @@ class Association {
   template <typename Visit>
   void for_allowed(const Cells& cells, std::size_t z, const Visit& visit) const;
   void rescore(State& state);
+  void sum_changed(State& state) const;
 
   // Start of a row, and ascent by single measurements.
   void find_starts();
@@ -116,6 +117,7 @@ class Association {
   Parameters parameters_;
   Capacity capacity_;
   std::size_t max_cells_;
+  double log_min_share_;
 
   // The problem.
   Model* model_ = nullptr;
@@ -144,13 +146,20 @@ class Association {
   double log_top_ = 0.0;  // of the likeliest hard association so far
   State state_, best_, trial_;
   bool improved_ = false;
-  std::vector<Cell<double>> old_cells_;
+  /// What tells cells of measurements apart.
+  struct Content {
+    std::uint64_t key = 0;
+    double n = 0.0;
+  };
+  std::vector<Content> contents_;
+  std::vector<char> changed_;  // of the cells of a state
   std::vector<std::size_t> side_a_, side_b_, members_;
   std::vector<char> done_;
   std::vector<Candidate> candidates_;
   std::size_t number_of_candidates_ = 0;
   FixedTable known_;
   CellMemory memory_;
+  std::vector<std::uint64_t> source_keys_;  // of the pool, for memory_
   // Shares of an association: each measurement has links to the cells that may have it, and then to clutter.
   std::vector<std::size_t> first_link_, own_link_;  // of the measurements; to the cell of the hard association
   std::vector<std::size_t> linked_;                 // of the links: cell; clutter is the number of cells

@@ -17,11 +17,12 @@ class CellMemory {
 
   /// Forgets everything.
   void clear() { salt_ = mixed(salt_); }
+  /// Of a source of detections. Keys of measurements are mixed(1), mixed(2), …: those of sources must not be.
+  [[nodiscard]] static std::uint64_t source_key(std::uint64_t source) { return mixed(~source); }
   /// The value of a cell under a source of detections; computed if it is not known.
   template <typename Compute>
-  double value(std::uint64_t cell, std::uint64_t source, const Compute& compute) {
-    // Keys of measurements are mixed(1), mixed(2), …: those of sources must not be.
-    const std::uint64_t key = mixed(cell ^ mixed(~source)) ^ salt_;
+  double value(std::uint64_t cell, std::uint64_t source_key, const Compute& compute) {
+    const std::uint64_t key = mixed(cell ^ source_key) ^ salt_;
     Slot& slot = slots_[static_cast<std::size_t>(key) & (slots_.size() - 1)];
     if (slot.key != key) slot = {key, compute()};
     return slot.value;

@@ -65,10 +65,10 @@ double Association::normalise_shares(std::size_t z) {
   const double best = *std::max_element(gain_.begin(), gain_.end());
   double sum = 0.0;
   for (std::size_t k = 0; k < gain_.size(); ++k) {
-    const double g = gain_[k] == -kInfinity ? 0.0 : std::exp(gain_[k] - best);
-    shares[k] = g < parameters_.min_share ? 0.0 : g;
+    shares[k] = gain_[k] == best ? 1.0 : gain_[k] - best < log_min_share_ ? 0.0 : std::exp(gain_[k] - best);
     sum += shares[k];
   }
+  if (sum == 1.0) return best;  // most measurements are of one cell
   for (std::size_t k = 0; k < gain_.size(); ++k) shares[k] /= sum;
   return best + std::log(sum);
 }
@@ -162,7 +162,9 @@ void Association::share_again(const Cells& hard) {
 
 void Association::gather_shares() {
   share_.swap(next_share_);
-  for (Cell<double>& cell : soft_) cell = Cell<double>{};
+  for (Cell<double>& cell : soft_) {
+    if (cell.n != 0.0) cell = Cell<double>{};
+  }
   for (std::size_t i = 0; i < z_.size(); ++i) {
     for (std::size_t k = first_link_[i]; k < first_link_[i + 1]; ++k) {
       if (linked_[k] < soft_.size() && share_[k] > 0.0) soft_[linked_[k]].add(z_[i], share_[k]);
