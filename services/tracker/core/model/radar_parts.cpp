@@ -36,8 +36,9 @@ double RadarModel::taken_by(std::uint32_t label, const Vector2<double>& position
     const auto within = [&](double along_m) {
       return boxes_.estimator().inside(*object, k, place, {along_m, b.gap_across_m});
     };
-    taken += object->probability[k] *
-             ((1.0 - b.close_share) * within(b.gap_along_m + headway_m) + b.close_share * within(b.gap_along_m));
+    const double with_headway = within(b.gap_along_m + headway_m);
+    if (with_headway <= 0.0) continue;  // all the more without
+    taken += object->probability[k] * ((1.0 - b.close_share) * with_headway + b.close_share * within(b.gap_along_m));
   }
   return taken;
 }
@@ -49,14 +50,6 @@ double RadarModel::log_odds_of_part(const Component<double>& whole, const Compon
   const BoxMemory *of_whole = memory(whole.label), *of_part = memory(part.label);
   if (of_whole == nullptr || of_part == nullptr || !of_whole->has_point || !of_part->has_point) return -kInfinity;
   const BoxEstimator& boxes = boxes_.estimator();
-  const Vector2<double> dv = part.velocity_mps - whole.velocity_mps;
-  const Symmetric2<double> cv = whole.velocity_covariance + part.velocity_covariance;
-  const double between = b.neighbour_speed_std_mps * b.neighbour_speed_std_mps;
-  // People walk in company, vehicles keep their distance.
-  const double of_person = of_whole->probability[static_cast<std::size_t>(extended_object::RoadUserClass::kPedestrian)];
-  const double neighbours = of_person * b.company_density_per_m2 + (1.0 - of_person) * b.neighbour_density_per_m2;
-  const double of_motion = log_density(dv, cv) - std::log(neighbours) -
-                           log_density(dv, cv + Symmetric2<double>{between, 0.0, between}) - std::log(b.part_odds);
   const double unlikely = parameters_.box.least_probability, least_apart = parameters_.box.least_doubt;
   // Reflections anywhere in the box; two objects do not overlap.
   const Symmetric2<double> covariance = whole.position_covariance + part.position_covariance;
@@ -67,6 +60,15 @@ double RadarModel::log_odds_of_part(const Component<double>& whole, const Compon
     one += of_whole->probability[k] * boxes.inside(*of_whole, k, place, {0.0, 0.0}) /
            (of_whole->classes[k].length_m * boxes.table()[k].size.width_mean_m);
   }
+  if (one <= 0.0) return -kInfinity;
+  const Vector2<double> dv = part.velocity_mps - whole.velocity_mps;
+  const Symmetric2<double> cv = whole.velocity_covariance + part.velocity_covariance;
+  const double between = b.neighbour_speed_std_mps * b.neighbour_speed_std_mps;
+  // People walk in company, vehicles keep their distance.
+  const double of_person = of_whole->probability[static_cast<std::size_t>(extended_object::RoadUserClass::kPedestrian)];
+  const double neighbours = of_person * b.company_density_per_m2 + (1.0 - of_person) * b.neighbour_density_per_m2;
+  const double of_motion = log_density(dv, cv) - std::log(neighbours) -
+                           log_density(dv, cv + Symmetric2<double>{between, 0.0, between}) - std::log(b.part_odds);
   // Most pairs are two objects however little they are apart.
   if (std::log(one / least_apart) + of_motion <= 0.0) return -kInfinity;
   double apart = 0.0;

@@ -22,7 +22,8 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
       log_min_share_(std::log(parameters.min_share)),
       gates_(capacity.rows, capacity.group_objects, capacity.group_measurements),
       known_(2 * capacity.known_associations),
-      memory_(capacity.remembered_cells) {
+      memory_(capacity.remembered_cells),
+      soft_memory_(capacity.remembered_cells) {
   const std::size_t locals = group_pool(capacity), n = capacity.group_measurements;
   predictions_.reserve(locals);
   log_existence_.reserve(locals);
@@ -77,6 +78,7 @@ std::span<const Candidate> Association::search(Model& model, PoissonPart& poisso
   const std::uint32_t left = parameters_.work_budget - std::min(parameters_.work_budget, work);
   search_limit_ = work + left / 2;
   memory_.clear();
+  soft_memory_.clear();
   known_.clear();
   number_of_candidates_ = 0;
   log_top_ = -std::numeric_limits<double>::infinity();
@@ -243,6 +245,12 @@ void Association::sum_changed(State& s) const {
   }
 }
 
+Cell<double> Association::sum_of(std::span<const std::size_t> measurements) const {
+  Cell<double> cell;
+  for (const std::size_t i : measurements) cell.add(z_[i], keys_[i]);
+  return cell;
+}
+
 void Association::rescore(State& s) {
   // Cells that did not change keep their sums and their value.
   const std::size_t had = s.values.size();
@@ -363,9 +371,7 @@ void Association::cluster_rest(State& s) {
       }
     }
     if (members_.size() < 2) continue;
-    Cell<double> cell;
-    for (const std::size_t i : members_) cell.add(z_[i], keys_[i]);
-    if (new_value(cell) <= kLeastLog) continue;  // nothing can be born there
+    if (new_value(sum_of(members_)) <= kLeastLog) continue;  // nothing can be born there
     for (const std::size_t i : members_) s.labels[i] = static_cast<std::int16_t>(s.cells.size());
     s.cells.push_back({});
   }

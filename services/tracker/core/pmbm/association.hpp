@@ -80,6 +80,7 @@ class Association {
   void for_allowed(const Cells& cells, std::size_t z, const Visit& visit) const;
   void rescore(State& state);
   void sum_changed(State& state) const;
+  [[nodiscard]] Cell<double> sum_of(std::span<const std::size_t> measurements) const;
 
   // Start of a row, and ascent by single measurements.
   void find_starts();
@@ -158,7 +159,7 @@ class Association {
   std::vector<Candidate> candidates_;
   std::size_t number_of_candidates_ = 0;
   FixedTable known_;
-  CellMemory memory_;
+  CellMemory memory_, soft_memory_;         // of hard and of softly shared cells
   std::vector<std::uint64_t> source_keys_;  // of the pool, for memory_
   // Shares of an association: each measurement has links to the cells that may have it, and then to clutter.
   std::vector<std::size_t> first_link_, own_link_;  // of the measurements; to the cell of the hard association

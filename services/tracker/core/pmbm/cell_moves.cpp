@@ -61,8 +61,12 @@ void Association::split_cell(std::size_t cell) {
     trial_ = state_;
     trial_.cells.push_back({});
     give(trial_.cells.size() - 1);
+    const Cell<double> given = sum_of(part), rest = sum_of(side != 0 ? side_b_ : side_a_);
     for (std::size_t u = 0; u < state_.objects; ++u) {
       if (u == cell || state_.cells[u].n > 0.0) continue;
+      const double gain =
+          object_value(u, given) - state_.values[u] + cell_value(state_, cell, rest) - state_.values[cell];
+      if (gain < -parameters_.search_log - kRounding) continue;
       trial_ = state_;
       give(u);
     }

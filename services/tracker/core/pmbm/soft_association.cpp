@@ -5,12 +5,30 @@
 // search takes the leave-one-out probability for each factor, which is known from hard cells but too large: it is given
 // all others. For the candidates that are left, the factors are the shares, which are given no other for certain.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "services/tracker/core/numeric.hpp"
 #include "services/tracker/core/pmbm/association.hpp"
 
 namespace boresight::tracking::pmbm {
+
+namespace {
+
+/// Candidates that differ elsewhere share these measurements alike, to the last bit.
+std::uint64_t content_key(const Cell<double>& c) {
+  std::uint64_t key = 0;
+  for (const double x :
+       {c.n, c.sum.x, c.sum.y, c.sum_squares.xx, c.sum_squares.xy, c.sum_squares.yy, c.sight_squares.xx,
+        c.sight_squares.xy, c.sight_squares.yy, c.sight_rate.x, c.sight_rate.y, c.rate_squares, c.log_clutter,
+        c.side_lobe_share, c.partner, c.wide_share}) {
+    key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15U;
+    key ^= key >> 32U;
+  }
+  return key;
+}
+
+}  // namespace
 
 void Association::keep(const State& s) {
   const double log_hard = log_row_ + s.score;
@@ -128,9 +146,12 @@ double Association::share_hard(const Cells& hard) {
 void Association::share_again(const Cells& hard) {
   const std::size_t cells = hard.cells.size();
   const auto soft_value = [&](std::size_t b, const Cell<double>& content) {
-    ++*work_;
-    return b < hard.objects ? log_existence_[locals_[b]] + predictions_[locals_[b]].log_likelihood(content)
-                            : std::max(kLeastLog, poisson_->log_likelihood(*model_, content));
+    const std::uint64_t source = b < hard.objects ? source_keys_[locals_[b]] : CellMemory::source_key(0);
+    return soft_memory_.value(content_key(content), source, [&] {
+      ++*work_;
+      return b < hard.objects ? log_existence_[locals_[b]] + predictions_[locals_[b]].log_likelihood(content)
+                              : std::max(kLeastLog, poisson_->log_likelihood(*model_, content));
+    });
   };
   soft_values_.assign(cells, kInfinity);  // of soft_, where it was asked for
   for (std::size_t i = 0; i < z_.size(); ++i) {
