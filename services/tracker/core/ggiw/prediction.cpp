@@ -120,7 +120,7 @@ Prediction<Real>::Prediction(const Component<Real>& c, const View<Real>& view)
 
   const Real log_x = std::log(determinant(x)), log_scatter = std::log(determinant(scatter_));
   log_exposure_ = std::log(view.exposure);
-  expected_ = view.exposure * rate_shape_ / rate_inverse_scale_;
+  log_expected_ = std::log(view.exposure * rate_shape_ / rate_inverse_scale_);
   per_detection_ = (log_x - log_scatter) / Real(2) - kLogPi<Real>;
   log_detection_ = std::log(std::max(detection_probability_, Real(kLeastProbability)));
   constant_ =
@@ -290,7 +290,7 @@ Real Prediction<Real>::log_intensity(const Measurement<Real>& z) const {
                           quadratic(p.information, z.position_m - position_m_ - p.offset_m) / Real(2);
     log_p = k == 0 ? of_place : std::max(log_p, of_place);
   }
-  log_p += std::log(expected_) - kLogTwoPi<Real>;
+  log_p += log_expected_ - kLogTwoPi<Real>;
   if (view_.range_rate_variance > 0) {
     const Real variance = view_.range_rate_variance + quadratic(velocity_covariance_, z.sight);
     const Real e = z.range_rate_mps - dot(z.sight, velocity_mps_);

@@ -150,7 +150,7 @@ class Prediction {
   std::array<Place, View<Real>::kMaxReadings> places_;
   Symmetric2<Real> extent_scale_;
   Real extent_dof_ = 8;
-  Real rate_shape_ = 1, rate_inverse_scale_ = 1, expected_ = 0;
+  Real rate_shape_ = 1, rate_inverse_scale_ = 1, log_expected_ = 0;
   Real detection_probability_ = 0;
   Absence<Real> absence_;
   SourceClasses<Real> source_;

@@ -61,8 +61,9 @@ class RadarModel final : public Model {
   [[nodiscard]] const LocalAxes& axes() const { return axes_; }
   /// Index of the radar of the scan, −1 if it is none of the vehicle's.
   [[nodiscard]] int radar_index() const { return radar_index_; }
-  /// Of an object after the scan. What hides it is not looked for where it is in view with less probability.
-  [[nodiscard]] Sight sight(const Component<double>& component, double least_in_view) const;
+  /// Of an object after the scan. What hides it is not looked for where it is in view with less than the probability
+  /// `likely`, nor any further where that share is hidden.
+  [[nodiscard]] Sight sight(const Component<double>& component, double likely) const;
   /// Of an object after the scan, in local axes; and the probabilities of its classes.
   [[nodiscard]] Box box(const Component<double>& object) const { return boxes_.box(object); }
   [[nodiscard]] const BoxMemory* memory(std::uint32_t label) const;

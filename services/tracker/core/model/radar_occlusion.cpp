@@ -108,14 +108,14 @@ bool Occlusion::are_in_line(const Outline& a, const Outline& b, Pair& pair) {
   return true;
 }
 
-double Occlusion::hidden_share(std::uint32_t label) const {
+double Occlusion::hidden_share(std::uint32_t label, double enough) const {
   const int index = index_.find(label);
   if (index < 0) return 0.0;
   const auto own = static_cast<std::size_t>(index);
   const Outline& o = outlines_[own];
   double free = 1.0;
   Pair pair{};
-  for (std::size_t i = 0; i < outlines_.size(); ++i) {
+  for (std::size_t i = 0; i < outlines_.size() && 1.0 - free < enough; ++i) {
     const Outline& other = outlines_[i];
     // Of each pair, the one that was added first is a.
     const bool is_a = own < i;

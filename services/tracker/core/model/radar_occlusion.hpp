@@ -31,8 +31,8 @@ class Occlusion {
   void begin_scan(const Vector2<double>& sensor_m);
   /// Beyond the capacity, an object hides nothing and nothing hides it.
   void add(std::uint32_t label, double existence, const Box& box);
-  /// h of (2), of the objects added so far; 0 of one that was not added.
-  [[nodiscard]] double hidden_share(std::uint32_t label) const;
+  /// h of (2), of the objects added so far; 0 of one that was not added. From `enough` on it is a lower bound.
+  [[nodiscard]] double hidden_share(std::uint32_t label, double enough = 1.0) const;
 
  private:
   /// An object as seen from the sensor.

@@ -108,9 +108,9 @@ RadarModel::Look RadarModel::look(const Component<double>& c) const {
   return out;
 }
 
-Sight RadarModel::sight(const Component<double>& c, double least_in_view) const {
+Sight RadarModel::sight(const Component<double>& c, double likely) const {
   Sight out = look(c).sight;
-  if (radar_ != nullptr && out.in_view >= least_in_view) out.hidden_share = occlusion_.hidden_share(c.label);
+  if (radar_ != nullptr && out.in_view >= likely) out.hidden_share = occlusion_.hidden_share(c.label, likely);
   return out;
 }
 

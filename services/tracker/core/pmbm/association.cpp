@@ -47,7 +47,7 @@ Association::Association(const Parameters& parameters, const Capacity& capacity)
   renamed_.reserve(max_cells_);
   first_link_.reserve(n + 1);
   own_link_.reserve(n);
-  for (auto* v : {&share_, &next_share_}) v->reserve(n * (max_cells_ + 1));
+  for (auto* v : {&share_, &next_share_}) v->resize(n * (max_cells_ + 1));
   linked_.reserve(n * (max_cells_ + 1));
   gain_.reserve(max_cells_ + 1);
   soft_.reserve(max_cells_);

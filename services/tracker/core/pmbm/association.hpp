@@ -164,7 +164,7 @@ class Association {
   // Shares of an association: each measurement has links to the cells that may have it, and then to clutter.
   std::vector<std::size_t> first_link_, own_link_;  // of the measurements; to the cell of the hard association
   std::vector<std::size_t> linked_;                 // of the links: cell; clutter is the number of cells
-  std::vector<double> share_, next_share_;          // of the links
+  std::vector<double> share_, next_share_;          // of the links, with room for all
   std::vector<double> gain_;                        // of the links of one measurement
   std::vector<Cell<double>> soft_;
   std::vector<double> soft_values_;

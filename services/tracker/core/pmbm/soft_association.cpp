@@ -18,10 +18,9 @@ namespace {
 /// Candidates that differ elsewhere share these measurements alike, to the last bit.
 std::uint64_t content_key(const Cell<double>& c) {
   std::uint64_t key = 0;
-  for (const double x :
-       {c.n, c.sum.x, c.sum.y, c.sum_squares.xx, c.sum_squares.xy, c.sum_squares.yy, c.sight_squares.xx,
-        c.sight_squares.xy, c.sight_squares.yy, c.sight_rate.x, c.sight_rate.y, c.rate_squares, c.log_clutter,
-        c.side_lobe_share, c.partner, c.wide_share}) {
+  for (const double x : {c.n, c.sum.x, c.sum.y, c.sum_squares.xx, c.sum_squares.xy, c.sum_squares.yy,
+                         c.sight_squares.xx, c.sight_squares.xy, c.sight_squares.yy, c.sight_rate.x, c.sight_rate.y,
+                         c.rate_squares, c.log_clutter, c.side_lobe_share, c.partner, c.wide_share}) {
     key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15U;
     key ^= key >> 32U;
   }
@@ -98,7 +97,6 @@ double Association::share_hard(const Cells& hard) {
   first_link_.clear();
   own_link_.clear();
   linked_.clear();
-  next_share_.clear();
   is_shared_.assign(n, 0);
   double log_added = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -106,8 +104,8 @@ double Association::share_hard(const Cells& hard) {
     first_link_.push_back(linked_.size());
     if (own < cells && hard.cells[own].n < 2.0) {  // what a cell has alone is not shared: it would be an object less
       own_link_.push_back(linked_.size());
+      next_share_[linked_.size()] = 1.0;
       linked_.push_back(own);
-      next_share_.push_back(1.0);
       continue;
     }
     gain_.clear();
@@ -133,12 +131,10 @@ double Association::share_hard(const Cells& hard) {
     });
     if (own < cells && own_link_.size() == i) link_own();
     link(cells, log_alone_[i]);
-    next_share_.resize(linked_.size());
     log_added += normalise_shares(i) - gain_[own_link_[i] - first_link_[i]];
     is_shared_[i] = next_share_[own_link_[i]] < 1.0 ? 1 : 0;
   }
   first_link_.push_back(linked_.size());
-  share_.resize(linked_.size());
   return log_added;
 }
 
@@ -191,7 +187,7 @@ void Association::gather_shares() {
       if (linked_[k] < soft_.size() && share_[k] > 0.0) soft_[linked_[k]].add(z_[i], share_[k]);
     }
   }
-  next_share_.assign(share_.begin(), share_.end());
+  std::copy_n(share_.begin(), linked_.size(), next_share_.begin());
 }
 
 void Association::soften(Candidate& c) {
