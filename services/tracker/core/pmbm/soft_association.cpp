@@ -143,8 +143,8 @@ void Association::share_again(const Cells& hard) {
   const std::size_t cells = hard.cells.size();
   const auto soft_value = [&](std::size_t b, const Cell<double>& content) {
     const std::uint64_t source = b < hard.objects ? source_keys_[locals_[b]] : CellMemory::source_key(0);
+    ++*work_;  // also of what is remembered: the budget does not depend on it
     return soft_memory_.value(content_key(content), source, [&] {
-      ++*work_;
       return b < hard.objects ? log_existence_[locals_[b]] + predictions_[locals_[b]].log_likelihood(content)
                               : std::max(kLeastLog, poisson_->log_likelihood(*model_, content));
     });
