@@ -36,7 +36,7 @@ ObjectEstimate estimate_of(const Component<double>& c) {
   return e;
 }
 ObjectBoxes boxes_for(std::size_t max_objects) {
-  return {BoxEstimator(support::class_table(), BoxParameters{}), max_objects};
+  return {BoxEstimator(support::class_table(), BoxParameters{}), RoadParameters{}, max_objects};
 }
 void show(ObjectBoxes& boxes, const std::vector<Component<double>>& objects, const Viewpoint& from = {}) {
   boxes.begin_scan(from);

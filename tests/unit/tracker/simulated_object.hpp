@@ -185,7 +185,7 @@ class OneObjectTrack {
     set_readings(views, memory.heading_rad, v);
     BoxObservation o;
     o.elapsed_s = elapsed_s;
-    o.road_rad = road_rad;
+    o.road = {road_rad, RoadParameters{}.parallel_share, RoadParameters{}.parallel_share};
     o.range_m = (eigen(component.position_m) - eigen(sensor_m)).norm();
     o.noise_m2 = v.noise_m2;
     o.predicted_m = component.position_m;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/LU>
 
@@ -46,48 +47,28 @@ BoxEstimator::BoxEstimator(const extended_object::ObjectClassTable& table, const
   weigh_classes(begun_);
 }
 
-BoxEstimator::Course BoxEstimator::on_road(const Course& course, double road_rad, double vehicle_probability) const {
-  struct Way {
-    double weight, rad, variance_rad2;
-  };
-  const double std2 = parameters_.parallel_std_rad * parameters_.parallel_std_rad;
-  const double share = vehicle_probability * parameters_.parallel_share, sum = std2 + course.variance_rad2;
-  const auto along = [&](double rad) {
-    const double e = geometry::wrap_angle(course.rad - rad);
-    return Way{share * std::exp(-0.5 * e * e / sum) / std::sqrt(2.0 * std::numbers::pi * sum), rad + std2 / sum * e,
-               std2 * course.variance_rad2 / sum};
-  };
-  const std::array<Way, 3> ways = {
-      along(road_rad), along(road_rad + std::numbers::pi),
-      Way{(1.0 - 2.0 * share) / (2.0 * std::numbers::pi), course.rad, course.variance_rad2}};
-  const Way& best =
-      *std::max_element(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.weight < b.weight; });
-  double weights = 0.0, mean = 0.0, squares = 0.0;
-  for (const Way& w : ways) {
-    const double off = geometry::wrap_angle(w.rad - best.rad);
-    weights += w.weight;
-    mean += w.weight * off;
-    squares += w.weight * (w.variance_rad2 + off * off);
-  }
-  mean /= weights;
-  return {geometry::wrap_angle(best.rad + mean), squares / weights - mean * mean};
+Course BoxEstimator::course(const Component<double>& o) const {
+  const double squared_speed = squared_norm(o.velocity_mps), slip = parameters_.side_slip_mps;
+  const Vector2<double> across{-o.velocity_mps.y, o.velocity_mps.x};
+  return {std::atan2(o.velocity_mps.y, o.velocity_mps.x),
+          (quadratic(o.velocity_covariance, across) / squared_speed + slip * slip) / squared_speed};
 }
 
-void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, double elapsed_s, double road_rad) const {
+double BoxEstimator::vehicle_probability(const BoxMemory& m) {
+  const auto first = static_cast<std::size_t>(extended_object::RoadUserClass::kTwoWheeler);
+  return std::accumulate(m.probability.begin() + first, m.probability.end(), 0.0);
+}
+
+void BoxEstimator::follow_course(BoxMemory& m, const Component<double>& o, double elapsed_s, const Road& road) const {
   const double speed_mps = std::sqrt(squared_norm(o.velocity_mps));
   const double time_s = std::max(0.0, elapsed_s);
   const double turn_radps = turn_rate_std_radps(parameters_.turn, speed_mps * speed_mps);
   m.heading_variance_rad2 += 2.0 * turn_radps * turn_radps * parameters_.turn.time_s * time_s;
   if (speed_mps <= 0.0) return;
-  const Vector2<double> across{-o.velocity_mps.y / speed_mps, o.velocity_mps.x / speed_mps};
-  const double slip = parameters_.side_slip_mps;
-  const auto vehicle = static_cast<std::size_t>(extended_object::RoadUserClass::kTwoWheeler);
-  double vehicle_probability = 0.0;
-  for (std::size_t k = vehicle; k < kRoadUserClasses; ++k) vehicle_probability += m.probability[k];
   // What the road says of the heading counts once, for the first course.
-  const Course course{std::atan2(o.velocity_mps.y, o.velocity_mps.x),
-                      (quadratic(o.velocity_covariance, across) + slip * slip) / (speed_mps * speed_mps)};
-  const auto [course_rad, variance] = knows_heading(m) ? course : on_road(course, road_rad, vehicle_probability);
+  const Course seen = course(o);
+  const auto [course_rad, variance] =
+      knows_heading(m) ? seen : on_road(parameters_.road, road, seen, vehicle_probability(m));
   const double change_rad = geometry::wrap_angle(course_rad - m.heading_rad);
   // Successive courses share their errors: the surer one counts, they are not averaged. The later one knows more, where
   // they contradict each other.
@@ -144,7 +125,7 @@ ClassViews BoxEstimator::view(const BoxMemory& m, const Vector2<double>& positio
 void BoxEstimator::update(BoxMemory& m, const Component<double>& o, const BoxObservation& scan,
                           const ClassViews& views) const {
   const bool had_point = m.has_point;
-  follow_course(m, o, scan.elapsed_s, scan.road_rad);
+  follow_course(m, o, scan.elapsed_s, scan.road);
   // The heading jumped: views and tracked points are in axes of the old one.
   const bool is_turned = had_point && !m.has_point;
   if (is_turned) {

@@ -22,6 +22,7 @@
 #include "services/common/extended_object/object_classes.hpp"
 #include "services/common/extended_object/reflection_model.hpp"
 #include "services/tracker/core/ggiw/component.hpp"
+#include "services/tracker/core/model/road.hpp"
 #include "services/tracker/core/model/turning.hpp"
 
 namespace boresight::tracking {
@@ -33,8 +34,7 @@ struct BoxParameters {
   double forget_s = 20.0;           ///< of the evidence for classes
   double side_slip_mps = 0.15;      ///< between heading and course
   TurnParameters turn;              ///< change of heading of a moving object
-  double parallel_share = 0.35;     ///< of vehicles that drive as the own one does, and as many against it
-  double parallel_std_rad = 0.15;   ///< of their headings about that
+  RoadParameters road;              ///< what the road tells of headings
   double known_heading_rad = 0.35;  ///< deviation from which on the heading places the box
   double contradiction_chi2 = 9.0;  ///< squared distance from which on a course replaces a surer heading
   double sure_speed_sigma = 2.0;    ///< deviations below its speed that an object surely exceeds
@@ -65,7 +65,7 @@ using ClassViews = std::array<ClassView, extended_object::kRoadUserClasses>;
 /// The detections of an object in a scan, in local axes.
 struct BoxObservation {
   double elapsed_s = 0.0;
-  double road_rad = 0.0;        ///< heading of the own vehicle
+  Road road;
   double range_m = 0.0;         ///< from the sensor
   Symmetric2<double> noise_m2;  ///< of one position
   double detections = 0.0;      ///< 0: none
@@ -119,6 +119,10 @@ class BoxEstimator {
               const ClassViews& views) const;
   [[nodiscard]] Box box(const BoxMemory& memory, const Component<double>& object,
                         const Vector2<double>& sensor_m) const;
+  /// Of an object that moves.
+  [[nodiscard]] Course course(const Component<double>& object) const;
+  /// Probability that it is no pedestrian.
+  [[nodiscard]] static double vehicle_probability(const BoxMemory& memory);
   /// A place relative to an object's tracked point, in box axes; the covariance is that of the difference.
   struct Place {
     Eigen::Vector2d from_point_m{0.0, 0.0};
@@ -135,12 +139,7 @@ class BoxEstimator {
   [[nodiscard]] const extended_object::ObjectClassTable& table() const { return table_; }
 
  private:
-  void follow_course(BoxMemory& memory, const Component<double>& object, double elapsed_s, double road_rad) const;
-  struct Course {
-    double rad, variance_rad2;
-  };
-  /// A course given that most vehicles drive along the road.
-  [[nodiscard]] Course on_road(const Course& course, double road_rad, double vehicle_probability) const;
+  void follow_course(BoxMemory& memory, const Component<double>& object, double elapsed_s, const Road& road) const;
   /// Evidence for classes from number and spread of the detections, the heading unknown.
   void learn_without_heading(BoxMemory& memory, const BoxObservation& scan) const;
   void weigh_classes(BoxMemory& memory) const;

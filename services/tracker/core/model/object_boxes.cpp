@@ -6,8 +6,9 @@
 
 namespace boresight::tracking {
 
-ObjectBoxes::ObjectBoxes(const BoxEstimator& estimator, std::size_t max_objects)
+ObjectBoxes::ObjectBoxes(const BoxEstimator& estimator, const RoadParameters& road, std::size_t max_objects)
     : estimator_(estimator),
+      traffic_(road),
       max_objects_(max_objects),
       records_(2 * max_objects),
       index_(std::bit_ceil(2 * max_objects + 2)) {
@@ -22,6 +23,7 @@ void ObjectBoxes::clear() {
   free_.clear();
   for (std::size_t i = records_.size(); i > 0; --i) free_.push_back(i - 1);
   index_.clear();
+  traffic_.clear();
 }
 
 void ObjectBoxes::begin_scan(const Viewpoint& viewpoint) {
@@ -73,7 +75,9 @@ std::size_t ObjectBoxes::begin_record(std::uint32_t label) {
   return i;
 }
 
-void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad) {
+void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_heading_rad) {
+  const Road road = traffic_.road(road_heading_rad);
+  traffic_.forget(elapsed_s);
   static const ClassViews kNotSeen{};
   is_kept_.assign(records_.size(), 0);
   const std::size_t had = used_.size();
@@ -85,7 +89,7 @@ void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_
     used_.push_back(i);
     // Nothing is known yet of the scan that an object began with.
     const BoxObservation o{elapsed_s,
-                           road_rad,
+                           road,
                            std::sqrt(squared_norm(e.component->position_m - viewpoint_.sensor_m)),
                            r.noise_m2,
                            r.is_seen ? e.detections : 0.0,
@@ -94,6 +98,9 @@ void ObjectBoxes::learn(std::span<const ObjectEstimate> objects, double elapsed_
                            r.predicted_m,
                            r.predicted_covariance_m2};
     estimator_.update(r.memory, *e.component, o, r.is_seen ? r.views : kNotSeen);
+    if (squared_norm(e.component->velocity_mps) <= 0.0) continue;
+    traffic_.add(estimator_.course(*e.component), road_heading_rad,
+                 e.existence * BoxEstimator::vehicle_probability(r.memory) * std::max(0.0, elapsed_s));
   }
   for (std::size_t k = 0; k < had; ++k) {
     if (is_kept_[used_[k]] == 0) free_.push_back(used_[k]);

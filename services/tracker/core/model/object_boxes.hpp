@@ -11,6 +11,7 @@
 #include "services/tracker/core/fixed_table.hpp"
 #include "services/tracker/core/model/box_estimator.hpp"
 #include "services/tracker/core/model/model.hpp"
+#include "services/tracker/core/model/road.hpp"
 
 namespace boresight::tracking {
 
@@ -35,7 +36,7 @@ class ObjectBoxes {
     std::optional<BoxReadings> readings;
   };
 
-  ObjectBoxes(const BoxEstimator& estimator, std::size_t max_objects);
+  ObjectBoxes(const BoxEstimator& estimator, const RoadParameters& road, std::size_t max_objects);
 
   void clear();
   /// Notes that the object `whole` has a part; what is remembered of it is that of `label` from now on.
@@ -45,12 +46,13 @@ class ObjectBoxes {
   /// The record of a predicted object with its views; null if nothing is remembered of it.
   [[nodiscard]] Record* see(const Component<double>& predicted, const Symmetric2<double>& noise_m2);
   /// Takes the objects after a scan that came `elapsed_s` after the one before; others are forgotten.
-  void learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_rad);
+  void learn(std::span<const ObjectEstimate> objects, double elapsed_s, double road_heading_rad);
   [[nodiscard]] Box box(const Component<double>& object) const;
   [[nodiscard]] const BoxEstimator& estimator() const { return estimator_; }
 
  private:
   BoxEstimator estimator_;
+  ParallelTraffic traffic_;
   Viewpoint viewpoint_;
   [[nodiscard]] std::size_t begin_record(std::uint32_t label);
 

@@ -30,7 +30,7 @@ Matrix2<double> LocalAxes::to_vehicle(const Matrix2<double>& m) const {
 
 RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters& parameters, std::size_t max_objects)
     : parameters_(parameters),
-      boxes_(BoxEstimator(parameters.classes, parameters.box), max_objects),
+      boxes_(BoxEstimator(parameters.classes, parameters.box), parameters.box.road, max_objects),
       occlusion_(kMaxTracks) {
   // One in a thousand is longer than the mean by more than three deviations.
   for (const auto& c : parameters.classes) {
