@@ -11,8 +11,6 @@ namespace boresight::tracking {
 
 namespace {
 
-constexpr double kAnyHeading = 0.5 * std::numbers::inv_pi;  // density per rad
-
 /// Headings of one kind: their weight with the course that was seen, and what they make of it.
 struct Way {
   double weight, rad, variance_rad2;
@@ -20,11 +18,11 @@ struct Way {
 
 /// Normal density on a circle.
 double density(double e_rad, double variance_rad2) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  if (variance_rad2 > std::numbers::pi * std::numbers::pi) return kAnyHeading;  // within 2 %
+  const double turn = 2.0 * std::numbers::pi;
+  if (variance_rad2 > std::numbers::pi * std::numbers::pi) return 1.0 / turn;  // within 2 %
   double sum = 0.0;
-  for (const double e : {e_rad - kTurn, e_rad, e_rad + kTurn}) sum += std::exp(-0.5 * e * e / variance_rad2);
-  return sum / std::sqrt(kTurn * variance_rad2);
+  for (const double e : {e_rad - turn, e_rad, e_rad + turn}) sum += std::exp(-0.5 * e * e / variance_rad2);
+  return sum / std::sqrt(turn * variance_rad2);
 }
 
 /// Along the road, against it, and any other, of a vehicle.
@@ -38,7 +36,7 @@ std::array<Way, 3> ways_of(double parallel_std_rad, const Road& road, double veh
   const double other = 1.0 - vehicle_probability * (road.along_share + road.against_share);
   return {parallel(road.along_share, road.heading_rad),
           parallel(road.against_share, road.heading_rad + std::numbers::pi),
-          Way{other * kAnyHeading, course.rad, course.variance_rad2}};
+          Way{other / (2.0 * std::numbers::pi), course.rad, course.variance_rad2}};
 }
 
 }  // namespace

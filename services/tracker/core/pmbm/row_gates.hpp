@@ -11,7 +11,7 @@ namespace boresight::tracking::pmbm {
 class RowGates {
  public:
   RowGates(std::size_t most_rows, std::size_t most_objects, std::size_t most_measurements)
-      : words_((most_objects + kBits - 1) / kBits) {
+      : words_(word_of(most_objects + 63)) {
     bits_.reserve(most_rows * most_measurements * words_);
   }
 
@@ -21,10 +21,10 @@ class RowGates {
     bits_.assign(rows * measurements * words_, 0);
   }
   void add(std::size_t row, std::size_t object, std::size_t z) {
-    bits_[first_word(row, z) + object / kBits] |= bit(object);
+    bits_[first_word(row, z) + word_of(object)] |= bit(object);
   }
   [[nodiscard]] bool has(std::size_t row, std::size_t object, std::size_t z) const {
-    return (bits_[first_word(row, z) + object / kBits] & bit(object)) != 0;
+    return (bits_[first_word(row, z) + word_of(object)] & bit(object)) != 0;
   }
   /// The objects with the measurement in their gates, in their order.
   template <typename Visit>
@@ -32,14 +32,14 @@ class RowGates {
     const std::size_t first = first_word(row, z);
     for (std::size_t w = 0; w < words_; ++w) {
       for (std::uint64_t left = bits_[first + w]; left != 0; left &= left - 1) {
-        visit(w * kBits + static_cast<std::size_t>(std::countr_zero(left)));
+        visit(64 * w + static_cast<std::size_t>(std::countr_zero(left)));
       }
     }
   }
 
  private:
-  static constexpr std::size_t kBits = 64;
-  [[nodiscard]] static std::uint64_t bit(std::size_t object) { return std::uint64_t{1} << (object % kBits); }
+  [[nodiscard]] static std::size_t word_of(std::size_t object) { return object / 64; }
+  [[nodiscard]] static std::uint64_t bit(std::size_t object) { return std::uint64_t{1} << (object % 64); }
   [[nodiscard]] std::size_t first_word(std::size_t row, std::size_t z) const {
     return (row * measurements_ + z) * words_;
   }
