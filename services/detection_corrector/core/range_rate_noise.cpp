@@ -55,21 +55,18 @@ void RangeRateNoise::learn(std::span<const Innovation> scan, const Eigen::Matrix
     return stationary / (stationary + other);
   };
 
-  // Equation (C12). The second pass rejects what only the prior of the common error admitted.
-  constexpr int kPasses = 2;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
-    for (const Innovation& i : scan) {
-      if (!is_usable(i)) continue;
-      const double weight = stationary_probability(i) / own_variance(i);
-      information += weight * i.direction * i.direction.transpose();
-      weighted += weight * i.value_mps * i.direction;
-    }
-    const Eigen::Matrix3d posterior = (Eigen::Matrix3d::Identity() + common * information).inverse() * common;
-    if (!posterior.allFinite()) return;
-    error = {posterior * weighted, posterior};
+  // Equation (C12)
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  for (const Innovation& i : scan) {
+    if (!is_usable(i)) continue;
+    const double weight = stationary_probability(i) / own_variance(i);
+    information += weight * i.direction * i.direction.transpose();
+    weighted += weight * i.value_mps * i.direction;
   }
+  const Eigen::Matrix3d posterior = (Eigen::Matrix3d::Identity() + common * information).inverse() * common;
+  if (!posterior.allFinite()) return;
+  error = {posterior * weighted, posterior};
 
   // Equation (C13): the expected square of the detection's own error, with the weight of its Fisher information on s².
   for (const Innovation& i : scan) {

@@ -51,11 +51,11 @@ class ObjectBoxes {
   [[nodiscard]] const BoxEstimator& estimator() const { return estimator_; }
 
  private:
+  [[nodiscard]] std::size_t begin_record(std::uint32_t label);
+
   BoxEstimator estimator_;
   ParallelTraffic traffic_;
   Viewpoint viewpoint_;
-  [[nodiscard]] std::size_t begin_record(std::uint32_t label);
-
   std::size_t max_objects_;
   std::vector<Record> records_;           // for twice the objects: those of a scan and of the one before
   std::vector<std::size_t> used_, free_;  // of records_

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "services/tracker/core/model/radar_model.hpp"
@@ -56,7 +57,7 @@ RadarModel::NewbornWeights RadarModel::newborn_weights(const Cell<double>& cell)
   const SourceParameters& s = parameters_.source;
   const double f = 1.0 / cell.n;
   const Vector2<double> mean = cell.mean();
-  double claimed = 1e-17;  // less does not change 1 − claimed
+  double claimed = 0.25 * std::numeric_limits<double>::epsilon();  // less does not change 1 − claimed
   const Vector2<double> way = mean - sensor_m_;
   const double range_m = std::max(kLeastRange_m, std::sqrt(squared_norm(way)));
   const Vector2<double> sight = (1.0 / range_m) * way;
