@@ -49,7 +49,9 @@ inline constexpr std::size_t kMaxReflectorSegments = 64;
 /// Detections of one radar cycle, classified; same order as in the CorrectedScan. Detections that the corrector
 /// rejected (`corrected_flag::kRejected`) have `kUnknown` provenance.
 struct ClassifiedScan {
-  static constexpr std::uint32_t kVersion = 2;
+  static constexpr std::uint32_t kVersion = 3;
+  /// Log-likelihood ratio of a certain origin: beyond what any evidence reaches.
+  static constexpr float kCertain = 20.0F;
 
   MessageHeader header;
   std::uint32_t number_of_valid_detections;
@@ -71,6 +73,9 @@ struct ClassifiedScan {
   DetectionColumn<float> range_rate_std_mps;
   /// By index_of_origin(), 0…1. They sum to 1 for each classified detection, and are all 0 for an unclassified one.
   std::array<DetectionColumn<float>, kNumberOfOrigins> origin_probability;
+  /// ln p(evidence | direct echo of a moving object) / p(evidence | false), of what scans show without the tracks: a
+  /// tracker that used the probabilities would confirm its own tracks. 0 for a detection without such evidence.
+  DetectionColumn<float> moving_log_likelihood_ratio;
   DetectionColumn<std::uint16_t> detection_flags;
   DetectionColumn<Provenance> provenance;  ///< one label by the ghost filter's rule, for displays and statistics
   std::array<ReflectorSegment, kMaxReflectorSegments> reflector_segments;
@@ -91,11 +96,14 @@ struct ClassifiedScan {
   void set_probabilities(std::size_t i, const OriginProbabilities& probabilities) {
     for (std::size_t k = 0; k < kNumberOfOrigins; ++k) origin_probability[k][i] = probabilities[k];
   }
-  /// Label and probability 1 for one origin; kUnknown: unclassified.
+  /// Label, probability 1 and a certain ratio for one origin; kUnknown: unclassified.
   void set_certain(std::size_t i, Provenance origin) {
     provenance[i] = origin;
     set_probabilities(i, {});
     if (origin != Provenance::kUnknown) probability(origin, i) = 1.0F;
+    moving_log_likelihood_ratio[i] = origin == Provenance::kUnknown  ? 0.0F
+                                     : origin == Provenance::kMoving ? kCertain
+                                                                     : -kCertain;
   }
 };
 
@@ -104,6 +112,6 @@ static_assert(alignof(ClassifiedScan) == 64);
 static_assert(offsetof(ClassifiedScan, x_vehicle_m) == 256);
 static_assert(offsetof(ClassifiedScan, origin_probability) == 256 + 10 * 4096);
 static_assert(sizeof(ClassifiedScan) ==
-              256 + (10 + kNumberOfOrigins) * 4096 + 2048 + 1024 + kMaxReflectorSegments * 24);
+              256 + (11 + kNumberOfOrigins) * 4096 + 2048 + 1024 + kMaxReflectorSegments * 24);
 
 }  // namespace boresight

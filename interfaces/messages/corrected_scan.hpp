@@ -18,12 +18,13 @@ inline constexpr std::uint32_t kTracksStale = 1u << 6;  ///< the ghost filter's 
 
 /// Bits of `CorrectedScan::detection_flags`, per detection.
 namespace corrected_flag {
-inline constexpr std::uint16_t kInvalid = 1u << 0;        ///< carried over from the sensor
-inline constexpr std::uint16_t kAmbiguous = 1u << 1;      ///< carried over from the sensor
+inline constexpr std::uint16_t kInvalid = 1u << 0;        ///< a value that is needed is not finite
+inline constexpr std::uint16_t kAmbiguous = 1u << 1;      ///< carried over: the sensor doubts the range rate
 inline constexpr std::uint16_t kOutsideRegion = 1u << 2;  ///< outside the region-of-interest box
 inline constexpr std::uint16_t kWeak = 1u << 3;           ///< under the range-dependent RCS threshold
 inline constexpr std::uint16_t kMoving = 1u << 4;         ///< no bit of motion if the ego motion is unknown
 inline constexpr std::uint16_t kStationary = 1u << 5;
+inline constexpr std::uint16_t kDoubted = 1u << 6;  ///< carried over: the sensor calls the detection invalid
 /// Rejected: the following stages ignore a detection with any of these bits.
 inline constexpr std::uint16_t kRejected = kInvalid | kOutsideRegion | kWeak;
 }  // namespace corrected_flag

@@ -1,5 +1,11 @@
 #include "services/ghost_filter/config.hpp"
 
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "services/ghost_filter/weights_file.hpp"
+
 namespace boresight::ghosts {
 
 namespace {
@@ -51,52 +57,91 @@ MapConfig read_map(config::Reader reader) {
   return c;
 }
 
-ClassConfig read_classes(config::Reader reader) {
-  ClassConfig c;
-  c.decision_probability = reader.number("decision_probability", {0.01, 0.99}, c.decision_probability);
+CountConfig read_counts(config::Reader reader) {
+  CountConfig c;
   c.memory_s = reader.number("memory_s", {0.0, 2.0}, c.memory_s);
-  c.sighting_s = reader.number("sighting_s", {0.0, 2.0}, c.sighting_s);
-  c.new_object_density = reader.number("new_object_density", {1e-12, 1.0}, c.new_object_density);
-  c.clutter_density = reader.number("clutter_density", {0.0, 1.0}, c.clutter_density);
-  c.lone_ghost_density = reader.number("lone_ghost_density", {0.0, 1.0}, c.lone_ghost_density);
-  c.hidden_ghost_density = reader.number("hidden_ghost_density", {0.0, 1.0}, c.hidden_ghost_density);
-  c.type1_per_object = reader.number("type1_per_object", {0.0, 100.0}, c.type1_per_object);
-  c.type1_unheard = reader.number("type1_unheard", {0.0, 1.0}, c.type1_unheard);
-  c.type2_per_object = reader.number("type2_per_object", {0.0, 100.0}, c.type2_per_object);
-  c.real_per_object = reader.number("real_per_object", {0.01, 100.0}, c.real_per_object);
-  c.real_per_truck = reader.number("real_per_truck", {0.01, 100.0}, c.real_per_truck);
-  c.tentative_weight = reader.number("tentative_weight", {0.0, 1.0}, c.tentative_weight);
-  c.wheel_share = reader.number("wheel_share", {0.0, 1.0}, c.wheel_share);
-  c.strength_doubt = reader.number("strength_doubt", {0.0, 1.0}, c.strength_doubt);
-  c.stationary_image_density = reader.number("stationary_image_density", {0.0, 1.0}, c.stationary_image_density);
-  c.extent_std_m = reader.number("extent_std_m", {0.1, 10.0}, c.extent_std_m);
-  c.range_rate_slack_mps = reader.number("range_rate_slack_mps", {0.0, 10.0}, c.range_rate_slack_mps);
-  c.margin_m = reader.number("margin_m", {0.0, 20.0}, c.margin_m);
-  c.min_mirror_length_m = reader.number("min_mirror_length_m", {1.0, 100.0}, c.min_mirror_length_m);
-  c.mirror_doubt = reader.number("mirror_doubt", {0.0, 1.0}, c.mirror_doubt);
-  c.ego_front_m = reader.number("ego_front_m", {0.0, 20.0}, c.ego_front_m);
-  c.ego_rear_m = reader.number("ego_rear_m", {-20.0, 0.0}, c.ego_rear_m);
-  c.ego_half_width_m = reader.number("ego_half_width_m", {0.1, 3.0}, c.ego_half_width_m);
+  c.past_radius_m = reader.number("past_radius_m", {0.1, 20.0}, c.past_radius_m);
+  c.past_radius_per_range = reader.number("past_radius_per_range", {0.0, 0.2}, c.past_radius_per_range);
+  c.past_range_rate_mps = reader.number("past_range_rate_mps", {0.05, 10.0}, c.past_range_rate_mps);
+  c.company_radius_m = reader.number("company_radius_m", {0.1, 20.0}, c.company_radius_m);
+  c.company_range_rate_mps = reader.number("company_range_rate_mps", {0.05, 10.0}, c.company_range_rate_mps);
+  c.wide_range_m = reader.number("wide_range_m", {0.1, 50.0}, c.wide_range_m);
+  c.wide_range_rate_mps = reader.number("wide_range_rate_mps", {0.05, 20.0}, c.wide_range_rate_mps);
+  const auto looks = [&](std::string_view key, std::size_t fallback) {
+    return static_cast<std::size_t>(reader.integer(key, {1, 100'000}, static_cast<std::int64_t>(fallback)));
+  };
+  c.most_neighbours = looks("most_neighbours", c.most_neighbours);
+  c.most_past_looks = looks("most_past_looks", c.most_past_looks);
   return c;
 }
 
-MirrorConfig read_mirror(config::Reader root) {
-  MirrorConfig c;
+/// Edges in strict order: rising, or falling.
+template <std::size_t N>
+void read_edges(config::Reader& reader, std::string_view key, bool rises, std::array<double, N>& edges) {
+  const std::vector<double> read = reader.numbers(key, N, {-20.0, 1e6}, {edges.begin(), edges.end()});
+  for (std::size_t i = 1; i < N; ++i) {
+    if (rises ? read[i] > read[i - 1] : read[i] < read[i - 1]) continue;
+    reader.reject(key, rises ? "must rise" : "must fall");
+    return;
+  }
+  std::copy_n(read.begin(), N, edges.begin());
+}
+
+LevelConfig read_levels(config::Reader reader) {
+  LevelConfig c;
+  read_edges(reader, "past_scans", true, c.past_scans);
+  read_edges(reader, "company", true, c.company);
+  read_edges(reader, "ring_share", false, c.ring_share);
+  read_edges(reader, "range_m", true, c.range_m);
+  read_edges(reader, "wide_ring", true, c.wide_ring);
+  read_edges(reader, "burst", true, c.burst);
+  read_edges(reader, "existence", true, c.existence);
+  read_edges(reader, "image_share", true, c.image_share);
+  read_edges(reader, "track_log10_intensity", true, c.track_log10_intensity);
+  return c;
+}
+
+IntensityConfig read_intensity(config::Reader reader) {
+  IntensityConfig c;
+  c.ambiguous_share = reader.number("ambiguous_share", {0.0, 0.5}, c.ambiguous_share);
+  c.ambiguous_width_mps = reader.number("ambiguous_width_mps", {1.0, 500.0}, c.ambiguous_width_mps);
+  c.position_std_m = reader.number("position_std_m", {0.01, 10.0}, c.position_std_m);
+  c.velocity_std_mps = reader.number("velocity_std_mps", {0.01, 10.0}, c.velocity_std_mps);
+  c.other_intensity = reader.number("other_intensity", {1e-9, 1.0}, c.other_intensity);
+  c.certainty_power = reader.number("certainty_power", {0.1, 20.0}, c.certainty_power);
+  c.mirrored_existence = reader.number("mirrored_existence", {0.0, 1.0}, c.mirrored_existence);
+  c.mirror_share_per_m = reader.number("mirror_share_per_m", {0.0, 1.0}, c.mirror_share_per_m);
+  c.most_mirror_share = reader.number("most_mirror_share", {0.0, 1.0}, c.most_mirror_share);
+  return c;
+}
+
+EvidenceConfig read_evidence(config::Reader root) {
+  EvidenceConfig c;
   c.tracks_max_age_s = root.number("tracks_max_age_s", {0.05, 10.0}, c.tracks_max_age_s);
+  c.counts = read_counts(root.table("counts"));
+  c.levels = read_levels(root.table("levels"));
+  c.intensity = read_intensity(root.table("intensity"));
   c.map = read_map(root.table("map"));
-  c.classes = read_classes(root.table("classes"));
   return c;
 }
 
 }  // namespace
 
-Config read_config(config::Reader root) {
+Config read_settings(config::Reader root) {
   Config c;
-  c.method = root.choice<MethodName>("method", {{"mirror", MethodName::kMirror}, {"published", MethodName::kPublished}},
-                                     c.method);
-  c.mirror = read_mirror(root.table("mirror"));
+  c.method = root.choice<MethodName>(
+      "method", {{"evidence", MethodName::kEvidence}, {"published", MethodName::kPublished}}, c.method);
+  c.evidence = read_evidence(root.table("evidence"));
   c.published = read_published(root.table("published"));
   root.finish();
+  return c;
+}
+
+Config read_config(const runtime::Configuration& files, const VehicleConfig& vehicle) {
+  Config c = read_settings(config::Reader::open(files.service_file("ghost_filter")));
+  for (const RadarConfig& radar : vehicle.radars) {
+    c.evidence.radars.push_back({radar.id, read_weights(files.radar_profile_file(radar.statistics))});
+  }
   return c;
 }
 

@@ -15,7 +15,7 @@ int run(runtime::Node& node, const ghosts::Config& config) {
     classified.publish_from(scan.header, Stage::kGhostFilter, [&](ClassifiedScan& out) {
       method->classify(scan, out);
       if ((out.flags & (pipeline_flag::kNoTracks | pipeline_flag::kTracksStale)) != 0) {
-        node.fault(Fault::kSideInputMissing, "scan without tracks of the previous step: no type-1 test");
+        node.fault(Fault::kSideInputMissing, "scan without tracks of the previous step: evidence of the scans alone");
       }
     });
   });
@@ -25,9 +25,9 @@ int run(runtime::Node& node, const ghosts::Config& config) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return runtime::service_main(
-      catalogue::Service::kGhostFilter, argc, argv, [](const runtime::Configuration& files) -> runtime::Run {
-        const ghosts::Config config = ghosts::read_config(config::Reader::open(files.service_file("ghost_filter")));
-        return [config](runtime::Node& node) { return run(node, config); };
-      });
+  return runtime::service_main(catalogue::Service::kGhostFilter, argc, argv,
+                               [](const runtime::Configuration& files) -> runtime::Run {
+                                 const ghosts::Config config = ghosts::read_config(files, files.vehicle());
+                                 return [config](runtime::Node& node) { return run(node, config); };
+                               });
 }

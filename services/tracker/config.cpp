@@ -39,8 +39,7 @@ void read_clutter(config::Reader table, ClutterParameters& c) {
                {"pace_cell_m", &c.pace_cell_m, {1.0, 100.0}},
                {"origin_weight", &c.origin_weight, {0.0, 2.0}},
                {"origin_limit", &c.origin_limit, {0.0, 20.0}},
-               {"origin_prior", &c.origin_prior, {0.001, 0.999}},
-               {"origin_memory_s", &c.origin_memory_s, {0.1, 1000.0}}});
+               {"level_memory_s", &c.level_memory_s, {0.1, 1000.0}}});
   read_array(table, "table_range_edges_m", {1.0, 1000.0}, c.table_range_edges_m);
   read_array(table, "table_by_range", {1e-12, 1.0}, c.table_by_range);
   read_array(table, "table_rate_edges_mps", {0.1, 200.0}, c.table_rate_edges_mps);

@@ -98,7 +98,7 @@ class RunDrive {
   int run() {
     const bool has_tables = options_.recordings.empty();
     vehicle_ = options_.configuration.vehicle(has_tables ? config::VehicleUse::kOffline : config::VehicleUse::kLive);
-    run::Settings settings = run::read_settings(options_.configuration);
+    run::Settings settings = run::read_settings(options_.configuration, vehicle_);
     if (!options_.tracker.empty()) settings.tracker.tracker = options_.tracker;
     summary_.inputs = {.version = BORESIGHT_VERSION,
                        .recordings = {},
@@ -290,6 +290,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "Folder for the results; files of an earlier run in it are replaced")
       ->type_name("DIR")
       ->required();
+  command
+      ->add_option("--statistics", options->configuration.statistics,
+                   "Radar profile of all radars, instead of those in the vehicle file: a name in the folder "
+                   "radar_profiles/, or a file")
+      ->type_name("NAME|FILE");
   command->add_option("--tracker", options->tracker, "Tracker instead of the one in services/tracker.toml")
       ->check(CLI::IsMember(tracking::tracker_names()));
   command->add_flag("--quiet", options->quiet, "No progress bar and no summary; problems are reported all the same");

@@ -8,11 +8,11 @@
 
 namespace boresight::run {
 
-Settings read_settings(const runtime::Configuration& configuration) {
+Settings read_settings(const runtime::Configuration& configuration, const VehicleConfig& vehicle) {
   const auto open = [&](std::string_view service) { return config::Reader::open(configuration.service_file(service)); };
   return {.estimator = alignment::read_settings(open("alignment_estimator")).estimator,
           .corrector = corrector::read_config(open("detection_corrector")),
-          .ghosts = ghosts::read_config(open("ghost_filter")),
+          .ghosts = ghosts::read_config(configuration, vehicle),
           .tracker = tracking::read_config(configuration),
           .health = health::read_config(open("health")).supervision};
 }

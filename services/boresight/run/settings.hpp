@@ -11,7 +11,7 @@
 namespace boresight::run {
 
 /// Throws config::Error.
-[[nodiscard]] Settings read_settings(const runtime::Configuration& configuration);
+[[nodiscard]] Settings read_settings(const runtime::Configuration& configuration, const VehicleConfig& vehicle);
 
 /// Name and file of each: the services, and the classes of objects that they share.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings_files(

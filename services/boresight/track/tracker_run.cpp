@@ -33,6 +33,7 @@ void fill_scan(const std::vector<MeasuredPoint>& points, std::size_t step, doubl
     scan.rcs_dbsm[i] = scan.range_std_m[i] = scan.azimuth_std_rad[i] = scan.range_rate_std_mps[i] = 0.0F;
     scan.detection_flags[i] = corrected_flag::kMoving;
     scan.set_certain(i, Provenance::kMoving);
+    scan.moving_log_likelihood_ratio[i] = 0.0F;  // no evidence for or against: the table says nothing of origins
   }
 }
 

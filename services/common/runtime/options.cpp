@@ -67,6 +67,11 @@ fs::path Configuration::service_file(std::string_view name) const {
   return directory / "services" / fmt::format("{}.toml", name);
 }
 
+fs::path Configuration::radar_profile_file(const std::string& name) const {
+  if (name.find('/') != std::string::npos || name.ends_with(".toml")) return name;
+  return directory / "radar_profiles" / fmt::format("{}.toml", name);
+}
+
 fs::path Configuration::vehicle_file() const {
   const fs::path folder = directory / "vehicle";
   if (vehicle_name.empty()) {
@@ -88,7 +93,11 @@ fs::path Configuration::vehicle_file() const {
 }
 
 VehicleConfig Configuration::vehicle(config::VehicleUse use) const {
-  return config::read_vehicle_file(vehicle_file(), use);
+  VehicleConfig vehicle = config::read_vehicle_file(vehicle_file(), use);
+  if (!statistics.empty()) {
+    for (RadarConfig& radar : vehicle.radars) radar.statistics = statistics;
+  }
+  return vehicle;
 }
 
 CLI::Option* add_config_option(CLI::App& app, Configuration& configuration) {

@@ -26,9 +26,13 @@ namespace boresight::runtime {
 struct Configuration {
   std::filesystem::path directory = default_config_folder();  ///< --config DIR: holds vehicle/ and services/
   std::string vehicle_name;                                   ///< --vehicle NAME|FILE; empty: the only file in vehicle/
+  std::string statistics;  ///< of all radars, whatever the vehicle file says; empty: as it says
 
   /// DIR/services/<name>.toml.
   [[nodiscard]] std::filesystem::path service_file(std::string_view name) const;
+  /// The file of a radar profile: DIR/radar_profiles/<name>.toml, or `name` itself if it holds a '/' or ends in
+  /// ".toml".
+  [[nodiscard]] std::filesystem::path radar_profile_file(const std::string& name) const;
   /// The vehicle's file: `vehicle_name` itself if it is a path to a file, else DIR/vehicle/<vehicle_name>.toml. Throws
   /// config::Error, which lists the names in DIR/vehicle, if there is no such file; also if the name is empty and there
   /// is not exactly one file.

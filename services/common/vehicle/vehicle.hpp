@@ -94,6 +94,8 @@ struct RadarConfig {
   FieldOfView field_of_view;
   SensorNoise noise;
   AlignmentTolerance tolerance;
+  /// Radar profile whose weights of evidence the ghost filter uses: a name in config/radar_profiles, or a file.
+  std::string statistics = "series_77ghz";
   double cycle_time_s = 0.05;
   /// Time from measurement to reception, for a radar without stamps of a synchronised clock.
   double latency_s = 0.0;

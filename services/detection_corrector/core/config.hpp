@@ -23,7 +23,7 @@ struct Config {
   std::array<double, 3> region_max_m{200.0, 60.0, 6.0};
   /// A detection at `range` is weak below rcs_near_dbsm + rcs_slope_db_per_decade · log10(range / 10 m): a near
   /// detection needs more RCS, since multipath and noise are near (the 4D chain design).
-  double rcs_near_dbsm = -25.0;
+  double rcs_near_dbsm = -100.0;
   double rcs_slope_db_per_decade = 0.0;
   /// Moving if |range rate over ground| exceeds this many stds of that of a stationary reflector.
   double moving_sigma = 4.0;

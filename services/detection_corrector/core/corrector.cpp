@@ -126,7 +126,8 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
     const bool finite = std::isfinite(scan.range_m[i]) && std::isfinite(scan.azimuth_rad[i]) &&
                         std::isfinite(elevation) && std::isfinite(scan.range_rate_mps[i]) && scan.range_m[i] >= 0.0F;
     std::uint16_t flags = 0;
-    if (!finite || (scan.detection_flags[i] & detection_flag::kInvalid) != 0) flags |= corrected_flag::kInvalid;
+    if (!finite) flags |= corrected_flag::kInvalid;
+    if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) flags |= corrected_flag::kDoubted;
     if ((scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) flags |= corrected_flag::kAmbiguous;
     const double range = finite ? scan.range_m[i] : 0.0;
     const double measured_azimuth = finite ? scan.azimuth_rad[i] : 0.0;
@@ -163,10 +164,9 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
     if (!is_inside(position, config_)) flags |= corrected_flag::kOutsideRegion;
     if (has_rcs && range > 0.0) {
       const double limit = config_.rcs_near_dbsm + config_.rcs_slope_db_per_decade * std::log10(range / 10.0);
-      if (!(scan.rcs_dbsm[i] >= limit)) flags |= corrected_flag::kWeak;
+      if (scan.rcs_dbsm[i] < limit) flags |= corrected_flag::kWeak;
     }
-    // A detection with an ambiguous range rate is neither moving nor stationary.
-    if (compensates && (flags & (corrected_flag::kInvalid | corrected_flag::kAmbiguous)) == 0) {
+    if (compensates && finite) {
       // A std that the sensor does not state comes from the vehicle file and holds at the boresight.
       const bool states_azimuth = has_stds && azimuth_std == scan.azimuth_std_rad[i];
       const double widening = states_azimuth ? 1.0 : 1.0 / std::max(ca, config_.azimuth_std_edge);
@@ -185,7 +185,8 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
       const bool states_rate = has_stds && range_rate_std == scan.range_rate_std_mps[i];
       const Innovation innovation = stationary.innovation(sight);
       const bool passes = stationary.passes(innovation, states_rate ? noise.variance_factor() : 1.0);
-      if (states_rate) innovations_[with_noise++] = innovation;
+      const bool is_trusted = (flags & (corrected_flag::kDoubted | corrected_flag::kAmbiguous)) == 0;
+      if (states_rate && is_trusted) innovations_[with_noise++] = innovation;
       flags |= passes ? corrected_flag::kStationary : corrected_flag::kMoving;
     }
     out.detection_flags[i] = flags;

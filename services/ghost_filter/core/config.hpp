@@ -3,19 +3,19 @@
 
 #include <cstdint>
 
-#include "services/ghost_filter/core/classify/filter_config.hpp"
+#include "services/ghost_filter/core/evidence/config.hpp"
 #include "services/ghost_filter/core/published/config.hpp"
 
 namespace boresight::ghosts {
 
 enum class MethodName : std::uint8_t {
-  kMirror,     ///< mirror consistency: the product's own
+  kEvidence,   ///< additive evidence: the product's own
   kPublished,  ///< Le Ba Thanh 2023: the baseline
 };
 
 struct Config {
-  MethodName method = MethodName::kMirror;
-  MirrorConfig mirror;
+  MethodName method = MethodName::kEvidence;
+  EvidenceConfig evidence;
   published::Config published;
 };
 

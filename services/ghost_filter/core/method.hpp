@@ -1,13 +1,15 @@
-// What every method of telling ghosts from what is real has in common.
+// What every method of telling false moving detections from real ones has in common.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <span>
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/corrected_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
 #include "services/ghost_filter/core/config.hpp"
+#include "services/ghost_filter/core/evidence/levels.hpp"
 
 namespace boresight::ghosts {
 
@@ -26,6 +28,9 @@ class Method {
 
   /// Points of the stationary world that are accumulated at present.
   [[nodiscard]] virtual std::size_t map_points() const = 0;
+
+  /// The evidence of each moving detection of the last scan, to fit weights; empty if the method has none.
+  [[nodiscard]] virtual std::span<const JudgedEvidence> evidence() const { return {}; }
 };
 
 /// The method that the configuration names; what it needs is allocated here, and never later.

@@ -275,6 +275,7 @@ radar::Profile read_profile(Reader root) {
   read_table(root.table("stationary_world"), p.stationary_world);
   read_table(root.table("validity"), p.validity);
   read_table(root.table("latency"), p.latency);
+  root.skip("evidence");  // the ghost filter's
   root.finish();
   return p;
 }

@@ -355,6 +355,15 @@ std::vector<Reader> Reader::tables(std::string_view key) {
   return readers;
 }
 
+void Reader::skip(std::string_view key) {
+  node_->known.emplace(key);
+}
+
+void Reader::skip_others() {
+  if (node_->table == nullptr) return;
+  for (const auto& [key, value] : *node_->table) node_->known.emplace(key.str());
+}
+
 void Reader::reject(std::string_view key, std::string_view problem) {
   node_->note(node_->line_of(key), key, problem);
 }

@@ -68,6 +68,11 @@ class Reader {
   /// Array of tables ([[key]]); empty if absent.
   [[nodiscard]] std::vector<Reader> tables(std::string_view key);
 
+  /// Takes a key as known without reading it: it belongs to another reader.
+  void skip(std::string_view key);
+  /// The same of all keys of this table that are not read.
+  void skip_others();
+
   /// Notes an error at this key (or at the table, with an empty key), for checks across keys.
   void reject(std::string_view key, std::string_view problem);
   /// "file:line: key" as in errors, for errors that are found after the file was read.

@@ -220,6 +220,8 @@ RadarConfig read_radar(Reader reader, VehicleUse use) {
   radar.field_of_view = read_field_of_view(reader.table("field_of_view"));
   radar.noise = read_noise(reader.table("noise"));
   radar.tolerance = read_tolerance(reader.table("tolerance"));
+  radar.statistics = reader.text("statistics", radar.statistics);
+  if (radar.statistics.empty()) reader.reject("statistics", "must be the name of a radar profile, or a file");
   radar.cycle_time_s = reader.number("cycle_time_s", {0.005, 2.0}, radar.cycle_time_s);
   radar.latency_s = reader.number("latency_s", {0.0, 1.0}, radar.latency_s);
   radar.deadline_s = reader.number("deadline_s", {0.02, 10.0}, radar.deadline_s);

@@ -142,6 +142,8 @@ void Filter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
       out.set_probabilities(i, label == Provenance::kMoving       ? kOfMoving
                                : label == Provenance::kGhostType1 ? kOfType1
                                                                   : kOfType2);
+      const float moving = out.probability(Provenance::kMoving, i);
+      out.moving_log_likelihood_ratio[i] = std::log(moving / (1.0F - moving));
     }
   }
 }

@@ -62,7 +62,6 @@ bool join(Reflector& longer, const Reflector& shorter) {
   }
   longer.occupancy = occupancy;
   longer.log_odds = std::max(longer.log_odds, shorter.log_odds);
-  longer.add_to_mirrors(shorter.mirrors);
   longer.born_ns = std::min(longer.born_ns, shorter.born_ns);
   longer.detections += shorter.detections;
   // Its begin, middle and end stand for all that it knows of its three parameters.

@@ -10,7 +10,7 @@ constexpr float kUnseen = -1.0F;
 constexpr float kHit = 1.2F;
 /// A rail reflects at its posts, of which a scan shows a part only: a miss says far less than a hit.
 constexpr float kMiss = -0.12F;
-constexpr float kSurestCell = 4.0F, kLeastSure = -3.0F, kDriven = -5.0F;
+constexpr float kSurestCell = 4.0F, kLeastSure = -3.0F;
 
 float to_probability(float log_odds) {
   return 1.0F / (1.0F + std::exp(-log_odds));
@@ -18,7 +18,6 @@ float to_probability(float log_odds) {
 }  // namespace
 
 void Occupancy::set(std::int32_t bin, float log_odds) {
-  if (driven(bin)) log_odds = kDriven;
   log_odds_[index(bin)] = log_odds;
   probability_[index(bin)] = to_probability(log_odds);
 }
@@ -30,7 +29,6 @@ void Occupancy::reset(double begin_m, double end_m, double bin_m) {
   log_odds_.fill(kUnseen);
   probability_.fill(to_probability(kUnseen));
   hit_.fill(false);
-  driven_.fill(false);
 }
 
 std::int32_t Occupancy::bin_of(double arc_m) const {
@@ -40,13 +38,12 @@ std::int32_t Occupancy::bin_of(double arc_m) const {
 bool Occupancy::extend(double arc_m) {
   const std::int32_t bin = bin_of(arc_m);
   if (std::max(last_, bin) - std::min(first_, bin) >= kBins) return false;
-  const auto begin = [this](std::int32_t new_bin, std::int32_t newly_beyond) {
-    driven(newly_beyond) = false;
+  const auto begin = [this](std::int32_t new_bin) {
     hit_[index(new_bin)] = false;
     set(new_bin, kUnseen);
   };
-  for (; last_ < bin; ++last_) begin(last_ + 1, last_ + 1 + kBeyond);
-  for (; first_ > bin; --first_) begin(first_ - 1, first_ - 1 - kBeyond);
+  for (; last_ < bin; ++last_) begin(last_ + 1);
+  for (; first_ > bin; --first_) begin(first_ - 1);
   return true;
 }
 
@@ -55,7 +52,7 @@ void Occupancy::hit(double arc_m) {
   if (bin >= first_ && bin <= last_) hit_[index(bin)] = true;
 }
 
-void Occupancy::settle(const HiddenStretches& hidden, double shift_m) {
+void Occupancy::settle() {
   std::int32_t from = last_ + 1, to = first_ - 1;
   for (std::int32_t bin = first_; bin <= last_; ++bin) {
     if (!hit_[index(bin)]) continue;
@@ -63,30 +60,15 @@ void Occupancy::settle(const HiddenStretches& hidden, double shift_m) {
     to = bin;
   }
   for (std::int32_t bin = from; bin <= to; ++bin) {
-    if (!hit_[index(bin)] && hidden.contains((bin + 0.5) * bin_m_ - shift_m)) continue;
     set(bin, std::clamp(log_odds_[index(bin)] + (hit_[index(bin)] ? kHit : kMiss), kLeastSure, kSurestCell));
     hit_[index(bin)] = false;
   }
-}
-
-void Occupancy::open(double arc_m, double around_m) {
-  const std::int32_t to = std::min(last_ + kBeyond, bin_of(arc_m + around_m));
-  for (std::int32_t bin = std::max(first_ - kBeyond, bin_of(arc_m - around_m)); bin <= to; ++bin) {
-    driven(bin) = true;
-    if (bin >= first_ && bin <= last_) set(bin, kDriven);
-  }
-}
-
-bool Occupancy::is_driven(double arc_m) const {
-  const std::int32_t bin = bin_of(arc_m);
-  return bin >= first_ - kBeyond && bin <= last_ + kBeyond && driven_[static_cast<std::uint32_t>(bin) % driven_.size()];
 }
 
 void Occupancy::join(double arc_m, const Occupancy& other, double other_arc_m) {
   const std::int32_t theirs = other.bin_of(other_arc_m);
   if (theirs < other.first_ || theirs > other.last_ || !extend(arc_m)) return;
   const std::int32_t bin = bin_of(arc_m);
-  driven(bin) = driven(bin) || other.is_driven(other_arc_m);
   set(bin, std::max(log_odds_[index(bin)], other.log_odds_[index(theirs)]));
 }
 

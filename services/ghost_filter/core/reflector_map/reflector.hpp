@@ -11,7 +11,6 @@
 
 #include "services/ghost_filter/core/reflector_map/curve.hpp"
 #include "services/ghost_filter/core/reflector_map/curve_fit.hpp"
-#include "services/ghost_filter/core/reflector_map/shadows.hpp"
 
 namespace boresight::ghosts {
 
@@ -20,27 +19,18 @@ class Occupancy {
  public:
   static constexpr std::int32_t kBins = 128;
   static constexpr std::int32_t kMostBlur = 4;  ///< bins to either side over which a probability is averaged
-  static constexpr std::int32_t kBeyond = 20;   ///< bins beyond either end in which is remembered what drove through
   void reset(double begin_m, double end_m, double bin_m);
   /// Makes room for a place; false if the reflector would become longer than there are bins.
   bool extend(double arc_m);
   void hit(double arc_m);
-  /// Of the bins between those that were hit since the last call, those that were not become less likely, but for what
-  /// is hidden; its arc lengths count from `shift_m`.
-  void settle(const HiddenStretches& hidden = {}, double shift_m = 0.0);
-  /// Something drove through at this place, which may lie beyond the ends: there is nothing, ever, within `around_m`,
-  /// whatever is heard from there (what hangs above the road, say).
-  void open(double arc_m, double around_m);
-  /// Whether something is known to have driven through at a place, at most kBeyond bins beyond the ends.
-  [[nodiscard]] bool is_driven(double arc_m) const;
+  /// Of the bins between those that were hit since the last call, those that were not become less likely.
+  void settle();
   /// Takes over what another one that runs along the same line knows of a place; see extend().
   void join(double arc_m, const Occupancy& other, double other_arc_m);
   /// Forgets the bins before and after.
   void keep(double begin_m, double end_m);
   /// Probability that the reflector is there, averaged over ± `std_m` about a place.
   [[nodiscard]] double probability(double arc_m, double std_m) const;
-  /// As far beyond its ends that may be something.
-  [[nodiscard]] double most_blur_m() const { return kMostBlur * bin_m_; }
   [[nodiscard]] double begin_m() const { return first_ * bin_m_; }
   [[nodiscard]] double end_m() const { return (last_ + 1) * bin_m_; }
   [[nodiscard]] std::int32_t first() const { return first_; }
@@ -52,19 +42,12 @@ class Occupancy {
   [[nodiscard]] std::int32_t bin_of(double arc_m) const;
   [[nodiscard]] static std::size_t index(std::int32_t bin) { return static_cast<std::uint32_t>(bin) % kBins; }
   void set(std::int32_t bin, float log_odds);
-  [[nodiscard]] bool& driven(std::int32_t bin) { return driven_[static_cast<std::uint32_t>(bin) % driven_.size()]; }
   double bin_m_ = 1.0;
   std::int32_t first_ = 0, last_ = -1;
   std::array<float, kBins> log_odds_{};
   std::array<float, kBins> probability_{};  // the same, as it is asked for far more often than it changes
   std::array<bool, kBins> hit_{};
-  std::array<bool, 2 * kBins> driven_{};  // through; holds those beyond the ends, too
-  static_assert(kBins + 2 * kBeyond <= 2 * kBins);
 };
-
-/// As far beyond its ends a long one, a rail or a wall, may go on unseen: vehicles hide it, or it was not looked for
-/// yet.
-inline constexpr double kGoesOn_m = 40.0, kLong_m = 20.0;
 
 struct Reflector {
   Curve curve;  ///< in the odometry frame
@@ -77,13 +60,7 @@ struct Reflector {
   std::uint32_t id;  ///< stays the same
   std::int64_t born_ns;
   std::int64_t refined_ns;
-  Evidence evidence{};                                 ///< since then
-  double hidden_before_m = 0.0, hidden_after_m = 0.0;  ///< as far beyond its begin and its end all is hidden
-  double mirrors = 0.0;                                ///< log-odds that it mirrors, by what was seen in it, or was not
-  void add_to_mirrors(double log_odds) {
-    constexpr double kMost = 6.0;  // so that it can still be told otherwise
-    mirrors = std::clamp(mirrors + log_odds, -kMost, kMost);
-  }
+  Evidence evidence{};  ///< since then
   [[nodiscard]] double begin_m() const { return occupancy.begin_m() - arc_shift_m; }
   [[nodiscard]] double end_m() const { return occupancy.end_m() - arc_shift_m; }
   [[nodiscard]] double length_m() const { return occupancy.end_m() - occupancy.begin_m(); }

@@ -101,29 +101,6 @@ void ReflectorMap::update(const Odometry& odometry, double speed_std_mps, double
   index_is_due_ = false;
 }
 
-void ReflectorMap::drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
-  constexpr double kLane_m = 4.0;    // what hangs above the road spans the lane
-  constexpr double kBeside_m = 2.5;  // an unseen wall may begin where there is room for the vehicle
-  constexpr double kAcross = 0.5;    // sine: what drives along a wall may seem to touch it
-  const double way_m = (to_m - from_m).norm();
-  for (Reflector& r : reflectors_) {
-    // Nor is it there unseen, where it is long enough to be thought to go on.
-    const double beyond_m = r.length_m() >= kLong_m ? kGoesOn_m : 0.0;
-    const double begin_m = r.begin_m() - beyond_m, end_m = r.end_m() + beyond_m;
-    // What is farther away than both reach does not cross.
-    const double reach_m = std::max(-begin_m, end_m) + way_m + 2.0 * kLane_m;
-    if ((r.curve.origin_m - from_m).squaredNorm() > reach_m * reach_m) continue;
-    const Eigen::Vector2d from = r.curve.local(from_m), to = r.curve.local(to_m);
-    if ((from.x() > end_m && to.x() > end_m) || (from.x() < begin_m && to.x() < begin_m)) continue;
-    const double before = r.curve.distance_of_local(from), behind = r.curve.distance_of_local(to);
-    if (before * behind >= 0.0 || std::abs(before - behind) < kAcross * (to - from).norm()) continue;
-    const Eigen::Vector2d at = from + before / (before - behind) * (to - from);
-    const double arc = r.curve.arc_of_local(at);
-    const bool is_within = arc >= r.begin_m() && arc <= r.end_m();
-    r.occupancy.open(arc + r.arc_shift_m, is_within ? kLane_m : kBeside_m);
-  }
-}
-
 void ReflectorMap::refine_due(const Odometry& odometry, double elapsed_s, const DriftStds& stds) {
   const double share = std::min(1.0, elapsed_s / std::max(1e-3, config_.update_period_s));
   const auto most = static_cast<std::size_t>(std::ceil(share * static_cast<double>(reflectors_.size())));
@@ -156,11 +133,7 @@ void ReflectorMap::refine(Reflector& r, const Odometry& odometry, const DriftStd
   const Evidence evidence = r.evidence;
   r.evidence = {};
   r.detections += evidence.points;
-  // What is short does not go on, and is seen or hidden as a whole.
-  const HiddenStretches hidden = r.length_m() >= kLong_m ? shadows_.on(r.curve) : HiddenStretches{};
-  r.occupancy.settle(hidden, r.arc_shift_m);
-  r.hidden_before_m = hidden.before(r.begin_m(), kGoesOn_m);
-  r.hidden_after_m = hidden.after(r.end_m(), kGoesOn_m);
+  r.occupancy.settle();
   if (evidence.points < 3) {
     r.log_odds += kUnseenLogOdds;
   } else {

@@ -17,7 +17,6 @@
 #include "services/ghost_filter/core/reflector_map/odometry.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector.hpp"
 #include "services/ghost_filter/core/reflector_map/reflector_index.hpp"
-#include "services/ghost_filter/core/reflector_map/shadows.hpp"
 #include "services/ghost_filter/core/reflector_map/stationary_grid.hpp"
 
 namespace boresight::ghosts {
@@ -41,15 +40,7 @@ class ReflectorMap {
   /// the tiles that are due and looks for new reflectors there.
   void update(const Odometry& odometry, double speed_std_mps, double yaw_rate_std_radps);
 
-  /// What hides the map from the own vehicle, in the odometry frame: to be set before update().
-  [[nodiscard]] Shadows& shadows() { return shadows_; }
-  /// Something that is no image drives where the way between these two places (odometry frame) is: what crosses it is
-  /// no reflector there.
-  void drive_over(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m);
-
   [[nodiscard]] std::span<const Reflector> reflectors() const { return reflectors_; }
-  /// What was seen in one of them, or was not: a change of the log-odds that it mirrors.
-  void tried(std::size_t reflector, double change) { reflectors_[reflector].add_to_mirrors(change); }
   [[nodiscard]] const StationaryGrid& grid() const { return grid_; }
   /// Reflectors that were found so far.
   [[nodiscard]] std::uint32_t births() const { return births_; }
@@ -73,7 +64,6 @@ class ReflectorMap {
   geometry::Dbscan dbscan_;
   geometry::ClusterRuns<Eigen::Vector2d> clusters_, exact_clusters_;
   ReflectorIndex index_;
-  Shadows shadows_;
   std::vector<Reflector> reflectors_;
   std::vector<Eigen::Vector2d> free_, inexact_;  // cells that no reflector claims; the latter end up in the former
   std::size_t next_reflector_ = 0, next_tile_ = 0;

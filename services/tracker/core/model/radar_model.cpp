@@ -42,7 +42,7 @@ RadarModel::RadarModel(const VehicleConfig& vehicle, const RadarModelParameters&
     radars_.push_back({r.id, 0.5 * (f.azimuth_max_rad + f.azimuth_min_rad), half_rad, f.range_max_m,
                        r.noise.range_std_m, r.noise.azimuth_std_rad, r.noise.range_rate_std_mps,
                        ClutterMap(parameters.clutter, half_rad, f.range_max_m), parameters.source.wide_prior,
-                       parameters.source.wide_prior, parameters.clutter.origin_prior});
+                       parameters.source.wide_prior});
   }
   measurements_.reserve(kMaxDetections);
   places_.reserve(kMaxDetections);
@@ -110,14 +110,12 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
   boxes_.begin_scan({sensor_m_, facing_rad_, radar_->half_view_rad, parameters_.detection.view_edge_rad});
   const double time_s = static_cast<double>(time_ns_) * 1e-9;
   radar_->clutter.begin_scan(time_s);
-  const double keep = std::exp(-std::abs(time_s - radar_->moving_time_s) / parameters_.clutter.origin_memory_s);
-  radar_->moving_time_s = time_s;
+  const double keep = std::exp(-std::abs(time_s - radar_->levels_time_s) / parameters_.clutter.level_memory_s);
+  radar_->levels_time_s = time_s;
   radar_->wide_seen *= keep;
   radar_->wide_expected *= keep;
   radar_->wide_seen += (1.0 - keep) * parameters_.source.wide_prior;
   radar_->wide_expected += (1.0 - keep) * parameters_.source.wide_prior;
-  radar_->moving_sum = keep * radar_->moving_sum + (1.0 - keep) * parameters_.clutter.origin_prior;
-  radar_->moving_count = keep * radar_->moving_count + (1.0 - keep);
   radar_->strength_sum_db *= keep;
   radar_->strengths *= keep;
   for (std::uint32_t i = 0; i < scan.number_of_valid_detections && i < kMaxDetections; ++i) {
@@ -127,8 +125,8 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
     const Vector2<double> at{static_cast<double>(scan.x_vehicle_m[i]), static_cast<double>(scan.y_vehicle_m[i])};
     const auto azimuth_rad = static_cast<double>(scan.azimuth_vehicle_rad[i]);
     const Vector2<double> sight{std::cos(azimuth_rad), std::sin(azimuth_rad)};
-    const auto moving = static_cast<double>(scan.probability(Provenance::kMoving, i));
-    if (!std::isfinite(at.x + at.y + sight.x + rate_mps + moving + static_cast<double>(scan.range_m[i]))) continue;
+    const auto ratio = static_cast<double>(scan.moving_log_likelihood_ratio[i]);
+    if (!std::isfinite(at.x + at.y + sight.x + rate_mps + ratio + static_cast<double>(scan.range_m[i]))) continue;
     Measurement<double> z;
     z.position_m = axes_.to_local(at);
     z.sight = axes_.to_local(sight);
@@ -149,9 +147,7 @@ void RadarModel::read_detections(const ClassifiedScan& scan) {
     place.azimuth_share = geometry::wrap_angle(azimuth_rad + axes_.heading_rad - facing_rad_) / radar_->half_view_rad;
     place.range_rate_over_ground_mps = rate_mps;
     place.range_rate_mps = rate_mps - dot(z.sight, sensor_velocity_mps_);
-    z.log_clutter = std::log(radar_->clutter.intensity(place)) + log_origin(moving);
-    radar_->moving_sum += moving;
-    radar_->moving_count += 1.0;
+    z.log_clutter = std::log(radar_->clutter.intensity(place)) + log_origin(ratio);
     measurements_.push_back(z);
     places_.push_back(place);
   }
@@ -166,14 +162,9 @@ void RadarModel::find_occlusion() {
   for (const KnownObject& o : objects_) occlusion_.add(o.component.label, o.existence, boxes_.box(o.component));
 }
 
-double RadarModel::log_origin(double p) const {
+double RadarModel::log_origin(double log_likelihood_ratio) const {
   const ClutterParameters& c = parameters_.clutter;
-  const auto against = [](double share) {
-    const double q = std::clamp(share, kLeastProbability, 1.0 - kLeastProbability);
-    return std::log((1.0 - q) / q);
-  };
-  const double usual = against(radar_->moving_sum / radar_->moving_count);
-  return c.origin_weight * std::clamp(against(p) - usual, -c.origin_limit, c.origin_limit);
+  return -c.origin_weight * std::clamp(log_likelihood_ratio, -c.origin_limit, c.origin_limit);
 }
 
 double RadarModel::predict(Component<double>& c, double elapsed_s) const {

@@ -75,8 +75,8 @@ class RadarModel final : public Model {
     double range_std_m = 0.0, azimuth_std_rad = 0.0, range_rate_std_mps = 0.0;
     ClutterMap clutter;
     double wide_seen = 0.0, wide_expected = 0.0;  // detections of objects with wide range rates, and those of the table
-    double moving_sum = 0.0, moving_count = 1.0, moving_time_s = 0.0;  // of the ghost filter's probabilities
-    double strength_sum_db = 0.0, strengths = 0.0;                     // of moving detections
+    double strength_sum_db = 0.0, strengths = 0.0;  // of moving detections
+    double levels_time_s = 0.0;
   };
   struct Look {
     View<double> view;
@@ -121,8 +121,8 @@ class RadarModel final : public Model {
   /// The objects after a scan; their side lobes are expected in the next one.
   void note_objects(std::span<const ObjectEstimate> objects);
   void move_axes(const ClassifiedScan& scan, double elapsed_s);
-  /// log of how much likelier than for the radar's usual detection it is that this one is no moving object's.
-  [[nodiscard]] double log_origin(double moving_probability) const;
+  /// Log of the factor by which the ghost filter's evidence raises the clutter intensity.
+  [[nodiscard]] double log_origin(double log_likelihood_ratio) const;
   void read_detections(const ClassifiedScan& scan);
   void find_occlusion();
   /// Adds expected detections of a kind with so much `share` of the clutter at the measurement.

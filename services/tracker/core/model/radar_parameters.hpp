@@ -64,10 +64,9 @@ struct ClutterParameters {
   double pace_over_ground_mps = 2.0;  ///< and its least one over ground: else the own vehicle hardly moves
   double pace_cell_m = 10.0;          ///< size along the range of a cell of such echoes
   double with_ego_factor = 8.0;       ///< start level of echoes that keep pace with the own vehicle
-  double origin_weight = 1.0;         ///< of the ghost filter's log odds that a detection is no moving object's
-  double origin_limit = 3.0;          ///< largest magnitude of these log odds that counts: evidence must saturate
-  double origin_prior = 0.5;          ///< start of that share, with the weight of one detection
-  double origin_memory_s = 10.0;  ///< of the radar's mean share of moving objects' detections, against which they count
+  double origin_weight = 1.0;         ///< of the ghost filter's log-likelihood ratio of a moving object's detection
+  double origin_limit = 3.0;          ///< largest magnitude of this ratio that counts: evidence must saturate
+  double level_memory_s = 10.0;       ///< of the radar's strength, and of its share of wide range rates
 };
 
 struct SourceParameters {

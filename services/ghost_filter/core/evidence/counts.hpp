@@ -1,0 +1,74 @@
+// What a scan and the scans before it show of a moving detection, as six counts. None depends on the strength.
+//
+// An object is detected again where it was before, moved by its range rate; most false moving detections last one scan.
+// An object has several detections at one place; an echo that is smeared over azimuth, or a side lobe, has several at
+// one range and range rate but at different azimuths. Bursts of false detections fill a scan.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "services/ghost_filter/core/evidence/config.hpp"
+
+namespace boresight::ghosts {
+
+/// A moving detection as the counts need it.
+struct Candidate {
+  float range_m;
+  float azimuth_rad;
+  float range_rate_mps;              ///< as measured, not compensated
+  float range_rate_over_ground_mps;
+  Eigen::Vector2f position_m;        ///< in a frame that does not move
+  Eigen::Vector2f direction;         ///< of the line of sight in that frame, unit
+};
+
+struct Counts {
+  std::uint32_t past_scans = 0;  ///< earlier scans, of any radar, with a detection where this one would have been
+  std::uint32_t company = 1;     ///< detections of this scan beside it, itself included
+  std::uint32_t ring = 0;        ///< others of its range and range rate, at other azimuths
+  std::uint32_t wide_ring = 0;   ///< others of nearly its range and range rate, at other azimuths, beyond `ring`
+  std::uint32_t moving = 0;      ///< moving detections of this scan
+  float range_m = 0.0F;
+};
+
+/// Remembers the moving detections of the last scans. Allocates nothing after construction. The work per candidate is
+/// bounded by the configuration.
+class Counter {
+ public:
+  explicit Counter(const CountConfig& config);
+
+  /// Counts of each candidate of a scan, in their order, then remembers them. Candidates beyond the capacity of a scan
+  /// get no counts. Scans come in the order of measurement, up to some milliseconds.
+  void count(std::int64_t time_ns, std::span<const Candidate> scan, std::span<Counts> counts);
+  /// Forgets the earlier scans: the frame has changed.
+  void clear() { first_ = size_ = 0; }
+  /// Pairs compared since construction: the measure of the work.
+  [[nodiscard]] std::uint64_t looks() const { return looks_; }
+
+ private:
+  struct Remembered {
+    float x_m, y_m, range_rate_over_ground_mps;
+  };
+  struct Memory {
+    std::int64_t time_ns = 0;
+    std::vector<Remembered> detections;  // sorted by x
+  };
+  void forget(std::int64_t time_ns);
+  void remember(std::int64_t time_ns, std::span<const Candidate> scan);
+  void count_scan(std::span<const Candidate> scan, std::span<Counts> counts);
+  [[nodiscard]] std::uint32_t past_scans(std::int64_t time_ns, const Candidate& c);
+  [[nodiscard]] Memory& memory(std::size_t age) { return memories_[(first_ + size_ - 1 - age) % memories_.size()]; }
+
+  CountConfig config_;
+  std::vector<Memory> memories_;  // a ring
+  std::size_t first_ = 0, size_ = 0;
+  std::vector<std::uint32_t> order_;    // of the scan's candidates, by range
+  std::vector<Candidate> by_range_;
+  std::uint64_t looks_ = 0;
+};
+
+}  // namespace boresight::ghosts

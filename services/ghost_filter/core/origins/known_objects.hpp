@@ -1,0 +1,74 @@
+// The tracks of the step before, predicted to a scan, as sources of detections.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "interfaces/messages/corrected_scan.hpp"
+#include "interfaces/messages/track_list.hpp"
+#include "services/common/extended_object/reflection_model.hpp"
+#include "services/ghost_filter/core/evidence/config.hpp"
+
+namespace boresight::ghosts {
+
+/// An object in the vehicle frame of the scan, velocities over ground.
+struct KnownObject {
+  extended_object::ObservedObject observed;
+  extended_object::RoadUserClass road_user = extended_object::RoadUserClass::kCar;
+  Eigen::Matrix2d position_covariance_m2 = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d velocity_covariance_m2ps2 = Eigen::Matrix2d::Zero();
+  double existence = 0.0;  ///< 0…1
+  double age_s = 0.0;
+  /// Added to the range rate over ground that the velocity gives: of a path that is not straight.
+  double range_rate_offset_mps = 0.0;
+};
+
+/// A detection as the intensities need it.
+struct SeenDetection {
+  Eigen::Vector2d position_m{0.0, 0.0};  ///< vehicle frame
+  Eigen::Vector2d direction{1.0, 0.0};   ///< of the line of sight, unit
+  double range_m = 0.0;
+  double range_rate_mps = 0.0;  ///< over ground
+  double range_std_m = 0.0, azimuth_std_rad = 0.0, range_rate_std_mps = 0.0;
+  double reach_m = 0.0;  ///< farther from a box it is not of that object
+};
+
+/// Tracks predicted by `elapsed_s` with constant velocity, into the vehicle frame after the ego motion of that time.
+/// Tracks that are not finite are left out. `objects` keeps its capacity.
+void predict_objects(const TrackList& tracks, double elapsed_s, const ScanGeometry& geometry,
+                     std::vector<KnownObject>& objects);
+
+/// Expected detections of an object in one scan at a place and range rate, per m² and m/s:
+///
+///     (G3)   n · p(place | box) · ((1 − a) p(range rate | velocity) + a / W),
+///
+/// n, both densities: extended_object; a, W: share and width of the object's Doppler-ambiguous detections.
+class ObjectIntensity {
+ public:
+  ObjectIntensity(const KnownObject& object, const Eigen::Vector2d& sensor_m,
+                  const extended_object::ObjectClassTable& classes, const IntensityConfig& config);
+  /// Whether the detection is near enough to its box for an intensity.
+  [[nodiscard]] bool reaches(const SeenDetection& detection) const {
+    const double reach = reach_m_ + detection.reach_m;
+    return (detection.position_m - object_->observed.box.centre_m).squaredNorm() < reach * reach;
+  }
+  /// Equation (G3). The first call prepares the mixture of places.
+  [[nodiscard]] double at(const SeenDetection& detection);
+
+ private:
+  void prepare();
+  const KnownObject* object_;
+  const extended_object::ObjectClassModel* model_;
+  const IntensityConfig* config_;
+  Eigen::Vector2d sensor_m_;
+  double reach_m_;
+  bool is_prepared_ = false;
+  extended_object::ReflectionMixture places_;
+  Eigen::Matrix2d to_box_;
+  double speed_mps_ = 0.0, expected_ = 0.0;
+};
+
+}  // namespace boresight::ghosts

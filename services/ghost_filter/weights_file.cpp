@@ -1,0 +1,78 @@
+#include "services/ghost_filter/weights_file.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace boresight::ghosts {
+
+namespace {
+
+constexpr config::Range kLogOdds{-50.0, 50.0};
+
+void read_list(config::Reader& reader, std::string_view key, std::span<double> weights) {
+  reader.require(key);
+  const std::vector<double> read = reader.numbers(key, weights.size(), kLogOdds, {weights.begin(), weights.end()});
+  std::copy(read.begin(), read.end(), weights.begin());
+}
+
+void read_level_weights(config::Reader& reader, LevelWeights& weights) {
+  reader.require("constant");
+  weights.constant = reader.number("constant", kLogOdds, 0.0);
+  for (std::size_t k = 0; k < kEvidences; ++k) {
+    read_list(reader, kEvidenceSpecs[k].key, std::span(weights.of[k]).first(kEvidenceSpecs[k].levels));
+  }
+}
+
+std::string list(std::string_view key, std::span<const double> weights) {
+  std::string text = fmt::format("{} = [", key);
+  for (std::size_t i = 0; i < weights.size(); ++i) text += fmt::format("{}{:.2f}", i == 0 ? "" : ", ", weights[i]);
+  return text + "]\n";
+}
+
+std::string level_weights_text(const LevelWeights& weights) {
+  std::string text = fmt::format("constant = {:.2f}\n", weights.constant);
+  for (std::size_t k = 0; k < kEvidences; ++k) {
+    text += list(kEvidenceSpecs[k].key, std::span(weights.of[k]).first(kEvidenceSpecs[k].levels));
+  }
+  return text;
+}
+
+}  // namespace
+
+EvidenceWeights read_weights(config::Reader profile) {
+  EvidenceWeights w;
+  profile.require("evidence");
+  if (profile.has("evidence")) {
+    config::Reader table = profile.table("evidence");
+    table.require("origin");
+    static_cast<void>(table.text("origin", ""));
+    table.require("prior_log_odds");
+    w.prior_log_odds = table.number("prior_log_odds", kLogOdds, 0.0);
+    config::Reader alone = table.table("alone");
+    read_level_weights(alone, w.alone);
+    config::Reader with_tracks = table.table("with_tracks");
+    read_level_weights(with_tracks, w.with_tracks);
+    read_list(with_tracks, "track_unsure", w.track_unsure);
+    read_list(with_tracks, "track_sure", w.track_sure);
+  }
+  profile.skip_others();
+  profile.finish();
+  return w;
+}
+
+EvidenceWeights read_weights(const std::filesystem::path& profile) {
+  return read_weights(config::Reader::open(profile));
+}
+
+std::string weights_text(const EvidenceWeights& weights, const std::string& origin) {
+  return "[evidence]\n" + fmt::format("origin = \"{}\"\n", origin) +
+         fmt::format("prior_log_odds = {:.2f}\n", weights.prior_log_odds) + "\n[evidence.alone]\n" +
+         level_weights_text(weights.alone) + "\n[evidence.with_tracks]\n" + level_weights_text(weights.with_tracks) +
+         list("track_unsure", weights.track_unsure) + list("track_sure", weights.track_sure);
+}
+
+}  // namespace boresight::ghosts

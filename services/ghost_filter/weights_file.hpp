@@ -1,0 +1,20 @@
+// The table [evidence] of a radar profile: weights of the evidence, as fitted to drives of that radar.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "services/common/runtime/config/reader.hpp"
+#include "services/ghost_filter/core/evidence/weights.hpp"
+
+namespace boresight::ghosts {
+
+/// Reads the table [evidence] of the file; other tables are the simulator's. Throws config::Error, also if the table is
+/// absent.
+[[nodiscard]] EvidenceWeights read_weights(const std::filesystem::path& profile);
+[[nodiscard]] EvidenceWeights read_weights(config::Reader profile);
+
+/// The table as TOML. `origin`: the drives of the fit.
+[[nodiscard]] std::string weights_text(const EvidenceWeights& weights, const std::string& origin);
+
+}  // namespace boresight::ghosts
