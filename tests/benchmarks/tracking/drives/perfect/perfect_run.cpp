@@ -144,7 +144,7 @@ void run_with_true_origins(const std::vector<fs::path>& recordings, const fs::pa
                            const runtime::Configuration& configuration, const fs::path& out) {
   fs::create_directories(out);
   const VehicleConfig vehicle = configuration.vehicle();
-  PerfectRun(vehicle, run::read_settings(configuration), truth, out).play(recordings);
+  PerfectRun(vehicle, run::read_settings(configuration, vehicle), truth, out).play(recordings);
 }
 
 StepTimes read_step_times(const fs::path& run) {

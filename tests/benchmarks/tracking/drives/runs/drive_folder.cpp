@@ -111,6 +111,8 @@ class DriveFolder {
                                       setup_.config.string(),
                                       "--vehicle",
                                       setup_.vehicle,
+                                      "--statistics",
+                                      drive_.profile,
                                       "--out",
                                       fresh.string(),
                                       "--quiet"};
@@ -127,6 +129,7 @@ class DriveFolder {
     runtime::Configuration configuration;
     configuration.directory = setup_.config;
     configuration.vehicle_name = setup_.vehicle;
+    configuration.statistics = drive_.profile;
     run_with_true_origins({drive / kRecording, drive / kEgo}, drive, configuration, fresh);
     fs::remove_all(folder);
     fs::rename(fresh, folder);

@@ -1,0 +1,32 @@
+// Figures of the probabilities of judged detections.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/benchmarks/ghosts/drives/judged.hpp"
+
+namespace boresight::bench::ghosts_drives {
+
+/// Drives, each with its detections.
+using Drives = std::vector<const DriveResult*>;
+
+/// One figure of the detections of some drives together; NaN without data.
+using Figure = std::function<double(const Drives&)>;
+
+/// Brier score (Brier 1950) of the lane over that of the base rates.
+[[nodiscard]] Figure brier_ratio(Lane lane);
+/// The same of the logarithmic score. Probabilities count as at least 1e-4, and at most 1 less that.
+[[nodiscard]] Figure log_loss_ratio(Lane lane);
+/// Mean |stated probability − share of real ones| over tenths of the probability, weighted by their detections.
+[[nodiscard]] Figure calibration_error(Lane lane);
+/// Share of real detections of objects that are known for over 1 s with a probability below 0.5.
+[[nodiscard]] Figure known_lost(Lane lane);
+/// Share of Doppler-ambiguous detections of known objects with a probability of at least 0.5.
+[[nodiscard]] Figure ambiguous_kept(Lane lane);
+/// Share of false detections below the probability that 90 % of the real ones reach.
+[[nodiscard]] Figure recognised_at_90(Lane lane);
+
+}  // namespace boresight::bench::ghosts_drives
