@@ -112,6 +112,7 @@ IntensityConfig read_intensity(config::Reader reader) {
   c.mirrored_existence = reader.number("mirrored_existence", {0.0, 1.0}, c.mirrored_existence);
   c.mirror_share_per_m = reader.number("mirror_share_per_m", {0.0, 1.0}, c.mirror_share_per_m);
   c.most_mirror_share = reader.number("most_mirror_share", {0.0, 1.0}, c.most_mirror_share);
+  c.least_mirror_share = reader.number("least_mirror_share", {0.0, 1.0}, c.least_mirror_share);
   return c;
 }
 

@@ -52,7 +52,11 @@ void write(double real, const Counts& counts, const Expected& expected, double o
 }  // namespace
 
 EvidenceFilter::EvidenceFilter(const EvidenceConfig& config)
-    : config_(config), counter_(config.counts), map_(config.map), tracks_(std::make_unique<TrackList>()) {
+    : config_(config),
+      counter_(config.counts),
+      map_(config.map),
+      expecting_(config_.classes, config_.intensity),
+      tracks_(std::make_unique<TrackList>()) {
   judged_.reserve(kMaxDetections);
   candidates_.reserve(kMaxDetections);
   counts_.resize(kMaxDetections);
@@ -112,7 +116,6 @@ void EvidenceFilter::gather(const CorrectedScan& scan, std::size_t count, Classi
     candidates_.push_back({scan.range_m[i], scan.azimuth_vehicle_rad[i], scan.range_rate_mps[i],
                            scan.range_rate_over_ground_mps[i], odometry_.point_to_frame(position).cast<float>(),
                            odometry_.vector_to_frame(direction).cast<float>()});
-    constexpr double kReachStds = 4.0;
     seen_.push_back({position, direction, range, static_cast<double>(scan.range_rate_over_ground_mps[i]), range_std,
                      static_cast<double>(scan.azimuth_std_rad[i]), static_cast<double>(scan.range_rate_std_mps[i]),
                      kReachStds * std::max(range_std, across_std)});
@@ -126,14 +129,20 @@ void EvidenceFilter::expect(const CorrectedScan& scan, bool has_tracks) {
   const Eigen::Vector2d velocity(g.sensor_velocity_vehicle_mps[0], g.sensor_velocity_vehicle_mps[1]);
   objects_.clear();
   images_.clear();
-  if (has_tracks) {
+  if (has_tracks && !seen_.empty()) {
+    SightOfImages sight{sensor, velocity, {}, 0.0, 0.0};
+    for (const SeenDetection& d : seen_) {
+      sight.directions.add(std::atan2(d.direction.y(), d.direction.x()));
+      sight.reach_m = std::max(sight.reach_m, d.reach_m);
+      sight.farthest_m = std::max(sight.farthest_m, d.range_m + d.reach_m);
+    }
     const double elapsed_s =
         static_cast<double>(scan.header.measurement_time_ns - tracks_->header.measurement_time_ns) * 1e-9;
     predict_objects(*tracks_, elapsed_s, g, objects_);
     place_mirrors(map_.reflectors(), odometry_, config_.intensity, mirrors_);
-    place_images(objects_, mirrors_, sensor, velocity, config_.intensity.mirrored_existence, images_);
+    place_images(objects_, mirrors_, sight, config_.intensity.mirrored_existence, images_);
   }
-  ghosts::expect(seen_, sensor, objects_, images_, config_, std::span(expected_).first(seen_.size()));
+  expecting_.find(seen_, sensor, objects_, images_, std::span(expected_).first(seen_.size()));
 }
 
 void EvidenceFilter::judge(const CorrectedScan& scan, bool has_tracks, ClassifiedScan& out) {

@@ -42,6 +42,7 @@ class EvidenceFilter final : public Method {
   Odometry odometry_;
   Counter counter_;
   ReflectorMap map_;
+  ExpectedDetections expecting_;
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   bool has_list_ = false;
   // Of the scan in hand, each with the capacity of a scan.

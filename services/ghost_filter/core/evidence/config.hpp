@@ -50,6 +50,7 @@ struct IntensityConfig {
   double mirrored_existence = 0.5;   ///< least existence of a track whose mirror images are expected
   double mirror_share_per_m = 0.01;  ///< probability that a reflector mirrors, per metre of its length
   double most_mirror_share = 0.6;
+  double least_mirror_share = 0.1;  ///< reflectors below are no mirrors
 };
 
 struct RadarWeights {

@@ -13,8 +13,6 @@ std::optional<Image> image_of(const Mirror& mirror, const Eigen::Vector2d& senso
   const Eigen::Vector2d sensor = mirror.curve.local(sensor_m), place = mirror.curve.local(place_m);
   const double away = std::abs(sensor.y()) + std::abs(place.y());
   if (!(away > 0.0)) return std::nullopt;
-  // Most pairs are on different sides.
-  if (mirror.curve.distance_of_local(sensor) * mirror.curve.distance_of_local(place) <= 0.0) return std::nullopt;
   // Were the mirror straight, the wave would divide the way along it as it does the way across.
   double arc =
       std::clamp(sensor.x() + (place.x() - sensor.x()) * std::abs(sensor.y()) / away, mirror.begin_m, mirror.end_m);

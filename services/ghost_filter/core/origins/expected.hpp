@@ -1,7 +1,9 @@
 // What is expected at the places and range rates of a scan's detections: of known objects, and of their mirror images.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,15 +15,24 @@ namespace boresight::ghosts {
 
 /// Intensities per m² and m/s at one detection; each object's weighted with its existence.
 struct Expected {
-  double objects = 0.0;          ///< of all objects
-  double strongest = 0.0;        ///< of the object with the largest intensity, and
-  double existence = 0.0;        ///< its existence
+  double objects = 0.0;    ///< of all objects
+  double strongest = 0.0;  ///< of the object with the largest intensity, and
+  double existence = 0.0;  ///< its existence
   double images_type1 = 0.0, images_type2 = 0.0;
 };
 
-/// `expected` has the size of `detections`.
-void expect(std::span<const SeenDetection> detections, const Eigen::Vector2d& sensor_m,
-            std::span<const KnownObject> objects, std::span<const MirrorImage> images, const EvidenceConfig& config,
-            std::span<Expected> expected);
+class ExpectedDetections {
+ public:
+  /// Both must outlive it. Allocates nothing later.
+  ExpectedDetections(const extended_object::ObjectClassTable& classes, const IntensityConfig& config);
+  /// `expected` has the size of `detections`.
+  void find(std::span<const SeenDetection> detections, const Eigen::Vector2d& sensor_m,
+            std::span<const KnownObject> objects, std::span<const MirrorImage> images, std::span<Expected> expected);
+
+ private:
+  const extended_object::ObjectClassTable* classes_;
+  const IntensityConfig* config_;
+  std::vector<std::uint32_t> order_;
+};
 
 }  // namespace boresight::ghosts

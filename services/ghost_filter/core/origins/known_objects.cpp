@@ -13,8 +13,6 @@ namespace {
 
 using extended_object::RoadUserClass;
 
-constexpr double kReachStds = 4.0;  // normal densities beyond are nothing
-
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
   const auto c = [&](std::size_t row, std::size_t column) {
     return static_cast<double>(track.covariance[(at + row) * kTrackStateSize + at + column]);
@@ -80,13 +78,14 @@ ObjectIntensity::ObjectIntensity(const KnownObject& object, const Eigen::Vector2
       model_(&extended_object::model_of(classes, object.road_user)),
       config_(&config),
       sensor_m_(sensor_m),
-      reach_m_(0.5 * std::hypot(object.observed.box.length_m, object.observed.box.width_m) +
-               kReachStds * std::sqrt(object.position_covariance_m2.trace() +
-                                      config.position_std_m * config.position_std_m)) {}
+      to_box_(object.observed.box.rotation_to_box()),
+      half_size_m_(object.observed.box.half_size_m()),
+      reach_m_(kReachStds *
+               std::sqrt(0.5 * object.position_covariance_m2.trace() + config.position_std_m * config.position_std_m)) {
+}
 
 void ObjectIntensity::prepare() {
   const extended_object::OrientedBox& box = object_->observed.box;
-  to_box_ = box.rotation_to_box();
   const Eigen::Vector2d sensor_box = to_box_ * (sensor_m_ - box.centre_m);
   places_ = extended_object::reflection_mixture(model_->places, box.length_m, box.width_m, sensor_box);
   const double range = std::max(0.1, sensor_box.norm());
@@ -99,13 +98,12 @@ double ObjectIntensity::at(const SeenDetection& d) {
   if (!is_prepared_) prepare();
   const Eigen::Vector2d across(-d.direction.y(), d.direction.x());
   const double across_std = d.range_m * d.azimuth_std_rad;
-  const Eigen::Matrix2d covariance =
-      d.range_std_m * d.range_std_m * d.direction * d.direction.transpose() +
-      across_std * across_std * across * across.transpose() + object_->position_covariance_m2 +
-      config_->position_std_m * config_->position_std_m * Eigen::Matrix2d::Identity();
-  const double place =
-      extended_object::position_density(places_, to_box_ * (d.position_m - object_->observed.box.centre_m),
-                                        to_box_ * covariance * to_box_.transpose());
+  const Eigen::Matrix2d covariance = d.range_std_m * d.range_std_m * d.direction * d.direction.transpose() +
+                                     across_std * across_std * across * across.transpose() +
+                                     object_->position_covariance_m2 +
+                                     config_->position_std_m * config_->position_std_m * Eigen::Matrix2d::Identity();
+  const double place = extended_object::position_density(
+      places_, to_box_ * (d.position_m - object_->observed.box.centre_m), to_box_ * covariance * to_box_.transpose());
   const double body_mps = d.direction.dot(object_->observed.velocity_mps) + object_->range_rate_offset_mps;
   const double variance = d.range_rate_std_mps * d.range_rate_std_mps +
                           config_->velocity_std_mps * config_->velocity_std_mps +

@@ -14,6 +14,9 @@
 
 namespace boresight::ghosts {
 
+/// Normal densities beyond are next to nothing.
+inline constexpr double kReachStds = 3.0;
+
 /// An object in the vehicle frame of the scan, velocities over ground.
 struct KnownObject {
   extended_object::ObservedObject observed;
@@ -52,8 +55,12 @@ class ObjectIntensity {
                   const extended_object::ObjectClassTable& classes, const IntensityConfig& config);
   /// Whether the detection is near enough to its box for an intensity.
   [[nodiscard]] bool reaches(const SeenDetection& detection) const {
-    const double reach = reach_m_ + detection.reach_m;
-    return (detection.position_m - object_->observed.box.centre_m).squaredNorm() < reach * reach;
+    const Eigen::Vector2d offset = (to_box_ * (detection.position_m - object_->observed.box.centre_m)).cwiseAbs();
+    return (offset - half_size_m_).maxCoeff() < reach_m_ + detection.reach_m;
+  }
+  /// Distance from the centre beyond which no detection of that reach is near enough.
+  [[nodiscard]] double radius_m(double detection_reach_m) const {
+    return half_size_m_.norm() + M_SQRT2 * (reach_m_ + detection_reach_m);
   }
   /// Equation (G3). The first call prepares the mixture of places.
   [[nodiscard]] double at(const SeenDetection& detection);
@@ -64,10 +71,11 @@ class ObjectIntensity {
   const extended_object::ObjectClassModel* model_;
   const IntensityConfig* config_;
   Eigen::Vector2d sensor_m_;
+  Eigen::Matrix2d to_box_;
+  Eigen::Vector2d half_size_m_;
   double reach_m_;
   bool is_prepared_ = false;
   extended_object::ReflectionMixture places_;
-  Eigen::Matrix2d to_box_;
   double speed_mps_ = 0.0, expected_ = 0.0;
 };
 

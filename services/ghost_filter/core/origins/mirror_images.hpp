@@ -1,9 +1,9 @@
 // Mirror images of known objects, as sources of detections.
 //
 // An object at T is seen over a mirror at W by three paths (mirror.hpp): its mirror image by three bounces at range
-// |W−S| + |T−W| in the direction of W; by two bounces, last on the mirror, in the same direction at half the sum of that
-// range and the direct one (type 2); by two bounces, last on the object, in the object's own direction at that range
-// (type 1). The box of an image is the object's box, mirrored or shifted.
+// |W−S| + |T−W| in the direction of W; by two bounces, last on the mirror, in the same direction at half the sum of
+// that range and the direct one (type 2); by two bounces, last on the object, in the object's own direction at that
+// range (type 1). The box of an image is the object's box, mirrored or shifted.
 #pragma once
 
 #include <span>
@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "services/ghost_filter/core/mirror/mirror.hpp"
+#include "services/ghost_filter/core/origins/directions.hpp"
 #include "services/ghost_filter/core/origins/known_objects.hpp"
 
 namespace boresight::ghosts {
@@ -21,9 +22,18 @@ struct MirrorImage {
   bool is_type1 = false;
 };
 
-/// Images, in all mirrors, of all objects that exist with `least_existence`. `images` keeps its capacity.
-void place_images(std::span<const KnownObject> objects, std::span<const Mirror> mirrors,
-                  const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& sensor_velocity_mps, double least_existence,
-                  std::vector<MirrorImage>& images);
+/// What the sensor sees of images in a scan.
+struct SightOfImages {
+  Eigen::Vector2d sensor_m{0.0, 0.0};
+  Eigen::Vector2d sensor_velocity_mps{0.0, 0.0};  ///< over ground
+  Directions directions;                          ///< of the detections
+  double farthest_m = 0.0;                        ///< range of the farthest detection
+  double reach_m = 0.0;                           ///< largest reach of a detection
+};
+
+/// Images, in all mirrors, of all objects that exist with `least_existence`, where detections may be. `images` keeps
+/// its capacity.
+void place_images(std::span<const KnownObject> objects, std::span<const Mirror> mirrors, const SightOfImages& sight,
+                  double least_existence, std::vector<MirrorImage>& images);
 
 }  // namespace boresight::ghosts

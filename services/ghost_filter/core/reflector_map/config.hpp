@@ -7,8 +7,8 @@ namespace boresight::ghosts {
 
 struct MapConfig {
   double memory_s = 1.0;         ///< a cell that was not hit for this long is forgotten
-  double update_period_s = 0.1;  ///< each reflector is fitted to what is new this often
-  double search_period_s = 0.2;  ///< new ones are looked for in each place this often
+  double update_period_s = 0.2;  ///< each reflector is fitted to what is new this often
+  double search_period_s = 0.5;  ///< new ones are looked for in each place this often
   double cell_m = 0.5;
   std::size_t capacity = 8192;    ///< cells
   double cluster_radius_m = 3.0;  ///< DBSCAN of the cells that no reflector claims
