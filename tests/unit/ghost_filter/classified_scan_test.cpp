@@ -30,6 +30,17 @@ TEST(ClassifiedScan, GhostProbabilityIsWhatMovingAndStationaryLeave) {
   EXPECT_EQ(scan->ghost_probability(1), 0.0F) << "not classified";
 }
 
+TEST(ClassifiedScan, ACertainOriginHasACertainRatioAndAnUnknownOneNone) {
+  const auto scan = std::make_unique<ClassifiedScan>();
+  for (const Provenance origin : kOrigins) {
+    scan->set_certain(3, origin);
+    EXPECT_EQ(scan->moving_log_likelihood_ratio[3],
+              origin == Provenance::kMoving ? ClassifiedScan::kCertain : -ClassifiedScan::kCertain);
+  }
+  scan->set_certain(3, Provenance::kUnknown);
+  EXPECT_EQ(scan->moving_log_likelihood_ratio[3], 0.0F);
+}
+
 TEST(ClassifiedScan, ACertainOriginReplacesAllProbabilities) {
   const auto scan = std::make_unique<ClassifiedScan>();
   for (const Provenance origin : kOrigins) {

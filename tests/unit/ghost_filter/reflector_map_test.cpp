@@ -195,46 +195,6 @@ TEST(ReflectorMap, ForgetsWhatIsNotThereAnyMore) {
   EXPECT_EQ(drive.map.grid().size(), 0U);
 }
 
-TEST(ReflectorMap, WhatWasDrivenThroughIsNoReflectorHoweverOftenItIsHeard) {
-  Drive drive(5);
-  drive.add({40.0, -6.0}, {40.0, 6.0}, 0.8);  // hangs above the road
-  drive.add({-40.0, 6.5}, {120.0, 6.5}, 1.5);
-  drive.run(0.8);
-  const Eigen::Vector2d hanging(40.0, 0.5), wall(42.0, 6.5);
-  ASSERT_GT(drive.probability(hanging), 0.5);
-  ASSERT_GT(drive.probability(wall), 0.5);
-  // One vehicle goes along the lane, the other one seems to touch the wall.
-  drive.map.drive_over({38.0, 0.0}, {42.5, 0.0});
-  drive.map.drive_over({40.0, 6.3}, {44.5, 6.7});
-  EXPECT_LT(drive.probability(hanging), 0.05);
-  drive.run(0.5);
-  EXPECT_LT(drive.probability(hanging), 0.05);
-  EXPECT_GT(drive.probability(wall), 0.5);
-}
-
-TEST(ReflectorMap, AWallDoesNotGoOnWhereSomethingDrivesBeyondItsEnd) {
-  Drive drive(6);
-  drive.add({40.0, -40.0}, {40.0, -8.0}, 1.0);  // up to a crossing
-  drive.run(0.8);
-  const Reflector* const wall = drive.at({40.0, -12.0});
-  ASSERT_NE(wall, nullptr);
-  const auto is_driven = [&](double y) {
-    const Eigen::Vector2d place(40.0, y);
-    return wall->occupancy.is_driven(wall->curve.arc(place) + wall->arc_shift_m);
-  };
-  EXPECT_FALSE(is_driven(3.0));
-  drive.map.drive_over({38.0, 3.0}, {42.5, 3.0});
-  drive.map.drive_over({38.0, 60.0}, {42.5, 60.0});  // farther than it is thought to go on
-  for (const double y : {1.0, 3.0, 5.0}) EXPECT_TRUE(is_driven(y)) << y;
-  for (const double y : {-12.0, -5.0, 12.0, 25.0, 60.0}) EXPECT_FALSE(is_driven(y)) << y;
-  // Something that hangs above the road continues the line: it is none where they drove.
-  drive.add({40.0, -8.0}, {40.0, 20.0}, 0.8);
-  drive.run(0.8);
-  EXPECT_LT(drive.probability({40.0, 3.0}), 0.05);
-  EXPECT_GT(drive.probability({40.0, -12.0}), 0.5);
-  EXPECT_GT(drive.probability({40.0, 14.0}), 0.5);
-}
-
 TEST(ReflectorMap, KnowsHowSureItIs) {
   // The offset beside the vehicle, over seeds: its error squared by its variance. What detections have in common is
   // allowed for, here they have nothing: so it may be too careful, but not too sure.

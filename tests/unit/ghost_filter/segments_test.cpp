@@ -1,5 +1,5 @@
 // What the classified scan publishes of the reflectors.
-#include "services/ghost_filter/core/classify/segments.hpp"
+#include "services/ghost_filter/core/reflector_map/segments.hpp"
 
 #include <cmath>
 #include <memory>
