@@ -30,7 +30,7 @@ class OptionsTest : public ::testing::Test {
     std::ofstream(build / "CMakeCache.txt") << "# cache\nCMAKE_HOME_DIRECTORY:INTERNAL=" << source << "\n";
   }
   [[nodiscard]] Configuration configuration(const std::string& vehicle) const {
-    return {folder_ / "source/config", vehicle};
+    return {folder_ / "source/config", vehicle, ""};
   }
   void make_vehicle(const std::string& name) const {
     std::ofstream(folder_ / "source/config/vehicle" / (name + ".toml")) << "name = \"" << name << "\"\n";
@@ -67,6 +67,41 @@ TEST_F(OptionsTest, VehicleIsANameOrAFile) {
   EXPECT_EQ(configuration("car").vehicle_file(), file);
   EXPECT_EQ(configuration("").vehicle_file(), file) << "the only one";
   EXPECT_EQ(configuration(file.string()).vehicle_file(), file);
+}
+
+TEST_F(OptionsTest, RadarProfileIsANameInItsFolderOrAFile) {
+  const Configuration c = configuration("");
+  EXPECT_EQ(c.radar_profile_file("can_cluster"), folder_ / "source/config/radar_profiles/can_cluster.toml");
+  EXPECT_EQ(c.radar_profile_file("mine.toml"), "mine.toml");
+  EXPECT_EQ(c.radar_profile_file("./mine"), "./mine");
+  EXPECT_EQ(c.radar_profile_file("/etc/mine.toml"), "/etc/mine.toml");
+}
+
+TEST_F(OptionsTest, StatisticsReplaceThoseOfEveryRadar) {
+  Configuration c;
+  c.directory = BORESIGHT_SOURCE_DIR "/config";
+  c.vehicle_name = "demo";
+  const VehicleConfig as_the_file_says = c.vehicle();
+  c.statistics = "ideal";
+  const VehicleConfig replaced = c.vehicle();
+  ASSERT_FALSE(replaced.radars.empty());
+  ASSERT_EQ(replaced.radars.size(), as_the_file_says.radars.size());
+  for (std::size_t i = 0; i < replaced.radars.size(); ++i) {
+    EXPECT_NE(as_the_file_says.radars[i].statistics, "ideal");
+    EXPECT_EQ(replaced.radars[i].statistics, "ideal");
+    EXPECT_EQ(replaced.radars[i].id, as_the_file_says.radars[i].id);
+  }
+}
+
+TEST_F(OptionsTest, EachShippedVehicleNamesProfilesThatThereAre) {
+  Configuration c;
+  c.directory = BORESIGHT_SOURCE_DIR "/config";
+  for (const auto& file : fs::directory_iterator(c.directory / "vehicle")) {
+    c.vehicle_name = file.path().string();
+    for (const RadarConfig& radar : c.vehicle(config::VehicleUse::kOffline).radars) {
+      EXPECT_TRUE(fs::is_regular_file(c.radar_profile_file(radar.statistics))) << file.path() << ' ' << radar.name;
+    }
+  }
 }
 
 TEST_F(OptionsTest, UnknownVehicleIsReportedWithTheKnownNamesAndTheFolder) {

@@ -89,6 +89,26 @@ TEST(Reader, FormerKeyIsAnOrdinaryUnknownKeyWhereTheNewOneIsNotKnown) {
   EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:1: " + former + ": unknown key; known here: limit");
 }
 
+TEST(Reader, ASkippedKeyIsKnownWithoutBeingRead) {
+  Reader root = Reader::parse("a = 1\nb = \"anything\"\n[t]\nx = 1\n[u]\nx = 1\n", "x.toml");
+  static_cast<void>(root.integer("a", {0, 9}, 0));
+  root.skip("b");
+  root.skip("t");
+  root.skip("absent");
+  EXPECT_EQ(error_of([&] { root.finish(); }), "x.toml:5: u: unknown key; known here: a, absent, b, t");
+}
+
+TEST(Reader, SkippedOthersHideNoErrorOfWhatIsRead) {
+  Reader root = Reader::parse("a = 99\nb = 1\n[t]\nx = 1\ny = 2\n[u]\nx = 1\n", "x.toml");
+  static_cast<void>(root.integer("a", {0, 9}, 0));
+  static_cast<void>(root.table("t").integer("x", {0, 9}, 0));
+  root.skip_others();
+  EXPECT_EQ(error_of([&] { root.finish(); }),
+            "x.toml:1: a: 99 is out of range; allowed: 0 … 9\nx.toml:5: t.y: unknown key; known here: x");
+  Reader absent = root.table("none");
+  EXPECT_NO_THROW(absent.skip_others());
+}
+
 TEST(Reader, UnknownTableIsAnError) {
   Reader root = Reader::parse("[tt]\nlimit = 5\n", "x.toml");
   EXPECT_THAT(error_of([&] { root.finish(); }), HasSubstr("tt: unknown key"));

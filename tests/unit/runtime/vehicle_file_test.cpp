@@ -43,6 +43,15 @@ TEST(VehicleFile, ReadsARadar) {
   EXPECT_EQ(vehicle.ego.source.interface, "can0");
 }
 
+TEST(VehicleFile, ARadarsStatisticsAreAProfilesNameOrFile) {
+  const std::string text = std::string(kEgo) + std::string(kRadar);
+  EXPECT_EQ(read(text).radars.at(0).statistics, "series_77ghz");
+  EXPECT_EQ(read(text + "statistics = \"can_cluster\"\n").radars.at(0).statistics, "can_cluster");
+  EXPECT_EQ(read(text + "statistics = \"./mine.toml\"\n").radars.at(0).statistics, "./mine.toml");
+  EXPECT_THAT(error_of(text + "statistics = \"\"\n"), HasSubstr("radar[0].statistics: must be the name"));
+  EXPECT_THAT(error_of(text + "statistics = 3\n"), HasSubstr("radar[0].statistics: must be a string"));
+}
+
 TEST(VehicleFile, SortsRadarsById) {
   std::string second(kRadar);
   second.replace(second.find("id = 2"), 6, "id = 1");

@@ -46,7 +46,9 @@ std::string text_in(const std::string& section, const std::string& lines) {
 
 std::map<std::string, std::vector<Cells>> profile_sections() {
   auto sections = schema_page::sections(schema_page::text_of(BORESIGHT_SOURCE_DIR "/config/schema/radar_profile.md"));
-  EXPECT_EQ(sections.size(), 15u);
+  EXPECT_EQ(sections.size(), 17u);
+  // The ghost filter's: tests/unit/ghost_filter/weights_schema_test.cpp.
+  EXPECT_EQ(sections.erase("evidence") + sections.erase("Weights of the evidence"), 2u);
   return sections;
 }
 
@@ -109,6 +111,11 @@ TEST(ProfileSchema, DefaultsAreThoseOfTheReader) {
     }
   }
   EXPECT_GT(checked, 60u);
+}
+
+TEST(ProfileSchema, TheGhostFiltersTableIsPassedOver) {
+  EXPECT_EQ(profile_problems(kName + "[evidence]\nanything = \"at all\"\n[evidence.alone]\nconstant = 1e9\n"), "");
+  EXPECT_EQ(read_text(kName + "[evidence]\nprior_log_odds = 1.0\n"), read_text(kName));
 }
 
 TEST(ProfileSchema, ContradictionsAreRefused) {
