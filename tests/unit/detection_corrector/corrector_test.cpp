@@ -201,18 +201,42 @@ TEST_F(CorrectorTest, EachReasonForRejectionHasItsFlag) {
   add(30.0, 0.0, 20.0 * kRadiansPerDegree, -9.4);  // above it
   add(10.0, 0.0, 0.0, -10.0, -6.0);                // limit −5 at 10 m
   add(40.0, 0.0, 0.0, -10.0, -10.0);               // limit −11 at 40 m
-  add(50.0, 0.0, 0.0, -10.0);
-  scan_->detection_flags[5] = detection_flag::kInvalid;
-  add(50.0, 0.0, 0.0, -10.0);
-  scan_->detection_flags[6] = detection_flag::kAmbiguous;
   corrector.correct(*scan_, *out_);
   EXPECT_EQ(out_->detection_flags[0], corrected_flag::kStationary);
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kOutsideRegion);
   EXPECT_TRUE(out_->detection_flags[2] & corrected_flag::kOutsideRegion);
   EXPECT_TRUE(out_->detection_flags[3] & corrected_flag::kWeak);
   EXPECT_FALSE(out_->detection_flags[4] & corrected_flag::kWeak);
-  EXPECT_EQ(out_->detection_flags[5], corrected_flag::kInvalid);
-  EXPECT_EQ(out_->detection_flags[6], corrected_flag::kAmbiguous) << "an aliased range rate determines no motion";
+}
+
+TEST_F(CorrectorTest, TheSensorsVerdictsAreCarriedOverAndRejectNothing) {
+  Corrector corrector(one_radar(), Config{});
+  corrector.add_ego_motion(ego(10.0F, 0.0F));
+  struct Case {
+    std::uint16_t by_sensor, expected;
+  };
+  const Case cases[] = {
+      {detection_flag::kInvalid, corrected_flag::kDoubted},
+      {detection_flag::kAmbiguous, corrected_flag::kAmbiguous},
+      {detection_flag::kInvalid | detection_flag::kAmbiguous, corrected_flag::kDoubted | corrected_flag::kAmbiguous}};
+  for (const Case& c : cases) {
+    for (const double range_rate : {-10.0, -25.0}) {
+      scan_->number_of_valid_detections = 0;
+      add(50.0, 0.0, 0.0, range_rate);
+      scan_->detection_flags[0] = c.by_sensor;
+      corrector.correct(*scan_, *out_);
+      const std::uint16_t motion = range_rate == -10.0 ? corrected_flag::kStationary : corrected_flag::kMoving;
+      EXPECT_EQ(out_->detection_flags[0], c.expected | motion) << c.by_sensor;
+      EXPECT_EQ(out_->detection_flags[0] & corrected_flag::kRejected, 0);
+    }
+  }
+  scan_->number_of_valid_detections = 0;
+  add(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0, -10.0);
+  scan_->detection_flags[0] = detection_flag::kInvalid;
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->detection_flags[0] & (corrected_flag::kInvalid | corrected_flag::kDoubted | corrected_flag::kMoving |
+                                        corrected_flag::kStationary),
+            corrected_flag::kInvalid | corrected_flag::kDoubted);
 }
 
 TEST_F(CorrectorTest, MissingSideInputsAreFlagged) {
@@ -396,12 +420,14 @@ TEST_F(CorrectorTest, EachFaceOfTheBoxIsALimit) {
 }
 
 TEST_F(CorrectorTest, RcsIsComparedOnlyIfKnown) {
-  Corrector corrector(one_radar(), Config{});
+  Config config;
+  config.rcs_near_dbsm = -25.0;
+  Corrector corrector(one_radar(), config);
   add(50.0, 0.0, 0.0, 0.0, std::numeric_limits<double>::quiet_NaN());
   add(50.0, 0.0, 0.0, 0.0, -25.1);
   add(50.0, 0.0, 0.0, 0.0, -24.9);
   corrector.correct(*scan_, *out_);
-  EXPECT_TRUE(out_->detection_flags[0] & corrected_flag::kWeak) << "an RCS that is not a number sets no flag";
+  EXPECT_FALSE(out_->detection_flags[0] & corrected_flag::kWeak) << "an RCS that is not a number says nothing";
   EXPECT_TRUE(out_->detection_flags[1] & corrected_flag::kWeak);
   EXPECT_FALSE(out_->detection_flags[2] & corrected_flag::kWeak);
   scan_->fields = scan_field::kElevation;
@@ -409,11 +435,21 @@ TEST_F(CorrectorTest, RcsIsComparedOnlyIfKnown) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(out_->detection_flags[i] & corrected_flag::kWeak) << i;
 }
 
+TEST_F(CorrectorTest, NoDetectionIsWeakUnlessTheIntegratorSetsALimit) {
+  Corrector corrector(one_radar(), Config{});
+  for (const double rcs_dbsm : {-90.0, -40.0, 0.0}) {
+    for (const double range_m : {1.0, 10.0, 150.0}) add(range_m, 0.0, 0.0, 0.0, rcs_dbsm);
+  }
+  corrector.correct(*scan_, *out_);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_FALSE(out_->detection_flags[i] & corrected_flag::kWeak) << i;
+}
+
 class StatedNoiseTest : public CorrectorTest {
  protected:
   /// Drives past stationary reflectors with noise of 0.1 m/s, and somebody who walks away at 0.9 m/s. The radar states
   /// `stated_mps`. Returns the share of the last scans in which the pedestrian is moving.
-  double walks(Corrector& corrector, float stated_mps, float speed_mps = 5.5F, bool has_stds = true) {
+  double walks(Corrector& corrector, float stated_mps, float speed_mps = 5.5F, bool has_stds = true,
+               std::uint16_t verdict = 0) {
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 0.1);
     std::uniform_real_distribution<double> azimuth(-0.5, 0.5);
@@ -434,6 +470,7 @@ class StatedNoiseTest : public CorrectorTest {
         scan_->range_std_m[i] = 0.2F;
         scan_->azimuth_std_rad[i] = scan_->elevation_std_rad[i] = 0.005F;
         scan_->range_rate_std_mps[i] = stated_mps;
+        scan_->detection_flags[i] = verdict;
       }
       corrector.correct(*scan_, *out_);
       if (s >= kScans - kLast && (out_->detection_flags[0] & corrected_flag::kMoving) != 0) ++moving;
@@ -459,6 +496,14 @@ TEST_F(StatedNoiseTest, WhatTheRadarDoesNotStateIsNotScaled) {
   EXPECT_EQ(walks(corrector, 0.0F, 5.5F, false), 0.0);
   EXPECT_EQ(corrector.range_rate_noise_scale(2), 1.0);
   EXPECT_EQ(corrector.range_rate_noise_scale(3), 1.0) << "unknown radar";
+}
+
+TEST_F(StatedNoiseTest, NothingIsLearntOfDetectionsThatTheSensorDoubts) {
+  for (const std::uint16_t verdict : {detection_flag::kInvalid, detection_flag::kAmbiguous}) {
+    Corrector corrector(one_radar(), Config{});
+    walks(corrector, 0.288F, 5.5F, true, verdict);
+    EXPECT_EQ(corrector.range_rate_noise_scale(2), 1.0) << verdict;
+  }
 }
 
 TEST_F(StatedNoiseTest, NothingIsLearntInAStandingVehicle) {

@@ -101,6 +101,7 @@ TEST(ScansOfAScenario, HaveTheTimeOfTheirStepAndMovingDetections) {
   EXPECT_EQ(scan->provenance[1], Provenance::kMoving);
   EXPECT_EQ(scan->probability(Provenance::kMoving, 1), 1.0F);
   EXPECT_EQ(scan->ghost_probability(1), 0.0F);
+  EXPECT_EQ(scan->moving_log_likelihood_ratio[1], 0.0F) << "the table says nothing of origins";
 }
 
 }  // namespace

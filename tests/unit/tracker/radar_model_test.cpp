@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -23,6 +24,7 @@ constexpr double kRadarScan_s = 0.05, kHalfView_rad = 0.9;
 struct Echo {
   Eigen::Vector2d position_m;
   double range_rate_mps = 0.0;
+  double log_likelihood_ratio = 0.0;  // no evidence for or against
 };
 struct TrackedObject {
   Component<double> component;
@@ -67,6 +69,7 @@ class RadarBench {
       s.range_rate_over_ground_mps[i] = static_cast<float>(echo.range_rate_mps);
       s.detection_flags[i] = corrected_flag::kMoving;
       s.set_certain(i, Provenance::kMoving);
+      s.moving_log_likelihood_ratio[i] = static_cast<float>(echo.log_likelihood_ratio);
     }
     static_cast<void>(model.begin_scan(s));
     for (TrackedObject& o : objects) static_cast<void>(model.predict(o.component, elapsed_s));
@@ -238,6 +241,49 @@ TEST(RadarModel, DetectionsOfMovingPartsAreMarked) {
     EXPECT_LE(z.wide_share + z.side_lobe_share, 1.0 + 1e-12);
     EXPECT_TRUE(std::isfinite(z.log_clutter));
   }
+}
+
+/// Log of the clutter intensity at one echo of a first scan.
+double log_clutter_of(double log_likelihood_ratio) {
+  RadarBench bench;
+  bench.begin({{{30.0, 2.0}, 7.0, log_likelihood_ratio}});
+  return bench.model.measurements()[0].log_clutter;
+}
+
+TEST(RadarModel, EvidenceForAnObjectLowersTheClutterByItsRatio) {
+  const ClutterParameters c;
+  const double without = log_clutter_of(0.0);
+  for (const double ratio : {-2.5, -0.5, 0.7, 2.0}) {
+    EXPECT_NEAR(log_clutter_of(ratio) - without, -c.origin_weight * ratio, 1e-6) << ratio;
+  }
+}
+
+TEST(RadarModel, EvidenceOfOriginsSaturates) {
+  const ClutterParameters c;
+  const double without = log_clutter_of(0.0);
+  for (const double beyond : {c.origin_limit, 2.0 * c.origin_limit, static_cast<double>(ClassifiedScan::kCertain)}) {
+    EXPECT_NEAR(log_clutter_of(beyond) - without, -c.origin_weight * c.origin_limit, 1e-6);
+    EXPECT_NEAR(log_clutter_of(-beyond) - without, c.origin_weight * c.origin_limit, 1e-6);
+  }
+}
+
+TEST(RadarModel, EvidenceOfOneDetectionDoesNotChangeAnother) {
+  for (const double ratio : {-3.0, 0.0, 3.0}) {
+    RadarBench bench;
+    for (int scan = 0; scan < 20; ++scan) {
+      bench.begin({{{30.0, 2.0}, 7.0}, {{50.0, -9.0}, -7.0, ratio}});
+      if (scan == 19) break;
+      bench.end({});
+    }
+    static double first = bench.model.measurements()[0].log_clutter;
+    EXPECT_NEAR(bench.model.measurements()[0].log_clutter, first, 1e-9) << "no mean of the others counts";
+  }
+}
+
+TEST(RadarModel, ADetectionWithoutAFiniteRatioIsLeftOut) {
+  RadarBench bench;
+  bench.begin({{{30.0, 2.0}, 7.0, std::numeric_limits<double>::quiet_NaN()}, {{40.0, 2.0}, 7.0}});
+  ASSERT_EQ(bench.model.measurements().size(), 1U);
 }
 
 TEST(RadarModel, ObjectsThatOverlapAndMoveAlikeArePartsOfOne) {
