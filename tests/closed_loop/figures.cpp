@@ -7,6 +7,7 @@
 
 #include "services/boresight/run/chain.hpp"
 #include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/ghost_filter/weights_file.hpp"
 #include "services/simulator/judge/hidden.hpp"
 #include "services/simulator/judge/track_judge.hpp"
 #include "services/simulator/scenario/read_profile.hpp"
@@ -82,6 +83,8 @@ Figures judge_drive(const DriveOfFigures& of) {
   simulator::Drive drive(scenario, vehicle, of.seed, of.duration_s);
   run::Settings settings;
   settings.ghosts.method = of.method;
+  settings.ghosts.evidence.weights = ghosts::read_weights(std::filesystem::path(BORESIGHT_SOURCE_DIR) /
+                                                          "config/radar_profiles" / (of.profile + ".toml"));
   run::Chain chain(vehicle, settings);
   DriveJudge judge;
   const auto scan = std::make_unique<RadarScan>();

@@ -18,8 +18,8 @@ inline constexpr double kAligned_s = 1.5;
 
 struct DriveOfFigures {
   std::string scenario;
-  std::string profile;  ///< radar profile of all radars
-  ghosts::MethodName method = ghosts::MethodName::kMirror;
+  std::string profile;  ///< radar profile of all radars, with its weights of the ghost filter's evidence
+  ghosts::MethodName method = ghosts::MethodName::kEvidence;
   std::uint64_t seed = 1;
   double duration_s = 40.0;
 };

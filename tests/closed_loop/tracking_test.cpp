@@ -21,7 +21,7 @@ Figures judge_and_print(const DriveOfFigures& of) {
       " %.0f id switches; rms error along %.2f m, across %.2f m, speed %.2f m/s, heading %.1f deg, length %.2f m,"
       " width %.2f m; %zu tracks, %.0f false; at a time: %.3f false, %.3f duplicate; before alignment: %.0f false"
       " tracks (%.3f at a time); GOSPA %.2f m\n",
-      of.scenario.c_str(), of.profile.c_str(), of.method == ghosts::MethodName::kMirror ? "mirror" : "published",
+      of.scenario.c_str(), of.profile.c_str(), of.method == ghosts::MethodName::kEvidence ? "evidence" : "published",
       static_cast<unsigned long long>(of.seed), f.of_objects("stays_found"), f.of_objects("stays"),
       f.of_objects("delay_max_s"), 100.0 * f.of_objects("tracked_share"), f.of_objects("identity_switches"),
       f.of_objects("along_rms_m"), f.of_objects("across_rms_m"), f.of_objects("speed_rms_mps"),

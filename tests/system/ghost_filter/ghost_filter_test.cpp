@@ -50,7 +50,7 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
   harness::Domain domain("demo", {"ghost_filter", "tracker"});
   domain.start();
   const auto filter =
-      harness::start_alone("ghost_filter", configuration(R"(method = "mirror")", "method = \"" + GetParam() + "\""));
+      harness::start_alone("ghost_filter", configuration(R"(method = "evidence")", "method = \"" + GetParam() + "\""));
   ASSERT_TRUE(domain.until(5.0, [&] { return observer.is_attached(); }));
   domain.run_for(0.5);
   domain.replay(recordings);
@@ -104,7 +104,7 @@ TEST_P(GhostFilter, LabelsEveryScanWithOrWithoutTheTracker) {
   EXPECT_EQ(observer.process().stop(), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(By, GhostFilter, testing::Values("mirror", "published"),
+INSTANTIATE_TEST_SUITE_P(By, GhostFilter, testing::Values("evidence", "published"),
                          [](const auto& info) { return info.param; });
 
 TEST(GhostFilterConfiguration, AnInvalidFileEndsItWithFileLineKeyAndRange) {
@@ -113,13 +113,14 @@ TEST(GhostFilterConfiguration, AnInvalidFileEndsItWithFileLineKeyAndRange) {
   };
   const std::string file = "/tmp/ghost_filter_configuration/services/ghost_filter.toml:";
   for (const Case& c : {
-           Case{R"(method = "mirror")", R"(method = "magic")", ":3: method: "},
-           Case{R"(method = "mirror")", R"(method = "magic")",
-                R"("magic" is unknown; must be one of "mirror", "published")"},
-           Case{"decision_probability = 0.5", "decision_probability = 1.5",
-                "mirror.classes.decision_probability: 1.5 is out of range; allowed: 0.01 … 0.99"},
+           Case{R"(method = "evidence")", R"(method = "magic")", ":3: method: "},
+           Case{R"(method = "evidence")", R"(method = "magic")",
+                R"("magic" is unknown; must be one of "evidence", "published")"},
+           Case{"ambiguous_share = 0.03", "ambiguous_share = 1.5",
+                "evidence.intensity.ambiguous_share: 1.5 is out of range; allowed: 0 … 0.5"},
+           Case{"burst = [8, 20, 45]", "burst = [8, 45, 20]", "evidence.levels.burst: must rise"},
            Case{"min_cells = 6", "min_cells = \"six\"",
-                "mirror.map.min_cells: must be an integer (1 … 1000), but is a string"},
+                "evidence.map.min_cells: must be an integer (1 … 1000), but is a string"},
            Case{"cluster_min_points = 8", "cluster_points = 8", "published.reflectors.cluster_points: unknown key"},
        }) {
     const auto filter = harness::start_alone("ghost_filter", configuration(c.from, c.to));
