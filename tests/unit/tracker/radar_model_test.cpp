@@ -24,7 +24,7 @@ constexpr double kRadarScan_s = 0.05, kHalfView_rad = 0.9;
 struct Echo {
   Eigen::Vector2d position_m;
   double range_rate_mps = 0.0;
-  double log_likelihood_ratio = 0.0;  // no evidence for or against
+  double log_likelihood_ratio{ClassifiedScan::kCertain};
 };
 struct TrackedObject {
   Component<double> component;

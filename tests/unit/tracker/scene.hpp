@@ -1,6 +1,7 @@
 // Classified scans of point-like objects, as one of two radars sees them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -74,9 +75,9 @@ class Scene {
         provenance == Provenance::kStationary ? corrected_flag::kStationary : corrected_flag::kMoving;
     const auto unreal = static_cast<float>(ghost_probability);
     scan->set_probabilities(i, {1.0F - unreal, 0.0F, 0.0F, 0.0F, unreal, 0.0F});
-    // None is given: no evidence for or against.
-    scan->moving_log_likelihood_ratio[i] =
-        ghost_probability > 0.0 ? static_cast<float>(std::log((1.0 - ghost_probability) / ghost_probability)) : 0.0F;
+    const double ratio = std::log((1.0 - ghost_probability) / ghost_probability);  // infinite if it is certain
+    constexpr double kCertain{ClassifiedScan::kCertain};
+    scan->moving_log_likelihood_ratio[i] = static_cast<float>(std::clamp(ratio, -kCertain, kCertain));
   }
   std::unique_ptr<ClassifiedScan> scan = std::make_unique<ClassifiedScan>();
 };
