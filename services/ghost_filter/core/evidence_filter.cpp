@@ -24,7 +24,8 @@ bool is_finite(const CorrectedScan& scan, std::size_t i) {
 SensorVerdict verdict_of(const CorrectedScan& scan, std::size_t i) {
   const std::uint16_t flags = scan.detection_flags[i];
   SensorVerdict v{(flags & corrected_flag::kDoubted) != 0, (flags & corrected_flag::kAmbiguous) != 0, {}};
-  if ((scan.fields & scan_field::kExistence) != 0) v.existence = static_cast<double>(scan.existence_probability[i]);
+  const auto existence = static_cast<double>(scan.existence_probability[i]);
+  if ((scan.fields & scan_field::kExistence) != 0 && std::isfinite(existence)) v.existence = existence;
   return v;
 }
 

@@ -326,6 +326,7 @@ TEST(EvidenceFilter, TheSensorsExistenceCountsOnlyWhereItIsStated) {
   EXPECT_EQ(ratio(0, 0.9F), 0.0F);
   EXPECT_EQ(ratio(scan_field::kExistence, 0.9F), 2.0F);
   EXPECT_EQ(ratio(scan_field::kExistence, 0.1F), -2.0F);
+  EXPECT_EQ(ratio(scan_field::kExistence, std::numeric_limits<float>::quiet_NaN()), 0.0F) << "not stated for this one";
 }
 
 TEST(EvidenceFilter, AClockThatJumpsClearsTheMemory) {
