@@ -17,40 +17,44 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 50'000'000;
 constexpr double kSpeed_mps = 25.0, kRail_m = 7.5;
-constexpr double kRoad_m = 100.0;         // period of the world's repetition: kCycles cycles at kSpeed_mps
-constexpr std::size_t kMovingOf100 = 13;  // ghosts among them: Le Ba Thanh 2023 has 12 % moving, half of them real
-/// Stationary reflection points per kRoad_m for a map of kMapPoints. Noise and changing aspect angles spread each of
-/// them over several points of the map.
+constexpr double kRoad_m = 100.0;  // period of the world's repetition: kCycles cycles at kSpeed_mps
+constexpr double kReach_m = 100.0, kHalfWidth_m = 40.0;
+constexpr double kLane_m = 3.5;                            // of the vehicles, on either side
+constexpr std::size_t kRealOf100 = 10, kMovingOf100 = 20;  // the others of the moving ones are false
+/// Stationary reflection points per kRoad_m. Noise and changing aspect angles spread each of them over several points
+/// of the map.
 constexpr double kPlaces = 890.0;
 constexpr double kAzimuthStd_rad = 0.003, kRangeStd_m = 0.1;
 
-double seconds(clockid_t clock) {
+double thread_seconds() {
   timespec t{};
-  clock_gettime(clock, &t);
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 }  // namespace
 
-GhostLoad::GhostLoad(std::size_t radars, std::size_t detections, Surroundings surroundings)
+GhostLoad::GhostLoad(std::size_t radars, std::size_t detections)
     : radars_(radars), detections_(std::min(detections, kMaxDetections)) {
-  // A larger area has the same density of stationary reflection points.
-  const double scale =
-      surroundings == Surroundings::kSame ? 1.0 : std::sqrt(static_cast<double>(radars_ * detections_) / 1200.0);
-  reach_m_ = 100.0 * scale;
-  half_width_m_ = 40.0 * scale;
   build_world();
-  for (double x = -reach_m_ + 6.0; x < reach_m_; x += 24.0) {
-    if (std::abs(x) > 10.0) vehicles_.emplace_back(x, 3.5 * (static_cast<int>(std::floor(x / 24.0)) % 2));
-  }
+  build_tracks();
   for (std::size_t cycle = 0; cycle < kCycles; ++cycle) {
     for (std::size_t radar = 0; radar < radars_; ++radar) {
       scans_.push_back(std::make_unique<CorrectedScan>());
       fill(*scans_.back(), cycle, radar);
     }
   }
+}
+
+void GhostLoad::build_tracks() {
+  constexpr std::size_t kInLane = kVehicles / 2;
+  constexpr double kSpacing_m = 2.0 * kReach_m / static_cast<double>(kInLane);
+  for (std::size_t k = 0; k < kInLane; ++k) {
+    const double x = -kReach_m + (static_cast<double>(k) + 0.5) * kSpacing_m;
+    vehicles_.emplace_back(x, kLane_m);
+    vehicles_.emplace_back(x, -kLane_m);
+  }
   for (const Eigen::Vector2d& vehicle : vehicles_) {
-    if (tracks_.number_of_tracks == kMaxTracks) break;
     Track& track = tracks_.tracks[tracks_.number_of_tracks++];
     track.tracking_id = tracks_.number_of_tracks;
     track.status = TrackStatus::kConfirmed;
@@ -80,10 +84,10 @@ void GhostLoad::build_world() {
   }
   for (double x = 0.0; x < kRoad_m; x += 25.0) world_.emplace_back(x, 9.0);
   // Bushes: dense clusters farther from the road.
-  const auto places = static_cast<std::size_t>(kPlaces * half_width_m_ / 40.0);
+  const auto places = static_cast<std::size_t>(kPlaces);
   while (world_.size() < places) {
     const Eigen::Vector2d middle(random.uniform(0.0, kRoad_m),
-                                 (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(18.0, half_width_m_));
+                                 (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(18.0, kHalfWidth_m));
     for (int leaf = 0; leaf < 12; ++leaf) {
       world_.push_back(middle + Eigen::Vector2d(1.2 * random.gaussian(), 1.2 * random.gaussian()));
     }
@@ -113,27 +117,29 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
                            static_cast<double>(radar) * kPeriod_ns / static_cast<double>(radars_));
   for (std::size_t i = 0; i < detections_; ++i) {
     Eigen::Vector2d p;
-    double along_mps = 0.0, rcs_dbsm = random.uniform(-10.0, 10.0);
-    if (i % 100 >= kMovingOf100) {
-      // One of the repetitions in the field of view, ahead of the vehicle or behind it.
-      const double low = ahead > 0.0 ? 0.0 : -reach_m_;
-      const double repetitions = std::ceil(reach_m_ / kRoad_m);
-      do {
-        const Eigen::Vector2d& place = world_[random.next() % world_.size()];
-        const double first = low + std::fmod(place.x() - driven_m - low + 1e4 * kRoad_m, kRoad_m);
-        p = {first + kRoad_m * std::floor(random.uniform() * repetitions), place.y()};
-      } while (p.x() > low + reach_m_);
-    } else {
+    double along_mps = 0.0, false_mps = 0.0, rcs_dbsm = random.uniform(-10.0, 10.0);
+    const bool is_moving = i % 100 < kMovingOf100, is_real = i % 100 < kRealOf100;
+    if (!is_moving) {
+      // In the field of view, ahead of the vehicle or behind it.
+      const double low = ahead > 0.0 ? 0.0 : -kReach_m;
+      const Eigen::Vector2d& place = world_[random.next() % world_.size()];
+      p = {low + std::fmod(place.x() - driven_m - low + 1e4 * kRoad_m, kRoad_m), place.y()};
+    } else if (is_real || i % 2 == 0) {
       p = vehicles_[random.next() % vehicles_.size()];
       // On the faces that point towards the ego vehicle.
-      const bool at_end = p.y() == 0.0 || random.uniform() < 0.5;
-      p += at_end ? Eigen::Vector2d(p.x() > 0.0 ? -2.2 : 2.2, random.uniform(-0.9, 0.9))
-                  : Eigen::Vector2d(random.uniform(-2.2, 2.2), -0.9);
-      const double kind = random.uniform();
-      // A mirror image loses 13 dB at each of its two bounces on a mirror.
-      rcs_dbsm = 5.0 + 6.0 * random.gaussian() - (kind > 0.5 ? 26.0 : 0.0);
-      if (kind > 0.5) p.y() = (kind > 0.75 ? 2.0 : -2.0) * kRail_m - p.y();
+      const double inwards = p.y() > 0.0 ? -0.9 : 0.9;
+      p += random.uniform() < 0.5 ? Eigen::Vector2d(p.x() > 0.0 ? -2.2 : 2.2, random.uniform(-0.9, 0.9))
+                                  : Eigen::Vector2d(random.uniform(-2.2, 2.2), inwards);
+      rcs_dbsm = 5.0 + 6.0 * random.gaussian();
+      if (!is_real) {
+        // A mirror image loses 13 dB at each of its two bounces on a mirror.
+        rcs_dbsm -= 26.0;
+        p.y() = (p.y() > 0.0 ? 2.0 : -2.0) * kRail_m - p.y();
+      }
       along_mps = kSpeed_mps;
+    } else {
+      p = {random.uniform(-kReach_m, kReach_m), random.uniform(-kHalfWidth_m, kHalfWidth_m)};
+      false_mps = random.uniform(3.0, 30.0);
     }
     Eigen::Vector2d sight = p - sensor;
     sight += kRangeStd_m * random.gaussian() * sight.normalized() +
@@ -144,7 +150,7 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
     scan.z_vehicle_m[i] = 0.5F;
     scan.range_m[i] = static_cast<float>(sight.norm());
     scan.azimuth_vehicle_rad[i] = static_cast<float>(std::atan2(sight.y(), sight.x()));
-    const double over_ground = along_mps * sight.x() / sight.norm();
+    const double over_ground = along_mps * sight.x() / sight.norm() + false_mps;
     scan.range_rate_over_ground_mps[i] = static_cast<float>(over_ground + 0.05 * random.gaussian());
     scan.range_rate_mps[i] = static_cast<float>(over_ground - kSpeed_mps * sight.x() / sight.norm());
     scan.rcs_dbsm[i] = static_cast<float>(rcs_dbsm);
@@ -153,7 +159,7 @@ void GhostLoad::fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) 
     scan.elevation_std_rad[i] = 0.01F;
     scan.range_rate_std_mps[i] = 0.05F;
     scan.existence_probability[i] = 1.0F;
-    scan.detection_flags[i] = along_mps > 0.0 ? corrected_flag::kMoving : corrected_flag::kStationary;
+    scan.detection_flags[i] = is_moving ? corrected_flag::kMoving : corrected_flag::kStationary;
   }
 }
 
@@ -176,23 +182,20 @@ GhostCost measure_ghost_cycles(GhostLoad& load, ghosts::Method& method, std::siz
   us.reserve(cycles * load.scans_in_cycle());
   GhostCost cost{};
   const std::uint64_t before = runtime::counted_allocations();
-  const double wall_s = seconds(CLOCK_MONOTONIC);
   {
     const runtime::CountAllocations counting;
     for (std::size_t i = 0; i < cycles; ++i) {
-      double begin_s = seconds(CLOCK_THREAD_CPUTIME_ID);
+      double begin_s = thread_seconds();
       load.give_cycle(method, [&](std::size_t) {
-        us.push_back(1e6 * (seconds(CLOCK_THREAD_CPUTIME_ID) - begin_s));
-        begin_s = seconds(CLOCK_THREAD_CPUTIME_ID);
+        us.push_back(1e6 * (thread_seconds() - begin_s));
+        begin_s = thread_seconds();
       });
       cost.map_points += static_cast<double>(method.map_points()) / static_cast<double>(cycles);
     }
   }
   const auto scans = static_cast<double>(us.size());
-  cost.wall_mean_us = 1e6 * (seconds(CLOCK_MONOTONIC) - wall_s) / scans;
   cost.allocations = runtime::counted_allocations() - before;
   for (const double each : us) cost.mean_us += each / scans;
-  cost.mean_cycle_us = cost.mean_us * static_cast<double>(load.scans_in_cycle());
   cost.p99_us = quantile(us, 0.99);
   cost.max_us = quantile(us, 1.0);
   return cost;

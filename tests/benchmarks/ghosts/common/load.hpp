@@ -14,19 +14,15 @@
 
 namespace boresight::bench {
 
-/// Map size of the cost bar: four radars with 300 detections each accumulate about this many points.
-inline constexpr double kMapPoints = 5000.0;
-
-/// Surroundings of a larger load: the same 100 m of road sampled more densely, or a proportionally larger area.
-enum class Surroundings : std::uint8_t { kSame, kLarger };
-
 class GhostLoad {
  public:
-  /// `radars` × `detections` per cycle of 50 ms at 25 m/s. 87 % are stationary: guard rails, a wall, parked cars, poles
-  /// and vegetation, detected again in every scan. The map then holds about kMapPoints points in the same surroundings,
-  /// and × radars × detections / 1200 in larger ones. The other 13 % are moving: half of them tracked vehicles, half
-  /// their mirror images in the rails. A longer road has proportionally more vehicles.
-  GhostLoad(std::size_t radars, std::size_t detections, Surroundings surroundings);
+  /// `radars` × `detections` per cycle of 50 ms at 25 m/s. 80 % are stationary: guard rails, a wall, parked cars, poles
+  /// and vegetation, detected again in every scan, with reflectors among them. 10 % are direct echoes of kVehicles
+  /// vehicles, each with a confirmed track. 10 % are false moving detections: in turn a mirror image of a vehicle in a
+  /// rail, and a detection at any place with any range rate.
+  GhostLoad(std::size_t radars, std::size_t detections);
+
+  static constexpr std::size_t kVehicles = 30;
 
   /// One scan of each radar and the tracks. Time advances with each call. `each`(radar) is called after each scan.
   template <typename Each>
@@ -46,10 +42,10 @@ class GhostLoad {
  private:
   static constexpr std::size_t kCycles = 80;  // 100 m of road, then repeated
   void build_world();
+  void build_tracks();
   void fill(CorrectedScan& scan, std::size_t cycle, std::size_t radar) const;
   const CorrectedScan& next_scan(std::size_t radar);
   std::size_t radars_, detections_;
-  double reach_m_, half_width_m_;
   std::vector<Eigen::Vector2d> world_;                 // stationary reflection points of 100 m of road, which repeats
   std::vector<Eigen::Vector2d> vehicles_;              // relative to the ego vehicle, all with its speed
   std::vector<std::unique_ptr<CorrectedScan>> scans_;  // by cycle, then radar
@@ -58,12 +54,11 @@ class GhostLoad {
   std::uint64_t cycle_ = 0;
 };
 
-/// Cost of one scan, including the tracks handed over after it. CPU time of the thread in µs, except the "wall" time.
+/// Cost of one scan, including the tracks handed over after it: CPU time of the thread.
 struct GhostCost {
-  double mean_us, p99_us, max_us, wall_mean_us;
-  double map_points;     ///< mean
-  double mean_cycle_us;  ///< one scan of each radar
-  std::uint64_t allocations;
+  double mean_us = 0.0, p99_us = 0.0, max_us = 0.0;
+  double map_points = 0.0;  ///< mean
+  std::uint64_t allocations = 0;
 };
 [[nodiscard]] GhostCost measure_ghost_cycles(GhostLoad& load, ghosts::Method& method, std::size_t cycles);
 

@@ -1,30 +1,26 @@
-// The compared methods by name.
+// The methods by name.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <array>
 
 #include "services/ghost_filter/core/config.hpp"
-#include "tests/benchmarks/ghosts/common/changed_method.hpp"
 
 namespace boresight::bench {
 
-struct NamedGhostMethod {
-  std::string name;
-  ghosts::Config config;
-  Change change{};
+struct NamedMethod {
+  const char* name;
+  ghosts::MethodName method;
 };
 
-/// All methods of the configuration. The last one is the product's own, to which the bars apply.
-[[nodiscard]] inline std::vector<NamedGhostMethod> ghost_methods() {
-  std::vector<NamedGhostMethod> methods;
-  ghosts::Config published;
-  published.method = ghosts::MethodName::kPublished;
-  methods.push_back({"published", published, {}});
-  ghosts::Config mirror;
-  mirror.method = ghosts::MethodName::kMirror;
-  methods.push_back({"mirror", mirror, {}});
-  return methods;
+/// The last one is the product's own.
+inline constexpr std::array<NamedMethod, 2> kMethods = {
+    {{"published", ghosts::MethodName::kPublished}, {"evidence", ghosts::MethodName::kEvidence}}};
+
+[[nodiscard]] inline ghosts::Config config_of(const NamedMethod& named, const ghosts::EvidenceWeights& weights) {
+  ghosts::Config config;
+  config.method = named.method;
+  config.evidence.weights = weights;
+  return config;
 }
 
 }  // namespace boresight::bench

@@ -7,9 +7,9 @@ namespace boresight::bench {
 namespace {
 
 TEST(GhostMethods, NeverAllocate) {
-  for (const NamedGhostMethod& named : ghost_methods()) {
-    GhostLoad load(4, 300, Surroundings::kSame);
-    const auto method = ghosts::make_method(named.config);
+  for (const NamedMethod& named : kMethods) {
+    GhostLoad load(4, 300);
+    const auto method = ghosts::make_method(config_of(named, {}));
     EXPECT_EQ(measure_ghost_cycles(load, *method, 5).allocations, 0u) << named.name;
   }
 }

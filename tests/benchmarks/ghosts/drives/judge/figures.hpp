@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/benchmarks/ghosts/drives/judged.hpp"
+#include "tests/benchmarks/ghosts/drives/judge/judged.hpp"
 
 namespace boresight::bench::ghosts_drives {
 
@@ -26,7 +26,17 @@ using Figure = std::function<double(const Drives&)>;
 [[nodiscard]] Figure known_lost(Lane lane);
 /// Share of Doppler-ambiguous detections of known objects with a probability of at least 0.5.
 [[nodiscard]] Figure ambiguous_kept(Lane lane);
-/// Share of false detections below the probability that 90 % of the real ones reach.
-[[nodiscard]] Figure recognised_at_90(Lane lane);
+/// Share of false detections below the probability that 90 % of the real ones reach; of one origin, or kUnknown: of
+/// all.
+[[nodiscard]] Figure recognised_at_90(Lane lane, Provenance origin = Provenance::kUnknown);
+/// Share of an origin among the false detections.
+[[nodiscard]] Figure share_of_false(Provenance origin);
+
+/// Sums of the detections of one tenth of the probability.
+struct ReliabilityBin {
+  double stated = 0.0, real = 0.0, detections = 0.0;
+};
+/// By rising probability.
+[[nodiscard]] std::vector<ReliabilityBin> reliability(const Drives& drives, Lane lane);
 
 }  // namespace boresight::bench::ghosts_drives

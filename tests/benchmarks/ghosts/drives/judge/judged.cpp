@@ -1,8 +1,6 @@
-#include "tests/benchmarks/ghosts/drives/judged.hpp"
+#include "tests/benchmarks/ghosts/drives/judge/judged.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <memory>
 
 #include "services/simulator/judge/hidden.hpp"
@@ -10,6 +8,7 @@
 #include "services/simulator/scenario/read_profile.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "tests/benchmarks/common/scenario_vehicle.hpp"
+#include "tests/benchmarks/ghosts/drives/judge/base_rate.hpp"
 #include "tests/closed_loop/chain.hpp"
 #include "tests/closed_loop/objects.hpp"
 
@@ -18,32 +17,6 @@ namespace boresight::bench::ghosts_drives {
 namespace {
 
 using simulator::DetectionTruth;
-
-/// Share of real ones among a radar's moving detections, of the past, with exponential memory: what a filter without
-/// evidence could state if someone told it the truth of the past.
-class BaseRate {
- public:
-  [[nodiscard]] double at(std::uint32_t radar, double t_s) {
-    Sums& s = sums_[radar];
-    const double keep = std::exp(-(t_s - s.t_s) / kMemory_s);
-    s.t_s = t_s;
-    s.real *= keep;
-    s.all *= keep;
-    return (s.real + 0.5 * kPrior) / (s.all + kPrior);
-  }
-  void add(std::uint32_t radar, bool is_real) {
-    Sums& s = sums_[radar];
-    s.real += is_real ? 1.0 : 0.0;
-    s.all += 1.0;
-  }
-
- private:
-  static constexpr double kMemory_s = 30.0, kPrior = 1.0;
-  struct Sums {
-    double real = 0.0, all = 0.0, t_s = 0.0;
-  };
-  std::map<std::uint32_t, Sums> sums_;
-};
 
 /// A filter without a tracker behind it.
 struct Alone {
@@ -99,17 +72,19 @@ DriveResult run_drive(const DriveSpec& spec, const ghosts::Config& config) {
       const std::uint16_t flags = scan.detection_flags[i];
       if ((flags & corrected_flag::kMoving) == 0 || (flags & corrected_flag::kRejected) != 0) continue;
       JudgedDetection d;
-      d.is_real = truth[i].provenance == Provenance::kMoving;
+      d.truth = truth[i].provenance;
+      d.is_real = d.truth == Provenance::kMoving;
       d.is_ambiguous = d.is_real && truth[i].cause == simulator::Cause::kDopplerAmbiguity;
       d.known_s = d.is_real ? static_cast<float>(true_tracks.age_s(truth[i].object_id, event->t_s)) : -1.0F;
       d.base_rate = static_cast<float>(base);
-      for (std::size_t lane = 0; lane < kLanes; ++lane) d.p_moving[lane] = lanes[lane]->probability(Provenance::kMoving, i);
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        d.p_moving[lane] = lanes[lane]->probability(Provenance::kMoving, i);
       base_rate.add(radar, d.is_real);
       result.detections.push_back(d);
     }
-    keep_evidence(*without.method, truth, result.evidence);
-    keep_evidence(*perfect.method, truth, result.evidence);
-    keep_evidence(in_chain, truth, result.evidence);
+    keep_evidence(*without.method, truth, result.evidence_of(Lane::kWithout));
+    keep_evidence(*perfect.method, truth, result.evidence_of(Lane::kPerfect));
+    keep_evidence(in_chain, truth, result.evidence_of(Lane::kChain));
     // What is known after this scan is known in the next one.
     std::vector<closed_loop::Object> objects = closed_loop::objects_at(drive, event->t_s);
     last_seen.mark(event->t_s, truth, objects);

@@ -7,9 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "interfaces/messages/classified_scan.hpp"
+#include "services/ghost_filter/core/config.hpp"
 #include "services/ghost_filter/core/evidence/fit.hpp"
 #include "services/ghost_filter/core/evidence/weights.hpp"
-#include "services/ghost_filter/core/config.hpp"
 
 namespace boresight::bench::ghosts_drives {
 
@@ -26,10 +27,11 @@ inline constexpr std::array<std::string_view, kLanes> kLaneNames = {"without", "
 /// A detection that the corrector calls moving.
 struct JudgedDetection {
   std::array<float, kLanes> p_moving{};
-  float base_rate = 0.0F;      ///< share of real ones among the radar's moving detections of the past (base_rate.hpp)
-  float known_s = -1.0F;       ///< since when the object is known; negative: not known, or not real
-  bool is_real = false;        ///< a direct echo of a moving object, its range rate right or ambiguous
-  bool is_ambiguous = false;   ///< … ambiguous
+  float base_rate = 0.0F;  ///< share of real ones among the radar's moving detections of the past (base_rate.hpp)
+  float known_s = -1.0F;   ///< since when the object is known; negative: not known, or not real
+  Provenance truth = Provenance::kUnknown;
+  bool is_real = false;       ///< a direct echo of a moving object, its range rate right or ambiguous
+  bool is_ambiguous = false;  ///< … ambiguous
 };
 
 struct DriveSpec {
@@ -38,10 +40,16 @@ struct DriveSpec {
   double longest_s = 25.0;
 };
 
-/// With the evidence of the lanes kWithout, kPerfect and kChain, for fits.
+/// The lanes of the method `evidence`: the first ones.
+inline constexpr std::size_t kEvidenceLanes = 3;
+
 struct DriveResult {
   std::vector<JudgedDetection> detections;
-  std::vector<ghosts::LabelledEvidence> evidence;
+  /// The same detections with their evidence, by lane, for fits.
+  std::array<std::vector<ghosts::LabelledEvidence>, kEvidenceLanes> evidence;
+  [[nodiscard]] std::vector<ghosts::LabelledEvidence>& evidence_of(Lane lane) {
+    return evidence[static_cast<std::size_t>(lane)];
+  }
 };
 
 /// Runs the drive through the corrector and all lanes.

@@ -1,7 +1,6 @@
-#include "tests/benchmarks/ghosts/drives/figures.hpp"
+#include "tests/benchmarks/ghosts/drives/judge/figures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -68,20 +67,26 @@ Figure log_loss_ratio(Lane lane) {
   return ratio(lane, log_loss);
 }
 
+std::vector<ReliabilityBin> reliability(const Drives& drives, Lane lane) {
+  constexpr std::size_t kBins = 10;
+  std::vector<ReliabilityBin> bins(kBins);
+  visit(drives, [&](const JudgedDetection& d) {
+    const double p = p_of(d, lane);
+    ReliabilityBin& bin = bins[static_cast<std::size_t>(std::clamp(p * kBins, 0.0, kBins - 1.0))];
+    bin.stated += p;
+    bin.real += d.is_real ? 1.0 : 0.0;
+    bin.detections += 1.0;
+  });
+  return bins;
+}
+
 Figure calibration_error(Lane lane) {
   return [lane](const Drives& drives) {
-    constexpr std::size_t kBins = 10;
-    std::array<double, kBins> stated{}, real{};
-    double all = 0.0;
-    visit(drives, [&](const JudgedDetection& d) {
-      const double p = p_of(d, lane);
-      const auto bin = static_cast<std::size_t>(std::clamp(p * kBins, 0.0, kBins - 1.0));
-      stated[bin] += p;
-      real[bin] += d.is_real ? 1.0 : 0.0;
-      all += 1.0;
-    });
-    double error = 0.0;
-    for (std::size_t i = 0; i < kBins; ++i) error += std::abs(stated[i] - real[i]);
+    double error = 0.0, all = 0.0;
+    for (const ReliabilityBin& bin : reliability(drives, lane)) {
+      error += std::abs(bin.stated - bin.real);
+      all += bin.detections;
+    }
     return all > 0.0 ? error / all : kNaN;
   };
 }
@@ -97,8 +102,8 @@ Figure ambiguous_kept(Lane lane) {
                [lane](const JudgedDetection& d) { return p_of(d, lane) >= 0.5; });
 }
 
-Figure recognised_at_90(Lane lane) {
-  return [lane](const Drives& drives) {
+Figure recognised_at_90(Lane lane, Provenance origin) {
+  return [lane, origin](const Drives& drives) {
     constexpr double kKept = 0.9;
     std::vector<double> real;
     visit(drives, [&](const JudgedDetection& d) {
@@ -110,12 +115,17 @@ Figure recognised_at_90(Lane lane) {
     const double threshold = *place;
     double all = 0.0, below = 0.0;
     visit(drives, [&](const JudgedDetection& d) {
-      if (d.is_real) return;
+      if (d.is_real || (origin != Provenance::kUnknown && d.truth != origin)) return;
       all += 1.0;
       below += p_of(d, lane) < threshold ? 1.0 : 0.0;
     });
     return all > 0.0 ? below / all : kNaN;
   };
+}
+
+Figure share_of_false(Provenance origin) {
+  return share([](const JudgedDetection& d) { return !d.is_real; },
+               [origin](const JudgedDetection& d) { return d.truth == origin; });
 }
 
 }  // namespace boresight::bench::ghosts_drives

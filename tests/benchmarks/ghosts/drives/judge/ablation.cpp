@@ -1,0 +1,61 @@
+#include "tests/benchmarks/ghosts/drives/judge/ablation.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace boresight::bench::ghosts_drives {
+
+namespace {
+
+std::vector<ghosts::LabelledEvidence> all_without(const EvidencePart& part,
+                                                  std::vector<ghosts::LabelledEvidence> detections) {
+  for (ghosts::LabelledEvidence& each : detections) each.levels = without(part, each.levels);
+  return detections;
+}
+
+}  // namespace
+
+std::vector<EvidencePart> evidence_parts() {
+  std::vector<EvidencePart> parts;
+  for (std::size_t k = 0; k < ghosts::kEvidences; ++k) {
+    parts.push_back({std::string(ghosts::kEvidenceSpecs[k].key), {static_cast<ghosts::EvidenceKind>(k)}});
+  }
+  parts.push_back(
+      {"image_type_1 and image_type_2", {ghosts::EvidenceKind::kImageType1, ghosts::EvidenceKind::kImageType2}});
+  parts.push_back({"verdict and existence", {ghosts::EvidenceKind::kVerdict, ghosts::EvidenceKind::kExistence}});
+  parts.push_back({"tracks", {}, true});
+  return parts;
+}
+
+ghosts::Levels without(const EvidencePart& part, ghosts::Levels levels) {
+  for (const ghosts::EvidenceKind kind : part.kinds) levels.of[static_cast<std::size_t>(kind)] = 0;
+  if (part.is_tracks) levels.has_tracks = false;
+  return levels;
+}
+
+double brier_score(const std::vector<ghosts::LabelledEvidence>& detections, const ghosts::EvidenceWeights& weights) {
+  if (detections.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0.0;
+  for (const ghosts::LabelledEvidence& each : detections) {
+    const double p = 1.0 / (1.0 + std::exp(-ghosts::posterior_log_odds(weights, each.levels)));
+    const double error = p - (each.is_real ? 1.0 : 0.0);
+    sum += error * error;
+  }
+  return sum / static_cast<double>(detections.size());
+}
+
+std::array<double, kEvidenceLanes> brier_change_percent(const EvidencePart& part,
+                                                        const std::vector<ghosts::LabelledEvidence>& fit,
+                                                        const EvidenceByLane& judged,
+                                                        const ghosts::EvidenceWeights& full) {
+  // (G1) is fitted without the tracks anyway.
+  const ghosts::EvidenceWeights reduced = part.is_tracks ? full : ghosts::fit_weights(all_without(part, fit), {});
+  std::array<double, kEvidenceLanes> changes{};
+  for (std::size_t lane = 0; lane < kEvidenceLanes; ++lane) {
+    const double with = brier_score(judged[lane], full);
+    changes[lane] = 100.0 * (brier_score(all_without(part, judged[lane]), reduced) / with - 1.0);
+  }
+  return changes;
+}
+
+}  // namespace boresight::bench::ghosts_drives
