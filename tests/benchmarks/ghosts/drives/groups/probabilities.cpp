@@ -59,8 +59,8 @@ Table figures_table(const std::string& profile, const std::string& conditions, c
     for (const DriveResult* drive : drives) of_drives.push_back(each.figure({drive}));
     std::erase_if(of_drives, [](double value) { return std::isnan(value); });
     table.rows.push_back({each.what, fixed(each.figure(drives), 3),
-                          fixed(interval.low, 3) + "–" + fixed(interval.high, 3), fixed(median(of_drives), 3),
-                          text_of(each.limits), findings.judge(interval, each.limits)});
+                          std::isnan(interval.low) ? "—" : fixed(interval.low, 3) + "–" + fixed(interval.high, 3),
+                          fixed(median(of_drives), 3), text_of(each.limits), findings.judge(interval, each.limits)});
   }
   return table;
 }

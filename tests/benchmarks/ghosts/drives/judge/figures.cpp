@@ -104,13 +104,13 @@ Figure ambiguous_kept(Lane lane) {
 
 Figure recognised_at_90(Lane lane, Provenance origin) {
   return [lane, origin](const Drives& drives) {
-    constexpr double kKept = 0.9;
+    constexpr double kLost = 0.1;
     std::vector<double> real;
     visit(drives, [&](const JudgedDetection& d) {
       if (d.is_real) real.push_back(p_of(d, lane));
     });
     if (real.empty()) return kNaN;
-    const auto place = real.begin() + static_cast<std::ptrdiff_t>((1.0 - kKept) * static_cast<double>(real.size()));
+    const auto place = real.begin() + static_cast<std::ptrdiff_t>(kLost * static_cast<double>(real.size()));
     std::nth_element(real.begin(), place, real.end());
     const double threshold = *place;
     double all = 0.0, below = 0.0;
