@@ -47,7 +47,8 @@ def brier(curves):
     for i, name in enumerate(names):
         panel = Panel((150 + 250 * i, 100, 220, height), RATIOS, (0.0, 1.0), name, "ratio", log_x=True)
         # Rows are names, not numbers.
-        panel.parts = [part for part in panel.parts if 'text-anchor="end"' not in part or "ratio" in part]
+        panel.parts = [part for part in panel.parts if ('text-anchor="end"' not in part or "ratio" in part)
+                       and not (part.startswith('<path class="g"') and f'h{panel.width}"' in part)]
         panel.parts.append(f'<path class="bar" d="M{panel.x(1.0):.1f} 100v{height}"/>')
         for k, (scenario, of) in enumerate(values.items()):
             y = 100 + ROW * (k + 0.5)

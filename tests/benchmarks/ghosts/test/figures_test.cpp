@@ -32,6 +32,18 @@ TEST(Figures, BrierRatioIsOverTheBaseRateOfAllDrivesTogether) {
   EXPECT_EQ(brier_ratio(Lane::kChain)({&first}), 0.0);
 }
 
+TEST(Figures, EstimatesAreOfAllDrivesAndOfSingleOnes) {
+  DriveResult good, poor, empty;
+  good.detections = {detection(Provenance::kMoving, 0.9F)};  // 0.01 beside 0.25
+  poor.detections = {detection(Provenance::kMoving, 0.4F)};  // 0.36 beside 0.25
+  const Estimate e = estimate(brier_ratio(Lane::kWithout), {&good, &poor, &empty});
+  EXPECT_NEAR(e.all, 0.37 / 0.5, 1e-6);
+  EXPECT_NEAR(e.median, 0.5 * (0.04 + 1.44), 1e-6) << "the drive without detections has no figure";
+  EXPECT_NEAR(e.interval.low, 0.04, 1e-6);
+  EXPECT_NEAR(e.interval.high, 1.44, 1e-6);
+  EXPECT_TRUE(std::isnan(estimate(ambiguous_kept(Lane::kPerfect), {&good, &poor}).interval.low));
+}
+
 TEST(Figures, LogarithmicScoreBoundsCertainErrors) {
   DriveResult drive;
   drive.detections = {detection(Provenance::kClutter, 1.0F)};

@@ -2,8 +2,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -50,17 +48,10 @@ Table figures_table(const std::string& profile, const std::string& conditions, c
               {"figure", "all drives", "95 % interval", "median drive", "bar", "result"},
               {}};
   for (const JudgedFigure& each : judged_figures(is_of_others)) {
-    const Interval interval = bootstrap(drives.size(), [&](const std::vector<std::size_t>& picks) {
-      Drives picked;
-      for (const std::size_t pick : picks) picked.push_back(drives[pick]);
-      return each.figure(picked);
-    });
-    std::vector<double> of_drives;
-    for (const DriveResult* drive : drives) of_drives.push_back(each.figure({drive}));
-    std::erase_if(of_drives, [](double value) { return std::isnan(value); });
-    table.rows.push_back({each.what, fixed(each.figure(drives), 3),
+    const auto [all, interval, of_single] = estimate(each.figure, drives);
+    table.rows.push_back({each.what, fixed(all, 3),
                           std::isnan(interval.low) ? "—" : fixed(interval.low, 3) + "–" + fixed(interval.high, 3),
-                          fixed(median(of_drives), 3), text_of(each.limits), findings.judge(interval, each.limits)});
+                          fixed(of_single, 3), text_of(each.limits), findings.judge(interval, each.limits)});
   }
   return table;
 }
@@ -97,10 +88,11 @@ void add_origins(const std::string& profile, const Drives& drives, Table& table)
   for (const Provenance origin : kFalse) {
     const bool is_all = origin == Provenance::kUnknown;
     const double share = is_all ? 1.0 : share_of_false(origin)(drives);
-    if (!(share > 0.0)) continue;
+    constexpr double kShown = 0.001;
+    if (!(share >= kShown)) continue;
     table.rows.push_back(
         {is_all ? profile : "", is_all ? "all" : std::string(name_of(origin)), fixed(100.0 * share, 1)});
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < kEvidenceLanes; ++lane) {
       table.rows.back().push_back(fixed(100.0 * recognised_at_90(static_cast<Lane>(lane), origin)(drives), 0));
     }
   }
@@ -136,7 +128,7 @@ void probabilities(const Setup& setup, std::vector<ProfileDrives>& profiles, Fin
   Table origins{"origins",
                 "false moving detections by their origin: share, and % recognised with the threshold of the "
                 "probability that keeps 90 % of the real ones of the profile",
-                {"profile", "origin", "% of the false ones", "without tracks", "perfect tracks", "chain", "published"},
+                {"profile", "origin", "% of the false ones", "without tracks", "perfect tracks", "chain"},
                 {}};
   for (ProfileDrives& profile : profiles) {
     if (setup.fits_others) {

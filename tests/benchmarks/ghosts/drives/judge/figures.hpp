@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/benchmarks/common/intervals.hpp"
 #include "tests/benchmarks/ghosts/drives/judge/judged.hpp"
 
 namespace boresight::bench::ghosts_drives {
@@ -13,8 +14,23 @@ namespace boresight::bench::ghosts_drives {
 /// Drives, each with its detections.
 using Drives = std::vector<const DriveResult*>;
 
-/// One figure of the detections of some drives together; NaN without data.
-using Figure = std::function<double(const Drives&)>;
+/// One figure of the detections of some drives together, by sums over each drive, so that a bootstrap visits the
+/// detections once.
+struct Figure {
+  using Sums = std::vector<double>;
+  std::function<Sums(const DriveResult&)> sums;
+  std::function<double(const Sums&)> value;  ///< of the drives' sums together; NaN without data
+
+  [[nodiscard]] double operator()(const Drives& drives) const;
+};
+
+/// A figure of all drives together, with its 95 % interval over the drives, and the median of the single drives.
+struct Estimate {
+  double all = 0.0;
+  Interval interval;
+  double median = 0.0;
+};
+[[nodiscard]] Estimate estimate(const Figure& figure, const Drives& drives);
 
 /// Brier score (Brier 1950) of the lane over that of the base rates.
 [[nodiscard]] Figure brier_ratio(Lane lane);
