@@ -61,6 +61,7 @@ std::vector<double> numbers(const Config& config) {
           i.mirrored_existence,
           i.mirror_share_per_m,
           i.most_mirror_share,
+          i.least_mirror_share,
           m.memory_s,
           m.update_period_s,
           m.search_period_s,

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -52,13 +53,20 @@ KnownObject object_of(const MirrorScene& s) {
   return o;
 }
 
+/// Of a scan with detections everywhere.
+SightOfImages sight_of(const MirrorScene& s) {
+  SightOfImages sight{s.sensor_m, s.sensor_velocity_mps, {}, 1e3, 0.0};
+  for (double azimuth = -3.14; azimuth < 3.15; azimuth += 0.01) sight.directions.add(azimuth);
+  return sight;
+}
+
 std::vector<MirrorImage> images_of(const MirrorScene& s, double least_existence = 0.5) {
   const Reflector reflector = seen_reflector(s.curve, s.begin_m, s.end_m);
   const Mirror mirror = mirror_of(reflector);
   const KnownObject object = object_of(s);
   std::vector<MirrorImage> images;
   images.reserve(16);
-  place_images({&object, 1}, {&mirror, 1}, s.sensor_m, s.sensor_velocity_mps, least_existence, images);
+  place_images({&object, 1}, {&mirror, 1}, sight_of(s), least_existence, images);
   return images;
 }
 
@@ -247,6 +255,47 @@ TEST(MirrorImages, OfDoubtfulObjectsThereAreNone) {
   EXPECT_TRUE(images_of(beside_a_wall(), 0.95).empty());
 }
 
+TEST(MirrorImages, AreWorkedOutOnlyWhereDetectionsAre) {
+  const MirrorScene s = beside_a_wall();
+  const std::vector<MirrorImage> all = images_of(s);
+  ASSERT_EQ(all.size(), 3U);
+  const Reflector reflector = seen_reflector(s.curve, s.begin_m, s.end_m);
+  const Mirror mirror = mirror_of(reflector);
+  const KnownObject object = object_of(s);
+  std::vector<MirrorImage> images;
+  images.reserve(16);
+  const auto towards = [&](const Eigen::Vector2d& place_m, double farthest_m) {
+    SightOfImages sight{s.sensor_m, s.sensor_velocity_mps, {}, farthest_m, 0.0};
+    const Eigen::Vector2d way = place_m - s.sensor_m;
+    sight.directions.add(std::atan2(way.y(), way.x()));
+    place_images({&object, 1}, {&mirror, 1}, sight, 0.5, images);
+    return images.size();
+  };
+  EXPECT_EQ(towards(all.front().object.observed.box.centre_m, 1e3) >= 2U, true) << "both images of type 2";
+  EXPECT_EQ(towards(s.sensor_m - (s.object_m - s.sensor_m), 1e3), 0U) << "opposite";
+  EXPECT_EQ(towards(all.front().object.observed.box.centre_m, 1.0), 0U) << "all detections are nearer";
+}
+
+TEST(Directions, HoldWhatIsWithinAWidthOfADetection) {
+  Directions directions;
+  EXPECT_FALSE(directions.may_hold({10.0, 0.0}, 5.0)) << "no detection at all";
+  directions.add(M_PI - 0.01);
+  EXPECT_TRUE(directions.may_hold({-10.0, -0.01}, 1.0)) << "across the turn from π to −π";
+  EXPECT_FALSE(directions.may_hold({10.0, 0.0}, 1.0));
+  EXPECT_TRUE(directions.may_hold({0.5, 0.0}, 1.0)) << "the sensor is within the width";
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI), width(0.1, 5.0);
+  for (int i = 0; i < 1000; ++i) {
+    Directions one;
+    const double at = angle(random), about = angle(random), w = width(random), range = 20.0;
+    one.add(at);
+    const Eigen::Vector2d place(range * std::cos(about), range * std::sin(about));
+    const double apart = std::abs(std::remainder(at - about, 2.0 * M_PI));
+    if (apart < std::asin(w / range)) EXPECT_TRUE(one.may_hold(place, w)) << at << " " << about;
+    if (apart > std::asin(w / range) + 0.2) EXPECT_FALSE(one.may_hold(place, w)) << at << " " << about;
+  }
+}
+
 TEST(MirrorImages, StopAtTheRoomThatThereIs) {
   const MirrorScene s = beside_a_wall();
   const Reflector reflector = seen_reflector(s.curve, s.begin_m, s.end_m);
@@ -255,7 +304,7 @@ TEST(MirrorImages, StopAtTheRoomThatThereIs) {
   std::vector<MirrorImage> images;
   images.reserve(7);
   const std::size_t room = images.capacity();
-  place_images(objects, {&mirror, 1}, s.sensor_m, s.sensor_velocity_mps, 0.5, images);
+  place_images(objects, {&mirror, 1}, sight_of(s), 0.5, images);
   EXPECT_EQ(images.size(), room);
   EXPECT_EQ(images.capacity(), room);
 }
@@ -264,6 +313,7 @@ TEST(PlaceMirrors, LongReflectorsMirrorMoreOftenUpToALimit) {
   IntensityConfig config;
   config.mirror_share_per_m = 0.01;
   config.most_mirror_share = 0.6;
+  config.least_mirror_share = 0.0;
   std::vector<Mirror> mirrors;
   mirrors.reserve(4);
   const std::vector<Reflector> reflectors = {seen_reflector({}, 0.0, 10.0), seen_reflector({}, 0.0, 100.0)};
@@ -271,6 +321,10 @@ TEST(PlaceMirrors, LongReflectorsMirrorMoreOftenUpToALimit) {
   ASSERT_EQ(mirrors.size(), 2U);
   EXPECT_NEAR(mirrors[0].probability, 0.1, 1e-9);
   EXPECT_NEAR(mirrors[1].probability, 0.6, 1e-9);
+  config.least_mirror_share = 0.2;
+  place_mirrors(reflectors, Odometry{}, config, mirrors);
+  ASSERT_EQ(mirrors.size(), 1U) << "the short one is no mirror";
+  EXPECT_NEAR(mirrors[0].probability, 0.6, 1e-9);
 }
 
 }  // namespace
