@@ -12,7 +12,7 @@ inline constexpr std::uint32_t kAlignmentStale = 1u << 1;  ///< the estimate is 
 inline constexpr std::uint32_t kNoEgoMotion = 1u << 2;     ///< no ego motion: range rates are not compensated
 inline constexpr std::uint32_t kEgoMotionStale = 1u << 3;  ///< the last ego motion is older than its deadline
 inline constexpr std::uint32_t kNoElevation = 1u << 4;  ///< the sensor measures no elevation: z is the sensor's height
-inline constexpr std::uint32_t kNoTracks = 1u << 5;     ///< the ghost filter had no tracks: no type-1 test
+inline constexpr std::uint32_t kNoTracks = 1u << 5;     ///< the ghost filter had no tracks: no mirror images of them
 inline constexpr std::uint32_t kTracksStale = 1u << 6;  ///< the ghost filter's tracks were older than their deadline
 }  // namespace pipeline_flag
 
