@@ -1,8 +1,6 @@
 #include "services/detection_corrector/core/corrector.hpp"
 
-#include <cstring>
 #include <limits>
-#include <memory>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -11,77 +9,10 @@
 #include "services/common/geometry/angles.hpp"
 #include "services/common/geometry/frames.hpp"
 #include "services/common/runtime/allocation_counter.hpp"
+#include "tests/unit/detection_corrector/corrector_scene.hpp"
 
 namespace boresight::corrector {
 namespace {
-
-constexpr std::int64_t kTime = 1'000'000'000'000;
-
-VehicleConfig one_radar(double yaw_deg = 0.0, double pitch_deg = 0.0, double roll_deg = 0.0) {
-  VehicleConfig vehicle;
-  RadarConfig radar;
-  radar.id = 2;
-  radar.mounting_pose = {
-      {3.6, -0.7, 0.5}, yaw_deg * kRadiansPerDegree, pitch_deg * kRadiansPerDegree, roll_deg * kRadiansPerDegree};
-  radar.noise = {.range_std_m = 0.1,
-                 .azimuth_std_rad = 0.2 * kRadiansPerDegree,
-                 .elevation_std_rad = 0.3 * kRadiansPerDegree,
-                 .range_rate_std_mps = 0.03};
-  vehicle.radars.push_back(radar);
-  return vehicle;
-}
-
-EgoMotion ego(float speed, float yaw_rate, std::int64_t time_ns = kTime) {
-  EgoMotion m{};
-  m.header.measurement_time_ns = time_ns;
-  m.fields = ego_field::kSpeed | ego_field::kYawRate;
-  m.speed_mps = speed;
-  m.speed_std_mps = 0.03F;
-  m.yaw_rate_radps = yaw_rate;
-  m.yaw_rate_std_radps = 0.002F;
-  return m;
-}
-
-AlignmentEstimate estimate(double yaw_rad, double scale) {
-  AlignmentEstimate e{};
-  e.header.source_id = 2;
-  e.header.sequence = 77;
-  e.header.measurement_time_ns = kTime;
-  e.state = AlignmentState::kConverged;
-  e.observable = alignment_axis::kYaw | alignment_axis::kVehicleYaw | alignment_axis::kSpeedScale;
-  e.alignment_yaw_rad = e.vehicle_yaw_rad = static_cast<float>(yaw_rad);
-  e.alignment_pitch_rad = e.vehicle_pitch_rad = 0.5F;  // not observable: must not be applied
-  e.speed_scale = static_cast<float>(scale);
-  e.covariance[0] = 1e-6F;
-  e.covariance[5] = 1e-7F;
-  e.covariance[10] = e.covariance[15] = 0.005F;
-  e.vehicle_covariance = e.covariance;
-  return e;
-}
-
-class CorrectorTest : public testing::Test {
- protected:
-  CorrectorTest() {
-    std::memset(static_cast<void*>(out_.get()), 0xCD, sizeof(CorrectedScan));  // a chunk holds stale data
-    scan_->header = {};
-    scan_->header.source_id = 2;
-    scan_->header.measurement_time_ns = kTime;
-    scan_->fields = scan_field::kElevation | scan_field::kRcs;
-    scan_->number_of_valid_detections = 0;
-  }
-  void add(double range, double azimuth, double elevation, double range_rate, double rcs = 10.0) {
-    const std::uint32_t i = scan_->number_of_valid_detections++;
-    scan_->range_m[i] = static_cast<float>(range);
-    scan_->azimuth_rad[i] = static_cast<float>(azimuth);
-    scan_->elevation_rad[i] = static_cast<float>(elevation);
-    scan_->range_rate_mps[i] = static_cast<float>(range_rate);
-    scan_->rcs_dbsm[i] = static_cast<float>(rcs);
-    scan_->snr_db[i] = 20.0F;
-    scan_->detection_flags[i] = 0;
-  }
-  std::unique_ptr<RadarScan> scan_ = std::make_unique<RadarScan>();
-  std::unique_ptr<CorrectedScan> out_ = std::make_unique<CorrectedScan>();
-};
 
 TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
   // A point of the vehicle frame, as a sensor with all three angles would see it.
@@ -105,7 +36,7 @@ TEST_F(CorrectorTest, RotatedMountIsUndoneExactly) {
 
 TEST_F(CorrectorTest, EstimateIsAppliedIfCertainEnough) {
   Corrector corrector(one_radar(), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(2.0 * kRadiansPerDegree, 1.01)));
+  ASSERT_TRUE(corrector.add_alignment(yaw_estimate(2.0 * kRadiansPerDegree, 1.01)));
   corrector.add_ego_motion(ego(20.0F, 0.0F));
   add(50.0, 0.0, 0.0, -20.2 * std::cos(2.0 * kRadiansPerDegree));
   corrector.correct(*scan_, *out_);
@@ -116,7 +47,7 @@ TEST_F(CorrectorTest, EstimateIsAppliedIfCertainEnough) {
   EXPECT_EQ(out_->flags, 0u);
   EXPECT_NEAR(out_->geometry.ego_speed_mps, 20.2, 1e-5);
 
-  AlignmentEstimate unsure = estimate(3.0 * kRadiansPerDegree, 1.01);
+  AlignmentEstimate unsure = yaw_estimate(3.0 * kRadiansPerDegree, 1.01);
   unsure.covariance[5] = 1e-3F;  // 1.8°
   unsure.observable = alignment_axis::kYaw;
   Corrector other(one_radar(), Config{});
@@ -131,7 +62,7 @@ TEST_F(CorrectorTest, StationaryReflectorsHaveNoRangeRateOverGround) {
   std::uniform_real_distribution<double> azimuth(-1.2, 1.2), elevation(-0.2, 0.2), angle(-3.0, 3.0);
   const double yaw = 1.7 * kRadiansPerDegree, scale = 1.012;
   Corrector corrector(one_radar(135.0, 2.0, 1.0), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(yaw, scale)));
+  ASSERT_TRUE(corrector.add_alignment(yaw_estimate(yaw, scale)));
   corrector.add_ego_motion(ego(14.0F, 0.4F));
   const Eigen::Matrix3d rotation =
       geometry::sensor_to_vehicle(135.0 * kRadiansPerDegree + yaw, 2.0 * kRadiansPerDegree, 1.0 * kRadiansPerDegree);
@@ -155,7 +86,7 @@ TEST_F(CorrectorTest, MovingThresholdByHand) {
   const double std = std::sqrt(0.03 * 0.03 + 0.03 * 0.03 + 0.01 * 0.01 + std::pow(config.body_motion_std_mps, 2));
   const double threshold = config.moving_sigma * std;
   Corrector corrector(one_radar(), config);
-  ASSERT_TRUE(corrector.add_alignment(estimate(0.0, 1.0)));
+  ASSERT_TRUE(corrector.add_alignment(yaw_estimate(0.0, 1.0)));
   corrector.add_ego_motion(ego(10.0F, 0.0F));
   add(50.0, 0.0, 0.0, -10.0 + threshold - 0.01);
   add(50.0, 0.0, 0.0, -10.0 + threshold + 0.01);
@@ -174,7 +105,7 @@ TEST_F(CorrectorTest, MovingThresholdByHand) {
 
 TEST_F(CorrectorTest, YawRateBiasAndSlipOfTheEstimateAreRemoved) {
   Corrector corrector(one_radar(), Config{});
-  AlignmentEstimate e = estimate(0.0, 1.0);
+  AlignmentEstimate e = yaw_estimate(0.0, 1.0);
   e.observable |= alignment_axis::kYawRateBias | alignment_axis::kSlip;
   e.yaw_rate_bias_radps = 0.02F;
   e.slip_coefficient_radps2pm = 0.004F;
@@ -247,7 +178,7 @@ TEST_F(CorrectorTest, MissingSideInputsAreFlagged) {
   EXPECT_EQ(out_->detection_flags[0], 0) << "neither moving nor stationary";
   EXPECT_EQ(out_->range_rate_over_ground_mps[0], -10.0F) << "not compensated";
   corrector.add_ego_motion(ego(10.0F, 0.0F, kTime - 300'000'000));
-  AlignmentEstimate old = estimate(0.0, 1.0);
+  AlignmentEstimate old = yaw_estimate(0.0, 1.0);
   old.header.measurement_time_ns = kTime - 3'000'000'000;
   ASSERT_TRUE(corrector.add_alignment(old));
   scan_->fields = 0;
@@ -276,7 +207,7 @@ TEST_F(CorrectorTest, NonFiniteValuesAreInvalidAndDoNotAffectOthers) {
 
 TEST_F(CorrectorTest, UnknownRadarGivesAnEmptyScanAndAFullOneFits) {
   Corrector corrector(one_radar(), Config{});
-  AlignmentEstimate unknown = estimate(0.0, 1.0);
+  AlignmentEstimate unknown = yaw_estimate(0.0, 1.0);
   unknown.header.source_id = 9;
   EXPECT_FALSE(corrector.add_alignment(unknown));
   for (std::uint32_t i = 0; i < kMaxDetections; ++i) add(20.0, 0.0, 0.0, -10.0);
@@ -325,7 +256,7 @@ TEST_F(CorrectorTest, TheInverseGivesTheMeasuredValues) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> azimuth(-1.3, 1.3), elevation(-0.3, 0.3), range(1.0, 90.0), rate(-30.0, 30.0);
   Corrector corrector(one_radar(-135.0, -2.0, 4.0), Config{});
-  ASSERT_TRUE(corrector.add_alignment(estimate(-1.1 * kRadiansPerDegree, 0.99)));
+  ASSERT_TRUE(corrector.add_alignment(yaw_estimate(-1.1 * kRadiansPerDegree, 0.99)));
   corrector.add_ego_motion(ego(25.0F, -0.2F));
   for (int i = 0; i < 300; ++i) add(range(random), azimuth(random), elevation(random), rate(random));
   corrector.correct(*scan_, *out_);
@@ -357,7 +288,7 @@ TEST_F(CorrectorTest, NonFiniteSideInputsAreNotApplied) {
   add(50.0, 10.0 * kRadiansPerDegree, 0.0, -10.0 * std::cos(10.0 * kRadiansPerDegree));
   for (int what = 0; what < 4; ++what) {
     Corrector corrector(one_radar(), Config{});
-    AlignmentEstimate bad = estimate(2.0 * kRadiansPerDegree, 1.01);
+    AlignmentEstimate bad = yaw_estimate(2.0 * kRadiansPerDegree, 1.01);
     if (what == 0) bad.vehicle_yaw_rad = bad.speed_scale = nan;
     if (what == 1) bad.covariance[0] = bad.vehicle_covariance[5] = nan;
     if (what == 2) bad.covariance[0] = bad.vehicle_covariance[5] = -1.0F;
@@ -444,74 +375,6 @@ TEST_F(CorrectorTest, NoDetectionIsWeakUnlessTheIntegratorSetsALimit) {
   for (std::size_t i = 0; i < 9; ++i) EXPECT_FALSE(out_->detection_flags[i] & corrected_flag::kWeak) << i;
 }
 
-class StatedNoiseTest : public CorrectorTest {
- protected:
-  /// Drives past stationary reflectors with noise of 0.1 m/s, and somebody who walks away at 0.9 m/s. The radar states
-  /// `stated_mps`. Returns the share of the last scans in which the pedestrian is moving.
-  double walks(Corrector& corrector, float stated_mps, float speed_mps = 5.5F, bool has_stds = true,
-               std::uint16_t verdict = 0) {
-    std::mt19937 random(3);
-    std::normal_distribution<double> noise(0.0, 0.1);
-    std::uniform_real_distribution<double> azimuth(-0.5, 0.5);
-    scan_->fields = scan_field::kElevation | (has_stds ? scan_field::kStds : 0u);
-    constexpr int kScans = 200, kLast = 50;
-    int moving = 0;
-    for (int s = 0; s < kScans; ++s) {
-      const std::int64_t time_ns = kTime + s * 75'000'000LL;
-      corrector.add_ego_motion(ego(speed_mps, 0.0F, time_ns));
-      scan_->header.measurement_time_ns = time_ns;
-      scan_->number_of_valid_detections = 0;
-      add(15.0, 0.0, 0.0, -speed_mps + 0.9);
-      for (int i = 0; i < 40; ++i) {
-        const double a = azimuth(random);
-        add(30.0, a, 0.0, -speed_mps * std::cos(a) + noise(random));
-      }
-      for (std::uint32_t i = 0; i < scan_->number_of_valid_detections; ++i) {
-        scan_->range_std_m[i] = 0.2F;
-        scan_->azimuth_std_rad[i] = scan_->elevation_std_rad[i] = 0.005F;
-        scan_->range_rate_std_mps[i] = stated_mps;
-        scan_->detection_flags[i] = verdict;
-      }
-      corrector.correct(*scan_, *out_);
-      if (s >= kScans - kLast && (out_->detection_flags[0] & corrected_flag::kMoving) != 0) ++moving;
-    }
-    return static_cast<double>(moving) / kLast;
-  }
-};
-
-TEST_F(StatedNoiseTest, APedestrianIsFoundAlthoughTheRadarStatesTooWideANoise) {
-  Config fixed;
-  fixed.stated_noise.least_scale = fixed.stated_noise.most_scale = 1.0;
-  Corrector learns(one_radar(), Config{}), stated(one_radar(), fixed);
-  EXPECT_EQ(walks(stated, 0.288F), 0.0);
-  EXPECT_EQ(walks(learns, 0.288F), 1.0);
-  EXPECT_NEAR(learns.range_rate_noise_scale(2), 0.1 / 0.288, 0.1);
-  EXPECT_EQ(out_->range_rate_std_mps[0], 0.288F) << "later services receive what the radar states";
-}
-
-TEST_F(StatedNoiseTest, WhatTheRadarDoesNotStateIsNotScaled) {
-  VehicleConfig vehicle = one_radar();
-  vehicle.radars[0].noise.range_rate_std_mps = 0.288;
-  Corrector corrector(vehicle, Config{});
-  EXPECT_EQ(walks(corrector, 0.0F, 5.5F, false), 0.0);
-  EXPECT_EQ(corrector.range_rate_noise_scale(2), 1.0);
-  EXPECT_EQ(corrector.range_rate_noise_scale(3), 1.0) << "unknown radar";
-}
-
-TEST_F(StatedNoiseTest, NothingIsLearntOfDetectionsThatTheSensorDoubts) {
-  for (const std::uint16_t verdict : {detection_flag::kInvalid, detection_flag::kAmbiguous}) {
-    Corrector corrector(one_radar(), Config{});
-    walks(corrector, 0.288F, 5.5F, true, verdict);
-    EXPECT_EQ(corrector.range_rate_noise_scale(2), 1.0) << verdict;
-  }
-}
-
-TEST_F(StatedNoiseTest, NothingIsLearntInAStandingVehicle) {
-  Corrector corrector(one_radar(), Config{});
-  walks(corrector, 0.288F, 0.0F);
-  EXPECT_EQ(corrector.range_rate_noise_scale(2), 1.0);
-}
-
 TEST_F(CorrectorTest, AllocatesNothing) {
   Corrector corrector(one_radar(), Config{});
   scan_->fields |= scan_field::kStds;
@@ -521,7 +384,7 @@ TEST_F(CorrectorTest, AllocatesNothing) {
   {
     const runtime::CountAllocations counting;
     corrector.add_ego_motion(ego(10.0F, 0.0F));
-    static_cast<void>(corrector.add_alignment(estimate(0.01, 1.0)));
+    static_cast<void>(corrector.add_alignment(yaw_estimate(0.01, 1.0)));
     corrector.correct(*scan_, *out_);
   }
   EXPECT_EQ(runtime::counted_allocations(), before);
