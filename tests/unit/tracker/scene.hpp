@@ -75,9 +75,10 @@ class Scene {
         provenance == Provenance::kStationary ? corrected_flag::kStationary : corrected_flag::kMoving;
     const auto unreal = static_cast<float>(ghost_probability);
     scan->set_probabilities(i, {1.0F - unreal, 0.0F, 0.0F, 0.0F, unreal, 0.0F});
-    const double ratio = std::log((1.0 - ghost_probability) / ghost_probability);  // infinite if it is certain
-    constexpr double kCertain{ClassifiedScan::kCertain};
-    scan->moving_log_likelihood_ratio[i] = static_cast<float>(std::clamp(ratio, -kCertain, kCertain));
+    // No filter is certain: on simulated drives most ratios of real detections lie below this.
+    constexpr double kUsual = 2.0;
+    const double ratio = std::log((1.0 - ghost_probability) / ghost_probability);
+    scan->moving_log_likelihood_ratio[i] = static_cast<float>(std::clamp(ratio, -kUsual, kUsual));
   }
   std::unique_ptr<ClassifiedScan> scan = std::make_unique<ClassifiedScan>();
 };
