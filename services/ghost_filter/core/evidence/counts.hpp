@@ -20,10 +20,10 @@ namespace boresight::ghosts {
 struct Candidate {
   float range_m;
   float azimuth_rad;
-  float range_rate_mps;              ///< as measured, not compensated
+  float range_rate_mps;  ///< as measured, not compensated
   float range_rate_over_ground_mps;
-  Eigen::Vector2f position_m;        ///< in a frame that does not move
-  Eigen::Vector2f direction;         ///< of the line of sight in that frame, unit
+  Eigen::Vector2f position_m;  ///< in a frame that does not move
+  Eigen::Vector2f direction;   ///< of the line of sight in that frame, unit
 };
 
 struct Counts {
@@ -66,7 +66,7 @@ class Counter {
   CountConfig config_;
   std::vector<Memory> memories_;  // a ring
   std::size_t first_ = 0, size_ = 0;
-  std::vector<std::uint32_t> order_;    // of the scan's candidates, by range
+  std::vector<std::uint32_t> order_;  // of the scan's candidates, by range
   std::vector<Candidate> by_range_;
   std::uint64_t looks_ = 0;
 };

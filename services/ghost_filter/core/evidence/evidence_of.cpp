@@ -36,15 +36,16 @@ Levels levels_of(const Counts& counts, const SensorVerdict& verdict, const Expec
   set(EvidenceKind::kRange, level(static_cast<double>(counts.range_m), c.range_m));
   set(EvidenceKind::kWideRing, level(counts.wide_ring, c.wide_ring));
   set(EvidenceKind::kBurst, level(counts.moving, c.burst));
-  set(EvidenceKind::kVerdict,
-      static_cast<std::uint8_t>((verdict.is_doubted ? 2 : 0) + (verdict.is_ambiguous ? 1 : 0)));
+  set(EvidenceKind::kVerdict, static_cast<std::uint8_t>((verdict.is_doubted ? 2 : 0) + (verdict.is_ambiguous ? 1 : 0)));
   if (verdict.existence) {
     set(EvidenceKind::kExistence, static_cast<std::uint8_t>(1 + level(*verdict.existence, c.existence)));
   }
   const double all =
       expected.objects + expected.images_type1 + expected.images_type2 + config.intensity.other_intensity;
   if (has_tracks) {
-    const auto image = [&](double intensity) { return static_cast<std::uint8_t>(1 + level(intensity / all, c.image_share)); };
+    const auto image = [&](double intensity) {
+      return static_cast<std::uint8_t>(1 + level(intensity / all, c.image_share));
+    };
     set(EvidenceKind::kImageType1, image(expected.images_type1));
     set(EvidenceKind::kImageType2, image(expected.images_type2));
   }

@@ -16,8 +16,8 @@ struct LabelledEvidence {
 };
 
 struct FitConfig {
-  double ridge = 1.0;             ///< weight of the prior: 1 / variance of a weight
-  double doubted_log_odds = -3.0; ///< prior mean of a detection that the sensor calls invalid, where drives have none
+  double ridge = 1.0;              ///< weight of the prior: 1 / variance of a weight
+  double doubted_log_odds = -3.0;  ///< prior mean of a detection that the sensor calls invalid, where drives have none
 };
 
 /// Maximum of the posterior of (G1), by all detections, and of (G2), by those with known tracks. Without detections all

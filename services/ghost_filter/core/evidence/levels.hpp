@@ -9,9 +9,9 @@
 namespace boresight::ghosts {
 
 enum class EvidenceKind : std::uint8_t {
-  kPast,        ///< earlier scans with a detection where this one would have been
-  kCompany,     ///< detections of the scan beside it
-  kRing,        ///< share of its own place among all detections of its range and range rate
+  kPast,     ///< earlier scans with a detection where this one would have been
+  kCompany,  ///< detections of the scan beside it
+  kRing,     ///< share of its own place among all detections of its range and range rate
   kRange,
   kWideRing,    ///< detections of nearly its range and range rate at other azimuths
   kBurst,       ///< moving detections of the scan
@@ -23,7 +23,8 @@ enum class EvidenceKind : std::uint8_t {
 inline constexpr std::size_t kEvidences = 10;
 inline constexpr std::size_t kMostLevels = 7;
 
-/// Name in a radar profile, and number of levels. The lowest level of the last three is: not stated, or no tracks known.
+/// Name in a radar profile, and number of levels. The lowest level of the last three is: not stated, or no tracks
+/// known.
 struct EvidenceSpec {
   std::string_view key;
   std::size_t levels;
