@@ -82,13 +82,13 @@ TEST_F(OptionsTest, StatisticsReplaceThoseOfEveryRadar) {
   c.directory = BORESIGHT_SOURCE_DIR "/config";
   c.vehicle_name = "demo";
   const VehicleConfig as_the_file_says = c.vehicle();
-  c.statistics = "ideal";
+  c.statistics = "can_cluster";
   const VehicleConfig replaced = c.vehicle();
   ASSERT_FALSE(replaced.radars.empty());
   ASSERT_EQ(replaced.radars.size(), as_the_file_says.radars.size());
   for (std::size_t i = 0; i < replaced.radars.size(); ++i) {
-    EXPECT_NE(as_the_file_says.radars[i].statistics, "ideal");
-    EXPECT_EQ(replaced.radars[i].statistics, "ideal");
+    EXPECT_NE(as_the_file_says.radars[i].statistics, "can_cluster");
+    EXPECT_EQ(replaced.radars[i].statistics, "can_cluster");
     EXPECT_EQ(replaced.radars[i].id, as_the_file_says.radars[i].id);
   }
 }
