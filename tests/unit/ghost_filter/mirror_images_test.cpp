@@ -291,8 +291,12 @@ TEST(Directions, HoldWhatIsWithinAWidthOfADetection) {
     one.add(at);
     const Eigen::Vector2d place(range * std::cos(about), range * std::sin(about));
     const double apart = std::abs(std::remainder(at - about, 2.0 * M_PI));
-    if (apart < std::asin(w / range)) EXPECT_TRUE(one.may_hold(place, w)) << at << " " << about;
-    if (apart > std::asin(w / range) + 0.2) EXPECT_FALSE(one.may_hold(place, w)) << at << " " << about;
+    if (apart < std::asin(w / range)) {
+      EXPECT_TRUE(one.may_hold(place, w)) << at << " " << about;
+    }
+    if (apart > std::asin(w / range) + 0.2) {
+      EXPECT_FALSE(one.may_hold(place, w)) << at << " " << about;
+    }
   }
 }
 
