@@ -18,7 +18,9 @@ fs::path make_configuration(const EffectSetup& setup, const EffectRecording& rec
   const std::string vehicle = std::string(recording.vehicle) + ".toml";
   for (const char* const folder : {"vehicle", "mappings"}) fs::create_directories(config / folder);
   const auto replaced = fs::copy_options::overwrite_existing;
-  fs::copy(setup.services, config / "services", replaced | fs::copy_options::recursive);
+  for (const char* const folder : {"services", "radar_profiles"}) {
+    fs::copy(setup.services.parent_path() / folder, config / folder, replaced | fs::copy_options::recursive);
+  }
   fs::copy_file(setup.data / vehicle, config / "vehicle" / vehicle, replaced);
   for (const char* const file : {"zoe.toml", "zoe.dbc"}) {
     fs::copy_file(setup.data / file, config / "mappings" / file, replaced);
