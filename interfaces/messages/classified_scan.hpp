@@ -73,8 +73,9 @@ struct ClassifiedScan {
   DetectionColumn<float> range_rate_std_mps;
   /// By index_of_origin(), 0…1. They sum to 1 for each classified detection, and are all 0 for an unclassified one.
   std::array<DetectionColumn<float>, kNumberOfOrigins> origin_probability;
-  /// ln p(evidence | direct echo of a moving object) / p(evidence | false), of what scans show without the tracks: a
-  /// tracker that used the probabilities would confirm its own tracks. 0 for a detection without such evidence.
+  /// ln p(evidence | direct echo of a moving object) / p(evidence | false). A track at the detection's own place is not
+  /// part of this evidence: a tracker that used the probabilities would confirm its own tracks. Tracks enter by the
+  /// mirror images that they make expected. 0 for a detection without evidence.
   DetectionColumn<float> moving_log_likelihood_ratio;
   DetectionColumn<std::uint16_t> detection_flags;
   DetectionColumn<Provenance> provenance;  ///< one label by the ghost filter's rule, for displays and statistics

@@ -1,5 +1,6 @@
 #include "services/ghost_filter/core/evidence/fit.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

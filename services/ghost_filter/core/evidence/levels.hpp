@@ -1,4 +1,4 @@
-// The pieces of evidence of a detection, each reduced to one of a few levels. A level has a weight (weights.hpp).
+// The kinds of evidence of a detection, each reduced to one of a few levels. A level has a weight (weights.hpp).
 #pragma once
 
 #include <array>
