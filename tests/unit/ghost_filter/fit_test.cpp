@@ -61,8 +61,8 @@ double mean_variance(const std::vector<LabelledEvidence>& detections,
 }
 
 /// Compares differences of weights within one kind of evidence. The weights themselves are not determined: the fit may
-/// add a constant to one kind and subtract it from another. `information`: Fisher information of all detections together
-/// on the log odds.
+/// add a constant to one kind and subtract it from another. `information`: Fisher information of all detections
+/// together on the log odds.
 void expect_near(const LevelWeights& fitted, const LevelWeights& truth, double information) {
   double squares = 0.0, compared = 0.0;
   for (std::size_t k = 0; k < kEvidences; ++k) {
