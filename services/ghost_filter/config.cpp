@@ -10,6 +10,20 @@ namespace boresight::ghosts {
 
 namespace {
 
+SegmentConfig read_segments(config::Reader& reader, SegmentConfig c) {
+  const auto count = [&](std::string_view key, std::size_t fallback) {
+    return static_cast<std::size_t>(reader.integer(key, {1, 1000}, static_cast<std::int64_t>(fallback)));
+  };
+  c.cell_m = reader.number("cell_m", {0.05, 10.0}, c.cell_m);
+  c.cluster_length_m = reader.number("cluster_length_m", {0.1, 20.0}, c.cluster_length_m);
+  c.cluster_width_m = reader.number("cluster_width_m", {0.1, 20.0}, c.cluster_width_m);
+  c.cluster_min_points = count("cluster_min_points", c.cluster_min_points);
+  c.min_segment_points = count("min_segment_points", c.min_segment_points);
+  c.min_segment_length_m = reader.number("min_segment_length_m", {0.1, 100.0}, c.min_segment_length_m);
+  c.max_segment_residual_m = reader.number("max_segment_residual_m", {0.01, 10.0}, c.max_segment_residual_m);
+  return c;
+}
+
 published::Config read_published(config::Reader root) {
   published::Config c;
   config::Reader stationary = root.table("stationary");
@@ -19,16 +33,7 @@ published::Config read_published(config::Reader root) {
   config::Reader reflectors = root.table("reflectors");
   c.memory_s = reflectors.number("memory_s", {0.05, 5.0}, c.memory_s);
   c.update_period_s = reflectors.number("update_period_s", {0.0, 1.0}, c.update_period_s);
-  c.cell_m = reflectors.number("cell_m", {0.05, 10.0}, c.cell_m);
-  c.cluster_length_m = reflectors.number("cluster_length_m", {0.1, 20.0}, c.cluster_length_m);
-  c.cluster_width_m = reflectors.number("cluster_width_m", {0.1, 20.0}, c.cluster_width_m);
-  const auto count = [&](std::string_view key, std::size_t fallback) {
-    return static_cast<std::size_t>(reflectors.integer(key, {1, 1000}, static_cast<std::int64_t>(fallback)));
-  };
-  c.cluster_min_points = count("cluster_min_points", c.cluster_min_points);
-  c.min_segment_points = count("min_segment_points", c.min_segment_points);
-  c.min_segment_length_m = reflectors.number("min_segment_length_m", {0.1, 100.0}, c.min_segment_length_m);
-  c.max_segment_residual_m = reflectors.number("max_segment_residual_m", {0.01, 10.0}, c.max_segment_residual_m);
+  c.segments = read_segments(reflectors, c.segments);
   config::Reader tests = root.table("tests");
   c.type2_margin_m = tests.number("type2_margin_m", {0.0, 20.0}, c.type2_margin_m);
   c.type1_margin_m = tests.number("type1_margin_m", {0.0, 20.0}, c.type1_margin_m);
@@ -40,20 +45,11 @@ published::Config read_published(config::Reader root) {
 MapConfig read_map(config::Reader reader) {
   MapConfig c;
   c.memory_s = reader.number("memory_s", {0.1, 10.0}, c.memory_s);
-  c.update_period_s = reader.number("update_period_s", {0.0, 1.0}, c.update_period_s);
   c.search_period_s = reader.number("search_period_s", {0.0, 5.0}, c.search_period_s);
-  c.cell_m = reader.number("cell_m", {0.1, 5.0}, c.cell_m);
-  c.cluster_radius_m = reader.number("cluster_radius_m", {0.1, 20.0}, c.cluster_radius_m);
-  c.cluster_min_cells = static_cast<std::size_t>(
-      reader.integer("cluster_min_cells", {1, 1000}, static_cast<std::int64_t>(c.cluster_min_cells)));
-  c.tolerance_m = reader.number("tolerance_m", {0.02, 3.0}, c.tolerance_m);
-  c.min_cells =
-      static_cast<std::size_t>(reader.integer("min_cells", {1, 1000}, static_cast<std::int64_t>(c.min_cells)));
-  c.min_length_m = reader.number("min_length_m", {0.5, 100.0}, c.min_length_m);
-  c.max_gap_m = reader.number("max_gap_m", {0.5, 50.0}, c.max_gap_m);
-  c.min_purity = reader.number("min_purity", {0.0, 1.0}, c.min_purity);
-  c.max_curvature_per_m = reader.number("max_curvature_per_m", {0.0, 0.5}, c.max_curvature_per_m);
-  c.bin_m = reader.number("bin_m", {0.2, 20.0}, c.bin_m);
+  c.most_std_m = reader.number("most_std_m", {0.05, 10.0}, c.most_std_m);
+  c.most_points =
+      static_cast<std::size_t>(reader.integer("most_points", {1, 100'000}, static_cast<std::int64_t>(c.most_points)));
+  c.segments = read_segments(reader, c.segments);
   return c;
 }
 
@@ -113,6 +109,7 @@ IntensityConfig read_intensity(config::Reader reader) {
   c.mirror_share_per_m = reader.number("mirror_share_per_m", {0.0, 1.0}, c.mirror_share_per_m);
   c.most_mirror_share = reader.number("most_mirror_share", {0.0, 1.0}, c.most_mirror_share);
   c.least_mirror_share = reader.number("least_mirror_share", {0.0, 1.0}, c.least_mirror_share);
+  c.mirror_scatter_m = reader.number("mirror_scatter_m", {0.001, 5.0}, c.mirror_scatter_m);
   return c;
 }
 

@@ -19,10 +19,10 @@ void read_list(config::Reader& reader, std::string_view key, std::span<double> w
   std::copy(read.begin(), read.end(), weights.begin());
 }
 
-void read_level_weights(config::Reader& reader, LevelWeights& weights) {
+void read_level_weights(config::Reader& reader, std::size_t kinds, LevelWeights& weights) {
   reader.require("constant");
   weights.constant = reader.number("constant", kLogOdds, 0.0);
-  for (std::size_t k = 0; k < kEvidences; ++k) {
+  for (std::size_t k = 0; k < kinds; ++k) {
     read_list(reader, kEvidenceSpecs[k].key, std::span(weights.of[k]).first(kEvidenceSpecs[k].levels));
   }
 }
@@ -33,9 +33,9 @@ std::string list(std::string_view key, std::span<const double> weights) {
   return text + "]\n";
 }
 
-std::string level_weights_text(const LevelWeights& weights) {
+std::string level_weights_text(const LevelWeights& weights, std::size_t kinds) {
   std::string text = fmt::format("constant = {:.2f}\n", weights.constant);
-  for (std::size_t k = 0; k < kEvidences; ++k) {
+  for (std::size_t k = 0; k < kinds; ++k) {
     text += list(kEvidenceSpecs[k].key, std::span(weights.of[k]).first(kEvidenceSpecs[k].levels));
   }
   return text;
@@ -53,9 +53,9 @@ EvidenceWeights read_weights(config::Reader profile) {
     table.require("prior_log_odds");
     w.prior_log_odds = table.number("prior_log_odds", kLogOdds, 0.0);
     config::Reader alone = table.table("alone");
-    read_level_weights(alone, w.alone);
+    read_level_weights(alone, kScanEvidences, w.alone);
     config::Reader with_tracks = table.table("with_tracks");
-    read_level_weights(with_tracks, w.with_tracks);
+    read_level_weights(with_tracks, kEvidences, w.with_tracks);
     read_list(with_tracks, "track_unsure", w.track_unsure);
     read_list(with_tracks, "track_sure", w.track_sure);
   }
@@ -71,8 +71,9 @@ EvidenceWeights read_weights(const std::filesystem::path& profile) {
 std::string weights_text(const EvidenceWeights& weights, const std::string& origin) {
   return "[evidence]\n" + fmt::format("origin = \"{}\"\n", origin) +
          fmt::format("prior_log_odds = {:.2f}\n", weights.prior_log_odds) + "\n[evidence.alone]\n" +
-         level_weights_text(weights.alone) + "\n[evidence.with_tracks]\n" + level_weights_text(weights.with_tracks) +
-         list("track_unsure", weights.track_unsure) + list("track_sure", weights.track_sure);
+         level_weights_text(weights.alone, kScanEvidences) + "\n[evidence.with_tracks]\n" +
+         level_weights_text(weights.with_tracks, kEvidences) + list("track_unsure", weights.track_unsure) +
+         list("track_sure", weights.track_sure);
 }
 
 }  // namespace boresight::ghosts

@@ -6,7 +6,6 @@
 #include "interfaces/messages/radar_scan.hpp"
 #include "services/ghost_filter/core/evidence/evidence_of.hpp"
 #include "services/ghost_filter/core/pass_on.hpp"
-#include "services/ghost_filter/core/reflector_map/segments.hpp"
 
 namespace boresight::ghosts {
 
@@ -54,7 +53,7 @@ void write(double real, const Counts& counts, const Expected& expected, double o
 
 EvidenceFilter::EvidenceFilter(const EvidenceConfig& config)
     : config_(config),
-      counter_(config.counts),
+      counter_(config.counts, static_cast<std::uint32_t>(config.levels.past_scans.back())),
       map_(config.map),
       expecting_(config_.classes, config_.intensity),
       tracks_(std::make_unique<TrackList>()) {
@@ -107,8 +106,7 @@ void EvidenceFilter::gather(const CorrectedScan& scan, std::size_t count, Classi
     const double across_std = range * static_cast<double>(scan.azimuth_std_rad[i]);
     if ((flags & corrected_flag::kStationary) != 0) {
       out.set_certain(i, Provenance::kStationary);
-      map_.add(odometry_.point_to_frame(position), range_std * range_std + across_std * across_std,
-               scan.header.measurement_time_ns);
+      map_.add(odometry_.point_to_frame(position), std::max(range_std, across_std), scan.header.measurement_time_ns);
       continue;
     }
     if ((flags & corrected_flag::kMoving) == 0) continue;
@@ -154,7 +152,9 @@ void EvidenceFilter::judge(const CorrectedScan& scan, bool has_tracks, Classifie
     levels = levels_of(counts_[k], verdict_of(scan, i), expected_[k], has_tracks, config_);
     const double real = 1.0 / (1.0 + std::exp(-posterior_log_odds(weights, levels)));
     write(real, counts_[k], expected_[k], config_.intensity.other_intensity, i, out);
-    out.moving_log_likelihood_ratio[i] = static_cast<float>(log_likelihood_ratio(weights, levels));
+    const double images = expected_[k].images_type1 + expected_[k].images_type2;
+    const double ratio = log_likelihood_ratio(weights, levels, images / config_.intensity.other_intensity);
+    out.moving_log_likelihood_ratio[i] = static_cast<float>(ratio);
   }
 }
 
@@ -167,7 +167,7 @@ void EvidenceFilter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
     counter_.clear();
   }
   gather(scan, count, out);
-  map_.update(odometry_, static_cast<double>(g.ego_speed_std_mps), static_cast<double>(g.ego_yaw_rate_std_radps));
+  map_.update(time_ns);
   counter_.count(time_ns, candidates_, counts_);
   const bool tracks_are_known = has_tracks(time_ns, out);
   expect(scan, tracks_are_known);

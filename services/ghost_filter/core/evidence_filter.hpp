@@ -12,12 +12,12 @@
 #include "services/ghost_filter/core/evidence/config.hpp"
 #include "services/ghost_filter/core/evidence/counts.hpp"
 #include "services/ghost_filter/core/method.hpp"
-#include "services/ghost_filter/core/mirror/mirror.hpp"
+#include "services/ghost_filter/core/odometry.hpp"
 #include "services/ghost_filter/core/origins/expected.hpp"
 #include "services/ghost_filter/core/origins/known_objects.hpp"
+#include "services/ghost_filter/core/origins/mirror.hpp"
 #include "services/ghost_filter/core/origins/mirror_images.hpp"
-#include "services/ghost_filter/core/reflector_map/odometry.hpp"
-#include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
+#include "services/ghost_filter/core/reflectors/reflector_map.hpp"
 
 namespace boresight::ghosts {
 
@@ -27,7 +27,7 @@ class EvidenceFilter final : public Method {
 
   void add_tracks(const TrackList& tracks) override;
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
-  [[nodiscard]] std::size_t map_points() const override { return map_.grid().size(); }
+  [[nodiscard]] std::size_t map_points() const override { return map_.points(); }
   [[nodiscard]] std::span<const JudgedEvidence> evidence() const override { return judged_; }
 
  private:

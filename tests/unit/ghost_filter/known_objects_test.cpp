@@ -18,7 +18,6 @@ Track& add_known(TrackList& list, const Eigen::Vector2d& position_m, const Eigen
   Track& t = list.tracks[list.number_of_tracks++] = {};
   t.object_class = ObjectClass::kCar;
   t.existence_probability = 0.9F;
-  t.age_s = 2.5F;
   t.heading_rad = 0.4F;
   t.length_m = 4.5F;
   t.width_m = 1.8F;
@@ -83,7 +82,6 @@ TEST(PredictObjects, MovesThemAndTheVehicleUnderThem) {
     EXPECT_LT((o.position_covariance_m2 - to_new * later * to_new.transpose()).norm(), 1e-5);
     EXPECT_LT((o.velocity_covariance_m2ps2 - to_new * of_velocity * to_new.transpose()).norm(), 1e-5);
     EXPECT_FLOAT_EQ(static_cast<float>(o.existence), 0.9F);
-    EXPECT_FLOAT_EQ(static_cast<float>(o.age_s), 2.5F);
     EXPECT_EQ(o.range_rate_offset_mps, 0.0);
   }
 }

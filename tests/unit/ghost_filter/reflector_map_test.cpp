@@ -1,12 +1,12 @@
-// The map over time: what it makes of a drive past things of which the truth is known.
-#include "services/ghost_filter/core/reflector_map/reflector_map.hpp"
+// The map of reflectors: what it finds on a drive past structures whose truth is known.
+#include "services/ghost_filter/core/reflectors/reflector_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <random>
-#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,7 +19,13 @@ namespace {
 constexpr std::int64_t kScan_ns = 25'000'000;
 constexpr double kSpeed_mps = 20.0;
 
-/// Drives along x and shows the map what of a set of places is within 60 m, a third of it in each scan.
+double distance_m(const Segment& s, const Eigen::Vector2d& p) {
+  const Eigen::Vector2d along = s.end_m - s.start_m;
+  const double share = std::clamp((p - s.start_m).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - s.start_m - share * along).norm();
+}
+
+/// Drives along x and shows the map places within 60 m, a third of them in each scan.
 class Drive {
  public:
   explicit Drive(unsigned seed, const MapConfig& config = {}) : map(config), random_(seed) {}
@@ -37,104 +43,81 @@ class Drive {
       static_cast<void>(odometry.advance(time_ns_, kSpeed_mps, 0.0));
       for (const Eigen::Vector2d& p : places) {
         if ((p - odometry.position_m()).norm() > 60.0 || chance(random_) > 0.33) continue;
-        map.add(p + Eigen::Vector2d(noise(random_), noise(random_)), 0.08 * 0.08, time_ns_);
-        ++detections;
+        map.add(p + Eigen::Vector2d(noise(random_), noise(random_)), 0.08, time_ns_);
       }
-      map.update(odometry, 0.02, 0.0005);
+      map.update(time_ns_);
       each();
     }
   }
-  /// The reflector of which a place is a part, or nullptr.
-  const Reflector* at(const Eigen::Vector2d& place, double tolerance_m = 0.3) const {
-    for (const Reflector& r : map.reflectors()) {
-      const double arc = r.curve.arc(place);
-      if (arc >= r.begin_m() && arc <= r.end_m() && std::abs(r.curve.distance(place)) < tolerance_m) return &r;
+  /// The nearest reflector of a place, or nullptr if none is within the tolerance.
+  const Segment* at(const Eigen::Vector2d& place, double tolerance_m = 0.3) const {
+    const Segment* best = nullptr;
+    for (const Segment& s : map.reflectors()) {
+      if (distance_m(s, place) < (best == nullptr ? tolerance_m : distance_m(*best, place))) best = &s;
     }
-    return nullptr;
-  }
-  double probability(const Eigen::Vector2d& place) const {
-    double most = 0.0;
-    for (const Reflector& r : map.reflectors()) {
-      if (std::abs(r.curve.distance(place)) > 0.4) continue;
-      most = std::max(most, r.existence() * r.occupancy.probability(r.curve.arc(place) + r.arc_shift_m, 0.5));
-    }
-    return most;
+    return best;
   }
   ReflectorMap map;
   Odometry odometry;
   std::vector<Eigen::Vector2d> places;
-  std::size_t detections = 0;
 
  private:
   std::mt19937 random_;
   std::int64_t time_ns_ = 1'000'000'000;
 };
 
-TEST(ReflectorMap, FindsARailThatIsMeasuredWellAtLastInTheCloudThatWasMadeOfItBefore) {
-  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> along(0.0, 40.0);
-    std::normal_distribution<double> noise(0.0, 1.0);
-    ReflectorMap map{MapConfig{}};
-    Odometry odometry;
-    for (std::int64_t time_ns = 0; time_ns < 3'000'000'000; time_ns += kScan_ns) {
-      static_cast<void>(odometry.advance(1'000'000'000 + time_ns, 0.0, 0.0));
-      for (const double std_m : {0.08, 0.6}) {
-        if (std_m < 0.1 && time_ns < 1'000'000'000) continue;
-        for (int k = 0; k < 15; ++k) {
-          const Eigen::Vector2d place(along(random), -9.0 + std_m * noise(random));
-          map.add(place, std_m * std_m, 1'000'000'000 + time_ns);
-        }
-      }
-      map.update(odometry, 0.02, 0.0005);
-    }
-    const auto runs_past = [](const Reflector& r, double x) {
-      const double arc = r.curve.arc({x, -9.0});
-      return arc >= r.begin_m() && arc <= r.end_m() && std::abs(r.curve.distance({x, -9.0})) < 0.2 &&
-             std::abs(r.curve.tangent_at(arc).y()) < 0.05;
-    };
-    for (const double x : {5.0, 20.0, 35.0}) {
-      EXPECT_TRUE(std::any_of(map.reflectors().begin(), map.reflectors().end(),
-                              [&](const Reflector& r) { return r.log_odds > 0.0 && runs_past(r, x); }))
-          << "seed " << seed << " at " << x;
-    }
-  }
+double slope(const Segment& s) {
+  const Eigen::Vector2d along = s.end_m - s.start_m;
+  return along.y() / along.x();
 }
 
-TEST(ReflectorMap, FindsRailsAndKeepsThem) {
+TEST(ReflectorMap, FindsRailsAllAlong) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     Drive drive(seed);
     drive.add({-100.0, 5.0}, {300.0, 5.0}, 2.0);
     drive.add({-100.0, -7.0}, {300.0, -7.0}, 2.0);
     drive.run(1.5);
-    ASSERT_EQ(drive.map.reflectors().size(), 2U) << "each of them as one, not in pieces";
-    std::set<std::uint32_t> ids;
+    int looks = 0, gaps = 0;
     drive.run(6.0, [&] {
       const double x = drive.odometry.position_m().x();
       for (const double y : {5.0, -7.0}) {
-        for (const double ahead : {-30.0, 0.0, 30.0}) {
-          const Reflector* const r = drive.at({x + ahead, y});
-          ASSERT_NE(r, nullptr) << "seed " << seed << " at " << x + ahead << ", " << y;
-          ids.insert(r->id);
-          EXPECT_GT(r->existence(), 0.9);
-          EXPECT_NEAR(r->curve.tangent_at(r->curve.arc({x + ahead, y})).y(), 0.0, 0.01);
+        for (double ahead = -30.0; ahead <= 30.0; ahead += 7.5) {
+          ++looks;
+          const Segment* const s = drive.at({x + ahead, y}, 1.0);
+          if (s == nullptr) {
+            ++gaps;
+            continue;
+          }
+          EXPECT_NEAR(slope(*s), 0.0, 0.03);
         }
       }
     });
-    EXPECT_EQ(ids.size(), 2U) << "seed " << seed << ": they stay the same";
+    EXPECT_LT(gaps, 0.02 * looks) << "at the borders of tiles";
   }
 }
 
-TEST(ReflectorMap, LeavesGapsAndEndsOpen) {
+TEST(ReflectorMap, KnowsHowFarAReflectorGoesOnInTheNextTiles) {
+  Drive drive(2);
+  drive.add({-100.0, 5.0}, {300.0, 5.0}, 1.5);
+  drive.add({36.0, -9.0}, {46.0, -9.0}, 0.7);
+  drive.run(2.0);
+  const Segment* const rail = drive.at({40.0, 5.0});
+  const Segment* const hedge = drive.at({40.0, -9.0});
+  ASSERT_NE(rail, nullptr);
+  ASSERT_NE(hedge, nullptr);
+  EXPECT_GT(rail->continued_m, 50.0);
+  EXPECT_NEAR(hedge->continued_m, 10.0, 1.5);
+}
+
+TEST(ReflectorMap, LeavesLargeGapsAndEndsOpen) {
   Drive drive(4);
-  drive.add({-100.0, 6.0}, {60.0, 6.0}, 1.5);
+  drive.add({-100.0, 6.0}, {55.0, 6.0}, 1.5);
   drive.add({64.5, 6.0}, {110.0, 6.0}, 1.5);
   drive.run(4.0);  // to x = 80
-  EXPECT_GT(drive.probability({55.0, 6.0}), 0.8);
-  EXPECT_GT(drive.probability({70.0, 6.0}), 0.8);
-  EXPECT_LT(drive.probability({62.9, 6.0}), 0.35) << "a gap of 4.5 m";
-  EXPECT_GT(drive.probability({108.0, 6.0}), 0.6);
-  EXPECT_LT(drive.probability({116.0, 6.0}), 0.05) << "behind its end";
+  EXPECT_NE(drive.at({52.0, 6.0}), nullptr);
+  EXPECT_NE(drive.at({70.0, 6.0}), nullptr);
+  EXPECT_EQ(drive.at({59.75, 6.0}, 3.0), nullptr);
+  EXPECT_EQ(drive.at({113.0, 6.0}, 2.0), nullptr) << "behind its end";
 }
 
 TEST(ReflectorMap, TellsWallsAtARightAngleApart) {
@@ -142,13 +125,12 @@ TEST(ReflectorMap, TellsWallsAtARightAngleApart) {
   drive.add({-40.0, 8.0}, {40.0, 8.0}, 0.7);
   drive.add({40.0, 8.0}, {40.0, 30.0}, 0.7);
   drive.run(1.5);
-  const Reflector* const along = drive.at({20.0, 8.0});
-  const Reflector* const across = drive.at({40.0, 20.0});
+  const Segment* const along = drive.at({20.0, 8.0});
+  const Segment* const across = drive.at({40.0, 20.0});
   ASSERT_NE(along, nullptr);
   ASSERT_NE(across, nullptr);
-  EXPECT_NE(along, across);
-  EXPECT_NEAR(along->curve.tangent_at(along->curve.arc({20.0, 8.0})).y(), 0.0, 0.03);
-  EXPECT_NEAR(across->curve.tangent_at(across->curve.arc({40.0, 20.0})).x(), 0.0, 0.03);
+  EXPECT_NEAR(slope(*along), 0.0, 0.05);
+  EXPECT_NEAR(1.0 / slope(*across), 0.0, 0.05);
 }
 
 TEST(ReflectorMap, FollowsABend) {
@@ -160,12 +142,10 @@ TEST(ReflectorMap, FollowsABend) {
   drive.run(1.5);
   for (const double angle : {-0.5, -0.2, 0.1, 0.4}) {
     const Eigen::Vector2d p(20.0 + kRadius_m * std::sin(angle), 78.0 - kRadius_m * std::cos(angle));
-    const Reflector* const r = drive.at(p);
-    ASSERT_NE(r, nullptr) << "angle " << angle;
-    const Eigen::Vector2d tangent = r->curve.tangent_at(r->curve.arc(p));
-    EXPECT_NEAR(std::abs(tangent.x() * std::sin(angle) - tangent.y() * std::cos(angle)), 0.0, 0.03);
+    const Segment* const s = drive.at(p, 0.6);
+    ASSERT_NE(s, nullptr) << "angle " << angle;
+    EXPECT_NEAR(std::atan(slope(*s)), angle, 0.15);
   }
-  EXPECT_LE(drive.map.reflectors().size(), 2U);
 }
 
 TEST(ReflectorMap, TakesFewBushesForReflectors) {
@@ -178,69 +158,49 @@ TEST(ReflectorMap, TakesFewBushesForReflectors) {
   std::size_t scans = 0, sum = 0;
   drive.run(4.0, [&] {
     ++scans;
-    for (const Reflector& r : drive.map.reflectors()) sum += r.existence() > 0.6 ? 1 : 0;
+    sum += drive.map.reflectors().size();
   });
-  EXPECT_LT(static_cast<double>(sum) / static_cast<double>(scans), 6.0) << "in twelve bushes of forty leaves";
+  EXPECT_LT(static_cast<double>(sum) / static_cast<double>(scans), 3.0) << "in twelve bushes of forty leaves";
 }
 
-TEST(ReflectorMap, ForgetsWhatIsNotThereAnyMore) {
+TEST(ReflectorMap, ForgetsWhatIsNoLongerThere) {
   Drive drive(8);
   drive.add({-100.0, 6.0}, {100.0, 6.0}, 1.5);
   drive.run(2.0);
   ASSERT_FALSE(drive.map.reflectors().empty());
-  EXPECT_GT(drive.map.grid().size(), 0U);
+  EXPECT_GT(drive.map.points(), 0U);
   drive.places.clear();
-  drive.run(12.0);
+  drive.run(2.0);
   EXPECT_TRUE(drive.map.reflectors().empty());
-  EXPECT_EQ(drive.map.grid().size(), 0U);
 }
 
-TEST(ReflectorMap, KnowsHowSureItIs) {
-  // The offset beside the vehicle, over seeds: its error squared by its variance. What detections have in common is
-  // allowed for, here they have nothing: so it may be too careful, but not too sure.
-  double nees = 0.0;
-  int runs = 0;
-  for (unsigned seed = 100; seed < 140; ++seed) {
-    Drive drive(seed);
-    drive.add({-100.0, 5.0}, {200.0, 5.0}, 2.0);
-    drive.run(2.0);
-    const Eigen::Vector2d beside(drive.odometry.position_m().x(), 5.0);
-    const Reflector* const r = drive.at(beside);
-    ASSERT_NE(r, nullptr) << "seed " << seed;
-    nees += std::pow(r->curve.distance(beside), 2) / r->variance_at(r->curve.arc(beside));
-    ++runs;
-  }
-  nees /= runs;
-  EXPECT_LT(nees, 1.4);
-  EXPECT_GT(nees, 0.02);
-}
-
-TEST(ReflectorMap, WorkGrowsAsTheDetections) {
-  // The same again and again side by side: what is looked at for each detection does not grow with the map.
-  const auto work_per_detection = [](int lanes) {
-    MapConfig config;
-    config.capacity = 32768;
-    Drive drive(9, config);
-    std::mt19937 random(9);
-    std::normal_distribution<double> leaf(0.0, 1.5);
-    for (int lane = 0; lane < lanes; ++lane) {
-      const double y = 5.0 + 6.0 * lane;
-      drive.add({-80.0, y}, {80.0, y}, 2.0);
-      for (double x = -80.0; x < 80.0; x += 2.0) drive.places.emplace_back(x + leaf(random), y + 3.0 + leaf(random));
-    }
-    drive.run(2.0);
-    return static_cast<double>(drive.map.points_searched()) / static_cast<double>(drive.detections);
-  };
-  const double few = work_per_detection(2), many = work_per_detection(8);
-  EXPECT_LT(few, 3.0);
-  EXPECT_LT(many, 1.3 * few);
-}
-
-TEST(ReflectorMap, SurvivesBadInputAndAFullMapWithoutAllocation) {
+TEST(ReflectorMap, UncertainDetectionsAreIgnored) {
   MapConfig config;
-  config.capacity = 300;
   ReflectorMap map(config);
-  Odometry odometry;
+  map.add({3.0, 3.0}, config.most_std_m + 0.01, 1);
+  EXPECT_EQ(map.points(), 0U);
+  map.add({3.0, 3.0}, config.most_std_m - 0.01, 1);
+  EXPECT_EQ(map.points(), 1U);
+}
+
+TEST(ReflectorMap, SearchesFewPointsInAScan) {
+  // Points everywhere, all new: the budget and one tile with its margin are the limit.
+  MapConfig config;
+  config.search_period_s = 0.0;
+  ReflectorMap map(config);
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-150.0, 150.0);
+  for (int i = 0; i < 50'000; ++i) map.add({place(random), place(random)}, 0.1, 1'000'000'000);
+  int scans = 0;
+  for (; scans < 200 && map.reflectors().size() < kMaxReflectorSegments; ++scans) {
+    map.update(1'000'000'000 + scans * 1'000'000);
+    if (scans == 0) EXPECT_LT(map.reflectors().size(), 20U) << "a few tiles of 144";
+  }
+  EXPECT_GT(scans, 20);
+}
+
+TEST(ReflectorMap, SurvivesBadInputWithoutAllocation) {
+  ReflectorMap map{MapConfig{}};
   std::mt19937 random(10);
   std::uniform_real_distribution<double> place(-80.0, 80.0);
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
@@ -249,28 +209,42 @@ TEST(ReflectorMap, SurvivesBadInputAndAFullMapWithoutAllocation) {
     const runtime::CountAllocations counting;
     for (std::int64_t scan = 0; scan < 200; ++scan) {
       const std::int64_t now_ns = 1'000'000'000 + scan * kScan_ns;
-      static_cast<void>(odometry.advance(now_ns, 10.0, 0.1));
       for (int i = 0; i < 200; ++i) {
         const double x = place(random);
-        map.add({x, i % 2 == 0 ? 5.0 : place(random)}, i % 7 == 0 ? 0.0 : 0.01, now_ns);
+        map.add({x, i % 2 == 0 ? 5.0 : place(random)}, 0.1, now_ns);
       }
-      for (int i = 0; i < 40; ++i) map.add({4.0, 4.0}, 0.0, now_ns);  // all of them in one place
+      for (int i = 0; i < 300; ++i) map.add({4.0, 4.0}, 0.0, now_ns);  // all of them in one place
       map.add({nan, 0.0}, 0.01, now_ns);
       map.add({0.0, infinite}, 0.01, now_ns);
       map.add({0.0, 0.0}, nan, now_ns);
-      map.add({0.0, 0.0}, -1.0, now_ns);
-      map.update(odometry, 0.1, 0.01);
-      ASSERT_LE(map.grid().size(), 300U);
-      for (const Reflector& r : map.reflectors()) {
-        ASSERT_TRUE(r.curve.origin_m.allFinite() && r.curve.tangent.allFinite() && r.covariance.allFinite());
-        ASSERT_GE(r.covariance.diagonal().minCoeff(), 0.0);
-      }
+      map.add({1e9, -1e9}, 0.1, now_ns);
+      map.update(now_ns);
+      for (const Segment& s : map.reflectors()) ASSERT_TRUE(s.start_m.allFinite() && s.end_m.allFinite());
     }
   }
   EXPECT_EQ(runtime::counted_allocations(), before);
   map.clear();
-  EXPECT_EQ(map.grid().size(), 0U);
+  EXPECT_EQ(map.points(), 0U);
   EXPECT_TRUE(map.reflectors().empty());
+}
+
+TEST(ReflectorSegments, ArePublishedInTheVehicleFrame) {
+  Odometry odometry;
+  static_cast<void>(odometry.advance(0, 10.0, 0.0));
+  static_cast<void>(odometry.advance(1'000'000'000, 10.0, 0.0));
+  const auto out = std::make_unique<ClassifiedScan>();
+  out->number_of_reflector_segments = 7;  // of the scan before
+  const std::vector<Segment> segments(1, {{15.0, 5.0}, {35.0, 5.0}, 0.25, 9, 90, 20.0});
+  write_segments(segments, odometry, *out);
+  ASSERT_EQ(out->number_of_reflector_segments, 1U);
+  const ReflectorSegment& s = out->reflector_segments[0];
+  EXPECT_NEAR(s.start_vehicle_m[0], 5.0, 1e-5);
+  EXPECT_NEAR(s.end_vehicle_m[0], 25.0, 1e-5);
+  EXPECT_NEAR(s.end_vehicle_m[1], 5.0, 1e-5);
+  EXPECT_EQ(s.residual_std_m, 0.25F);
+  EXPECT_EQ(s.number_of_detections, 90U);
+  write_segments(std::vector<Segment>(kMaxReflectorSegments + 5, segments[0]), odometry, *out);
+  EXPECT_EQ(out->number_of_reflector_segments, kMaxReflectorSegments);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,9 +21,9 @@ EvidenceWeights written_weights() {
   w.prior_log_odds = -1.2345;
   double next = -3.0;
   const auto number = [&next] { return next += 0.0567; };
-  for (LevelWeights* each : {&w.alone, &w.with_tracks}) {
+  for (const auto& [each, kinds] : {std::pair(&w.alone, kScanEvidences), std::pair(&w.with_tracks, kEvidences)}) {
     each->constant = number();
-    for (std::size_t k = 0; k < kEvidences; ++k) {
+    for (std::size_t k = 0; k < kinds; ++k) {
       for (std::size_t level = 0; level < kEvidenceSpecs[k].levels; ++level) each->of[k][level] = number();
     }
   }

@@ -1,6 +1,8 @@
 // Equations (G1) and (G2) by hand.
 #include "services/ghost_filter/core/evidence/weights.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace boresight::ghosts {
@@ -27,9 +29,9 @@ TEST(EvidenceWeights, AddUpWithoutTracks) {
   Levels levels;
   levels.of[2] = 3;
   levels.of[7] = 1;
-  // 0.25 + 0.1·(0 + … + 9) − 0.03·(3 + 1).
-  EXPECT_NEAR(log_odds(distinct_weights().alone, levels), 0.25 + 4.5 - 0.12, 1e-12);
-  EXPECT_NEAR(log_likelihood_ratio(distinct_weights(), levels), 0.25 + 4.5 - 0.12 + 0.4, 1e-12);
+  // 0.25 + 0.1·(0 + … + 7) − 0.03·(3 + 1): those of the scans.
+  EXPECT_NEAR(log_odds_alone(distinct_weights(), levels), 0.25 + 2.8 - 0.12, 1e-12);
+  EXPECT_NEAR(log_likelihood_ratio(distinct_weights(), levels, 0.0), 0.25 + 2.8 - 0.12 + 0.4, 1e-12);
 }
 
 TEST(EvidenceWeights, OfTracksAreBlendedByHowSureTheObjectIs) {
@@ -50,25 +52,36 @@ TEST(EvidenceWeights, WithoutTracksThePosteriorIsThatOfTheScansAlone) {
   levels.of[4] = 2;
   levels.track = 4;
   levels.sure = 1.0F;
-  EXPECT_EQ(posterior_log_odds(distinct_weights(), levels), log_odds(distinct_weights().alone, levels));
+  EXPECT_EQ(posterior_log_odds(distinct_weights(), levels), log_odds_alone(distinct_weights(), levels));
 }
 
-TEST(EvidenceWeights, TheRatioDoesNotDependOnTheTracks) {
+TEST(EvidenceWeights, TheRatioDependsOnTheTracksByTheirMirrorImagesOnly) {
   Levels without, with;
   with.has_tracks = true;
   with.track = 4;
   with.sure = 1.0F;
-  EXPECT_EQ(log_likelihood_ratio(distinct_weights(), without), log_likelihood_ratio(distinct_weights(), with));
+  with.of[kScanEvidences] = with.of[kScanEvidences + 1] = 3;
+  EXPECT_EQ(log_likelihood_ratio(distinct_weights(), without, 0.0),
+            log_likelihood_ratio(distinct_weights(), with, 0.0));
+}
+
+TEST(EvidenceWeights, MirrorImagesAreFalseDetectionsBesideTheOthers) {
+  // p(evidence | false) is the mean over both kinds: exp(−ratio) adds up.
+  const Levels levels;
+  const double others = log_likelihood_ratio(distinct_weights(), levels, 0.0);
+  for (const double images : {0.01, 1.0, 300.0}) {
+    EXPECT_NEAR(std::exp(-log_likelihood_ratio(distinct_weights(), levels, images)), std::exp(-others) + images, 1e-9);
+  }
 }
 
 TEST(EvidenceWeights, AreTheMostThatAPieceOfEvidenceCanSay) {
   const EvidenceWeights w = distinct_weights();
   for (std::size_t k = 0; k < kEvidences; ++k) {
     Levels levels;
-    const double before = log_odds(w.alone, levels) - w.alone.of[k][0];
+    const double before = log_odds(w.alone, levels, kEvidences) - w.alone.of[k][0];
     for (std::size_t level = 0; level < kMostLevels; ++level) {
       levels.of[k] = static_cast<std::uint8_t>(level);
-      EXPECT_NEAR(log_odds(w.alone, levels) - before, w.alone.of[k][level], 1e-12);
+      EXPECT_NEAR(log_odds(w.alone, levels, kEvidences) - before, w.alone.of[k][level], 1e-12);
     }
   }
 }
@@ -80,7 +93,7 @@ TEST(EvidenceWeights, OfNothingSayNothing) {
   levels.track = 2;
   levels.sure = 0.5F;
   EXPECT_EQ(posterior_log_odds(EvidenceWeights{}, levels), 0.0);
-  EXPECT_EQ(log_likelihood_ratio(EvidenceWeights{}, levels), 0.0);
+  EXPECT_EQ(log_likelihood_ratio(EvidenceWeights{}, levels, 0.0), 0.0);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "services/common/extended_object/object_classes.hpp"
 #include "services/ghost_filter/core/evidence/weights.hpp"
-#include "services/ghost_filter/core/reflector_map/config.hpp"
+#include "services/ghost_filter/core/reflectors/config.hpp"
 
 namespace boresight::ghosts {
 
@@ -51,6 +51,7 @@ struct IntensityConfig {
   double mirror_share_per_m = 0.01;  ///< probability that a reflector mirrors, per metre of its length
   double most_mirror_share = 0.6;
   double least_mirror_share = 0.1;  ///< reflectors below are no mirrors
+  double mirror_scatter_m = 0.1;    ///< least scatter of a mirror's detections across it
 };
 
 struct RadarWeights {

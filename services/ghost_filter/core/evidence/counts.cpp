@@ -20,7 +20,8 @@ float wrapped(float angle_rad) {
 
 }  // namespace
 
-Counter::Counter(const CountConfig& config) : config_(config), memories_(kMemories) {
+Counter::Counter(const CountConfig& config, std::uint32_t most_past_scans)
+    : config_(config), most_past_scans_(most_past_scans), memories_(kMemories) {
   for (Memory& m : memories_) m.detections.reserve(kMaxDetections);
   order_.reserve(kMaxDetections);
   by_range_.reserve(kMaxDetections);
@@ -56,7 +57,7 @@ std::uint32_t Counter::past_scans(std::int64_t time_ns, const Candidate& c) {
   const Eigen::Vector2f velocity = c.range_rate_over_ground_mps * c.direction;
   std::uint32_t scans = 0;
   std::size_t looks = 0;
-  for (std::size_t age = 0; age < size_ && looks < config_.most_past_looks; ++age) {
+  for (std::size_t age = 0; age < size_ && scans < most_past_scans_ && looks < config_.most_past_looks; ++age) {
     const Memory& m = memory(age);
     const auto elapsed_s = static_cast<float>(static_cast<double>(time_ns - m.time_ns) * 1e-9);
     if (elapsed_s <= 0.0F) continue;

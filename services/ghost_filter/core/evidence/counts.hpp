@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,7 +40,9 @@ struct Counts {
 /// bounded by the configuration.
 class Counter {
  public:
-  explicit Counter(const CountConfig& config);
+  /// `most_past_scans`: past_scans stops there.
+  explicit Counter(const CountConfig& config,
+                   std::uint32_t most_past_scans = std::numeric_limits<std::uint32_t>::max());
 
   /// Counts of each candidate of a scan, in their order, then remembers them. Candidates beyond the capacity of a scan
   /// get no counts. Scans come in the order of measurement, up to some milliseconds.
@@ -64,6 +67,7 @@ class Counter {
   [[nodiscard]] Memory& memory(std::size_t age) { return memories_[(first_ + size_ - 1 - age) % memories_.size()]; }
 
   CountConfig config_;
+  std::uint32_t most_past_scans_;
   std::vector<Memory> memories_;  // a ring
   std::size_t first_ = 0, size_ = 0;
   std::vector<std::uint32_t> order_;  // of the scan's candidates, by range

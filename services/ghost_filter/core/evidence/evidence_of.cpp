@@ -42,13 +42,8 @@ Levels levels_of(const Counts& counts, const SensorVerdict& verdict, const Expec
   }
   const double all =
       expected.objects + expected.images_type1 + expected.images_type2 + config.intensity.other_intensity;
-  if (has_tracks) {
-    const auto image = [&](double intensity) {
-      return static_cast<std::uint8_t>(1 + level(intensity / all, c.image_share));
-    };
-    set(EvidenceKind::kImageType1, image(expected.images_type1));
-    set(EvidenceKind::kImageType2, image(expected.images_type2));
-  }
+  set(EvidenceKind::kImageType1, level(expected.images_type1 / all, c.image_share));
+  set(EvidenceKind::kImageType2, level(expected.images_type2 / all, c.image_share));
   out.has_tracks = has_tracks;
   constexpr double kNone = 1e-12;  // below all edges
   out.track = level(std::log10(expected.strongest + kNone), c.track_log10_intensity);

@@ -30,8 +30,10 @@ using Regressors = std::array<Regressor, kRegressors>;
 Regressors regressors(const Levels& levels, bool with_tracks) {
   Regressors x{};
   x[0] = {0, 1.0};
-  for (std::size_t k = 0; k < kEvidences; ++k) x[1 + k] = {place(k, levels.of[k]), 1.0};
   const double sure = static_cast<double>(levels.sure), known = with_tracks ? 1.0 : 0.0;
+  for (std::size_t k = 0; k < kEvidences; ++k) {
+    x[1 + k] = {place(k, levels.of[k]), k < kScanEvidences ? 1.0 : known};
+  }
   x[1 + kEvidences] = {kTrackUnsure + levels.track, known * (1.0 - sure)};
   x[2 + kEvidences] = {kTrackSure + levels.track, known * sure};
   return x;

@@ -17,14 +17,14 @@ enum class EvidenceKind : std::uint8_t {
   kBurst,       ///< moving detections of the scan
   kVerdict,     ///< the sensor's flags: invalid, ambiguous
   kExistence,   ///< the sensor's probability of existence
-  kImageType1,  ///< share of type-1 mirror images in what is expected at its place and range rate
+  kImageType1,  ///< share of type-1 mirror images in what the tracks let expect at its place and range rate
   kImageType2,  ///< the same of type-2 mirror images
 };
 inline constexpr std::size_t kEvidences = 10;
-inline constexpr std::size_t kMostLevels = 7;
+inline constexpr std::size_t kScanEvidences = 8;  ///< the first ones, which need no tracks
+inline constexpr std::size_t kMostLevels = 6;
 
-/// Name in a radar profile, and number of levels. The lowest level of the last three is: not stated, or no tracks
-/// known.
+/// Name in a radar profile, and number of levels. The lowest level of the existence is: not stated.
 struct EvidenceSpec {
   std::string_view key;
   std::size_t levels;
@@ -37,8 +37,8 @@ inline constexpr std::array<EvidenceSpec, kEvidences> kEvidenceSpecs = {{{"past"
                                                                          {"burst", 4},
                                                                          {"verdict", 4},
                                                                          {"existence", 5},
-                                                                         {"image_type_1", 7},
-                                                                         {"image_type_2", 7}}};
+                                                                         {"image_type_1", 6},
+                                                                         {"image_type_2", 6}}};
 
 /// Levels of the expected intensity of known objects at a detection.
 inline constexpr std::size_t kTrackLevels = 5;

@@ -2,16 +2,16 @@
 //
 //     (G1)   ln P/(1−P) = c + Σ_k w_k(level_k),
 //
-// once without tracks, and once with them and other weights:
+// by the evidence of the scans alone, and with tracks by that of their mirror images, too, and other weights:
 //
 //     (G2)   ln P/(1−P) = c' + Σ_k w'_k(level_k) + (1 − s)·u(level of the tracks) + s·v(level of the tracks),
 //
-// s: how surely the object exists. The weights are fitted to labelled drives of a radar (fit.hpp). Sums of evidence
-// saturate because each level does.
+// s: how surely the object exists. The weights are fitted to labelled drives of a radar. Sums of evidence saturate
+// because each level does.
 #pragma once
 
 #include <array>
-#include <string>
+#include <cmath>
 
 #include "services/ghost_filter/core/evidence/levels.hpp"
 
@@ -30,20 +30,28 @@ struct EvidenceWeights {
   std::array<double, kTrackLevels> track_unsure{}, track_sure{};
 };
 
-[[nodiscard]] inline double log_odds(const LevelWeights& weights, const Levels& levels) {
+/// Sum over the first `kinds` kinds of evidence.
+[[nodiscard]] inline double log_odds(const LevelWeights& weights, const Levels& levels, std::size_t kinds) {
   double sum = weights.constant;
-  for (std::size_t k = 0; k < kEvidences; ++k) sum += weights.of[k][levels.of[k]];
+  for (std::size_t k = 0; k < kinds; ++k) sum += weights.of[k][levels.of[k]];
   return sum;
 }
-/// Equation (G1) without the prior: ln p(evidence | direct echo of a moving object) / p(evidence | false).
-[[nodiscard]] inline double log_likelihood_ratio(const EvidenceWeights& weights, const Levels& levels) {
-  return log_odds(weights.alone, levels) - weights.prior_log_odds;
+/// Equation (G1).
+[[nodiscard]] inline double log_odds_alone(const EvidenceWeights& weights, const Levels& levels) {
+  return log_odds(weights.alone, levels, kScanEvidences);
+}
+/// Equation (G14): ln p(evidence | direct echo of a moving object) / p(evidence | false), where mirror images of known
+/// objects are `image_ratio` times as many as other false detections.
+[[nodiscard]] inline double log_likelihood_ratio(const EvidenceWeights& weights, const Levels& levels,
+                                                 double image_ratio) {
+  const double others = log_odds_alone(weights, levels) - weights.prior_log_odds;
+  return -std::log(std::exp(-others) + image_ratio);
 }
 /// Equation (G2), or (G1) where no tracks are known.
 [[nodiscard]] inline double posterior_log_odds(const EvidenceWeights& weights, const Levels& levels) {
-  if (!levels.has_tracks) return log_odds(weights.alone, levels);
+  if (!levels.has_tracks) return log_odds_alone(weights, levels);
   const auto sure = static_cast<double>(levels.sure);
-  return log_odds(weights.with_tracks, levels) + (1.0 - sure) * weights.track_unsure[levels.track] +
+  return log_odds(weights.with_tracks, levels, kEvidences) + (1.0 - sure) * weights.track_unsure[levels.track] +
          sure * weights.track_sure[levels.track];
 }
 

@@ -67,7 +67,6 @@ void predict_objects(const TrackList& tracks, double elapsed_s, const ScanGeomet
         step.to_new * (block(t, 0) + elapsed_s * elapsed_s * of_velocity) * step.to_new.transpose();
     o.road_user = road_user_of(t.object_class);
     o.existence = std::clamp(static_cast<double>(t.existence_probability), 0.0, 1.0);
-    o.age_s = static_cast<double>(t.age_s);
     objects.push_back(o);
   }
 }

@@ -24,7 +24,6 @@ struct KnownObject {
   Eigen::Matrix2d position_covariance_m2 = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d velocity_covariance_m2ps2 = Eigen::Matrix2d::Zero();
   double existence = 0.0;  ///< 0…1
-  double age_s = 0.0;
   /// Added to the range rate over ground that the velocity gives: of a path that is not straight.
   double range_rate_offset_mps = 0.0;
 };

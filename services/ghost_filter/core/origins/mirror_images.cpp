@@ -2,14 +2,12 @@
 
 #include <cmath>
 
-#include "services/ghost_filter/core/mirror/image.hpp"
-
 namespace boresight::ghosts {
 
 namespace {
 
 /// Images of one object in one mirror.
-void add_images(const KnownObject& o, const Mirror& mirror, const Image& path, const SightOfImages& sight,
+void add_images(const KnownObject& o, const Mirror& mirror, const MirrorPath& path, const SightOfImages& sight,
                 std::vector<MirrorImage>& images) {
   const extended_object::OrientedBox& box = o.observed.box;
   const Eigen::Vector2d direct = box.centre_m - sight.sensor_m;
@@ -17,22 +15,22 @@ void add_images(const KnownObject& o, const Mirror& mirror, const Image& path, c
   if (!(direct_m > 0.0)) return;
   const Eigen::Vector2d e = direct / direct_m, of_image = mirrored_m * path.departure;
   const double bent_m = 0.5 * (mirrored_m + direct_m);
-  const double shift = mirror.offset_variance_m2(path.arc_m), turn = mirror.covariance(1, 1);
+  const double shift = mirror.offset_variance_m2(path.arc_m), turn = mirror.turn_variance_rad2;
   const double of_mirror = 4.0 * shift + 4.0 * path.second_m * path.second_m * turn;
   const double half_width_m =
       box.half_size_m().norm() + kReachStds * std::sqrt(of_mirror + o.position_covariance_m2.trace()) + sight.reach_m;
   const bool has_type2 = sight.directions.may_hold(path.departure * bent_m, half_width_m) && bent_m < sight.farthest_m;
   const bool has_type1 = sight.directions.may_hold(e * bent_m, half_width_m) && bent_m < sight.farthest_m;
   if (!has_type1 && !has_type2) return;
-  const double existence = o.existence * mirror.probability_at(path.arc_m);
+  const double existence = o.existence * mirror.probability;
   const double bent_mps = path.arrival.dot(o.observed.velocity_mps), direct_mps = e.dot(o.observed.velocity_mps);
   const double carried_mps = 0.5 * (path.departure - e).dot(sight.sensor_velocity_mps);
   const auto add = [&](const KnownObject& object, bool is_type1) {
     if (images.size() < images.capacity()) images.push_back({object, is_type1});
   };
   if (has_type2) {
-    // The reflection turns the arriving wave into the departing one: about the mirror's tangent at W.
-    const Eigen::Vector2d tangent = mirror.curve.tangent_at(path.arc_m);
+    // The reflection turns the arriving wave into the departing one: about the mirror's tangent.
+    const Eigen::Vector2d& tangent = mirror.tangent;
     const Eigen::Matrix2d reflection = 2.0 * tangent * tangent.transpose() - Eigen::Matrix2d::Identity();
     KnownObject image = o;
     image.existence = existence;
@@ -57,31 +55,15 @@ void add_images(const KnownObject& o, const Mirror& mirror, const Image& path, c
   }
 }
 
-/// Whether the specular point may lie on the mirror: sensor and object on the same side, and the point of a straight
-/// mirror not far beyond its ends. Tells nearly all pairs apart for little.
-bool may_mirror(const Mirror& mirror, const Eigen::Vector2d& sensor_local_m, double sensor_offset_m,
-                const Eigen::Vector2d& object_m) {
-  constexpr double kMostShift_m = 5.0;  // of the specular point by the curvature
-  const Eigen::Vector2d q = mirror.curve.local(object_m);
-  const double offset = mirror.curve.distance_of_local(q);
-  if (offset * sensor_offset_m <= 0.0) return false;
-  const double share = sensor_offset_m / (sensor_offset_m + offset);
-  const double arc = sensor_local_m.x() + share * (q.x() - sensor_local_m.x());
-  return arc > mirror.begin_m - kMostShift_m && arc < mirror.end_m + kMostShift_m;
-}
-
 }  // namespace
 
 void place_images(std::span<const KnownObject> objects, std::span<const Mirror> mirrors, const SightOfImages& sight,
                   double least_existence, std::vector<MirrorImage>& images) {
   images.clear();
-  for (const Mirror& mirror : mirrors) {
-    const Eigen::Vector2d sensor_local = mirror.curve.local(sight.sensor_m);
-    const double sensor_offset = mirror.curve.distance_of_local(sensor_local);
-    for (const KnownObject& o : objects) {
-      if (o.existence < least_existence) continue;
-      if (!may_mirror(mirror, sensor_local, sensor_offset, o.observed.box.centre_m)) continue;
-      const auto path = image_of(mirror, sight.sensor_m, o.observed.box.centre_m);
+  for (const KnownObject& o : objects) {
+    if (o.existence < least_existence) continue;
+    for (const Mirror& mirror : mirrors) {
+      const auto path = path_over(mirror, sight.sensor_m, o.observed.box.centre_m);
       if (path) add_images(o, mirror, *path, sight, images);
     }
   }

@@ -1,6 +1,6 @@
 // Mirror images of known objects, as sources of detections.
 //
-// An object at T is seen over a mirror at W by three paths (mirror.hpp): its mirror image by three bounces at range
+// An object at T is seen over a mirror at W by three paths (G8): its mirror image by three bounces at range
 // |W−S| + |T−W| in the direction of W; by two bounces, last on the mirror, in the same direction at half the sum of
 // that range and the direct one (type 2); by two bounces, last on the object, in the object's own direction at that
 // range (type 1). The box of an image is the object's box, mirrored or shifted.
@@ -11,9 +11,9 @@
 
 #include <Eigen/Core>
 
-#include "services/ghost_filter/core/mirror/mirror.hpp"
 #include "services/ghost_filter/core/origins/directions.hpp"
 #include "services/ghost_filter/core/origins/known_objects.hpp"
+#include "services/ghost_filter/core/origins/mirror.hpp"
 
 namespace boresight::ghosts {
 

@@ -5,6 +5,7 @@
 
 #include "services/common/geometry/ego_step.hpp"
 #include "services/ghost_filter/core/pass_on.hpp"
+#include "services/ghost_filter/core/reflectors/reflector_map.hpp"
 
 namespace boresight::ghosts::published {
 
@@ -18,6 +19,7 @@ constexpr OriginProbabilities kOfType2 = {0.05F, 0.0F, 0.0F, 0.95F, 0.0F, 0.0F};
 /// Half width (rad) of the sector abeam in which moving and stationary detections have the same range rate. The scene
 /// of Le Ba Thanh 2023 is faster; at walking pace its constant would classify every detection as moving.
 constexpr double kAbeam = 0.15;
+constexpr std::size_t kCapacity = 8192;  // points of a search
 
 Eigen::Vector2d point(const std::array<float, 2>& p) {
   return {p[0], p[1]};
@@ -25,7 +27,11 @@ Eigen::Vector2d point(const std::array<float, 2>& p) {
 
 }  // namespace
 
-Filter::Filter(const Config& config) : config_(config), finder_(config), tracks_(std::make_unique<TrackList>()) {}
+Filter::Filter(const Config& config)
+    : config_(config), finder_(config.segments, kCapacity), tracks_(std::make_unique<TrackList>()) {
+  points_.reserve(StationaryTiles::kTiles * StationaryTiles::kMostPoints);
+  segments_.reserve(kMaxReflectorSegments);
+}
 
 void Filter::add_tracks(const TrackList& tracks) {
   // Only what is used: the whole capacity would be copied for a handful of tracks.
@@ -72,10 +78,9 @@ Provenance Filter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vect
   const Eigen::Vector2d sight = position - sensor;
   const double range = sight.norm();
   if (range < 1e-3) return Provenance::kMoving;
-  for (std::size_t i = 0; i < number_of_segments_; ++i) {
-    const ReflectorSegment& segment = segments_[i];
-    const auto share =
-        geometry::crossing(sensor, position, point(segment.start_vehicle_m), point(segment.end_vehicle_m));
+  const Eigen::Vector2d from = odometry_.point_to_frame(sensor), to = odometry_.point_to_frame(position);
+  for (const Segment& segment : segments_) {
+    const auto share = geometry::crossing(from, to, segment.start_m, segment.end_m);
     if (share && (1.0 - *share) * range > config_.type2_margin_m) return Provenance::kGhostType2;
   }
   for (std::size_t i = 0; i < number_of_ellipses_; ++i) {
@@ -88,38 +93,36 @@ Provenance Filter::judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vect
 
 void Filter::update_segments(const CorrectedScan& scan, std::size_t count) {
   const std::int64_t time_ns = scan.header.measurement_time_ns;
-  map_.advance(time_ns, scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, config_.memory_s);
+  if (!odometry_.advance(time_ns, static_cast<double>(scan.geometry.ego_speed_mps),
+                         static_cast<double>(scan.geometry.ego_yaw_rate_radps))) {
+    tiles_.clear();
+    segments_.clear();
+    found_ns_ = 0;
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    if (takes_part(scan, i) && is_stationary(scan, i)) map_.add({scan.x_vehicle_m[i], scan.y_vehicle_m[i]});
+    if (!takes_part(scan, i) || !is_stationary(scan, i)) continue;
+    tiles_.add(odometry_.point_to_frame({scan.x_vehicle_m[i], scan.y_vehicle_m[i]}), time_ns);
   }
   const std::int64_t age_ns = time_ns - found_ns_;
   if (age_ns < 0 || static_cast<double>(age_ns) * 1e-9 >= config_.update_period_s) {
-    const std::span<const ReflectorSegment> found = finder_.find(map_.points());
-    std::copy(found.begin(), found.end(), segments_.begin());
-    number_of_segments_ = found.size();
-    found_ns_ = time_ns;
-  } else {
-    // A scan of another radar a few milliseconds later: the reflectors are the same, seen from farther on.
-    const double elapsed_s = static_cast<double>(time_ns - segments_time_ns_) * 1e-9;
-    const geometry::EgoStep step =
-        geometry::ego_step(scan.geometry.ego_speed_mps, scan.geometry.ego_yaw_rate_radps, elapsed_s);
-    const auto moved = [&step](const std::array<float, 2>& p) -> std::array<float, 2> {
-      const Eigen::Vector2f to = step.move_point(point(p)).cast<float>();
-      return {to.x(), to.y()};
-    };
-    for (std::size_t i = 0; i < number_of_segments_; ++i) {
-      segments_[i].start_vehicle_m = moved(segments_[i].start_vehicle_m);
-      segments_[i].end_vehicle_m = moved(segments_[i].end_vehicle_m);
+    points_.clear();
+    tiles_.collect(time_ns - static_cast<std::int64_t>(config_.memory_s * 1e9), points_);
+    // The clusters are longer along the vehicle.
+    for (Eigen::Vector2d& p : points_) p = odometry_.point_to_vehicle(p);
+    segments_.clear();
+    for (Segment each : finder_.find(points_)) {
+      each.start_m = odometry_.point_to_frame(each.start_m);
+      each.end_m = odometry_.point_to_frame(each.end_m);
+      segments_.push_back(each);
     }
+    found_ns_ = time_ns;
   }
-  segments_time_ns_ = time_ns;
 }
 
 void Filter::classify(const CorrectedScan& scan, ClassifiedScan& out) {
   const std::size_t count = pass_on(scan, out);
   update_segments(scan, count);
-  std::copy_n(segments_.begin(), number_of_segments_, out.reflector_segments.begin());
-  out.number_of_reflector_segments = static_cast<std::uint32_t>(number_of_segments_);
+  write_segments(segments_, odometry_, out);
 
   const std::int64_t time_ns = scan.header.measurement_time_ns;
   predict_tracks(scan);

@@ -5,16 +5,19 @@
 // a ghost.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "interfaces/messages/corrected_scan.hpp"
 #include "interfaces/messages/track_list.hpp"
 #include "services/common/geometry/segment.hpp"
 #include "services/ghost_filter/core/method.hpp"
+#include "services/ghost_filter/core/odometry.hpp"
 #include "services/ghost_filter/core/published/config.hpp"
-#include "services/ghost_filter/core/published/reflectors.hpp"
-#include "services/ghost_filter/core/published/stationary_map.hpp"
+#include "services/ghost_filter/core/reflectors/segment_finder.hpp"
+#include "services/ghost_filter/core/reflectors/stationary_tiles.hpp"
 
 namespace boresight::ghosts::published {
 
@@ -24,22 +27,22 @@ class Filter final : public Method {
 
   void add_tracks(const TrackList& tracks) override;
   void classify(const CorrectedScan& scan, ClassifiedScan& out) override;
-  [[nodiscard]] std::size_t map_points() const override { return map_.points().size(); }
+  [[nodiscard]] std::size_t map_points() const override { return tiles_.size(); }
 
  private:
   [[nodiscard]] bool takes_part(const CorrectedScan& scan, std::size_t i) const;
   /// By a constant threshold, Le Ba Thanh 2023, (1)(2), whatever the corrector makes of the detection's uncertainty.
   [[nodiscard]] bool is_stationary(const CorrectedScan& scan, std::size_t i) const;
-  /// The segments in the vehicle frame of this scan: found anew when they are due, moved otherwise.
+  /// Finds the segments anew when they are due.
   void update_segments(const CorrectedScan& scan, std::size_t count);
   void predict_tracks(const CorrectedScan& scan);
   [[nodiscard]] Provenance judge_moving(const Eigen::Vector2d& sensor, const Eigen::Vector2d& position) const;
   Config config_;
-  StationaryMap map_;
-  ReflectorFinder finder_;
-  std::array<ReflectorSegment, kMaxReflectorSegments> segments_;
-  std::size_t number_of_segments_ = 0;
-  std::int64_t segments_time_ns_ = 0;  // of the scan in whose frame they are
+  Odometry odometry_;
+  StationaryTiles tiles_;
+  SegmentFinder finder_;
+  std::vector<Eigen::Vector2d> points_;
+  std::vector<Segment> segments_;  // in the odometry frame
   std::int64_t found_ns_ = 0;
   std::unique_ptr<TrackList> tracks_;  // a copy: the message leaves shared memory after the call
   bool has_tracks_ = false;

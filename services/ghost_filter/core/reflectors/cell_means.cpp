@@ -1,8 +1,8 @@
-#include "services/ghost_filter/core/published/cell_means.hpp"
+#include "services/ghost_filter/core/reflectors/cell_means.hpp"
 
 #include <algorithm>
 
-namespace boresight::ghosts::published {
+namespace boresight::ghosts {
 
 CellMeans::CellMeans(std::size_t capacity) : capacity_(capacity), cells_(capacity) {
   means_.reserve(capacity);
@@ -23,4 +23,4 @@ std::span<const CellMean> CellMeans::find(std::span<const Eigen::Vector2d> point
   return means_;
 }
 
-}  // namespace boresight::ghosts::published
+}  // namespace boresight::ghosts

@@ -1,11 +1,9 @@
-#include "services/ghost_filter/core/published/reflectors.hpp"
+#include "services/ghost_filter/core/reflectors/segment_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/ghost_filter/core/published/stationary_map.hpp"
-
-namespace boresight::ghosts::published {
+namespace boresight::ghosts {
 
 namespace {
 
@@ -40,25 +38,18 @@ Line fit_line(std::span<const CellMean> points) {
   return {centre, direction, std::sqrt(std::max(0.0, across) / total)};
 }
 
-double length_of(const ReflectorSegment& s) {
-  return std::hypot(s.end_vehicle_m[0] - s.start_vehicle_m[0], s.end_vehicle_m[1] - s.start_vehicle_m[1]);
-}
-
 }  // namespace
 
-ReflectorFinder::ReflectorFinder(const Config& config)
-    : config_(config),
-      cell_means_(StationaryMap::kCapacity),
-      dbscan_(StationaryMap::kCapacity),
-      clusters_(StationaryMap::kCapacity) {
-  positions_.reserve(StationaryMap::kCapacity);
+SegmentFinder::SegmentFinder(const SegmentConfig& config, std::size_t capacity)
+    : config_(config), cell_means_(capacity), dbscan_(capacity), clusters_(capacity) {
+  positions_.reserve(capacity);
 }
 
-std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::Vector2d> points) {
+std::span<const Segment> SegmentFinder::find(std::span<const Eigen::Vector2d> points) {
   number_of_segments_ = 0;
   const std::span<const CellMean> means = cell_means_.find(points, config_.cell_m);
   positions_.clear();
-  // An ellipse along the vehicle's axes, which a road's rails follow, as a circle in a plane that is stretched across.
+  // The neighbourhood is an ellipse: a circle in a plane that is stretched across.
   const double stretch = config_.cluster_length_m / config_.cluster_width_m;
   for (const CellMean& mean : means) positions_.push_back({mean.position_m.x(), stretch * mean.position_m.y()});
   const std::size_t clusters = dbscan_.cluster(positions_, config_.cluster_length_m, config_.cluster_min_points);
@@ -67,7 +58,7 @@ std::span<const ReflectorSegment> ReflectorFinder::find(std::span<const Eigen::V
   return {segments_.data(), number_of_segments_};
 }
 
-void ReflectorFinder::fit(std::span<CellMean> points, int depth) {
+void SegmentFinder::fit(std::span<CellMean> points, int depth) {
   if (points.size() < config_.min_segment_points) return;
   const Line line = fit_line(points);
   const auto along = [&](const CellMean& p) { return line.direction.dot(p.position_m - line.centre); };
@@ -88,19 +79,18 @@ void ReflectorFinder::fit(std::span<CellMean> points, int depth) {
     detections += p.number_of_points;
   }
   if (last - first < config_.min_segment_length_m) return;
-  const Eigen::Vector2f start = (line.centre + first * line.direction).cast<float>();
-  const Eigen::Vector2f stop = (line.centre + last * line.direction).cast<float>();
-  add({{start.x(), start.y()}, {stop.x(), stop.y()}, static_cast<float>(line.residual_m), detections});
+  add({line.centre + first * line.direction, line.centre + last * line.direction, line.residual_m,
+       static_cast<std::uint32_t>(points.size()), detections});
 }
 
-void ReflectorFinder::add(const ReflectorSegment& segment) {
+void SegmentFinder::add(const Segment& segment) {
   if (number_of_segments_ < segments_.size()) {
     segments_[number_of_segments_++] = segment;
     return;
   }
   const auto shortest = std::min_element(segments_.begin(), segments_.end(),
-                                         [](const auto& a, const auto& b) { return length_of(a) < length_of(b); });
-  if (length_of(*shortest) < length_of(segment)) *shortest = segment;
+                                         [](const auto& a, const auto& b) { return a.length_m() < b.length_m(); });
+  if (shortest->length_m() < segment.length_m()) *shortest = segment;
 }
 
-}  // namespace boresight::ghosts::published
+}  // namespace boresight::ghosts

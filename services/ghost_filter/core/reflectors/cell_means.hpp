@@ -9,7 +9,7 @@
 
 #include "services/common/geometry/cell_table.hpp"
 
-namespace boresight::ghosts::published {
+namespace boresight::ghosts {
 
 /// The mean of the points in one cell.
 struct CellMean {
@@ -31,4 +31,4 @@ class CellMeans {
   std::vector<CellMean> means_;
 };
 
-}  // namespace boresight::ghosts::published
+}  // namespace boresight::ghosts

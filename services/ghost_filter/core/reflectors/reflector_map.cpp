@@ -1,0 +1,120 @@
+#include "services/ghost_filter/core/reflectors/reflector_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boresight::ghosts {
+
+namespace {
+
+/// Beyond a tile's borders, so that what runs along them is seen whole.
+constexpr double kMargin_m = 2.0;
+/// Points of a tile and of the margin about it.
+constexpr std::size_t kMostPoints = 4 * StationaryTiles::kMostPoints;
+
+}  // namespace
+
+ReflectorMap::ReflectorMap(const MapConfig& config)
+    : config_(config), finder_(config.segments, kMostPoints), found_(StationaryTiles::kTiles) {
+  reflectors_.reserve(kMaxReflectorSegments);
+  points_.reserve(9 * StationaryTiles::kMostPoints);
+}
+
+void ReflectorMap::clear() {
+  tiles_.clear();
+  std::fill(found_.begin(), found_.end(), Found{});
+  reflectors_.clear();
+  updated_ns_ = 0;
+}
+
+void ReflectorMap::add(const Eigen::Vector2d& position_m, double std_m, std::int64_t time_ns) {
+  if (std_m <= config_.most_std_m) tiles_.add(position_m, time_ns);
+}
+
+double ReflectorMap::with_continuations_m(const Segment& segment, geometry::GridCell place) const {
+  const double own_m = segment.length_m();
+  const Eigen::Vector2d along = (segment.end_m - segment.start_m) / own_m, across(-along.y(), along.x());
+  const double gap_m = config_.segments.cluster_length_m + kMargin_m;
+  double before_m = 0.0, after_m = 0.0;
+  for (std::int32_t column = place.column - 1; column <= place.column + 1; ++column) {
+    for (std::int32_t row = place.row - 1; row <= place.row + 1; ++row) {
+      const Found& beside = found_[StationaryTiles::number_of({column, row})];
+      if (beside.place == place || !(beside.place == geometry::GridCell{column, row})) continue;
+      for (const Segment& other : std::span(beside.segments).first(beside.count)) {
+        const Eigen::Vector2d a = other.start_m - segment.start_m, b = other.end_m - segment.start_m;
+        const double first = std::min(along.dot(a), along.dot(b)), last = std::max(along.dot(a), along.dot(b));
+        const Eigen::Vector2d nearer =
+            std::abs(along.dot(a) - 0.5 * own_m) < std::abs(along.dot(b) - 0.5 * own_m) ? a : b;
+        if (std::abs(across.dot(nearer)) > 2.0 * config_.segments.cell_m) continue;
+        if (std::abs(first - own_m) < gap_m) after_m = std::max(after_m, last - first);
+        if (std::abs(last) < gap_m) before_m = std::max(before_m, last - first);
+      }
+    }
+  }
+  return before_m + own_m + after_m;
+}
+
+std::size_t ReflectorMap::search(std::size_t number, std::int64_t oldest_ns) {
+  const StationaryTiles::Tile& tile = tiles_.tiles()[number];
+  Found& found = found_[number];
+  found = {.place = tile.place, .added = tile.added, .count = 0, .segments = {}};
+  const Eigen::Vector2d low = tile.low_m(), high = low + Eigen::Vector2d::Constant(StationaryTiles::kTile_m);
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kMargin_m);
+  points_.clear();
+  for (std::int32_t column = tile.place.column - 1; column <= tile.place.column + 1; ++column) {
+    for (std::int32_t row = tile.place.row - 1; row <= tile.place.row + 1; ++row) {
+      tiles_.collect(StationaryTiles::number_of({column, row}), oldest_ns, low - margin, high + margin, points_);
+    }
+  }
+  for (const Segment& segment : finder_.find(points_)) {
+    const Eigen::Vector2d middle = 0.5 * (segment.start_m + segment.end_m);
+    if ((middle.array() < low.array()).any() || (middle.array() >= high.array()).any()) continue;
+    if (found.count == kMostOfTile) break;
+    found.segments[found.count] = segment;
+    found.segments[found.count++].continued_m = with_continuations_m(segment, tile.place);
+  }
+  return points_.size();
+}
+
+void ReflectorMap::update(std::int64_t time_ns) {
+  const double elapsed_s = std::clamp(static_cast<double>(time_ns - updated_ns_) * 1e-9, 0.0, 1.0);
+  updated_ns_ = std::max(updated_ns_, time_ns);
+  const std::int64_t oldest_ns = time_ns - static_cast<std::int64_t>(config_.memory_s * 1e9);
+  const double share = std::min(1.0, elapsed_s / std::max(1e-3, config_.search_period_s));
+  auto turns = static_cast<std::size_t>(std::ceil(share * static_cast<double>(StationaryTiles::kTiles)));
+  bool is_changed = false;
+  for (std::size_t looks = 0; turns > 0 && looks < config_.most_points; --turns) {
+    const std::size_t number = next_++ % StationaryTiles::kTiles;
+    const StationaryTiles::Tile& tile = tiles_.tiles()[number];
+    Found& found = found_[number];
+    if (tile.newest_ns < oldest_ns || !(found.place == tile.place)) {
+      is_changed = is_changed || found.count > 0;
+      found = {.place = tile.place, .added = 0, .count = 0, .segments = {}};
+    }
+    // As long as little is new, what was not found will not be found.
+    if (tile.newest_ns < oldest_ns || 8 * (tile.added - found.added) < std::min<std::size_t>(tile.added, 256)) continue;
+    looks += search(number, oldest_ns);
+    is_changed = true;
+  }
+  if (!is_changed) return;
+  reflectors_.clear();
+  for (const Found& found : found_) {
+    for (const Segment& segment : std::span(found.segments).first(found.count)) {
+      if (reflectors_.size() < reflectors_.capacity()) reflectors_.push_back(segment);
+    }
+  }
+}
+
+void write_segments(std::span<const Segment> segments, const Odometry& odometry, ClassifiedScan& out) {
+  const auto in_vehicle = [&odometry](const Eigen::Vector2d& p) -> std::array<float, 2> {
+    const Eigen::Vector2f q = odometry.point_to_vehicle(p).cast<float>();
+    return {q.x(), q.y()};
+  };
+  out.number_of_reflector_segments = 0;
+  for (const Segment& s : segments.first(std::min(segments.size(), kMaxReflectorSegments))) {
+    out.reflector_segments[out.number_of_reflector_segments++] = {in_vehicle(s.start_m), in_vehicle(s.end_m),
+                                                                  static_cast<float>(s.residual_m), s.detections};
+  }
+}
+
+}  // namespace boresight::ghosts
