@@ -16,7 +16,8 @@ namespace boresight::closed_loop {
 /// Alignment estimator and detection corrector: the stages before the ghost filter.
 class Front {
  public:
-  explicit Front(const VehicleConfig& vehicle) : ego_(vehicle.ego), estimator_(vehicle, {}), corrector_(vehicle, {}) {}
+  explicit Front(const VehicleConfig& vehicle, const corrector::Config& config = {})
+      : ego_(vehicle.ego), estimator_(vehicle, {}), corrector_(vehicle, config) {}
 
   /// Takes one event; true if it was a scan, which is then in `corrected`.
   bool take(const simulator::Event& event) {
