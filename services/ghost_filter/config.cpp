@@ -68,6 +68,7 @@ CountConfig read_counts(config::Reader reader) {
   };
   c.most_neighbours = looks("most_neighbours", c.most_neighbours);
   c.most_past_looks = looks("most_past_looks", c.most_past_looks);
+  c.most_remembered = looks("most_remembered", c.most_remembered);
   return c;
 }
 

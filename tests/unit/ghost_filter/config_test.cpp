@@ -52,6 +52,7 @@ std::vector<double> numbers(const Config& config) {
           c.wide_range_rate_mps,
           static_cast<double>(c.most_neighbours),
           static_cast<double>(c.most_past_looks),
+          static_cast<double>(c.most_remembered),
           i.ambiguous_share,
           i.ambiguous_width_mps,
           i.position_std_m,

@@ -24,6 +24,7 @@ CountConfig unbounded() {
   CountConfig c;
   c.most_neighbours = 100'000;
   c.most_past_looks = 100'000;
+  c.most_remembered = 100'000;
   return c;
 }
 
@@ -95,13 +96,13 @@ SlowCounts slow_counts(const std::vector<TimedScan>& scans, std::size_t s, std::
   for (std::size_t earlier = 0; earlier < s; ++earlier) {
     const double elapsed_s = static_cast<double>(scans[s].time_ns - scans[earlier].time_ns) * 1e-9;
     if (!(elapsed_s > 0.0) || elapsed_s >= config.memory_s - 1e-9) continue;
-    const Eigen::Vector2d before = c.position_m.cast<double>() - elapsed_s *
-                                                                     static_cast<double>(c.range_rate_over_ground_mps) *
-                                                                     c.direction.cast<double>();
     const double radius = config.past_radius_m + config.past_radius_per_range * static_cast<double>(c.range_m);
     for (const Candidate& o : scans[earlier].detections) {
       const double rates = std::abs(static_cast<double>(o.range_rate_over_ground_mps) - c.range_rate_over_ground_mps);
-      if (!under((o.position_m.cast<double>() - before).norm(), radius, slack)) continue;
+      const Eigen::Vector2d now = o.position_m.cast<double>() + elapsed_s *
+                                                                    static_cast<double>(o.range_rate_over_ground_mps) *
+                                                                    o.direction.cast<double>();
+      if (!under((now - c.position_m.cast<double>()).norm(), radius, slack)) continue;
       if (!under(rates, config.past_range_rate_mps, slack)) continue;
       ++out.past_scans;
       break;

@@ -24,6 +24,7 @@ EvidenceWeights random_weights(unsigned seed) {
       for (std::size_t level = 0; level < kEvidenceSpecs[k].levels; ++level) each->of[k][level] = weight(random);
     }
   }
+  for (std::size_t k = kScanEvidences; k < kEvidences; ++k) w.alone.of[k] = {};  // of tracks
   for (std::size_t level = 0; level < kTrackLevels; ++level) {
     w.track_unsure[level] = weight(random);
     w.track_sure[level] = 2.0 * weight(random);
@@ -82,7 +83,7 @@ void expect_near(const LevelWeights& fitted, const LevelWeights& truth, double i
 TEST(FitWeights, FindsTheWeightsThatMadeTheLabels) {
   constexpr std::size_t kNumber = 30'000;
   const EvidenceWeights truth = random_weights(1);
-  const auto without_tracks = [&](const Levels& l) { return log_odds(truth.alone, l); };
+  const auto without_tracks = [&](const Levels& l) { return log_odds_alone(truth, l); };
   const auto alone = labelled(2, kNumber, without_tracks);
   expect_near(fit_weights(alone, FitConfig{}).alone, truth.alone, kNumber * mean_variance(alone, without_tracks));
 
@@ -103,7 +104,7 @@ double log_posterior(const std::vector<LabelledEvidence>& detections, const Evid
   double sum = 0.0;
   for (const LabelledEvidence& each : detections) {
     if (with_tracks && !each.levels.has_tracks) continue;
-    const double odds = with_tracks ? posterior_log_odds(w, each.levels) : log_odds(w.alone, each.levels);
+    const double odds = with_tracks ? posterior_log_odds(w, each.levels) : log_odds_alone(w, each.levels);
     sum -= std::log1p(std::exp(each.is_real ? -odds : odds));
   }
   const LevelWeights& levels = with_tracks ? w.with_tracks : w.alone;
@@ -197,8 +198,8 @@ TEST(FitWeights, LabelsWithoutAnExceptionStayFinite) {
     EXPECT_TRUE(std::isfinite(each));
     EXPECT_LT(std::abs(each), 20.0);
   }
-  EXPECT_GT(log_odds(w.alone, detections[0].levels), 3.0);
-  EXPECT_LT(log_odds(w.alone, detections[1].levels), -3.0);
+  EXPECT_GT(log_odds_alone(w, detections[0].levels), 3.0);
+  EXPECT_LT(log_odds_alone(w, detections[1].levels), -3.0);
   EXPECT_GT(posterior_log_odds(w, detections[0].levels), 3.0);
   std::vector<LabelledEvidence> all_real(100);
   for (LabelledEvidence& each : all_real) each.is_real = true;

@@ -194,7 +194,9 @@ TEST(ReflectorMap, SearchesFewPointsInAScan) {
   int scans = 0;
   for (; scans < 200 && map.reflectors().size() < kMaxReflectorSegments; ++scans) {
     map.update(1'000'000'000 + scans * 1'000'000);
-    if (scans == 0) EXPECT_LT(map.reflectors().size(), 20U) << "a few tiles of 144";
+    if (scans == 0) {
+      EXPECT_LT(map.reflectors().size(), 20U) << "a few tiles of 144";
+    }
   }
   EXPECT_GT(scans, 20);
 }

@@ -22,8 +22,9 @@ struct CountConfig {
   double company_range_rate_mps = 0.6;  ///< largest difference of the measured range rates
   double wide_range_m = 8.0;            ///< the same of the wide ring
   double wide_range_rate_mps = 1.2;
-  std::size_t most_neighbours = 96;   ///< detections of the scan that are looked at for one of them, nearest in range
-  std::size_t most_past_looks = 256;  ///< earlier detections that are looked at for one, newest scans first
+  std::size_t most_neighbours = 96;    ///< detections of the scan that are looked at for one of them, nearest in range
+  std::size_t most_past_looks = 256;   ///< earlier detections that are looked at for one
+  std::size_t most_remembered = 4096;  ///< earlier detections in memory, newest first
 };
 
 /// From which value on a count or share has the next level.

@@ -1,6 +1,7 @@
 #include "services/ghost_filter/core/evidence/counts.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -12,6 +13,21 @@ namespace {
 
 /// Scans of the memory: 8 radars of 20 scans a second for 0.4 s.
 constexpr std::size_t kMemories = 64;
+/// Grid of the remembered detections. It repeats: what lies a whole grid farther on is told apart by its distance.
+constexpr std::int32_t kCells = 64;  // in each direction
+constexpr float kCell_m = 4.0F;
+
+std::int32_t cell_index(float at_m) {
+  return static_cast<std::int32_t>(std::floor(at_m * (1.0F / kCell_m)));
+}
+
+std::size_t cell_number(std::int32_t column, std::int32_t row) {
+  return static_cast<std::size_t>((row & (kCells - 1)) * kCells + (column & (kCells - 1)));
+}
+
+std::size_t cell_of(const Eigen::Vector2f& position_m) {
+  return cell_number(cell_index(position_m.x()), cell_index(position_m.y()));
+}
 
 float wrapped(float angle_rad) {
   constexpr auto kPi = static_cast<float>(M_PI);
@@ -21,8 +37,10 @@ float wrapped(float angle_rad) {
 }  // namespace
 
 Counter::Counter(const CountConfig& config, std::uint32_t most_past_scans)
-    : config_(config), most_past_scans_(most_past_scans), memories_(kMemories) {
+    : config_(config), most_past_scans_(most_past_scans), memories_(kMemories), cell_begin_(kCells * kCells + 1) {
   for (Memory& m : memories_) m.detections.reserve(kMaxDetections);
+  moved_.reserve(config.most_remembered);
+  by_cell_.resize(config.most_remembered);
   order_.reserve(kMaxDetections);
   by_range_.reserve(kMaxDetections);
 }
@@ -45,36 +63,53 @@ void Counter::remember(std::int64_t time_ns, std::span<const Candidate> scan) {
   m.time_ns = time_ns;
   m.detections.clear();
   for (const Candidate& c : scan) {
-    m.detections.push_back({c.position_m.x(), c.position_m.y(), c.range_rate_over_ground_mps});
+    const Eigen::Vector2f velocity = c.range_rate_over_ground_mps * c.direction;
+    m.detections.push_back({c.position_m, velocity, c.range_rate_over_ground_mps});
   }
-  std::sort(m.detections.begin(), m.detections.end(),
-            [](const Remembered& a, const Remembered& b) { return a.x_m < b.x_m; });
 }
 
-std::uint32_t Counter::past_scans(std::int64_t time_ns, const Candidate& c) {
-  const auto radius_m = static_cast<float>(config_.past_radius_m + config_.past_radius_per_range * c.range_m);
-  const auto gate_mps = static_cast<float>(config_.past_range_rate_mps);
-  const Eigen::Vector2f velocity = c.range_rate_over_ground_mps * c.direction;
-  std::uint32_t scans = 0;
-  std::size_t looks = 0;
-  for (std::size_t age = 0; age < size_ && scans < most_past_scans_ && looks < config_.most_past_looks; ++age) {
+void Counter::move(std::int64_t time_ns) {
+  moved_.clear();
+  for (std::size_t age = 0; age < size_; ++age) {
     const Memory& m = memory(age);
     const auto elapsed_s = static_cast<float>(static_cast<double>(time_ns - m.time_ns) * 1e-9);
     if (elapsed_s <= 0.0F) continue;
-    const Eigen::Vector2f before = c.position_m - elapsed_s * velocity;
-    auto at = std::lower_bound(m.detections.begin(), m.detections.end(), before.x() - radius_m,
-                               [](const Remembered& r, float x) { return r.x_m < x; });
-    for (; at != m.detections.end() && at->x_m <= before.x() + radius_m && looks < config_.most_past_looks; ++at) {
-      ++looks;
-      if (std::abs(at->range_rate_over_ground_mps - c.range_rate_over_ground_mps) >= gate_mps) continue;
-      const float dx = at->x_m - before.x(), dy = at->y_m - before.y();
-      if (dx * dx + dy * dy >= radius_m * radius_m) continue;
-      ++scans;
-      break;
+    for (const Remembered& r : m.detections) {
+      if (moved_.size() == config_.most_remembered) break;
+      moved_.push_back(
+          {r.position_m + elapsed_s * r.velocity_mps, r.range_rate_over_ground_mps, static_cast<std::uint32_t>(age)});
+    }
+  }
+  // A counting sort by cell.
+  std::fill(cell_begin_.begin(), cell_begin_.end(), 0U);
+  for (const Moved& m : moved_) ++cell_begin_[cell_of(m.position_m) + 1];
+  std::partial_sum(cell_begin_.begin(), cell_begin_.end(), cell_begin_.begin());
+  for (const Moved& m : moved_) by_cell_[cell_begin_[cell_of(m.position_m)]++] = m;
+  // Each begin is that of the next cell now.
+  std::copy_backward(cell_begin_.begin(), cell_begin_.end() - 1, cell_begin_.end());
+  cell_begin_.front() = 0;
+}
+
+std::uint32_t Counter::past_scans(const Candidate& c) {
+  const auto radius_m = static_cast<float>(config_.past_radius_m + config_.past_radius_per_range * c.range_m);
+  const auto gate_mps = static_cast<float>(config_.past_range_rate_mps);
+  const Eigen::Vector2f low = c.position_m.array() - radius_m, high = c.position_m.array() + radius_m;
+  static_assert(kMemories <= 64);
+  std::uint64_t scans = 0;  // a bit each
+  std::size_t looks = 0;
+  for (std::int32_t row = cell_index(low.y()); row <= cell_index(high.y()); ++row) {
+    for (std::int32_t column = cell_index(low.x()); column <= cell_index(high.x()); ++column) {
+      const std::size_t cell = cell_number(column, row);
+      for (std::uint32_t i = cell_begin_[cell]; i < cell_begin_[cell + 1] && looks < config_.most_past_looks; ++i) {
+        const Moved& m = by_cell_[i];
+        ++looks;
+        if (std::abs(m.range_rate_over_ground_mps - c.range_rate_over_ground_mps) >= gate_mps) continue;
+        if ((m.position_m - c.position_m).squaredNorm() < radius_m * radius_m) scans |= std::uint64_t{1} << m.age;
+      }
     }
   }
   looks_ += looks;
-  return scans;
+  return std::min(most_past_scans_, static_cast<std::uint32_t>(std::popcount(scans)));
 }
 
 void Counter::count_scan(std::span<const Candidate> scan, std::span<Counts> counts) {
@@ -125,7 +160,8 @@ void Counter::count(std::int64_t time_ns, std::span<const Candidate> scan, std::
   scan = scan.first(std::min({scan.size(), counts.size(), kMaxDetections}));
   forget(time_ns);
   count_scan(scan, counts);
-  for (std::size_t i = 0; i < scan.size(); ++i) counts[i].past_scans = past_scans(time_ns, scan[i]);
+  if (!scan.empty()) move(time_ns);
+  for (std::size_t i = 0; i < scan.size(); ++i) counts[i].past_scans = past_scans(scan[i]);
   remember(time_ns, scan);
 }
 

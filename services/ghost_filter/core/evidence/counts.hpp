@@ -54,22 +54,32 @@ class Counter {
 
  private:
   struct Remembered {
-    float x_m, y_m, range_rate_over_ground_mps;
+    Eigen::Vector2f position_m, velocity_mps;
+    float range_rate_over_ground_mps;
   };
   struct Memory {
     std::int64_t time_ns = 0;
-    std::vector<Remembered> detections;  // sorted by x
+    std::vector<Remembered> detections;
+  };
+  /// A remembered detection where it would be now.
+  struct Moved {
+    Eigen::Vector2f position_m;
+    float range_rate_over_ground_mps;
+    std::uint32_t age;  // scans that were remembered later
   };
   void forget(std::int64_t time_ns);
   void remember(std::int64_t time_ns, std::span<const Candidate> scan);
+  void move(std::int64_t time_ns);
   void count_scan(std::span<const Candidate> scan, std::span<Counts> counts);
-  [[nodiscard]] std::uint32_t past_scans(std::int64_t time_ns, const Candidate& c);
+  [[nodiscard]] std::uint32_t past_scans(const Candidate& c);
   [[nodiscard]] Memory& memory(std::size_t age) { return memories_[(first_ + size_ - 1 - age) % memories_.size()]; }
 
   CountConfig config_;
   std::uint32_t most_past_scans_;
   std::vector<Memory> memories_;  // a ring
   std::size_t first_ = 0, size_ = 0;
+  std::vector<Moved> moved_, by_cell_;  // newest first, in the latter within each cell
+  std::vector<std::uint32_t> cell_begin_;
   std::vector<std::uint32_t> order_;  // of the scan's candidates, by range
   std::vector<Candidate> by_range_;
   std::uint64_t looks_ = 0;
