@@ -10,18 +10,8 @@ namespace boresight::ghosts {
 
 namespace {
 
-SegmentConfig read_segments(config::Reader& reader, SegmentConfig c) {
-  const auto count = [&](std::string_view key, std::size_t fallback) {
-    return static_cast<std::size_t>(reader.integer(key, {1, 1000}, static_cast<std::int64_t>(fallback)));
-  };
-  c.cell_m = reader.number("cell_m", {0.05, 10.0}, c.cell_m);
-  c.cluster_length_m = reader.number("cluster_length_m", {0.1, 20.0}, c.cluster_length_m);
-  c.cluster_width_m = reader.number("cluster_width_m", {0.1, 20.0}, c.cluster_width_m);
-  c.cluster_min_points = count("cluster_min_points", c.cluster_min_points);
-  c.min_segment_points = count("min_segment_points", c.min_segment_points);
-  c.min_segment_length_m = reader.number("min_segment_length_m", {0.1, 100.0}, c.min_segment_length_m);
-  c.max_segment_residual_m = reader.number("max_segment_residual_m", {0.01, 10.0}, c.max_segment_residual_m);
-  return c;
+std::size_t read_count(config::Reader& reader, std::string_view key, std::size_t fallback) {
+  return static_cast<std::size_t>(reader.integer(key, {1, 100'000}, static_cast<std::int64_t>(fallback)));
 }
 
 published::Config read_published(config::Reader root) {
@@ -33,7 +23,13 @@ published::Config read_published(config::Reader root) {
   config::Reader reflectors = root.table("reflectors");
   c.memory_s = reflectors.number("memory_s", {0.05, 5.0}, c.memory_s);
   c.update_period_s = reflectors.number("update_period_s", {0.0, 1.0}, c.update_period_s);
-  c.segments = read_segments(reflectors, c.segments);
+  c.cell_m = reflectors.number("cell_m", {0.05, 10.0}, c.cell_m);
+  c.cluster_length_m = reflectors.number("cluster_length_m", {0.1, 20.0}, c.cluster_length_m);
+  c.cluster_width_m = reflectors.number("cluster_width_m", {0.1, 20.0}, c.cluster_width_m);
+  c.cluster_min_points = read_count(reflectors, "cluster_min_points", c.cluster_min_points);
+  c.min_segment_points = read_count(reflectors, "min_segment_points", c.min_segment_points);
+  c.min_segment_length_m = reflectors.number("min_segment_length_m", {0.1, 100.0}, c.min_segment_length_m);
+  c.max_segment_residual_m = reflectors.number("max_segment_residual_m", {0.01, 10.0}, c.max_segment_residual_m);
   config::Reader tests = root.table("tests");
   c.type2_margin_m = tests.number("type2_margin_m", {0.0, 20.0}, c.type2_margin_m);
   c.type1_margin_m = tests.number("type1_margin_m", {0.0, 20.0}, c.type1_margin_m);
@@ -47,9 +43,17 @@ MapConfig read_map(config::Reader reader) {
   c.memory_s = reader.number("memory_s", {0.1, 10.0}, c.memory_s);
   c.search_period_s = reader.number("search_period_s", {0.0, 5.0}, c.search_period_s);
   c.most_std_m = reader.number("most_std_m", {0.05, 10.0}, c.most_std_m);
-  c.most_points =
-      static_cast<std::size_t>(reader.integer("most_points", {1, 100'000}, static_cast<std::int64_t>(c.most_points)));
-  c.segments = read_segments(reader, c.segments);
+  c.most_points = read_count(reader, "most_points", c.most_points);
+  LineConfig& l = c.lines;
+  l.cell_m = reader.number("cell_m", {0.1, 5.0}, l.cell_m);
+  l.draws = read_count(reader, "draws", l.draws);
+  l.tolerance_m = reader.number("tolerance_m", {0.02, 3.0}, l.tolerance_m);
+  l.max_gap_m = reader.number("max_gap_m", {0.5, 50.0}, l.max_gap_m);
+  l.min_cells = read_count(reader, "min_cells", l.min_cells);
+  l.min_length_m = reader.number("min_length_m", {0.5, 100.0}, l.min_length_m);
+  l.beside_m = reader.number("beside_m", {0.02, 20.0}, l.beside_m);
+  l.min_purity = reader.number("min_purity", {0.0, 1.0}, l.min_purity);
+  l.most_lines = read_count(reader, "most_lines", l.most_lines);
   return c;
 }
 
@@ -63,12 +67,9 @@ CountConfig read_counts(config::Reader reader) {
   c.company_range_rate_mps = reader.number("company_range_rate_mps", {0.05, 10.0}, c.company_range_rate_mps);
   c.wide_range_m = reader.number("wide_range_m", {0.1, 50.0}, c.wide_range_m);
   c.wide_range_rate_mps = reader.number("wide_range_rate_mps", {0.05, 20.0}, c.wide_range_rate_mps);
-  const auto looks = [&](std::string_view key, std::size_t fallback) {
-    return static_cast<std::size_t>(reader.integer(key, {1, 100'000}, static_cast<std::int64_t>(fallback)));
-  };
-  c.most_neighbours = looks("most_neighbours", c.most_neighbours);
-  c.most_past_looks = looks("most_past_looks", c.most_past_looks);
-  c.most_remembered = looks("most_remembered", c.most_remembered);
+  c.most_neighbours = read_count(reader, "most_neighbours", c.most_neighbours);
+  c.most_past_looks = read_count(reader, "most_past_looks", c.most_past_looks);
+  c.most_remembered = read_count(reader, "most_remembered", c.most_remembered);
   return c;
 }
 

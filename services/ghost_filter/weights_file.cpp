@@ -54,6 +54,8 @@ EvidenceWeights read_weights(config::Reader profile) {
     w.prior_log_odds = table.number("prior_log_odds", kLogOdds, 0.0);
     config::Reader alone = table.table("alone");
     read_level_weights(alone, kScanEvidences, w.alone);
+    config::Reader others = table.table("others");
+    read_level_weights(others, kScanEvidences, w.others);
     config::Reader with_tracks = table.table("with_tracks");
     read_level_weights(with_tracks, kEvidences, w.with_tracks);
     read_list(with_tracks, "track_unsure", w.track_unsure);
@@ -71,7 +73,8 @@ EvidenceWeights read_weights(const std::filesystem::path& profile) {
 std::string weights_text(const EvidenceWeights& weights, const std::string& origin) {
   return "[evidence]\n" + fmt::format("origin = \"{}\"\n", origin) +
          fmt::format("prior_log_odds = {:.2f}\n", weights.prior_log_odds) + "\n[evidence.alone]\n" +
-         level_weights_text(weights.alone, kScanEvidences) + "\n[evidence.with_tracks]\n" +
+         level_weights_text(weights.alone, kScanEvidences) + "\n[evidence.others]\n" +
+         level_weights_text(weights.others, kScanEvidences) + "\n[evidence.with_tracks]\n" +
          level_weights_text(weights.with_tracks, kEvidences) + list("track_unsure", weights.track_unsure) +
          list("track_sure", weights.track_sure);
 }

@@ -147,14 +147,14 @@ void EvidenceFilter::expect(const CorrectedScan& scan, bool has_tracks) {
 void EvidenceFilter::judge(const CorrectedScan& scan, bool has_tracks, ClassifiedScan& out) {
   const EvidenceWeights& weights = weights_of(scan.header.source_id);
   for (std::size_t k = 0; k < judged_.size(); ++k) {
-    const std::size_t i = judged_[k].index;
-    Levels& levels = judged_[k].levels;
-    levels = levels_of(counts_[k], verdict_of(scan, i), expected_[k], has_tracks, config_);
-    const double real = 1.0 / (1.0 + std::exp(-posterior_log_odds(weights, levels)));
-    write(real, counts_[k], expected_[k], config_.intensity.other_intensity, i, out);
+    JudgedEvidence& judged = judged_[k];
+    const std::size_t i = judged.index;
+    judged.levels = levels_of(counts_[k], verdict_of(scan, i), expected_[k], has_tracks, config_);
     const double images = expected_[k].images_type1 + expected_[k].images_type2;
-    const double ratio = log_likelihood_ratio(weights, levels, images / config_.intensity.other_intensity);
-    out.moving_log_likelihood_ratio[i] = static_cast<float>(ratio);
+    const double real = 1.0 / (1.0 + std::exp(-posterior_log_odds(weights, judged.levels)));
+    write(real, counts_[k], expected_[k], config_.intensity.other_intensity, i, out);
+    out.moving_log_likelihood_ratio[i] =
+        static_cast<float>(log_likelihood_ratio(weights, judged.levels, images / config_.intensity.other_intensity));
   }
 }
 

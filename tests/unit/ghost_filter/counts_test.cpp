@@ -286,8 +286,30 @@ TEST(Counter, AFullScanAtOnePlaceStaysWithinTheBudget) {
     for (const Counts& c : counts) {
       EXPECT_EQ(c.company, 1U + config.most_neighbours);
       EXPECT_EQ(c.ring + c.wide_ring, 0U);
-      EXPECT_EQ(c.past_scans, std::min(static_cast<std::uint32_t>(s), 7U));
+      EXPECT_EQ(c.past_scans, std::min(static_cast<std::uint32_t>(s), 1U)) << "the looks end in the latest scan";
     }
+  }
+}
+
+TEST(Counter, PastScansStopAtTheMostThatCount) {
+  Counter counter(CountConfig{}, 5);
+  const std::vector<Candidate> scan(30, candidate(30.0, 0.2, 2.0, 2.0));
+  std::vector<Counts> counts(scan.size());
+  for (std::uint32_t s = 0; s < 8; ++s) {
+    counter.count(kCountStart_ns + s * kCountPeriod_ns, scan, counts);
+    EXPECT_EQ(counts[0].past_scans, std::min(s, 5U));
+  }
+}
+
+TEST(Counter, TheLatestDetectionsAreRemembered) {
+  CountConfig config;
+  config.most_remembered = 60;
+  Counter counter(config);
+  const std::vector<Candidate> scan(30, candidate(30.0, 0.2, 2.0, 2.0));
+  std::vector<Counts> counts(scan.size());
+  for (std::uint32_t s = 0; s < 6; ++s) {
+    counter.count(kCountStart_ns + s * kCountPeriod_ns, scan, counts);
+    EXPECT_EQ(counts[0].past_scans, std::min(s, 2U));
   }
 }
 

@@ -150,7 +150,7 @@ void Counter::count_scan(std::span<const Candidate> scan, std::span<Counts> coun
       const bool has_above = above < by_range_.size() && by_range_[above].range_m - c.range_m < wide_m;
       if (!has_below && !has_above) break;
       if (has_below) look(by_range_[--below]), ++looks;
-      if (has_above) look(by_range_[above++]), ++looks;
+      if (has_above && looks < config_.most_neighbours) look(by_range_[above++]), ++looks;
     }
     looks_ += looks;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -39,9 +40,24 @@ Regressors regressors(const Levels& levels, bool with_tracks) {
   return x;
 }
 
+enum class Which : std::uint8_t { kAlone, kOthers, kWithTracks };
+
+bool takes(Which which, const LabelledEvidence& each) {
+  return which == Which::kWithTracks ? each.levels.has_tracks : which == Which::kAlone || !each.is_image;
+}
+
+/// ln N/F of real and false detections, with one half of a detection for each.
+double prior_log_odds(const std::vector<LabelledEvidence>& detections, Which which) {
+  double real = 0.5, unreal = 0.5;
+  for (const LabelledEvidence& each : detections) {
+    if (takes(which, each)) (each.is_real ? real : unreal) += 1.0;
+  }
+  return std::log(real / unreal);
+}
+
 /// Newton's method; the posterior is concave.
-Eigen::VectorXd maximise(const std::vector<LabelledEvidence>& detections, bool with_tracks,
-                         const Eigen::VectorXd& prior, double ridge) {
+Eigen::VectorXd maximise(const std::vector<LabelledEvidence>& detections, Which which, const Eigen::VectorXd& prior,
+                         double ridge) {
   constexpr int kMostRounds = 50;
   constexpr double kSmallStep = 1e-6, kLargestStep = 1.0;  // log odds
   Eigen::VectorXd w = prior;
@@ -49,8 +65,8 @@ Eigen::VectorXd maximise(const std::vector<LabelledEvidence>& detections, bool w
     Eigen::VectorXd gradient = ridge * (prior - w);
     Eigen::MatrixXd information = ridge * Eigen::MatrixXd::Identity(kSize, kSize);
     for (const LabelledEvidence& each : detections) {
-      if (with_tracks && !each.levels.has_tracks) continue;
-      const Regressors x = regressors(each.levels, with_tracks);
+      if (!takes(which, each)) continue;
+      const Regressors x = regressors(each.levels, which == Which::kWithTracks);
       double log_odds = 0.0;
       for (const Regressor& r : x) log_odds += r.value * w(static_cast<Eigen::Index>(r.place));
       const double p = 1.0 / (1.0 + std::exp(-log_odds));
@@ -90,15 +106,12 @@ EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections, con
   for (const std::size_t doubted : {2U, 3U}) {
     prior(static_cast<Eigen::Index>(place(kVerdict, doubted))) = config.doubted_log_odds;
   }
-  double real = 0.5, all = 1.0;
-  for (const LabelledEvidence& each : detections) {
-    real += each.is_real ? 1.0 : 0.0;
-    all += 1.0;
-  }
   EvidenceWeights weights;
-  weights.prior_log_odds = std::log(real / (all - real));
-  weights.alone = level_weights(maximise(detections, false, prior, config.ridge));
-  const Eigen::VectorXd with_tracks = maximise(detections, true, prior, config.ridge);
+  weights.prior_log_odds = prior_log_odds(detections, Which::kAlone);
+  weights.alone = level_weights(maximise(detections, Which::kAlone, prior, config.ridge));
+  weights.others = level_weights(maximise(detections, Which::kOthers, prior, config.ridge));
+  weights.others.constant -= prior_log_odds(detections, Which::kOthers);
+  const Eigen::VectorXd with_tracks = maximise(detections, Which::kWithTracks, prior, config.ridge);
   weights.with_tracks = level_weights(with_tracks);
   for (std::size_t level = 0; level < kTrackLevels; ++level) {
     weights.track_unsure[level] = with_tracks(static_cast<Eigen::Index>(kTrackUnsure + level));

@@ -9,10 +9,11 @@
 
 namespace boresight::ghosts {
 
-/// The evidence of a detection, and whether it is a direct echo of a moving object.
+/// The evidence of a detection, and what it is.
 struct LabelledEvidence {
   Levels levels;
-  bool is_real = false;
+  bool is_real = false;   ///< a direct echo of a moving object
+  bool is_image = false;  ///< a mirror image of one; drives that do not tell mirror images apart have none
 };
 
 struct FitConfig {
@@ -20,8 +21,8 @@ struct FitConfig {
   double doubted_log_odds = -3.0;  ///< prior mean of a detection that the sensor calls invalid, where drives have none
 };
 
-/// Maximum of the posterior of (G1), by all detections, and of (G2), by those with known tracks. Without detections all
-/// weights keep their prior.
+/// Maximum of the posterior of (G1), by all detections; of (G1) by those that are no mirror images, for (G14); and
+/// of (G2), by those with known tracks. Without detections all weights keep their prior.
 [[nodiscard]] EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections, const FitConfig& config);
 
 }  // namespace boresight::ghosts

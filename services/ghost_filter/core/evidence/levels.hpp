@@ -51,7 +51,7 @@ struct Levels {
   bool has_tracks = false;  ///< tracks were known; otherwise `track` says nothing
 };
 
-/// The same with the detection's index in its scan.
+/// The same of one detection of a scan.
 struct JudgedEvidence {
   std::uint32_t index = 0;
   Levels levels;

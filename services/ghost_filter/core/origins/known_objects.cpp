@@ -22,6 +22,11 @@ Eigen::Matrix2d block(const Track& track, std::size_t at) {
   return m.allFinite() ? m : Eigen::Matrix2d::Identity();
 }
 
+/// Of a covariance.
+double largest_variance(const Eigen::Matrix2d& m) {
+  return 0.5 * (m.trace() + std::hypot(m(0, 0) - m(1, 1), 2.0 * m(0, 1)));
+}
+
 RoadUserClass road_user_of(ObjectClass c) {
   switch (c) {
     case ObjectClass::kPedestrian:
@@ -79,9 +84,8 @@ ObjectIntensity::ObjectIntensity(const KnownObject& object, const Eigen::Vector2
       sensor_m_(sensor_m),
       to_box_(object.observed.box.rotation_to_box()),
       half_size_m_(object.observed.box.half_size_m()),
-      reach_m_(kReachStds *
-               std::sqrt(0.5 * object.position_covariance_m2.trace() + config.position_std_m * config.position_std_m)) {
-}
+      reach_m_(kReachStds * std::sqrt(largest_variance(object.position_covariance_m2) +
+                                      config.position_std_m * config.position_std_m)) {}
 
 void ObjectIntensity::prepare() {
   const extended_object::OrientedBox& box = object_->observed.box;

@@ -28,7 +28,7 @@ Eigen::Vector2d point(const std::array<float, 2>& p) {
 }  // namespace
 
 Filter::Filter(const Config& config)
-    : config_(config), finder_(config.segments, kCapacity), tracks_(std::make_unique<TrackList>()) {
+    : config_(config), finder_(config, kCapacity), tracks_(std::make_unique<TrackList>()) {
   points_.reserve(StationaryTiles::kTiles * StationaryTiles::kMostPoints);
   segments_.reserve(kMaxReflectorSegments);
 }

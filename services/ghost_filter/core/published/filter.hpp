@@ -16,7 +16,7 @@
 #include "services/ghost_filter/core/method.hpp"
 #include "services/ghost_filter/core/odometry.hpp"
 #include "services/ghost_filter/core/published/config.hpp"
-#include "services/ghost_filter/core/reflectors/segment_finder.hpp"
+#include "services/ghost_filter/core/published/segment_finder.hpp"
 #include "services/ghost_filter/core/reflectors/stationary_tiles.hpp"
 
 namespace boresight::ghosts::published {

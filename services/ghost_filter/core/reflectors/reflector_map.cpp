@@ -15,14 +15,15 @@ constexpr std::size_t kMostPoints = 4 * StationaryTiles::kMostPoints;
 }  // namespace
 
 ReflectorMap::ReflectorMap(const MapConfig& config)
-    : config_(config), finder_(config.segments, kMostPoints), found_(StationaryTiles::kTiles) {
+    : config_(config), lines_(config.lines, kMostPoints), found_(StationaryTiles::kTiles) {
+  for (Found& found : found_) found.segments.reserve(config.lines.most_lines);
   reflectors_.reserve(kMaxReflectorSegments);
   points_.reserve(9 * StationaryTiles::kMostPoints);
 }
 
 void ReflectorMap::clear() {
   tiles_.clear();
-  std::fill(found_.begin(), found_.end(), Found{});
+  for (Found& found : found_) found.begin({});
   reflectors_.clear();
   updated_ns_ = 0;
 }
@@ -34,18 +35,18 @@ void ReflectorMap::add(const Eigen::Vector2d& position_m, double std_m, std::int
 double ReflectorMap::with_continuations_m(const Segment& segment, geometry::GridCell place) const {
   const double own_m = segment.length_m();
   const Eigen::Vector2d along = (segment.end_m - segment.start_m) / own_m, across(-along.y(), along.x());
-  const double gap_m = config_.segments.cluster_length_m + kMargin_m;
+  const double gap_m = config_.lines.max_gap_m;
   double before_m = 0.0, after_m = 0.0;
   for (std::int32_t column = place.column - 1; column <= place.column + 1; ++column) {
     for (std::int32_t row = place.row - 1; row <= place.row + 1; ++row) {
       const Found& beside = found_[StationaryTiles::number_of({column, row})];
       if (beside.place == place || !(beside.place == geometry::GridCell{column, row})) continue;
-      for (const Segment& other : std::span(beside.segments).first(beside.count)) {
+      for (const Segment& other : beside.segments) {
         const Eigen::Vector2d a = other.start_m - segment.start_m, b = other.end_m - segment.start_m;
         const double first = std::min(along.dot(a), along.dot(b)), last = std::max(along.dot(a), along.dot(b));
         const Eigen::Vector2d nearer =
             std::abs(along.dot(a) - 0.5 * own_m) < std::abs(along.dot(b) - 0.5 * own_m) ? a : b;
-        if (std::abs(across.dot(nearer)) > 2.0 * config_.segments.cell_m) continue;
+        if (std::abs(across.dot(nearer)) > 2.0 * config_.lines.tolerance_m) continue;
         if (std::abs(first - own_m) < gap_m) after_m = std::max(after_m, last - first);
         if (std::abs(last) < gap_m) before_m = std::max(before_m, last - first);
       }
@@ -57,7 +58,8 @@ double ReflectorMap::with_continuations_m(const Segment& segment, geometry::Grid
 std::size_t ReflectorMap::search(std::size_t number, std::int64_t oldest_ns) {
   const StationaryTiles::Tile& tile = tiles_.tiles()[number];
   Found& found = found_[number];
-  found = {.place = tile.place, .added = tile.added, .count = 0, .segments = {}};
+  found.begin(tile.place);
+  found.added = tile.added;
   const Eigen::Vector2d low = tile.low_m(), high = low + Eigen::Vector2d::Constant(StationaryTiles::kTile_m);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kMargin_m);
   points_.clear();
@@ -66,12 +68,11 @@ std::size_t ReflectorMap::search(std::size_t number, std::int64_t oldest_ns) {
       tiles_.collect(StationaryTiles::number_of({column, row}), oldest_ns, low - margin, high + margin, points_);
     }
   }
-  for (const Segment& segment : finder_.find(points_)) {
+  for (const Segment& segment : lines_.find(points_)) {
     const Eigen::Vector2d middle = 0.5 * (segment.start_m + segment.end_m);
     if ((middle.array() < low.array()).any() || (middle.array() >= high.array()).any()) continue;
-    if (found.count == kMostOfTile) break;
-    found.segments[found.count] = segment;
-    found.segments[found.count++].continued_m = with_continuations_m(segment, tile.place);
+    found.segments.push_back(segment);
+    found.segments.back().continued_m = with_continuations_m(segment, tile.place);
   }
   return points_.size();
 }
@@ -88,8 +89,8 @@ void ReflectorMap::update(std::int64_t time_ns) {
     const StationaryTiles::Tile& tile = tiles_.tiles()[number];
     Found& found = found_[number];
     if (tile.newest_ns < oldest_ns || !(found.place == tile.place)) {
-      is_changed = is_changed || found.count > 0;
-      found = {.place = tile.place, .added = 0, .count = 0, .segments = {}};
+      is_changed = is_changed || !found.segments.empty();
+      found.begin(tile.place);
     }
     // As long as little is new, what was not found will not be found.
     if (tile.newest_ns < oldest_ns || 8 * (tile.added - found.added) < std::min<std::size_t>(tile.added, 256)) continue;
@@ -99,7 +100,7 @@ void ReflectorMap::update(std::int64_t time_ns) {
   if (!is_changed) return;
   reflectors_.clear();
   for (const Found& found : found_) {
-    for (const Segment& segment : std::span(found.segments).first(found.count)) {
+    for (const Segment& segment : found.segments) {
       if (reflectors_.size() < reflectors_.capacity()) reflectors_.push_back(segment);
     }
   }

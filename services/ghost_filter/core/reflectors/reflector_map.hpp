@@ -3,7 +3,6 @@
 // The search is spread over the scans: each of them searches the tiles that are due.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,7 +12,7 @@
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/ghost_filter/core/odometry.hpp"
 #include "services/ghost_filter/core/reflectors/config.hpp"
-#include "services/ghost_filter/core/reflectors/segment_finder.hpp"
+#include "services/ghost_filter/core/reflectors/line_search.hpp"
 #include "services/ghost_filter/core/reflectors/stationary_tiles.hpp"
 
 namespace boresight::ghosts {
@@ -34,19 +33,22 @@ class ReflectorMap {
   [[nodiscard]] std::size_t points() const { return tiles_.size(); }
 
  private:
-  static constexpr std::size_t kMostOfTile = 4;
   struct Found {
     geometry::GridCell place{};
     std::uint32_t added = 0;  // points of the tile at the search
-    std::size_t count = 0;
-    std::array<Segment, kMostOfTile> segments;
+    std::vector<Segment> segments;
+    void begin(geometry::GridCell at) {
+      place = at;
+      added = 0;
+      segments.clear();
+    }
   };
   /// Searches one tile; returns the number of points.
   std::size_t search(std::size_t number, std::int64_t oldest_ns);
   [[nodiscard]] double with_continuations_m(const Segment& segment, geometry::GridCell place) const;
   MapConfig config_;
   StationaryTiles tiles_;
-  SegmentFinder finder_;
+  LineSearch lines_;
   std::vector<Found> found_;  // by tile
   std::vector<Segment> reflectors_;
   std::vector<Eigen::Vector2d> points_;

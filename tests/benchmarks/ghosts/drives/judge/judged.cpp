@@ -32,7 +32,9 @@ struct Alone {
 void keep_evidence(const ghosts::Method& method, const std::vector<DetectionTruth>& truth,
                    std::vector<ghosts::LabelledEvidence>& out) {
   for (const ghosts::JudgedEvidence& each : method.evidence()) {
-    out.push_back({each.levels, truth[each.index].provenance == Provenance::kMoving});
+    const Provenance origin = truth[each.index].provenance;
+    out.push_back({each.levels, origin == Provenance::kMoving,
+                   origin == Provenance::kGhostType1 || origin == Provenance::kGhostType2});
   }
 }
 

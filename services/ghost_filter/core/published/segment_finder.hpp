@@ -11,25 +11,16 @@
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/common/geometry/cluster_runs.hpp"
 #include "services/common/geometry/dbscan.hpp"
+#include "services/ghost_filter/core/published/config.hpp"
 #include "services/ghost_filter/core/reflectors/cell_means.hpp"
-#include "services/ghost_filter/core/reflectors/config.hpp"
+#include "services/ghost_filter/core/reflectors/segment.hpp"
 
-namespace boresight::ghosts {
-
-struct Segment {
-  Eigen::Vector2d start_m{0.0, 0.0}, end_m{0.0, 0.0};
-  double residual_m = 0.0;       ///< rms distance of the points
-  std::uint32_t cells = 0;       ///< cells of the grid with points, and
-  std::uint32_t detections = 0;  ///< the points
-  double continued_m = 0.0;      ///< length with the segments that continue it; set by ReflectorMap
-
-  [[nodiscard]] double length_m() const { return (end_m - start_m).norm(); }
-};
+namespace boresight::ghosts::published {
 
 class SegmentFinder {
  public:
   /// For at most `capacity` points; those beyond are ignored.
-  SegmentFinder(const SegmentConfig& config, std::size_t capacity);
+  SegmentFinder(const Config& config, std::size_t capacity);
 
   /// Finds the segments in `points`, in their frame: one mean for each cell of a grid, DBSCAN of the means, then a
   /// total-least-squares line for each cluster. A cluster whose points scatter more than allowed is halved, so that a
@@ -39,7 +30,7 @@ class SegmentFinder {
  private:
   void fit(std::span<CellMean> points, int depth);
   void add(const Segment& segment);
-  SegmentConfig config_;
+  Config config_;
   CellMeans cell_means_;
   geometry::Dbscan dbscan_;
   std::vector<Eigen::Vector2d> positions_;  // of the cells' means
@@ -48,4 +39,4 @@ class SegmentFinder {
   std::size_t number_of_segments_ = 0;
 };
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::ghosts::published
