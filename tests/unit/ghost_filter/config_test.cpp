@@ -26,17 +26,18 @@ std::vector<double> numbers(const Config& config) {
   const CountConfig& c = e.counts;
   const IntensityConfig& i = e.intensity;
   const MapConfig& m = e.map;
+  const LineConfig& l = m.lines;
   return {p.max_range_rate_mps,
           p.min_expected_range_rate_mps,
           p.memory_s,
           p.update_period_s,
-          p.segments.cell_m,
-          p.segments.cluster_length_m,
-          p.segments.cluster_width_m,
-          static_cast<double>(p.segments.cluster_min_points),
-          p.segments.min_segment_length_m,
-          static_cast<double>(p.segments.min_segment_points),
-          p.segments.max_segment_residual_m,
+          p.cell_m,
+          p.cluster_length_m,
+          p.cluster_width_m,
+          static_cast<double>(p.cluster_min_points),
+          p.min_segment_length_m,
+          static_cast<double>(p.min_segment_points),
+          p.max_segment_residual_m,
           p.type2_margin_m,
           p.type1_margin_m,
           p.ellipse_margin_m,
@@ -68,13 +69,15 @@ std::vector<double> numbers(const Config& config) {
           m.search_period_s,
           m.most_std_m,
           static_cast<double>(m.most_points),
-          m.segments.cell_m,
-          m.segments.cluster_length_m,
-          m.segments.cluster_width_m,
-          static_cast<double>(m.segments.cluster_min_points),
-          static_cast<double>(m.segments.min_segment_points),
-          m.segments.min_segment_length_m,
-          m.segments.max_segment_residual_m};
+          l.cell_m,
+          static_cast<double>(l.draws),
+          l.tolerance_m,
+          l.max_gap_m,
+          static_cast<double>(l.min_cells),
+          l.min_length_m,
+          l.beside_m,
+          l.min_purity,
+          static_cast<double>(l.most_lines)};
 }
 
 /// The edges of each piece of evidence, by their key.

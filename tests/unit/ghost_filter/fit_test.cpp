@@ -98,6 +98,28 @@ TEST(FitWeights, FindsTheWeightsThatMadeTheLabels) {
   }
 }
 
+TEST(FitWeights, MirrorImagesAreNoOtherFalseDetections) {
+  // Other false detections by known weights, and as many mirror images, which look like real ones.
+  constexpr std::size_t kNumber = 30'000;
+  const EvidenceWeights truth = random_weights(7);
+  const auto without_tracks = [&](const Levels& l) { return log_odds_alone(truth, l); };
+  auto detections = labelled(8, kNumber, without_tracks);
+  const EvidenceWeights before = fit_weights(detections, FitConfig{});
+  for (std::size_t i = 0; i < kNumber; ++i) {
+    if (!detections[i].is_real) continue;
+    LabelledEvidence image = detections[i];
+    image.is_real = false;
+    image.is_image = true;
+    detections.push_back(image);
+  }
+  const EvidenceWeights after = fit_weights(detections, FitConfig{});
+  EXPECT_EQ(after.others.of, before.others.of);
+  EXPECT_EQ(after.others.constant, before.others.constant);
+  EXPECT_EQ(before.others.of, before.alone.of) << "without mirror images both are the same";
+  EXPECT_NEAR(before.others.constant, before.alone.constant - before.prior_log_odds, 1e-9);
+  EXPECT_LT(after.prior_log_odds, before.prior_log_odds);
+}
+
 /// Log of the posterior, up to a constant: likelihood of the labels, and a normal prior about the prior's means.
 double log_posterior(const std::vector<LabelledEvidence>& detections, const EvidenceWeights& w, bool with_tracks,
                      const FitConfig& config) {

@@ -52,6 +52,7 @@ TEST(WeightsSchema, PageListsExactlyTheKeysOfTheReader) {
     EXPECT_EQ(alone.erase(of_tracks), 1U);
   }
   EXPECT_EQ(alone, keys_of_reader("evidence.alone"));
+  EXPECT_EQ(alone, keys_of_reader("evidence.others"));
 }
 
 TEST(WeightsSchema, LengthsAndBoundsAreThoseOfTheReader) {
