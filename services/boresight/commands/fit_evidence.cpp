@@ -114,7 +114,7 @@ class FitEvidence {
             const input::Problems& problems) {
     bar_.wipe();
     const std::string folder = drive.folder.string();
-    fitted_.push_back({drive.name, folder, run.scans, run.scans_without_truth, run.evidence.detections(),
+    fitted_.push_back({drive.name, drive.seed, folder, run.scans, run.scans_without_truth, run.evidence.detections(),
                        run.evidence.real_detections(), run.evidence.has_objects()});
     if (problems.bad_lines() > 0) {
       const std::string text = fmt::format("{}: {} of {} {} were skipped", folder, problems.bad_lines(),

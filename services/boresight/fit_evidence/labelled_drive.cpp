@@ -22,6 +22,15 @@ std::string name_of(const fs::path& folder) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
+std::string seed_of(const fs::path& truth) {
+  if (truth.empty()) return "";
+  score::Table table(truth, {"quantity", "value"});
+  while (table.next()) {
+    if (table.text("quantity") == "seed") return std::string(table.text("value"));
+  }
+  return "";
+}
+
 }  // namespace
 
 LabelledDrive find_labelled_drive(const fs::path& folder) {
@@ -30,7 +39,7 @@ LabelledDrive find_labelled_drive(const fs::path& folder) {
     throw score::InputError(folder.string() +
                             (fs::exists(folder, error) ? ": is no folder of a drive" : ": No such file or directory"));
   }
-  LabelledDrive drive{name_of(folder), folder, {}, {}, {}, {}};
+  LabelledDrive drive{name_of(folder), "", folder, {}, {}, {}, {}};
   const fs::path detections = folder / "detections.csv", ego = folder / "ego.csv";
   if (fs::exists(detections) || fs::exists(ego)) {
     for (const fs::path& table : {detections, ego}) {
@@ -53,6 +62,7 @@ LabelledDrive find_labelled_drive(const fs::path& folder) {
   if (drive.truth.detections.empty()) {
     throw score::InputError(folder.string() + ": is not labelled; it needs truth_detections.csv or labels.csv");
   }
+  drive.seed = seed_of(drive.truth.drive);
   return drive;
 }
 

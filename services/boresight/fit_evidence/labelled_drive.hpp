@@ -11,6 +11,7 @@ namespace boresight::fit_evidence {
 
 struct LabelledDrive {
   std::string name;                               ///< of the folder
+  std::string seed;                               ///< of a simulated drive, as truth.csv states it; "": not stated
   std::filesystem::path folder;                   ///< as given
   std::vector<std::filesystem::path> recordings;  ///< pcap, pcapng and candump logs, by name; empty: tables
   std::filesystem::path detections, ego;          ///< tables (config/schema/tables.md)

@@ -36,7 +36,10 @@ json::Value to_json(const Scores& scores) {
 
 std::string origin_of(const Fit& fit, const std::vector<FittedDrive>& drives) {
   std::string names;
-  for (const FittedDrive& drive : drives) names += (names.empty() ? "" : ", ") + drive.name;
+  for (const FittedDrive& drive : drives) {
+    names += (names.empty() ? "" : ", ") + drive.name;
+    if (!drive.seed.empty()) names += fmt::format(" (seed {})", drive.seed);
+  }
   return fmt::format("boresight fit-evidence: {}; {} moving detections", names, fit.detections);
 }
 

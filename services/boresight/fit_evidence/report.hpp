@@ -13,13 +13,14 @@ namespace boresight::fit_evidence {
 /// A drive of the fit.
 struct FittedDrive {
   std::string name;    ///< of its folder
+  std::string seed;    ///< of a simulated drive; "": not known
   std::string folder;  ///< as given
   std::uint64_t scans = 0, scans_without_truth = 0;
   std::size_t detections = 0, real_detections = 0;  ///< moving ones
   bool has_objects = false;                         ///< true objects: fitted with perfect tracks, too
 };
 
-/// Key `origin` of the weights: drives and number of their moving detections.
+/// Key `origin` of the weights: drives with their seeds, and number of their moving detections.
 [[nodiscard]] std::string origin_of(const Fit& fit, const std::vector<FittedDrive>& drives);
 
 /// The drives, and the scores of each lane.

@@ -114,7 +114,7 @@ TEST_F(FitEvidenceCommand, FittedProfileImprovesOtherDrivesAndRuns) {
   const std::string shipped = schema_page::text_of(BORESIGHT_SOURCE_DIR "/config/radar_profiles/ideal.toml");
   const std::string fitted = text("fitted.toml"), table = "[evidence]\n";
   EXPECT_EQ(fitted.substr(0, fitted.find(table)), shipped.substr(0, shipped.find(table)));
-  EXPECT_THAT(fitted, HasSubstr("origin = \"boresight fit-evidence: drive_1, drive_2; "));
+  EXPECT_THAT(fitted, HasSubstr("origin = \"boresight fit-evidence: drive_1 (seed 1), drive_2 (seed 2); "));
   EXPECT_NE(fitted.substr(fitted.find(table)), shipped.substr(shipped.find(table)));
 
   // The probabilities of `boresight run` with this profile have the score that a fit states for its start.
@@ -144,7 +144,7 @@ TEST_F(FitEvidenceCommand, FittedProfileImprovesOtherDrivesAndRuns) {
 
 TEST_F(FitEvidenceCommand, WithoutOutTheTableGoesToStandardOutput) {
   ASSERT_EQ(call("fit-evidence drive_1 --vehicle demo --statistics series_77ghz"), 0) << text("stderr.txt");
-  EXPECT_THAT(text("stdout.txt"), StartsWith("[evidence]\norigin = \"boresight fit-evidence: drive_1; "));
+  EXPECT_THAT(text("stdout.txt"), StartsWith("[evidence]\norigin = \"boresight fit-evidence: drive_1 (seed 1); "));
   static_cast<void>(ghosts::read_weights(config::Reader::parse(text("stdout.txt"), "stdout")));
   EXPECT_THAT(text("stderr.txt"), HasSubstr("judged on the fitted drive itself"));
 }

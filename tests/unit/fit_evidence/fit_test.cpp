@@ -80,8 +80,9 @@ TEST(FitDrives, JudgesEachDriveByWeightsOfTheOthers) {
   EXPECT_FALSE(one.judges_other_drives);
   EXPECT_NEAR(one.of(Lane::kWithout).fitted.brier(), 0.09, 0.005) << "of the fitted drive itself";
   EXPECT_TRUE(std::isnan(one.of(Lane::kPerfect).fitted.brier())) << "no true objects";
-  const std::vector<FittedDrive> drives = {{"a", "a", 10, 0, 1000, 500, false}};
+  const std::vector<FittedDrive> drives = {{"a", "7", "a", 10, 0, 1000, 500, false}};
   EXPECT_THAT(to_text(one, drives), HasSubstr("judged on the fitted drive itself"));
+  EXPECT_EQ(origin_of(one, drives), "boresight fit-evidence: a (seed 7); 1000 moving detections");
   EXPECT_THAT(to_text(both, drives), Not(HasSubstr("itself")));
 }
 

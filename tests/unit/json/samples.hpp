@@ -107,7 +107,7 @@ inline std::vector<std::string> fits() {
   }
   with_objects.detections = without_objects.detections = 2;
   with_objects.real_detections = without_objects.real_detections = 1;
-  const std::vector<fit_evidence::FittedDrive> drives = {{kName, kName, 3, 1, 2, 1, true}};
+  const std::vector<fit_evidence::FittedDrive> drives = {{kName, "", kName, 3, 1, 2, 1, true}};
   return {fit_evidence::to_json(with_objects, drives, "radar.toml", "1"),
           fit_evidence::to_json(without_objects, drives, "", "1")};
 }
