@@ -114,8 +114,8 @@ class FitEvidence {
             const input::Problems& problems) {
     bar_.wipe();
     const std::string folder = drive.folder.string();
-    fitted_.push_back({drive.name, drive.seed, folder, run.scans, run.scans_without_truth, run.evidence.detections(),
-                       run.evidence.real_detections(), run.evidence.has_objects()});
+    fitted_.push_back({drive.name, drive.seed, folder, run.moving_scans, run.scans_without_truth,
+                       run.evidence.detections(), run.evidence.real_detections(), run.evidence.has_objects()});
     if (problems.bad_lines() > 0) {
       const std::string text = fmt::format("{}: {} of {} {} were skipped", folder, problems.bad_lines(),
                                            problems.lines(), drive.has_tables() ? "lines" : "frames");
@@ -126,9 +126,10 @@ class FitEvidence {
                            run.lines_of_unknown_radars));
     }
     if (run.scans_without_truth > 0) {
-      tell_or_complain(2 * run.scans_without_truth > run.scans,
-                       fmt::format("{}: {} of {} scans have no row in {}", folder, run.scans_without_truth, run.scans,
-                                   drive.truth.detections.filename().string()));
+      tell_or_complain(
+          2 * run.scans_without_truth > run.moving_scans,
+          fmt::format("{}: {} of {} scans with moving detections have no row in {}", folder, run.scans_without_truth,
+                      run.moving_scans, drive.truth.detections.filename().string()));
     }
     if (run.scans_without_ego_motion > 0) {
       tell_or_complain(2 * run.scans_without_ego_motion > run.scans,
@@ -224,7 +225,8 @@ void add_fit_evidence_command(CLI::App& app, int& exit_code) {
        "the weights were fitted",
        "no weights can be fitted: a drive has no labelled moving detection, or all are real or all false. Or the\n"
        "       weights are doubtful: more than one frame or line in a hundred was skipped, a radar is not in the\n"
-       "       vehicle file, or most scans of a drive have no truth or no ego motion; they are written all the same"},
+       "       vehicle file, most scans with moving detections have no truth, or most scans no ego motion; they are "
+       "written all the same"},
       [options, command] {
         if (options->json == "-" && (options->out.empty() || options->out == "-")) {
           throw UsageError("only one result can go to standard output; give --out FILE or --json FILE");

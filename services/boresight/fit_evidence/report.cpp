@@ -54,7 +54,7 @@ std::string to_text(const Fit& fit, const std::vector<FittedDrive>& drives) {
                         text::grouped(drive.detections), percent(drive.real_detections, drive.detections));
     if (!drive.has_objects) text += ", no true objects";
     if (drive.scans_without_truth > 0) {
-      text += fmt::format(", {} of {} scans without truth", drive.scans_without_truth, drive.scans);
+      text += fmt::format(", {} of {} scans without truth", drive.scans_without_truth, drive.moving_scans);
     }
     text += "\n";
   }
@@ -81,7 +81,7 @@ std::string to_json(const Fit& fit, const std::vector<FittedDrive>& drives, cons
   json::Value of_drives = json::Value::array();
   for (const FittedDrive& drive : drives) {
     of_drives.push_back({{"folder", drive.folder},
-                         {"scans", drive.scans},
+                         {"scans_with_moving_detections", drive.moving_scans},
                          {"scans_without_truth", drive.scans_without_truth},
                          {"moving_detections", drive.detections},
                          {"real_share", share_of(drive.real_detections, drive.detections)},

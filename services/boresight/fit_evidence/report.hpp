@@ -12,12 +12,12 @@ namespace boresight::fit_evidence {
 
 /// A drive of the fit.
 struct FittedDrive {
-  std::string name;    ///< of its folder
-  std::string seed;    ///< of a simulated drive; "": not known
-  std::string folder;  ///< as given
-  std::uint64_t scans = 0, scans_without_truth = 0;
-  std::size_t detections = 0, real_detections = 0;  ///< moving ones
-  bool has_objects = false;                         ///< true objects: fitted with perfect tracks, too
+  std::string name;                                         ///< of its folder
+  std::string seed;                                         ///< of a simulated drive; "": not known
+  std::string folder;                                       ///< as given
+  std::uint64_t moving_scans = 0, scans_without_truth = 0;  ///< as in DriveRun
+  std::size_t detections = 0, real_detections = 0;          ///< moving ones
+  bool has_objects = false;                                 ///< true objects: fitted with perfect tracks, too
 };
 
 /// Key `origin` of the weights: drives with their seeds, and number of their moving detections.

@@ -46,12 +46,14 @@ class Labeller {
     if (!clock_.has_begun()) clock_.begin(result.at.time_ns, 1e-6 * static_cast<double>(result.at.since_start_us()));
     const std::uint32_t radar = result.scan.header.source_id;
     const double t_s = clock_.measured_s(radar, result.at.time_ns);
+    const bool has_moving = !chain_->evidence().empty();
     ++run_.scans;
+    run_.moving_scans += has_moving ? 1 : 0;
     lanes_.classify(chain_->corrected());
     const std::size_t count = result.classified.number_of_valid_detections;
     const std::vector<score::TrueOrigin>* const origins = origins_.find(radar, t_s, result.number, count);
     if (origins == nullptr) {
-      run_.scans_without_truth += count > 0 ? 1 : 0;
+      run_.scans_without_truth += has_moving ? 1 : 0;
       return;
     }
     truth_.clear();

@@ -14,7 +14,8 @@ namespace boresight::fit_evidence {
 struct DriveRun {
   DriveEvidence evidence;
   std::uint64_t scans = 0;
-  std::uint64_t scans_without_truth = 0;  ///< not fitted
+  std::uint64_t moving_scans = 0;         ///< with moving detections
+  std::uint64_t scans_without_truth = 0;  ///< of `moving_scans`: not fitted
   std::uint64_t scans_without_ego_motion = 0;
   std::uint64_t lines_of_unknown_radars = 0;  ///< of tables
 };

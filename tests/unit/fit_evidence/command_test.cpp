@@ -195,6 +195,31 @@ TEST_F(FitEvidenceCommand, TablesOfAForeignDriveFitWhatTheyCan) {
   EXPECT_EQ(Json::parse(text("b.json")).at("lanes"), of_recordings.at("lanes"));
 }
 
+TEST_F(FitEvidenceCommand, LabelsOfTheMovingDetectionsOfARunSuffice) {
+  for (const char* const file : {"radars.pcap", "ego.candump.log"})
+    copy(std::string("drive_1/") + file, std::string("by_hand/") + file);
+  ASSERT_EQ(call("run by_hand/radars.pcap by_hand/ego.candump.log --vehicle demo --quiet --out run_to_label"), 0);
+  std::map<std::tuple<std::string, std::string, std::string>, bool> is_real;
+  for (const Row& row : rows_of(text("drive_1/truth_detections.csv"))) {
+    is_real[{row.at("radar"), row.at("scan"), row.at("index")}] = row.at("provenance") == "moving";
+  }
+  std::string labels = "t_s,radar,index,object,class\n";
+  std::size_t real = 0, moving = 0;
+  for (const Row& row : rows_of(text("run_to_label/detections.csv"))) {
+    if (!row.at("rejected").empty() || row.at("origin") == "stationary" || row.at("origin") == "unknown") continue;
+    const bool is = is_real.at({row.at("radar"), row.at("scan"), row.at("index")});
+    real += is ? 1 : 0;
+    ++moving;
+    labels += row.at("t_s") + "," + row.at("radar") + "," + row.at("index") + (is ? ",1,car\n" : ",0,clutter\n");
+  }
+  write("by_hand/labels.csv", labels);
+  ASSERT_EQ(call("fit-evidence by_hand --vehicle demo --json hand.json"), 0) << text("stderr.txt");
+  const Json fit = Json::parse(text("hand.json"));
+  EXPECT_EQ(fit.at("moving_detections").get<std::size_t>(), moving);
+  EXPECT_NEAR(fit.at("real_share").get<double>(), static_cast<double>(real) / static_cast<double>(moving), 1e-12);
+  EXPECT_EQ(fit.at("drives").at(0).at("scans_without_truth"), 0);
+}
+
 TEST_F(FitEvidenceCommand, AWrongDriveIsNamedAndNothingIsWritten) {
   const std::string vehicle = " --vehicle demo --statistics series_77ghz";
   EXPECT_THAT(problem("absent" + vehicle, 3), HasSubstr("absent: No such file or directory"));
@@ -229,8 +254,9 @@ TEST_F(FitEvidenceCommand, AWrongDriveIsNamedAndNothingIsWritten) {
   all_as("clutter");
   EXPECT_THAT(problem("bad" + vehicle, 1), HasSubstr("no moving detection of the drives is real"));
   write("bad/truth_detections.csv", "t_s,radar,scan,index,provenance\n1000,1,900,0,moving\n");
-  EXPECT_THAT(problem("bad" + vehicle, 1), ::testing::AllOf(HasSubstr("scans have no row in truth_detections.csv"),
-                                                            HasSubstr("bad: has no labelled moving detection")));
+  EXPECT_THAT(problem("bad" + vehicle, 1),
+              ::testing::AllOf(HasSubstr("scans with moving detections have no row in truth_detections.csv"),
+                               HasSubstr("bad: has no labelled moving detection")));
   write("bad/detections.csv", "t_s\n");
   EXPECT_THAT(problem("bad" + vehicle, 3), HasSubstr("bad/ego.csv: No such file or directory"));
 }
