@@ -225,8 +225,8 @@ void add_fit_evidence_command(CLI::App& app, int& exit_code) {
        "the weights were fitted",
        "no weights can be fitted: a drive has no labelled moving detection, or all are real or all false. Or the\n"
        "       weights are doubtful: more than one frame or line in a hundred was skipped, a radar is not in the\n"
-       "       vehicle file, most scans with moving detections have no truth, or most scans no ego motion; they are "
-       "written all the same"},
+       "       vehicle file, most scans with moving detections have no truth, or most scans have no ego motion.\n"
+       "       They are written all the same"},
       [options, command] {
         if (options->json == "-" && (options->out.empty() || options->out == "-")) {
           throw UsageError("only one result can go to standard output; give --out FILE or --json FILE");
