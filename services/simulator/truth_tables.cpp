@@ -107,6 +107,7 @@ unsigned long long scan_number(const Event& event) {
 TruthTables::TruthTables(const std::filesystem::path& folder, const Scenario& scenario, const VehicleConfig& vehicle,
                          std::uint64_t seed)
     : effects_(scenario.effects),
+      seed_(seed),
       folder_(folder),
       detections_(folder / "truth_detections.csv"),
       objects_(folder / "truth_objects.csv"),
@@ -207,7 +208,8 @@ void TruthTables::add_scan(const Drive& drive, const Event& event) {
 void TruthTables::finish() {
   for (const TextFile* file : {&detections_, &objects_, &sensors_, &visibility_}) file->finish();
   const TextFile out(folder_ / "truth.csv");
-  std::fprintf(out.get(), "quantity,radar,value,unit\nspeed_scale,,%.6f,1\n", effects_.speed_scale);
+  std::fprintf(out.get(), "quantity,radar,value,unit\nseed,,%llu,1\nspeed_scale,,%.6f,1\n",
+               static_cast<unsigned long long>(seed_), effects_.speed_scale);
   write_rows(car::truth_of_car(effects_.real_car), out.get());
   for (const Radar& radar : radars_) {
     const std::uint32_t id = radar.config->id;

@@ -37,6 +37,7 @@ class TruthTables {
   void add_visibility(const Drive& drive, const Event& event, Radar& radar);
 
   RadarEffects effects_;
+  std::uint64_t seed_;
   std::vector<Radar> radars_;
   std::filesystem::path folder_;
   TextFile detections_, objects_, sensors_, visibility_;

@@ -221,15 +221,12 @@ class RunDrive {
   }
 
   void report() {
-    std::uint64_t scans = 0, detections = 0, without_ego = 0;
+    std::uint64_t scans = 0, detections = 0;
     for (const run::RadarCounts& radar : summary_.counts.radars) {
-      constexpr std::size_t kNoEgoMotionBit = 2, kEgoMotionStaleBit = 3;
-      static_assert(pipeline_flag::kNoEgoMotion == 1u << kNoEgoMotionBit);
-      static_assert(pipeline_flag::kEgoMotionStale == 1u << kEgoMotionStaleBit);
       scans += radar.scans;
       detections += radar.detections;
-      without_ego += radar.flags.at(kNoEgoMotionBit) + radar.flags.at(kEgoMotionStaleBit);
     }
+    const std::uint64_t without_ego = run::scans_without_ego_motion(summary_.counts);
     if (problems_.bad_lines() > input::Problems::kShown) {
       tell(fmt::format("… and {} more", problems_.bad_lines() - input::Problems::kShown));
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -55,6 +56,8 @@ class Chain {
   [[nodiscard]] const CorrectedScan& corrected() const { return *corrected_; }
   [[nodiscard]] const ClassifiedScan& classified() const { return *classified_; }
   [[nodiscard]] const TrackList& tracks() const { return *tracks_; }
+  /// The ghost filter's evidence of the latest scan (Method::evidence()).
+  [[nodiscard]] std::span<const ghosts::JudgedEvidence> evidence() const { return ghosts_->evidence(); }
 
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] const StageTimes& stage_times() const { return times_; }

@@ -30,4 +30,15 @@ void add(const ScanResult& result, Counts& counts) {
   }
 }
 
+std::uint64_t scans_without_ego_motion(const Counts& counts) {
+  constexpr std::size_t kNoEgoMotionBit = 2, kEgoMotionStaleBit = 3;
+  static_assert(pipeline_flag::kNoEgoMotion == 1u << kNoEgoMotionBit);
+  static_assert(pipeline_flag::kEgoMotionStale == 1u << kEgoMotionStaleBit);
+  std::uint64_t scans = 0;
+  for (const RadarCounts& radar : counts.radars) {
+    scans += radar.flags.at(kNoEgoMotionBit) + radar.flags.at(kEgoMotionStaleBit);
+  }
+  return scans;
+}
+
 }  // namespace boresight::run

@@ -48,5 +48,7 @@ struct StageTimes {
 [[nodiscard]] Rejection rejection_of(std::uint16_t corrected_flags);
 /// Adds detections, tracks, faults and missing inputs of a scan; the number of scans is counted by the caller.
 void add(const ScanResult& result, Counts& counts);
+/// Scans without an ego motion near their time: their detections are not classified.
+[[nodiscard]] std::uint64_t scans_without_ego_motion(const Counts& counts);
 
 }  // namespace boresight::run

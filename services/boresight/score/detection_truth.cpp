@@ -38,11 +38,13 @@ void DetectionTruth::take_row(double t_s) {
   const auto radar = static_cast<std::uint32_t>(table_.integer("radar", 1, kMaxRadars));
   const auto index = static_cast<std::size_t>(table_.integer("index", 0, kMaxDetections - 1));
   TrueOrigin origin;
+  if (has_objects()) {
+    origin.object = static_cast<std::uint32_t>(table_.integer("object", 0, std::numeric_limits<std::uint32_t>::max()));
+  }
   std::uint64_t scan = 0;
   if (is_labels_) {
-    const bool has_object = table_.integer("object", 0, std::numeric_limits<std::uint32_t>::max()) != 0;
     origin.provenance = provenance_of(table_.text("class")).value_or(Provenance::kUnknown);
-    if (has_object && origin.provenance == Provenance::kUnknown) origin.provenance = Provenance::kMoving;
+    if (origin.object != 0 && origin.provenance == Provenance::kUnknown) origin.provenance = Provenance::kMoving;
   } else {
     scan = static_cast<std::uint64_t>(table_.integer("scan", 1, std::numeric_limits<std::int64_t>::max()));
     const std::optional<Provenance> provenance = provenance_of(table_.text("provenance"));

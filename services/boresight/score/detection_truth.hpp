@@ -18,6 +18,7 @@ namespace boresight::score {
 struct TrueOrigin {
   Provenance provenance = Provenance::kUnknown;  ///< kUnknown: no labelled moving object, nothing else is known
   std::string_view cause;                        ///< "": not given
+  std::uint32_t object = 0;                      ///< that reflects, also of its ghosts; 0: none, or not given
 };
 
 class DetectionTruth {
@@ -36,6 +37,8 @@ class DetectionTruth {
   /// the next call.
   [[nodiscard]] const std::vector<TrueOrigin>* find(std::uint32_t radar, double t_s, std::uint64_t scan,
                                                     std::size_t detections);
+  /// Whether the table states the object of each detection.
+  [[nodiscard]] bool has_objects() const { return table_.has("object"); }
 
  private:
   struct TrueScan {

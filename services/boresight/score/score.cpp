@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "services/boresight/score/car_truth.hpp"
 #include "services/boresight/score/detection_truth.hpp"
 #include "services/boresight/score/mounting_truth.hpp"
 #include "services/boresight/score/object_truth.hpp"
 #include "services/boresight/score/run_folder.hpp"
+#include "services/boresight/score/truth_clock.hpp"
 #include "services/common/geometry/angles.hpp"
 #include "services/simulator/judge/detection_judge.hpp"
 #include "services/simulator/judge/track_judge.hpp"
@@ -26,7 +26,7 @@ namespace {
 class DriveJudge {
  public:
   DriveJudge(const Input& input, Score& result)
-      : input_(input), result_(result), car_(read_car_truth(input.truth.drive)), scans_(input.run) {}
+      : input_(input), result_(result), clock_(input.truth), scans_(input.run) {}
 
   void run() {
     RunScan scan;
@@ -48,21 +48,24 @@ class DriveJudge {
     write();
   }
 
-  [[nodiscard]] std::int64_t origin_ns() const { return origin_ns_; }
+  [[nodiscard]] std::int64_t origin_ns() const { return clock_.origin_ns(); }
   [[nodiscard]] bool judged_something() const { return detections_judge_.scans() + tracks_judge_.lists() > 0; }
   [[nodiscard]] std::string intervals() const {
     return fmt::format("the run lasts from {:.3f} to {:.3f} s on the truth's clock, the truth begins at {:.3f} s",
-                       first_on_truth_s_, first_on_truth_s_ + end_s_ - begin_s_, truth_first_s_);
+                       first_on_truth_s_, first_on_truth_s_ + end_s_ - begin_s_, clock_.first_s());
   }
 
  private:
   void open(const RunScan& first) {
-    truth_first_s_ = first_time_s(input_.truth).value_or(0.0);
     const bool has_summary = fs::exists(input_.run / "run.json");
     const std::optional<std::int64_t> stated_ns =
         has_summary ? read_run_summary(input_.run).truth_begin_ns : std::nullopt;
-    origin_ns_ = stated_ns ? *stated_ns : truth_origin_ns(truth_first_s_, first.time_ns, first.t_s);
-    first_on_truth_s_ = on_truth(first.time_ns);
+    if (stated_ns) {
+      clock_.begin_at(*stated_ns);
+    } else {
+      clock_.begin(first.time_ns, first.t_s);
+    }
+    first_on_truth_s_ = clock_.time_s(first.time_ns);
     if (!input_.truth.objects.empty() && fs::exists(input_.run / "tracks.csv")) {
       tracks_.emplace(input_.run);
       objects_.emplace(input_.truth.objects, input_.truth.objects_are_boxes, input_.truth.visibility);
@@ -80,11 +83,8 @@ class DriveJudge {
     }
   }
 
-  [[nodiscard]] double on_truth(std::int64_t time_ns) const { return 1e-9 * static_cast<double>(time_ns - origin_ns_); }
-
   void judge_scan(const RunScan& scan) {
-    // The time of measurement, which a late stamp does not state.
-    const double t_s = on_truth(scan.time_ns) - car_.stamp_offset_s(scan.radar);
+    const double t_s = clock_.measured_s(scan.radar, scan.time_ns);
     if (tracks_) {
       tracks_->take(scan, track_list_);
       if (objects_->at(t_s, object_list_)) {
@@ -126,7 +126,7 @@ class DriveJudge {
           "tracks: visibility not known, the truth has no truth_visibility.csv; all objects within 100 m that are not "
           "parked count as in view, also those hidden from every radar");
     }
-    for (const auto& [radar, offset_s] : car_.stamp_offsets_s) {
+    for (const auto& [radar, offset_s] : clock_.car().stamp_offsets_s) {
       result_.notes.push_back(
           fmt::format("stamps of radar {} are {:+.1f} ms off in the truth: its scans are judged at the time of "
                       "measurement",
@@ -136,10 +136,9 @@ class DriveJudge {
 
   const Input& input_;
   Score& result_;
-  CarTruth car_;
+  TruthClock clock_;
   RunScans scans_;
-  std::int64_t origin_ns_ = 0;
-  double truth_first_s_ = 0.0, first_on_truth_s_ = 0.0, begin_s_ = 0.0, end_s_ = 0.0;
+  double first_on_truth_s_ = 0.0, begin_s_ = 0.0, end_s_ = 0.0;
   std::optional<RunTracks> tracks_;
   std::optional<ObjectTruth> objects_;
   std::optional<RunDetections> detections_;

@@ -16,8 +16,8 @@ DRIVE = TMP / "drive"
 TABLES = TMP / "tables"
 FULL = TMP / "full"  # a file system without room
 
-COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "gospa", "monitor",
-            "record", "report", "run", "score", "simulate", "supervise", "track")
+COMMANDS = ("align", "calibrate plate", "calibrate reflectors", "catalogue", "decode", "demo", "diagnostics", "fit-evidence", "gospa",
+            "monitor", "record", "report", "run", "score", "simulate", "supervise", "track")
 # Commands whose input is not there: exit code 3, and the message names the input.
 MISSING_INPUT = (
     "align --recording ABSENT --vehicle demo",
@@ -29,6 +29,7 @@ MISSING_INPUT = (
     "decode --profile ars548 --csv ABSENT",
     "decode --vehicle demo --check ABSENT",
     "demo --recording ABSENT --vehicle demo",
+    "fit-evidence ABSENT --vehicle demo",
     "gospa ABSENT ABSENT",
     "report ABSENT --vehicle demo",
     "run ABSENT --vehicle demo --out OUT",
@@ -53,6 +54,9 @@ USAGE = (
     ("decode --vehicle demo --csv --check x", "--csv, --ego and --check"),
     ("demo --vehicle absent", "names there: alignment_drive, "),
     ("diagnostics --domain 999", "--domain"),
+    ("fit-evidence DRIVE --vehicle demo --json", "only one result can go to standard output"),
+    ("fit-evidence DRIVE --vehicle absent", "names there: alignment_drive, "),
+    ("fit-evidence DRIVE --vehicle demo --statistics absent", "absent.toml"),
     ("gospa x y --base root", "--base"),
     ("monitor --vehicle absent", "names there: alignment_drive, "),
     ("record --vehicle absent --out x", "names there: alignment_drive, "),
@@ -83,6 +87,9 @@ NO_ROOM = (
     ("decode --profile ars548 --csv DRIVE/radars.pcap --out FULL/rows.csv", "FULL/rows.csv"),
     ("decode --profile ars548 --check DRIVE/radars.pcap > /dev/full", "standard output"),
     ("demo --out FULL/demo", "FULL/demo"),
+    ("fit-evidence DRIVE --vehicle demo --out FULL/radar.toml", "FULL/radar.toml"),
+    ("fit-evidence DRIVE --vehicle demo --json FULL/fit.json", "FULL/fit.json"),
+    ("fit-evidence DRIVE --vehicle demo > /dev/full", "standard output"),
     ("report LIVE --vehicle demo --out FULL/report.html", "FULL/report.html"),
     ("run DRIVE/radars.pcap DRIVE/ego.candump.log --vehicle demo --out FULL/run", "FULL/run/"),
     ("simulate --duration 5 --out FULL/drive", "FULL/drive/"),
@@ -222,10 +229,12 @@ def check_interrupts():
     check("decode: Ctrl-C leaves complete rows", rows.endswith("\n") and len(columns) == 1 and rows.count("\n") > 100, columns)
     interrupt("decode --profile ars548 --csv - --out rows.csv", feed=(DRIVE / "radars.pcap").read_bytes())
     drive = (TABLES / "drive.csv").read_bytes()
+    expect("simulate --duration 20 --out long_drive", 0)
     interrupt(f"align --drive - --ego {TABLES}/ego.csv --vehicle alignment_drive --json align.json", feed=drive)
     interrupt("align --method batch_calibration --drive TABLES/drive.csv --ego TABLES/ego.csv --vehicle alignment_drive "
               "--json align.json")
     interrupt("calibrate plate --table - --json plate.json", feed=b"tilt_deg,amplitude_db,azimuth_deg\n1,2,3\n")
+    interrupt("fit-evidence long_drive --vehicle demo --out fitted.toml", after_s=0.2)
     interrupt("simulate --duration 36000 --out interrupted")
     interrupt("simulate --duration 36000 --out interrupted", number=signal.SIGTERM, exit_code=143)
     interrupt("simulate --alignment-drive city --duration 36000 --out interrupted")
@@ -237,7 +246,7 @@ def check_interrupts():
     interrupt("diagnostics")
     interrupt("supervise --vehicle demo --replay --logs logs")
     interrupt("supervise --vehicle demo --replay --logs logs", number=signal.SIGTERM, exit_code=0)
-    for name in ("rows.csv", "align.json", "plate.json", "interrupted", "interrupted.html"):
+    for name in ("rows.csv", "align.json", "fitted.toml", "plate.json", "interrupted", "interrupted.html"):
         check(f"Ctrl-C leaves no {name}", not (TMP / name).exists())
     check("Ctrl-C leaves no temporary file", not list(TMP.glob("*.partial*")), list(TMP.glob("*.partial*")))
 

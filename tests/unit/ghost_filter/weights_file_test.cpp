@@ -81,6 +81,47 @@ TEST(WeightsFile, WrittenAgainIsTheSameText) {
   EXPECT_EQ(weights_text(read_text(written()), "7 drives"), written());
 }
 
+TEST(WeightsFile, AnOriginMayHoldAnyText) {
+  const std::string text = weights_text(written_weights(), "drives \"a\\b\"\nand c");
+  EXPECT_EQ(problems_of(text), "");
+  EXPECT_THAT(text, HasSubstr(R"(origin = "drives \"a\\b\"?and c")"));
+}
+
+TEST(WithWeights, ReplaceTheTableAndKeepAllElse) {
+  const std::string before = "name = \"a\"  # [evidence]\n\n[noise]\nlist = [\n[1, 2],\n]\n\n# fitted\n";
+  const std::string after = "\n# of the next table\n[ strength ]\non = true\n";
+  const std::string old = weights_text({}, "old drives");
+  for (const std::string& table :
+       {old, "[ evidence ]\n" + old.substr(old.find('\n') + 1), old + "# a comment of the table\nnew_key = 1\n"}) {
+    EXPECT_EQ(with_weights(before + table + after, written(), "radar.toml"), before + written() + after) << table;
+  }
+  // A part of the table elsewhere.
+  const std::size_t with_tracks = old.find("[evidence.with_tracks]");
+  EXPECT_EQ(
+      with_weights(before + old.substr(0, with_tracks) + after + old.substr(with_tracks), written(), "radar.toml"),
+      before + written() + "\n" + after);
+  EXPECT_EQ(with_weights(written(), written(), "radar.toml"), written());
+}
+
+TEST(WithWeights, AreAddedToAProfileWithoutThem) {
+  const std::string profile = "name = \"a\"\n[evidence_of_mirrors]\non = true";
+  EXPECT_EQ(with_weights(profile, written(), "radar.toml"), profile + "\n\n# Weights of the evidence\n" + written());
+}
+
+TEST(WithWeights, AProfileThatKeepsOtherWeightsIsRefused) {
+  const auto problem_of = [](const std::string& profile) -> std::string {
+    try {
+      static_cast<void>(with_weights(profile, written(), "radar.toml"));
+    } catch (const config::Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(problem_of("evidence = {origin = \"a\"}\n"), HasSubstr("radar.toml"));
+  EXPECT_THAT(problem_of("evidence.alone.constant = 1.0\n"), HasSubstr("radar.toml"));
+  EXPECT_THAT(problem_of("name = \n"), HasSubstr("radar.toml"));
+}
+
 TEST(WeightsFile, AProfileWithoutTheTableIsRefused) {
   EXPECT_THAT(problems_of("about = \"a radar\"\n[noise]\nrange_m = 0.1\n"),
               AllOf(HasSubstr("radar.toml:1"), HasSubstr("evidence"), HasSubstr("missing")));

@@ -13,6 +13,7 @@
 #include "services/boresight/calibrate/plate_report.hpp"
 #include "services/boresight/calibrate/reflectors_report.hpp"
 #include "services/boresight/diagnostics/diagnostics_text.hpp"
+#include "services/boresight/fit_evidence/report.hpp"
 #include "services/boresight/json/text.hpp"
 #include "services/boresight/monitor/snapshot.hpp"
 #include "services/boresight/run/summary.hpp"
@@ -92,6 +93,23 @@ inline std::vector<std::string> scores() {
   score.score.figures.add("tracks.known", 1.0, "");
   score.score.figures.add("tracks.without_data", kUnknown, "");
   return {score::to_json({score}, "truth", "1")};
+}
+
+/// Without true objects there is no lane with perfect tracks.
+inline std::vector<std::string> fits() {
+  fit_evidence::Fit with_objects, without_objects;
+  for (std::size_t lane = 0; lane < fit_evidence::kLanes; ++lane) {
+    for (fit_evidence::Fit* const fit : {&with_objects, &without_objects}) {
+      if (fit == &without_objects && lane == static_cast<std::size_t>(fit_evidence::Lane::kPerfect)) continue;
+      fit_evidence::LaneScores& scores = fit->scores[lane];
+      for (fit_evidence::Scores* const each : {&scores.base_rate, &scores.start, &scores.fitted}) each->add(0.5, true);
+    }
+  }
+  with_objects.detections = without_objects.detections = 2;
+  with_objects.real_detections = without_objects.real_detections = 1;
+  const std::vector<fit_evidence::FittedDrive> drives = {{kName, "", kName, 3, 1, 2, 1, true}};
+  return {fit_evidence::to_json(with_objects, drives, "radar.toml", "1"),
+          fit_evidence::to_json(without_objects, drives, "", "1")};
 }
 
 /// Of one radar with nothing known.
@@ -199,6 +217,7 @@ inline std::map<std::string, std::vector<Value>> written() {
       {"Run folder: run.json", run_summaries()},
       {"Run folder: health.jsonl", verdicts()},
       {"boresight monitor", snapshots()},
+      {"boresight fit-evidence", fits()},
       {"boresight score", scores()},
       {"boresight align", alignments()},
       {"boresight calibrate plate", plates()},

@@ -425,6 +425,29 @@ TEST(DetectionTruth, ScanOfARadarWithWrongStampsIsFoundByItsNumber) {
   EXPECT_EQ(origins->at(1).cause, "burst");
 }
 
+TEST(DetectionTruth, StatesTheObjectOfADetectionIfTheTableDoes) {
+  const fs::path truth = made::folder("objects_of_detections");
+  made::write_file(truth / "with.csv", "t_s,radar,scan,index,provenance,object\n0,1,1,0,moving,7\n0,1,1,1,clutter,0\n");
+  made::write_file(truth / "without.csv", "t_s,radar,scan,index,provenance\n0,1,1,0,moving\n");
+  made::write_file(truth / "labels.csv", "t_s,radar,index,object,class\n0,1,0,7,car\n0,1,2,7,ghost_type_1\n");
+  const auto origins_of = [&](const char* file, bool is_labels, bool has_objects, std::size_t detections) {
+    DetectionTruth table(truth / file, is_labels);
+    EXPECT_EQ(table.has_objects(), has_objects) << file;
+    const std::vector<TrueOrigin>* const origins = table.find(1, 0.0, 1, detections);
+    return origins == nullptr ? std::vector<TrueOrigin>(3) : *origins;
+  };
+  const std::vector<TrueOrigin> with = origins_of("with.csv", false, true, 2);
+  EXPECT_EQ(with[0].object, 7u);
+  EXPECT_EQ(with[1].object, 0u);
+  EXPECT_EQ(origins_of("without.csv", false, false, 1)[0].object, 0u);
+  const std::vector<TrueOrigin> labels = origins_of("labels.csv", true, true, 3);
+  EXPECT_EQ(labels[0].provenance, Provenance::kMoving);
+  EXPECT_EQ(labels[0].object, 7u);
+  EXPECT_EQ(labels[1].object, 0u) << "no row";
+  EXPECT_EQ(labels[2].provenance, Provenance::kGhostType1);
+  EXPECT_EQ(labels[2].object, 7u) << "of its ghost, too";
+}
+
 TEST(Outputs, OfAScoreShowWhatIsUnknown) {
   const fs::path run = made::folder("outputs_run"), truth = made::folder("outputs_truth");
   made::write_run(run, kScans, 0.5);

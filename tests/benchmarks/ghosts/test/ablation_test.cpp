@@ -49,14 +49,6 @@ TEST(Ablation, AMissingPartHasTheLowestLevel) {
   EXPECT_EQ(no_tracks.of, levels.of);
 }
 
-TEST(Ablation, BrierScoreIsTheMeanSquaredError) {
-  ghosts::EvidenceWeights weights;
-  weights.alone.of[static_cast<std::size_t>(EvidenceKind::kPast)][1] = std::log(3.0);  // p = 0.75
-  EXPECT_NEAR(brier_score({labelled(1, 0, true), labelled(1, 0, false), labelled(0, 0, true)}, weights),
-              (0.0625 + 0.5625 + 0.25) / 3.0, 1e-12);
-  EXPECT_TRUE(std::isnan(brier_score({}, weights)));
-}
-
 TEST(Ablation, OnlyPartsWithInformationChangeTheScore) {
   // The level of `past` decides, the level of `range` says nothing.
   std::vector<ghosts::LabelledEvidence> fit;

@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/benchmarks/ghosts/drives/judge/base_rate.hpp"
-
 namespace boresight::bench::ghosts_drives {
 namespace {
 
@@ -93,16 +91,6 @@ TEST(Figures, RecognisedAreThoseBelowTheProbabilityOfNineInTenRealOnes) {
   EXPECT_EQ(share_of_false(Provenance::kGhostType1)({&drive}), 0.75);
 }
 
-TEST(BaseRateOfARadar, HasTheLabelsOfThePastOnly) {
-  BaseRate rate;
-  EXPECT_EQ(rate.at(1, 0.0), 0.5) << "nothing is known before the first scan";
-  for (int i = 0; i < 3; ++i) rate.add(1, true);
-  EXPECT_EQ(rate.at(1, 0.0), 3.5 / 4.0);
-  EXPECT_EQ(rate.at(2, 0.0), 0.5) << "another radar";
-  const double kept = std::exp(-1.0);
-  EXPECT_NEAR(rate.at(1, BaseRate::kMemory_s), (3.0 * kept + 0.5) / (3.0 * kept + 1.0), 1e-12);
-}
-
 TEST(RunDrive, RepeatsAndKeepsTheEvidenceOfEachJudgedDetection) {
   const DriveSpec spec{"straight_rail", "series_77ghz", 101, 1.0};
   const DriveResult first = run_drive(spec, {}), again = run_drive(spec, {});
@@ -113,12 +101,12 @@ TEST(RunDrive, RepeatsAndKeepsTheEvidenceOfEachJudgedDetection) {
   }
   // Labels of the first scan of a radar cannot be in its base rate.
   EXPECT_EQ(first.detections.front().base_rate, 0.5F);
-  for (const auto& lane : first.evidence) {
+  for (const auto& lane : first.evidence.lanes) {
     ASSERT_EQ(lane.size(), first.detections.size());
     for (std::size_t i = 0; i < lane.size(); ++i) EXPECT_EQ(lane[i].is_real, first.detections[i].is_real);
   }
-  EXPECT_FALSE(first.evidence[0].back().levels.has_tracks);
-  EXPECT_TRUE(first.evidence[1].back().levels.has_tracks);
+  EXPECT_FALSE(first.evidence.lanes[0].back().levels.has_tracks);
+  EXPECT_TRUE(first.evidence.lanes[1].back().levels.has_tracks);
 }
 
 }  // namespace

@@ -12,11 +12,12 @@ namespace {
 using Changes = std::array<double, kEvidenceLanes>;
 
 std::vector<Changes> changes_of(const Setup& setup, ProfileDrives& profile, const std::vector<EvidencePart>& parts) {
-  const std::vector<ghosts::LabelledEvidence> fit = evidence_of(profile.for_fits(), [](std::size_t) { return true; });
+  const std::vector<ghosts::LabelledEvidence> fit = evidence_of(profile.for_fits());
   EvidenceByLane judged;
   for (const DriveResult& drive : profile.judged()) {
     for (std::size_t lane = 0; lane < kEvidenceLanes; ++lane) {
-      judged[lane].insert(judged[lane].end(), drive.evidence[lane].begin(), drive.evidence[lane].end());
+      const auto& evidence = drive.evidence.lanes[lane];
+      judged[lane].insert(judged[lane].end(), evidence.begin(), evidence.end());
     }
   }
   const ghosts::EvidenceWeights full = ghosts::fit_weights(fit, {});

@@ -114,7 +114,7 @@ void write_weights(const Setup& setup, ProfileDrives& profile) {
   const std::filesystem::path file = std::filesystem::path(setup.weights_folder) / (profile.name() + ".toml");
   std::filesystem::create_directories(setup.weights_folder);
   std::ofstream out(file);
-  out << ghosts::weights_text(ghosts::fit_weights(evidence_of(profile.judged(), [](std::size_t) { return true; }), {}),
+  out << ghosts::weights_text(ghosts::fit_weights(evidence_of(profile.judged()), {}),
                               fmt::format("{} drives, seeds {} … {}, {} s", profile.judged().size(), setup.first_seed,
                                           setup.last_seed(), setup.longest_s));
   out.flush();

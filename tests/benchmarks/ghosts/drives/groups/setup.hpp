@@ -58,17 +58,9 @@ class ProfileDrives {
   std::optional<std::vector<DriveResult>> judged_, for_fits_;
 };
 
-/// The evidence of some lanes' detections, of the drives that `takes`(index) picks.
-template <typename Takes>
+/// The evidence of all lanes' detections, but for drives with indices from `first` to before `end`.
 [[nodiscard]] std::vector<ghosts::LabelledEvidence> evidence_of(const std::vector<DriveResult>& drives,
-                                                                const Takes& takes) {
-  std::vector<ghosts::LabelledEvidence> all;
-  for (std::size_t d = 0; d < drives.size(); ++d) {
-    if (!takes(d)) continue;
-    for (const auto& lane : drives[d].evidence) all.insert(all.end(), lane.begin(), lane.end());
-  }
-  return all;
-}
+                                                                std::size_t first = 0, std::size_t end = 0);
 
 [[nodiscard]] Drives pointers(const std::vector<DriveResult>& drives);
 

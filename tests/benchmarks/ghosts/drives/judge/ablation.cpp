@@ -1,11 +1,16 @@
 #include "tests/benchmarks/ghosts/drives/judge/ablation.hpp"
 
-#include <cmath>
-#include <limits>
+#include "services/boresight/fit_evidence/scores.hpp"
 
 namespace boresight::bench::ghosts_drives {
 
 namespace {
+
+double brier_score(const std::vector<ghosts::LabelledEvidence>& detections, const ghosts::EvidenceWeights& weights) {
+  fit_evidence::Scores scores;
+  scores.add(detections, weights);
+  return scores.brier();
+}
 
 std::vector<ghosts::LabelledEvidence> all_without(const EvidencePart& part,
                                                   std::vector<ghosts::LabelledEvidence> detections) {
@@ -31,17 +36,6 @@ ghosts::Levels without(const EvidencePart& part, ghosts::Levels levels) {
   for (const ghosts::EvidenceKind kind : part.kinds) levels.of[static_cast<std::size_t>(kind)] = 0;
   if (part.is_tracks) levels.has_tracks = false;
   return levels;
-}
-
-double brier_score(const std::vector<ghosts::LabelledEvidence>& detections, const ghosts::EvidenceWeights& weights) {
-  if (detections.empty()) return std::numeric_limits<double>::quiet_NaN();
-  double sum = 0.0;
-  for (const ghosts::LabelledEvidence& each : detections) {
-    const double p = 1.0 / (1.0 + std::exp(-ghosts::posterior_log_odds(weights, each.levels)));
-    const double error = p - (each.is_real ? 1.0 : 0.0);
-    sum += error * error;
-  }
-  return sum / static_cast<double>(detections.size());
 }
 
 std::array<double, kEvidenceLanes> brier_change_percent(const EvidencePart& part,

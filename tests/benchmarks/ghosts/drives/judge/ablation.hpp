@@ -22,11 +22,7 @@ struct EvidencePart {
 /// The lowest level of the part's kinds. Without the tracks: (G1) judges, and the other levels stay.
 [[nodiscard]] ghosts::Levels without(const EvidencePart& part, ghosts::Levels levels);
 
-using EvidenceByLane = std::array<std::vector<ghosts::LabelledEvidence>, kEvidenceLanes>;
-
-/// Brier score; NaN without detections.
-[[nodiscard]] double brier_score(const std::vector<ghosts::LabelledEvidence>& detections,
-                                 const ghosts::EvidenceWeights& weights);
+using fit_evidence::EvidenceByLane;
 
 /// Change of the Brier score in % by lane if the part is missing in the fit and in the judgement. Positive: the part
 /// improves the score. `full`: weights of the same fit with all evidence.

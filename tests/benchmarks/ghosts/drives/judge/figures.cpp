@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "services/boresight/fit_evidence/scores.hpp"
+
 namespace boresight::bench::ghosts_drives {
 
 namespace {
@@ -15,17 +17,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double p_of(const JudgedDetection& d, Lane lane) {
   return static_cast<double>(d.p_moving[static_cast<std::size_t>(lane)]);
-}
-
-double squared_error(double p, bool is_real) {
-  const double error = p - (is_real ? 1.0 : 0.0);
-  return error * error;
-}
-
-double log_loss(double p, bool is_real) {
-  constexpr double kLeast = 1e-4;
-  const double clamped = std::clamp(p, kLeast, 1.0 - kLeast);
-  return -std::log(is_real ? clamped : 1.0 - clamped);
 }
 
 /// The first sum over the second one.
@@ -98,11 +89,11 @@ Estimate estimate(const Figure& figure, const Drives& drives) {
 }
 
 Figure brier_ratio(Lane lane) {
-  return ratio(lane, squared_error);
+  return ratio(lane, fit_evidence::squared_error);
 }
 
 Figure log_loss_ratio(Lane lane) {
-  return ratio(lane, log_loss);
+  return ratio(lane, fit_evidence::log_loss);
 }
 
 std::vector<ReliabilityBin> reliability(const Drives& drives, Lane lane) {

@@ -8,17 +8,16 @@
 #include <vector>
 
 #include "interfaces/messages/classified_scan.hpp"
+#include "services/boresight/fit_evidence/lanes.hpp"
 #include "services/ghost_filter/core/config.hpp"
-#include "services/ghost_filter/core/evidence/fit.hpp"
-#include "services/ghost_filter/core/evidence/weights.hpp"
 
 namespace boresight::bench::ghosts_drives {
 
-/// How a filter gets tracks.
+/// How a filter gets tracks: the lanes of the method `evidence` first, as for fits.
 enum class Lane : std::uint8_t {
-  kWithout,    ///< none
-  kPerfect,    ///< the true objects that radars have detected (true_tracks.hpp)
-  kChain,      ///< of the tracker behind the filter
+  kWithout = static_cast<std::uint8_t>(fit_evidence::Lane::kWithout),
+  kPerfect = static_cast<std::uint8_t>(fit_evidence::Lane::kPerfect),
+  kChain = static_cast<std::uint8_t>(fit_evidence::Lane::kChain),
   kPublished,  ///< the published method, in a chain of its own
 };
 inline constexpr std::size_t kLanes = 4;
@@ -41,15 +40,11 @@ struct DriveSpec {
 };
 
 /// The lanes of the method `evidence`: the first ones.
-inline constexpr std::size_t kEvidenceLanes = 3;
+inline constexpr std::size_t kEvidenceLanes = fit_evidence::kLanes;
 
 struct DriveResult {
   std::vector<JudgedDetection> detections;
-  /// The same detections with their evidence, by lane, for fits.
-  std::array<std::vector<ghosts::LabelledEvidence>, kEvidenceLanes> evidence;
-  [[nodiscard]] std::vector<ghosts::LabelledEvidence>& evidence_of(Lane lane) {
-    return evidence[static_cast<std::size_t>(lane)];
-  }
+  fit_evidence::DriveEvidence evidence;  ///< of the same detections, for fits
 };
 
 /// Runs the drive through the corrector and all lanes.

@@ -3,7 +3,6 @@
 #include <array>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -15,8 +14,7 @@
 #include "services/boresight/run/gateway_feed.hpp"
 #include "services/boresight/run/settings.hpp"
 #include "services/boresight/run/writer.hpp"
-#include "services/boresight/score/car_truth.hpp"
-#include "services/boresight/score/truth_source.hpp"
+#include "services/boresight/score/truth_clock.hpp"
 #include "services/common/recording/reader.hpp"
 #include "services/common/runtime/clock.hpp"
 #include "services/ingest_gateway/core/gateway.hpp"
@@ -38,16 +36,13 @@ class OriginsOfScans {
  public:
   explicit OriginsOfScans(const fs::path& truth)
       : source_(score::find_truth(truth)),
-        car_(score::read_car_truth(source_.drive)),
+        clock_(source_),
         origins_(source_.detections, source_.detections_are_labels) {}
 
   void set(const run::ScanResult& result, ClassifiedScan& scan) {
-    if (!begin_ns_) {
-      const double since_start_s = 1e-6 * static_cast<double>(result.at.since_start_us());
-      begin_ns_ = score::truth_origin_ns(score::first_time_s(source_).value_or(0.0), result.at.time_ns, since_start_s);
-    }
+    if (!clock_.has_begun()) clock_.begin(result.at.time_ns, 1e-6 * static_cast<double>(result.at.since_start_us()));
     const std::uint32_t radar = result.scan.header.source_id;
-    const double t_s = 1e-9 * static_cast<double>(result.at.time_ns - *begin_ns_) - car_.stamp_offset_s(radar);
+    const double t_s = clock_.measured_s(radar, result.at.time_ns);
     const auto* const origins = origins_.find(radar, t_s, result.number, scan.number_of_valid_detections);
     if (origins == nullptr) throw std::runtime_error(fmt::format("radar {}, scan {}: no truth", radar, result.number));
     set_true_origins(*origins, scan);
@@ -55,9 +50,8 @@ class OriginsOfScans {
 
  private:
   score::TruthSource source_;
-  score::CarTruth car_;
+  score::TruthClock clock_;
   score::DetectionTruth origins_;
-  std::optional<std::int64_t> begin_ns_;  // of the truth, on the clock of the run
 };
 
 class PerfectRun {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <map>
 
-namespace boresight::bench::ghosts_drives {
+namespace boresight::fit_evidence {
 
 /// Share of real ones among a radar's moving detections of the past, with exponential memory. It gets the labels of the
 /// past, which no product has.
@@ -36,4 +36,4 @@ class BaseRate {
   std::map<std::uint32_t, Sums> sums_;
 };
 
-}  // namespace boresight::bench::ghosts_drives
+}  // namespace boresight::fit_evidence
