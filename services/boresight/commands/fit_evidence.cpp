@@ -19,6 +19,7 @@
 #include "services/boresight/run/settings.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
+#include "services/boresight/fit_evidence/weights_text.hpp"
 #include "services/ghost_filter/weights_file.hpp"
 
 namespace boresight {
@@ -140,11 +141,11 @@ class FitEvidence {
 
   int report(const fit_evidence::Fit& fit) {
     bar_.wipe();
-    const std::string table = ghosts::weights_text(fit.weights, fit_evidence::origin_of(fit, fitted_));
+    const std::string table = fit_evidence::weights_text(fit.weights, fit_evidence::origin_of(fit, fitted_));
     if (out_) {
       std::ifstream stream(profile_);
       const std::string profile{std::istreambuf_iterator<char>(stream), {}};
-      out_->write(ghosts::with_weights(profile, table, profile_.string()));
+      out_->write(fit_evidence::with_weights(profile, table, profile_.string()));
       out_->commit();
     } else {
       if (!json_) std::fprintf(stderr, "%s", fit_evidence::to_text(fit, fitted_).c_str());

@@ -14,11 +14,11 @@ std::vector<DriveEvidence> run_all(std::size_t drives, const RunDrive& run, cons
 
 /// The weights of all drives but one. `except`: index of the drive, or beyond the last one.
 ghosts::EvidenceWeights fit(const std::vector<DriveEvidence>& drives, std::size_t except = SIZE_MAX) {
-  std::vector<ghosts::LabelledEvidence> all;
+  std::vector<LabelledEvidence> all;
   for (std::size_t d = 0; d < drives.size(); ++d) {
     if (d != except) append(drives[d], all);
   }
-  return ghosts::fit_weights(all, {});
+  return fit_weights(all, {});
 }
 
 void check(const std::vector<std::string>& names, const std::vector<DriveEvidence>& drives, Fit& out) {

@@ -7,7 +7,7 @@ namespace boresight::fit_evidence {
 std::size_t DriveEvidence::real_detections() const {
   const auto& all = lanes[static_cast<std::size_t>(Lane::kWithout)];
   return static_cast<std::size_t>(
-      std::count_if(all.begin(), all.end(), [](const ghosts::LabelledEvidence& each) { return each.is_real; }));
+      std::count_if(all.begin(), all.end(), [](const LabelledEvidence& each) { return each.is_real; }));
 }
 
 void Lanes::classify(const CorrectedScan& scan) {
@@ -20,12 +20,14 @@ void Lanes::classify(const CorrectedScan& scan) {
 
 void Lanes::label(double t_s, std::span<const simulator::DetectionTruth> truth,
                   std::span<const ghosts::JudgedEvidence> in_chain, DriveEvidence& out) {
-  const auto is_real = [&](std::uint32_t index) {
-    return index < truth.size() && truth[index].provenance == Provenance::kMoving;
+  const auto is = [&](std::uint32_t index, Provenance origin) {
+    return index < truth.size() && truth[index].provenance == origin;
   };
   const auto keep = [&](Lane lane, std::span<const ghosts::JudgedEvidence> evidence) {
     for (const ghosts::JudgedEvidence& each : evidence) {
-      out.lanes[static_cast<std::size_t>(lane)].push_back({each.levels, is_real(each.index)});
+      out.lanes[static_cast<std::size_t>(lane)].push_back(
+          {each.levels, is(each.index, Provenance::kMoving),
+           is(each.index, Provenance::kGhostType1) || is(each.index, Provenance::kGhostType2)});
     }
   };
   keep(Lane::kWithout, without_.method->evidence());
@@ -35,7 +37,7 @@ void Lanes::label(double t_s, std::span<const simulator::DetectionTruth> truth,
   const double base_rate = base_rate_.at(radar, t_s);
   for (const ghosts::JudgedEvidence& each : without_.method->evidence()) {
     out.base_rates.push_back(static_cast<float>(base_rate));
-    base_rate_.add(radar, is_real(each.index));
+    base_rate_.add(radar, is(each.index, Provenance::kMoving));
   }
 }
 
@@ -47,7 +49,7 @@ void Lanes::add_objects(double t_s, const std::vector<simulator::DetectionTruth>
   perfect_.method->add_tracks(*tracks_);
 }
 
-void append(const DriveEvidence& drive, std::vector<ghosts::LabelledEvidence>& all) {
+void append(const DriveEvidence& drive, std::vector<LabelledEvidence>& all) {
   for (const auto& lane : drive.lanes) all.insert(all.end(), lane.begin(), lane.end());
 }
 

@@ -11,7 +11,7 @@
 
 #include "interfaces/messages/classified_scan.hpp"
 #include "services/boresight/fit_evidence/base_rate.hpp"
-#include "services/ghost_filter/core/evidence/fit.hpp"
+#include "services/boresight/fit_evidence/fit_weights.hpp"
 #include "services/ghost_filter/core/method.hpp"
 #include "services/simulator/judge/hidden.hpp"
 #include "services/simulator/judge/true_tracks.hpp"
@@ -27,7 +27,7 @@ enum class Lane : std::uint8_t {
 inline constexpr std::size_t kLanes = 3;
 inline constexpr std::array<std::string_view, kLanes> kLaneNames = {"without tracks", "perfect tracks", "in the chain"};
 
-using EvidenceByLane = std::array<std::vector<ghosts::LabelledEvidence>, kLanes>;
+using EvidenceByLane = std::array<std::vector<LabelledEvidence>, kLanes>;
 
 /// Place i of each lane is the same detection. Without true objects the lane kPerfect is empty.
 struct DriveEvidence {
@@ -80,6 +80,6 @@ class Lanes {
 };
 
 /// Adds the evidence of all lanes, for a fit.
-void append(const DriveEvidence& drive, std::vector<ghosts::LabelledEvidence>& all);
+void append(const DriveEvidence& drive, std::vector<LabelledEvidence>& all);
 
 }  // namespace boresight::fit_evidence

@@ -16,8 +16,8 @@ double log_loss(double p, bool is_real) {
   return -std::log(is_real ? clamped : 1.0 - clamped);
 }
 
-void Scores::add(std::span<const ghosts::LabelledEvidence> detections, const ghosts::EvidenceWeights& weights) {
-  for (const ghosts::LabelledEvidence& each : detections) {
+void Scores::add(std::span<const LabelledEvidence> detections, const ghosts::EvidenceWeights& weights) {
+  for (const LabelledEvidence& each : detections) {
     add(1.0 / (1.0 + std::exp(-ghosts::posterior_log_odds(weights, each.levels))), each.is_real);
   }
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "services/ghost_filter/core/evidence/fit.hpp"
+#include "services/boresight/fit_evidence/fit_weights.hpp"
 
 namespace boresight::fit_evidence {
 
@@ -23,7 +23,7 @@ class Scores {
     ++detections_;
   }
   /// By the weights.
-  void add(std::span<const ghosts::LabelledEvidence> detections, const ghosts::EvidenceWeights& weights);
+  void add(std::span<const LabelledEvidence> detections, const ghosts::EvidenceWeights& weights);
 
   [[nodiscard]] double brier() const { return mean(squared_errors_); }
   [[nodiscard]] double log_loss() const { return mean(log_losses_); }

@@ -23,7 +23,7 @@ constexpr auto kPast = static_cast<std::size_t>(ghosts::EvidenceKind::kPast);
 DriveEvidence made_drive(std::size_t number, double share, bool has_objects = false) {
   DriveEvidence drive;
   for (std::size_t i = 0; i < 2 * number; ++i) {
-    ghosts::LabelledEvidence each;
+    fit_evidence::LabelledEvidence each;
     const bool is_high = i % 2 == 1;
     each.levels.of[kPast] = is_high ? 1 : 0;
     each.is_real = (static_cast<double>(i / 2) < share * static_cast<double>(number)) == is_high;
@@ -103,8 +103,8 @@ TEST(FitDrives, SaysWhyThereIsNoFit) {
   };
   DriveEvidence real = made_drive(10, 0.5), unreal = real;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    for (ghosts::LabelledEvidence& each : real.lanes[lane]) each.is_real = true;
-    for (ghosts::LabelledEvidence& each : unreal.lanes[lane]) each.is_real = false;
+    for (fit_evidence::LabelledEvidence& each : real.lanes[lane]) each.is_real = true;
+    for (fit_evidence::LabelledEvidence& each : unreal.lanes[lane]) each.is_real = false;
   }
   EXPECT_THAT(problem_of({real, {}}), HasSubstr("second: has no labelled moving detection"));
   EXPECT_THAT(problem_of({real, real}), HasSubstr("all moving detections of the drives are real"));

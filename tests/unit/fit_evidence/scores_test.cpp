@@ -11,8 +11,8 @@
 namespace boresight::fit_evidence {
 namespace {
 
-ghosts::LabelledEvidence with_past(std::uint8_t level, bool is_real) {
-  ghosts::LabelledEvidence each;
+fit_evidence::LabelledEvidence with_past(std::uint8_t level, bool is_real) {
+  fit_evidence::LabelledEvidence each;
   each.levels.of[static_cast<std::size_t>(ghosts::EvidenceKind::kPast)] = level;
   each.is_real = is_real;
   return each;

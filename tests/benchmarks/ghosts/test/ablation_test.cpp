@@ -19,8 +19,8 @@ EvidencePart part_of(const std::string& name) {
   return {};
 }
 
-ghosts::LabelledEvidence labelled(std::uint8_t past, std::uint8_t range, bool is_real) {
-  ghosts::LabelledEvidence each;
+fit_evidence::LabelledEvidence labelled(std::uint8_t past, std::uint8_t range, bool is_real) {
+  fit_evidence::LabelledEvidence each;
   each.levels.of[static_cast<std::size_t>(EvidenceKind::kPast)] = past;
   each.levels.of[static_cast<std::size_t>(EvidenceKind::kRange)] = range;
   each.is_real = is_real;
@@ -51,14 +51,14 @@ TEST(Ablation, AMissingPartHasTheLowestLevel) {
 
 TEST(Ablation, OnlyPartsWithInformationChangeTheScore) {
   // The level of `past` decides, the level of `range` says nothing.
-  std::vector<ghosts::LabelledEvidence> fit;
+  std::vector<fit_evidence::LabelledEvidence> fit;
   for (int i = 0; i < 400; ++i) {
     const bool is_real = i % 2 == 0;
     fit.push_back(labelled(is_real == (i % 10 < 8) ? 1 : 0, static_cast<std::uint8_t>(i / 2 % 2), is_real));
   }
   EvidenceByLane judged;
   judged.fill(fit);
-  const ghosts::EvidenceWeights full = ghosts::fit_weights(fit, {});
+  const ghosts::EvidenceWeights full = fit_evidence::fit_weights(fit, {});
   const auto change = [&](const char* name) { return brier_change_percent(part_of(name), fit, judged, full); };
   // 0.8 · 0.2 with the part, 0.25 without.
   for (const double lane : change("past")) EXPECT_NEAR(lane, 100.0 * (0.25 / 0.16 - 1.0), 1.0);
@@ -67,7 +67,7 @@ TEST(Ablation, OnlyPartsWithInformationChangeTheScore) {
 }
 
 TEST(Ablation, WithoutTracksTheOtherEvidenceJudges) {
-  ghosts::LabelledEvidence real = labelled(0, 0, true);
+  fit_evidence::LabelledEvidence real = labelled(0, 0, true);
   real.levels.has_tracks = true;
   real.levels.track = 1;
   real.levels.sure = 1.0F;

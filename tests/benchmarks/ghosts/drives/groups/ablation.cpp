@@ -12,7 +12,7 @@ namespace {
 using Changes = std::array<double, kEvidenceLanes>;
 
 std::vector<Changes> changes_of(const Setup& setup, ProfileDrives& profile, const std::vector<EvidencePart>& parts) {
-  const std::vector<ghosts::LabelledEvidence> fit = evidence_of(profile.for_fits());
+  const std::vector<fit_evidence::LabelledEvidence> fit = evidence_of(profile.for_fits());
   EvidenceByLane judged;
   for (const DriveResult& drive : profile.judged()) {
     for (std::size_t lane = 0; lane < kEvidenceLanes; ++lane) {
@@ -20,7 +20,7 @@ std::vector<Changes> changes_of(const Setup& setup, ProfileDrives& profile, cons
       judged[lane].insert(judged[lane].end(), evidence.begin(), evidence.end());
     }
   }
-  const ghosts::EvidenceWeights full = ghosts::fit_weights(fit, {});
+  const ghosts::EvidenceWeights full = fit_evidence::fit_weights(fit, {});
   std::vector<Changes> changes(parts.size());
   parallel_for(parts.size(), setup.jobs,
                [&](std::size_t i) { changes[i] = brier_change_percent(parts[i], fit, judged, full); });

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "interfaces/messages/names.hpp"
+#include "services/boresight/fit_evidence/weights_text.hpp"
 #include "services/ghost_filter/weights_file.hpp"
 #include "tests/benchmarks/ghosts/drives/groups/groups.hpp"
 
@@ -114,9 +115,9 @@ void write_weights(const Setup& setup, ProfileDrives& profile) {
   const std::filesystem::path file = std::filesystem::path(setup.weights_folder) / (profile.name() + ".toml");
   std::filesystem::create_directories(setup.weights_folder);
   std::ofstream out(file);
-  out << ghosts::weights_text(ghosts::fit_weights(evidence_of(profile.judged()), {}),
-                              fmt::format("{} drives, seeds {} … {}, {} s", profile.judged().size(), setup.first_seed,
-                                          setup.last_seed(), setup.longest_s));
+  out << fit_evidence::weights_text(fit_evidence::fit_weights(evidence_of(profile.judged()), {}),
+                                    fmt::format("{} drives, seeds {} … {}, {} s", profile.judged().size(),
+                                                setup.first_seed, setup.last_seed(), setup.longest_s));
   out.flush();
   if (!out) throw std::runtime_error("cannot write " + file.string());
   fmt::print("weights: {}\n", file.string());

@@ -24,9 +24,9 @@ ghosts::EvidenceWeights start_weights(const Setup& setup, const std::string& pro
   return ghosts::read_weights(std::filesystem::path(file_of_profile(profile)));
 }
 
-std::vector<ghosts::LabelledEvidence> evidence_of(const std::vector<DriveResult>& drives, std::size_t first,
-                                                  std::size_t end) {
-  std::vector<ghosts::LabelledEvidence> all;
+std::vector<fit_evidence::LabelledEvidence> evidence_of(const std::vector<DriveResult>& drives, std::size_t first,
+                                                        std::size_t end) {
+  std::vector<fit_evidence::LabelledEvidence> all;
   for (std::size_t d = 0; d < drives.size(); ++d) {
     if (d < first || d >= end) fit_evidence::append(drives[d].evidence, all);
   }
@@ -81,7 +81,7 @@ std::vector<DriveResult> ProfileDrives::judged_by_others() {
   const std::vector<DriveResult>& fits = for_fits();
   std::vector<ghosts::EvidenceWeights> fitted(setup_.scenarios.size());
   parallel_for(fitted.size(), setup_.jobs, [&](std::size_t s) {
-    fitted[s] = ghosts::fit_weights(evidence_of(fits, s * setup_.seeds, (s + 1) * setup_.seeds), {});
+    fitted[s] = fit_evidence::fit_weights(evidence_of(fits, s * setup_.seeds, (s + 1) * setup_.seeds), {});
   });
   WeightsByScenario weights;
   for (std::size_t s = 0; s < fitted.size(); ++s) weights[setup_.scenarios[s]] = fitted[s];

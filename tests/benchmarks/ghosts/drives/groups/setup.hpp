@@ -59,8 +59,8 @@ class ProfileDrives {
 };
 
 /// The evidence of all lanes' detections, but for drives with indices from `first` to before `end`.
-[[nodiscard]] std::vector<ghosts::LabelledEvidence> evidence_of(const std::vector<DriveResult>& drives,
-                                                                std::size_t first = 0, std::size_t end = 0);
+[[nodiscard]] std::vector<fit_evidence::LabelledEvidence> evidence_of(const std::vector<DriveResult>& drives,
+                                                                      std::size_t first = 0, std::size_t end = 0);
 
 [[nodiscard]] Drives pointers(const std::vector<DriveResult>& drives);
 

@@ -6,15 +6,16 @@ namespace boresight::bench::ghosts_drives {
 
 namespace {
 
-double brier_score(const std::vector<ghosts::LabelledEvidence>& detections, const ghosts::EvidenceWeights& weights) {
+double brier_score(const std::vector<fit_evidence::LabelledEvidence>& detections,
+                   const ghosts::EvidenceWeights& weights) {
   fit_evidence::Scores scores;
   scores.add(detections, weights);
   return scores.brier();
 }
 
-std::vector<ghosts::LabelledEvidence> all_without(const EvidencePart& part,
-                                                  std::vector<ghosts::LabelledEvidence> detections) {
-  for (ghosts::LabelledEvidence& each : detections) each.levels = without(part, each.levels);
+std::vector<fit_evidence::LabelledEvidence> all_without(const EvidencePart& part,
+                                                        std::vector<fit_evidence::LabelledEvidence> detections) {
+  for (fit_evidence::LabelledEvidence& each : detections) each.levels = without(part, each.levels);
   return detections;
 }
 
@@ -39,11 +40,11 @@ ghosts::Levels without(const EvidencePart& part, ghosts::Levels levels) {
 }
 
 std::array<double, kEvidenceLanes> brier_change_percent(const EvidencePart& part,
-                                                        const std::vector<ghosts::LabelledEvidence>& fit,
+                                                        const std::vector<fit_evidence::LabelledEvidence>& fit,
                                                         const EvidenceByLane& judged,
                                                         const ghosts::EvidenceWeights& full) {
   // (G1) is fitted without the tracks anyway.
-  const ghosts::EvidenceWeights reduced = part.is_tracks ? full : ghosts::fit_weights(all_without(part, fit), {});
+  const ghosts::EvidenceWeights reduced = part.is_tracks ? full : fit_evidence::fit_weights(all_without(part, fit), {});
   std::array<double, kEvidenceLanes> changes{};
   for (std::size_t lane = 0; lane < kEvidenceLanes; ++lane) {
     const double with = brier_score(judged[lane], full);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/ghost_filter/core/evidence/fit.hpp"
+#include "services/boresight/fit_evidence/fit_weights.hpp"
 #include "tests/benchmarks/ghosts/drives/judge/judged.hpp"
 
 namespace boresight::bench::ghosts_drives {
@@ -26,9 +26,8 @@ using fit_evidence::EvidenceByLane;
 
 /// Change of the Brier score in % by lane if the part is missing in the fit and in the judgement. Positive: the part
 /// improves the score. `full`: weights of the same fit with all evidence.
-[[nodiscard]] std::array<double, kEvidenceLanes> brier_change_percent(const EvidencePart& part,
-                                                                      const std::vector<ghosts::LabelledEvidence>& fit,
-                                                                      const EvidenceByLane& judged,
-                                                                      const ghosts::EvidenceWeights& full);
+[[nodiscard]] std::array<double, kEvidenceLanes> brier_change_percent(
+    const EvidencePart& part, const std::vector<fit_evidence::LabelledEvidence>& fit, const EvidenceByLane& judged,
+    const ghosts::EvidenceWeights& full);
 
 }  // namespace boresight::bench::ghosts_drives

@@ -1,4 +1,4 @@
-#include "services/ghost_filter/core/evidence/fit.hpp"
+#include "services/boresight/fit_evidence/fit_weights.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-namespace boresight::ghosts {
+namespace boresight::fit_evidence {
+
+using namespace ghosts;
 
 namespace {
 
@@ -120,4 +122,4 @@ EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections, con
   return weights;
 }
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::fit_evidence

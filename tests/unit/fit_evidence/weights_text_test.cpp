@@ -1,5 +1,5 @@
-// The table [evidence] of a radar profile.
-#include "services/ghost_filter/weights_file.hpp"
+// The table [evidence] of a radar profile, written and read.
+#include "services/boresight/fit_evidence/weights_text.hpp"
 
 #include <filesystem>
 #include <string>
@@ -9,9 +9,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace boresight::ghosts {
+#include "services/ghost_filter/weights_file.hpp"
+
+
+namespace boresight::fit_evidence {
 namespace {
 
+using namespace ghosts;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -186,4 +190,4 @@ TEST(WeightsFile, AFileThatIsAbsentIsAnErrorWithItsName) {
 }
 
 }  // namespace
-}  // namespace boresight::ghosts
+}  // namespace boresight::fit_evidence

@@ -1,5 +1,5 @@
 // The fit of the weights: by simulated labels, and against the posterior's own definition.
-#include "services/ghost_filter/core/evidence/fit.hpp"
+#include "services/boresight/fit_evidence/fit_weights.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,10 @@
 
 #include <gtest/gtest.h>
 
-namespace boresight::ghosts {
+namespace boresight::fit_evidence {
 namespace {
+
+using namespace ghosts;
 
 constexpr auto kVerdictKind = static_cast<std::size_t>(EvidenceKind::kVerdict);
 
@@ -229,4 +231,4 @@ TEST(FitWeights, LabelsWithoutAnExceptionStayFinite) {
 }
 
 }  // namespace
-}  // namespace boresight::ghosts
+}  // namespace boresight::fit_evidence

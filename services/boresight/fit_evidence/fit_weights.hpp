@@ -7,11 +7,11 @@
 #include "services/ghost_filter/core/evidence/levels.hpp"
 #include "services/ghost_filter/core/evidence/weights.hpp"
 
-namespace boresight::ghosts {
+namespace boresight::fit_evidence {
 
 /// The evidence of a detection, and what it is.
 struct LabelledEvidence {
-  Levels levels;
+  ghosts::Levels levels;
   bool is_real = false;   ///< a direct echo of a moving object
   bool is_image = false;  ///< a mirror image of one; drives that do not tell mirror images apart have none
 };
@@ -23,6 +23,7 @@ struct FitConfig {
 
 /// Maximum of the posterior of (G1), by all detections; of (G1) by those that are no mirror images, for (G14); and
 /// of (G2), by those with known tracks. Without detections all weights keep their prior.
-[[nodiscard]] EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections, const FitConfig& config);
+[[nodiscard]] ghosts::EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections,
+                                                  const FitConfig& config);
 
-}  // namespace boresight::ghosts
+}  // namespace boresight::fit_evidence
