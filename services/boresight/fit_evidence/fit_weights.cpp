@@ -44,16 +44,16 @@ Regressors regressors(const Levels& levels, bool with_tracks) {
 
 enum class Which : std::uint8_t { kAlone, kOthers, kWithTracks };
 
-bool takes(Which which, const LabelledEvidence& each) {
-  return which == Which::kWithTracks ? each.levels.has_tracks : which == Which::kAlone || !each.is_image;
+/// Weight of a detection in the fit.
+double weight_of(Which which, const LabelledEvidence& each) {
+  if (which != Which::kAlone && !each.levels.has_tracks) return 0.0;
+  return which == Which::kOthers && !each.is_real ? each.other_share : 1.0;
 }
 
 /// ln N/F of real and false detections, with one half of a detection for each.
 double prior_log_odds(const std::vector<LabelledEvidence>& detections, Which which) {
   double real = 0.5, unreal = 0.5;
-  for (const LabelledEvidence& each : detections) {
-    if (takes(which, each)) (each.is_real ? real : unreal) += 1.0;
-  }
+  for (const LabelledEvidence& each : detections) (each.is_real ? real : unreal) += weight_of(which, each);
   return std::log(real / unreal);
 }
 
@@ -67,12 +67,13 @@ Eigen::VectorXd maximise(const std::vector<LabelledEvidence>& detections, Which 
     Eigen::VectorXd gradient = ridge * (prior - w);
     Eigen::MatrixXd information = ridge * Eigen::MatrixXd::Identity(kSize, kSize);
     for (const LabelledEvidence& each : detections) {
-      if (!takes(which, each)) continue;
+      const double counted = weight_of(which, each);
+      if (counted == 0.0) continue;
       const Regressors x = regressors(each.levels, which == Which::kWithTracks);
       double log_odds = 0.0;
       for (const Regressor& r : x) log_odds += r.value * w(static_cast<Eigen::Index>(r.place));
       const double p = 1.0 / (1.0 + std::exp(-log_odds));
-      const double error = (each.is_real ? 1.0 : 0.0) - p, weight = p * (1.0 - p);
+      const double error = counted * ((each.is_real ? 1.0 : 0.0) - p), weight = counted * p * (1.0 - p);
       for (const Regressor& a : x) {
         const auto row = static_cast<Eigen::Index>(a.place);
         gradient(row) += error * a.value;

@@ -20,14 +20,12 @@ void Lanes::classify(const CorrectedScan& scan) {
 
 void Lanes::label(double t_s, std::span<const simulator::DetectionTruth> truth,
                   std::span<const ghosts::JudgedEvidence> in_chain, DriveEvidence& out) {
-  const auto is = [&](std::uint32_t index, Provenance origin) {
-    return index < truth.size() && truth[index].provenance == origin;
+  const auto is_real = [&](std::uint32_t index) {
+    return index < truth.size() && truth[index].provenance == Provenance::kMoving;
   };
   const auto keep = [&](Lane lane, std::span<const ghosts::JudgedEvidence> evidence) {
     for (const ghosts::JudgedEvidence& each : evidence) {
-      out.lanes[static_cast<std::size_t>(lane)].push_back(
-          {each.levels, is(each.index, Provenance::kMoving),
-           is(each.index, Provenance::kGhostType1) || is(each.index, Provenance::kGhostType2)});
+      out.lanes[static_cast<std::size_t>(lane)].push_back({each.levels, is_real(each.index), each.other_share});
     }
   };
   keep(Lane::kWithout, without_.method->evidence());
@@ -37,7 +35,7 @@ void Lanes::label(double t_s, std::span<const simulator::DetectionTruth> truth,
   const double base_rate = base_rate_.at(radar, t_s);
   for (const ghosts::JudgedEvidence& each : without_.method->evidence()) {
     out.base_rates.push_back(static_cast<float>(base_rate));
-    base_rate_.add(radar, is(each.index, Provenance::kMoving));
+    base_rate_.add(radar, is_real(each.index));
   }
 }
 

@@ -100,26 +100,35 @@ TEST(FitWeights, FindsTheWeightsThatMadeTheLabels) {
   }
 }
 
-TEST(FitWeights, MirrorImagesAreNoOtherFalseDetections) {
-  // Other false detections by known weights, and as many mirror images, which look like real ones.
+TEST(FitWeights, OfTheRatioCountAFalseDetectionByItsShareOfOtherOrigins) {
+  // Other false detections by known weights, and as many mirror images, which look like real ones. Half of the images
+  // are expected with certainty: they change nothing. The others are not expected at all: they count as any other.
   constexpr std::size_t kNumber = 30'000;
   const EvidenceWeights truth = random_weights(7);
   const auto without_tracks = [&](const Levels& l) { return log_odds_alone(truth, l); };
   auto detections = labelled(8, kNumber, without_tracks);
   const EvidenceWeights before = fit_weights(detections, FitConfig{});
-  for (std::size_t i = 0; i < kNumber; ++i) {
-    if (!detections[i].is_real) continue;
-    LabelledEvidence image = detections[i];
-    image.is_real = false;
-    image.is_image = true;
-    detections.push_back(image);
-  }
-  const EvidenceWeights after = fit_weights(detections, FitConfig{});
-  EXPECT_EQ(after.others.of, before.others.of);
-  EXPECT_EQ(after.others.constant, before.others.constant);
-  EXPECT_EQ(before.others.of, before.alone.of) << "without mirror images both are the same";
+  EXPECT_EQ(before.others.of, before.alone.of) << "without expected mirror images both are the same";
   EXPECT_NEAR(before.others.constant, before.alone.constant - before.prior_log_odds, 1e-9);
-  EXPECT_LT(after.prior_log_odds, before.prior_log_odds);
+  const auto add_images = [&](double other_share) {
+    for (std::size_t i = 0; i < kNumber; ++i) {
+      if (!detections[i].is_real) continue;
+      LabelledEvidence image = detections[i];
+      image.is_real = false;
+      image.other_share = other_share;
+      detections.push_back(image);
+    }
+  };
+  add_images(0.0);
+  const EvidenceWeights expected = fit_weights(detections, FitConfig{});
+  EXPECT_EQ(expected.others.of, before.others.of);
+  EXPECT_EQ(expected.others.constant, before.others.constant);
+  EXPECT_LT(expected.prior_log_odds, before.prior_log_odds);
+  add_images(1.0);
+  const EvidenceWeights all = fit_weights(detections, FitConfig{});
+  constexpr auto kPast = static_cast<std::size_t>(EvidenceKind::kPast);
+  EXPECT_LT(std::abs(all.others.of[kPast][5] - all.others.of[kPast][0]),
+            std::abs(before.others.of[kPast][5] - before.others.of[kPast][0]));
 }
 
 /// Log of the posterior, up to a constant: likelihood of the labels, and a normal prior about the prior's means.

@@ -11,7 +11,6 @@
 
 #include "services/ghost_filter/weights_file.hpp"
 
-
 namespace boresight::fit_evidence {
 namespace {
 

@@ -26,7 +26,7 @@ struct LevelWeights {
 struct EvidenceWeights {
   double prior_log_odds = 0.0;  ///< of the drives that the weights were fitted on: (G1) less this is a likelihood ratio
   LevelWeights alone;
-  LevelWeights others;  ///< as `alone`, against false detections that are no mirror images, without the prior
+  LevelWeights others;  ///< as `alone`, against false detections that are no expected mirror images, without the prior
   LevelWeights with_tracks;
   std::array<double, kTrackLevels> track_unsure{}, track_sure{};
 };
