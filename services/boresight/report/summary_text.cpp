@@ -72,6 +72,17 @@ std::string render_latency_rows(const Summary& summary) {
   return text;
 }
 
+/// Of the services that scans pass.
+std::string render_service_latencies(const Summary& summary) {
+  std::string text;
+  for (const monitor::ServiceSnapshot& service : summary.services) {
+    if (service.latency_max_us <= 0.0) continue;
+    text += fmt::format("{}{} {:.0f}", text.empty() ? "  longest time from arrival to output, µs: " : ", ",
+                        catalogue::name_of(service.service), service.latency_max_us);
+  }
+  return text.empty() ? text : text + "\n";
+}
+
 std::string render_faults(const Summary& summary) {
   std::string text;
   for (const auto& service : summary.services) {
@@ -166,7 +177,7 @@ std::string render_summary(const Summary& summary) {
                                                         summary.duration_s, summary.pace);
   text += render_radars(summary) + "\n" + render_truth(summary);
   for (const RadarSummary& radar : summary.radars) text += "  " + verdict_line(radar) + "\n";
-  if (!summary.is_offline) text += render_latency_rows(summary);
+  if (!summary.is_offline) text += render_latency_rows(summary) + render_service_latencies(summary);
   if (!summary.pace.empty()) text += "  Not played in real time: latencies, rates and times have no verdict.\n";
   const std::string labels = labels_text(summary.labels);
   if (!labels.empty()) {
