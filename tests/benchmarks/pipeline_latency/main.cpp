@@ -88,7 +88,7 @@ std::vector<std::unique_ptr<harness::Child>> start_neighbours(unsigned count) {
 }
 
 void print_losses(const std::array<bench::StageLosses, catalogue::kNumberOfServices>& losses) {
-  std::printf("%-34s %9s %9s %9s\n", "scans", "published", "lost", "dropped");
+  std::printf("%-34s %9s %9s %9s\n", "messages (gateway: with ego motion)", "published", "lost", "dropped");
   using enum catalogue::Service;
   for (const catalogue::Service service : {kIngestGateway, kDetectionCorrector, kGhostFilter, kTracker}) {
     const bench::StageLosses& stage = losses[static_cast<std::size_t>(service)];

@@ -19,9 +19,12 @@ struct Place {
   const char* name;
   double x_m, y_m, yaw_deg;
 };
-/// Of the radars beyond those of the demo vehicle, m and degrees in the vehicle frame.
-constexpr std::array<Place, kMostRadars - kDemoRadars> kPlaces = {
-    {{"front", 3.75, 0.0, 0.0}, {"rear", -0.95, 0.0, 180.0}, {"left", 1.4, 0.9, 90.0}, {"right", 1.4, -0.9, -90.0}}};
+/// Of the radars beyond those of the demo vehicle, m and degrees in the vehicle frame. They look along the road, as the
+/// crowded road has ten vehicles in such a view only.
+constexpr std::array<Place, kMostRadars - kDemoRadars> kPlaces = {{{"front", 3.75, 0.0, 0.0},
+                                                                   {"rear", -0.95, 0.0, 180.0},
+                                                                   {"front_left_inner", 3.7, 0.5, 20.0},
+                                                                   {"front_right_inner", 3.7, -0.5, -20.0}}};
 
 /// The table of `like` with the values of another radar.
 std::string table_of(const std::string& like, unsigned id) {

@@ -46,7 +46,7 @@ TEST(CrowdedRoad, HasAsManyDetectionsAsAskedForTheOthersStationary) {
       road.measure(radar, 0.05 * cycle, cycle, *scan);
       ASSERT_EQ(scan->number_of_valid_detections, 800u);
       for (std::uint32_t i = kFirstStationary; i < 800; ++i) {
-        ASSERT_NEAR(over_ground_mps(radar, *scan, i), 0.0, kSixSigma_mps + 0.1);
+        ASSERT_NEAR(over_ground_mps(radar, *scan, i), 0.0, kSixSigma_mps + 0.2);  // of more draws
       }
     }
   }
