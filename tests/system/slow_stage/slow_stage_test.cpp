@@ -151,12 +151,26 @@ TEST_F(SlowStage, HeartbeatsStateTheLatencyFromArrivalOfEveryStage) {
   }
 }
 
-TEST_F(SlowStage, HealthReportsTheStageAsDegraded) {
-  const auto reports = observer_->of(TopicId::kHealthReport);
-  EXPECT_TRUE(std::any_of(reports.begin(), reports.end(), [](const Sample* report) {
-    return report->services[static_cast<std::size_t>(Service::kGhostFilter)] == ServiceCondition::kDegraded &&
-           report->received_ns > continued_ns_ + 600'000'000;  // no longer by the missed output deadline
-  }));
+TEST_F(SlowStage, HealthReportsTheDroppedScansAndTheLatencyOfTheStage) {
+  constexpr auto kGhostFilter = static_cast<std::size_t>(Service::kGhostFilter);
+  std::uint64_t dropped = 0;
+  float latency_max_us = 0.0F;
+  bool is_degraded_later = false;
+  for (const Sample* report : observer_->of(TopicId::kHealthReport)) {
+    dropped = report->dropped_inputs[kGhostFilter];
+    latency_max_us = std::max(latency_max_us, report->latency_max_us[kGhostFilter]);
+    const bool is_later = report->received_ns > continued_ns_ + 600'000'000;  // no longer by the missed output deadline
+    is_degraded_later |= is_later && report->services[kGhostFilter] == ServiceCondition::kDegraded;
+  }
+  EXPECT_GT(dropped, 0u);
+  EXPECT_EQ(dropped, count_of(Service::kGhostFilter, Fault::kInputDropped));
+  EXPECT_TRUE(is_degraded_later);
+  float heartbeat_max_us = 0.0F;
+  for (const Sample* sample : observer_->of(TopicId::kServiceStatus)) {
+    if (sample->header.source_id == kGhostFilter)
+      heartbeat_max_us = std::max(heartbeat_max_us, sample->status.latency_max_us);
+  }
+  EXPECT_EQ(latency_max_us, heartbeat_max_us);
 }
 
 }  // namespace
