@@ -186,11 +186,10 @@ void add_checks(const Truth& truth, Summary& summary) {
   };
   check("every radar delivered scans", all_heard);
   if (!summary.is_offline) {
-    check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs)", lost, lost_inputs),
+    // Dropping is what the services do on a computer that is busy for a moment: stated, but no failure.
+    check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs; {} dropped for newer scans)", lost,
+                      lost_inputs, dropped_inputs),
           lost + lost_inputs == 0);
-    // An aim, as dropping is what the product does on a machine that is busy for a moment.
-    summary.checks.push_back(
-        {fmt::format("no scan was dropped for a newer one ({} dropped)", dropped_inputs), dropped_inputs == 0, true});
   }
   check(fmt::format("objects were tracked ({} in total, up to {} at the same time)", summary.distinct_confirmed_tracks,
                     summary.most_confirmed_tracks),
