@@ -12,9 +12,6 @@ namespace {
 using catalogue::Service;
 using catalogue::Topic;
 
-// A node passes one message at a time to its handler.
-constexpr std::size_t kHeldPerSubscriber = 1;
-
 std::size_t number_of_readers(const Topic& topic) {
   const std::size_t monitors = topic.readers.contains(Service::kMonitor) ? catalogue::kMaxMonitors : 0;
   return topic.readers.size() - (monitors > 0 ? 1 : 0) + monitors;
@@ -22,7 +19,8 @@ std::size_t number_of_readers(const Topic& topic) {
 
 /// Σ subscribers (queue + held): the largest number of chunks that readers hold, however slow they are.
 std::size_t chunks_at_readers(const Topic& topic) {
-  return number_of_readers(topic) * (catalogue::queue_capacity(topic) + kHeldPerSubscriber);
+  const std::size_t readers = number_of_readers(topic);
+  return readers * catalogue::queue_capacity(topic) + catalogue::held_messages(topic, readers);
 }
 
 /// History, loans, and one chunk that a publisher keeps for reuse.

@@ -95,6 +95,8 @@ struct Topic {
   std::int64_t deadline_ns;   ///< a source that is silent for longer is late
   std::uint32_t queue_depth;  ///< messages per source that a reader's queue holds; the oldest is discarded
   std::uint32_t history;      ///< messages that a late reader gets on subscribing (iceoryx: at most 16 per writer)
+  /// Readers that handle only the newest of the scans of a radar that wait.
+  ServiceSet newest_first = ServiceSet();
 };
 
 using enum Service;
@@ -110,7 +112,8 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
      .period_ns = 50 * kMillisecond_ns,
      .deadline_ns = 250 * kMillisecond_ns,
      .queue_depth = 4,
-     .history = 0},
+     .history = 0,
+     .newest_first = ServiceSet(kDetectionCorrector)},
     {.id = TopicId::kEgoMotion,
      .name = "ego_motion",
      .type = "EgoMotion",
@@ -143,7 +146,8 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
      .period_ns = 50 * kMillisecond_ns,
      .deadline_ns = 250 * kMillisecond_ns,
      .queue_depth = 4,
-     .history = 0},
+     .history = 0,
+     .newest_first = ServiceSet(kGhostFilter)},
     {.id = TopicId::kClassifiedScan,
      .name = "classified_scan",
      .type = "ClassifiedScan",
@@ -154,7 +158,8 @@ inline constexpr std::array<Topic, kNumberOfTopics> kTopics = {{
      .period_ns = 50 * kMillisecond_ns,
      .deadline_ns = 250 * kMillisecond_ns,
      .queue_depth = 4,
-     .history = 0},
+     .history = 0,
+     .newest_first = ServiceSet(kTracker)},
     {.id = TopicId::kTrackList,
      .name = "track_list",
      .type = "TrackList",
@@ -206,6 +211,12 @@ inline constexpr std::size_t kMaxMonitors = 3;
 [[nodiscard]] constexpr std::size_t queue_capacity(const Topic& t) {
   const std::size_t wanted = t.queue_depth * sources_of(t);
   return wanted < 256 ? wanted : 256;
+}
+
+/// Messages that all such readers of the topic may hold beside their queues: the one that is handled, and where only
+/// the newest are handled, one of each source that waits.
+[[nodiscard]] constexpr std::size_t held_messages(const Topic& t, std::size_t readers) {
+  return readers + t.newest_first.size() * sources_of(t);
 }
 
 /// The topic that carries messages of type T.

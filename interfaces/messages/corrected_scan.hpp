@@ -5,7 +5,7 @@
 
 namespace boresight {
 
-/// Bits of `CorrectedScan::flags` and `ClassifiedScan::flags`: inputs that a stage lacked.
+/// Bits of `CorrectedScan::flags` and `ClassifiedScan::flags`: inputs that a stage lacked. Each stage adds its own.
 namespace pipeline_flag {
 inline constexpr std::uint32_t kNoAlignment = 1u << 0;     ///< no alignment estimate: nominal mounting, k_v = 1
 inline constexpr std::uint32_t kAlignmentStale = 1u << 1;  ///< the estimate is older than its topic's deadline
@@ -14,6 +14,8 @@ inline constexpr std::uint32_t kEgoMotionStale = 1u << 3;  ///< the last ego mot
 inline constexpr std::uint32_t kNoElevation = 1u << 4;  ///< the sensor measures no elevation: z is the sensor's height
 inline constexpr std::uint32_t kNoTracks = 1u << 5;     ///< the ghost filter had no tracks: no mirror images of them
 inline constexpr std::uint32_t kTracksStale = 1u << 6;  ///< the ghost filter's tracks were older than their deadline
+/// Earlier scans of this radar were dropped: they waited for a stage when this scan arrived.
+inline constexpr std::uint32_t kScansDropped = 1u << 7;
 }  // namespace pipeline_flag
 
 /// Bits of `CorrectedScan::detection_flags`, per detection.

@@ -19,8 +19,8 @@ enum class Stage : std::uint8_t {
 };
 inline constexpr std::size_t kNumberOfStages = 4;
 
-/// Times at which a stage took the message from its input and published its output, CLOCK_MONOTONIC, ns.
-/// Zero for a stage that the data has not reached yet.
+/// Times at which a stage began to handle the message and published its output, CLOCK_MONOTONIC, ns. The time between
+/// two stages is that of the transport and of waiting in the queue. Zero for a stage that the data has not reached yet.
 struct StageStamp {
   std::int64_t begin_ns;
   std::int64_t end_ns;

@@ -74,7 +74,7 @@ static_assert(sizeof(SensorHealth) == 192);
 enum class ServiceCondition : std::uint8_t {
   kUnknown = 0,  ///< no heartbeat yet
   kAlive = 1,
-  kDegraded = 2,   ///< alive, but misses deadlines, loses input or reports to be degraded
+  kDegraded = 2,   ///< alive, but misses deadlines, loses or drops input, or reports to be degraded
   kSilent = 3,     ///< heartbeat deadline missed
   kRestarted = 4,  ///< alive again after a restart within the last supervision window
 };
@@ -87,17 +87,22 @@ struct ServiceHealth {
   float last_heartbeat_s;  ///< negative if there was none
   float output_rate_hz;
   float processing_max_us;
+  /// From the arrival of a scan at the gateway to the output of this stage, over the last supervision window; 0 without
+  /// outputs, and of services that are no stage.
+  float latency_mean_us;
+  float latency_max_us;
   std::uint32_t restarts;
-  std::uint64_t lost_inputs;
+  std::uint64_t lost_inputs;     ///< overflows of its queues
+  std::uint64_t dropped_inputs;  ///< scans that waited until a newer one of their radar arrived
   std::uint64_t rejected_inputs;
   std::uint64_t heap_allocations;
 };
-static_assert(sizeof(ServiceHealth) == 48);
+static_assert(sizeof(ServiceHealth) == 64);
 
 inline constexpr std::size_t kMaxServices = 16;
 
 struct HealthReport {
-  static constexpr std::uint32_t kVersion = 3;
+  static constexpr std::uint32_t kVersion = 4;
 
   MessageHeader header;
   DataQualifier overall;
@@ -114,6 +119,6 @@ struct HealthReport {
 };
 
 static_assert(kIsPlainMessage<HealthReport>);
-static_assert(sizeof(HealthReport) == 104 + 24 + 32 + kMaxRadars * 192 + kMaxServices * 48);
+static_assert(sizeof(HealthReport) == 104 + 24 + 32 + kMaxRadars * 192 + kMaxServices * 64);
 
 }  // namespace boresight

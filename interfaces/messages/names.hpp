@@ -83,7 +83,8 @@ template <typename Enum, std::size_t N>
                                                                     "time jump",
                                                                     "wrong version",
                                                                     "over capacity",
-                                                                    "link"};
+                                                                    "link",
+                                                                    "input dropped"};
   return detail::word_of(kNames, fault);
 }
 

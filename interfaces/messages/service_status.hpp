@@ -9,7 +9,7 @@ enum class ServiceState : std::uint8_t { kStarting = 0, kRunning = 1, kDegraded 
 
 /// Kinds of faults; each has a counter in `ServiceStatus::faults`.
 enum class Fault : std::uint8_t {
-  kInputLost = 0,         ///< sequence gaps: the service or the writer was too slow
+  kInputLost = 0,         ///< sequence gaps: the queue overflowed, as the service was too slow
   kLoanFailed = 1,        ///< the memory pool was exhausted, so that an output was not sent
   kWireLength = 2,        ///< frame or datagram with a wrong length
   kWireValue = 3,         ///< field out of its range, bad checksum
@@ -20,8 +20,9 @@ enum class Fault : std::uint8_t {
   kVersionMismatch = 8,   ///< a message with another layout version
   kCapacity = 9,          ///< detections, clusters or tracks beyond capacity
   kLink = 10,             ///< socket error, interface down, kernel drops
+  kInputDropped = 11,     ///< a waiting scan was superseded by a newer one of its radar: the service was too slow
 };
-inline constexpr std::size_t kNumberOfFaults = 11;
+inline constexpr std::size_t kNumberOfFaults = 12;
 
 /// A sensor's self-diagnosis in its status messages.
 namespace source_condition {
@@ -52,7 +53,7 @@ static_assert(sizeof(SourceStatistics) == 72);
 /// Published by every service each heartbeat period. Counters never decrease while a process lives. `incarnation_ns`
 /// is its start time, so that a change shows a restart.
 struct ServiceStatus {
-  static constexpr std::uint32_t kVersion = 2;
+  static constexpr std::uint32_t kVersion = 3;
 
   MessageHeader header;  ///< source_id is the service's index in the catalogue
   std::int64_t incarnation_ns;
@@ -64,12 +65,18 @@ struct ServiceStatus {
   std::uint64_t heap_allocations;  ///< on the main thread's data path since warm-up; 0 without a fault
   float processing_mean_us;        ///< of one input, since the last heartbeat
   float processing_max_us;
+  /// From the arrival of a scan at the gateway (begin of Stage::kIngest) to the end of this stage, of the outputs since
+  /// the last heartbeat. 0 without outputs, and of services that are no stage.
+  float latency_mean_us;
+  float latency_max_us;
+  std::uint32_t latency_count;  ///< outputs in these figures
+  std::uint32_t reserved2;
   std::array<std::uint64_t, kNumberOfFaults> faults;
   std::array<SourceStatistics, kMaxRadars> sources;
   std::array<char, 128> last_fault;  ///< description of the latest rejected input, zero-terminated; empty if none
 };
 
 static_assert(kIsPlainMessage<ServiceStatus>);
-static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + kNumberOfFaults * 8 + kMaxRadars * 72 + 128);
+static_assert(sizeof(ServiceStatus) == 104 + 8 + 8 + 24 + 8 + 16 + kNumberOfFaults * 8 + kMaxRadars * 72 + 128);
 
 }  // namespace boresight

@@ -15,13 +15,14 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const corrector::Conf
       node.fault(Fault::kWireUnknown, "alignment estimate of a radar that is not in the vehicle file");
   });
   node.on<EgoMotion>([&](const EgoMotion& motion) { corrector.add_ego_motion(motion); });
-  node.on<RadarScan>([&](const RadarScan& scan) {
+  node.on_newest<RadarScan>([&](const RadarScan& scan, std::uint64_t dropped) {
     if (!corrector.knows(scan.header.source_id)) {
       node.fault(Fault::kWireUnknown, "scan of a radar that is not in the vehicle file");
       return;
     }
     corrected.publish_from(scan.header, Stage::kCorrector, [&](CorrectedScan& out) {
       corrector.correct(scan, out);
+      if (dropped > 0) out.flags |= pipeline_flag::kScansDropped;
       constexpr std::uint32_t kMissing = pipeline_flag::kNoEgoMotion | pipeline_flag::kEgoMotionStale;
       if ((out.flags & kMissing) != 0)
         node.fault(Fault::kSideInputMissing, "scan without ego motion for its measurement time");

@@ -11,9 +11,10 @@ int run(runtime::Node& node, const ghosts::Config& config) {
   const std::unique_ptr<ghosts::Method> method = ghosts::make_method(config);
   runtime::Publisher<ClassifiedScan> classified(node);
   node.on<TrackList>([&](const TrackList& tracks) { method->add_tracks(tracks); });
-  node.on<CorrectedScan>([&](const CorrectedScan& scan) {
+  node.on_newest<CorrectedScan>([&](const CorrectedScan& scan, std::uint64_t dropped) {
     classified.publish_from(scan.header, Stage::kGhostFilter, [&](ClassifiedScan& out) {
       method->classify(scan, out);
+      if (dropped > 0) out.flags |= pipeline_flag::kScansDropped;
       if ((out.flags & (pipeline_flag::kNoTracks | pipeline_flag::kTracksStale)) != 0) {
         node.fault(Fault::kSideInputMissing, "scan without tracks of the previous step: evidence of the scans alone");
       }

@@ -10,7 +10,7 @@ namespace {
 int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Config& config) {
   const auto tracker = tracking::make_tracker(config.tracker, vehicle, config);
   runtime::Publisher<TrackList> tracks(node);
-  node.on<ClassifiedScan>([&](const ClassifiedScan& scan) {
+  node.on_newest<ClassifiedScan>([&](const ClassifiedScan& scan, std::uint64_t dropped) {
     const tracking::StepResult result = tracker->step(scan);
     if (result.out_of_order) node.fault(Fault::kTimeJump, "scan older than the tracks");
     if (result.restarted) node.fault(Fault::kTimeJump, "measurement time jumped: tracks dropped");
@@ -29,6 +29,7 @@ int run(runtime::Node& node, const VehicleConfig& vehicle, const tracking::Confi
     std::uint32_t dropped_tracks = 0;
     tracks.publish_from(scan.header, Stage::kTracker, [&](TrackList& out) {
       tracker->write(out);
+      if (dropped > 0) out.flags |= pipeline_flag::kScansDropped;
       dropped_tracks = out.dropped_tracks;
     });
     if (dropped_tracks > 0) node.fault(Fault::kCapacity, "more tracks than a list has room for", dropped_tracks);

@@ -184,6 +184,7 @@ void Accumulator::observe(const HealthReport& report) {
     if (health.service >= current_.services.size()) continue;
     service(health.service).condition = health.condition;
     service(health.service).restarts = health.restarts;
+    service(health.service).latency_mean_us = health.latency_mean_us;
   }
 }
 
@@ -194,6 +195,7 @@ void Accumulator::observe(const ServiceStatus& status) {
   seen.outputs = status.outputs;
   seen.heap_allocations = status.heap_allocations;
   seen.processing_max_us = std::max<double>(seen.processing_max_us, status.processing_max_us);
+  seen.latency_max_us = std::max<double>(seen.latency_max_us, status.latency_max_us);
   seen.faults = status.faults;
 }
 

@@ -214,15 +214,22 @@ void put_latencies(Page& page, const Snapshot& snapshot) {
 
 void put_services(Page& page, const Snapshot& snapshot) {
   page.put("SERVICES ", Ink::kDim);
-  constexpr std::size_t kInALine = 3;
+  constexpr std::size_t kInALine = 2;
   std::size_t put = 0;
   for (const ServiceSnapshot& s : snapshot.services) {
-    if (put++ == kInALine) {
+    if (put > 0 && put % kInALine == 0) {
       page.line();
       page.put("         ");
     }
+    ++put;
     page.put(fmt::format("{} ", catalogue::name_of(s.service)));
     page.put(std::string(name_of(s.condition)), ink_of(s.condition));
+    if (s.latency_max_us > 0.0) {
+      page.put(fmt::format(" {}/{}", duration_text(s.latency_mean_us), duration_text(s.latency_max_us)), Ink::kDim);
+    }
+    const std::uint64_t dropped = s.count(Fault::kInputDropped), lost = s.count(Fault::kInputLost);
+    if (dropped > 0) page.put(fmt::format(" ({} dropped)", dropped), Ink::kWarning);
+    if (lost > 0) page.put(fmt::format(" ({} lost)", lost), Ink::kWarning);
     if (s.restarts > 0) page.put(fmt::format(" ({} restart{})", s.restarts, s.restarts == 1 ? "" : "s"), Ink::kWarning);
     page.put("  ");
   }

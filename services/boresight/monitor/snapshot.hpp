@@ -116,7 +116,13 @@ struct ServiceSnapshot {
   std::uint64_t outputs = 0;
   std::uint64_t heap_allocations = 0;
   double processing_max_us = 0.0;
+  /// From the arrival of a scan to the output of this service: of the last seconds, by the health service; and the
+  /// largest since the start of the monitor. 0: no stage of a scan, or no output.
+  double latency_mean_us = 0.0;
+  double latency_max_us = 0.0;
   std::array<std::uint64_t, kNumberOfFaults> faults{};
+
+  [[nodiscard]] std::uint64_t count(Fault fault) const { return faults[static_cast<std::size_t>(fault)]; }
 };
 
 /// Time spent in each stage (from its input to its output), and last the total: reception to track list.

@@ -115,6 +115,8 @@ json::Value object_of(const ServiceSnapshot& s) {
   value["outputs"] = s.outputs;
   value["heap_allocations"] = s.heap_allocations;
   value["processing_max_us"] = digits_of(s.processing_max_us);
+  value["latency_mean_us"] = digits_of(s.latency_mean_us);
+  value["latency_max_us"] = digits_of(s.latency_max_us);
   json::Value& faults = value["faults"] = json::Value::object();
   for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
     if (s.faults[i] != 0) faults[std::string(name_of(static_cast<Fault>(i)))] = s.faults[i];

@@ -188,6 +188,8 @@ ServiceSnapshot service_at(const Fields& fields) {
   fields.read("outputs", s.outputs);
   fields.read("heap_allocations", s.heap_allocations);
   s.processing_max_us = fields.number("processing_max_us");
+  s.latency_mean_us = fields.number("latency_mean_us");
+  s.latency_max_us = fields.number("latency_max_us");
   const Fields faults = fields.object("faults");
   for (std::size_t i = 0; i < kNumberOfFaults; ++i) {
     const std::string name(boresight::name_of(static_cast<Fault>(i)));

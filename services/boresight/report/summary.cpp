@@ -86,6 +86,7 @@ void add_services(const std::vector<Snapshot>& snapshots, Summary& summary) {
       const monitor::ServiceSnapshot& seen = snapshot.services[k];
       for (std::size_t f = 0; f < kNumberOfFaults; ++f) faults[f].see(seen.faults[f]);
       sum.processing_max_us = std::max(sum.processing_max_us, seen.processing_max_us);
+      sum.latency_max_us = std::max(sum.latency_max_us, seen.latency_max_us);
       sum.heap_allocations = std::max(sum.heap_allocations, seen.heap_allocations);
       sum.restarts = std::max(sum.restarts, seen.restarts);
     }
@@ -173,9 +174,11 @@ void add_checks(const Truth& truth, Summary& summary) {
     all_heard = all_heard && radar.last.scans > 0;
   }
   std::uint64_t lost_inputs = 0;
+  std::uint64_t dropped_inputs = 0;
   std::uint64_t restarts = 0;
   for (const auto& service : summary.services) {
-    lost_inputs += service.faults[static_cast<std::size_t>(Fault::kInputLost)];
+    lost_inputs += service.count(Fault::kInputLost);
+    dropped_inputs += service.count(Fault::kInputDropped);
     restarts += service.restarts;
   }
   const auto check = [&summary](std::string what, bool passed) {
@@ -183,7 +186,9 @@ void add_checks(const Truth& truth, Summary& summary) {
   };
   check("every radar delivered scans", all_heard);
   if (!summary.is_offline) {
-    check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs)", lost, lost_inputs),
+    // Dropping is what the services do on a computer that is busy for a moment: stated, but no failure.
+    check(fmt::format("no scan was lost (monitor: {} scans, services: {} inputs; {} dropped for newer scans)", lost,
+                      lost_inputs, dropped_inputs),
           lost + lost_inputs == 0);
   }
   check(fmt::format("objects were tracked ({} in total, up to {} at the same time)", summary.distinct_confirmed_tracks,

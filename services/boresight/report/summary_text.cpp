@@ -1,5 +1,6 @@
 // The results of a run as text, for the terminal and for the cells of the page.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -61,13 +62,25 @@ std::string render_truth(const Summary& summary) {
          "of the drive)\n\n";
 }
 
+/// From the arrival of a scan to the output of stage `i` of monitor::kLatencyNames; 0 if it is not known.
+double longest_since_arrival_us(const Summary& summary, std::size_t i) {
+  constexpr std::array kStages = {catalogue::Service::kIngestGateway, catalogue::Service::kDetectionCorrector,
+                                  catalogue::Service::kGhostFilter, catalogue::Service::kTracker};
+  for (const monitor::ServiceSnapshot& service : summary.services) {
+    if (i < kStages.size() && service.service == kStages[i]) return service.latency_max_us;
+  }
+  return 0.0;
+}
+
 std::string render_latency_rows(const Summary& summary) {
-  std::string text =
-      fmt::format("\n  {:<20}{:>10}{:>10}{:>10}\n", "latency of a scan", "p50, µs", "p99, µs", "max, µs");
+  std::string text = fmt::format("\n  {:<20}{:>10}{:>10}{:>10}   {}\n", "latency of a scan", "p50, µs", "p99, µs",
+                                 "max, µs", "max since its arrival, µs");
   for (std::size_t i = 0; i < monitor::kNumberOfLatencies; ++i) {
     const auto& h = summary.latencies[i];
-    text += fmt::format("  {:<20}{:>10.0f}{:>10.0f}{:>10.0f}\n", monitor::kLatencyNames[i], h.percentile_us(0.5),
+    text += fmt::format("  {:<20}{:>10.0f}{:>10.0f}{:>10.0f}", monitor::kLatencyNames[i], h.percentile_us(0.5),
                         h.percentile_us(0.99), h.max_us());
+    const double since_arrival_us = longest_since_arrival_us(summary, i);
+    text += since_arrival_us > 0.0 ? fmt::format("{:>28.0f}\n", since_arrival_us) : "\n";
   }
   return text;
 }

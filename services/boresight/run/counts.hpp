@@ -10,7 +10,7 @@
 
 namespace boresight::run {
 
-inline constexpr std::size_t kNumberOfPipelineFlags = 7;
+inline constexpr std::size_t kNumberOfPipelineFlags = 8;
 
 /// Why the corrector rejected a detection; the first that applies.
 enum class Rejection : std::uint8_t { kNone, kInvalid, kOutsideRegion, kWeak };

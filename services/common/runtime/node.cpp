@@ -114,7 +114,7 @@ catalogue::Service Node::self() const {
   return impl_->self;
 }
 
-void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, std::function<void(const void*)> handler) {
+void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, RawHandler handler) {
   if (!topic.readers.contains(impl_->self)) {
     throw std::logic_error(std::string(catalogue::name_of(impl_->self)) + " is not a reader of " +
                            std::string(topic.name) + " in the catalogue");
@@ -131,6 +131,15 @@ void Node::add_input(const catalogue::Topic& topic, std::uint32_t version, std::
   impl_->waitset->attachState(impl_->inputs.back()->port, iox::popo::SubscriberState::HAS_DATA).or_else([](auto) {
     throw std::logic_error("too many inputs for one node");
   });
+}
+
+void Node::add_newest_input(const catalogue::Topic& topic, std::uint32_t version, RawHandler handler) {
+  if (!topic.newest_first.contains(impl_->self)) {
+    throw std::logic_error(std::string(catalogue::name_of(impl_->self)) + " is not in newest_first of " +
+                           std::string(topic.name) + " in the catalogue");
+  }
+  add_input(topic, version, std::move(handler));
+  impl_->inputs.back()->newest.emplace();
 }
 
 void Node::every(std::int64_t period_ns, std::function<void()> callback) {
@@ -205,30 +214,63 @@ void Node::set_degraded(bool degraded) {
   impl_->degraded = degraded;
 }
 
-bool Node::Impl::take_one(Input& input) {
-  auto result = input.port.take();
-  if (result.has_error()) return false;
-  const void* const payload = result.value();
-  const auto& header = *static_cast<const MessageHeader*>(payload);
-  event_begin_ns = monotonic_now_ns();
-  Node::Impl& node = *this;
-  if (header.version != input.version) {
-    ++node.status.faults[static_cast<std::size_t>(Fault::kVersionMismatch)];
-  } else {
+/// The next message with the right version, whose loss or arrival is counted; nullptr if none waits.
+const MessageHeader* Node::Impl::take_from_queue(Input& input) {
+  for (auto result = input.port.take(); !result.has_error(); result = input.port.take()) {
+    const auto& header = *static_cast<const MessageHeader*>(result.value());
+    if (header.version != input.version) {
+      ++status.faults[static_cast<std::size_t>(Fault::kVersionMismatch)];
+      input.port.release(&header);
+      continue;
+    }
     const std::uint64_t lost = input.gaps.observe(header);
-    node.status.faults[static_cast<std::size_t>(Fault::kInputLost)] += lost;
+    status.faults[static_cast<std::size_t>(Fault::kInputLost)] += lost;
     if (lost > 0) {
-      std::snprintf(node.status.last_fault.data(), node.status.last_fault.size(), "gap in the sequence of %s",
+      std::snprintf(status.last_fault.data(), status.last_fault.size(), "gap in the sequence of %s",
                     input.port.getServiceDescription().getInstanceIDString().c_str());
     }
-    {
-      const CountAllocations counting(input.handled >= kWarmUpInputs);
-      input.handler(payload);
-    }
-    ++input.handled;
-    count(monotonic_now_ns() - event_begin_ns);
+    return &header;
   }
-  input.port.release(payload);
+  return nullptr;
+}
+
+void Node::Impl::handle(Input& input, const MessageHeader& message, std::uint64_t dropped) {
+  event_begin_ns = monotonic_now_ns();
+  {
+    const CountAllocations counting(input.handled >= kWarmUpInputs);
+    input.handler(&message, dropped);
+  }
+  ++input.handled;
+  count(monotonic_now_ns() - event_begin_ns);
+  input.port.release(&message);
+}
+
+void Node::Impl::drop(Input& input, const MessageHeader& message) {
+  ++status.faults[static_cast<std::size_t>(Fault::kInputDropped)];
+  std::snprintf(status.last_fault.data(), status.last_fault.size(),
+                "%s of radar %u superseded by a newer one: the service was too slow",
+                input.port.getServiceDescription().getInstanceIDString().c_str(), message.source_id);
+  input.port.release(&message);
+}
+
+bool Node::Impl::take_one(Input& input) {
+  if (input.newest) return take_newest(input);
+  const MessageHeader* const message = take_from_queue(input);
+  if (message == nullptr) return false;
+  handle(input, *message, 0);
+  return true;
+}
+
+bool Node::Impl::take_newest(Input& input) {
+  // At most one queue at a time: a writer that never pauses must not keep the service here.
+  for (std::uint64_t i = 0; i < input.queue_capacity; ++i) {
+    const MessageHeader* const message = take_from_queue(input);
+    if (message == nullptr) break;
+    if (const MessageHeader* const superseded = input.newest->add(*message)) drop(input, *superseded);
+  }
+  const NewestPerSource::Next next = input.newest->take();
+  if (next.message == nullptr) return false;
+  handle(input, *next.message, next.superseded);
   return true;
 }
 
@@ -295,6 +337,12 @@ void Node::Impl::count(std::int64_t processing_ns) {
   processing_max_ns = std::max(processing_max_ns, processing_ns);
 }
 
+void Node::Impl::count_latency(std::int64_t latency_ns) {
+  latency_sum_ns += static_cast<double>(latency_ns);
+  ++latency_count;
+  latency_max_ns = std::max(latency_max_ns, latency_ns);
+}
+
 void Node::Impl::heartbeat() {
   systemd::stroke_watchdog();
   log_new_faults();
@@ -306,9 +354,13 @@ void Node::Impl::heartbeat() {
       processing_count == 0 ? 0.0F
                             : static_cast<float>(processing_sum_ns * 1e-3 / static_cast<double>(processing_count));
   status.processing_max_us = static_cast<float>(static_cast<double>(processing_max_ns) * 1e-3);
-  processing_sum_ns = 0.0;
-  processing_count = 0;
-  processing_max_ns = 0;
+  status.latency_count = latency_count;
+  status.latency_mean_us =
+      latency_count == 0 ? 0.0F : static_cast<float>(latency_sum_ns * 1e-3 / static_cast<double>(latency_count));
+  status.latency_max_us = static_cast<float>(static_cast<double>(latency_max_ns) * 1e-3);
+  processing_sum_ns = latency_sum_ns = 0.0;
+  processing_count = latency_count = 0;
+  processing_max_ns = latency_max_ns = 0;
   const Origin origin{.source_id = static_cast<std::uint32_t>(self),
                       .measurement_time_ns = monotonic_now_ns(),
                       .time_source = TimeSource::kUserArrival,

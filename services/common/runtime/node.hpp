@@ -34,7 +34,22 @@ class Node {
   template <typename T, typename Handler>
   void on(Handler handler) {
     add_input(catalogue::topic(catalogue::kTopicOf<T>), T::kVersion,
-              [handler = std::move(handler)](const void* payload) { handler(*static_cast<const T*>(payload)); });
+              [handler = std::move(handler)](const void* payload, std::uint64_t) {
+                handler(*static_cast<const T*>(payload));
+              });
+  }
+
+  /// Like on(), for a service that a scan passes on its way to the tracks. If several messages wait, only the newest of
+  /// each radar is handled, in the order of their measurement. A waiting message that a newer one of its radar
+  /// supersedes is dropped and counted as Fault::kInputDropped. Calls `handler(const T&, std::uint64_t dropped)`, with
+  /// the number of messages of this radar that were dropped since the one handled before. The catalogue must list this
+  /// service in `newest_first` of the topic, because waiting messages occupy chunks of the memory pool.
+  template <typename T, typename Handler>
+  void on_newest(Handler handler) {
+    add_newest_input(catalogue::topic(catalogue::kTopicOf<T>), T::kVersion,
+                     [handler = std::move(handler)](const void* payload, std::uint64_t dropped) {
+                       handler(*static_cast<const T*>(payload), dropped);
+                     });
   }
 
   /// Calls `callback()` every `period_ns`.
@@ -65,7 +80,9 @@ class Node {
   [[nodiscard]] Impl& impl() { return *impl_; }
 
  private:
-  void add_input(const catalogue::Topic& topic, std::uint32_t version, std::function<void(const void*)> handler);
+  using RawHandler = std::function<void(const void* payload, std::uint64_t dropped)>;
+  void add_input(const catalogue::Topic& topic, std::uint32_t version, RawHandler handler);
+  void add_newest_input(const catalogue::Topic& topic, std::uint32_t version, RawHandler handler);
   std::unique_ptr<Impl> impl_;
 };
 

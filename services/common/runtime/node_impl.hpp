@@ -14,6 +14,7 @@
 #include <iceoryx_posh/popo/untyped_subscriber.hpp>
 #include <iceoryx_posh/popo/wait_set.hpp>
 
+#include "services/common/runtime/newest_per_source.hpp"
 #include "services/common/runtime/node.hpp"
 #include "services/common/runtime/ports.hpp"
 
@@ -39,13 +40,19 @@ class GapDetector {
 
 struct Input {
   Input(const iox::capro::ServiceDescription& description, const iox::popo::SubscriberOptions& options,
-        std::uint32_t message_version, bool several_writers, std::function<void(const void*)> on_message)
-      : port(description, options), version(message_version), gaps(several_writers), handler(std::move(on_message)) {}
+        std::uint32_t message_version, bool several_writers, std::function<void(const void*, std::uint64_t)> on_message)
+      : port(description, options),
+        queue_capacity(options.queueCapacity),
+        version(message_version),
+        gaps(several_writers),
+        handler(std::move(on_message)) {}
 
   iox::popo::UntypedSubscriber port;
+  std::uint64_t queue_capacity;
   std::uint32_t version;
   GapDetector gaps;
-  std::function<void(const void*)> handler;
+  std::optional<NewestPerSource> newest;  // for on_newest()
+  std::function<void(const void*, std::uint64_t)> handler;
   std::uint64_t handled = 0;
 };
 
@@ -66,10 +73,15 @@ struct Node::Impl {
 
   void take_all();
   bool take_one(Input& input);
+  bool take_newest(Input& input);
+  const MessageHeader* take_from_queue(Input& input);
+  void drop(Input& input, const MessageHeader& message);
+  void handle(Input& input, const MessageHeader& message, std::uint64_t dropped);
   void run_timers();
   void wait(std::int64_t timeout_ns);
   void wait_for_descriptors(std::int64_t timeout_ns);
   void count(std::int64_t processing_ns);
+  void count_latency(std::int64_t latency_ns);
   void heartbeat();
   void log_new_faults();
 
@@ -89,6 +101,9 @@ struct Node::Impl {
   double processing_sum_ns = 0.0;
   std::uint64_t processing_count = 0;
   std::int64_t processing_max_ns = 0;
+  double latency_sum_ns = 0.0;
+  std::uint32_t latency_count = 0;
+  std::int64_t latency_max_ns = 0;
   std::array<std::uint64_t, kNumberOfFaults> logged_faults{};
   std::uint64_t logged_allocations = 0;
 };

@@ -64,7 +64,10 @@ void send(PublisherPort& port, void* payload, std::uint32_t version, const Origi
   Node::Impl& node = port.node.impl();
   if (origin.stage) {
     const std::int64_t begin_ns = upstream != nullptr ? node.event_begin_ns : origin.begin_ns;
-    header.stage(*origin.stage) = {begin_ns, monotonic_now_ns()};
+    const std::int64_t end_ns = monotonic_now_ns();
+    header.stage(*origin.stage) = {begin_ns, end_ns};
+    const std::int64_t arrival_ns = header.stage(Stage::kIngest).begin_ns;
+    if (arrival_ns > 0 && arrival_ns <= end_ns) node.count_latency(end_ns - arrival_ns);
   }
   port.port.publish(payload);
   if (port.topic.id != catalogue::TopicId::kServiceStatus) ++node.status.outputs;

@@ -84,7 +84,7 @@ class Publisher {
   }
 
   /// For a message that derives from `upstream`, with its source, measurement time and stamps of earlier stages. This
-  /// stage begins when the node takes `upstream` from its queue. `fill(T&)` writes everything except the header.
+  /// stage begins when the node calls the handler with `upstream`. `fill(T&)` writes everything except the header.
   /// Returns false if no chunk is available.
   template <typename Fill>
   bool publish_from(const MessageHeader& upstream, Stage stage, Fill&& fill) {

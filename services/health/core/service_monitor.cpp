@@ -14,7 +14,8 @@ std::uint64_t sum_of(const ServiceStatus& status, std::initializer_list<Fault> f
 }
 
 std::uint64_t losses_of(const ServiceStatus& status) {
-  return sum_of(status, {Fault::kInputLost, Fault::kLoanFailed, Fault::kSideInputMissing, Fault::kLink});
+  return sum_of(status,
+                {Fault::kInputLost, Fault::kInputDropped, Fault::kLoanFailed, Fault::kSideInputMissing, Fault::kLink});
 }
 
 std::uint64_t rejections_of(const ServiceStatus& status) {
@@ -39,7 +40,8 @@ ServiceMonitor::ServiceMonitor(std::uint32_t service, std::int64_t heartbeat_dea
       output_deadline_ns_(output_deadline_ns),
       config_(config),
       outputs_(config.window_s),
-      losses_(config.window_s) {}
+      losses_(config.window_s),
+      latency_(config.window_s) {}
 
 void ServiceMonitor::observe(const ServiceStatus& status, std::int64_t now_ns) {
   if (last_ns_ != kNever && status.incarnation_ns < last_.incarnation_ns)
@@ -60,6 +62,7 @@ void ServiceMonitor::observe(const ServiceStatus& status, std::int64_t now_ns) {
   outputs_.add(now_ns, outputs);
   // Losses before its start do not count for a new process.
   losses_.add(now_ns, is_new ? 0 : grown(losses_of(status), losses_of(last_)));
+  latency_.add(now_ns, status.latency_count, status.latency_mean_us, status.latency_max_us);
   last_ = status;
   last_ns_ = now_ns;
 }
@@ -81,7 +84,10 @@ ServiceHealth ServiceMonitor::judge(bool input_flows, std::int64_t now_ns) {
   health.last_heartbeat_s = seconds(now_ns - last_ns_);
   health.output_rate_hz = static_cast<float>(outputs_.rate_hz(now_ns));
   health.processing_max_us = last_.processing_max_us;
+  health.latency_mean_us = latency_.mean_us(now_ns);
+  health.latency_max_us = latency_.max_us(now_ns);
   health.lost_inputs = sum_of(last_, {Fault::kInputLost});
+  health.dropped_inputs = sum_of(last_, {Fault::kInputDropped});
   health.rejected_inputs = rejections_of(last_);
   health.heap_allocations = last_.heap_allocations;
   const auto restart_memory_ns = static_cast<std::int64_t>(config_.restart_memory_s * 1e9);

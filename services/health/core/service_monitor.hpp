@@ -1,4 +1,4 @@
-// Verdict on one service: heartbeats, restarts, output deadline, lost inputs.
+// Verdict on one service: heartbeats, restarts, output deadline, lost and dropped inputs, latency.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include "interfaces/messages/health_report.hpp"
 #include "interfaces/messages/service_status.hpp"
 #include "services/health/core/config.hpp"
+#include "services/health/core/latency_window.hpp"
 #include "services/health/core/rate_window.hpp"
 
 namespace boresight::health {
@@ -40,6 +41,7 @@ class ServiceMonitor {
   ServiceStatus last_{};
   RateWindow outputs_;
   RateWindow losses_;
+  LatencyWindow latency_;
 };
 
 }  // namespace boresight::health

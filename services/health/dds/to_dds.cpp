@@ -125,8 +125,12 @@ DiagnosticStatus_ status_of(const ServiceHealth& service, const VehicleConfig& v
   add_value(status, "last heartbeat", fmt::format("{:.2f} s ago", service.last_heartbeat_s));
   add_value(status, "output rate", fmt::format("{:.1f} Hz", service.output_rate_hz));
   add_value(status, "longest processing", fmt::format("{:.0f} us", service.processing_max_us));
+  add_value(status, "latency from arrival",
+            fmt::format("{:.3f} ms on average, {:.3f} ms at most", service.latency_mean_us * 1e-3F,
+                        service.latency_max_us * 1e-3F));
   add_value(status, "restarts", fmt::format("{}", service.restarts));
   add_value(status, "lost inputs", fmt::format("{}", service.lost_inputs));
+  add_value(status, "dropped inputs", fmt::format("{}", service.dropped_inputs));
   add_value(status, "rejected inputs", fmt::format("{}", service.rejected_inputs));
   add_value(status, "heap allocations", fmt::format("{}", service.heap_allocations));
   return status;

@@ -26,19 +26,23 @@ void ScanWindow::take_back(const ScanId& scan, std::int64_t now_ns) {
   waiting_since_ns_ = now_ns;
   answered_ = true;
   silent_ = false;
-  if (std::find(in_flight_.begin(), in_flight_.end(), scan) == in_flight_.end()) {
+  const auto found = std::find(in_flight_.begin(), in_flight_.end(), scan);
+  if (found == in_flight_.end()) {
     early_.push_back(scan);
     if (early_.size() > kMaxEarly) early_.pop_front();
     return;
   }
-  while (in_flight_.front() != scan) drop_oldest();
-  in_flight_.pop_front();
+  const auto is_of_radar = [&scan](const ScanId& other) { return other.radar == scan.radar; };
+  const auto kept = std::remove_if(in_flight_.begin(), found, is_of_radar);
+  counts_[scan.radar].missing += static_cast<std::uint64_t>(found - kept);
   ++counts_[scan.radar].returned;
+  in_flight_.erase(kept, found + 1);
 }
 
 void ScanWindow::expire(std::int64_t now_ns) {
   if (in_flight_.empty() || now_ns - waiting_since_ns_ < timeout_ns_) return;
-  while (!in_flight_.empty()) drop_oldest();
+  for (const ScanId& scan : in_flight_) ++counts_[scan.radar].missing;
+  in_flight_.clear();
   silent_ = true;
 }
 
@@ -50,11 +54,6 @@ std::uint64_t ScanWindow::missing() const {
   std::uint64_t sum = 0;
   for (const auto& [radar, counts] : counts_) sum += counts.missing;
   return sum;
-}
-
-void ScanWindow::drop_oldest() {
-  ++counts_[in_flight_.front().radar].missing;
-  in_flight_.pop_front();
 }
 
 }  // namespace boresight::replay

@@ -19,11 +19,13 @@ struct ScanId {
 struct ScanCounts {
   std::uint64_t published = 0;  ///< by the gateway
   std::uint64_t returned = 0;   ///< with a track list
-  std::uint64_t missing = 0;    ///< without a track list, although one of a later scan came, or after the timeout
-  std::uint64_t waits = 0;      ///< times that the replay waited for a scan of this radar
+  std::uint64_t missing =
+      0;                    ///< without a track list, although a later scan of the radar has one, or after the timeout
+  std::uint64_t waits = 0;  ///< times that the replay waited for a scan of this radar
 };
 
-/// Each stage handles scans in their order, so a scan is missing as soon as the track list of a later one comes. Times
+/// Each stage handles the scans of a radar in their order, and may drop one that a later one supersedes. So a scan is
+/// missing as soon as the track list of a later one of its radar comes. Scans of other radars may be reordered. Times
 /// are monotonic.
 class ScanWindow {
  public:
@@ -50,8 +52,6 @@ class ScanWindow {
   [[nodiscard]] std::uint64_t missing() const;
 
  private:
-  void drop_oldest();
-
   std::size_t limit_;
   std::int64_t timeout_ns_;
   std::deque<ScanId> in_flight_;  // oldest first

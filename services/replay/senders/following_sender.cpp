@@ -50,8 +50,10 @@ FollowingSender::FollowingSender(std::unique_ptr<Sender> receiver, const MaxSpee
   node_.on<TrackList>(
       [this](const TrackList& tracks) { window_.take_back(id_of(tracks.header), runtime::monotonic_now_ns()); });
   node_.on<ServiceStatus>([this](const ServiceStatus& status) {
+    // A dropped scan has no track list either: its results are as incomplete as those of a lost one.
     input_losses_.see(status.header.source_id, status.incarnation_ns,
-                      status.faults[static_cast<std::size_t>(Fault::kInputLost)]);
+                      status.faults[static_cast<std::size_t>(Fault::kInputLost)] +
+                          status.faults[static_cast<std::size_t>(Fault::kInputDropped)]);
   });
 }
 
@@ -112,7 +114,7 @@ std::string FollowingSender::text() const {
   for (const auto& [service, lost] : input_losses_.losses()) {
     const bool is_known = service < catalogue::kNumberOfServices;
     text += std::string(is_known ? catalogue::kServiceNames[service] : "unknown service") + " lost " +
-            std::to_string(lost) + " inputs\n";
+            std::to_string(lost) + " inputs, or dropped them as it was too slow\n";
   }
   return text;
 }

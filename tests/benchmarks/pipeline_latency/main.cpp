@@ -1,16 +1,22 @@
-// boresight-bench-pipeline_latency [SECONDS = 20]: run it by tests/system/isolated, or where no other RouDi runs.
+// boresight-bench-pipeline_latency [SECONDS = 20] [--radars N] [--detections N] [--busy N]: run it by
+// tests/system/isolated, or where no other RouDi runs.
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <memory>
+#include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "services/common/runtime/config/vehicle_file.hpp"
+#include "services/common/runtime/stop_signal.hpp"
 #include "services/simulator/scenario_file.hpp"
 #include "services/simulator/wire/ars548_encoder.hpp"
 #include "services/simulator/wire/pcap_writer.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
 #include "tests/benchmarks/pipeline_latency/bare_chain.hpp"
+#include "tests/benchmarks/pipeline_latency/load/bench_vehicle.hpp"
 #include "tests/benchmarks/pipeline_latency/load/crowded_road.hpp"
+#include "tests/benchmarks/pipeline_latency/stage_losses.hpp"
 #include "tests/system/harness/domain.hpp"
 #include "tests/system/harness/observer.hpp"
 
@@ -18,8 +24,16 @@ using namespace boresight;
 
 namespace {
 
-constexpr std::uint32_t kRadars = 4;
-constexpr std::uint32_t kDetections = bench::kMovingDetections + bench::kFalseDetections + bench::kStationaryDetections;
+struct Load {
+  double seconds = 20.0;
+  std::uint32_t radars = 4;
+  std::uint32_t detections = bench::kDetections;  ///< of a scan
+  unsigned busy = 0;                              ///< neighbours: processes that compute all the time
+
+  /// The load that the bars are for.
+  [[nodiscard]] bool is_default() const { return radars == 4 && detections == bench::kDetections && busy == 0; }
+};
+
 constexpr std::int64_t kCycle_ns = 50'000'000;
 constexpr std::int64_t kEpoch_ns = 1'700'000'000'000'000'000;  // of the simulated ego recording
 constexpr double kMostTrackerMean_ms = 1.0, kMostTrackerP99_ms = 3.0;
@@ -31,19 +45,17 @@ std::uint32_t ipv4(const std::string& text) {
 }
 
 /// Cycles of the radars are evenly apart.
-std::filesystem::path write_load(double seconds, double ego_speed_mps) {
-  const VehicleConfig vehicle =
-      config::read_vehicle_file(std::filesystem::path(BORESIGHT_SOURCE_DIR) / "config/vehicle/demo.toml");
-  const bench::CrowdedRoad road(ego_speed_mps);
+std::filesystem::path write_load(const Load& load, const VehicleConfig& vehicle, double ego_speed_mps) {
+  const bench::CrowdedRoad road(ego_speed_mps, load.detections);
   const std::filesystem::path file = "/tmp/load.pcap";
   simulator::wire::PcapWriter pcap(file);
   const auto scan = std::make_unique<RadarScan>();
   const auto bytes = std::make_unique<simulator::wire::Ars548List>();
-  const auto cycles = static_cast<std::uint32_t>(seconds * 1e9 / static_cast<double>(kCycle_ns));
-  for (std::uint32_t i = 0; i < cycles * kRadars; ++i) {
-    const RadarConfig& radar = vehicle.radars[i % kRadars];
-    const std::int64_t since_start_ns = i * (kCycle_ns / kRadars), time_ns = kEpoch_ns + since_start_ns;
-    road.measure(radar, 1e-9 * static_cast<double>(since_start_ns), i / kRadars, *scan);
+  const auto cycles = static_cast<std::uint32_t>(load.seconds * 1e9 / static_cast<double>(kCycle_ns));
+  for (std::uint32_t i = 0; i < cycles * load.radars; ++i) {
+    const RadarConfig& radar = vehicle.radars[i % load.radars];
+    const std::int64_t since_start_ns = i * (kCycle_ns / load.radars), time_ns = kEpoch_ns + since_start_ns;
+    road.measure(radar, 1e-9 * static_cast<double>(since_start_ns), i / load.radars, *scan);
     simulator::wire::encode_ars548(*scan, time_ns, *bytes);
     pcap.write(time_ns, {ipv4(radar.source.sender), radar.source.port}, {ipv4(radar.source.address), radar.source.port},
                *bytes);
@@ -61,22 +73,52 @@ void print_bar(const char* what, double figure_ms, double most_ms) {
               figure_ms <= most_ms ? "met" : "missed");
 }
 
-int run(double seconds) {
+/// Processes that compute until they are stopped, at the priority of the services on the data path.
+std::vector<std::unique_ptr<harness::Child>> start_neighbours(unsigned count) {
+  std::vector<std::unique_ptr<harness::Child>> neighbours;
+  for (unsigned i = 0; i < count; ++i) {
+    neighbours.push_back(std::make_unique<harness::Child>([] {
+      runtime::install_stop_signals();
+      volatile std::uint64_t work = 0;
+      while (!runtime::stop_signalled()) work = work + 1;
+      return 0;
+    }));
+  }
+  return neighbours;
+}
+
+void print_losses(const std::array<bench::StageLosses, catalogue::kNumberOfServices>& losses) {
+  std::printf("%-34s %9s %9s %9s\n", "messages (gateway: with ego motion)", "published", "lost", "dropped");
+  using enum catalogue::Service;
+  for (const catalogue::Service service : {kIngestGateway, kDetectionCorrector, kGhostFilter, kTracker}) {
+    const bench::StageLosses& stage = losses[static_cast<std::size_t>(service)];
+    const std::string name(catalogue::name_of(service));
+    std::printf("%-34s %9llu %9llu %9llu\n", name.c_str(), static_cast<unsigned long long>(stage.outputs),
+                static_cast<unsigned long long>(stage.lost), static_cast<unsigned long long>(stage.dropped));
+  }
+}
+
+int run(const Load& load) {
+  const auto config = bench::write_bench_vehicle(harness::shipped_configuration(), "/tmp/bench_config", load.radars);
+  const VehicleConfig vehicle = config::read_vehicle_file(config / "vehicle" / "bench.toml");
   const simulator::Scenario scenario = simulator::scenario("straight_rail");
-  const auto ego = harness::simulated_drive(seconds, scenario.name).back();
-  const auto load = write_load(seconds, scenario.ego.speed_mps.front().value);
+  const auto ego = harness::simulated_drive(load.seconds, scenario.name).back();
+  const auto scans = write_load(load, vehicle, scenario.ego.speed_mps.front().value);
   const std::vector<std::size_t> chunks = {sizeof(RadarScan), sizeof(CorrectedScan), sizeof(ClassifiedScan)};
 
   std::vector<double> total, ipc;
   std::array<std::vector<double>, kNumberOfStages> processing;
+  std::array<bench::StageLosses, catalogue::kNumberOfServices> losses{};
   {
     harness::Observer observer("-bench");
-    harness::Domain domain("demo");
+    harness::Domain domain("bench", {}, config);
     domain.start();
     if (!domain.until(5.0, [&] { return observer.is_attached(); })) return 1;
-    domain.replay({load, ego});
-    if (!domain.until(seconds + 20.0, [&] { return domain.replay_has_ended(); })) return 1;
+    const auto neighbours = start_neighbours(load.busy);
+    domain.replay({scans, ego});
+    if (!domain.until(load.seconds + 20.0, [&] { return domain.replay_has_ended(); })) return 1;
     domain.run_for(0.3);
+    losses = bench::losses_of(observer);
     const auto lists = observer.of(catalogue::TopicId::kTrackList);
     for (const harness::Sample* sample : lists) {
       const auto& stamps = sample->header.stages;
@@ -91,16 +133,18 @@ int run(double seconds) {
     static_cast<void>(observer.process().stop());
   }
   if (total.empty()) return 1;
-  const auto bare = bench::bare_chain(chunks, kCycle_ns / kRadars, static_cast<std::size_t>(seconds * 80.0));
-  if (bare.empty()) return 1;
-
-  std::printf("%u radars x %u detections x 20 Hz, %u moving and %u false, %zu scans, first datagram to track list\n",
-              kRadars, kDetections, bench::kMovingDetections, bench::kFalseDetections, total.size());
+  std::printf("%u radars x %u detections x 20 Hz, %u moving and %u false, %u busy neighbours, %zu track lists\n",
+              load.radars, load.detections, bench::kMovingDetections, bench::kFalseDetections, load.busy, total.size());
+  print_losses(losses);
   std::printf("%-34s %9s %9s %9s %9s\n", "us", "mean", "p50", "p99", "max");
   const char* const names[] = {"ingest gateway", "detection corrector", "ghost filter", "tracker"};
   for (std::size_t i = 0; i < kNumberOfStages; ++i) print(names[i], processing[i]);
   print("between the processes (IPC)", ipc);
-  print("total", total);
+  print("total: first datagram to track list", total);
+  if (!load.is_default()) return 0;
+  const auto bare =
+      bench::bare_chain(chunks, kCycle_ns / load.radars, static_cast<std::size_t>(load.seconds * 20.0 * load.radars));
+  if (bare.empty()) return 1;
   print("bare iceoryx chain, same hops", bare);
   std::printf("IPC share / bare chain at p50: %.2f (at most 1.3)\n",
               bench::quantile(ipc, 0.5) / bench::quantile(bare, 0.5));
@@ -113,8 +157,16 @@ int run(double seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Load load;
+  CLI::App app("Latency from a radar's datagram to the track list, and lost and dropped scans");
+  app.add_option("seconds", load.seconds, "length of the drive")->check(CLI::Range(1.0, 600.0));
+  app.add_option("--radars", load.radars, "number of radars")->check(CLI::Range(1U, bench::kMostRadars));
+  app.add_option("--detections", load.detections, "detections of a scan; more than 300 are stationary ones")
+      ->check(CLI::Range(100U, 800U));
+  app.add_option("--busy", load.busy, "neighbours that compute all the time")->check(CLI::Range(0U, 64U));
+  CLI11_PARSE(app, argc, argv);
   try {
-    return run(argc > 1 ? std::atof(argv[1]) : 20.0);
+    return run(load);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

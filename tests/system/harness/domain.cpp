@@ -24,12 +24,13 @@ const fs::path kFolder = "/tmp/domain";
 const fs::path kBinaries = BORESIGHT_BINARY_DIR;
 const fs::path kConfig = fs::path(BORESIGHT_SOURCE_DIR) / "config";
 
-supervisor::DomainConfig configuration(const std::string& vehicle, const std::vector<std::string>& without) {
+supervisor::DomainConfig configuration(const std::string& vehicle, const std::vector<std::string>& without,
+                                       const fs::path& folder) {
   fs::create_directories(kFolder / "logs");
   const fs::path pools = kFolder / "logs" / "roudi.toml";
   std::ofstream(pools) << roudi::to_toml(roudi::single_segment());
   supervisor::DomainConfig config = supervisor::domain_of_catalogue({.binaries = kBinaries,
-                                                                     .config_directory = kConfig,
+                                                                     .config_directory = folder,
                                                                      .vehicle = vehicle,
                                                                      .run_directory = kFolder / "run",
                                                                      .log_directory = kFolder / "logs",
@@ -43,8 +44,8 @@ supervisor::DomainConfig configuration(const std::string& vehicle, const std::ve
 
 }  // namespace
 
-Domain::Domain(const std::string& vehicle, const std::vector<std::string>& without)
-    : supervisor_(configuration(vehicle, without)) {}
+Domain::Domain(const std::string& vehicle, const std::vector<std::string>& without, const fs::path& config)
+    : supervisor_(configuration(vehicle, without, config)) {}
 
 void Domain::start() {
   supervisor_.start();

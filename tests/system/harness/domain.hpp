@@ -13,11 +13,14 @@
 
 namespace boresight::harness {
 
+[[nodiscard]] std::filesystem::path shipped_configuration();
+
 /// RouDi and every service, listening to boresight-replay. Logs and sockets lie under /tmp/domain.
 class Domain {
  public:
-  /// Services in `without` are not started.
-  explicit Domain(const std::string& vehicle, const std::vector<std::string>& without = {});
+  /// Services in `without` are not started. `config`: the folder of the configuration.
+  explicit Domain(const std::string& vehicle, const std::vector<std::string>& without = {},
+                  const std::filesystem::path& config = shipped_configuration());
 
   /// Starts it and waits until every service is ready; throws if that takes longer than 20 s.
   void start();
@@ -34,8 +37,6 @@ class Domain {
  private:
   supervisor::Supervisor supervisor_;
 };
-
-[[nodiscard]] std::filesystem::path shipped_configuration();
 
 /// Starts a service of the demo vehicle outside of any supervision, with the shipped configuration or another; it
 /// writes to log_of_alone(), which is emptied before.

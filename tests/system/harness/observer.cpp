@@ -170,7 +170,10 @@ int Observer::observe(const std::string& name, double pause_s) {
       }
       for (std::size_t i = 0; i < std::min<std::size_t>(report.number_of_services, kMaxServices); ++i) {
         const ServiceHealth& service = report.services[i];
-        if (service.service < s.services.size()) s.services[service.service] = service.condition;
+        if (service.service >= s.services.size()) continue;
+        s.services[service.service] = service.condition;
+        s.dropped_inputs[service.service] = service.dropped_inputs;
+        s.latency_max_us[service.service] = service.latency_max_us;
       }
     });
   });

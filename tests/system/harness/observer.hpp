@@ -31,6 +31,8 @@ struct Sample {
   std::array<std::uint32_t, 5> sensor;         ///< HealthReport: data qualifier of radar 1…4 (index = id)
   std::array<std::uint32_t, 5> sensor_reason;  ///< extended qualifier
   std::array<ServiceCondition, catalogue::kNumberOfSupervisedServices> services;
+  std::array<std::uint64_t, catalogue::kNumberOfSupervisedServices> dropped_inputs;  ///< HealthReport, as is the next
+  std::array<float, catalogue::kNumberOfSupervisedServices> latency_max_us;
 };
 
 inline constexpr std::size_t kMaxSamples = 60'000;

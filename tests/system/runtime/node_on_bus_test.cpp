@@ -11,6 +11,7 @@
 #include "services/common/runtime/stop_signal.hpp"
 #include "tests/system/harness/child.hpp"
 #include "tests/system/harness/roudi.hpp"
+#include "tests/system/runtime/scan_writer.hpp"
 
 namespace boresight {
 namespace {
@@ -18,36 +19,15 @@ namespace {
 using catalogue::Service;
 using harness::Child;
 using harness::eventually;
+using harness::scan_origin;
 using harness::Shared;
+using harness::write_scans;
 using runtime::monotonic_now_ns;
 using runtime::Node;
 using runtime::Origin;
 using runtime::Publisher;
 
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
-
-Origin scan_origin(std::uint32_t radar) {
-  return {.source_id = radar,
-          .measurement_time_ns = monotonic_now_ns(),
-          .time_source = TimeSource::kLinkArrival,
-          .stage = Stage::kIngest,
-          .begin_ns = monotonic_now_ns()};
-}
-
-/// Publishes scans of radars 1 and 2 in turn; the cycle counter counts all of them.
-int write_scans(std::int64_t period_ns) {
-  Node node(Service::kIngestGateway);
-  Publisher<RadarScan> scans(node);
-  std::uint32_t counter = 0;
-  node.every(period_ns, [&] {
-    scans.publish(scan_origin(1 + counter % 2), [&](RadarScan& scan) {
-      scan.cycle_counter = ++counter;
-      scan.number_of_valid_detections = 1;
-      scan.range_m[0] = static_cast<float>(counter);
-    });
-  });
-  return node.spin();
-}
 
 class RuntimeOnBus : public testing::Test {
  protected:
@@ -140,6 +120,7 @@ TEST_F(RuntimeOnBus, RefusesWritersAndReadersThatTheCatalogueDoesNotList) {
     Node node(Service::kTracker);
     EXPECT_THROW(Publisher<RadarScan>{node}, std::logic_error);
     EXPECT_THROW(node.on<RadarScan>([](const RadarScan&) {}), std::logic_error);
+    EXPECT_NO_THROW(node.on_newest<ClassifiedScan>([](const ClassifiedScan&, std::uint64_t) {}));
     EXPECT_NO_THROW(Publisher<TrackList>{node});
     return 0;
   });

@@ -208,6 +208,8 @@ Snapshot eventful_snapshot() {
   status.header.source_id = 4;
   status.inputs = 12;
   status.faults[static_cast<std::size_t>(Fault::kCapacity)] = 3;
+  status.faults[static_cast<std::size_t>(Fault::kInputDropped)] = 7;
+  status.latency_max_us = 3456.0F;
   accumulator.observe(status);
   return accumulator.snapshot(123'456'789'012'345);
 }
@@ -225,6 +227,7 @@ TEST(SnapshotLines, AreReadBackWithEveryValueAlsoWhenTheLastIsCutOff) {
   EXPECT_EQ(to_json(snapshots[1]), to_json(written));
   EXPECT_EQ(snapshots[0].time_ns, written.time_ns);
   EXPECT_EQ(snapshots[0].services[4].faults, written.services[4].faults);
+  EXPECT_EQ(snapshots[0].services[4].latency_max_us, 3456.0);
   EXPECT_EQ(snapshots[0].latencies[4].counts(), written.latencies[4].counts());
   EXPECT_EQ(snapshots[0].radars[1].conditions, written.radars[1].conditions);
   EXPECT_NEAR(snapshots[0].radars[1].details.pitch.value_rad, written.radars[1].details.pitch.value_rad, 1e-9);

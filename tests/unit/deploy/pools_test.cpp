@@ -46,15 +46,16 @@ TEST(RoudiPools, ChunksHoldEveryMessageAlignedToACacheLine) {
 TEST(RoudiPools, CountsCoverEveryQueueFullAndEveryWriterAtItsLimit) {
   const Segment all = single_segment().at(0);
   // By hand for the radar scans, which share their size with nothing: readers are three services, three monitors and
-  // the replay, each with a queue of 4 × 16 radars and one in hand; the gateway holds 8 loans and the last chunk.
-  // 7·65 + 9 = 464.
+  // the replay, each with a queue of 4 × 16 radars and one in hand; in the corrector, the newest of 16 radars wait. The
+  // gateway holds 8 loans and the last chunk. 7·65 + 16 + 9 = 480.
   ASSERT_NE(pool_for(all, sizeof(RadarScan)), nullptr);
-  EXPECT_EQ(pool_for(all, sizeof(RadarScan))->count, 464U);
+  EXPECT_EQ(pool_for(all, sizeof(RadarScan))->count, 480U);
   std::size_t wanted = 0;
   std::size_t there = 0;
   for (const auto& topic : catalogue::kTopics) {
     const std::size_t readers = topic.readers.size() - 1 + catalogue::kMaxMonitors;
     wanted += readers * (catalogue::queue_capacity(topic) + 1) + topic.writers.size() * (topic.history + 9);
+    wanted += topic.newest_first.size() * kMaxRadars;
   }
   for (const Pool& pool : all.pools) there += pool.count;
   EXPECT_GE(there, wanted);

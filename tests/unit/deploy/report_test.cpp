@@ -109,6 +109,14 @@ TEST(Summary, LossRestartSilenceAndNoTracksFail) {
   service_lost.back().services[4].faults[static_cast<std::size_t>(Fault::kInputLost)] = 2;
   EXPECT_FALSE(passed(summarise(service_lost, {}), "no scan was lost"));
   EXPECT_THAT(render_summary(summarise(service_lost, {})), ::testing::HasSubstr("tracker: 2 × input lost"));
+  auto service_dropped = synthetic_drive();
+  service_dropped.back().services[3].faults[static_cast<std::size_t>(Fault::kInputDropped)] = 5;
+  service_dropped.back().services[3].latency_max_us = 61'000.0;
+  EXPECT_TRUE(passed(summarise(service_dropped, {}), "no scan was lost")) << "a dropped scan is not counted as lost";
+  EXPECT_THAT(render_summary(summarise(service_dropped, {})),
+              ::testing::AllOf(::testing::HasSubstr("ghost_filter: 5 × input dropped"),
+                               ::testing::HasSubstr("; 5 dropped for newer scans)"),
+                               ::testing::ContainsRegex("ghost filter .* 61000\n")));
   auto restarted = synthetic_drive();
   restarted[50].services[2].restarts = 1;
   EXPECT_FALSE(passed(summarise(restarted, {}), "restarted"));

@@ -282,6 +282,44 @@ TEST_F(SupervisionTest, LostInputDegradesForTheWindow) {
   EXPECT_EQ(service(Service::kTracker).condition, ServiceCondition::kAlive);
 }
 
+TEST_F(SupervisionTest, DroppedScansDegradeLikeLostInputsAndAreCountedApart) {
+  run(3.0);
+  EXPECT_EQ(service(Service::kGhostFilter).condition, ServiceCondition::kAlive);
+  status(Service::kGhostFilter).faults[static_cast<std::size_t>(Fault::kInputDropped)] = 3;
+  run(0.5);
+  EXPECT_EQ(service(Service::kGhostFilter).condition, ServiceCondition::kDegraded);
+  EXPECT_EQ(service(Service::kGhostFilter).dropped_inputs, 3u);
+  EXPECT_EQ(service(Service::kGhostFilter).lost_inputs, 0u);
+  run(4.0);
+  EXPECT_EQ(service(Service::kGhostFilter).condition, ServiceCondition::kAlive);
+}
+
+TEST_F(SupervisionTest, LatencyOfAServiceIsThatOfItsHeartbeatsInTheWindow) {
+  ServiceStatus& tracker = status(Service::kTracker);
+  tracker.latency_count = 8;
+  tracker.latency_mean_us = 2000.0F;
+  tracker.latency_max_us = 3000.0F;
+  run(1.0);
+  EXPECT_NEAR(service(Service::kTracker).latency_mean_us, 2000.0, 1e-3);
+  EXPECT_EQ(service(Service::kTracker).latency_max_us, 3000.0F);
+  EXPECT_EQ(service(Service::kHealth).latency_max_us, 0.0F);
+  tracker.latency_mean_us = tracker.latency_max_us = 1000.0F;
+  run(4.0);
+  EXPECT_EQ(service(Service::kTracker).latency_max_us, 1000.0F) << "two windows later";
+  tracker.latency_count = 0;
+  tracker.latency_mean_us = tracker.latency_max_us = 0.0F;
+  run(4.1);
+  EXPECT_EQ(service(Service::kTracker).latency_mean_us, 0.0F) << "no outputs";
+}
+
+TEST(LatencyWindow, MeanIsWeightedByTheNumberOfOutputs) {
+  LatencyWindow latency(2.0);
+  latency.add(0, 1, 1000.0F, 1000.0F);
+  latency.add(1, 3, 5000.0F, 6000.0F);
+  EXPECT_FLOAT_EQ(latency.mean_us(2), 4000.0F);
+  EXPECT_FLOAT_EQ(latency.max_us(2), 6000.0F);
+}
+
 TEST_F(SupervisionTest, LatencyIsFromReceptionToTrackList) {
   auto tracks = std::make_unique<TrackList>();
   for (int i = 0; i < 100; ++i) {

@@ -17,7 +17,8 @@ constexpr std::uint64_t kSeed = 11;
 constexpr double kPeriod_m = 224.0;  // of the road: a place leaves and enters beyond the range of every radar
 constexpr double kCarLength_m = 4.5, kCarWidth_m = 1.8;
 constexpr double kRail_m = 10.0, kPostSpacing_m = 2.0;
-constexpr std::size_t kScatterers = 900;  // beside the road: each radar has more in view than it detects
+constexpr std::size_t kScatterers = 900;  // beside the road: each radar has more in view than kDetections
+constexpr std::uint32_t kLeastDetections = 100;
 constexpr double kScatter_m = 45.0;
 constexpr double kLeastRange_m = 2.0;
 constexpr double kSlowestFalse_mps = 2.0, kFastestFalse_mps = 20.0;
@@ -88,7 +89,9 @@ std::vector<Sight> sights_of_body(const RadarConfig& radar, const Eigen::Vector2
 
 }  // namespace
 
-CrowdedRoad::CrowdedRoad(double ego_speed_mps) : ego_speed_mps_(ego_speed_mps) {
+CrowdedRoad::CrowdedRoad(double ego_speed_mps, std::uint32_t detections)
+    : ego_speed_mps_(ego_speed_mps), stationary_detections_(detections - kMovingDetections - kFalseDetections) {
+  if (detections < kLeastDetections) throw std::logic_error("too few detections for this road");
   for (const Lane& lane : kLanes) {
     for (double x_m = lane.first_m; x_m < lane.first_m + kPeriod_m; x_m += lane.spacing_m) {
       vehicles_.push_back({{x_m, lane.lateral_m}, lane.speed_mps});
@@ -99,7 +102,8 @@ CrowdedRoad::CrowdedRoad(double ego_speed_mps) : ego_speed_mps_(ego_speed_mps) {
     reflectors_m_.emplace_back(x_m, -kRail_m);
   }
   simulator::Stream random(kSeed, "scatterers");
-  for (std::size_t i = 0; i < kScatterers; ++i) {
+  const std::size_t scatterers = kScatterers * stationary_detections_ / kStationaryDetections;
+  for (std::size_t i = 0; i < scatterers; ++i) {
     const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
     reflectors_m_.emplace_back(random.uniform(0.0, kPeriod_m), side * random.uniform(kRail_m, kScatter_m));
   }
@@ -162,8 +166,8 @@ void CrowdedRoad::add_stationary(const RadarConfig& radar, double t_s, simulator
     const auto sight = sight_of(radar, {along_m(reflector_m.x(), 0.0, t_s), reflector_m.y()});
     if (sight) seen.push_back(*sight);
   }
-  if (seen.size() < kStationaryDetections) throw std::logic_error("too few reflectors in view");
-  for (std::size_t i = 0; i < kStationaryDetections; ++i) {
+  if (seen.size() < stationary_detections_) throw std::logic_error("too few reflectors in view");
+  for (std::size_t i = 0; i < stationary_detections_; ++i) {
     std::swap(seen[i], seen[i + random.next() % (seen.size() - i)]);
     append(radar, seen[i], -ego_speed_mps_ * seen[i].direction.x(), random, scan);
   }

@@ -18,11 +18,13 @@ inline constexpr std::uint32_t kDetectionsOfVehicle = 3;
 inline constexpr std::uint32_t kMovingDetections = kVehiclesInScan * kDetectionsOfVehicle;
 inline constexpr std::uint32_t kFalseDetections = 30;
 inline constexpr std::uint32_t kStationaryDetections = 240;
+inline constexpr std::uint32_t kDetections = kMovingDetections + kFalseDetections + kStationaryDetections;
 
 class CrowdedRoad {
  public:
-  /// The own vehicle drives straight ahead in the middle of its lane.
-  explicit CrowdedRoad(double ego_speed_mps);
+  /// The own vehicle drives straight ahead in the middle of its lane. `detections`: of a scan; those beyond the moving
+  /// and false ones are of the stationary world, which has so many more reflectors. At least 100.
+  explicit CrowdedRoad(double ego_speed_mps, std::uint32_t detections = kDetections);
 
   /// What `radar` detects at `t_s`. The noise and the false detections are drawn anew for each `cycle`. Throws
   /// std::logic_error if the radar has too little in view.
@@ -41,6 +43,7 @@ class CrowdedRoad {
   void add_stationary(const RadarConfig& radar, double t_s, simulator::Stream& random, RadarScan& scan) const;
 
   double ego_speed_mps_;
+  std::uint32_t stationary_detections_;
   std::vector<Vehicle> vehicles_;
   std::vector<Eigen::Vector2d> reflectors_m_;  ///< that stand
 };

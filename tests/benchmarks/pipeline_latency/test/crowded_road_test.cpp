@@ -38,6 +38,20 @@ TEST(CrowdedRoad, HasTheSameNumbersOfDetectionsInEachScan) {
   }
 }
 
+TEST(CrowdedRoad, HasAsManyDetectionsAsAskedForTheOthersStationary) {
+  const CrowdedRoad road(kEgoSpeed_mps, 800);
+  const auto scan = std::make_unique<RadarScan>();
+  for (std::uint32_t cycle = 0; cycle < 1200; cycle += 37) {
+    for (const RadarConfig& radar : demo().radars) {
+      road.measure(radar, 0.05 * cycle, cycle, *scan);
+      ASSERT_EQ(scan->number_of_valid_detections, 800u);
+      for (std::uint32_t i = kFirstStationary; i < 800; ++i) {
+        ASSERT_NEAR(over_ground_mps(radar, *scan, i), 0.0, kSixSigma_mps + 0.2);  // of more draws
+      }
+    }
+  }
+}
+
 TEST(CrowdedRoad, RangeRatesOverGroundAreThoseOfOrigins) {
   const CrowdedRoad road(kEgoSpeed_mps);
   const auto scan = std::make_unique<RadarScan>();
