@@ -38,8 +38,8 @@ EvidenceWeights read_weights(config::Reader profile) {
     w.prior_log_odds = table.number("prior_log_odds", kLogOdds, 0.0);
     config::Reader alone = table.table("alone");
     read_level_weights(alone, kScanEvidences, w.alone);
-    config::Reader others = table.table("others");
-    read_level_weights(others, kScanEvidences, w.others);
+    config::Reader ratio = table.table("ratio");
+    read_level_weights(ratio, kEvidences, w.ratio);
     config::Reader with_tracks = table.table("with_tracks");
     read_level_weights(with_tracks, kEvidences, w.with_tracks);
     read_list(with_tracks, "track_unsure", w.track_unsure);

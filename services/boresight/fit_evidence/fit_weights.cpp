@@ -24,36 +24,40 @@ std::size_t place(std::size_t kind, std::size_t level) {
   return 1 + kind * kMostLevels + level;
 }
 
+enum class Which : std::uint8_t { kAlone, kRatio, kWithTracks };
+
+std::size_t kinds_of(Which which) {
+  return which == Which::kAlone ? kScanEvidences : kEvidences;
+}
+
 struct Regressor {
   std::size_t place;
   double value;
 };
 using Regressors = std::array<Regressor, kRegressors>;
 
-Regressors regressors(const Levels& levels, bool with_tracks) {
+Regressors regressors(const Levels& levels, Which which) {
   Regressors x{};
   x[0] = {0, 1.0};
-  const double sure = static_cast<double>(levels.sure), known = with_tracks ? 1.0 : 0.0;
+  const double sure = static_cast<double>(levels.sure), known = which == Which::kWithTracks ? 1.0 : 0.0;
   for (std::size_t k = 0; k < kEvidences; ++k) {
-    x[1 + k] = {place(k, levels.of[k]), k < kScanEvidences ? 1.0 : known};
+    x[1 + k] = {place(k, levels.of[k]), k < kinds_of(which) ? 1.0 : 0.0};
   }
   x[1 + kEvidences] = {kTrackUnsure + levels.track, known * (1.0 - sure)};
   x[2 + kEvidences] = {kTrackSure + levels.track, known * sure};
   return x;
 }
 
-enum class Which : std::uint8_t { kAlone, kOthers, kWithTracks };
-
-/// Weight of a detection in the fit.
-double weight_of(Which which, const LabelledEvidence& each) {
-  if (which != Which::kAlone && !each.levels.has_tracks) return 0.0;
-  return which == Which::kOthers && !each.is_real ? each.other_share : 1.0;
+bool takes(Which which, const LabelledEvidence& each) {
+  return which == Which::kAlone || each.levels.has_tracks;
 }
 
 /// ln N/F of real and false detections, with one half of a detection for each.
 double prior_log_odds(const std::vector<LabelledEvidence>& detections, Which which) {
   double real = 0.5, unreal = 0.5;
-  for (const LabelledEvidence& each : detections) (each.is_real ? real : unreal) += weight_of(which, each);
+  for (const LabelledEvidence& each : detections) {
+    if (takes(which, each)) (each.is_real ? real : unreal) += 1.0;
+  }
   return std::log(real / unreal);
 }
 
@@ -67,13 +71,12 @@ Eigen::VectorXd maximise(const std::vector<LabelledEvidence>& detections, Which 
     Eigen::VectorXd gradient = ridge * (prior - w);
     Eigen::MatrixXd information = ridge * Eigen::MatrixXd::Identity(kSize, kSize);
     for (const LabelledEvidence& each : detections) {
-      const double counted = weight_of(which, each);
-      if (counted == 0.0) continue;
-      const Regressors x = regressors(each.levels, which == Which::kWithTracks);
+      if (!takes(which, each)) continue;
+      const Regressors x = regressors(each.levels, which);
       double log_odds = 0.0;
       for (const Regressor& r : x) log_odds += r.value * w(static_cast<Eigen::Index>(r.place));
       const double p = 1.0 / (1.0 + std::exp(-log_odds));
-      const double error = counted * ((each.is_real ? 1.0 : 0.0) - p), weight = counted * p * (1.0 - p);
+      const double error = (each.is_real ? 1.0 : 0.0) - p, weight = p * (1.0 - p);
       for (const Regressor& a : x) {
         const auto row = static_cast<Eigen::Index>(a.place);
         gradient(row) += error * a.value;
@@ -112,8 +115,8 @@ EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections, con
   EvidenceWeights weights;
   weights.prior_log_odds = prior_log_odds(detections, Which::kAlone);
   weights.alone = level_weights(maximise(detections, Which::kAlone, prior, config.ridge));
-  weights.others = level_weights(maximise(detections, Which::kOthers, prior, config.ridge));
-  weights.others.constant -= prior_log_odds(detections, Which::kOthers);
+  weights.ratio = level_weights(maximise(detections, Which::kRatio, prior, config.ridge));
+  weights.ratio.constant -= prior_log_odds(detections, Which::kRatio);
   const Eigen::VectorXd with_tracks = maximise(detections, Which::kWithTracks, prior, config.ridge);
   weights.with_tracks = level_weights(with_tracks);
   for (std::size_t level = 0; level < kTrackLevels; ++level) {

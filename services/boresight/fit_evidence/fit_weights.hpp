@@ -9,11 +9,10 @@
 
 namespace boresight::fit_evidence {
 
-/// The evidence of a detection, and what it is.
+/// The evidence of a detection, and whether it is a direct echo of a moving object.
 struct LabelledEvidence {
   ghosts::Levels levels;
-  bool is_real = false;      ///< a direct echo of a moving object
-  double other_share = 1.0;  ///< ghosts::JudgedEvidence
+  bool is_real = false;
 };
 
 struct FitConfig {
@@ -21,8 +20,8 @@ struct FitConfig {
   double doubted_log_odds = -3.0;  ///< prior mean of a detection that the sensor calls invalid, where drives have none
 };
 
-/// Maximum of the posterior of (G1), by all detections, and of (G14) and (G2), by those with known tracks. For (G14) a
-/// false detection counts by `other_share`. Without detections all weights keep their prior.
+/// Maximum of the posterior of (G1), by all detections, and of (G2) and (G14), by those with known tracks. Without
+/// detections all weights keep their prior.
 [[nodiscard]] ghosts::EvidenceWeights fit_weights(const std::vector<LabelledEvidence>& detections,
                                                   const FitConfig& config);
 

@@ -25,7 +25,7 @@ void Lanes::label(double t_s, std::span<const simulator::DetectionTruth> truth,
   };
   const auto keep = [&](Lane lane, std::span<const ghosts::JudgedEvidence> evidence) {
     for (const ghosts::JudgedEvidence& each : evidence) {
-      out.lanes[static_cast<std::size_t>(lane)].push_back({each.levels, is_real(each.index), each.other_share});
+      out.lanes[static_cast<std::size_t>(lane)].push_back({each.levels, is_real(each.index)});
     }
   };
   keep(Lane::kWithout, without_.method->evidence());

@@ -58,8 +58,8 @@ Line kind_of(std::string_view line) {
 std::string weights_text(const EvidenceWeights& weights, const std::string& origin) {
   return "[evidence]\n" + fmt::format("origin = {}\n", toml_string(origin)) +
          fmt::format("prior_log_odds = {:.2f}\n", weights.prior_log_odds) + "\n[evidence.alone]\n" +
-         level_weights_text(weights.alone, kScanEvidences) + "\n[evidence.others]\n" +
-         level_weights_text(weights.others, kScanEvidences) + "\n[evidence.with_tracks]\n" +
+         level_weights_text(weights.alone, kScanEvidences) + "\n[evidence.ratio]\n" +
+         level_weights_text(weights.ratio, kEvidences) + "\n[evidence.with_tracks]\n" +
          level_weights_text(weights.with_tracks, kEvidences) + list("track_unsure", weights.track_unsure) +
          list("track_sure", weights.track_sure);
 }

@@ -118,7 +118,7 @@ void EvidenceFilter::gather(const CorrectedScan& scan, std::size_t count, Classi
     seen_.push_back({position, direction, range, static_cast<double>(scan.range_rate_over_ground_mps[i]), range_std,
                      static_cast<double>(scan.azimuth_std_rad[i]), static_cast<double>(scan.range_rate_std_mps[i]),
                      kReachStds * std::max(range_std, across_std)});
-    judged_.push_back({static_cast<std::uint32_t>(i), {}, 1.0});
+    judged_.push_back({static_cast<std::uint32_t>(i), {}});
   }
 }
 
@@ -150,11 +150,9 @@ void EvidenceFilter::judge(const CorrectedScan& scan, bool has_tracks, Classifie
     JudgedEvidence& judged = judged_[k];
     const std::size_t i = judged.index;
     judged.levels = levels_of(counts_[k], verdict_of(scan, i), expected_[k], has_tracks, config_);
-    const double images = (expected_[k].images_type1 + expected_[k].images_type2) / config_.intensity.other_intensity;
-    judged.other_share = 1.0 / (1.0 + images);
     const double real = 1.0 / (1.0 + std::exp(-posterior_log_odds(weights, judged.levels)));
     write(real, counts_[k], expected_[k], config_.intensity.other_intensity, i, out);
-    out.moving_log_likelihood_ratio[i] = static_cast<float>(log_likelihood_ratio(weights, judged.levels, images));
+    out.moving_log_likelihood_ratio[i] = static_cast<float>(log_likelihood_ratio(weights, judged.levels));
   }
 }
 

@@ -20,7 +20,7 @@ EvidenceWeights random_weights(unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> weight(0.0, 0.6);
   EvidenceWeights w;
-  for (LevelWeights* each : {&w.alone, &w.with_tracks}) {
+  for (LevelWeights* each : {&w.alone, &w.with_tracks, &w.ratio}) {
     each->constant = weight(random);
     for (std::size_t k = 0; k < kEvidences; ++k) {
       for (std::size_t level = 0; level < kEvidenceSpecs[k].levels; ++level) each->of[k][level] = weight(random);
@@ -100,35 +100,30 @@ TEST(FitWeights, FindsTheWeightsThatMadeTheLabels) {
   }
 }
 
-TEST(FitWeights, OfTheRatioCountAFalseDetectionByItsShareOfOtherOrigins) {
-  // Other false detections by known weights, and as many mirror images, which look like real ones. Half of the images
-  // are expected with certainty: they change nothing. The others are not expected at all: they count as any other.
+TEST(FitWeights, OfTheRatioUseAllKindsOfDetectionsWithKnownTracksWithoutThePrior) {
   constexpr std::size_t kNumber = 30'000;
   const EvidenceWeights truth = random_weights(7);
-  const auto without_tracks = [&](const Levels& l) { return log_odds_alone(truth, l); };
-  auto detections = labelled(8, kNumber, without_tracks);
-  const EvidenceWeights before = fit_weights(detections, FitConfig{});
-  EXPECT_EQ(before.others.of, before.alone.of) << "without expected mirror images both are the same";
-  EXPECT_NEAR(before.others.constant, before.alone.constant - before.prior_log_odds, 1e-9);
-  const auto add_images = [&](double other_share) {
-    for (std::size_t i = 0; i < kNumber; ++i) {
-      if (!detections[i].is_real) continue;
-      LabelledEvidence image = detections[i];
-      image.is_real = false;
-      image.other_share = other_share;
-      detections.push_back(image);
-    }
-  };
-  add_images(0.0);
-  const EvidenceWeights expected = fit_weights(detections, FitConfig{});
-  EXPECT_EQ(expected.others.of, before.others.of);
-  EXPECT_EQ(expected.others.constant, before.others.constant);
-  EXPECT_LT(expected.prior_log_odds, before.prior_log_odds);
-  add_images(1.0);
-  const EvidenceWeights all = fit_weights(detections, FitConfig{});
-  constexpr auto kPast = static_cast<std::size_t>(EvidenceKind::kPast);
-  EXPECT_LT(std::abs(all.others.of[kPast][5] - all.others.of[kPast][0]),
-            std::abs(before.others.of[kPast][5] - before.others.of[kPast][0]));
+  const auto ratio = [&](const Levels& l) { return log_odds(truth.ratio, l, kEvidences); };
+  auto detections = labelled(8, kNumber, ratio);
+  const EvidenceWeights fitted = fit_weights(detections, FitConfig{});
+  expect_near(fitted.ratio, truth.ratio, kNumber * mean_variance(detections, ratio));
+  double real = 0.5, unreal = 0.5;
+  for (const LabelledEvidence& each : detections) (each.is_real ? real : unreal) += 1.0;
+  // The constant may move to the levels of a kind, and the sum is determined.
+  double sum = 0.0, expected = 0.0;
+  for (const LabelledEvidence& each : detections) {
+    sum += log_odds(fitted.ratio, each.levels, kEvidences) / kNumber;
+    expected += (ratio(each.levels) - std::log(real / unreal)) / kNumber;
+  }
+  EXPECT_NEAR(sum, expected, 0.1);
+  for (std::size_t i = 0; i < kNumber; ++i) {
+    detections.push_back(detections[i]);
+    detections.back().is_real = i % 7 == 0;
+    detections.back().levels.has_tracks = false;
+  }
+  const EvidenceWeights again = fit_weights(detections, FitConfig{});
+  EXPECT_EQ(again.ratio.of, fitted.ratio.of) << "detections without known tracks change nothing";
+  EXPECT_EQ(again.ratio.constant, fitted.ratio.constant);
 }
 
 /// Log of the posterior, up to a constant: likelihood of the labels, and a normal prior about the prior's means.

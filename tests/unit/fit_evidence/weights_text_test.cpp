@@ -24,8 +24,8 @@ EvidenceWeights written_weights() {
   w.prior_log_odds = -1.2345;
   double next = -3.0;
   const auto number = [&next] { return next += 0.0567; };
-  for (const auto& [each, kinds] : {std::pair(&w.alone, kScanEvidences), std::pair(&w.others, kScanEvidences),
-                                    std::pair(&w.with_tracks, kEvidences)}) {
+  for (const auto& [each, kinds] :
+       {std::pair(&w.alone, kScanEvidences), std::pair(&w.ratio, kEvidences), std::pair(&w.with_tracks, kEvidences)}) {
     each->constant = number();
     for (std::size_t k = 0; k < kinds; ++k) {
       for (std::size_t level = 0; level < kEvidenceSpecs[k].levels; ++level) each->of[k][level] = number();
@@ -72,7 +72,7 @@ TEST(WeightsFile, ReadsWhatItWrites) {
     }
   };
   expect_equal(read.alone, w.alone);
-  expect_equal(read.others, w.others);
+  expect_equal(read.ratio, w.ratio);
   expect_equal(read.with_tracks, w.with_tracks);
   for (std::size_t level = 0; level < kTrackLevels; ++level) {
     EXPECT_NEAR(read.track_unsure[level], w.track_unsure[level], kRounding);

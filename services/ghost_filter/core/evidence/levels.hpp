@@ -55,7 +55,6 @@ struct Levels {
 struct JudgedEvidence {
   std::uint32_t index = 0;
   Levels levels;
-  double other_share = 1.0;  ///< I_0/(I_0 + I_1 + I_2): of false detections there, those that are no expected image
 };
 
 }  // namespace boresight::ghosts

@@ -26,7 +26,7 @@ struct LevelWeights {
 struct EvidenceWeights {
   double prior_log_odds = 0.0;  ///< of the drives that the weights were fitted on: (G1) less this is a likelihood ratio
   LevelWeights alone;
-  LevelWeights others;  ///< as `alone`, against false detections that are no expected mirror images, without the prior
+  LevelWeights ratio;  ///< for the tracker: tracks enter by their mirror images only; without the prior
   LevelWeights with_tracks;
   std::array<double, kTrackLevels> track_unsure{}, track_sure{};
 };
@@ -41,13 +41,11 @@ struct EvidenceWeights {
 [[nodiscard]] inline double log_odds_alone(const EvidenceWeights& weights, const Levels& levels) {
   return log_odds(weights.alone, levels, kScanEvidences);
 }
-/// ln p(evidence | direct echo of a moving object) / p(evidence | false): (G14) where tracks are known, whose mirror
-/// images are `image_ratio` times as many there as other false detections; else (G1) without the prior.
-[[nodiscard]] inline double log_likelihood_ratio(const EvidenceWeights& weights, const Levels& levels,
-                                                 double image_ratio) {
+/// ln p(evidence | direct echo of a moving object) / p(evidence | false): (G14), or (G1) without the prior where no
+/// tracks are known.
+[[nodiscard]] inline double log_likelihood_ratio(const EvidenceWeights& weights, const Levels& levels) {
   if (!levels.has_tracks) return log_odds_alone(weights, levels) - weights.prior_log_odds;
-  const double others = log_odds(weights.others, levels, kScanEvidences);
-  return -std::log(std::exp(-others) + image_ratio);
+  return log_odds(weights.ratio, levels, kEvidences);
 }
 /// Equation (G2), or (G1) where no tracks are known.
 [[nodiscard]] inline double posterior_log_odds(const EvidenceWeights& weights, const Levels& levels) {
