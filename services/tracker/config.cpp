@@ -37,6 +37,7 @@ void read_clutter(config::Reader table, ClutterParameters& c) {
                {"pace_mps", &c.pace_mps, {0.01, 10.0}},
                {"pace_over_ground_mps", &c.pace_over_ground_mps, {0.0, 20.0}},
                {"pace_cell_m", &c.pace_cell_m, {1.0, 100.0}},
+               {"origin_offset", &c.origin_offset, {-10.0, 10.0}},
                {"origin_weight", &c.origin_weight, {0.0, 2.0}},
                {"origin_limit", &c.origin_limit, {0.0, 20.0}},
                {"level_memory_s", &c.level_memory_s, {0.1, 1000.0}}});

@@ -64,6 +64,7 @@ std::vector<double> numbers(const Config& config) {
                              c.pace_mps,
                              c.pace_over_ground_mps,
                              c.pace_cell_m,
+                             c.origin_offset,
                              c.origin_weight,
                              c.origin_limit,
                              c.level_memory_s,

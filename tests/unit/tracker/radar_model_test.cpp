@@ -262,8 +262,9 @@ TEST(RadarModel, EvidenceOfOriginsSaturates) {
   const ClutterParameters c;
   const double without = log_clutter_of(0.0);
   for (const double beyond : {c.origin_limit, 2.0 * c.origin_limit, static_cast<double>(ClassifiedScan::kCertain)}) {
-    EXPECT_NEAR(log_clutter_of(beyond) - without, -c.origin_weight * c.origin_limit, 1e-6);
-    EXPECT_NEAR(log_clutter_of(-beyond) - without, c.origin_weight * c.origin_limit, 1e-6);
+    EXPECT_NEAR(log_clutter_of(beyond - c.origin_offset) - without,
+                -c.origin_weight * (c.origin_limit - c.origin_offset), 1e-6);
+    EXPECT_NEAR(log_clutter_of(-beyond) - without, c.origin_weight * (c.origin_limit + c.origin_offset), 1e-6);
   }
 }
 

@@ -164,7 +164,7 @@ void RadarModel::find_occlusion() {
 
 double RadarModel::log_origin(double log_likelihood_ratio) const {
   const ClutterParameters& c = parameters_.clutter;
-  return -c.origin_weight * std::clamp(log_likelihood_ratio, -c.origin_limit, c.origin_limit);
+  return -c.origin_weight * std::clamp(log_likelihood_ratio + c.origin_offset, -c.origin_limit, c.origin_limit);
 }
 
 double RadarModel::predict(Component<double>& c, double elapsed_s) const {

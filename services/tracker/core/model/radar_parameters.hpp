@@ -64,6 +64,7 @@ struct ClutterParameters {
   double pace_over_ground_mps = 2.0;  ///< and its least one over ground: else the own vehicle hardly moves
   double pace_cell_m = 10.0;          ///< size along the range of a cell of such echoes
   double with_ego_factor = 8.0;       ///< start level of echoes that keep pace with the own vehicle
+  double origin_offset = -0.8;        ///< added to the ghost filter's log-likelihood ratio
   double origin_weight = 1.5;         ///< of the ghost filter's log-likelihood ratio of a moving object's detection
   double origin_limit = 10.0;         ///< largest magnitude of this ratio that counts: evidence must saturate
   double level_memory_s = 10.0;       ///< of the radar's strength, and of its share of wide range rates
