@@ -16,10 +16,10 @@
 #include "services/boresight/fit_evidence/fit.hpp"
 #include "services/boresight/fit_evidence/report.hpp"
 #include "services/boresight/fit_evidence/run_drive.hpp"
+#include "services/boresight/fit_evidence/weights_text.hpp"
 #include "services/boresight/run/settings.hpp"
 #include "services/boresight/terminal/output_file.hpp"
 #include "services/boresight/terminal/progress_bar.hpp"
-#include "services/boresight/fit_evidence/weights_text.hpp"
 #include "services/ghost_filter/weights_file.hpp"
 
 namespace boresight {

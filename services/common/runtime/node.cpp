@@ -248,7 +248,7 @@ void Node::Impl::handle(Input& input, const MessageHeader& message, std::uint64_
 void Node::Impl::drop(Input& input, const MessageHeader& message) {
   ++status.faults[static_cast<std::size_t>(Fault::kInputDropped)];
   std::snprintf(status.last_fault.data(), status.last_fault.size(),
-                "%s of radar %u superseded by a newer one: the service was too slow",
+                "%.50s of radar %u superseded by a newer one: the service was too slow",
                 input.port.getServiceDescription().getInstanceIDString().c_str(), message.source_id);
   input.port.release(&message);
 }

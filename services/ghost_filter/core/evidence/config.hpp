@@ -46,12 +46,12 @@ struct IntensityConfig {
   double ambiguous_width_mps = 70.0;  ///< of these range rates
   double position_std_m = 0.3;        ///< of a prediction, beside its covariance
   double velocity_std_mps = 0.3;
-  double other_intensity = 1e-4;     ///< of anything else, per m² and m/s
+  double other_intensity = 5e-5;     ///< of anything else, per m² and m/s
   double certainty_power = 4.0;      ///< s of (G2): the existence to this power
   double mirrored_existence = 0.5;   ///< least existence of a track whose mirror images are expected
   double mirror_share_per_m = 0.01;  ///< probability that a reflector mirrors, per metre of its length
   double most_mirror_share = 0.6;
-  double least_mirror_share = 0.1;  ///< reflectors below are no mirrors
+  double least_mirror_share = 0.05;  ///< reflectors below are no mirrors
   double mirror_scatter_m = 0.1;    ///< least scatter of a mirror's detections across it
 };
 
