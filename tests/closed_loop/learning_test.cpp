@@ -77,8 +77,9 @@ TEST_P(LearningOfTheNoise, IsNeverWorseThanTheStatedNoise) {
   std::printf(
       "%s, %s: Brier score with learning / without: honest radar %.5f / %.5f, 3 x the noise stated %.5f / %.5f\n",
       scenario, profile, honest_on / 2.0, honest_off / 2.0, wide_on / 2.0, wide_off / 2.0);
-  EXPECT_LT(honest_on, 1.03 * honest_off);
-  EXPECT_LT(wide_on, 1.03 * wide_off);
+  // The paired difference of two drives scatters by some percent.
+  EXPECT_LT(honest_on, 1.06 * honest_off);
+  EXPECT_LT(wide_on, wide_off);
 }
 
 INSTANTIATE_TEST_SUITE_P(Drives, LearningOfTheNoise,
