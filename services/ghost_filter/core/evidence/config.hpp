@@ -52,7 +52,7 @@ struct IntensityConfig {
   double mirror_share_per_m = 0.01;  ///< probability that a reflector mirrors, per metre of its length
   double most_mirror_share = 0.6;
   double least_mirror_share = 0.05;  ///< reflectors below are no mirrors
-  double mirror_scatter_m = 0.1;    ///< least scatter of a mirror's detections across it
+  double mirror_scatter_m = 0.1;     ///< least scatter of a mirror's detections across it
 };
 
 struct RadarWeights {
