@@ -10,8 +10,11 @@ namespace boresight::ghosts {
 
 namespace {
 
-std::size_t read_count(config::Reader& reader, std::string_view key, std::size_t fallback) {
-  return static_cast<std::size_t>(reader.integer(key, {1, 100'000}, static_cast<std::int64_t>(fallback)));
+/// Largest budget of a search.
+constexpr std::int64_t kMostLooks = 100'000;
+
+std::size_t read_count(config::Reader& reader, std::string_view key, std::size_t fallback, std::int64_t most = 1000) {
+  return static_cast<std::size_t>(reader.integer(key, {1, most}, static_cast<std::int64_t>(fallback)));
 }
 
 published::Config read_published(config::Reader root) {
@@ -43,7 +46,7 @@ MapConfig read_map(config::Reader reader) {
   c.memory_s = reader.number("memory_s", {0.1, 10.0}, c.memory_s);
   c.search_period_s = reader.number("search_period_s", {0.0, 5.0}, c.search_period_s);
   c.most_std_m = reader.number("most_std_m", {0.05, 10.0}, c.most_std_m);
-  c.most_points = read_count(reader, "most_points", c.most_points);
+  c.most_points = read_count(reader, "most_points", c.most_points, kMostLooks);
   LineConfig& l = c.lines;
   l.cell_m = reader.number("cell_m", {0.1, 5.0}, l.cell_m);
   l.draws = read_count(reader, "draws", l.draws);
@@ -67,9 +70,9 @@ CountConfig read_counts(config::Reader reader) {
   c.company_range_rate_mps = reader.number("company_range_rate_mps", {0.05, 10.0}, c.company_range_rate_mps);
   c.wide_range_m = reader.number("wide_range_m", {0.1, 50.0}, c.wide_range_m);
   c.wide_range_rate_mps = reader.number("wide_range_rate_mps", {0.05, 20.0}, c.wide_range_rate_mps);
-  c.most_neighbours = read_count(reader, "most_neighbours", c.most_neighbours);
-  c.most_past_looks = read_count(reader, "most_past_looks", c.most_past_looks);
-  c.most_remembered = read_count(reader, "most_remembered", c.most_remembered);
+  c.most_neighbours = read_count(reader, "most_neighbours", c.most_neighbours, kMostLooks);
+  c.most_past_looks = read_count(reader, "most_past_looks", c.most_past_looks, kMostLooks);
+  c.most_remembered = read_count(reader, "most_remembered", c.most_remembered, kMostLooks);
   return c;
 }
 
