@@ -11,9 +11,9 @@ namespace boresight::ghosts {
 namespace {
 
 /// Largest budget of a search.
-constexpr std::int64_t kMostLooks = 100'000;
+constexpr double kMostLooks = 1e5;
 
-std::size_t read_count(config::Reader& reader, std::string_view key, std::size_t fallback, std::int64_t most = 1000) {
+std::size_t read_count(config::Reader& reader, std::string_view key, std::size_t fallback, double most = 1000.0) {
   return static_cast<std::size_t>(reader.integer(key, {1, most}, static_cast<std::int64_t>(fallback)));
 }
 
