@@ -13,7 +13,8 @@ namespace {
 
 /// Scans of the memory: 8 radars of 20 scans a second for 0.4 s.
 constexpr std::size_t kMemories = 64;
-/// Grid of the remembered detections. It repeats: what lies a whole grid farther on is told apart by its distance.
+/// Grid for finding earlier detections near a position. It covers 256 m and repeats: positions 256 m apart share a
+/// cell, and the distance test tells them apart.
 constexpr std::int32_t kCells = 64;  // in each direction
 constexpr float kCell_m = 4.0F;
 

@@ -92,8 +92,10 @@ void ReflectorMap::update(std::int64_t time_ns) {
       is_changed = is_changed || !found.segments.empty();
       found.begin(tile.place);
     }
-    // As long as little is new, what was not found will not be found.
-    if (tile.newest_ns < oldest_ns || 8 * (tile.added - found.added) < std::min<std::size_t>(tile.added, 256)) continue;
+    // With less than an eighth of new points a search would give the same segments again.
+    if (tile.newest_ns < oldest_ns ||
+        8 * (tile.added - found.added) < std::min<std::size_t>(tile.added, StationaryTiles::kMostPoints))
+      continue;
     looks += search(number, oldest_ns);
     is_changed = true;
   }

@@ -16,7 +16,8 @@ namespace boresight::ghosts {
 class StationaryTiles {
  public:
   static constexpr double kTile_m = 24.0;
-  static constexpr std::int32_t kAcross = 16;      ///< tiles repeat beyond this many: the latest place counts
+  static constexpr std::int32_t kAcross =
+      16;  ///< tiles in each direction; tiles this many apart share memory, and the latest one keeps it
   static constexpr std::size_t kMostPoints = 256;  ///< of a tile; the oldest give way
   static constexpr std::size_t kTiles = std::size_t{kAcross} * kAcross;
 
