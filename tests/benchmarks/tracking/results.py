@@ -6,6 +6,7 @@ import re
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 DEFAULT = re.search(r'^tracker = "(\w+)"', (ROOT / "config/services/tracker.toml").read_text(), re.M)[1]
 PERFECT = "perfect"  # the default tracker with the true origins of the detections
+UNFILTERED = "unfiltered"  # the default tracker without what the ghost filter says
 TRACKERS = (DEFAULT, *(name for name in ("pmbm", "phd") if name != DEFAULT))
 BASELINES = ("baseline 1+", "baseline 2+")
 POOLED = "pooled"

@@ -1,7 +1,7 @@
 """The tables of docs/tracking.md."""
 import re
 
-from results import BASELINES, DEFAULT, PERFECT, TRACKERS, ratio_of_means
+from results import BASELINES, DEFAULT, PERFECT, TRACKERS, UNFILTERED, ratio_of_means
 
 EVERY = (*TRACKERS, *BASELINES)
 NOT_MEASURED, DOES_NOT_APPLY = "not measured", "—"
@@ -130,10 +130,10 @@ def differences(drives):
 def origins(drives):
     rows = []
     for rule in (LIKELY, SURE, CONFIRMED):
-        for name in (DEFAULT, PERFECT):
+        for name, of in ((UNFILTERED, "none"), (DEFAULT, "ghost filter"), (PERFECT, "true")):
             row = drives.row("fixed", drives.whole, tracker=name, tracks=rule)
             if row:
-                rows.append([rule, "true" if name == PERFECT else "ghost filter", row["false tracks"], row["all %"],
+                rows.append([rule, of, row["false tracks"], row["all %"],
                              *(row[f"{of} %"] for of in CLASSES)])
     times = [(name, drives.row("times", drives.whole, tracker=name)) for name in (DEFAULT, PERFECT)]
     lines = [f"{'true origins' if name == PERFECT else 'ghost filter'}: mean {row['mean']}, p99 {row['p99']}"

@@ -99,7 +99,8 @@ std::vector<Contestant> contestants_of(const DriveSetup& setup, const std::vecto
   std::vector<Contestant> contestants(count);
   for (std::size_t c = 0; c < count; ++c) {
     contestants[c].is_baseline = c >= setup.trackers.size();
-    contestants[c].has_true_origins = c < setup.trackers.size() && setup.trackers[c] == kPerfectTracker;
+    if (c < setup.trackers.size() && setup.trackers[c] == kPerfectTracker) contestants[c].origins = Origins::kTrue;
+    if (c < setup.trackers.size() && setup.trackers[c] == kUnfilteredTracker) contestants[c].origins = Origins::kNone;
     contestants[c].steps_ms.resize(drives.size());
     contestants[c].drives.resize(drives.size());
     contestants[c].ms_per_scan.resize(drives.size(), NAN);
@@ -132,6 +133,10 @@ int run(const Arguments& arguments) {
   setup.baseline_vehicle =
       config::read_vehicle_file(setup.config / "vehicle" / (setup.vehicle + ".toml"), config::VehicleUse::kOffline);
   setup.trackers = arguments.trackers;
+  setup.unfiltered = setup.place / "config_unfiltered";
+  if (std::find(setup.trackers.begin(), setup.trackers.end(), kUnfilteredTracker) != setup.trackers.end()) {
+    write_unfiltered_config(setup.config, setup.unfiltered);
+  }
   setup.baselines = {1, 2};
   setup.keeps_all = arguments.keeps_all && !arguments.keep.empty();
   setup.runs_again = arguments.runs_again;
@@ -182,7 +187,7 @@ int main(int argc, char** argv) {
     app.add_option("--profiles", arguments.profiles, "radar profiles, names or files")->capture_default_str();
     app.add_option("--trackers", arguments.trackers,
                    "names for `boresight run --tracker`; \"default\" is the one without this option, \"perfect\" the "
-                   "same with the true origin of each detection")
+                   "same with the true origin of each detection, \"unfiltered\" without the ghost filter's ratio")
         ->capture_default_str();
     app.add_option("--seeds", arguments.seeds, "drives of each scenario and profile")
         ->check(CLI::Range(1, 1000))
@@ -199,14 +204,14 @@ int main(int argc, char** argv) {
     app.add_option("--config", arguments.config, "folder with vehicle/ and services/")->capture_default_str();
     app.add_option("--jobs", arguments.jobs, "threads")->check(CLI::Range(1, 64))->capture_default_str();
     app.add_option("--only", arguments.only, "report one group only")
-        ->check(CLI::IsMember(std::vector<std::string>{kTracked, kExistence, kEllipse, kCars, kTime}));
+        ->check(CLI::IsMember(std::vector<std::string>{kTracked, kFalse, kExistence, kEllipse, kCars, kTime}));
     app.add_option("--json", arguments.json, "write bars and tables to this file");
     app.add_flag("--quick", arguments.quick, "one short drive: a check that it runs, no measurement");
     CLI11_PARSE(app, argc, argv);
     if (arguments.quick) {
       arguments.scenarios = {"highway_multipath"};
       arguments.profiles = {"series_77ghz"};
-      arguments.trackers = {kDefaultTracker, kPerfectTracker};
+      arguments.trackers = {kDefaultTracker, kPerfectTracker, kUnfilteredTracker};
       arguments.seeds = 1;
       arguments.longest_s = 4.0;
     }

@@ -144,7 +144,51 @@ TEST(DrivesBars, AreMetByAPerfectTrackerAndMissedWithoutData) {
     // Every error is 0, so that more of them lie inside the ellipse than stated.
     EXPECT_EQ(bar.met, bar.group != kEllipse) << bar.what;
   }
-  for (const BarLine& bar : bars_of(drive_with(0, 0.95, 0, 0.0))) EXPECT_FALSE(bar.met) << bar.what;
+  for (const BarLine& bar : bars_of(drive_with(0, 0.95, 0, 0.0))) {
+    EXPECT_EQ(bar.met, bar.group == kFalse) << bar.what << ": no track is no false track";
+  }
+}
+
+TEST(DrivesBars, FalseTracksAreCountedByDrive) {
+  // In two of five drives a false track is confirmed for 2 s.
+  std::vector<ScoredDrive> drives;
+  for (int d = 0; d < 5; ++d) drives.push_back(drive_with(21, 0.9, 0, 0.0));
+  for (int d = 0; d < 2; ++d) {
+    for (int i = 0; i <= 20; ++i) {
+      ListedTrack false_track = track(9, -50.0, 0.0, 0.9);
+      false_track.confirmed = true;
+      drives[static_cast<std::size_t>(d)].add(scene(10.0 + 0.1 * i, {false_track}, {}));
+    }
+  }
+  EXPECT_EQ(drives[0].long_false_tracks(), 1u);
+  EXPECT_EQ(drives[4].long_false_tracks(), 0u);
+  Findings findings;
+  add_bars(evaluate("made", {contestant("product", false, drives)}), findings);
+  std::vector<double> figures;
+  for (const BarLine& bar : findings.bars) {
+    if (bar.group == kFalse) figures.push_back(bar.figure);
+  }
+  EXPECT_EQ(figures, (std::vector<double>{0.0, 60.0}));
+}
+
+TEST(DrivesBars, TheFilterIsComparedWithNoneInBusyAndInQuietDrives) {
+  // Without the filter, the first drive has two false tracks that look better than the car; the second has none.
+  Contestant none = contestant("unfiltered", false, {drive_with(21, 0.6, 2, 0.9), drive_with(21, 0.6, 0, 0.0)});
+  none.origins = Origins::kNone;
+  Contestant truth = contestant("perfect", false, {drive_with(21, 0.9, 0, 0.0), drive_with(21, 0.9, 0, 0.0)});
+  truth.origins = Origins::kTrue;
+  const Contestant product = contestant("product", false, {drive_with(21, 0.9, 0, 0.0), drive_with(20, 0.9, 0, 0.0)});
+  Findings findings;
+  add_bars(evaluate("made", {product, truth, none}), findings);
+  std::vector<const BarLine*> lines;
+  for (const BarLine& bar : findings.bars) {
+    if (bar.group == kFalse && bar.what.starts_with("time tracked")) lines.push_back(&bar);
+  }
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_NEAR(lines[0]->figure, -50.0 / 21.0, 1e-9) << "true origins";
+  EXPECT_NEAR(lines[1]->figure, 0.0, 1e-9) << "busy: one false track in each list of both drives, with the car at 0.6";
+  EXPECT_NEAR(lines[2]->figure, -100.0 / 21.0, 1e-9);
+  EXPECT_FALSE(lines[2]->met);
 }
 
 }  // namespace

@@ -52,6 +52,18 @@ TEST(DrivesRunReader, ReadsScoresBesideTracksAndPassesOverListsWithoutTruth) {
   EXPECT_THROW(RunReader(run, truth, kHitsColumn), score::InputError);
 }
 
+TEST(DrivesFolder, TheConfigurationWithoutAFilterDiffersInOneValue) {
+  const fs::path config = empty_folder("drives_config"), copy = empty_folder("drives_config_copy");
+  fs::create_directories(config / "services");
+  std::ofstream(config / "services/tracker.toml") << "[clutter]\norigin_weight = 1.5   # a choice\norigin_limit = 10\n";
+  write_unfiltered_config(config, copy);
+  std::ifstream in(copy / "services/tracker.toml");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}),
+            "[clutter]\norigin_weight = 0.0   # a choice\norigin_limit = 10\n");
+  std::ofstream(config / "services/tracker.toml") << "[clutter]\n";
+  EXPECT_THROW(write_unfiltered_config(config, copy), std::runtime_error);
+}
+
 TEST(DrivesFolder, FindsTheSeedsOfDrivesThatAreThere) {
   DriveSetup setup;
   setup.place = empty_folder("drives_place");

@@ -40,6 +40,7 @@ Outcome outcome_of(const Contestant& contestant, const std::vector<JudgedObject>
   for (std::size_t d = 0; d < contestant.drives.size(); ++d) {
     const Judgement judgement = judge_drive(contestant.drives[d], choice);
     outcome.lists.add(judgement.lists, 1.0);
+    outcome.lists_of_drives.push_back(judgement.lists);
     for (std::size_t o = 0; o < judgement.objects.size(); ++o) {
       tallies[d][contestant.drives[d].objects()[o].id] = judgement.objects[o];
     }
@@ -70,7 +71,7 @@ TrackerResult result_of(const Contestant& contestant, const std::vector<JudgedOb
   TrackerResult result;
   result.name = contestant.name;
   result.is_baseline = contestant.is_baseline;
-  result.has_true_origins = contestant.has_true_origins;
+  result.origins = contestant.origins;
   for (std::size_t i = 0; i < kFixedRules.size(); ++i) {
     // A baseline has no existence.
     if (contestant.is_baseline && i != kConfirmed) continue;
@@ -78,6 +79,7 @@ TrackerResult result_of(const Contestant& contestant, const std::vector<JudgedOb
   }
   for (const ScoredDrive& drive : contestant.drives) {
     if (!contestant.is_baseline) result.reliability += drive.reliability();
+    result.long_false_tracks.push_back(drive.long_false_tracks());
   }
   for (std::size_t i = 0; i < kCurveFalseTracks.size(); ++i) {
     result.curve[i] = at_false_tracks(contestant, objects, kCurveFalseTracks[i]);
@@ -97,17 +99,19 @@ std::string pooled_rule(const std::string& a, const std::string& b) {
 void Outcome::append(const Outcome& other) {
   rule = objects.empty() ? other.rule : pooled_rule(rule, other.rule);
   append_to(objects, other.objects);
+  append_to(lists_of_drives, other.lists_of_drives);
   lists.add(other.lists, 1.0);
 }
 
 void TrackerResult::append(const TrackerResult& other) {
   name = other.name;
   is_baseline = other.is_baseline;
-  has_true_origins = other.has_true_origins;
+  origins = other.origins;
   for (std::size_t i = 0; i < kFalseTracks.size(); ++i) at_false_tracks[i].append(other.at_false_tracks[i]);
   for (std::size_t i = 0; i < kCurveFalseTracks.size(); ++i) curve[i].append(other.curve[i]);
   for (std::size_t i = 0; i < kFixedRules.size(); ++i) fixed[i].append(other.fixed[i]);
   reliability += other.reliability;
+  append_to(long_false_tracks, other.long_false_tracks);
   append_to(ms_per_scan, other.ms_per_scan);
   append_to(step_ms, other.step_ms);
 }

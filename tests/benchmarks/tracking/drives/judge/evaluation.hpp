@@ -27,11 +27,14 @@ inline constexpr std::array<FixedRule, 3> kFixedRules = {
      {"existence ≥ 0.9", {0.9F, false}},
      {"confirmed", {-std::numeric_limits<float>::infinity(), true}}}};
 
+/// What the tracker gets of the origins of detections.
+enum class Origins { kFiltered, kTrue, kNone };
+
 /// The drives of one tracker.
 struct Contestant {
   std::string name;
   bool is_baseline = false;
-  bool has_true_origins = false;
+  Origins origins = Origins::kFiltered;
   std::vector<ScoredDrive> drives;
   std::vector<double> ms_per_scan;            ///< of each drive; NaN: not known
   std::vector<std::vector<double>> steps_ms;  ///< of each drive: CPU time of each scan; may be empty
@@ -49,6 +52,7 @@ struct Outcome {
   std::string rule;                  ///< as shown
   std::vector<ObjectTally> objects;  ///< by index of Evaluation::objects
   ListTally lists;
+  std::vector<ListTally> lists_of_drives;
 
   [[nodiscard]] double false_tracks() const { return lists.false_tracks / lists.lists; }
   [[nodiscard]] double duplicates() const { return lists.duplicates / lists.lists; }
@@ -58,11 +62,12 @@ struct Outcome {
 struct TrackerResult {
   std::string name;
   bool is_baseline = false;
-  bool has_true_origins = false;
+  Origins origins = Origins::kFiltered;
   std::array<Outcome, kFalseTracks.size()> at_false_tracks;
   std::array<Outcome, kCurveFalseTracks.size()> curve;
   std::array<Outcome, kFixedRules.size()> fixed;
   Reliability reliability;
+  std::vector<std::size_t> long_false_tracks;  ///< of each drive
   std::vector<double> ms_per_scan;
   std::vector<double> step_ms;  ///< of each scan; empty: not known
   void append(const TrackerResult& other);

@@ -76,6 +76,20 @@ void ScoredDrive::see(const judge::TrueObject& object, double t_s) {
   seen.last_s = std::max(seen.last_s, t_s);
 }
 
+void ScoredDrive::live(const ListedTrack& track, double t_s, bool is_at_an_object) {
+  Life& life = lives_.try_emplace(track.id, Life{t_s, t_s, 0, 0}).first->second;
+  life.last_s = std::max(life.last_s, t_s);
+  ++life.lists;
+  if (!is_at_an_object) ++life.lists_at_none;
+}
+
+std::size_t ScoredDrive::long_false_tracks() const {
+  return static_cast<std::size_t>(std::count_if(lives_.begin(), lives_.end(), [](const auto& of_track) {
+    const Life& life = of_track.second;
+    return 2 * life.lists_at_none > life.lists && life.last_s - life.first_s >= judge::TrackJudge::kLongFalseLife_s;
+  }));
+}
+
 void ScoredDrive::add(const Scene& scene) {
   struct Candidate {
     bool is_unscored;
@@ -98,6 +112,7 @@ void ScoredDrive::add(const Scene& scene) {
       in_a_box = in_a_box || (object.in_view && !object.parked && object.box.distance_m(track.position_m) <= 0.0);
     }
     if (in_range) reliability_.add(track.score, is_at_an_object);
+    if (in_range && track.confirmed) live(track, scene.t_s, is_at_an_object);
     const auto score = static_cast<float>(track.score);
     if (!is_at_an_object) {
       if (in_range) false_tracks_.push_back({score, track.confirmed});

@@ -73,8 +73,16 @@ class ScoredDrive {
   [[nodiscard]] const std::vector<List>& lists() const { return lists_; }
   [[nodiscard]] const std::vector<FalseTrack>& false_tracks() const { return false_tracks_; }
   [[nodiscard]] const Reliability& reliability() const { return reliability_; }
+  /// Confirmed tracks that are at no object for most of their life of judge::TrackJudge::kLongFalseLife_s or more.
+  [[nodiscard]] std::size_t long_false_tracks() const;
 
  private:
+  /// Of a track, in lists where it is confirmed and within the judged range.
+  struct Life {
+    double first_s = 0.0, last_s = 0.0;
+    std::uint32_t lists = 0, lists_at_none = 0;
+  };
+  void live(const ListedTrack& track, double t_s, bool is_at_an_object);
   [[nodiscard]] std::uint32_t index_of(const judge::TrueObject& object);
   void see(const judge::TrueObject& object, double t_s);
 
@@ -83,6 +91,7 @@ class ScoredDrive {
   std::vector<List> lists_;
   std::vector<FalseTrack> false_tracks_;
   Reliability reliability_;
+  std::map<std::uint32_t, Life> lives_;  // by track
 };
 
 }  // namespace boresight::bench::tracking

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "services/simulator/judge/track_judge.hpp"
 #include "tests/benchmarks/common/statistics.hpp"
 #include "tests/benchmarks/tracking/drives/report/findings.hpp"
 
@@ -36,7 +37,8 @@ class Bars {
       : evaluation_(evaluation), tracker_(tracker), findings_(findings) {}
 
   void add_all() {
-    if (tracker_.has_true_origins) {
+    if (tracker_.origins == Origins::kNone) return;
+    if (tracker_.origins == Origins::kTrue) {
       // What a perfect ghost filter would give is compared with nothing but the time that it takes.
       add_time();
       return;
@@ -45,6 +47,8 @@ class Bars {
       add_difference(i);
       add_worst_class(i);
     }
+    add_false_tracks();
+    add_origins();
     add_existence(kSure, 85.0);
     add_existence(kLikely, 50.0);
     add_ellipses();
@@ -92,6 +96,68 @@ class Bars {
     add(kTracked, fmt::format("the same, worst class ({}), {}", judge::kClassNames.at(worst_class), at_false_tracks(i)),
         worst.figure, shown_estimate(worst, "points"), fmt::format("≥ −{} points", number(kMostWorse_points)),
         worst.figure >= -kMostWorse_points);
+  }
+
+  /// Each drive has one value, so that the interval is over drives.
+  void add_drives(std::string what, const std::vector<double>& values, double figure, const Interval& interval,
+                  const char* unit, const std::string& limit, bool met) {
+    add(kFalse, std::move(what), figure,
+        fmt::format("{} ({} … {}){}, {} drives", fixed(figure, 2), fixed(interval.low, 2), fixed(interval.high, 2),
+                    unit, values.size()),
+        limit, met);
+  }
+
+  void add_false_tracks() {
+    constexpr double kMostAtATime = 0.1, kLeastClean_percent = 90.0;
+    std::vector<double> at_a_time, clean_percent;
+    for (const ListTally& lists : tracker_.fixed[kConfirmed].lists_of_drives) {
+      at_a_time.push_back(lists.false_tracks / lists.lists);
+    }
+    for (const std::size_t tracks : tracker_.long_false_tracks) clean_percent.push_back(tracks == 0 ? 100.0 : 0.0);
+    const Interval of_median = median_interval(at_a_time);
+    add_drives("confirmed false tracks at a time, median of the drives", at_a_time, median(at_a_time), of_median, "",
+               fmt::format("≤ {}", number(kMostAtATime)), of_median.low <= kMostAtATime);
+    const Interval of_clean = bootstrap(clean_percent.size(), [&](const std::vector<std::size_t>& picks) {
+      double sum = 0.0;
+      for (const std::size_t pick : picks) sum += clean_percent[pick];
+      return sum / static_cast<double>(picks.size());
+    });
+    add_drives(fmt::format("drives without a confirmed false track of {} s or more",
+                           number(judge::TrackJudge::kLongFalseLife_s)),
+               clean_percent, mean(clean_percent), of_clean, " %", fmt::format("≥ {} %", number(kLeastClean_percent)),
+               of_clean.high >= kLeastClean_percent);
+  }
+
+  /// Of the drives where a tracker has more than one false track at a time, or of the others.
+  [[nodiscard]] std::vector<std::size_t> objects_of_drives(const TrackerResult& tracker, bool are_busy) const {
+    std::vector<std::size_t> objects;
+    for (std::size_t i = 0; i < evaluation_.objects.size(); ++i) {
+      const ListTally& lists = tracker.fixed[kLikely].lists_of_drives.at(evaluation_.objects[i].drive);
+      if ((lists.false_tracks / lists.lists > 1.0) == are_busy) objects.push_back(i);
+    }
+    return objects;
+  }
+
+  void add_origins() {
+    constexpr std::size_t kAtOne = 4;  // of kCurveFalseTracks
+    static_assert(kCurveFalseTracks[kAtOne] == 1.0);
+    const auto add_against = [&](const char* what, const TrackerResult& other, const std::vector<std::size_t>& objects,
+                                 double least_points) {
+      if (objects.empty()) return;
+      const Estimate difference = difference_points(tracker_.curve[kAtOne], other.curve[kAtOne], objects);
+      add(kFalse, fmt::format("time tracked at 1 false track at a time, difference to {}", what), difference.figure,
+          shown_estimate(difference, "points"), fmt::format("≥ {} points", number(least_points)),
+          difference.interval.high >= least_points);
+    };
+    for (const TrackerResult& other : evaluation_.trackers) {
+      if (other.origins == Origins::kTrue) {
+        add_against("true origins", other, objects_of_class(evaluation_, judge::kClasses), -3.0);
+      }
+      if (other.origins == Origins::kNone) {
+        add_against("no ghost filter, where that has > 1 false track", other, objects_of_drives(other, true), 10.0);
+        add_against("no ghost filter, other drives", other, objects_of_drives(other, false), -2.0);
+      }
+    }
   }
 
   void add_existence(std::size_t rule, double least_percent) {

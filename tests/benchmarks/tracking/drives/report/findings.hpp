@@ -12,6 +12,7 @@ namespace boresight::bench::tracking {
 
 /// Groups of --only.
 inline constexpr const char* kTracked = "tracked";
+inline constexpr const char* kFalse = "false";
 inline constexpr const char* kExistence = "existence";
 inline constexpr const char* kEllipse = "ellipse";
 inline constexpr const char* kCars = "cars";

@@ -103,12 +103,13 @@ class DriveFolder {
   void make_run(const std::string& tracker, const fs::path& folder) const {
     simulate_if_missing();
     const fs::path drive = folder_ / "drive", fresh = folder.string() + ".new";
+    const bool is_unfiltered = tracker == kUnfilteredTracker;
     std::vector<std::string> words = {boresight(),
                                       "run",
                                       (drive / kRecording).string(),
                                       (drive / kEgo).string(),
                                       "--config",
-                                      setup_.config.string(),
+                                      (is_unfiltered ? setup_.unfiltered : setup_.config).string(),
                                       "--vehicle",
                                       setup_.vehicle,
                                       "--statistics",
@@ -116,7 +117,7 @@ class DriveFolder {
                                       "--out",
                                       fresh.string(),
                                       "--quiet"};
-    if (tracker != kDefaultTracker) words.insert(words.end(), {"--tracker", tracker});
+    if (tracker != kDefaultTracker && !is_unfiltered) words.insert(words.end(), {"--tracker", tracker});
     run_program(words, log_, {0, kDoubtful});
     fs::remove_all(folder);
     fs::rename(fresh, folder);
@@ -141,6 +142,21 @@ class DriveFolder {
 };
 
 }  // namespace
+
+void write_unfiltered_config(const fs::path& config, const fs::path& copy) {
+  fs::remove_all(copy);
+  fs::copy(config, copy, fs::copy_options::recursive);
+  const fs::path file = copy / "services/tracker.toml";
+  std::string text = text_of(file);
+  const std::string key = "\norigin_weight = ";
+  const std::size_t at = text.find(key);
+  if (at == std::string::npos) throw std::runtime_error(file.string() + ": no line \"origin_weight = …\"");
+  const std::size_t begin = at + key.size();
+  text.replace(begin, text.find_first_of(" \n", begin) - begin, "0.0");
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
 
 std::string name_of(const std::string& name_or_file) {
   return fs::path(name_or_file).stem().string();

@@ -20,11 +20,14 @@ namespace boresight::bench::tracking {
 inline constexpr const char* kDefaultTracker = "default";
 /// The default tracker with the true origin of each detection.
 inline constexpr const char* kPerfectTracker = "perfect";
+/// The default tracker without what the ghost filter says.
+inline constexpr const char* kUnfilteredTracker = "unfiltered";
 
 struct DriveSetup {
   std::filesystem::path programs;      ///< folder of the program boresight
   std::filesystem::path config;        ///< folder with vehicle/ and services/
   std::filesystem::path place;         ///< of the folders of drives
+  std::filesystem::path unfiltered;    ///< the same as `config`, for kUnfilteredTracker
   std::string vehicle = "demo";        ///< as the option --vehicle
   VehicleConfig baseline_vehicle;      ///< the same
   std::vector<std::string> trackers;   ///< names of --tracker, or one of those above
@@ -45,6 +48,10 @@ struct NamedRun {
   std::filesystem::path folder;
   std::string score_column;
 };
+
+/// Copies the folder `config` to `copy`, with a tracker that does not use the ghost filter's ratio. Throws
+/// std::runtime_error.
+void write_unfiltered_config(const std::filesystem::path& config, const std::filesystem::path& copy);
 
 [[nodiscard]] std::string name_of(const std::string& name_or_file);
 [[nodiscard]] std::filesystem::path folder_of(const DriveSetup& setup, const DriveSpec& drive);
