@@ -115,8 +115,12 @@ void EvidenceFilter::gather(const CorrectedScan& scan, std::size_t count, Classi
     candidates_.push_back({scan.range_m[i], scan.azimuth_vehicle_rad[i], scan.range_rate_mps[i],
                            scan.range_rate_over_ground_mps[i], odometry_.point_to_frame(position).cast<float>(),
                            odometry_.vector_to_frame(direction).cast<float>()});
-    seen_.push_back({position, direction, range, static_cast<double>(scan.range_rate_over_ground_mps[i]), range_std,
-                     static_cast<double>(scan.azimuth_std_rad[i]), static_cast<double>(scan.range_rate_std_mps[i]),
+    const Eigen::Vector2d across(-direction.y(), direction.x());
+    const auto rate_std = static_cast<double>(scan.range_rate_std_mps[i]);
+    seen_.push_back({position, direction,
+                     range_std * range_std * direction * direction.transpose() +
+                         across_std * across_std * across * across.transpose(),
+                     range, static_cast<double>(scan.range_rate_over_ground_mps[i]), rate_std * rate_std,
                      kReachStds * std::max(range_std, across_std)});
     judged_.push_back({static_cast<std::uint32_t>(i), {}});
   }
@@ -129,11 +133,10 @@ void EvidenceFilter::expect(const CorrectedScan& scan, bool has_tracks) {
   objects_.clear();
   images_.clear();
   if (has_tracks && !seen_.empty()) {
-    SightOfImages sight{sensor, velocity, {}, 0.0, 0.0};
+    SightOfImages sight{sensor, velocity, {}, 0.0};
     for (const SeenDetection& d : seen_) {
-      sight.directions.add(std::atan2(d.direction.y(), d.direction.x()));
+      sight.places.add(d.position_m);
       sight.reach_m = std::max(sight.reach_m, d.reach_m);
-      sight.farthest_m = std::max(sight.farthest_m, d.range_m + d.reach_m);
     }
     const double elapsed_s =
         static_cast<double>(scan.header.measurement_time_ns - tracks_->header.measurement_time_ns) * 1e-9;

@@ -132,10 +132,12 @@ SeenDetection seen_from(const Eigen::Vector2d& sensor_m, const Eigen::Vector2d& 
   d.range_m = (place_m - sensor_m).norm();
   d.direction = (place_m - sensor_m) / d.range_m;
   d.range_rate_mps = range_rate_mps;
-  d.range_std_m = 0.2;
-  d.azimuth_std_rad = 0.008;
-  d.range_rate_std_mps = 0.15;
-  d.reach_m = 4.0 * std::max(d.range_std_m, d.range_m * d.azimuth_std_rad);
+  const double range_std_m = 0.2, across_std_m = 0.008 * d.range_m;
+  const Eigen::Vector2d across(-d.direction.y(), d.direction.x());
+  d.covariance_m2 = range_std_m * range_std_m * d.direction * d.direction.transpose() +
+                    across_std_m * across_std_m * across * across.transpose();
+  d.range_rate_variance_m2ps2 = 0.15 * 0.15;
+  d.reach_m = 4.0 * std::max(range_std_m, across_std_m);
   return d;
 }
 
@@ -144,7 +146,7 @@ TEST(ObjectIntensity, SumsUpToTheExpectedNumberOfDetections) {
   const IntensityConfig config;
   const Eigen::Vector2d sensor(3.6, 0.3);
   for (const KnownObject& o : {car({45.0, 4.0}, 0.2, 12.0), car({30.0, -20.0}, 1.9, 8.0)}) {
-    ObjectIntensity intensity(o, sensor, classes, config);
+    ObjectIntensity intensity(o, false, sensor, classes, config);
     const Eigen::Vector2d to_object = (o.observed.box.centre_m - sensor).normalized();
     const double body_mps = to_object.dot(o.observed.velocity_mps);
     constexpr double kPlace_m = 0.35, kRate_mps = 0.25, kHalf_m = 7.0;
@@ -181,7 +183,7 @@ TEST(ObjectIntensity, IsTheSameForASceneThatIsTurnedAsAWhole) {
     turned.observed.velocity_mps = turn * o.observed.velocity_mps;
     turned.position_covariance_m2 = turn * o.position_covariance_m2 * turn.transpose();
     turned.velocity_covariance_m2ps2 = turn * o.velocity_covariance_m2ps2 * turn.transpose();
-    ObjectIntensity a(o, sensor, classes, config), b(turned, turn * sensor, classes, config);
+    ObjectIntensity a(o, false, sensor, classes, config), b(turned, false, turn * sensor, classes, config);
     for (const Eigen::Vector2d& offset :
          {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(-2.0, 0.5), Eigen::Vector2d(1.0, 3.0)}) {
       const Eigen::Vector2d place = o.observed.box.centre_m + offset;
@@ -199,7 +201,7 @@ TEST(ObjectIntensity, IsLargestAtTheBodyAndItsRangeRate) {
   const IntensityConfig config;
   const Eigen::Vector2d sensor(0.0, 0.0), rear(37.75, 0.0);
   const KnownObject o = car({40.0, 0.0}, 0.0, 15.0);
-  ObjectIntensity intensity(o, sensor, classes, config);
+  ObjectIntensity intensity(o, false, sensor, classes, config);
   const double best = intensity.at(seen_from(sensor, rear, 15.0));
   EXPECT_GT(best, 100.0 * intensity.at(seen_from(sensor, rear, -15.0))) << "another range rate";
   EXPECT_GT(best, 100.0 * intensity.at(seen_from(sensor, rear + Eigen::Vector2d(0.0, 4.5), 15.0))) << "another place";
@@ -209,12 +211,27 @@ TEST(ObjectIntensity, IsLargestAtTheBodyAndItsRangeRate) {
   EXPECT_GT(flat, 0.0);
 }
 
+TEST(ObjectIntensity, AnImageHasNoAmbiguousDetectionsAndItsExistenceIsAFactor) {
+  const auto classes = extended_object::object_class_table_defaults();
+  const IntensityConfig config;
+  const Eigen::Vector2d sensor(0.0, 0.0), rear(37.75, 0.0);
+  KnownObject o = car({40.0, 0.0}, 0.0, 15.0);
+  ObjectIntensity object(o, false, sensor, classes, config), image(o, true, sensor, classes, config);
+  const SeenDetection fits = seen_from(sensor, rear, 15.0), wrong = seen_from(sensor, rear, -30.0);
+  EXPECT_NEAR(image.at(fits) / object.at(fits), 1.0 / (1.0 - config.ambiguous_share), 1e-3);
+  EXPECT_EQ(image.at(wrong), 0.0);
+  EXPECT_GT(object.at(wrong), 0.0);
+  o.existence = 0.25;
+  ObjectIntensity doubtful(o, true, sensor, classes, config);
+  EXPECT_NEAR(doubtful.at(fits) / image.at(fits), 0.25, 1e-9);
+}
+
 TEST(ObjectIntensity, ReachesAsFarAsThereIsAnyIntensity) {
   const auto classes = extended_object::object_class_table_defaults();
   const IntensityConfig config;
   const Eigen::Vector2d sensor(0.0, 0.0);
   const KnownObject o = car({40.0, 0.0}, 0.0, 15.0);
-  ObjectIntensity intensity(o, sensor, classes, config);
+  ObjectIntensity intensity(o, false, sensor, classes, config);
   const double best = intensity.at(seen_from(sensor, {37.75, 0.0}, 15.0));
   bool was_reached = false, was_left = false;
   for (double away = 0.0; away < 20.0; away += 0.25) {

@@ -18,21 +18,19 @@ constexpr std::size_t kMemories = 64;
 constexpr std::int32_t kCells = 64;  // in each direction
 constexpr float kCell_m = 4.0F;
 
+/// Rounds down; faster than std::floor without an instruction for it.
 std::int32_t cell_index(float at_m) {
-  return static_cast<std::int32_t>(std::floor(at_m * (1.0F / kCell_m)));
+  const float cells = at_m * (1.0F / kCell_m);
+  const auto towards_zero = static_cast<std::int32_t>(cells);
+  return towards_zero - (static_cast<float>(towards_zero) > cells ? 1 : 0);
 }
 
-std::size_t cell_number(std::int32_t column, std::int32_t row) {
-  return static_cast<std::size_t>((row & (kCells - 1)) * kCells + (column & (kCells - 1)));
+std::uint16_t cell_number(std::int32_t column, std::int32_t row) {
+  return static_cast<std::uint16_t>((row & (kCells - 1)) * kCells + (column & (kCells - 1)));
 }
 
-std::size_t cell_of(const Eigen::Vector2f& position_m) {
+std::uint16_t cell_of(const Eigen::Vector2f& position_m) {
   return cell_number(cell_index(position_m.x()), cell_index(position_m.y()));
-}
-
-float wrapped(float angle_rad) {
-  constexpr auto kPi = static_cast<float>(M_PI);
-  return angle_rad > kPi ? angle_rad - 2.0F * kPi : angle_rad < -kPi ? angle_rad + 2.0F * kPi : angle_rad;
 }
 
 }  // namespace
@@ -43,7 +41,7 @@ Counter::Counter(const CountConfig& config, std::uint32_t most_past_scans)
   moved_.reserve(config.most_remembered);
   by_cell_.resize(config.most_remembered);
   order_.reserve(kMaxDetections);
-  by_range_.reserve(kMaxDetections);
+  for (std::vector<float>* const column : {&range_m_, &azimuth_rad_, &range_rate_mps_}) column->resize(kMaxDetections);
 }
 
 void Counter::forget(std::int64_t time_ns) {
@@ -77,15 +75,15 @@ void Counter::move(std::int64_t time_ns) {
     if (elapsed_s <= 0.0F) continue;
     for (const Remembered& r : m.detections) {
       if (moved_.size() == config_.most_remembered) break;
-      moved_.push_back(
-          {r.position_m + elapsed_s * r.velocity_mps, r.range_rate_over_ground_mps, static_cast<std::uint32_t>(age)});
+      const Eigen::Vector2f position = r.position_m + elapsed_s * r.velocity_mps;
+      moved_.push_back({position, r.range_rate_over_ground_mps, static_cast<std::uint16_t>(age), cell_of(position)});
     }
   }
   // A counting sort by cell.
   std::fill(cell_begin_.begin(), cell_begin_.end(), 0U);
-  for (const Moved& m : moved_) ++cell_begin_[cell_of(m.position_m) + 1];
+  for (const Moved& m : moved_) ++cell_begin_[m.cell + 1U];
   std::partial_sum(cell_begin_.begin(), cell_begin_.end(), cell_begin_.begin());
-  for (const Moved& m : moved_) by_cell_[cell_begin_[cell_of(m.position_m)]++] = m;
+  for (const Moved& m : moved_) by_cell_[cell_begin_[m.cell]++] = m;
   // Each begin is that of the next cell now.
   std::copy_backward(cell_begin_.begin(), cell_begin_.end() - 1, cell_begin_.end());
   cell_begin_.front() = 0;
@@ -114,47 +112,55 @@ std::uint32_t Counter::past_scans(const Candidate& c) {
 }
 
 void Counter::count_scan(std::span<const Candidate> scan, std::span<Counts> counts) {
-  order_.resize(scan.size());
+  const std::size_t count = scan.size();
+  order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0U);
   std::sort(order_.begin(), order_.end(),
             [&](std::uint32_t a, std::uint32_t b) { return scan[a].range_m < scan[b].range_m; });
-  by_range_.clear();
-  for (const std::uint32_t i : order_) by_range_.push_back(scan[i]);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Candidate& c = scan[order_[k]];
+    range_m_[k] = c.range_m;
+    azimuth_rad_[k] = c.azimuth_rad;
+    range_rate_mps_[k] = c.range_rate_mps;
+  }
   const auto wide_m = static_cast<float>(config_.wide_range_m);
-  const auto wide_mps = static_cast<float>(config_.wide_range_rate_mps);
+  std::size_t first = 0, last = 0;  // candidates within the wide range
+  for (std::size_t k = 0; k < count; ++k) {
+    while (range_m_[k] - range_m_[first] >= wide_m) ++first;
+    while (last < count && range_m_[last] - range_m_[k] < wide_m) ++last;
+    // If they are too many: as many on either side as are there, up to a half.
+    const std::size_t most = config_.most_neighbours, all_below = k - first, all_above = last - k - 1;
+    const std::size_t below = std::min(all_below, std::max((most + 1) / 2, most - std::min(most, all_above)));
+    const std::size_t above = std::min(all_above, most - below);
+    looks_ += below + above;
+    Counts& out = counts[order_[k]];
+    out = compare(k, k - below, k + above + 1);
+    out.moving = static_cast<std::uint32_t>(count);
+  }
+}
+
+/// Without branches, so that the compiler compares several at once.
+Counts Counter::compare(std::size_t own, std::size_t begin, std::size_t end) const {
+  const float range_m = range_m_[own], azimuth_rad = azimuth_rad_[own], range_rate_mps = range_rate_mps_[own];
   const auto near_m = static_cast<float>(config_.company_radius_m);
   const auto near_mps = static_cast<float>(config_.company_range_rate_mps);
-  for (std::size_t k = 0; k < by_range_.size(); ++k) {
-    const Candidate& c = by_range_[k];
-    Counts& out = counts[order_[k]];
-    out = Counts{};
-    out.moving = static_cast<std::uint32_t>(scan.size());
-    out.range_m = c.range_m;
-    const auto look = [&](const Candidate& other) {
-      const float rates = std::abs(other.range_rate_mps - c.range_rate_mps);
-      if (rates >= wide_mps) return;
-      const float ranges = std::abs(other.range_m - c.range_m);
-      const bool is_near = ranges < near_m && rates < near_mps;
-      const float across = std::abs(wrapped(other.azimuth_rad - c.azimuth_rad)) * c.range_m;
-      if (across < near_m) {
-        out.company += is_near ? 1 : 0;
-      } else if (is_near) {
-        ++out.ring;
-      } else {
-        ++out.wide_ring;
-      }
-    };
-    // Outwards in range, to either side in turn.
-    std::size_t below = k, above = k + 1, looks = 0;
-    while (looks < config_.most_neighbours) {
-      const bool has_below = below > 0 && c.range_m - by_range_[below - 1].range_m < wide_m;
-      const bool has_above = above < by_range_.size() && by_range_[above].range_m - c.range_m < wide_m;
-      if (!has_below && !has_above) break;
-      if (has_below) look(by_range_[--below]), ++looks;
-      if (has_above && looks < config_.most_neighbours) look(by_range_[above++]), ++looks;
-    }
-    looks_ += looks;
+  const auto wide_mps = static_cast<float>(config_.wide_range_rate_mps);
+  std::uint32_t company = 0, ring = 0, wide_ring = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const float rates = std::abs(range_rate_mps_[i] - range_rate_mps), turn = std::abs(azimuth_rad_[i] - azimuth_rad);
+    const float across = std::min(turn, 2.0F * static_cast<float>(M_PI) - turn) * range_m;
+    const unsigned is_wide = rates < wide_mps, is_beside = across < near_m;
+    const unsigned is_near = is_wide & (rates < near_mps) & (std::abs(range_m_[i] - range_m) < near_m);
+    company += is_near & is_beside;
+    ring += is_near & ~is_beside & 1U;
+    wide_ring += is_wide & ~is_near & ~is_beside & 1U;
   }
+  Counts counts;
+  counts.company = company;
+  counts.ring = ring;
+  counts.wide_ring = wide_ring;
+  counts.range_m = range_m;
+  return counts;
 }
 
 void Counter::count(std::int64_t time_ns, std::span<const Candidate> scan, std::span<Counts> counts) {

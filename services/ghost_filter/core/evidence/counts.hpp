@@ -65,12 +65,15 @@ class Counter {
   struct Moved {
     Eigen::Vector2f position_m;
     float range_rate_over_ground_mps;
-    std::uint32_t age;  // scans that were remembered later
+    std::uint16_t age;  // scans that were remembered later
+    std::uint16_t cell;
   };
   void forget(std::int64_t time_ns);
   void remember(std::int64_t time_ns, std::span<const Candidate> scan);
   void move(std::int64_t time_ns);
   void count_scan(std::span<const Candidate> scan, std::span<Counts> counts);
+  /// Counts of the candidate at `own` by the others from `begin` to `end`, in the order of range.
+  [[nodiscard]] Counts compare(std::size_t own, std::size_t begin, std::size_t end) const;
   [[nodiscard]] std::uint32_t past_scans(const Candidate& c);
   [[nodiscard]] Memory& memory(std::size_t age) { return memories_[(first_ + size_ - 1 - age) % memories_.size()]; }
 
@@ -80,8 +83,8 @@ class Counter {
   std::size_t first_ = 0, size_ = 0;
   std::vector<Moved> moved_, by_cell_;  // newest first, in the latter within each cell
   std::vector<std::uint32_t> cell_begin_;
-  std::vector<std::uint32_t> order_;  // of the scan's candidates, by range
-  std::vector<Candidate> by_range_;
+  std::vector<std::uint32_t> order_;                           // of the scan's candidates, by range
+  std::vector<float> range_m_, azimuth_rad_, range_rate_mps_;  // in that order
   std::uint64_t looks_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace boresight::ghosts {
 
@@ -19,14 +20,14 @@ class ByRange {
     for (const SeenDetection& d : detections) reach_m_ = std::max(reach_m_, d.reach_m);
   }
 
-  /// Calls `visit(index)` for the detections that are near enough to the object.
+  /// Calls `visit(index)` for the detections within `radius_m`, and their own reach, of a place.
   template <typename Visit>
-  void visit(const ObjectIntensity& object, double range_m, const Visit& visit) const {
-    const double radius = object.radius_m(reach_m_);
-    auto at = std::lower_bound(order_.begin(), order_.end(), range_m - radius,
+  void visit(const Eigen::Vector2d& place_m, double range_m, double radius_m, const Visit& visit) const {
+    const double farthest_m = radius_m + M_SQRT2 * reach_m_;
+    auto at = std::lower_bound(order_.begin(), order_.end(), range_m - farthest_m,
                                [&](std::uint32_t i, double range) { return detections_[i].range_m < range; });
-    for (; at != order_.end() && detections_[*at].range_m <= range_m + radius; ++at) {
-      if (object.reaches(detections_[*at])) visit(*at);
+    for (; at != order_.end() && detections_[*at].range_m <= range_m + farthest_m; ++at) {
+      if ((detections_[*at].position_m - place_m).squaredNorm() <= farthest_m * farthest_m) visit(*at);
     }
   }
 
@@ -48,12 +49,18 @@ void ExpectedDetections::find(std::span<const SeenDetection> detections, const E
                               std::span<Expected> expected) {
   std::fill(expected.begin(), expected.end(), Expected{});
   const ByRange by_range(detections, order_);
-  const auto range_of = [&](const KnownObject& o) { return (o.observed.box.centre_m - sensor_m).norm(); };
+  // Calls `add(expected, intensity)`. What an object needs is prepared with its first detection: many have none.
+  const auto visit = [&](const KnownObject& object, bool is_image, const auto& add) {
+    const extended_object::OrientedBox& box = object.observed.box;
+    const double radius_m = box.half_size_m().norm() + M_SQRT2 * reach_m(object, *config_);
+    std::optional<ObjectIntensity> intensity;
+    by_range.visit(box.centre_m, (box.centre_m - sensor_m).norm(), radius_m, [&](std::uint32_t i) {
+      if (!intensity) intensity.emplace(object, is_image, sensor_m, *classes_, *config_);
+      if (intensity->reaches(detections[i])) add(expected[i], intensity->at(detections[i]));
+    });
+  };
   for (const KnownObject& object : objects) {
-    ObjectIntensity intensity(object, sensor_m, *classes_, *config_);
-    by_range.visit(intensity, range_of(object), [&](std::uint32_t i) {
-      const double value = object.existence * intensity.at(detections[i]);
-      Expected& e = expected[i];
+    visit(object, false, [&](Expected& e, double value) {
       e.objects += value;
       if (value <= e.strongest) return;
       e.strongest = value;
@@ -61,11 +68,8 @@ void ExpectedDetections::find(std::span<const SeenDetection> detections, const E
     });
   }
   for (const MirrorImage& image : images) {
-    ObjectIntensity intensity(image.object, sensor_m, *classes_, *config_);
-    by_range.visit(intensity, range_of(image.object), [&](std::uint32_t i) {
-      const double value = image.object.existence * intensity.at(detections[i]);
-      (image.is_type1 ? expected[i].images_type1 : expected[i].images_type2) += value;
-    });
+    visit(image.object, true,
+          [&](Expected& e, double value) { (image.is_type1 ? e.images_type1 : e.images_type2) += value; });
   }
 }
 

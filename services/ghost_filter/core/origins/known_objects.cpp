@@ -13,6 +13,8 @@ namespace {
 
 using extended_object::RoadUserClass;
 
+constexpr double kNegligible = 1e-3;  // as a part of the intensity of what is not known
+
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
   const auto c = [&](std::size_t row, std::size_t column) {
     return static_cast<double>(track.covariance[(at + row) * kTrackStateSize + at + column]);
@@ -24,7 +26,8 @@ Eigen::Matrix2d block(const Track& track, std::size_t at) {
 
 /// Of a covariance.
 double largest_variance(const Eigen::Matrix2d& m) {
-  return 0.5 * (m.trace() + std::hypot(m(0, 0) - m(1, 1), 2.0 * m(0, 1)));
+  const double difference = m(0, 0) - m(1, 1);
+  return 0.5 * (m.trace() + std::sqrt(difference * difference + 4.0 * m(0, 1) * m(0, 1)));
 }
 
 RoadUserClass road_user_of(ObjectClass c) {
@@ -76,46 +79,48 @@ void predict_objects(const TrackList& tracks, double elapsed_s, const ScanGeomet
   }
 }
 
-ObjectIntensity::ObjectIntensity(const KnownObject& object, const Eigen::Vector2d& sensor_m,
+double reach_m(const KnownObject& object, const IntensityConfig& config) {
+  return kReachStds *
+         std::sqrt(largest_variance(object.position_covariance_m2) + config.position_std_m * config.position_std_m);
+}
+
+ObjectIntensity::ObjectIntensity(const KnownObject& object, bool is_image, const Eigen::Vector2d& sensor_m,
                                  const extended_object::ObjectClassTable& classes, const IntensityConfig& config)
     : object_(&object),
       model_(&extended_object::model_of(classes, object.road_user)),
       config_(&config),
-      sensor_m_(sensor_m),
       to_box_(object.observed.box.rotation_to_box()),
+      position_covariance_m2_(object.position_covariance_m2 +
+                              config.position_std_m * config.position_std_m * Eigen::Matrix2d::Identity()),
       half_size_m_(object.observed.box.half_size_m()),
-      reach_m_(kReachStds * std::sqrt(largest_variance(object.position_covariance_m2) +
-                                      config.position_std_m * config.position_std_m)) {}
-
-void ObjectIntensity::prepare() {
-  const extended_object::OrientedBox& box = object_->observed.box;
-  const Eigen::Vector2d sensor_box = to_box_ * (sensor_m_ - box.centre_m);
-  places_ = extended_object::reflection_mixture(model_->places, box.length_m, box.width_m, sensor_box);
-  const double range = std::max(0.1, sensor_box.norm());
-  expected_ = extended_object::expected_detections(model_->count, range, sensor_box / range);
-  speed_mps_ = object_->observed.velocity_mps.norm();
-  is_prepared_ = true;
+      sensor_box_m_(to_box_ * (sensor_m - object.observed.box.centre_m)),
+      ambiguous_share_(is_image ? 0.0 : config.ambiguous_share),
+      reach_m_(reach_m(object, config)),
+      speed_mps_(object.observed.velocity_mps.norm()) {
+  const double range = std::max(0.1, sensor_box_m_.norm());
+  expected_ = object.existence * extended_object::expected_detections(model_->count, range, sensor_box_m_ / range);
 }
 
 double ObjectIntensity::at(const SeenDetection& d) {
-  if (!is_prepared_) prepare();
-  const Eigen::Vector2d across(-d.direction.y(), d.direction.x());
-  const double across_std = d.range_m * d.azimuth_std_rad;
-  const Eigen::Matrix2d covariance = d.range_std_m * d.range_std_m * d.direction * d.direction.transpose() +
-                                     across_std * across_std * across * across.transpose() +
-                                     object_->position_covariance_m2 +
-                                     config_->position_std_m * config_->position_std_m * Eigen::Matrix2d::Identity();
-  const double place = extended_object::position_density(
-      places_, to_box_ * (d.position_m - object_->observed.box.centre_m), to_box_ * covariance * to_box_.transpose());
+  const extended_object::OrientedBox& box = object_->observed.box;
   const double body_mps = d.direction.dot(object_->observed.velocity_mps) + object_->range_rate_offset_mps;
-  const double variance = d.range_rate_std_mps * d.range_rate_std_mps +
-                          config_->velocity_std_mps * config_->velocity_std_mps +
+  const double variance = d.range_rate_variance_m2ps2 + config_->velocity_std_mps * config_->velocity_std_mps +
                           d.direction.dot(object_->velocity_covariance_m2ps2 * d.direction);
   const double rate = extended_object::range_rate_density(
       extended_object::range_rate_mixture(model_->micro_doppler, to_box_ * d.direction, body_mps, speed_mps_),
       d.range_rate_mps, variance);
-  const double a = config_->ambiguous_share;
-  return expected_ * place * ((1.0 - a) * rate + a / config_->ambiguous_width_mps);
+  const double a = ambiguous_share_;
+  const double at_rate = expected_ * ((1.0 - a) * rate + a / config_->ambiguous_width_mps);
+  const Eigen::Matrix2d covariance = d.covariance_m2 + position_covariance_m2_;
+  // No density of places is larger than that of a point.
+  const double most = at_rate / (2.0 * M_PI * std::sqrt(covariance.determinant()));
+  if (!(most > kNegligible * config_->other_intensity)) return 0.0;
+  if (!has_places_) {
+    places_ = extended_object::reflection_mixture(model_->places, box.length_m, box.width_m, sensor_box_m_);
+    has_places_ = true;
+  }
+  return at_rate * extended_object::position_density(places_, to_box_ * (d.position_m - box.centre_m),
+                                                     to_box_ * covariance * to_box_.transpose());
 }
 
 }  // namespace boresight::ghosts

@@ -32,9 +32,10 @@ struct KnownObject {
 struct SeenDetection {
   Eigen::Vector2d position_m{0.0, 0.0};  ///< vehicle frame
   Eigen::Vector2d direction{1.0, 0.0};   ///< of the line of sight, unit
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
   double range_m = 0.0;
   double range_rate_mps = 0.0;  ///< over ground
-  double range_std_m = 0.0, azimuth_std_rad = 0.0, range_rate_std_mps = 0.0;
+  double range_rate_variance_m2ps2 = 0.0;
   double reach_m = 0.0;  ///< farther from a box it is not of that object
 };
 
@@ -43,39 +44,37 @@ struct SeenDetection {
 void predict_objects(const TrackList& tracks, double elapsed_s, const ScanGeometry& geometry,
                      std::vector<KnownObject>& objects);
 
-/// Expected detections of an object in one scan at a place and range rate, per m² and m/s:
+/// Of its normal distribution of places, the part that matters reaches so far from the object's box.
+[[nodiscard]] double reach_m(const KnownObject& object, const IntensityConfig& config);
+
+/// Expected detections of an object in one scan at a place and range rate, per m² and m/s, times its existence e:
 ///
-///     (G3)   n · p(place | box) · ((1 − a) p(range rate | velocity) + a / W),
+///     (G3)   e · n · p(place | box) · ((1 − a) p(range rate | velocity) + a / W),
 ///
-/// n, both densities: extended_object; a, W: share and width of the object's Doppler-ambiguous detections.
+/// n, both densities: extended_object; a, W: share and width of the object's Doppler-ambiguous detections. An image of
+/// such a detection is rarer still: a = 0.
 class ObjectIntensity {
  public:
-  ObjectIntensity(const KnownObject& object, const Eigen::Vector2d& sensor_m,
+  ObjectIntensity(const KnownObject& object, bool is_image, const Eigen::Vector2d& sensor_m,
                   const extended_object::ObjectClassTable& classes, const IntensityConfig& config);
   /// Whether the detection is near enough to its box for an intensity.
   [[nodiscard]] bool reaches(const SeenDetection& detection) const {
     const Eigen::Vector2d offset = (to_box_ * (detection.position_m - object_->observed.box.centre_m)).cwiseAbs();
     return (offset - half_size_m_).maxCoeff() < reach_m_ + detection.reach_m;
   }
-  /// Distance from the centre beyond which no detection of that reach is near enough.
-  [[nodiscard]] double radius_m(double detection_reach_m) const {
-    return half_size_m_.norm() + M_SQRT2 * (reach_m_ + detection_reach_m);
-  }
-  /// Equation (G3). The first call prepares the mixture of places.
+  /// Equation (G3); 0 where it is next to nothing beside what else may be there. The first call with more prepares
+  /// the mixture of places.
   [[nodiscard]] double at(const SeenDetection& detection);
 
  private:
-  void prepare();
   const KnownObject* object_;
   const extended_object::ObjectClassModel* model_;
   const IntensityConfig* config_;
-  Eigen::Vector2d sensor_m_;
-  Eigen::Matrix2d to_box_;
-  Eigen::Vector2d half_size_m_;
-  double reach_m_;
-  bool is_prepared_ = false;
+  Eigen::Matrix2d to_box_, position_covariance_m2_;
+  Eigen::Vector2d half_size_m_, sensor_box_m_;
+  double ambiguous_share_, reach_m_, speed_mps_, expected_;
+  bool has_places_ = false;
   extended_object::ReflectionMixture places_;
-  double speed_mps_ = 0.0, expected_ = 0.0;
 };
 
 }  // namespace boresight::ghosts

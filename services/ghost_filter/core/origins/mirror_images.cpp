@@ -19,16 +19,18 @@ void add_images(const KnownObject& o, const Mirror& mirror, const MirrorPath& pa
   const double of_mirror = 4.0 * shift + 4.0 * path.second_m * path.second_m * turn;
   const double half_width_m =
       box.half_size_m().norm() + kReachStds * std::sqrt(of_mirror + o.position_covariance_m2.trace()) + sight.reach_m;
-  const bool has_type2 = sight.directions.may_hold(path.departure * bent_m, half_width_m) && bent_m < sight.farthest_m;
-  const bool has_type1 = sight.directions.may_hold(e * bent_m, half_width_m) && bent_m < sight.farthest_m;
-  if (!has_type1 && !has_type2) return;
+  const auto is_seen = [&](const Eigen::Vector2d& from_sensor_m) {
+    return sight.places.may_hold(sight.sensor_m + from_sensor_m, half_width_m);
+  };
+  const bool has_mirrored = is_seen(of_image), has_type2 = is_seen(bent_m * path.departure),
+             has_type1 = is_seen(bent_m * e);
   const double existence = o.existence * mirror.probability;
   const double bent_mps = path.arrival.dot(o.observed.velocity_mps), direct_mps = e.dot(o.observed.velocity_mps);
   const double carried_mps = 0.5 * (path.departure - e).dot(sight.sensor_velocity_mps);
   const auto add = [&](const KnownObject& object, bool is_type1) {
     if (images.size() < images.capacity()) images.push_back({object, is_type1});
   };
-  if (has_type2) {
+  if (has_mirrored || has_type2) {
     // The reflection turns the arriving wave into the departing one: about the mirror's tangent.
     const Eigen::Vector2d& tangent = mirror.tangent;
     const Eigen::Matrix2d reflection = 2.0 * tangent * tangent.transpose() - Eigen::Matrix2d::Identity();
@@ -40,10 +42,10 @@ void add_images(const KnownObject& o, const Mirror& mirror, const MirrorPath& pa
     image.position_covariance_m2 =
         reflection * o.position_covariance_m2 * reflection.transpose() + of_mirror * Eigen::Matrix2d::Identity();
     image.velocity_covariance_m2ps2 = reflection * o.velocity_covariance_m2ps2 * reflection.transpose();
-    add(image, false);
+    if (has_mirrored) add(image, false);
     image.observed.box.centre_m = sight.sensor_m + bent_m * path.departure;
     image.range_rate_offset_mps = 0.5 * (direct_mps - bent_mps) + carried_mps;
-    add(image, false);
+    if (has_type2) add(image, false);
   }
   if (has_type1) {
     KnownObject image = o;

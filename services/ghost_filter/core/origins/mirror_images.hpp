@@ -11,9 +11,9 @@
 
 #include <Eigen/Core>
 
-#include "services/ghost_filter/core/origins/directions.hpp"
 #include "services/ghost_filter/core/origins/known_objects.hpp"
 #include "services/ghost_filter/core/origins/mirror.hpp"
+#include "services/ghost_filter/core/origins/occupied_places.hpp"
 
 namespace boresight::ghosts {
 
@@ -26,8 +26,7 @@ struct MirrorImage {
 struct SightOfImages {
   Eigen::Vector2d sensor_m{0.0, 0.0};
   Eigen::Vector2d sensor_velocity_mps{0.0, 0.0};  ///< over ground
-  Directions directions;                          ///< of the detections
-  double farthest_m = 0.0;                        ///< range of the farthest detection
+  OccupiedPlaces places;                          ///< of the detections
   double reach_m = 0.0;                           ///< largest reach of a detection
 };
 

@@ -11,6 +11,31 @@ namespace {
 constexpr double kMargin_m = 2.0;
 /// Points of a tile and of the margin about it.
 constexpr std::size_t kMostPoints = 4 * StationaryTiles::kMostPoints;
+/// With a smaller part of new points a search would give the same segments again.
+constexpr std::uint32_t kNewPart = 8;
+
+/// Calls `visit(place)` for the tile and those around it.
+template <typename Visit>
+void visit_block(geometry::GridCell middle, const Visit& visit) {
+  for (std::int32_t column = middle.column - 1; column <= middle.column + 1; ++column) {
+    for (std::int32_t row = middle.row - 1; row <= middle.row + 1; ++row) visit(geometry::GridCell{column, row});
+  }
+}
+
+/// How far other segments continue one, before its start and after its end.
+struct Continuation {
+  double before_m = 0.0, after_m = 0.0;
+  void add(const Segment& own, const Segment& other, const LineConfig& config) {
+    const double own_m = own.length_m();
+    const Eigen::Vector2d along = (own.end_m - own.start_m) / own_m, across(-along.y(), along.x());
+    const Eigen::Vector2d a = other.start_m - own.start_m, b = other.end_m - own.start_m;
+    const double first = std::min(along.dot(a), along.dot(b)), last = std::max(along.dot(a), along.dot(b));
+    const Eigen::Vector2d nearer = std::abs(along.dot(a) - 0.5 * own_m) < std::abs(along.dot(b) - 0.5 * own_m) ? a : b;
+    if (std::abs(across.dot(nearer)) > 2.0 * config.tolerance_m) return;
+    if (std::abs(first - own_m) < config.max_gap_m) after_m = std::max(after_m, last - first);
+    if (std::abs(last) < config.max_gap_m) before_m = std::max(before_m, last - first);
+  }
+};
 
 }  // namespace
 
@@ -33,26 +58,13 @@ void ReflectorMap::add(const Eigen::Vector2d& position_m, double std_m, std::int
 }
 
 double ReflectorMap::with_continuations_m(const Segment& segment, geometry::GridCell place) const {
-  const double own_m = segment.length_m();
-  const Eigen::Vector2d along = (segment.end_m - segment.start_m) / own_m, across(-along.y(), along.x());
-  const double gap_m = config_.lines.max_gap_m;
-  double before_m = 0.0, after_m = 0.0;
-  for (std::int32_t column = place.column - 1; column <= place.column + 1; ++column) {
-    for (std::int32_t row = place.row - 1; row <= place.row + 1; ++row) {
-      const Found& beside = found_[StationaryTiles::number_of({column, row})];
-      if (beside.place == place || !(beside.place == geometry::GridCell{column, row})) continue;
-      for (const Segment& other : beside.segments) {
-        const Eigen::Vector2d a = other.start_m - segment.start_m, b = other.end_m - segment.start_m;
-        const double first = std::min(along.dot(a), along.dot(b)), last = std::max(along.dot(a), along.dot(b));
-        const Eigen::Vector2d nearer =
-            std::abs(along.dot(a) - 0.5 * own_m) < std::abs(along.dot(b) - 0.5 * own_m) ? a : b;
-        if (std::abs(across.dot(nearer)) > 2.0 * config_.lines.tolerance_m) continue;
-        if (std::abs(first - own_m) < gap_m) after_m = std::max(after_m, last - first);
-        if (std::abs(last) < gap_m) before_m = std::max(before_m, last - first);
-      }
-    }
-  }
-  return before_m + own_m + after_m;
+  Continuation continuation;
+  visit_block(place, [&](geometry::GridCell at) {
+    const Found& beside = found_[StationaryTiles::number_of(at)];
+    if (at == place || !(beside.place == at)) return;
+    for (const Segment& other : beside.segments) continuation.add(segment, other, config_.lines);
+  });
+  return continuation.before_m + segment.length_m() + continuation.after_m;
 }
 
 std::size_t ReflectorMap::search(std::size_t number, std::int64_t oldest_ns) {
@@ -63,11 +75,9 @@ std::size_t ReflectorMap::search(std::size_t number, std::int64_t oldest_ns) {
   const Eigen::Vector2d low = tile.low_m(), high = low + Eigen::Vector2d::Constant(StationaryTiles::kTile_m);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(kMargin_m);
   points_.clear();
-  for (std::int32_t column = tile.place.column - 1; column <= tile.place.column + 1; ++column) {
-    for (std::int32_t row = tile.place.row - 1; row <= tile.place.row + 1; ++row) {
-      tiles_.collect(StationaryTiles::number_of({column, row}), oldest_ns, low - margin, high + margin, points_);
-    }
-  }
+  visit_block(tile.place, [&](geometry::GridCell at) {
+    tiles_.collect(StationaryTiles::number_of(at), oldest_ns, low - margin, high + margin, points_);
+  });
   for (const Segment& segment : lines_.find(points_)) {
     const Eigen::Vector2d middle = 0.5 * (segment.start_m + segment.end_m);
     if ((middle.array() < low.array()).any() || (middle.array() >= high.array()).any()) continue;
@@ -92,10 +102,10 @@ void ReflectorMap::update(std::int64_t time_ns) {
       is_changed = is_changed || !found.segments.empty();
       found.begin(tile.place);
     }
-    // With less than an eighth of new points a search would give the same segments again.
     if (tile.newest_ns < oldest_ns ||
-        8 * (tile.added - found.added) < std::min<std::size_t>(tile.added, StationaryTiles::kMostPoints))
+        kNewPart * (tile.added - found.added) < std::min<std::size_t>(tile.added, StationaryTiles::kMostPoints)) {
       continue;
+    }
     looks += search(number, oldest_ns);
     is_changed = true;
   }
