@@ -151,7 +151,7 @@ struct AlignmentNuisance {
   float azimuth_curve_first_rad;
   float azimuth_curve_step_rad;  ///< 0: no curve
   std::uint32_t observable;      ///< alignment_nuisance bits
-  std::uint32_t reserved;
+  float range_rate_noise_scale;  ///< factor on the stds of range rates that explains the residuals; 0: not estimated
 };
 static_assert(sizeof(AlignmentNuisance) == 168);
 
@@ -161,7 +161,7 @@ static_assert(sizeof(AlignmentNuisance) == 168);
 /// rotation about the vehicle's axes, z first and x last, so that an unknown roll does not affect yaw and pitch. A
 /// positive pitch turns a forward-looking radar up.
 struct AlignmentEstimate {
-  static constexpr std::uint32_t kVersion = 3;
+  static constexpr std::uint32_t kVersion = 4;
 
   MessageHeader header;
   AlignmentState state;

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kScansDropped = 1u << 7;
 
 /// Bits of `CorrectedScan::detection_flags`, per detection.
 namespace corrected_flag {
-inline constexpr std::uint16_t kInvalid = 1u << 0;        ///< a value that is needed is not finite
+inline constexpr std::uint16_t kInvalid = 1u << 0;        ///< a needed value is not finite or not usable
 inline constexpr std::uint16_t kAmbiguous = 1u << 1;      ///< carried over: the sensor doubts the range rate
 inline constexpr std::uint16_t kOutsideRegion = 1u << 2;  ///< outside the region-of-interest box
 inline constexpr std::uint16_t kWeak = 1u << 3;           ///< under the range-dependent RCS threshold
@@ -79,7 +79,7 @@ struct CorrectedScan {
   DetectionColumn<float> range_std_m;
   DetectionColumn<float> azimuth_std_rad;
   DetectionColumn<float> elevation_std_rad;
-  DetectionColumn<float> range_rate_std_mps;
+  DetectionColumn<float> range_rate_std_mps;  ///< as stated by the radar × its learnt ratio of actual to stated
   DetectionColumn<float> existence_probability;
   DetectionColumn<std::uint16_t> detection_flags;  ///< corrected_flag bits
 };

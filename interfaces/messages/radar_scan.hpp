@@ -18,8 +18,12 @@ inline constexpr std::uint32_t kAmbiguity = 1u << 5;  ///< range_rate_min/max_mp
 
 /// Bits of `RadarScan::detection_flags`, per detection.
 namespace detection_flag {
-inline constexpr std::uint16_t kInvalid = 1u << 0;    ///< the sensor marked a needed quantity as invalid
+inline constexpr std::uint16_t kInvalid = 1u << 0;    ///< the sensor calls the detection invalid: evidence against it
 inline constexpr std::uint16_t kAmbiguous = 1u << 1;  ///< the range rate lies outside the unambiguous interval
+/// A needed value is not finite, beyond the protocol's limits, or not to be used by the protocol's word.
+inline constexpr std::uint16_t kUnusable = 1u << 2;
+/// For users that need no doubtful detections: any of the bits of doubt about more than the range rate.
+inline constexpr std::uint16_t kUntrusted = kInvalid | kUnusable;
 }  // namespace detection_flag
 
 /// Bits of `RadarScan::integrity`: faults of the scan as a whole that the gateway detected.

@@ -95,6 +95,7 @@ inline constexpr std::size_t kReserved = 46;              // u16, 0
 namespace flag {
 inline constexpr std::uint16_t kInvalid = 1u << 0;
 inline constexpr std::uint16_t kAmbiguous = 1u << 1;
+inline constexpr std::uint16_t kDoubted = 1u << 2;
 }  // namespace flag
 
 /// Values allowed, both ends included.

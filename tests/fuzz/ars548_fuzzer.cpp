@@ -25,7 +25,7 @@ void require_possible(const RadarScan& scan) {
   require(scan.number_of_valid_detections <= layout::kMaxDetectionRecords);
   for (std::size_t i = 0; i < scan.number_of_valid_detections; ++i) {
     require(scan.azimuth_std_rad[i] >= 0.0F && std::isfinite(scan.range_std_m[i]));
-    if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) continue;
+    if ((scan.detection_flags[i] & detection_flag::kUntrusted) != 0) continue;
     require(scan.range_m[i] >= 0.0F && scan.range_m[i] <= 1500.0F && std::abs(scan.range_rate_mps[i]) <= 150.0F);
   }
 }

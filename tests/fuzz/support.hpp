@@ -115,8 +115,8 @@ inline void require_possible(const RadarScan& scan) {
          {&scan.range_std_m, &scan.azimuth_std_rad, &scan.elevation_std_rad, &scan.range_rate_std_mps}) {
       require((*std)[i] >= 0.0F && std::isfinite((*std)[i]));
     }
-    require(scan.detection_flags[i] < 1u << 2);
-    if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) continue;
+    require(scan.detection_flags[i] < 1u << 3);
+    if ((scan.detection_flags[i] & detection_flag::kUntrusted) != 0) continue;
     require(scan.range_m[i] >= 0.0F && scan.range_m[i] <= 1500.0F);
     require(std::abs(scan.azimuth_rad[i]) <= kPi && std::abs(scan.elevation_rad[i]) <= kPi / 2.0F);
     require(std::abs(scan.range_rate_mps[i]) <= 150.0F);

@@ -31,7 +31,7 @@ PURE_EXCEPTIONS = {("services/ingest_gateway/codecs/report.cpp", "cstdio")}
 UNIT = re.compile(r"_(m|s|ms|us|ns|hz|rad|radps|radps2pm|mps|mps2|db|dbsm|m2)$")
 PURE_NUMBER = re.compile(r"(probability|ratio|skewness|kurtosis|speed_scale(_std)?|covariance|sensor_to_vehicle|"
                          r"detections_per_scan|seconds_of_drive|seconds_to_95_percent|drift_per_minute|nees|"
-                         r"angle_noise_scale)$|^values$|"
+                         r"(angle|range_rate)_noise_scale)$|^values$|"
                          # The unit is that of the field which holds the pair, or depends on the kind of change or finding.
                          r"^(value|std|size|finding_value)$")
 FLOAT_FIELD = re.compile(r"^\s*(?:alignas\(\d+\)\s*)?(?:float|double|std::array<float,[^;]*>|DetectionColumn<float>)\s+"

@@ -20,7 +20,7 @@ void take_detections(const RadarScan& scan, const RadarConfig& radar, ScanDetect
   const double width = static_cast<double>(scan.range_rate_max_mps) - static_cast<double>(scan.range_rate_min_mps);
   out.ambiguity_mps = scan.has(scan_field::kAmbiguity) && std::isfinite(width) && width > 0.0 ? width : 0.0;
   const bool has_stds = scan.has(scan_field::kStds);
-  std::uint16_t unusable = detection_flag::kInvalid;
+  std::uint16_t unusable = detection_flag::kUntrusted;
   if (out.ambiguity_mps == 0.0) unusable |= detection_flag::kAmbiguous;
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
   for (std::size_t i = 0; i < count; ++i) {

@@ -150,6 +150,7 @@ void add_counts(json::Value& object, const RadarResult& radar) {
   object["detections_used"] = radar.estimate.detections_used;
   object["seconds_of_drive"] = significant(radar.estimate.seconds_of_drive);
   object["angle_noise_scale"] = significant(radar.estimate.angle_noise_scale);
+  object["range_rate_noise_scale"] = significant(radar.estimate.nuisance.range_rate_noise_scale);
 }
 
 json::Value object_of(const StepChangeEvent& change) {

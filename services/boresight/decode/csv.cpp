@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "services/boresight/input/flag_words.hpp"
+
 namespace boresight::decode {
 
 namespace {
@@ -56,11 +58,6 @@ class Row {
   std::string& text_;
   bool first_ = true;
 };
-
-std::string_view flag_names(std::uint16_t flags) {
-  constexpr std::array<std::string_view, 4> kNames = {"", "invalid", "ambiguous", "invalid+ambiguous"};
-  return kNames[flags & (detection_flag::kInvalid | detection_flag::kAmbiguous)];
-}
 
 }  // namespace
 
@@ -129,7 +126,7 @@ void append_detections(std::string& rows, const RadarScan& scan, std::uint32_t r
     row.number_if(has_interval, scan.range_rate_min_mps);
     row.number_if(has_interval, scan.range_rate_max_mps);
     row.number_if(scan.has(scan_field::kExistence), scan.existence_probability[i]);
-    row.word(flag_names(scan.detection_flags[i]));
+    row.word(input::kFlagWords[scan.detection_flags[i] % input::kFlagWords.size()]);
     row.word(name_of(time.source));
     row.word(integrity);
     row.end();

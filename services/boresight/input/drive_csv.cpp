@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "services/boresight/input/flag_words.hpp"
+
 namespace boresight::input {
 
 namespace {
@@ -31,9 +33,6 @@ enum : std::size_t {
 
 constexpr double kPi = 3.1415926535897933, kFastest_mps = 500.0;
 constexpr double kMostDecibel = 200.0;
-/// As `boresight decode` writes them; the index is the set of detection_flag bits.
-constexpr std::array<std::string_view, 4> kFlagWords = {"", "invalid", "ambiguous", "invalid+ambiguous"};
-static_assert(detection_flag::kInvalid == 1 && detection_flag::kAmbiguous == 2);
 
 constexpr Column optional_column(std::string_view name, double min, double max, std::string_view unit,
                                  std::string_view synonym = {}) {
@@ -172,10 +171,10 @@ bool DriveReader::next(RadarScan& scan, double& time_s) {
   scan.number_of_valid_detections = static_cast<std::uint32_t>(count);
   scan.fields |= (has_rcs ? scan_field::kRcs : 0u) | (has_snr ? scan_field::kSnr : 0u) |
                  (has_existence ? scan_field::kExistence : 0u);
-  // If some detections of a scan have an elevation, the others are invalid.
+  // If some detections of a scan have an elevation, the others are unusable.
   if (scan.has(scan_field::kElevation) && lacks_elevation_.any()) {
     for (std::size_t i = 0; i < count; ++i) {
-      if (lacks_elevation_[i]) scan.detection_flags[i] |= detection_flag::kInvalid;
+      if (lacks_elevation_[i]) scan.detection_flags[i] |= detection_flag::kUnusable;
     }
   }
   return true;

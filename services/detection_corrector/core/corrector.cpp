@@ -65,13 +65,17 @@ bool Corrector::add_alignment(const AlignmentEstimate& estimate) {
   if (!knows(id)) return false;
   alignment_[id].present = true;
   alignment_[id].estimate = estimate;
+  const bool is_sound = estimate.finding == AlignmentFinding::kNone;
+  noises_[index_of(id)].set_prior(is_sound ? static_cast<double>(estimate.nuisance.range_rate_noise_scale) : 1.0);
   return true;
 }
 
+std::size_t Corrector::index_of(std::uint32_t radar_id) const {
+  return static_cast<std::size_t>(vehicle_.radar(radar_id) - vehicle_.radars.data());
+}
+
 double Corrector::range_rate_noise_scale(std::uint32_t radar_id) const {
-  const RadarConfig* const radar = vehicle_.radar(radar_id);
-  if (radar == nullptr) return 1.0;
-  return std::sqrt(noises_[static_cast<std::size_t>(radar - vehicle_.radars.data())].variance_factor());
+  return knows(radar_id) ? std::sqrt(noises_[index_of(radar_id)].variance_factor()) : 1.0;
 }
 
 void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
@@ -115,9 +119,10 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
   const bool has_rcs = scan.has(scan_field::kRcs);
   const Eigen::Matrix3d& rotation = mounting.sensor_to_vehicle;
   const Eigen::Vector3d origin(radar->mounting_pose.position_m.data());
-  const auto index = static_cast<std::size_t>(radar - vehicle_.radars.data());
+  const std::size_t index = index_of(id);
   const UnknownElevation& unknown = unknown_elevations_[index];
   RangeRateNoise& noise = noises_[index];
+  const double learnt_factor = noise.variance_factor();
   const StationaryTest stationary(motion, mounting, has_elevation ? nullptr : &unknown, config_);
   std::size_t with_noise = 0;
 
@@ -126,7 +131,8 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
     const bool finite = std::isfinite(scan.range_m[i]) && std::isfinite(scan.azimuth_rad[i]) &&
                         std::isfinite(elevation) && std::isfinite(scan.range_rate_mps[i]) && scan.range_m[i] >= 0.0F;
     std::uint16_t flags = 0;
-    if (!finite) flags |= corrected_flag::kInvalid;
+    const bool usable = finite && (scan.detection_flags[i] & detection_flag::kUnusable) == 0;
+    if (!usable) flags |= corrected_flag::kInvalid;
     if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) flags |= corrected_flag::kDoubted;
     if ((scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) flags |= corrected_flag::kAmbiguous;
     const double range = finite ? scan.range_m[i] : 0.0;
@@ -158,7 +164,10 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
     out.range_std_m[i] = known_or(has_stds, scan.range_std_m[i], radar->noise.range_std_m);
     out.azimuth_std_rad[i] = azimuth_std;
     out.elevation_std_rad[i] = elevation_std;
-    out.range_rate_std_mps[i] = range_rate_std;
+    // The noise of the vehicle file is not the radar's statement.
+    const bool states_rate = has_stds && range_rate_std == scan.range_rate_std_mps[i];
+    const double rate_factor = states_rate ? learnt_factor : 1.0;
+    out.range_rate_std_mps[i] = static_cast<float>(std::sqrt(rate_factor)) * range_rate_std;
     out.existence_probability[i] = scan.has(scan_field::kExistence) ? scan.existence_probability[i] : 1.0F;
 
     if (!is_inside(position, config_)) flags |= corrected_flag::kOutsideRegion;
@@ -166,7 +175,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
       const double limit = config_.rcs_near_dbsm + config_.rcs_slope_db_per_decade * std::log10(range / 10.0);
       if (scan.rcs_dbsm[i] < limit) flags |= corrected_flag::kWeak;
     }
-    if (compensates && finite) {
+    if (compensates && usable) {
       // A std that the sensor does not state comes from the vehicle file and holds at the boresight.
       const bool states_azimuth = has_stds && azimuth_std == scan.azimuth_std_rad[i];
       const double widening = states_azimuth ? 1.0 : 1.0 / std::max(ca, config_.azimuth_std_edge);
@@ -181,10 +190,8 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
                         static_cast<double>(elevation_std),
                         static_cast<double>(range_rate_std),
                         azimuth_error.std_rad};
-      // The noise of the vehicle file is not the radar's statement.
-      const bool states_rate = has_stds && range_rate_std == scan.range_rate_std_mps[i];
       const Innovation innovation = stationary.innovation(sight);
-      const bool passes = stationary.passes(innovation, states_rate ? noise.variance_factor() : 1.0);
+      const bool passes = stationary.passes(innovation, rate_factor);
       const bool is_trusted = (flags & (corrected_flag::kDoubted | corrected_flag::kAmbiguous)) == 0;
       if (states_rate && is_trusted) innovations_[with_noise++] = innovation;
       flags |= passes ? corrected_flag::kStationary : corrected_flag::kMoving;

@@ -38,6 +38,9 @@ class Corrector {
   [[nodiscard]] double range_rate_noise_scale(std::uint32_t radar_id) const;
 
  private:
+  /// Of a radar of the vehicle, in its list.
+  [[nodiscard]] std::size_t index_of(std::uint32_t radar_id) const;
+
   struct Latest {
     bool present = false;
     AlignmentEstimate estimate;

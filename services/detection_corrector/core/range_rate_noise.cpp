@@ -35,6 +35,17 @@ struct CommonError {
 
 }  // namespace
 
+void RangeRateNoise::set_prior(double scale) {
+  prior_factor_ = std::isfinite(scale) && scale > 0.0 ? scale * scale : 1.0;
+  weigh();
+}
+
+void RangeRateNoise::weigh() {
+  const double prior = config_.prior_detections;
+  factor_ = std::clamp((prior * prior_factor_ + sum_) / (prior + weight_), config_.least_scale * config_.least_scale,
+                       config_.most_scale * config_.most_scale);
+}
+
 void RangeRateNoise::learn(std::span<const Innovation> scan, const Eigen::Matrix3d& common, std::int64_t time_ns) {
   if (!common.allFinite()) return;
   const double age_s = has_time_ ? std::max(0.0, static_cast<double>(time_ns - time_ns_) * 1e-9) : 0.0;
@@ -81,8 +92,7 @@ void RangeRateNoise::learn(std::span<const Innovation> scan, const Eigen::Matrix
     sum_ += weight * squared / i.stated_variance_m2ps2;
   }
   other_share_ = (config_.prior_detections * config_.other_share + others_) / (config_.prior_detections + seen_);
-  const double factor = (config_.prior_detections + sum_) / (config_.prior_detections + weight_);
-  factor_ = std::clamp(factor, config_.least_scale * config_.least_scale, config_.most_scale * config_.most_scale);
+  weigh();
 }
 
 }  // namespace boresight::corrector

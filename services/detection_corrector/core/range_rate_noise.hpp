@@ -21,10 +21,14 @@ struct Innovation {
 
 /// Recursive maximum likelihood for a mixture. A stationary reflector's innovation has the variance s²·stated + angular
 /// and an error common to the scan. Anything else has a wide distribution. The evidence is forgotten exponentially. The
-/// prior s = 1 is never forgotten, so a radar without stationary detections returns to its stated noise.
+/// prior is never forgotten, so a radar without stationary detections returns to it: to its stated noise, s = 1, unless
+/// somebody knows better.
 class RangeRateNoise {
  public:
   explicit RangeRateNoise(const StatedNoiseConfig& config) : config_(config), other_share_(config.other_share) {}
+
+  /// Takes `scale` as the prior s, as far as it is within the limits; one that is not positive and finite as s = 1.
+  void set_prior(double scale);
 
   /// s²: actual / stated variance.
   [[nodiscard]] double variance_factor() const { return factor_; }
@@ -34,7 +38,11 @@ class RangeRateNoise {
   void learn(std::span<const Innovation> scan, const Eigen::Matrix3d& common, std::int64_t time_ns);
 
  private:
+  /// Equation (C13), the second line.
+  void weigh();
+
   StatedNoiseConfig config_;
+  double prior_factor_ = 1.0;
   double factor_ = 1.0;
   double other_share_;
   double weight_ = 0.0, sum_ = 0.0;   // of the evidence, in detections; sum_/weight_ is its s²

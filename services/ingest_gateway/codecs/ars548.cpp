@@ -26,7 +26,8 @@ std::uint16_t flags_of(const std::uint8_t* record, std::uint8_t invalid, float r
   constexpr float kPi = 3.14159274F;
   const bool plausible = finite && range >= 0.0F && range <= 1500.0F && std::abs(azimuth) <= kPi &&
                          std::abs(elevation) <= kPi / 2.0F && std::abs(range_rate) <= 150.0F;
-  if ((invalid & kNeeded) != 0 || !plausible) flags |= detection_flag::kInvalid;
+  if ((invalid & kNeeded) != 0) flags |= detection_flag::kInvalid;
+  if (!plausible) flags |= detection_flag::kUnusable;
   const bool has_interval = rate_min < rate_max;
   if (has_interval && finite && (range_rate < rate_min || range_rate > rate_max)) flags |= detection_flag::kAmbiguous;
   return flags;

@@ -55,7 +55,8 @@ void write_detection(const std::uint8_t* record, const ListFields& fields, std::
       (!fields.snr || is_within(snr, limit::kSnrMin_db, limit::kSnrMax_db)) && is_within(existence, 0.0F, 1.0F);
   const std::uint16_t flags = read_u16(record + r::kFlags);
   std::uint16_t out = 0;
-  if (!sound || (flags & list::flag::kInvalid) != 0) out |= detection_flag::kInvalid;
+  if (!sound || (flags & list::flag::kInvalid) != 0) out |= detection_flag::kUnusable;
+  if ((flags & list::flag::kDoubted) != 0) out |= detection_flag::kInvalid;
   const bool outside = scan.range_rate_min_mps < scan.range_rate_max_mps &&
                        !is_within(range_rate, scan.range_rate_min_mps, scan.range_rate_max_mps);
   if (outside || (flags & list::flag::kAmbiguous) != 0) out |= detection_flag::kAmbiguous;

@@ -279,7 +279,7 @@ void Srr520::publish_detections(DecoderOutput& output) {
     scan.elevation_std_rad[i] = scan.range_rate_std_mps[i] = 0.0F;
     scan.existence_probability[i] = 1.0F;
     const bool ambiguous = has_interval && std::abs(detection.range_rate_mps) > limit_mps;
-    scan.detection_flags[i] = static_cast<std::uint16_t>((detection.valid ? 0 : detection_flag::kInvalid) |
+    scan.detection_flags[i] = static_cast<std::uint16_t>((detection.valid ? 0 : detection_flag::kUnusable) |
                                                          (ambiguous ? detection_flag::kAmbiguous : 0));
   }
   output.publish_scan(first_, measured, 32);

@@ -219,7 +219,7 @@ bool TableRadar::write_detection(const Slot& slot, std::size_t i, RadarScan& sca
   const bool has_existence = (mapping_.quantities & dbc::bit_of(Quantity::kExistence)) != 0;
   scan.existence_probability[i] =
       has_existence ? static_cast<float>(std::clamp(slot.value(Quantity::kExistence), 0.0, 1.0)) : 1.0F;
-  scan.detection_flags[i] = is_sound ? std::uint16_t{0} : detection_flag::kInvalid;
+  scan.detection_flags[i] = is_sound ? std::uint16_t{0} : detection_flag::kUnusable;
   return true;
 }
 

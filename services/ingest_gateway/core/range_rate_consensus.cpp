@@ -77,7 +77,7 @@ std::size_t RangeRateConsensus::select(const RadarScan& scan, const Eigen::Vecto
   for (std::size_t i = 0; i < count && tested < kMaxTested; i += step) {
     const float azimuth = scan.azimuth_rad[i], rate = scan.range_rate_mps[i];
     const float elevation = has_elevation ? scan.elevation_rad[i] : 0.0F;
-    if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) continue;
+    if ((scan.detection_flags[i] & detection_flag::kUntrusted) != 0) continue;
     if (ambiguity_mps_ == 0.0F && (scan.detection_flags[i] & detection_flag::kAmbiguous) != 0) continue;
     if (!(std::abs(azimuth) <= 4.0F && std::abs(elevation) <= 2.0F && std::abs(rate) <= 1000.0F)) continue;
     ++reported_;

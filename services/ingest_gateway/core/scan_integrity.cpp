@@ -148,7 +148,7 @@ bool ScanJudge::is_implausible(const RadarScan& scan, std::size_t detections) co
     const bool visible = range <= range_max && azimuth >= azimuth_min && azimuth <= azimuth_max &&
                          elevation >= elevation_min && elevation <= elevation_max;
     // A quantity that the sensor marks as invalid may have any value.
-    const bool marked = (scan.detection_flags[i] & detection_flag::kInvalid) != 0;
+    const bool marked = (scan.detection_flags[i] & detection_flag::kUntrusted) != 0;
     implausible += possible && (visible || marked) ? 0u : 1u;
   }
   return implausible >= kLeastImplausible && implausible * kImplausiblePart >= detections;

@@ -11,13 +11,11 @@ namespace boresight::replay {
 namespace wire_list = wire::boresight_service::detection_list;
 namespace wire_ego = wire::boresight_service::ego_motion;
 
-// Both masks have the same bits, so that they are copied without conversion.
+// Both masks of fields have the same bits, so that they are copied without conversion.
 static_assert(wire_list::field::kElevation == scan_field::kElevation && wire_list::field::kRcs == scan_field::kRcs &&
               wire_list::field::kSnr == scan_field::kSnr && wire_list::field::kStds == scan_field::kStds &&
               wire_list::field::kExistence == scan_field::kExistence &&
               wire_list::field::kAmbiguity == scan_field::kAmbiguity);
-static_assert(wire_list::flag::kInvalid == detection_flag::kInvalid &&
-              wire_list::flag::kAmbiguous == detection_flag::kAmbiguous);
 static_assert(wire_ego::field::kSpeed == ego_field::kSpeed && wire_ego::field::kYawRate == ego_field::kYawRate &&
               wire_ego::field::kSteeringAngle == ego_field::kSteeringAngle &&
               wire_ego::field::kDirection == ego_field::kReverse);
@@ -59,8 +57,10 @@ class RecordWriter {
     out_.f32((fields_ & wire_list::field::kStds) != 0 && within(value, 0.0F, max) ? value : 0.0F);
   }
   void end(std::uint16_t flags) {
-    constexpr std::uint16_t kKnown = wire_list::flag::kInvalid | wire_list::flag::kAmbiguous;
-    out_.u16(static_cast<std::uint16_t>((flags & kKnown) | flags_));
+    if ((flags & detection_flag::kUnusable) != 0) flags_ |= wire_list::flag::kInvalid;
+    if ((flags & detection_flag::kAmbiguous) != 0) flags_ |= wire_list::flag::kAmbiguous;
+    if ((flags & detection_flag::kInvalid) != 0) flags_ |= wire_list::flag::kDoubted;
+    out_.u16(flags_);
     out_.u16(0);
   }
 

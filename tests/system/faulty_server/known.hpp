@@ -108,7 +108,7 @@ inline bool spoil(std::uint32_t i, Record& record) {
     if (known.variant == Variant::kNotNumbers && spoil(i, record)) invalid = true;
     const bool inside = record[kRangeRate] >= kRateMin_mps && record[kRangeRate] <= kRateMax_mps;
     const int flags =
-        (invalid ? detection_flag::kInvalid : 0) | (has_interval && !inside ? detection_flag::kAmbiguous : 0);
+        (invalid ? detection_flag::kUnusable : 0) | (has_interval && !inside ? detection_flag::kAmbiguous : 0);
     const Record got = {
         scan.range_m[i],     scan.azimuth_rad[i],     scan.elevation_rad[i],        scan.range_rate_mps[i],
         scan.range_std_m[i], scan.azimuth_std_rad[i], scan.elevation_std_rad[i],    scan.range_rate_std_mps[i],

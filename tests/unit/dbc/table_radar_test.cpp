@@ -183,8 +183,8 @@ TEST_F(ExampleRadar, NotANumberIsFlagged) {
   const RadarScan& scan = *bus.out.scans[0];
   ASSERT_EQ(scan.number_of_valid_detections, 2u);
   EXPECT_EQ(scan.range_rate_mps[0], 0.0F);
-  EXPECT_EQ(scan.detection_flags[0], detection_flag::kInvalid);
-  EXPECT_EQ(scan.detection_flags[1], detection_flag::kInvalid);
+  EXPECT_EQ(scan.detection_flags[0], detection_flag::kUnusable);
+  EXPECT_EQ(scan.detection_flags[1], detection_flag::kUnusable);
 }
 
 TEST_F(ExampleRadar, ShortFramesAreFaultsAndLongOnesArePadded) {

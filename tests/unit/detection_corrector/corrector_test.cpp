@@ -170,6 +170,15 @@ TEST_F(CorrectorTest, TheSensorsVerdictsAreCarriedOverAndRejectNothing) {
             corrected_flag::kInvalid | corrected_flag::kDoubted);
 }
 
+TEST_F(CorrectorTest, AnUnusableDetectionIsRejectedAlthoughItsValuesAreFinite) {
+  Corrector corrector(one_radar(), Config{});
+  corrector.add_ego_motion(ego(10.0F, 0.0F));
+  add(50.0, 0.0, 0.0, -10.0);
+  scan_->detection_flags[0] = detection_flag::kUnusable;
+  corrector.correct(*scan_, *out_);
+  EXPECT_EQ(out_->detection_flags[0], corrected_flag::kInvalid);
+}
+
 TEST_F(CorrectorTest, MissingSideInputsAreFlagged) {
   Corrector corrector(one_radar(), Config{});
   add(50.0, 0.0, 0.0, -10.0);

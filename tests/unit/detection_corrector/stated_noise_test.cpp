@@ -1,5 +1,6 @@
 // The ratio of actual to stated range-rate noise in whole drives.
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -52,7 +53,7 @@ TEST_F(StatedNoiseTest, APedestrianIsFoundAlthoughTheRadarStatesTooWideANoise) {
   EXPECT_EQ(walks(stated, 0.288F), 0.0);
   EXPECT_EQ(walks(learns, 0.288F), 1.0);
   EXPECT_NEAR(learns.range_rate_noise_scale(2), 0.1 / 0.288, 0.1);
-  EXPECT_EQ(out_->range_rate_std_mps[0], 0.288F) << "later services receive what the radar states";
+  EXPECT_NEAR(out_->range_rate_std_mps[0], 0.288 * learns.range_rate_noise_scale(2), 1e-3) << "of the scan before";
 }
 
 TEST_F(StatedNoiseTest, WhatTheRadarDoesNotStateIsNotScaled) {
@@ -62,6 +63,28 @@ TEST_F(StatedNoiseTest, WhatTheRadarDoesNotStateIsNotScaled) {
   EXPECT_EQ(walks(corrector, 0.0F, 5.5F, false), 0.0);
   EXPECT_EQ(corrector.range_rate_noise_scale(2), 1.0);
   EXPECT_EQ(corrector.range_rate_noise_scale(3), 1.0) << "unknown radar";
+}
+
+TEST_F(StatedNoiseTest, WhatTheAlignmentEstimatorKnowsHoldsFromTheFirstScan) {
+  AlignmentEstimate estimate{};
+  estimate.header.source_id = 2;
+  estimate.nuisance.range_rate_noise_scale = 0.35F;
+  Corrector corrector(one_radar(), Config{});
+  EXPECT_TRUE(corrector.add_alignment(estimate));
+  EXPECT_NEAR(corrector.range_rate_noise_scale(2), 0.35, 1e-6);
+  walks(corrector, 0.1F);
+  EXPECT_NEAR(corrector.range_rate_noise_scale(2), 1.0, 0.1) << "its own evidence outweighs it";
+  for (const float unknown : {0.0F, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    estimate.nuisance.range_rate_noise_scale = unknown;
+    Corrector other(one_radar(), Config{});
+    other.add_alignment(estimate);
+    EXPECT_EQ(other.range_rate_noise_scale(2), 1.0) << unknown;
+  }
+  estimate.nuisance.range_rate_noise_scale = 0.35F;
+  estimate.finding = AlignmentFinding::kRadarsSwapped;
+  Corrector swapped(one_radar(), Config{});
+  swapped.add_alignment(estimate);
+  EXPECT_EQ(swapped.range_rate_noise_scale(2), 1.0) << "of other detections";
 }
 
 TEST_F(StatedNoiseTest, NothingIsLearntOfDetectionsThatTheSensorDoubts) {

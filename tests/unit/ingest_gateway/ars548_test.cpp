@@ -170,8 +170,9 @@ TEST_F(Ars548Test, AnImplausibleDetectionIsFlaggedAndTheOthersStay) {
   put_f32(*bytes_, record(7) + layout::record::kAzimuthStd_rad, nan);
   ASSERT_EQ(check_bytes(), DecodeResult::kComplete);
   static_cast<void>(decode(*bytes_, *scan_));
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_TRUE(scan_->detection_flags[i] & detection_flag::kInvalid) << i;
-  for (std::size_t i = 6; i < 300; ++i) EXPECT_FALSE(scan_->detection_flags[i] & detection_flag::kInvalid) << i;
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(scan_->detection_flags[i], detection_flag::kUnusable) << i;
+  EXPECT_EQ(scan_->detection_flags[5], detection_flag::kInvalid) << "the sensor's word";
+  for (std::size_t i = 6; i < 300; ++i) EXPECT_FALSE(scan_->detection_flags[i] & detection_flag::kUntrusted) << i;
   EXPECT_EQ(scan_->azimuth_std_rad[6], 0.0F) << "not stated";
   EXPECT_EQ(scan_->azimuth_std_rad[7], 0.0F);
 }
@@ -208,7 +209,7 @@ TEST_F(Ars548Test, TwentyThousandMutationsAreRefusedOrDecodedWithinBounds) {
     static_cast<void>(decode(datagram, *scan_));
     ASSERT_LE(scan_->number_of_valid_detections, 800u);
     for (std::size_t i = 0; i < scan_->number_of_valid_detections; ++i) {
-      if ((scan_->detection_flags[i] & detection_flag::kInvalid) != 0) continue;
+      if ((scan_->detection_flags[i] & detection_flag::kUnusable) != 0) continue;
       ASSERT_TRUE(scan_->range_m[i] >= 0.0F && scan_->range_m[i] <= 1500.0F);
       ASSERT_TRUE(std::abs(scan_->azimuth_rad[i]) <= 3.15F && std::abs(scan_->elevation_rad[i]) <= 1.58F);
       ASSERT_TRUE(std::abs(scan_->range_rate_mps[i]) <= 150.0F);

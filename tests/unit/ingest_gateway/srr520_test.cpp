@@ -169,8 +169,8 @@ TEST_F(Srr520Test, WhatIsNotAvailableIsMarkedInvalid) {
   put_big_endian(list.header(), srr520_layout::header::kAmbiguousVelocity, 2, 0);
   take(list.seal());
   ASSERT_EQ(output_.scans, 1u);
-  EXPECT_EQ(output_.scan->detection_flags[0], detection_flag::kInvalid);
-  EXPECT_EQ(output_.scan->detection_flags[1], detection_flag::kInvalid);
+  EXPECT_EQ(output_.scan->detection_flags[0], detection_flag::kUnusable);
+  EXPECT_EQ(output_.scan->detection_flags[1], detection_flag::kUnusable);
   EXPECT_EQ(output_.scan->detection_flags[2], 0u);
   EXPECT_EQ(output_.scan->rcs_dbsm[2], 0.0F);
   EXPECT_EQ(output_.scan->range_rate_max_mps, 0.0F) << "an ambiguous velocity of -100 m/s is invalid";

@@ -111,7 +111,7 @@ TEST_F(Tables, ElevationMayBeMissingOfAllOrSomeDetections) {
   EXPECT_EQ(read.scans[0].fields, 0u);
   EXPECT_THAT(read.scans[0].flags, ElementsAre(0, 0));
   EXPECT_EQ(read.scans[1].fields, scan_field::kElevation);
-  EXPECT_THAT(read.scans[1].flags, ElementsAre(detection_flag::kInvalid, 0)) << "0 would be a wrong elevation";
+  EXPECT_THAT(read.scans[1].flags, ElementsAre(detection_flag::kUnusable, 0)) << "0 would be a wrong elevation";
 }
 
 TEST_F(Tables, StatedStdsAndAmbiguityAreTakenOver) {

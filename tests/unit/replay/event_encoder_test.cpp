@@ -147,10 +147,12 @@ TEST(EventBody, ValuesThatAreNotAllowedAreFlaggedAndNotSent) {
   scan->snr_db[3] = kNan;
   scan->range_std_m[4] = kNan;
   scan->azimuth_std_rad[4] = -1.0F;
+  scan->detection_flags[5] = detection_flag::kInvalid | detection_flag::kAmbiguous;
   Bytes body(1000);
   ASSERT_EQ(write_detection_list(*scan, kTime, body), 36u + 6 * 48);
   const auto record = [&](std::size_t i) { return std::span(body).subspan(36 + i * 48, 48); };
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(u16_at(record(i), list::record::kFlags), list::flag::kInvalid) << i;
+  EXPECT_EQ(u16_at(record(5), list::record::kFlags), list::flag::kDoubted | list::flag::kAmbiguous);
   EXPECT_EQ(u32_at(record(0), list::record::kRange_m), 0u);
   EXPECT_EQ(f32_at(record(0), list::record::kAzimuth_rad), 0.25F);
   EXPECT_EQ(u32_at(record(1), list::record::kAzimuth_rad), 0u);
@@ -160,7 +162,6 @@ TEST(EventBody, ValuesThatAreNotAllowedAreFlaggedAndNotSent) {
   EXPECT_EQ(u32_at(record(4), list::record::kRangeStd_m), 0u);
   EXPECT_EQ(u32_at(record(4), list::record::kAzimuthStd_rad), 0u);
   EXPECT_EQ(f32_at(record(4), list::record::kElevationStd_rad), 0.015625F);
-  EXPECT_EQ(u16_at(record(5), list::record::kFlags), 0u);
 }
 
 TEST(EventBody, QuantitiesThatAreNotMeasuredAreSentAsSpecified) {

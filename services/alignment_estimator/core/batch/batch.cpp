@@ -143,7 +143,7 @@ void Batch::plan() {
       own.curve_rad(static_cast<int>(k)) = static_cast<double>(n.azimuth_curve_rad[k]);
     }
     own.stamp_s = static_cast<double>(n.time_offset_s.value);
-    radar.sums.set_angle_noise_scale(e.angle_noise_scale);
+    radar.sums.set_noise_scales(static_cast<double>(n.range_rate_noise_scale), e.angle_noise_scale);
     const double certain = 1.0 / std::max(e.covariance(0, 0), 1e-18);
     if (certain <= most_certain) continue;
     most_certain = certain;

@@ -64,6 +64,7 @@ void Batch::finish(RadarEstimate& estimate, const Radar& radar) const {
     }
   }
   estimate.angle_noise_scale = radar.sums.angle_noise_scale();
+  estimate.nuisance.range_rate_noise_scale = static_cast<float>(radar.sums.range_rate_noise_scale());
   const Totals& totals = radar.totals;
   estimate.inlier_ratio = totals.detections > 0.0 ? totals.stationary / totals.detections : 0.0;
   estimate.scans_used = totals.scans;

@@ -40,8 +40,13 @@ class NoiseScale {
     const double information = angle_angle_ - rate_angle_ * rate_angle_ / (rate_rate_ + 1.0);
     return 1.0 / (1.0 / prior_variance + 0.5 * std::max(information, 0.0));
   }
-  void set_angle_scale(double scale) {
-    if (scale > 0.0 && std::isfinite(scale)) log_angle_ = std::clamp(2.0 * std::log(scale), -2.5, 2.5);
+  /// Starts from factors on the stated stds; one that is not positive and finite is ignored.
+  void set_scales(double rate_scale, double angle_scale) {
+    const auto set = [](double scale, double& log_factor) {
+      if (scale > 0.0 && std::isfinite(scale)) log_factor = std::clamp(2.0 * std::log(scale), -2.5, 2.5);
+    };
+    set(rate_scale, log_rate_);
+    set(angle_scale, log_angle_);
   }
 
  private:

@@ -74,7 +74,10 @@ void visit_radar(RadarType& r, const Visit& visit) {
   visit(r.time_offset_s);
   for (auto& value : r.position_error_m) visit(value);
   for (auto& value : r.azimuth_curve_rad) visit(value);
-  for (auto* value : {&r.height_excess, &r.mirror_share, &r.angle_noise_scale, &r.seconds_of_drive}) visit(*value);
+  for (auto* value :
+       {&r.height_excess, &r.mirror_share, &r.angle_noise_scale, &r.range_rate_noise_scale, &r.seconds_of_drive}) {
+    visit(*value);
+  }
   for (auto& value : r.fluctuation_variance) visit(value);
 }
 
@@ -130,8 +133,8 @@ bool is_plausible(const Memory::Radar& r) {
   }
   return within(r.range_rate_scale, -0.5, 0.5) && within(r.time_offset_s, -5.0, 5.0) &&
          within(r.height_excess, -100.0, 100.0) && within(r.mirror_share, -100.0, 100.0) &&
-         within(r.angle_noise_scale, 1e-3, 1e3) && within(r.seconds_of_drive, 0.0, 1e10) &&
-         is_covariance<Memory::kOwn>(r.covariance);
+         within(r.angle_noise_scale, 1e-3, 1e3) && within(r.range_rate_noise_scale, 1e-3, 1e3) &&
+         within(r.seconds_of_drive, 0.0, 1e10) && is_covariance<Memory::kOwn>(r.covariance);
 }
 
 /// Whether an estimator can produce these values; its own gates are much narrower.

@@ -3,8 +3,8 @@
 // yaw-rate gain, slip coefficient, pitch per acceleration, time offset, load pitch, three fluctuation variances, three
 // correlation times, upper triangle of the covariance row by row; per radar id (u32), flags (u32, bit 0: measures
 // elevation), fingerprint (u64), rotation about x, y, z, range-rate scale, time offset, position x and y, azimuth
-// curve, height excess, mirror share, angle-noise scale, seconds of drive, three fluctuation variances, upper triangle
-// of the covariance; CRC-32/AUTOSAR of all before (u32).
+// curve, height excess, mirror share, angle-noise scale, range-rate-noise scale, seconds of drive, three fluctuation
+// variances, upper triangle of the covariance; CRC-32/AUTOSAR of all before (u32).
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@
 
 namespace boresight::alignment {
 
-inline constexpr std::uint32_t kMemoryVersion = 2;
+inline constexpr std::uint32_t kMemoryVersion = 3;
 inline constexpr std::size_t kMemoryHeaderBytes = 32;
 inline constexpr std::size_t kMemoryVehicleBytes =
     8 * (7 + 2 * windows::kFluctuations + Memory::kShared * (Memory::kShared + 1) / 2);
 inline constexpr std::size_t kMemoryRadarBytes =
-    16 + 8 * (11 + windows::kKnots + windows::kFluctuations + Memory::kOwn * (Memory::kOwn + 1) / 2);
+    16 + 8 * (12 + windows::kKnots + windows::kFluctuations + Memory::kOwn * (Memory::kOwn + 1) / 2);
 inline constexpr std::size_t kMaxMemoryBytes =
     kMemoryHeaderBytes + kMemoryVehicleBytes + kMaxRadars * kMemoryRadarBytes + 4;
 using MemoryBytes = std::array<std::uint8_t, kMaxMemoryBytes>;

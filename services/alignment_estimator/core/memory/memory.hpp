@@ -32,7 +32,8 @@ struct Memory {
     std::array<double, windows::kKnots> azimuth_curve_rad{};
     double height_excess = 0.0;
     double mirror_share = 0.0;
-    double angle_noise_scale = 1.0;
+    double angle_noise_scale = 1.0;       ///< of the angles' stds
+    double range_rate_noise_scale = 1.0;  ///< of the range rates' stds
     double seconds_of_drive = 0.0;
     /// Variances of this radar's fluctuations of yaw, pitch (rad²) and scale; 0: not learnt.
     std::array<double, windows::kFluctuations> fluctuation_variance{};

@@ -90,7 +90,7 @@ PlateEcho find_plate(const RadarScan& scan, const PlateWindow& window) {
   const DetectionColumn<float>& amplitudes = use_rcs ? scan.rcs_dbsm : scan.snr_db;
   const std::size_t count = std::min<std::size_t>(scan.number_of_valid_detections, kMaxDetections);
   for (std::size_t i = 0; i < count; ++i) {
-    if ((scan.detection_flags[i] & detection_flag::kInvalid) != 0) continue;
+    if ((scan.detection_flags[i] & detection_flag::kUntrusted) != 0) continue;
     const double amplitude = amplitudes[i], azimuth = scan.azimuth_rad[i], range = scan.range_m[i];
     // This form also rejects values that are not numbers.
     const bool in_window = range >= window.range_min_m && range <= window.range_max_m &&

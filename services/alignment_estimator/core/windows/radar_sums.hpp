@@ -52,7 +52,9 @@ class RadarSums {
   [[nodiscard]] const Learnt& learnt() const { return learnt_; }
   void set_learnt(const Learnt& learnt) { learnt_ = learnt; }
   [[nodiscard]] double angle_noise_scale() const { return std::sqrt(learnt_.noise.angle_variance_factor()); }
-  void set_angle_noise_scale(double scale) { learnt_.noise.set_angle_scale(scale); }
+  [[nodiscard]] double range_rate_noise_scale() const { return std::sqrt(learnt_.noise.rate_variance_factor()); }
+  /// See NoiseScale::set_scales().
+  void set_noise_scales(double range_rate, double angle) { learnt_.noise.set_scales(range_rate, angle); }
   void set_spread(const Spread& spread) { spread_ = spread; }
 
  private:

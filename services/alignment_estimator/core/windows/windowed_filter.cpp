@@ -226,6 +226,9 @@ RadarEstimate WindowedFilter::estimate(std::size_t index) const {
   out.load_change = load_change_;
   out.speed_change = speed_change_;
   out.angle_noise_scale = radar.sums.angle_noise_scale();
+  if (radar.running || radar.remembered) {
+    out.nuisance.range_rate_noise_scale = static_cast<float>(radar.sums.range_rate_noise_scale());
+  }
   out.inlier_ratio = std::max(0.0, radar.inlier_ratio);
   out.scans_used = radar.scans_used;
   out.detections_used = radar.detections_used;

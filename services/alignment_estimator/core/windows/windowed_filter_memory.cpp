@@ -112,6 +112,7 @@ void WindowedFilter::save(Memory& memory) const {
     known.height_excess = state.height_excess;
     known.mirror_share = state.mirror_share;
     known.angle_noise_scale = radar.sums.angle_noise_scale();
+    known.range_rate_noise_scale = radar.sums.range_rate_noise_scale();
     known.seconds_of_drive = radar.seconds_of_drive;
     known.fluctuation_variance = solution.fluctuation.variance;
     RememberedMatrix own = solution.covariance.topLeftCorner<kRemembered, kRemembered>();
@@ -226,7 +227,7 @@ void WindowedFilter::restore(const Memory& memory) {
     OwnMatrix covariance = OwnMatrix::Zero();
     covariance.topLeftCorner<kRemembered, kRemembered>() = own;
     solver_.restore(r, state, covariance, fluctuation);
-    radar.sums.set_angle_noise_scale(known->angle_noise_scale);
+    radar.sums.set_noise_scales(known->range_rate_noise_scale, known->angle_noise_scale);
     radar.seconds_of_drive = known->seconds_of_drive;
     radar.running = false;
     radar.remembered = true;

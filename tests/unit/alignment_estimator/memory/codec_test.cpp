@@ -40,6 +40,7 @@ void expect_same(const Memory::Radar& out, const Memory::Radar& in) {
   EXPECT_EQ(out.height_excess, in.height_excess);
   EXPECT_EQ(out.mirror_share, in.mirror_share);
   EXPECT_EQ(out.angle_noise_scale, in.angle_noise_scale);
+  EXPECT_EQ(out.range_rate_noise_scale, in.range_rate_noise_scale);
   EXPECT_EQ(out.seconds_of_drive, in.seconds_of_drive);
   EXPECT_EQ(out.fluctuation_variance, in.fluctuation_variance);
   EXPECT_EQ(out.covariance, in.covariance);
@@ -119,7 +120,7 @@ TEST(MemoryCodec, NoiseIsRefusedWithAndWithoutARightChecksum) {
 
 TEST(MemoryCodec, AnotherVersionIsDistinguishedFromDamage) {
   const Identity identity = identity_of(example_vehicle(2));
-  for (const int version : {1, 3}) {
+  for (const std::uint32_t version : {kMemoryVersion - 1, kMemoryVersion + 1}) {
     auto bytes = encoded(example_memory(2), identity);
     bytes[8] = static_cast<std::uint8_t>(version);
     seal(bytes);

@@ -53,6 +53,7 @@ inline Memory example_memory(std::size_t radars = 4, double mark = 0.0) {
     radar.height_excess = 0.1;
     radar.mirror_share = 0.3;
     radar.angle_noise_scale = 1.1;
+    radar.range_rate_noise_scale = 0.4;
     radar.seconds_of_drive = 1000.0;
     radar.fluctuation_variance = {1e-7 * number, 2e-7, 3e-7};
     fill(Memory::kOwn, 1e-4 * number, radar.covariance);

@@ -64,12 +64,28 @@ TEST(WindowsMemory, RestoresEveryValue) {
     }
     EXPECT_EQ(a.seconds_of_drive, b.seconds_of_drive);
     EXPECT_NEAR(a.angle_noise_scale, b.angle_noise_scale, 1e-12);
+    EXPECT_NEAR(a.range_rate_noise_scale, b.range_rate_noise_scale, 1e-12);
     EXPECT_NE(a.azimuth_curve_rad[3], 0.0);
     EXPECT_GT(a.seconds_of_drive, 50.0);
     const RadarEstimate before = bench.filter->estimate(r), after = other->estimate(r);
     EXPECT_NEAR(before.speed_scale, after.speed_scale, 1e-4) << "but for the excess of heights";
     EXPECT_NE(after.observable & alignment_axis::kVehicleYaw, 0u) << "a remembered yaw is usable at once";
     EXPECT_EQ(after.state, AlignmentState::kNoData);
+  }
+}
+
+TEST(WindowsMemory, KeepsHowMuchQuieterARadarIsThanItStates) {
+  constexpr double kTooWide = 2.5;
+  WindowsBench bench(corner_drive(11, 60.0));
+  bench.run(60.0, [&](const simulator::AlignmentEvent& event) {
+    for (std::size_t i = 0; i < bench.scan->count; ++i) bench.scan->range_rate_std_mps[i] *= kTooWide;
+    bench.filter->process(event.radar, *bench.scan, bench.ego);
+  });
+  const auto again = continued(bench, *memory_of(*bench.filter));
+  for (std::size_t r = 0; r < 4; ++r) {
+    const float learnt = bench.filter->estimate(r).nuisance.range_rate_noise_scale;
+    EXPECT_NEAR(learnt, 1.0 / kTooWide, 0.05) << r;
+    EXPECT_FLOAT_EQ(again->estimate(r).nuisance.range_rate_noise_scale, learnt) << "before any scan";
   }
 }
 

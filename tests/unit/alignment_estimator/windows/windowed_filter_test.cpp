@@ -23,6 +23,7 @@ TEST(WindowedFilter, FindsFourCornerRadarsWithinItsSigma) {
     EXPECT_LT(std_of(e, 3), 0.08 * kRadiansPerDegree) << r;
     EXPECT_EQ(e.step_change.count, 0u) << r;
     EXPECT_NEAR(e.angle_noise_scale, 1.0, 0.1) << r;
+    EXPECT_NEAR(e.nuisance.range_rate_noise_scale, 1.0, 0.15) << r;
     EXPECT_NEAR(e.inlier_ratio, 0.76, 0.06) << r;
     EXPECT_NE(e.observable & alignment_axis::kVehicleYaw, 0u) << r;
   }
