@@ -21,8 +21,8 @@ struct Innovation {
 
 /// Recursive maximum likelihood for a mixture. A stationary reflector's innovation has the variance s²·stated + angular
 /// and an error common to the scan. Anything else has a wide distribution. The evidence is forgotten exponentially. The
-/// prior is never forgotten, so a radar without stationary detections returns to it: to its stated noise, s = 1, unless
-/// somebody knows better.
+/// prior is never forgotten, so a radar without stationary detections returns to it. It is s = 1, the stated noise,
+/// until set_prior().
 class RangeRateNoise {
  public:
   explicit RangeRateNoise(const StatedNoiseConfig& config) : config_(config), other_share_(config.other_share) {}

@@ -128,7 +128,7 @@ void Counter::count_scan(std::span<const Candidate> scan, std::span<Counts> coun
   for (std::size_t k = 0; k < count; ++k) {
     while (range_m_[k] - range_m_[first] >= wide_m) ++first;
     while (last < count && range_m_[last] - range_m_[k] < wide_m) ++last;
-    // If they are too many: as many on either side as are there, up to a half.
+    // The nearest by rank: half of them on either side, or more where the other side has fewer.
     const std::size_t most = config_.most_neighbours, all_below = k - first, all_above = last - k - 1;
     const std::size_t below = std::min(all_below, std::max((most + 1) / 2, most - std::min(most, all_above)));
     const std::size_t above = std::min(all_above, most - below);

@@ -13,7 +13,7 @@ namespace {
 
 using extended_object::RoadUserClass;
 
-constexpr double kNegligible = 1e-3;  // as a part of the intensity of what is not known
+constexpr double kNegligible = 1e-3;  // part of `other_intensity`: far below the lowest level of a share
 
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
   const auto c = [&](std::size_t row, std::size_t column) {

@@ -44,12 +44,12 @@ struct SeenDetection {
 void predict_objects(const TrackList& tracks, double elapsed_s, const ScanGeometry& geometry,
                      std::vector<KnownObject>& objects);
 
-/// Of its normal distribution of places, the part that matters reaches so far from the object's box.
+/// Farther from the object's box its density of places is next to nothing, by the covariance of the prediction.
 [[nodiscard]] double reach_m(const KnownObject& object, const IntensityConfig& config);
 
-/// Expected detections of an object in one scan at a place and range rate, per m² and m/s, times its existence e:
+/// Expected detections of an object in one scan at a place and range rate, per m² and m/s, times its existence:
 ///
-///     (G3)   e · n · p(place | box) · ((1 − a) p(range rate | velocity) + a / W),
+///     (G3)   n · p(place | box) · ((1 − a) p(range rate | velocity) + a / W),
 ///
 /// n, both densities: extended_object; a, W: share and width of the object's Doppler-ambiguous detections. An image of
 /// such a detection is rarer still: a = 0.
@@ -62,8 +62,7 @@ class ObjectIntensity {
     const Eigen::Vector2d offset = (to_box_ * (detection.position_m - object_->observed.box.centre_m)).cwiseAbs();
     return (offset - half_size_m_).maxCoeff() < reach_m_ + detection.reach_m;
   }
-  /// Equation (G3); 0 where it is next to nothing beside what else may be there. The first call with more prepares
-  /// the mixture of places.
+  /// Equation (G3) times the existence; 0 where that is a negligible part of `other_intensity`.
   [[nodiscard]] double at(const SeenDetection& detection);
 
  private:
