@@ -39,6 +39,7 @@ FLOAT_FIELD = re.compile(r"^\s*(?:alignas\(\d+\)\s*)?(?:float|double|std::array<
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 # Spelled so that the rule does not find itself.
 UNFINISHED = re.compile("TO" + r"DO|FIX" + "ME")
+CONFLICT = re.compile("<" * 7 + r" |" + ">" * 7 + " ")
 MACHINE = re.compile(r"(?<![\w.$}/\"])/" + r"(work|home/\w+)/")
 
 
@@ -103,6 +104,8 @@ def check_text(root, files):
         for number, line in enumerate(lines, 1):
             if UNFINISHED.search(line):
                 yield f"{path}:{number}: unfinished work is an issue, not a comment"
+            if CONFLICT.match(line):
+                yield f"{path}:{number}: mark of a merge conflict"
             if MACHINE.search(line):
                 yield f"{path}:{number}: names a folder of one machine"
 

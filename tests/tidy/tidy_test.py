@@ -52,6 +52,9 @@ class Tidy(unittest.TestCase):
     def test_unfinished(self):
         self.assert_found({"docs/x.md": "TO" + "DO: later\n"}, "unfinished")
 
+    def test_merge_conflict(self):
+        self.assert_found({"docs/x.md": "<" * 7 + " HEAD\n"}, "merge conflict")
+
     def test_machine_path(self):
         self.assert_found({"docs/x.md": "see /" + "work/main\n"}, "one machine")
 
