@@ -44,6 +44,7 @@ published::Config read_published(config::Reader root) {
 MapConfig read_map(config::Reader reader) {
   MapConfig c;
   c.memory_s = reader.number("memory_s", {0.1, 10.0}, c.memory_s);
+  c.least_new_share = reader.number("least_new_share", {0.0, 1.0}, c.least_new_share);
   c.search_period_s = reader.number("search_period_s", {0.0, 5.0}, c.search_period_s);
   c.most_std_m = reader.number("most_std_m", {0.05, 10.0}, c.most_std_m);
   c.most_points = read_count(reader, "most_points", c.most_points, kMostLooks);

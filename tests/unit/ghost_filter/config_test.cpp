@@ -67,6 +67,7 @@ std::vector<double> numbers(const Config& config) {
           i.mirror_scatter_m,
           m.memory_s,
           m.search_period_s,
+          m.least_new_share,
           m.most_std_m,
           static_cast<double>(m.most_points),
           l.cell_m,

@@ -13,8 +13,6 @@ namespace {
 
 using extended_object::RoadUserClass;
 
-constexpr double kNegligible = 1e-3;  // part of `other_intensity`: far below the lowest level of a share
-
 Eigen::Matrix2d block(const Track& track, std::size_t at) {
   const auto c = [&](std::size_t row, std::size_t column) {
     return static_cast<double>(track.covariance[(at + row) * kTrackStateSize + at + column]);
@@ -93,15 +91,17 @@ ObjectIntensity::ObjectIntensity(const KnownObject& object, bool is_image, const
       position_covariance_m2_(object.position_covariance_m2 +
                               config.position_std_m * config.position_std_m * Eigen::Matrix2d::Identity()),
       half_size_m_(object.observed.box.half_size_m()),
-      sensor_box_m_(to_box_ * (sensor_m - object.observed.box.centre_m)),
       ambiguous_share_(is_image ? 0.0 : config.ambiguous_share),
       reach_m_(reach_m(object, config)),
       speed_mps_(object.observed.velocity_mps.norm()) {
-  const double range = std::max(0.1, sensor_box_m_.norm());
-  expected_ = object.existence * extended_object::expected_detections(model_->count, range, sensor_box_m_ / range);
+  const Eigen::Vector2d sensor_box = to_box_ * (sensor_m - object.observed.box.centre_m);
+  const double range = std::max(0.1, sensor_box.norm());
+  expected_ = object.existence * extended_object::expected_detections(model_->count, range, sensor_box / range);
+  const extended_object::OrientedBox& box = object.observed.box;
+  places_ = extended_object::reflection_mixture(model_->places, box.length_m, box.width_m, sensor_box);
 }
 
-double ObjectIntensity::at(const SeenDetection& d) {
+double ObjectIntensity::at(const SeenDetection& d) const {
   const extended_object::OrientedBox& box = object_->observed.box;
   const double body_mps = d.direction.dot(object_->observed.velocity_mps) + object_->range_rate_offset_mps;
   const double variance = d.range_rate_variance_m2ps2 + config_->velocity_std_mps * config_->velocity_std_mps +
@@ -112,13 +112,6 @@ double ObjectIntensity::at(const SeenDetection& d) {
   const double a = ambiguous_share_;
   const double at_rate = expected_ * ((1.0 - a) * rate + a / config_->ambiguous_width_mps);
   const Eigen::Matrix2d covariance = d.covariance_m2 + position_covariance_m2_;
-  // No density of places is larger than that of a point.
-  const double most = at_rate / (2.0 * M_PI * std::sqrt(covariance.determinant()));
-  if (!(most > kNegligible * config_->other_intensity)) return 0.0;
-  if (!has_places_) {
-    places_ = extended_object::reflection_mixture(model_->places, box.length_m, box.width_m, sensor_box_m_);
-    has_places_ = true;
-  }
   return at_rate * extended_object::position_density(places_, to_box_ * (d.position_m - box.centre_m),
                                                      to_box_ * covariance * to_box_.transpose());
 }

@@ -62,17 +62,16 @@ class ObjectIntensity {
     const Eigen::Vector2d offset = (to_box_ * (detection.position_m - object_->observed.box.centre_m)).cwiseAbs();
     return (offset - half_size_m_).maxCoeff() < reach_m_ + detection.reach_m;
   }
-  /// Equation (G3) times the existence; 0 where that is a negligible part of `other_intensity`.
-  [[nodiscard]] double at(const SeenDetection& detection);
+  /// Equation (G3) times the existence.
+  [[nodiscard]] double at(const SeenDetection& detection) const;
 
  private:
   const KnownObject* object_;
   const extended_object::ObjectClassModel* model_;
   const IntensityConfig* config_;
   Eigen::Matrix2d to_box_, position_covariance_m2_;
-  Eigen::Vector2d half_size_m_, sensor_box_m_;
+  Eigen::Vector2d half_size_m_;
   double ambiguous_share_, reach_m_, speed_mps_, expected_;
-  bool has_places_ = false;
   extended_object::ReflectionMixture places_;
 };
 

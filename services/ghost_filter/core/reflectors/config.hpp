@@ -18,10 +18,11 @@ struct LineConfig {
 };
 
 struct MapConfig {
-  double memory_s = 1.0;          ///< of stationary detections
-  double search_period_s = 0.25;  ///< each tile of the plane is searched this often
-  double most_std_m = 0.5;        ///< of a detection's position, across the line of sight
-  std::size_t most_points = 512;  ///< searched in one scan; a tile that was begun is completed
+  double memory_s = 1.0;           ///< of stationary detections
+  double search_period_s = 0.25;   ///< each tile of the plane is searched this often
+  double least_new_share = 0.125;  ///< of a tile's detections; with fewer new ones it is not searched again
+  double most_std_m = 0.5;         ///< of a detection's position, across the line of sight
+  std::size_t most_points = 512;   ///< searched in one scan; a tile that was begun is completed
   LineConfig lines;
 };
 

@@ -11,8 +11,6 @@ namespace {
 constexpr double kMargin_m = 2.0;
 /// Points of a tile and of the margin about it.
 constexpr std::size_t kMostPoints = 4 * StationaryTiles::kMostPoints;
-/// With a smaller part of new points a search would give the same segments again.
-constexpr std::uint32_t kNewPart = 8;
 
 /// Calls `visit(place)` for the tile and those around it.
 template <typename Visit>
@@ -103,7 +101,8 @@ void ReflectorMap::update(std::int64_t time_ns) {
       found.begin(tile.place);
     }
     if (tile.newest_ns < oldest_ns ||
-        kNewPart * (tile.added - found.added) < std::min<std::size_t>(tile.added, StationaryTiles::kMostPoints)) {
+        tile.added - found.added <
+            config_.least_new_share * std::min<double>(tile.added, StationaryTiles::kMostPoints)) {
       continue;
     }
     looks += search(number, oldest_ns);
