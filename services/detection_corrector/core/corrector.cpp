@@ -123,6 +123,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
   const UnknownElevation& unknown = unknown_elevations_[index];
   RangeRateNoise& noise = noises_[index];
   const double learnt_factor = noise.variance_factor();
+  const auto learnt_scale = static_cast<float>(std::sqrt(learnt_factor));
   const StationaryTest stationary(motion, mounting, has_elevation ? nullptr : &unknown, config_);
   std::size_t with_noise = 0;
 
@@ -166,8 +167,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
     out.elevation_std_rad[i] = elevation_std;
     // The noise of the vehicle file is not the radar's statement.
     const bool states_rate = has_stds && range_rate_std == scan.range_rate_std_mps[i];
-    const double rate_factor = states_rate ? learnt_factor : 1.0;
-    out.range_rate_std_mps[i] = static_cast<float>(std::sqrt(rate_factor)) * range_rate_std;
+    out.range_rate_std_mps[i] = states_rate ? learnt_scale * range_rate_std : range_rate_std;
     out.existence_probability[i] = scan.has(scan_field::kExistence) ? scan.existence_probability[i] : 1.0F;
 
     if (!is_inside(position, config_)) flags |= corrected_flag::kOutsideRegion;
@@ -191,7 +191,7 @@ void Corrector::correct(const RadarScan& scan, CorrectedScan& out) {
                         static_cast<double>(range_rate_std),
                         azimuth_error.std_rad};
       const Innovation innovation = stationary.innovation(sight);
-      const bool passes = stationary.passes(innovation, rate_factor);
+      const bool passes = stationary.passes(innovation, states_rate ? learnt_factor : 1.0);
       const bool is_trusted = (flags & (corrected_flag::kDoubted | corrected_flag::kAmbiguous)) == 0;
       if (states_rate && is_trusted) innovations_[with_noise++] = innovation;
       flags |= passes ? corrected_flag::kStationary : corrected_flag::kMoving;
