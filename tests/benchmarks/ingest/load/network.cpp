@@ -86,7 +86,7 @@ std::string write_configuration() {
         file << "profile = \"boresight\"\nsource = {link = \"someip\", address = \"10.13.0.1\", interface = \"ecu0\", "
              << "instance = " << id << "}\n";
       }
-      file << "mounting_pose = {position_m = [0.0, 0.0, 0.5], yaw_deg = 0.0}\n";
+      file << "mounting_pose = {position_m = [0.0, " << 0.1 * id << ", 0.5], yaw_deg = 0.0}\n";
     }
   }
   return folder;
