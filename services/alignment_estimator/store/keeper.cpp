@@ -8,19 +8,18 @@ namespace log = runtime::log;
 
 Keeper::Keeper(runtime::Node& node, Estimator& estimator, const VehicleConfig& vehicle,
                const std::optional<std::filesystem::path>& file, double period_s)
-    : node_(node), estimator_(estimator) {
+    : node_(node), estimator_(estimator), identity_(identity_of(vehicle)) {
   if (!file) {
     log::info("no memory over ignition cycles: no file is configured");
     return;
   }
-  const Identity identity = identity_of(vehicle);
-  restore(*file, identity);
-  writer_ = std::make_unique<MemoryWriter>(*file, identity);
+  restore(*file);
+  writer_ = std::make_unique<runtime::StateWriter>(*file, kMaxMemoryBytes);
   node.every(static_cast<std::int64_t>(period_s * 1e9), [this] { keep(); });
 }
 
-void Keeper::restore(const std::filesystem::path& file, const Identity& identity) {
-  const LoadedMemory loaded = load_memory(file, identity);
+void Keeper::restore(const std::filesystem::path& file) {
+  const LoadedMemory loaded = load_memory(file, identity_);
   switch (loaded.kind) {
     case LoadedMemory::Kind::kMissing:
       log::info("no stored alignment in {}: starting from the nominal mounting", file.string());
@@ -53,6 +52,15 @@ double Keeper::drive_s(const Memory& memory) {
   return sum;
 }
 
+std::span<const std::uint8_t> Keeper::encoded(const Memory& memory) {
+  return std::span(bytes_).first(encode_memory(memory, identity_, bytes_));
+}
+
+bool Keeper::offer(const Memory& memory) {
+  const auto bytes = encoded(memory);
+  return !bytes.empty() && writer_->offer(bytes);
+}
+
 void Keeper::keep() {
   const std::uint64_t failures = writer_->failed();
   if (failures > reported_failures_) {
@@ -62,23 +70,23 @@ void Keeper::keep() {
   const Memory memory = estimator_.memory();
   // A stationary vehicle gives no new information, and flash memory wears out.
   if (drive_s(memory) == kept_drive_s_) return;
-  if (writer_->offer(memory)) kept_drive_s_ = drive_s(memory);
+  if (offer(memory)) kept_drive_s_ = drive_s(memory);
 }
 
 void Keeper::remember() {
   if (!writer_) return;
   const Memory memory = estimator_.memory();
   // If the writer is busy, the next turn or the end writes.
-  kept_drive_s_ = writer_->offer(memory) ? drive_s(memory) : -1.0;
+  kept_drive_s_ = offer(memory) ? drive_s(memory) : -1.0;
 }
 
 void Keeper::finish() {
   if (!writer_) return;
   const Memory memory = estimator_.memory();
   if (memory.number_of_radars == 0) return;
-  if (const std::string problem = writer_->finish(memory); !problem.empty()) {
-    log::error("alignment cannot be stored: {}", problem);
-  }
+  const auto bytes = encoded(memory);
+  const std::string problem = bytes.empty() ? "it is not of this vehicle" : writer_->finish(bytes);
+  if (!problem.empty()) log::error("alignment cannot be stored: {}", problem);
 }
 
 }  // namespace boresight::alignment

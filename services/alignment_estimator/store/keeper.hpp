@@ -6,8 +6,9 @@
 #include <optional>
 
 #include "services/alignment_estimator/core/estimator.hpp"
-#include "services/alignment_estimator/store/memory_writer.hpp"
+#include "services/alignment_estimator/store/memory_file.hpp"
 #include "services/common/runtime/node.hpp"
+#include "services/common/runtime/state_writer.hpp"
 
 namespace boresight::alignment {
 
@@ -23,16 +24,21 @@ class Keeper {
   void finish();
 
  private:
-  void restore(const std::filesystem::path& file, const Identity& identity);
+  void restore(const std::filesystem::path& file);
   void keep();
   /// Sum over all radars; it grows with every scan used.
   [[nodiscard]] static double drive_s(const Memory& memory);
+  /// The memory as bytes; empty if it does not belong to this vehicle. Valid until the next call.
+  [[nodiscard]] std::span<const std::uint8_t> encoded(const Memory& memory);
+  bool offer(const Memory& memory);
 
   runtime::Node& node_;
   Estimator& estimator_;
+  Identity identity_;
+  MemoryBytes bytes_;
   double kept_drive_s_ = 0.0;
   std::uint64_t reported_failures_ = 0;
-  std::unique_ptr<MemoryWriter> writer_;
+  std::unique_ptr<runtime::StateWriter> writer_;
 };
 
 }  // namespace boresight::alignment

@@ -1,10 +1,8 @@
-// The file that keeps a memory over ignition cycles. After a crash or a power failure the file holds either the old or
-// the new content: the new content is written to another file, synchronised with the medium, and then renamed.
+// Reads the file that keeps the alignment over ignition cycles.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 
 #include "services/alignment_estimator/core/memory/codec.hpp"
@@ -26,11 +24,7 @@ struct LoadedMemory {
   Memory memory;
 };
 
-/// Also removes the temporary file of a killed writer. Never throws.
+/// As runtime::read_state_file(). Never throws.
 [[nodiscard]] LoadedMemory load_memory(const std::filesystem::path& file, const Identity& identity);
-
-/// Temporary file in the same folder, write, fsync, rename, fsync of the folder. Returns an empty string, or the failed
-/// operation; the old file is then unchanged. Blocks as long as the medium needs.
-[[nodiscard]] std::string write_memory_file(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
 }  // namespace boresight::alignment

@@ -6,6 +6,7 @@
 #include "services/alignment_estimator/core/memory/codec.hpp"
 #include "services/alignment_estimator/core/windows/windowed_filter.hpp"
 #include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/common/runtime/state_file.hpp"
 
 namespace boresight::calibrate {
 
@@ -36,7 +37,7 @@ std::string seed_state_file(const std::filesystem::path& file, const VehicleConf
   if (!alignment::put_seed(seed, loaded->memory)) throw std::runtime_error(file.string() + ": no room for the radar");
   const std::size_t size = alignment::encode_memory(loaded->memory, identity, *bytes);
   if (size == 0) throw std::runtime_error(file.string() + ": radar " + std::to_string(seed.radar_id) + " is unknown");
-  const std::string problem = alignment::write_memory_file(file, std::span(bytes->data(), size));
+  const std::string problem = runtime::write_state_file(file, std::span(bytes->data(), size));
   if (!problem.empty()) throw std::runtime_error(file.string() + ": " + problem);
   return note;
 }

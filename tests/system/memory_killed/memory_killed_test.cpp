@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "services/alignment_estimator/store/memory_file.hpp"
+#include "services/common/runtime/state_file.hpp"
 #include "tests/unit/alignment_estimator/memory/example.hpp"
 
 namespace boresight::alignment {
@@ -29,7 +30,7 @@ struct Progress {
   for (int i = progress.begun + 1;; ++i) {
     progress.begun = i;
     const std::size_t size = encode_memory(example_memory(4, i), identity, bytes);
-    if (!write_memory_file(file, std::span(bytes.data(), size)).empty()) _exit(3);
+    if (!runtime::write_state_file(file, std::span(bytes.data(), size)).empty()) _exit(3);
     progress.done = i;
   }
 }

@@ -1,13 +1,12 @@
 #include "services/alignment_estimator/core/memory/codec.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string_view>
 
 #include <Eigen/Cholesky>
 
-#include "services/common/e2e/crc.hpp"
+#include "services/common/state/frame.hpp"
 
 namespace boresight::alignment {
 
@@ -16,42 +15,8 @@ namespace {
 constexpr std::string_view kMagic = "BORALIGN";
 constexpr std::uint32_t kHasElevation = 1;  // bit of a radar's flags
 
-class Writer {
- public:
-  explicit Writer(MemoryBytes& bytes) : bytes_(bytes) {}
-  void u32(std::uint32_t value) { put(value, 4); }
-  void u64(std::uint64_t value) { put(value, 8); }
-  void f64(double value) { put(std::bit_cast<std::uint64_t>(value), 8); }
-  void text(std::string_view value) {
-    for (const char c : value) bytes_[size_++] = static_cast<std::uint8_t>(c);
-  }
-  [[nodiscard]] std::size_t size() const { return size_; }
-
- private:
-  void put(std::uint64_t value, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) bytes_[size_++] = static_cast<std::uint8_t>(value >> (8 * i));
-  }
-  MemoryBytes& bytes_;
-  std::size_t size_ = 0;
-};
-
-/// Reads within a length that the caller has checked.
-class Reader {
- public:
-  explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-  std::uint32_t u32() { return static_cast<std::uint32_t>(get(4)); }
-  std::uint64_t u64() { return get(8); }
-  double f64() { return std::bit_cast<double>(get(8)); }
-
- private:
-  std::uint64_t get(std::size_t count) {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < count; ++i) value |= static_cast<std::uint64_t>(bytes_[at_++]) << (8 * i);
-    return value;
-  }
-  std::span<const std::uint8_t> bytes_;
-  std::size_t at_ = 0;
-};
+using Writer = state::ByteWriter;
+using Reader = state::ByteReader;
 
 std::size_t length_of(std::size_t radars) {
   return kMemoryHeaderBytes + kMemoryVehicleBytes + radars * kMemoryRadarBytes + 4;
@@ -189,9 +154,7 @@ const char* describe(MemoryVerdict verdict) {
 std::size_t encode_memory(const Memory& memory, const Identity& identity, MemoryBytes& out) {
   if (memory.number_of_radars > kMaxRadars) return 0;
   Writer writer(out);
-  writer.text(kMagic);
-  writer.u32(kMemoryVersion);
-  writer.u32(static_cast<std::uint32_t>(length_of(memory.number_of_radars)));
+  state::begin_frame(writer, kMagic, kMemoryVersion);
   writer.u64(identity.vehicle);
   writer.u32(static_cast<std::uint32_t>(memory.number_of_radars));
   writer.u32(0);
@@ -208,22 +171,17 @@ std::size_t encode_memory(const Memory& memory, const Identity& identity, Memory
     visit_radar(radar, write);
     write_triangle(radar.covariance, Memory::kOwn, writer);
   }
-  writer.u32(e2e::crc32_p4({out.data(), writer.size()}));
-  return writer.size();
+  return state::end_frame(writer);
 }
 
 MemoryVerdict decode_memory(std::span<const std::uint8_t> bytes, const Identity& identity, Memory& out,
                             std::size_t& rejected_radars) {
-  // The frame of magic, version, length and checksum is the same in every version.
-  if (bytes.size() < 20 || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin())) return MemoryVerdict::kCorrupt;
-  Reader reader(bytes);
-  static_cast<void>(reader.u64());
-  const std::uint32_t version = reader.u32(), length = reader.u32();
-  if (length != bytes.size()) return MemoryVerdict::kCorrupt;
-  const auto covered = bytes.first(bytes.size() - 4);
-  if (Reader(bytes.last(4)).u32() != e2e::crc32_p4(covered)) return MemoryVerdict::kCorrupt;
-  if (version != kMemoryVersion) return MemoryVerdict::kOtherVersion;
-  if (bytes.size() < kMemoryHeaderBytes) return MemoryVerdict::kCorrupt;
+  const state::Frame frame = state::open_frame(bytes, kMagic, kMemoryVersion);
+  if (frame.verdict == state::FrameVerdict::kOtherVersion) return MemoryVerdict::kOtherVersion;
+  if (frame.verdict != state::FrameVerdict::kIntact || bytes.size() < kMemoryHeaderBytes) {
+    return MemoryVerdict::kCorrupt;
+  }
+  Reader reader(frame.content);
   const std::uint64_t vehicle = reader.u64();
   const std::size_t radars = reader.u32();
   static_cast<void>(reader.u32());

@@ -1,32 +1,15 @@
 #include "services/alignment_estimator/core/memory/identity.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <string_view>
 
-#include "services/common/e2e/crc.hpp"
+#include "services/common/state/fingerprint.hpp"
 
 namespace boresight::alignment {
 
 namespace {
 
-class Fingerprint {
- public:
-  void add(std::uint64_t value) {
-    std::array<std::uint8_t, 8> bytes;
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
-    state_ = e2e::update_crc64(state_, bytes);
-  }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value + 0.0)); }  // −0 is 0
-  void add(std::string_view text) {
-    add(static_cast<std::uint64_t>(text.size()));
-    state_ = e2e::update_crc64(state_, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  }
-  [[nodiscard]] std::uint64_t value() const { return ~state_; }
-
- private:
-  std::uint64_t state_ = ~std::uint64_t{0};
-};
+using state::Fingerprint;
 
 std::uint64_t fingerprint_of(const RadarConfig& radar) {
   Fingerprint print;

@@ -1,14 +1,11 @@
 #include "services/alignment_estimator/store/memory_file.hpp"
 
-#include <csignal>
 #include <fstream>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include "services/alignment_estimator/store/memory_writer.hpp"
+#include "services/common/runtime/state_file.hpp"
 #include "tests/unit/alignment_estimator/memory/example.hpp"
 
 namespace boresight::alignment {
@@ -27,7 +24,7 @@ class MemoryFile : public testing::Test {
   [[nodiscard]] std::string write(double mark) const {
     MemoryBytes bytes;
     const std::size_t size = encode_memory(example_memory(4, mark), identity_, bytes);
-    return write_memory_file(file_, std::span(bytes.data(), size));
+    return runtime::write_state_file(file_, std::span(bytes.data(), size));
   }
   [[nodiscard]] double mark() const {
     const LoadedMemory loaded = load_memory(file_, identity_);
@@ -81,46 +78,6 @@ TEST_F(MemoryFile, AnUnreadableFileStaysInPlace) {
   EXPECT_EQ(loaded.kind, LoadedMemory::Kind::kUnreadable);
   EXPECT_FALSE(loaded.reason.empty());
   EXPECT_TRUE(fs::exists(file_));
-}
-
-TEST_F(MemoryFile, AFullMediumKeepsTheOldFile) {
-  ASSERT_EQ(write(1.0), "");
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{100, before.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string problem = write(2.0);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_NE(problem.find("write: "), std::string::npos) << problem;
-  EXPECT_NEAR(mark(), 1.0, 1e-9);
-}
-
-TEST_F(MemoryFile, AMissingFolderIsReported) {
-  MemoryBytes bytes;
-  const std::size_t size = encode_memory(example_memory(), identity_, bytes);
-  EXPECT_NE(write_memory_file(folder_ / "none" / "memory", std::span(bytes.data(), size)).find("open: "),
-            std::string::npos);
-}
-
-TEST_F(MemoryFile, TheWriterTakesOneAtATimeAndTheLastOneWins) {
-  {
-    MemoryWriter writer(file_, identity_);
-    int taken = 0;
-    for (int i = 0; i < 2000; ++i) taken += writer.offer(example_memory(4, i)) ? 1 : 0;
-    EXPECT_GE(taken, 1);
-    EXPECT_EQ(writer.finish(example_memory(4, 5000.0)), "");
-    EXPECT_EQ(writer.written(), static_cast<std::uint64_t>(taken) + 1) << "no accepted memory is lost";
-    EXPECT_EQ(writer.failed(), 0u);
-  }
-  EXPECT_NEAR(mark(), 5000.0, 1e-6);
-}
-
-TEST_F(MemoryFile, TheWriterCountsFailures) {
-  MemoryWriter writer(folder_ / "none" / "memory", identity_);
-  EXPECT_NE(writer.finish(example_memory()), "");
-  EXPECT_EQ(writer.failed(), 1u);
 }
 
 }  // namespace
